@@ -1,0 +1,26 @@
+# Flags of our own targets only: every target of Palpa is made by palpa_library or palpa_executable.
+
+add_library(palpa_flags INTERFACE)
+target_include_directories(palpa_flags INTERFACE ${PROJECT_SOURCE_DIR})
+target_compile_options(palpa_flags INTERFACE
+    -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wsign-conversion -Wnon-virtual-dtor -Wold-style-cast
+    -Wcast-align -Wunused -Woverloaded-virtual -Wdouble-promotion -Wformat=2 -Werror)
+# One machine and build give one result: no contraction into fused operations behind our back.
+target_compile_options(palpa_flags INTERFACE -ffp-contract=off)
+if(PALPA_SANITIZE)
+    target_compile_options(palpa_flags INTERFACE -fsanitize=${PALPA_SANITIZE} -fno-omit-frame-pointer
+                                                 -fno-sanitize-recover=all)
+    target_link_options(palpa_flags INTERFACE -fsanitize=${PALPA_SANITIZE})
+endif()
+
+function(palpa_library name)
+    cmake_parse_arguments(ARG "" "" "SOURCES;USES" ${ARGN})
+    add_library(palpa_${name} STATIC ${ARG_SOURCES})
+    target_link_libraries(palpa_${name} PUBLIC palpa_flags ${ARG_USES})
+endfunction()
+
+function(palpa_executable name)
+    cmake_parse_arguments(ARG "" "" "SOURCES;USES" ${ARGN})
+    add_executable(${name} ${ARG_SOURCES})
+    target_link_libraries(${name} PRIVATE palpa_flags ${ARG_USES})
+endfunction()

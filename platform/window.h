@@ -1,0 +1,64 @@
+#pragma once
+// A window with an OpenGL ES 3 context, and the pens, fingers and mice that move over it.
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "platform/sample.h"
+
+union SDL_Event;
+struct SDL_Window;
+
+namespace palpa {
+
+struct WindowOptions {
+    std::string title = "Palpa";
+    int width_px = 1280;
+    int height_px = 800;
+    bool visible = true;       // false: an off-screen context that needs no display
+    double mouse_hold_s = 2.0; // how long the mouse button is held for full pressure
+};
+
+// What a pointing device reports, for messages to the person ("this pen has no pressure sensor").
+struct PointerDevice {
+    int id = 0;
+    std::string name;
+    Tool tool = Tool::pen;
+    bool has_pressure = false;
+    double pressure_min = 0.0;  // counts
+    double pressure_max = 0.0;  // counts
+};
+
+// One window. Throws std::runtime_error with a message for people if there is no display or no OpenGL ES 3.
+class Window {
+ public:
+    explicit Window(const WindowOptions& options);
+    ~Window();
+    Window(const Window&) = delete;
+    Window& operator=(const Window&) = delete;
+
+    // Appends everything that arrived since the last call, oldest first; none is merged. Waits for input up
+    // to `wait_s` seconds (0: not at all). Samples are in px of the drawing area.
+    void poll(double wait_s, std::vector<Sample>& out);
+
+    // Called with every SDL event during poll(), before it becomes a sample (Dear ImGui listens here). While
+    // it returns true the event belongs to a panel and presses no tissue.
+    void set_event_filter(bool (*filter)(const SDL_Event& event, void* user), void* user);
+
+    bool close_requested() const;
+    void present();            // shows what was drawn
+    double now_s() const;      // steady clock; the same as t_host_s
+    int width_px() const;      // drawing area
+    int height_px() const;
+    double mouse_pressure() const;  // what the mouse presses with now (wheel or hold), 0..1
+    std::vector<PointerDevice> devices() const;
+    SDL_Window* sdl() const;
+
+ private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace palpa
