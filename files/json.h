@@ -1,0 +1,72 @@
+#pragma once
+// Hand-written JSON files: `//` comments allowed, unknown and repeated keys are errors, and every message
+// names the file and the key.
+
+#include <filesystem>
+#include <initializer_list>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace palpa {
+
+using Json = nlohmann::ordered_json;
+
+// Throws InputError naming file, line and column where the text is not JSON, and the key that stands twice.
+Json read_json(const std::filesystem::path& path);
+Json parse_json(std::string_view text, const std::string& file_name);
+
+// Bounds of a number, as they are told to the person: "> 0", "0 ... 1".
+struct Bounds {
+    double lowest;
+    double highest;
+    bool lowest_excluded = false;
+};
+inline constexpr Bounds kAnyNumber{-1e300, 1e300};
+inline constexpr Bounds kPositive{0.0, 1e300, true};
+inline constexpr Bounds kNotNegative{0.0, 1e300};
+
+// One JSON object while it is read. Each key is asked for by name and checked; finish() then refuses the
+// keys that nobody asked for. All errors are InputError. A missing key without a default is an error.
+class JsonReader {
+ public:
+    JsonReader(const Json& value, std::string file, std::string where = "");
+
+    bool has(std::string_view key) const;
+    double number(std::string_view key, Bounds bounds);
+    double number(std::string_view key, Bounds bounds, double otherwise);
+    int integer(std::string_view key, int lowest, int highest);
+    int integer(std::string_view key, int lowest, int highest, int otherwise);
+    bool boolean(std::string_view key, bool otherwise);
+    std::string text(std::string_view key);
+    std::string text(std::string_view key, std::string otherwise);
+    // Index of the text in `choices`.
+    std::size_t choice(std::string_view key, std::initializer_list<std::string_view> choices);
+    // `count` = 0: any number of them, at least one.
+    std::vector<double> numbers(std::string_view key, std::size_t count, Bounds bounds);
+    JsonReader object(std::string_view key);
+    std::optional<JsonReader> optional_object(std::string_view key);
+    std::vector<JsonReader> objects(std::string_view key);  // an array of objects; empty if absent
+    const Json& any(std::string_view key);                   // taken as it is
+
+    void finish() const;
+    [[noreturn]] void fail(std::string_view key, std::string_view found, std::string_view expected) const;
+    const std::string& file() const { return file_; }
+
+ private:
+    const Json& need(std::string_view key, std::string_view expected);
+    const Json* find(std::string_view key);
+    std::string where_of(std::string_view key) const;
+
+    const Json* value_;
+    std::string file_;
+    std::string where_;
+    std::vector<std::string> asked_;
+};
+
+// How a value is told in a message: "3.5", "'left'", "an array", "nothing".
+std::string described(const Json& value);
+
+}  // namespace palpa

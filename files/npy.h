@@ -1,0 +1,25 @@
+#pragma once
+// NumPy's array file, format versions 1 and 2: little-endian float32 or float64, C order.
+// Source: numpy.lib.format documentation, "NPY format".
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace palpa {
+
+struct NpyArray {
+    std::vector<std::size_t> shape;
+    std::vector<float> values;  // C order: the last index runs fastest
+};
+
+// float64 files are narrowed. Throws InputError for anything else, and for a size that the file does not
+// have; nothing is allocated on a header's word alone.
+NpyArray read_npy(const std::filesystem::path& path);
+NpyArray parse_npy(std::string_view bytes, const std::string& file_name);
+
+std::string npy_bytes(const NpyArray& array);  // '<f4', version 1.0
+
+std::string shape_text(const std::vector<std::size_t>& shape);  // "(6, 59, 159)"
+
+}  // namespace palpa

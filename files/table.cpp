@@ -1,0 +1,100 @@
+#include "files/table.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "files/input_error.h"
+#include "files/text.h"
+
+namespace palpa {
+
+Table::Table(std::string text, std::string file_name, char separator)
+    : text_(std::move(text)), file_(std::move(file_name)), separator_(separator) {
+    constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
+    if (std::string_view(text_).substr(0, 3) == kByteOrderMark) at_ = 3;
+    std::string_view header;
+    if (!next_line(header) || header.empty()) throw bad_input(file_, "line 1", "nothing", "a header line");
+    split(header);
+    columns_.assign(fields_.begin(), fields_.end());
+    for (std::size_t i = 0; i < columns_.size(); ++i) {
+        if (std::count(columns_.begin(), columns_.end(), columns_[i]) > 1) {
+            throw bad_input(file_, "line 1", "the column " + shown(columns_[i]) + " twice", "it once");
+        }
+    }
+}
+
+bool Table::has_column(std::string_view name) const {
+    return std::find(columns_.begin(), columns_.end(), name) != columns_.end();
+}
+
+std::size_t Table::column(std::string_view name) const {
+    const auto it = std::find(columns_.begin(), columns_.end(), name);
+    if (it != columns_.end()) return static_cast<std::size_t>(it - columns_.begin());
+    std::string found = "the columns";
+    for (const auto& column : columns_) found += " " + shown(column);
+    throw bad_input(file_, "line 1", found, "a column " + shown(name));
+}
+
+bool Table::next_line(std::string_view& out) {
+    if (at_ >= text_.size()) return false;
+    const std::string_view rest = std::string_view(text_).substr(at_);
+    const auto end = std::min(rest.find('\n'), rest.size());
+    out = rest.substr(0, end);
+    if (!out.empty() && out.back() == '\r') out.remove_suffix(1);
+    at_ += end + 1;
+    ++line_;
+    return true;
+}
+
+void Table::split(std::string_view line) {
+    fields_.clear();
+    while (true) {
+        const auto end = line.find(separator_);
+        fields_.push_back(line.substr(0, end));
+        if (end == std::string_view::npos) return;
+        line.remove_prefix(end + 1);
+    }
+}
+
+bool Table::next() {
+    std::string_view line;
+    do {
+        if (!next_line(line)) return false;
+    } while (line.empty());
+    split(line);
+    if (fields_.size() != columns_.size()) {
+        const bool comma_for_point = separator_ == ',' && fields_.size() > columns_.size();
+        throw bad_input(file_, "line " + std::to_string(line_), std::to_string(fields_.size()) + " fields",
+                        std::to_string(columns_.size()) + " as in the header" +
+                            (comma_for_point ? " (a decimal comma? numbers need a point)" : ""));
+    }
+    return true;
+}
+
+void Table::fail(std::size_t column, std::string_view expected) const {
+    throw bad_input(file_, "line " + std::to_string(line_) + ", " + columns_[column], shown(fields_[column]),
+                    expected);
+}
+
+double Table::number(std::size_t column) const {
+    const std::string_view text = fields_[column];
+    if (text.empty() || text == "n/a") return std::numeric_limits<double>::quiet_NaN();
+    double value = 0.0;
+    if (!parse_number(text, value) || std::isinf(value)) {
+        const bool comma = text.find(',') != std::string_view::npos;
+        fail(column, comma ? "a number with a decimal point, not a comma" : "a finite number or n/a");
+    }
+    return value;
+}
+
+double Table::finite_number(std::size_t column) const {
+    const double value = number(column);
+    if (std::isnan(value)) fail(column, "a finite number");
+    return value;
+}
+
+Table read_tsv(const std::filesystem::path& path) { return Table(read_text(path), path.string(), '\t'); }
+Table read_csv(const std::filesystem::path& path) { return Table(read_text(path), path.string(), ','); }
+
+}  // namespace palpa

@@ -1,0 +1,49 @@
+#pragma once
+// Tab- or comma-separated tables with one header line. Rows are handed out one after the other, without
+// copies; messages name the file, the line and the column.
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace palpa {
+
+class Table {
+ public:
+    Table(std::string text, std::string file_name, char separator);
+
+    const std::vector<std::string>& columns() const { return columns_; }
+    // Throws InputError that lists what there is, if the column is missing.
+    std::size_t column(std::string_view name) const;
+    bool has_column(std::string_view name) const;
+
+    // Moves to the next row; false at the end. Blank lines are skipped. Throws InputError where the number of
+    // fields differs from the header's.
+    bool next();
+
+    std::string_view field(std::size_t column) const { return fields_[column]; }
+    // A finite number, or NaN for "n/a", "nan" and an empty field; everything else throws InputError.
+    double number(std::size_t column) const;
+    double finite_number(std::size_t column) const;  // NaN throws too
+    [[noreturn]] void fail(std::size_t column, std::string_view expected) const;
+    std::size_t line() const { return line_; }
+    const std::string& file() const { return file_; }
+
+ private:
+    bool next_line(std::string_view& out);
+    void split(std::string_view line);
+
+    std::string text_;
+    std::string file_;
+    char separator_;
+    std::size_t at_ = 0;
+    std::size_t line_ = 0;
+    std::vector<std::string> columns_;
+    std::vector<std::string_view> fields_;
+};
+
+Table read_tsv(const std::filesystem::path& path);
+Table read_csv(const std::filesystem::path& path);
+
+}  // namespace palpa

@@ -1,0 +1,108 @@
+#include "files/text.h"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <charconv>
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+#include <fstream>
+#include <stdexcept>
+
+#include "files/input_error.h"
+
+namespace palpa {
+
+std::string read_text(const std::filesystem::path& path, std::size_t limit_bytes) {
+    std::error_code error;
+    if (std::filesystem::is_directory(path, error)) {
+        throw bad_input(path.string(), "", "a folder", "a file");
+    }
+    std::FILE* file = std::fopen(path.c_str(), "rb");
+    if (file == nullptr) throw InputError(path.string() + ": cannot be read: " + std::strerror(errno));
+    std::string text;
+    std::array<char, 1 << 16> buffer;
+    while (const std::size_t n = std::fread(buffer.data(), 1, buffer.size(), file)) {
+        text.append(buffer.data(), n);
+        if (text.size() > limit_bytes) break;
+    }
+    const bool failed = std::ferror(file) != 0;
+    std::fclose(file);
+    if (failed) throw InputError(path.string() + ": cannot be read to its end");
+    if (text.size() > limit_bytes) {
+        throw bad_input(path.string(), "", "more than " + std::to_string(limit_bytes) + " bytes", "less");
+    }
+    return text;
+}
+
+namespace {
+
+[[noreturn]] void fail_writing(const std::filesystem::path& path) {
+    throw std::runtime_error(path.string() + ": cannot be written: " + std::strerror(errno));
+}
+
+void write_and_sync(const std::filesystem::path& path, std::string_view text) {
+    const int fd = ::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
+    if (fd < 0) fail_writing(path);
+    while (!text.empty()) {
+        const ssize_t n = ::write(fd, text.data(), text.size());
+        if (n < 0 && errno == EINTR) continue;
+        if (n <= 0) {
+            ::close(fd);
+            ::unlink(path.c_str());
+            fail_writing(path);
+        }
+        text.remove_prefix(static_cast<std::size_t>(n));
+    }
+    if (::fsync(fd) != 0 || ::close(fd) != 0) fail_writing(path);
+}
+
+}  // namespace
+
+void write_text_atomically(const std::filesystem::path& path, std::string_view text) {
+    std::filesystem::path aside = path;
+    aside += ".part-" + std::to_string(::getpid());
+    write_and_sync(aside, text);
+    if (::rename(aside.c_str(), path.c_str()) != 0) {
+        const int reason = errno;
+        ::unlink(aside.c_str());
+        errno = reason;
+        fail_writing(path);
+    }
+}
+
+bool parse_number(std::string_view text, double& out) {
+    if (!text.empty() && text.front() == '+') text.remove_prefix(1);
+    if (text.empty() || text.front() == '+') return false;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), out);
+    return error == std::errc() && end == text.data() + text.size();
+}
+
+void append_number(double value, std::string& out) {
+    if (std::isnan(value)) {
+        out.append("n/a");
+        return;
+    }
+    std::array<char, 32> buffer;
+    const auto [end, error] = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value);
+    static_cast<void>(error);  // 32 characters hold every double
+    out.append(buffer.data(), end);
+}
+
+std::string number_text(double value) {
+    std::string out;
+    append_number(value, out);
+    return out;
+}
+
+std::string short_number(double value) {
+    std::array<char, 32> buffer;
+    std::snprintf(buffer.data(), buffer.size(), "%.4g", value);
+    return buffer.data();
+}
+
+}  // namespace palpa

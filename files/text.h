@@ -1,0 +1,28 @@
+#pragma once
+// Whole files as text; numbers to and from text, independent of the locale.
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+namespace palpa {
+
+// Throws InputError if the file cannot be read, is a folder, or is larger than `limit_bytes`.
+std::string read_text(const std::filesystem::path& path, std::size_t limit_bytes = std::size_t{1} << 31);
+
+// Writes beside the target, syncs, then renames: the file is there whole or not at all.
+// Throws std::runtime_error with the system's reason.
+void write_text_atomically(const std::filesystem::path& path, std::string_view text);
+
+// The whole of `text` as a finite or non-finite double ("1e-3", "nan"); false if any of it is not a number.
+// A leading '+' is accepted, a decimal comma is not.
+bool parse_number(std::string_view text, double& out);
+
+// Shortest text that reads back as the same double; NaN becomes "n/a".
+void append_number(double value, std::string& out);
+std::string number_text(double value);
+
+// Four significant digits, for messages and tables.
+std::string short_number(double value);
+
+}  // namespace palpa
