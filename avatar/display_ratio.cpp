@@ -1,0 +1,60 @@
+#include "avatar/display_ratio.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace palpa {
+namespace {
+
+double resistance(const DisplayRatio& law, double df_N) {
+    const double x = std::max(df_N, 0.0);
+    return x / (law.f_0_N + x);
+}
+
+// A: decay while the pen stands still for longer than hold_s.
+void decay(const DisplayRatio& law, double still_s, Eigen::Vector2d& lag_m) {
+    if (still_s > law.hold_s) lag_m *= std::exp(-(still_s - law.hold_s) / law.pause_decay_s);
+}
+
+// B: towards cap * u, exactly for a constant w; then C: release.
+void drag(const DisplayRatio& law, const Pull& pull, Eigen::Vector2d& lag_m) {
+    const double w = resistance(law, pull.df_N);
+    if (w > 0.0 && law.cap_m) {
+        const Eigen::Vector2d full_m = *law.cap_m * pull.u;
+        lag_m = full_m + (lag_m - full_m) * std::exp(-w * pull.ds_m / *law.cap_m);
+    } else {
+        lag_m += w * pull.ds_m * pull.u;
+    }
+    const double b = std::clamp(1.0 - pull.df_N / law.gate_N, 0.0, 1.0);
+    const double length_m = lag_m.norm();
+    if (b > 0.0 && length_m > 0.0) lag_m *= std::max(0.0, 1.0 - law.release * b * pull.ds_m / length_m);
+}
+
+}  // namespace
+
+DisplayRatio display_ratio_paper() {
+    DisplayRatio law;
+    law.f_0_N = 1.0;
+    law.cap_m.reset();
+    return law;
+}
+
+DisplayRatio display_ratio_clear() { return DisplayRatio{}; }
+
+double display_gain(const DisplayRatio& law, double df_N) { return 1.0 - resistance(law, df_N); }
+
+void apply_pull(const DisplayRatio& law, const Pull& pull, DisplayRatioState& state) {
+    if (pull.ds_m <= 0.0) return;
+    decay(law, pull.t_s - state.moved_s, state.lag_m);
+    drag(law, pull, state.lag_m);
+    state.moved_s = pull.t_s;
+}
+
+Eigen::Vector2d lag_at(const DisplayRatio& law, const DisplayRatioState& state, const Pull& partial, double t_s) {
+    Eigen::Vector2d lag_m = state.lag_m;
+    if (partial.ds_m > 0.0) drag(law, partial, lag_m);
+    decay(law, t_s - state.moved_s, lag_m);
+    return lag_m;
+}
+
+}  // namespace palpa

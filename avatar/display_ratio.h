@@ -1,0 +1,62 @@
+#pragma once
+// Law R: over a stiffer place the avatar moves less than the pen (touchpad version of Li et al., eq. 4).
+//
+// Per metre of path, with x = max(df, 0) and u the direction of motion, the lag l = pen - avatar obeys
+//     dl/ds = w (u - l/cap) - c b(df) l/|l|,    w = x / (f_0 + x),    b = clamp(1 - df/df_on, 0, 1)
+// so that the avatar's gain is g = 1/(1 + x/f_0) = 1 - w while the force rises, as in the paper. Ours, not the
+// paper's: cap, release (the paper snaps back in one step), gate and the decay on a pause. The printed
+// eq. (4) reads R_o/(f_i + 1) with the raw level f_i; we read the force difference in newtons over f_0 = 1 N.
+
+#include <optional>
+
+#include "avatar/path.h"
+
+namespace palpa {
+
+struct DisplayRatio {
+    double f_0_N = 0.02;
+    std::optional<double> cap_m = 3e-3;  // none: the lag is not bounded
+    double release = 1.0;                // c, metres of lag given back per metre of path
+    double gate_N = 2e-3;                // df_on
+    double hold_s = 0.15;                // T_hold: standing still for longer lets the lag decay
+    double pause_decay_s = 0.1;          // tau_p
+    PathParameters path;
+};
+
+DisplayRatio display_ratio_paper();  // f_0 = 1 N, no cap: at or below one pixel on common screens
+DisplayRatio display_ratio_clear();  // f_0 = 0.02 N, cap 3 mm: visible
+
+struct DisplayRatioState {
+    PathState path;
+    Eigen::Vector2d lag_m = Eigen::Vector2d::Zero();  // committed at stations only
+    double moved_s = 0.0;                             // time of the last station with ds > 0
+};
+
+// Gain of the avatar along the motion, 1 - w. Source: eq. (4) as read above.
+double display_gain(const DisplayRatio& law, double df_N);
+
+// One station, in place.
+void apply_pull(const DisplayRatio& law, const Pull& pull, DisplayRatioState& state);
+
+// The lag at time t_s with an uncommitted pull to the pen on top; changes nothing.
+Eigen::Vector2d lag_at(const DisplayRatio& law, const DisplayRatioState& state, const Pull& partial, double t_s);
+
+// Goes to the sample and returns the lag there. Lifting or a jump of the pen sets it to 0 at once.
+template <class Rise>
+Eigen::Vector2d advance_lag(const DisplayRatio& law, const Touch& pen, const Rise& rise_N,
+                            DisplayRatioState& state) {
+    const auto at_station = [&](const Pull& pull) { apply_pull(law, pull, state); };
+    const PathEvent event = walk_to(law.path, pen, rise_N, at_station, state.path);
+    if (event == PathEvent::lifted || event == PathEvent::started) {
+        state.lag_m.setZero();
+        state.moved_s = pen.t_s;
+        return state.lag_m;
+    }
+    const Touch& last = state.path.last;
+    if (!last.down) return state.lag_m;
+    Eigen::Vector2d rope_m = state.path.rope_m;
+    const Pull partial = pull_rope(law.path, last, rise_N, rope_m);
+    return lag_at(law, state, partial, last.t_s);
+}
+
+}  // namespace palpa
