@@ -11,9 +11,9 @@ double resistance(const DisplayRatio& law, double df_N) {
     return x / (law.f_0_N + x);
 }
 
-// A: decay while the pen stands still for longer than hold_s.
-void decay(const DisplayRatio& law, double still_s, Eigen::Vector2d& lag_m) {
-    if (still_s > law.hold_s) lag_m *= std::exp(-(still_s - law.hold_s) / law.pause_decay_s);
+// A: what is left after the pen has stood still for still_s.
+double left_after(const DisplayRatio& law, double still_s) {
+    return still_s > law.hold_s ? std::exp(-(still_s - law.hold_s) / law.pause_decay_s) : 1.0;
 }
 
 // B: towards cap * u, exactly for a constant w; then C: release.
@@ -45,7 +45,7 @@ double display_gain(const DisplayRatio& law, double df_N) { return 1.0 - resista
 
 void apply_pull(const DisplayRatio& law, const Pull& pull, DisplayRatioState& state) {
     if (pull.ds_m <= 0.0) return;
-    decay(law, pull.t_s - state.moved_s, state.lag_m);
+    state.lag_m *= left_after(law, pull.t_s - state.moved_s);
     drag(law, pull, state.lag_m);
     state.moved_s = pull.t_s;
 }
@@ -53,8 +53,12 @@ void apply_pull(const DisplayRatio& law, const Pull& pull, DisplayRatioState& st
 Eigen::Vector2d lag_at(const DisplayRatio& law, const DisplayRatioState& state, const Pull& partial, double t_s) {
     Eigen::Vector2d lag_m = state.lag_m;
     if (partial.ds_m > 0.0) drag(law, partial, lag_m);
-    decay(law, t_s - state.moved_s, lag_m);
-    return lag_m;
+    return lag_m * left_after(law, t_s - state.moved_s);
+}
+
+double pause_factor(const DisplayRatio& law, const DisplayRatioState& state, double from_s, double to_s) {
+    const double before = left_after(law, from_s - state.moved_s);
+    return before > 0.0 ? std::min(1.0, left_after(law, to_s - state.moved_s) / before) : 0.0;
 }
 
 }  // namespace palpa

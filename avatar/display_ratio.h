@@ -41,6 +41,9 @@ void apply_pull(const DisplayRatio& law, const Pull& pull, DisplayRatioState& st
 // The lag at time t_s with an uncommitted pull to the pen on top; changes nothing.
 Eigen::Vector2d lag_at(const DisplayRatio& law, const DisplayRatioState& state, const Pull& partial, double t_s);
 
+// What is left, from `from_s` to `to_s`, of a lag shown at `from_s` while the pen has not moved since.
+double pause_factor(const DisplayRatio& law, const DisplayRatioState& state, double from_s, double to_s);
+
 // Goes to the sample and returns the lag there. Lifting or a jump of the pen sets it to 0 at once.
 template <class Rise>
 Eigen::Vector2d advance_lag(const DisplayRatio& law, const Touch& pen, const Rise& rise_N,

@@ -1,0 +1,228 @@
+// palpa maps info | sample | import | generate
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <memory>
+
+#include "app/command_line.h"
+#include "files/input_error.h"
+#include "files/text.h"
+#include "stiffnessmaps/analytic.h"
+#include "stiffnessmaps/field.h"
+#include "stiffnessmaps/import/probing.h"
+#include "stiffnessmaps/map_file.h"
+#include "stiffnessmaps/noise.h"
+#include "stiffnessmaps/phantom.h"
+
+namespace palpa {
+namespace {
+
+constexpr double kReference_m = 3e-4;  // of the avatar's laws, and their gate
+constexpr double kGate_N = 2e-3;
+
+Json info_json(const Map& map, const Field& field) {
+    Json json = map_json(map);
+    json["shape"] = {map.n_depths(), map.n_y, map.n_x};
+    json["missing"] = missing_count(map);
+    const ForceRange range = force_range(map);
+    json["force_range_N"] = {range.lowest_N, range.highest_N};
+    json["not_rising_with_depth"] = field.isotonic_changed;
+    const double noise_N = normal_noise_N(map);
+    json["noise_N"] = noise_N;
+    json["smoothing_mm"] = 1e3 * smoothing_sigma_m(map, noise_N, kReference_m, kGate_N);
+    if (map.tangential == TangentialKind::recorded) {
+        const TangentialAgreement agreement = tangential_agreement(map, field);
+        json["tangential_against_energy"] = {
+            {"correlation", agreement.correlation}, {"slope", agreement.slope}, {"n", agreement.n}};
+    }
+    return json;
+}
+
+void print_info(const Map& map, const Json& info) {
+    const ForceRange range = force_range(map);
+    std::printf("%s: %zu x %zu cells, %zu depths to %s mm\n", map.name.c_str(), map.n_x, map.n_y, map.n_depths(),
+                short_number(1e3 * map.depths_m.back()).c_str());
+    std::printf("  cells       %s x %s mm from x %s, y %s mm\n", short_number(1e3 * map.spacing_m[0]).c_str(),
+                short_number(1e3 * map.spacing_m[1]).c_str(), short_number(1e3 * map.origin_m[0]).c_str(),
+                short_number(1e3 * map.origin_m[1]).c_str());
+    std::printf("  force       %s to %s N, %zu of %zu not measured\n", short_number(range.lowest_N).c_str(),
+                short_number(range.highest_N).c_str(), missing_count(map), map.normal_N.size());
+    std::printf("  not rising  %s forces below a shallower one (isotonic regression at look-up, raw values kept)\n",
+                info["not_rising_with_depth"].dump().c_str());
+    std::printf("  noise       %s mN; the avatar's laws then smooth by %s mm\n",
+                short_number(1e3 * info["noise_N"].get<double>()).c_str(),
+                short_number(info["smoothing_mm"].get<double>()).c_str());
+    std::printf("  tangential  %s\n", name_of(map.tangential));
+    if (info.contains("tangential_against_energy")) {
+        const Json& agreement = info["tangential_against_energy"];
+        const double r = agreement["correlation"].get<double>();
+        const double slope = agreement["slope"].get<double>();
+        std::printf("  recorded tangential force against the energy's slope: correlation %.2f, slope %.2f\n", r, slope);
+        if (r < 0.5 || slope < 0.5 || slope > 2.0) {
+            std::fprintf(stderr, "palpa: warning: recorded tangential force and the work argument disagree\n");
+        }
+    }
+    std::printf("  indenter    %s, radius %s mm\n", name_of(map.indenter), short_number(1e3 * map.indenter_radius_m).c_str());
+    for (const Nodule& nodule : map.nodules) {
+        std::printf("  nodule %-4s (%s, %s) mm, %s\n", nodule.id.c_str(), short_number(1e3 * nodule.x_m).c_str(),
+                    short_number(1e3 * nodule.y_m).c_str(), nodule.placed ? "placed" : "detected");
+    }
+    std::printf("  source      %s: %s\n", name_of(map.source.kind), map.source.how.c_str());
+}
+
+struct InfoOptions {
+    std::string map;
+    bool json = false;
+};
+
+void add_info(CLI::App& maps) {
+    auto options = std::make_shared<InfoOptions>();
+    CLI::App* command = maps.add_subcommand("info", "What a map holds and where it comes from");
+    command->add_option("MAP", options->map, "map folder")->required();
+    command->add_flag("--json", options->json, "one JSON object: map.json with shape, missing, force_range_N, ...");
+    command->callback([options] {
+        const Map map = read_map(options->map);
+        const Json info = info_json(map, make_field(map, {}));
+        if (options->json) {
+            std::printf("%s\n", info.dump(2).c_str());
+        } else {
+            print_info(map, info);
+        }
+    });
+}
+
+struct SampleOptions {
+    std::string map;
+    double x_mm = 0.0;
+    double y_mm = 0.0;
+    std::optional<double> force_N;
+    std::optional<double> depth_mm;
+    bool json = false;
+};
+
+void sample_map(const SampleOptions& options) {
+    const Field field = make_field(read_map(options.map), {});
+    const Place place = place_at(field, {1e-3 * options.x_mm, 1e-3 * options.y_mm});
+    DepthAnswer answer;
+    if (options.force_N) {
+        answer = depth_at(field, place, *options.force_N);
+    } else {
+        const double greatest_m = greatest_depth_m(field, place);
+        answer.saturated = 1e-3 * *options.depth_mm > greatest_m;
+        answer.depth_m = std::min(1e-3 * *options.depth_mm, greatest_m);
+    }
+    const double force_N = options.force_N.value_or(normal_force_N(field, place, answer.depth_m));
+    const double along_x_N = tangential_force_N(field, place, {1.0, 0.0}, answer.depth_m);
+    const double along_y_N = tangential_force_N(field, place, {0.0, 1.0}, answer.depth_m);
+    if (options.json) {
+        const Json json{{"x_mm", options.x_mm},
+                        {"y_mm", options.y_mm},
+                        {"force_N", force_N},
+                        {"depth_mm", 1e3 * answer.depth_m},
+                        {"tangential_x_N", along_x_N},
+                        {"tangential_y_N", along_y_N},
+                        {"saturated", answer.saturated},
+                        {"inside", place.inside},
+                        {"measured", place.measured}};
+        std::printf("%s\n", json.dump(2).c_str());
+    } else {
+        std::printf("force %.6g N, depth %.6g mm, resists +x with %.4g N, +y with %.4g N\n", force_N,
+                    1e3 * answer.depth_m, along_x_N, along_y_N);
+    }
+    const char* name = options.map.c_str();
+    if (answer.saturated) std::fprintf(stderr, "palpa: %s: deeper than recorded here, shown at the greatest depth\n", name);
+    if (!place.inside) std::fprintf(stderr, "palpa: %s: outside the map, taken at its edge\n", name);
+    if (place.inside && !place.measured) std::fprintf(stderr, "palpa: %s: not measured here, taken from the neighbours\n", name);
+}
+
+void add_sample(CLI::App& maps) {
+    auto options = std::make_shared<SampleOptions>();
+    CLI::App* command = maps.add_subcommand("sample", "Depth from force, or force from depth, at one place");
+    command->add_option("MAP", options->map, "map folder")->required();
+    command->add_option("--x-mm", options->x_mm, "in the map's frame")->required();
+    command->add_option("--y-mm", options->y_mm, "in the map's frame")->required();
+    CLI::Option_group* what = command->add_option_group("what", "one of these");
+    what->add_option("--force-N", options->force_N, "normal force")->check(CLI::Range(0.0, 1e6));
+    what->add_option("--depth-mm", options->depth_mm, "indentation")->check(CLI::Range(0.0, 1e6));
+    what->require_option(1);
+    command->add_flag("--json", options->json, "one JSON object");
+    command->callback([options] { sample_map(*options); });
+}
+
+struct ImportOptions {
+    std::string csv;
+    std::string output;
+    double indenter_radius_mm = 3.0;
+    bool json = false;
+};
+
+void import_map(const ImportOptions& options) {
+    ProbingReport report;
+    const Map map = import_probing(options.csv, 1e-3 * options.indenter_radius_mm, report);
+    write_map(map, options.output);
+    const double greatest_N = force_range(map).highest_N;
+    if (options.json) {
+        Json json = info_json(map, make_field(map, {}));
+        json["import"] = {{"rows", report.rows},
+                          {"points", report.points},
+                          {"rejected_rows", report.rejected_rows},
+                          {"rejected_points", report.rejected_points},
+                          {"missing_cells", report.missing_cells},
+                          {"median_offset_N", report.median_offset_N},
+                          {"median_residual_N", report.median_residual_N},
+                          {"worst_residual_N", report.worst_residual_N}};
+        std::printf("%s\n", json.dump(2).c_str());
+        return;
+    }
+    std::printf("%s: %zu points become %zu x %zu cells of %.2f x %.2f mm, %zu depths to %.2f mm\n",
+                options.output.c_str(), report.points, map.n_x, map.n_y, 1e3 * map.spacing_m[0],
+                1e3 * map.spacing_m[1], map.n_depths(), 1e3 * map.depths_m.back());
+    std::printf("  %zu cells missing; %zu of %zu rows and %zu points rejected; %.3g N at contact subtracted (median)\n",
+                report.missing_cells, report.rejected_rows, report.rows, report.rejected_points, report.median_offset_N);
+    std::printf("  map against recording: %.2g N median, %.2g N worst, of %.3g N\n", report.median_residual_N,
+                report.worst_residual_N, greatest_N);
+}
+
+void add_import(CLI::App& maps) {
+    auto options = std::make_shared<ImportOptions>();
+    CLI::App* command = maps.add_subcommand("import", "Point-wise probing recorded by a robot becomes a map");
+    command->add_option("FILE", options->csv,
+                        "CSV with point, ref_x_mm, ref_y_mm, depth_cmd_mm, depth_mm, fn_N")->required();
+    command->add_option("-o,--output", options->output, "new map folder NAME.map")->required();
+    command->add_option("--indenter-radius-mm", options->indenter_radius_mm,
+                        "ball tip of the robot (default 3, assumed: recordings do not say)")
+        ->check(CLI::Range(1e-3, 1e3));
+    command->add_flag("--json", options->json, "one JSON object: as `maps info`, and how the import went");
+    command->callback([options] { import_map(*options); });
+}
+
+struct GenerateOptions {
+    std::string phantom;
+    std::string output;
+};
+
+void add_generate(CLI::App& maps) {
+    auto options = std::make_shared<GenerateOptions>();
+    CLI::App* command = maps.add_subcommand("generate", "A phantom becomes a map, by a closed-form stand-in");
+    command->add_option("PHANTOM", options->phantom, "phantom JSON")->required();
+    command->add_option("-o,--output", options->output, "new map folder NAME.map")->required();
+    command->callback([options] {
+        const Map map = analytic_map(read_phantom(options->phantom));
+        write_map(map, options->output);
+        std::printf("%s: %zu x %zu cells, %zu depths; analytic stand-in, not a simulation\n", options->output.c_str(),
+                    map.n_x, map.n_y, map.n_depths());
+    });
+}
+
+}  // namespace
+
+void add_maps(CLI::App& app) {
+    CLI::App* maps = app.add_subcommand("maps", "Stiffness maps: info, sample, import, generate");
+    maps->require_subcommand(1);
+    add_info(*maps);
+    add_sample(*maps);
+    add_import(*maps);
+    add_generate(*maps);
+}
+
+}  // namespace palpa

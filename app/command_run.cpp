@@ -1,0 +1,91 @@
+// palpa run: the app, or a trace without a window.
+
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <cstdio>
+#include <memory>
+
+#include "app/command_line.h"
+#include "app/load.h"
+#include "app/log.h"
+#include "app/replay.h"
+#include "files/input_error.h"
+#include "files/text.h"
+
+namespace palpa {
+namespace {
+
+struct RunOptions {
+    std::string scene;
+    std::string trace;
+    std::string log;
+    std::string participant = "01";
+    std::string screenshot;
+    std::string record;
+    bool headless = false;
+    bool json = false;
+};
+
+void print_result(const Json& result) {
+    std::printf("%s: %s samples, %s frames, %s steps, %s dropped\n", result["scene"].get<std::string>().c_str(),
+                result["samples"].dump().c_str(), result["frames"].dump().c_str(), result["steps"].dump().c_str(),
+                result["dropped_steps"].dump().c_str());
+    std::printf("  greatest force %.3g N, depth %.3g mm, lag %.3g mm\n", result["max_force_N"].get<double>(),
+                result["max_depth_mm"].get<double>(), result["max_lag_mm"].get<double>());
+    for (const auto& nodule : result["lag_over_nodules_mm"].items()) {
+        std::printf("  over nodule %s: lag %.3g mm\n", nodule.key().c_str(), nodule.value().get<double>());
+    }
+    std::printf("  beside the nodules: lag %.3g mm\n", result["lag_beside_nodules_mm"].get<double>());
+}
+
+void run_headless(const RunOptions& options) {
+    if (options.trace.empty()) {
+        throw InputError("--headless: found no --replay TRACE.tsv, expected one (without a window there is no pen)");
+    }
+    const auto began = std::chrono::steady_clock::now();
+    const Scene scene = load_scene(options.scene);
+    const Plan plan = make_plan(scene);
+    const Trace trace = read_trace(options.trace);
+    std::optional<RunFiles> files;
+    std::optional<SampleLog> log;
+    if (!options.log.empty()) {
+        files = next_run(options.log, options.participant);
+        log.emplace(*files);
+    }
+    constexpr int kTimeEvery = 16;
+    const ReplayResult result = replay(scene, plan, trace, kTimeEvery, [&](const Sample& sample, const State& state) {
+        if (log) log->write(row_of(sample, plan, state));
+    });
+    Json json = result_json(scene, plan, result);
+    json["wall_s"] = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
+    if (log) {
+        if (!log->sync()) throw std::runtime_error(options.log + ": the log could not be written to its end");
+        write_text_atomically(files->file("_settings.json"), settings_json(scene, plan, result.state).dump(2) + "\n");
+        write_text_atomically(files->file("_performance.json"), json.dump(2) + "\n");
+    }
+    if (options.json) {
+        std::printf("%s\n", json.dump(2).c_str());
+    } else {
+        print_result(json);
+    }
+}
+
+}  // namespace
+
+void add_run(CLI::App& app) {
+    auto options = std::make_shared<RunOptions>();
+    CLI::App* command = app.add_subcommand("run", "Palpate a scene or a map; replay a trace");
+    command->add_option("SCENE", options->scene, "scene JSON or map folder (default: the default scene)");
+    command->add_option("--replay", options->trace, "recorded input instead of a pen");
+    command->add_flag("--headless", options->headless, "no window: replay as fast as it goes, then exit");
+    command->add_option("--log", options->log, "folder for the log (BIDS layout; nothing is overwritten)");
+    command->add_option("--participant", options->participant, "code in the log's names (default 01)");
+    command->add_option("--screenshot", options->screenshot, "PNG of the moment of greatest lag (headless), or of the last frame");
+    command->add_option("--record", options->record, "write the input as a trace TRACE.tsv");
+    command->add_flag("--json", options->json, "one JSON object on standard output");
+    command->callback([options] {
+        if (options->headless) return run_headless(*options);
+    });
+}
+
+}  // namespace palpa

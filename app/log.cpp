@@ -1,0 +1,59 @@
+#include "app/log.h"
+
+#include "files/text.h"
+
+namespace palpa {
+
+const char* tangential_source(const Plan& plan) {
+    const bool as_recorded = plan.field.options.force == TangentialForce::recorded;
+    if (as_recorded) return plan.field.has_rest ? "recorded" : "none";
+    return "energy";
+}
+
+SampleRow row_of(const Sample& sample, const Plan& plan, const State& state) {
+    SampleRow row;
+    row.t_host_s = sample.t_host_s;
+    row.t_device_s = sample.t_device_s;
+    row.pointer_id = sample.pointer_id;
+    row.tool = name_of(sample.tool);
+    row.phase = name_of(sample.phase);
+    row.pressure = sample.pressure;
+    if (!state.answered) return row;
+    row.x_mm = 1e3 * state.touch.p_m.x();
+    row.y_mm = 1e3 * state.touch.p_m.y();
+    row.force_N = state.contact.normal_N;
+    row.depth_mm = 1e3 * state.contact.depth_m;
+    row.tangential_N = state.contact.tangential_N;
+    row.avatar_x_mm = 1e3 * state.avatar.p_m.x();
+    row.avatar_y_mm = 1e3 * state.avatar.p_m.y();
+    row.lag_mm = 1e3 * state.avatar.lag_m.norm();
+    row.delay_ms = 1e3 * state.avatar.delay_s;
+    row.saturated = state.contact.saturated;
+    row.ft_source = state.contact.measured ? tangential_source(plan) : "none";
+    return row;
+}
+
+Json settings_json(const Scene& scene, const Plan& plan, const State& state) {
+    Json json;
+    json["program"] = "palpa " PALPA_VERSION;
+    json["scene"]["name"] = scene.name;
+    if (!scene.file.empty()) json["scene"]["file"] = read_json(scene.file);
+    json["scene"]["force_scale"] = scene.force_scale;
+    json["scene"]["seed"] = scene.seed;
+    json["map"] = {{"name", plan.map.name},
+                   {"source", name_of(plan.map.source.kind)},
+                   {"count", {plan.map.n_x, plan.map.n_y}},
+                   {"smoothing_mm", 1e3 * plan.smoothing_m}};
+    json["profile"] = {{"id", plan.profile.id}, {"a_N", plan.profile.curve.a_N}, {"b", plan.profile.curve.b}};
+    json["screen_px"] = {state.screen_width_px, state.screen_height_px};
+    json["stages"] = Json::array();
+    for (const auto* stages : {&plan.sample_stages, &plan.frame_stages}) {
+        for (const Stage& stage : *stages) {
+            json["stages"].push_back({{"name", name_of(stage.id)}, {"fidelity", stage.fidelity}});
+        }
+    }
+    json["notes"] = plan.notes;
+    return json;
+}
+
+}  // namespace palpa

@@ -1,0 +1,22 @@
+#pragma once
+// A run's state as a row of the log, and the files that stand beside it.
+
+#include <filesystem>
+#include <string>
+
+#include "files/json.h"
+#include "platform/sample.h"
+#include "scene/scene.h"
+#include "scene/state.h"
+#include "study/sample_log.h"
+
+namespace palpa {
+
+SampleRow row_of(const Sample& sample, const Plan& plan, const State& state);
+
+// What a replay needs to know and a reader wants to: scene, map, profile, screen. The same for every replay.
+Json settings_json(const Scene& scene, const Plan& plan, const State& state);
+
+const char* tangential_source(const Plan& plan);  // recorded | energy | none
+
+}  // namespace palpa

@@ -1,0 +1,40 @@
+#include "calibration/profile.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace palpa {
+
+double level_of(const Profile& profile, const Sample& sample) {
+    switch (profile.level) {
+        case LevelField::pressure: return sample.pressure;
+        case LevelField::pressure_raw: return sample.pressure_raw;
+        case LevelField::contact_area:
+            return 0.25 * std::numbers::pi * sample.width_px * sample.height_px / profile.full_contact_area_px2;
+    }
+    return kMissing;
+}
+
+double force_N(const Profile& profile, double level, std::int64_t& clamped) {
+    const double inside = std::clamp(level, profile.level_lowest, profile.level_highest);
+    if (inside != level) ++clamped;
+    return profile.curve.a_N * std::exp(profile.curve.b * inside);
+}
+
+double level_at_force(const Profile& profile, double force_N) {
+    if (!(force_N > 0.0)) return profile.level_lowest;
+    const double level = std::log(force_N / profile.curve.a_N) / profile.curve.b;
+    return std::clamp(level, profile.level_lowest, profile.level_highest);
+}
+
+const char* name_of(LevelField level) {
+    switch (level) {
+        case LevelField::pressure: return "pressure";
+        case LevelField::pressure_raw: return "pressure_raw";
+        case LevelField::contact_area: return "contact_area";
+    }
+    return "pressure";
+}
+
+}  // namespace palpa

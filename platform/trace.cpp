@@ -1,0 +1,115 @@
+#include "platform/trace.h"
+
+#include <cmath>
+#include <string_view>
+
+#include "files/input_error.h"
+#include "files/json.h"
+#include "files/table.h"
+#include "files/text.h"
+
+namespace palpa {
+namespace {
+
+// One list of the columns writes the header and every row, and reads them back.
+template <class Visit>
+void visit_fields(Sample& s, Visit&& visit) {
+    visit("t_host_s", s.t_host_s);
+    visit("t_device_s", s.t_device_s);
+    visit("pointer_id", s.pointer_id);
+    visit("tool", s.tool);
+    visit("phase", s.phase);
+    visit("x_px", s.x_px);
+    visit("y_px", s.y_px);
+    visit("pressure", s.pressure);
+    visit("pressure_raw", s.pressure_raw);
+    visit("tilt_x_deg", s.tilt_x_deg);
+    visit("tilt_y_deg", s.tilt_y_deg);
+    visit("width_px", s.width_px);
+    visit("height_px", s.height_px);
+    visit("action", s.action);
+}
+
+void append_field(double value, std::string& row) { append_number(value, row); }
+void append_field(std::int64_t value, std::string& row) { row.append(std::to_string(value)); }
+template <class Name>
+void append_field(Name value, std::string& row) {
+    row.append(name_of(value));
+}
+
+void read_field(const Table& table, std::size_t column, double& out) { out = table.number(column); }
+void read_field(const Table& table, std::size_t column, std::int64_t& out) {
+    const double value = table.finite_number(column);
+    if (value != std::floor(value) || std::abs(value) > 9e15) table.fail(column, "a whole number");
+    out = static_cast<std::int64_t>(value);
+}
+template <class Name>
+void read_field(const Table& table, std::size_t column, Name& out) {
+    if (!parse_name(table.field(column), out)) table.fail(column, "one of the names in docs/formats.md");
+}
+
+std::filesystem::path sidecar_of(const std::filesystem::path& tsv) {
+    std::filesystem::path json = tsv;
+    return json.replace_extension(".json");
+}
+
+TraceInfo read_info(const std::filesystem::path& path) {
+    const Json root = read_json(path);
+    JsonReader json(root, path.string());
+    constexpr Bounds kScreen{0.0, 1e5, true};
+    TraceInfo info;
+    const auto size_px = json.numbers("screen_px", 2, kScreen);
+    info.screen_width_px = size_px[0];
+    info.screen_height_px = size_px[1];
+    if (json.has("screen_mm")) {
+        const auto size_mm = json.numbers("screen_mm", 2, kScreen);
+        info.screen_width_mm = size_mm[0];
+        info.screen_height_mm = size_mm[1];
+    }
+    info.device = json.text("device", "n/a");
+    json.finish();
+    return info;
+}
+
+}  // namespace
+
+Trace read_trace(const std::filesystem::path& tsv) {
+    Trace trace;
+    Table table = read_tsv(tsv);
+    trace.info = read_info(sidecar_of(tsv));
+    Sample order;
+    std::vector<std::size_t> columns;
+    visit_fields(order, [&](std::string_view name, auto&) { columns.push_back(table.column(name)); });
+    while (table.next()) {
+        Sample sample;
+        std::size_t i = 0;
+        visit_fields(sample, [&](std::string_view, auto& field) { read_field(table, columns[i++], field); });
+        if (std::isnan(sample.t_host_s)) table.fail(columns[0], "a time on every row");
+        trace.samples.push_back(sample);
+    }
+    if (trace.samples.empty()) throw bad_input(tsv.string(), "", "no rows", "at least one sample");
+    return trace;
+}
+
+TraceWriter::TraceWriter(const std::filesystem::path& tsv, const TraceInfo& info) : file_(tsv) {
+    Json json;
+    json["screen_px"] = {info.screen_width_px, info.screen_height_px};
+    if (!std::isnan(info.screen_width_mm)) json["screen_mm"] = {info.screen_width_mm, info.screen_height_mm};
+    json["device"] = info.device;
+    write_text_atomically(sidecar_of(tsv), json.dump(2) + "\n");
+    Sample any;
+    visit_fields(any, [&](std::string_view name, auto&) { row_.append(row_.empty() ? "" : "\t").append(name); });
+    file_.append(row_.append("\n"));
+}
+
+void TraceWriter::write(const Sample& sample) {
+    row_.clear();
+    Sample copy = sample;
+    visit_fields(copy, [&](std::string_view name, auto& field) {
+        if (name != "t_host_s") row_.push_back('\t');
+        append_field(field, row_);
+    });
+    file_.append(row_.append("\n"));
+}
+
+}  // namespace palpa

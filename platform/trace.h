@@ -1,0 +1,44 @@
+#pragma once
+// Recorded input: one tab-separated row per sample, and a JSON sidecar of the same name that says on which
+// screen it was recorded. A whole run replays from its trace.
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "files/append_file.h"
+#include "platform/sample.h"
+
+namespace palpa {
+
+struct TraceInfo {
+    double screen_width_px = 0.0;
+    double screen_height_px = 0.0;
+    double screen_width_mm = kMissing;
+    double screen_height_mm = kMissing;
+    std::string device;
+};
+
+struct Trace {
+    TraceInfo info;
+    std::vector<Sample> samples;
+};
+
+// X.tsv and X.json. Throws InputError with file, line and column.
+Trace read_trace(const std::filesystem::path& tsv);
+
+// Writes a trace while it happens; nothing is overwritten (throws std::runtime_error if the file is there).
+class TraceWriter {
+ public:
+    TraceWriter(const std::filesystem::path& tsv, const TraceInfo& info);
+    void write(const Sample& sample);
+    bool sync() { return file_.sync(); }
+    bool failed() const { return file_.failed(); }
+
+ private:
+    AppendFile file_;
+    std::string row_;
+};
+
+}  // namespace palpa

@@ -1,0 +1,222 @@
+#include "scene/advance.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+namespace palpa {
+namespace {
+
+constexpr double kLongestGap_s = 60.0;
+
+// Rise of the resisting tangential force over the reference distance, as the laws ask for it.
+struct RiseOnMap {
+    const Field* field;
+    double operator()(const Eigen::Vector2d& e_m, const Eigen::Vector2d& u, double force_N, double reference_m) const {
+        const Place here = place_at(*field, e_m);
+        const Place before = place_at(*field, e_m - reference_m * u);
+        if (!here.measured || !before.measured || !here.inside || !before.inside) return 0.0;
+        const double depth_m = depth_at(*field, here, force_N).depth_m;  // the same in both look-ups
+        return tangential_force_N(*field, here, u, depth_m) - tangential_force_N(*field, before, u, depth_m);
+    }
+};
+
+bool is_touching(Phase phase) { return phase == Phase::down || phase == Phase::move; }
+
+void calibrate(const Scene& scene, const Plan& plan, const Sample& sample, State& state) {
+    state.touch.force_N = 0.0;
+    if (!is_touching(sample.phase)) return;
+    const double level = level_of(plan.profile, sample);
+    if (std::isnan(level)) {
+        ++state.counters.without_level;
+        return;
+    }
+    state.touch.force_N = scene.force_scale * force_N(plan.profile, level, state.counters.levels_clamped);
+}
+
+void place(const Sample& sample, State& state) {
+    state.touch.p_m = tissue_of_px(state.view, {sample.x_px, sample.y_px});
+    state.touch.down = is_touching(sample.phase) && on_tissue(state.view, state.touch.p_m);
+    if (is_touching(sample.phase) && !state.touch.down) {
+        ++state.counters.off_tissue;
+        state.touch.force_N = 0.0;
+    }
+}
+
+void sink(const Plan& plan, State& state) {
+    state.contact = Contact{};
+    if (!state.touch.down) return;
+    const Place at = place_at(plan.field, state.touch.p_m);
+    const DepthAnswer answer = depth_at(plan.field, at, state.touch.force_N);
+    state.contact.depth_m = answer.depth_m;
+    state.contact.normal_N = state.touch.force_N;
+    state.contact.saturated = answer.saturated;
+    state.contact.measured = at.measured;
+    state.counters.saturated += answer.saturated;
+    state.counters.unmeasured += !at.measured;
+}
+
+void resist(const Plan& plan, State& state) {
+    if (!state.touch.down) {
+        state.heading.setZero();
+        state.heading_rope_m = state.touch.p_m;
+        return;
+    }
+    constexpr double kDeadBand_m = 2e-4;  // as in avatar/path.h: jitter has no direction
+    const Eigen::Vector2d v = state.touch.p_m - state.heading_rope_m;
+    const double length_m = v.norm();
+    if (length_m > kDeadBand_m) {
+        state.heading = v / length_m;
+        state.heading_rope_m = state.touch.p_m - kDeadBand_m * state.heading;
+    }
+    const Place at = place_at(plan.field, state.touch.p_m);
+    state.contact.tangential_N = tangential_force_N(plan.field, at, state.heading, state.contact.depth_m);
+}
+
+Touch timed(const State& state) {
+    Touch touch = state.touch;
+    touch.t_s = state.timeline.now_s;
+    return touch;
+}
+
+void run_stage(StageId id, const Scene& scene, const Plan& plan, const Sample& sample, State& state) {
+    switch (id) {
+        case StageId::calibration: return calibrate(scene, plan, sample, state);
+        case StageId::position: return place(sample, state);
+        case StageId::depth: return sink(plan, state);
+        case StageId::tangential: return resist(plan, state);
+        case StageId::display_ratio:
+            state.avatar.lag_m = advance_lag(*scene.display_ratio, timed(state), RiseOnMap{&plan.field}, *state.display_ratio);
+            return;
+        case StageId::delay: {
+            const Delayed delayed = advance_lag(*scene.delay, timed(state), RiseOnMap{&plan.field}, *state.delay);
+            state.avatar.lag_m = delayed.lag_m;
+            state.avatar.delay_s = delayed.tau_s;
+            return;
+        }
+        case StageId::surface: return;  // once a frame, surface_now()
+    }
+}
+
+void note_extremes(const Avatar& avatar, double t_s, State& state) {
+    state.extremes.force_N = std::max(state.extremes.force_N, state.contact.normal_N);
+    state.extremes.depth_m = std::max(state.extremes.depth_m, state.contact.depth_m);
+    const double lag_m = avatar.lag_m.norm();
+    if (lag_m > state.extremes.lag_m) {
+        state.extremes.lag_m = lag_m;
+        state.extremes.lag_at_s = t_s;
+    }
+}
+
+// Grid points since the touch began, up to (not including) the sample's time.
+void walk_grid(const Scene& scene, double to_s, State& state) {
+    const auto last = static_cast<std::int64_t>((to_s - state.touch_began_s) * kGrid_Hz);
+    constexpr auto kMost = static_cast<std::int64_t>(kLongestGap_s * kGrid_Hz);
+    const std::int64_t due = last - state.grid_step;
+    const std::int64_t skipped = std::max<std::int64_t>(0, due - kMost);
+    state.counters.dropped_steps += skipped;
+    for (state.grid_step += skipped; state.grid_step < last;) {
+        ++state.grid_step;
+        ++state.counters.steps;
+        const double t_s = state.touch_began_s + static_cast<double>(state.grid_step) / kGrid_Hz;
+        note_extremes(avatar_at(scene, state, t_s), t_s, state);
+    }
+}
+
+// Whose sample is it? Sets state.answered.
+void follow_pointer(const Sample& sample, State& state) {
+    if (is_touching(sample.phase) && !state.pointer) {
+        state.pointer = sample.pointer_id;
+        state.touch_began_s = state.timeline.now_s;
+        state.grid_step = 0;
+    }
+    state.answered = !state.pointer || *state.pointer == sample.pointer_id;
+    if (state.answered && !is_touching(sample.phase)) state.pointer.reset();
+}
+
+void run_stages(const Scene& scene, const Plan& plan, const Sample& sample, State& state) {
+    const bool time = state.time_every > 0 && state.counters.samples % state.time_every == 0;
+    if (!time) {
+        for (const Stage& stage : plan.sample_stages) {
+            run_stage(stage.id, scene, plan, sample, state);
+            state.meters[static_cast<std::size_t>(stage.id)].count();
+        }
+        return;
+    }
+    std::int64_t before_ns = steady_ns();
+    for (const Stage& stage : plan.sample_stages) {
+        run_stage(stage.id, scene, plan, sample, state);
+        const std::int64_t after_ns = steady_ns();
+        Meter& meter = state.meters[static_cast<std::size_t>(stage.id)];
+        meter.count();
+        meter.add_ns(static_cast<double>(after_ns - before_ns));
+        before_ns = after_ns;
+    }
+}
+
+void resize(const Scene& scene, const Plan& plan, double width_px, double height_px, State& state) {
+    if (!(width_px >= 1.0 && height_px >= 1.0 && width_px < 1e6 && height_px < 1e6)) return;
+    state.screen_width_px = width_px;
+    state.screen_height_px = height_px;
+    state.view = make_view(scene.mapping, plan.area, width_px, height_px);
+}
+
+}  // namespace
+
+State start(const Scene& scene, const Plan& plan, double screen_width_px, double screen_height_px) {
+    State state;
+    resize(scene, plan, screen_width_px, screen_height_px, state);
+    if (scene.display_ratio) state.display_ratio.emplace();
+    if (scene.delay) state.delay.emplace();
+    return state;
+}
+
+void advance(const Scene& scene, const Plan& plan, const Sample& sample, State& state) {
+    ++state.counters.samples;
+    state.answered = false;
+    if (sample.phase == Phase::ui) {
+        if (sample.action == Action::resize) resize(scene, plan, sample.x_px, sample.y_px, state);
+        return;
+    }
+    if (!std::isfinite(sample.x_px) || !std::isfinite(sample.y_px)) {
+        ++state.counters.not_numbers;
+        return;
+    }
+    const bool in_order = move_to(sample, state.timeline);
+    // a lift from the past is still a lift, now
+    if (!in_order && is_touching(sample.phase)) return;
+    const bool was_touching = state.pointer.has_value();
+    if (was_touching) walk_grid(scene, state.timeline.now_s, state);
+    follow_pointer(sample, state);
+    if (!state.answered) return;
+    run_stages(scene, plan, sample, state);
+    state.avatar.p_m = state.touch.p_m - state.avatar.lag_m;
+    note_extremes(state.avatar, state.timeline.now_s, state);
+}
+
+Avatar avatar_at(const Scene& scene, const State& state, double t_s) {
+    Avatar avatar = state.avatar;
+    if (!state.touch.down) return avatar;
+    if (state.display_ratio) {
+        avatar.lag_m *= pause_factor(*scene.display_ratio, *state.display_ratio, state.timeline.now_s, t_s);
+    }
+    if (state.delay) {
+        const Delayed delayed = delayed_at(*scene.delay, *state.delay, t_s);
+        avatar.lag_m = delayed.lag_m;
+        avatar.delay_s = delayed.tau_s;
+    }
+    avatar.p_m = state.touch.p_m - avatar.lag_m;
+    return avatar;
+}
+
+SurfaceCurve surface_now(const Scene& scene, const Plan& plan, State& state) {
+    assert(scene.surface);
+    const std::int64_t before_ns = steady_ns();
+    const SurfaceCurve curve = surface_curve(state.contact.depth_m, plan.indenter_radius_m, scene.surface->thickness_m);
+    Meter& meter = state.meters[static_cast<std::size_t>(StageId::surface)];
+    meter.count();
+    meter.add_ns(static_cast<double>(steady_ns() - before_ns));
+    return curve;
+}
+
+}  // namespace palpa

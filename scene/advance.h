@@ -1,0 +1,24 @@
+#pragma once
+// The road from a sample to the avatar. None of these allocates or throws.
+
+#include "scene/scene.h"
+#include "scene/state.h"
+
+namespace palpa {
+
+inline constexpr double kGrid_Hz = 240.0;
+
+// `screen_*_px`: the area that samples and views refer to.
+State start(const Scene& scene, const Plan& plan, double screen_width_px, double screen_height_px);
+
+// Goes exactly to the sample's time. The gap since the last sample is walked on the 240 Hz grid of the touch;
+// gaps of more than a minute are cut and the steps counted as dropped.
+void advance(const Scene& scene, const Plan& plan, const Sample& sample, State& state);
+
+// What to draw at a time after the last sample (the avatar goes on moving while the pen rests).
+Avatar avatar_at(const Scene& scene, const State& state, double t_s);
+
+// The frame stage of the scene's surface; scene.surface must be there.
+SurfaceCurve surface_now(const Scene& scene, const Plan& plan, State& state);
+
+}  // namespace palpa

@@ -1,0 +1,51 @@
+#include "scene/mapping.h"
+
+#include <algorithm>
+
+namespace palpa {
+namespace {
+
+constexpr double kShareOfScreen = 0.94;  // the tissue's longer side against the screen's shorter one
+
+}  // namespace
+
+View make_view(const Mapping& mapping, const TissueArea& area, double width_px, double height_px) {
+    View view;
+    view.area = area;
+    view.centre_px = 0.5 * Eigen::Vector2d(width_px, height_px);
+
+    Eigen::Matrix2d turn = Eigen::Matrix2d::Identity();
+    const Eigen::Matrix2d quarter = (Eigen::Matrix2d() << 0.0, -1.0, 1.0, 0.0).finished();
+    for (int deg = 0; deg < mapping.rotate_deg; deg += 90) turn = quarter * turn;
+    Eigen::Matrix2d flip = Eigen::Matrix2d::Identity();
+    if (mapping.flip) flip(0, 0) = -1.0;
+    Eigen::Matrix2d y_down = Eigen::Matrix2d::Identity();
+    y_down(1, 1) = -1.0;
+    view.axes = y_down * turn * flip;
+
+    const bool on_its_side = mapping.rotate_deg % 180 != 0;
+    const Eigen::Vector2d shown_m =
+        on_its_side ? Eigen::Vector2d(area.size_m.y(), area.size_m.x()) : Eigen::Vector2d(area.size_m);
+    view.px_per_m = kShareOfScreen * std::min(width_px / shown_m.x(), height_px / shown_m.y());
+    view.input_px_per_m.setConstant(view.px_per_m);
+    if (mapping.kind == MappingKind::indirect) {
+        view.input_px_per_m = Eigen::Vector2d(width_px / shown_m.x(), height_px / shown_m.y());
+    }
+    return view;
+}
+
+Eigen::Vector2d tissue_of_px(const View& view, const Eigen::Vector2d& px) {
+    const Eigen::Vector2d screen_m = (px - view.centre_px).cwiseQuotient(view.input_px_per_m);
+    return view.area.centre_m + view.axes.transpose() * screen_m;
+}
+
+Eigen::Vector2d px_of_tissue(const View& view, const Eigen::Vector2d& p_m) {
+    return view.centre_px + view.px_per_m * (view.axes * (p_m - view.area.centre_m));
+}
+
+bool on_tissue(const View& view, const Eigen::Vector2d& p_m) {
+    const Eigen::Vector2d off = (p_m - view.area.centre_m).cwiseAbs();
+    return off.x() <= 0.5 * view.area.size_m.x() && off.y() <= 0.5 * view.area.size_m.y();
+}
+
+}  // namespace palpa

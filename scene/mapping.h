@@ -1,0 +1,44 @@
+#pragma once
+// From px on the screen to a position on the tissue, and where the tissue is drawn.
+//
+// Direct: the tissue lies under the pen; the avatar is drawn where the pen is. Indirect: the whole pad (screen
+// area) is stretched over the tissue, which is drawn elsewhere. x to the right, y upwards, before rotation
+// (counter-clockwise, as seen) and flip (left and right exchanged, before the rotation).
+
+#include <Eigen/Core>
+#include <optional>
+
+namespace palpa {
+
+enum class MappingKind { direct, indirect };
+
+struct Mapping {
+    MappingKind kind = MappingKind::direct;
+    int rotate_deg = 0;  // 0, 90, 180, 270: how the tissue is turned on the screen
+    bool flip = false;
+    std::optional<Eigen::Vector2d> tissue_m;  // width, height; absent: as large as the map
+};
+
+// The block of tissue in the map's own frame.
+struct TissueArea {
+    Eigen::Vector2d centre_m = Eigen::Vector2d::Zero();
+    Eigen::Vector2d size_m = Eigen::Vector2d::Zero();
+};
+
+// Screen px = centre_px + px_per_m * axes * (tissue position - tissue centre), and its inverse for input,
+// which has a scale of its own along both screen axes when the mapping is indirect.
+struct View {
+    TissueArea area;
+    Eigen::Vector2d centre_px = Eigen::Vector2d::Zero();
+    Eigen::Matrix2d axes = Eigen::Matrix2d::Identity();  // orthogonal; screen y points down
+    double px_per_m = 1.0;                               // as drawn
+    Eigen::Vector2d input_px_per_m = Eigen::Vector2d::Ones();
+};
+
+View make_view(const Mapping& mapping, const TissueArea& area, double width_px, double height_px);
+
+Eigen::Vector2d tissue_of_px(const View& view, const Eigen::Vector2d& px);  // input
+Eigen::Vector2d px_of_tissue(const View& view, const Eigen::Vector2d& p_m);  // drawing
+bool on_tissue(const View& view, const Eigen::Vector2d& p_m);
+
+}  // namespace palpa

@@ -1,0 +1,30 @@
+#pragma once
+// How often a stage was called and how long it took: a histogram of fixed size, so that measuring allocates
+// nothing. Buckets are 1/32 octave wide: quantiles are good to about 2 %.
+
+#include <array>
+#include <cstdint>
+
+namespace palpa {
+
+class Meter {
+ public:
+    void count() { ++calls_; }
+    void add_ns(double ns);
+    std::int64_t calls() const { return calls_; }
+    std::int64_t timed() const { return timed_; }
+    double quantile_ns(double q) const;  // 0 if nothing was timed
+    double worst_ns() const { return worst_ns_; }
+
+ private:
+    static constexpr int kPerOctave = 32;
+    static constexpr int kOctaves = 36;  // 1 ns to 68 s
+    std::int64_t calls_ = 0;
+    std::int64_t timed_ = 0;
+    double worst_ns_ = 0.0;
+    std::array<std::uint32_t, kPerOctave * kOctaves> buckets_{};
+};
+
+std::int64_t steady_ns();
+
+}  // namespace palpa

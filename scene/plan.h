@@ -1,0 +1,45 @@
+#pragma once
+// The ordered list of stages that a scene needs, with the data each one needs. What no effect asks for is not
+// in it: it allocates nothing and is never called.
+
+#include <string>
+#include <vector>
+
+#include "avatar/surface.h"
+#include "calibration/profile.h"
+#include "scene/scene.h"
+#include "stiffnessmaps/field.h"
+#include "stiffnessmaps/map.h"
+
+namespace palpa {
+
+enum class StageId : std::size_t { calibration, position, depth, tangential, display_ratio, delay, surface };
+inline constexpr std::size_t kStageCount = 7;
+
+struct Stage {
+    StageId id;
+    bool per_frame = false;  // else per sample
+    std::string fidelity;    // which of its forms is used
+    std::string error;       // against what reference
+    double cost_us = 0.0;    // median, as measured on the machine and day that docs/performance.md names
+};
+
+struct Plan {
+    std::vector<Stage> sample_stages;
+    std::vector<Stage> frame_stages;
+    std::vector<std::string> notes;  // what a person should know about this scene
+    Profile profile;
+    Map map;
+    Field field;
+    double noise_N = 0.0;      // of the map
+    double smoothing_m = 0.0;  // of the tangential force
+    TissueArea area;
+    double indenter_radius_m = 4e-3;
+};
+
+// Reads the map and the profile. Throws InputError.
+Plan make_plan(const Scene& scene);
+
+const char* name_of(StageId id);
+
+}  // namespace palpa

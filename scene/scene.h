@@ -1,0 +1,49 @@
+#pragma once
+// What was asked for, from one JSON file; constant while it runs. Every effect is optional: what is absent is
+// not simulated.
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "avatar/delay.h"
+#include "avatar/display_ratio.h"
+#include "scene/mapping.h"
+#include "stiffnessmaps/field.h"
+
+namespace palpa {
+
+// How the avatar's laws read the map.
+struct TangentialOptions {
+    TangentialForce force = TangentialForce::energy;
+    std::optional<double> smoothing_m;  // absent: from the map's own noise (stiffnessmaps/noise.h)
+};
+
+struct SurfaceEffect {
+    std::optional<double> indenter_radius_m;  // absent: the map's indenter
+    double thickness_m = 25e-3;               // of the tissue, bonded to its base
+};
+
+struct Scene {
+    std::string name;
+    std::filesystem::path file;     // where it was read; empty if made up from a map
+    std::filesystem::path map;
+    std::filesystem::path profile;
+    Mapping mapping;
+    double force_scale = 1.0;       // phantom force: multiplies the pen's newtons
+    TangentialOptions tangential;
+    std::optional<DisplayRatio> display_ratio;  // at most one of the two laws
+    std::optional<Delay> delay;
+    std::optional<SurfaceEffect> surface;
+    std::int64_t seed = 1;
+};
+
+// Throws InputError. Paths inside are relative to the scene's file; a name without a folder is also looked
+// for among the assets (maps/, profiles/).
+Scene read_scene(const std::filesystem::path& file, const std::filesystem::path& assets);
+
+// A map with the defaults: display ratio `clear`, surface, direct mapping.
+Scene scene_of_map(const std::filesystem::path& map, const std::filesystem::path& assets);
+
+}  // namespace palpa

@@ -1,0 +1,137 @@
+#include "files/input_error.h"
+#include "files/json.h"
+#include "scene/scene.h"
+
+namespace palpa {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kDefaultProfile = "s-pen.json";
+
+fs::path find_file(const std::string& name, const fs::path& scene_file, const fs::path& assets_folder) {
+    const fs::path given(name);
+    if (given.is_absolute()) return given;
+    const fs::path beside = (scene_file.parent_path() / given).lexically_normal();
+    if (fs::exists(beside) || given.has_parent_path()) return beside;
+    return assets_folder / given;
+}
+
+Mapping read_mapping(JsonReader json) {
+    Mapping mapping;
+    mapping.kind = static_cast<MappingKind>(json.choice("kind", {"direct", "indirect"}));
+    if (json.has("rotate_deg")) {
+        mapping.rotate_deg = json.integer("rotate_deg", 0, 270);
+        if (mapping.rotate_deg % 90 != 0) {
+            json.fail("rotate_deg", std::to_string(mapping.rotate_deg), "0, 90, 180 or 270");
+        }
+    }
+    mapping.flip = json.boolean("flip", false);
+    if (json.has("tissue_mm")) {
+        const auto size_mm = json.numbers("tissue_mm", 2, {0.0, 1e4, true});
+        mapping.tissue_m = Eigen::Vector2d(1e-3 * size_mm[0], 1e-3 * size_mm[1]);
+    }
+    json.finish();
+    return mapping;
+}
+
+void read_law_options(JsonReader& json, PathParameters& path, TangentialOptions& tangential) {
+    constexpr Bounds kLength_mm{0.0, 100.0, true};
+    path.reference_m = 1e-3 * json.number("s_ref_mm", kLength_mm, 1e3 * path.reference_m);
+    path.dead_band_m = 1e-3 * json.number("dead_band_mm", {0.0, 10.0}, 1e3 * path.dead_band_m);
+    if (json.has("force")) {
+        tangential.force = static_cast<TangentialForce>(json.choice("force", {"energy", "recorded"}));
+    }
+    if (json.has("smoothing_mm")) tangential.smoothing_m = 1e-3 * json.number("smoothing_mm", {0.0, 100.0});
+}
+
+DisplayRatio read_display_ratio(JsonReader json, TangentialOptions& tangential) {
+    const bool paper = json.choice("preset", {"clear", "paper"}) == 1;
+    DisplayRatio law = paper ? display_ratio_paper() : display_ratio_clear();
+    law.f_0_N = json.number("f_0_N", kPositive, law.f_0_N);
+    if (json.has("cap_mm")) {
+        const bool none = json.any("cap_mm").is_null();
+        law.cap_m = none ? std::nullopt : std::optional(1e-3 * json.number("cap_mm", {0.0, 1e3, true}));
+    }
+    law.release = json.number("release", kPositive, law.release);
+    law.gate_N = json.number("gate_N", kPositive, law.gate_N);
+    law.hold_s = json.number("hold_s", kNotNegative, law.hold_s);
+    law.pause_decay_s = json.number("pause_decay_s", kPositive, law.pause_decay_s);
+    read_law_options(json, law.path, tangential);
+    json.finish();
+    return law;
+}
+
+Delay read_delay(JsonReader json, TangentialOptions& tangential) {
+    const bool paper = json.choice("preset", {"clear", "paper"}) == 1;
+    Delay law = paper ? delay_paper() : delay_clear();
+    law.m_s_per_N = 1e-3 * json.number("m_ms_per_N", kNotNegative, 1e3 * law.m_s_per_N);
+    // the ring of remembered samples covers half a second at 2,000 Hz
+    law.cap_s = 1e-3 * json.number("cap_ms", {0.0, 500.0}, 1e3 * law.cap_s);
+    law.rise = json.number("rise", {0.0, 0.999, true}, law.rise);
+    law.fall = json.number("fall", {0.0, 100.0, true}, law.fall);
+    law.hold_s = json.number("hold_s", kNotNegative, law.hold_s);
+    read_law_options(json, law.path, tangential);
+    json.finish();
+    return law;
+}
+
+SurfaceEffect read_surface(JsonReader json) {
+    SurfaceEffect surface;
+    JsonReader profile = json.object("profile");
+    surface.thickness_m = 1e-3 * profile.number("thickness_mm", {0.0, 1e3, true}, 1e3 * surface.thickness_m);
+    if (profile.has("indenter_radius_mm")) {
+        surface.indenter_radius_m = 1e-3 * profile.number("indenter_radius_mm", {0.0, 1e3, true});
+    }
+    profile.finish();
+    json.finish();
+    return surface;
+}
+
+void read_avatar(JsonReader json, Scene& scene) {
+    const bool ratio = json.has("display_ratio");
+    if (ratio == json.has("delay")) {
+        json.fail("", ratio ? "both laws" : "no law", "display_ratio or delay (leave `avatar` out for neither)");
+    }
+    if (ratio) {
+        scene.display_ratio = read_display_ratio(json.object("display_ratio"), scene.tangential);
+    } else {
+        scene.delay = read_delay(json.object("delay"), scene.tangential);
+    }
+    json.finish();
+}
+
+}  // namespace
+
+Scene read_scene(const fs::path& file, const fs::path& assets) {
+    const Json root = read_json(file);
+    JsonReader json(root, file.string());
+    Scene scene;
+    scene.file = file;
+    scene.name = json.text("name");
+    JsonReader tissue = json.object("tissue");
+    scene.map = find_file(tissue.text("map"), file, assets / "maps");
+    tissue.finish();
+    scene.profile = find_file(json.text("profile", kDefaultProfile), file, assets / "profiles");
+    if (auto mapping = json.optional_object("mapping")) scene.mapping = read_mapping(*mapping);
+    scene.force_scale = json.number("force_scale", {0.0, 1e3, true}, scene.force_scale);
+    if (auto avatar = json.optional_object("avatar")) read_avatar(*avatar, scene);
+    if (auto surface = json.optional_object("surface")) scene.surface = read_surface(*surface);
+    scene.seed = json.integer("seed", 0, 2000000000, 1);
+    json.finish();
+    return scene;
+}
+
+Scene scene_of_map(const fs::path& map, const fs::path& assets) {
+    Scene scene;
+    fs::path folder = map;
+    if (!folder.has_filename()) folder = folder.parent_path();
+    scene.name = folder.stem().string();
+    scene.map = map;
+    scene.profile = assets / "profiles" / kDefaultProfile;
+    scene.display_ratio = display_ratio_clear();
+    scene.surface = SurfaceEffect{};
+    return scene;
+}
+
+}  // namespace palpa

@@ -1,0 +1,74 @@
+#pragma once
+// What a sample changes: all that a replay must restore, and what is shown.
+
+#include <array>
+#include <optional>
+
+#include "avatar/delay.h"
+#include "avatar/display_ratio.h"
+#include "avatar/surface.h"
+#include "scene/meter.h"
+#include "scene/plan.h"
+#include "scene/timeline.h"
+
+namespace palpa {
+
+// The tissue's answer to a touch.
+struct Contact {
+    double depth_m = 0.0;
+    double normal_N = 0.0;
+    double tangential_N = 0.0;  // resisting motion along the pen's direction
+    bool saturated = false;     // pressed deeper than the tissue is known
+    bool measured = true;       // false: between or beside the measured cells
+};
+
+// What is shown of the indenter. lag = pen - avatar.
+struct Avatar {
+    Eigen::Vector2d p_m = Eigen::Vector2d::Zero();
+    Eigen::Vector2d lag_m = Eigen::Vector2d::Zero();
+    double delay_s = 0.0;
+};
+
+struct Counters {
+    std::int64_t samples = 0;
+    std::int64_t steps = 0;           // of the 240 Hz grid
+    std::int64_t dropped_steps = 0;
+    std::int64_t levels_clamped = 0;  // outside the profile's range
+    std::int64_t without_level = 0;   // touching, but the device reported no level
+    std::int64_t saturated = 0;
+    std::int64_t off_tissue = 0;      // touching beside the tissue
+    std::int64_t not_numbers = 0;     // a position that is not finite
+    std::int64_t unmeasured = 0;      // touches on cells that were not measured
+};
+
+struct Extremes {
+    double force_N = 0.0;
+    double depth_m = 0.0;
+    double lag_m = 0.0;
+    double lag_at_s = 0.0;  // when the lag was greatest
+};
+
+struct State {
+    Timeline timeline;
+    View view;
+    double screen_width_px = 0.0;
+    double screen_height_px = 0.0;
+    std::optional<std::int64_t> pointer;  // the one that touches; others are logged, and press nothing
+    bool answered = false;                // the last sample belonged to it (or nothing touches)
+    Touch touch;
+    Contact contact;
+    Avatar avatar;
+    Eigen::Vector2d heading = Eigen::Vector2d::Zero();  // direction of motion, length 1 once moving
+    Eigen::Vector2d heading_rope_m = Eigen::Vector2d::Zero();
+    std::optional<DisplayRatioState> display_ratio;
+    std::optional<DelayState> delay;
+    std::int64_t grid_step = 0;  // index of the last grid point of this touch
+    double touch_began_s = 0.0;
+    Counters counters;
+    Extremes extremes;
+    // Measurements mean nothing to a replay: every `time_every`-th sample is timed, 0 for none.
+    int time_every = 0;
+    std::array<Meter, kStageCount> meters;
+};
+
+}  // namespace palpa

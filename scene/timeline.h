@@ -1,0 +1,27 @@
+#pragma once
+// One time for everything that evolves: the device's clock carried onto the host's. Samples of one frame are
+// stamped by the host almost at once, their own clock tells how far they are apart; it runs at another rate.
+
+#include <cstdint>
+
+#include "platform/sample.h"
+
+namespace palpa {
+
+struct Timeline {
+    double now_s = 0.0;           // never goes back
+    bool started = false;
+    double offset_s = 0.0;        // host - device; meaningless before has_offset
+    bool has_offset = false;
+    double device_s = 0.0;        // of the sample before
+    std::int64_t backwards = 0;   // samples that would have gone back in time
+    std::int64_t duplicates = 0;  // samples at the time of the one before
+    std::int64_t clock_jumps = 0; // the device's clock was set, or another device took over
+};
+
+// Moves `now_s` to the sample's time and returns true, or leaves it and returns false for a sample from the
+// past. The offset follows the smallest delay seen: it falls by at most a tenth of the time that passes, and
+// rises by at most 200 ppm, so that order is kept.
+bool move_to(const Sample& sample, Timeline& timeline);
+
+}  // namespace palpa

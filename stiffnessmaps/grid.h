@@ -1,0 +1,34 @@
+#pragma once
+// Small operations on one row-major grid of n_y rows by n_x cells, NaN = missing.
+
+#include <cstddef>
+#include <vector>
+
+namespace palpa {
+
+struct GridShape {
+    std::size_t n_x = 0;
+    std::size_t n_y = 0;
+    double dx_m = 1.0;
+    double dy_m = 1.0;
+    std::size_t size() const { return n_x * n_y; }
+};
+
+// Gaussian smoothing, normalised over the cells that are there; missing cells stay missing. sigma 0: a copy.
+std::vector<double> smooth(const std::vector<double>& values, const GridShape& shape, double sigma_m);
+
+// Every missing cell becomes the mean of its neighbours, from the measured ones outwards. At least one cell
+// must be there.
+void fill_missing(std::vector<double>& values, const GridShape& shape);
+
+// Central differences, one-sided at the borders, 0 along an axis of one cell. Per metre.
+struct Gradient {
+    std::vector<double> x;
+    std::vector<double> y;
+};
+Gradient gradient(const std::vector<double>& values, const GridShape& shape);
+
+// Least-squares non-decreasing sequence (pool adjacent violators; Barlow et al. 1972). In place.
+void make_isotonic(std::vector<double>& values);
+
+}  // namespace palpa

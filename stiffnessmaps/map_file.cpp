@@ -1,0 +1,207 @@
+#include "stiffnessmaps/map_file.h"
+
+#include <unistd.h>
+
+#include <cmath>
+#include <stdexcept>
+
+#include "files/input_error.h"
+#include "files/npy.h"
+#include "files/text.h"
+
+namespace palpa {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr Bounds kLength_mm{-1e5, 1e5};
+constexpr Bounds kSpacing_mm{0.0, 1e4, true};
+
+double mm(double metres) {
+    // 0.004 m is written as 4 mm, not 4.000000000000001
+    return std::round(metres * 1e12) / 1e9;
+}
+
+std::optional<double> optional_length_m(JsonReader& json, std::string_view key) {
+    if (!json.has(key)) return std::nullopt;
+    return 1e-3 * json.number(key, kNotNegative);
+}
+
+Nodule read_nodule(JsonReader json) {
+    Nodule nodule;
+    nodule.id = json.text("id");
+    nodule.placed = json.choice("origin", {"placed", "detected"}) == 0;
+    nodule.x_m = 1e-3 * json.number("x_mm", kLength_mm);
+    nodule.y_m = 1e-3 * json.number("y_mm", kLength_mm);
+    nodule.top_depth_m = optional_length_m(json, "top_depth_mm");
+    nodule.diameter_m = optional_length_m(json, "diameter_mm");
+    nodule.length_m = optional_length_m(json, "length_mm");
+    if (json.has("angle_deg")) nodule.angle_deg = json.number("angle_deg", {-360.0, 360.0});
+    json.finish();
+    return nodule;
+}
+
+MapSource read_source(JsonReader json) {
+    MapSource source;
+    source.kind = static_cast<SourceKind>(json.choice("kind", {"recorded", "simulated", "analytic"}));
+    source.how = json.text("how", "");
+    source.from = json.text("from", "");
+    source.licence = json.text("licence", "");
+    json.finish();
+    return source;
+}
+
+void read_depths(JsonReader& json, Map& map) {
+    for (const double depth_mm : json.numbers("depths_mm", 0, {0.0, 1e4, true})) {
+        if (!map.depths_m.empty() && 1e-3 * depth_mm <= map.depths_m.back()) {
+            json.fail("depths_mm", short_number(depth_mm) + " after " + short_number(1e3 * map.depths_m.back()),
+                      "ascending depths");
+        }
+        map.depths_m.push_back(1e-3 * depth_mm);
+    }
+}
+
+std::vector<float> read_forces(const fs::path& path, const Map& map, std::vector<std::size_t>& shape) {
+    NpyArray array = read_npy(path);
+    if (array.shape.size() != 3 || array.shape[0] != map.n_depths()) {
+        throw bad_input(path.string(), "shape", shape_text(array.shape),
+                        "(" + std::to_string(map.n_depths()) + ", n_y, n_x) for " +
+                            std::to_string(map.n_depths()) + " depths");
+    }
+    if (shape.empty()) shape = array.shape;
+    if (array.shape != shape) throw bad_input(path.string(), "shape", shape_text(array.shape), shape_text(shape));
+    constexpr float kAbsurd_N = 1e5f;
+    for (std::size_t i = 0; i < array.values.size(); ++i) {
+        const float force = array.values[i];
+        if (!std::isnan(force) && !(std::abs(force) < kAbsurd_N)) {
+            throw bad_input(path.string(), "value " + std::to_string(i), short_number(static_cast<double>(force)),
+                            "forces in newtons, below 1e5");
+        }
+    }
+    return std::move(array.values);
+}
+
+void check_area(const Map& map, const std::string& file) {
+    const double x_end = map.x_of(map.n_x - 1);
+    const double y_end = map.y_of(map.n_y - 1);
+    for (const Nodule& nodule : map.nodules) {
+        const bool inside = nodule.x_m >= map.origin_m[0] - map.spacing_m[0] && nodule.x_m <= x_end + map.spacing_m[0] &&
+                            nodule.y_m >= map.origin_m[1] - map.spacing_m[1] && nodule.y_m <= y_end + map.spacing_m[1];
+        if (!inside) {
+            throw bad_input(file, "nodules " + nodule.id,
+                            "x " + short_number(1e3 * nodule.x_m) + ", y " + short_number(1e3 * nodule.y_m) + " mm",
+                            "a place on the map, which ends at x " + short_number(1e3 * x_end) + ", y " +
+                                short_number(1e3 * y_end) + " mm (are x and y of the arrays exchanged?)");
+        }
+    }
+}
+
+}  // namespace
+
+Map read_map(const fs::path& folder) {
+    if (!fs::is_directory(folder)) {
+        const bool there = fs::exists(folder);
+        throw bad_input(folder.string(), "", there ? "a file" : "nothing", "a map folder NAME.map with a map.json");
+    }
+    const fs::path file = folder / "map.json";
+    const Json root = read_json(file);
+    JsonReader json(root, file.string());
+    Map map;
+    map.name = json.text("name");
+    const auto origin_mm = json.numbers("origin_mm", 2, kLength_mm);
+    const auto spacing_mm = json.numbers("spacing_mm", 2, kSpacing_mm);
+    for (std::size_t i = 0; i < 2; ++i) {
+        map.origin_m[i] = 1e-3 * origin_mm[i];
+        map.spacing_m[i] = 1e-3 * spacing_mm[i];
+    }
+    read_depths(json, map);
+    map.tangential = static_cast<TangentialKind>(json.choice("tangential", {"recorded", "energy", "none"}));
+    JsonReader indenter = json.object("indenter");
+    map.indenter = static_cast<IndenterShape>(indenter.choice("shape", {"sphere", "cylinder"}));
+    map.indenter_radius_m = 1e-3 * indenter.number("radius_mm", {0.0, 1e3, true});
+    indenter.finish();
+    for (JsonReader& nodule : json.objects("nodules")) map.nodules.push_back(read_nodule(nodule));
+    map.source = read_source(json.object("source"));
+
+    std::vector<std::size_t> shape;
+    if (json.has("count")) {
+        const int n_x = static_cast<int>(json.numbers("count", 2, {1.0, 1e6})[0]);
+        const int n_y = static_cast<int>(json.numbers("count", 2, {1.0, 1e6})[1]);
+        shape = {map.n_depths(), static_cast<std::size_t>(n_y), static_cast<std::size_t>(n_x)};
+    }
+    json.finish();
+
+    map.normal_N = read_forces(folder / "normal_N.npy", map, shape);
+    map.n_y = shape[1];
+    map.n_x = shape[2];
+    if (map.n_cells() == 0) throw bad_input((folder / "normal_N.npy").string(), "shape", shape_text(shape), "cells");
+    for (const bool along_y : {false, true}) {
+        const fs::path path = folder / (along_y ? "tangential_y_N.npy" : "tangential_x_N.npy");
+        if (fs::exists(path)) (along_y ? map.tangential_y_N : map.tangential_x_N) = read_forces(path, map, shape);
+    }
+    if (map.tangential == TangentialKind::recorded && map.tangential_x_N.empty() && map.tangential_y_N.empty()) {
+        throw bad_input(file.string(), "tangential", "recorded", "tangential_x_N.npy or tangential_y_N.npy beside it");
+    }
+    check_area(map, file.string());
+    if (missing_count(map) == map.normal_N.size()) {
+        throw bad_input((folder / "normal_N.npy").string(), "", "no force that was measured", "at least one");
+    }
+    return map;
+}
+
+Json map_json(const Map& map) {
+    Json json;
+    json["name"] = map.name;
+    json["origin_mm"] = {mm(map.origin_m[0]), mm(map.origin_m[1])};
+    json["spacing_mm"] = {mm(map.spacing_m[0]), mm(map.spacing_m[1])};
+    json["count"] = {map.n_x, map.n_y};
+    json["depths_mm"] = Json::array();
+    for (const double depth_m : map.depths_m) json["depths_mm"].push_back(mm(depth_m));
+    json["tangential"] = name_of(map.tangential);
+    json["indenter"] = {{"shape", name_of(map.indenter)}, {"radius_mm", mm(map.indenter_radius_m)}};
+    json["nodules"] = Json::array();
+    for (const Nodule& nodule : map.nodules) {
+        Json entry{{"id", nodule.id},
+                   {"origin", nodule.placed ? "placed" : "detected"},
+                   {"x_mm", mm(nodule.x_m)},
+                   {"y_mm", mm(nodule.y_m)}};
+        if (nodule.top_depth_m) entry["top_depth_mm"] = mm(*nodule.top_depth_m);
+        if (nodule.diameter_m) entry["diameter_mm"] = mm(*nodule.diameter_m);
+        if (nodule.length_m) entry["length_mm"] = mm(*nodule.length_m);
+        if (nodule.angle_deg) entry["angle_deg"] = *nodule.angle_deg;
+        json["nodules"].push_back(entry);
+    }
+    json["source"] = {{"kind", name_of(map.source.kind)},
+                      {"how", map.source.how},
+                      {"from", map.source.from},
+                      {"licence", map.source.licence}};
+    return json;
+}
+
+void write_map(const Map& map, const fs::path& folder) {
+    if (fs::exists(folder)) {
+        throw bad_input(folder.string(), "", "something of that name", "a new name (nothing is overwritten)");
+    }
+    fs::path aside = folder;
+    if (!aside.has_filename()) aside = aside.parent_path();
+    const fs::path target = aside;
+    aside += ".part-" + std::to_string(::getpid());
+    const auto write_array = [&](const char* name, const std::vector<float>& values) {
+        if (values.empty()) return;
+        write_text_atomically(aside / name, npy_bytes({{map.n_depths(), map.n_y, map.n_x}, values}));
+    };
+    try {
+        fs::create_directory(aside);
+        write_array("normal_N.npy", map.normal_N);
+        write_array("tangential_x_N.npy", map.tangential_x_N);
+        write_array("tangential_y_N.npy", map.tangential_y_N);
+        write_text_atomically(aside / "map.json", map_json(map).dump(2) + "\n");
+        fs::rename(aside, target);
+    } catch (const std::exception&) {
+        std::error_code ignored;
+        fs::remove_all(aside, ignored);
+        throw;
+    }
+}
+
+}  // namespace palpa

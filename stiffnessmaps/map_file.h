@@ -1,0 +1,19 @@
+#pragma once
+// Map folders: NAME.map/ with map.json, normal_N.npy, tangential_x_N.npy, tangential_y_N.npy.
+
+#include <filesystem>
+
+#include "files/json.h"
+#include "stiffnessmaps/map.h"
+
+namespace palpa {
+
+// Throws InputError for anything that is not a whole, consistent map.
+Map read_map(const std::filesystem::path& folder);
+
+// Writes a new folder, whole or not at all. Throws InputError if something of that name exists.
+void write_map(const Map& map, const std::filesystem::path& folder);
+
+Json map_json(const Map& map);  // the contents of map.json
+
+}  // namespace palpa

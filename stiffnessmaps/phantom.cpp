@@ -1,0 +1,83 @@
+#include "stiffnessmaps/phantom.h"
+
+#include "files/input_error.h"
+#include "files/json.h"
+#include "files/text.h"
+
+namespace palpa {
+namespace {
+
+Elastic read_elastic(JsonReader& json) {
+    Elastic out;
+    out.young_Pa = json.number("young_Pa", {0.0, 1e12, true});
+    out.poisson = json.number("poisson", {0.0, 0.4999});
+    return out;
+}
+
+PhantomNodule read_nodule(JsonReader json, const Phantom& phantom) {
+    PhantomNodule nodule;
+    nodule.id = json.text("id");
+    const auto centre_mm = json.numbers("centre_mm", 3, {0.0, 1e4});
+    nodule.diameter_m = 1e-3 * json.number("diameter_mm", {0.0, 1e4, true});
+    nodule.material = read_elastic(json);
+    for (std::size_t i = 0; i < 3; ++i) {
+        nodule.centre_m[i] = 1e-3 * centre_mm[i];
+        const double radius_m = 0.5 * nodule.diameter_m;
+        if (nodule.centre_m[i] < radius_m || nodule.centre_m[i] > phantom.size_m[i] - radius_m) {
+            json.fail("centre_mm", short_number(centre_mm[i]) + " with a radius of " + short_number(1e3 * radius_m),
+                      "a sphere inside the block of " + short_number(1e3 * phantom.size_m[i]) + " mm");
+        }
+    }
+    json.finish();
+    return nodule;
+}
+
+void read_grid(JsonReader json, Phantom& phantom) {
+    const auto origin_mm = json.numbers("origin_mm", 2, {-1e4, 1e4});
+    const auto spacing_mm = json.numbers("spacing_mm", 2, {0.0, 1e4, true});
+    const auto count = json.numbers("count", 2, {1.0, 1e4});
+    for (std::size_t i = 0; i < 2; ++i) {
+        phantom.origin_m[i] = 1e-3 * origin_mm[i];
+        phantom.spacing_m[i] = 1e-3 * spacing_mm[i];
+        if (count[i] != static_cast<double>(static_cast<std::size_t>(count[i]))) {
+            json.fail("count", short_number(count[i]), "whole numbers");
+        }
+    }
+    phantom.n_x = static_cast<std::size_t>(count[0]);
+    phantom.n_y = static_cast<std::size_t>(count[1]);
+    json.finish();
+}
+
+}  // namespace
+
+Phantom read_phantom(const std::filesystem::path& path) {
+    const Json root = read_json(path);
+    JsonReader json(root, path.string());
+    Phantom phantom;
+    phantom.name = path.stem().string();
+    const auto size_mm = json.numbers("size_mm", 3, {0.0, 1e4, true});
+    for (std::size_t i = 0; i < 3; ++i) phantom.size_m[i] = 1e-3 * size_mm[i];
+    JsonReader tissue = json.object("tissue");
+    phantom.tissue = read_elastic(tissue);
+    tissue.finish();
+    for (JsonReader& nodule : json.objects("nodules")) phantom.nodules.push_back(read_nodule(nodule, phantom));
+
+    JsonReader indenter = json.object("indenter");
+    phantom.indenter = static_cast<IndenterShape>(indenter.choice("shape", {"sphere", "cylinder"}));
+    phantom.indenter_radius_m = 1e-3 * indenter.number("radius_mm", {0.0, 1e3, true});
+    phantom.rolling = indenter.choice("contact", {"rolling", "sliding"}) == 0;
+    phantom.friction = indenter.number("friction", {0.0, 10.0}, 0.0);
+    indenter.finish();
+
+    for (const double depth_mm : json.numbers("depths_mm", 0, {0.0, size_mm[2], true})) {
+        if (!phantom.depths_m.empty() && 1e-3 * depth_mm <= phantom.depths_m.back()) {
+            json.fail("depths_mm", short_number(depth_mm), "ascending depths");
+        }
+        phantom.depths_m.push_back(1e-3 * depth_mm);
+    }
+    read_grid(json.object("grid"), phantom);
+    json.finish();
+    return phantom;
+}
+
+}  // namespace palpa

@@ -1,0 +1,41 @@
+#pragma once
+// A phantom: a block of tissue with stiff nodules, and the indenter that is pressed into it on a grid.
+
+#include <filesystem>
+
+#include "stiffnessmaps/map.h"
+
+namespace palpa {
+
+struct Elastic {
+    double young_Pa = 0.0;
+    double poisson = 0.0;
+};
+
+struct PhantomNodule {
+    std::string id;
+    double centre_m[3] = {0.0, 0.0, 0.0};  // x, y, and z from the surface downwards
+    double diameter_m = 0.0;
+    Elastic material;
+};
+
+struct Phantom {
+    std::string name;  // of the file
+    double size_m[3] = {0.0, 0.0, 0.0};
+    Elastic tissue;
+    std::vector<PhantomNodule> nodules;
+    IndenterShape indenter = IndenterShape::sphere;
+    double indenter_radius_m = 0.0;
+    bool rolling = true;
+    double friction = 0.0;
+    std::vector<double> depths_m;
+    double origin_m[2] = {0.0, 0.0};
+    double spacing_m[2] = {0.0, 0.0};
+    std::size_t n_x = 0;
+    std::size_t n_y = 0;
+};
+
+// Throws InputError.
+Phantom read_phantom(const std::filesystem::path& path);
+
+}  // namespace palpa

@@ -1,0 +1,89 @@
+#include "study/sample_log.h"
+
+#include <charconv>
+#include <cstdio>
+
+#include "files/json.h"
+#include "files/text.h"
+
+namespace palpa {
+namespace {
+
+// One list writes header, explanation and every row.
+template <class Visit>
+void visit_fields(const SampleRow& r, Visit&& visit) {
+    visit("t_host_s", r.t_host_s, "s", "arrival of the sample, host's steady clock");
+    visit("t_device_s", r.t_device_s, "s", "time of the sample, device's or X server's clock");
+    visit("trial", r.trial, "", "number of the trial");
+    visit("pointer_id", r.pointer_id, "", "tells fingers and pens apart while they touch");
+    visit("tool", r.tool, "", "pen, finger or mouse");
+    visit("phase", r.phase, "", "hover, down, move, up, cancel or ui");
+    visit("x_mm", r.x_mm, "mm", "pen on the tissue, map's frame");
+    visit("y_mm", r.y_mm, "mm", "pen on the tissue, map's frame");
+    visit("pressure", r.pressure, "", "as reported, 0 to 1 of the device's range");
+    visit("force_N", r.force_N, "N", "normal force after calibration and force_scale");
+    visit("depth_mm", r.depth_mm, "mm", "indentation");
+    visit("tangential_N", r.tangential_N, "N", "force of the tissue against the motion");
+    visit("avatar_x_mm", r.avatar_x_mm, "mm", "avatar as shown, map's frame");
+    visit("avatar_y_mm", r.avatar_y_mm, "mm", "avatar as shown, map's frame");
+    visit("lag_mm", r.lag_mm, "mm", "distance from pen to avatar");
+    visit("delay_ms", r.delay_ms, "ms", "delay of the avatar (law D)");
+    visit("saturated", r.saturated, "", "1: pressed deeper than the tissue is known");
+    visit("ft_source", r.ft_source, "", "where the tangential force comes from: recorded, energy or none");
+}
+
+void append_field(double value, std::string& row) { append_number(value, row); }
+void append_field(std::int64_t value, std::string& row) {
+    char digits[24];
+    const auto [end, error] = std::to_chars(digits, digits + sizeof digits, value);
+    static_cast<void>(error);
+    row.append(digits, end);
+}
+void append_field(std::string_view value, std::string& row) { row.append(value); }
+
+std::string explanation() {
+    Json json;
+    visit_fields(SampleRow{}, [&](std::string_view name, const auto&, std::string_view unit, std::string_view text) {
+        Json& column = json[std::string(name)];
+        column["Description"] = text;
+        if (!unit.empty()) column["Units"] = unit;
+    });
+    return json.dump(2) + "\n";
+}
+
+}  // namespace
+
+RunFiles next_run(const std::filesystem::path& directory, std::string_view participant) {
+    RunFiles files;
+    const std::string subject = "sub-" + std::string(participant);
+    files.folder = directory / subject / "beh";
+    std::filesystem::create_directories(files.folder);
+    for (int run = 1;; ++run) {
+        char number[16];
+        std::snprintf(number, sizeof number, "%02d", run);
+        files.stem = subject + "_task-palpation_run-" + number;
+        if (!std::filesystem::exists(files.file("_samples.tsv"))) return files;
+    }
+}
+
+SampleLog::SampleLog(const RunFiles& files) : file_(files.file("_samples.tsv")) {
+    write_text_atomically(files.file("_samples.json"), explanation());
+    visit_fields(SampleRow{}, [&](std::string_view name, const auto&, auto&&...) {
+        row_.append(row_.empty() ? "" : "\t").append(name);
+    });
+    file_.append(row_.append("\n"));
+    constexpr std::size_t kLongestRow = 1024;
+    row_.reserve(kLongestRow);
+}
+
+void SampleLog::write(const SampleRow& row) {
+    row_.clear();
+    visit_fields(row, [&](std::string_view, const auto& field, auto&&...) {
+        if (!row_.empty()) row_.push_back('\t');
+        append_field(field, row_);
+    });
+    row_.push_back('\n');
+    file_.append(row_);
+}
+
+}  // namespace palpa

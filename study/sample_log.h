@@ -1,0 +1,60 @@
+#pragma once
+// The log of a run: one row per sample, in the BIDS layout
+//     DIR/sub-01/beh/sub-01_task-palpation_run-01_samples.tsv   (and .json, which explains the columns)
+// Rows are only appended; a run never overwrites another, it takes the next number.
+
+#include <cstdint>
+#include <filesystem>
+#include <limits>
+#include <memory>
+#include <string>
+#include <string_view>
+
+#include "files/append_file.h"
+
+namespace palpa {
+
+struct SampleRow {
+    static constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();  // written as n/a
+    double t_host_s = 0.0;
+    double t_device_s = kMissing;
+    std::int64_t trial = 1;
+    std::int64_t pointer_id = 0;
+    std::string_view tool = "n/a";
+    std::string_view phase = "n/a";
+    double x_mm = kMissing;
+    double y_mm = kMissing;
+    double pressure = kMissing;
+    double force_N = kMissing;
+    double depth_mm = kMissing;
+    double tangential_N = kMissing;
+    double avatar_x_mm = kMissing;
+    double avatar_y_mm = kMissing;
+    double lag_mm = kMissing;
+    double delay_ms = kMissing;
+    std::int64_t saturated = 0;
+    std::string_view ft_source = "n/a";
+};
+
+// Where run `run` of participant `participant` goes; the number is the first that is free (01, 02, ...).
+// Creates the folders. Throws std::runtime_error if it cannot.
+struct RunFiles {
+    std::filesystem::path folder;
+    std::string stem;  // sub-01_task-palpation_run-01
+    std::filesystem::path file(std::string_view suffix) const { return folder / (stem + std::string(suffix)); }
+};
+RunFiles next_run(const std::filesystem::path& directory, std::string_view participant);
+
+class SampleLog {
+ public:
+    explicit SampleLog(const RunFiles& files);
+    void write(const SampleRow& row);  // allocates nothing after the first row
+    bool sync() { return file_.sync(); }
+    bool failed() const { return file_.failed(); }
+
+ private:
+    AppendFile file_;
+    std::string row_;
+};
+
+}  // namespace palpa
