@@ -6,25 +6,16 @@
 #include <memory>
 
 #include "app/command_line.h"
+#include "app/live.h"
 #include "app/load.h"
 #include "app/log.h"
 #include "app/replay.h"
+#include "app/screenshot.h"
 #include "files/input_error.h"
 #include "files/text.h"
 
 namespace palpa {
 namespace {
-
-struct RunOptions {
-    std::string scene;
-    std::string trace;
-    std::string log;
-    std::string participant = "01";
-    std::string screenshot;
-    std::string record;
-    bool headless = false;
-    bool json = false;
-};
 
 void print_result(const Json& result) {
     std::printf("%s: %s samples, %s frames, %s steps, %s dropped\n", result["scene"].get<std::string>().c_str(),
@@ -32,10 +23,19 @@ void print_result(const Json& result) {
                 result["dropped_steps"].dump().c_str());
     std::printf("  greatest force %.3g N, depth %.3g mm, lag %.3g mm\n", result["max_force_N"].get<double>(),
                 result["max_depth_mm"].get<double>(), result["max_lag_mm"].get<double>());
+    if (!result.contains("lag_over_nodules_mm")) return;
     for (const auto& nodule : result["lag_over_nodules_mm"].items()) {
         std::printf("  over nodule %s: lag %.3g mm\n", nodule.key().c_str(), nodule.value().get<double>());
     }
     std::printf("  beside the nodules: lag %.3g mm\n", result["lag_beside_nodules_mm"].get<double>());
+}
+
+void print(const Json& result, bool as_json) {
+    if (as_json) {
+        std::printf("%s\n", result.dump(2).c_str());
+    } else {
+        print_result(result);
+    }
 }
 
 void run_headless(const RunOptions& options) {
@@ -63,11 +63,11 @@ void run_headless(const RunOptions& options) {
         write_text_atomically(files->file("_settings.json"), settings_json(scene, plan, result.state).dump(2) + "\n");
         write_text_atomically(files->file("_performance.json"), json.dump(2) + "\n");
     }
-    if (options.json) {
-        std::printf("%s\n", json.dump(2).c_str());
-    } else {
-        print_result(json);
+    if (!options.screenshot.empty()) {
+        ReplayResult again = replay(scene, plan, trace, 0, {}, result.state.extremes.lag_at_s);
+        draw_picture(scene, plan, again.state, options.screenshot);
     }
+    print(json, options.json);
 }
 
 }  // namespace
@@ -83,8 +83,12 @@ void add_run(CLI::App& app) {
     command->add_option("--screenshot", options->screenshot, "PNG of the moment of greatest lag (headless), or of the last frame");
     command->add_option("--record", options->record, "write the input as a trace TRACE.tsv");
     command->add_flag("--json", options->json, "one JSON object on standard output");
+    command->add_option("--quit-after-s", options->quit_after_s, "close the window by itself")->check(CLI::Range(0.0, 1e6));
+    command->add_option("--width-px", options->width_px, "of the window (default 1280)")->check(CLI::Range(100, 16384));
+    command->add_option("--height-px", options->height_px, "of the window (default 800)")->check(CLI::Range(100, 16384));
     command->callback([options] {
         if (options->headless) return run_headless(*options);
+        print(run_live(*options), options->json);
     });
 }
 

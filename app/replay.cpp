@@ -54,23 +54,19 @@ ReplayResult replay(const Scene& scene, const Plan& plan, const Trace& trace, in
     return result;
 }
 
-Json result_json(const Scene& scene, const Plan& plan, const ReplayResult& result) {
-    const State& state = result.state;
+Json run_json(const Scene& scene, const Plan& plan, const State& state, std::int64_t frames, const Meter& latency) {
     const Counters& counters = state.counters;
     Json json;
     json["scene"] = scene.name;
     json["samples"] = counters.samples;
-    json["frames"] = result.frames;
+    json["frames"] = frames;
     json["steps"] = counters.steps;
     json["dropped_steps"] = counters.dropped_steps;
-    json["latency_ms"] = {{"p50", 1e-6 * result.latency.quantile_ns(0.5)},
-                          {"p99", 1e-6 * result.latency.quantile_ns(0.99)}};
+    json["latency_ms"] = {{"p50", 1e-6 * latency.quantile_ns(0.5)},
+                          {"p99", 1e-6 * latency.quantile_ns(0.99)}};
     json["max_force_N"] = state.extremes.force_N;
     json["max_depth_mm"] = 1e3 * state.extremes.depth_m;
     json["max_lag_mm"] = 1e3 * state.extremes.lag_m;
-    json["lag_over_nodules_mm"] = Json::object();
-    for (const NodulePass& pass : result.over) json["lag_over_nodules_mm"][pass.id] = 1e3 * pass.lag_m;
-    json["lag_beside_nodules_mm"] = 1e3 * result.lag_beside_m;
     json["stages"] = Json::array();
     for (const auto* stages : {&plan.sample_stages, &plan.frame_stages}) {
         for (const Stage& stage : *stages) {
@@ -92,6 +88,14 @@ Json result_json(const Scene& scene, const Plan& plan, const ReplayResult& resul
                       {"duplicate_times", state.timeline.duplicates},
                       {"clock_jumps", state.timeline.clock_jumps}};
     json["notes"] = plan.notes;
+    return json;
+}
+
+Json result_json(const Scene& scene, const Plan& plan, const ReplayResult& result) {
+    Json json = run_json(scene, plan, result.state, result.frames, result.latency);
+    json["lag_over_nodules_mm"] = Json::object();
+    for (const NodulePass& pass : result.over) json["lag_over_nodules_mm"][pass.id] = 1e3 * pass.lag_m;
+    json["lag_beside_nodules_mm"] = 1e3 * result.lag_beside_m;
     return json;
 }
 

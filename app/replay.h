@@ -34,7 +34,10 @@ using AfterSample = std::function<void(const Sample& sample, const State& state)
 ReplayResult replay(const Scene& scene, const Plan& plan, const Trace& trace, int time_every,
                     const AfterSample& after_sample = {}, double until_s = 1e300);
 
-// The keys that a run reports (docs/formats.md).
+// The keys that every run reports (docs/formats.md).
+Json run_json(const Scene& scene, const Plan& plan, const State& state, std::int64_t frames, const Meter& latency);
+
+// The same for a replay, with the lag over and beside the nodules.
 Json result_json(const Scene& scene, const Plan& plan, const ReplayResult& result);
 
 }  // namespace palpa

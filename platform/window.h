@@ -43,8 +43,11 @@ class Window {
     // to `wait_s` seconds (0: not at all). Samples are in px of the drawing area.
     void poll(double wait_s, std::vector<Sample>& out);
 
-    // Called with every SDL event during poll(), before it becomes a sample (Dear ImGui listens here). While
-    // it returns true the event belongs to a panel and presses no tissue.
+    // Called with every SDL event as it arrives, before it becomes a sample (Dear ImGui listens here). If it
+    // returns true for SDL_MOUSEBUTTONDOWN or SDL_FINGERDOWN, that whole press belongs to a panel and none of
+    // its samples come out of poll(); judge by the place in the event, since the pointer may not have been
+    // there before. True for SDL_MOUSEWHEEL: the wheel sets no pressure. A pen's press comes as
+    // SDL_MOUSEBUTTONDOWN too.
     void set_event_filter(bool (*filter)(const SDL_Event& event, void* user), void* user);
 
     bool close_requested() const;
@@ -52,8 +55,9 @@ class Window {
     double now_s() const;      // steady clock; the same as t_host_s
     int width_px() const;      // drawing area
     int height_px() const;
-    double mouse_pressure() const;  // what the mouse presses with now (wheel or hold), 0..1
+    double mouse_pressure() const;  // what the mouse presses with now (wheel or hold), or its wheel is set to
     std::vector<PointerDevice> devices() const;
+    std::string input_note() const;  // why no pen or finger has pressure here, for people; empty if they may
     SDL_Window* sdl() const;
 
  private:

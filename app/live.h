@@ -1,0 +1,29 @@
+#pragma once
+// The app on a screen: input, advance, log and drawing on one thread. And pictures without a screen.
+
+#include <filesystem>
+#include <string>
+
+#include "files/json.h"
+
+namespace palpa {
+
+// `palpa run`, as typed.
+struct RunOptions {
+    std::string scene;
+    std::string trace;        // replayed at its own pace instead of a pen
+    std::string log;          // folder, empty for none
+    std::string participant = "01";
+    std::string record;       // TRACE.tsv, empty for none
+    std::string screenshot;   // of the last frame
+    double quit_after_s = 0.0;  // 0: until the window is closed
+    int width_px = 1280;
+    int height_px = 800;
+    bool headless = false;
+    bool json = false;
+};
+
+// Returns what `run --json` prints. Throws InputError or std::runtime_error before the loop or after it.
+Json run_live(const RunOptions& options);
+
+}  // namespace palpa

@@ -1,0 +1,18 @@
+#pragma once
+// A run's state as something to draw.
+
+#include "render/tissue.h"
+#include "scene/scene.h"
+#include "scene/state.h"
+
+namespace palpa {
+
+// As the scene maps it; an indirect scene is drawn tilted, since no pen has to lie on it.
+TissueView tissue_view(const Scene& scene, const State& state);
+
+Dent dent_of(const SurfaceCurve& curve, const Avatar& avatar);
+
+// The indenter at the avatar's place; while nothing touches it hovers, half transparent.
+Ball ball_of(const Plan& plan, const State& state, const Avatar& avatar);
+
+}  // namespace palpa

@@ -1,0 +1,81 @@
+#include "platform/linux/gl_window.h"
+
+#include <SDL.h>
+#include <cstdlib>
+#include <stdexcept>
+
+namespace palpa {
+namespace {
+
+std::string no_display_message() {
+    const char* display = std::getenv("DISPLAY");
+    const std::string cause = display == nullptr || *display == '\0'
+                                  ? std::string("DISPLAY is not set")
+                                  : "the X server at DISPLAY=" + std::string(display) + " does not answer";
+    return "no display: " + cause + " (SDL: " + SDL_GetError() + "); palpa run --headless works without one";
+}
+
+std::string no_gl_message(const std::string& what) {
+    return what + " (SDL: " + SDL_GetError() +
+           "); Mesa gives OpenGL ES 3 on any machine (Debian: libegl1 libgles2 libgl1-mesa-dri), and palpa "
+           "run "
+           "--headless draws nothing unless asked for a screenshot";
+}
+
+void init_video(bool visible) {
+    if (visible) {
+        if (SDL_InitSubSystem(SDL_INIT_VIDEO) != 0) throw std::runtime_error(no_display_message());
+        return;
+    }
+    const char* before = SDL_GetHint(SDL_HINT_VIDEODRIVER);
+    const std::string asked = before != nullptr ? before : "";
+    SDL_SetHintWithPriority(SDL_HINT_VIDEODRIVER, "offscreen", SDL_HINT_OVERRIDE);
+    const int failed = SDL_InitSubSystem(SDL_INIT_VIDEO);
+    SDL_ResetHint(SDL_HINT_VIDEODRIVER);  // a later window may be a visible one
+    if (!asked.empty()) SDL_SetHint(SDL_HINT_VIDEODRIVER, asked.c_str());
+    if (failed != 0) throw std::runtime_error(no_gl_message("no off-screen drawing"));
+}
+
+void ask_for_es3() {
+    SDL_GL_SetAttribute(SDL_GL_CONTEXT_PROFILE_MASK, SDL_GL_CONTEXT_PROFILE_ES);
+    SDL_GL_SetAttribute(SDL_GL_CONTEXT_MAJOR_VERSION, 3);
+    SDL_GL_SetAttribute(SDL_GL_CONTEXT_MINOR_VERSION, 0);
+    SDL_GL_SetAttribute(SDL_GL_DOUBLEBUFFER, 1);
+    SDL_GL_SetAttribute(SDL_GL_DEPTH_SIZE, 24);
+}
+
+}  // namespace
+
+GlWindow::GlWindow(const WindowOptions& options) {
+    init_video(options.visible);
+    try {
+        create(options);
+    } catch (...) {
+        destroy();
+        throw;
+    }
+}
+
+GlWindow::~GlWindow() {
+    destroy();
+}
+
+void GlWindow::create(const WindowOptions& options) {
+    ask_for_es3();
+    const Uint32 shown = options.visible ? SDL_WINDOW_SHOWN | SDL_WINDOW_RESIZABLE : SDL_WINDOW_HIDDEN;
+    window_ = SDL_CreateWindow(options.title.c_str(), SDL_WINDOWPOS_CENTERED, SDL_WINDOWPOS_CENTERED,
+                               options.width_px, options.height_px,
+                               SDL_WINDOW_OPENGL | SDL_WINDOW_ALLOW_HIGHDPI | shown);
+    if (window_ == nullptr) throw std::runtime_error(no_gl_message("no window with OpenGL ES 3"));
+    context_ = SDL_GL_CreateContext(window_);
+    if (context_ == nullptr) throw std::runtime_error(no_gl_message("no OpenGL ES 3 context"));
+    SDL_GL_SetSwapInterval(options.visible ? 1 : 0);  // refused by software drawing, which is no harm
+}
+
+void GlWindow::destroy() {
+    if (context_ != nullptr) SDL_GL_DeleteContext(context_);
+    if (window_ != nullptr) SDL_DestroyWindow(window_);
+    SDL_QuitSubSystem(SDL_INIT_VIDEO);
+}
+
+}  // namespace palpa

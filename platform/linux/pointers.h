@@ -1,0 +1,42 @@
+#pragma once
+// All pointers of one window: SDL events in, samples out.
+
+#include <optional>
+#include <vector>
+
+#include "platform/linux/xinput.h"
+#include "platform/mouse.h"
+#include "platform/press.h"
+#include "platform/sample.h"
+
+union SDL_Event;
+struct SDL_Window;
+
+namespace palpa {
+
+struct Pointers {
+    SDL_Window* window = nullptr;
+    std::optional<XInput> xinput;  // absent: no pressure, fingers come from SDL
+    Mouse mouse;
+    Presses presses;
+    bool (*filter)(const SDL_Event& event, void* user) = nullptr;
+    void* filter_user = nullptr;
+
+    // A device's own event comes right before the one by which it moves the common pointer, so the last one
+    // tells whose mouse event SDL reports.
+    Tool mover = Tool::mouse;
+    double mover_device_s = kMissing;
+    std::optional<bool> finger_on_panel;  // the filter's word on the touch that is about to begin
+
+    bool close_requested = false;
+    std::vector<Sample> made;     // scratch
+    std::vector<Sample> pending;  // for the next poll()
+};
+
+// Takes one event; call it for each, in order, from an SDL event watch.
+void receive(const SDL_Event& event, double t_host_s, Pointers& pointers);
+
+// Lets a held mouse button press on until now.
+void hold(double t_host_s, Pointers& pointers);
+
+}  // namespace palpa

@@ -1,0 +1,138 @@
+// The desktop's window. Supported: X11 (pressure by XInput2), Wayland (no pressure), off screen. Tried on
+// Xorg 21.1 with its inputtest driver and on Mesa's software drawing.
+
+#include "platform/window.h"
+
+#include <SDL.h>
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <string_view>
+
+#include "platform/linux/gl_window.h"
+#include "platform/linux/pointers.h"
+
+namespace palpa {
+namespace {
+
+double steady_s() {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+int SDLCALL watch(void* user, SDL_Event* event) {
+    receive(*event, steady_s(), *static_cast<Pointers*>(user));
+    return 1;
+}
+
+// Returns as soon as one event came. SDL waits in whole milliseconds.
+void wait_for_event(double wait_s) {
+    SDL_Event event;
+    SDL_WaitEventTimeout(&event, static_cast<int>(std::ceil(1e3 * wait_s)));
+}
+
+PointerDevice describe(const XiDevice& device) {
+    const bool has_pressure = device.pressure.number >= 0 && device.pressure.hi > device.pressure.lo;
+    PointerDevice out{device.id, device.name, device.tool, has_pressure, 0.0, 0.0};
+    if (has_pressure) {
+        out.pressure_min = device.pressure.lo;
+        out.pressure_max = device.pressure.hi;
+    }
+    return out;
+}
+
+}  // namespace
+
+struct Window::Impl {
+    explicit Impl(const WindowOptions& options) : gl(options) {
+        pointers.window = gl.sdl();
+        pointers.mouse.hold_s = options.mouse_hold_s;
+        pointers.xinput = open_xinput(gl.sdl());
+        if (pointers.xinput) SDL_EventState(SDL_SYSWMEVENT, SDL_ENABLE);
+        SDL_AddEventWatch(watch, &pointers);
+    }
+    ~Impl() { SDL_DelEventWatch(watch, &pointers); }
+    Impl(const Impl&) = delete;
+    Impl& operator=(const Impl&) = delete;
+
+    GlWindow gl;
+    Pointers pointers;
+};
+
+Window::Window(const WindowOptions& options) : impl_(std::make_unique<Impl>(options)) {}
+Window::~Window() = default;
+
+void Window::poll(double wait_s, std::vector<Sample>& out) {
+    Pointers& pointers = impl_->pointers;
+    // a held mouse button makes a sample per grid point without any event
+    const double longest_s = pointers.mouse.down ? 1.0 / kMouseGrid_Hz : wait_s;
+    if (wait_s > 0.0 && pointers.pending.empty()) wait_for_event(std::min(wait_s, longest_s));
+    SDL_PumpEvents();
+    SDL_FlushEvents(SDL_FIRSTEVENT, SDL_LASTEVENT);  // the watch has seen them
+    hold(steady_s(), pointers);
+    out.insert(out.end(), pointers.pending.begin(), pointers.pending.end());
+    pointers.pending.clear();
+}
+
+void Window::set_event_filter(bool (*filter)(const SDL_Event& event, void* user), void* user) {
+    impl_->pointers.filter = filter;
+    impl_->pointers.filter_user = user;
+}
+
+bool Window::close_requested() const {
+    return impl_->pointers.close_requested;
+}
+
+void Window::present() {
+    SDL_GL_SwapWindow(sdl());
+}
+
+double Window::now_s() const {
+    return steady_s();
+}
+
+int Window::width_px() const {
+    int width_px = 0;
+    SDL_GL_GetDrawableSize(sdl(), &width_px, nullptr);
+    return width_px;
+}
+
+int Window::height_px() const {
+    int height_px = 0;
+    SDL_GL_GetDrawableSize(sdl(), nullptr, &height_px);
+    return height_px;
+}
+
+double Window::mouse_pressure() const {
+    const Pointers& pointers = impl_->pointers;
+    const bool pressing = presses_tissue(pointers.presses, kMousePointerId);
+    if (pointers.mouse.down && !pressing) return 0.0;  // the press is a panel's
+    return palpa::mouse_pressure(pointers.mouse, steady_s());
+}
+
+std::vector<PointerDevice> Window::devices() const {
+    const auto& xinput = impl_->pointers.xinput;
+    if (!xinput) return {{0, "mouse", Tool::mouse, false, 0.0, 0.0}};
+    std::vector<PointerDevice> devices;
+    for (const XiDevice& device : xinput->state.devices) {
+        const bool made_by_server = device.name.find("XTEST") != std::string::npos;
+        if (!made_by_server) devices.push_back(describe(device));
+    }
+    return devices;
+}
+
+std::string Window::input_note() const {
+    if (impl_->pointers.xinput) return {};
+    const char* driver = SDL_GetCurrentVideoDriver();
+    const std::string_view name = driver != nullptr ? driver : "";
+    if (name == "wayland") {
+        return "no pressure of pens or fingers on Wayland: start with SDL_VIDEODRIVER=x11, or press with the "
+               "mouse (hold its button, or turn its wheel)";
+    }
+    return "no pressure of pens or fingers with the display driver " + std::string(name) + ": it needs X11";
+}
+
+SDL_Window* Window::sdl() const {
+    return impl_->gl.sdl();
+}
+
+}  // namespace palpa

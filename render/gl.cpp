@@ -1,0 +1,85 @@
+#include "render/gl.h"
+
+#include <algorithm>
+#include <stdexcept>
+
+namespace palpa {
+namespace {
+
+GLuint compile(GLenum kind, const char* source) {
+    const GLuint shader = glCreateShader(kind);
+    glShaderSource(shader, 1, &source, nullptr);
+    glCompileShader(shader);
+    GLint good = 0;
+    glGetShaderiv(shader, GL_COMPILE_STATUS, &good);
+    if (good) return shader;
+    char log[1024] = "";
+    glGetShaderInfoLog(shader, sizeof log, nullptr, log);
+    throw std::runtime_error(std::string("this graphics driver does not take a shader: ") + log);
+}
+
+}  // namespace
+
+Program::Program(const char* vertex_source, const char* fragment_source) {
+    const GLuint vertex = compile(GL_VERTEX_SHADER, vertex_source);
+    const GLuint fragment = compile(GL_FRAGMENT_SHADER, fragment_source);
+    id_ = glCreateProgram();
+    glAttachShader(id_, vertex);
+    glAttachShader(id_, fragment);
+    glLinkProgram(id_);
+    glDeleteShader(vertex);
+    glDeleteShader(fragment);
+    GLint good = 0;
+    glGetProgramiv(id_, GL_LINK_STATUS, &good);
+    if (good) return;
+    char log[1024] = "";
+    glGetProgramInfoLog(id_, sizeof log, nullptr, log);
+    throw std::runtime_error(std::string("this graphics driver does not link a shader: ") + log);
+}
+
+Program::~Program() { glDeleteProgram(id_); }
+
+Mesh::Mesh(const std::vector<float>& points, const std::vector<unsigned>& triangles)
+    : count_(static_cast<GLsizei>(triangles.size())) {
+    glGenVertexArrays(1, &vertex_array_);
+    glBindVertexArray(vertex_array_);
+    glGenBuffers(2, buffers_);
+    glBindBuffer(GL_ARRAY_BUFFER, buffers_[0]);
+    glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(points.size() * sizeof(float)), points.data(), GL_STATIC_DRAW);
+    glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, buffers_[1]);
+    glBufferData(GL_ELEMENT_ARRAY_BUFFER, static_cast<GLsizeiptr>(triangles.size() * sizeof(unsigned)),
+                 triangles.data(), GL_STATIC_DRAW);
+    glEnableVertexAttribArray(0);
+    glVertexAttribPointer(0, 2, GL_FLOAT, GL_FALSE, 0, nullptr);
+    glBindVertexArray(0);
+}
+
+Mesh::~Mesh() {
+    glDeleteBuffers(2, buffers_);
+    glDeleteVertexArrays(1, &vertex_array_);
+}
+
+void Mesh::draw() const {
+    glBindVertexArray(vertex_array_);
+    glDrawElements(GL_TRIANGLES, count_, GL_UNSIGNED_INT, nullptr);
+    glBindVertexArray(0);
+}
+
+std::vector<unsigned char> read_pixels(int width_px, int height_px) {
+    const auto width = static_cast<std::size_t>(width_px);
+    const auto height = static_cast<std::size_t>(height_px);
+    std::vector<unsigned char> rgba(4 * width * height);
+    glPixelStorei(GL_PACK_ALIGNMENT, 1);
+    glReadPixels(0, 0, width_px, height_px, GL_RGBA, GL_UNSIGNED_BYTE, rgba.data());
+    std::vector<unsigned char> rgb(3 * width * height);
+    for (std::size_t y = 0; y < height; ++y) {
+        for (std::size_t x = 0; x < width; ++x) {
+            const std::size_t from = 4 * ((height - 1 - y) * width + x);
+            std::copy_n(rgba.begin() + static_cast<std::ptrdiff_t>(from), 3,
+                        rgb.begin() + static_cast<std::ptrdiff_t>(3 * (y * width + x)));
+        }
+    }
+    return rgb;
+}
+
+}  // namespace palpa

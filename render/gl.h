@@ -1,0 +1,44 @@
+#pragma once
+// The few GL objects that drawing needs, freed when they go. OpenGL ES 3.0 subset: the same shaders run on
+// the desktop and in a browser.
+
+#include <GLES3/gl3.h>
+
+#include <string>
+#include <vector>
+
+namespace palpa {
+
+class Program {
+ public:
+    // Throws std::runtime_error with the compiler's own words.
+    Program(const char* vertex_source, const char* fragment_source);
+    ~Program();
+    Program(const Program&) = delete;
+    Program& operator=(const Program&) = delete;
+    void use() const { glUseProgram(id_); }
+    GLint uniform(const char* name) const { return glGetUniformLocation(id_, name); }
+
+ private:
+    GLuint id_ = 0;
+};
+
+// Vertices with one 2-float attribute at location 0, drawn by index.
+class Mesh {
+ public:
+    Mesh(const std::vector<float>& points, const std::vector<unsigned>& triangles);
+    ~Mesh();
+    Mesh(const Mesh&) = delete;
+    Mesh& operator=(const Mesh&) = delete;
+    void draw() const;
+
+ private:
+    GLuint vertex_array_ = 0;
+    GLuint buffers_[2] = {0, 0};
+    GLsizei count_ = 0;
+};
+
+// RGB rows from the top downwards, of what was drawn last.
+std::vector<unsigned char> read_pixels(int width_px, int height_px);
+
+}  // namespace palpa

@@ -1,0 +1,187 @@
+#include "render/tissue.h"
+
+#include <cmath>
+
+#include "render/gl.h"
+
+namespace palpa {
+namespace {
+
+constexpr int kCells = 160;  // 0.75 mm on the 120 mm phantom
+
+// Shared by both programs: the map from the tissue to the screen.
+#define PALPA_PROJECTION                                                                     \
+    "#version 300 es\n"                                                                      \
+    "precision highp float;\n"                                                               \
+    "layout(location = 0) in vec2 unit;\n"                                                   \
+    "uniform vec2 area_px; uniform vec2 centre_px; uniform vec2 centre_m; uniform vec2 size_m;\n" \
+    "uniform vec4 axes; uniform float px_per_m; uniform float tilt;\n"                       \
+    "vec4 project(vec3 p) {\n"                                                               \
+    "  vec2 q = px_per_m * vec2(dot(axes.xy, p.xy - centre_m), dot(axes.zw, p.xy - centre_m));\n" \
+    "  float y = q.y * cos(tilt) - px_per_m * p.z * sin(tilt);\n"                            \
+    "  float depth = (-q.y * sin(tilt) - px_per_m * p.z * cos(tilt)) / (4.0 * max(area_px.x, area_px.y));\n" \
+    "  vec2 s = centre_px + vec2(q.x, y);\n"                                                 \
+    "  return vec4(2.0 * s.x / area_px.x - 1.0, 1.0 - 2.0 * s.y / area_px.y, depth, 1.0);\n" \
+    "}\n"
+
+constexpr const char* kSurfaceVertex = PALPA_PROJECTION R"(
+uniform vec2 dent_m; uniform float reach_m; uniform float sink_m[64];
+out vec2 place_m; out vec3 normal; out float sunk_m;
+float sink(float r) {
+  if (r >= reach_m) return 0.0;
+  float i = 63.0 * sqrt(r / reach_m);
+  int k = int(i);
+  return mix(sink_m[k], k < 63 ? sink_m[k + 1] : 0.0, i - float(k));
+}
+void main() {
+  vec2 p = centre_m + (unit - 0.5) * size_m;
+  vec2 d = p - dent_m;
+  float r = length(d);
+  float h = 3e-4;
+  float slope = (sink(r + h) - sink(max(r - h, 0.0))) / (r > h ? 2.0 * h : r + h);
+  vec2 outward = r > 1e-9 ? d / r : vec2(0.0);
+  place_m = p;
+  sunk_m = sink(r);
+  normal = normalize(vec3(outward * slope, 1.0));
+  gl_Position = project(vec3(p, -sunk_m));
+}
+)";
+
+// Light comes from the upper left of the screen, low enough that a shallow dent shows; lines every 10 mm.
+constexpr const char* kSurfaceFragment = R"(#version 300 es
+precision highp float;
+in vec2 place_m; in vec3 normal; in float sunk_m;
+uniform vec4 axes; uniform vec2 centre_m;
+out vec4 colour;
+void main() {
+  vec3 n = normalize(normal);
+  vec3 on_screen = normalize(vec3(dot(axes.xy, n.xy), -dot(axes.zw, n.xy), n.z));
+  vec3 light = normalize(vec3(-0.55, 0.65, 0.75));
+  float lit = max(dot(on_screen, light), 0.0) / light.z;
+  vec3 tissue = vec3(0.80, 0.58, 0.52);
+  vec3 shaded = tissue * (0.30 + 0.70 * lit) * exp(-sunk_m * 45.0);
+  vec3 half_way = normalize(light + vec3(0.0, 0.0, 1.0));
+  shaded += 0.10 * (pow(max(dot(on_screen, half_way), 0.0), 40.0) - pow(half_way.z, 40.0));
+  vec2 line = abs(fract((place_m - centre_m) / 0.01 + 0.5) - 0.5) * 0.01;
+  vec2 width = fwidth(place_m) * 0.7;
+  float on_line = max(1.0 - line.x / width.x, 1.0 - line.y / width.y);
+  colour = vec4(mix(shaded, shaded * 0.86, clamp(on_line, 0.0, 1.0)), 1.0);
+}
+)";
+
+constexpr const char* kBallVertex = PALPA_PROJECTION R"(
+uniform vec3 ball_m; uniform float radius_m;
+out vec2 spot;
+void main() {
+  spot = 2.6 * (unit - 0.5);
+  vec4 c = project(ball_m);
+  gl_Position = vec4(c.xy + spot * radius_m * px_per_m * 2.0 / area_px, c.z - 0.02, 1.0);
+}
+)";
+
+constexpr const char* kBallFragment = R"(#version 300 es
+precision highp float;
+in vec2 spot;
+uniform float opacity;
+out vec4 colour;
+void main() {
+  float r2 = dot(spot, spot);
+  float edge = fwidth(r2) + 1e-6;
+  float inside = clamp((1.0 - r2) / edge + 0.5, 0.0, 1.0);
+  vec2 fallen = spot - vec2(0.14, -0.16);
+  float shadow = 0.45 * exp(-3.5 * max(length(fallen) - 0.75, 0.0)) * (1.0 - smoothstep(1.0, 1.28, length(fallen)));
+  vec3 n = vec3(spot, sqrt(max(1.0 - r2, 0.0)));
+  vec3 light = normalize(vec3(-0.55, 0.65, 0.75));
+  float lit = max(dot(n, light), 0.0);
+  vec3 half_way = normalize(light + vec3(0.0, 0.0, 1.0));
+  vec3 steel = vec3(0.42, 0.50, 0.60) * (0.35 + 0.75 * lit) + 0.55 * pow(max(dot(n, half_way), 0.0), 60.0);
+  vec3 mixed = mix(vec3(0.0), steel, inside);
+  float cover = mix(shadow, 1.0, inside);
+  if (cover < 0.004) discard;
+  colour = vec4(mixed, cover * opacity);
+}
+)";
+
+struct SurfaceMesh {
+    std::vector<float> points;
+    std::vector<unsigned> triangles;
+};
+
+SurfaceMesh unit_grid(int cells) {
+    SurfaceMesh mesh;
+    const auto row = static_cast<unsigned>(cells + 1);
+    for (int j = 0; j <= cells; ++j) {
+        for (int i = 0; i <= cells; ++i) {
+            mesh.points.push_back(static_cast<float>(i) / static_cast<float>(cells));
+            mesh.points.push_back(static_cast<float>(j) / static_cast<float>(cells));
+        }
+    }
+    for (unsigned j = 0; j + 1 < row; ++j) {
+        for (unsigned i = 0; i + 1 < row; ++i) {
+            const unsigned at = j * row + i;
+            for (const unsigned k : {at, at + 1, at + row, at + 1, at + row + 1, at + row}) mesh.triangles.push_back(k);
+        }
+    }
+    return mesh;
+}
+
+void set_view(const Program& program, const TissueView& view) {
+    program.use();
+    glUniform2f(program.uniform("area_px"), view.width_px, view.height_px);
+    glUniform2f(program.uniform("centre_px"), view.centre_px[0], view.centre_px[1]);
+    glUniform2f(program.uniform("centre_m"), view.centre_m[0], view.centre_m[1]);
+    glUniform2f(program.uniform("size_m"), view.size_m[0], view.size_m[1]);
+    glUniform4fv(program.uniform("axes"), 1, view.axes);
+    glUniform1f(program.uniform("px_per_m"), view.px_per_m);
+    glUniform1f(program.uniform("tilt"), view.tilt_rad);
+}
+
+}  // namespace
+
+struct TissueDrawer::Gpu {
+    Program surface{kSurfaceVertex, kSurfaceFragment};
+    Program ball{kBallVertex, kBallFragment};
+    SurfaceMesh fine = unit_grid(kCells);
+    SurfaceMesh single = unit_grid(1);
+    Mesh tissue{fine.points, fine.triangles};
+    Mesh quad{single.points, single.triangles};
+};
+
+TissueDrawer::TissueDrawer() : gpu_(std::make_unique<Gpu>()) {}
+TissueDrawer::~TissueDrawer() = default;
+
+void TissueDrawer::draw(const TissueView& view, const Dent& dent, const Ball& ball) {
+    glViewport(0, 0, static_cast<GLsizei>(view.width_px), static_cast<GLsizei>(view.height_px));
+    glClearColor(0.11f, 0.12f, 0.13f, 1.0f);
+    glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+    glEnable(GL_DEPTH_TEST);
+    glDisable(GL_CULL_FACE);
+    glDisable(GL_BLEND);
+    set_view(gpu_->surface, view);
+    glUniform2f(gpu_->surface.uniform("dent_m"), dent.centre_m[0], dent.centre_m[1]);
+    glUniform1f(gpu_->surface.uniform("reach_m"), dent.reach_m);
+    glUniform1fv(gpu_->surface.uniform("sink_m"), kSinkPoints, dent.sink_m.data());
+    gpu_->tissue.draw();
+
+    glDisable(GL_DEPTH_TEST);
+    if (ball.radius_m <= 0.0f) return;
+    glEnable(GL_BLEND);
+    glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
+    set_view(gpu_->ball, view);
+    glUniform3f(gpu_->ball.uniform("ball_m"), ball.centre_m[0], ball.centre_m[1], ball.height_m);
+    glUniform1f(gpu_->ball.uniform("radius_m"), ball.radius_m);
+    glUniform1f(gpu_->ball.uniform("opacity"), ball.opacity);
+    gpu_->quad.draw();
+    glDisable(GL_BLEND);
+}
+
+void project_px(const TissueView& view, float x_m, float y_m, float z_m, float& x_px, float& y_px) {
+    const float dx = x_m - view.centre_m[0];
+    const float dy = y_m - view.centre_m[1];
+    const float qx = view.px_per_m * (view.axes[0] * dx + view.axes[1] * dy);
+    const float qy = view.px_per_m * (view.axes[2] * dx + view.axes[3] * dy);
+    x_px = view.centre_px[0] + qx;
+    y_px = view.centre_px[1] + qy * std::cos(view.tilt_rad) - view.px_per_m * z_m * std::sin(view.tilt_rad);
+}
+
+}  // namespace palpa
