@@ -31,9 +31,11 @@ void draw_picture(const Scene& scene, const Plan& plan, State& state, const std:
     TissueDrawer tissue;
     PanelOptions panel;
     const FrameTimes times;
-    gui.begin_frame(1.0 / 60.0);
-    draw_frame(scene, plan, state, state.timeline.now_s, times, tissue, gui, panel);
-    gui.end_frame();
+    for (int i = 0; i < 2; ++i) {  // panels find their size in the first frame and show in the second
+        gui.begin_frame(1.0 / 60.0);
+        draw_frame(scene, plan, state, state.timeline.now_s, times, tissue, gui, panel);
+        gui.end_frame();
+    }
     save_screen(window, png);
 }
 

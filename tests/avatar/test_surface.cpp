@@ -22,8 +22,8 @@ double hertz_sink_m(double r, double depth, double a) {
 double layer_sink(double r, double a, double thickness) {
     const auto integrate = [&](double at) {
         double sum = 0.0;
-        const double dk = 0.5;
-        for (double k = 0.5 * dk; k < 200.0 / a; k += dk) {
+        const double dk = 2.0;  // 1/m; the integrand's shortest wave is 2 pi / (60 mm + a), 50 times longer
+        for (double k = 0.5 * dk; k < 100.0 / a; k += dk) {
             const double x = k * thickness;
             const double e2 = std::exp(-2.0 * x);
             const double w = x > 40.0 ? 1.0
@@ -35,7 +35,11 @@ double layer_sink(double r, double a, double thickness) {
         }
         return sum;
     };
-    return integrate(r) / integrate(0.0);
+    static double at_zero_for = 0.0;
+    static double at_zero = 0.0;
+    if (at_zero_for != a) at_zero = integrate(0.0);
+    at_zero_for = a;
+    return integrate(r) / at_zero;
 }
 
 }  // namespace
@@ -83,7 +87,7 @@ TEST_CASE("surface: within 7.5 % of the depth of the exact bonded layer") {
     double worst = 0.0;
     for (const double depth : {0.5e-3, 1e-3, 2e-3}) {
         const SurfaceCurve curve = surface_curve(depth, 4e-3, 25e-3);
-        for (double r = 0.0; r < 60e-3; r += 1.5e-3) {
+        for (double r = 0.0; r < 60e-3; r += 3e-3) {
             const double exact = layer_sink(r, curve.contact_radius_m, 25e-3);
             worst = std::max(worst, std::abs(sink_at_m(curve, r) / depth - exact));
         }

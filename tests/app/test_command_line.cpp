@@ -1,0 +1,162 @@
+// The program as a person calls it: exit status, messages, JSON.
+
+#include <doctest/doctest.h>
+#include <sys/wait.h>
+
+#include <cstdio>
+#include <filesystem>
+#include <string>
+
+#include "files/json.h"
+#include "files/text.h"
+#include "tests/error_message.h"
+#include "tests/temporary_folder.h"
+
+using namespace palpa;
+using namespace palpa::test;
+
+namespace {
+
+const std::string kAssets = PALPA_SOURCE_DIR "/assets/";
+const std::string kTrace = kAssets + "traces/raster.tsv";
+
+struct Called {
+    int status = 0;
+    std::string out;
+    std::string err;
+};
+
+Called palpa_with(const std::string& arguments, const std::string& before = "") {
+    const TemporaryFolder folder;
+    const std::string command = before + " " PALPA_PROGRAM " " + arguments + " >" + (folder / "out").string() + " 2>" +
+                                (folder / "err").string() + " </dev/null";
+    const int status = std::system(command.c_str());
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_text(folder / "out"), read_text(folder / "err")};
+}
+
+}  // namespace
+
+TEST_CASE("command line: help and version exist for every command") {
+    for (const char* command : {"", "run", "explain", "maps", "maps info", "maps sample", "maps import", "maps generate", "bench trace"}) {
+        CAPTURE(command);
+        const Called help = palpa_with(std::string(command) + " --help");
+        CHECK(help.status == 0);
+        CHECK(help.out.size() > 100);
+    }
+    CHECK(contains(palpa_with("--version").out, "palpa 0."));
+}
+
+TEST_CASE("command line: headless replay reports its keys as one JSON object") {
+    const Called run = palpa_with("run --replay " + kTrace + " --headless --json");
+    CHECK(run.status == 0);
+    CHECK(run.err.empty());
+    const Json json = parse_json(run.out, "stdout");
+    for (const char* key : {"samples", "frames", "steps", "dropped_steps", "latency_ms", "max_force_N", "max_depth_mm", "max_lag_mm", "stages"}) {
+        CHECK(json.contains(key));
+    }
+    CHECK(json["latency_ms"].contains("p99"));
+    for (const char* key : {"name", "fidelity", "calls", "median_us"}) CHECK(json["stages"][0].contains(key));
+    CHECK(json["dropped_steps"] == 0);
+    CHECK(palpa_with(kAssets + "scenes/delay.json --replay " + kTrace + " --headless").status == 0);  // `run` may be left out
+}
+
+TEST_CASE("command line: a log is written in the BIDS layout and repeats byte for byte") {
+    const TemporaryFolder folder;
+    const std::string call = "run --replay " + kTrace + " --headless --log ";
+    CHECK(palpa_with(call + (folder / "a").string()).status == 0);
+    CHECK(palpa_with(call + (folder / "b").string()).status == 0);
+    const std::string stem = "/sub-01/beh/sub-01_task-palpation_run-01";
+    for (const char* suffix : {"_samples.tsv", "_samples.json", "_settings.json"}) {
+        CHECK(read_text(folder / ("a" + stem + suffix)) == read_text(folder / ("b" + stem + suffix)));
+    }
+    CHECK(std::filesystem::exists(folder / ("a" + stem + "_performance.json")));
+    CHECK(palpa_with(call + (folder / "a").string()).status == 0);
+    CHECK(std::filesystem::exists(folder / "a/sub-01/beh/sub-01_task-palpation_run-02_samples.tsv"));
+}
+
+TEST_CASE("command line: a picture of the greatest lag needs no display") {
+    const TemporaryFolder folder;
+    const Called run = palpa_with("run --replay " + kTrace + " --headless --screenshot " + (folder / "p.png").string(),
+                                  "env -u DISPLAY -u WAYLAND_DISPLAY");
+    CHECK_MESSAGE(run.status == 0, run.err);
+    const std::string png = read_text(folder / "p.png");
+    CHECK(png.substr(1, 3) == "PNG");
+    CHECK(png.size() > 20000);  // not blank
+}
+
+TEST_CASE("command line: explain names every stage with its error and cost, measured if asked") {
+    const Called plain = palpa_with("explain");
+    CHECK(plain.status == 0);
+    for (const char* word : {"calibration", "depth", "display_ratio", "surface", "error:", "not measured", "stand-in"}) {
+        CHECK(contains(plain.out, word));
+    }
+    const Json json = parse_json(palpa_with("explain " + kAssets + "scenes/off.json --measure --json").out, "stdout");
+    CHECK(json["stages"].size() == 4);
+    CHECK(json["stages"][0]["calls"].get<int>() > 1000);
+    CHECK(json["stages"][0]["p99_us"].get<double>() >= json["stages"][0]["median_us"].get<double>());
+}
+
+TEST_CASE("command line: maps info, sample, generate and import") {
+    const TemporaryFolder folder;
+    const std::string map = kAssets + "maps/silicone.map";
+    const Json info = parse_json(palpa_with("maps info " + map + " --json").out, "stdout");
+    CHECK(info["shape"] == Json({6, 59, 159}));
+    CHECK(info["missing"] == 0);
+    CHECK(info["force_range_N"][1].get<double>() > 3.0);
+    CHECK(info["source"]["kind"] == "analytic");
+    const Json at = parse_json(palpa_with("maps sample " + map + " --x-mm 110 --y-mm 110 --depth-mm 7 --json").out, "stdout");
+    CHECK(at["force_N"].get<double>() == doctest::Approx(2.95).epsilon(0.01));
+    const std::string force = number_text(at["force_N"].get<double>());
+    const Json back = parse_json(palpa_with("maps sample " + map + " --x-mm 110 --y-mm 110 --force-N " + force + " --json").out, "stdout");
+    CHECK(back["depth_mm"].get<double>() == doctest::Approx(7.0).epsilon(1e-9));
+    CHECK(palpa_with("maps generate " + kAssets + "phantoms/silicone.json -o " + (folder / "s.map").string()).status == 0);
+    CHECK(palpa_with("run " + (folder / "s.map").string() + " --replay " + kTrace + " --headless").status == 0);
+
+    const std::string recording = PALPA_RECORDINGS "/probing/probingRAL2018B_T2.csv";
+    if (!std::filesystem::exists(recording)) {
+        MESSAGE("not checked: the recording is not beside the checkout: ", recording);
+        return;
+    }
+    const Called import = palpa_with("maps import " + recording + " -o " + (folder / "x.map").string());
+    CHECK(import.status == 0);
+    CHECK(contains(import.out, "62 x 39 cells of 1.58 x 1.58 mm"));
+    CHECK(palpa_with("bench trace " + (folder / "x.map").string() + " --seconds 30 --force-N 1 -o " + (folder / "t.tsv").string()).status == 0);
+    const Called run = palpa_with("run " + (folder / "x.map").string() + " --replay " + (folder / "t.tsv").string() + " --headless --json");
+    CHECK(run.status == 0);
+    CHECK(parse_json(run.out, "stdout")["max_lag_mm"].get<double>() > 0.3);
+}
+
+TEST_CASE("command line: wrong usage and bad input end with status 2 and say what was expected") {
+    const TemporaryFolder folder;
+    write_text_atomically(folder / "bad.json", "{\"name\": 3}");
+    write_text_atomically(folder / "bad.tsv", "t_host_s\tx\n0\t1\n");
+    write_text_atomically(folder / "comma.csv", "point,ref_x_mm,ref_y_mm,depth_cmd_mm,depth_mm,fn_N\n1,2,3,4,5,6,7\n");
+    const auto refused = [&](const std::string& arguments, const char* word) {
+        const Called called = palpa_with(arguments);
+        CAPTURE(arguments);
+        CAPTURE(called.err);
+        CHECK(called.status == 2);
+        CHECK(contains(called.err + called.out, word));
+    };
+    refused("run --headless", "--replay TRACE.tsv");
+    refused("run --nonsense", "--nonsense");
+    refused("maps", "subcommand is required");
+    refused("maps sample " + kAssets + "maps/silicone.map --x-mm 1 --y-mm 1", "what");
+    refused("maps sample " + kAssets + "maps/silicone.map --x-mm one --y-mm 1 --force-N 1", "--x-mm");
+    refused("run none.json", "none.json: found nothing, expected a scene");
+    refused("run " + (folder / "bad.json").string() + " --replay " + kTrace + " --headless", "name: found 3, expected a text");
+    refused("run --headless --replay " + (folder / "none.tsv").string(), "none.tsv: cannot be read");
+    refused("run --headless --replay " + (folder / "bad.tsv").string(), "bad.json");
+    refused("maps info " + folder.path().string(), "map.json: cannot be read");
+    refused("maps import " + (folder / "comma.csv").string() + " -o " + (folder / "n.map").string(), "line 2: found 7 fields");
+    CHECK_FALSE(std::filesystem::exists(folder / "n.map"));
+    refused("maps generate " + (folder / "bad.json").string() + " -o " + (folder / "n.map").string(), "size_mm: found nothing");
+    refused("maps generate " + kAssets + "phantoms/silicone.json -o " + folder.path().string(), "nothing is overwritten");
+}
+
+TEST_CASE("command line: without a display the app says so and what can be done instead") {
+    const Called run = palpa_with("run", "env -u DISPLAY -u WAYLAND_DISPLAY");
+    CHECK(run.status == 1);
+    CHECK(contains(run.err, "display"));
+    CHECK(contains(run.err, "--headless"));
+}

@@ -1,0 +1,61 @@
+#include "files/json.h"
+
+#include <doctest/doctest.h>
+
+#include "tests/error_message.h"
+
+using namespace palpa;
+using namespace palpa::test;
+
+namespace {
+
+std::string refusal(const char* text, void (*read)(JsonReader&)) {
+    return message_of([&] {
+        const Json root = parse_json(text, "slab.json");
+        JsonReader json(root, "slab.json");
+        read(json);
+        json.finish();
+    });
+}
+
+void read_young(JsonReader& json) { json.number("young_Pa", kPositive); }
+
+}  // namespace
+
+TEST_CASE("json: comments are allowed") {
+    const Json root = parse_json("// a scene\n{\"a\": 1 /* one */}", "x.json");
+    CHECK(root["a"] == 1);
+}
+
+TEST_CASE("json: messages name file, key, what was found and what was expected") {
+    CHECK(refusal(R"({"young_Pa": 3})", read_young) == "");
+    CHECK(refusal(R"({"young_Pa": -3})", read_young) == "slab.json: young_Pa: found -3, expected a number > 0");
+    CHECK(refusal(R"({"young_Pa": 0})", read_young) == "slab.json: young_Pa: found 0, expected a number > 0");
+    CHECK(refusal(R"({"young_Pa": "3"})", read_young) == "slab.json: young_Pa: found '3', expected a number > 0");
+    CHECK(refusal(R"({})", read_young) == "slab.json: young_Pa: found nothing, expected a number > 0");
+    CHECK(refusal(R"({"young_Pa": 3, "yung": 4})", read_young) ==
+          "slab.json: yung: found an unknown key, expected one of young_Pa");
+    CHECK(refusal(R"({"young_Pa": 3, "young_Pa": 4})", read_young) ==
+          "slab.json: young_Pa: found the key twice, expected it once");
+    CHECK(refusal(R"([1, 2])", read_young) == "slab.json: found an array of 2, expected an object { ... }");
+    CHECK(contains(refusal("{\n  \"young_Pa\": 3,,\n}", read_young), "slab.json: line 2, column"));
+    CHECK(contains(refusal("{\"young_Pa\": 1e999}", read_young), "slab.json"));
+    CHECK(contains(refusal("", read_young), "not valid JSON"));
+    CHECK(contains(refusal("{\"young_Pa\": 3", read_young), "not valid JSON"));
+}
+
+TEST_CASE("json: arrays, choices and whole numbers") {
+    const auto size = [](JsonReader& json) { json.numbers("size", 2, kPositive); };
+    CHECK(contains(refusal(R"({"size": [1]})", size), "found an array of 1, expected an array of 2 numbers"));
+    CHECK(contains(refusal(R"({"size": [1, -1]})", size), "found -1"));
+    const auto kind = [](JsonReader& json) { json.choice("kind", {"direct", "indirect"}); };
+    CHECK(refusal(R"({"kind": "both"})", kind) == "slab.json: kind: found 'both', expected one of direct indirect");
+    const auto count = [](JsonReader& json) { json.integer("n", 0, 10); };
+    CHECK(contains(refusal(R"({"n": 2.5})", count), "expected a whole number from 0 to 10"));
+    CHECK(contains(refusal(R"({"n": 1e30})", count), "expected a whole number from 0 to 10"));
+    const auto nested = [](JsonReader& json) {
+        JsonReader inner = json.object("avatar");
+        inner.finish();
+    };
+    CHECK(contains(refusal(R"({"avatar": {"x": 1}})", nested), "slab.json: avatar.x: found an unknown key"));
+}

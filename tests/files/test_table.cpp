@@ -1,0 +1,49 @@
+#include "files/table.h"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+#include "tests/error_message.h"
+
+using namespace palpa;
+using namespace palpa::test;
+
+TEST_CASE("table: rows, missing values, CRLF, byte order mark, blank lines, no newline at the end") {
+    Table table("\xef\xbb\xbfx,y\r\n1,2\r\n\r\n,n/a\r\n3,-4e-1", "t.csv", ',');
+    CHECK(table.columns() == std::vector<std::string>{"x", "y"});
+    REQUIRE(table.next());
+    CHECK(table.number(1) == 2.0);
+    REQUIRE(table.next());
+    CHECK(std::isnan(table.number(0)));
+    CHECK(std::isnan(table.number(1)));
+    CHECK(table.line() == 4);
+    REQUIRE(table.next());
+    CHECK(table.number(1) == -0.4);
+    CHECK_FALSE(table.next());
+}
+
+TEST_CASE("hard case 31: ragged, non-numeric and locale-comma tables are refused by line and column") {
+    const auto said = [](const char* text) {
+        return message_of([&] {
+            Table table(text, "t.csv", ',');
+            while (table.next()) table.finite_number(table.column("force_N"));
+        });
+    };
+    CHECK(said("point,force_N\n1,2\n") == "");
+    CHECK(said("point,force_N\n1,2,3\n") ==
+          "t.csv: line 2: found 3 fields, expected 2 as in the header (a decimal comma? numbers need a point)");
+    CHECK(contains(said("point,force_N\n1\n"), "line 2: found 1 fields, expected 2"));
+    CHECK(contains(said("point,force_N\n1,two\n"), "line 2, force_N: found 'two', expected a finite number"));
+    CHECK(contains(said("point,force_N\n1,inf\n"), "found 'inf'"));
+    CHECK(contains(said("point,force_N\n1,\n"), "expected a finite number"));
+    CHECK(contains(said("point,depth\n1,2\n"), "found the columns 'point' 'depth', expected a column 'force_N'"));
+    CHECK(contains(said("force_N,force_N\n1,2\n"), "twice"));
+    CHECK(contains(said(""), "expected a header line"));
+    const auto tsv = message_of([] {
+        Table table("t\tforce_N\n0\t1,5\n", "t.tsv", '\t');
+        table.next();
+        table.number(1);
+    });
+    CHECK(contains(tsv, "found '1,5', expected a number with a decimal point"));
+}

@@ -1,0 +1,229 @@
+#include "scene/advance.h"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+#include "tests/scene/allocations.h"
+
+using namespace palpa;
+using namespace palpa::test;
+
+namespace {
+
+const std::filesystem::path kAssets = PALPA_SOURCE_DIR "/assets";
+
+struct Run {
+    Scene scene;
+    Plan plan;
+    State state;
+    explicit Run(const char* name) {
+        scene = read_scene(kAssets / "scenes" / name, kAssets);
+        plan = make_plan(scene);
+        state = start(scene, plan, 1280, 800);
+    }
+    void feed(const Sample& sample) { advance(scene, plan, sample, state); }
+    std::int64_t calls(StageId id) const { return state.meters[static_cast<std::size_t>(id)].calls(); }
+};
+
+Sample pen(double t_s, Phase phase, const Eigen::Vector2d& px, double pressure = 0.65) {
+    Sample sample;
+    sample.t_host_s = t_s;
+    sample.pointer_id = 3;
+    sample.tool = Tool::pen;
+    sample.phase = phase;
+    sample.x_px = px.x();
+    sample.y_px = px.y();
+    sample.pressure = pressure;
+    sample.pressure_raw = 1023 * pressure;
+    return sample;
+}
+
+// Along y = 35 mm, over nodule A, 30 mm/s; every sample goes to `after`.
+template <class After>
+void stroke(Run& run, double rate_Hz, After&& after) {
+    const auto px_at = [&](double x_m) { return px_of_tissue(run.state.view, {x_m, 0.035}); };
+    run.feed(pen(0.0, Phase::hover, px_at(0.01)));
+    run.feed(pen(0.0, Phase::down, px_at(0.01)));
+    for (int i = 1; i <= static_cast<int>(2.0 * rate_Hz); ++i) {
+        run.feed(pen(i / rate_Hz, Phase::move, px_at(0.01 + 0.03 * i / rate_Hz)));
+        after(run.state);
+    }
+    run.feed(pen(2.1, Phase::up, px_at(0.07), 0.0));
+}
+
+}  // namespace
+
+TEST_CASE("advance: what a scene does not ask for is never called and changes nothing") {
+    Run off("off.json");
+    stroke(off, 240, [](const State& state) { CHECK(state.avatar.lag_m.norm() == 0.0); });
+    CHECK(off.calls(StageId::depth) == 483);
+    CHECK(off.calls(StageId::display_ratio) == 0);
+    CHECK(off.calls(StageId::delay) == 0);
+    CHECK(off.calls(StageId::surface) == 0);
+    CHECK_FALSE(off.state.display_ratio);
+    CHECK_FALSE(off.state.delay);
+    CHECK(off.state.extremes.lag_m == 0.0);
+
+    Run on("default.json");
+    stroke(on, 240, [](const State&) {});
+    CHECK(on.calls(StageId::display_ratio) == 483);
+    CHECK(on.calls(StageId::delay) == 0);
+    CHECK_FALSE(on.state.delay);
+    CHECK(on.state.extremes.lag_m > 0.5e-3);
+    CHECK(on.state.extremes.depth_m == off.state.extremes.depth_m);  // the effect does not reach back
+}
+
+TEST_CASE("advance: a sample allocates nothing, an absent effect allocates nothing at the start either") {
+    for (const char* name : {"off.json", "default.json", "delay.json"}) {
+        CAPTURE(name);
+        Run run(name);
+        run.state.time_every = 1;
+        const std::int64_t before = allocations();
+        stroke(run, 1000, [](const State&) {});
+        if (run.scene.surface) surface_now(run.scene, run.plan, run.state);
+        avatar_at(run.scene, run.state, 3.0);
+        CHECK(allocations() == before);
+    }
+    Run run("off.json");
+    std::int64_t before = allocations();
+    start(run.scene, run.plan, 1280, 800);
+    CHECK(allocations() == before);
+    before = allocations();
+    CHECK(std::vector<int>(3).size() == 3);
+    CHECK(allocations() > before);  // the counter counts
+}
+
+TEST_CASE("hard case 4: force only while touching") {
+    Run run("default.json");
+    const Eigen::Vector2d middle(640, 400);
+    run.feed(pen(0.0, Phase::hover, middle, 0.0));
+    CHECK(run.state.contact.normal_N == 0.0);
+    CHECK(run.state.contact.depth_m == 0.0);
+    run.feed(pen(0.01, Phase::down, middle, 0.0));
+    CHECK(run.state.contact.normal_N == doctest::Approx(0.1008));
+    run.feed(pen(0.02, Phase::move, middle, 1.5));
+    CHECK(run.state.contact.normal_N == doctest::Approx(6.77632).epsilon(1e-4));
+    CHECK(run.state.contact.saturated);
+    CHECK(run.state.counters.levels_clamped == 1);
+    run.feed(pen(0.03, Phase::up, middle, 0.7));
+    CHECK(run.state.contact.normal_N == 0.0);
+    run.feed(pen(0.04, Phase::down, middle, kMissing));
+    CHECK(run.state.contact.normal_N == 0.0);
+    CHECK(run.state.counters.without_level == 1);
+}
+
+TEST_CASE("hard case 8: the same stroke at 30 to 1,000 Hz gives the same lag within 1e-6 mm") {
+    double lag_m[3] = {};
+    int n = 0;
+    for (const double rate_Hz : {30.0, 240.0, 1000.0}) {
+        Run run("default.json");
+        stroke(run, rate_Hz, [&](const State& state) {
+            if (std::abs(state.timeline.now_s - 0.7) < 1e-9) lag_m[n] = state.avatar.lag_m.norm();
+        });
+        ++n;
+    }
+    CHECK(lag_m[0] > 0.3e-3);
+    CHECK(std::abs(lag_m[1] - lag_m[0]) < 1e-9);
+    CHECK(std::abs(lag_m[2] - lag_m[0]) < 1e-9);
+}
+
+TEST_CASE("hard case 10: a delay under 1,000 Hz input stays within its cap and no sample waits") {
+    Run run("delay.json");
+    double worst_s = 0.0;
+    stroke(run, 1000, [&](const State& state) { worst_s = std::max(worst_s, state.avatar.delay_s); });
+    CHECK(worst_s > 5e-3);
+    CHECK(worst_s <= 0.15);
+    CHECK(run.state.counters.samples == 2003);
+    CHECK(run.state.counters.dropped_steps == 0);
+}
+
+TEST_CASE("hard case 11: samples out of order press nothing, a late lift still lifts") {
+    Run run("default.json");
+    const Eigen::Vector2d middle(640, 400);
+    run.feed(pen(1.0, Phase::down, middle));
+    run.feed(pen(1.1, Phase::move, middle));
+    const double force_N = run.state.contact.normal_N;
+    run.feed(pen(0.5, Phase::move, {700, 400}, 0.1));
+    CHECK(run.state.contact.normal_N == force_N);
+    CHECK(run.state.timeline.backwards == 1);
+    run.feed(pen(0.6, Phase::up, middle, 0.0));
+    CHECK_FALSE(run.state.touch.down);
+    CHECK(run.state.timeline.now_s == 1.1);
+}
+
+TEST_CASE("hard case 11: a gap is walked on the grid; what is cut of a long one is counted") {
+    Run run("default.json");
+    const Eigen::Vector2d middle(640, 400);
+    run.feed(pen(0.0, Phase::down, middle));
+    run.feed(pen(10.0, Phase::move, middle));
+    CHECK(run.state.counters.steps == 2400);
+    CHECK(run.state.counters.dropped_steps == 0);
+    run.feed(pen(1e9, Phase::move, middle));
+    CHECK(run.state.counters.steps == 2400 + 60 * 240);
+    CHECK(run.state.counters.dropped_steps > 1e11);
+    run.feed(pen(1e9 + 1, Phase::up, middle));
+    run.feed(pen(1e9 + 1000, Phase::hover, middle));
+    CHECK(run.state.counters.steps == 2400 + 61 * 240);  // nothing evolves while nothing touches
+}
+
+TEST_CASE("advance: not-a-number, a second finger, a pen beside the tissue") {
+    Run run("default.json");
+    const Eigen::Vector2d middle(640, 400);
+    run.feed(pen(0.0, Phase::down, middle));
+    const double force_N = run.state.contact.normal_N;
+    run.feed(pen(0.01, Phase::move, {std::nan(""), 400}));
+    CHECK(run.state.contact.normal_N == force_N);
+    CHECK(run.state.counters.not_numbers == 1);
+
+    Sample finger = pen(0.02, Phase::down, {700, 300}, 1.0);
+    finger.pointer_id = 9;
+    run.feed(finger);
+    CHECK_FALSE(run.state.answered);
+    CHECK(run.state.contact.normal_N == force_N);
+    finger.phase = Phase::up;
+    finger.t_host_s = 0.03;
+    run.feed(finger);
+    CHECK(run.state.touch.down);
+
+    run.feed(pen(0.04, Phase::move, {5, 5}));
+    CHECK_FALSE(run.state.touch.down);
+    CHECK(run.state.contact.normal_N == 0.0);
+    CHECK(run.state.counters.off_tissue == 1);
+    run.feed(pen(0.05, Phase::move, middle));
+    CHECK(run.state.touch.down);
+}
+
+TEST_CASE("advance: the avatar between samples is where the next sample of a resting pen finds it") {
+    for (const char* name : {"default.json", "delay.json"}) {
+        CAPTURE(name);
+        Run run(name);
+        const auto px_at = [&](double x_m) { return px_of_tissue(run.state.view, {x_m, 0.035}); };
+        run.feed(pen(0.0, Phase::down, px_at(0.01)));
+        for (int i = 1; i <= 180; ++i) run.feed(pen(i / 240.0, Phase::move, px_at(0.01 + 0.03 * i / 240.0)));
+        CHECK(run.state.avatar.lag_m.norm() > 0.1e-3);
+        for (const double later_s : {0.01, 0.1, 0.2, 0.3}) {
+            const double t_s = 180 / 240.0 + later_s;
+            const Avatar expected = avatar_at(run.scene, run.state, t_s);
+            State copy = run.state;
+            advance(run.scene, run.plan, pen(t_s, Phase::move, px_at(0.01 + 0.03 * 0.75)), copy);
+            CHECK((expected.lag_m - copy.avatar.lag_m).norm() < 1e-12);
+            CHECK(expected.delay_s == doctest::Approx(copy.avatar.delay_s));
+        }
+    }
+}
+
+TEST_CASE("advance: a resize is a row of its own and moves the mapping") {
+    Run run("default.json");
+    Sample resize;
+    resize.phase = Phase::ui;
+    resize.action = Action::resize;
+    resize.x_px = 800;
+    resize.y_px = 1280;
+    run.feed(resize);
+    CHECK(run.state.screen_width_px == 800);
+    CHECK((px_of_tissue(run.state.view, run.plan.area.centre_m) - Eigen::Vector2d(400, 640)).norm() < 1e-9);
+    resize.x_px = -1;
+    run.feed(resize);
+    CHECK(run.state.screen_width_px == 800);
+}

@@ -1,0 +1,21 @@
+#include "scene/meter.h"
+
+#include <doctest/doctest.h>
+
+using namespace palpa;
+
+TEST_CASE("meter: quantiles are good to 3 %") {
+    Meter meter;
+    for (int i = 1; i <= 100000; ++i) meter.add_ns(i);
+    CHECK(meter.quantile_ns(0.5) == doctest::Approx(50000).epsilon(0.03));
+    CHECK(meter.quantile_ns(0.99) == doctest::Approx(99000).epsilon(0.03));
+    CHECK(meter.quantile_ns(1.0) <= 100000);
+    CHECK(meter.worst_ns() == 100000);
+    CHECK(meter.timed() == 100000);
+    CHECK(meter.calls() == 0);
+    CHECK(Meter{}.quantile_ns(0.5) == 0.0);
+    Meter odd;
+    odd.add_ns(0.0);
+    odd.add_ns(1e30);
+    CHECK(odd.timed() == 2);
+}

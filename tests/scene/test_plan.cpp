@@ -1,0 +1,59 @@
+#include "scene/plan.h"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+
+#include "files/text.h"
+#include "tests/error_message.h"
+
+using namespace palpa;
+using namespace palpa::test;
+
+namespace {
+
+const std::filesystem::path kAssets = PALPA_SOURCE_DIR "/assets";
+
+std::vector<std::string> stages_of(const char* scene) {
+    const Plan plan = make_plan(read_scene(kAssets / "scenes" / scene, kAssets));
+    std::vector<std::string> names;
+    for (const auto* stages : {&plan.sample_stages, &plan.frame_stages}) {
+        for (const Stage& stage : *stages) {
+            names.push_back(name_of(stage.id));
+            CHECK_FALSE(stage.fidelity.empty());
+            CHECK_FALSE(stage.error.empty());
+            CHECK(stage.cost_us > 0.0);
+        }
+    }
+    return names;
+}
+
+}  // namespace
+
+TEST_CASE("plan: only what the scene asks for, in the order of the road") {
+    using Names = std::vector<std::string>;
+    CHECK(stages_of("off.json") == Names{"calibration", "position", "depth", "tangential"});
+    CHECK(stages_of("default.json") == Names{"calibration", "position", "depth", "tangential", "display_ratio", "surface"});
+    CHECK(stages_of("delay.json") == Names{"calibration", "position", "depth", "tangential", "delay", "surface"});
+}
+
+TEST_CASE("plan: a person is told what is assumed, derived or scaled") {
+    Scene scene = read_scene(kAssets / "scenes/default.json", kAssets);
+    scene.force_scale = 2.0;
+    const Plan plan = make_plan(scene);
+    const auto noted = [&](const char* part) {
+        return std::any_of(plan.notes.begin(), plan.notes.end(), [&](const std::string& n) { return contains(n, part); });
+    };
+    CHECK(noted("stand-in (analytic)"));
+    CHECK(noted("phantom force: the pen's newtons are multiplied by 2"));
+    CHECK(noted("derived from the normal force (work argument), not measured"));
+    CHECK(plan.smoothing_m == 0.0);  // no noise in a closed form
+}
+
+TEST_CASE("plan: a map or profile that is not there is named") {
+    Scene scene = read_scene(kAssets / "scenes/default.json", kAssets);
+    scene.map = "none.map";
+    CHECK(contains(message_of([&] { make_plan(scene); }), "none.map: found nothing, expected a map folder"));
+    scene.profile = "none.json";
+    CHECK(contains(message_of([&] { make_plan(scene); }), "none.json: cannot be read"));
+}

@@ -1,0 +1,72 @@
+// Who may include whom: the table of folders, checked on every #include of the sources.
+
+#include <doctest/doctest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <regex>
+#include <set>
+#include <string>
+
+namespace fs = std::filesystem;
+
+namespace {
+
+// Folders, or single headers, that a folder may include besides itself.
+const std::map<std::string, std::set<std::string>> kMayInclude{
+    {"files", {}},
+    {"platform", {"files"}},
+    {"calibration", {"files", "platform/sample.h"}},
+    {"stiffnessmaps", {"files"}},
+    {"mechanics", {}},
+    {"avatar", {}},
+    {"scene", {"files", "platform/sample.h", "calibration", "stiffnessmaps", "mechanics", "avatar"}},
+    {"render", {"platform"}},
+    {"devices", {"files", "platform"}},
+    {"study", {"files"}},
+    {"app", {"files", "platform", "calibration", "stiffnessmaps", "mechanics", "avatar", "scene", "render", "devices",
+             "study"}},
+};
+
+std::string first_folder(const std::string& path) { return path.substr(0, path.find('/')); }
+
+bool allowed(const std::string& folder, const std::string& include) {
+    if (first_folder(include) == folder) return true;
+    const auto& may = kMayInclude.at(folder);
+    return may.count(first_folder(include)) > 0 || may.count(include) > 0;
+}
+
+}  // namespace
+
+TEST_CASE("includes: every #include is in the table of folders") {
+    const fs::path root = PALPA_SOURCE_DIR;
+    const std::regex include(R"rx(^\s*#include\s+"([^"]+)")rx");
+    int checked = 0;
+    for (const auto& [folder, may] : kMayInclude) {
+        if (!fs::exists(root / folder)) continue;
+        for (const auto& entry : fs::recursive_directory_iterator(root / folder)) {
+            const std::string extension = entry.path().extension().string();
+            if (extension != ".h" && extension != ".cpp") continue;
+            std::ifstream file(entry.path());
+            for (std::string line; std::getline(file, line);) {
+                std::smatch match;
+                if (!std::regex_search(line, match, include)) continue;
+                ++checked;
+                const std::string name = match[1];
+                CAPTURE(entry.path().string());
+                CAPTURE(name);
+                CHECK_MESSAGE(fs::exists(root / name), "includes are written from the root of the project");
+                CHECK(allowed(folder, name));
+            }
+        }
+    }
+    CHECK(checked > 100);
+}
+
+TEST_CASE("includes: the table refuses what it must") {
+    CHECK_FALSE(allowed("avatar", "scene/scene.h"));
+    CHECK_FALSE(allowed("calibration", "platform/trace.h"));
+    CHECK(allowed("calibration", "platform/sample.h"));
+    CHECK_FALSE(allowed("mechanics", "files/text.h"));
+}
