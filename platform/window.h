@@ -40,7 +40,10 @@ class Window {
     Window& operator=(const Window&) = delete;
 
     // Appends everything that arrived since the last call, oldest first; none is merged. Waits for input up
-    // to `wait_s` seconds (0: not at all). Samples are in px of the drawing area.
+    // to `wait_s` seconds (0: not at all). Samples are in px of the drawing area. A press that is going on
+    // when the window loses the focus ends with phase cancel. t_device_s is one clock for all tools (on X11
+    // the server's, in whole ms), and missing where no device sent the sample: a mouse button that is held
+    // still (a sample each 1/240 s), a cancel.
     void poll(double wait_s, std::vector<Sample>& out);
 
     // Called with every SDL event as it arrives, before it becomes a sample (Dear ImGui listens here). If it

@@ -79,15 +79,20 @@ void note_mover(const XiEvent& event, Pointers& pointers) {
     pointers.mover_device_s = 1e-3 * static_cast<double>(state.clock.total_ms);
 }
 
+void renew_devices(double t_host_s, Pointers& pointers) {
+    if (!pointers.xinput) return;
+    for (const std::int64_t pointer_id : rescan(*pointers.xinput)) {
+        cancel_gone(t_host_s, pointer_id, pointers.presses, pointers.pending);
+    }
+}
+
 void receive_xinput(const SDL_Event& event, double t_host_s, Pointers& pointers) {
     XiEvent xi;
     switch (read_event(*pointers.xinput, event, xi)) {
         case XiNews::none:
             return;
         case XiNews::devices_changed:
-            for (const std::int64_t pointer_id : rescan(*pointers.xinput)) {
-                cancel_gone(t_host_s, pointer_id, pointers.presses, pointers.pending);
-            }
+            renew_devices(t_host_s, pointers);
             return;
         case XiNews::event:
             break;
@@ -157,7 +162,9 @@ void receive_window(const SDL_WindowEvent& event, double t_host_s, Pointers& poi
         pointers.mouse.down = false;
         cancel_all(t_host_s, pointers.presses, pointers.pending);
     }
-    if (event.event == SDL_WINDOWEVENT_SIZE_CHANGED && pointers.xinput) rescan(*pointers.xinput);
+    const bool other_screen =
+        event.event == SDL_WINDOWEVENT_SIZE_CHANGED || event.event == SDL_WINDOWEVENT_DISPLAY_CHANGED;
+    if (other_screen) renew_devices(t_host_s, pointers);
 }
 
 bool of_other_window(const SDL_Event& event, const Pointers& pointers) {
@@ -191,6 +198,9 @@ void receive_sdl(const SDL_Event& event, bool on_panel, double t_host_s, Pointer
     switch (event.type) {
         case SDL_QUIT:
             pointers.close_requested = true;
+            break;
+        case SDL_DISPLAYEVENT:
+            renew_devices(t_host_s, pointers);
             break;
         case SDL_WINDOWEVENT:
             receive_window(event.window, t_host_s, pointers);

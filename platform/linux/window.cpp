@@ -25,7 +25,8 @@ int SDLCALL watch(void* user, SDL_Event* event) {
 }
 
 // Returns as soon as one event came. SDL waits in whole milliseconds.
-void wait_for_event(double wait_s) {
+void wait_for_event(double wait_s, const Pointers& pointers) {
+    if (pointers.xinput) return wait_for_server(*pointers.xinput, wait_s);
     SDL_Event event;
     SDL_WaitEventTimeout(&event, static_cast<int>(std::ceil(1e3 * wait_s)));
 }
@@ -65,7 +66,7 @@ void Window::poll(double wait_s, std::vector<Sample>& out) {
     Pointers& pointers = impl_->pointers;
     // a held mouse button makes a sample per grid point without any event
     const double longest_s = pointers.mouse.down ? 1.0 / kMouseGrid_Hz : wait_s;
-    if (wait_s > 0.0 && pointers.pending.empty()) wait_for_event(std::min(wait_s, longest_s));
+    if (wait_s > 0.0 && pointers.pending.empty()) wait_for_event(std::min(wait_s, longest_s), pointers);
     SDL_PumpEvents();
     SDL_FlushEvents(SDL_FIRSTEVENT, SDL_LASTEVENT);  // the watch has seen them
     hold(steady_s(), pointers);

@@ -5,6 +5,9 @@
 #include <X11/Xlib.h>
 #include <X11/extensions/XInput2.h>
 #include <array>
+#include <cmath>
+#include <ctime>
+#include <poll.h>
 #include <string_view>
 #include <utility>
 
@@ -182,6 +185,14 @@ XiNews read_event(const XInput& xinput, const SDL_Event& event, XiEvent& out) {
     if (device_event.event != xinput.window) return XiNews::none;
     out = plain_event(*kind, device_event);
     return XiNews::event;
+}
+
+void wait_for_server(const XInput& xinput, double wait_s) {
+    if (XEventsQueued(xinput.display, QueuedAfterFlush) > 0) return;
+    pollfd server{ConnectionNumber(xinput.display), POLLIN, 0};
+    const auto wait_ns = static_cast<long>(1e9 * (wait_s - std::floor(wait_s)));
+    const timespec limit{static_cast<time_t>(wait_s), wait_ns};
+    ppoll(&server, 1, &limit, nullptr);
 }
 
 std::vector<std::int64_t> rescan(XInput& xinput) {

@@ -33,6 +33,11 @@ enum class XiNews : std::uint8_t { none, event, devices_changed };
 // `out` points into them.
 XiNews read_event(const XInput& xinput, const SDL_Event& event, XiEvent& out);
 
+// Waits until the X server has sent something, `wait_s` at most. SDL's own waiting sends our window a message
+// through a second connection for each event that it reads; one that is still on its way when the window is
+// destroyed ends the program with an X error.
+void wait_for_server(const XInput& xinput, double wait_s);
+
 // Reads the list of devices and the screen's size anew, and asks for the events of each pen and mouse itself.
 // Returns the pointers that are gone.
 std::vector<std::int64_t> rescan(XInput& xinput);

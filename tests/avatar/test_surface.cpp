@@ -31,7 +31,7 @@ double layer_sink(double r, double a, double thickness) {
                                             ((1.0 + e2 * e2) + (4.0 * x * x + 2.0) * e2);
             const double ka = k * a;
             const double pressure = (std::sin(ka) - ka * std::cos(ka)) / (ka * ka * ka);
-            sum += pressure * std::cyl_bessel_j(0.0, k * at) * w * dk;
+            sum += pressure * ::j0(k * at) * w * dk;
         }
         return sum;
     };

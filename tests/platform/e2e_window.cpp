@@ -1,15 +1,12 @@
-// The window with real events: a pen, fingers and a mouse of an X server (with-xorg), and no display at all.
+// The window with real events: a pen, fingers and a mouse of an X server (run it under with-xorg).
 #define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
-#include <GLES3/gl3.h>
 #include <SDL.h>
-#include <array>
 #include <atomic>
 #include <cmath>
 #include <cstdlib>
 #include <doctest/doctest.h>
 #include <filesystem>
 #include <fstream>
-#include <stdexcept>
 #include <string>
 #include <thread>
 #include <vector>
@@ -189,6 +186,42 @@ TEST_CASE("pen: devices are listed with their range") {
     CHECK(mice == 1);
 }
 
+TEST_CASE("mouse: devices that come and go are noticed") {
+    Window window(small_window());
+    std::vector<Sample> samples;
+    const auto count_after = [&](const char* command) {
+        REQUIRE(std::system(command) == 0);
+        const double start_s = window.now_s();
+        while (window.now_s() - start_s < 0.3) window.poll(0.05, samples);
+        return window.devices().size();
+    };
+    const std::string player = PALPA_XORG_PEN;
+    const std::size_t all = window.devices().size();
+    CHECK(count_after((player + " --disable touch").c_str()) == all - 1);
+    CHECK(count_after((player + " --enable touch").c_str()) == all);
+}
+
+TEST_CASE("unplugged: a pen that goes while it presses ends its press") {
+    Window window(small_window());
+    std::vector<Row> rows;
+    for (int i = 0; i < 20; ++i) {
+        const char* phase = i < 5 ? "hover" : i == 5 ? "down" : "move";
+        rows.push_back({i / 100.0, "pen", 0, phase, 500.0 + i, 400.0, i < 5 ? 0.0 : 0.5});
+    }
+    std::vector<Sample> samples = of_tool(Tool::pen, play(rows, window));
+    REQUIRE(samples.size() == 20);
+    CHECK(samples.back().phase == Phase::move);
+
+    samples.clear();
+    REQUIRE(std::system(PALPA_XORG_PEN " --disable pen") == 0);
+    const double start_s = window.now_s();
+    while (window.now_s() - start_s < 0.3) window.poll(0.05, samples);
+    REQUIRE(samples.size() == 1);
+    const bool ended = samples[0].phase == Phase::up || samples[0].phase == Phase::cancel;
+    CHECK(ended);
+    MESSAGE("it ended with ", std::string(name_of(samples[0].phase)));
+}
+
 TEST_CASE("panel: presses that start on it reach no tissue, and it hears of each once") {
     Window window(small_window());
     int origin_x = 0, origin_y = 0;
@@ -281,8 +314,10 @@ TEST_CASE("mouse: every motion, pressure by holding and by wheel") {
     REQUIRE(downs.size() == 2);
     REQUIRE(ups.size() == 2);
 
-    // 0.8 s in all; a busy machine may shift both ends
-    CHECK(static_cast<double>(held.size()) == doctest::Approx(0.8 * palpa::kMouseGrid_Hz).epsilon(0.1));
+    // one per grid point between each down and its up, as they arrived
+    double held_s = 0.0;
+    for (std::size_t i = 0; i < 2; ++i) held_s += ups[i].t_host_s - downs[i].t_host_s;
+    CHECK(std::abs(static_cast<double>(held.size()) - held_s * palpa::kMouseGrid_Hz) <= 2.0);
     CHECK(downs[0].pressure == 0.0);
     const double by_time = (moves[99].t_host_s - downs[0].t_host_s) / 1.0;
     CHECK(moves[99].pressure == doctest::Approx(by_time).epsilon(1e-9));
@@ -290,114 +325,4 @@ TEST_CASE("mouse: every motion, pressure by holding and by wheel") {
     CHECK(downs[1].pressure == doctest::Approx(0.3));
     CHECK(moves[101].pressure == doctest::Approx(0.2));
     CHECK(window.mouse_pressure() == doctest::Approx(0.2));
-}
-
-namespace {
-
-Uint32 id_of(const Window& window) {
-    return SDL_GetWindowID(window.sdl());
-}
-
-void push_button(Uint32 type, int x_px, const Window& window) {
-    SDL_Event event{};
-    event.type = type;
-    event.button.windowID = id_of(window);
-    event.button.button = SDL_BUTTON_LEFT;
-    event.button.state = type == SDL_MOUSEBUTTONDOWN ? SDL_PRESSED : SDL_RELEASED;
-    event.button.x = x_px;
-    SDL_PushEvent(&event);
-}
-
-void push_window(Uint8 what, const Window& window) {
-    SDL_Event event{};
-    event.type = SDL_WINDOWEVENT;
-    event.window.windowID = id_of(window);
-    event.window.event = what;
-    SDL_PushEvent(&event);
-}
-
-WindowOptions off_screen() {
-    unsetenv("DISPLAY");
-    unsetenv("WAYLAND_DISPLAY");
-    WindowOptions options;
-    options.width_px = 320;
-    options.height_px = 200;
-    options.visible = false;
-    return options;
-}
-
-}  // namespace
-
-TEST_CASE("off screen: draws without a display") {
-    Window window(off_screen());
-    CHECK(window.width_px() == 320);
-    CHECK(window.height_px() == 200);
-    CHECK(std::string(reinterpret_cast<const char*>(glGetString(GL_VERSION))).starts_with("OpenGL ES 3"));
-    glViewport(0, 0, 320, 200);
-    glClearColor(0.2f, 0.4f, 0.6f, 1.0f);
-    glClear(GL_COLOR_BUFFER_BIT);
-    std::array<unsigned char, 4> pixel{};
-    glReadPixels(160, 100, 1, 1, GL_RGBA, GL_UNSIGNED_BYTE, pixel.data());
-    CHECK(static_cast<int>(pixel[0]) == 51);
-    CHECK(static_cast<int>(pixel[1]) == 102);
-    CHECK(static_cast<int>(pixel[2]) == 153);
-    CHECK(glGetError() == GL_NO_ERROR);
-    window.present();
-    CHECK_FALSE(window.input_note().empty());
-    CHECK(window.devices().size() == 1);
-}
-
-TEST_CASE("off screen: losing the focus cancels a press, and its release is not heard") {
-    Window window(off_screen());
-    std::vector<Sample> samples;
-    window.poll(0.0, samples);
-    samples.clear();
-    push_button(SDL_MOUSEBUTTONDOWN, 10, window);
-    push_window(SDL_WINDOWEVENT_FOCUS_LOST, window);
-    push_button(SDL_MOUSEBUTTONUP, 10, window);
-    window.poll(0.0, samples);
-    REQUIRE(samples.size() == 2);
-    CHECK(samples[0].phase == Phase::down);
-    CHECK(samples[1].phase == Phase::cancel);
-    CHECK(samples[1].x_px == 10.0);
-}
-
-TEST_CASE("off screen: a press that a panel owns stays silent until its release") {
-    Window window(off_screen());
-    window.set_event_filter([](const SDL_Event& event, void*) { return event.type == SDL_MOUSEBUTTONDOWN; },
-                            nullptr);
-    std::vector<Sample> samples;
-    window.poll(0.0, samples);
-    samples.clear();
-    push_button(SDL_MOUSEBUTTONDOWN, 10, window);
-    const double start_s = window.now_s();
-    while (window.now_s() - start_s < 0.05) window.poll(0.01, samples);
-    CHECK(window.mouse_pressure() == 0.0);
-    push_button(SDL_MOUSEBUTTONUP, 10, window);
-    window.poll(0.0, samples);
-    CHECK(samples.empty());
-}
-
-TEST_CASE("off screen: closing is reported") {
-    Window window(off_screen());
-    CHECK_FALSE(window.close_requested());
-    push_window(SDL_WINDOWEVENT_CLOSE, window);
-    std::vector<Sample> samples;
-    window.poll(0.0, samples);
-    CHECK(window.close_requested());
-}
-
-TEST_CASE("off screen: without a display a visible window says what can be done") {
-    unsetenv("DISPLAY");
-    unsetenv("WAYLAND_DISPLAY");
-    setenv("SDL_VIDEODRIVER", "x11", 1);
-    std::string message;
-    try {
-        Window window(WindowOptions{});
-    } catch (const std::runtime_error& error) {
-        message = error.what();
-    }
-    unsetenv("SDL_VIDEODRIVER");
-    CHECK(message.find("DISPLAY is not set") != std::string::npos);
-    CHECK(message.find("palpa run --headless") != std::string::npos);
 }

@@ -1,6 +1,8 @@
 // Plays a script of pen, finger and mouse on the X server of with-xorg (1280 x 800 px), in real time:
 //
 //   xorg_pen [SCRIPT.tsv]      stdin without a file; devices from XORG_PEN, XORG_TOUCH, XORG_MOUSE
+//   xorg_pen --disable NAME    as if the device (pen, touch, mouse) were unplugged; --enable: plugged in
+//   again
 //
 // The script has one header line and columns separated by tabs, sorted by time:
 //
@@ -11,6 +13,9 @@
 // starts by pushing it into the screen's top left corner. At the end it prints how many events it sent, in
 // which time, and by how much it was late at most.
 
+#include <X11/Xatom.h>
+#include <X11/Xlib.h>
+#include <X11/extensions/XInput2.h>
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
@@ -23,7 +28,6 @@
 #include <stdexcept>
 #include <string>
 #include <thread>
-#include <unistd.h>
 #include <vector>
 
 #include "tests/platform/xorg/inputtest.h"
@@ -164,12 +168,40 @@ void run(std::istream& in) {
                  1e3 * late_s);
 }
 
+int device_id(Display* display, const std::string& name) {
+    int count = 0, id = -1;
+    XIDeviceInfo* devices = XIQueryDevice(display, XIAllDevices, &count);
+    for (int i = 0; i < count; ++i) {
+        if (devices[i].name == name) id = devices[i].deviceid;
+    }
+    XIFreeDeviceInfo(devices);
+    if (id < 0) throw std::runtime_error("no device " + name);
+    return id;
+}
+
+void set_enabled(const std::string& name, unsigned char enabled) {
+    Display* display = XOpenDisplay(nullptr);
+    if (display == nullptr) throw std::runtime_error("no X server at DISPLAY");
+    const Atom property = XInternAtom(display, "Device Enabled", False);
+    XIChangeProperty(display, device_id(display, name), property, XA_INTEGER, 8, XIPropModeReplace, &enabled,
+                     1);
+    XCloseDisplay(display);
+}
+
 }  // namespace
 }  // namespace palpa::xorg
 
 int main(int argc, char** argv) {
     try {
-        if (argc > 2) throw std::runtime_error("usage: xorg_pen [SCRIPT.tsv]");
+        const std::string first = argc > 1 ? argv[1] : "";
+        const bool switches = first == "--disable" || first == "--enable";
+        if (argc > 3 || (argc == 3) != switches) {
+            throw std::runtime_error("usage: xorg_pen [SCRIPT.tsv] | --disable NAME | --enable NAME");
+        }
+        if (switches) {
+            palpa::xorg::set_enabled(argv[2], first == "--enable" ? 1 : 0);
+            return 0;
+        }
         std::ifstream file;
         if (argc == 2) {
             file.open(argv[1]);
