@@ -34,11 +34,15 @@ struct Live {
     bool failed_to_write = false;
 };
 
-void open(const RunOptions& options, double width_px, double height_px, Live& live) {
+// Everything that bad input can refuse, before a window is there.
+void load(const RunOptions& options, Live& live) {
     live.scene = load_scene(options.scene);
     live.plan = make_plan(live.scene);
-    if (!options.trace.empty()) {
-        live.trace = read_trace(options.trace);
+    if (!options.trace.empty()) live.trace = read_trace(options.trace);
+}
+
+void open(const RunOptions& options, double width_px, double height_px, Live& live) {
+    if (live.trace) {
         width_px = live.trace->info.screen_width_px;
         height_px = live.trace->info.screen_height_px;
     }
@@ -132,8 +136,9 @@ Json run_live(const RunOptions& options) {
     window_options.width_px = options.width_px;
     window_options.height_px = options.height_px;
     const double asked_s = 1e-9 * static_cast<double>(steady_ns());
-    Window window(window_options);
     Live live;
+    load(options, live);
+    Window window(window_options);
     open(options, window.width_px(), window.height_px(), live);
     Gui gui(window);
     TissueDrawer tissue;

@@ -12,20 +12,23 @@ std::string no_display_message() {
     const std::string cause = display == nullptr || *display == '\0'
                                   ? std::string("DISPLAY is not set")
                                   : "the X server at DISPLAY=" + std::string(display) + " does not answer";
-    return "no display: " + cause + " (SDL: " + SDL_GetError() + "); palpa run --headless works without one";
+    return "no display: " + cause + "; palpa run --replay TRACE.tsv --headless works without one";
 }
 
 std::string no_gl_message(const std::string& what) {
     return what + " (SDL: " + SDL_GetError() +
-           "); Mesa gives OpenGL ES 3 on any machine (Debian: libegl1 libgles2 libgl1-mesa-dri), and palpa "
-           "run "
+           "); Mesa gives OpenGL ES 3 on any machine (Debian: libegl1 libgles2 libgl1-mesa-dri), and palpa run "
            "--headless draws nothing unless asked for a screenshot";
 }
 
 void init_video(bool visible) {
     if (visible) {
         if (SDL_InitSubSystem(SDL_INIT_VIDEO) != 0) throw std::runtime_error(no_display_message());
-        return;
+        // where there is no display SDL falls back to drivers that show nothing
+        const std::string driver = SDL_GetCurrentVideoDriver();
+        if (driver != "offscreen" && driver != "dummy") return;
+        SDL_QuitSubSystem(SDL_INIT_VIDEO);
+        throw std::runtime_error(no_display_message());
     }
     const char* before = SDL_GetHint(SDL_HINT_VIDEODRIVER);
     const std::string asked = before != nullptr ? before : "";

@@ -97,7 +97,7 @@ Axis find_axis(const std::map<long, Point>& points, bool along_y, const std::str
     Axis axis;
     axis.origin_m = places.front();
     if (steps.empty()) return axis;
-    const double about_m = *std::min_element(steps.begin(), steps.end());
+    const double about_m = median(steps);  // a gap in the grid makes some steps longer, never most
     const double count = std::round((places.back() - places.front()) / about_m);
     constexpr double kMost = 10000.0;
     if (count >= kMost) {

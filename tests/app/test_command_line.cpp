@@ -28,7 +28,7 @@ struct Called {
 
 Called palpa_with(const std::string& arguments, const std::string& before = "") {
     const TemporaryFolder folder;
-    const std::string command = before + " " PALPA_PROGRAM " " + arguments + " >" + (folder / "out").string() + " 2>" +
+    const std::string command = before + " timeout 60 " PALPA_PROGRAM " " + arguments + " >" + (folder / "out").string() + " 2>" +
                                 (folder / "err").string() + " </dev/null";
     const int status = std::system(command.c_str());
     return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_text(folder / "out"), read_text(folder / "err")};
@@ -141,7 +141,7 @@ TEST_CASE("command line: wrong usage and bad input end with status 2 and say wha
     refused("run --headless", "--replay TRACE.tsv");
     refused("run --nonsense", "--nonsense");
     refused("maps", "subcommand is required");
-    refused("maps sample " + kAssets + "maps/silicone.map --x-mm 1 --y-mm 1", "what");
+    refused("maps sample " + kAssets + "maps/silicone.map --x-mm 1 --y-mm 1", "[--force-N,--depth-mm] is required");
     refused("maps sample " + kAssets + "maps/silicone.map --x-mm one --y-mm 1 --force-N 1", "--x-mm");
     refused("run none.json", "none.json: found nothing, expected a scene");
     refused("run " + (folder / "bad.json").string() + " --replay " + kTrace + " --headless", "name: found 3, expected a text");

@@ -119,7 +119,7 @@ TEST_CASE("hard case 8: the same stroke at 30 to 1,000 Hz gives the same lag wit
     for (const double rate_Hz : {30.0, 240.0, 1000.0}) {
         Run run("default.json");
         stroke(run, rate_Hz, [&](const State& state) {
-            if (std::abs(state.timeline.now_s - 0.7) < 1e-9) lag_m[n] = state.avatar.lag_m.norm();
+            if (std::abs(state.timeline.now_s - 0.6) < 1e-9) lag_m[n] = state.avatar.lag_m.norm();
         });
         ++n;
     }
@@ -200,13 +200,13 @@ TEST_CASE("advance: the avatar between samples is where the next sample of a res
         Run run(name);
         const auto px_at = [&](double x_m) { return px_of_tissue(run.state.view, {x_m, 0.035}); };
         run.feed(pen(0.0, Phase::down, px_at(0.01)));
-        for (int i = 1; i <= 180; ++i) run.feed(pen(i / 240.0, Phase::move, px_at(0.01 + 0.03 * i / 240.0)));
+        for (int i = 1; i <= 144; ++i) run.feed(pen(i / 240.0, Phase::move, px_at(0.01 + 0.03 * i / 240.0)));
         CHECK(run.state.avatar.lag_m.norm() > 0.1e-3);
         for (const double later_s : {0.01, 0.1, 0.2, 0.3}) {
-            const double t_s = 180 / 240.0 + later_s;
+            const double t_s = 144 / 240.0 + later_s;
             const Avatar expected = avatar_at(run.scene, run.state, t_s);
             State copy = run.state;
-            advance(run.scene, run.plan, pen(t_s, Phase::move, px_at(0.01 + 0.03 * 0.75)), copy);
+            advance(run.scene, run.plan, pen(t_s, Phase::move, px_at(0.01 + 0.03 * 0.6)), copy);
             CHECK((expected.lag_m - copy.avatar.lag_m).norm() < 1e-12);
             CHECK(expected.delay_s == doctest::Approx(copy.avatar.delay_s));
         }

@@ -2,6 +2,8 @@
 
 #include <doctest/doctest.h>
 
+#include <Eigen/LU>
+
 using namespace palpa;
 
 namespace {
@@ -17,7 +19,7 @@ TEST_CASE("mapping: direct mapping draws a point where the pen that means it is,
             mapping.rotate_deg = deg;
             mapping.flip = flip;
             const View view = make_view(mapping, kArea, 1280, 800);
-            for (const Eigen::Vector2d px : {Eigen::Vector2d(640, 400), {300, 120}, {900.5, 777}}) {
+            for (const Eigen::Vector2d& px : {Eigen::Vector2d(640, 400), {300, 120}, {900.5, 777}}) {
                 CAPTURE(deg);
                 CAPTURE(flip);
                 CHECK((px_of_tissue(view, tissue_of_px(view, px)) - px).norm() < 1e-9);
@@ -56,7 +58,7 @@ TEST_CASE("mapping: indirect stretches the whole pad over the tissue") {
 }
 
 TEST_CASE("mapping: the tissue fits onto any screen") {
-    for (const Eigen::Vector2d screen : {Eigen::Vector2d(1280, 800), {800, 1280}, {200, 100}, {2560, 1600}}) {
+    for (const Eigen::Vector2d& screen : {Eigen::Vector2d(1280, 800), {800, 1280}, {200, 100}, {2560, 1600}}) {
         for (const int deg : {0, 90}) {
             Mapping mapping;
             mapping.rotate_deg = deg;

@@ -76,7 +76,7 @@ TEST_CASE("probing: bad recordings are refused by line and column") {
     CHECK(contains(said("point;ref_x_mm;fn_N\n1;2;3\n"), "expected a column 'point'"));
     // off the grid, and twice in one cell
     std::string off = small();
-    for (int k = 0; k < 5; ++k) off += row(9, k, -3.3, 7.0, k, 1.0 * k);
+    for (int k = 0; k < 5; ++k) off += row(9, k, -4.7, 7.0, k, 1.0 * k);
     CHECK(contains(said(off), "a position on the regular grid"));
     std::string twice = small();
     for (int k = 0; k < 5; ++k) twice += row(9, k, -4.0, 7.0, k, 1.0 * k);
