@@ -200,13 +200,13 @@ TEST_CASE("advance: the avatar between samples is where the next sample of a res
         Run run(name);
         const auto px_at = [&](double x_m) { return px_of_tissue(run.state.view, {x_m, 0.035}); };
         run.feed(pen(0.0, Phase::down, px_at(0.01)));
-        for (int i = 1; i <= 144; ++i) run.feed(pen(i / 240.0, Phase::move, px_at(0.01 + 0.03 * i / 240.0)));
+        for (int i = 1; i <= 143; ++i) run.feed(pen(i / 240.0, Phase::move, px_at(0.01 + 0.03 * i / 240.0)));
         CHECK(run.state.avatar.lag_m.norm() > 0.1e-3);
         for (const double later_s : {0.01, 0.1, 0.2, 0.3}) {
-            const double t_s = 144 / 240.0 + later_s;
+            const double t_s = 143 / 240.0 + later_s;
             const Avatar expected = avatar_at(run.scene, run.state, t_s);
             State copy = run.state;
-            advance(run.scene, run.plan, pen(t_s, Phase::move, px_at(0.01 + 0.03 * 0.6)), copy);
+            advance(run.scene, run.plan, pen(t_s, Phase::move, px_at(0.01 + 0.03 * 143 / 240.0)), copy);
             CHECK((expected.lag_m - copy.avatar.lag_m).norm() < 1e-12);
             CHECK(expected.delay_s == doctest::Approx(copy.avatar.delay_s));
         }
