@@ -1,5 +1,7 @@
 // palpa run: the app, or a trace without a window.
 
+#include <sys/resource.h>
+
 #include <CLI/CLI.hpp>
 #include <chrono>
 #include <cstdio>
@@ -58,6 +60,9 @@ void run_headless(const RunOptions& options) {
     });
     Json json = result_json(scene, plan, result);
     json["wall_s"] = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    json["peak_memory_MB"] = static_cast<double>(usage.ru_maxrss) / 1024.0;
     if (log) {
         if (!log->sync()) throw std::runtime_error(options.log + ": the log could not be written to its end");
         write_text_atomically(files->file("_settings.json"), settings_json(scene, plan, result.state).dump(2) + "\n");

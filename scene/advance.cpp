@@ -17,7 +17,7 @@ struct RiseOnMap {
         const Place before = place_at(*field, e_m - reference_m * u);
         if (!here.measured || !before.measured || !here.inside || !before.inside) return 0.0;
         const double depth_m = depth_at(*field, here, force_N).depth_m;  // the same in both look-ups
-        return tangential_force_N(*field, here, u, depth_m) - tangential_force_N(*field, before, u, depth_m);
+        return tangential_rise_N(*field, here, before, u, depth_m);
     }
 };
 
@@ -46,7 +46,7 @@ void place(const Sample& sample, State& state) {
 void sink(const Plan& plan, State& state) {
     state.contact = Contact{};
     if (!state.touch.down) return;
-    const Place at = place_at(plan.field, state.touch.p_m);
+    const Place& at = state.place = place_at(plan.field, state.touch.p_m);
     const DepthAnswer answer = depth_at(plan.field, at, state.touch.force_N);
     state.contact.depth_m = answer.depth_m;
     state.contact.normal_N = state.touch.force_N;
@@ -69,8 +69,7 @@ void resist(const Plan& plan, State& state) {
         state.heading = v / length_m;
         state.heading_rope_m = state.touch.p_m - kDeadBand_m * state.heading;
     }
-    const Place at = place_at(plan.field, state.touch.p_m);
-    state.contact.tangential_N = tangential_force_N(plan.field, at, state.heading, state.contact.depth_m);
+    state.contact.tangential_N = tangential_force_N(plan.field, state.place, state.heading, state.contact.depth_m);
 }
 
 Touch timed(const State& state) {

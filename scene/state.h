@@ -56,6 +56,7 @@ struct State {
     std::optional<std::int64_t> pointer;  // the one that touches; others are logged, and press nothing
     bool answered = false;                // the last sample belonged to it (or nothing touches)
     Touch touch;
+    Place place;  // of the touch in the map; between the stages of one sample
     Contact contact;
     Avatar avatar;
     Eigen::Vector2d heading = Eigen::Vector2d::Zero();  // direction of motion, length 1 once moving

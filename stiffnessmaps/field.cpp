@@ -138,7 +138,7 @@ Field make_field(const Map& map, const FieldOptions& options) {
     field.options = options;
     for (int i = 0; i < 2; ++i) {
         field.origin_m[i] = map.origin_m[i];
-        field.spacing_m[i] = map.spacing_m[i];
+        field.cells_per_m[i] = 1.0 / map.spacing_m[i];
     }
     field.n_x = map.n_x;
     field.n_y = map.n_y;
@@ -153,7 +153,7 @@ Field make_field(const Map& map, const FieldOptions& options) {
 Place place_at(const Field& field, const Eigen::Vector2d& p_m) {
     Place place;
     const auto split = [&](int axis, std::size_t n, std::size_t& low, double& s) {
-        double at = (p_m[axis] - field.origin_m[axis]) / field.spacing_m[axis];
+        double at = (p_m[axis] - field.origin_m[axis]) * field.cells_per_m[axis];
         const double last = static_cast<double>(n - 1);
         constexpr double kRounding = 1e-9;
         if (!(at >= -kRounding && at <= last + kRounding)) place.inside = false;
@@ -219,43 +219,70 @@ DepthAnswer depth_at(const Field& field, const Place& place, double force_N) {
     return answer;
 }
 
-Eigen::Vector2d energy_gradient_N(const Field& field, const Place& place, double depth_m) {
+namespace {
+
+// Weights of the two layers around a depth.
+struct LayerSpot {
+    std::size_t layer = 0;
+    double energy_above = 0.0;  // of the upper layer's force in the energy: z - z^2/(2 D)
+    double energy_below = 0.0;  // of the lower layer's: z^2/(2 D)
+    double s = 0.0;             // linear interpolation
+};
+
+LayerSpot spot_at(const Field& field, double depth_m) {
     const double depth = std::clamp(depth_m, 0.0, field.depths_m.back());
-    const std::size_t k = layer_above(field, depth);
-    const double z = depth - field.depths_m[k];
-    const double q = z * z / (2.0 * (field.depths_m[k + 1] - field.depths_m[k]));
-    Eigen::Vector2d sum = Eigen::Vector2d::Zero();
+    LayerSpot spot;
+    spot.layer = layer_above(field, depth);
+    const double z = depth - field.depths_m[spot.layer];
+    spot.s = z / (field.depths_m[spot.layer + 1] - field.depths_m[spot.layer]);
+    spot.energy_below = 0.5 * z * spot.s;
+    spot.energy_above = z - spot.energy_below;
+    return spot;
+}
+
+// u . G at one place.
+double uphill_N(const Field& field, const Place& place, const Eigen::Vector2d& u, const LayerSpot& spot) {
+    double sum = 0.0;
     for (std::size_t c = 0; c < 4; ++c) {
-        const Field::Slope& a = field.slopes[place.cell[c] * field.n_layers() + k];
-        const Field::Slope& b = field.slopes[place.cell[c] * field.n_layers() + k + 1];
-        sum.x() += place.weight[c] * (a.energy_x + a.force_x * (z - q) + b.force_x * q);
-        sum.y() += place.weight[c] * (a.energy_y + a.force_y * (z - q) + b.force_y * q);
+        const Field::Slope* at = &field.slopes[place.cell[c] * field.n_layers() + spot.layer];
+        const double x = at[0].energy_x + at[0].force_x * spot.energy_above + at[1].force_x * spot.energy_below;
+        const double y = at[0].energy_y + at[0].force_y * spot.energy_above + at[1].force_y * spot.energy_below;
+        sum += place.weight[c] * (u.x() * x + u.y() * y);
     }
     return sum;
 }
 
-namespace {
-
-Eigen::Vector2d rest_N(const Field& field, const Place& place, double depth_m) {
-    const double depth = std::clamp(depth_m, 0.0, field.depths_m.back());
-    const std::size_t k = layer_above(field, depth);
-    const double s = (depth - field.depths_m[k]) / (field.depths_m[k + 1] - field.depths_m[k]);
+Eigen::Vector2d rest_N(const Field& field, const Place& place, const LayerSpot& spot) {
     Eigen::Vector2d sum = Eigen::Vector2d::Zero();
     for (std::size_t c = 0; c < 4; ++c) {
-        const Field::Slope& a = field.slopes[place.cell[c] * field.n_layers() + k];
-        const Field::Slope& b = field.slopes[place.cell[c] * field.n_layers() + k + 1];
-        sum.x() += place.weight[c] * (a.rest_x + s * (b.rest_x - a.rest_x));
-        sum.y() += place.weight[c] * (a.rest_y + s * (b.rest_y - a.rest_y));
+        const Field::Slope* at = &field.slopes[place.cell[c] * field.n_layers() + spot.layer];
+        sum.x() += place.weight[c] * (at[0].rest_x + spot.s * (at[1].rest_x - at[0].rest_x));
+        sum.y() += place.weight[c] * (at[0].rest_y + spot.s * (at[1].rest_y - at[0].rest_y));
     }
     return sum;
+}
+
+double force_along_N(const Field& field, const Place& place, const Eigen::Vector2d& u, const LayerSpot& spot) {
+    if (field.options.force == TangentialForce::recorded) return u.dot(rest_N(field, place, spot));
+    const double conservative_N = std::max(0.0, uphill_N(field, place, u, spot));
+    return field.has_rest ? conservative_N + rest_N(field, place, spot).x() : conservative_N;
 }
 
 }  // namespace
 
+Eigen::Vector2d energy_gradient_N(const Field& field, const Place& place, double depth_m) {
+    const LayerSpot spot = spot_at(field, depth_m);
+    return {uphill_N(field, place, {1.0, 0.0}, spot), uphill_N(field, place, {0.0, 1.0}, spot)};
+}
+
 double tangential_force_N(const Field& field, const Place& place, const Eigen::Vector2d& u, double depth_m) {
-    if (field.options.force == TangentialForce::recorded) return u.dot(rest_N(field, place, depth_m));
-    const double uphill_N = std::max(0.0, u.dot(energy_gradient_N(field, place, depth_m)));
-    return field.has_rest ? uphill_N + rest_N(field, place, depth_m).x() : uphill_N;
+    return force_along_N(field, place, u, spot_at(field, depth_m));
+}
+
+double tangential_rise_N(const Field& field, const Place& here, const Place& before, const Eigen::Vector2d& u,
+                         double depth_m) {
+    const LayerSpot spot = spot_at(field, depth_m);
+    return force_along_N(field, here, u, spot) - force_along_N(field, before, u, spot);
 }
 
 TangentialAgreement tangential_agreement(const Map& map, const Field& field) {

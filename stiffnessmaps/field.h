@@ -37,7 +37,7 @@ struct Field {
         double rest_y = 0.0;    // recorded: f_y
     };
     double origin_m[2] = {0.0, 0.0};
-    double spacing_m[2] = {1.0, 1.0};
+    double cells_per_m[2] = {1.0, 1.0};
     std::size_t n_x = 0;
     std::size_t n_y = 0;
     std::vector<double> depths_m;      // layers, the first one at depth 0
@@ -56,8 +56,8 @@ Field make_field(const Map& map, const FieldOptions& options);
 
 // Bilinear interpolation; positions outside the grid are clamped to its edge.
 struct Place {
-    std::size_t cell[4];
-    double weight[4];
+    std::size_t cell[4] = {0, 0, 0, 0};
+    double weight[4] = {0.0, 0.0, 0.0, 0.0};
     bool inside = true;
     bool measured = true;  // at least half of the weight on measured cells
 };
@@ -75,6 +75,10 @@ DepthAnswer depth_at(const Field& field, const Place& place, double force_N);
 
 // Force that resists motion along the unit vector u at a depth.
 double tangential_force_N(const Field& field, const Place& place, const Eigen::Vector2d& u, double depth_m);
+
+// tangential_force_N(here) - tangential_force_N(before), at the same depth.
+double tangential_rise_N(const Field& field, const Place& here, const Place& before, const Eigen::Vector2d& u,
+                         double depth_m);
 
 // Force on the way (dE/dx, dE/dy) at a depth, N; both signs.
 Eigen::Vector2d energy_gradient_N(const Field& field, const Place& place, double depth_m);
