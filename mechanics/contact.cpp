@@ -184,18 +184,6 @@ double stiffness_of_set(const Compliance& c, ContactWork& w) {
     return w.rhs.head(n).squaredNorm();
 }
 
-// First use, or another compliance: everything at its full size once.
-void prepare(const Compliance& c, ContactWork& w) {
-    if (w.was_in_contact.size() == at(c.n_touch)) return;
-    w.was_in_contact.assign(at(c.n_touch), 0);
-    w.factored.clear();
-    for (auto* list : {&w.delta_m, &w.slope_x, &w.slope_y, &w.p_N, &w.swept_N, &w.gap_m}) list->reserve(at(c.n_touch));
-    for (auto* list : {&w.candidate, &w.tool_of, &w.factored, &w.active}) list->reserve(at(c.n_touch));
-    w.in_contact.reserve(at(c.n_touch));
-    const auto touched = c.position_m.leftCols(c.n_touch);
-    w.touch_box_m = {touched.row(0).minCoeff(), touched.row(0).maxCoeff(), touched.row(1).minCoeff(), touched.row(1).maxCoeff()};
-}
-
 double limited_depth_m(const Compliance& c, const ContactOptions& options) { return std::min(options.max_depth_m, c.thickness_m); }
 
 bool all_finite(std::span<const Tool> tools) {
@@ -224,6 +212,20 @@ void solve_contact(const Compliance& c, const ContactOptions& options, ContactWo
 }
 
 }  // namespace
+
+void prepare(const Compliance& c, ContactWork& w) {
+    const double probe = c.normal_m_per_N(0, 0) + c.normal_m_per_N(c.n_touch / 2, c.n_touch - 1);
+    if (w.matrix == c.normal_m_per_N.data() && w.probe_m_per_N == probe && w.was_in_contact.size() == at(c.n_touch)) return;
+    w.matrix = c.normal_m_per_N.data();
+    w.probe_m_per_N = probe;
+    w.was_in_contact.assign(at(c.n_touch), 0);
+    w.factored.clear();
+    for (auto* list : {&w.delta_m, &w.slope_x, &w.slope_y, &w.p_N, &w.swept_N, &w.gap_m}) list->reserve(at(c.n_touch));
+    for (auto* list : {&w.candidate, &w.tool_of, &w.factored, &w.active}) list->reserve(at(c.n_touch));
+    w.in_contact.reserve(at(c.n_touch));
+    const auto touched = c.position_m.leftCols(c.n_touch);
+    w.touch_box_m = {touched.row(0).minCoeff(), touched.row(0).maxCoeff(), touched.row(1).minCoeff(), touched.row(1).maxCoeff()};
+}
 
 ContactWork make_contact_work(const Compliance& compliance, int most_in_contact) {
     ContactWork work;

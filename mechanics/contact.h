@@ -78,8 +78,10 @@ struct Contact {
     ContactFlags flags;
 };
 
-// Scratch memory; also remembers the last active set and its factor. clear() or a new one: a cold start.
+// Scratch memory; also remembers the last active set and its factor. A new one is a cold start.
 struct ContactWork {
+    const double* matrix = nullptr;     // whose compliance this is; another one starts cold
+    double probe_m_per_N = 0.0;
     std::vector<Tool> tools;            // with their depths limited
     std::array<double, 4> touch_box_m{};  // x_min, x_max, y_min, y_max of the touch nodes
     std::vector<int> candidate;         // touch nodes within reach, ascending

@@ -18,6 +18,9 @@ Reach reach(const Tool& tool, double x_m, double y_m);
 // Fills the candidate lists with the touch nodes whose delta exceeds -margin times their tool's depth.
 void find_candidates(const Compliance& compliance, std::span<const Tool> tools, double margin, ContactWork& work);
 
+// First use of `work`, or with another compliance: every list at its full size once.
+void prepare(const Compliance& compliance, ContactWork& work);
+
 // Does the part of the tool under the surface plane leave the box (x_min, x_max, y_min, y_max)?
 bool reaches_beyond(const Tool& tool, const std::array<double, 4>& box_m);
 

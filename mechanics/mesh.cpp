@@ -18,7 +18,7 @@ constexpr std::array<std::array<int, 4>, 6> kHexFaces{
 constexpr std::array<std::array<int, 3>, 4> kTetFaces{{{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}}};
 
 struct FaceKey {
-    std::array<int, 4> sorted{};  // tets repeat their last corner
+    std::array<int, 4> sorted{-1, -1, -1, -1};  // tets leave one -1
     int cell = 0;
     int local = 0;
 };
@@ -38,11 +38,10 @@ std::vector<FaceKey> sorted_faces(const Mesh& mesh) {
     keys.reserve(static_cast<std::size_t>(mesh.cells.cols() * n_faces));
     for (int cell = 0; cell < mesh.cells.cols(); ++cell) {
         for (int face = 0; face < n_faces; ++face) {
-            FaceKey key{{}, cell, face};
-            for (int k = 0; k < 4; ++k) {
-                const int corner = local_corner(hex, face, std::min(k, n_corners - 1));
-                key.sorted[static_cast<std::size_t>(k)] = mesh.cells(corner, cell);
-            }
+            FaceKey key;
+            key.cell = cell;
+            key.local = face;
+            for (int k = 0; k < n_corners; ++k) key.sorted[static_cast<std::size_t>(k)] = mesh.cells(local_corner(hex, face, k), cell);
             std::sort(key.sorted.begin(), key.sorted.end());
             keys.push_back(key);
         }

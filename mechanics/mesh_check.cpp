@@ -69,17 +69,17 @@ CellQuality hex_quality(const Hex& x) {
     constexpr std::array<std::array<int, 3>, 8> kNext{
         {{1, 3, 4}, {2, 0, 5}, {3, 1, 6}, {0, 2, 7}, {7, 5, 0}, {4, 6, 1}, {5, 7, 2}, {6, 4, 3}}};
     double worst = std::numeric_limits<double>::infinity();
-    Vector3d length = Vector3d::Zero();
+    double bricks = 0.0;  // mean of the bricks that the corners' edges would span
     for (int k = 0; k < 8; ++k) {
         const auto& next = kNext[static_cast<std::size_t>(k)];
         const Vector3d a = x.col(next[0]) - x.col(k);
         const Vector3d b = x.col(next[1]) - x.col(k);
         const Vector3d c = x.col(next[2]) - x.col(k);
         worst = std::min(worst, det_of(a, b, c));
-        length += Vector3d(a.norm(), b.norm(), c.norm()) / 8.0;
+        bricks += a.norm() * b.norm() * c.norm() / 8.0;
     }
     for (int g = 0; g < 8; ++g) worst = std::min(worst, 8.0 * hex_point(x, g).volume_m3);
-    return {worst / length.prod(), 90.0, 1.0};
+    return {worst / bricks, 90.0, 1.0};
 }
 
 CellQuality tet_quality(const Tet& x) {

@@ -9,7 +9,7 @@
 namespace palpa::mechanics {
 
 // Shape of one cell. Hexahedra: smallest Jacobian determinant over corners and Gauss points, relative to the product
-// of the mean edge lengths (1 = brick). Tetrahedra: det J relative to longest edge^3 (0.707 = regular), the smallest
+// of the edge lengths at the corners (1 = brick). Tetrahedra: det J relative to longest edge^3 (0.707 = regular), the smallest
 // angle between two faces, and 3 r_in / r_out (1 = regular).
 struct CellQuality {
     double relative_det = 0.0;

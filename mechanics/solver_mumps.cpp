@@ -91,6 +91,10 @@ void refactor(const LowerMatrix& A, MumpsFactor& factor) {
         call(id, kFactor);
     }
     check(id, "factorisation");
+    const int negative = id.infog[11];  // counted, but no error by itself
+    if (negative > 0) {
+        throw SolverError(text("Cholesky: the matrix of ", id.n, " equations is not positive definite, ", negative, " negative pivots"), -40);
+    }
 }
 
 void solve_in_place(MumpsFactor& factor, Eigen::Ref<Eigen::MatrixXd> block) {
