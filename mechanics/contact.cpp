@@ -11,26 +11,29 @@ namespace {
 
 using Eigen::Index;
 
-constexpr double kGapTolerance = 1e-10;      // of the greatest penetration; round-off of C p is 1e-13 of it
-constexpr double kRegularisation = 1e-12;    // of the mean diagonal: keeps doubled nodes apart
+constexpr double kGapTolerance = 1e-10;    // of the greatest penetration; round-off of C p is 1e-13 of it
+constexpr double kRegularisation = 1e-12;  // of the mean diagonal: keeps doubled nodes apart
 constexpr double kForceTolerance = 1e-9;
 constexpr int kMostSearchSteps = 60;
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
+std::size_t at(int i) {
+    return static_cast<std::size_t>(i);
+}
 
 double compliance_of(const Compliance& c, const ContactWork& w, int i, int j) {
     return c.normal_m_per_N(w.candidate[at(i)], w.candidate[at(j)]);
 }
 
-// Starts from the last set where at least half of it is still within reach, else from Hertz's guess: on a half-space the
-// nodes whose penetration exceeds half the depth.
+// Starts from the last set where at least half of it is still within reach, else from Hertz's guess: on a
+// half-space the nodes whose penetration exceeds half the depth.
 void first_guess(std::span<const Tool> tools, ContactWork& w) {
     std::size_t kept = 0;
     for (std::size_t i = 0; i < w.candidate.size(); ++i) {
         w.in_contact[i] = w.was_in_contact[at(w.candidate[i])];
         kept += w.in_contact[i] ? 1u : 0u;
     }
-    const auto before = static_cast<std::size_t>(std::count(w.was_in_contact.begin(), w.was_in_contact.end(), char{1}));
+    const auto before =
+        static_cast<std::size_t>(std::count(w.was_in_contact.begin(), w.was_in_contact.end(), char{1}));
     if (kept > 0 && 2 * kept >= before) return;
     for (std::size_t i = 0; i < w.candidate.size(); ++i) {
         w.in_contact[i] = w.delta_m[i] > 0.5 * tools[at(w.tool_of[i])].pose.depth_m ? char{1} : char{0};
@@ -57,11 +60,14 @@ void factor_active(const Compliance& c, ContactWork& w) {
     }
     double trace = 0.0;
     for (Index j = 0; j < n; ++j) {
-        const double* column = c.normal_m_per_N.col(w.candidate[at(w.active[static_cast<std::size_t>(j)])]).data();
-        for (Index i = j; i < n; ++i) w.factor(i, j) = column[w.candidate[at(w.active[static_cast<std::size_t>(i)])]];
+        const double* column =
+            c.normal_m_per_N.col(w.candidate[at(w.active[static_cast<std::size_t>(j)])]).data();
+        for (Index i = j; i < n; ++i)
+            w.factor(i, j) = column[w.candidate[at(w.active[static_cast<std::size_t>(i)])]];
         trace += w.factor(j, j);
     }
-    w.factor.topLeftCorner(n, n).diagonal().array() += kRegularisation * trace / static_cast<double>(std::max<Index>(n, 1));
+    w.factor.topLeftCorner(n, n).diagonal().array() +=
+        kRegularisation * trace / static_cast<double>(std::max<Index>(n, 1));
     Eigen::Ref<Eigen::MatrixXd> block = w.factor.topLeftCorner(n, n);
     Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>> in_place(block);
     w.factored.clear();
@@ -119,7 +125,8 @@ bool settle(const Compliance& c, int max_changes, ContactWork& w, int& changes) 
     return false;
 }
 
-// Projected Gauss-Seidel: p_i <- max(0, p_i - g_i / C_ii), then one direct solve on the nodes it left pressing.
+// Projected Gauss-Seidel: p_i <- max(0, p_i - g_i / C_ii), then one direct solve on the nodes it left
+// pressing.
 bool settle_by_sweeps(const Compliance& c, int sweeps, ContactWork& w, int& changes) {
     const int n = static_cast<int>(w.candidate.size());
     std::fill(w.p_N.begin(), w.p_N.end(), 0.0);
@@ -184,7 +191,9 @@ double stiffness_of_set(const Compliance& c, ContactWork& w) {
     return w.rhs.head(n).squaredNorm();
 }
 
-double limited_depth_m(const Compliance& c, const ContactOptions& options) { return std::min(options.max_depth_m, c.thickness_m); }
+double limited_depth_m(const Compliance& c, const ContactOptions& options) {
+    return std::min(options.max_depth_m, c.thickness_m);
+}
 
 bool all_finite(std::span<const Tool> tools) {
     return std::all_of(tools.begin(), tools.end(), [](const Tool& t) {
@@ -192,8 +201,8 @@ bool all_finite(std::span<const Tool> tools) {
     });
 }
 
-// Solves for the tools in work.tools. Nodes beyond the geometric reach count too, as soft thin layers bulge up to the
-// tool: the margin grows until no node in contact lies near its rim.
+// Solves for the tools in work.tools. Nodes beyond the geometric reach count too, as soft thin layers bulge
+// up to the tool: the margin grows until no node in contact lies near its rim.
 void solve_contact(const Compliance& c, const ContactOptions& options, ContactWork& w, Contact& out) {
     out.changes = 0;
     for (double margin = 0.25;; margin *= 2.0) {
@@ -215,16 +224,25 @@ void solve_contact(const Compliance& c, const ContactOptions& options, ContactWo
 
 void prepare(const Compliance& c, ContactWork& w) {
     const double probe = c.normal_m_per_N(0, 0) + c.normal_m_per_N(c.n_touch / 2, c.n_touch - 1);
-    if (w.matrix == c.normal_m_per_N.data() && w.probe_m_per_N == probe && w.was_in_contact.size() == at(c.n_touch)) return;
+    if (w.matrix == c.normal_m_per_N.data() && w.probe_m_per_N == probe &&
+        w.was_in_contact.size() == at(c.n_touch))
+        return;
     w.matrix = c.normal_m_per_N.data();
     w.probe_m_per_N = probe;
     w.was_in_contact.assign(at(c.n_touch), 0);
     w.factored.clear();
-    for (auto* list : {&w.delta_m, &w.slope_x, &w.slope_y, &w.p_N, &w.swept_N, &w.gap_m}) list->reserve(at(c.n_touch));
+    for (auto* list : {&w.delta_m, &w.slope_x, &w.slope_y, &w.p_N, &w.swept_N, &w.gap_m})
+        list->reserve(at(c.n_touch));
     for (auto* list : {&w.candidate, &w.tool_of, &w.factored, &w.active}) list->reserve(at(c.n_touch));
     w.in_contact.reserve(at(c.n_touch));
     const auto touched = c.position_m.leftCols(c.n_touch);
-    w.touch_box_m = {touched.row(0).minCoeff(), touched.row(0).maxCoeff(), touched.row(1).minCoeff(), touched.row(1).maxCoeff()};
+    w.touch_box_m = {touched.row(0).minCoeff(), touched.row(0).maxCoeff(), touched.row(1).minCoeff(),
+                     touched.row(1).maxCoeff()};
+}
+
+void hold(std::size_t n_tools, Contact& contact) {
+    contact.flags.held = true;
+    if (contact.tool.size() != n_tools) contact.tool.assign(n_tools, {});  // nothing valid yet: no force
 }
 
 ContactWork make_contact_work(const Compliance& compliance, int most_in_contact) {
@@ -238,7 +256,7 @@ ContactWork make_contact_work(const Compliance& compliance, int most_in_contact)
 void press_to_depth(const Compliance& compliance, std::span<const Tool> tools, const ContactOptions& options,
                     ContactWork& work, Contact& contact) {
     if (!all_finite(tools)) {
-        contact.flags.held = true;
+        hold(tools.size(), contact);
         return;
     }
     prepare(compliance, work);
@@ -256,20 +274,21 @@ void press_to_depth(const Compliance& compliance, std::span<const Tool> tools, c
     solve_contact(compliance, options, work, contact);
 }
 
-void press_with_force(const Compliance& compliance, const Tool& tool, double force_N, const ContactOptions& options,
-                      ContactWork& work, Contact& contact) {
-    // F(d) is convex and rising, linear while the set stays: Newton from above reaches the root in a few steps, and the
-    // bracket holds it where nodes join and leave.
+void press_with_force(const Compliance& compliance, const Tool& tool, double force_N,
+                      const ContactOptions& options, ContactWork& work, Contact& contact) {
+    // F(d) is convex and rising, linear while the set stays: Newton from above reaches the root in a few
+    // steps, and the bracket holds it where nodes join and leave.
     Tool trial = tool;
     const bool valid = std::isfinite(force_N) && all_finite({&trial, 1});
     if (!valid) {
-        contact.flags.held = true;
+        hold(1, contact);
         return;
     }
     const double limit_m = limited_depth_m(compliance, options);
     double low = 0.0;
     double high = limit_m;
-    double depth = tool.pose.depth_m > 0.0 ? std::min(tool.pose.depth_m, limit_m) : std::min(1e-3 * tool.indenter.radius_m, limit_m);
+    double depth = tool.pose.depth_m > 0.0 ? std::min(tool.pose.depth_m, limit_m)
+                                           : std::min(1e-3 * tool.indenter.radius_m, limit_m);
     if (force_N <= 0.0) depth = 0.0;
     for (int i = 0; i < kMostSearchSteps; ++i) {
         trial.pose.depth_m = depth;
@@ -282,10 +301,13 @@ void press_with_force(const Compliance& compliance, const Tool& tool, double for
             return;
         }
         (miss < 0.0 ? low : high) = depth;
-        double next = contact.stiffness_N_per_m > 0.0 ? depth - miss / contact.stiffness_N_per_m : 2.0 * depth + 1e-6;
-        // shallow starts overshoot by Newton, as F rises faster than linearly: at most four times deeper at once
+        double next =
+            contact.stiffness_N_per_m > 0.0 ? depth - miss / contact.stiffness_N_per_m : 2.0 * depth + 1e-6;
+        // shallow starts overshoot by Newton, as F rises faster than linearly: at most four times deeper at
+        // once
         if (miss < 0.0) next = std::min(next, std::max(4.0 * depth, 1e-6));
-        if (!(next > low && next < high)) next = next >= high && high >= limit_m ? limit_m : 0.5 * (low + high);
+        if (!(next > low && next < high))
+            next = next >= high && high >= limit_m ? limit_m : 0.5 * (low + high);
         depth = next;
     }
 }

@@ -29,7 +29,8 @@ Reach reach(const Tool& tool, double x_m, double y_m) {
     return {tool.pose.depth_m - (R - height), dx / height, cylinder ? 0.0 : dy / height};
 }
 
-void find_candidates(const Compliance& compliance, std::span<const Tool> tools, double margin, ContactWork& work) {
+void find_candidates(const Compliance& compliance, std::span<const Tool> tools, double margin,
+                     ContactWork& work) {
     for (auto* list : {&work.delta_m, &work.slope_x, &work.slope_y}) list->clear();
     work.candidate.clear();
     work.tool_of.clear();
@@ -70,22 +71,24 @@ bool reaches_beyond(const Tool& tool, const std::array<double, 4>& box_m) {
 
 void check_tool(const Compliance& compliance, const Tool& tool) {
     const Pose& p = tool.pose;
-    if (!(tool.indenter.radius_m > 0.0) || !std::isfinite(tool.indenter.radius_m) || !(tool.indenter.length_m > 0.0)) {
-        throw LoadError(text("indenter: radius ", tool.indenter.radius_m, " m, length ", tool.indenter.length_m,
-                             " m; wanted a finite radius > 0 and a length > 0"));
+    if (!(tool.indenter.radius_m > 0.0) || !std::isfinite(tool.indenter.radius_m) ||
+        !(tool.indenter.length_m > 0.0)) {
+        throw LoadError(text("indenter: radius ", tool.indenter.radius_m, " m, length ",
+                             tool.indenter.length_m, " m; wanted a finite radius > 0 and a length > 0"));
     }
     if (!std::isfinite(p.x_m) || !std::isfinite(p.y_m) || !std::isfinite(p.depth_m)) {
         throw LoadError(text("indenter: at ", p.x_m, ", ", p.y_m, " m, depth ", p.depth_m, " m: not finite"));
     }
     if (p.depth_m >= compliance.thickness_m) {
-        throw LoadError(text("indenter: depth ", p.depth_m, " m, but the tissue is ", compliance.thickness_m, " m thick"));
+        throw LoadError(text("indenter: depth ", p.depth_m, " m, but the tissue is ", compliance.thickness_m,
+                             " m thick"));
     }
     const auto touched = compliance.position_m.leftCols(compliance.n_touch);
     const auto low = touched.rowwise().minCoeff();
     const auto high = touched.rowwise().maxCoeff();
     if (p.x_m < low(0) || p.x_m > high(0) || p.y_m < low(1) || p.y_m > high(1)) {
-        throw LoadError(text("indenter: at ", p.x_m, ", ", p.y_m, " m, beside the touchable surface x ", low(0), "..", high(0),
-                             ", y ", low(1), "..", high(1), " m"));
+        throw LoadError(text("indenter: at ", p.x_m, ", ", p.y_m, " m, beside the touchable surface x ",
+                             low(0), "..", high(0), ", y ", low(1), "..", high(1), " m"));
     }
 }
 

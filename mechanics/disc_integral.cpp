@@ -9,7 +9,9 @@ namespace {
 
 using Eigen::Vector2d;
 
-double cross(const Vector2d& a, const Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
+double cross(const Vector2d& a, const Vector2d& b) {
+    return a.x() * b.y() - a.y() * b.x();
+}
 
 void add_fan(const Vector2d& p, const Vector2d& q, double radius_m, DiscMoments& sum) {
     const double root = std::sqrt(15.0);
@@ -41,13 +43,13 @@ void add_sector(const Vector2d& p, const Vector2d& q, double R, DiscMoments& sum
     const double middle = t + 0.5 * theta;
     const double d_sin = 2.0 * half * std::cos(middle);
     const double d_cos = -2.0 * half * std::sin(middle);
-    const double d_sin2 = 2.0 * std::sin(theta) * std::cos(t + u);     // sin 2u - sin 2t
-    const double d_sin_sq = std::sin(theta) * std::sin(t + u);         // sin^2 u - sin^2 t
+    const double d_sin2 = 2.0 * std::sin(theta) * std::cos(t + u);  // sin 2u - sin 2t
+    const double d_sin_sq = std::sin(theta) * std::sin(t + u);      // sin^2 u - sin^2 t
     const double R2 = R * R;
     const double R4 = R2 * R2 / 12.0;
     DiscMoments m;
-    m << 0.25 * R2 * theta, 2.0 / 15.0 * R2 * R * d_sin, -2.0 / 15.0 * R2 * R * d_cos, R4 * (0.5 * theta + 0.25 * d_sin2),
-        0.5 * R4 * d_sin_sq, R4 * (0.5 * theta - 0.25 * d_sin2);
+    m << 0.25 * R2 * theta, 2.0 / 15.0 * R2 * R * d_sin, -2.0 / 15.0 * R2 * R * d_cos,
+        R4 * (0.5 * theta + 0.25 * d_sin2), 0.5 * R4 * d_sin_sq, R4 * (0.5 * theta - 0.25 * d_sin2);
     sum += m;
 }
 
@@ -74,8 +76,10 @@ void add_edge(const Vector2d& a, const Vector2d& b, double R, DiscMoments& sum) 
         const Vector2d p = a + cut[k] * d;
         const Vector2d q = a + cut[k + 1] * d;
         const bool inside = (0.5 * (p + q)).squaredNorm() < R * R;
-        if (inside) add_fan(p, q, R, sum);
-        else add_sector(p, q, R, sum);
+        if (inside)
+            add_fan(p, q, R, sum);
+        else
+            add_sector(p, q, R, sum);
     }
 }
 
@@ -84,7 +88,8 @@ void add_edge(const Vector2d& a, const Vector2d& b, double R, DiscMoments& sum) 
 DiscMoments disc_moments(const Eigen::Matrix2Xd& corners_m, double radius_m) {
     DiscMoments sum = DiscMoments::Zero();
     const Eigen::Index n = corners_m.cols();
-    for (Eigen::Index k = 0; k < n; ++k) add_edge(corners_m.col(k), corners_m.col((k + 1) % n), radius_m, sum);
+    for (Eigen::Index k = 0; k < n; ++k)
+        add_edge(corners_m.col(k), corners_m.col((k + 1) % n), radius_m, sum);
     return sum;
 }
 

@@ -11,8 +11,8 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
 // Signs of the reference corners (-1..1)^3 in VTK order.
-constexpr std::array<std::array<double, 3>, 8> kCorner{{{-1, -1, -1}, {1, -1, -1}, {1, 1, -1}, {-1, 1, -1},
-                                                        {-1, -1, 1}, {1, -1, 1}, {1, 1, 1}, {-1, 1, 1}}};
+constexpr std::array<std::array<double, 3>, 8> kCorner{
+    {{-1, -1, -1}, {1, -1, -1}, {1, 1, -1}, {-1, 1, -1}, {-1, -1, 1}, {1, -1, 1}, {1, 1, 1}, {-1, 1, 1}}};
 
 // dN_a/d(r, s, t) at the Gauss point that lies towards corner g.
 Hex reference_gradient(int g) {
@@ -45,7 +45,8 @@ void stiffness_from_products(const Matrix& M, double mu, double lambda, Matrix& 
     for (int b = 0; b < n; ++b) {
         for (int a = 0; a < n; ++a) {
             const Matrix3d m = M.template block<3, 3>(3 * a, 3 * b);
-            K.template block<3, 3>(3 * a, 3 * b) = mu * (m.trace() * Matrix3d::Identity() + m.transpose()) + lambda * m;
+            K.template block<3, 3>(3 * a, 3 * b) =
+                mu * (m.trace() * Matrix3d::Identity() + m.transpose()) + lambda * m;
         }
     }
 }

@@ -7,9 +7,9 @@
 
 namespace palpa::mechanics {
 
-// hex8_bbar: full integration of the shape change, the volume change averaged over the cell (mean dilatation).
-// hex8:      full 2 x 2 x 2 integration (CalculiX C3D8); locks as poisson nears 0.5.
-// tet4:      constant strain (C3D4); locks much more.
+// hex8_bbar: full integration of the shape change, the volume change averaged over the cell (mean
+// dilatation). hex8:      full 2 x 2 x 2 integration (CalculiX C3D8); locks as poisson nears 0.5. tet4:
+// constant strain (C3D4); locks much more.
 enum class Element { hex8_bbar, hex8, tet4 };
 
 using Hex = Eigen::Matrix<double, 3, 8>;  // corner positions or displacements

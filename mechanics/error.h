@@ -1,6 +1,6 @@
 #pragma once
-// What goes wrong with a model is expected and typed: the message holds the numbers, the fields hold them again
-// for a program. Thrown while a model is built; nothing throws inside a contact step.
+// What goes wrong with a model is expected and typed: the message holds the numbers, the fields hold them
+// again for a program. Thrown while a model is built; nothing throws inside a contact step.
 
 #include <stdexcept>
 #include <string>
@@ -21,7 +21,8 @@ struct MeshError : MechanicsError {
 
 // Moduli that no elastic solid has; `entries` are positions in the list that was given.
 struct MaterialError : MechanicsError {
-    MaterialError(const std::string& what, std::vector<int> bad) : MechanicsError(what), entries(std::move(bad)) {}
+    MaterialError(const std::string& what, std::vector<int> bad)
+        : MechanicsError(what), entries(std::move(bad)) {}
     std::vector<int> entries;
 };
 

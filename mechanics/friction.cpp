@@ -11,7 +11,9 @@ namespace {
 
 using Eigen::Index;
 
-std::size_t at(Index i) { return static_cast<std::size_t>(i); }
+std::size_t at(Index i) {
+    return static_cast<std::size_t>(i);
+}
 
 void make_room(Index n, FrictionWork& w) {
     if (w.C.rows() >= 3 * n) return;
@@ -28,7 +30,8 @@ void gather(const Compliance& c, const FrictionState& state, FrictionWork& w) {
     make_room(n, w);
     for (Index j = 0; j < n; ++j) {
         for (Index i = 0; i < n; ++i) {
-            w.C.block<3, 3>(3 * i, 3 * j) = c.full_m_per_N.block<3, 3>(3 * w.contact.candidate[at(i)], 3 * w.contact.candidate[at(j)]);
+            w.C.block<3, 3>(3 * i, 3 * j) =
+                c.full_m_per_N.block<3, 3>(3 * w.contact.candidate[at(i)], 3 * w.contact.candidate[at(j)]);
         }
     }
     w.f_N.head(3 * n).setZero();
@@ -37,14 +40,16 @@ void gather(const Compliance& c, const FrictionState& state, FrictionWork& w) {
         const Eigen::Map<const Eigen::Vector3d> force(&state.force_N[3 * k]);
         for (Index i = 0; i < n; ++i) {
             const int touch = w.contact.candidate[at(i)];
-            w.u_before_m.segment<3>(3 * i) += c.full_m_per_N.block<3, 3>(3 * touch, 3 * state.touch[k]) * force;
+            w.u_before_m.segment<3>(3 * i) +=
+                c.full_m_per_N.block<3, 3>(3 * touch, 3 * state.touch[k]) * force;
             if (touch == state.touch[k]) w.f_N.segment<3>(3 * i) = force;
         }
     }
     w.u_m.head(3 * n).noalias() = w.C.topLeftCorner(3 * n, 3 * n) * w.f_N.head(3 * n);
 }
 
-Eigen::Vector3d updated_force_N(const FrictionWork& w, Index i, const Eigen::Vector2d& move_m, double friction) {
+Eigen::Vector3d updated_force_N(const FrictionWork& w, Index i, const Eigen::Vector2d& move_m,
+                                double friction) {
     const Eigen::Vector3d f = w.f_N.segment<3>(3 * i);
     const Eigen::Vector3d u = w.u_m.segment<3>(3 * i);
     const auto Cii = w.C.block<3, 3>(3 * i, 3 * i);
@@ -80,7 +85,8 @@ bool sweep_until_settled(const Eigen::Vector2d& move_m, const FrictionOptions& o
     return false;
 }
 
-void collect(const Compliance& c, const Pose& pose, const FrictionWork& w, FrictionState& state, Contact& out) {
+void collect(const Compliance& c, const Pose& pose, const FrictionWork& w, FrictionState& state,
+             Contact& out) {
     out.touch.clear();
     out.by_tool.clear();
     out.force_N.clear();
@@ -111,14 +117,14 @@ void collect(const Compliance& c, const Pose& pose, const FrictionWork& w, Frict
 
 }  // namespace
 
-void slide_to(const Compliance& compliance, const Tool& tool, const FrictionOptions& options, FrictionWork& work,
-              FrictionState& state, Contact& contact) {
+void slide_to(const Compliance& compliance, const Tool& tool, const FrictionOptions& options,
+              FrictionWork& work, FrictionState& state, Contact& contact) {
     if (compliance.full_m_per_N.rows() != 3 * compliance.n_touch) {
         throw LoadError("friction: the compliance has no tangential part; ask for it with tangential = true");
     }
     Pose pose = tool.pose;
     if (!std::isfinite(pose.x_m) || !std::isfinite(pose.y_m) || !std::isfinite(pose.depth_m)) {
-        contact.flags.held = true;
+        hold(1, contact);
         return;
     }
     prepare(compliance, work.contact);
@@ -133,8 +139,9 @@ void slide_to(const Compliance& compliance, const Tool& tool, const FrictionOpti
 
     find_candidates(compliance, work.contact.tools, 0.25, work.contact);
     gather(compliance, state, work);
-    const Eigen::Vector2d move_m = state.touching ? Eigen::Vector2d(pose.x_m - state.pose.x_m, pose.y_m - state.pose.y_m)
-                                                  : Eigen::Vector2d(0.0, 0.0);
+    const Eigen::Vector2d move_m = state.touching
+                                       ? Eigen::Vector2d(pose.x_m - state.pose.x_m, pose.y_m - state.pose.y_m)
+                                       : Eigen::Vector2d(0.0, 0.0);
     contact.flags.not_settled = !sweep_until_settled(move_m, options, work);
     collect(compliance, pose, work, state, contact);
     state.pose = pose;

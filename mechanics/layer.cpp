@@ -1,10 +1,9 @@
 #include "mechanics/layer.h"
 
-#include <math.h>  // jn, j0: POSIX; std::cyl_bessel_j is missing from libc++
-
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <math.h>  // jn, j0: POSIX; std::cyl_bessel_j is missing from libc++
 #include <numbers>
 
 namespace palpa::mechanics {
@@ -12,7 +11,9 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 
-double peak_pressure_Pa(const ParabolicPatch& patch) { return 2.0 * patch.force_N / (kPi * patch.radius_m * patch.radius_m); }
+double peak_pressure_Pa(const ParabolicPatch& patch) {
+    return 2.0 * patch.force_N / (kPi * patch.radius_m * patch.radius_m);
+}
 
 // Gauss's hypergeometric series; here c - a - b = 2, so that it converges up to z = 1.
 double hypergeometric(double a, double b, double c, double z) {
@@ -36,13 +37,17 @@ double layer_factor_minus_1(double x, double poisson) {
 }
 
 // J2(t)/t^2, 1/8 at 0.
-double j2_over_square(double t) { return t < 1e-3 ? 0.125 - t * t / 96.0 : ::jn(2, t) / (t * t); }
+double j2_over_square(double t) {
+    return t < 1e-3 ? 0.125 - t * t / 96.0 : ::jn(2, t) / (t * t);
+}
 
 // int_0^(40/h) f(k) dk, eight-point Gauss on panels short against 1/h, a and r.
 template <class Function>
 double integrate_wavenumbers(double thickness_m, double longest_m, Function&& f) {
-    constexpr std::array<double, 4> kPoint{0.1834346424956498, 0.5255324099163290, 0.7966664774136267, 0.9602898564975363};
-    constexpr std::array<double, 4> kWeight{0.3626837833783620, 0.3137066458778873, 0.2223810344533745, 0.1012285362903763};
+    constexpr std::array<double, 4> kPoint{0.1834346424956498, 0.5255324099163290, 0.7966664774136267,
+                                           0.9602898564975363};
+    constexpr std::array<double, 4> kWeight{0.3626837833783620, 0.3137066458778873, 0.2223810344533745,
+                                            0.1012285362903763};
     const double end = 40.0 / thickness_m;
     const double width = std::min(0.25 / thickness_m, 1.0 / longest_m);
     const auto n = static_cast<int>(std::ceil(end / width));
@@ -50,12 +55,15 @@ double integrate_wavenumbers(double thickness_m, double longest_m, Function&& f)
     double sum = 0.0;
     for (int i = 0; i < n; ++i) {
         const double middle = (2 * i + 1) * half;
-        for (std::size_t k = 0; k < 4; ++k) sum += half * kWeight[k] * (f(middle - half * kPoint[k]) + f(middle + half * kPoint[k]));
+        for (std::size_t k = 0; k < 4; ++k)
+            sum += half * kWeight[k] * (f(middle - half * kPoint[k]) + f(middle + half * kPoint[k]));
     }
     return sum;
 }
 
-double compliance_factor(const Layer& layer) { return 2.0 / plane_strain_modulus_Pa(layer.young_Pa, layer.poisson); }
+double compliance_factor(const Layer& layer) {
+    return 2.0 / plane_strain_modulus_Pa(layer.young_Pa, layer.poisson);
+}
 
 }  // namespace
 
@@ -69,17 +77,22 @@ double half_space_depression_m(const Layer& layer, const ParabolicPatch& patch, 
 
 double layer_depression_m(const Layer& layer, const ParabolicPatch& patch, double r_m) {
     const double a = patch.radius_m;
-    const double integral = integrate_wavenumbers(layer.thickness_m, std::max(a, std::abs(r_m)), [&](double k) {
-        return a * a * j2_over_square(k * a) * ::j0(k * r_m) * layer_factor_minus_1(k * layer.thickness_m, layer.poisson);
-    });
-    return half_space_depression_m(layer, patch, r_m) + compliance_factor(layer) * 2.0 * peak_pressure_Pa(patch) * integral;
+    const double integral =
+        integrate_wavenumbers(layer.thickness_m, std::max(a, std::abs(r_m)), [&](double k) {
+            return a * a * j2_over_square(k * a) * ::j0(k * r_m) *
+                   layer_factor_minus_1(k * layer.thickness_m, layer.poisson);
+        });
+    return half_space_depression_m(layer, patch, r_m) +
+           compliance_factor(layer) * 2.0 * peak_pressure_Pa(patch) * integral;
 }
 
 double half_space_mean_depression_m(const Layer& layer, const ParabolicPatch& patch) {
     // int_0^inf J2(t)^2/t^4 dt = Gamma(4) Gamma(1/2) / (16 Gamma(5/2)^2 Gamma(9/2))
-    const double integral = std::tgamma(4.0) * std::tgamma(0.5) / (16.0 * std::tgamma(2.5) * std::tgamma(2.5) * std::tgamma(4.5));
+    const double integral =
+        std::tgamma(4.0) * std::tgamma(0.5) / (16.0 * std::tgamma(2.5) * std::tgamma(2.5) * std::tgamma(4.5));
     const double P = peak_pressure_Pa(patch);
-    return 2.0 * kPi / patch.force_N * compliance_factor(layer) * 4.0 * P * P * std::pow(patch.radius_m, 3) * integral;
+    return 2.0 * kPi / patch.force_N * compliance_factor(layer) * 4.0 * P * P * std::pow(patch.radius_m, 3) *
+           integral;
 }
 
 double layer_mean_depression_m(const Layer& layer, const ParabolicPatch& patch) {
@@ -89,14 +102,17 @@ double layer_mean_depression_m(const Layer& layer, const ParabolicPatch& patch) 
         const double pbar = 2.0 * P * a * a * j2_over_square(k * a);
         return pbar * pbar * layer_factor_minus_1(k * layer.thickness_m, layer.poisson);
     });
-    return half_space_mean_depression_m(layer, patch) + 2.0 * kPi / patch.force_N * compliance_factor(layer) * integral;
+    return half_space_mean_depression_m(layer, patch) +
+           2.0 * kPi / patch.force_N * compliance_factor(layer) * integral;
 }
 
 double hertz_force_N(double plane_modulus_Pa, double radius_m, double depth_m) {
     return 4.0 / 3.0 * plane_modulus_Pa * std::sqrt(radius_m) * std::pow(depth_m, 1.5);
 }
 
-double hertz_contact_radius_m(double radius_m, double depth_m) { return std::sqrt(radius_m * depth_m); }
+double hertz_contact_radius_m(double radius_m, double depth_m) {
+    return std::sqrt(radius_m * depth_m);
+}
 
 double dimitriadis_force_N(double young_Pa, double radius_m, double depth_m, double thickness_m) {
     const double x = std::sqrt(radius_m * depth_m) / thickness_m;

@@ -28,8 +28,8 @@ bool is_parallelogram(const Matrix2Xd& x) {
     return skew.norm() < 1e-10 * (x.col(2) - x.col(0)).norm();
 }
 
-// Bilinear shape functions of a parallelogram, with r = a . (X - x0) and s = b . (X - x0) running 0..1 along its edges:
-// (1-r)(1-s), r(1-s), r s, (1-r) s, all polynomials of the second degree in X.
+// Bilinear shape functions of a parallelogram, with r = a . (X - x0) and s = b . (X - x0) running 0..1 along
+// its edges: (1-r)(1-s), r(1-s), r s, (1-r) s, all polynomials of the second degree in X.
 Eigen::Vector4d parallelogram_shares(const Matrix2Xd& x, const DiscMoments& m) {
     Eigen::Matrix2d edges;
     edges << x.col(1) - x.col(0), x.col(3) - x.col(0);
@@ -40,7 +40,8 @@ Eigen::Vector4d parallelogram_shares(const Matrix2Xd& x, const DiscMoments& m) {
     const double s = first(1);
     const double rs = origin(0) * origin(1) * m(0) +
                       (origin(0) * inverse(1, 0) + origin(1) * inverse(0, 0)) * m(1) +
-                      (origin(0) * inverse(1, 1) + origin(1) * inverse(0, 1)) * m(2) + inverse(0, 0) * inverse(1, 0) * m(3) +
+                      (origin(0) * inverse(1, 1) + origin(1) * inverse(0, 1)) * m(2) +
+                      inverse(0, 0) * inverse(1, 0) * m(3) +
                       (inverse(0, 0) * inverse(1, 1) + inverse(0, 1) * inverse(1, 0)) * m(4) +
                       inverse(0, 1) * inverse(1, 1) * m(5);
     return {m(0) - r - s + rs, r - rs, rs, s - rs};
@@ -66,12 +67,14 @@ VectorXd face_shares(const Matrix2Xd& x, double R, LoadShare share) {
 
 }  // namespace
 
-PressureLoad parabolic_load(const Mesh& mesh, const Faces& outer, const ParabolicPressure& pressure, LoadShare share) {
+PressureLoad parabolic_load(const Mesh& mesh, const Faces& outer, const ParabolicPressure& pressure,
+                            LoadShare share) {
     const double R = 0.5 * pressure.diameter_m;
-    if (!(R > 0.0) || !std::isfinite(R) || !std::isfinite(pressure.force_N) || !std::isfinite(pressure.centre_m[0]) ||
-        !std::isfinite(pressure.centre_m[1])) {
-        throw LoadError(text("parabolic pressure: diameter ", pressure.diameter_m, " m, force ", pressure.force_N, " N, centre ",
-                             pressure.centre_m[0], ", ", pressure.centre_m[1], " m; wanted finite numbers and a diameter > 0"));
+    if (!(R > 0.0) || !std::isfinite(R) || !std::isfinite(pressure.force_N) ||
+        !std::isfinite(pressure.centre_m[0]) || !std::isfinite(pressure.centre_m[1])) {
+        throw LoadError(text("parabolic pressure: diameter ", pressure.diameter_m, " m, force ",
+                             pressure.force_N, " N, centre ", pressure.centre_m[0], ", ",
+                             pressure.centre_m[1], " m; wanted finite numbers and a diameter > 0"));
     }
     const int axis = axis_of(pressure.side);
     const int first = axis == 0 ? 1 : 0;
@@ -85,9 +88,12 @@ PressureLoad parabolic_load(const Mesh& mesh, const Faces& outer, const Paraboli
         Matrix2Xd x(2, faces.corners.rows());
         for (Index k = 0; k < x.cols(); ++k) {
             const int node = faces.corners(k, f);
-            x.col(k) << mesh.nodes_m(first, node) - pressure.centre_m[0], mesh.nodes_m(second, node) - pressure.centre_m[1];
+            x.col(k) << mesh.nodes_m(first, node) - pressure.centre_m[0],
+                mesh.nodes_m(second, node) - pressure.centre_m[1];
         }
-        if ((x.row(0).minCoeff() > R) || (x.row(0).maxCoeff() < -R) || (x.row(1).minCoeff() > R) || (x.row(1).maxCoeff() < -R)) continue;
+        if ((x.row(0).minCoeff() > R) || (x.row(0).maxCoeff() < -R) || (x.row(1).minCoeff() > R) ||
+            (x.row(1).maxCoeff() < -R))
+            continue;
         // seen along the axis some sides run clockwise: the sign of the area comes off again
         const Vector2d a = x.col(1) - x.col(0);
         const Vector2d b = x.col(2) - x.col(0);
@@ -100,7 +106,8 @@ PressureLoad parabolic_load(const Mesh& mesh, const Faces& outer, const Paraboli
     return load;
 }
 
-Eigen::Matrix3Xd traction_load(const Mesh& mesh, const Faces& faces, const std::array<double, 3>& traction_Pa) {
+Eigen::Matrix3Xd traction_load(const Mesh& mesh, const Faces& faces,
+                               const std::array<double, 3>& traction_Pa) {
     const Eigen::Vector3d t(traction_Pa[0], traction_Pa[1], traction_Pa[2]);
     if (!t.allFinite()) throw LoadError(text("traction ", t.transpose(), " Pa is not finite"));
     return t * tributary_area_m2(mesh, faces).transpose();

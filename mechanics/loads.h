@@ -18,9 +18,11 @@ struct ParabolicPressure {
     double force_N = 0.025;
 };
 
-// consistent: F_i = int p N_i dA, exact on triangles and parallelograms (others: mean of both ways to halve them,
+// consistent: F_i = int p N_i dA, exact on triangles and parallelograms (others: mean of both ways to halve
+// them,
 //             which keeps the total and the first moment exact).
-// thirds:     each corner of a face gets an equal share of the face's force, as in the paper; total right, moment not.
+// thirds:     each corner of a face gets an equal share of the face's force, as in the paper; total right,
+// moment not.
 enum class LoadShare { consistent, thirds };
 
 struct PressureLoad {
@@ -29,10 +31,12 @@ struct PressureLoad {
     bool partial = false;    // part of the disc is beside the body
 };
 // Throws LoadError for a diameter that is not > 0 or numbers that are not finite.
-PressureLoad parabolic_load(const Mesh& mesh, const Faces& outer, const ParabolicPressure& pressure, LoadShare share);
+PressureLoad parabolic_load(const Mesh& mesh, const Faces& outer, const ParabolicPressure& pressure,
+                            LoadShare share);
 
 // Constant traction on faces, Pa in x, y, z: F_i = A_i t.
-Eigen::Matrix3Xd traction_load(const Mesh& mesh, const Faces& faces, const std::array<double, 3>& traction_Pa);
+Eigen::Matrix3Xd traction_load(const Mesh& mesh, const Faces& faces,
+                               const std::array<double, 3>& traction_Pa);
 
 // Work-conjugate mean displacement of a load: sum f . u / F, metres, positive along the load.
 double mean_displacement_m(const PressureLoad& load, const Eigen::Matrix3Xd& u_m);

@@ -41,7 +41,8 @@ std::vector<FaceKey> sorted_faces(const Mesh& mesh) {
             FaceKey key;
             key.cell = cell;
             key.local = face;
-            for (int k = 0; k < n_corners; ++k) key.sorted[static_cast<std::size_t>(k)] = mesh.cells(local_corner(hex, face, k), cell);
+            for (int k = 0; k < n_corners; ++k)
+                key.sorted[static_cast<std::size_t>(k)] = mesh.cells(local_corner(hex, face, k), cell);
             std::sort(key.sorted.begin(), key.sorted.end());
             keys.push_back(key);
         }
@@ -52,7 +53,8 @@ std::vector<FaceKey> sorted_faces(const Mesh& mesh) {
     return keys;
 }
 
-// The ratio q >= 1 with first * (q^n - 1)/(q - 1) = length, by bisection; 1 when n first-size cells overfill it.
+// The ratio q >= 1 with first * (q^n - 1)/(q - 1) = length, by bisection; 1 when n first-size cells overfill
+// it.
 double growth_ratio(double length_m, int n, double first_m) {
     const auto filled = [&](double q) {
         double sum = 0.0;
@@ -80,7 +82,8 @@ Eigen::VectorXd one_side_m(double length_m, int n, double first_m) {
     return distance * (length_m / sum);
 }
 
-// How many of n cells stand on the left: the proportional share first, then only what lowers the larger ratio.
+// How many of n cells stand on the left: the proportional share first, then only what lowers the larger
+// ratio.
 int cells_left_of_centre(double left_m, double right_m, int n, double finest_m) {
     const double length_m = left_m + right_m;
     if (left_m <= 1e-12 * length_m) return 0;
@@ -102,12 +105,15 @@ int cells_left_of_centre(double left_m, double right_m, int n, double finest_m) 
 Vector3d point_in_cell(const Mesh& mesh, Index cell, double r, double s, double t) {
     const auto node = [&](int k) -> Vector3d { return mesh.nodes_m.col(mesh.cells(k, cell)); };
     if (!is_hex(mesh)) return (1.0 - r - s - t) * node(0) + r * node(1) + s * node(2) + t * node(3);
-    const Vector3d bottom = (1 - r) * (1 - s) * node(0) + r * (1 - s) * node(1) + r * s * node(2) + (1 - r) * s * node(3);
-    const Vector3d top = (1 - r) * (1 - s) * node(4) + r * (1 - s) * node(5) + r * s * node(6) + (1 - r) * s * node(7);
+    const Vector3d bottom =
+        (1 - r) * (1 - s) * node(0) + r * (1 - s) * node(1) + r * s * node(2) + (1 - r) * s * node(3);
+    const Vector3d top =
+        (1 - r) * (1 - s) * node(4) + r * (1 - s) * node(5) + r * s * node(6) + (1 - r) * s * node(7);
     return (1 - t) * bottom + t * top;
 }
 
-// Sample points of the reference cell, 3 x m: centres of n^3 sub-cubes; for tets those of a symmetric lattice.
+// Sample points of the reference cell, 3 x m: centres of n^3 sub-cubes; for tets those of a symmetric
+// lattice.
 Eigen::Matrix3Xd sample_points(bool hex, int n) {
     std::vector<Vector3d> points;
     for (int i = 0; i < n; ++i) {
@@ -163,11 +169,13 @@ std::vector<std::array<int, 2>> face_neighbours(const Mesh& mesh) {
 Faces faces_on(const Mesh& mesh, const Faces& outer, Side side) {
     const auto along = mesh.nodes_m.row(axis_of(side));
     const double plane = is_max(side) ? along.maxCoeff() : along.minCoeff();
-    const double tolerance = 1e-9 * (mesh.nodes_m.rowwise().maxCoeff() - mesh.nodes_m.rowwise().minCoeff()).maxCoeff();
+    const double tolerance =
+        1e-9 * (mesh.nodes_m.rowwise().maxCoeff() - mesh.nodes_m.rowwise().minCoeff()).maxCoeff();
     std::vector<Index> kept;
     for (Index i = 0; i < outer.cell.size(); ++i) {
         double off = 0.0;
-        for (Index k = 0; k < outer.corners.rows(); ++k) off = std::max(off, std::abs(along(outer.corners(k, i)) - plane));
+        for (Index k = 0; k < outer.corners.rows(); ++k)
+            off = std::max(off, std::abs(along(outer.corners(k, i)) - plane));
         if (off <= tolerance) kept.push_back(i);
     }
     Faces faces{Eigen::MatrixXi(outer.corners.rows(), static_cast<Index>(kept.size())),
@@ -198,8 +206,10 @@ Eigen::VectorXd tributary_area_m2(const Mesh& mesh, const Faces& faces) {
         }
         for (const double r : {-g, g}) {
             for (const double s : {-g, g}) {
-                const Vector3d along_r = 0.25 * ((1 - s) * (node(1) - node(0)) + (1 + s) * (node(2) - node(3)));
-                const Vector3d along_s = 0.25 * ((1 - r) * (node(3) - node(0)) + (1 + r) * (node(2) - node(1)));
+                const Vector3d along_r =
+                    0.25 * ((1 - s) * (node(1) - node(0)) + (1 + s) * (node(2) - node(3)));
+                const Vector3d along_s =
+                    0.25 * ((1 - r) * (node(3) - node(0)) + (1 + r) * (node(2) - node(1)));
                 const double dA = along_r.cross(along_s).norm();
                 area(faces.corners(0, f)) += 0.25 * (1 - r) * (1 - s) * dA;
                 area(faces.corners(1, f)) += 0.25 * (1 + r) * (1 - s) * dA;
@@ -213,8 +223,10 @@ Eigen::VectorXd tributary_area_m2(const Mesh& mesh, const Faces& faces) {
 
 Eigen::VectorXd graded_coordinates_m(double length_m, int n, double centre_m, double finest_m) {
     if (!(length_m > 0.0) || n < 1 || !(finest_m > 0.0) || !(centre_m >= 0.0 && centre_m <= length_m)) {
-        throw MeshError(text("graded box: length ", length_m, " m, ", n, " cells, centre ", centre_m, " m, finest ", finest_m,
-                             " m; wanted length > 0, cells >= 1, 0 <= centre <= length, finest > 0"), {});
+        throw MeshError(
+            text("graded box: length ", length_m, " m, ", n, " cells, centre ", centre_m, " m, finest ",
+                 finest_m, " m; wanted length > 0, cells >= 1, 0 <= centre <= length, finest > 0"),
+            {});
     }
     const double left = n == 1 ? length_m : centre_m;  // one cell has no room for a node inside
     const double right = length_m - left;
@@ -234,7 +246,8 @@ Mesh hex_box(const Eigen::VectorXd& x_m, const Eigen::VectorXd& y_m, const Eigen
     };
     if (!ascending(x_m) || !ascending(y_m) || !ascending(z_m)) {
         throw MeshError(text("box: ", x_m.size(), " x ", y_m.size(), " x ", z_m.size(),
-                             " coordinates; wanted at least 2 in each direction, ascending"), {});
+                             " coordinates; wanted at least 2 in each direction, ascending"),
+                        {});
     }
     const Index nx = x_m.size();
     const Index ny = y_m.size();
@@ -252,8 +265,8 @@ Mesh hex_box(const Eigen::VectorXd& x_m, const Eigen::VectorXd& y_m, const Eigen
         for (Index j = 0; j + 1 < ny; ++j) {
             for (Index i = 0; i + 1 < nx; ++i, ++cell) {
                 mesh.cells.col(cell) << node_at(i, j, k), node_at(i + 1, j, k), node_at(i + 1, j + 1, k),
-                    node_at(i, j + 1, k), node_at(i, j, k + 1), node_at(i + 1, j, k + 1), node_at(i + 1, j + 1, k + 1),
-                    node_at(i, j + 1, k + 1);
+                    node_at(i, j + 1, k), node_at(i, j, k + 1), node_at(i + 1, j, k + 1),
+                    node_at(i + 1, j + 1, k + 1), node_at(i, j + 1, k + 1);
             }
         }
     }
@@ -267,7 +280,9 @@ Mesh hex_box(const Box& box) {
         const double length = box.size_m[axis];
         const int n = box.cells[axis];
         if (!(length > 0.0) || n < 1) {
-            throw MeshError(text("box: size ", length, " m in ", n, " cells along axis ", axis, "; wanted > 0 and >= 1"), {});
+            throw MeshError(
+                text("box: size ", length, " m in ", n, " cells along axis ", axis, "; wanted > 0 and >= 1"),
+                {});
         }
         if (box.grading) {
             const double centre = axis == 2 ? length : box.grading->centre_m[axis];
@@ -282,10 +297,12 @@ Mesh hex_box(const Box& box) {
 Mesh split_to_tets(const Mesh& hexes) {
     constexpr std::array<std::array<int, 4>, 6> kTets{
         {{0, 1, 2, 6}, {0, 2, 3, 6}, {0, 3, 7, 6}, {0, 7, 4, 6}, {0, 4, 5, 6}, {0, 5, 1, 6}}};
-    Mesh tets{hexes.nodes_m, Eigen::MatrixXi(4, 6 * hexes.cells.cols()), Eigen::VectorXi(6 * hexes.cells.cols())};
+    Mesh tets{hexes.nodes_m, Eigen::MatrixXi(4, 6 * hexes.cells.cols()),
+              Eigen::VectorXi(6 * hexes.cells.cols())};
     for (Index cell = 0, tet = 0; cell < hexes.cells.cols(); ++cell) {
         for (const auto& corners : kTets) {
-            for (int k = 0; k < 4; ++k) tets.cells(k, tet) = hexes.cells(corners[static_cast<std::size_t>(k)], cell);
+            for (int k = 0; k < 4; ++k)
+                tets.cells(k, tet) = hexes.cells(corners[static_cast<std::size_t>(k)], cell);
             tets.region(tet++) = hexes.region(cell);
         }
     }

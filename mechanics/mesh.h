@@ -8,15 +8,17 @@
 
 namespace palpa::mechanics {
 
-// cells: 8 x n (hexahedra) or 4 x n (tetrahedra) node numbers in VTK order, which is also CalculiX's and Gmsh's:
-// the bottom face counter-clockwise seen from above, then the top one; tets with positive volume.
+// cells: 8 x n (hexahedra) or 4 x n (tetrahedra) node numbers in VTK order, which is also CalculiX's and
+// Gmsh's: the bottom face counter-clockwise seen from above, then the top one; tets with positive volume.
 struct Mesh {
     Eigen::Matrix3Xd nodes_m;
     Eigen::MatrixXi cells;
     Eigen::VectorXi region;  // one per cell: position in the list of materials
 };
 
-inline bool is_hex(const Mesh& mesh) { return mesh.cells.rows() == 8; }
+inline bool is_hex(const Mesh& mesh) {
+    return mesh.cells.rows() == 8;
+}
 
 // Outer faces, corners counter-clockwise seen from outside. corners: 4 x n or 3 x n.
 struct Faces {
@@ -31,8 +33,12 @@ std::vector<std::array<int, 2>> face_neighbours(const Mesh& mesh);
 
 // The six sides of a mesh's bounding box.
 enum class Side { xmin, xmax, ymin, ymax, zmin, zmax };
-inline int axis_of(Side side) { return static_cast<int>(side) / 2; }
-inline bool is_max(Side side) { return static_cast<int>(side) % 2 == 1; }
+inline int axis_of(Side side) {
+    return static_cast<int>(side) / 2;
+}
+inline bool is_max(Side side) {
+    return static_cast<int>(side) % 2 == 1;
+}
 
 // Those of `outer` that lie in a side of the bounding box, to 1e-9 of its size.
 Faces faces_on(const Mesh& mesh, const Faces& outer, Side side);
@@ -40,7 +46,8 @@ Faces faces_on(const Mesh& mesh, const Faces& outer, Side side);
 // Node numbers, ascending, each once.
 std::vector<int> nodes_of(const Faces& faces);
 
-// Share of the surface that belongs to each node, m^2: A_i = int N_i dA (2 x 2 Gauss on quads). Length n_nodes.
+// Share of the surface that belongs to each node, m^2: A_i = int N_i dA (2 x 2 Gauss on quads). Length
+// n_nodes.
 Eigen::VectorXd tributary_area_m2(const Mesh& mesh, const Faces& faces);
 
 struct Grading {
@@ -72,8 +79,8 @@ struct Sphere {
     double radius_m = 0.0;
 };
 
-// Share of each cell inside the sphere, 0..1, by n_sub^3 sample points (hexahedra: trilinear; tets: a barycentric
-// lattice). n_sub = 1 samples the centroid: 0 or 1.
+// Share of each cell inside the sphere, 0..1, by n_sub^3 sample points (hexahedra: trilinear; tets: a
+// barycentric lattice). n_sub = 1 samples the centroid: 0 or 1.
 Eigen::VectorXd sphere_share(const Mesh& mesh, const Sphere& sphere, int n_sub);
 
 // Cells whose centroid is inside get the region. Returns how many.

@@ -19,7 +19,8 @@ using Eigen::Vector3d;
 
 std::string first_few(const std::vector<int>& cells) {
     std::string out;
-    for (std::size_t i = 0; i < std::min<std::size_t>(cells.size(), 8); ++i) out += text(i == 0 ? "" : ", ", cells[i]);
+    for (std::size_t i = 0; i < std::min<std::size_t>(cells.size(), 8); ++i)
+        out += text(i == 0 ? "" : ", ", cells[i]);
     if (cells.size() > 8) out += text(", ... (", cells.size(), " in all)");
     return out;
 }
@@ -27,7 +28,8 @@ std::string first_few(const std::vector<int>& cells) {
 void check_numbers(const Mesh& mesh) {
     if (mesh.cells.cols() == 0 || (mesh.cells.rows() != 8 && mesh.cells.rows() != 4)) {
         throw MeshError(text("mesh: ", mesh.cells.cols(), " cells of ", mesh.cells.rows(),
-                             " corners; wanted at least one, of 8 or 4"), {});
+                             " corners; wanted at least one, of 8 or 4"),
+                        {});
     }
     if (mesh.region.size() != mesh.cells.cols()) {
         throw MeshError(text("mesh: ", mesh.region.size(), " regions for ", mesh.cells.cols(), " cells"), {});
@@ -35,10 +37,13 @@ void check_numbers(const Mesh& mesh) {
     std::vector<int> bad;
     for (Index cell = 0; cell < mesh.cells.cols(); ++cell) {
         const auto corners = mesh.cells.col(cell).array();
-        if ((corners < 0).any() || (corners >= static_cast<int>(mesh.nodes_m.cols())).any()) bad.push_back(static_cast<int>(cell));
+        if ((corners < 0).any() || (corners >= static_cast<int>(mesh.nodes_m.cols())).any())
+            bad.push_back(static_cast<int>(cell));
     }
     if (!bad.empty()) {
-        throw MeshError(text("mesh: node numbers outside 0..", mesh.nodes_m.cols() - 1, " in cells ", first_few(bad)), bad);
+        throw MeshError(
+            text("mesh: node numbers outside 0..", mesh.nodes_m.cols() - 1, " in cells ", first_few(bad)),
+            bad);
     }
     for (Index cell = 0; cell < mesh.cells.cols(); ++cell) {
         for (Index k = 0; k < mesh.cells.rows(); ++k) {
@@ -47,7 +52,8 @@ void check_numbers(const Mesh& mesh) {
             break;
         }
     }
-    if (!bad.empty()) throw MeshError(text("mesh: coordinates that are not finite in cells ", first_few(bad)), bad);
+    if (!bad.empty())
+        throw MeshError(text("mesh: coordinates that are not finite in cells ", first_few(bad)), bad);
 }
 
 Tet tet_corners(const Mesh& mesh, Index cell) {
@@ -62,7 +68,9 @@ Hex hex_corners(const Mesh& mesh, Index cell) {
     return corners;
 }
 
-double det_of(const Vector3d& a, const Vector3d& b, const Vector3d& c) { return a.dot(b.cross(c)); }
+double det_of(const Vector3d& a, const Vector3d& b, const Vector3d& c) {
+    return a.dot(b.cross(c));
+}
 
 CellQuality hex_quality(const Hex& x) {
     // the three edges that leave each corner, right-handed
@@ -105,9 +113,11 @@ CellQuality tet_quality(const Tet& x) {
     }
     // r_in = det / sum of |n|;  r_out = | |a|^2 b x c + |b|^2 c x a + |c|^2 a x b | / (2 det)
     const double r_in = det / n.colwise().norm().sum();
-    const Vector3d to_centre = a.squaredNorm() * b.cross(c) + b.squaredNorm() * c.cross(a) + c.squaredNorm() * a.cross(b);
+    const Vector3d to_centre =
+        a.squaredNorm() * b.cross(c) + b.squaredNorm() * c.cross(a) + c.squaredNorm() * a.cross(b);
     const double r_out = to_centre.norm() / (2.0 * std::abs(det));
-    return {det / std::pow(longest, 3), min_angle * 180.0 / std::numbers::pi, det == 0.0 ? 0.0 : 3.0 * r_in / r_out};
+    return {det / std::pow(longest, 3), min_angle * 180.0 / std::numbers::pi,
+            det == 0.0 ? 0.0 : 3.0 * r_in / r_out};
 }
 
 int root_of(std::vector<int>& parent, int i) {
@@ -135,15 +145,19 @@ MeshReport check_mesh(const Mesh& mesh) {
     for (Index cell = 0; cell < mesh.cells.cols(); ++cell) {
         const int number = static_cast<int>(cell);
         const CellQuality q = cell_quality(mesh, cell);
-        if (q.relative_det < -kFlat) inverted.push_back(number);
-        else if (!(q.relative_det > kFlat)) flat.push_back(number);
-        if (q.relative_det < kSliver || q.min_dihedral_deg < kSliverAngle_deg) report.slivers.push_back(number);
+        if (q.relative_det < -kFlat)
+            inverted.push_back(number);
+        else if (!(q.relative_det > kFlat))
+            flat.push_back(number);
+        if (q.relative_det < kSliver || q.min_dihedral_deg < kSliverAngle_deg)
+            report.slivers.push_back(number);
         if (q.relative_det < report.worst_relative_det) {
             report.worst_relative_det = q.relative_det;
             report.worst_cell = number;
         }
         report.worst_dihedral_deg = std::min(report.worst_dihedral_deg, q.min_dihedral_deg);
-        for (Index k = 0; k < mesh.cells.rows(); ++k) used[static_cast<std::size_t>(mesh.cells(k, cell))] = true;
+        for (Index k = 0; k < mesh.cells.rows(); ++k)
+            used[static_cast<std::size_t>(mesh.cells(k, cell))] = true;
         if (is_hex(mesh)) {
             const Hex corners = hex_corners(mesh, cell);
             for (int g = 0; g < 8; ++g) report.volume_m3 += hex_point(corners, g).volume_m3;
@@ -156,8 +170,8 @@ MeshReport check_mesh(const Mesh& mesh) {
         std::string what = "mesh:";
         if (!inverted.empty()) what += text(" inverted cells ", first_few(inverted), ";");
         if (!flat.empty()) what += text(" cells without volume ", first_few(flat), ";");
-        what += text(" worst is cell ", report.worst_cell, " with relative volume ", report.worst_relative_det,
-                     ", must be > ", kFlat);
+        what += text(" worst is cell ", report.worst_cell, " with relative volume ",
+                     report.worst_relative_det, ", must be > ", kFlat);
         inverted.insert(inverted.end(), flat.begin(), flat.end());
         throw MeshError(what, inverted);
     }
@@ -197,8 +211,9 @@ std::string describe_part(const Mesh& mesh, const Parts& parts, int part) {
             high = high.cwiseMax(mesh.nodes_m.col(mesh.cells(k, cell)));
         }
     }
-    return text("part ", part + 1, " of ", parts.count, " (", cells, " cells from cell ", first, ", x ", low.x(), "..", high.x(),
-                ", y ", low.y(), "..", high.y(), ", z ", low.z(), "..", high.z(), " m)");
+    return text("part ", part + 1, " of ", parts.count, " (", cells, " cells from cell ", first, ", x ",
+                low.x(), "..", high.x(), ", y ", low.y(), "..", high.y(), ", z ", low.z(), "..", high.z(),
+                " m)");
 }
 
 }  // namespace palpa::mechanics

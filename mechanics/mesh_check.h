@@ -8,9 +8,9 @@
 
 namespace palpa::mechanics {
 
-// Shape of one cell. Hexahedra: smallest Jacobian determinant over corners and Gauss points, relative to the product
-// of the edge lengths at the corners (1 = brick). Tetrahedra: det J relative to longest edge^3 (0.707 = regular), the smallest
-// angle between two faces, and 3 r_in / r_out (1 = regular).
+// Shape of one cell. Hexahedra: smallest Jacobian determinant over corners and Gauss points, relative to the
+// product of the edge lengths at the corners (1 = brick). Tetrahedra: det J relative to longest edge^3 (0.707
+// = regular), the smallest angle between two faces, and 3 r_in / r_out (1 = regular).
 struct CellQuality {
     double relative_det = 0.0;
     double min_dihedral_deg = 90.0;
@@ -27,16 +27,18 @@ struct MeshReport {
     std::vector<int> loose_nodes;  // in no cell; they are left out of the equations
 };
 
-// A cell under kFlat counts as without volume: its stiffness, of the order of 1/kFlat, would drown its neighbours'.
+// A cell under kFlat counts as without volume: its stiffness, of the order of 1/kFlat, would drown its
+// neighbours'.
 inline constexpr double kFlat = 1e-12;
 inline constexpr double kSliver = 1e-3;
 inline constexpr double kSliverAngle_deg = 1.0;
 
-// Throws MeshError, listing the cells, for node numbers out of range, coordinates that are not finite, inverted cells
-// (det J < 0) and cells without volume (relative det < kFlat).
+// Throws MeshError, listing the cells, for node numbers out of range, coordinates that are not finite,
+// inverted cells (det J < 0) and cells without volume (relative det < kFlat).
 MeshReport check_mesh(const Mesh& mesh);
 
-// Cells joined through whole faces make a part. of_cell numbers them from 0 in the order of their first cells.
+// Cells joined through whole faces make a part. of_cell numbers them from 0 in the order of their first
+// cells.
 struct Parts {
     int count = 0;
     std::vector<int> of_cell;

@@ -9,9 +9,13 @@
 namespace palpa::mechanics {
 
 #ifdef PALPA_HAS_MUMPS
-bool mumps_built_in() { return true; }
+bool mumps_built_in() {
+    return true;
+}
 #else
-bool mumps_built_in() { return false; }
+bool mumps_built_in() {
+    return false;
+}
 struct MumpsFactor {
     MumpsFactor() { throw SolverError("MUMPS asked for, but this build has none; use eigen", 0); }
 };
@@ -21,8 +25,10 @@ void solve_in_place(MumpsFactor&, Eigen::Ref<Eigen::MatrixXd>) {}
 #endif
 
 SparseCholesky::SparseCholesky(SolverKind kind) : kind_(kind) {
-    if (kind == SolverKind::mumps) mumps_ = std::make_unique<MumpsFactor>();
-    else eigen_ = std::make_unique<EigenFactor>();
+    if (kind == SolverKind::mumps)
+        mumps_ = std::make_unique<MumpsFactor>();
+    else
+        eigen_ = std::make_unique<EigenFactor>();
 }
 
 SparseCholesky::~SparseCholesky() = default;
@@ -30,18 +36,24 @@ SparseCholesky::SparseCholesky(SparseCholesky&&) noexcept = default;
 SparseCholesky& SparseCholesky::operator=(SparseCholesky&&) noexcept = default;
 
 void SparseCholesky::analyse(const LowerMatrix& A) {
-    if (mumps_) mechanics::analyse(A, *mumps_);
-    else mechanics::analyse(A, *eigen_);
+    if (mumps_)
+        mechanics::analyse(A, *mumps_);
+    else
+        mechanics::analyse(A, *eigen_);
 }
 
 void SparseCholesky::factor(const LowerMatrix& A) {
-    if (mumps_) refactor(A, *mumps_);
-    else refactor(A, *eigen_);
+    if (mumps_)
+        refactor(A, *mumps_);
+    else
+        refactor(A, *eigen_);
 }
 
 void SparseCholesky::solve(Eigen::Ref<Eigen::MatrixXd> block) const {
-    if (mumps_) solve_in_place(*mumps_, block);
-    else solve_in_place(*eigen_, block);
+    if (mumps_)
+        solve_in_place(*mumps_, block);
+    else
+        solve_in_place(*eigen_, block);
 }
 
 double backward_error(const LowerMatrix& A, const Eigen::VectorXd& x, const Eigen::VectorXd& b) {

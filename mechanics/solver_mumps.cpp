@@ -21,7 +21,9 @@ constexpr int kSolve = 3;
 constexpr int kErrorNoMemory = -9;
 
 // icntl as the users' guide numbers it, from 1
-MUMPS_INT& icntl(DMUMPS_STRUC_C& id, int i) { return id.icntl[i - 1]; }
+MUMPS_INT& icntl(DMUMPS_STRUC_C& id, int i) {
+    return id.icntl[i - 1];
+}
 
 void call(DMUMPS_STRUC_C& id, int job) {
     id.job = job;
@@ -31,9 +33,12 @@ void call(DMUMPS_STRUC_C& id, int job) {
 void check(const DMUMPS_STRUC_C& id, const char* what) {
     const int code = id.infog[0];
     if (code >= 0) return;
-    const char* meaning = code == -10 || code == -40 ? "the matrix is not positive definite"
-                          : code == -13 || code == kErrorNoMemory ? "not enough memory" : "see its users' guide";
-    throw SolverError(text("MUMPS: ", what, " of ", id.n, " equations failed with ", code, " (detail ", id.infog[1], "): ", meaning), code);
+    const char* meaning = code == -10 || code == -40              ? "the matrix is not positive definite"
+                          : code == -13 || code == kErrorNoMemory ? "not enough memory"
+                                                                  : "see its users' guide";
+    throw SolverError(text("MUMPS: ", what, " of ", id.n, " equations failed with ", code, " (detail ",
+                           id.infog[1], "): ", meaning),
+                      code);
 }
 
 }  // namespace
@@ -93,7 +98,9 @@ void refactor(const LowerMatrix& A, MumpsFactor& factor) {
     check(id, "factorisation");
     const int negative = id.infog[11];  // counted, but no error by itself
     if (negative > 0) {
-        throw SolverError(text("Cholesky: the matrix of ", id.n, " equations is not positive definite, ", negative, " negative pivots"), -40);
+        throw SolverError(text("Cholesky: the matrix of ", id.n, " equations is not positive definite, ",
+                               negative, " negative pivots"),
+                          -40);
     }
 }
 

@@ -2,7 +2,6 @@
 // One MUMPS instance and the arrays it points into; only the solver's own sources include this.
 
 #include <dmumps_c.h>
-
 #include <mutex>
 #include <vector>
 

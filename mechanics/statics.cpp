@@ -53,7 +53,8 @@ Factored factorise(const Problem& problem, SolverKind solver) {
 
     const auto start = std::chrono::steady_clock::now();
     if (static_cast<Eigen::Index>(problem.materials.size()) != problem.mesh.cells.cols()) {
-        throw MaterialError(text(problem.materials.size(), " materials for ", problem.mesh.cells.cols(), " cells"), {});
+        throw MaterialError(
+            text(problem.materials.size(), " materials for ", problem.mesh.cells.cols(), " cells"), {});
     }
     const std::vector<bool> rigid = rigid_cells(problem);
     out.K_N_per_m = stiffness_N_per_m(problem.mesh, problem.element, problem.materials, rigid);
@@ -79,7 +80,8 @@ Solution solve(const Factored& factored, const Eigen::Matrix3Xd& load_N) {
     }
     const auto K = factored.K_N_per_m.selfadjointView<Eigen::Lower>();
     const Eigen::Map<const Eigen::VectorXd> f(load_N.data(), n_dof);
-    const Eigen::VectorXd given = expand(factored.reduction, Eigen::VectorXd::Zero(factored.reduction.equations));
+    const Eigen::VectorXd given =
+        expand(factored.reduction, Eigen::VectorXd::Zero(factored.reduction.equations));
     const Eigen::VectorXd b = reduce_load(factored.reduction, f - K * given);
 
     Solution out;
@@ -90,7 +92,8 @@ Solution solve(const Factored& factored, const Eigen::Matrix3Xd& load_N) {
     const Eigen::VectorXd internal = K * u;
     out.reaction_N = Eigen::Matrix3Xd::Zero(3, n_dof / 3);
     for (Eigen::Index dof = 0; dof < n_dof; ++dof) {
-        if (factored.reduction.equation[static_cast<std::size_t>(dof)] == kPrescribed) out.reaction_N.data()[dof] = internal(dof) - f(dof);
+        if (factored.reduction.equation[static_cast<std::size_t>(dof)] == kPrescribed)
+            out.reaction_N.data()[dof] = internal(dof) - f(dof);
     }
     out.energy_J = 0.5 * u.dot(internal);
     out.work_J = 0.5 * (f.dot(u) + out.reaction_N.reshaped().dot(u));

@@ -14,8 +14,8 @@ struct Problem {
     Element element = Element::hex8_bbar;
     std::vector<Material> materials;  // one per cell
     Supports supports;
-    // Cells stiffer than this times the softest one move as rigid bodies (exact elimination, no penalty): beyond it
-    // the factorisation would lose the digits that the soft cells need.
+    // Cells stiffer than this times the softest one move as rigid bodies (exact elimination, no penalty):
+    // beyond it the factorisation would lose the digits that the soft cells need.
     double rigid_contrast = 1e8;
 };
 

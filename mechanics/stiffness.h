@@ -13,8 +13,8 @@ namespace palpa::mechanics {
 // Only the lower triangle is stored, columns compressed, rows ascending. Row 3 i + c is node i, axis c.
 using LowerMatrix = Eigen::SparseMatrix<double>;
 
-// Sum of the cell stiffnesses, 3 n_nodes squared. Cells marked in `skip` (empty = none) add nothing. Summed in the
-// order of the cells: the same bits every time. materials: one per cell.
+// Sum of the cell stiffnesses, 3 n_nodes squared. Cells marked in `skip` (empty = none) add nothing. Summed
+// in the order of the cells: the same bits every time. materials: one per cell.
 LowerMatrix stiffness_N_per_m(const Mesh& mesh, Element element, std::span<const Material> materials,
                               const std::vector<bool>& skip = {});
 
@@ -25,7 +25,8 @@ struct CellFields {
 };
 CellFields cell_fields(const Mesh& mesh, std::span<const Material> materials, const Eigen::Matrix3Xd& u_m);
 
-// Largest magnitude of a principal strain over all cells: the figure that says whether small strains still hold.
+// Largest magnitude of a principal strain over all cells: the figure that says whether small strains still
+// hold.
 double max_principal_strain(const CellFields& fields);
 
 }  // namespace palpa::mechanics

@@ -21,9 +21,7 @@ using Rigid = Eigen::Matrix<double, 3, 6>;  // displacement of a point per unit 
 Rigid rigid_motions(const Vector3d& x, const Vector3d& centre, double length) {
     const Vector3d r = (x - centre) / length;
     Rigid m;
-    m << 1, 0, 0, 0, r.z(), -r.y(),
-         0, 1, 0, -r.z(), 0, r.x(),
-         0, 0, 1, r.y(), -r.x(), 0;
+    m << 1, 0, 0, 0, r.z(), -r.y(), 0, 1, 0, -r.z(), 0, r.x(), 0, 0, 1, r.y(), -r.x(), 0;
     return m;
 }
 
@@ -56,17 +54,20 @@ std::vector<std::vector<int>> nodes_by_part(const Mesh& mesh, const Parts& parts
 }
 
 // Conditions on the rigid motions of all parts, as their Gram matrix A^T A (6 per part).
-Eigen::MatrixXd motion_conditions(const Mesh& mesh, const Supports& supports, const std::vector<std::vector<int>>& nodes,
+Eigen::MatrixXd motion_conditions(const Mesh& mesh, const Supports& supports,
+                                  const std::vector<std::vector<int>>& nodes,
                                   const std::vector<Frame>& frames) {
     std::vector<std::vector<int>> parts_of_node(static_cast<std::size_t>(mesh.nodes_m.cols()));
     for (std::size_t p = 0; p < nodes.size(); ++p) {
-        for (const int node : nodes[p]) parts_of_node[static_cast<std::size_t>(node)].push_back(static_cast<int>(p));
+        for (const int node : nodes[p])
+            parts_of_node[static_cast<std::size_t>(node)].push_back(static_cast<int>(p));
     }
     const auto motions = [&](int node, int part) {
         const Frame& frame = frames[static_cast<std::size_t>(part)];
         return rigid_motions(mesh.nodes_m.col(node), frame.centre, frame.length);
     };
-    Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(6 * static_cast<Index>(nodes.size()), 6 * static_cast<Index>(nodes.size()));
+    Eigen::MatrixXd gram =
+        Eigen::MatrixXd::Zero(6 * static_cast<Index>(nodes.size()), 6 * static_cast<Index>(nodes.size()));
     for (const int dof : supports.dof) {
         for (const int part : parts_of_node[static_cast<std::size_t>(dof / 3)]) {
             const Eigen::Matrix<double, 1, 6> row = motions(dof / 3, part).row(dof % 3);
@@ -90,17 +91,20 @@ Eigen::MatrixXd motion_conditions(const Mesh& mesh, const Supports& supports, co
 }
 
 std::string motion_names(const Eigen::Matrix<double, 6, 1>& motion) {
-    constexpr const char* kNames[] = {"translation x", "translation y", "translation z",
+    constexpr const char* kNames[] = {"translation x",    "translation y",    "translation z",
                                       "rotation about x", "rotation about y", "rotation about z"};
     std::string out;
     for (int k = 0; k < 6; ++k) {
-        if (std::abs(motion(k)) > 0.3 * motion.cwiseAbs().maxCoeff()) out += text(out.empty() ? "" : " + ", kNames[k]);
+        if (std::abs(motion(k)) > 0.3 * motion.cwiseAbs().maxCoeff())
+            out += text(out.empty() ? "" : " + ", kNames[k]);
     }
     return out;
 }
 
-// All dofs of a body that a support holds must fit one rigid motion, which then holds for its other nodes too.
-bool prescribe_body(const Mesh& mesh, const std::vector<int>& nodes, const Frame& frame, Reduction& reduction) {
+// All dofs of a body that a support holds must fit one rigid motion, which then holds for its other nodes
+// too.
+bool prescribe_body(const Mesh& mesh, const std::vector<int>& nodes, const Frame& frame,
+                    Reduction& reduction) {
     Eigen::MatrixXd rows(0, 6);
     Eigen::VectorXd values(0);
     for (const int node : nodes) {
@@ -118,9 +122,11 @@ bool prescribe_body(const Mesh& mesh, const std::vector<int>& nodes, const Frame
     const Eigen::VectorXd q = qr.rank() == 6 ? Eigen::VectorXd(qr.solve(values)) : Eigen::VectorXd::Zero(6);
     const double misfit = (rows * q - values).cwiseAbs().maxCoeff();
     if (qr.rank() < 6 || misfit > 1e-9 * values.cwiseAbs().maxCoeff()) {
-        throw SupportError(text("rigid body at ", frame.centre.transpose(), " m with ", nodes.size(), " nodes touches a "
-                                "support that leaves it ", 6 - qr.rank(), " free motions (misfit ", misfit,
-                                " m); it must be held completely or not at all"), -1);
+        throw SupportError(
+            text("rigid body at ", frame.centre.transpose(), " m with ", nodes.size(),
+                 " nodes touches a support that leaves it ", 6 - qr.rank(), " free motions (misfit ", misfit,
+                 " m); it must be held completely or not at all"),
+            -1);
     }
     for (const int node : nodes) {
         const Vector3d u = rigid_motions(mesh.nodes_m.col(node), frame.centre, frame.length) * q;
@@ -135,7 +141,9 @@ bool prescribe_body(const Mesh& mesh, const std::vector<int>& nodes, const Frame
 // Node lists of the rigid bodies, by shared nodes.
 std::vector<std::vector<int>> rigid_bodies(const Mesh& mesh, const std::vector<bool>& rigid_cell) {
     std::vector<int> label(static_cast<std::size_t>(mesh.nodes_m.cols()), -1);
-    const auto label_at = [&](Index k, Index cell) -> int& { return label[static_cast<std::size_t>(mesh.cells(k, cell))]; };
+    const auto label_at = [&](Index k, Index cell) -> int& {
+        return label[static_cast<std::size_t>(mesh.cells(k, cell))];
+    };
     for (bool changed = true; changed;) {  // spreads the lowest node number over each body
         changed = false;
         for (Index cell = 0; cell < mesh.cells.cols(); ++cell) {
@@ -183,13 +191,15 @@ void check_supported(const Mesh& mesh, const Supports& supports) {
     constexpr int kMostParts = 200;  // 1200 x 1200 eigenvalues: seconds
     const Parts parts = parts_of(mesh);
     if (parts.count > kMostParts) {
-        throw SupportError(text("mesh falls into ", parts.count, " parts that share no faces, at most ", kMostParts,
-                                " are accepted; ", describe_part(mesh, parts, 1)), 1);
+        throw SupportError(text("mesh falls into ", parts.count, " parts that share no faces, at most ",
+                                kMostParts, " are accepted; ", describe_part(mesh, parts, 1)),
+                           1);
     }
     const std::vector<std::vector<int>> nodes = nodes_by_part(mesh, parts);
     std::vector<Frame> frames;
     for (const auto& list : nodes) frames.push_back(frame_of(mesh, list));
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(motion_conditions(mesh, supports, nodes, frames));
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(
+        motion_conditions(mesh, supports, nodes, frames));
     const double largest = std::max(eigen.eigenvalues().maxCoeff(), 1.0);
     Index free = 0;
     while (free < eigen.eigenvalues().size() && eigen.eigenvalues()(free) < 1e-10 * largest) ++free;
@@ -199,14 +209,18 @@ void check_supported(const Mesh& mesh, const Supports& supports) {
     const Eigen::MatrixXd motions = eigen.eigenvectors().leftCols(free);
     int part = 0;
     for (int p = 1; p < parts.count; ++p) {
-        if (motions.middleRows<6>(6 * p).squaredNorm() > (1.0 + 1e-9) * motions.middleRows<6>(6 * part).squaredNorm()) part = p;
+        if (motions.middleRows<6>(6 * p).squaredNorm() >
+            (1.0 + 1e-9) * motions.middleRows<6>(6 * part).squaredNorm())
+            part = p;
     }
     std::string names;
     for (Index k = 0; k < free; ++k) {
         if (motions.col(k).segment<6>(6 * part).norm() < 1e-3) continue;
         names += text(names.empty() ? "" : "; ", motion_names(motions.col(k).segment<6>(6 * part)));
     }
-    throw SupportError(text(describe_part(mesh, parts, part), " is not held: free to move in ", free, " ways (", names, ")"), part);
+    throw SupportError(
+        text(describe_part(mesh, parts, part), " is not held: free to move in ", free, " ways (", names, ")"),
+        part);
 }
 
 Reduction make_reduction(const Mesh& mesh, const Supports& supports, const std::vector<bool>& rigid_cell) {
@@ -223,7 +237,8 @@ Reduction make_reduction(const Mesh& mesh, const Supports& supports, const std::
         if (equation(dof) == kLoose) continue;
         if (equation(dof) == kPrescribed && reduction.prescribed_m(dof) != supports.value_m[i]) {
             throw SupportError(text("node ", dof / 3, " axis ", dof % 3, " is given two displacements: ",
-                                    reduction.prescribed_m(dof), " m and ", supports.value_m[i], " m"), -1);
+                                    reduction.prescribed_m(dof), " m and ", supports.value_m[i], " m"),
+                               -1);
         }
         equation(dof) = kPrescribed;
         reduction.prescribed_m(dof) = supports.value_m[i];
@@ -247,7 +262,8 @@ Reduction make_reduction(const Mesh& mesh, const Supports& supports, const std::
         for (const int node : nodes) {
             const Rigid motions = rigid_motions(mesh.nodes_m.col(node), frame.centre, frame.length);
             for (int c = 0; c < 3; ++c) {
-                for (int k = 0; k < 6; ++k) rows.emplace_back(3 * node + c, reduction.equations + k, motions(c, k));
+                for (int k = 0; k < 6; ++k)
+                    rows.emplace_back(3 * node + c, reduction.equations + k, motions(c, k));
             }
         }
         reduction.equations += 6;

@@ -10,7 +10,8 @@
 
 namespace palpa::mechanics {
 
-// Given displacements: dof 3 i + c of node i, axis c. Clamped: "xyz" to 0. Symmetric about a plane: its normal axis to 0.
+// Given displacements: dof 3 i + c of node i, axis c. Clamped: "xyz" to 0. Symmetric about a plane: its
+// normal axis to 0.
 struct Supports {
     std::vector<int> dof;
     std::vector<double> value_m;
@@ -19,27 +20,28 @@ struct Supports {
 // axes: any of "x", "y", "z" together, as in a case file. Throws SupportError for another letter.
 void fix(const std::vector<int>& nodes, std::string_view axes, double value_m, Supports& supports);
 
-// Throws SupportError when a part of the mesh can move without resistance, naming the part and its free motions, and
-// when one displacement is given two values. Parts are rigid bodies here, supports and shared nodes their conditions:
-// the null space of all conditions must be empty (hinges between parts are found as well as floating bodies).
+// Throws SupportError when a part of the mesh can move without resistance, naming the part and its free
+// motions, and when one displacement is given two values. Parts are rigid bodies here, supports and shared
+// nodes their conditions: the null space of all conditions must be empty (hinges between parts are found as
+// well as floating bodies).
 void check_supported(const Mesh& mesh, const Supports& supports);
 
 // What becomes of each dof: an equation number >= 0, or one of these.
 inline constexpr int kPrescribed = -1;
-inline constexpr int kLoose = -2;    // its node is in no cell
-inline constexpr int kOnBody = -3;   // moves with a rigid body
+inline constexpr int kLoose = -2;   // its node is in no cell
+inline constexpr int kOnBody = -3;  // moves with a rigid body
 
 // u = T q + u_given. For dofs with an equation T is a one; `body` holds the rows of rigid bodies' nodes:
 //   u(x) = t + w x (x - c) / L,   c, L: centre and size of the body, six unknowns (t, w) in metres.
 struct Reduction {
     int equations = 0;
-    std::vector<int> equation;     // one per dof
-    Eigen::VectorXd prescribed_m;  // one per dof, 0 where free
+    std::vector<int> equation;                          // one per dof
+    Eigen::VectorXd prescribed_m;                       // one per dof, 0 where free
     Eigen::SparseMatrix<double, Eigen::RowMajor> body;  // n_dof x equations; no entries when nothing is rigid
 };
 
-// rigid_cell: one flag per cell, or empty. Rigid cells with a common node are one body; a body that touches a support
-// must be held by it completely and without strain, else SupportError.
+// rigid_cell: one flag per cell, or empty. Rigid cells with a common node are one body; a body that touches a
+// support must be held by it completely and without strain, else SupportError.
 Reduction make_reduction(const Mesh& mesh, const Supports& supports, const std::vector<bool>& rigid_cell);
 
 // Lower triangle of T^T K T.

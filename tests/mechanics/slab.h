@@ -43,9 +43,12 @@ inline Problem calculix_problem(Element element) {
     return problem;
 }
 
-inline ParabolicPressure calculix_pressure() { return {Side::zmax, {0.047, 0.052}, 0.03, 0.025}; }
+inline ParabolicPressure calculix_pressure() {
+    return {Side::zmax, {0.047, 0.052}, 0.03, 0.025};
+}
 
-inline Compliance slab_compliance(const Problem& problem, const std::array<double, 4>& touch_m, bool tangential = false) {
+inline Compliance slab_compliance(const Problem& problem, const std::array<double, 4>& touch_m,
+                                  bool tangential = false) {
     SurfaceRequest request = request_rectangle(problem.mesh, boundary_faces(problem.mesh), touch_m);
     request.tangential = tangential;
     return surface_compliance(problem.mesh, factorise(problem, best_solver()), request);

@@ -1,7 +1,6 @@
-#include "mechanics/compliance.h"
-
 #include <doctest/doctest.h>
 
+#include "mechanics/compliance.h"
 #include "mechanics/error.h"
 #include "tests/mechanics/slab.h"
 
@@ -18,7 +17,8 @@ Problem small_slab() {
 TEST_CASE("compliance: columns are what a direct solution gives, rows beyond the touch nodes included") {
     const Problem problem = small_slab();
     const Factored factored = factorise(problem, best_solver());
-    SurfaceRequest request = request_rectangle(problem.mesh, boundary_faces(problem.mesh), {0.03, 0.07, 0.03, 0.07});
+    SurfaceRequest request =
+        request_rectangle(problem.mesh, boundary_faces(problem.mesh), {0.03, 0.07, 0.03, 0.07});
     request.tangential = true;
     request.block = 7;
     const Compliance c = surface_compliance(problem.mesh, factored, request);
@@ -30,19 +30,23 @@ TEST_CASE("compliance: columns are what a direct solution gives, rows beyond the
         for (int direction = 0; direction < 3; ++direction) {
             Eigen::Matrix3Xd load = Eigen::Matrix3Xd::Zero(3, problem.mesh.nodes_m.cols());
             const int node = c.node[static_cast<std::size_t>(column)];
-            if (direction == 0) load(2, node) = -1.0;
-            else load(direction - 1, node) = 1.0;
+            if (direction == 0)
+                load(2, node) = -1.0;
+            else
+                load(direction - 1, node) = 1.0;
             const Solution s = solve(factored, load);
             const double size = s.u_m.cwiseAbs().maxCoeff();
             if (direction == 0) {
                 for (Eigen::Index i = 0; i < c.normal_m_per_N.rows(); ++i) {
-                    CHECK(std::abs(c.normal_m_per_N(i, column) + s.u_m(2, c.node[static_cast<std::size_t>(i)])) < 1e-12 * size);
+                    CHECK(std::abs(c.normal_m_per_N(i, column) +
+                                   s.u_m(2, c.node[static_cast<std::size_t>(i)])) < 1e-12 * size);
                 }
             }
             for (int i = 0; i < c.n_touch; ++i) {
                 const Eigen::Vector3d u = s.u_m.col(c.node[static_cast<std::size_t>(i)]);
                 const Eigen::Vector3d expected(-u.z(), u.x(), u.y());
-                CHECK((c.full_m_per_N.block<3, 1>(3 * i, 3 * column + direction) - expected).norm() < 1e-12 * size);
+                CHECK((c.full_m_per_N.block<3, 1>(3 * i, 3 * column + direction) - expected).norm() <
+                      1e-12 * size);
             }
         }
     }
@@ -52,10 +56,15 @@ TEST_CASE("compliance: columns are what a direct solution gives, rows beyond the
 TEST_CASE("compliance: progress counts up, cancel stops, wrong requests are refused") {
     const Problem problem = small_slab();
     const Factored factored = factorise(problem, best_solver());
-    const SurfaceRequest request = request_rectangle(problem.mesh, boundary_faces(problem.mesh), {0.0, 0.1, 0.0, 0.1});
+    const SurfaceRequest request =
+        request_rectangle(problem.mesh, boundary_faces(problem.mesh), {0.0, 0.1, 0.0, 0.1});
     std::vector<int> seen;
     std::atomic<bool> cancel = false;
-    Progress progress{[&](int done, int total) { seen.push_back(done); CHECK(total == 121); }, &cancel};
+    Progress progress{[&](int done, int total) {
+                          seen.push_back(done);
+                          CHECK(total == 121);
+                      },
+                      &cancel};
     surface_compliance(problem.mesh, factored, request, progress);
     CHECK(seen == std::vector<int>{64, 121});
     progress.report = [&](int, int) { cancel = true; };
@@ -68,7 +77,8 @@ TEST_CASE("compliance: progress counts up, cancel stops, wrong requests are refu
 
 TEST_CASE("fingerprint: equal for equal inputs, another for any change") {
     const Problem problem = small_slab();
-    const SurfaceRequest request = request_rectangle(problem.mesh, boundary_faces(problem.mesh), {0.03, 0.07, 0.03, 0.07});
+    const SurfaceRequest request =
+        request_rectangle(problem.mesh, boundary_faces(problem.mesh), {0.03, 0.07, 0.03, 0.07});
     const std::uint64_t key = fingerprint(problem, request);
     CHECK(key == fingerprint(small_slab(), request));
     Problem other = problem;

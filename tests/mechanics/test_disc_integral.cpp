@@ -1,10 +1,9 @@
-#include "mechanics/disc_integral.h"
-
-#include <doctest/doctest.h>
-
 #include <cmath>
+#include <doctest/doctest.h>
 #include <numbers>
 #include <random>
+
+#include "mechanics/disc_integral.h"
 
 using namespace palpa::mechanics;
 
@@ -42,7 +41,8 @@ TEST_CASE("disc integral: a polygon that holds the disc gives the whole") {
     Eigen::Matrix2Xd square(2, 4);
     square << -1, 1, 1, -1, -1, -1, 1, 1;
     DiscMoments whole;
-    whole << std::numbers::pi * R * R / 2, 0, 0, std::numbers::pi * std::pow(R, 4) / 12, 0, std::numbers::pi * std::pow(R, 4) / 12;
+    whole << std::numbers::pi * R * R / 2, 0, 0, std::numbers::pi * std::pow(R, 4) / 12, 0,
+        std::numbers::pi * std::pow(R, 4) / 12;
     CHECK((disc_moments(square, R) - whole).norm() < 1e-15);
     Eigen::Matrix2Xd clockwise = square.rowwise().reverse();
     CHECK((disc_moments(clockwise, R) + whole).norm() < 1e-15);

@@ -1,10 +1,8 @@
-#include "mechanics/elements.h"
-
-#include <doctest/doctest.h>
-
 #include <Eigen/Geometry>
+#include <doctest/doctest.h>
 #include <random>
 
+#include "mechanics/elements.h"
 #include "tests/mechanics/slab.h"
 
 using namespace palpa::mechanics;
@@ -48,7 +46,9 @@ TEST_CASE("patch test: linear displacements are exact on irregular meshes, all c
             problem.materials.assign(static_cast<std::size_t>(problem.mesh.cells.cols()), material);
             for (const int node : nodes_of(boundary_faces(problem.mesh))) {
                 const Eigen::Vector3d u = gradient * problem.mesh.nodes_m.col(node);
-                for (int c = 0; c < 3; ++c) fix({node}, std::string_view("xyz").substr(static_cast<std::size_t>(c), 1), u(c), problem.supports);
+                for (int c = 0; c < 3; ++c)
+                    fix({node}, std::string_view("xyz").substr(static_cast<std::size_t>(c), 1), u(c),
+                        problem.supports);
             }
             const Factored factored = factorise(problem, best_solver());
             const Solution solution = solve(factored, Eigen::Matrix3Xd::Zero(3, problem.mesh.nodes_m.cols()));
@@ -62,8 +62,10 @@ TEST_CASE("patch test: linear displacements are exact on irregular meshes, all c
             const CellFields fields = cell_fields(problem.mesh, problem.materials, solution.u_m);
             CHECK((fields.strain.colwise() - strain).cwiseAbs().maxCoeff() < 1e-12 * 3e-3 * 10);
             const Voigt stress = stress_Pa(material, strain);
-            CHECK((fields.stress_Pa.colwise() - stress).cwiseAbs().maxCoeff() < 1e-11 * kappa_Pa(material) * 3e-3);
-            CHECK(solution.energy_J == doctest::Approx(0.5 * stress.dot(strain) * factored.report.volume_m3).epsilon(1e-11));
+            CHECK((fields.stress_Pa.colwise() - stress).cwiseAbs().maxCoeff() <
+                  1e-11 * kappa_Pa(material) * 3e-3);
+            CHECK(solution.energy_J ==
+                  doctest::Approx(0.5 * stress.dot(strain) * factored.report.volume_m3).epsilon(1e-11));
         }
     }
 }
@@ -74,7 +76,8 @@ TEST_CASE("stiffness: moving a cell rigidly makes no force, and the matrix is sy
     for (int trial = 0; trial < 20; ++trial) {
         const Hex x = random_hex(random);
         for (const bool bbar : {true, false}) {
-            const HexMatrix K = bbar ? hex8_bbar_stiffness_N_per_m(x, material) : hex8_stiffness_N_per_m(x, material);
+            const HexMatrix K =
+                bbar ? hex8_bbar_stiffness_N_per_m(x, material) : hex8_stiffness_N_per_m(x, material);
             const double size = K.cwiseAbs().maxCoeff();
             CHECK((K - K.transpose()).cwiseAbs().maxCoeff() < 1e-14 * size);
             for (int axis = 0; axis < 3; ++axis) {
@@ -103,12 +106,16 @@ TEST_CASE("tet: rigid motions make no force; its energy is that of its constant 
     const double volume = tet_gradients_per_m(x, gradient);
     const Tet u = 1e-3 * Tet::Random();
     const Voigt strain = mean_strain(x, u);
-    CHECK(u.reshaped().dot(K * u.reshaped()) == doctest::Approx(volume * strain.dot(stress_Pa(material, strain))).epsilon(1e-12));
+    CHECK(u.reshaped().dot(K * u.reshaped()) ==
+          doctest::Approx(volume * strain.dot(stress_Pa(material, strain))).epsilon(1e-12));
 }
 
-TEST_CASE("hexahedra: without volume change B-bar and full integration agree, near poisson 0.5 only B-bar stays soft") {
+TEST_CASE(
+    "hexahedra: without volume change B-bar and full integration agree, near poisson 0.5 only B-bar stays "
+    "soft") {
     std::mt19937 random(5);
-    const Hex brick = hex_box({{0.01, 0.01, 0.01}, {1, 1, 1}, std::nullopt}).nodes_m(Eigen::all, std::vector<int>{0, 1, 3, 2, 4, 5, 7, 6});
+    const Hex brick = hex_box({{0.01, 0.01, 0.01}, {1, 1, 1}, std::nullopt})
+                          .nodes_m(Eigen::all, std::vector<int>{0, 1, 3, 2, 4, 5, 7, 6});
     Hex bend = Hex::Zero();  // u_x = x z': bending, whose mean volume change is zero
     for (int k = 0; k < 8; ++k) bend(0, k) = (brick(0, k) - 0.005) * (brick(2, k) - 0.005);
     const auto energy = [&](bool bbar, double poisson) {
@@ -122,6 +129,7 @@ TEST_CASE("hexahedra: without volume change B-bar and full integration agree, ne
     Hex u = Hex::Zero();
     u.row(0) = 1e-3 * shear.row(1);
     const Material m{2500.0, 0.45};
-    CHECK((hex8_stiffness_N_per_m(shear, m) * u.reshaped() - hex8_bbar_stiffness_N_per_m(shear, m) * u.reshaped()).norm() <
-          1e-12 * (hex8_stiffness_N_per_m(shear, m) * u.reshaped()).norm());
+    CHECK((hex8_stiffness_N_per_m(shear, m) * u.reshaped() -
+           hex8_bbar_stiffness_N_per_m(shear, m) * u.reshaped())
+              .norm() < 1e-12 * (hex8_stiffness_N_per_m(shear, m) * u.reshaped()).norm());
 }

@@ -1,10 +1,8 @@
-#include "mechanics/friction.h"
-
+#include <cmath>
 #include <doctest/doctest.h>
 
-#include <cmath>
-
 #include "mechanics/error.h"
+#include "mechanics/friction.h"
 #include "tests/mechanics/slab.h"
 
 using namespace palpa::mechanics;
@@ -15,7 +13,8 @@ constexpr Indenter kBall{IndenterShape::sphere, 0.008};
 
 const Compliance& slab() {
     static const Compliance made = slab_compliance(
-        slab_problem(hex_box(graded_box(0.1, 0.05, 20, 6, 0.0015)), Element::hex8_bbar, {2500.0, 0.45}), {0.035, 0.065, 0.035, 0.065}, true);
+        slab_problem(hex_box(graded_box(0.1, 0.05, 20, 6, 0.0015)), Element::hex8_bbar, {2500.0, 0.45}),
+        {0.035, 0.065, 0.035, 0.065}, true);
     return made;
 }
 
@@ -48,7 +47,8 @@ TEST_CASE("friction: a coefficient of zero is the frictionless contact") {
         slide.to(x_m, 0.0507, 0.003, 0.0);
         press_to_depth(slab(), {&tool, 1}, {}, work, smooth);
         CHECK(slide.contact.tool[0].normal_N == doctest::Approx(smooth.tool[0].normal_N).epsilon(1e-6));
-        CHECK(std::abs(slide.contact.tool[0].tangential_x_N - smooth.tool[0].tangential_x_N) < 1e-6 * smooth.tool[0].normal_N);
+        CHECK(std::abs(slide.contact.tool[0].tangential_x_N - smooth.tool[0].tangential_x_N) <
+              1e-6 * smooth.tool[0].normal_N);
         CHECK(slide.contact.touch == smooth.touch);
     }
 }
@@ -62,8 +62,12 @@ TEST_CASE("friction: sticks first, then slides at mu N, against the motion in ev
         const double uy = std::sin(turn);
         slide.to(0.05, 0.05, 0.002, mu);
         slide.to(0.05 + 2e-5 * ux, 0.05 + 2e-5 * uy, 0.002, mu);
-        const auto along = [&] { return ux * slide.contact.tool[0].tangential_x_N + uy * slide.contact.tool[0].tangential_y_N; };
-        const auto across = [&] { return -uy * slide.contact.tool[0].tangential_x_N + ux * slide.contact.tool[0].tangential_y_N; };
+        const auto along = [&] {
+            return ux * slide.contact.tool[0].tangential_x_N + uy * slide.contact.tool[0].tangential_y_N;
+        };
+        const auto across = [&] {
+            return -uy * slide.contact.tool[0].tangential_x_N + ux * slide.contact.tool[0].tangential_y_N;
+        };
         const double stuck = along();
         CHECK(stuck > 0.0);
         CHECK(stuck < 0.3 * mu * slide.contact.tool[0].normal_N);
@@ -105,5 +109,7 @@ TEST_CASE("friction: bad poses hold, a compliance without tangential part is ref
     CHECK(slide.contact.tool[0].normal_N == force);
     Compliance normal_only = slab();
     normal_only.full_m_per_N.resize(0, 0);
-    CHECK_THROWS_AS(slide_to(normal_only, {kBall, {0.05, 0.05, 0.002}}, {}, slide.work, slide.state, slide.contact), LoadError);
+    CHECK_THROWS_AS(
+        slide_to(normal_only, {kBall, {0.05, 0.05, 0.002}}, {}, slide.work, slide.state, slide.contact),
+        LoadError);
 }

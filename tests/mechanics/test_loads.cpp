@@ -1,13 +1,11 @@
-#include "mechanics/loads.h"
-
-#include <doctest/doctest.h>
-
 #include <algorithm>
+#include <doctest/doctest.h>
 #include <limits>
 #include <numbers>
 #include <random>
 
 #include "mechanics/error.h"
+#include "mechanics/loads.h"
 #include "tests/mechanics/slab.h"
 
 using namespace palpa::mechanics;
@@ -34,8 +32,10 @@ void check_exact(const Mesh& mesh, const ParabolicPressure& pressure) {
     CAPTURE(pressure.centre_m[0]);
     CAPTURE(pressure.centre_m[1]);
     CAPTURE(pressure.diameter_m);
-    const double Pmax = 8.0 * pressure.force_N / (std::numbers::pi * pressure.diameter_m * pressure.diameter_m);
-    CHECK(Pmax * std::numbers::pi * pressure.diameter_m * pressure.diameter_m / 8.0 == doctest::Approx(pressure.force_N).epsilon(1e-14));
+    const double Pmax =
+        8.0 * pressure.force_N / (std::numbers::pi * pressure.diameter_m * pressure.diameter_m);
+    CHECK(Pmax * std::numbers::pi * pressure.diameter_m * pressure.diameter_m / 8.0 ==
+          doctest::Approx(pressure.force_N).epsilon(1e-14));
     for (const LoadShare share : {LoadShare::consistent, LoadShare::thirds}) {
         const PressureLoad load = parabolic_load(mesh, outer, pressure, share);
         CHECK(std::abs(-load.force_N.row(2).sum() / pressure.force_N - 1.0) < 1e-10);
@@ -45,7 +45,10 @@ void check_exact(const Mesh& mesh, const ParabolicPressure& pressure) {
         if (share == LoadShare::thirds) continue;
         // first moment about the disc's centre, in radii
         for (int c = 0; c < 2; ++c) {
-            const double moment = (load.force_N.row(2).array() * (mesh.nodes_m.row(c).array() - pressure.centre_m[static_cast<std::size_t>(c)])).sum();
+            const double moment =
+                (load.force_N.row(2).array() *
+                 (mesh.nodes_m.row(c).array() - pressure.centre_m[static_cast<std::size_t>(c)]))
+                    .sum();
             CHECK(std::abs(moment) / (pressure.force_N * 0.5 * pressure.diameter_m) < 1e-9);
         }
     }
@@ -58,14 +61,17 @@ TEST_CASE("hard case 19: the load is exact for any mesh and centre, even a disc 
     std::uniform_real_distribution<double> place(0.03, 0.07);
     std::uniform_real_distribution<double> logarithm(std::log(0.0005), std::log(0.05));
     for (unsigned trial = 0; trial < 25; ++trial) {
-        const ParabolicPressure pressure{Side::zmax, {place(random), place(random)}, std::exp(logarithm(random)), 0.7};
+        const ParabolicPressure pressure{
+            Side::zmax, {place(random), place(random)}, std::exp(logarithm(random)), 0.7};
         check_exact(jittered(true, trial, 0.003), pressure);
         check_exact(jittered(false, trial, 0.003), pressure);
         check_exact(jittered(false, trial, 0.0), pressure);
     }
     const double h = 0.1 / 9.0;
-    for (const auto& centre : {std::array{4.0 * h, 5.0 * h}, std::array{4.0 * h, 4.5 * h}, std::array{4.5 * h, 4.5 * h}}) {
-        for (const double diameter : {1e-4, 0.5 * h, h, 2.0 * h, 0.04}) {  // corner, edge, diagonal; touching circles
+    for (const auto& centre :
+         {std::array{4.0 * h, 5.0 * h}, std::array{4.0 * h, 4.5 * h}, std::array{4.5 * h, 4.5 * h}}) {
+        for (const double diameter :
+             {1e-4, 0.5 * h, h, 2.0 * h, 0.04}) {  // corner, edge, diagonal; touching circles
             check_exact(jittered(true, 0, 0.0), {Side::zmax, centre, diameter, 0.025});
             check_exact(jittered(false, 0, 0.0), {Side::zmax, centre, diameter, 0.025});
         }
@@ -75,12 +81,15 @@ TEST_CASE("hard case 19: the load is exact for any mesh and centre, even a disc 
 TEST_CASE("hard case 19: off the mesh only the inside share acts, and it is flagged") {
     const Mesh mesh = jittered(true, 1, 0.003);
     const Faces outer = boundary_faces(mesh);
-    const PressureLoad half = parabolic_load(mesh, outer, {Side::zmax, {0.0, 0.05}, 0.02, 1.0}, LoadShare::consistent);
+    const PressureLoad half =
+        parabolic_load(mesh, outer, {Side::zmax, {0.0, 0.05}, 0.02, 1.0}, LoadShare::consistent);
     CHECK(half.applied_N == doctest::Approx(0.5).epsilon(1e-10));
     CHECK(half.partial);
-    const PressureLoad quarter = parabolic_load(mesh, outer, {Side::zmax, {0.1, 0.1}, 0.02, 1.0}, LoadShare::thirds);
+    const PressureLoad quarter =
+        parabolic_load(mesh, outer, {Side::zmax, {0.1, 0.1}, 0.02, 1.0}, LoadShare::thirds);
     CHECK(quarter.applied_N == doctest::Approx(0.25).epsilon(1e-10));
-    const PressureLoad none = parabolic_load(mesh, outer, {Side::zmax, {0.2, 0.2}, 0.02, 1.0}, LoadShare::consistent);
+    const PressureLoad none =
+        parabolic_load(mesh, outer, {Side::zmax, {0.2, 0.2}, 0.02, 1.0}, LoadShare::consistent);
     CHECK(none.applied_N == 0.0);
     CHECK(none.partial);
 }
@@ -102,11 +111,13 @@ TEST_CASE("parabolic load: moved and turned meshes carry the same forces, all si
     const Faces outer = boundary_faces(mesh);
     std::vector<double> first;
     for (const Side side : {Side::xmin, Side::xmax, Side::ymin, Side::ymax, Side::zmin, Side::zmax}) {
-        const PressureLoad load = parabolic_load(mesh, outer, {side, {0.043, 0.06}, 0.03, 1.0}, LoadShare::consistent);
+        const PressureLoad load =
+            parabolic_load(mesh, outer, {side, {0.043, 0.06}, 0.03, 1.0}, LoadShare::consistent);
         const double sign = is_max(side) ? -1.0 : 1.0;
         CHECK(load.force_N.row(axis_of(side)).sum() * sign == doctest::Approx(1.0).epsilon(1e-12));
         std::vector<double> forces;
-        for (Eigen::Index i = 0; i < load.force_N.cols(); ++i) forces.push_back(std::abs(load.force_N(axis_of(side), i)));
+        for (Eigen::Index i = 0; i < load.force_N.cols(); ++i)
+            forces.push_back(std::abs(load.force_N(axis_of(side), i)));
         std::sort(forces.begin(), forces.end());
         if (first.empty()) first = forces;
         for (std::size_t i = 0; i < forces.size(); ++i) CHECK(std::abs(forces[i] - first[i]) < 1e-13);
@@ -116,10 +127,13 @@ TEST_CASE("parabolic load: moved and turned meshes carry the same forces, all si
 TEST_CASE("loads: traction adds up, wrong numbers are refused") {
     const Mesh mesh = hex_box({{0.1, 0.2, 0.05}, {3, 3, 3}, std::nullopt});
     const Faces outer = boundary_faces(mesh);
-    const Eigen::Vector3d total = traction_load(mesh, faces_on(mesh, outer, Side::zmax), {1.0, -2.0, 3.0}).rowwise().sum();
+    const Eigen::Vector3d total =
+        traction_load(mesh, faces_on(mesh, outer, Side::zmax), {1.0, -2.0, 3.0}).rowwise().sum();
     CHECK((total - 0.02 * Eigen::Vector3d(1.0, -2.0, 3.0)).norm() < 1e-15);
     const double nan = std::numeric_limits<double>::quiet_NaN();
     CHECK_THROWS_AS(traction_load(mesh, outer, {nan, 0.0, 0.0}), LoadError);
-    CHECK_THROWS_AS(parabolic_load(mesh, outer, {Side::zmax, {0.05, 0.05}, 0.0, 1.0}, LoadShare::consistent), LoadError);
-    CHECK_THROWS_AS(parabolic_load(mesh, outer, {Side::zmax, {nan, 0.05}, 0.01, 1.0}, LoadShare::consistent), LoadError);
+    CHECK_THROWS_AS(parabolic_load(mesh, outer, {Side::zmax, {0.05, 0.05}, 0.0, 1.0}, LoadShare::consistent),
+                    LoadError);
+    CHECK_THROWS_AS(parabolic_load(mesh, outer, {Side::zmax, {nan, 0.05}, 0.01, 1.0}, LoadShare::consistent),
+                    LoadError);
 }

@@ -1,17 +1,16 @@
-#include "mechanics/material.h"
-
 #include <doctest/doctest.h>
-
 #include <limits>
 
 #include "mechanics/error.h"
+#include "mechanics/material.h"
 
 using namespace palpa::mechanics;
 
 TEST_CASE("hard case 15: moduli that no solid has are refused with their entry") {
     const double inf = std::numeric_limits<double>::infinity();
     const double nan = std::numeric_limits<double>::quiet_NaN();
-    const Material bad[] = {{2500.0, 0.5}, {2500.0, 0.51}, {0.0, 0.3}, {-1.0, 0.3}, {nan, 0.3}, {2500.0, nan}, {inf, 0.3}, {1.0, -1.0}};
+    const Material bad[] = {{2500.0, 0.5}, {2500.0, 0.51}, {0.0, 0.3}, {-1.0, 0.3},
+                            {nan, 0.3},    {2500.0, nan},  {inf, 0.3}, {1.0, -1.0}};
     for (const Material& m : bad) {
         CAPTURE(m.young_Pa);
         CAPTURE(m.poisson);

@@ -1,10 +1,8 @@
-#include "mechanics/solver.h"
-
 #include <doctest/doctest.h>
-
 #include <thread>
 
 #include "mechanics/error.h"
+#include "mechanics/solver.h"
 #include "tests/mechanics/slab.h"
 
 using namespace palpa::mechanics;
@@ -12,7 +10,8 @@ using namespace palpa::mechanics;
 namespace {
 
 LowerMatrix slab_matrix(double poisson) {
-    const Problem problem = slab_problem(hex_box(graded_box(0.1, 0.05, 8, 5, 0.005)), Element::hex8_bbar, {2500.0, poisson});
+    const Problem problem =
+        slab_problem(hex_box(graded_box(0.1, 0.05, 8, 5, 0.005)), Element::hex8_bbar, {2500.0, poisson});
     const LowerMatrix K = stiffness_N_per_m(problem.mesh, problem.element, problem.materials);
     return reduce(K, make_reduction(problem.mesh, problem.supports, {}));
 }

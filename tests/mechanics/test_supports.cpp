@@ -1,10 +1,8 @@
-#include "mechanics/supports.h"
-
 #include <doctest/doctest.h>
-
 #include <string>
 
 #include "mechanics/error.h"
+#include "mechanics/supports.h"
 #include "tests/mechanics/slab.h"
 
 using namespace palpa::mechanics;
@@ -121,7 +119,8 @@ TEST_CASE("rigid bodies: six unknowns each, held completely or not at all") {
     Supports bottom;
     fix(nodes_of(faces_on(mesh, outer, Side::zmin)), "xyz", 0.0, bottom);
     std::vector<bool> rigid(64, false);
-    rigid[static_cast<std::size_t>(16 + 5)] = rigid[static_cast<std::size_t>(32 + 5)] = true;  // two cells, inside
+    rigid[static_cast<std::size_t>(16 + 5)] = rigid[static_cast<std::size_t>(32 + 5)] =
+        true;  // two cells, inside
     const Reduction inside = make_reduction(mesh, bottom, rigid);
     CHECK(inside.equations == 3 * (125 - 25 - 12) + 6);
     std::vector<bool> held(64, false);
