@@ -72,7 +72,7 @@ class Percentiles {
 Tool tool_at(int i, double depth_m) {
     const double t = 1e-3 * i;
     return {kBall,
-            {0.05 + 0.01 * std::sin(3.0 * t), 0.05 + 0.01 * std::sin(4.1 * t),
+            {0.05 + 0.005 * std::sin(3.0 * t), 0.05 + 0.005 * std::sin(4.1 * t),
              depth_m * (1.0 + 0.1 * std::sin(7.0 * t))}};
 }
 
