@@ -7,6 +7,11 @@ target_compile_options(palpa_flags INTERFACE
     -Wcast-align -Wunused -Woverloaded-virtual -Wdouble-promotion -Wformat=2 -Werror)
 # One machine and build give one result: no contraction into fused operations behind our back.
 target_compile_options(palpa_flags INTERFACE -ffp-contract=off)
+# GCC 12.2 (Debian 12) makes wrong code at -O2: its loop vectoriser swaps neighbouring stores of a strided pattern
+# (p[6] and p[7] of eight, in hex_box). Eigen's explicit vector code is not touched by this.
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
+    target_compile_options(palpa_flags INTERFACE -fno-tree-loop-vectorize)
+endif()
 if(PALPA_SANITIZE)
     target_compile_options(palpa_flags INTERFACE -fsanitize=${PALPA_SANITIZE} -fno-omit-frame-pointer
                                                  -fno-sanitize-recover=all)

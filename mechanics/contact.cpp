@@ -1,0 +1,326 @@
+#include "mechanics/contact.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+
+#include "mechanics/contact_geometry.h"
+
+namespace palpa::mechanics {
+namespace {
+
+using Eigen::Index;
+
+constexpr double kGapTolerance = 1e-10;    // of the greatest penetration; round-off of C p is 1e-13 of it
+constexpr double kRegularisation = 1e-12;  // of the mean diagonal: keeps doubled nodes apart
+constexpr double kForceTolerance = 1e-9;
+constexpr int kMostSearchSteps = 60;
+
+std::size_t at(int i) {
+    return static_cast<std::size_t>(i);
+}
+
+double compliance_of(const Compliance& c, const ContactWork& w, int i, int j) {
+    return c.normal_m_per_N(w.candidate[at(i)], w.candidate[at(j)]);
+}
+
+// Starts from the last set where at least half of it is still within reach, else from Hertz's guess: on a
+// half-space the nodes whose penetration exceeds half the depth.
+void first_guess(std::span<const Tool> tools, ContactWork& w) {
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < w.candidate.size(); ++i) {
+        w.in_contact[i] = w.was_in_contact[at(w.candidate[i])];
+        kept += w.in_contact[i] ? 1u : 0u;
+    }
+    const auto before =
+        static_cast<std::size_t>(std::count(w.was_in_contact.begin(), w.was_in_contact.end(), char{1}));
+    if (kept > 0 && 2 * kept >= before) return;
+    for (std::size_t i = 0; i < w.candidate.size(); ++i) {
+        w.in_contact[i] = w.delta_m[i] > 0.5 * tools[at(w.tool_of[i])].pose.depth_m ? char{1} : char{0};
+    }
+}
+
+void list_active(ContactWork& w) {
+    w.active.clear();
+    for (int i = 0; i < static_cast<int>(w.candidate.size()); ++i) {
+        if (w.in_contact[at(i)]) w.active.push_back(i);
+    }
+}
+
+// Cholesky factor of C on the active nodes, unless it is the one at hand.
+void factor_active(const Compliance& c, ContactWork& w) {
+    const bool same = w.factored.size() == w.active.size() &&
+                      std::equal(w.active.begin(), w.active.end(), w.factored.begin(),
+                                 [&](int i, int touch) { return w.candidate[at(i)] == touch; });
+    if (same) return;
+    const auto n = static_cast<Index>(w.active.size());
+    if (w.factor.rows() < n) {
+        w.factor.resize(n + n / 2, n + n / 2);
+        w.rhs.resize(n + n / 2);
+    }
+    double trace = 0.0;
+    for (Index j = 0; j < n; ++j) {
+        const double* column =
+            c.normal_m_per_N.col(w.candidate[at(w.active[static_cast<std::size_t>(j)])]).data();
+        for (Index i = j; i < n; ++i)
+            w.factor(i, j) = column[w.candidate[at(w.active[static_cast<std::size_t>(i)])]];
+        trace += w.factor(j, j);
+    }
+    w.factor.topLeftCorner(n, n).diagonal().array() +=
+        kRegularisation * trace / static_cast<double>(std::max<Index>(n, 1));
+    Eigen::Ref<Eigen::MatrixXd> block = w.factor.topLeftCorner(n, n);
+    Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>> in_place(block);
+    w.factored.clear();
+    for (const int i : w.active) w.factored.push_back(w.candidate[at(i)]);
+}
+
+// p on the active nodes from C_AA p = delta_A, 0 elsewhere.
+void solve_active(const Compliance& c, ContactWork& w) {
+    factor_active(c, w);
+    const auto n = static_cast<Index>(w.active.size());
+    for (Index i = 0; i < n; ++i) w.rhs(i) = w.delta_m[at(w.active[static_cast<std::size_t>(i)])];
+    const auto L = w.factor.topLeftCorner(n, n);
+    L.triangularView<Eigen::Lower>().solveInPlace(w.rhs.head(n));
+    L.triangularView<Eigen::Lower>().transpose().solveInPlace(w.rhs.head(n));
+    std::fill(w.p_N.begin(), w.p_N.end(), 0.0);
+    for (Index i = 0; i < n; ++i) w.p_N[at(w.active[static_cast<std::size_t>(i)])] = w.rhs(i);
+}
+
+// g = C p - delta at every candidate.
+void compute_gaps(const Compliance& c, ContactWork& w) {
+    const int n = static_cast<int>(w.candidate.size());
+    for (int i = 0; i < n; ++i) w.gap_m[at(i)] = -w.delta_m[at(i)];
+    for (const int j : w.active) {
+        const double* column = c.normal_m_per_N.col(w.candidate[at(j)]).data();
+        const double p = w.p_N[at(j)];
+        for (int i = 0; i < n; ++i) w.gap_m[at(i)] += column[w.candidate[at(i)]] * p;
+    }
+}
+
+double gap_tolerance(const ContactWork& w) {
+    return w.delta_m.empty() ? 0.0 : kGapTolerance * *std::max_element(w.delta_m.begin(), w.delta_m.end());
+}
+
+// Lets go of nodes that pull, takes in nodes that are penetrated. Returns whether anything changed.
+bool change_set(double tolerance_m, ContactWork& w) {
+    bool changed = false;
+    for (std::size_t i = 0; i < w.candidate.size(); ++i) {
+        const bool wanted = w.in_contact[i] ? w.p_N[i] >= 0.0 : w.gap_m[i] < -tolerance_m;
+        if (wanted == (w.in_contact[i] != 0)) continue;
+        w.in_contact[i] = wanted ? 1 : 0;
+        changed = true;
+    }
+    return changed;
+}
+
+bool settle(const Compliance& c, int max_changes, ContactWork& w, int& changes) {
+    const double tolerance_m = gap_tolerance(w);
+    for (int k = 0; k < max_changes; ++k) {
+        list_active(w);
+        solve_active(c, w);
+        compute_gaps(c, w);
+        if (!change_set(tolerance_m, w)) return true;
+        ++changes;
+    }
+    return false;
+}
+
+// Projected Gauss-Seidel: p_i <- max(0, p_i - g_i / C_ii), then one direct solve on the nodes it left
+// pressing.
+bool settle_by_sweeps(const Compliance& c, int sweeps, ContactWork& w, int& changes) {
+    const int n = static_cast<int>(w.candidate.size());
+    std::fill(w.p_N.begin(), w.p_N.end(), 0.0);
+    for (int i = 0; i < n; ++i) w.gap_m[at(i)] = -w.delta_m[at(i)];
+    for (int sweep = 0; sweep < sweeps; ++sweep) {
+        for (int i = 0; i < n; ++i) {
+            const double p = std::max(0.0, w.p_N[at(i)] - w.gap_m[at(i)] / compliance_of(c, w, i, i));
+            const double dp = p - w.p_N[at(i)];
+            if (dp == 0.0) continue;
+            w.p_N[at(i)] = p;
+            for (int j = 0; j < n; ++j) w.gap_m[at(j)] += compliance_of(c, w, j, i) * dp;
+        }
+    }
+    for (int i = 0; i < n; ++i) w.in_contact[at(i)] = w.p_N[at(i)] > 0.0 ? 1 : 0;
+    w.swept_N.assign(w.p_N.begin(), w.p_N.end());
+    if (settle(c, 1, w, changes)) return true;
+    w.p_N = w.swept_N;
+    for (int i = 0; i < n; ++i) w.in_contact[at(i)] = w.p_N[at(i)] > 0.0 ? 1 : 0;
+    list_active(w);
+    compute_gaps(c, w);
+    return false;
+}
+
+void remember(ContactWork& w) {
+    std::fill(w.was_in_contact.begin(), w.was_in_contact.end(), char{0});
+    for (const int i : w.active) w.was_in_contact[at(w.candidate[at(i)])] = 1;
+}
+
+void collect(const Compliance& c, std::span<const Tool> tools, const ContactWork& w, Contact& out) {
+    out.touch.clear();
+    out.by_tool.clear();
+    out.force_N.clear();
+    out.energy_J = 0.0;
+    for (const int i : w.active) {
+        const int touch = w.candidate[at(i)];
+        const int which = w.tool_of[at(i)];
+        const double p = w.p_N[at(i)];
+        out.touch.push_back(touch);
+        out.by_tool.push_back(which);
+        out.force_N.push_back(p);
+        out.energy_J += 0.5 * p * (w.delta_m[at(i)] + w.gap_m[at(i)]);
+        ToolForce& force = out.tool[at(which)];
+        const Pose& pose = tools[at(which)].pose;
+        force.normal_N += p;
+        force.tangential_x_N += p * w.slope_x[at(i)];
+        force.tangential_y_N += p * w.slope_y[at(i)];
+        force.moment_x_Nm += p * (c.position_m(1, touch) - pose.y_m);
+        force.moment_y_Nm -= p * (c.position_m(0, touch) - pose.x_m);
+        force.area_m2 += c.area_m2(touch);
+    }
+    const double least = w.gap_m.empty() ? 0.0 : *std::min_element(w.gap_m.begin(), w.gap_m.end());
+    out.violation_m = std::max(0.0, -least);
+}
+
+// d(normal force)/d(depth) = 1^T C_AA^-1 1 while the set stays as it is.
+double stiffness_of_set(const Compliance& c, ContactWork& w) {
+    const auto n = static_cast<Index>(w.active.size());
+    if (n == 0) return 0.0;
+    factor_active(c, w);
+    w.rhs.head(n).setOnes();
+    w.factor.topLeftCorner(n, n).triangularView<Eigen::Lower>().solveInPlace(w.rhs.head(n));
+    return w.rhs.head(n).squaredNorm();
+}
+
+double limited_depth_m(const Compliance& c, const ContactOptions& options) {
+    return std::min(options.max_depth_m, c.thickness_m);
+}
+
+bool all_finite(std::span<const Tool> tools) {
+    return std::all_of(tools.begin(), tools.end(), [](const Tool& t) {
+        return std::isfinite(t.pose.x_m) && std::isfinite(t.pose.y_m) && std::isfinite(t.pose.depth_m);
+    });
+}
+
+// Solves for the tools in work.tools. Nodes beyond the geometric reach count too, as soft thin layers bulge
+// up to the tool: the margin grows until no node in contact lies near its rim.
+void solve_contact(const Compliance& c, const ContactOptions& options, ContactWork& w, Contact& out) {
+    out.changes = 0;
+    for (double margin = 0.25;; margin *= 2.0) {
+        find_candidates(c, w.tools, margin, w);
+        first_guess(w.tools, w);
+        bool settled = settle(c, options.max_changes, w, out.changes);
+        if (!settled) settled = settle_by_sweeps(c, options.sweeps, w, out.changes);
+        out.flags.not_settled = !settled;
+        remember(w);
+        const bool at_rim = std::any_of(w.active.begin(), w.active.end(), [&](int i) {
+            return w.delta_m[at(i)] < -0.5 * margin * w.tools[at(w.tool_of[at(i)])].pose.depth_m;
+        });
+        if (!at_rim || margin > 8.0) break;
+    }
+    collect(c, w.tools, w, out);
+}
+
+}  // namespace
+
+void prepare(const Compliance& c, ContactWork& w) {
+    const double probe = c.normal_m_per_N(0, 0) + c.normal_m_per_N(c.n_touch / 2, c.n_touch - 1);
+    if (w.matrix == c.normal_m_per_N.data() && w.probe_m_per_N == probe &&
+        w.was_in_contact.size() == at(c.n_touch))
+        return;
+    w.matrix = c.normal_m_per_N.data();
+    w.probe_m_per_N = probe;
+    w.was_in_contact.assign(at(c.n_touch), 0);
+    w.factored.clear();
+    for (auto* list : {&w.delta_m, &w.slope_x, &w.slope_y, &w.p_N, &w.swept_N, &w.gap_m})
+        list->reserve(at(c.n_touch));
+    for (auto* list : {&w.candidate, &w.tool_of, &w.factored, &w.active}) list->reserve(at(c.n_touch));
+    w.in_contact.reserve(at(c.n_touch));
+    const auto touched = c.position_m.leftCols(c.n_touch);
+    w.touch_box_m = {touched.row(0).minCoeff(), touched.row(0).maxCoeff(), touched.row(1).minCoeff(),
+                     touched.row(1).maxCoeff()};
+}
+
+void hold(std::size_t n_tools, Contact& contact) {
+    contact.flags.held = true;
+    if (contact.tool.size() != n_tools) contact.tool.assign(n_tools, {});  // nothing valid yet: no force
+}
+
+ContactWork make_contact_work(const Compliance& compliance, int most_in_contact) {
+    ContactWork work;
+    prepare(compliance, work);
+    work.factor.resize(most_in_contact, most_in_contact);
+    work.rhs.resize(most_in_contact);
+    return work;
+}
+
+void press_to_depth(const Compliance& compliance, std::span<const Tool> tools, const ContactOptions& options,
+                    ContactWork& work, Contact& contact) {
+    if (!all_finite(tools)) {
+        hold(tools.size(), contact);
+        return;
+    }
+    prepare(compliance, work);
+    contact.flags = {};
+    contact.tool.assign(tools.size(), {});
+    work.tools.assign(tools.begin(), tools.end());
+    const double limit_m = limited_depth_m(compliance, options);
+    for (std::size_t i = 0; i < tools.size(); ++i) {
+        Pose& pose = work.tools[i].pose;
+        contact.flags.capped = contact.flags.capped || pose.depth_m > limit_m;
+        pose.depth_m = std::clamp(pose.depth_m, 0.0, limit_m);
+        contact.tool[i].depth_m = pose.depth_m;
+        contact.flags.over_edge = contact.flags.over_edge || reaches_beyond(work.tools[i], work.touch_box_m);
+    }
+    solve_contact(compliance, options, work, contact);
+}
+
+void press_with_force(const Compliance& compliance, const Tool& tool, double force_N,
+                      const ContactOptions& options, ContactWork& work, Contact& contact) {
+    // F(d) is convex and rising, linear while the set stays: Newton from above reaches the root in a few
+    // steps, and the bracket holds it where nodes join and leave.
+    Tool trial = tool;
+    const bool valid = std::isfinite(force_N) && all_finite({&trial, 1});
+    if (!valid) {
+        hold(1, contact);
+        return;
+    }
+    const double limit_m = limited_depth_m(compliance, options);
+    double low = 0.0;
+    double high = limit_m;
+    double depth = tool.pose.depth_m > 0.0 ? std::min(tool.pose.depth_m, limit_m)
+                                           : std::min(1e-3 * tool.indenter.radius_m, limit_m);
+    if (force_N <= 0.0) depth = 0.0;
+    for (int i = 0; i < kMostSearchSteps; ++i) {
+        trial.pose.depth_m = depth;
+        press_to_depth(compliance, {&trial, 1}, options, work, contact);
+        contact.stiffness_N_per_m = stiffness_of_set(compliance, work);
+        const double miss = contact.tool[0].normal_N - force_N;
+        if (std::abs(miss) <= kForceTolerance * std::abs(force_N) || force_N <= 0.0) return;
+        if (miss < 0.0 && depth >= limit_m) {
+            contact.flags.capped = true;
+            return;
+        }
+        (miss < 0.0 ? low : high) = depth;
+        double next =
+            contact.stiffness_N_per_m > 0.0 ? depth - miss / contact.stiffness_N_per_m : 2.0 * depth + 1e-6;
+        // shallow starts overshoot by Newton, as F rises faster than linearly: at most four times deeper at
+        // once
+        if (miss < 0.0) next = std::min(next, std::max(4.0 * depth, 1e-6));
+        if (!(next > low && next < high))
+            next = next >= high && high >= limit_m ? limit_m : 0.5 * (low + high);
+        depth = next;
+    }
+}
+
+void surface_depression_m(const Compliance& compliance, const Contact& contact, Eigen::VectorXd& out_m) {
+    out_m.setZero(compliance.normal_m_per_N.rows());
+    for (std::size_t i = 0; i < contact.touch.size(); ++i) {
+        out_m.noalias() += contact.force_N[i] * compliance.normal_m_per_N.col(contact.touch[i]);
+    }
+}
+
+double pressure_Pa(const Compliance& compliance, const Contact& contact, std::size_t i) {
+    return contact.force_N[i] / compliance.area_m2(contact.touch[i]);
+}
+
+}  // namespace palpa::mechanics

@@ -1,0 +1,118 @@
+// MUMPS 5.5, sequential build (libmumps-seq). sym = 1: positive definite, lower triangle, no pivoting.
+
+#include "mechanics/solver_mumps.h"
+
+#include <algorithm>
+
+#include "mechanics/error.h"
+#include "mechanics/solver_backends.h"
+#include "mechanics/text.h"
+
+extern "C" void openblas_set_num_threads(int);
+
+namespace palpa::mechanics {
+namespace {
+
+constexpr int kInit = -1;
+constexpr int kEnd = -2;
+constexpr int kAnalyse = 1;
+constexpr int kFactor = 2;
+constexpr int kSolve = 3;
+constexpr int kErrorNoMemory = -9;
+
+// icntl as the users' guide numbers it, from 1
+MUMPS_INT& icntl(DMUMPS_STRUC_C& id, int i) {
+    return id.icntl[i - 1];
+}
+
+void call(DMUMPS_STRUC_C& id, int job) {
+    id.job = job;
+    dmumps_c(&id);
+}
+
+void check(const DMUMPS_STRUC_C& id, const char* what) {
+    const int code = id.infog[0];
+    if (code >= 0) return;
+    const char* meaning = code == -10 || code == -40              ? "the matrix is not positive definite"
+                          : code == -13 || code == kErrorNoMemory ? "not enough memory"
+                                                                  : "see its users' guide";
+    throw SolverError(text("MUMPS: ", what, " of ", id.n, " equations failed with ", code, " (detail ",
+                           id.infog[1], "): ", meaning),
+                      code);
+}
+
+}  // namespace
+
+std::mutex& mumps_mutex() {
+    static std::mutex mutex;
+    return mutex;
+}
+
+MumpsFactor::MumpsFactor() {
+    const std::scoped_lock lock(mumps_mutex());
+    openblas_set_num_threads(1);
+    id.sym = 1;
+    id.par = 1;
+    id.comm_fortran = -987654;  // MPI_COMM_WORLD of the sequential stub
+    call(id, kInit);
+    for (int i = 1; i <= 4; ++i) icntl(id, i) = i == 4 ? 0 : -1;  // silent
+    icntl(id, 7) = 5;    // METIS; MUMPS falls back by itself where it is missing
+    icntl(id, 14) = 30;  // per cent of memory beyond the estimate
+    icntl(id, 16) = 1;   // threads
+}
+
+MumpsFactor::~MumpsFactor() {
+    const std::scoped_lock lock(mumps_mutex());
+    call(id, kEnd);
+}
+
+void analyse(const LowerMatrix& A, MumpsFactor& factor) {
+    const std::scoped_lock lock(mumps_mutex());
+    factor.row.clear();
+    factor.column.clear();
+    for (int j = 0; j < A.cols(); ++j) {
+        for (LowerMatrix::InnerIterator it(A, j); it; ++it) {
+            factor.row.push_back(static_cast<MUMPS_INT>(it.row()) + 1);
+            factor.column.push_back(j + 1);
+        }
+    }
+    DMUMPS_STRUC_C& id = factor.id;
+    id.n = static_cast<MUMPS_INT>(A.cols());
+    id.nnz = static_cast<MUMPS_INT8>(factor.row.size());
+    id.irn = factor.row.data();
+    id.jcn = factor.column.data();
+    call(id, kAnalyse);
+    check(id, "analysis");
+}
+
+void refactor(const LowerMatrix& A, MumpsFactor& factor) {
+    const std::scoped_lock lock(mumps_mutex());
+    factor.value.assign(A.valuePtr(), A.valuePtr() + A.nonZeros());
+    DMUMPS_STRUC_C& id = factor.id;
+    id.a = factor.value.data();
+    call(id, kFactor);
+    for (int extra = 60; id.infog[0] == kErrorNoMemory && extra <= 480; extra *= 2) {
+        icntl(id, 14) = extra;
+        call(id, kFactor);
+    }
+    check(id, "factorisation");
+    const int negative = id.infog[11];  // counted, but no error by itself
+    if (negative > 0) {
+        throw SolverError(text("Cholesky: the matrix of ", id.n, " equations is not positive definite, ",
+                               negative, " negative pivots"),
+                          -40);
+    }
+}
+
+void solve_in_place(MumpsFactor& factor, Eigen::Ref<Eigen::MatrixXd> block) {
+    const std::scoped_lock lock(mumps_mutex());
+    DMUMPS_STRUC_C& id = factor.id;
+    id.nrhs = static_cast<MUMPS_INT>(block.cols());
+    id.lrhs = static_cast<MUMPS_INT>(block.outerStride());
+    id.rhs = block.data();
+    icntl(id, 27) = std::max(1, id.nrhs);  // all columns of the block in one sweep
+    call(id, kSolve);
+    check(id, "solution");
+}
+
+}  // namespace palpa::mechanics
