@@ -85,8 +85,9 @@ void Gui::begin_frame(double dt_s) {
     areas_.clear();
 }
 
-void Gui::end_frame() {
-    ImGui::Render();
+void Gui::end_frame() { ImGui::Render(); }
+
+void Gui::draw() {
     ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
     while (glGetError() != GL_NO_ERROR) {
         // the packaged backend asks desktop GL questions that OpenGL ES answers with an error

@@ -22,7 +22,8 @@ class Gui {
     Gui& operator=(const Gui&) = delete;
 
     void begin_frame(double dt_s);
-    void end_frame();  // draws
+    void end_frame();  // closes the panels
+    void draw();       // hands them to GL
     void claim(const PanelArea& area) { areas_.push_back(area); }
     float scale() const { return scale_; }
 

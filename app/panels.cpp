@@ -59,7 +59,7 @@ void cost_lines(const Plan& plan, const State& state, const FrameTimes& times) {
         }
     }
     ImGui::Text("sample to frame %.1f ms", 1e-6 * times.latency.quantile_ns(0.5));
-    ImGui::Text("frame, CPU %.2f ms", 1e-6 * times.cpu.quantile_ns(0.5));
+    ImGui::Text("frame %.2f ms, GL %.1f ms", 1e-6 * times.cpu.quantile_ns(0.5), 1e-6 * times.gl.quantile_ns(0.5));
     ImGui::Text("%.0f frames/s, %lld dropped", times.frames_per_s, static_cast<long long>(state.counters.dropped_steps));
 }
 

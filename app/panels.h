@@ -20,7 +20,8 @@ struct PanelOptions {
 // Times of the frame loop, for the cost lines.
 struct FrameTimes {
     Meter latency;    // sample to the end of the frame that shows it
-    Meter cpu;        // a frame without rasterising
+    Meter cpu;        // a frame up to the calls of GL
+    Meter gl;         // the calls of GL; with software rendering that is where the drawing is done
     double frames_per_s = 0.0;
 };
 

@@ -7,14 +7,22 @@
 
 namespace palpa {
 
-void draw_frame(const Scene& scene, const Plan& plan, State& state, double now_s, const FrameTimes& times,
-                TissueDrawer& tissue, Gui& gui, PanelOptions& options) {
+void draw_frame(const Scene& scene, const Plan& plan, double now_s, double dt_s, TissueDrawer& tissue, Gui& gui,
+                PanelOptions& options, State& state, FrameTimes& times) {
+    const std::int64_t began_ns = steady_ns();
+    gui.begin_frame(dt_s);
     const Avatar avatar = avatar_at(scene, state, now_s);
     const TissueView view = tissue_view(scene, state);
     const Dent dent = scene.surface ? dent_of(surface_now(scene, plan, state), avatar) : Dent{};
-    tissue.draw(view, dent, ball_of(plan, state, avatar));
+    const Ball ball = ball_of(plan, state, avatar);
     draw_marks(view, plan, state, avatar, options.show_nodules, gui.scale());
     draw_panel(scene, plan, state, avatar, times, gui, options);
+    gui.end_frame();
+    const std::int64_t built_ns = steady_ns();
+    tissue.draw(view, dent, ball);
+    gui.draw();
+    times.cpu.add_ns(static_cast<double>(built_ns - began_ns));
+    times.gl.add_ns(static_cast<double>(steady_ns() - built_ns));
 }
 
 void save_screen(const Window& window, const std::filesystem::path& png) {
@@ -30,11 +38,9 @@ void draw_picture(const Scene& scene, const Plan& plan, State& state, const std:
     Gui gui(window);
     TissueDrawer tissue;
     PanelOptions panel;
-    const FrameTimes times;
+    FrameTimes times;
     for (int i = 0; i < 2; ++i) {  // panels find their size in the first frame and show in the second
-        gui.begin_frame(1.0 / 60.0);
-        draw_frame(scene, plan, state, state.timeline.now_s, times, tissue, gui, panel);
-        gui.end_frame();
+        draw_frame(scene, plan, state.timeline.now_s, 1.0 / 60.0, tissue, gui, panel, state, times);
     }
     save_screen(window, png);
 }

@@ -8,9 +8,9 @@
 
 namespace palpa {
 
-// Draws one frame; the caller presents it. `options.show_nodules` and `show_cost` are the panel's.
-void draw_frame(const Scene& scene, const Plan& plan, State& state, double now_s, const FrameTimes& times,
-                TissueDrawer& tissue, Gui& gui, PanelOptions& options);
+// One frame: everything is built first, then handed to GL; the caller presents it.
+void draw_frame(const Scene& scene, const Plan& plan, double now_s, double dt_s, TissueDrawer& tissue, Gui& gui,
+                PanelOptions& options, State& state, FrameTimes& times);
 
 void save_screen(const Window& window, const std::filesystem::path& png);
 

@@ -66,6 +66,9 @@ void fill_normal(const Map& map, Field& field) {
         for (std::size_t cell = 0; cell < map.n_cells(); ++cell) field.normal_N[cell * n_layers + k] = layer[cell];
     }
     fill_missing(field.greatest_m, shape_of(map));
+    field.complete = std::all_of(field.measured.begin(), field.measured.end(), [](double m) { return m > 0.0; }) &&
+                     std::all_of(field.greatest_m.begin(), field.greatest_m.end(),
+                                 [&](double m) { return m == field.depths_m.back(); });
 }
 
 void fill_slopes(const Map& map, Field& field) {
@@ -178,6 +181,7 @@ Place place_at(const Field& field, const Eigen::Vector2d& p_m) {
     place.weight[1] = s * (1.0 - t);
     place.weight[2] = (1.0 - s) * t;
     place.weight[3] = s * t;
+    if (field.complete) return place;
     double measured = 0.0;
     for (std::size_t c = 0; c < 4; ++c) measured += place.weight[c] * field.measured[place.cell[c]];
     place.measured = measured >= 0.5;
@@ -185,6 +189,7 @@ Place place_at(const Field& field, const Eigen::Vector2d& p_m) {
 }
 
 double greatest_depth_m(const Field& field, const Place& place) {
+    if (field.complete) return field.depths_m.back();
     double sum = 0.0;
     for (std::size_t c = 0; c < 4; ++c) sum += place.weight[c] * field.greatest_m[place.cell[c]];
     return sum;

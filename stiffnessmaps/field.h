@@ -46,6 +46,7 @@ struct Field {
     std::vector<double> greatest_m;    // [cell] deepest measured depth
     std::vector<double> measured;      // [cell] 1 or 0
     FieldOptions options;
+    bool complete = false;             // every cell was measured down to the last depth
     bool has_rest = false;
     std::size_t isotonic_changed = 0;  // forces that had to be changed to rise with depth
 

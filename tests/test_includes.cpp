@@ -5,7 +5,6 @@
 #include <filesystem>
 #include <fstream>
 #include <map>
-#include <regex>
 #include <set>
 #include <string>
 
@@ -37,11 +36,18 @@ bool allowed(const std::string& folder, const std::string& include) {
     return may.count(first_folder(include)) > 0 || may.count(include) > 0;
 }
 
+// The path in a line `#include "path"`, or "".
+std::string included_by(const std::string& line) {
+    const auto word = line.find("#include");
+    const auto open = line.find('"', word);
+    if (word == std::string::npos || line.find_first_not_of(" \t") != word || open == std::string::npos) return "";
+    return line.substr(open + 1, line.find('"', open + 1) - open - 1);
+}
+
 }  // namespace
 
 TEST_CASE("includes: every #include is in the table of folders") {
     const fs::path root = PALPA_SOURCE_DIR;
-    const std::regex include(R"rx(^\s*#include\s+"([^"]+)")rx");
     int checked = 0;
     for (const auto& [folder, may] : kMayInclude) {
         if (!fs::exists(root / folder)) continue;
@@ -50,10 +56,9 @@ TEST_CASE("includes: every #include is in the table of folders") {
             if (extension != ".h" && extension != ".cpp") continue;
             std::ifstream file(entry.path());
             for (std::string line; std::getline(file, line);) {
-                std::smatch match;
-                if (!std::regex_search(line, match, include)) continue;
+                const std::string name = included_by(line);
+                if (name.empty()) continue;
                 ++checked;
-                const std::string name = match[1];
                 CAPTURE(entry.path().string());
                 CAPTURE(name);
                 CHECK_MESSAGE(fs::exists(root / name), "includes are written from the root of the project");
