@@ -108,6 +108,10 @@ void draw_panel(const Scene& scene, const Plan& plan, const State& state, const 
     if (scene.force_scale != 1.0) number_line("Phantom", scene.force_scale, "x force", 2);
     if (state.contact.saturated) ImGui::Text("deeper than recorded");
     if (!state.contact.measured) ImGui::Text("not measured here");
+    if (state.counters.without_level > 0) {
+        paragraph("This device reports no " + std::string(name_of(plan.profile.level)) + ", which profile " +
+                  plan.profile.id + " reads: choose another device or profile.");
+    }
     ImGui::Checkbox("Nodules", &options.show_nodules);
     ImGui::Checkbox("Cost", &options.show_cost);
     if (options.show_cost) cost_lines(plan, state, times);

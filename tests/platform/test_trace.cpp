@@ -1,0 +1,89 @@
+#include "platform/trace.h"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+#include "files/text.h"
+#include "tests/error_message.h"
+#include "tests/temporary_folder.h"
+
+using namespace palpa;
+using namespace palpa::test;
+
+namespace {
+
+Sample full() {
+    Sample s;
+    s.t_host_s = 1.0 / 3.0;
+    s.t_device_s = 1e-9;
+    s.pointer_id = -12;
+    s.tool = Tool::finger;
+    s.phase = Phase::cancel;
+    s.x_px = 640.125;
+    s.y_px = -0.5;
+    s.pressure = 1.25;
+    s.pressure_raw = 2047;
+    s.tilt_x_deg = -30;
+    s.height_px = 12.5;
+    return s;
+}
+
+// A trace of one row, written and then changed as text.
+std::string said(const std::string& from, const std::string& to, const char* file = "t.tsv") {
+    const TemporaryFolder folder;
+    {
+        TraceWriter writer(folder / "t.tsv", {1280, 800, kMissing, kMissing, "d"});
+        writer.write(full());
+    }
+    std::string text = read_text(folder / file);
+    const auto at = text.find(from);
+    REQUIRE(at != std::string::npos);
+    write_text_atomically(folder / file, text.replace(at, from.size(), to));
+    return message_of([&] { read_trace(folder / "t.tsv"); });
+}
+
+}  // namespace
+
+TEST_CASE("trace: what is written reads back to the last bit, missing values stay missing") {
+    const TemporaryFolder folder;
+    {
+        TraceWriter writer(folder / "t.tsv", {1280, 800, 276.5, 172.5, "pen \"x\""});
+        writer.write(full());
+        Sample ui;
+        ui.phase = Phase::ui;
+        ui.action = Action::resize;
+        writer.write(ui);
+        CHECK(writer.sync());
+    }
+    const Trace trace = read_trace(folder / "t.tsv");
+    REQUIRE(trace.samples.size() == 2);
+    const Sample& s = trace.samples[0];
+    CHECK(s.t_host_s == 1.0 / 3.0);
+    CHECK(s.t_device_s == 1e-9);
+    CHECK(s.pointer_id == -12);
+    CHECK(s.tool == Tool::finger);
+    CHECK(s.phase == Phase::cancel);
+    CHECK(s.pressure == 1.25);
+    CHECK(std::isnan(s.width_px));
+    CHECK(trace.samples[1].action == Action::resize);
+    CHECK(trace.info.device == "pen \"x\"");
+    CHECK(trace.info.screen_width_mm == 276.5);
+    CHECK_THROWS_AS(TraceWriter(folder / "t.tsv", trace.info), std::runtime_error);  // nothing is overwritten
+}
+
+TEST_CASE("hard case 31: a trace with wrong names, numbers, columns or no sidecar is refused") {
+    CHECK(said("n/a", "n/a") == "");
+    CHECK(contains(said("finger", "toe"), "t.tsv: line 2, tool: found 'toe'"));
+    CHECK(contains(said("cancel", "fell"), "line 2, phase: found 'fell'"));
+    CHECK(contains(said("-12", "1.5"), "line 2, pointer_id: found '1.5', expected a whole number"));
+    CHECK(contains(said("640.125", "640,125"), "line 2, x_px: found '640,125', expected a number with a decimal point"));
+    CHECK(contains(said("0.3333333333333333", "n/a"), "expected a time on every row"));
+    CHECK(contains(said("tilt_x_deg", "tilt"), "expected a column 'tilt_x_deg'"));
+    CHECK(contains(said("\tfinger", ""), "line 2: found 13 fields, expected 14"));
+    CHECK(contains(said("1280", "-1", "t.json"), "t.json: screen_px: found -1"));
+    CHECK(contains(said("screen_px", "screen", "t.json"), "t.json: screen_px: found nothing"));
+    const TemporaryFolder folder;
+    write_text_atomically(folder / "t.tsv", "t_host_s\n");
+    CHECK(contains(message_of([&] { read_trace(folder / "t.tsv"); }), "t.json: cannot be read"));
+}
