@@ -6,6 +6,7 @@
 
 #include "app/command_line.h"
 #include "app/load.h"
+#include "app/prepare.h"
 #include "app/raster_trace.h"
 
 namespace palpa {
@@ -22,7 +23,7 @@ void write_raster(const TraceOptions& options) {
     const Scene scene = load_scene(options.scene);
     RasterOptions raster = options.raster;
     raster.speed_m_per_s = 1e-3 * options.speed_mm_per_s;
-    const Trace trace = raster_trace(scene, make_plan(scene), raster);
+    const Trace trace = raster_trace(scene, make_plan_here(scene), raster);
     TraceWriter writer(options.output, trace.info);
     for (const Sample& sample : trace.samples) writer.write(sample);
     if (!writer.sync()) throw std::runtime_error(options.output + ": cannot be written to its end");

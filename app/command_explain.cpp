@@ -6,6 +6,7 @@
 
 #include "app/command_line.h"
 #include "app/load.h"
+#include "app/prepare.h"
 #include "app/replay.h"
 
 namespace palpa {
@@ -39,7 +40,7 @@ void print_stage(const Stage& stage, const Meter* meter) {
 
 void explain(const ExplainOptions& options) {
     const Scene scene = load_scene(options.scene);
-    const Plan plan = make_plan(scene);
+    const Plan plan = make_plan_here(scene);
     ReplayResult measured;
     const std::filesystem::path trace_file = options.trace.empty() ? default_trace() : std::filesystem::path(options.trace);
     if (options.measure) measured = replay(scene, plan, read_trace(trace_file), 1);

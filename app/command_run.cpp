@@ -10,6 +10,7 @@
 #include "app/command_line.h"
 #include "app/live.h"
 #include "app/load.h"
+#include "app/prepare.h"
 #include "app/log.h"
 #include "app/replay.h"
 #include "app/screenshot.h"
@@ -46,7 +47,7 @@ void run_headless(const RunOptions& options) {
     }
     const auto began = std::chrono::steady_clock::now();
     const Scene scene = load_scene(options.scene);
-    const Plan plan = make_plan(scene);
+    const Plan plan = make_plan_here(scene);
     const Trace trace = read_trace(options.trace);
     std::optional<RunFiles> files;
     std::optional<SampleLog> log;

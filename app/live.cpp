@@ -6,11 +6,13 @@
 
 #include "app/load.h"
 #include "app/log.h"
+#include "app/prepare.h"
 #include "app/replay.h"
 #include "app/screenshot.h"
 #include "files/text.h"
 #include "platform/trace.h"
 #include "platform/window.h"
+#include "render/gl.h"
 
 namespace palpa {
 namespace {
@@ -37,8 +39,26 @@ struct Live {
 // Everything that bad input can refuse, before a window is there.
 void load(const RunOptions& options, Live& live) {
     live.scene = load_scene(options.scene);
-    live.plan = make_plan(live.scene);
+    if (!live.scene.linear) live.plan = make_plan(live.scene);
     if (!options.trace.empty()) live.trace = read_trace(options.trace);
+}
+
+// A tissue that has to be computed is, while the window shows how far. False if the window was closed meanwhile.
+bool prepare(Window& window, Gui& gui, Live& live) {
+    PlanInProgress work(live.scene);
+    std::vector<Sample> ignored;
+    while (!work.wait(1.0 / 60.0)) {
+        window.poll(0.0, ignored);
+        if (window.close_requested()) return false;
+        gui.begin_frame(1.0 / 60.0);
+        draw_progress("Preparing the tissue (once; later starts are quick)", work.share());
+        gui.end_frame();
+        clear_screen(window.width_px(), window.height_px());
+        gui.draw();
+        window.present();
+    }
+    live.plan = work.take();
+    return true;
 }
 
 void open(const RunOptions& options, double width_px, double height_px, Live& live) {
@@ -135,8 +155,9 @@ Json run_live(const RunOptions& options) {
     Live live;
     load(options, live);
     Window window(window_options);
-    open(options, window.width_px(), window.height_px(), live);
     Gui gui(window);
+    if (live.scene.linear && !prepare(window, gui, live)) return Json::object();
+    open(options, window.width_px(), window.height_px(), live);
     TissueDrawer tissue;
     PanelOptions panel;
     panel.messages = live.trace ? std::vector<std::string>{"replay of " + options.trace} : device_messages(window);

@@ -5,9 +5,9 @@
 namespace palpa {
 
 const char* tangential_source(const Plan& plan) {
-    const bool as_recorded = plan.field.options.force == TangentialForce::recorded;
-    if (as_recorded) return plan.field.has_rest ? "recorded" : "none";
-    return "energy";
+    const auto* tissue = std::get_if<MapTissue>(&plan.tissue);
+    if (tissue == nullptr || tissue->field.options.force == TangentialForce::energy) return "energy";
+    return tissue->field.has_rest ? "recorded" : "none";
 }
 
 SampleRow row_of(const Sample& sample, const Plan& plan, const State& state) {
@@ -40,10 +40,11 @@ Json settings_json(const Scene& scene, const Plan& plan, const State& state) {
     if (!scene.file.empty()) json["scene"]["file"] = read_json(scene.file);
     json["scene"]["force_scale"] = scene.force_scale;
     json["scene"]["seed"] = scene.seed;
-    json["map"] = {{"name", plan.map.name},
-                   {"source", name_of(plan.map.source.kind)},
-                   {"count", {plan.map.n_x, plan.map.n_y}},
-                   {"smoothing_mm", 1e3 * plan.smoothing_m}};
+    json["tissue"] = {{"name", plan.tissue_name}, {"source", name_of(plan.source)}};
+    if (const auto* tissue = std::get_if<MapTissue>(&plan.tissue)) {
+        json["tissue"]["count"] = {tissue->map.n_x, tissue->map.n_y};
+        json["tissue"]["smoothing_mm"] = 1e3 * tissue->smoothing_m;
+    }
     json["profile"] = {{"id", plan.profile.id}, {"a_N", plan.profile.curve.a_N}, {"b", plan.profile.curve.b}};
     json["screen_px"] = {state.screen_width_px, state.screen_height_px};
     json["stages"] = Json::array();

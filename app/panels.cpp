@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "mechanics/linear_range.h"
+
 namespace palpa {
 namespace {
 
@@ -15,6 +17,9 @@ constexpr ImU32 kBarBack = IM_COL32(60, 64, 68, 255);
 constexpr ImU32 kBar = IM_COL32(120, 190, 235, 255);
 constexpr ImU32 kSaturated = IM_COL32(245, 170, 80, 255);
 
+const ImVec4 kAmber(1.0f, 0.75f, 0.25f, 1.0f);
+const ImVec4 kRed(1.0f, 0.45f, 0.40f, 1.0f);
+
 ImVec2 on_screen(const TissueView& view, const Eigen::Vector2d& p_m) {
     ImVec2 out;
     project_px(view, static_cast<float>(p_m.x()), static_cast<float>(p_m.y()), 0.0f, out.x, out.y);
@@ -23,7 +28,7 @@ ImVec2 on_screen(const TissueView& view, const Eigen::Vector2d& p_m) {
 
 // A vertical bar from 0 to the map's greatest force, ticks every newton.
 void draw_force_bar(const Plan& plan, const State& state, float scale) {
-    const double full_N = std::max(1.0, force_range(plan.map).highest_N);
+    const double full_N = std::max(1.0, plan.greatest_force_N);
     const ImVec2 size(26.0f * scale, 200.0f * scale);
     const ImVec2 at = ImGui::GetCursorScreenPos();
     ImDrawList& draw = *ImGui::GetWindowDrawList();
@@ -75,7 +80,7 @@ void draw_marks(const TissueView& view, const Plan& plan, const State& state, co
                 float scale) {
     ImDrawList& draw = *ImGui::GetBackgroundDrawList();
     if (nodules) {
-        for (const Nodule& nodule : plan.map.nodules) {
+        for (const Nodule& nodule : plan.nodules) {
             const ImVec2 at = on_screen(view, {nodule.x_m, nodule.y_m});
             const auto radius = static_cast<float>(0.5 * nodule.diameter_m.value_or(4e-3)) * view.px_per_m;
             draw.AddCircle(at, radius, kInk, 48, 2.0f * scale);
@@ -86,6 +91,16 @@ void draw_marks(const TissueView& view, const Plan& plan, const State& state, co
     const ImVec2 pen = on_screen(view, state.touch.p_m);
     draw.AddLine(on_screen(view, avatar.p_m), pen, kLag, 3.0f * scale);
     draw.AddCircle(pen, 6.0f * scale, kLag, 24, 2.5f * scale);
+}
+
+void draw_progress(const std::string& what, double share) {
+    const ImVec2 screen = ImGui::GetIO().DisplaySize;
+    ImGui::SetNextWindowPos(ImVec2(0.5f * screen.x, 0.5f * screen.y), ImGuiCond_Always, ImVec2(0.5f, 0.5f));
+    ImGui::SetNextWindowSize(ImVec2(std::min(0.8f * screen.x, 30.0f * ImGui::GetFontSize()), 0.0f));
+    ImGui::Begin("progress", nullptr, ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoSavedSettings);
+    paragraph(what);
+    ImGui::ProgressBar(static_cast<float>(share), ImVec2(-1.0f, 0.0f));
+    ImGui::End();
 }
 
 void draw_panel(const Scene& scene, const Plan& plan, const State& state, const Avatar& avatar,
@@ -108,6 +123,11 @@ void draw_panel(const Scene& scene, const Plan& plan, const State& state, const 
     if (scene.force_scale != 1.0) number_line("Phantom", scene.force_scale, "x force", 2);
     if (state.contact.saturated) ImGui::Text("deeper than recorded");
     if (!state.contact.measured) ImGui::Text("not measured here");
+    switch (mechanics::linear_range(state.contact.linearity)) {
+        case mechanics::LinearRange::fine: break;
+        case mechanics::LinearRange::amber: ImGui::TextColored(kAmber, "leaving the linear range"); break;
+        case mechanics::LinearRange::red: ImGui::TextColored(kRed, "beyond the linear range"); break;
+    }
     if (state.counters.without_level > 0) {
         paragraph("This device reports no " + std::string(name_of(plan.profile.level)) + ", which profile " +
                   plan.profile.id + " reads: choose another device or profile.");
@@ -116,7 +136,7 @@ void draw_panel(const Scene& scene, const Plan& plan, const State& state, const 
     ImGui::Checkbox("Cost", &options.show_cost);
     if (options.show_cost) cost_lines(plan, state, times);
     for (const std::string& message : options.messages) paragraph(message);
-    if (plan.map.source.kind == SourceKind::analytic) paragraph("analytic stand-in, no recording");
+    if (plan.source == SourceKind::analytic) paragraph("analytic stand-in, no recording");
     const ImVec2 at = ImGui::GetWindowPos();
     const ImVec2 size = ImGui::GetWindowSize();
     gui.claim({at.x, at.y, at.x + size.x, at.y + size.y});

@@ -29,6 +29,9 @@ struct FrameTimes {
 void draw_marks(const TissueView& view, const Plan& plan, const State& state, const Avatar& avatar, bool nodules,
                 float scale);
 
+// A bar in the middle of the screen, while nothing else can be shown.
+void draw_progress(const std::string& what, double share);
+
 void draw_panel(const Scene& scene, const Plan& plan, const State& state, const Avatar& avatar,
                 const FrameTimes& times, Gui& gui, PanelOptions& options);
 

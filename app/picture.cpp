@@ -32,6 +32,27 @@ Dent dent_of(const SurfaceCurve& curve, const Avatar& avatar) {
     return dent;
 }
 
+Relief relief_of(const LinearTissue& tissue, const Eigen::VectorXd& sink_m, const Avatar& avatar) {
+    Relief relief;
+    relief.n_x = static_cast<int>(tissue.n_x);
+    relief.n_y = static_cast<int>(tissue.n_y);
+    const auto at = [&](int i, int j) {
+        const int x = std::clamp(i, 0, relief.n_x - 1);
+        const int y = std::clamp(j, 0, relief.n_y - 1);
+        return sink_m[y * relief.n_x + x];
+    };
+    const auto along_x = [&](int i, int j) { return 0.25 * at(i - 1, j) + 0.5 * at(i, j) + 0.25 * at(i + 1, j); };
+    for (int j = 0; j < relief.n_y; ++j) {
+        for (int i = 0; i < relief.n_x; ++i) {
+            const double smooth = 0.25 * along_x(i, j - 1) + 0.5 * along_x(i, j) + 0.25 * along_x(i, j + 1);
+            relief.sink_m.push_back(static_cast<float>(smooth));
+        }
+    }
+    relief.shift_m[0] = static_cast<float>(-avatar.lag_m.x());
+    relief.shift_m[1] = static_cast<float>(-avatar.lag_m.y());
+    return relief;
+}
+
 Ball ball_of(const Plan& plan, const State& state, const Avatar& avatar) {
     Ball ball;
     ball.centre_m[0] = static_cast<float>(avatar.p_m.x());

@@ -12,6 +12,10 @@ TissueView tissue_view(const Scene& scene, const State& state);
 
 Dent dent_of(const SurfaceCurve& curve, const Avatar& avatar);
 
+// A linear tissue's surface, moved with the avatar; smoothed by 1-2-1 over the nodes, which takes out the zig-zag that
+// forces on single nodes leave in it.
+Relief relief_of(const LinearTissue& tissue, const Eigen::VectorXd& sink_m, const Avatar& avatar);
+
 // The indenter at the avatar's place; while nothing touches it hovers, half transparent.
 Ball ball_of(const Plan& plan, const State& state, const Avatar& avatar);
 

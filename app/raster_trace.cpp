@@ -17,7 +17,7 @@ std::vector<Line> lines_over(const Plan& plan) {
     const Eigen::Vector2d high = plan.area.centre_m + 0.45 * plan.area.size_m;
     std::vector<double> ys{plan.area.centre_m.y()};
     std::vector<double> xs;
-    for (const Nodule& nodule : plan.map.nodules) {
+    for (const Nodule& nodule : plan.nodules) {
         ys.push_back(nodule.y_m);
         xs.push_back(nodule.x_m);
     }

@@ -11,8 +11,8 @@ void note_nodules(const Plan& plan, ReplayResult& result) {
     if (!state.answered || !state.touch.down) return;
     const double lag_m = state.avatar.lag_m.norm();
     bool beside = true;
-    for (std::size_t i = 0; i < plan.map.nodules.size(); ++i) {
-        const Nodule& nodule = plan.map.nodules[i];
+    for (std::size_t i = 0; i < plan.nodules.size(); ++i) {
+        const Nodule& nodule = plan.nodules[i];
         const double radius_m = 0.5 * nodule.diameter_m.value_or(0.0);
         const double distance_m = (state.touch.p_m - Eigen::Vector2d(nodule.x_m, nodule.y_m)).norm();
         if (distance_m <= radius_m + plan.indenter_radius_m) {
@@ -28,10 +28,11 @@ void note_nodules(const Plan& plan, ReplayResult& result) {
 ReplayResult replay(const Scene& scene, const Plan& plan, const Trace& trace, int time_every,
                     const AfterSample& after_sample, double until_s) {
     ReplayResult result;
-    for (const Nodule& nodule : plan.map.nodules) result.over.push_back({nodule.id, 0.0});
+    for (const Nodule& nodule : plan.nodules) result.over.push_back({nodule.id, 0.0});
     State& state = result.state;
     state = start(scene, plan, trace.info.screen_width_px, trace.info.screen_height_px);
     state.time_every = time_every;
+    Eigen::VectorXd sink_m;
     bool first = true;
     double shown_s = 0.0;  // time of the next virtual frame
     for (const Sample& sample : trace.samples) {
@@ -45,7 +46,8 @@ ReplayResult replay(const Scene& scene, const Plan& plan, const Trace& trace, in
             const double behind = std::min(1.0 + std::floor((now_s - shown_s) * kVirtualDisplay_Hz), 1e9);
             result.frames += static_cast<std::int64_t>(behind);
             shown_s += behind / kVirtualDisplay_Hz;
-            if (scene.surface) surface_now(scene, plan, state);
+            if (scene.surface && scene.linear) surface_now(std::get<LinearTissue>(plan.tissue), state, sink_m);
+            if (scene.surface && !scene.linear) surface_now(scene, plan, state);
         }
         result.latency.count();
         result.latency.add_ns(1e9 * (shown_s - now_s));

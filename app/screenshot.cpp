@@ -13,13 +13,21 @@ void draw_frame(const Scene& scene, const Plan& plan, double now_s, double dt_s,
     gui.begin_frame(dt_s);
     const Avatar avatar = avatar_at(scene, state, now_s);
     const TissueView view = tissue_view(scene, state);
-    const Dent dent = scene.surface ? dent_of(surface_now(scene, plan, state), avatar) : Dent{};
+    Dent dent;
+    Relief relief;
+    if (const auto* linear = std::get_if<LinearTissue>(&plan.tissue); linear != nullptr && scene.surface) {
+        Eigen::VectorXd sink_m;
+        surface_now(*linear, state, sink_m);
+        relief = relief_of(*linear, sink_m, avatar);
+    } else if (scene.surface) {
+        dent = dent_of(surface_now(scene, plan, state), avatar);
+    }
     const Ball ball = ball_of(plan, state, avatar);
     draw_marks(view, plan, state, avatar, options.show_nodules, gui.scale());
     draw_panel(scene, plan, state, avatar, times, gui, options);
     gui.end_frame();
     const std::int64_t built_ns = steady_ns();
-    tissue.draw(view, dent, ball);
+    tissue.draw(view, dent, relief, ball);
     gui.draw();
     times.cpu.add_ns(static_cast<double>(built_ns - began_ns));
     times.gl.add_ns(static_cast<double>(steady_ns() - built_ns));

@@ -56,21 +56,23 @@ void samples(benchmark::State& bench, const char* name) {
 
 void depth_look_up(benchmark::State& bench) {
     const Loaded loaded("default.json");
+    const Field& field = std::get<MapTissue>(loaded.plan.tissue).field;
     double x = 0.0;
     for (auto _ : bench) {
         x = x < 0.11 ? x + 3e-5 : 0.01;
-        const Place place = place_at(loaded.plan.field, {x, 0.035});
-        benchmark::DoNotOptimize(depth_at(loaded.plan.field, place, 1.5));
+        const Place place = place_at(field, {x, 0.035});
+        benchmark::DoNotOptimize(depth_at(field, place, 1.5));
     }
 }
 
 void tangential_look_up(benchmark::State& bench) {
     const Loaded loaded("default.json");
+    const Field& field = std::get<MapTissue>(loaded.plan.tissue).field;
     double x = 0.0;
     for (auto _ : bench) {
         x = x < 0.11 ? x + 3e-5 : 0.01;
-        const Place place = place_at(loaded.plan.field, {x, 0.035});
-        benchmark::DoNotOptimize(tangential_force_N(loaded.plan.field, place, {0.8, 0.6}, 4e-3));
+        const Place place = place_at(field, {x, 0.035});
+        benchmark::DoNotOptimize(tangential_force_N(field, place, {0.8, 0.6}, 4e-3));
     }
 }
 

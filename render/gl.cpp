@@ -43,7 +43,7 @@ Mesh::Mesh(const std::vector<float>& points, const std::vector<unsigned>& triang
     : count_(static_cast<GLsizei>(triangles.size())) {
     glGenVertexArrays(1, &vertex_array_);
     glBindVertexArray(vertex_array_);
-    glGenBuffers(2, buffers_);
+    glGenBuffers(3, buffers_);
     glBindBuffer(GL_ARRAY_BUFFER, buffers_[0]);
     glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(points.size() * sizeof(float)), points.data(), GL_STATIC_DRAW);
     glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, buffers_[1]);
@@ -55,14 +55,29 @@ Mesh::Mesh(const std::vector<float>& points, const std::vector<unsigned>& triang
 }
 
 Mesh::~Mesh() {
-    glDeleteBuffers(2, buffers_);
+    glDeleteBuffers(3, buffers_);
     glDeleteVertexArrays(1, &vertex_array_);
+}
+
+void Mesh::set_second(const std::vector<float>& values) {
+    glBindVertexArray(vertex_array_);
+    glBindBuffer(GL_ARRAY_BUFFER, buffers_[2]);
+    glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(values.size() * sizeof(float)), values.data(), GL_STREAM_DRAW);
+    glEnableVertexAttribArray(1);
+    glVertexAttribPointer(1, 3, GL_FLOAT, GL_FALSE, 0, nullptr);
+    glBindVertexArray(0);
 }
 
 void Mesh::draw() const {
     glBindVertexArray(vertex_array_);
     glDrawElements(GL_TRIANGLES, count_, GL_UNSIGNED_INT, nullptr);
     glBindVertexArray(0);
+}
+
+void clear_screen(int width_px, int height_px) {
+    glViewport(0, 0, width_px, height_px);
+    glClearColor(0.11f, 0.12f, 0.13f, 1.0f);
+    glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
 }
 
 std::vector<unsigned char> read_pixels(int width_px, int height_px) {

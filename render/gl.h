@@ -23,20 +23,24 @@ class Program {
     GLuint id_ = 0;
 };
 
-// Vertices with one 2-float attribute at location 0, drawn by index.
+// Vertices with a 2-float attribute at location 0 and, if it was set, a changing 3-float one at location 1; drawn by
+// index.
 class Mesh {
  public:
     Mesh(const std::vector<float>& points, const std::vector<unsigned>& triangles);
     ~Mesh();
     Mesh(const Mesh&) = delete;
     Mesh& operator=(const Mesh&) = delete;
+    void set_second(const std::vector<float>& values);
     void draw() const;
 
  private:
     GLuint vertex_array_ = 0;
-    GLuint buffers_[2] = {0, 0};
+    GLuint buffers_[3] = {0, 0, 0};
     GLsizei count_ = 0;
 };
+
+void clear_screen(int width_px, int height_px);
 
 // RGB rows from the top downwards, of what was drawn last.
 std::vector<unsigned char> read_pixels(int width_px, int height_px);

@@ -1,5 +1,6 @@
 #include "render/tissue.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "render/gl.h"
@@ -25,7 +26,8 @@ constexpr int kCells = 160;  // 0.75 mm on the 120 mm phantom
     "}\n"
 
 constexpr const char* kSurfaceVertex = PALPA_PROJECTION R"(
-uniform vec2 dent_m; uniform float reach_m; uniform float sink_m[64];
+layout(location = 1) in vec3 relief;
+uniform vec2 dent_m; uniform float reach_m; uniform float sink_m[64]; uniform float has_relief;
 out vec2 place_m; out vec3 normal; out float sunk_m;
 float sink(float r) {
   if (r >= reach_m) return 0.0;
@@ -41,8 +43,8 @@ void main() {
   float slope = (sink(r + h) - sink(max(r - h, 0.0))) / (r > h ? 2.0 * h : r + h);
   vec2 outward = r > 1e-9 ? d / r : vec2(0.0);
   place_m = p;
-  sunk_m = sink(r);
-  normal = normalize(vec3(outward * slope, 1.0));
+  sunk_m = has_relief > 0.5 ? relief.x : sink(r);
+  normal = normalize(vec3(has_relief > 0.5 ? relief.yz : outward * slope, 1.0));
   gl_Position = project(vec3(p, -sunk_m));
 }
 )";
@@ -73,7 +75,7 @@ constexpr const char* kBallVertex = PALPA_PROJECTION R"(
 uniform vec3 ball_m; uniform float radius_m;
 out vec2 spot;
 void main() {
-  spot = 2.6 * (unit - 0.5);
+  spot = 3.2 * (unit - 0.5);
   vec4 c = project(ball_m);
   gl_Position = vec4(c.xy + spot * radius_m * px_per_m * 2.0 / area_px, c.z - 0.02, 1.0);
 }
@@ -145,15 +147,14 @@ struct TissueDrawer::Gpu {
     SurfaceMesh single = unit_grid(1);
     Mesh tissue{fine.points, fine.triangles};
     Mesh quad{single.points, single.triangles};
+    std::vector<float> relief;
 };
 
 TissueDrawer::TissueDrawer() : gpu_(std::make_unique<Gpu>()) {}
 TissueDrawer::~TissueDrawer() = default;
 
-void TissueDrawer::draw(const TissueView& view, const Dent& dent, const Ball& ball) {
-    glViewport(0, 0, static_cast<GLsizei>(view.width_px), static_cast<GLsizei>(view.height_px));
-    glClearColor(0.11f, 0.12f, 0.13f, 1.0f);
-    glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+void TissueDrawer::draw(const TissueView& view, const Dent& dent, const Relief& relief, const Ball& ball) {
+    clear_screen(static_cast<int>(view.width_px), static_cast<int>(view.height_px));
     glEnable(GL_DEPTH_TEST);
     glDisable(GL_CULL_FACE);
     glDisable(GL_BLEND);
@@ -161,6 +162,11 @@ void TissueDrawer::draw(const TissueView& view, const Dent& dent, const Ball& ba
     glUniform2f(gpu_->surface.uniform("dent_m"), dent.centre_m[0], dent.centre_m[1]);
     glUniform1f(gpu_->surface.uniform("reach_m"), dent.reach_m);
     glUniform1fv(gpu_->surface.uniform("sink_m"), kSinkPoints, dent.sink_m.data());
+    glUniform1f(gpu_->surface.uniform("has_relief"), relief.n_x >= 2 ? 1.0f : 0.0f);
+    if (relief.n_x >= 2) {
+        refine(relief, view.size_m, kCells, gpu_->relief);
+        gpu_->tissue.set_second(gpu_->relief);
+    }
     gpu_->tissue.draw();
 
     glDisable(GL_DEPTH_TEST);
@@ -173,6 +179,72 @@ void TissueDrawer::draw(const TissueView& view, const Dent& dent, const Ball& ba
     glUniform1f(gpu_->ball.uniform("opacity"), ball.opacity);
     gpu_->quad.draw();
     glDisable(GL_BLEND);
+}
+
+namespace {
+
+// Catmull-Rom weights of the four neighbours of a place between the middle two, and their derivatives.
+struct Weights {
+    int first = 0;
+    float value[4];
+    float slope[4];
+};
+
+Weights weights_at(float at) {
+    Weights w;
+    const float low = std::floor(at);
+    const float t = at - low;
+    w.first = static_cast<int>(low) - 1;
+    w.value[0] = 0.5f * (-t + 2.0f * t * t - t * t * t);
+    w.value[1] = 0.5f * (2.0f - 5.0f * t * t + 3.0f * t * t * t);
+    w.value[2] = 0.5f * (t + 4.0f * t * t - 3.0f * t * t * t);
+    w.value[3] = 0.5f * (-t * t + t * t * t);
+    w.slope[0] = 0.5f * (-1.0f + 4.0f * t - 3.0f * t * t);
+    w.slope[1] = 0.5f * (-10.0f * t + 9.0f * t * t);
+    w.slope[2] = 0.5f * (1.0f + 8.0f * t - 9.0f * t * t);
+    w.slope[3] = 0.5f * (-2.0f * t + 3.0f * t * t);
+    return w;
+}
+
+}  // namespace
+
+void refine(const Relief& relief, const float size_m[2], int cells, std::vector<float>& out) {
+    const auto n = static_cast<std::size_t>(cells) + 1;
+    const float dx_m = size_m[0] / static_cast<float>(relief.n_x - 1);
+    const float dy_m = size_m[1] / static_cast<float>(relief.n_y - 1);
+    // along x first: value and slope of every row at the n places
+    std::vector<float> rows(2 * n * static_cast<std::size_t>(relief.n_y));
+    for (std::size_t i = 0; i < n; ++i) {
+        const Weights w = weights_at((static_cast<float>(i) / static_cast<float>(cells) * size_m[0] - relief.shift_m[0]) / dx_m);
+        for (int j = 0; j < relief.n_y; ++j) {
+            float value = 0.0f;
+            float slope = 0.0f;
+            for (int k = 0; k < 4; ++k) {
+                const int x = std::clamp(w.first + k, 0, relief.n_x - 1);
+                const float sink = relief.sink_m[static_cast<std::size_t>(j * relief.n_x + x)];
+                value += w.value[k] * sink;
+                slope += w.slope[k] * sink;
+            }
+            const std::size_t at = 2 * (static_cast<std::size_t>(j) * n + i);
+            rows[at] = value;
+            rows[at + 1] = slope / dx_m;
+        }
+    }
+    out.resize(3 * n * n);
+    for (std::size_t j = 0; j < n; ++j) {
+        const Weights w = weights_at((static_cast<float>(j) / static_cast<float>(cells) * size_m[1] - relief.shift_m[1]) / dy_m);
+        for (std::size_t i = 0; i < n; ++i) {
+            float* vertex = &out[3 * (j * n + i)];
+            vertex[0] = vertex[1] = vertex[2] = 0.0f;
+            for (int k = 0; k < 4; ++k) {
+                const int y = std::clamp(w.first + k, 0, relief.n_y - 1);
+                const float* row = &rows[2 * (static_cast<std::size_t>(y) * n + i)];
+                vertex[0] += w.value[k] * row[0];
+                vertex[1] += w.value[k] * row[1];
+                vertex[2] += w.slope[k] * row[0] / dy_m;
+            }
+        }
+    }
 }
 
 void project_px(const TissueView& view, float x_m, float y_m, float z_m, float& x_px, float& y_px) {

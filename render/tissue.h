@@ -3,6 +3,7 @@
 
 #include <array>
 #include <memory>
+#include <vector>
 
 namespace palpa {
 
@@ -29,6 +30,14 @@ struct Dent {
     std::array<float, kSinkPoints> sink_m{};
 };
 
+// Sink of the whole surface on a grid over the view's area, instead of a dent: n_x * n_y values, x fastest.
+struct Relief {
+    int n_x = 0;  // 0: no relief
+    int n_y = 0;
+    std::vector<float> sink_m;
+    float shift_m[2] = {0.0f, 0.0f};  // drawn moved by this, as the avatar lags
+};
+
 struct Ball {
     float centre_m[2] = {0.0f, 0.0f};
     float height_m = 0.0f;  // of its centre above the undisturbed surface
@@ -44,12 +53,16 @@ class TissueDrawer {
     TissueDrawer& operator=(const TissueDrawer&) = delete;
 
     // Clears the drawing area and draws.
-    void draw(const TissueView& view, const Dent& dent, const Ball& ball);
+    void draw(const TissueView& view, const Dent& dent, const Relief& relief, const Ball& ball);
 
  private:
     struct Gpu;
     std::unique_ptr<Gpu> gpu_;
 };
+
+// Vertices of the drawn surface, (cells + 1)^2 of (sink, d sink/dx, d sink/dy), by Catmull-Rom interpolation;
+// the border is continued. relief.n_x and n_y >= 2.
+void refine(const Relief& relief, const float size_m[2], int cells, std::vector<float>& out);
 
 // Where a point lands on the screen, the same as in the shader; for marks drawn on top.
 void project_px(const TissueView& view, float x_m, float y_m, float z_m, float& x_px, float& y_px);

@@ -9,15 +9,26 @@ namespace {
 
 constexpr double kLongestGap_s = 60.0;
 
-// Rise of the resisting tangential force over the reference distance, as the laws ask for it.
+// Rise of the resisting tangential force over the reference distance, as the laws ask for it; the same depth in
+// both look-ups.
 struct RiseOnMap {
     const Field* field;
     double operator()(const Eigen::Vector2d& e_m, const Eigen::Vector2d& u, double force_N, double reference_m) const {
         const Place here = place_at(*field, e_m);
         const Place before = place_at(*field, e_m - reference_m * u);
         if (!here.measured || !before.measured || !here.inside || !before.inside) return 0.0;
-        const double depth_m = depth_at(*field, here, force_N).depth_m;  // the same in both look-ups
+        const double depth_m = depth_at(*field, here, force_N).depth_m;
         return tangential_rise_N(*field, here, before, u, depth_m);
+    }
+};
+
+struct RiseOnLinear {
+    const LinearTissue* tissue;
+    LinearWork* work;
+    double operator()(const Eigen::Vector2d& e_m, const Eigen::Vector2d& u, double force_N, double reference_m) const {
+        const double depth_m = probe_depth_m(*tissue, e_m, force_N, *work);
+        const double here_N = tangential_force_N(*tissue, e_m, u, depth_m, *work);
+        return here_N - tangential_force_N(*tissue, e_m - reference_m * u, u, depth_m, *work);
     }
 };
 
@@ -43,17 +54,36 @@ void place(const Sample& sample, State& state) {
     }
 }
 
+void sink(const MapTissue& tissue, State& state) {
+    const Place& at = state.place = place_at(tissue.field, state.touch.p_m);
+    const DepthAnswer answer = depth_at(tissue.field, at, state.touch.force_N);
+    state.contact.depth_m = answer.depth_m;
+    state.contact.saturated = answer.saturated;
+    state.contact.measured = at.measured;
+}
+
+void sink(const LinearTissue& tissue, State& state) {
+    const LinearAnswer answer = press(tissue, state.touch.p_m, state.touch.force_N, *state.linear);
+    state.contact.depth_m = answer.depth_m;
+    state.contact.saturated = answer.saturated;
+    state.contact.linearity = answer.linearity;
+}
+
 void sink(const Plan& plan, State& state) {
     state.contact = Contact{};
     if (!state.touch.down) return;
-    const Place& at = state.place = place_at(plan.field, state.touch.p_m);
-    const DepthAnswer answer = depth_at(plan.field, at, state.touch.force_N);
-    state.contact.depth_m = answer.depth_m;
     state.contact.normal_N = state.touch.force_N;
-    state.contact.saturated = answer.saturated;
-    state.contact.measured = at.measured;
-    state.counters.saturated += answer.saturated;
-    state.counters.unmeasured += !at.measured;
+    std::visit([&](const auto& tissue) { sink(tissue, state); }, plan.tissue);
+    state.counters.saturated += state.contact.saturated;
+    state.counters.unmeasured += !state.contact.measured;
+}
+
+double tangential_N(const MapTissue& tissue, State& state) {
+    return tangential_force_N(tissue.field, state.place, state.heading, state.contact.depth_m);
+}
+
+double tangential_N(const LinearTissue& tissue, State& state) {
+    return tangential_force_N(tissue, state.touch.p_m, state.heading, state.contact.depth_m, *state.linear);
 }
 
 void resist(const Plan& plan, State& state) {
@@ -69,13 +99,28 @@ void resist(const Plan& plan, State& state) {
         state.heading = v / length_m;
         state.heading_rope_m = state.touch.p_m - kDeadBand_m * state.heading;
     }
-    state.contact.tangential_N = tangential_force_N(plan.field, state.place, state.heading, state.contact.depth_m);
+    state.contact.tangential_N = std::visit([&](const auto& tissue) { return tangential_N(tissue, state); }, plan.tissue);
 }
 
 Touch timed(const State& state) {
     Touch touch = state.touch;
     touch.t_s = state.timeline.now_s;
     return touch;
+}
+
+template <class Rise>
+void lag(const Scene& scene, const Rise& rise_N, State& state) {
+    if (state.display_ratio) state.avatar.lag_m = advance_lag(*scene.display_ratio, timed(state), rise_N, *state.display_ratio);
+    if (state.delay) {
+        const Delayed delayed = advance_lag(*scene.delay, timed(state), rise_N, *state.delay);
+        state.avatar.lag_m = delayed.lag_m;
+        state.avatar.delay_s = delayed.tau_s;
+    }
+}
+
+void lag(const Scene& scene, const Plan& plan, State& state) {
+    if (const auto* map = std::get_if<MapTissue>(&plan.tissue)) return lag(scene, RiseOnMap{&map->field}, state);
+    lag(scene, RiseOnLinear{&std::get<LinearTissue>(plan.tissue), &*state.linear}, state);
 }
 
 void run_stage(StageId id, const Scene& scene, const Plan& plan, const Sample& sample, State& state) {
@@ -85,14 +130,7 @@ void run_stage(StageId id, const Scene& scene, const Plan& plan, const Sample& s
         case StageId::depth: return sink(plan, state);
         case StageId::tangential: return resist(plan, state);
         case StageId::display_ratio:
-            state.avatar.lag_m = advance_lag(*scene.display_ratio, timed(state), RiseOnMap{&plan.field}, *state.display_ratio);
-            return;
-        case StageId::delay: {
-            const Delayed delayed = advance_lag(*scene.delay, timed(state), RiseOnMap{&plan.field}, *state.delay);
-            state.avatar.lag_m = delayed.lag_m;
-            state.avatar.delay_s = delayed.tau_s;
-            return;
-        }
+        case StageId::delay: return lag(scene, plan, state);
         case StageId::surface: return;  // once a frame, surface_now()
     }
 }
@@ -167,6 +205,7 @@ State start(const Scene& scene, const Plan& plan, double screen_width_px, double
     resize(scene, plan, screen_width_px, screen_height_px, state);
     if (scene.display_ratio) state.display_ratio.emplace();
     if (scene.delay) state.delay.emplace();
+    if (const auto* linear = std::get_if<LinearTissue>(&plan.tissue)) state.linear = make_linear_work(*linear);
     return state;
 }
 
@@ -208,14 +247,32 @@ Avatar avatar_at(const Scene& scene, const State& state, double t_s) {
     return avatar;
 }
 
-SurfaceCurve surface_now(const Scene& scene, const Plan& plan, State& state) {
-    assert(scene.surface);
+namespace {
+
+template <class Call>
+void metered(StageId id, const Call& call, State& state) {
     const std::int64_t before_ns = steady_ns();
-    const SurfaceCurve curve = surface_curve(state.contact.depth_m, plan.indenter_radius_m, scene.surface->thickness_m);
-    Meter& meter = state.meters[static_cast<std::size_t>(StageId::surface)];
+    call();
+    Meter& meter = state.meters[static_cast<std::size_t>(id)];
     meter.count();
     meter.add_ns(static_cast<double>(steady_ns() - before_ns));
+}
+
+}  // namespace
+
+SurfaceCurve surface_now(const Scene& scene, const Plan& plan, State& state) {
+    assert(scene.surface);
+    SurfaceCurve curve;
+    const auto find = [&] {
+        curve = surface_curve(state.contact.depth_m, plan.indenter_radius_m, scene.surface->thickness_m);
+    };
+    metered(StageId::surface, find, state);
     return curve;
+}
+
+void surface_now(const LinearTissue& tissue, State& state, Eigen::VectorXd& sink_m) {
+    metered(StageId::surface, [&] { surface_sink_m(tissue, *state.linear, sink_m); }, state);
+    if (!state.touch.down) sink_m.setZero();
 }
 
 }  // namespace palpa

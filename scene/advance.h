@@ -18,7 +18,10 @@ void advance(const Scene& scene, const Plan& plan, const Sample& sample, State& 
 // What to draw at a time after the last sample (the avatar goes on moving while the pen rests).
 Avatar avatar_at(const Scene& scene, const State& state, double t_s);
 
-// The frame stage of the scene's surface; scene.surface must be there.
+// The frame stage of the scene's surface, on a map: scene.surface must be there.
 SurfaceCurve surface_now(const Scene& scene, const Plan& plan, State& state);
+
+// The same on a linear tissue: sink of its n_x * n_y surface nodes, metres.
+void surface_now(const LinearTissue& tissue, State& state, Eigen::VectorXd& sink_m);
 
 }  // namespace palpa

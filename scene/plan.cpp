@@ -1,12 +1,20 @@
 #include "scene/plan.h"
 
+#include <algorithm>
+
 #include "calibration/profile_file.h"
+#include "files/cache.h"
 #include "files/text.h"
 #include "stiffnessmaps/map_file.h"
 #include "stiffnessmaps/noise.h"
 
 namespace palpa {
 namespace {
+
+constexpr double kBarOfLinear_N = 5.0;  // no greatest force: as the shipped maps
+constexpr const char* kLinearError =
+    "1.3 % of the depth (median, worst 2.4 %) against 1.2 mm on the shipped block at 2 mm; a contact radius below two "
+    "spacings is worse";
 
 std::string mm_text(double metres) { return short_number(1e3 * metres) + " mm"; }
 
@@ -18,55 +26,142 @@ Stage calibration_stage(const Plan& plan) {
     return stage;
 }
 
-Stage depth_stage(const Plan& plan) {
+Stage depth_stage(const MapTissue& tissue) {
     Stage stage{StageId::depth, false, "", "", 0.03};
-    stage.fidelity = "map " + plan.map.name + ", isotonic over depth, bilinear in x and y";
-    const double greatest_N = force_range(plan.map).highest_N;
-    if (plan.map.source.kind == SourceKind::recorded) {
-        stage.error = short_number(1e3 * plan.noise_N) + " mN of noise in the recording";
-    } else if (greatest_N > 0.0) {
-        stage.error = short_number(25.0 * coarse_grid_error_N(plan.map) / greatest_N) +
+    stage.fidelity = "map " + tissue.map.name + ", isotonic over depth, bilinear in x and y";
+    const double greatest_N = force_range(tissue.map).highest_N;
+    if (tissue.map.source.kind == SourceKind::recorded) {
+        stage.error = short_number(1e3 * tissue.noise_N) + " mN of noise in the recording";
+    } else {
+        stage.error = short_number(25.0 * coarse_grid_error_N(tissue.map) / std::max(greatest_N, 1e-9)) +
                       " % of the greatest force (95th percentile, from twice the pitch)";
     }
     return stage;
 }
 
-Stage tangential_stage(const Plan& plan, const TangentialOptions& options) {
+Stage depth_stage(const LinearTissue& tissue) {
+    Stage stage{StageId::depth, false, "", "", 60.0};
+    stage.fidelity = "linear finite elements, " + std::to_string(tissue.mesh_nodes) + " nodes, " +
+                     mm_text(tissue.spacing_m[0]) + " on the surface; frictionless contact solved at every sample";
+    stage.error = kLinearError;
+    return stage;
+}
+
+Stage tangential_stage(const MapTissue& tissue, const TangentialOptions& options) {
     Stage stage{StageId::tangential, false, "", "", 0.03};
     if (options.force == TangentialForce::recorded) {
         stage.fidelity = "matrices as recorded along +x";
         stage.error = "wrong in any other direction than +x";
         return stage;
     }
-    stage.fidelity = plan.map.tangential == TangentialKind::recorded ? "energy gradient + recorded resistance"
-                                                                     : "energy gradient";
+    const bool recorded = tissue.map.tangential == TangentialKind::recorded;
+    stage.fidelity = recorded ? "energy gradient + recorded resistance" : "energy gradient";
     stage.error = "derived from the normal force (work argument), not measured";
-    if (plan.smoothing_m > 0.0) {
-        stage.fidelity += ", smoothed by " + mm_text(plan.smoothing_m);
+    if (tissue.smoothing_m > 0.0) {
+        stage.fidelity += ", smoothed by " + mm_text(tissue.smoothing_m);
         stage.error += "; smoothing lowers lag by about a fifth, delay by about a half";
     }
     return stage;
 }
 
-void add_notes(const Scene& scene, Plan& plan) {
-    if (plan.map.source.kind == SourceKind::analytic) {
+Stage tangential_stage(const LinearTissue& tissue, const TangentialOptions&) {
+    return {StageId::tangential, false,
+            "slope of the elastic energy over " + mm_text(tissue.spacing_m[0]) + ", two contact solves",
+            "detail below one node spacing is averaged away", 70.0};
+}
+
+void add_notes(const MapTissue& tissue, const Scene& scene, Plan& plan) {
+    if (tissue.map.source.kind == SourceKind::analytic) {
         plan.notes.push_back("the tissue is a closed-form stand-in (analytic), neither recorded nor simulated");
     }
-    if (scene.force_scale != 1.0) {
-        plan.notes.push_back("phantom force: the pen's newtons are multiplied by " + short_number(scene.force_scale));
-    }
-    if (plan.map.tangential != TangentialKind::recorded) {
-        plan.notes.push_back("tangential force in every direction: derived from the normal force (work argument), not measured");
-    } else {
-        plan.notes.push_back("tangential force off the scan direction: derived from the normal force (work argument), not measured");
-    }
+    if (tissue.map.source.kind == SourceKind::simulated) plan.notes.push_back("the tissue is simulated: " + tissue.map.source.how);
+    const bool recorded = tissue.map.tangential == TangentialKind::recorded;
+    plan.notes.push_back(std::string("tangential force ") + (recorded ? "off the scan direction" : "in every direction") +
+                         ": derived from the normal force (work argument), not measured");
     if (scene.tangential.force == TangentialForce::recorded) {
         plan.notes.push_back("tangential force as recorded: right for motion along +x only");
     }
-    if (plan.field.isotonic_changed > 0) {
-        plan.notes.push_back(std::to_string(plan.field.isotonic_changed) + " of " +
-                             std::to_string(plan.map.normal_N.size()) +
+    if (tissue.field.isotonic_changed > 0) {
+        plan.notes.push_back(std::to_string(tissue.field.isotonic_changed) + " of " +
+                             std::to_string(tissue.map.normal_N.size()) +
                              " forces did not rise with depth and were changed (isotonic regression)");
+    }
+}
+
+void add_notes(const LinearTissue& tissue, const Scene&, Plan& plan) {
+    if (!tissue.cache_warning.empty()) plan.notes.push_back(tissue.cache_warning);
+    plan.notes.push_back("the tissue is simulated: linear elastic, small displacements, moduli of " + tissue.phantom.name +
+                         "; the panel shows when a press leaves the linear range");
+}
+
+PathParameters path_of(const Scene& scene) {
+    if (scene.delay) return scene.delay->path;
+    return scene.display_ratio.value_or(DisplayRatio{}).path;
+}
+
+MapTissue load_map(const Scene& scene) {
+    MapTissue tissue;
+    tissue.map = read_map(scene.map);
+    tissue.noise_N = normal_noise_N(tissue.map);
+    if (scene.tangential.smoothing_m) {
+        tissue.smoothing_m = *scene.tangential.smoothing_m;
+    } else if (tissue.map.source.kind == SourceKind::recorded) {
+        const double gate_N = scene.display_ratio.value_or(DisplayRatio{}).gate_N;
+        tissue.smoothing_m = smoothing_sigma_m(tissue.map, tissue.noise_N, path_of(scene).reference_m, gate_N);
+    }
+    tissue.field = make_field(tissue.map, {scene.tangential.force, tissue.smoothing_m});
+    return tissue;
+}
+
+void describe(const MapTissue& tissue, Plan& plan) {
+    const Map& map = tissue.map;
+    plan.tissue_name = map.name;
+    plan.source = map.source.kind;
+    plan.nodules = map.nodules;
+    plan.greatest_force_N = force_range(map).highest_N;
+    plan.indenter_radius_m = map.indenter_radius_m;
+    const Eigen::Vector2d first(map.origin_m[0], map.origin_m[1]);
+    const Eigen::Vector2d last(map.x_of(map.n_x - 1), map.y_of(map.n_y - 1));
+    plan.area.centre_m = 0.5 * (first + last);
+    plan.area.size_m = last - first + Eigen::Vector2d(map.spacing_m[0], map.spacing_m[1]);
+}
+
+void describe(const LinearTissue& tissue, Plan& plan) {
+    const Phantom& phantom = tissue.phantom;
+    plan.tissue_name = phantom.name;
+    plan.source = SourceKind::simulated;
+    plan.nodules = placed_nodules(phantom);
+    plan.greatest_force_N = kBarOfLinear_N;
+    plan.indenter_radius_m = phantom.indenter_radius_m;
+    plan.area.size_m = Eigen::Vector2d(phantom.size_m[0], phantom.size_m[1]);
+    plan.area.centre_m = 0.5 * plan.area.size_m;
+}
+
+void add_stages(const Scene& scene, Plan& plan) {
+    const bool direct = scene.mapping.kind == MappingKind::direct;
+    plan.sample_stages.push_back(calibration_stage(plan));
+    plan.sample_stages.push_back({StageId::position, false, direct ? "direct" : "indirect", "exact", 0.01});
+    std::visit([&](const auto& tissue) { plan.sample_stages.push_back(depth_stage(tissue)); }, plan.tissue);
+    std::visit([&](const auto& tissue) { plan.sample_stages.push_back(tangential_stage(tissue, scene.tangential)); },
+               plan.tissue);
+    const PathParameters path = path_of(scene);
+    const std::string stations =
+        "stations every " + mm_text(path.station_m) + ", difference over " + mm_text(path.reference_m);
+    const double cost_us = scene.linear ? 250.0 : 0.15;
+    if (scene.display_ratio) {
+        plan.sample_stages.push_back(
+            {StageId::display_ratio, false, stations, "0.0002 mm against 5 times as many stations", cost_us});
+    }
+    if (scene.delay) {
+        plan.sample_stages.push_back({StageId::delay, false, stations, "exact at the stations", cost_us});
+    }
+    if (!scene.surface) return;
+    if (scene.linear) {
+        plan.frame_stages.push_back({StageId::surface, true, "surface nodes of the finite elements", "that of depth", 30.0});
+    } else {
+        plan.frame_stages.push_back({StageId::surface, true, "sphere on a half-space, tapered",
+                                     "7 % of the depth at worst against the exact bonded layer (25 mm, depth to 2 mm)",
+                                     7.0});
     }
 }
 
@@ -85,46 +180,22 @@ const char* name_of(StageId id) {
     return "";
 }
 
-Plan make_plan(const Scene& scene) {
+Plan make_plan(const Scene& scene, const mechanics::Progress& progress) {
     Plan plan;
     plan.profile = read_profile(scene.profile);
-    plan.map = read_map(scene.map);
-    plan.noise_N = normal_noise_N(plan.map);
-    const PathParameters path = scene.delay ? scene.delay->path
-                                            : scene.display_ratio.value_or(DisplayRatio{}).path;
-    if (scene.tangential.smoothing_m) {
-        plan.smoothing_m = *scene.tangential.smoothing_m;
-    } else if (plan.map.source.kind == SourceKind::recorded) {
-        const double gate_N = scene.display_ratio.value_or(DisplayRatio{}).gate_N;
-        plan.smoothing_m = smoothing_sigma_m(plan.map, plan.noise_N, path.reference_m, gate_N);
+    if (scene.linear) {
+        plan.tissue = make_linear_tissue(*scene.linear, cache_folder(), progress);
+    } else {
+        plan.tissue = load_map(scene);
     }
-    plan.field = make_field(plan.map, {scene.tangential.force, plan.smoothing_m});
-    plan.indenter_radius_m = plan.map.indenter_radius_m;
-
-    const Eigen::Vector2d first(plan.map.origin_m[0], plan.map.origin_m[1]);
-    const Eigen::Vector2d last(plan.map.x_of(plan.map.n_x - 1), plan.map.y_of(plan.map.n_y - 1));
-    const Eigen::Vector2d cell(plan.map.spacing_m[0], plan.map.spacing_m[1]);
-    plan.area.centre_m = 0.5 * (first + last);
-    plan.area.size_m = scene.mapping.tissue_m.value_or(last - first + cell);
-
-    const bool direct = scene.mapping.kind == MappingKind::direct;
-    plan.sample_stages.push_back(calibration_stage(plan));
-    plan.sample_stages.push_back({StageId::position, false, direct ? "direct" : "indirect", "exact", 0.01});
-    plan.sample_stages.push_back(depth_stage(plan));
-    plan.sample_stages.push_back(tangential_stage(plan, scene.tangential));
-    const std::string stations = "stations every " + mm_text(path.station_m) + ", difference over " + mm_text(path.reference_m);
-    if (scene.display_ratio) {
-        plan.sample_stages.push_back({StageId::display_ratio, false, stations, "0.0002 mm against 5 times as many stations", 0.12});
+    std::visit([&](const auto& tissue) { describe(tissue, plan); }, plan.tissue);
+    if (scene.mapping.tissue_m) plan.area.size_m = *scene.mapping.tissue_m;
+    if (scene.surface) plan.indenter_radius_m = scene.surface->indenter_radius_m.value_or(plan.indenter_radius_m);
+    add_stages(scene, plan);
+    std::visit([&](const auto& tissue) { add_notes(tissue, scene, plan); }, plan.tissue);
+    if (scene.force_scale != 1.0) {
+        plan.notes.push_back("phantom force: the pen's newtons are multiplied by " + short_number(scene.force_scale));
     }
-    if (scene.delay) {
-        plan.sample_stages.push_back({StageId::delay, false, stations, "exact at the stations", 0.12});
-    }
-    if (scene.surface) {
-        plan.indenter_radius_m = scene.surface->indenter_radius_m.value_or(plan.map.indenter_radius_m);
-        plan.frame_stages.push_back({StageId::surface, true, "sphere on a half-space, tapered",
-                                     "7 % of the depth at worst against the exact bonded layer (25 mm, depth to 2 mm)", 12.0});
-    }
-    add_notes(scene, plan);
     return plan;
 }
 

@@ -3,6 +3,7 @@
 // in it: it allocates nothing and is never called.
 
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "avatar/surface.h"
@@ -24,21 +25,31 @@ struct Stage {
     double cost_us = 0.0;    // median, as measured on the machine and day that docs/performance.md names
 };
 
+// A recorded or generated map, prepared for look-up.
+struct MapTissue {
+    Map map;
+    Field field;
+    double noise_N = 0.0;      // of the map
+    double smoothing_m = 0.0;  // of the tangential force
+};
+
 struct Plan {
     std::vector<Stage> sample_stages;
     std::vector<Stage> frame_stages;
     std::vector<std::string> notes;  // what a person should know about this scene
     Profile profile;
-    Map map;
-    Field field;
-    double noise_N = 0.0;      // of the map
-    double smoothing_m = 0.0;  // of the tangential force
+    std::variant<MapTissue, LinearTissue> tissue;
+    std::string tissue_name;
+    SourceKind source = SourceKind::recorded;
+    std::vector<Nodule> nodules;
+    double greatest_force_N = 1.0;  // of the force bar
     TissueArea area;
     double indenter_radius_m = 4e-3;
 };
 
-// Reads the map and the profile. Throws InputError.
-Plan make_plan(const Scene& scene);
+// Reads the map and the profile, or computes the linear tissue, which takes seconds: `progress` tells and may stop
+// it. Throws InputError, and mechanics' errors for a block that cannot be solved.
+Plan make_plan(const Scene& scene, const mechanics::Progress& progress = {});
 
 const char* name_of(StageId id);
 

@@ -9,6 +9,7 @@
 
 #include "avatar/delay.h"
 #include "avatar/display_ratio.h"
+#include "scene/linear_tissue.h"
 #include "scene/mapping.h"
 #include "stiffnessmaps/field.h"
 
@@ -28,7 +29,8 @@ struct SurfaceEffect {
 struct Scene {
     std::string name;
     std::filesystem::path file;     // where it was read; empty if made up from a map
-    std::filesystem::path map;
+    std::filesystem::path map;             // either a map
+    std::optional<LinearOptions> linear;   // or a block that is computed live
     std::filesystem::path profile;
     Mapping mapping;
     double force_scale = 1.0;       // phantom force: multiplies the pen's newtons

@@ -76,6 +76,22 @@ Delay read_delay(JsonReader json, TangentialOptions& tangential) {
     return law;
 }
 
+void read_tissue(JsonReader json, const fs::path& file, const fs::path& assets, Scene& scene) {
+    const bool linear = json.has("linear");
+    if (linear == json.has("map")) json.fail("", linear ? "two tissues" : "no tissue", "either map or linear");
+    if (!linear) {
+        scene.map = find_file(json.text("map"), file, assets / "maps");
+        return json.finish();
+    }
+    JsonReader block = json.object("linear");
+    LinearOptions options;
+    options.phantom = find_file(block.text("phantom"), file, assets / "phantoms");
+    options.spacing_m = 1e-3 * block.number("spacing_mm", {0.0, 100.0, true}, 1e3 * options.spacing_m);
+    block.finish();
+    scene.linear = options;
+    json.finish();
+}
+
 SurfaceEffect read_surface(JsonReader json) {
     SurfaceEffect surface;
     JsonReader profile = json.object("profile");
@@ -110,8 +126,7 @@ Scene read_scene(const fs::path& file, const fs::path& assets) {
     scene.file = file;
     scene.name = json.text("name");
     JsonReader tissue = json.object("tissue");
-    scene.map = find_file(tissue.text("map"), file, assets / "maps");
-    tissue.finish();
+    read_tissue(std::move(tissue), file, assets, scene);
     scene.profile = find_file(json.text("profile", kDefaultProfile), file, assets / "profiles");
     if (auto mapping = json.optional_object("mapping")) scene.mapping = read_mapping(*mapping);
     scene.force_scale = json.number("force_scale", {0.0, 1e3, true}, scene.force_scale);

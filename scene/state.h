@@ -20,6 +20,7 @@ struct Contact {
     double tangential_N = 0.0;  // resisting motion along the pen's direction
     bool saturated = false;     // pressed deeper than the tissue is known
     bool measured = true;       // false: between or beside the measured cells
+    double linearity = 0.0;     // linear tissue: amber above 0.10, red above 0.25 (mechanics/linear_range.h)
 };
 
 // What is shown of the indenter. lag = pen - avatar.
@@ -57,6 +58,7 @@ struct State {
     bool answered = false;                // the last sample belonged to it (or nothing touches)
     Touch touch;
     Place place;  // of the touch in the map; between the stages of one sample
+    std::optional<LinearWork> linear;     // of a linear tissue
     Contact contact;
     Avatar avatar;
     Eigen::Vector2d heading = Eigen::Vector2d::Zero();  // direction of motion, length 1 once moving

@@ -67,15 +67,7 @@ Map analytic_map(const Phantom& phantom) {
             map.tangential_y_N.push_back(static_cast<float>(slope.energy_y));
         }
     }
-    for (const PhantomNodule& nodule : phantom.nodules) {
-        Nodule placed;
-        placed.id = nodule.id;
-        placed.x_m = nodule.centre_m[0];
-        placed.y_m = nodule.centre_m[1];
-        placed.diameter_m = nodule.diameter_m;
-        placed.top_depth_m = nodule.centre_m[2] - 0.5 * nodule.diameter_m;
-        map.nodules.push_back(placed);
-    }
+    map.nodules = placed_nodules(phantom);
     map.source.kind = SourceKind::analytic;
     map.source.how =
         "closed-form stand-in, neither recorded nor simulated: a sphere on a bonded layer (Dimitriadis 2002), a bump "

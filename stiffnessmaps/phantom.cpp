@@ -50,6 +50,20 @@ void read_grid(JsonReader json, Phantom& phantom) {
 
 }  // namespace
 
+std::vector<Nodule> placed_nodules(const Phantom& phantom) {
+    std::vector<Nodule> out;
+    for (const PhantomNodule& nodule : phantom.nodules) {
+        Nodule placed;
+        placed.id = nodule.id;
+        placed.x_m = nodule.centre_m[0];
+        placed.y_m = nodule.centre_m[1];
+        placed.diameter_m = nodule.diameter_m;
+        placed.top_depth_m = nodule.centre_m[2] - 0.5 * nodule.diameter_m;
+        out.push_back(placed);
+    }
+    return out;
+}
+
 Phantom read_phantom(const std::filesystem::path& path) {
     const Json root = read_json(path);
     JsonReader json(root, path.string());

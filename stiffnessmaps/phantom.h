@@ -35,6 +35,9 @@ struct Phantom {
     std::size_t n_y = 0;
 };
 
+// The nodules as marks on a map, seen from above.
+std::vector<Nodule> placed_nodules(const Phantom& phantom);
+
 // Throws InputError.
 Phantom read_phantom(const std::filesystem::path& path);
 

@@ -47,7 +47,7 @@ TEST_CASE("plan: a person is told what is assumed, derived or scaled") {
     CHECK(noted("stand-in (analytic)"));
     CHECK(noted("phantom force: the pen's newtons are multiplied by 2"));
     CHECK(noted("derived from the normal force (work argument), not measured"));
-    CHECK(plan.smoothing_m == 0.0);  // no noise in a closed form
+    CHECK(std::get<MapTissue>(plan.tissue).smoothing_m == 0.0);  // no noise in a closed form
 }
 
 TEST_CASE("plan: a map or profile that is not there is named") {

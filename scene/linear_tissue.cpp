@@ -1,0 +1,167 @@
+#include "scene/linear_tissue.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <tuple>
+
+#include "files/cache.h"
+#include "mechanics/linear_range.h"
+#include "mechanics/material.h"
+#include "mechanics/statics.h"
+
+namespace palpa {
+namespace {
+
+constexpr int kLayers = 9;              // over the thickness, finer towards the surface
+constexpr double kDeepestShare = 0.45;  // of the thickness: deeper poses stop here, far beyond the linear range
+constexpr int kMostInContact = 256;     // nodes; more would be a tool of 16 spacings
+
+mechanics::Material material_of(const Elastic& elastic) { return {elastic.young_Pa, elastic.poisson}; }
+
+mechanics::Problem problem_of(const Phantom& phantom, std::size_t n_x, std::size_t n_y) {
+    using namespace mechanics;
+    const auto even = [](double length_m, std::size_t n) {
+        return Eigen::VectorXd(Eigen::VectorXd::LinSpaced(static_cast<Eigen::Index>(n), 0.0, length_m));
+    };
+    const double thickness_m = phantom.size_m[2];
+    const double finest_m = 0.5 * thickness_m / kLayers;
+    Problem problem;
+    problem.mesh = hex_box(even(phantom.size_m[0], n_x), even(phantom.size_m[1], n_y),
+                           graded_coordinates_m(thickness_m, kLayers, thickness_m, finest_m));
+    problem.materials.assign(static_cast<std::size_t>(problem.mesh.cells.cols()), material_of(phantom.tissue));
+    constexpr int kSubdivisions = 4;
+    for (const PhantomNodule& nodule : phantom.nodules) {
+        const Sphere sphere{{nodule.centre_m[0], nodule.centre_m[1], thickness_m - nodule.centre_m[2]},
+                            0.5 * nodule.diameter_m};
+        mix_in(sphere_share(problem.mesh, sphere, kSubdivisions), material_of(nodule.material), Mixing::between,
+               problem.materials);
+    }
+    const Faces bottom = faces_on(problem.mesh, boundary_faces(problem.mesh), Side::zmin);
+    fix(nodes_of(bottom), "xyz", 0.0, problem.supports);
+    return problem;
+}
+
+mechanics::ContactOptions contact_options(const LinearTissue& tissue) {
+    mechanics::ContactOptions options;
+    options.max_depth_m = kDeepestShare * tissue.phantom.size_m[2];
+    return options;
+}
+
+std::vector<double> plain(const Eigen::Ref<const Eigen::MatrixXd>& values) {
+    return {values.data(), values.data() + values.size()};
+}
+
+CachedArrays arrays_of(const mechanics::Compliance& c) {
+    return {plain(c.position_m), plain(c.area_m2), {c.surface_z_m, c.thickness_m, c.asymmetry}, plain(c.normal_m_per_N)};
+}
+
+// True if the cache holds a whole compliance of these nodes.
+bool restore(const std::filesystem::path& cache, std::uint64_t number, const mechanics::SurfaceRequest& request,
+             mechanics::Compliance& out) {
+    if (cache.empty()) return false;
+    const auto arrays = read_cache(cache, number);
+    const auto n = request.touch_nodes.size();
+    if (!arrays || arrays->size() != 4) return false;
+    const auto& [position, area, numbers, normal] = std::tie((*arrays)[0], (*arrays)[1], (*arrays)[2], (*arrays)[3]);
+    if (position.size() != 3 * n || area.size() != n || numbers.size() != 3 || normal.size() != n * n) return false;
+    const auto rows = static_cast<Eigen::Index>(n);
+    out.n_touch = static_cast<int>(n);
+    out.node = request.touch_nodes;
+    out.position_m = Eigen::Map<const Eigen::Matrix3Xd>(position.data(), 3, rows);
+    out.area_m2 = Eigen::Map<const Eigen::VectorXd>(area.data(), rows);
+    out.surface_z_m = numbers[0];
+    out.thickness_m = numbers[1];
+    out.asymmetry = numbers[2];
+    out.normal_m_per_N = Eigen::Map<const Eigen::MatrixXd>(normal.data(), rows, rows);
+    return true;
+}
+
+void press_to(const LinearTissue& tissue, const Eigen::Vector2d& p_m, double depth_m, mechanics::ContactWork& work,
+              mechanics::Contact& contact) {
+    const mechanics::Tool tool{tissue.indenter, {p_m.x(), p_m.y(), depth_m}};
+    mechanics::press_to_depth(tissue.compliance, {&tool, 1}, contact_options(tissue), work, contact);
+}
+
+}  // namespace
+
+LinearTissue make_linear_tissue(const LinearOptions& options, const std::filesystem::path& cache,
+                                const mechanics::Progress& progress) {
+    LinearTissue tissue;
+    tissue.phantom = read_phantom(options.phantom);
+    tissue.indenter.shape = tissue.phantom.indenter == IndenterShape::sphere ? mechanics::IndenterShape::sphere
+                                                                             : mechanics::IndenterShape::cylinder;
+    tissue.indenter.radius_m = tissue.phantom.indenter_radius_m;
+    const auto nodes_along = [&](double length_m) {
+        return 1 + static_cast<std::size_t>(std::max(2.0, std::round(length_m / options.spacing_m)));
+    };
+    tissue.n_x = nodes_along(tissue.phantom.size_m[0]);
+    tissue.n_y = nodes_along(tissue.phantom.size_m[1]);
+    tissue.spacing_m[0] = tissue.phantom.size_m[0] / static_cast<double>(tissue.n_x - 1);
+    tissue.spacing_m[1] = tissue.phantom.size_m[1] / static_cast<double>(tissue.n_y - 1);
+
+    const mechanics::Problem problem = problem_of(tissue.phantom, tissue.n_x, tissue.n_y);
+    tissue.mesh_nodes = static_cast<int>(problem.mesh.nodes_m.cols());
+    const mechanics::Faces outer = mechanics::boundary_faces(problem.mesh);
+    const mechanics::SurfaceRequest request = mechanics::request_rectangle(
+        problem.mesh, outer, {0.0, tissue.phantom.size_m[0], 0.0, tissue.phantom.size_m[1]});
+    const std::uint64_t number = mechanics::fingerprint(problem, request);
+    tissue.from_cache = restore(cache, number, request, tissue.compliance);
+    if (tissue.from_cache) return tissue;
+    const mechanics::Factored factored = mechanics::factorise(problem, mechanics::best_solver());
+    tissue.compliance = mechanics::surface_compliance(problem.mesh, factored, request, progress);
+    if (!cache.empty()) tissue.cache_warning = write_cache(cache, number, arrays_of(tissue.compliance));
+    return tissue;
+}
+
+LinearWork make_linear_work(const LinearTissue& tissue) {
+    LinearWork out;
+    out.work = mechanics::make_contact_work(tissue.compliance, kMostInContact);
+    for (mechanics::Contact* contact : {&out.contact, &out.probe}) {
+        contact->touch.reserve(kMostInContact);
+        contact->by_tool.reserve(kMostInContact);
+        contact->force_N.reserve(kMostInContact);
+        contact->tool.resize(1);
+    }
+    return out;
+}
+
+LinearAnswer press(const LinearTissue& tissue, const Eigen::Vector2d& p_m, double force_N, LinearWork& work) {
+    LinearAnswer answer;
+    if (!(force_N > 0.0)) {
+        press_to(tissue, p_m, 0.0, work.work, work.contact);
+        return answer;
+    }
+    const mechanics::Tool tool{tissue.indenter, {p_m.x(), p_m.y(), work.depth_m}};
+    mechanics::press_with_force(tissue.compliance, tool, force_N, contact_options(tissue), work.work, work.contact);
+    const mechanics::ToolForce& out = work.contact.tool[0];
+    answer.depth_m = out.depth_m;
+    answer.saturated = work.contact.flags.capped;
+    work.depth_m = out.depth_m;
+    const double width_m = 2.0 * std::sqrt(out.area_m2 / std::numbers::pi);
+    answer.linearity = mechanics::linearity_ratio(out.depth_m, tissue.phantom.size_m[2], width_m);
+    return answer;
+}
+
+double probe_depth_m(const LinearTissue& tissue, const Eigen::Vector2d& p_m, double force_N, LinearWork& work) {
+    if (!(force_N > 0.0)) return 0.0;
+    const mechanics::Tool tool{tissue.indenter, {p_m.x(), p_m.y(), work.depth_m}};
+    mechanics::press_with_force(tissue.compliance, tool, force_N, contact_options(tissue), work.work, work.probe);
+    return work.probe.tool[0].depth_m;
+}
+
+double tangential_force_N(const LinearTissue& tissue, const Eigen::Vector2d& p_m, const Eigen::Vector2d& u,
+                          double depth_m, LinearWork& work) {
+    if (u.isZero() || !(depth_m > 0.0)) return 0.0;
+    const double window_m = std::min(tissue.spacing_m[0], tissue.spacing_m[1]);
+    press_to(tissue, p_m + 0.5 * window_m * u, depth_m, work.work, work.probe);
+    const double ahead_J = work.probe.energy_J;
+    press_to(tissue, p_m - 0.5 * window_m * u, depth_m, work.work, work.probe);
+    return std::max(0.0, (ahead_J - work.probe.energy_J) / window_m);
+}
+
+void surface_sink_m(const LinearTissue& tissue, const LinearWork& work, Eigen::VectorXd& out_m) {
+    mechanics::surface_depression_m(tissue.compliance, work.contact, out_m);
+}
+
+}  // namespace palpa

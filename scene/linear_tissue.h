@@ -1,0 +1,69 @@
+#pragma once
+// A block of linear elastic tissue with stiff nodules, palpated live: the frictionless contact of the indenter is
+// solved anew at every sample on a precomputed surface compliance. Shapes and materials come from a phantom.
+
+#include <Eigen/Core>
+#include <filesystem>
+#include <functional>
+#include <string>
+
+#include "mechanics/compliance.h"
+#include "mechanics/contact.h"
+#include "stiffnessmaps/phantom.h"
+
+namespace palpa {
+
+struct LinearOptions {
+    std::filesystem::path phantom;
+    double spacing_m = 2e-3;  // of the surface nodes; cost of the precomputation grows with its power -6
+};
+
+// Plain data, constant while it runs. Positions are the phantom's: its corner at the origin.
+struct LinearTissue {
+    Phantom phantom;
+    mechanics::Compliance compliance;
+    mechanics::Indenter indenter;
+    std::size_t n_x = 0;  // surface nodes, x fastest; height field of the picture
+    std::size_t n_y = 0;
+    double spacing_m[2] = {0.0, 0.0};
+    int mesh_nodes = 0;
+    bool from_cache = false;
+    std::string cache_warning;  // why it could not be stored, for people; empty if it was
+};
+
+// What a sample changes.
+struct LinearWork {
+    mechanics::ContactWork work;
+    mechanics::Contact contact;  // of the touch
+    mechanics::Contact probe;    // of places beside it
+    double depth_m = 0.0;        // where the search for the depth starts
+};
+
+// Builds the mesh, factors it and computes the compliance: seconds to minutes, unless `cache` (a folder; empty: none)
+// holds it from an earlier run. May run in a worker thread. Throws InputError for the phantom, mechanics' errors for
+// what cannot be solved, and mechanics::Cancelled.
+LinearTissue make_linear_tissue(const LinearOptions& options, const std::filesystem::path& cache,
+                                const mechanics::Progress& progress);
+
+LinearWork make_linear_work(const LinearTissue& tissue);
+
+// Depth for a normal force.
+struct LinearAnswer {
+    double depth_m = 0.0;
+    bool saturated = false;   // the force is not reached at the depth limit
+    double linearity = 0.0;   // mechanics/linear_range.h: amber above 0.10, red above 0.25
+};
+LinearAnswer press(const LinearTissue& tissue, const Eigen::Vector2d& p_m, double force_N, LinearWork& work);
+
+// The same depth beside the touch, which stays as it is.
+double probe_depth_m(const LinearTissue& tissue, const Eigen::Vector2d& p_m, double force_N, LinearWork& work);
+
+// Force that resists motion along u at a depth: slope of the elastic energy, averaged over one node spacing, which
+// takes out the ripple of the node-wise contact. Never negative. Two contact solves.
+double tangential_force_N(const LinearTissue& tissue, const Eigen::Vector2d& p_m, const Eigen::Vector2d& u,
+                          double depth_m, LinearWork& work);
+
+// Sink of the surface nodes under the contact last pressed, n_x * n_y, metres downwards.
+void surface_sink_m(const LinearTissue& tissue, const LinearWork& work, Eigen::VectorXd& out_m);
+
+}  // namespace palpa

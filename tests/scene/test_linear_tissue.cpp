@@ -1,0 +1,135 @@
+#include "scene/linear_tissue.h"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+#include "files/cache.h"
+#include "files/text.h"
+#include "scene/advance.h"
+#include "tests/scene/allocations.h"
+#include "tests/temporary_folder.h"
+
+using namespace palpa;
+using namespace palpa::test;
+
+namespace {
+
+// 60 x 60 x 20 mm with one nodule at (24, 30), coarse enough for a test under sanitizers.
+constexpr const char* kPhantom = R"({
+  "size_mm": [60, 60, 20], "tissue": {"young_Pa": 20000, "poisson": 0.45},
+  "nodules": [{"id": "A", "centre_mm": [24, 30, 9], "diameter_mm": 12, "young_Pa": 2e6, "poisson": 0.45}],
+  "indenter": {"shape": "sphere", "radius_mm": 10, "contact": "rolling"},
+  "depths_mm": [1], "grid": {"origin_mm": [0, 0], "spacing_mm": [1, 1], "count": [2, 2]}})";
+
+struct Block {
+    TemporaryFolder folder;
+    LinearOptions options;
+    LinearTissue tissue;
+    LinearWork work;
+    Block() {
+        write_text_atomically(folder / "block.json", kPhantom);
+        options.phantom = folder / "block.json";
+        options.spacing_m = 4e-3;
+        tissue = make_linear_tissue(options, folder / "cache", {});
+        work = make_linear_work(tissue);
+    }
+};
+
+}  // namespace
+
+TEST_CASE("linear tissue: harder sinks deeper, over the nodule less than beside it, nothing without force") {
+    Block block;
+    double before_m = 0.0;
+    for (const double force_N : {0.2, 0.5, 1.0, 1.5}) {
+        const LinearAnswer beside = press(block.tissue, {0.045, 0.030}, force_N, block.work);
+        CHECK(beside.depth_m > before_m);
+        CHECK_FALSE(beside.saturated);
+        CHECK(block.work.contact.tool[0].normal_N == doctest::Approx(force_N).epsilon(1e-6));
+        before_m = beside.depth_m;
+        CHECK(press(block.tissue, {0.024, 0.030}, force_N, block.work).depth_m < 0.9 * beside.depth_m);
+    }
+    CHECK(press(block.tissue, {0.045, 0.030}, 0.0, block.work).depth_m == 0.0);
+    const LinearAnswer deep = press(block.tissue, {0.045, 0.030}, 100.0, block.work);
+    CHECK(deep.saturated);
+    CHECK(deep.depth_m == doctest::Approx(0.45 * 0.020));
+    CHECK(deep.linearity > 0.25);  // red
+}
+
+TEST_CASE("linear tissue: resists on the way to the nodule, lets go behind it, mirrored places answer alike") {
+    Block block;
+    const double depth_m = 2e-3;
+    const auto along_x = [&](double x_m, double direction) {
+        return tangential_force_N(block.tissue, {x_m, 0.030}, {direction, 0.0}, depth_m, block.work);
+    };
+    CHECK(along_x(0.016, 1.0) > 5e-3);
+    CHECK(along_x(0.032, 1.0) == 0.0);
+    CHECK(along_x(0.032, -1.0) == doctest::Approx(along_x(0.016, 1.0)).epsilon(0.25));  // the near side differs
+    CHECK(tangential_force_N(block.tissue, {0.024, 0.022}, {0.0, 1.0}, depth_m, block.work) ==
+          doctest::Approx(tangential_force_N(block.tissue, {0.024, 0.038}, {0.0, -1.0}, depth_m, block.work)).epsilon(1e-6));
+    CHECK(along_x(0.016, 0.0) == 0.0);
+}
+
+TEST_CASE("linear tissue: the surface sinks to the depth under the tool and comes back to zero at the far edge") {
+    Block block;
+    const LinearAnswer answer = press(block.tissue, {0.032, 0.032}, 0.5, block.work);
+    Eigen::VectorXd sink_m;
+    surface_sink_m(block.tissue, block.work, sink_m);
+    REQUIRE(sink_m.size() == static_cast<Eigen::Index>(block.tissue.n_x * block.tissue.n_y));
+    CHECK(sink_m.maxCoeff() == doctest::Approx(answer.depth_m).epsilon(0.02));
+    CHECK(std::abs(sink_m[0]) < 0.1 * answer.depth_m);
+}
+
+TEST_CASE("linear tissue: a second start reads the cache to the same bits, a damaged cache is computed anew") {
+    Block block;
+    CHECK_FALSE(block.tissue.from_cache);
+    CHECK(block.tissue.cache_warning.empty());
+    const LinearTissue again = make_linear_tissue(block.options, block.folder / "cache", {});
+    CHECK(again.from_cache);
+    CHECK(again.compliance.normal_m_per_N == block.tissue.compliance.normal_m_per_N);
+    CHECK(again.compliance.node == block.tissue.compliance.node);
+
+    for (const auto& entry : std::filesystem::directory_iterator(block.folder / "cache")) {
+        std::string bytes = read_text(entry.path());
+        bytes[bytes.size() / 2] = static_cast<char>(bytes[bytes.size() / 2] ^ 1);
+        write_text_atomically(entry.path(), bytes);
+    }
+    const LinearTissue anew = make_linear_tissue(block.options, block.folder / "cache", {});
+    CHECK_FALSE(anew.from_cache);
+    CHECK(anew.compliance.normal_m_per_N == block.tissue.compliance.normal_m_per_N);
+}
+
+TEST_CASE("linear tissue: palpated live a sample allocates nothing and two runs agree to the last bit") {
+    Block block;
+    Scene scene;
+    scene.linear = block.options;
+    scene.profile = PALPA_SOURCE_DIR "/assets/profiles/s-pen.json";
+    scene.display_ratio = display_ratio_clear();
+    Plan plan;
+    {
+        // as make_plan does, with the cache of this test
+        ::setenv("XDG_CACHE_HOME", block.folder.path().c_str(), 1);
+        plan = make_plan(scene);
+    }
+    State states[2] = {start(scene, plan, 600, 600), start(scene, plan, 600, 600)};
+    std::int64_t allocated = 0;
+    for (State& state : states) {
+        for (int i = 0; i < 600; ++i) {
+            Sample sample;
+            sample.t_host_s = 2e-3 * i;
+            sample.phase = i == 0 ? Phase::down : Phase::move;
+            const Eigen::Vector2d px = px_of_tissue(state.view, {0.008 + 6e-5 * i, 0.030});
+            sample.x_px = px.x();
+            sample.y_px = px.y();
+            sample.pressure = 0.45;
+            const std::int64_t before = allocations();
+            advance(scene, plan, sample, state);
+            if (i > 0) allocated += allocations() - before;
+        }
+    }
+    CHECK(allocated == 0);
+    CHECK(states[0].extremes.lag_m > 0.05e-3);
+    CHECK(states[0].extremes.lag_m == states[1].extremes.lag_m);
+    CHECK(states[0].avatar.p_m == states[1].avatar.p_m);
+    CHECK(states[0].contact.depth_m == states[1].contact.depth_m);
+}
