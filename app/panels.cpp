@@ -21,9 +21,8 @@ const ImVec4 kAmber(1.0f, 0.75f, 0.25f, 1.0f);
 const ImVec4 kRed(1.0f, 0.45f, 0.40f, 1.0f);
 
 ImVec2 on_screen(const TissueView& view, const Eigen::Vector2d& p_m) {
-    ImVec2 out;
-    project_px(view, static_cast<float>(p_m.x()), static_cast<float>(p_m.y()), 0.0f, out.x, out.y);
-    return out;
+    const glm::vec2 px = project_px(view, glm::vec3(p_m.x(), p_m.y(), 0.0));
+    return {px.x, px.y};
 }
 
 // A vertical bar from 0 to the map's greatest force, ticks every newton.

@@ -3,18 +3,20 @@
 #include <algorithm>
 
 namespace palpa {
+namespace {
+
+glm::vec2 to_gl(const Eigen::Vector2d& v) { return {v.x(), v.y()}; }
+
+}  // namespace
 
 TissueView tissue_view(const Scene& scene, const State& state) {
     const View& view = state.view;
     TissueView out;
-    out.width_px = static_cast<float>(state.screen_width_px);
-    out.height_px = static_cast<float>(state.screen_height_px);
-    for (int i = 0; i < 2; ++i) {
-        out.centre_px[i] = static_cast<float>(view.centre_px[i]);
-        out.centre_m[i] = static_cast<float>(view.area.centre_m[i]);
-        out.size_m[i] = static_cast<float>(view.area.size_m[i]);
-        for (int j = 0; j < 2; ++j) out.axes[2 * i + j] = static_cast<float>(view.axes(i, j));
-    }
+    out.area_px = {state.screen_width_px, state.screen_height_px};
+    out.centre_px = to_gl(view.centre_px);
+    out.centre_m = to_gl(view.area.centre_m);
+    out.size_m = to_gl(view.area.size_m);
+    out.axes = glm::mat2(to_gl(view.axes.col(0)), to_gl(view.axes.col(1)));
     out.px_per_m = static_cast<float>(view.px_per_m);
     constexpr float kTilt_rad = 0.7f;  // 40 degrees
     out.tilt_rad = scene.mapping.kind == MappingKind::indirect ? kTilt_rad : 0.0f;
@@ -24,8 +26,7 @@ TissueView tissue_view(const Scene& scene, const State& state) {
 Dent dent_of(const SurfaceCurve& curve, const Avatar& avatar) {
     static_assert(kSinkPoints == kSurfacePoints, "the curve goes to the shader as it is");
     Dent dent;
-    dent.centre_m[0] = static_cast<float>(avatar.p_m.x());
-    dent.centre_m[1] = static_cast<float>(avatar.p_m.y());
+    dent.centre_m = to_gl(avatar.p_m);
     dent.reach_m = static_cast<float>(curve.reach_m);
     std::transform(curve.sink_m.begin(), curve.sink_m.end(), dent.sink_m.begin(),
                    [](double sink_m) { return static_cast<float>(sink_m); });
@@ -48,15 +49,13 @@ Relief relief_of(const LinearTissue& tissue, const Eigen::VectorXd& sink_m, cons
             relief.sink_m.push_back(static_cast<float>(smooth));
         }
     }
-    relief.shift_m[0] = static_cast<float>(-avatar.lag_m.x());
-    relief.shift_m[1] = static_cast<float>(-avatar.lag_m.y());
+    relief.shift_m = -to_gl(avatar.lag_m);
     return relief;
 }
 
 Ball ball_of(const Plan& plan, const State& state, const Avatar& avatar) {
     Ball ball;
-    ball.centre_m[0] = static_cast<float>(avatar.p_m.x());
-    ball.centre_m[1] = static_cast<float>(avatar.p_m.y());
+    ball.centre_m = to_gl(avatar.p_m);
     ball.height_m = static_cast<float>(plan.indenter_radius_m - state.contact.depth_m);
     if (on_tissue(state.view, state.touch.p_m) && state.timeline.started) {
         ball.radius_m = static_cast<float>(plan.indenter_radius_m);

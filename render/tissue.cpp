@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/gtc/type_ptr.hpp>
 
 #include "render/gl.h"
 
@@ -16,9 +17,9 @@ constexpr int kCells = 160;  // 0.75 mm on the 120 mm phantom
     "precision highp float;\n"                                                               \
     "layout(location = 0) in vec2 unit;\n"                                                   \
     "uniform vec2 area_px; uniform vec2 centre_px; uniform vec2 centre_m; uniform vec2 size_m;\n" \
-    "uniform vec4 axes; uniform float px_per_m; uniform float tilt;\n"                       \
+    "uniform mat2 axes; uniform float px_per_m; uniform float tilt;\n"                       \
     "vec4 project(vec3 p) {\n"                                                               \
-    "  vec2 q = px_per_m * vec2(dot(axes.xy, p.xy - centre_m), dot(axes.zw, p.xy - centre_m));\n" \
+    "  vec2 q = px_per_m * (axes * (p.xy - centre_m));\n" \
     "  float y = q.y * cos(tilt) - px_per_m * p.z * sin(tilt);\n"                            \
     "  float depth = (-q.y * sin(tilt) - px_per_m * p.z * cos(tilt)) / (4.0 * max(area_px.x, area_px.y));\n" \
     "  vec2 s = centre_px + vec2(q.x, y);\n"                                                 \
@@ -53,11 +54,12 @@ void main() {
 constexpr const char* kSurfaceFragment = R"(#version 300 es
 precision highp float;
 in vec2 place_m; in vec3 normal; in float sunk_m;
-uniform vec4 axes; uniform vec2 centre_m;
+uniform mat2 axes; uniform vec2 centre_m;
 out vec4 colour;
 void main() {
   vec3 n = normalize(normal);
-  vec3 on_screen = normalize(vec3(dot(axes.xy, n.xy), -dot(axes.zw, n.xy), n.z));
+  vec2 across = axes * n.xy;  // screen y points down
+  vec3 on_screen = normalize(vec3(across.x, -across.y, n.z));
   vec3 light = normalize(vec3(-0.55, 0.65, 0.75));
   float lit = max(dot(on_screen, light), 0.0) / light.z;
   vec3 tissue = vec3(0.80, 0.58, 0.52);
@@ -129,11 +131,11 @@ SurfaceMesh unit_grid(int cells) {
 
 void set_view(const Program& program, const TissueView& view) {
     program.use();
-    glUniform2f(program.uniform("area_px"), view.width_px, view.height_px);
-    glUniform2f(program.uniform("centre_px"), view.centre_px[0], view.centre_px[1]);
-    glUniform2f(program.uniform("centre_m"), view.centre_m[0], view.centre_m[1]);
-    glUniform2f(program.uniform("size_m"), view.size_m[0], view.size_m[1]);
-    glUniform4fv(program.uniform("axes"), 1, view.axes);
+    glUniform2fv(program.uniform("area_px"), 1, glm::value_ptr(view.area_px));
+    glUniform2fv(program.uniform("centre_px"), 1, glm::value_ptr(view.centre_px));
+    glUniform2fv(program.uniform("centre_m"), 1, glm::value_ptr(view.centre_m));
+    glUniform2fv(program.uniform("size_m"), 1, glm::value_ptr(view.size_m));
+    glUniformMatrix2fv(program.uniform("axes"), 1, GL_FALSE, glm::value_ptr(view.axes));
     glUniform1f(program.uniform("px_per_m"), view.px_per_m);
     glUniform1f(program.uniform("tilt"), view.tilt_rad);
 }
@@ -154,12 +156,12 @@ TissueDrawer::TissueDrawer() : gpu_(std::make_unique<Gpu>()) {}
 TissueDrawer::~TissueDrawer() = default;
 
 void TissueDrawer::draw(const TissueView& view, const Dent& dent, const Relief& relief, const Ball& ball) {
-    clear_screen(static_cast<int>(view.width_px), static_cast<int>(view.height_px));
+    clear_screen(static_cast<int>(view.area_px.x), static_cast<int>(view.area_px.y));
     glEnable(GL_DEPTH_TEST);
     glDisable(GL_CULL_FACE);
     glDisable(GL_BLEND);
     set_view(gpu_->surface, view);
-    glUniform2f(gpu_->surface.uniform("dent_m"), dent.centre_m[0], dent.centre_m[1]);
+    glUniform2fv(gpu_->surface.uniform("dent_m"), 1, glm::value_ptr(dent.centre_m));
     glUniform1f(gpu_->surface.uniform("reach_m"), dent.reach_m);
     glUniform1fv(gpu_->surface.uniform("sink_m"), kSinkPoints, dent.sink_m.data());
     glUniform1f(gpu_->surface.uniform("has_relief"), relief.n_x >= 2 ? 1.0f : 0.0f);
@@ -174,7 +176,7 @@ void TissueDrawer::draw(const TissueView& view, const Dent& dent, const Relief& 
     glEnable(GL_BLEND);
     glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
     set_view(gpu_->ball, view);
-    glUniform3f(gpu_->ball.uniform("ball_m"), ball.centre_m[0], ball.centre_m[1], ball.height_m);
+    glUniform3f(gpu_->ball.uniform("ball_m"), ball.centre_m.x, ball.centre_m.y, ball.height_m);
     glUniform1f(gpu_->ball.uniform("radius_m"), ball.radius_m);
     glUniform1f(gpu_->ball.uniform("opacity"), ball.opacity);
     gpu_->quad.draw();
@@ -208,14 +210,14 @@ Weights weights_at(float at) {
 
 }  // namespace
 
-void refine(const Relief& relief, const float size_m[2], int cells, std::vector<float>& out) {
+void refine(const Relief& relief, const glm::vec2& size_m, int cells, std::vector<float>& out) {
     const auto n = static_cast<std::size_t>(cells) + 1;
-    const float dx_m = size_m[0] / static_cast<float>(relief.n_x - 1);
-    const float dy_m = size_m[1] / static_cast<float>(relief.n_y - 1);
+    const float dx_m = size_m.x / static_cast<float>(relief.n_x - 1);
+    const float dy_m = size_m.y / static_cast<float>(relief.n_y - 1);
     // along x first: value and slope of every row at the n places
     std::vector<float> rows(2 * n * static_cast<std::size_t>(relief.n_y));
     for (std::size_t i = 0; i < n; ++i) {
-        const Weights w = weights_at((static_cast<float>(i) / static_cast<float>(cells) * size_m[0] - relief.shift_m[0]) / dx_m);
+        const Weights w = weights_at((static_cast<float>(i) / static_cast<float>(cells) * size_m.x - relief.shift_m.x) / dx_m);
         for (int j = 0; j < relief.n_y; ++j) {
             float value = 0.0f;
             float slope = 0.0f;
@@ -232,7 +234,7 @@ void refine(const Relief& relief, const float size_m[2], int cells, std::vector<
     }
     out.resize(3 * n * n);
     for (std::size_t j = 0; j < n; ++j) {
-        const Weights w = weights_at((static_cast<float>(j) / static_cast<float>(cells) * size_m[1] - relief.shift_m[1]) / dy_m);
+        const Weights w = weights_at((static_cast<float>(j) / static_cast<float>(cells) * size_m.y - relief.shift_m.y) / dy_m);
         for (std::size_t i = 0; i < n; ++i) {
             float* vertex = &out[3 * (j * n + i)];
             vertex[0] = vertex[1] = vertex[2] = 0.0f;
@@ -247,13 +249,10 @@ void refine(const Relief& relief, const float size_m[2], int cells, std::vector<
     }
 }
 
-void project_px(const TissueView& view, float x_m, float y_m, float z_m, float& x_px, float& y_px) {
-    const float dx = x_m - view.centre_m[0];
-    const float dy = y_m - view.centre_m[1];
-    const float qx = view.px_per_m * (view.axes[0] * dx + view.axes[1] * dy);
-    const float qy = view.px_per_m * (view.axes[2] * dx + view.axes[3] * dy);
-    x_px = view.centre_px[0] + qx;
-    y_px = view.centre_px[1] + qy * std::cos(view.tilt_rad) - view.px_per_m * z_m * std::sin(view.tilt_rad);
+glm::vec2 project_px(const TissueView& view, const glm::vec3& p_m) {
+    const glm::vec2 q = view.px_per_m * (view.axes * (glm::vec2(p_m) - view.centre_m));
+    const float y = q.y * std::cos(view.tilt_rad) - view.px_per_m * p_m.z * std::sin(view.tilt_rad);
+    return view.centre_px + glm::vec2(q.x, y);
 }
 
 }  // namespace palpa

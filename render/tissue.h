@@ -2,6 +2,9 @@
 // The tissue's surface with its dent, and the indenter: plain numbers in, pixels out.
 
 #include <array>
+#include <glm/mat2x2.hpp>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
 #include <memory>
 #include <vector>
 
@@ -13,19 +16,18 @@ inline constexpr int kSinkPoints = 64;
 // upwards from the undisturbed surface.
 //   screen px (y down) = centre_px + px_per_m * axes * (p - centre_m), then tilted about the screen's x axis
 struct TissueView {
-    float width_px = 1.0f;  // of the drawing area
-    float height_px = 1.0f;
-    float centre_px[2] = {0.0f, 0.0f};
-    float centre_m[2] = {0.0f, 0.0f};
-    float size_m[2] = {0.1f, 0.1f};
-    float axes[4] = {1.0f, 0.0f, 0.0f, 1.0f};  // row by row
+    glm::vec2 area_px{1.0f};  // width and height of the drawing area
+    glm::vec2 centre_px{0.0f};
+    glm::vec2 centre_m{0.0f};
+    glm::vec2 size_m{0.1f};
+    glm::mat2 axes{1.0f};
     float px_per_m = 1.0f;
     float tilt_rad = 0.0f;  // 0: from straight above
 };
 
 // Dent around (x, y): sink at r_i = reach (i / 63)^2, metres downwards; reach 0: no dent.
 struct Dent {
-    float centre_m[2] = {0.0f, 0.0f};
+    glm::vec2 centre_m{0.0f};
     float reach_m = 0.0f;
     std::array<float, kSinkPoints> sink_m{};
 };
@@ -35,11 +37,11 @@ struct Relief {
     int n_x = 0;  // 0: no relief
     int n_y = 0;
     std::vector<float> sink_m;
-    float shift_m[2] = {0.0f, 0.0f};  // drawn moved by this, as the avatar lags
+    glm::vec2 shift_m{0.0f};  // drawn moved by this, as the avatar lags
 };
 
 struct Ball {
-    float centre_m[2] = {0.0f, 0.0f};
+    glm::vec2 centre_m{0.0f};
     float height_m = 0.0f;  // of its centre above the undisturbed surface
     float radius_m = 0.0f;  // 0: not drawn
     float opacity = 1.0f;
@@ -62,9 +64,9 @@ class TissueDrawer {
 
 // Vertices of the drawn surface, (cells + 1)^2 of (sink, d sink/dx, d sink/dy), by Catmull-Rom interpolation;
 // the border is continued. relief.n_x and n_y >= 2.
-void refine(const Relief& relief, const float size_m[2], int cells, std::vector<float>& out);
+void refine(const Relief& relief, const glm::vec2& size_m, int cells, std::vector<float>& out);
 
 // Where a point lands on the screen, the same as in the shader; for marks drawn on top.
-void project_px(const TissueView& view, float x_m, float y_m, float z_m, float& x_px, float& y_px);
+glm::vec2 project_px(const TissueView& view, const glm::vec3& p_m);
 
 }  // namespace palpa

@@ -21,7 +21,7 @@ TEST_CASE("sample clock: without a wrap it is the clock itself") {
     CHECK(unwrapped({4000000000u, 4000000008u}) == std::vector<double>{4000000000.0, 4000000008.0});
 }
 
-TEST_CASE("sample clock: goes on over a wrap") {
+TEST_CASE("hard case 11: the sample clock goes on over a wrap of its 32 bits") {
     CHECK(unwrapped({4294967290u, 4294967295u, 0, 4, 1000}) ==
           std::vector<double>{4294967290.0, 4294967295.0, kWrap_ms, kWrap_ms + 4.0, kWrap_ms + 1000.0});
 }
