@@ -27,6 +27,7 @@ ImVec2 on_screen(const TissueView& view, const Eigen::Vector2d& p_m) {
 
 // A vertical bar from 0 to the map's greatest force, ticks every newton.
 void draw_force_bar(const Plan& plan, const State& state, float scale) {
+    ImGui::Dummy(ImVec2(1.0f, 0.4f * ImGui::GetFontSize()));  // room for the topmost number
     const double full_N = std::max(1.0, plan.greatest_force_N);
     const ImVec2 size(26.0f * scale, 200.0f * scale);
     const ImVec2 at = ImGui::GetCursorScreenPos();
