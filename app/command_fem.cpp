@@ -102,6 +102,12 @@ Json json_of(const FemCase& model, const FemResult& result) {
     return json;
 }
 
+std::string six_digits(double value) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.6g", value);
+    return text;
+}
+
 std::string three_N(const Eigen::Vector3d& f) {
     return short_number(f.x()) + "  " + short_number(f.y()) + "  " + short_number(f.z()) + " N";
 }
@@ -109,7 +115,7 @@ std::string three_N(const Eigen::Vector3d& f) {
 void row(const char* what, const std::string& value) { std::printf("  %-22s %s\n", what, value.c_str()); }
 
 void print_table(const FemCase& model, const FemResult& result) {
-    const auto mm = [](const std::optional<double>& value_m) { return value_m ? number_text(1e3 * *value_m) + " mm" : std::string("-"); };
+    const auto mm = [](const std::optional<double>& value_m) { return value_m ? six_digits(1e3 * *value_m) + " mm" : std::string("-"); };
     std::printf("%s: %s, %td nodes, %td elements, %d equations\n", model.file.c_str(), name_of(model.problem.element),
                 model.problem.mesh.nodes_m.cols(), model.problem.mesh.cells.cols(), result.equations);
     row("applied", short_number(result.applied_N) + " N");
