@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <iterator>
 
 #include "files/input_error.h"
 #include "files/text.h"
@@ -103,6 +104,7 @@ struct Rectangle {
     SurfaceRequest request;
     std::array<double, 4> box_m{};  // of the touch nodes
     bool whole = false;             // the whole surface
+    std::vector<int> held;          // nodes in it that a support holds
 };
 
 Rectangle rectangle_around(const FemCase& model, const CaseIndenter& indenter, double half_x_m, double half_y_m) {
@@ -142,19 +144,43 @@ void check_size(const Rectangle& rectangle, const FemCase& model) {
                         " (a smaller radius or depth, or a coarser mesh)");
 }
 
-// A supported node does not give way: nothing there can be solved for.
-void check_free(const Compliance& c, const CaseIndenter& indenter, const FemCase& model) {
-    const double typical = c.normal_m_per_N.topRows(c.n_touch).diagonal().maxCoeff();
-    for (Index i = 0; i < c.n_touch; ++i) {
-        bool free = c.normal_m_per_N(i, i) > 1e-12 * typical;
-        if (indenter.friction > 0.0) {
-            free = free && c.full_m_per_N(3 * i + 1, 3 * i + 1) + c.full_m_per_N(3 * i + 2, 3 * i + 2) > 1e-12 * typical;
+double at_mm(const FemCase& model, int node, Index axis) { return 1e3 * model.problem.mesh.nodes_m(axis, node); }
+
+[[noreturn]] void refuse_support(const FemCase& model, int node, const std::string& expected) {
+    throw bad_input(model.file, "loads.indenter.centre_mm",
+                    "a support under the tool, at x " + short_number(at_mm(model, node, 0)) + ", y " +
+                        short_number(at_mm(model, node, 1)) + " mm",
+                    expected);
+}
+
+// Nodes that a support holds do not give way and are not solved for: they leave the list of touch nodes.
+void set_held_aside(const FemCase& model, const Factored& factored, Rectangle& rectangle) {
+    const auto prescribed = [&](int node, int axis) {
+        return factored.reduction.equation[static_cast<std::size_t>(3 * node + axis)] == kPrescribed;
+    };
+    auto& touch = rectangle.request.touch_nodes;
+    std::copy_if(touch.begin(), touch.end(), std::back_inserter(rectangle.held), [&](int node) { return prescribed(node, 2); });
+    std::erase_if(touch, [&](int node) { return prescribed(node, 2); });
+    if (touch.empty()) refuse_support(model, rectangle.held.front(), "a free surface");
+    for (const int node : touch) {
+        if (model.indenter->friction > 0.0 && prescribed(node, 0) && prescribed(node, 1)) {
+            refuse_support(model, node, "a surface that is free to move along x or y, or friction 0");
         }
-        if (free) continue;
-        throw bad_input(model.file, "loads.indenter.centre_mm",
-                        "a support under the tool, at x " + short_number(1e3 * c.position_m(0, i)) + ", y " +
-                            short_number(1e3 * c.position_m(1, i)) + " mm",
-                        "a free surface");
+    }
+}
+
+// The tool must stay clear of them: the tissue at rest is as high there as it will ever be.
+void check_held(const FemCase& model, const Rectangle& rectangle, double depth_m) {
+    const Indenter& tool = model.indenter->indenter;
+    const double d = std::min(depth_m, tool.radius_m);
+    const double reach_m = std::sqrt(d * (2.0 * tool.radius_m - d));
+    for (const int node : rectangle.held) {
+        const double dx = model.problem.mesh.nodes_m(0, node) - model.indenter->centre_m[0];
+        const double dy = model.problem.mesh.nodes_m(1, node) - model.indenter->centre_m[1];
+        const bool cylinder = tool.shape == IndenterShape::cylinder;
+        const double away_m = cylinder ? std::abs(dx) : std::hypot(dx, dy);
+        if (away_m >= reach_m || (cylinder && 2.0 * std::abs(dy) > tool.length_m)) continue;
+        refuse_support(model, node, "a free surface wherever the tool reaches");
     }
 }
 
@@ -190,14 +216,15 @@ IndenterContact press_indenter(const FemCase& model, const Factored& factored, c
     Progress columns;
     columns.report = [&](int done, int total) { progress("compliance", done, total); };
     for (;; half_x_m *= 1.5, half_y_m *= 1.5) {
-        const Rectangle rectangle = rectangle_around(model, indenter, half_x_m, half_y_m);
+        Rectangle rectangle = rectangle_around(model, indenter, half_x_m, half_y_m);
         if (rectangle.request.touch_nodes.size() < 16 && !rectangle.whole) continue;
         check_size(rectangle, model);
+        set_held_aside(model, factored, rectangle);
         const Compliance c = surface_compliance(model.problem.mesh, factored, rectangle.request, columns);
-        check_free(c, indenter, model);
         const Pressed pressed = indenter.friction > 0.0 ? press_rough(c, indenter, model) : press_smooth(c, indenter, model);
         const bool inside = !at_rim(c, pressed, rectangle) && !pressed.contact.flags.over_edge;
         if (!inside && !rectangle.whole) continue;
+        check_held(model, rectangle, pressed.contact.tool[0].depth_m);
         if (pressed.touch.empty()) {
             throw bad_input(model.file, "loads.indenter", "a tool that touches no node at this depth",
                             "a deeper or larger tool, or a finer mesh around it");
