@@ -35,6 +35,7 @@ int run_command_line(int argc, char** argv) {
     add_run(app);
     add_explain(app);
     add_maps(app);
+    add_fem(app);
     add_bench(app);
     try {
         app.parse(with_default_command(argc, argv, app));

@@ -80,6 +80,7 @@ JsonReader::JsonReader(const Json& value, std::string file, std::string where)
 }
 
 std::string JsonReader::where_of(std::string_view key) const {
+    if (key.empty()) return where_;
     return where_.empty() ? std::string(key) : where_ + "." + std::string(key);
 }
 
@@ -196,6 +197,15 @@ std::vector<JsonReader> JsonReader::objects(std::string_view key) {
 }
 
 const Json& JsonReader::any(std::string_view key) { return need(key, "a value"); }
+
+void JsonReader::only(std::initializer_list<std::string_view> keys) const {
+    for (const auto& item : value_->items()) {
+        if (std::find(keys.begin(), keys.end(), item.key()) != keys.end()) continue;
+        std::string known = "one of";
+        for (const auto& key : keys) known.append(" ").append(key);
+        throw bad_input(file_, where_of(item.key()), "an unknown key", known);
+    }
+}
 
 void JsonReader::finish() const {
     for (const auto& item : value_->items()) {

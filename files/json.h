@@ -51,6 +51,9 @@ class JsonReader {
     std::vector<JsonReader> objects(std::string_view key);  // an array of objects; empty if absent
     const Json& any(std::string_view key);                   // taken as it is
 
+    // Refuses other keys at once, so that a misspelt key (young_kPa) is named, not the one that it stands for.
+    void only(std::initializer_list<std::string_view> keys) const;
+
     void finish() const;
     [[noreturn]] void fail(std::string_view key, std::string_view found, std::string_view expected) const;
     const std::string& file() const { return file_; }

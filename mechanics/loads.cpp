@@ -1,5 +1,6 @@
 #include "mechanics/loads.h"
 
+#include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <cmath>
 #include <numbers>
@@ -111,6 +112,29 @@ Eigen::Matrix3Xd traction_load(const Mesh& mesh, const Faces& faces,
     const Eigen::Vector3d t(traction_Pa[0], traction_Pa[1], traction_Pa[2]);
     if (!t.allFinite()) throw LoadError(text("traction ", t.transpose(), " Pa is not finite"));
     return t * tributary_area_m2(mesh, faces).transpose();
+}
+
+Eigen::Matrix3Xd pressure_load(const Mesh& mesh, const Faces& faces, double pressure_Pa) {
+    if (!std::isfinite(pressure_Pa)) throw LoadError(text("pressure ", pressure_Pa, " Pa is not finite"));
+    Eigen::Matrix3Xd force_N = Eigen::Matrix3Xd::Zero(3, mesh.nodes_m.cols());
+    for (Index f = 0; f < faces.cell.size(); ++f) {
+        const auto x = [&](Index k) -> Eigen::Vector3d { return mesh.nodes_m.col(faces.corners(k, f)); };
+        if (faces.corners.rows() == 3) {
+            const Eigen::Vector3d area = 0.5 * (x(1) - x(0)).cross(x(2) - x(0));
+            for (Index k = 0; k < 3; ++k) force_N.col(faces.corners(k, f)) -= pressure_Pa / 3.0 * area;
+            continue;
+        }
+        for (int g = 0; g < 4; ++g) {
+            const double r = 0.5 + (g % 2 == 0 ? -0.5 : 0.5) / std::numbers::sqrt3;
+            const double s = 0.5 + (g / 2 == 0 ? -0.5 : 0.5) / std::numbers::sqrt3;
+            const Eigen::Vector3d along_r = (1.0 - s) * (x(1) - x(0)) + s * (x(2) - x(3));
+            const Eigen::Vector3d along_s = (1.0 - r) * (x(3) - x(0)) + r * (x(2) - x(1));
+            const Eigen::Vector3d area = 0.25 * along_r.cross(along_s);
+            const double N[4] = {(1.0 - r) * (1.0 - s), r * (1.0 - s), r * s, (1.0 - r) * s};
+            for (Index k = 0; k < 4; ++k) force_N.col(faces.corners(k, f)) -= pressure_Pa * N[k] * area;
+        }
+    }
+    return force_N;
 }
 
 double mean_displacement_m(const PressureLoad& load, const Eigen::Matrix3Xd& u_m) {

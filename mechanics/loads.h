@@ -38,6 +38,9 @@ PressureLoad parabolic_load(const Mesh& mesh, const Faces& outer, const Paraboli
 Eigen::Matrix3Xd traction_load(const Mesh& mesh, const Faces& faces,
                                const std::array<double, 3>& traction_Pa);
 
+// Constant pressure into the body on faces that may be bent: F_i = -p int N_i n dA (2 x 2 Gauss on quads).
+Eigen::Matrix3Xd pressure_load(const Mesh& mesh, const Faces& faces, double pressure_Pa);
+
 // Work-conjugate mean displacement of a load: sum f . u / F, metres, positive along the load.
 double mean_displacement_m(const PressureLoad& load, const Eigen::Matrix3Xd& u_m);
 

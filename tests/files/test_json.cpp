@@ -59,3 +59,11 @@ TEST_CASE("json: arrays, choices and whole numbers") {
     };
     CHECK(contains(refusal(R"({"avatar": {"x": 1}})", nested), "slab.json: avatar.x: found an unknown key"));
 }
+
+TEST_CASE("json: with only() a misspelt key is named, not the missing one") {
+    const Json json = parse_json(R"({"young_kPa": 2.5, "poisson": 0.45})", "c.json");
+    const JsonReader reader(json, "c.json", "gel");
+    CHECK(message_of([&] { reader.only({"young_Pa", "poisson"}); }) == "c.json: gel.young_kPa: found an unknown key, expected one of young_Pa poisson");
+    CHECK_NOTHROW(reader.only({"young_kPa", "poisson", "law"}));
+    CHECK(contains(message_of([&] { reader.fail("", "nothing", "something"); }), "c.json: gel: found nothing"));
+}

@@ -1,0 +1,55 @@
+#pragma once
+// The case file of `palpa fem solve`: mesh, materials by region, supports, loads. Format: docs/fem.md.
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "files/json.h"
+#include "mechanics/contact.h"
+#include "mechanics/loads.h"
+
+namespace palpa {
+
+struct CaseSupport {
+    std::string name;        // "zmin", or the name of a physical group
+    std::vector<int> nodes;  // ascending
+    std::string axes;        // "xyz", "z", ...
+    double value_m = 0.0;
+};
+
+// Force per area on faces: a pressure into the body, or a vector in x, y, z.
+struct CaseTraction {
+    mechanics::Faces faces;
+    std::optional<double> pressure_Pa;
+    std::array<double, 3> vector_Pa{};
+};
+
+struct CaseIndenter {
+    mechanics::Indenter indenter;
+    std::array<double, 2> centre_m{};
+    std::optional<double> depth_m;  // either this
+    double force_N = 0.0;           // or this
+    double friction = 0.0;
+};
+
+// Checked as a whole: materials, mesh and supports are ones that can be solved.
+struct FemCase {
+    std::string file;
+    mechanics::Problem problem;  // mesh.region: position in `materials`
+    mechanics::Faces outer;
+    mechanics::MeshReport report;
+    std::vector<std::string> materials;
+    std::vector<CaseSupport> supports;
+    std::vector<mechanics::ParabolicPressure> pressures;
+    std::vector<CaseTraction> tractions;
+    std::optional<CaseIndenter> indenter;
+};
+
+// Everything that is wrong is an InputError with file, key, what was found and what was expected.
+FemCase read_case(const std::filesystem::path& path);
+// `folder`: where relative names of meshes start.
+FemCase parse_case(const Json& json, const std::string& file_name, const std::filesystem::path& folder);
+
+}  // namespace palpa

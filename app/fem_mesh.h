@@ -1,0 +1,38 @@
+#pragma once
+// The mesh of a case, and the names by which the case speaks of its parts.
+
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "files/json.h"
+#include "files/msh.h"
+#include "mechanics/statics.h"
+
+namespace palpa {
+
+struct CaseMesh {
+    mechanics::Mesh mesh;
+    mechanics::Faces outer;
+    mechanics::MeshReport report;
+    std::string file;        // of the mesh, "" for a box
+    std::optional<Msh> msh;  // where physical groups are looked up; absent for a box
+};
+
+// Reads "mesh" and "element". A .msh is in mm. Refuses more nodes than a desktop can factor.
+CaseMesh read_case_mesh(JsonReader& json, const std::filesystem::path& folder, mechanics::Element& element);
+
+// What "face" (xmin ... zmax) or "physical" in an entry of the case means. `name` is filled for messages.
+mechanics::Faces faces_named(JsonReader& entry, const CaseMesh& mesh, std::string& name);  // all on the outside
+std::vector<int> nodes_named(JsonReader& entry, const CaseMesh& mesh, std::string& name);  // ascending
+std::vector<int> cells_of_group(JsonReader& entry, const CaseMesh& mesh);
+
+mechanics::Side read_side(JsonReader& entry);
+
+// Runs a call of mechanics/ and turns its errors about the model into an InputError with file and key.
+void with_key(const std::string& file, const std::string& key, const std::string& expected,
+              const std::function<void()>& call);
+
+}  // namespace palpa

@@ -1,0 +1,51 @@
+#pragma once
+// Gmsh meshes: .msh 2.2 and 4.1, ASCII and binary (little-endian), cells of first order.
+// Source: Gmsh reference manual, "MSH file format" and "Legacy formats".
+//
+// Read: nodes, triangles, quads, tetrahedra, hexahedra, physical groups. Points and lines are passed over.
+// Refused: other cells (pyramids, prisms, second order), partitioned meshes, version 4.0, big-endian files.
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace palpa {
+
+enum class MshKind { triangle, quad, tet, hex };
+inline constexpr std::size_t kMshKinds = 4;
+inline constexpr std::array<int, kMshKinds> kMshCorners{3, 4, 4, 8};
+
+struct MshCells {
+    std::vector<int> nodes;             // positions in the list of nodes; as many as corners for each cell
+    std::vector<std::uint64_t> number;  // of each cell, as in the file, for messages
+};
+
+// A physical group: its cells by position. A cell may be in several groups; a group without a name has "".
+struct MshGroup {
+    int dimension = 0;
+    int tag = 0;
+    std::string name;
+    std::array<std::vector<int>, kMshKinds> cells;
+};
+
+// Plain arrays. Corners are in Gmsh's order, which is VTK's. Lengths are in the file's own unit.
+struct Msh {
+    std::vector<double> nodes;  // x y z of each
+    std::array<MshCells, kMshKinds> cells;
+    std::vector<MshGroup> groups;
+
+    std::size_t n_nodes() const { return nodes.size() / 3; }
+    const MshCells& of(MshKind kind) const { return cells[static_cast<std::size_t>(kind)]; }
+    std::size_t count(MshKind kind) const { return of(kind).number.size(); }
+};
+
+// Throws InputError naming the line (ASCII) or byte (binary), what was found and what was expected. Nothing
+// is allocated on a header's word alone: counts are held against the size of the file first. A cell that
+// stands in the file several times (2.2 repeats one for each of its groups) is kept once.
+Msh read_msh(const std::filesystem::path& path);
+Msh parse_msh(std::string_view bytes, const std::string& file_name);
+
+}  // namespace palpa

@@ -1,0 +1,33 @@
+#pragma once
+// Writes VTK's XML file of an unstructured grid (.vtu), which ParaView, VisIt and meshio read.
+// Source: "VTK XML file formats", docs.vtk.org. Arrays are inline base64, uncompressed, float64 with 64-bit
+// lengths: no digit is lost.
+
+#include <filesystem>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace palpa {
+
+struct VtuField {
+    std::string name;
+    int components = 1;  // 6: a symmetric tensor xx yy zz xy yz xz, as VTK orders it
+    std::vector<double> values;  // component fastest
+};
+
+struct VtuGrid {
+    std::vector<double> points;  // x y z of each
+    int corners = 8;             // of each cell: 8 hexahedra, 4 tetrahedra
+    std::vector<int> cells;
+    std::vector<VtuField> on_points;
+    std::vector<VtuField> in_cells;
+};
+
+// A field whose size does not fit the grid is a bug (assert).
+std::string vtu_text(const VtuGrid& grid);
+
+// Whole or not at all. Throws std::runtime_error with the system's reason.
+void write_vtu(const std::filesystem::path& path, const VtuGrid& grid);
+
+}  // namespace palpa
