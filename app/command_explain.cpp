@@ -62,7 +62,7 @@ void explain(const ExplainOptions& options) {
         }
     }
     if (options.json) {
-        std::printf("%s\n", json.dump(2).c_str());
+        std::fputs(json_text(json).c_str(), stdout);
         return;
     }
     if (options.measure) std::printf("measured on %s; each time includes reading the clock\n", trace_file.string().c_str());

@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "app/command_line.h"
+#include "avatar/display_ratio.h"
 #include "files/input_error.h"
 #include "files/text.h"
 #include "stiffnessmaps/analytic.h"
@@ -17,9 +18,6 @@
 namespace palpa {
 namespace {
 
-constexpr double kReference_m = 3e-4;  // of the avatar's laws, and their gate
-constexpr double kGate_N = 2e-3;
-
 Json info_json(const Map& map, const Field& field) {
     Json json = map_json(map);
     json["shape"] = {map.n_depths(), map.n_y, map.n_x};
@@ -27,9 +25,10 @@ Json info_json(const Map& map, const Field& field) {
     const ForceRange range = force_range(map);
     json["force_range_N"] = {range.lowest_N, range.highest_N};
     json["not_rising_with_depth"] = field.isotonic_changed;
+    const DisplayRatio law = display_ratio_clear();
     const double noise_N = normal_noise_N(map);
     json["noise_N"] = noise_N;
-    json["smoothing_mm"] = 1e3 * smoothing_sigma_m(map, noise_N, kReference_m, kGate_N);
+    json["smoothing_mm"] = 1e3 * default_smoothing_m(map, noise_N, law.path.reference_m, law.gate_N);
     if (map.tangential == TangentialKind::recorded) {
         const TangentialAgreement agreement = tangential_agreement(map, field);
         json["tangential_against_energy"] = {
@@ -84,7 +83,7 @@ void add_info(CLI::App& maps) {
         const Map map = read_map(options->map);
         const Json info = info_json(map, make_field(map, {}));
         if (options->json) {
-            std::printf("%s\n", info.dump(2).c_str());
+            std::fputs(json_text(info).c_str(), stdout);
         } else {
             print_info(map, info);
         }
@@ -124,7 +123,7 @@ void sample_map(const SampleOptions& options) {
                         {"saturated", answer.saturated},
                         {"inside", place.inside},
                         {"measured", place.measured}};
-        std::printf("%s\n", json.dump(2).c_str());
+        std::fputs(json_text(json).c_str(), stdout);
     } else {
         std::printf("force %.6g N, depth %.6g mm, resists +x with %.4g N, +y with %.4g N\n", force_N,
                     1e3 * answer.depth_m, along_x_N, along_y_N);
@@ -139,8 +138,8 @@ void add_sample(CLI::App& maps) {
     auto options = std::make_shared<SampleOptions>();
     CLI::App* command = maps.add_subcommand("sample", "Depth from force, or force from depth, at one place");
     command->add_option("MAP", options->map, "map folder")->required();
-    command->add_option("--x-mm", options->x_mm, "in the map's frame")->required();
-    command->add_option("--y-mm", options->y_mm, "in the map's frame")->required();
+    command->add_option("--x-mm", options->x_mm, "in the map's frame")->required()->check(CLI::Range(-1e6, 1e6));
+    command->add_option("--y-mm", options->y_mm, "in the map's frame")->required()->check(CLI::Range(-1e6, 1e6));
     CLI::Option_group* what = command->add_option_group("what", "one of these");
     what->add_option("--force-N", options->force_N, "normal force")->check(CLI::Range(0.0, 1e6));
     what->add_option("--depth-mm", options->depth_mm, "indentation")->check(CLI::Range(0.0, 1e6));
@@ -171,7 +170,7 @@ void import_map(const ImportOptions& options) {
                           {"median_offset_N", report.median_offset_N},
                           {"median_residual_N", report.median_residual_N},
                           {"worst_residual_N", report.worst_residual_N}};
-        std::printf("%s\n", json.dump(2).c_str());
+        std::fputs(json_text(json).c_str(), stdout);
         return;
     }
     std::printf("%s: %zu points become %zu x %zu cells of %.2f x %.2f mm, %zu depths to %.2f mm\n",

@@ -35,7 +35,7 @@ void print_result(const Json& result) {
 
 void print(const Json& result, bool as_json) {
     if (as_json) {
-        std::printf("%s\n", result.dump(2).c_str());
+        std::fputs(json_text(result).c_str(), stdout);
     } else {
         print_result(result);
     }
@@ -45,6 +45,7 @@ void run_headless(const RunOptions& options) {
     if (options.trace.empty()) {
         throw InputError("--headless: found no --replay TRACE.tsv, expected one (without a window there is no pen)");
     }
+    if (!options.record.empty()) throw InputError("--record: found with --headless, expected a window (a replay has its trace)");
     const auto began = std::chrono::steady_clock::now();
     const Scene scene = load_scene(options.scene);
     const Plan plan = make_plan_here(scene);
@@ -66,11 +67,13 @@ void run_headless(const RunOptions& options) {
     json["peak_memory_MB"] = static_cast<double>(usage.ru_maxrss) / 1024.0;
     if (log) {
         if (!log->sync()) throw std::runtime_error(options.log + ": the log could not be written to its end");
-        write_text_atomically(files->file("_settings.json"), settings_json(scene, plan, result.state).dump(2) + "\n");
-        write_text_atomically(files->file("_performance.json"), json.dump(2) + "\n");
+        write_text_atomically(files->file("_settings.json"), json_text(settings_json(scene, plan, result.state)));
+        write_text_atomically(files->file("_performance.json"), json_text(json));
     }
     if (!options.screenshot.empty()) {
-        ReplayResult again = replay(scene, plan, trace, 0, {}, result.state.extremes.lag_at_s);
+        const Extremes& extremes = result.state.extremes;
+        const double at_s = extremes.lag_m > 0.0 ? extremes.lag_at_s : extremes.force_at_s;
+        ReplayResult again = replay(scene, plan, trace, 0, {}, at_s);
         draw_picture(scene, plan, again.state, options.screenshot);
     }
     print(json, options.json);
@@ -86,7 +89,7 @@ void add_run(CLI::App& app) {
     command->add_flag("--headless", options->headless, "no window: replay as fast as it goes, then exit");
     command->add_option("--log", options->log, "folder for the log (BIDS layout; nothing is overwritten)");
     command->add_option("--participant", options->participant, "code in the log's names (default 01)");
-    command->add_option("--screenshot", options->screenshot, "PNG of the moment of greatest lag (headless), or of the last frame");
+    command->add_option("--screenshot", options->screenshot, "PNG of the moment of greatest lag, or force (headless), or of the last frame");
     command->add_option("--record", options->record, "write the input as a trace TRACE.tsv");
     command->add_flag("--json", options->json, "one JSON object on standard output");
     command->add_option("--quit-after-s", options->quit_after_s, "close the window by itself")->check(CLI::Range(0.0, 1e6));
@@ -94,7 +97,7 @@ void add_run(CLI::App& app) {
     command->add_option("--height-px", options->height_px, "of the window (default 800)")->check(CLI::Range(100, 16384));
     command->callback([options] {
         if (options->headless) return run_headless(*options);
-        print(run_live(*options), options->json);
+        if (const auto result = run_live(*options)) print(*result, options->json);
     });
 }
 

@@ -33,7 +33,6 @@ struct Live {
     FrameTimes times;
     std::int64_t frames = 0;
     std::vector<double> waiting_s;      // host times of the samples that no frame has shown yet
-    bool failed_to_write = false;
 };
 
 // Everything that bad input can refuse, before a window is there.
@@ -61,7 +60,15 @@ bool prepare(Window& window, Gui& gui, Live& live) {
     return true;
 }
 
-void open(const RunOptions& options, double width_px, double height_px, Live& live) {
+std::string device_names(const Window& window) {
+    std::string names;
+    for (const PointerDevice& device : window.devices()) names += (names.empty() ? "" : ", ") + device.name;
+    return names.empty() ? "mouse" : names;
+}
+
+void open(const RunOptions& options, const Window& window, Live& live) {
+    double width_px = window.width_px();
+    double height_px = window.height_px();
     if (live.trace) {
         width_px = live.trace->info.screen_width_px;
         height_px = live.trace->info.screen_height_px;
@@ -72,7 +79,7 @@ void open(const RunOptions& options, double width_px, double height_px, Live& li
         TraceInfo info;
         info.screen_width_px = width_px;
         info.screen_height_px = height_px;
-        info.device = live.trace ? live.trace->info.device : "desktop";
+        info.device = live.trace ? live.trace->info.device : device_names(window);
         live.record.emplace(options.record, info);
     }
     if (!options.log.empty()) {
@@ -136,18 +143,18 @@ void show(Window& window, Live& live, TissueDrawer& tissue, Gui& gui, PanelOptio
 void finish(const RunOptions& options, Live& live, const Json& result) {
     bool good = true;
     if (live.record) good = live.record->sync() && good;
-    if (live.log) {
-        good = live.log->sync() && good;
-        const std::string settings = settings_json(live.scene, live.plan, live.state).dump(2) + "\n";
+    if (live.log) good = live.log->sync() && good;
+    if (live.log && good) {
+        const std::string settings = json_text(settings_json(live.scene, live.plan, live.state));
         write_text_atomically(live.files->file("_settings.json"), settings);
-        write_text_atomically(live.files->file("_performance.json"), result.dump(2) + "\n");
+        write_text_atomically(live.files->file("_performance.json"), json_text(result));
     }
-    if (!good) throw std::runtime_error((live.log ? options.log : options.record) + ": could not be written to its end");
+    if (!good) throw std::runtime_error((live.log ? options.log : options.record) + ": can no longer be written; stopped (is the disk full?)");
 }
 
 }  // namespace
 
-Json run_live(const RunOptions& options) {
+std::optional<Json> run_live(const RunOptions& options) {
     WindowOptions window_options;
     window_options.width_px = options.width_px;
     window_options.height_px = options.height_px;
@@ -156,8 +163,8 @@ Json run_live(const RunOptions& options) {
     load(options, live);
     Window window(window_options);
     Gui gui(window);
-    if (live.scene.linear && !prepare(window, gui, live)) return Json::object();
-    open(options, window.width_px(), window.height_px(), live);
+    if (live.scene.linear && !prepare(window, gui, live)) return std::nullopt;
+    open(options, window, live);
     TissueDrawer tissue;
     PanelOptions panel;
     panel.messages = live.trace ? std::vector<std::string>{"replay of " + options.trace} : device_messages(window);
@@ -177,13 +184,14 @@ Json run_live(const RunOptions& options) {
         note_resize(window, live);
         for (const Sample& sample : samples) take_sample(live, sample);            // 2. simulate, 3. log
         const double now_s = window.now_s();
+        if (live.frames % 60 == 0 && !live.trace) panel.messages = device_messages(window);
         if (now_s - frame_s >= kFrame_s || live.frames == 0) {
             show(window, live, tissue, gui, panel, now_s - frame_s);               // 4. show
             frame_s = now_s;
             if (live.frames == 1) first_frame_s = 1e-9 * static_cast<double>(steady_ns()) - asked_s;
         }
         const bool failed = (live.log && live.log->failed()) || (live.record && live.record->failed());
-        if (failed) throw std::runtime_error("the log or trace can no longer be written; stopped (is the disk full?)");
+        if (failed) break;  // finish() says so, after it has saved what it can
         if (live.trace && live.next_row == live.trace->samples.size()) break;
         if (options.quit_after_s > 0.0 && now_s - began_s > options.quit_after_s) break;
     }

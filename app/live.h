@@ -2,6 +2,7 @@
 // The app on a screen: input, advance, log and drawing on one thread. And pictures without a screen.
 
 #include <filesystem>
+#include <optional>
 #include <string>
 
 #include "files/json.h"
@@ -23,7 +24,7 @@ struct RunOptions {
     bool json = false;
 };
 
-// Returns what `run --json` prints. Throws InputError or std::runtime_error before the loop or after it.
-Json run_live(const RunOptions& options);
+// Returns what `run --json` prints, or nothing if the window was closed before the tissue was ready. Throws InputError or std::runtime_error before the loop or after it.
+std::optional<Json> run_live(const RunOptions& options);
 
 }  // namespace palpa

@@ -6,8 +6,8 @@ namespace palpa {
 
 const char* tangential_source(const Plan& plan) {
     const auto* tissue = std::get_if<MapTissue>(&plan.tissue);
-    if (tissue == nullptr || tissue->field.options.force == TangentialForce::energy) return "energy";
-    return tissue->field.has_rest ? "recorded" : "none";
+    const bool recorded = tissue != nullptr && tissue->map.tangential == TangentialKind::recorded;
+    return recorded ? "recorded" : "energy";  // on a recording the laws use both (stiffnessmaps/field.h)
 }
 
 SampleRow row_of(const Sample& sample, const Plan& plan, const State& state) {

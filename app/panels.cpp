@@ -128,7 +128,7 @@ void draw_panel(const Scene& scene, const Plan& plan, const State& state, const 
         case mechanics::LinearRange::amber: ImGui::TextColored(kAmber, "leaving the linear range"); break;
         case mechanics::LinearRange::red: ImGui::TextColored(kRed, "beyond the linear range"); break;
     }
-    if (state.counters.without_level > 0) {
+    if (state.without_level) {
         paragraph("This device reports no " + std::string(name_of(plan.profile.level)) + ", which profile " +
                   plan.profile.id + " reads: choose another device or profile.");
     }

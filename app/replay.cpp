@@ -40,8 +40,10 @@ ReplayResult replay(const Scene& scene, const Plan& plan, const Trace& trace, in
         if (after_sample) after_sample(sample, state);
         note_nodules(plan, result);
         const double now_s = state.timeline.now_s;
-        if (first) shown_s = now_s;
-        first = false;
+        if (first && state.timeline.started) {
+            shown_s = now_s;
+            first = false;
+        }
         if (now_s >= shown_s) {
             const double behind = std::min(1.0 + std::floor((now_s - shown_s) * kVirtualDisplay_Hz), 1e9);
             result.frames += static_cast<std::int64_t>(behind);
@@ -87,6 +89,7 @@ Json run_json(const Scene& scene, const Plan& plan, const State& state, std::int
                       {"unmeasured", counters.unmeasured},
                       {"not_numbers", counters.not_numbers},
                       {"backwards", state.timeline.backwards},
+                      {"late", state.timeline.late},
                       {"duplicate_times", state.timeline.duplicates},
                       {"clock_jumps", state.timeline.clock_jumps}};
     json["notes"] = plan.notes;

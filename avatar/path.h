@@ -10,6 +10,7 @@
 #include <Eigen/Core>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 
 namespace palpa {
 
@@ -28,7 +29,7 @@ struct Touch {
 };
 
 struct PathState {
-    Touch last;
+    Touch last{-std::numeric_limits<double>::infinity(), Eigen::Vector2d::Zero(), 0.0, false};
     double carry_m = 0.0;                                // length walked since the last station
     Eigen::Vector2d rope_m = Eigen::Vector2d::Zero();    // the end that is dragged along
     std::int64_t ignored = 0;                            // samples that were not numbers, or went back in time

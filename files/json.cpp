@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "files/input_error.h"
 #include "files/text.h"
@@ -43,9 +44,11 @@ std::string described(const Json& value) {
     return value.dump();
 }
 
+std::string json_text(const Json& value) { return value.dump(2, ' ', false, Json::error_handler_t::replace) + "\n"; }
+
 Json parse_json(std::string_view text, const std::string& file_name) {
     // nlohmann keeps the last of two equal keys; a person who wrote both must hear of it
-    std::vector<std::vector<std::string>> open_objects;
+    std::vector<std::set<std::string>> open_objects;
     const auto refuse_repeated_keys = [&](int, nlohmann::json::parse_event_t event, const Json& parsed) {
         using Event = nlohmann::json::parse_event_t;
         if (event == Event::object_start) open_objects.emplace_back();
@@ -53,10 +56,9 @@ Json parse_json(std::string_view text, const std::string& file_name) {
         if (event == Event::key) {
             auto& keys = open_objects.back();
             const auto& key = parsed.get_ref<const std::string&>();
-            if (std::find(keys.begin(), keys.end(), key) != keys.end()) {
+            if (!keys.insert(key).second) {
                 throw InputError(file_name + ": " + key + ": found the key twice, expected it once");
             }
-            keys.push_back(key);
         }
         return true;
     };
@@ -81,7 +83,8 @@ JsonReader::JsonReader(const Json& value, std::string file, std::string where)
 
 std::string JsonReader::where_of(std::string_view key) const {
     if (key.empty()) return where_;
-    return where_.empty() ? std::string(key) : where_ + "." + std::string(key);
+    if (where_.empty() || key.empty()) return where_ + std::string(key);
+    return where_ + "." + std::string(key);
 }
 
 void JsonReader::fail(std::string_view key, std::string_view found, std::string_view expected) const {

@@ -69,6 +69,9 @@ class JsonReader {
     std::vector<std::string> asked_;
 };
 
+// As it is written to files and standard output: indented, with a newline; text that is not UTF-8 is mended.
+std::string json_text(const Json& value);
+
 // How a value is told in a message: "3.5", "'left'", "an array", "nothing".
 std::string described(const Json& value);
 

@@ -1,6 +1,7 @@
 #include "platform/trace.h"
 
 #include <cmath>
+#include <stdexcept>
 #include <string_view>
 
 #include "files/input_error.h"
@@ -53,10 +54,18 @@ std::filesystem::path sidecar_of(const std::filesystem::path& tsv) {
     return json.replace_extension(".json");
 }
 
+const std::filesystem::path& checked_name(const std::filesystem::path& tsv) {
+    if (tsv.extension() != ".tsv") throw bad_input(tsv.string(), "", "another ending", "a new trace NAME.tsv");
+    if (std::filesystem::exists(sidecar_of(tsv))) {
+        throw bad_input(sidecar_of(tsv).string(), "", "something of that name", "a new name (nothing is overwritten)");
+    }
+    return tsv;
+}
+
 TraceInfo read_info(const std::filesystem::path& path) {
     const Json root = read_json(path);
     JsonReader json(root, path.string());
-    constexpr Bounds kScreen{0.0, 1e5, true};
+    constexpr Bounds kScreen{1.0, 16384.0};
     TraceInfo info;
     const auto size_px = json.numbers("screen_px", 2, kScreen);
     info.screen_width_px = size_px[0];
@@ -84,19 +93,23 @@ Trace read_trace(const std::filesystem::path& tsv) {
         Sample sample;
         std::size_t i = 0;
         visit_fields(sample, [&](std::string_view, auto& field) { read_field(table, columns[i++], field); });
-        if (std::isnan(sample.t_host_s)) table.fail(columns[0], "a time on every row");
+        constexpr double kLongest_s = 1e9;
+        if (!(std::abs(sample.t_host_s) < kLongest_s)) table.fail(columns[0], "a time on every row, below 1e9 s");
+        if (std::abs(sample.t_device_s) > kLongest_s) table.fail(columns[1], "a time below 1e9 s, or n/a");
         trace.samples.push_back(sample);
     }
     if (trace.samples.empty()) throw bad_input(tsv.string(), "", "no rows", "at least one sample");
     return trace;
 }
 
-TraceWriter::TraceWriter(const std::filesystem::path& tsv, const TraceInfo& info) : file_(tsv) {
+TraceWriter::TraceWriter(const std::filesystem::path& tsv, const TraceInfo& info) : file_(checked_name(tsv)) {
     Json json;
     json["screen_px"] = {info.screen_width_px, info.screen_height_px};
     if (!std::isnan(info.screen_width_mm)) json["screen_mm"] = {info.screen_width_mm, info.screen_height_mm};
     json["device"] = info.device;
-    write_text_atomically(sidecar_of(tsv), json.dump(2) + "\n");
+    AppendFile sidecar(sidecar_of(tsv));  // never over something that is there
+    sidecar.append(json_text(json));
+    if (!sidecar.sync()) throw std::runtime_error(sidecar.path().string() + ": cannot be written to its end");
     Sample any;
     visit_fields(any, [&](std::string_view name, auto&) { row_.append(row_.empty() ? "" : "\t").append(name); });
     file_.append(row_.append("\n"));

@@ -28,7 +28,8 @@ struct Trace {
 // X.tsv and X.json. Throws InputError with file, line and column.
 Trace read_trace(const std::filesystem::path& tsv);
 
-// Writes a trace while it happens; nothing is overwritten (throws std::runtime_error if the file is there).
+// Writes a trace NAME.tsv and its NAME.json while it happens; nothing is overwritten (throws InputError for a name that
+// will not do, std::runtime_error if the file cannot be made).
 class TraceWriter {
  public:
     TraceWriter(const std::filesystem::path& tsv, const TraceInfo& info);

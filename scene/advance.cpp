@@ -37,8 +37,13 @@ bool is_touching(Phase phase) { return phase == Phase::down || phase == Phase::m
 void calibrate(const Scene& scene, const Plan& plan, const Sample& sample, State& state) {
     state.touch.force_N = 0.0;
     if (!is_touching(sample.phase)) return;
-    const double level = level_of(plan.profile, sample);
-    if (std::isnan(level)) {
+    double level = level_of(plan.profile, sample);
+    if (std::isnan(level) && sample.tool == Tool::mouse) {
+        // a mouse has no sensor: its made-up 0 ... 1 is a share of the profile's range
+        level = plan.profile.level_lowest + sample.pressure * (plan.profile.level_highest - plan.profile.level_lowest);
+    }
+    state.without_level = std::isnan(level);
+    if (state.without_level) {
         ++state.counters.without_level;
         return;
     }
@@ -46,7 +51,9 @@ void calibrate(const Scene& scene, const Plan& plan, const Sample& sample, State
 }
 
 void place(const Sample& sample, State& state) {
-    state.touch.p_m = tissue_of_px(state.view, {sample.x_px, sample.y_px});
+    if (std::isfinite(sample.x_px) && std::isfinite(sample.y_px)) {
+        state.touch.p_m = tissue_of_px(state.view, {sample.x_px, sample.y_px});
+    }
     state.touch.down = is_touching(sample.phase) && on_tissue(state.view, state.touch.p_m);
     if (is_touching(sample.phase) && !state.touch.down) {
         ++state.counters.off_tissue;
@@ -59,7 +66,7 @@ void sink(const MapTissue& tissue, State& state) {
     const DepthAnswer answer = depth_at(tissue.field, at, state.touch.force_N);
     state.contact.depth_m = answer.depth_m;
     state.contact.saturated = answer.saturated;
-    state.contact.measured = at.measured;
+    state.contact.measured = at.measured && at.inside;
 }
 
 void sink(const LinearTissue& tissue, State& state) {
@@ -86,18 +93,18 @@ double tangential_N(const LinearTissue& tissue, State& state) {
     return tangential_force_N(tissue, state.touch.p_m, state.heading, state.contact.depth_m, *state.linear);
 }
 
-void resist(const Plan& plan, State& state) {
+void resist(const Scene& scene, const Plan& plan, State& state) {
     if (!state.touch.down) {
         state.heading.setZero();
         state.heading_rope_m = state.touch.p_m;
         return;
     }
-    constexpr double kDeadBand_m = 2e-4;  // as in avatar/path.h: jitter has no direction
+    const double dead_band_m = path_of(scene).dead_band_m;  // jitter has no direction
     const Eigen::Vector2d v = state.touch.p_m - state.heading_rope_m;
     const double length_m = v.norm();
-    if (length_m > kDeadBand_m) {
+    if (length_m > dead_band_m) {
         state.heading = v / length_m;
-        state.heading_rope_m = state.touch.p_m - kDeadBand_m * state.heading;
+        state.heading_rope_m = state.touch.p_m - dead_band_m * state.heading;
     }
     state.contact.tangential_N = std::visit([&](const auto& tissue) { return tangential_N(tissue, state); }, plan.tissue);
 }
@@ -128,7 +135,7 @@ void run_stage(StageId id, const Scene& scene, const Plan& plan, const Sample& s
         case StageId::calibration: return calibrate(scene, plan, sample, state);
         case StageId::position: return place(sample, state);
         case StageId::depth: return sink(plan, state);
-        case StageId::tangential: return resist(plan, state);
+        case StageId::tangential: return resist(scene, plan, state);
         case StageId::display_ratio:
         case StageId::delay: return lag(scene, plan, state);
         case StageId::surface: return;  // once a frame, surface_now()
@@ -136,7 +143,10 @@ void run_stage(StageId id, const Scene& scene, const Plan& plan, const Sample& s
 }
 
 void note_extremes(const Avatar& avatar, double t_s, State& state) {
-    state.extremes.force_N = std::max(state.extremes.force_N, state.contact.normal_N);
+    if (state.contact.normal_N > state.extremes.force_N) {
+        state.extremes.force_N = state.contact.normal_N;
+        state.extremes.force_at_s = t_s;
+    }
     state.extremes.depth_m = std::max(state.extremes.depth_m, state.contact.depth_m);
     const double lag_m = avatar.lag_m.norm();
     if (lag_m > state.extremes.lag_m) {
@@ -147,7 +157,8 @@ void note_extremes(const Avatar& avatar, double t_s, State& state) {
 
 // Grid points since the touch began, up to (not including) the sample's time.
 void walk_grid(const Scene& scene, double to_s, State& state) {
-    const auto last = static_cast<std::int64_t>((to_s - state.touch_began_s) * kGrid_Hz);
+    constexpr double kMostSteps = 1e15;
+    const auto last = static_cast<std::int64_t>(std::min((to_s - state.touch_began_s) * kGrid_Hz, kMostSteps));
     constexpr auto kMost = static_cast<std::int64_t>(kLongestGap_s * kGrid_Hz);
     const std::int64_t due = last - state.grid_step;
     const std::int64_t skipped = std::max<std::int64_t>(0, due - kMost);
@@ -218,7 +229,7 @@ void advance(const Scene& scene, const Plan& plan, const Sample& sample, State& 
     }
     if (!std::isfinite(sample.x_px) || !std::isfinite(sample.y_px)) {
         ++state.counters.not_numbers;
-        return;
+        if (is_touching(sample.phase)) return;  // a lift is a lift wherever it is
     }
     const bool in_order = move_to(sample, state.timeline);
     // a lift from the past is still a lift, now

@@ -6,6 +6,8 @@
 #include <tuple>
 
 #include "files/cache.h"
+#include "files/input_error.h"
+#include "files/text.h"
 #include "mechanics/linear_range.h"
 #include "mechanics/material.h"
 #include "mechanics/statics.h"
@@ -97,6 +99,12 @@ LinearTissue make_linear_tissue(const LinearOptions& options, const std::filesys
     };
     tissue.n_x = nodes_along(tissue.phantom.size_m[0]);
     tissue.n_y = nodes_along(tissue.phantom.size_m[1]);
+    constexpr std::size_t kMostNodes = 20000;  // 3.2 GB of compliance
+    if (tissue.n_x * tissue.n_y > kMostNodes) {
+        throw bad_input(options.phantom.string(), "", std::to_string(tissue.n_x * tissue.n_y) + " surface nodes at " +
+                                                          short_number(1e3 * options.spacing_m) + " mm",
+                        "at most 20000 (a larger spacing_mm)");
+    }
     tissue.spacing_m[0] = tissue.phantom.size_m[0] / static_cast<double>(tissue.n_x - 1);
     tissue.spacing_m[1] = tissue.phantom.size_m[1] / static_cast<double>(tissue.n_y - 1);
 

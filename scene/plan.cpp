@@ -4,6 +4,7 @@
 
 #include "calibration/profile_file.h"
 #include "files/cache.h"
+#include "files/input_error.h"
 #include "files/text.h"
 #include "stiffnessmaps/map_file.h"
 #include "stiffnessmaps/noise.h"
@@ -75,12 +76,16 @@ void add_notes(const MapTissue& tissue, const Scene& scene, Plan& plan) {
         plan.notes.push_back("the tissue is a closed-form stand-in (analytic), neither recorded nor simulated");
     }
     if (tissue.map.source.kind == SourceKind::simulated) plan.notes.push_back("the tissue is simulated: " + tissue.map.source.how);
+    if (scene.tangential.force == TangentialForce::recorded) {
+        plan.notes.push_back("tangential force as recorded: right for motion along +x only");
+        return;
+    }
     const bool recorded = tissue.map.tangential == TangentialKind::recorded;
     plan.notes.push_back(std::string("tangential force ") + (recorded ? "off the scan direction" : "in every direction") +
                          ": derived from the normal force (work argument), not measured");
-    if (scene.tangential.force == TangentialForce::recorded) {
-        plan.notes.push_back("tangential force as recorded: right for motion along +x only");
-    }
+}
+
+void add_isotonic_note(const MapTissue& tissue, Plan& plan) {
     if (tissue.field.isotonic_changed > 0) {
         plan.notes.push_back(std::to_string(tissue.field.isotonic_changed) + " of " +
                              std::to_string(tissue.map.normal_N.size()) +
@@ -94,21 +99,17 @@ void add_notes(const LinearTissue& tissue, const Scene&, Plan& plan) {
                          "; the panel shows when a press leaves the linear range");
 }
 
-PathParameters path_of(const Scene& scene) {
-    if (scene.delay) return scene.delay->path;
-    return scene.display_ratio.value_or(DisplayRatio{}).path;
-}
-
 MapTissue load_map(const Scene& scene) {
     MapTissue tissue;
     tissue.map = read_map(scene.map);
-    tissue.noise_N = normal_noise_N(tissue.map);
-    if (scene.tangential.smoothing_m) {
-        tissue.smoothing_m = *scene.tangential.smoothing_m;
-    } else if (tissue.map.source.kind == SourceKind::recorded) {
-        const double gate_N = scene.display_ratio.value_or(DisplayRatio{}).gate_N;
-        tissue.smoothing_m = smoothing_sigma_m(tissue.map, tissue.noise_N, path_of(scene).reference_m, gate_N);
+    if (scene.tangential.force == TangentialForce::recorded && tissue.map.tangential != TangentialKind::recorded) {
+        throw bad_input(scene.file.string(), "avatar force", "recorded",
+                        "energy: the map " + tissue.map.name + " holds no recorded tangential force");
     }
+    tissue.noise_N = normal_noise_N(tissue.map);
+    const double gate_N = scene.display_ratio.value_or(DisplayRatio{}).gate_N;
+    tissue.smoothing_m = scene.tangential.smoothing_m.value_or(
+        default_smoothing_m(tissue.map, tissue.noise_N, path_of(scene).reference_m, gate_N));
     tissue.field = make_field(tissue.map, {scene.tangential.force, tissue.smoothing_m});
     return tissue;
 }
@@ -189,10 +190,14 @@ Plan make_plan(const Scene& scene, const mechanics::Progress& progress) {
         plan.tissue = load_map(scene);
     }
     std::visit([&](const auto& tissue) { describe(tissue, plan); }, plan.tissue);
+    if (scene.mapping.tissue_m && scene.linear) {
+        throw bad_input(scene.file.string(), "mapping.tissue_mm", "a size", "none: a linear block has its own");
+    }
     if (scene.mapping.tissue_m) plan.area.size_m = *scene.mapping.tissue_m;
     if (scene.surface) plan.indenter_radius_m = scene.surface->indenter_radius_m.value_or(plan.indenter_radius_m);
     add_stages(scene, plan);
     std::visit([&](const auto& tissue) { add_notes(tissue, scene, plan); }, plan.tissue);
+    if (const auto* tissue = std::get_if<MapTissue>(&plan.tissue)) add_isotonic_note(*tissue, plan);
     if (scene.force_scale != 1.0) {
         plan.notes.push_back("phantom force: the pen's newtons are multiplied by " + short_number(scene.force_scale));
     }

@@ -41,6 +41,9 @@ struct Scene {
     std::int64_t seed = 1;
 };
 
+// The path parameters of the law in force, or the defaults.
+PathParameters path_of(const Scene& scene);
+
 // Throws InputError. Paths inside are relative to the scene's file; a name without a folder is also looked
 // for among the assets (maps/, profiles/).
 Scene read_scene(const std::filesystem::path& file, const std::filesystem::path& assets);

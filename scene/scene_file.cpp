@@ -86,7 +86,7 @@ void read_tissue(JsonReader json, const fs::path& file, const fs::path& assets, 
     JsonReader block = json.object("linear");
     LinearOptions options;
     options.phantom = find_file(block.text("phantom"), file, assets / "phantoms");
-    options.spacing_m = 1e-3 * block.number("spacing_mm", {0.0, 100.0, true}, 1e3 * options.spacing_m);
+    options.spacing_m = 1e-3 * block.number("spacing_mm", {0.2, 100.0}, 1e3 * options.spacing_m);
     block.finish();
     scene.linear = options;
     json.finish();
@@ -135,6 +135,11 @@ Scene read_scene(const fs::path& file, const fs::path& assets) {
     scene.seed = json.integer("seed", 0, 2000000000, 1);
     json.finish();
     return scene;
+}
+
+PathParameters path_of(const Scene& scene) {
+    if (scene.delay) return scene.delay->path;
+    return scene.display_ratio ? scene.display_ratio->path : PathParameters{};
 }
 
 Scene scene_of_map(const fs::path& map, const fs::path& assets) {

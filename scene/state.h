@@ -44,6 +44,7 @@ struct Counters {
 
 struct Extremes {
     double force_N = 0.0;
+    double force_at_s = 0.0;  // when the force was greatest
     double depth_m = 0.0;
     double lag_m = 0.0;
     double lag_at_s = 0.0;  // when the lag was greatest
@@ -55,6 +56,7 @@ struct State {
     double screen_width_px = 0.0;
     double screen_height_px = 0.0;
     std::optional<std::int64_t> pointer;  // the one that touches; others are logged, and press nothing
+    bool without_level = false;           // the device of this touch does not report what the profile reads
     bool answered = false;                // the last sample belonged to it (or nothing touches)
     Touch touch;
     Place place;  // of the touch in the map; between the stages of one sample

@@ -7,6 +7,7 @@ namespace palpa {
 namespace {
 
 constexpr double kClockJump_s = 1.0;
+constexpr double kLate_s = 0.1;
 constexpr double kFall = 0.1;
 constexpr double kDrift = 2e-4;
 
@@ -30,9 +31,13 @@ double time_of(const Sample& sample, Timeline& timeline) {
 
 bool move_to(const Sample& sample, Timeline& timeline) {
     const double t_s = time_of(sample, timeline);
-    if (!std::isfinite(t_s) || (timeline.started && t_s < timeline.now_s)) {
+    if (!std::isfinite(t_s) || (timeline.started && t_s < timeline.now_s - kLate_s)) {
         ++timeline.backwards;
         return false;
+    }
+    if (timeline.started && t_s < timeline.now_s) {
+        ++timeline.late;
+        return true;
     }
     timeline.duplicates += timeline.started && t_s == timeline.now_s;
     timeline.now_s = t_s;

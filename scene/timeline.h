@@ -14,13 +14,14 @@ struct Timeline {
     double offset_s = 0.0;        // host - device; meaningless before has_offset
     bool has_offset = false;
     double device_s = 0.0;        // of the sample before
-    std::int64_t backwards = 0;   // samples that would have gone back in time
+    std::int64_t backwards = 0;   // samples from the past, not taken
+    std::int64_t late = 0;        // samples a little behind others of the same frame, taken at the present time
     std::int64_t duplicates = 0;  // samples at the time of the one before
     std::int64_t clock_jumps = 0; // the device's clock was set, or another device took over
 };
 
 // Moves `now_s` to the sample's time and returns true, or leaves it and returns false for a sample from the
-// past. The offset follows the smallest delay seen: it falls by at most a tenth of the time that passes, and
+// past (by more than 0.1 s: sources without a clock of their own may run ahead of the others by a frame). The offset follows the smallest delay seen: it falls by at most a tenth of the time that passes, and
 // rises by at most 200 ppm, so that order is kept.
 bool move_to(const Sample& sample, Timeline& timeline);
 

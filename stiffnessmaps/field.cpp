@@ -158,8 +158,8 @@ Place place_at(const Field& field, const Eigen::Vector2d& p_m) {
     const auto split = [&](int axis, std::size_t n, std::size_t& low, double& s) {
         double at = (p_m[axis] - field.origin_m[axis]) * field.cells_per_m[axis];
         const double last = static_cast<double>(n - 1);
-        constexpr double kRounding = 1e-9;
-        if (!(at >= -kRounding && at <= last + kRounding)) place.inside = false;
+        constexpr double kHalfCell = 0.5 + 1e-9;  // a cell speaks for what is around its point
+        if (!(at >= -kHalfCell && at <= last + kHalfCell)) place.inside = false;
         at = at > 0.0 ? std::min(at, last) : 0.0;  // NaN goes to 0
         low = std::min(static_cast<std::size_t>(at), n > 1 ? n - 2 : 0);
         s = at - static_cast<double>(low);

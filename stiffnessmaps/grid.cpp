@@ -31,8 +31,10 @@ void blur_line(std::vector<double>& values, std::vector<double>& weights, std::s
     }
 }
 
-std::vector<double> gaussian(double sigma_in_cells) {
-    std::vector<double> kernel(1 + static_cast<std::size_t>(std::ceil(4.0 * sigma_in_cells)));
+// Four sigmas, but no farther than the line is long.
+std::vector<double> gaussian(double sigma_in_cells, std::size_t n) {
+    const double reach = std::min(std::ceil(4.0 * sigma_in_cells), static_cast<double>(n - 1));
+    std::vector<double> kernel(1 + static_cast<std::size_t>(reach));
     for (std::size_t k = 0; k < kernel.size(); ++k) {
         const double s = static_cast<double>(k) / sigma_in_cells;
         kernel[k] = std::exp(-0.5 * s * s);
@@ -51,8 +53,8 @@ std::vector<double> smooth(const std::vector<double>& values, const GridShape& s
         sums[i] = values[i];
         weights[i] = 1.0;
     }
-    const auto along_x = gaussian(sigma_m / shape.dx_m);
-    const auto along_y = gaussian(sigma_m / shape.dy_m);
+    const auto along_x = gaussian(sigma_m / shape.dx_m, shape.n_x);
+    const auto along_y = gaussian(sigma_m / shape.dy_m, shape.n_y);
     for (std::size_t j = 0; j < shape.n_y; ++j) blur_line(sums, weights, j * shape.n_x, 1, shape.n_x, along_x);
     for (std::size_t i = 0; i < shape.n_x; ++i) blur_line(sums, weights, i, shape.n_x, shape.n_y, along_y);
     for (std::size_t i = 0; i < values.size(); ++i) {

@@ -15,7 +15,8 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr Bounds kLength_mm{-1e5, 1e5};
-constexpr Bounds kSpacing_mm{0.0, 1e4, true};
+constexpr double kDeepest_m = 10.0;
+constexpr Bounds kSpacing_mm{1e-3, 1e4};
 
 double mm(double metres) {
     // 0.004 m is written as 4 mm, not 4.000000000000001
@@ -61,6 +62,16 @@ void read_depths(JsonReader& json, Map& map) {
     }
 }
 
+void check_forces(const std::vector<float>& forces_N, const std::string& file) {
+    constexpr float kAbsurd_N = 1e5f;
+    for (std::size_t i = 0; i < forces_N.size(); ++i) {
+        if (!std::isnan(forces_N[i]) && !(std::abs(forces_N[i]) < kAbsurd_N)) {
+            throw bad_input(file, "value " + std::to_string(i), short_number(static_cast<double>(forces_N[i])),
+                            "forces in newtons, below 1e5");
+        }
+    }
+}
+
 std::vector<float> read_forces(const fs::path& path, const Map& map, std::vector<std::size_t>& shape) {
     NpyArray array = read_npy(path);
     if (array.shape.size() != 3 || array.shape[0] != map.n_depths()) {
@@ -70,14 +81,7 @@ std::vector<float> read_forces(const fs::path& path, const Map& map, std::vector
     }
     if (shape.empty()) shape = array.shape;
     if (array.shape != shape) throw bad_input(path.string(), "shape", shape_text(array.shape), shape_text(shape));
-    constexpr float kAbsurd_N = 1e5f;
-    for (std::size_t i = 0; i < array.values.size(); ++i) {
-        const float force = array.values[i];
-        if (!std::isnan(force) && !(std::abs(force) < kAbsurd_N)) {
-            throw bad_input(path.string(), "value " + std::to_string(i), short_number(static_cast<double>(force)),
-                            "forces in newtons, below 1e5");
-        }
-    }
+    check_forces(array.values, path.string());
     return std::move(array.values);
 }
 
@@ -178,7 +182,28 @@ Json map_json(const Map& map) {
     return json;
 }
 
+void check_map(const Map& map, const std::string& file) {
+    const auto in = [](double mm, Bounds bounds) { return mm >= bounds.lowest && mm <= bounds.highest; };
+    for (int i = 0; i < 2; ++i) {
+        if (!in(1e3 * map.origin_m[i], kLength_mm)) throw bad_input(file, "origin", short_number(1e3 * map.origin_m[i]) + " mm", "within 100 m");
+        if (!in(1e3 * map.spacing_m[i], kSpacing_mm)) {
+            throw bad_input(file, "spacing", short_number(1e3 * map.spacing_m[i]) + " mm", "from 0.001 to 10000 mm");
+        }
+    }
+    if (!(map.depths_m.back() <= kDeepest_m)) {
+        throw bad_input(file, "depth", short_number(1e3 * map.depths_m.back()) + " mm", "at most 10000 mm");
+    }
+    check_forces(map.normal_N, file);
+    check_forces(map.tangential_x_N, file);
+    check_forces(map.tangential_y_N, file);
+    check_area(map, file);
+}
+
 void write_map(const Map& map, const fs::path& folder) {
+    check_map(map, folder.string());
+    if (folder.empty() || !fs::is_directory(folder.has_parent_path() ? folder.parent_path() : ".")) {
+        throw bad_input(shown(folder.string()), "", "no folder to put it into", "a new map folder in a folder that exists");
+    }
     if (fs::exists(folder)) {
         throw bad_input(folder.string(), "", "something of that name", "a new name (nothing is overwritten)");
     }
@@ -195,7 +220,7 @@ void write_map(const Map& map, const fs::path& folder) {
         write_array("normal_N.npy", map.normal_N);
         write_array("tangential_x_N.npy", map.tangential_x_N);
         write_array("tangential_y_N.npy", map.tangential_y_N);
-        write_text_atomically(aside / "map.json", map_json(map).dump(2) + "\n");
+        write_text_atomically(aside / "map.json", json_text(map_json(map)));
         fs::rename(aside, target);
     } catch (const std::exception&) {
         std::error_code ignored;

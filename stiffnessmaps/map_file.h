@@ -11,6 +11,9 @@ namespace palpa {
 // Throws InputError for anything that is not a whole, consistent map.
 Map read_map(const std::filesystem::path& folder);
 
+// Refuses (InputError) what read_map would refuse: places, depths and forces that cannot be.
+void check_map(const Map& map, const std::string& file);
+
 // Writes a new folder, whole or not at all. Throws InputError if something of that name exists.
 void write_map(const Map& map, const std::filesystem::path& folder);
 

@@ -39,6 +39,11 @@ double normal_noise_N(const Map& map) {
     return second_difference_N(map, 0.5) / (kMedianOfNormal * std::sqrt(6.0));
 }
 
+double default_smoothing_m(const Map& map, double noise_N, double reference_m, double gate_N) {
+    if (map.source.kind != SourceKind::recorded) return 0.0;
+    return smoothing_sigma_m(map, noise_N, reference_m, gate_N);
+}
+
 double coarse_grid_error_N(const Map& map) { return 0.5 * second_difference_N(map, 0.95); }
 
 double smoothing_sigma_m(const Map& map, double noise_N, double reference_m, double gate_N) {

@@ -14,6 +14,10 @@ double normal_noise_N(const Map& map);
 // Valid where sigma is larger than the pitch; 0 for a map without noise.
 double smoothing_sigma_m(const Map& map, double noise_N, double reference_m, double gate_N);
 
+// What a scene gets that does not ask otherwise: the sigma above for recordings, 0 for maps without noise of
+// measurement.
+double default_smoothing_m(const Map& map, double noise_N, double reference_m, double gate_N);
+
 // How wrong linear interpolation along x and y would be at twice the pitch: 95th percentile of the difference
 // between a cell and the mean of its two neighbours (N). At the map's own pitch a smooth map is about four
 // times better.

@@ -1,8 +1,11 @@
 #include "study/sample_log.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cstdio>
+#include <stdexcept>
 
+#include "files/input_error.h"
 #include "files/json.h"
 #include "files/text.h"
 
@@ -48,16 +51,28 @@ std::string explanation() {
         column["Description"] = text;
         if (!unit.empty()) column["Units"] = unit;
     });
-    return json.dump(2) + "\n";
+    return json_text(json);
+}
+
+void write_if_absent(const std::filesystem::path& path, const std::string& text) {
+    if (!std::filesystem::exists(path)) write_text_atomically(path, text);
 }
 
 }  // namespace
 
 RunFiles next_run(const std::filesystem::path& directory, std::string_view participant) {
+    const bool plain = !participant.empty() && std::all_of(participant.begin(), participant.end(), [](char c) {
+        return (c >= '0' && c <= '9') || (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z');
+    });
+    if (!plain) throw bad_input("--participant", "", shown(participant), "letters and digits");
     RunFiles files;
     const std::string subject = "sub-" + std::string(participant);
     files.folder = directory / subject / "beh";
-    std::filesystem::create_directories(files.folder);
+    std::error_code error;
+    std::filesystem::create_directories(files.folder, error);
+    if (error) throw std::runtime_error(files.folder.string() + ": cannot be created: " + error.message());
+    write_if_absent(directory / ".bidsignore", "*_samples.tsv\n*_samples.json\n*_marks.tsv\n*_settings.json\n*_performance.json\n");
+    write_if_absent(directory / "dataset_description.json", json_text({{"Name", "Palpa"}, {"BIDSVersion", "1.8.0"}}));
     for (int run = 1;; ++run) {
         char number[16];
         std::snprintf(number, sizeof number, "%02d", run);

@@ -9,6 +9,7 @@
 #include "files/table.h"
 #include "files/text.h"
 #include "stiffnessmaps/field.h"
+#include "stiffnessmaps/map_file.h"
 
 namespace palpa {
 namespace {
@@ -181,6 +182,20 @@ Map import_probing(const std::filesystem::path& csv, double indenter_radius_m, P
     const double step_m = median(greatest_m) / static_cast<double>(n_depths);
     for (std::size_t k = 1; k <= n_depths; ++k) map.depths_m.push_back(step_m * static_cast<double>(k));
 
+    constexpr std::size_t kMostValues = 20'000'000;
+    if (map.n_cells() > kMostValues / map.n_depths()) {
+        throw bad_input(file, "", std::to_string(map.n_x) + " x " + std::to_string(map.n_y) + " cells of " +
+                                      short_number(1e3 * x.pitch_m) + " x " + short_number(1e3 * y.pitch_m) + " mm",
+                        "a grid of at most 20 million forces (is a position far off the others?)");
+    }
+    std::vector<double> deepest_N;
+    for (const auto& [id, p] : points) {
+        if (p.depth_m.size() >= 2) deepest_N.push_back(p.force_N.back());
+    }
+    if (!(median(deepest_N) > 0.0)) {
+        throw bad_input(file, "fn_N", short_number(median(deepest_N)) + " N at the greatest depths (median, less the force at contact)",
+                        "forces that rise with depth (is the sign the other way round?)");
+    }
     map.normal_N.assign(map.n_depths() * map.n_cells(), std::numeric_limits<float>::quiet_NaN());
     std::vector<bool> taken(map.n_cells(), false);
     for (const auto& [id, p] : points) {
@@ -201,6 +216,7 @@ Map import_probing(const std::filesystem::path& csv, double indenter_radius_m, P
                      "point (median " + short_number(report.median_offset_N) + " N); linear between a point's own depths";
     map.source.from = csv.filename().string();
     map.source.licence = "that of the recording";
+    check_map(map, file);
     measure_residuals(map, points, report);
     return map;
 }

@@ -69,7 +69,12 @@ TEST_CASE("trace: what is written reads back to the last bit, missing values sta
     CHECK(trace.samples[1].action == Action::resize);
     CHECK(trace.info.device == "pen \"x\"");
     CHECK(trace.info.screen_width_mm == 276.5);
-    CHECK_THROWS_AS(TraceWriter(folder / "t.tsv", trace.info), std::runtime_error);  // nothing is overwritten
+    CHECK_THROWS_AS(TraceWriter(folder / "t.tsv", trace.info), InputError);  // nothing is overwritten
+    write_text_atomically(folder / "scene.json", "{}");
+    CHECK_THROWS_AS(TraceWriter(folder / "scene.tsv", trace.info), InputError);
+    CHECK(read_text(folder / "scene.json") == "{}");
+    CHECK_FALSE(std::filesystem::exists(folder / "scene.tsv"));
+    CHECK_THROWS_AS(TraceWriter(folder / "only.json", trace.info), InputError);
 }
 
 TEST_CASE("hard case 31: a trace with wrong names, numbers, columns or no sidecar is refused") {
@@ -79,9 +84,10 @@ TEST_CASE("hard case 31: a trace with wrong names, numbers, columns or no sideca
     CHECK(contains(said("-12", "1.5"), "line 2, pointer_id: found '1.5', expected a whole number"));
     CHECK(contains(said("640.125", "640,125"), "line 2, x_px: found '640,125', expected a number with a decimal point"));
     CHECK(contains(said("0.3333333333333333", "n/a"), "expected a time on every row"));
+    CHECK(contains(said("0.3333333333333333", "1e18"), "below 1e9 s"));
     CHECK(contains(said("tilt_x_deg", "tilt"), "expected a column 'tilt_x_deg'"));
     CHECK(contains(said("\tfinger", ""), "line 2: found 13 fields, expected 14"));
-    CHECK(contains(said("1280", "-1", "t.json"), "t.json: screen_px: found -1"));
+    CHECK(contains(said("1280.0", "0.5", "t.json"), "t.json: screen_px: found 0.5"));
     CHECK(contains(said("screen_px", "screen", "t.json"), "t.json: screen_px: found nothing"));
     const TemporaryFolder folder;
     write_text_atomically(folder / "t.tsv", "t_host_s\n");
