@@ -21,7 +21,7 @@ constexpr std::string_view kBlank = " \t\r\n";
 
 // The place in the file. Numbers come as text or as bytes, as the header said.
 class Cursor {
- public:
+  public:
     Cursor(std::string_view bytes, const std::string& file) : bytes_(bytes), file_(file) {}
 
     bool binary = false;
@@ -80,7 +80,8 @@ class Cursor {
     }
 
     // Refuses a count of things, each of at least so many bytes, that the rest of the file cannot hold.
-    void check_count(std::uint64_t count, std::size_t text_bytes, std::size_t binary_bytes, std::string_view things) {
+    void check_count(std::uint64_t count, std::size_t text_bytes, std::size_t binary_bytes,
+                     std::string_view things) {
         const std::size_t each = binary ? binary_bytes : text_bytes;
         const std::size_t left = bytes_.size() - at_;
         if (count <= left / each) return;
@@ -89,7 +90,7 @@ class Cursor {
              "as many as fit into the file");
     }
 
- private:
+  private:
     template <class Value>
     Value from_bytes(std::string_view expected) {
         if (bytes_.size() - at_ < sizeof(Value)) fail("the end of the file", expected);
@@ -120,9 +121,9 @@ struct Reading {
     bool have_format = false;
     bool have_nodes = false;
     bool have_elements = false;
-    std::unordered_map<std::uint64_t, int> node_at;                     // number in the file -> position
-    std::map<std::pair<int, int>, std::vector<int>> groups_of_entity;   // (dimension, entity) -> physical tags
-    std::map<std::pair<int, int>, std::size_t> group_at;                // (dimension, physical tag) -> position
+    std::unordered_map<std::uint64_t, int> node_at;                    // number in the file -> position
+    std::map<std::pair<int, int>, std::vector<int>> groups_of_entity;  // (dimension, entity) -> physical tags
+    std::map<std::pair<int, int>, std::size_t> group_at;  // (dimension, physical tag) -> position
     Msh msh;
 };
 
@@ -163,7 +164,8 @@ void read_names(Reading& r) {
         const auto first = line.find('"');
         const auto last = line.rfind('"');
         if (first == last) r.in.fail(shown(line), "a name in quotation marks");
-        group_of(static_cast<int>(dimension), static_cast<int>(tag), r).name = line.substr(first + 1, last - first - 1);
+        group_of(static_cast<int>(dimension), static_cast<int>(tag), r).name =
+            line.substr(first + 1, last - first - 1);
     }
 }
 
@@ -242,7 +244,8 @@ void read_nodes_4(Reading& r) {
         }
     }
     if (r.msh.n_nodes() != total) {
-        r.in.fail(std::to_string(r.msh.n_nodes()) + " nodes in the blocks", std::to_string(total) + " as announced");
+        r.in.fail(std::to_string(r.msh.n_nodes()) + " nodes in the blocks",
+                  std::to_string(total) + " as announced");
     }
 }
 
@@ -254,22 +257,33 @@ struct CellType {
 
 CellType type_of(std::int64_t type, const Cursor& in) {
     switch (type) {
-        case 1: return {2, -1, 1};
-        case 2: return {3, static_cast<int>(MshKind::triangle), 2};
-        case 3: return {4, static_cast<int>(MshKind::quad), 2};
-        case 4: return {4, static_cast<int>(MshKind::tet), 3};
-        case 5: return {8, static_cast<int>(MshKind::hex), 3};
-        case 15: return {1, -1, 0};
-        default: break;
+        case 1:
+            return {2, -1, 1};
+        case 2:
+            return {3, static_cast<int>(MshKind::triangle), 2};
+        case 3:
+            return {4, static_cast<int>(MshKind::quad), 2};
+        case 4:
+            return {4, static_cast<int>(MshKind::tet), 3};
+        case 5:
+            return {8, static_cast<int>(MshKind::hex), 3};
+        case 15:
+            return {1, -1, 0};
+        default:
+            break;
     }
-    const char* name = type == 6 ? " (prism)" : type == 7 ? " (pyramid)" : type >= 8 && type <= 14 ? " (second order)" : "";
+    const char* name = type == 6                 ? " (prism)"
+                       : type == 7               ? " (pyramid)"
+                       : type >= 8 && type <= 14 ? " (second order)"
+                                                 : "";
     in.fail("an element of type " + std::to_string(type) + name,
             "triangles, quads, tetrahedra or hexahedra of first order (types 2 to 5)");
 }
 
 // Nodes of one cell; `next` gives a node's number.
 template <class Next>
-void add_cell(const CellType& type, std::uint64_t number, const std::vector<int>& groups, Next&& next, Reading& r) {
+void add_cell(const CellType& type, std::uint64_t number, const std::vector<int>& groups, Next&& next,
+              Reading& r) {
     if (type.kind < 0) {
         for (int k = 0; k < type.corners; ++k) next();
         return;
@@ -298,7 +312,8 @@ void read_cell_2(const CellType& type, int n_tags, std::uint64_t number, Reading
         const int tag = r.in.integer("a tag");
         if (k == 0 && tag > 0) groups.push_back(tag);  // the first is the physical group, 0 = none
     }
-    add_cell(type, number, groups, [&] { return static_cast<std::uint64_t>(r.in.integer("a node's number")); }, r);
+    add_cell(
+        type, number, groups, [&] { return static_cast<std::uint64_t>(r.in.integer("a node's number")); }, r);
 }
 
 int tag_count(Reading& r) {
@@ -356,8 +371,9 @@ void read_elements_4(Reading& r) {
         const std::vector<int> none;
         for (std::uint64_t i = 0; i < count; ++i) {
             const auto number = r.in.size("an element's number");
-            add_cell(type, number, groups == r.groups_of_entity.end() ? none : groups->second,
-                     [&] { return r.in.size("a node's number"); }, r);
+            add_cell(
+                type, number, groups == r.groups_of_entity.end() ? none : groups->second,
+                [&] { return r.in.size("a node's number"); }, r);
         }
         seen += count;
     }
@@ -379,7 +395,8 @@ void merge_repeated(std::size_t kind, Msh& msh) {
     }
     std::vector<std::size_t> order(n);
     std::iota(order.begin(), order.end(), std::size_t{0});
-    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return key[a] < key[b]; });
+    std::stable_sort(order.begin(), order.end(),
+                     [&](std::size_t a, std::size_t b) { return key[a] < key[b]; });
     std::vector<std::size_t> first(n);
     for (std::size_t i = 0; i < n; ++i) {
         const bool repeats = i > 0 && key[order[i]] == key[order[i - 1]];
@@ -392,7 +409,8 @@ void merge_repeated(std::size_t kind, Msh& msh) {
             kept_as[i] = kept_as[first[i]];
             continue;
         }
-        for (std::size_t k = 0; k < corners; ++k) cells.nodes[corners * kept + k] = cells.nodes[corners * i + k];
+        for (std::size_t k = 0; k < corners; ++k)
+            cells.nodes[corners * kept + k] = cells.nodes[corners * i + k];
         cells.number[kept] = cells.number[i];
         kept_as[i] = static_cast<int>(kept++);
     }
@@ -437,7 +455,8 @@ Msh parse_msh(std::string_view bytes, const std::string& file_name) {
     while (!r.in.at_end()) {
         const std::string heading(r.in.word("a section"));
         if (heading.size() < 2 || heading.front() != '$') {
-            r.in.fail(shown(heading), r.have_format ? "a section such as $Nodes" : "a Gmsh file that begins with $MeshFormat");
+            r.in.fail(shown(heading), r.have_format ? "a section such as $Nodes"
+                                                    : "a Gmsh file that begins with $MeshFormat");
         }
         const std::string name = heading.substr(1);
         const bool read_here = name == "MeshFormat" || name == "PhysicalNames" || name == "Nodes" ||
@@ -455,6 +474,8 @@ Msh parse_msh(std::string_view bytes, const std::string& file_name) {
     return std::move(r.msh);
 }
 
-Msh read_msh(const std::filesystem::path& path) { return parse_msh(read_text(path), path.string()); }
+Msh read_msh(const std::filesystem::path& path) {
+    return parse_msh(read_text(path), path.string());
+}
 
 }  // namespace palpa
