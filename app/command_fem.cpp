@@ -1,12 +1,11 @@
 // palpa fem solve
 
-#include <unistd.h>
-
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <memory>
+#include <unistd.h>
 
 #include "app/command_line.h"
 #include "app/fem_solve.h"
@@ -20,23 +19,31 @@ using mechanics::LinearRange;
 
 const char* name_of(LinearRange range) {
     switch (range) {
-        case LinearRange::fine: return "green";
-        case LinearRange::amber: return "amber";
-        case LinearRange::red: return "red";
+        case LinearRange::fine:
+            return "green";
+        case LinearRange::amber:
+            return "amber";
+        case LinearRange::red:
+            return "red";
     }
     return "";
 }
 
 const char* name_of(mechanics::Element element) {
     switch (element) {
-        case mechanics::Element::hex8_bbar: return "hex8-bbar";
-        case mechanics::Element::hex8: return "hex8";
-        case mechanics::Element::tet4: return "tet4";
+        case mechanics::Element::hex8_bbar:
+            return "hex8-bbar";
+        case mechanics::Element::hex8:
+            return "hex8";
+        case mechanics::Element::tet4:
+            return "tet4";
     }
     return "";
 }
 
-Json in_mm(const std::optional<double>& value_m) { return value_m ? Json(1e3 * *value_m) : Json(nullptr); }
+Json in_mm(const std::optional<double>& value_m) {
+    return value_m ? Json(1e3 * *value_m) : Json(nullptr);
+}
 
 double max_von_mises_Pa(const FemResult& result) {
     double largest = 0.0;
@@ -50,11 +57,16 @@ std::vector<std::string> warnings_of(const FemCase& model, const FemResult& resu
         out.push_back("the linear range is left: " + short_number(100.0 * result.linear_ratio) +
                       " % (strain, or depth over thickness or width); amber above 10, red above 25");
     }
-    if (result.partial) out.push_back("part of the pressure is beside the body: " + short_number(result.applied_N) + " N fell on it");
-    if (result.contact && result.contact->over_edge) out.push_back("part of the indenter is beside the tissue");
-    if (!result.converged) out.push_back("not converged: backward error " + short_number(result.solution.backward_error));
+    if (result.partial)
+        out.push_back("part of the pressure is beside the body: " + short_number(result.applied_N) +
+                      " N fell on it");
+    if (result.contact && result.contact->over_edge)
+        out.push_back("part of the indenter is beside the tissue");
+    if (!result.converged)
+        out.push_back("not converged: backward error " + short_number(result.solution.backward_error));
     if (!model.report.slivers.empty()) {
-        out.push_back(std::to_string(model.report.slivers.size()) + " flat cells, the worst is cell " + std::to_string(model.report.worst_cell));
+        out.push_back(std::to_string(model.report.slivers.size()) + " flat cells, the worst is cell " +
+                      std::to_string(model.report.worst_cell));
     }
     return out;
 }
@@ -73,7 +85,9 @@ Json json_of(const FemCase& model, const FemResult& result) {
     json["reaction_N"] = Json::array();
     for (std::size_t i = 0; i < model.supports.size(); ++i) {
         const Eigen::Vector3d& f = result.reaction_N[i];
-        json["reaction_N"].push_back({{"support", model.supports[i].name}, {"fix", model.supports[i].axes}, {"force_N", {f.x(), f.y(), f.z()}}});
+        json["reaction_N"].push_back({{"support", model.supports[i].name},
+                                      {"fix", model.supports[i].axes},
+                                      {"force_N", {f.x(), f.y(), f.z()}}});
     }
     if (!result.body_reaction_N.isZero(0.0)) {
         const Eigen::Vector3d& f = result.body_reaction_N;
@@ -96,7 +110,8 @@ Json json_of(const FemCase& model, const FemResult& result) {
     json["residual"] = result.residual;
     json["backward_error"] = result.solution.backward_error;
     json["converged"] = result.converged;
-    json["time_s"] = {{"assemble", result.assemble_s}, {"factor", result.factor_s}, {"solve", result.solution.solve_s}};
+    json["time_s"] = {
+        {"assemble", result.assemble_s}, {"factor", result.factor_s}, {"solve", result.solution.solve_s}};
     if (result.contact) json["time_s"]["contact"] = result.contact->seconds;
     json["warnings"] = warnings_of(model, result);
     return json;
@@ -112,12 +127,17 @@ std::string three_N(const Eigen::Vector3d& f) {
     return short_number(f.x()) + "  " + short_number(f.y()) + "  " + short_number(f.z()) + " N";
 }
 
-void row(const char* what, const std::string& value) { std::printf("  %-22s %s\n", what, value.c_str()); }
+void row(const char* what, const std::string& value) {
+    std::printf("  %-22s %s\n", what, value.c_str());
+}
 
 void print_table(const FemCase& model, const FemResult& result) {
-    const auto mm = [](const std::optional<double>& value_m) { return value_m ? six_digits(1e3 * *value_m) + " mm" : std::string("-"); };
-    std::printf("%s: %s, %td nodes, %td elements, %d equations\n", model.file.c_str(), name_of(model.problem.element),
-                model.problem.mesh.nodes_m.cols(), model.problem.mesh.cells.cols(), result.equations);
+    const auto mm = [](const std::optional<double>& value_m) {
+        return value_m ? six_digits(1e3 * *value_m) + " mm" : std::string("-");
+    };
+    std::printf("%s: %s, %td nodes, %td elements, %d equations\n", model.file.c_str(),
+                name_of(model.problem.element), model.problem.mesh.nodes_m.cols(),
+                model.problem.mesh.cells.cols(), result.equations);
     row("applied", short_number(result.applied_N) + " N");
     row("centre displacement", mm(result.centre_m));
     row("d_skel (mean)", mm(result.skel_m));
@@ -129,16 +149,19 @@ void print_table(const FemCase& model, const FemResult& result) {
     if (result.contact) {
         const IndenterContact& contact = *result.contact;
         row("contact force", three_N(contact.force_N.rowwise().sum()));
-        row("contact area", short_number(1e6 * contact.area_m2) + " mm2 on " + std::to_string(contact.nodes) + " nodes, " +
-                                short_number(1e3 * contact.depth_m) + " mm deep");
+        row("contact area", short_number(1e6 * contact.area_m2) + " mm2 on " + std::to_string(contact.nodes) +
+                                " nodes, " + short_number(1e3 * contact.depth_m) + " mm deep");
     }
     row("energy", short_number(result.solution.energy_J) + " J");
-    row("largest strain", short_number(100.0 * result.max_strain) + " %, von Mises " + short_number(max_von_mises_Pa(result)) + " Pa");
-    row("linear range", std::string(name_of(result.linear)) + ", " + short_number(100.0 * result.linear_ratio) + " %");
-    row("residual", short_number(result.residual) + ", backward error " + short_number(result.solution.backward_error) +
+    row("largest strain", short_number(100.0 * result.max_strain) + " %, von Mises " +
+                              short_number(max_von_mises_Pa(result)) + " Pa");
+    row("linear range",
+        std::string(name_of(result.linear)) + ", " + short_number(100.0 * result.linear_ratio) + " %");
+    row("residual", short_number(result.residual) + ", backward error " +
+                        short_number(result.solution.backward_error) +
                         (result.converged ? ", converged" : ", NOT converged"));
-    std::string times = "assemble " + short_number(result.assemble_s) + ", factor " + short_number(result.factor_s) + ", solve " +
-                        short_number(result.solution.solve_s);
+    std::string times = "assemble " + short_number(result.assemble_s) + ", factor " +
+                        short_number(result.factor_s) + ", solve " + short_number(result.solution.solve_s);
     if (result.contact) times += ", contact " + short_number(result.contact->seconds);
     row("time", times + " s");
 }
@@ -170,7 +193,8 @@ struct SolveOptions {
 void solve_file(const SolveOptions& options) {
     const auto folder = std::filesystem::path(options.output).parent_path();
     if (!options.output.empty() && !folder.empty() && !std::filesystem::is_directory(folder)) {
-        throw bad_input("-o", "", "no folder " + folder.string(), "a folder that is there");  // before the long part
+        throw bad_input("-o", "", "no folder " + folder.string(),
+                        "a folder that is there");  // before the long part
     }
     const FemCase model = read_case(options.file);
     const FemResult result = solve_case(model, progress_line());
@@ -193,9 +217,11 @@ void add_fem(CLI::App& app) {
     CLI::App* fem = app.add_subcommand("fem", "Finite elements: solve");
     fem->require_subcommand(1);
     auto options = std::make_shared<SolveOptions>();
-    CLI::App* command = fem->add_subcommand("solve", "Displacements, forces and strains of a case file (docs/fem.md)");
+    CLI::App* command =
+        fem->add_subcommand("solve", "Displacements, forces and strains of a case file (docs/fem.md)");
     command->add_option("CASE", options->file, "case JSON")->required();
-    command->add_option("-o,--output", options->output, "VTU file with displacement, reaction, strain, stress");
+    command->add_option("-o,--output", options->output,
+                        "VTU file with displacement, reaction, strain, stress");
     command->add_flag("--json", options->json, "one JSON object");
     command->callback([options] { solve_file(*options); });
 }

@@ -35,7 +35,8 @@ Material read_material(JsonReader json) {
 std::vector<Material> read_materials(JsonReader& json, std::vector<std::string>& names) {
     const Json& list = json.any("materials");
     if (!list.is_object() || list.empty()) {
-        json.fail("materials", described(list), "an object with at least one material: {\"gel\": {\"young_Pa\": 2500, \"poisson\": 0.45}}");
+        json.fail("materials", described(list),
+                  "an object with at least one material: {\"gel\": {\"young_Pa\": 2500, \"poisson\": 0.45}}");
     }
     std::vector<Material> materials;
     for (const auto& item : list.items()) {
@@ -55,7 +56,9 @@ Eigen::Matrix3Xd centroids_m(const Mesh& mesh) {
     return out;
 }
 
-Eigen::Vector3d vector_of(const std::vector<double>& v) { return {v[0], v[1], v[2]}; }
+Eigen::Vector3d vector_of(const std::vector<double>& v) {
+    return {v[0], v[1], v[2]};
+}
 
 // Cells that one region takes: those whose centre is inside.
 std::vector<int> cells_of_region(JsonReader& entry, const CaseMesh& mesh, const Eigen::Matrix3Xd& centre_m) {
@@ -80,8 +83,11 @@ std::vector<int> cells_of_region(JsonReader& entry, const CaseMesh& mesh, const 
         box.only({"min_mm", "max_mm"});
         const Eigen::Vector3d low = 1e-3 * vector_of(box.numbers("min_mm", 3, kAnyNumber));
         const Eigen::Vector3d high = 1e-3 * vector_of(box.numbers("max_mm", 3, kAnyNumber));
-        if (!(low.array() < high.array()).all()) box.fail("max_mm", "a corner that is not above min_mm", "max_mm > min_mm in x, y and z");
-        take_if([&](const Eigen::Vector3d& x) { return (x.array() >= low.array()).all() && (x.array() <= high.array()).all(); });
+        if (!(low.array() < high.array()).all())
+            box.fail("max_mm", "a corner that is not above min_mm", "max_mm > min_mm in x, y and z");
+        take_if([&](const Eigen::Vector3d& x) {
+            return (x.array() >= low.array()).all() && (x.array() <= high.array()).all();
+        });
     }
     return cells;
 }
@@ -93,8 +99,10 @@ void read_regions(JsonReader& json, const std::vector<std::string>& materials, C
     const Eigen::Matrix3Xd centre_m = centroids_m(mesh.mesh);
     for (JsonReader& entry : entries) {
         entry.only({"all", "box", "sphere", "physical", "material"});
-        const int kinds = int{entry.has("all")} + int{entry.has("box")} + int{entry.has("sphere")} + int{entry.has("physical")};
-        if (kinds != 1) entry.fail("", std::to_string(kinds) + " shapes", "one of all, box, sphere, physical");
+        const int kinds = int{entry.has("all")} + int{entry.has("box")} + int{entry.has("sphere")} +
+                          int{entry.has("physical")};
+        if (kinds != 1)
+            entry.fail("", std::to_string(kinds) + " shapes", "one of all, box, sphere, physical");
         const std::string name = entry.text("material");
         const auto it = std::find(materials.begin(), materials.end(), name);
         if (it == materials.end()) {
@@ -103,12 +111,15 @@ void read_regions(JsonReader& json, const std::vector<std::string>& materials, C
             entry.fail("material", shown(name), "one of the materials: " + known);
         }
         const std::vector<int> cells = cells_of_region(entry, mesh, centre_m);
-        if (cells.empty()) entry.fail("", "no cell whose centre is inside", "at least one (a finer mesh, a larger region)");
+        if (cells.empty())
+            entry.fail("", "no cell whose centre is inside", "at least one (a finer mesh, a larger region)");
         for (const int cell : cells) mesh.mesh.region(cell) = static_cast<int>(it - materials.begin());
     }
     const auto bare = (mesh.mesh.region.array() < 0).count();
     if (bare > 0) {
-        json.fail("regions", std::to_string(bare) + " of " + std::to_string(mesh.mesh.region.size()) + " cells without a material",
+        json.fail("regions",
+                  std::to_string(bare) + " of " + std::to_string(mesh.mesh.region.size()) +
+                      " cells without a material",
                   "a region for each: begin with {\"all\": true, \"material\": ...}");
     }
 }
@@ -167,10 +178,12 @@ CaseTraction read_traction(JsonReader& entry, const CaseMesh& mesh) {
 CaseIndenter read_indenter(JsonReader json, const CaseMesh& mesh) {
     json.only({"shape", "radius_mm", "length_mm", "centre_mm", "depth_mm", "force_N", "friction"});
     CaseIndenter out;
-    out.indenter.shape = json.choice("shape", {"sphere", "cylinder"}) == 0 ? IndenterShape::sphere : IndenterShape::cylinder;
+    out.indenter.shape =
+        json.choice("shape", {"sphere", "cylinder"}) == 0 ? IndenterShape::sphere : IndenterShape::cylinder;
     out.indenter.radius_m = 1e-3 * json.number("radius_mm", kPositive);
     if (json.has("length_mm")) {
-        if (out.indenter.shape == IndenterShape::sphere) json.fail("length_mm", "a length of a sphere", "it for a cylinder only");
+        if (out.indenter.shape == IndenterShape::sphere)
+            json.fail("length_mm", "a length of a sphere", "it for a cylinder only");
         out.indenter.length_m = 1e-3 * json.number("length_mm", kPositive);
     }
     const Eigen::Vector3d low = 1e3 * mesh.mesh.nodes_m.rowwise().minCoeff();
@@ -184,13 +197,15 @@ CaseIndenter read_indenter(JsonReader json, const CaseMesh& mesh) {
     }
     out.centre_m = {1e-3 * centre_mm[0], 1e-3 * centre_mm[1]};
     if (json.has("depth_mm") == json.has("force_N")) {
-        json.fail("depth_mm", json.has("depth_mm") ? "depth_mm and force_N" : "nothing", "one of depth_mm and force_N");
+        json.fail("depth_mm", json.has("depth_mm") ? "depth_mm and force_N" : "nothing",
+                  "one of depth_mm and force_N");
     }
     if (json.has("depth_mm")) {
         const double thickness_mm = high(2) - low(2);
         const double depth_mm = json.number("depth_mm", kPositive);
         if (depth_mm >= thickness_mm) {
-            json.fail("depth_mm", short_number(depth_mm), "less than the tissue is thick, " + short_number(thickness_mm));
+            json.fail("depth_mm", short_number(depth_mm),
+                      "less than the tissue is thick, " + short_number(thickness_mm));
         }
         out.depth_m = 1e-3 * depth_mm;
     } else {
@@ -203,8 +218,11 @@ CaseIndenter read_indenter(JsonReader json, const CaseMesh& mesh) {
 void read_loads(JsonReader& json, const CaseMesh& mesh, FemCase& out) {
     for (JsonReader& entry : json.objects("loads")) {
         entry.only({"parabolic_pressure", "traction_Pa", "indenter", "face", "physical"});
-        const int kinds = int{entry.has("parabolic_pressure")} + int{entry.has("traction_Pa")} + int{entry.has("indenter")};
-        if (kinds != 1) entry.fail("", std::to_string(kinds) + " loads", "one of parabolic_pressure, traction_Pa, indenter");
+        const int kinds =
+            int{entry.has("parabolic_pressure")} + int{entry.has("traction_Pa")} + int{entry.has("indenter")};
+        if (kinds != 1)
+            entry.fail("", std::to_string(kinds) + " loads",
+                       "one of parabolic_pressure, traction_Pa, indenter");
         if (entry.has("traction_Pa")) {
             out.tractions.push_back(read_traction(entry, mesh));
             continue;
@@ -219,10 +237,12 @@ void read_loads(JsonReader& json, const CaseMesh& mesh, FemCase& out) {
     }
     if (!out.indenter) return;
     // its contact is found from the tissue at rest
-    if (!out.pressures.empty() || !out.tractions.empty()) json.fail("loads", "an indenter beside other loads", "an indenter alone");
+    if (!out.pressures.empty() || !out.tractions.empty())
+        json.fail("loads", "an indenter beside other loads", "an indenter alone");
     for (const CaseSupport& support : out.supports) {
         if (support.value_m != 0.0) {
-            json.fail("supports", short_number(1e3 * support.value_m) + " mm at " + support.name + " beside an indenter",
+            json.fail("supports",
+                      short_number(1e3 * support.value_m) + " mm at " + support.name + " beside an indenter",
                       "supports at 0 mm with an indenter");
         }
     }

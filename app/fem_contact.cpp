@@ -25,8 +25,8 @@ constexpr int kFrictionSweeps = 4000;
 
 struct Pressed {
     Contact contact;
-    std::vector<int> touch;        // touch nodes under load
-    std::vector<double> force_N;   // three per node: pressing, x, y
+    std::vector<int> touch;       // touch nodes under load
+    std::vector<double> force_N;  // three per node: pressing, x, y
 };
 
 Tool tool_at(const CaseIndenter& indenter, double depth_m) {
@@ -44,7 +44,8 @@ Pressed press_smooth(const Compliance& c, const CaseIndenter& indenter, const Fe
         if (out.contact.flags.capped) {
             throw bad_input(model.file, "loads.indenter.force_N", short_number(indenter.force_N),
                             "at most " + short_number(out.contact.tool[0].normal_N) +
-                                ", which presses the tool through the whole tissue, " + short_number(1e3 * c.thickness_m) + " mm");
+                                ", which presses the tool through the whole tissue, " +
+                                short_number(1e3 * c.thickness_m) + " mm");
         }
     }
     out.touch = out.contact.touch;
@@ -89,7 +90,8 @@ double hertz_depth_m(const CaseIndenter& indenter, const FemCase& model) {
     int cell = 0;
     for (Index f = 0; f < top.cell.size(); ++f) {
         Eigen::Vector3d middle = Eigen::Vector3d::Zero();
-        for (Index k = 0; k < top.corners.rows(); ++k) middle += model.problem.mesh.nodes_m.col(top.corners(k, f));
+        for (Index k = 0; k < top.corners.rows(); ++k)
+            middle += model.problem.mesh.nodes_m.col(top.corners(k, f));
         middle /= static_cast<double>(top.corners.rows());
         const double away = std::hypot(middle.x() - indenter.centre_m[0], middle.y() - indenter.centre_m[1]);
         if (away >= nearest) continue;
@@ -108,10 +110,12 @@ struct Rectangle {
     std::vector<int> held;          // nodes in it that a support holds
 };
 
-Rectangle rectangle_around(const FemCase& model, const CaseIndenter& indenter, double half_x_m, double half_y_m) {
+Rectangle rectangle_around(const FemCase& model, const CaseIndenter& indenter, double half_x_m,
+                           double half_y_m) {
     const auto [x, y] = indenter.centre_m;
     Rectangle out;
-    out.request = request_rectangle(model.problem.mesh, model.outer, {x - half_x_m, x + half_x_m, y - half_y_m, y + half_y_m});
+    out.request = request_rectangle(model.problem.mesh, model.outer,
+                                    {x - half_x_m, x + half_x_m, y - half_y_m, y + half_y_m});
     out.whole = out.request.other_nodes.empty();
     out.request.other_nodes.clear();  // the full field is solved for afterwards
     out.request.tangential = indenter.friction > 0.0;
@@ -138,14 +142,21 @@ bool at_rim(const Compliance& c, const Pressed& pressed, const Rectangle& rectan
 }
 
 void check_size(const Rectangle& rectangle, const FemCase& model) {
-    const double rows = static_cast<double>(rectangle.request.touch_nodes.size()) * (rectangle.request.tangential ? 3.0 : 1.0);
+    const double rows = static_cast<double>(rectangle.request.touch_nodes.size()) *
+                        (rectangle.request.tangential ? 3.0 : 1.0);
     if (8.0 * rows * rows <= kMostCompliance_bytes) return;
-    throw bad_input(model.file, "loads.indenter", "a tool over " + std::to_string(rectangle.request.touch_nodes.size()) + " nodes of the surface",
-                    "at most " + short_number(std::sqrt(kMostCompliance_bytes / 8.0) / (rectangle.request.tangential ? 3.0 : 1.0)) +
-                        " (a smaller radius or depth, or a coarser mesh)");
+    throw bad_input(
+        model.file, "loads.indenter",
+        "a tool over " + std::to_string(rectangle.request.touch_nodes.size()) + " nodes of the surface",
+        "at most " +
+            short_number(std::sqrt(kMostCompliance_bytes / 8.0) /
+                         (rectangle.request.tangential ? 3.0 : 1.0)) +
+            " (a smaller radius or depth, or a coarser mesh)");
 }
 
-double at_mm(const FemCase& model, int node, Index axis) { return 1e3 * model.problem.mesh.nodes_m(axis, node); }
+double at_mm(const FemCase& model, int node, Index axis) {
+    return 1e3 * model.problem.mesh.nodes_m(axis, node);
+}
 
 [[noreturn]] void refuse_support(const FemCase& model, int node, const std::string& expected) {
     throw bad_input(model.file, "loads.indenter.centre_mm",
@@ -160,7 +171,8 @@ void set_held_aside(const FemCase& model, const Factored& factored, Rectangle& r
         return factored.reduction.equation[static_cast<std::size_t>(3 * node + axis)] == kPrescribed;
     };
     auto& touch = rectangle.request.touch_nodes;
-    std::copy_if(touch.begin(), touch.end(), std::back_inserter(rectangle.held), [&](int node) { return prescribed(node, 2); });
+    std::copy_if(touch.begin(), touch.end(), std::back_inserter(rectangle.held),
+                 [&](int node) { return prescribed(node, 2); });
     std::erase_if(touch, [&](int node) { return prescribed(node, 2); });
     if (touch.empty()) refuse_support(model, rectangle.held.front(), "a free surface");
     for (const int node : touch) {
@@ -222,7 +234,8 @@ IndenterContact press_indenter(const FemCase& model, const Factored& factored, c
         check_size(rectangle, model);
         set_held_aside(model, factored, rectangle);
         const Compliance c = surface_compliance(model.problem.mesh, factored, rectangle.request, columns);
-        const Pressed pressed = indenter.friction > 0.0 ? press_rough(c, indenter, model) : press_smooth(c, indenter, model);
+        const Pressed pressed =
+            indenter.friction > 0.0 ? press_rough(c, indenter, model) : press_smooth(c, indenter, model);
         const bool inside = !at_rim(c, pressed, rectangle) && !pressed.contact.flags.over_edge;
         if (!inside && !rectangle.whole) continue;
         check_held(model, rectangle, pressed.contact.tool[0].depth_m);

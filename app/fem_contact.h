@@ -27,6 +27,7 @@ struct IndenterContact {
 // Compliance of a rectangle around the tool, enlarged until the contact lies inside; then the contact.
 // Friction: the tool goes straight down in equal steps, so that what sticks first stays. Throws InputError
 // for a force that the tissue cannot take and for a tool on supported nodes.
-IndenterContact press_indenter(const FemCase& model, const mechanics::Factored& factored, const FemProgress& progress);
+IndenterContact press_indenter(const FemCase& model, const mechanics::Factored& factored,
+                               const FemProgress& progress);
 
 }  // namespace palpa

@@ -38,9 +38,11 @@ Box read_box(JsonReader box) {
         const auto centre_mm = grading->numbers("centre_mm", 2, kNotNegative);
         for (std::size_t axis = 0; axis < 2; ++axis) {
             if (centre_mm[axis] <= size_mm[axis]) continue;
-            grading->fail("centre_mm", short_number(centre_mm[axis]), "a place in the box, 0 to " + short_number(size_mm[axis]));
+            grading->fail("centre_mm", short_number(centre_mm[axis]),
+                          "a place in the box, 0 to " + short_number(size_mm[axis]));
         }
-        out.grading = Grading{{1e-3 * centre_mm[0], 1e-3 * centre_mm[1]}, 1e-3 * grading->number("finest_mm", kPositive)};
+        out.grading = Grading{{1e-3 * centre_mm[0], 1e-3 * centre_mm[1]},
+                              1e-3 * grading->number("finest_mm", kPositive)};
     }
     return out;
 }
@@ -51,16 +53,19 @@ Mesh mesh_of(const Msh& msh, Element element, const std::string& file) {
     const std::size_t others = msh.count(tets ? MshKind::hex : MshKind::tet);
     const auto n = static_cast<Index>(msh.count(wanted));
     if (n == 0 || others > 0) {
-        throw bad_input(file, "",
-                        std::to_string(msh.count(MshKind::hex)) + " hexahedra and " +
-                            std::to_string(msh.count(MshKind::tet)) + " tetrahedra",
-                        tets ? "tetrahedra only (element tet4)" : "hexahedra only (element hex8-bbar or hex8)");
+        throw bad_input(
+            file, "",
+            std::to_string(msh.count(MshKind::hex)) + " hexahedra and " +
+                std::to_string(msh.count(MshKind::tet)) + " tetrahedra",
+            tets ? "tetrahedra only (element tet4)" : "hexahedra only (element hex8-bbar or hex8)");
     }
     if (static_cast<double>(msh.n_nodes()) > kMostNodes) {
-        throw bad_input(file, "", std::to_string(msh.n_nodes()) + " nodes", "at most " + short_number(kMostNodes));
+        throw bad_input(file, "", std::to_string(msh.n_nodes()) + " nodes",
+                        "at most " + short_number(kMostNodes));
     }
     Mesh mesh;
-    mesh.nodes_m = 1e-3 * Eigen::Map<const Eigen::Matrix3Xd>(msh.nodes.data(), 3, static_cast<Index>(msh.n_nodes()));
+    mesh.nodes_m =
+        1e-3 * Eigen::Map<const Eigen::Matrix3Xd>(msh.nodes.data(), 3, static_cast<Index>(msh.n_nodes()));
     mesh.cells = Eigen::Map<const Eigen::MatrixXi>(msh.of(wanted).nodes.data(), tets ? 4 : 8, n);
     mesh.region = Eigen::VectorXi::Zero(n);
     return mesh;
@@ -84,12 +89,14 @@ void check_cells(CaseMesh& mesh, Element element, const JsonReader& json) {
 
 const MshGroup& find_group(JsonReader& entry, const CaseMesh& mesh, int dimension) {
     const std::string name = entry.text("physical");
-    if (!mesh.msh) entry.fail("physical", shown(name), "a mesh from a .msh file; a box has faces xmin ... zmax only");
+    if (!mesh.msh)
+        entry.fail("physical", shown(name), "a mesh from a .msh file; a box has faces xmin ... zmax only");
     std::string known;
     for (const MshGroup& group : mesh.msh->groups) {
         if (group.dimension != dimension) continue;
         if (group.name == name || (group.name.empty() && std::to_string(group.tag) == name)) return group;
-        known += (known.empty() ? "" : ", ") + shown(group.name.empty() ? std::to_string(group.tag) : group.name);
+        known +=
+            (known.empty() ? "" : ", ") + shown(group.name.empty() ? std::to_string(group.tag) : group.name);
     }
     entry.fail("physical", shown(name),
                "a physical group of dimension " + std::to_string(dimension) + " in " + mesh.file + ": " +
@@ -117,8 +124,9 @@ Faces faces_of_group(JsonReader& entry, const CaseMesh& mesh) {
         const auto it = at.find(sorted_corners(mesh.msh->of(kind).nodes.data() + corners * cell, corners));
         if (it == at.end()) {
             entry.fail("physical",
-                       "element " + std::to_string(mesh.msh->of(kind).number[static_cast<std::size_t>(cell)]) + " of " +
-                           mesh.file + ", which is no outer face of a cell",
+                       "element " +
+                           std::to_string(mesh.msh->of(kind).number[static_cast<std::size_t>(cell)]) +
+                           " of " + mesh.file + ", which is no outer face of a cell",
                        "faces on the outside");
         }
         found.push_back(it->second);
@@ -135,7 +143,8 @@ Faces faces_of_group(JsonReader& entry, const CaseMesh& mesh) {
 
 Faces faces_of_side(JsonReader& entry, const CaseMesh& mesh) {
     Faces faces = faces_on(mesh.mesh, mesh.outer, read_side(entry));
-    if (faces.cell.size() == 0) entry.fail("face", "no face of the mesh in that side of its bounding box", "at least one");
+    if (faces.cell.size() == 0)
+        entry.fail("face", "no face of the mesh in that side of its bounding box", "at least one");
     return faces;
 }
 
@@ -158,7 +167,8 @@ CaseMesh read_case_mesh(JsonReader& json, const std::filesystem::path& folder, E
     JsonReader mesh_json = json.object("mesh");
     mesh_json.only({"box", "file"});
     if (mesh_json.has("box") == mesh_json.has("file")) {
-        json.fail("mesh", mesh_json.has("box") ? "box and file" : "neither box nor file", "one of box and file");
+        json.fail("mesh", mesh_json.has("box") ? "box and file" : "neither box nor file",
+                  "one of box and file");
     }
     CaseMesh out;
     if (mesh_json.has("file")) {
@@ -182,7 +192,8 @@ Side read_side(JsonReader& entry) {
 
 Faces faces_named(JsonReader& entry, const CaseMesh& mesh, std::string& name) {
     if (entry.has("face") == entry.has("physical")) {
-        entry.fail("face", entry.has("face") ? "face and physical" : "nothing", "one of face (xmin ... zmax) and physical");
+        entry.fail("face", entry.has("face") ? "face and physical" : "nothing",
+                   "one of face (xmin ... zmax) and physical");
     }
     name = entry.text(entry.has("face") ? "face" : "physical");
     return entry.has("face") ? faces_of_side(entry, mesh) : faces_of_group(entry, mesh);

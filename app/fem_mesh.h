@@ -25,7 +25,8 @@ struct CaseMesh {
 CaseMesh read_case_mesh(JsonReader& json, const std::filesystem::path& folder, mechanics::Element& element);
 
 // What "face" (xmin ... zmax) or "physical" in an entry of the case means. `name` is filled for messages.
-mechanics::Faces faces_named(JsonReader& entry, const CaseMesh& mesh, std::string& name);  // all on the outside
+mechanics::Faces faces_named(JsonReader& entry, const CaseMesh& mesh,
+                             std::string& name);  // all on the outside
 std::vector<int> nodes_named(JsonReader& entry, const CaseMesh& mesh, std::string& name);  // ascending
 std::vector<int> cells_of_group(JsonReader& entry, const CaseMesh& mesh);
 

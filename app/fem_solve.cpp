@@ -62,8 +62,10 @@ void add_tractions(const FemCase& model, Loads& loads) {
         const Vector3d t(traction.vector_Pa[0], traction.vector_Pa[1], traction.vector_Pa[2]);
         loads.force_N += traction.pressure_Pa ? pressure_load(mesh, traction.faces, *traction.pressure_Pa)
                                               : traction_load(mesh, traction.faces, traction.vector_Pa);
-        loads.applied_N += area_m2.sum() * (traction.pressure_Pa ? std::abs(*traction.pressure_Pa) : t.norm());
-        if (!loads.centre) loads.centre = LoadCentre{mesh.nodes_m * area_m2 / area_m2.sum(), traction.faces, 0.0};
+        loads.applied_N +=
+            area_m2.sum() * (traction.pressure_Pa ? std::abs(*traction.pressure_Pa) : t.norm());
+        if (!loads.centre)
+            loads.centre = LoadCentre{mesh.nodes_m * area_m2 / area_m2.sum(), traction.faces, 0.0};
     }
 }
 
@@ -88,9 +90,12 @@ OnFace nearest_on_face(const Matrix3Xd& x, const Vector3d& place) {
     double s = r;
     for (int i = 0; i < 12; ++i) {  // Gauss-Newton on |X(r, s) - place|, held inside
         Eigen::Matrix<double, 3, 2> J;
-        J.col(0) = quad ? Vector3d((1.0 - s) * (x.col(1) - x.col(0)) + s * (x.col(2) - x.col(3))) : Vector3d(x.col(1) - x.col(0));
-        J.col(1) = quad ? Vector3d((1.0 - r) * (x.col(3) - x.col(0)) + r * (x.col(2) - x.col(1))) : Vector3d(x.col(2) - x.col(0));
-        const Eigen::Vector2d step = (J.transpose() * J).inverse() * (J.transpose() * (place - x * weights(r, s)));
+        J.col(0) = quad ? Vector3d((1.0 - s) * (x.col(1) - x.col(0)) + s * (x.col(2) - x.col(3)))
+                        : Vector3d(x.col(1) - x.col(0));
+        J.col(1) = quad ? Vector3d((1.0 - r) * (x.col(3) - x.col(0)) + r * (x.col(2) - x.col(1)))
+                        : Vector3d(x.col(2) - x.col(0));
+        const Eigen::Vector2d step =
+            (J.transpose() * J).inverse() * (J.transpose() * (place - x * weights(r, s)));
         r = std::clamp(r + step(0), 0.0, 1.0);
         s = std::clamp(s + step(1), 0.0, quad ? 1.0 : 1.0 - r);
     }
@@ -99,7 +104,8 @@ OnFace nearest_on_face(const Matrix3Xd& x, const Vector3d& place) {
 }
 
 Vector3d outward_normal(const Matrix3Xd& x) {
-    const Vector3d area = x.cols() == 4 ? (x.col(2) - x.col(0)).cross(x.col(3) - x.col(1)) : (x.col(1) - x.col(0)).cross(x.col(2) - x.col(0));
+    const Vector3d area = x.cols() == 4 ? (x.col(2) - x.col(0)).cross(x.col(3) - x.col(1))
+                                        : (x.col(1) - x.col(0)).cross(x.col(2) - x.col(0));
     return area.normalized();
 }
 
@@ -115,7 +121,8 @@ double depression_at_m(const Mesh& mesh, const LoadCentre& centre, const Matrix3
         nearest = here;
         const Vector3d n = outward_normal(x);
         depression_m = 0.0;
-        for (Index k = 0; k < corners.size(); ++k) depression_m -= here.weight(k) * n.dot(u_m.col(corners(k)));
+        for (Index k = 0; k < corners.size(); ++k)
+            depression_m -= here.weight(k) * n.dot(u_m.col(corners(k)));
     }
     return depression_m;
 }
@@ -164,7 +171,8 @@ void blank_rigid_cells(const Problem& problem, FemResult& result) {
     double softest = std::numeric_limits<double>::infinity();
     for (const Material& m : problem.materials) softest = std::min(softest, m.young_Pa);
     for (Index cell = 0; cell < result.von_mises_Pa.size(); ++cell) {
-        if (!(problem.materials[static_cast<std::size_t>(cell)].young_Pa > problem.rigid_contrast * softest)) continue;
+        if (!(problem.materials[static_cast<std::size_t>(cell)].young_Pa > problem.rigid_contrast * softest))
+            continue;
         result.fields.stress_Pa.col(cell).setConstant(std::numeric_limits<double>::quiet_NaN());
         result.von_mises_Pa(cell) = std::numeric_limits<double>::quiet_NaN();
     }
@@ -176,7 +184,8 @@ void judge_linearity(const FemCase& model, const Loads& loads, FemResult& result
     if (result.contact) width_m = 2.0 * std::sqrt(result.contact->area_m2 / std::numbers::pi);
     const double depth_m = result.contact ? result.contact->depth_m : std::abs(result.centre_m.value_or(0.0));
     result.max_strain = max_principal_strain(result.fields);
-    result.linear_ratio = std::max(result.max_strain, linearity_ratio(depth_m, z.maxCoeff() - z.minCoeff(), width_m));
+    result.linear_ratio =
+        std::max(result.max_strain, linearity_ratio(depth_m, z.maxCoeff() - z.minCoeff(), width_m));
     result.linear = linear_range(result.linear_ratio);
 }
 
@@ -186,7 +195,8 @@ FemResult solve_case(const FemCase& model, const FemProgress& progress) {
     const Mesh& mesh = model.problem.mesh;
     std::optional<Factored> factored;
     progress("factor", 0, 0);
-    with_key(model.file, "supports", "a model that can be solved", [&] { factored.emplace(factorise(model.problem, best_solver())); });
+    with_key(model.file, "supports", "a model that can be solved",
+             [&] { factored.emplace(factorise(model.problem, best_solver())); });
 
     FemResult result;
     Loads loads{Matrix3Xd::Zero(3, mesh.nodes_m.cols()), 0.0, false, std::nullopt};
@@ -196,12 +206,14 @@ FemResult solve_case(const FemCase& model, const FemProgress& progress) {
         result.contact = press_indenter(model, *factored, progress);
         loads.force_N = result.contact->force_N;
         loads.applied_N = result.contact->normal_N;
-        loads.centre = LoadCentre{centre_on_side(mesh, Side::zmax, model.indenter->centre_m), faces_on(mesh, model.outer, Side::zmax), 0.0};
+        loads.centre = LoadCentre{centre_on_side(mesh, Side::zmax, model.indenter->centre_m),
+                                  faces_on(mesh, model.outer, Side::zmax), 0.0};
     }
     progress("solve", 0, 0);
     result.solution = solve(*factored, loads.force_N);
     if (!result.solution.u_m.allFinite() || !std::isfinite(result.solution.energy_J)) {
-        throw std::runtime_error(model.file + ": the displacement is not finite (loads of " + short_number(loads.applied_N) + " N)");
+        throw std::runtime_error(model.file + ": the displacement is not finite (loads of " +
+                                 short_number(loads.applied_N) + " N)");
     }
     result.fields = cell_fields(mesh, model.problem.materials, result.solution.u_m);
     result.von_mises_Pa = von_mises_of(result.fields);

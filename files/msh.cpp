@@ -1,128 +1,26 @@
 #include "files/msh.h"
 
 #include <algorithm>
-#include <bit>
-#include <charconv>
-#include <cmath>
-#include <cstring>
 #include <map>
 #include <numeric>
 #include <unordered_map>
 
 #include "files/input_error.h"
+#include "files/msh_cursor.h"
 #include "files/text.h"
 
 namespace palpa {
 namespace {
 
-static_assert(std::endian::native == std::endian::little, "numbers are read as they lie in the file");
-
-constexpr std::string_view kBlank = " \t\r\n";
-
-// The place in the file. Numbers come as text or as bytes, as the header said.
-class Cursor {
- public:
-    Cursor(std::string_view bytes, const std::string& file) : bytes_(bytes), file_(file) {}
-
-    bool binary = false;
-
-    [[noreturn]] void fail(std::string_view found, std::string_view expected) const {
-        const auto before = bytes_.substr(0, at_);
-        const auto line = 1 + std::count(before.begin(), before.end(), '\n');
-        throw bad_input(file_, binary ? "byte " + std::to_string(at_) : "line " + std::to_string(line), found,
-                        expected);
-    }
-
-    bool at_end() {
-        at_ = std::min(bytes_.find_first_not_of(kBlank, at_), bytes_.size());
-        return at_ == bytes_.size();
-    }
-
-    std::string_view word(std::string_view expected) {
-        if (at_end()) fail("the end of the file", expected);
-        const auto end = std::min(bytes_.find_first_of(kBlank, at_), bytes_.size());
-        last_ = bytes_.substr(at_, end - at_);
-        at_ = end;
-        return last_;
-    }
-
-    std::string_view rest_of_line() {
-        const auto end = std::min(bytes_.find('\n', at_), bytes_.size());
-        const auto line = bytes_.substr(at_, end - at_);
-        at_ = std::min(end + 1, bytes_.size());
-        return line;
-    }
-
-    void skip_past(const std::string& text) {
-        const auto found = bytes_.find(text, at_);
-        if (found == std::string_view::npos) fail("the end of the file", text);
-        at_ = found + text.size();
-    }
-
-    std::int64_t word_integer(std::string_view expected) { return from_word<std::int64_t>(expected); }
-
-    // int, size_t and double of the format
-    int integer(std::string_view expected) {
-        return binary ? from_bytes<std::int32_t>(expected) : from_word<std::int32_t>(expected);
-    }
-    std::uint64_t size(std::string_view expected) {
-        return binary ? from_bytes<std::uint64_t>(expected) : from_word<std::uint64_t>(expected);
-    }
-    double real(std::string_view expected) {
-        double value = 0.0;
-        if (binary) {
-            value = from_bytes<double>(expected);
-        } else if (!parse_number(word(expected), value)) {
-            fail(shown(last_), expected);
-        }
-        if (!std::isfinite(value)) fail(number_text(value), "a finite number: " + std::string(expected));
-        return value;
-    }
-
-    // Refuses a count of things, each of at least so many bytes, that the rest of the file cannot hold.
-    void check_count(std::uint64_t count, std::size_t text_bytes, std::size_t binary_bytes, std::string_view things) {
-        const std::size_t each = binary ? binary_bytes : text_bytes;
-        const std::size_t left = bytes_.size() - at_;
-        if (count <= left / each) return;
-        fail(std::to_string(count) + " " + std::string(things) + " announced with " + std::to_string(left) +
-                 " bytes left",
-             "as many as fit into the file");
-    }
-
- private:
-    template <class Value>
-    Value from_bytes(std::string_view expected) {
-        if (bytes_.size() - at_ < sizeof(Value)) fail("the end of the file", expected);
-        Value value;
-        std::memcpy(&value, bytes_.data() + at_, sizeof(Value));
-        at_ += sizeof(Value);
-        return value;
-    }
-
-    template <class Value>
-    Value from_word(std::string_view expected) {
-        const auto text = word(expected);
-        Value value{};
-        const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-        if (error != std::errc() || end != text.data() + text.size()) fail(shown(text), expected);
-        return value;
-    }
-
-    std::string_view bytes_;
-    const std::string& file_;
-    std::size_t at_ = 0;
-    std::string_view last_;
-};
-
 struct Reading {
-    Cursor in;
+    MshCursor in;
     bool version_4 = false;
     bool have_format = false;
     bool have_nodes = false;
     bool have_elements = false;
-    std::unordered_map<std::uint64_t, int> node_at;                     // number in the file -> position
-    std::map<std::pair<int, int>, std::vector<int>> groups_of_entity;   // (dimension, entity) -> physical tags
-    std::map<std::pair<int, int>, std::size_t> group_at;                // (dimension, physical tag) -> position
+    std::unordered_map<std::uint64_t, int> node_at;                    // number in the file -> position
+    std::map<std::pair<int, int>, std::vector<int>> groups_of_entity;  // (dimension, entity) -> physical tags
+    std::map<std::pair<int, int>, std::size_t> group_at;  // (dimension, physical tag) -> position
     Msh msh;
 };
 
@@ -163,7 +61,8 @@ void read_names(Reading& r) {
         const auto first = line.find('"');
         const auto last = line.rfind('"');
         if (first == last) r.in.fail(shown(line), "a name in quotation marks");
-        group_of(static_cast<int>(dimension), static_cast<int>(tag), r).name = line.substr(first + 1, last - first - 1);
+        group_of(static_cast<int>(dimension), static_cast<int>(tag), r).name =
+            line.substr(first + 1, last - first - 1);
     }
 }
 
@@ -242,7 +141,8 @@ void read_nodes_4(Reading& r) {
         }
     }
     if (r.msh.n_nodes() != total) {
-        r.in.fail(std::to_string(r.msh.n_nodes()) + " nodes in the blocks", std::to_string(total) + " as announced");
+        r.in.fail(std::to_string(r.msh.n_nodes()) + " nodes in the blocks",
+                  std::to_string(total) + " as announced");
     }
 }
 
@@ -252,24 +152,35 @@ struct CellType {
     int dimension = 0;
 };
 
-CellType type_of(std::int64_t type, const Cursor& in) {
+CellType type_of(std::int64_t type, const MshCursor& in) {
     switch (type) {
-        case 1: return {2, -1, 1};
-        case 2: return {3, static_cast<int>(MshKind::triangle), 2};
-        case 3: return {4, static_cast<int>(MshKind::quad), 2};
-        case 4: return {4, static_cast<int>(MshKind::tet), 3};
-        case 5: return {8, static_cast<int>(MshKind::hex), 3};
-        case 15: return {1, -1, 0};
-        default: break;
+        case 1:
+            return {2, -1, 1};
+        case 2:
+            return {3, static_cast<int>(MshKind::triangle), 2};
+        case 3:
+            return {4, static_cast<int>(MshKind::quad), 2};
+        case 4:
+            return {4, static_cast<int>(MshKind::tet), 3};
+        case 5:
+            return {8, static_cast<int>(MshKind::hex), 3};
+        case 15:
+            return {1, -1, 0};
+        default:
+            break;
     }
-    const char* name = type == 6 ? " (prism)" : type == 7 ? " (pyramid)" : type >= 8 && type <= 14 ? " (second order)" : "";
+    const char* name = type == 6                 ? " (prism)"
+                       : type == 7               ? " (pyramid)"
+                       : type >= 8 && type <= 14 ? " (second order)"
+                                                 : "";
     in.fail("an element of type " + std::to_string(type) + name,
             "triangles, quads, tetrahedra or hexahedra of first order (types 2 to 5)");
 }
 
 // Nodes of one cell; `next` gives a node's number.
 template <class Next>
-void add_cell(const CellType& type, std::uint64_t number, const std::vector<int>& groups, Next&& next, Reading& r) {
+void add_cell(const CellType& type, std::uint64_t number, const std::vector<int>& groups, Next&& next,
+              Reading& r) {
     if (type.kind < 0) {
         for (int k = 0; k < type.corners; ++k) next();
         return;
@@ -298,7 +209,8 @@ void read_cell_2(const CellType& type, int n_tags, std::uint64_t number, Reading
         const int tag = r.in.integer("a tag");
         if (k == 0 && tag > 0) groups.push_back(tag);  // the first is the physical group, 0 = none
     }
-    add_cell(type, number, groups, [&] { return static_cast<std::uint64_t>(r.in.integer("a node's number")); }, r);
+    add_cell(
+        type, number, groups, [&] { return static_cast<std::uint64_t>(r.in.integer("a node's number")); }, r);
 }
 
 int tag_count(Reading& r) {
@@ -356,8 +268,9 @@ void read_elements_4(Reading& r) {
         const std::vector<int> none;
         for (std::uint64_t i = 0; i < count; ++i) {
             const auto number = r.in.size("an element's number");
-            add_cell(type, number, groups == r.groups_of_entity.end() ? none : groups->second,
-                     [&] { return r.in.size("a node's number"); }, r);
+            add_cell(
+                type, number, groups == r.groups_of_entity.end() ? none : groups->second,
+                [&] { return r.in.size("a node's number"); }, r);
         }
         seen += count;
     }
@@ -379,7 +292,8 @@ void merge_repeated(std::size_t kind, Msh& msh) {
     }
     std::vector<std::size_t> order(n);
     std::iota(order.begin(), order.end(), std::size_t{0});
-    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return key[a] < key[b]; });
+    std::stable_sort(order.begin(), order.end(),
+                     [&](std::size_t a, std::size_t b) { return key[a] < key[b]; });
     std::vector<std::size_t> first(n);
     for (std::size_t i = 0; i < n; ++i) {
         const bool repeats = i > 0 && key[order[i]] == key[order[i - 1]];
@@ -392,7 +306,8 @@ void merge_repeated(std::size_t kind, Msh& msh) {
             kept_as[i] = kept_as[first[i]];
             continue;
         }
-        for (std::size_t k = 0; k < corners; ++k) cells.nodes[corners * kept + k] = cells.nodes[corners * i + k];
+        for (std::size_t k = 0; k < corners; ++k)
+            cells.nodes[corners * kept + k] = cells.nodes[corners * i + k];
         cells.number[kept] = cells.number[i];
         kept_as[i] = static_cast<int>(kept++);
     }
@@ -406,7 +321,7 @@ void merge_repeated(std::size_t kind, Msh& msh) {
     }
 }
 
-void need(bool there, const char* section, const Cursor& in) {
+void need(bool there, const char* section, const MshCursor& in) {
     if (!there) in.fail("no $" + std::string(section) + " so far", "it here");
 }
 
@@ -433,11 +348,12 @@ void read_section(const std::string& name, Reading& r) {
 }  // namespace
 
 Msh parse_msh(std::string_view bytes, const std::string& file_name) {
-    Reading r{Cursor(bytes, file_name), false, false, false, false, {}, {}, {}, {}};
+    Reading r{MshCursor(bytes, file_name), false, false, false, false, {}, {}, {}, {}};
     while (!r.in.at_end()) {
         const std::string heading(r.in.word("a section"));
         if (heading.size() < 2 || heading.front() != '$') {
-            r.in.fail(shown(heading), r.have_format ? "a section such as $Nodes" : "a Gmsh file that begins with $MeshFormat");
+            r.in.fail(shown(heading), r.have_format ? "a section such as $Nodes"
+                                                    : "a Gmsh file that begins with $MeshFormat");
         }
         const std::string name = heading.substr(1);
         const bool read_here = name == "MeshFormat" || name == "PhysicalNames" || name == "Nodes" ||
@@ -455,6 +371,8 @@ Msh parse_msh(std::string_view bytes, const std::string& file_name) {
     return std::move(r.msh);
 }
 
-Msh read_msh(const std::filesystem::path& path) { return parse_msh(read_text(path), path.string()); }
+Msh read_msh(const std::filesystem::path& path) {
+    return parse_msh(read_text(path), path.string());
+}
 
 }  // namespace palpa

@@ -37,7 +37,8 @@ void append_array(const char* type, const std::string& name, int components, con
     constexpr const char* kTensor[] = {"xx", "yy", "zz", "xy", "yz", "xz"};
     constexpr const char* kVector[] = {"x", "y", "z"};
     for (int k = 0; components > 1 && k < components; ++k) {
-        out += " ComponentName" + std::to_string(k) + "=\"" + (components == 6 ? kTensor[k] : kVector[k]) + "\"";
+        out +=
+            " ComponentName" + std::to_string(k) + "=\"" + (components == 6 ? kTensor[k] : kVector[k]) + "\"";
     }
     out += " format=\"binary\">\n";
     const std::uint64_t length = values.size() * sizeof(Value);
@@ -48,8 +49,8 @@ void append_array(const char* type, const std::string& name, int components, con
     out += "\n</DataArray>\n";
 }
 
-void append_fields(const char* element, const std::vector<VtuField>& fields, [[maybe_unused]] std::size_t count,
-                   std::string& out) {
+void append_fields(const char* element, const std::vector<VtuField>& fields,
+                   [[maybe_unused]] std::size_t count, std::string& out) {
     out += "<" + std::string(element) + ">\n";
     for (const VtuField& field : fields) {
         assert(field.components == 1 || field.components == 3 || field.components == 6);
@@ -75,7 +76,8 @@ std::string vtu_text(const VtuGrid& grid) {
 
     std::string out =
         "<?xml version=\"1.0\"?>\n"
-        "<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\">\n"
+        "<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" "
+        "header_type=\"UInt64\">\n"
         "<UnstructuredGrid>\n<Piece NumberOfPoints=\"" +
         std::to_string(n_points) + "\" NumberOfCells=\"" + std::to_string(n_cells) + "\">\n";
     append_fields("PointData", grid.on_points, n_points, out);
@@ -90,6 +92,8 @@ std::string vtu_text(const VtuGrid& grid) {
     return out;
 }
 
-void write_vtu(const std::filesystem::path& path, const VtuGrid& grid) { write_text_atomically(path, vtu_text(grid)); }
+void write_vtu(const std::filesystem::path& path, const VtuGrid& grid) {
+    write_text_atomically(path, vtu_text(grid));
+}
 
 }  // namespace palpa

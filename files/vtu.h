@@ -12,7 +12,7 @@ namespace palpa {
 
 struct VtuField {
     std::string name;
-    int components = 1;  // 6: a symmetric tensor xx yy zz xy yz xz, as VTK orders it
+    int components = 1;          // 6: a symmetric tensor xx yy zz xy yz xz, as VTK orders it
     std::vector<double> values;  // component fastest
 };
 

@@ -31,20 +31,23 @@ inline std::string case_text(const std::string& mesh, const std::string& element
                              const std::string& loads,
                              const std::string& materials = R"({"gel": {"young_Pa": 2500, "poisson": 0.45}})",
                              const std::string& regions = R"([{"all": true, "material": "gel"}])") {
-    return "{\"mesh\": " + mesh + ", \"element\": \"" + element + "\", \"materials\": " + materials + ", \"regions\": " + regions +
-           ", \"supports\": " + supports + ", \"loads\": " + loads + "}";
+    return "{\"mesh\": " + mesh + ", \"element\": \"" + element + "\", \"materials\": " + materials +
+           ", \"regions\": " + regions + ", \"supports\": " + supports + ", \"loads\": " + loads + "}";
 }
 
 inline std::string gel(double young_Pa, double poisson) {
-    return "{\"gel\": {\"young_Pa\": " + number_text(young_Pa) + ", \"poisson\": " + number_text(poisson) + "}}";
+    return "{\"gel\": {\"young_Pa\": " + number_text(young_Pa) + ", \"poisson\": " + number_text(poisson) +
+           "}}";
 }
 
 inline const std::string kClamped = R"([{"face": "zmin", "fix": "xyz"}])";
-inline const std::string kSlab = R"({"box": {"size_mm": [100, 100, 50], "elements": [12, 12, 7], "grading": {"centre_mm": [50, 50], "finest_mm": 3}}})";
+inline const std::string kSlab =
+    R"({"box": {"size_mm": [100, 100, 50], "elements": [12, 12, 7], "grading": {"centre_mm": [50, 50], "finest_mm": 3}}})";
 
 inline std::string press_at(double x_mm, double y_mm, double diameter_mm, double force_N = 0.025) {
-    return R"([{"parabolic_pressure": {"face": "zmax", "centre_mm": [)" + number_text(x_mm) + ", " + number_text(y_mm) +
-           R"(], "diameter_mm": )" + number_text(diameter_mm) + R"(, "force_N": )" + number_text(force_N) + "}}]";
+    return R"([{"parabolic_pressure": {"face": "zmax", "centre_mm": [)" + number_text(x_mm) + ", " +
+           number_text(y_mm) + R"(], "diameter_mm": )" + number_text(diameter_mm) + R"(, "force_N": )" +
+           number_text(force_N) + "}}]";
 }
 
 }  // namespace palpa::test

@@ -23,13 +23,16 @@ struct Called {
 
 Called palpa_with(const std::string& arguments, const std::string& before = "") {
     const TemporaryFolder folder;
-    const std::string command = before + " timeout 60 " PALPA_PROGRAM " " + arguments + " >" + (folder / "out").string() + " 2>" +
-                                (folder / "err").string() + " </dev/null";
+    const std::string command = before + " timeout 60 " PALPA_PROGRAM " " + arguments + " >" +
+                                (folder / "out").string() + " 2>" + (folder / "err").string() + " </dev/null";
     const int status = std::system(command.c_str());
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_text(folder / "out"), read_text(folder / "err")};
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_text(folder / "out"),
+            read_text(folder / "err")};
 }
 
-const std::string kIndented = case_text(kSlab, "hex8-bbar", kClamped, R"([{"indenter": {"shape": "sphere", "radius_mm": 20, "centre_mm": [50, 50], "depth_mm": 1}}])");
+const std::string kIndented = case_text(
+    kSlab, "hex8-bbar", kClamped,
+    R"([{"indenter": {"shape": "sphere", "radius_mm": 20, "centre_mm": [50, 50], "depth_mm": 1}}])");
 
 }  // namespace
 
@@ -41,14 +44,17 @@ TEST_CASE("fem solve: help, a table for people, JSON with every key that design 
     const std::string file = (folder / "c.json").string();
     const Called table = palpa_with("fem solve " + file);
     CHECK_MESSAGE(table.status == 0, table.err);
-    for (const char* word : {"1352 nodes", "reaction zmin", "contact force", "linear range", "backward error", "converged"}) CHECK(contains(table.out, word));
+    for (const char* word :
+         {"1352 nodes", "reaction zmin", "contact force", "linear range", "backward error", "converged"})
+        CHECK(contains(table.out, word));
     CHECK(table.err.empty());
 
     const Called called = palpa_with("fem solve " + file + " --json");
     CHECK(called.status == 0);
     const Json json = parse_json(called.out, "stdout");
-    for (const char* key : {"nodes", "elements", "dofs", "max_displacement_mm", "centre_displacement_mm", "d_skel_mm", "reaction_N", "contact", "energy_J",
-                            "residual", "backward_error", "converged", "time_s", "max_strain", "linear_range"}) {
+    for (const char* key : {"nodes", "elements", "dofs", "max_displacement_mm", "centre_displacement_mm",
+                            "d_skel_mm", "reaction_N", "contact", "energy_J", "residual", "backward_error",
+                            "converged", "time_s", "max_strain", "linear_range"}) {
         CAPTURE(key);
         CHECK(json.contains(key));
     }
@@ -61,13 +67,15 @@ TEST_CASE("fem solve: help, a table for people, JSON with every key that design 
     CHECK(json["linear_range"]["gauge"] == "green");
     CHECK(json["centre_displacement_mm"].get<double>() == doctest::Approx(1.0).epsilon(1e-9));
     CHECK(json["reaction_N"][0]["support"] == "zmin");
-    CHECK(json["reaction_N"][0]["force_N"][2].get<double>() == doctest::Approx(-json["contact"]["force_N"][2].get<double>()).epsilon(1e-9));
+    CHECK(json["reaction_N"][0]["force_N"][2].get<double>() ==
+          doctest::Approx(-json["contact"]["force_N"][2].get<double>()).epsilon(1e-9));
 }
 
 TEST_CASE("fem solve: the VTU holds the field that the JSON sums up") {
     const TemporaryFolder folder;
     write_text_atomically(folder / "c.json", kIndented);
-    const Called called = palpa_with("fem solve " + (folder / "c.json").string() + " --json -o " + (folder / "o.vtu").string());
+    const Called called =
+        palpa_with("fem solve " + (folder / "c.json").string() + " --json -o " + (folder / "o.vtu").string());
     CHECK_MESSAGE(called.status == 0, called.err);
     const Json json = parse_json(called.out, "stdout");
     const VtuRead vtu = read_vtu_text(read_text(folder / "o.vtu"));
@@ -88,7 +96,8 @@ TEST_CASE("fem solve: the VTU holds the field that the JSON sums up") {
     CHECK(vtu.components("stress_Pa") == 6);
     const auto strain = vtu.doubles("strain");
     const auto stress = vtu.doubles("stress_Pa");
-    CHECK(stress[3] == doctest::Approx(2.0 * 2500.0 / 2.9 * strain[3]).epsilon(1e-9));  // tensor shear: sigma = 2 mu eps
+    CHECK(stress[3] ==
+          doctest::Approx(2.0 * 2500.0 / 2.9 * strain[3]).epsilon(1e-9));  // tensor shear: sigma = 2 mu eps
     double von_mises = 0.0;
     for (const double value : vtu.doubles("von_mises_Pa")) von_mises = std::max(von_mises, value);
     CHECK(von_mises == doctest::Approx(json["max_von_mises_Pa"].get<double>()).epsilon(1e-12));
@@ -125,12 +134,15 @@ TEST_CASE("fem solve: bad input ends with status 2, a disk that takes nothing wi
     refused("fem solve none.json", "none.json: cannot be read");
     refused("fem solve " + folder.path().string(), "found a folder");
     write_text_atomically(folder / "c.json", kIndented);
-    refused("fem solve " + (folder / "c.json").string() + " -o " + (folder / "no" / "o.vtu").string(), "expected a folder that is there");
+    refused("fem solve " + (folder / "c.json").string() + " -o " + (folder / "no" / "o.vtu").string(),
+            "expected a folder that is there");
     CHECK(palpa_with("fem").status == 2);
     CHECK(palpa_with("fem solve").status == 2);
     CHECK(palpa_with("fem solve a.json --nonsense").status == 2);
 
-    const Called full = palpa_with("fem solve " + (folder / "c.json").string() + " -o " + (folder / "o.vtu").string(), "ulimit -f 64; trap '' XFSZ;");
+    const Called full =
+        palpa_with("fem solve " + (folder / "c.json").string() + " -o " + (folder / "o.vtu").string(),
+                   "ulimit -f 64; trap '' XFSZ;");
     CHECK(full.status == 1);
     CHECK(contains(full.err, "o.vtu"));
     CHECK(contains(full.err, "cannot be written"));

@@ -1,13 +1,11 @@
 // Through the case file: what a finite-element program must get right, and what it must refuse.
 
-#include "app/fem_case.h"
-
-#include <doctest/doctest.h>
-
 #include <cmath>
+#include <doctest/doctest.h>
 #include <numbers>
 #include <random>
 
+#include "app/fem_case.h"
 #include "files/input_error.h"
 #include "mechanics/layer.h"
 #include "tests/app/fem_cases.h"
@@ -20,19 +18,25 @@ using namespace palpa::test;
 
 namespace {
 
-const std::string kBlock = R"({"box": {"size_mm": [20, 30, 10], "elements": [3, 4, 3], "grading": {"centre_mm": [7, 11], "finest_mm": 2}}})";
+const std::string kBlock =
+    R"({"box": {"size_mm": [20, 30, 10], "elements": [3, 4, 3], "grading": {"centre_mm": [7, 11], "finest_mm": 2}}})";
 
 // Free to become thinner: rollers on three sides that meet.
-const std::string kRollers = R"({"face": "xmin", "fix": "x"}, {"face": "ymin", "fix": "y"}, {"face": "zmin", "fix": "z"})";
+const std::string kRollers =
+    R"({"face": "xmin", "fix": "x"}, {"face": "ymin", "fix": "y"}, {"face": "zmin", "fix": "z"})";
 
 // A quarter of a wide slab, pressed at its corner.
 FemResult quarter(int n, int nz, double finest_mm, double width_mm, double poisson) {
     const std::string side = number_text(0.5 * width_mm);
     const std::string cells = std::to_string(n);
-    const std::string mesh = "{\"box\": {\"size_mm\": [" + side + ", " + side + ", 50], \"elements\": [" + cells + ", " + cells + ", " +
-                             std::to_string(nz) + "], \"grading\": {\"centre_mm\": [0, 0], \"finest_mm\": " + number_text(finest_mm) + "}}}";
-    return solved(case_text(mesh, "hex8-bbar", R"([{"face": "zmin", "fix": "xyz"}, {"face": "xmin", "fix": "x"}, {"face": "ymin", "fix": "y"}])",
-                            press_at(0, 0, 16), gel(2500, poisson)));
+    const std::string mesh =
+        "{\"box\": {\"size_mm\": [" + side + ", " + side + ", 50], \"elements\": [" + cells + ", " + cells +
+        ", " + std::to_string(nz) +
+        "], \"grading\": {\"centre_mm\": [0, 0], \"finest_mm\": " + number_text(finest_mm) + "}}}";
+    return solved(case_text(
+        mesh, "hex8-bbar",
+        R"([{"face": "zmin", "fix": "xyz"}, {"face": "xmin", "fix": "x"}, {"face": "ymin", "fix": "y"}])",
+        press_at(0, 0, 16), gel(2500, poisson)));
 }
 
 std::string said(const std::string& text, const std::filesystem::path& folder = ".") {
@@ -45,7 +49,9 @@ TEST_CASE("case: patch test, a uniform traction makes the same strain in every c
     for (const char* element : {"hex8-bbar", "hex8", "tet4"}) {
         CAPTURE(element);
         // a pull of 100 Pa along z: 1/E of it along z, -nu/E across
-        const FemResult r = solved(case_text(kBlock, element, "[" + kRollers + "]", R"([{"traction_Pa": [0, 0, 100], "face": "zmax"}])", gel(4000, 0.4)));
+        const FemResult r =
+            solved(case_text(kBlock, element, "[" + kRollers + "]",
+                             R"([{"traction_Pa": [0, 0, 100], "face": "zmax"}])", gel(4000, 0.4)));
         const double e = 100.0 / 4000.0;
         for (Eigen::Index cell = 0; cell < r.fields.strain.cols(); ++cell) {
             const mechanics::Voigt expected{-0.4 * e, -0.4 * e, e, 0.0, 0.0, 0.0};
@@ -64,22 +70,26 @@ TEST_CASE("case: patch test, a uniform traction makes the same strain in every c
 TEST_CASE("case: pressure on every side squeezes evenly, by -p (1 - 2 nu)/E") {
     std::string loads = "[";
     for (const char* face : {"xmin", "xmax", "ymin", "ymax", "zmin", "zmax"}) {
-        loads += std::string(loads.size() > 1 ? ", " : "") + R"({"traction_Pa": 50, "face": ")" + face + "\"}";
+        loads +=
+            std::string(loads.size() > 1 ? ", " : "") + R"({"traction_Pa": 50, "face": ")" + face + "\"}";
     }
     for (const char* element : {"hex8-bbar", "tet4"}) {
-        const FemResult r = solved(case_text(kBlock, element, "[" + kRollers + "]", loads + "]", gel(4000, 0.4)));
+        const FemResult r =
+            solved(case_text(kBlock, element, "[" + kRollers + "]", loads + "]", gel(4000, 0.4)));
         const double e = -50.0 * 0.2 / 4000.0;
         for (Eigen::Index cell = 0; cell < r.fields.strain.cols(); ++cell) {
             CHECK((r.fields.strain.col(cell).head<3>().array() - e).abs().maxCoeff() < 1e-12);
             CHECK(r.fields.strain.col(cell).tail<3>().cwiseAbs().maxCoeff() < 1e-12);
         }
-        for (const auto& reaction : r.reaction_N) CHECK(reaction.norm() == doctest::Approx(0.0).epsilon(1e-9).scale(0.015));
+        for (const auto& reaction : r.reaction_N)
+            CHECK(reaction.norm() == doctest::Approx(0.0).epsilon(1e-9).scale(0.015));
     }
 }
 
 TEST_CASE("case: a rigid translation makes no strain and no force") {
     for (const char* element : {"hex8-bbar", "hex8", "tet4"}) {
-        const FemResult r = solved(case_text(kBlock, element, R"([{"face": "zmin", "fix": "xyz", "value_mm": 1.5}])", "[]"));
+        const FemResult r =
+            solved(case_text(kBlock, element, R"([{"face": "zmin", "fix": "xyz", "value_mm": 1.5}])", "[]"));
         CHECK(r.max_displacement_m == doctest::Approx(1.5e-3 * std::sqrt(3.0)).epsilon(1e-12));
         CHECK((r.solution.u_m.array() - 1.5e-3).abs().maxCoeff() < 1e-14);
         CHECK(r.max_strain < 1e-12);
@@ -91,7 +101,9 @@ TEST_CASE("case: a rigid translation makes no strain and no force") {
 }
 
 TEST_CASE("case: a squeezed block answers E A d/h at both supports") {
-    const FemResult r = solved(case_text(kBlock, "hex8-bbar", "[" + kRollers + R"(, {"face": "zmax", "fix": "z", "value_mm": -0.1}])", "[]", gel(4000, 0.4)));
+    const FemResult r = solved(case_text(
+        kBlock, "hex8-bbar", "[" + kRollers + R"(, {"face": "zmax", "fix": "z", "value_mm": -0.1}])", "[]",
+        gel(4000, 0.4)));
     CHECK(r.reaction_N[3].z() == doctest::Approx(-4000.0 * 6e-4 * 0.01).epsilon(1e-10));
     CHECK(r.reaction_N[2].z() == doctest::Approx(4000.0 * 6e-4 * 0.01).epsilon(1e-10));
     CHECK(r.solution.energy_J == doctest::Approx(0.5 * 4000.0 * 6e-4 * 0.01 * 1e-4).epsilon(1e-10));
@@ -100,16 +112,22 @@ TEST_CASE("case: a squeezed block answers E A d/h at both supports") {
 
 TEST_CASE("case: CalculiX 2.20 stores the same energy in the same mesh") {
     // tests/mechanics/calculix: C3D8 and C3D4, a ball 1000 times stiffer, pressed beside the middle
-    const std::string mesh = R"({"box": {"size_mm": [100, 100, 50], "elements": [6, 6, 4], "grading": {"centre_mm": [50, 50], "finest_mm": 8}}})";
-    const std::string materials = R"({"gel": {"young_Pa": 2500, "poisson": 0.45}, "ball": {"young_Pa": 2.5e6, "poisson": 0.3}})";
-    const std::string regions = R"([{"all": true, "material": "gel"}, {"sphere": {"centre_mm": [50, 50, 30], "radius_mm": 15}, "material": "ball"}])";
+    const std::string mesh =
+        R"({"box": {"size_mm": [100, 100, 50], "elements": [6, 6, 4], "grading": {"centre_mm": [50, 50], "finest_mm": 8}}})";
+    const std::string materials =
+        R"({"gel": {"young_Pa": 2500, "poisson": 0.45}, "ball": {"young_Pa": 2.5e6, "poisson": 0.3}})";
+    const std::string regions =
+        R"([{"all": true, "material": "gel"}, {"sphere": {"centre_mm": [50, 50, 30], "radius_mm": 15}, "material": "ball"}])";
     const auto energy_J = [&](const std::string& element, const std::string& list) {
-        return solved(case_text(mesh, element, kClamped, press_at(47, 52, 30), materials, list)).solution.energy_J;
+        return solved(case_text(mesh, element, kClamped, press_at(47, 52, 30), materials, list))
+            .solution.energy_J;
     };
     CHECK(energy_J("hex8", regions) == doctest::Approx(1.147082e-6 + 1.242941e-8).epsilon(1e-6));
     CHECK(energy_J("tet4", regions) == doctest::Approx(5.040069e-7 + 1.477925e-8).epsilon(1e-6));
     // later regions win
-    CHECK(energy_J("hex8", regions.substr(0, regions.size() - 1) + R"(, {"box": {"min_mm": [0, 0, 0], "max_mm": [100, 100, 50]}, "material": "gel"}])") >
+    CHECK(energy_J("hex8",
+                   regions.substr(0, regions.size() - 1) +
+                       R"(, {"box": {"min_mm": [0, 0, 0], "max_mm": [100, 100, 50]}, "material": "gel"}])") >
           1.2 * energy_J("hex8", regions));
 }
 
@@ -145,18 +163,24 @@ TEST_CASE("case: the shipped cases say what their comments promise") {
 }
 
 TEST_CASE("hertz through a case: depth gives the force within 3 %, the force gives the depth back") {
-    const std::string mesh = R"({"box": {"size_mm": [120, 120, 80], "elements": [22, 22, 12], "grading": {"centre_mm": [60, 60], "finest_mm": 0.24}}})";
+    const std::string mesh =
+        R"({"box": {"size_mm": [120, 120, 80], "elements": [22, 22, 12], "grading": {"centre_mm": [60, 60], "finest_mm": 0.24}}})";
     const auto with = [&](const std::string& rest) {
-        return solved(case_text(mesh, "hex8-bbar", kClamped, R"([{"indenter": {"shape": "sphere", "radius_mm": 10, "centre_mm": [60, 60], )" + rest + "}}]"));
+        return solved(case_text(
+            mesh, "hex8-bbar", kClamped,
+            R"([{"indenter": {"shape": "sphere", "radius_mm": 10, "centre_mm": [60, 60], )" + rest + "}}]"));
     };
     const FemResult deep = with(R"("depth_mm": 0.1)");
     REQUIRE(deep.contact);
-    const double hertz_N = mechanics::hertz_force_N(mechanics::plane_strain_modulus_Pa(2500, 0.45), 0.01, 1e-4);
+    const double hertz_N =
+        mechanics::hertz_force_N(mechanics::plane_strain_modulus_Pa(2500, 0.45), 0.01, 1e-4);
     CHECK(deep.contact->normal_N == doctest::Approx(hertz_N).epsilon(0.03));
-    CHECK(deep.contact->area_m2 == doctest::Approx(std::numbers::pi * 1e-6).epsilon(0.4));  // steps by one node
+    CHECK(deep.contact->area_m2 ==
+          doctest::Approx(std::numbers::pi * 1e-6).epsilon(0.4));  // steps by one node
     CHECK(*deep.centre_m == doctest::Approx(1e-4).epsilon(1e-9));
     CHECK(deep.reaction_N[0].z() == doctest::Approx(deep.contact->normal_N).epsilon(1e-9));
-    CHECK(deep.contact->force_N.rowwise().sum().z() == doctest::Approx(-deep.contact->normal_N).epsilon(1e-12));
+    CHECK(deep.contact->force_N.rowwise().sum().z() ==
+          doctest::Approx(-deep.contact->normal_N).epsilon(1e-12));
     CHECK(deep.converged);
 
     const FemResult pushed = with("\"force_N\": " + number_text(deep.contact->normal_N));
@@ -164,33 +188,46 @@ TEST_CASE("hertz through a case: depth gives the force within 3 %, the force giv
     const FemResult rough = with(R"("depth_mm": 0.1, "friction": 0.5)");
     CHECK(rough.contact->normal_N > deep.contact->normal_N);  // the surface is held back
     CHECK(rough.contact->normal_N < 1.05 * deep.contact->normal_N);
-    CHECK(with("\"friction\": 0.5, \"force_N\": " + number_text(rough.contact->normal_N)).contact->depth_m == doctest::Approx(1e-4).epsilon(1e-6));
+    CHECK(with("\"friction\": 0.5, \"force_N\": " + number_text(rough.contact->normal_N)).contact->depth_m ==
+          doctest::Approx(1e-4).epsilon(1e-6));
 }
 
 TEST_CASE("indenter: a rectangle that was too small grows until the contact is inside") {
     // soft bed under a thin layer: what lies on top says little of how deep the tool goes
-    const std::string layered = R"([{"all": true, "material": "gel"}, {"box": {"min_mm": [0, 0, 30], "max_mm": [100, 100, 50]}, "material": "skin"}])";
-    const FemResult r = solved(case_text(kSlab, "hex8-bbar", kClamped, R"([{"indenter": {"shape": "sphere", "radius_mm": 30, "centre_mm": [50, 50], "force_N": 0.1}}])",
-                                         R"({"gel": {"young_Pa": 500, "poisson": 0.45}, "skin": {"young_Pa": 50000, "poisson": 0.45}})", layered));
+    const std::string layered =
+        R"([{"all": true, "material": "gel"}, {"box": {"min_mm": [0, 0, 30], "max_mm": [100, 100, 50]}, "material": "skin"}])";
+    const FemResult r = solved(case_text(
+        kSlab, "hex8-bbar", kClamped,
+        R"([{"indenter": {"shape": "sphere", "radius_mm": 30, "centre_mm": [50, 50], "force_N": 0.1}}])",
+        R"({"gel": {"young_Pa": 500, "poisson": 0.45}, "skin": {"young_Pa": 50000, "poisson": 0.45}})",
+        layered));
     CHECK(r.contact->normal_N == doctest::Approx(0.1).epsilon(1e-8));
     CHECK(-r.contact->force_N.row(2).sum() == doctest::Approx(0.1).epsilon(1e-8));
-    const FemResult bar = solved(case_text(kSlab, "hex8-bbar", kClamped, R"([{"indenter": {"shape": "cylinder", "radius_mm": 20, "centre_mm": [50, 50], "depth_mm": 1}}])"));
+    const FemResult bar = solved(case_text(
+        kSlab, "hex8-bbar", kClamped,
+        R"([{"indenter": {"shape": "cylinder", "radius_mm": 20, "centre_mm": [50, 50], "depth_mm": 1}}])"));
     CHECK(bar.contact->over_edge);  // endless along y
     CHECK(bar.contact->normal_N > 0.0);
 }
 
 TEST_CASE("indenter: supports beside it do not matter, supports under it are refused") {
     const auto with = [](double x_mm, const std::string& rest = "") {
-        return case_text(kSlab, "hex8-bbar", R"([{"face": "zmin", "fix": "xyz"}, {"face": "xmin", "fix": "xyz"}])",
-                         R"([{"indenter": {"shape": "sphere", "radius_mm": 40, "depth_mm": 2, "centre_mm": [)" + number_text(x_mm) + ", 50]" + rest + "}}]");
+        return case_text(
+            kSlab, "hex8-bbar", R"([{"face": "zmin", "fix": "xyz"}, {"face": "xmin", "fix": "xyz"}])",
+            R"([{"indenter": {"shape": "sphere", "radius_mm": 40, "depth_mm": 2, "centre_mm": [)" +
+                number_text(x_mm) + ", 50]" + rest + "}}]");
     };
     const FemResult r = solved(with(25));  // the rectangle reaches the held border, the tool does not
     CHECK(r.contact->normal_N > 0.0);
     CHECK(r.reaction_N[0].z() + r.reaction_N[1].z() == doctest::Approx(r.contact->normal_N).epsilon(1e-9));
     CHECK(contains(said(with(5)), "loads.indenter.centre_mm: found a support under the tool, at x 0, y"));
-    const std::string symmetric = R"([{"face": "zmin", "fix": "xyz"}, {"face": "xmin", "fix": "x"}, {"face": "ymin", "fix": "y"}])";
+    const std::string symmetric =
+        R"([{"face": "zmin", "fix": "xyz"}, {"face": "xmin", "fix": "x"}, {"face": "ymin", "fix": "y"}])";
     const auto corner = [&](const char* friction) {
-        return case_text(kSlab, "hex8-bbar", symmetric, R"([{"indenter": {"shape": "sphere", "radius_mm": 40, "depth_mm": 4, "centre_mm": [0, 0], "friction": )" + std::string(friction) + "}}]");
+        return case_text(
+            kSlab, "hex8-bbar", symmetric,
+            R"([{"indenter": {"shape": "sphere", "radius_mm": 40, "depth_mm": 4, "centre_mm": [0, 0], "friction": )" +
+                std::string(friction) + "}}]");
     };
     CHECK(contains(said(corner("0.3")), "or friction 0"));
     CHECK(solved(corner("0")).contact->normal_N > 0.0);
@@ -198,9 +235,11 @@ TEST_CASE("indenter: supports beside it do not matter, supports under it are ref
 
 TEST_CASE("hard case 12: stiffness contrast 1e6, 1e8, and rigid beyond") {
     const auto with = [](double contrast) {
-        return solved(case_text(kSlab, "hex8-bbar", kClamped, press_at(48, 50, 16),
-                                R"({"gel": {"young_Pa": 2500, "poisson": 0.45}, "ball": {"young_Pa": )" + number_text(2500 * contrast) + R"(, "poisson": 0.45}})",
-                                R"([{"all": true, "material": "gel"}, {"sphere": {"centre_mm": [50, 50, 30], "radius_mm": 12}, "material": "ball"}])"));
+        return solved(case_text(
+            kSlab, "hex8-bbar", kClamped, press_at(48, 50, 16),
+            R"({"gel": {"young_Pa": 2500, "poisson": 0.45}, "ball": {"young_Pa": )" +
+                number_text(2500 * contrast) + R"(, "poisson": 0.45}})",
+            R"([{"all": true, "material": "gel"}, {"sphere": {"centre_mm": [50, 50, 30], "radius_mm": 12}, "material": "ball"}])"));
     };
     const FemResult soft = with(1e6);
     const FemResult stiff = with(1e8);
@@ -213,7 +252,8 @@ TEST_CASE("hard case 12: stiffness contrast 1e6, 1e8, and rigid beyond") {
     const double size = rigid.max_displacement_m;
     CHECK((soft.solution.u_m - stiff.solution.u_m).cwiseAbs().maxCoeff() < 1e-5 * size);
     CHECK((soft.solution.u_m - rigid.solution.u_m).cwiseAbs().maxCoeff() < 1e-5 * size);
-    CHECK((with(1e3).solution.u_m - rigid.solution.u_m).cwiseAbs().maxCoeff() > 1e-4 * size);  // 1000 is not rigid
+    CHECK((with(1e3).solution.u_m - rigid.solution.u_m).cwiseAbs().maxCoeff() >
+          1e-4 * size);  // 1000 is not rigid
     CHECK(rigid.von_mises_Pa.array().isNaN().count() > 0);
     CHECK(soft.von_mises_Pa.allFinite());
 }
@@ -222,35 +262,46 @@ TEST_CASE("hard case 13: inverted and flat elements are refused by their number 
     const TemporaryFolder folder;
     const auto with = [&](const MshWritten& mesh, const std::string& element) {
         write_text_atomically(folder / "m.msh", msh_4(mesh, true));
-        return said(case_text(R"({"file": "m.msh"})", element, R"([{"physical": "base", "fix": "xyz"}])", R"([{"traction_Pa": 10, "physical": "top"}])"), folder.path());
+        return said(case_text(R"({"file": "m.msh"})", element, R"([{"physical": "base", "fix": "xyz"}])",
+                              R"([{"traction_Pa": 10, "physical": "top"}])"),
+                    folder.path());
     };
     MshWritten good = row_of_cubes(3);
     CHECK(with(good, "hex8-bbar").empty());
-    CHECK(contains(with(good, "tet4"), "m.msh: found 3 hexahedra and 0 tetrahedra, expected tetrahedra only"));
+    CHECK(
+        contains(with(good, "tet4"), "m.msh: found 3 hexahedra and 0 tetrahedra, expected tetrahedra only"));
     MshWritten inverted = good;
     auto& cube = inverted.cells[7].nodes;
     REQUIRE(inverted.cells[7].type == 5);
     for (std::size_t k = 0; k < 4; ++k) std::swap(cube[k], cube[k + 4]);
     CHECK(contains(with(inverted, "hex8-bbar"), "m.msh: found inverted or flat elements 107 (1 in all)"));
     MshWritten flat = good;
-    for (const std::size_t corner : {8u, 9u, 12u, 13u}) flat.nodes[corner][2] = 0.0;  // the first cube's upper face, on its lower one
+    for (const std::size_t corner : {8u, 9u, 12u, 13u})
+        flat.nodes[corner][2] = 0.0;  // the first cube's upper face, on its lower one
     CHECK(contains(with(flat, "hex8"), "inverted or flat elements"));
 }
 
 TEST_CASE("hard case 13: a sliver changes the answer by less than 1e-4") {
-    // a tetrahedron with a node just above its base: three proper tets and, below them, a sliver of half the stiffness
+    // a tetrahedron with a node just above its base: three proper tets and, below them, a sliver of half the
+    // stiffness
     const TemporaryFolder folder;
     const auto top_m = [&](double thickness_mm) {
         MshWritten mesh;
         mesh.nodes = {{0, 0, 0}, {10, 0, 0}, {0, 10, 0}, {0, 0, 10}, {10.0 / 3.0, 10.0 / 3.0, thickness_mm}};
         mesh.names = {{2, 1, "base"}, {3, 2, "gel"}, {3, 3, "film"}};
-        mesh.cells = {{2, {1}, {0, 2, 1}}, {4, {2}, {0, 1, 4, 3}}, {4, {2}, {1, 2, 4, 3}}, {4, {2}, {2, 0, 4, 3}}, {4, {3}, {0, 1, 2, 4}}};
+        mesh.cells = {{2, {1}, {0, 2, 1}},
+                      {4, {2}, {0, 1, 4, 3}},
+                      {4, {2}, {1, 2, 4, 3}},
+                      {4, {2}, {2, 0, 4, 3}},
+                      {4, {3}, {0, 1, 2, 4}}};
         write_text_atomically(folder / "m.msh", msh_2(mesh, false));
-        const FemCase model = case_of(case_text(R"({"file": "m.msh"})", "tet4", R"([{"physical": "base", "fix": "xyz"}])",
-                                                R"([{"traction_Pa": [0, 0, -5], "face": "xmin"}])",
-                                                R"({"gel": {"young_Pa": 2500, "poisson": 0.45}, "film": {"young_Pa": 1250, "poisson": 0.45}})",
-                                                R"([{"physical": "gel", "material": "gel"}, {"physical": "film", "material": "film"}])"),
-                                      folder.path());
+        const FemCase model = case_of(
+            case_text(
+                R"({"file": "m.msh"})", "tet4", R"([{"physical": "base", "fix": "xyz"}])",
+                R"([{"traction_Pa": [0, 0, -5], "face": "xmin"}])",
+                R"({"gel": {"young_Pa": 2500, "poisson": 0.45}, "film": {"young_Pa": 1250, "poisson": 0.45}})",
+                R"([{"physical": "gel", "material": "gel"}, {"physical": "film", "material": "film"}])"),
+            folder.path());
         CHECK(model.report.slivers.empty() == (thickness_mm > 0.1));
         const FemResult r = solved(model);
         CHECK(r.converged);
@@ -266,7 +317,9 @@ TEST_CASE("hard case 13: a sliver changes the answer by less than 1e-4") {
 }
 
 TEST_CASE("hard case 14: a floating body, or a missing support, is named and never moves wildly") {
-    const auto held = [](const std::string& supports) { return said(case_text(kBlock, "hex8-bbar", supports, R"([{"traction_Pa": 10, "face": "zmax"}])")); };
+    const auto held = [](const std::string& supports) {
+        return said(case_text(kBlock, "hex8-bbar", supports, R"([{"traction_Pa": 10, "face": "zmax"}])"));
+    };
     CHECK(contains(held("[]"), "c.json: supports: found part 1 of 1"));
     CHECK(contains(held("[]"), "free to move in 6 ways"));
     CHECK(contains(held(R"([{"face": "zmin", "fix": "z"}])"), "free to move in 3 ways"));
@@ -284,25 +337,33 @@ TEST_CASE("hard case 14: a floating body, or a missing support, is named and nev
     }
     const TemporaryFolder folder;
     write_text_atomically(folder / "m.msh", msh_2(apart, true));
-    const std::string message = said(case_text(R"({"file": "m.msh"})", "hex8", R"([{"physical": "base", "fix": "xyz"}])", "[]"), folder.path());
+    const std::string message =
+        said(case_text(R"({"file": "m.msh"})", "hex8", R"([{"physical": "base", "fix": "xyz"}])", "[]"),
+             folder.path());
     CHECK(contains(message, "part 2 of 2"));
     CHECK(contains(message, "x 0.05..0.06"));
 }
 
 TEST_CASE("hard case 15: nu near 0.5 does not lock, and 0.5 is refused") {
     const auto error = [](double poisson) {
-        return *quarter(10, 7, 2.5, 400, poisson).skel_m / mechanics::layer_mean_depression_m({2500.0, poisson, 0.05}, {}) - 1.0;
+        return *quarter(10, 7, 2.5, 400, poisson).skel_m /
+                   mechanics::layer_mean_depression_m({2500.0, poisson, 0.05}, {}) -
+               1.0;
     };
     CHECK(std::abs(error(0.4999) - error(0.3)) < 0.01);
     for (const double poisson : {0.5, 0.51, -1.0, 7.0}) {
-        CHECK(contains(said(case_text(kBlock, "hex8-bbar", kClamped, "[]", gel(2500, poisson))), "c.json: materials.gel.poisson: found"));
+        CHECK(contains(said(case_text(kBlock, "hex8-bbar", kClamped, "[]", gel(2500, poisson))),
+                       "c.json: materials.gel.poisson: found"));
     }
     for (const double young_Pa : {0.0, -3.0, 1e300}) {
-        CHECK(contains(said(case_text(kBlock, "hex8-bbar", kClamped, "[]", gel(young_Pa, 0.4))), "c.json: materials.gel.young_Pa: found"));
+        CHECK(contains(said(case_text(kBlock, "hex8-bbar", kClamped, "[]", gel(young_Pa, 0.4))),
+                       "c.json: materials.gel.young_Pa: found"));
     }
 }
 
-TEST_CASE("hard case 19: the load's total holds for any disc, smaller than a face, on an edge, on a corner, over the border") {
+TEST_CASE(
+    "hard case 19: the load's total holds for any disc, smaller than a face, on an edge, on a corner, over "
+    "the border") {
     const auto pushed = [](double x_mm, double y_mm, double diameter_mm) {
         return solved(case_text(kSlab, "hex8-bbar", kClamped, press_at(x_mm, y_mm, diameter_mm)));
     };
@@ -321,27 +382,37 @@ TEST_CASE("hard case 19: the load's total holds for any disc, smaller than a fac
     CHECK(half.partial);
     CHECK(half.applied_N == doctest::Approx(0.0125).epsilon(1e-10));
     CHECK(half.reaction_N[0].z() == doctest::Approx(0.0125).epsilon(1e-10));
-    CHECK(contains(said(case_text(kSlab, "hex8-bbar", kClamped, press_at(-9, 50, 16))), "centre_mm: found a disc beside the body"));
+    CHECK(contains(said(case_text(kSlab, "hex8-bbar", kClamped, press_at(-9, 50, 16))),
+                   "centre_mm: found a disc beside the body"));
 }
 
-TEST_CASE("case: mechanics does not depend on how the mesh came: box or file, either version, either encoding") {
+TEST_CASE(
+    "case: mechanics does not depend on how the mesh came: box or file, either version, either encoding") {
     const TemporaryFolder folder;
     const std::string loads = R"([{"traction_Pa": 10, "face": "zmax"}])";
-    const FemResult box = solved(case_text(R"({"box": {"size_mm": [30, 10, 10], "elements": [3, 1, 1]}})", "hex8-bbar", kClamped, loads));
+    const FemResult box = solved(case_text(R"({"box": {"size_mm": [30, 10, 10], "elements": [3, 1, 1]}})",
+                                           "hex8-bbar", kClamped, loads));
     for (const std::string& bytes : all_encodings(row_of_cubes(3))) {
         write_text_atomically(folder / "m.msh", bytes);
-        const FemResult file = solved(case_text(R"({"file": "m.msh"})", "hex8-bbar", R"([{"physical": "base", "fix": "xyz"}])", R"([{"traction_Pa": 10, "physical": "top"}])"), folder.path());
+        const FemResult file =
+            solved(case_text(R"({"file": "m.msh"})", "hex8-bbar", R"([{"physical": "base", "fix": "xyz"}])",
+                             R"([{"traction_Pa": 10, "physical": "top"}])"),
+                   folder.path());
         CHECK((file.solution.u_m - box.solution.u_m).cwiseAbs().maxCoeff() < 1e-14);
         CHECK(file.reaction_N[0].z() == doctest::Approx(box.reaction_N[0].z()).epsilon(1e-12));
-        const FemCase hard = case_of(case_text(R"({"file": "m.msh"})", "hex8-bbar", R"([{"physical": "base", "fix": "xyz"}])", "[]",
-                                               R"({"gel": {"young_Pa": 2500, "poisson": 0.45}, "b": {"young_Pa": 9000, "poisson": 0.45}})",
-                                               R"([{"physical": "gel", "material": "gel"}, {"physical": "hard", "material": "b"}])"), folder.path());
+        const FemCase hard = case_of(
+            case_text(
+                R"({"file": "m.msh"})", "hex8-bbar", R"([{"physical": "base", "fix": "xyz"}])", "[]",
+                R"({"gel": {"young_Pa": 2500, "poisson": 0.45}, "b": {"young_Pa": 9000, "poisson": 0.45}})",
+                R"([{"physical": "gel", "material": "gel"}, {"physical": "hard", "material": "b"}])"),
+            folder.path());
         CHECK(hard.problem.mesh.region == Eigen::Vector3i(0, 0, 1));
     }
 }
 
 TEST_CASE("case: far out of the linear range the gauge is red") {
-    const FemResult r = solved(case_text(kSlab, "hex8-bbar", kClamped, press_at(50, 50, 16, 2.5)));  // the paper's force: numerics 0.6
+    const FemResult r = solved(case_text(kSlab, "hex8-bbar", kClamped,
+                                         press_at(50, 50, 16, 2.5)));  // the paper's force: numerics 0.6
     CHECK(r.linear == mechanics::LinearRange::red);
     CHECK(*r.centre_m > 0.05);  // more than the slab is thick
 }
@@ -368,7 +439,8 @@ TEST_CASE("hard case 31: random damage to a case file ends in an answer or a ref
     constexpr std::uint32_t kSeed = 8;
     CAPTURE(kSeed);
     std::mt19937 random(kSeed);
-    const std::string good = case_text(R"({"box": {"size_mm": [20, 30, 10], "elements": [2, 2, 2]}})", "tet4", kClamped, press_at(10, 10, 8));
+    const std::string good = case_text(R"({"box": {"size_mm": [20, 30, 10], "elements": [2, 2, 2]}})", "tet4",
+                                       kClamped, press_at(10, 10, 8));
     REQUIRE(said(good).empty());
     int refused = 0;
     for (int i = 0; i < 400; ++i) {

@@ -26,11 +26,15 @@ struct MshWritten {
     std::vector<Name> names;
 };
 
-inline int msh_dimension(int type) { return type == 15 ? 0 : type == 1 ? 1 : type <= 3 ? 2 : 3; }
-inline int msh_node_number(int position) { return 10 * position + 7; }  // with gaps
+inline int msh_dimension(int type) {
+    return type == 15 ? 0 : type == 1 ? 1 : type <= 3 ? 2 : 3;
+}
+inline int msh_node_number(int position) {
+    return 10 * position + 7;
+}  // with gaps
 
 class MshBytes {
- public:
+  public:
     explicit MshBytes(bool binary) : binary_(binary) {}
     void text(const std::string& line) { out += line; }
     template <class T>
@@ -52,7 +56,7 @@ class MshBytes {
     void end_row() { out += binary_ ? "" : "\n"; }
     std::string out;
 
- private:
+  private:
     bool binary_;
 };
 
@@ -61,7 +65,8 @@ inline std::string msh_2(const MshWritten& mesh, bool binary) {
     w.text("$MeshFormat\n2.2 " + std::string(binary ? "1" : "0") + " 8\n");
     if (binary) w.put(std::int32_t{1}), w.text("\n");
     w.text("$EndMeshFormat\n$PhysicalNames\n" + std::to_string(mesh.names.size()) + "\n");
-    for (const auto& n : mesh.names) w.text(std::to_string(n.dimension) + " " + std::to_string(n.tag) + " \"" + n.name + "\"\n");
+    for (const auto& n : mesh.names)
+        w.text(std::to_string(n.dimension) + " " + std::to_string(n.tag) + " \"" + n.name + "\"\n");
     w.text("$EndPhysicalNames\n$Nodes\n" + std::to_string(mesh.nodes.size()) + "\n");
     for (std::size_t i = 0; i < mesh.nodes.size(); ++i) {
         w.put(std::int32_t{msh_node_number(static_cast<int>(i))});
@@ -103,7 +108,8 @@ inline std::string msh_4(const MshWritten& mesh, bool binary) {
     w.text("$MeshFormat\n4.1 " + std::string(binary ? "1" : "0") + " 8\n");
     if (binary) w.put(std::int32_t{1}), w.text("\n");
     w.text("$EndMeshFormat\n$PhysicalNames\n" + std::to_string(mesh.names.size()) + "\n");
-    for (const auto& n : mesh.names) w.text(std::to_string(n.dimension) + " " + std::to_string(n.tag) + " \"" + n.name + "\"\n");
+    for (const auto& n : mesh.names)
+        w.text(std::to_string(n.dimension) + " " + std::to_string(n.tag) + " \"" + n.name + "\"\n");
     w.text("$EndPhysicalNames\n$Entities\n");
     for (const auto& of : entities) w.put(Size{of.size()});
     w.end_row();
@@ -112,19 +118,22 @@ inline std::string msh_4(const MshWritten& mesh, bool binary) {
             w.put(std::int32_t{tag});
             for (int k = 0; k < (d == 0 ? 3 : 6); ++k) w.put(0.5 * k);
             w.put(Size{groups.size()});
-            for (const int group : groups) w.put(std::int32_t{d == 2 ? -group : group});  // turned round: same group
+            for (const int group : groups)
+                w.put(std::int32_t{d == 2 ? -group : group});  // turned round: same group
             if (d > 0) w.put(Size{1}), w.put(std::int32_t{-1});
             w.end_row();
         }
     }
     w.text("\n$EndEntities\n$Nodes\n");
     const Size half = mesh.nodes.size() / 2;
-    w.put(Size{2}), w.put(Size{mesh.nodes.size()}), w.put(Size{7}), w.put(Size{10 * mesh.nodes.size()}), w.end_row();
+    w.put(Size{2}), w.put(Size{mesh.nodes.size()}), w.put(Size{7}), w.put(Size{10 * mesh.nodes.size()}),
+        w.end_row();
     for (int block = 0; block < 2; ++block) {
         const Size first = block == 0 ? 0 : half;
         const Size last = block == 0 ? half : mesh.nodes.size();
         const int parametric = block;  // the second block carries u v
-        w.put(std::int32_t{2}), w.put(std::int32_t{1}), w.put(std::int32_t{parametric}), w.put(Size{last - first}), w.end_row();
+        w.put(std::int32_t{2}), w.put(std::int32_t{1}), w.put(std::int32_t{parametric}),
+            w.put(Size{last - first}), w.end_row();
         for (Size i = first; i < last; ++i) w.put(Size(msh_node_number(static_cast<int>(i)))), w.end_row();
         for (Size i = first; i < last; ++i) {
             for (const double x : mesh.nodes[i]) w.put(x);
@@ -133,7 +142,8 @@ inline std::string msh_4(const MshWritten& mesh, bool binary) {
         }
     }
     w.text("\n$EndNodes\n$Elements\n");
-    w.put(Size{mesh.cells.size()}), w.put(Size{mesh.cells.size()}), w.put(Size{100}), w.put(Size{999}), w.end_row();
+    w.put(Size{mesh.cells.size()}), w.put(Size{mesh.cells.size()}), w.put(Size{100}), w.put(Size{999}),
+        w.end_row();
     Size number = 100;
     for (const auto& cell : mesh.cells) {
         const int d = msh_dimension(cell.type);
@@ -151,8 +161,8 @@ inline std::vector<std::string> all_encodings(const MshWritten& mesh) {
     return {msh_2(mesh, false), msh_2(mesh, true), msh_4(mesh, false), msh_4(mesh, true)};
 }
 
-// n cubes of 10 mm in a row along x; their lower faces are the group "base", the upper ones "top", the cubes "gel",
-// the last cube "hard" as well.
+// n cubes of 10 mm in a row along x; their lower faces are the group "base", the upper ones "top", the cubes
+// "gel", the last cube "hard" as well.
 inline MshWritten row_of_cubes(int n) {
     MshWritten mesh;
     for (int k = 0; k < 2; ++k) {
@@ -165,9 +175,12 @@ inline MshWritten row_of_cubes(int n) {
     mesh.cells.push_back({15, {}, {0}});
     mesh.cells.push_back({1, {}, {0, 1}});
     for (int i = 0; i < n; ++i) {
-        for (int k = 0; k < 2; ++k) mesh.cells.push_back({3, {k + 1}, {at(i, 0, k), at(i + 1, 0, k), at(i + 1, 1, k), at(i, 1, k)}});
-        mesh.cells.push_back({5, i + 1 == n ? std::vector<int>{3, 4} : std::vector<int>{3},
-                              {at(i, 0, 0), at(i + 1, 0, 0), at(i + 1, 1, 0), at(i, 1, 0), at(i, 0, 1), at(i + 1, 0, 1), at(i + 1, 1, 1), at(i, 1, 1)}});
+        for (int k = 0; k < 2; ++k)
+            mesh.cells.push_back({3, {k + 1}, {at(i, 0, k), at(i + 1, 0, k), at(i + 1, 1, k), at(i, 1, k)}});
+        mesh.cells.push_back({5,
+                              i + 1 == n ? std::vector<int>{3, 4} : std::vector<int>{3},
+                              {at(i, 0, 0), at(i + 1, 0, 0), at(i + 1, 1, 0), at(i, 1, 0), at(i, 0, 1),
+                               at(i + 1, 0, 1), at(i + 1, 1, 1), at(i, 1, 1)}});
     }
     return mesh;
 }

@@ -1,12 +1,10 @@
-#include "files/cache.h"
-
+#include <csignal>
+#include <cstring>
 #include <doctest/doctest.h>
 #include <stdlib.h>
 #include <sys/resource.h>
 
-#include <csignal>
-#include <cstring>
-
+#include "files/cache.h"
 #include "files/text.h"
 #include "tests/error_message.h"
 #include "tests/temporary_folder.h"
@@ -22,7 +20,7 @@ const CachedArrays kArrays{{1.0, -2.5, 1.0 / 3.0}, {}, {1e300}};
 
 // An environment variable for the length of a scope.
 class Variable {
- public:
+  public:
     Variable(const char* name, const char* value) : name_(name) {
         const char* before = getenv(name);
         had_ = before != nullptr;
@@ -33,7 +31,7 @@ class Variable {
     Variable(const Variable&) = delete;
     Variable& operator=(const Variable&) = delete;
 
- private:
+  private:
     const char* name_;
     bool had_;
     std::string before_;
@@ -93,13 +91,15 @@ TEST_CASE("hard case: every flipped bit and every cut of a cache file is noticed
     CHECK(*read_cache(folder.path(), kKey) == kArrays);
 }
 
-TEST_CASE("hard case: a foreign file under a cache's name, another fingerprint's file, a folder in its place") {
+TEST_CASE(
+    "hard case: a foreign file under a cache's name, another fingerprint's file, a folder in its place") {
     const TemporaryFolder folder;
     const auto file = cache_file(folder.path(), kKey);
     write_text_atomically(file, "not ours at all, but as long as a header: 64 bytes of plain text.");
     CHECK_FALSE(read_cache(folder.path(), kKey));
     CHECK(write_cache(folder.path(), kKey + 1, kArrays).empty());
-    std::filesystem::copy_file(cache_file(folder.path(), kKey + 1), file, std::filesystem::copy_options::overwrite_existing);
+    std::filesystem::copy_file(cache_file(folder.path(), kKey + 1), file,
+                               std::filesystem::copy_options::overwrite_existing);
     CHECK_FALSE(read_cache(folder.path(), kKey));
     std::filesystem::remove(file);
     std::filesystem::create_directory(file);

@@ -1,12 +1,10 @@
-#include "files/vtu.h"
-
-#include <doctest/doctest.h>
-
 #include <cmath>
 #include <cstdint>
 #include <cstring>
+#include <doctest/doctest.h>
 
 #include "files/text.h"
+#include "files/vtu.h"
 #include "tests/files/vtu_reader.h"
 #include "tests/temporary_folder.h"
 
@@ -18,7 +16,8 @@ namespace {
 VtuGrid one_cube() {
     VtuGrid grid;
     for (int k = 0; k < 8; ++k) {
-        grid.points.insert(grid.points.end(), {static_cast<double>(k % 4 == 1 || k % 4 == 2), static_cast<double>(k % 4 > 1), static_cast<double>(k > 3)});
+        grid.points.insert(grid.points.end(), {static_cast<double>(k % 4 == 1 || k % 4 == 2),
+                                               static_cast<double>(k % 4 > 1), static_cast<double>(k > 3)});
         grid.cells.push_back(k);
     }
     grid.on_points = {{"displacement_mm", 3, std::vector<double>(24, 0.1)}};
