@@ -14,7 +14,8 @@ namespace {
 using Eigen::Index;
 using Eigen::VectorXd;
 
-constexpr double kGrowth = 1.2;      // of cells away from where they are fine
+constexpr double kGrowth = 1.2;      // of cells below a load
+constexpr double kWindowGrowth = 1.3;  // of cells away from inclusions
 constexpr double kFarOut = 6.0;      // thicknesses of layer around a load: its effect has died away
 constexpr int kMostInPatch = 400;    // contact nodes under the tool
 constexpr int kMostSideCells = 36;   // of S over half the block
@@ -290,17 +291,18 @@ PairTable inclusion_table(const RollingModel& model, const RollingMesh& mesh, co
             zones.push_back({s.centre_m[c] - s.radius_m, s.centre_m[c] + s.radius_m, 2.0 * s.radius_m / mesh.cells_across});
         }
         extent[c] = extent_of(model, group, c);
-        lines_m[c] = zoned_coordinates_m(model.size_m[c], zones, kGrowth, 0.4 * model.size_m[2]);
+        lines_m[c] = zoned_coordinates_m(model.size_m[c], zones, kWindowGrowth, 0.4 * model.size_m[2]);
         sampled[c] = sample_lines(lines_m[c], extent[c].low_m - mesh.reach_m, extent[c].high_m + mesh.reach_m,
                                   model.size_m[2] / 16.0);
     }
     std::vector<FineZone> deep;
     for (const Inclusion& i : inside) {
-        const double bottom_m = model.size_m[2] - i.sphere.centre_m[2] + i.sphere.radius_m;
-        deep.push_back({0.0, bottom_m, 2.0 * i.sphere.radius_m / mesh.cells_across});
+        const double middle_m = model.size_m[2] - i.sphere.centre_m[2];
+        deep.push_back({middle_m - i.sphere.radius_m, middle_m + i.sphere.radius_m,
+                        2.0 * i.sphere.radius_m / mesh.cells_across});
     }
     const VectorXd z_m = heights_from_depths(
-        zoned_coordinates_m(model.size_m[2], deep, kGrowth, 0.2 * model.size_m[2]), model.size_m[2]);
+        zoned_coordinates_m(model.size_m[2], deep, kWindowGrowth, 0.2 * model.size_m[2]), model.size_m[2]);
 
     std::vector<int> nodes;
     for (const int j : sampled[1]) {
