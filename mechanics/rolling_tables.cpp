@@ -17,6 +17,7 @@ using Eigen::VectorXd;
 constexpr double kGrowth = 1.2;      // of cells below a load
 constexpr double kWindowGrowth = 1.3;  // of cells away from inclusions
 constexpr double kFarOut = 6.0;      // thicknesses of layer around a load: its effect has died away
+constexpr double kReferenceGrowth = 1.4;  // of cells away from the tool on the one mesh
 constexpr int kMostInPatch = 400;    // contact nodes under the tool
 constexpr int kMostSideCells = 36;   // of S over half the block
 constexpr double kFadeFrom = 0.65;   // of the reach
@@ -173,14 +174,20 @@ Extent extent_of(const RollingModel& model, const std::vector<int>& group, std::
     return out;
 }
 
-// Lines of the mesh from the window's lower end to its upper one, not closer than `least_m`.
+// Lines of the mesh over the window, not closer than `least_m`; counted from its middle to both sides, so that a
+// mirrored window has mirrored lines.
 std::vector<int> sample_lines(const VectorXd& lines_m, double low_m, double high_m, double least_m) {
     int first = 0;
     int last = static_cast<int>(lines_m.size()) - 1;
     while (first + 1 < last && lines_m(first + 1) <= low_m) ++first;
     while (last - 1 > first && lines_m(last - 1) >= high_m) --last;
-    std::vector<int> out{first};
-    for (int i = first + 1; i <= last; ++i) {
+    Index middle = 0;
+    (lines_m.array() - 0.5 * (low_m + high_m)).abs().minCoeff(&middle);
+    std::vector<int> out{std::clamp(static_cast<int>(middle), first, last)};
+    for (int i = out.front() - 1; i >= first; --i) {
+        if (lines_m(out.front()) - lines_m(i) >= least_m || i == first) out.insert(out.begin(), i);
+    }
+    for (int i = out.back() + 1; i <= last; ++i) {
         if (lines_m(i) - lines_m(out.back()) >= least_m || i == last) out.push_back(i);
     }
     return out;
@@ -349,9 +356,9 @@ std::vector<RollingForce> press_on_one_mesh(const RollingModel& model, double sp
         const double middle_m = model.size_m[2] - s.centre_m[2];
         deep.push_back({middle_m - s.radius_m, middle_m + s.radius_m, cell_m});
     }
-    for (std::size_t c = 0; c < 2; ++c) lines_m[c] = zoned_coordinates_m(model.size_m[c], zones[c], 1.3, 0.4 * model.size_m[2]);
+    for (std::size_t c = 0; c < 2; ++c) lines_m[c] = zoned_coordinates_m(model.size_m[c], zones[c], kReferenceGrowth, 0.4 * model.size_m[2]);
     const VectorXd z_m = heights_from_depths(
-        zoned_coordinates_m(model.size_m[2], deep, 1.25, 0.15 * model.size_m[2]), model.size_m[2]);
+        zoned_coordinates_m(model.size_m[2], deep, kReferenceGrowth, 0.15 * model.size_m[2]), model.size_m[2]);
     const Problem problem = block_problem(lines_m[0], lines_m[1], z_m, model.tissue, model.inclusions);
     SurfaceRequest request;
     for (int j = 0; j < lines_m[1].size(); ++j) {
