@@ -236,11 +236,11 @@ void add_generate(CLI::App& maps) {
         "i/n: only this share of the lines, into NAME.map.lines (default on a cluster: from SLURM or OpenMPI)");
     CLI::Option* merge = command->add_flag("--merge", options.merge, "joins the finished lines to the map");
     command->add_flag("--check", options.check,
-                      "compares the map, new or there already, with another mesh at 50 points (minutes)");
+                      "compares the map, new or there already, with a mesh refined once at 50 points (minutes)");
     command->add_option("--coarseness", options.coarseness, "1 for maps, up to 4 for quick looks")
         ->check(CLI::Range(0.5, 4.0))->capture_default_str();
     command->add_option("--window", arguments->window)->group("");
-    command->add_flag("--probes", options.probes)->group("");
+    command->add_flag("--refined", options.refined)->group("");
     part->excludes(jobs)->excludes(merge);
     command->callback([arguments] { generate_map(generate_options(*arguments)); });
 }

@@ -28,9 +28,9 @@ constexpr const char* kChecked = " Checked:";  // begins what a check adds to `h
 
 fs::path without_slash(const fs::path& path) { return path.has_filename() ? path : path.parent_path(); }
 
-fs::path pieces_folder(const fs::path& output) {
+fs::path pieces_folder(const fs::path& output, bool refined) {
     fs::path folder = without_slash(output);
-    folder += ".lines";
+    folder += refined ? ".check" : ".lines";
     return folder;
 }
 
@@ -66,17 +66,6 @@ Arguments call_of(const GenerateOptions& options) {
     return out;
 }
 
-std::vector<Arguments> shares(const GenerateOptions& options, const char* kind) {
-    std::vector<Arguments> calls;
-    for (int i = 1; i <= options.jobs; ++i) {
-        Arguments call = call_of(options);
-        call.insert(call.end(), {"--part", std::to_string(i) + "/" + std::to_string(options.jobs)});
-        if (*kind != '\0') call.emplace_back(kind);
-        calls.push_back(call);
-    }
-    return calls;
-}
-
 std::vector<std::size_t> missing(const MapTask& task, std::size_t count, std::string (*name)(std::size_t)) {
     std::vector<std::size_t> out;
     for (std::size_t i = 0; i < count; ++i) {
@@ -98,6 +87,17 @@ void drop_wrong(const MapTask& task, const std::vector<std::size_t>& wrong, std:
 
 std::string window_of(std::size_t window) { return window_name(static_cast<int>(window)); }
 
+std::vector<Arguments> window_calls(const GenerateOptions& options, const std::vector<std::size_t>& windows,
+                                    bool refined) {
+    std::vector<Arguments> calls;
+    for (const std::size_t window : windows) {
+        calls.push_back(call_of(options));
+        calls.back().insert(calls.back().end(), {"--window", std::to_string(window)});
+        if (refined) calls.back().emplace_back("--refined");
+    }
+    return calls;
+}
+
 void compute_with_jobs(const GenerateOptions& options, const MapTask& task) {
     constexpr double kWindowWeight = 30.0;  // of one window in lines
     const auto n_windows = static_cast<std::size_t>(window_count(task));
@@ -106,20 +106,19 @@ void compute_with_jobs(const GenerateOptions& options, const MapTask& task) {
     const auto lines = missing(task, n_lines, line_name);
     drop_wrong(task, windows, window_of);
     drop_wrong(task, lines, line_name);
+    if (lines.empty()) return;
     Progress progress("generating", kWindowWeight * static_cast<double>(n_windows) + static_cast<double>(n_lines));
     const auto show = [&] {
         progress.show(kWindowWeight * static_cast<double>(files_there(task, n_windows, window_of)) +
                       static_cast<double>(files_there(task, n_lines, line_name)));
     };
-    if (lines.empty()) return;
+    run_jobs(window_calls(options, windows, false), options.jobs, show);
     std::vector<Arguments> calls;
-    for (const std::size_t window : windows) {
-        Arguments call = call_of(options);
-        call.insert(call.end(), {"--window", std::to_string(window)});
-        calls.push_back(call);
+    for (int i = 1; i <= options.jobs; ++i) {
+        calls.push_back(call_of(options));
+        calls.back().insert(calls.back().end(), {"--part", std::to_string(i) + "/" + std::to_string(options.jobs)});
     }
     run_jobs(calls, options.jobs, show);
-    run_jobs(shares(options, ""), options.jobs, show);
 }
 
 // One share of the lines; windows that nobody has made yet are made on the way, whoever comes first.
@@ -137,13 +136,6 @@ void compute_part(const MapTask& task, const Part& part) {
     const auto step = static_cast<std::size_t>(part.count);
     for (std::size_t j = static_cast<std::size_t>(part.index) - 1; j < task.phantom.n_y; j += step) {
         if (!read_piece(task, line_name(j))) compute_line(task, tables, j);
-    }
-}
-
-void compute_probes(const MapTask& task, const Part& part) {
-    const std::vector<Cell> cells = probe_cells(task.phantom, kProbes);
-    for (std::size_t k = static_cast<std::size_t>(part.index) - 1; k < kProbes; k += static_cast<std::size_t>(part.count)) {
-        if (!read_piece(task, probe_name(k))) compute_probe(task, k, cells[k]);
     }
 }
 
@@ -169,7 +161,7 @@ std::string how_made(const MapTask& task) {
                       short_number(contact_radius_m / task.mesh.contact_m) + " at " + mm(p.depths_m.front()) +
                       "), nodules " + short_number(task.mesh.cells_across) + " cells across, the block's sides every " +
                       mm(task.mesh.surface_m[0]) + ". Tangential force: slope of the contact's energy, central differences on the grid.";
-    how += " The tissue's Young's modulus, " + short_number(p.tissue.young_Pa) + " Pa, is " +
+    how += " The tissue's Young's modulus, " + number_text(p.tissue.young_Pa) + " Pa, is " +
            (p.tissue.assumed ? "ASSUMED." : "the phantom's.");
     const double amber_m = depth_at_ratio_m(p, mechanics::kAmber);
     const double red_m = depth_at_ratio_m(p, mechanics::kRed);
@@ -218,67 +210,71 @@ Map joined(const MapTask& task) {
 void merge(const GenerateOptions& options, const MapTask& task) {
     const Map map = joined(task);
     write_map(map, options.output);
-    if (!options.check) fs::remove_all(task.folder);
+    fs::remove_all(task.folder);
     const ForceRange range = force_range(map);
     std::printf("%s: %zu x %zu cells, %zu depths, %s to %s N, by finite elements\n", options.output.c_str(), map.n_x,
                 map.n_y, map.n_depths(), short_number(range.lowest_N).c_str(), short_number(range.highest_N).c_str());
 }
 
-Json convergence_json(const MapTask& task, const Map& map, double& largest) {
+Json convergence_json(const MapTask& task, const MapTask& refined, const Map& map, double& largest, double& median) {
     const double greatest_N = force_range(map).highest_N;
-    const std::vector<Cell> cells = probe_cells(task.phantom, kProbes);
-    std::vector<double> shares_of_greatest;
+    const mechanics::RollingTables tables = read_windows(refined);
+    std::vector<double> differences;
     Json points = Json::array();
-    for (std::size_t k = 0; k < kProbes; ++k) {
-        const Numbers reference = read_piece(task, probe_name(k)).value();
+    for (const Cell& cell : probe_cells(task.phantom, kProbes)) {
+        const Numbers reference = press_cell(refined, tables, cell);
         Json in_map = Json::array();
-        Json on_reference = Json::array();
         for (std::size_t d = 0; d < map.n_depths(); ++d) {
-            const auto force = static_cast<double>(map.normal_N[d * map.n_cells() + cells[k].j * map.n_x + cells[k].i]);
+            const auto force = static_cast<double>(map.normal_N[d * map.n_cells() + cell.j * map.n_x + cell.i]);
             in_map.push_back(force);
-            on_reference.push_back(reference[d]);
-            shares_of_greatest.push_back(std::abs(force - reference[d]) / greatest_N);
+            differences.push_back(std::abs(force - reference[d]) / greatest_N);
         }
-        points.push_back({{"x_mm", 1e3 * map.x_of(cells[k].i)}, {"y_mm", 1e3 * map.y_of(cells[k].j)},
-                          {"map_N", in_map}, {"reference_N", on_reference}});
+        points.push_back({{"x_mm", 1e3 * map.x_of(cell.i)}, {"y_mm", 1e3 * map.y_of(cell.j)}, {"map_N", in_map},
+                          {"refined_N", reference}});
     }
-    std::sort(shares_of_greatest.begin(), shares_of_greatest.end());
-    largest = shares_of_greatest.back();
-    return {{"what", "normal force of the map against one mesh of the whole block, refined once under the tool"},
-            {"map_contact_spacing_mm", 1e3 * task.mesh.contact_m},
-            {"map_cells_across_nodule", task.mesh.cells_across},
-            {"reference_contact_spacing_mm", 1e3 * task.mesh.contact_m / kProbeRefinement},
-            {"reference_cells_across_nodule", kProbeCellsAcross},
+    std::sort(differences.begin(), differences.end());
+    largest = differences.back();
+    median = differences[differences.size() / 2];
+    const auto mesh_json = [](const MapTask& t) {
+        return Json{{"contact_spacing_mm", 1e3 * t.mesh.contact_m},
+                    {"side_spacing_mm", {1e3 * t.mesh.surface_m[0], 1e3 * t.mesh.surface_m[1]}},
+                    {"cells_across_nodule", t.mesh.cells_across}};
+    };
+    return {{"what", "normal force of the map against all its meshes refined once, at stated points"},
+            {"mesh", mesh_json(task)},
+            {"refined_mesh", mesh_json(refined)},
             {"greatest_force_N", greatest_N},
             {"max_difference", largest},
-            {"median_difference", shares_of_greatest[shares_of_greatest.size() / 2]},
+            {"median_difference", median},
             {"differences_are", "shares of the greatest force"},
             {"depths_mm", map_json(map)["depths_mm"]},
             {"points", points}};
 }
 
-void check(const GenerateOptions& options, const MapTask& task) {
+void check(const GenerateOptions& options, const MapTask& task, const MapTask& refined) {
     Map map = read_map(options.output);
     const Map expected = map_of_phantom(task.phantom);
     if (map.n_x != expected.n_x || map.n_y != expected.n_y || map_json(map)["depths_mm"] != map_json(expected)["depths_mm"]) {
         throw bad_input(options.output.string(), "", "another grid or other depths", "a map made from " + options.phantom.string());
     }
-    fs::create_directories(task.folder);
-    drop_wrong(task, missing(task, kProbes, probe_name), probe_name);
+    fs::create_directories(refined.folder);
+    const auto n_windows = static_cast<std::size_t>(window_count(refined));
+    const auto windows = missing(refined, n_windows, window_of);
+    drop_wrong(refined, windows, window_of);
     {
-        Progress progress("checking", static_cast<double>(kProbes));
-        run_jobs(shares(options, "--probes"), options.jobs,
-                 [&] { progress.show(static_cast<double>(files_there(task, kProbes, probe_name))); });
+        Progress progress("checking", static_cast<double>(n_windows));
+        run_jobs(window_calls(options, windows, true), options.jobs,
+                 [&] { progress.show(static_cast<double>(files_there(refined, n_windows, window_of))); });
     }
     double largest = 0.0;
-    const Json report = convergence_json(task, map, largest);
-    const double median = report["median_difference"].get<double>();
+    double median = 0.0;
+    const Json report = convergence_json(task, refined, map, largest, median);
     write_text_atomically(without_slash(options.output) / "convergence.json", report.dump(1) + "\n");
-    const std::string found = std::to_string(kProbes) + " points against one mesh refined once: " + short_number(100.0 * largest) +
+    const std::string found = std::to_string(kProbes) + " points against meshes refined once: " + short_number(100.0 * largest) +
                               " % of the greatest force at most, " + short_number(100.0 * median) + " % in the median";
     map.source.how = map.source.how.substr(0, map.source.how.find(kChecked)) + kChecked + " " + found + " (convergence.json).";
     write_text_atomically(without_slash(options.output) / "map.json", map_json(map).dump(2) + "\n");
-    fs::remove_all(task.folder);
+    fs::remove_all(refined.folder);
     std::printf("%s: %s\n", options.output.c_str(), found.c_str());
 }
 
@@ -330,18 +326,19 @@ void generate_map(const GenerateOptions& options) {
                     map.n_x, map.n_y, map.n_depths());
         return;
     }
-    const MapTask task = make_map_task(options.phantom, pieces_folder(options.output), options.coarseness);
-    if (options.probes) return compute_probes(task, options.part.value_or(Part{}));
-    const bool only_check = options.check && fs::exists(options.output);
-    if (!only_check) {
+    const auto task_of = [&](bool refined) {
+        return make_map_task(options.phantom, pieces_folder(options.output, refined), options.coarseness * (refined ? 0.5 : 1.0));
+    };
+    const MapTask task = task_of(options.refined);
+    if (options.window) return compute_window(task, *options.window);
+    if (!options.check || !fs::exists(options.output)) {
         refuse_existing(options.output);
         fs::create_directories(task.folder);
-        if (options.window) return compute_window(task, *options.window);
         if (options.part) return compute_part(task, *options.part);
         if (!options.merge) compute_with_jobs(options, task);
         merge(options, task);
     }
-    if (options.check) check(options, task);
+    if (options.check) check(options, task, task_of(true));
 }
 
 }  // namespace palpa

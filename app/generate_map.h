@@ -22,8 +22,8 @@ struct GenerateOptions {
     bool merge = false;
     bool check = false;
     double coarseness = 1.0;
-    std::optional<int> window;  // one call of run_jobs: this window only, or this part of the probes
-    bool probes = false;
+    std::optional<int> window;  // one call of run_jobs: this window only,
+    bool refined = false;       // of the mesh refined once
 };
 
 // Throws InputError for bad input and std::runtime_error when the run fails.

@@ -152,7 +152,6 @@ MapTask make_map_task(const std::filesystem::path& phantom_file, const std::file
 
 std::string window_name(int window) { return "window-" + std::to_string(window); }
 std::string line_name(std::size_t line) { return "line-" + std::to_string(line); }
-std::string probe_name(std::size_t probe) { return "probe-" + std::to_string(probe); }
 
 std::optional<Numbers> read_piece(const MapTask& task, const std::string& name) {
     const std::filesystem::path file = task.folder / name;
@@ -259,16 +258,16 @@ std::vector<Cell> probe_cells(const Phantom& phantom, std::size_t count) {
     return cells;
 }
 
-void compute_probe(const MapTask& task, std::size_t probe, const Cell& cell) {
+Numbers press_cell(const MapTask& task, const mechanics::RollingTables& tables, const Cell& cell) {
     const Phantom& p = task.phantom;
     const double x_m = p.origin_m[0] + p.spacing_m[0] * static_cast<double>(cell.i);
     const double y_m = p.origin_m[1] + p.spacing_m[1] * static_cast<double>(cell.j);
+    mechanics::RollingWork work;
+    std::vector<mechanics::RollingForce> forces;
+    mechanics::roll_to(task.model, task.mesh, tables, x_m, y_m, p.depths_m, work, forces);
     Numbers numbers;
-    for (const auto& force : mechanics::press_on_one_mesh(task.model, task.mesh.contact_m / kProbeRefinement,
-                                                          kProbeCellsAcross, x_m, y_m, p.depths_m)) {
-        numbers.push_back(force.normal_N);
-    }
-    write_piece(task, probe_name(probe), numbers);
+    for (const auto& force : forces) numbers.push_back(force.normal_N);
+    return numbers;
 }
 
 }  // namespace palpa

@@ -1,6 +1,6 @@
 #pragma once
 // The pieces a generated map is made of, each a small file in NAME.map.lines/: windows (tables of
-// mechanics/rolling.h), lines (forces along x) and probes (the check on another mesh). A file is written aside
+// mechanics/rolling.h) and lines (forces along x). A file is written aside
 // and renamed; it carries a fingerprint of the phantom and the mesh, and a checksum, and is recomputed when
 // either is wrong. Same piece, same bytes, whoever computes it.
 
@@ -30,7 +30,6 @@ MapTask make_map_task(const std::filesystem::path& phantom_file, const std::file
 inline int window_count(const MapTask& task) { return static_cast<int>(task.groups.size()) + 2; }
 std::string window_name(int window);
 std::string line_name(std::size_t line);
-std::string probe_name(std::size_t probe);
 
 using Numbers = std::vector<double>;
 // Nothing if the file is missing, damaged or of another phantom; the last two are told on stderr.
@@ -47,9 +46,7 @@ struct Cell {
     std::size_t j = 0;
 };
 std::vector<Cell> probe_cells(const Phantom& phantom, std::size_t count);
-// Normal force at each depth on one mesh of the whole block, refined once under the tool.
-inline constexpr double kProbeRefinement = 2.0;
-inline constexpr double kProbeCellsAcross = 12.0;
-void compute_probe(const MapTask& task, std::size_t probe, const Cell& cell);
+// Normal forces at each depth over a cell.
+Numbers press_cell(const MapTask& task, const mechanics::RollingTables& tables, const Cell& cell);
 
 }  // namespace palpa

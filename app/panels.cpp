@@ -3,7 +3,11 @@
 #include <imgui.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
+#include <limits>
+
+#include "mechanics/linear_range.h"
 
 namespace palpa {
 namespace {
@@ -69,6 +73,20 @@ void paragraph(const std::string& text) {
     ImGui::PopTextWrapPos();
 }
 
+// A simulation in small strains says where the depth has left them behind.
+void draw_gauge(const Plan& plan, const State& state) {
+    if (plan.map.source.kind != SourceKind::simulated) return;
+    constexpr double kDeep_m = std::numeric_limits<double>::infinity();  // a map does not say how thick the tissue is
+    const double depth_m = state.contact.depth_m;
+    const double width_m = 2.0 * std::sqrt(plan.map.indenter_radius_m * std::min(depth_m, plan.map.indenter_radius_m));
+    const double ratio = mechanics::linearity_ratio(depth_m, kDeep_m, width_m);
+    const mechanics::LinearRange range = mechanics::linear_range(ratio);
+    if (range == mechanics::LinearRange::fine) return;
+    const bool red = range == mechanics::LinearRange::red;
+    ImGui::TextColored(red ? ImVec4(0.8f, 0.1f, 0.1f, 1.0f) : ImVec4(0.8f, 0.5f, 0.0f, 1.0f), "beyond the linear range (%s)",
+                       red ? "red" : "amber");
+}
+
 }  // namespace
 
 void draw_marks(const TissueView& view, const Plan& plan, const State& state, const Avatar& avatar, bool nodules,
@@ -113,6 +131,8 @@ void draw_panel(const Scene& scene, const Plan& plan, const State& state, const 
     if (options.show_cost) cost_lines(plan, state, times);
     for (const std::string& message : options.messages) paragraph(message);
     if (plan.map.source.kind == SourceKind::analytic) paragraph("analytic stand-in, no recording");
+    if (plan.map.source.kind == SourceKind::simulated) paragraph("simulated, no recording");
+    draw_gauge(plan, state);
     const ImVec2 at = ImGui::GetWindowPos();
     const ImVec2 size = ImGui::GetWindowSize();
     gui.claim({at.x, at.y, at.x + size.x, at.y + size.y});

@@ -43,7 +43,7 @@ struct RollingMesh {
     double cells_across = 8.0;                // cells over the diameter of an inclusion
     double reach_m = 0.0;                     // how far beyond an inclusion T goes before it is faded to 0
 };
-// sqrt(R d) / contact_m > 4 at the least depth, as long as that needs at most 400 nodes. coarseness 1 is meant
+// sqrt(R d) / contact_m > 4 at the least depth, as long as that needs at most 600 nodes. coarseness 1 is meant
 // for maps, larger ones for quick tests. Throws LoadError / MaterialError for a model that cannot be computed.
 RollingMesh choose_rolling_mesh(const RollingModel& model, double coarseness = 1.0);
 
@@ -101,7 +101,7 @@ void roll_to(const RollingModel& model, const RollingMesh& mesh, const RollingTa
              double y_m, std::span<const double> depths_m, RollingWork& work, std::vector<RollingForce>& out);
 
 // The same place on one mesh of the whole block, graded around it, without taking anything apart: the
-// reference that maps are checked against. spacing_m: of the nodes under the tool.
+// reference that shows what that costs. spacing_m: of the nodes under the tool.
 std::vector<RollingForce> press_on_one_mesh(const RollingModel& model, double spacing_m, double cells_across,
                                             double x_m, double y_m, std::span<const double> depths_m);
 

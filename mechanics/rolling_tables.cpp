@@ -18,8 +18,8 @@ constexpr double kGrowth = 1.2;      // of cells below a load
 constexpr double kWindowGrowth = 1.3;  // of cells away from inclusions
 constexpr double kFarOut = 6.0;      // thicknesses of layer around a load: its effect has died away
 constexpr double kReferenceGrowth = 1.4;  // of cells away from the tool on the one mesh
-constexpr int kMostInPatch = 400;    // contact nodes under the tool
-constexpr int kMostSideCells = 36;   // of S over half the block
+constexpr int kMostInPatch = 600;    // contact nodes under the tool
+constexpr int kMostSideCells = 60;   // of S over half the block
 constexpr double kFadeFrom = 0.65;   // of the reach
 
 double tool_reach_m(const RollingModel& model) {

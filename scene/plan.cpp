@@ -52,6 +52,9 @@ void add_notes(const Scene& scene, Plan& plan) {
     if (plan.map.source.kind == SourceKind::analytic) {
         plan.notes.push_back("the tissue is a closed-form stand-in (analytic), neither recorded nor simulated");
     }
+    if (plan.map.source.kind == SourceKind::simulated) {
+        plan.notes.push_back("the tissue is simulated, not recorded: " + plan.map.source.how);
+    }
     if (scene.force_scale != 1.0) {
         plan.notes.push_back("phantom force: the pen's newtons are multiplied by " + short_number(scene.force_scale));
     }
