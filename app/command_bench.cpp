@@ -42,7 +42,7 @@ void add_bench(CLI::App& app) {
     trace->add_option("--rate-Hz", options->raster.rate_Hz, "samples a second (default 120)")->check(CLI::Range(1.0, 1e5));
     trace->add_option("--seconds", options->raster.seconds, "how long at least (default 40)")->check(CLI::Range(0.1, 1e5));
     trace->add_option("--speed-mm-per-s", options->speed_mm_per_s, "of the pen (default 30)")->check(CLI::Range(0.1, 1e4));
-    trace->add_option("--force-N", options->raster.force_N, "pressed with (default 1.5)")->check(CLI::Range(0.01, 1e3));
+    trace->add_option("--force-N", options->raster.force_N, "pressed with (default 2.5)")->check(CLI::Range(0.01, 1e3));
     trace->add_option("--seed", options->raster.seed, "of the jitter (default 1)");
     trace->callback([options] { write_raster(*options); });
 }

@@ -3,17 +3,17 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <memory>
+#include <thread>
 
 #include "app/command_line.h"
+#include "app/generate_map.h"
 #include "avatar/display_ratio.h"
 #include "files/input_error.h"
 #include "files/text.h"
-#include "stiffnessmaps/analytic.h"
 #include "stiffnessmaps/field.h"
 #include "stiffnessmaps/import/probing.h"
 #include "stiffnessmaps/map_file.h"
 #include "stiffnessmaps/noise.h"
-#include "stiffnessmaps/phantom.h"
 
 namespace palpa {
 namespace {
@@ -195,22 +195,53 @@ void add_import(CLI::App& maps) {
     command->callback([options] { import_map(*options); });
 }
 
-struct GenerateOptions {
+struct GenerateArguments {
+    GenerateOptions options;
     std::string phantom;
     std::string output;
+    std::string method = "fem";
+    std::string part;
+    int jobs = 0;
+    int window = -1;
 };
 
+GenerateOptions generate_options(const GenerateArguments& arguments) {
+    GenerateOptions options = arguments.options;
+    options.phantom = arguments.phantom;
+    options.output = arguments.output;
+    options.analytic = arguments.method == "analytic";
+    if (arguments.window >= 0) options.window = arguments.window;
+    if (!arguments.part.empty()) {
+        options.part = parse_part(arguments.part);
+    } else if (arguments.jobs == 0 && !options.merge && !options.check && !options.window) {
+        options.part = part_from_environment();
+    }
+    const auto cores = static_cast<int>(std::thread::hardware_concurrency());
+    options.jobs = arguments.jobs > 0 ? arguments.jobs : std::max(1, cores);
+    return options;
+}
+
 void add_generate(CLI::App& maps) {
-    auto options = std::make_shared<GenerateOptions>();
-    CLI::App* command = maps.add_subcommand("generate", "A phantom becomes a map, by a closed-form stand-in");
-    command->add_option("PHANTOM", options->phantom, "phantom JSON")->required();
-    command->add_option("-o,--output", options->output, "new map folder NAME.map")->required();
-    command->callback([options] {
-        const Map map = analytic_map(read_phantom(options->phantom));
-        write_map(map, options->output);
-        std::printf("%s: %zu x %zu cells, %zu depths; analytic stand-in, not a simulation\n", options->output.c_str(),
-                    map.n_x, map.n_y, map.n_depths());
-    });
+    auto arguments = std::make_shared<GenerateArguments>();
+    GenerateOptions& options = arguments->options;
+    CLI::App* command = maps.add_subcommand("generate", "A phantom becomes a map, by virtual rolling indentation");
+    command->add_option("PHANTOM", arguments->phantom, "phantom JSON")->required();
+    command->add_option("-o,--output", arguments->output, "new map folder NAME.map")->required();
+    command->add_option("--method", arguments->method, "fem (finite elements), or analytic (a stand-in, at once)")
+        ->check(CLI::IsMember({"fem", "analytic"}))->capture_default_str();
+    CLI::Option* jobs = command->add_option("-j,--jobs", arguments->jobs, "processes (default: one for each core)")
+        ->check(CLI::Range(1, 1024));
+    CLI::Option* part = command->add_option("--part", arguments->part,
+        "i/n: only this share of the lines, into NAME.map.lines (default on a cluster: from SLURM or OpenMPI)");
+    CLI::Option* merge = command->add_flag("--merge", options.merge, "joins the finished lines to the map");
+    command->add_flag("--check", options.check,
+                      "compares the map, new or there already, with a mesh refined once at 50 points (minutes)");
+    command->add_option("--coarseness", options.coarseness, "1 for maps, up to 4 for quick looks")
+        ->check(CLI::Range(0.5, 4.0))->capture_default_str();
+    command->add_option("--window", arguments->window)->group("");
+    command->add_flag("--refined", options.refined)->group("");
+    part->excludes(jobs)->excludes(merge);
+    command->callback([arguments] { generate_map(generate_options(*arguments)); });
 }
 
 }  // namespace

@@ -137,6 +137,7 @@ void draw_panel(const Scene& scene, const Plan& plan, const State& state, const 
     if (options.show_cost) cost_lines(plan, state, times);
     for (const std::string& message : options.messages) paragraph(message);
     if (plan.source == SourceKind::analytic) paragraph("analytic stand-in, no recording");
+    if (plan.source == SourceKind::simulated) paragraph("simulated, no recording");
     const ImVec2 at = ImGui::GetWindowPos();
     const ImVec2 size = ImGui::GetWindowSize();
     gui.claim({at.x, at.y, at.x + size.x, at.y + size.y});

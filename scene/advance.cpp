@@ -3,11 +3,15 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <limits>
+
+#include "mechanics/linear_range.h"
 
 namespace palpa {
 namespace {
 
 constexpr double kLongestGap_s = 60.0;
+constexpr double kUnknownThickness_m = std::numeric_limits<double>::infinity();
 
 // Rise of the resisting tangential force over the reference distance, as the laws ask for it; the same depth in
 // both look-ups.
@@ -67,6 +71,11 @@ void sink(const MapTissue& tissue, State& state) {
     state.contact.depth_m = answer.depth_m;
     state.contact.saturated = answer.saturated;
     state.contact.measured = at.measured && at.inside;
+    if (tissue.map.source.kind == SourceKind::simulated) {
+        // the simulation was linear: how far this depth is from where that holds
+        const double a_m = std::sqrt(tissue.map.indenter_radius_m * std::min(answer.depth_m, tissue.map.indenter_radius_m));
+        state.contact.linearity = mechanics::linearity_ratio(answer.depth_m, kUnknownThickness_m, 2.0 * a_m);
+    }
 }
 
 void sink(const LinearTissue& tissue, State& state) {

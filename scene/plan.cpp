@@ -75,7 +75,9 @@ void add_notes(const MapTissue& tissue, const Scene& scene, Plan& plan) {
     if (tissue.map.source.kind == SourceKind::analytic) {
         plan.notes.push_back("the tissue is a closed-form stand-in (analytic), neither recorded nor simulated");
     }
-    if (tissue.map.source.kind == SourceKind::simulated) plan.notes.push_back("the tissue is simulated: " + tissue.map.source.how);
+    if (tissue.map.source.kind == SourceKind::simulated) {
+        plan.notes.push_back("the tissue is simulated, not recorded: " + tissue.map.source.how);
+    }
     if (scene.tangential.force == TangentialForce::recorded) {
         plan.notes.push_back("tangential force as recorded: right for motion along +x only");
         return;

@@ -20,7 +20,7 @@ struct Contact {
     double tangential_N = 0.0;  // resisting motion along the pen's direction
     bool saturated = false;     // pressed deeper than the tissue is known
     bool measured = true;       // false: between or beside the measured cells
-    double linearity = 0.0;     // linear tissue: amber above 0.10, red above 0.25 (mechanics/linear_range.h)
+    double linearity = 0.0;     // of a simulated tissue: amber above 0.10, red above 0.25 (mechanics/linear_range.h)
 };
 
 // What is shown of the indenter. lag = pen - avatar.

@@ -40,18 +40,7 @@ double phantom_force_N(const Phantom& phantom, double x_m, double y_m, double de
 }
 
 Map analytic_map(const Phantom& phantom) {
-    Map map;
-    map.name = phantom.name;
-    for (int i = 0; i < 2; ++i) {
-        map.origin_m[i] = phantom.origin_m[i];
-        map.spacing_m[i] = phantom.spacing_m[i];
-    }
-    map.n_x = phantom.n_x;
-    map.n_y = phantom.n_y;
-    map.depths_m = phantom.depths_m;
-    map.indenter = phantom.indenter;
-    map.indenter_radius_m = phantom.indenter_radius_m;
-    map.tangential = TangentialKind::energy;
+    Map map = map_of_phantom(phantom);
     for (const double depth_m : map.depths_m) {
         for (std::size_t j = 0; j < map.n_y; ++j) {
             for (std::size_t i = 0; i < map.n_x; ++i) {
@@ -67,7 +56,6 @@ Map analytic_map(const Phantom& phantom) {
             map.tangential_y_N.push_back(static_cast<float>(slope.energy_y));
         }
     }
-    map.nodules = placed_nodules(phantom);
     map.source.kind = SourceKind::analytic;
     map.source.how =
         "closed-form stand-in, neither recorded nor simulated: a sphere on a bonded layer (Dimitriadis 2002), a bump "

@@ -73,6 +73,7 @@ Phantom read_phantom(const std::filesystem::path& path) {
     for (std::size_t i = 0; i < 3; ++i) phantom.size_m[i] = 1e-3 * size_mm[i];
     JsonReader tissue = json.object("tissue");
     phantom.tissue = read_elastic(tissue);
+    phantom.tissue.assumed = tissue.boolean("assumed", false);
     tissue.finish();
     for (JsonReader& nodule : json.objects("nodules")) phantom.nodules.push_back(read_nodule(nodule, phantom));
 
@@ -92,6 +93,23 @@ Phantom read_phantom(const std::filesystem::path& path) {
     read_grid(json.object("grid"), phantom);
     json.finish();
     return phantom;
+}
+
+Map map_of_phantom(const Phantom& phantom) {
+    Map map;
+    map.name = phantom.name;
+    for (int i = 0; i < 2; ++i) {
+        map.origin_m[i] = phantom.origin_m[i];
+        map.spacing_m[i] = phantom.spacing_m[i];
+    }
+    map.n_x = phantom.n_x;
+    map.n_y = phantom.n_y;
+    map.depths_m = phantom.depths_m;
+    map.indenter = phantom.indenter;
+    map.indenter_radius_m = phantom.indenter_radius_m;
+    map.tangential = TangentialKind::energy;
+    map.nodules = placed_nodules(phantom);
+    return map;
 }
 
 }  // namespace palpa

@@ -10,6 +10,7 @@ namespace palpa {
 struct Elastic {
     double young_Pa = 0.0;
     double poisson = 0.0;
+    bool assumed = false;  // the modulus is a guess; a map made from it says so
 };
 
 struct PhantomNodule {
@@ -40,5 +41,8 @@ std::vector<Nodule> placed_nodules(const Phantom& phantom);
 
 // Throws InputError.
 Phantom read_phantom(const std::filesystem::path& path);
+
+// Grid, depths, indenter and nodules of the phantom's map; no forces yet.
+Map map_of_phantom(const Phantom& phantom);
 
 }  // namespace palpa

@@ -87,7 +87,7 @@ TEST_CASE("command line: a picture of the greatest lag needs no display") {
 TEST_CASE("command line: explain names every stage with its error and cost, measured if asked") {
     const Called plain = palpa_with("explain");
     CHECK(plain.status == 0);
-    for (const char* word : {"calibration", "depth", "display_ratio", "surface", "error:", "not measured", "stand-in"}) {
+    for (const char* word : {"calibration", "depth", "display_ratio", "surface", "error:", "not measured", "simulated, not recorded"}) {
         CHECK(contains(plain.out, word));
     }
     const Json json = parse_json(palpa_with("explain " + kAssets + "scenes/off.json --measure --json").out, "stdout");
@@ -103,13 +103,13 @@ TEST_CASE("command line: maps info, sample, generate and import") {
     CHECK(info["shape"] == Json({6, 59, 159}));
     CHECK(info["missing"] == 0);
     CHECK(info["force_range_N"][1].get<double>() > 3.0);
-    CHECK(info["source"]["kind"] == "analytic");
-    const Json at = parse_json(palpa_with("maps sample " + map + " --x-mm 110 --y-mm 110 --depth-mm 7 --json").out, "stdout");
-    CHECK(at["force_N"].get<double>() == doctest::Approx(2.95).epsilon(0.01));
+    CHECK(info["source"]["kind"] == "simulated");
+    const Json at = parse_json(palpa_with("maps sample " + map + " --x-mm 60 --y-mm 60 --depth-mm 7 --json").out, "stdout");
+    CHECK(at["force_N"].get<double>() == doctest::Approx(2.98).epsilon(0.01));
     const std::string force = number_text(at["force_N"].get<double>());
-    const Json back = parse_json(palpa_with("maps sample " + map + " --x-mm 110 --y-mm 110 --force-N " + force + " --json").out, "stdout");
+    const Json back = parse_json(palpa_with("maps sample " + map + " --x-mm 60 --y-mm 60 --force-N " + force + " --json").out, "stdout");
     CHECK(back["depth_mm"].get<double>() == doctest::Approx(7.0).epsilon(1e-9));
-    CHECK(palpa_with("maps generate " + kAssets + "phantoms/silicone.json -o " + (folder / "s.map").string()).status == 0);
+    CHECK(palpa_with("maps generate --method analytic " + kAssets + "phantoms/silicone.json -o " + (folder / "s.map").string()).status == 0);
     CHECK(palpa_with("run " + (folder / "s.map").string() + " --replay " + kTrace + " --headless").status == 0);
 
     const std::string recording = PALPA_RECORDINGS "/probing/probingRAL2018B_T2.csv";

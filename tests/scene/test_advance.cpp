@@ -26,7 +26,7 @@ struct Run {
     std::int64_t calls(StageId id) const { return state.meters[static_cast<std::size_t>(id)].calls(); }
 };
 
-Sample pen(double t_s, Phase phase, const Eigen::Vector2d& px, double pressure = 0.65) {
+Sample pen(double t_s, Phase phase, const Eigen::Vector2d& px, double pressure = 0.76) {
     Sample sample;
     sample.t_host_s = t_s;
     sample.pointer_id = 3;

@@ -44,10 +44,12 @@ TEST_CASE("plan: a person is told what is assumed, derived or scaled") {
     const auto noted = [&](const char* part) {
         return std::any_of(plan.notes.begin(), plan.notes.end(), [&](const std::string& n) { return contains(n, part); });
     };
-    CHECK(noted("stand-in (analytic)"));
+    CHECK(noted("simulated, not recorded"));
+    CHECK(noted("Young's modulus, 47000 Pa, is ASSUMED"));
+    CHECK(noted("red, above 25 %, from 1 mm"));
     CHECK(noted("phantom force: the pen's newtons are multiplied by 2"));
     CHECK(noted("derived from the normal force (work argument), not measured"));
-    CHECK(std::get<MapTissue>(plan.tissue).smoothing_m == 0.0);  // no noise in a closed form
+    CHECK(std::get<MapTissue>(plan.tissue).smoothing_m == 0.0);  // no noise in a simulation
 }
 
 TEST_CASE("plan: a map or profile that is not there is named") {

@@ -1,0 +1,34 @@
+#pragma once
+// Coordinate lists and plain blocks for rolling.h; only its own sources include this.
+
+#include "mechanics/rolling.h"
+#include "mechanics/statics.h"
+
+namespace palpa::mechanics {
+
+// Where cells along one axis must not be larger than `cell_m`.
+struct FineZone {
+    double low_m = 0.0;
+    double high_m = 0.0;
+    double cell_m = 0.0;
+};
+
+// Ascending coordinates over [0, length]: a node stands at both ends of every zone, cells inside are equal;
+// between zones they grow by `growth` from both ends, up to `most_m`. Zones are cut to the interval; where two
+// overlap the finer one wins.
+Eigen::VectorXd zoned_coordinates_m(double length_m, std::vector<FineZone> zones, double growth, double most_m);
+
+// From 0 outwards: n equal cells, then growing to `length`.
+Eigen::VectorXd outward_coordinates_m(double cell_m, int n, double growth, double length_m);
+
+// Depth below the surface (0, growing) to heights (ascending, surface at the top).
+Eigen::VectorXd heights_from_depths(const Eigen::VectorXd& depth_m, double thickness_m);
+
+// Block on a rigid base with all inclusions of the list mixed in.
+Problem block_problem(const Eigen::VectorXd& x_m, const Eigen::VectorXd& y_m, const Eigen::VectorXd& z_m,
+                      const Material& tissue, std::span<const Inclusion> inclusions);
+
+// Surface node of a hex_box at line (i, j).
+int surface_node(const Eigen::VectorXd& x_m, const Eigen::VectorXd& y_m, const Eigen::VectorXd& z_m, int i, int j);
+
+}  // namespace palpa::mechanics
