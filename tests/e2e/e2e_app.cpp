@@ -35,8 +35,8 @@ int write_script(const std::filesystem::path& file) {
     };
     row(0.00, "hover", 5.0, 0.0);
     row(0.05, "hover", 5.1, 0.0);
-    row(0.10, "down", 5.2, 0.65);
-    for (int i = 1; i <= 410; ++i) row(0.10 + 0.002 * i, "move", 5.2 + 0.06 * i, 0.65);
+    row(0.10, "down", 5.2, 0.76);
+    for (int i = 1; i <= 410; ++i) row(0.10 + 0.002 * i, "move", 5.2 + 0.06 * i, 0.76);
     return rows;
 }
 
@@ -69,7 +69,7 @@ TEST_CASE("app: a pen on a real X server presses the tissue, and the run replays
             result["latency_ms"].dump(), " ms, CPU a frame ", result["frame_cpu_ms"].dump(), " ms");
     CHECK(result["samples"].get<int>() >= rows - 1);  // the first hover may be the server's own entry into the window
     CHECK(result["samples"].get<int>() <= rows + 4);
-    CHECK(result["max_force_N"].get<double>() == doctest::Approx(0.1008 * std::exp(4.2081 * 0.65)).epsilon(1e-3));
+    CHECK(result["max_force_N"].get<double>() == doctest::Approx(0.1008 * std::exp(4.2081 * 0.76)).epsilon(1e-3));
     CHECK(result["max_lag_mm"].get<double>() > 0.5);
     CHECK(result["dropped_steps"] == 0);
     CHECK(result["counts"]["without_level"] == 0);
