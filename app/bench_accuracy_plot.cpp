@@ -10,95 +10,95 @@ namespace {
 
 // Colours by Okabe and Ito, which colour-blind people can tell apart; the marker says the same again.
 constexpr const char* kScript =
-    R"gp(# gnuplot mechanics.gp: draws mechanics.csv as mechanics.png, .svg and .pdf
+    R"gp(# gnuplot mechanics.gp draws mechanics.csv as mechanics.png; gnuplot -e "kind='svg'" mechanics.gp: or svg, pdf
+if (!exists("kind")) kind = "png"
 set datafile separator ","
-set datafile missing "n/a"
+set datafile missing NaN
 f = "mechanics.csv"
 # an exact zero is drawn at the lower edge
-floored(e) = abs(e) < 1e-13 ? 1e-13 : abs(e)
-error_of(group, line, what) = (strcol(1) eq group && strcol(2) eq line) ? floored(column(what)) : NaN
-set style line 1 lc rgb "#D55E00" lw 2 pt 9 ps 1.1
-set style line 2 lc rgb "#0072B2" lw 2 pt 5 ps 1.0
-set style line 3 lc rgb "#009E73" lw 2 pt 7 ps 1.1
-set style line 4 lc rgb "#CC79A7" lw 2 pt 13 ps 1.3
-set style line 5 lc rgb "#E69F00" lw 2 pt 11 ps 1.1
-set style line 6 lc rgb "#000000" lw 2 pt 4 ps 1.1
-set style line 9 lc rgb "#999999" lw 1
+floored(e) = abs(e) < 2e-14 ? 2e-14 : abs(e)
+mine(group, line) = strcol("group") eq group && strcol("series") eq line
+err(group, line) = mine(group, line) ? floored(column("error_percent")) : NaN
+worst(group, line) = mine(group, line) ? floored(column("worst_error_percent")) : NaN
+starts(group, begin) = strcol("group") eq group && strstrt(strcol("choice"), begin) == 1
+err_of(group, begin) = starts(group, begin) ? floored(column("error_percent")) : NaN
+offline(n) = column("offline_s")
+step(n) = column("per_step_us")
+late(n) = column("per_step_p99_us")
+
+set style line 1 lc rgb "#D55E00" lw 2 pt 9 ps 1.4
+set style line 2 lc rgb "#0072B2" lw 2 pt 5 ps 1.2
+set style line 3 lc rgb "#009E73" lw 2 pt 7 ps 1.3
+set style line 4 lc rgb "#CC79A7" lw 2 pt 13 ps 1.6
+set style line 5 lc rgb "#E69F00" lw 2 pt 11 ps 1.4
+set style line 6 lc rgb "#000000" lw 2 pt 4 ps 1.3
+set style line 9 lc rgb "#BBBBBB" lw 1 dt 3
 set logscale xy
-set grid xtics ytics ls 9 dt 3
+set grid xtics ytics ls 9
 set tics nomirror
 set border 3
 set format x "10^{%L}"
 set format y "10^{%L}"
 set key samplen 2 spacing 1.1
 
-do for [kind in "png svg pdf"] {
-    if (kind eq "png") { set terminal pngcairo size 1650,1060 font "DejaVu Sans,13" }
-    if (kind eq "svg") { set terminal svg size 1650,1060 font "DejaVu Sans,15" background rgb "white" }
-    if (kind eq "pdf") { set terminal pdfcairo size 16.5in,10.6in font "DejaVu Sans,13" }
-    set output "mechanics.".kind
-    set multiplot layout 2,3 margins 0.055,0.985,0.075,0.905 spacing 0.065,0.135 \
-        title "What accuracy costs in time: mechanics (down and left is better)\n{/*0.8 ".machine."}"
+if (kind eq "png") set terminal pngcairo size 1500,1000 font "DejaVu Sans,13"
+if (kind eq "svg") set terminal svg size 1500,1000 font "DejaVu Sans,14" background rgb "white"
+if (kind eq "pdf") set terminal pdfcairo size 15in,10in font "DejaVu Sans,13"
+set output "mechanics." . kind
+set multiplot layout 2,3 margins 0.055,0.985,0.07,0.885 spacing 0.072,0.15 \
+    title "What accuracy costs in time: mechanics (down and left is better)\n{/*0.8 " . machine . "}"
 
-    set xlabel "assemble + factor (s; least of the repetitions)"
-    set ylabel "|error| of the mean depression (%)"
-    set xrange [0.002:10]
-    set yrange [0.1:200]
-    set key bottom left
-    do for [nu in "0.3 0.45 0.499"] {
-    set title "Slab, 25 mN parabola, Poisson ratio ".nu
-        ."\n{/*0.85 486, 2,890, 8,750, 19,602 nodes; against the Richardson limit}" plot f using(
-            column("offline_s"))
-        : (error_of("slab", "tet4 nu ".nu, "error_percent"))with linespoints ls 1 title "tetrahedra (tet4)",
-    f using(column("offline_s"))
-        : (error_of("slab", "hex8 nu ".nu, "error_percent"))with linespoints ls 2 title "hexahedra (hex8)",
-          f using(column("offline_s"))
-        : (error_of("slab", "hex8-bbar nu ".nu, "error_percent"))with linespoints ls 3 title
-          "hexahedra, B-bar"
-    }
-
-    set title "Ball of 8 mm, contact mesh\n{/*0.85 bars reach the worst of 27 places and depths (Hertz: 9 depths)}"
-    set xlabel "factor + surface compliance (s)"
-    set ylabel "rms error of the force (%)"
-    set xrange [0.02:30]
-    set yrange [0.1:200]
-    worst(line, group) = error_of(group, line, "worst_error_percent")
-    plot f using (column("offline_s")):(error_of("contact mesh", "tet4", "error_percent")):(error_of("contact mesh", "tet4", "error_percent")):(worst("tet4", "contact mesh")) with yerrorbars ls 1 notitle, \
-         f using (column("offline_s")):(error_of("contact mesh", "tet4", "error_percent")) with linespoints ls 1 title "tet4, finest mesh", \
-         f using (column("offline_s")):(error_of("contact mesh", "hex8", "error_percent")):(error_of("contact mesh", "hex8", "error_percent")):(worst("hex8", "contact mesh")) with yerrorbars ls 2 notitle, \
-         f using (column("offline_s")):(error_of("contact mesh", "hex8", "error_percent")) with linespoints ls 2 title "hex8, finest mesh", \
-         f using (column("offline_s")):(error_of("contact mesh", "hex8-bbar", "error_percent")):(error_of("contact mesh", "hex8-bbar", "error_percent")):(worst("hex8-bbar", "contact mesh")) with yerrorbars ls 3 notitle, \
-         f using (column("offline_s")):(error_of("contact mesh", "hex8-bbar", "error_percent")) with linespoints ls 3 title "B-bar, finest mesh", \
-         f using (column("offline_s")):(error_of("contact Hertz", "hex8-bbar against Hertz", "error_percent")):(error_of("contact Hertz", "hex8-bbar against Hertz", "error_percent")):(worst("hex8-bbar against Hertz", "contact Hertz")) with yerrorbars ls 6 notitle, \
-         f using (column("offline_s")):(error_of("contact Hertz", "hex8-bbar against Hertz", "error_percent")) with linespoints ls 6 title "B-bar, Hertz"
-
-    set title "Contact algorithm\n{/*0.85 mean step; bar to the 99th percentile}"
-    set xlabel "one step (us)"
-    set ylabel "rms error (%)"
-    set xrange [5:20000]
-    set yrange [1e-14:1000]
-    set ytics 100
-    set key bottom right
-    plot f using (column("per_step_us")):(error_of("contact solver", "active set; warm", "error_percent")):(column("per_step_us")):(column("per_step_p99_us")) with xerrorbars ls 3 title "active set, warm", \
-         f using (column("per_step_us")):(error_of("contact solver", "active set; cold", "error_percent")):(column("per_step_us")):(column("per_step_p99_us")) with xerrorbars ls 6 title "active set, cold", \
-         f using (column("per_step_us")):(strcol(1) eq "contact solver" && strstrt(strcol(2), "Gauss") == 1 ? floored(column("error_percent")) : NaN):(column("per_step_us")):(column("per_step_p99_us")) with xerrorbars ls 2 title "Gauss-Seidel 10, 20, 50", \
-         f using (column("per_step_us")):(strcol(1) eq "friction" && strstrt(strcol(2), "0.3") == 1 ? floored(column("error_percent")) : NaN):(column("per_step_us")):(column("per_step_p99_us")) with xerrorbars ls 1 title "friction 0.3, to 1e-2 ... 1e-7", \
-         f using (column("per_step_us")):(error_of("friction", "off (active set)", "error_percent")):(column("per_step_us")):(column("per_step_p99_us")) with xerrorbars ls 4 title "friction left out"
-
-    set title "Solver, and what is kept between steps\n{/*0.85 mean step; bar to the 99th percentile}"
-    set xlabel "one step, or one right-hand side (us)"
-    set xrange [10:1e7]
-    set yrange [1e-14:1e-6]
-    plot f using (column("per_step_us")):(error_of("live step", "compliance kept", "error_percent")):(column("per_step_us")):(column("per_step_p99_us")) with xerrorbars ls 3 title "step, compliance kept", \
-         f using (column("per_step_us")):(error_of("live step", "factor kept; columns in each step", "error_percent")):(column("per_step_us")):(column("per_step_p99_us")) with xerrorbars ls 5 title "step, factor kept", \
-         f using (column("per_step_us")):(error_of("live step", "nothing kept; all in each step", "error_percent")):(column("per_step_us")):(column("per_step_p99_us")) with xerrorbars ls 1 title "step, nothing kept", \
-         f using (column("per_step_us")):(error_of("sparse solver", "MUMPS", "error_percent")):(column("per_step_us")):(column("per_step_p99_us")) with xerrorbars ls 2 title "MUMPS, one right-hand side", \
-         f using (column("per_step_us")):(error_of("sparse solver", "Eigen LDLT", "error_percent")):(column("per_step_us")):(column("per_step_p99_us")) with xerrorbars ls 4 title "Eigen, one right-hand side"
-    unset multiplot
-    unset output
-    set ytics autofreq
-    set key bottom left
+set xlabel "assemble + factor (s; least of the repetitions)"
+set ylabel "|error| of the mean depression (%)"
+set xrange [0.002:20]
+set yrange [0.04:200]
+set key bottom left Left reverse
+do for [nu in "0.3 0.45 0.499"] {
+    set title "Slab, parabolic load, Poisson ratio " . nu . "\n{/*0.8 graded, 486 to 19,602 nodes; against Richardson's limit}"
+    plot f using (offline(0)):(err("slab", "tet4 nu " . nu)) with linespoints ls 1 title "tetrahedra (tet4)", \
+         f using (offline(0)):(err("slab", "hex8 nu " . nu)) with linespoints ls 2 title "hexahedra (hex8)", \
+         f using (offline(0)):(err("slab", "hex8-bbar nu " . nu)) with linespoints ls 3 title "hexahedra, B-bar", \
+         f using (offline(0)):(err("slab", "hex8-bbar uniform nu " . nu)) with points ls 6 title "B-bar, not graded"
 }
+
+set title "Ball of 8 mm pressed 2 mm: mesh\n{/*0.8 bars to the worst of 27 places and depths}"
+set xlabel "factor + surface compliance (s)"
+set ylabel "rms error of the force (%)"
+hertz = "hex8-bbar against Hertz"
+plot f using (offline(0)):(err("contact mesh", "tet4")):(err("contact mesh", "tet4")):(worst("contact mesh", "tet4")) with yerrorbars ls 1 notitle, \
+     f using (offline(0)):(err("contact mesh", "tet4")) with linespoints ls 1 title "tet4, finest mesh", \
+     f using (offline(0)):(err("contact mesh", "hex8")):(err("contact mesh", "hex8")):(worst("contact mesh", "hex8")) with yerrorbars ls 2 notitle, \
+     f using (offline(0)):(err("contact mesh", "hex8")) with linespoints ls 2 title "hex8, finest mesh", \
+     f using (offline(0)):(err("contact mesh", "hex8-bbar")):(err("contact mesh", "hex8-bbar")):(worst("contact mesh", "hex8-bbar")) with yerrorbars ls 3 notitle, \
+     f using (offline(0)):(err("contact mesh", "hex8-bbar")) with linespoints ls 3 title "B-bar, finest mesh", \
+     f using (offline(0)):(err("contact Hertz", hertz)):(err("contact Hertz", hertz)):(worst("contact Hertz", hertz)) with yerrorbars ls 6 notitle, \
+     f using (offline(0)):(err("contact Hertz", hertz)) with linespoints ls 6 title "B-bar, Hertz (1 mm deep)"
+
+set title "Contact algorithm\n{/*0.8 median; bar to the 99th percentile; an exact 0 at the lower edge}"
+set xlabel "one step (us)"
+set key noreverse Right at graph 1.0, 0.44 right top font ",11"
+set ylabel "rms error (%)"
+set xrange [1:1e6]
+set yrange [1e-14:1e3]
+set ytics 100
+plot f using (step(0)):(err("contact solver", "active set; warm")):(step(0)):(late(0)) with xerrorbars ls 3 title "active set, warm", \
+     f using (step(0)):(err("contact solver", "active set; cold")):(step(0)):(late(0)) with xerrorbars ls 6 title "active set, cold", \
+     f using (step(0)):(err_of("contact solver", "Gauss")):(step(0)):(late(0)) with xerrorbars ls 2 title "Gauss-Seidel, 2 ... 50", \
+     f using (step(0)):(err_of("friction", "0.3")):(step(0)):(late(0)) with xerrorbars ls 1 title "friction, to 1e-2 ... 1e-7", \
+     f using (step(0)):(err_of("friction", "off")):(step(0)):(late(0)) with xerrorbars ls 4 title "friction left out"
+
+set title "Sparse solver, and what is kept between steps\n{/*0.8 median; bar to the 99th percentile}"
+set xlabel "one step, or one right-hand side (us)"
+set key noreverse Right at graph 1.0, 0.98 right top font ",13"
+set xrange [1:1e8]
+set yrange [1e-14:1e-9]
+set ytics 10
+plot f using (step(0)):(err_of("live step", "compliance")):(step(0)):(late(0)) with xerrorbars ls 3 title "step, compliance kept", \
+     f using (step(0)):(err_of("live step", "factor")):(step(0)):(late(0)) with xerrorbars ls 5 title "step, only the factor kept", \
+     f using (step(0)):(err_of("live step", "nothing")):(step(0)):(late(0)) with xerrorbars ls 1 title "step, nothing kept", \
+     f using (step(0)):(err_of("sparse solver", "MUMPS")):(step(0)):(late(0)) with xerrorbars ls 2 title "MUMPS, one right-hand side", \
+     f using (step(0)):(err_of("sparse solver", "Eigen")):(step(0)):(late(0)) with xerrorbars ls 4 title "Eigen, one right-hand side"
+unset multiplot
 )gp";
 
 std::string shell_quoted(const std::string& text) {
@@ -117,8 +117,12 @@ std::string plot_mechanics(const std::filesystem::path& folder, const Machine& m
         return "gnuplot is not installed (package gnuplot-nox), so there is no figure; mechanics.csv and "
                "mechanics.gp "
                "are kept: run `gnuplot mechanics.gp` where it is";
-    if (std::system(("cd " + shell_quoted(folder.string()) + " && gnuplot mechanics.gp").c_str()) != 0)
-        return "gnuplot could not draw " + (folder / "mechanics.gp").string() + "; mechanics.csv is kept";
+    for (const std::string kind : {"png", "svg", "pdf"}) {
+        const std::string command =
+            "cd " + shell_quoted(folder.string()) + " && gnuplot -e \"kind='" + kind + "'\" mechanics.gp";
+        if (std::system(command.c_str()) != 0)
+            return "gnuplot could not draw " + (folder / "mechanics.gp").string() + "; mechanics.csv is kept";
+    }
     return "";
 }
 

@@ -2,6 +2,7 @@
 // The choices of the mechanics library, each with its error and its cost.
 
 #include <array>
+#include <span>
 #include <vector>
 
 #include "app/bench_accuracy.h"
@@ -16,13 +17,13 @@ struct SlabReference {
     double uncertainty_percent = 0.0;
 };
 
-// Richardson's limit of B-bar on three nested quarter meshes, the finest `n` cells along each edge (a
-// multiple of 4), refined towards the load; uncertain by how much it moved from the limit of the two coarser
-// ones.
-SlabReference slab_reference(double poisson, int n);
+// Richardson's limit of B-bar on a quarter mesh, refined towards the load, and its nested half. `finest`:
+// cells along each edge, even; the first gives the limit, the others, each with its half, how far limits
+// disagree.
+SlabReference slab_reference(double poisson, std::span<const int> finest);
 
-// One element on one uniform mesh.
-AccuracyRow slab_row(mechanics::Element element, const std::array<int, 3>& cells, double poisson,
+// One element on one mesh: uniform, or graded to cells 0.4 times as wide under the load.
+AccuracyRow slab_row(mechanics::Element element, const std::array<int, 3>& cells, bool graded, double poisson,
                      const SlabReference& reference, const Effort& effort);
 
 std::vector<Measurement> slab_measurements(const Effort& effort);
