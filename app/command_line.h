@@ -15,5 +15,6 @@ void add_explain(CLI::App& app);
 void add_maps(CLI::App& app);
 void add_fem(CLI::App& app);
 void add_bench(CLI::App& app);
+void add_bench_accuracy(CLI::App& bench);
 
 }  // namespace palpa

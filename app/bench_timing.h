@@ -1,0 +1,47 @@
+#pragma once
+// Times of single calls, and the memory that something keeps.
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+namespace palpa {
+
+struct Timing {
+    std::vector<double> us;  // of each call
+};
+
+inline double quantile_us(const Timing& timing, double share) {
+    std::vector<double> sorted = timing.us;
+    std::sort(sorted.begin(), sorted.end());
+    const auto n = static_cast<double>(sorted.size());
+    const double rank = std::clamp(std::ceil(share * n), 1.0, n);
+    return sorted[static_cast<std::size_t>(rank) - 1];
+}
+
+template <class Call>
+void time_call(Timing& timing, Call&& call) {
+    const auto start = std::chrono::steady_clock::now();
+    call();
+    const std::chrono::duration<double, std::micro> took = std::chrono::steady_clock::now() - start;
+    timing.us.push_back(took.count());
+}
+
+// call(i) until `budget_s` is spent, at least `least` and at most `most` times.
+template <class Call>
+Timing time_calls(int least, int most, double budget_s, Call&& call) {
+    Timing timing;
+    double spent_s = 0.0;
+    for (int i = 0; i < most && (i < least || spent_s < budget_s); ++i) {
+        time_call(timing, [&] { call(i); });
+        spent_s += 1e-6 * timing.us.back();
+    }
+    return timing;
+}
+
+// Bytes of the heap in use, in MB; NaN where the allocator does not tell (sanitizers, other C libraries).
+double heap_MB();
+
+}  // namespace palpa
