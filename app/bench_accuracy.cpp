@@ -3,6 +3,7 @@
 #include "app/bench_accuracy.h"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <cmath>
@@ -85,8 +86,17 @@ std::string table_number(double value) {
     return buffer.data();
 }
 
+// Before the minutes of measuring, not after them.
+void make_folder(const std::filesystem::path& folder) {
+    std::error_code error;
+    std::filesystem::create_directories(folder, error);
+    if (error || !std::filesystem::is_directory(folder))
+        throw InputError("-o " + folder.string() + ": found " + (error ? error.message() : "a file") +
+                         ", expected a folder or a name for one");
+}
+
 void run_accuracy(const Options& options) {
-    if (!options.folder.empty()) std::filesystem::create_directories(options.folder);
+    if (!options.folder.empty()) make_folder(options.folder);
     const Effort effort{options.quick, options.quick ? 0.05 : 0.8, options.quick ? 0.05 : 0.6};
     std::vector<Measurement> list = slab_measurements(effort);
     for (const auto& more : {contact_measurements(effort), step_measurements(effort)})

@@ -1,5 +1,6 @@
 // A ball of 8 mm pressed 2 mm deep: the mesh's spacing against a much finer mesh, and against Hertz.
 
+#include <cmath>
 #include <memory>
 #include <optional>
 

@@ -1,5 +1,7 @@
 // Element x mesh x poisson on the paper's slab, and on a wide slab against the exact bonded layer.
 
+#include <algorithm>
+#include <cmath>
 #include <map>
 #include <memory>
 #include <optional>

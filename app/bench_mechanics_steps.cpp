@@ -1,5 +1,7 @@
 // What one step of a live tissue costs: contact algorithms, friction, sparse solvers, precomputed or not.
 
+#include <algorithm>
+#include <cmath>
 #include <memory>
 #include <optional>
 

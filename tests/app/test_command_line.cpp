@@ -144,6 +144,7 @@ TEST_CASE("command line: wrong usage and bad input end with status 2 and say wha
     refused("maps", "subcommand is required");
     refused("maps sample " + kAssets + "maps/silicone.map --x-mm 1 --y-mm 1", "[--force-N,--depth-mm] is required");
     refused("maps sample " + kAssets + "maps/silicone.map --x-mm one --y-mm 1 --force-N 1", "--x-mm");
+    refused("bench accuracy mechanics --quick -o " + (folder / "bad.json").string(), "expected a folder");
     refused("run none.json", "none.json: found nothing, expected a scene");
     refused("run " + (folder / "bad.json").string() + " --replay " + kTrace + " --headless", "name: found 3, expected a text");
     refused("run --headless --replay " + (folder / "none.tsv").string(), "none.tsv: cannot be read");
