@@ -19,7 +19,6 @@
 #include "app/command_line.h"
 #include "files/input_error.h"
 #include "files/text.h"
-#include "mechanics/error.h"
 
 namespace palpa {
 namespace {
