@@ -13,7 +13,8 @@
 #include "app/prepare.h"
 #include "app/log.h"
 #include "app/replay.h"
-#include "app/screenshot.h"
+#include "app/frame.h"
+#include "app/session.h"
 #include "files/input_error.h"
 #include "files/text.h"
 
@@ -41,6 +42,23 @@ void print(const Json& result, bool as_json) {
     }
 }
 
+// A finished trial is drawn as what it revealed, another one at its moment of greatest lag or force.
+void draw(const Scene& scene, const Plan& plan, const Trace& trace, const Trial& whole, double at_s, const RunOptions& options) {
+    Trial trial = make_trial(plan, whole.mode);
+    const auto observing = [&](const Sample& sample, const State& state) { observe(plan, sample, state, trial); };
+    ReplayResult again = replay(scene, plan, trace, 0, observing, whole.finished ? 1e300 : at_s);
+    Screens screens;
+    if (trial.finished) {
+        screens.screen = Screen::reveal;
+        screens.debrief = debrief(plan, trial);
+    }
+    Settings settings;
+    settings.left_handed = options.left_handed;
+    const int width_px = options.width_px > 0 ? options.width_px : static_cast<int>(trace.info.screen_width_px);
+    const int height_px = options.height_px > 0 ? options.height_px : static_cast<int>(trace.info.screen_height_px);
+    draw_picture(scene, plan, trial, settings, screens, width_px, height_px, again.state, options.screenshot);
+}
+
 void run_headless(const RunOptions& options) {
     if (options.trace.empty()) {
         throw InputError("--headless: found no --replay TRACE.tsv, expected one (without a window there is no pen)");
@@ -57,10 +75,13 @@ void run_headless(const RunOptions& options) {
         log.emplace(*files);
     }
     constexpr int kTimeEvery = 16;
+    Trial trial = make_trial(plan, options.test ? TrialMode::test : TrialMode::practice);
     const ReplayResult result = replay(scene, plan, trace, kTimeEvery, [&](const Sample& sample, const State& state) {
         if (log) log->write(row_of(sample, plan, state));
+        observe(plan, sample, state, trial);
     });
     Json json = result_json(scene, plan, result);
+    json["trials"] = Json::array({trial_json(plan, trial)});
     json["wall_s"] = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
     rusage usage{};
     getrusage(RUSAGE_SELF, &usage);
@@ -73,8 +94,7 @@ void run_headless(const RunOptions& options) {
     if (!options.screenshot.empty()) {
         const Extremes& extremes = result.state.extremes;
         const double at_s = extremes.lag_m > 0.0 ? extremes.lag_at_s : extremes.force_at_s;
-        ReplayResult again = replay(scene, plan, trace, 0, {}, at_s);
-        draw_picture(scene, plan, again.state, options.screenshot);
+        draw(scene, plan, trace, trial, at_s, options);
     }
     print(json, options.json);
 }
@@ -93,8 +113,11 @@ void add_run(CLI::App& app) {
     command->add_option("--record", options->record, "write the input as a trace TRACE.tsv");
     command->add_flag("--json", options->json, "one JSON object on standard output");
     command->add_option("--quit-after-s", options->quit_after_s, "close the window by itself")->check(CLI::Range(0.0, 1e6));
-    command->add_option("--width-px", options->width_px, "of the window (default 1280)")->check(CLI::Range(100, 16384));
-    command->add_option("--height-px", options->height_px, "of the window (default 800)")->check(CLI::Range(100, 16384));
+    command->add_option("--width-px", options->width_px, "of the window (default: as last time, 1280 at first)")->check(CLI::Range(100, 16384));
+    command->add_option("--height-px", options->height_px, "of the window (800)")->check(CLI::Range(100, 16384));
+    command->add_flag("--practice", options->practice, "nodules shown");
+    command->add_flag("--test", options->test, "nodules hidden until the trial is finished")->excludes("--practice");
+    command->add_flag("--left-handed", options->left_handed, "controls on the right");
     command->callback([options] {
         if (options->headless) return run_headless(*options);
         if (const auto result = run_live(*options)) print(*result, options->json);

@@ -6,36 +6,68 @@
 #include <imgui.h>
 
 #include <algorithm>
-#include <filesystem>
+
+#include "app/font.h"
 
 namespace palpa {
 namespace {
 
-constexpr const char* kFont = "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf";
+constexpr float kText_mm = 4.7f;  // line height, readable at arm's length
+constexpr float kNowhere_px = -1e6f;
 
-void load_font(float height_px) {
-    ImFontAtlas& fonts = *ImGui::GetIO().Fonts;
-    ImFontConfig embedded;
-    embedded.SizePixels = height_px;
-    if (std::filesystem::exists(kFont)) {
-        fonts.AddFontFromFileTTF(kFont, height_px);
-    } else {
-        fonts.AddFontDefault(&embedded);
-    }
+void map_keys(ImGuiIO& io) {
+    struct Pair {
+        ImGuiKey_ gui;
+        SDL_Scancode sdl;
+    };
+    constexpr Pair kPairs[] = {
+        {ImGuiKey_Tab, SDL_SCANCODE_TAB},           {ImGuiKey_LeftArrow, SDL_SCANCODE_LEFT},
+        {ImGuiKey_RightArrow, SDL_SCANCODE_RIGHT},  {ImGuiKey_UpArrow, SDL_SCANCODE_UP},
+        {ImGuiKey_DownArrow, SDL_SCANCODE_DOWN},    {ImGuiKey_PageUp, SDL_SCANCODE_PAGEUP},
+        {ImGuiKey_PageDown, SDL_SCANCODE_PAGEDOWN}, {ImGuiKey_Home, SDL_SCANCODE_HOME},
+        {ImGuiKey_End, SDL_SCANCODE_END},           {ImGuiKey_Delete, SDL_SCANCODE_DELETE},
+        {ImGuiKey_Backspace, SDL_SCANCODE_BACKSPACE}, {ImGuiKey_Space, SDL_SCANCODE_SPACE},
+        {ImGuiKey_Enter, SDL_SCANCODE_RETURN},      {ImGuiKey_Escape, SDL_SCANCODE_ESCAPE},
+        {ImGuiKey_KeyPadEnter, SDL_SCANCODE_KP_ENTER}, {ImGuiKey_A, SDL_SCANCODE_A}};
+    for (const Pair& pair : kPairs) io.KeyMap[pair.gui] = pair.sdl;
+}
+
+ImVec4 colour(int r, int g, int b, float alpha = 1.0f) {
+    return {static_cast<float>(r) / 255.0f, static_cast<float>(g) / 255.0f, static_cast<float>(b) / 255.0f, alpha};
+}
+
+// Quiet greys, so that only tissue and force have a hue.
+void set_colours(ImGuiStyle& style) {
+    ImGui::StyleColorsDark(&style);
+    ImVec4* c = style.Colors;
+    c[ImGuiCol_Text] = colour(236, 239, 241);
+    c[ImGuiCol_TextDisabled] = colour(168, 176, 182);
+    c[ImGuiCol_WindowBg] = colour(28, 31, 34);
+    c[ImGuiCol_Button] = colour(62, 69, 75);
+    c[ImGuiCol_ButtonHovered] = colour(80, 89, 97);
+    c[ImGuiCol_ButtonActive] = colour(104, 116, 126);
+    c[ImGuiCol_FrameBg] = colour(48, 53, 58);
+    c[ImGuiCol_FrameBgHovered] = colour(62, 69, 75);
+    c[ImGuiCol_FrameBgActive] = colour(80, 89, 97);
+    c[ImGuiCol_Header] = colour(62, 69, 75);
+    c[ImGuiCol_HeaderHovered] = colour(80, 89, 97);
+    c[ImGuiCol_HeaderActive] = colour(104, 116, 126);
+    c[ImGuiCol_CheckMark] = colour(130, 200, 240);
+    c[ImGuiCol_SliderGrab] = colour(130, 200, 240);
+    c[ImGuiCol_NavHighlight] = colour(255, 214, 90);
+    c[ImGuiCol_Separator] = colour(70, 76, 82);
+    c[ImGuiCol_PlotHistogram] = colour(130, 200, 240);
 }
 
 }  // namespace
 
-Gui::Gui(Window& window) : window_(window) {
+Gui::Gui(Window& window) : window_(window), font_file_(system_font_file()) {
     ImGui::CreateContext();
     ImGuiIO& io = ImGui::GetIO();
     io.IniFilename = nullptr;
-    scale_ = std::clamp(static_cast<float>(std::min(window.width_px(), window.height_px())) / 800.0f, 0.8f, 2.0f);
-    constexpr float kText_px = 18.0f;
-    load_font(kText_px * scale_);
-    ImGui::GetStyle().ScaleAllSizes(scale_);
-    ImGui::GetStyle().WindowRounding = 6.0f * scale_;
+    map_keys(io);
     ImGui_ImplOpenGL3_Init("#version 300 es");
+    set_scale(control_scale(kMissing, static_cast<float>(window.width_px()), static_cast<float>(window.height_px())));
     window.set_event_filter(&Gui::filter, this);
 }
 
@@ -45,53 +77,141 @@ Gui::~Gui() {
     ImGui::DestroyContext();
 }
 
-bool Gui::owns(float x_px, float y_px) const {
-    return std::any_of(areas_.begin(), areas_.end(), [&](const PanelArea& a) {
-        return x_px >= a.x0 && x_px < a.x1 && y_px >= a.y0 && y_px < a.y1;
-    });
+void Gui::set_scale(float px_per_mm) {
+    if (px_per_mm == mm_) return;
+    mm_ = px_per_mm;
+    ImFontAtlas& fonts = *ImGui::GetIO().Fonts;
+    fonts.Clear();
+    const float text_px = std::clamp(kText_mm * mm_, 11.0f, 120.0f);
+    if (font_file_.empty()) {
+        ImFontConfig embedded;
+        embedded.SizePixels = text_px;
+        fonts.AddFontDefault(&embedded);
+    } else {
+        fonts.AddFontFromFileTTF(font_file_.c_str(), text_px);
+    }
+    ImGui_ImplOpenGL3_DestroyFontsTexture();
+    ImGui_ImplOpenGL3_CreateFontsTexture();
+    ImGuiStyle style;
+    style.ScaleAllSizes(mm_ / 3.78f);
+    style.WindowRounding = 0.0f;
+    style.FrameRounding = 1.2f * mm_;
+    style.ScrollbarSize = 5.0f * mm_;
+    style.ItemSpacing = ImVec2(1.8f * mm_, 1.8f * mm_);
+    style.WindowPadding = ImVec2(2.6f * mm_, 2.6f * mm_);
+    style.WindowBorderSize = 0.0f;
+    set_colours(style);
+    ImGui::GetStyle() = style;
 }
 
-bool Gui::filter(const SDL_Event& event, void* self) {
-    Gui& gui = *static_cast<Gui*>(self);
-    ImGuiIO& io = ImGui::GetIO();
-    const auto width = static_cast<float>(gui.window_.width_px());
-    const auto height = static_cast<float>(gui.window_.height_px());
+bool Gui::owns(float x_px, float y_px) const {
+    return std::any_of(areas_.begin(), areas_.end(), [&](const PanelArea& area) { return area.holds(x_px, y_px); });
+}
+
+bool Gui::filter(const SDL_Event& event, void* self) { return static_cast<Gui*>(self)->receive(event); }
+
+bool Gui::receive(const SDL_Event& event) {
     switch (event.type) {
         case SDL_MOUSEMOTION:
-            io.MousePos = ImVec2(static_cast<float>(event.motion.x), static_cast<float>(event.motion.y));
+            if (event.motion.which == SDL_TOUCH_MOUSEID) return false;
+            pointer_x_px_ = static_cast<float>(event.motion.x);
+            pointer_y_px_ = static_cast<float>(event.motion.y);
             return false;
         case SDL_MOUSEBUTTONDOWN:
-        case SDL_MOUSEBUTTONUP:
-            io.MousePos = ImVec2(static_cast<float>(event.button.x), static_cast<float>(event.button.y));
-            io.MouseDown[0] = event.type == SDL_MOUSEBUTTONDOWN;
-            return gui.owns(io.MousePos.x, io.MousePos.y);
+        case SDL_MOUSEBUTTONUP: {
+            const auto x = static_cast<float>(event.button.x);
+            const auto y = static_cast<float>(event.button.y);
+            const bool owned = owns(x, y);
+            if (event.button.which == SDL_TOUCH_MOUSEID || event.button.button != SDL_BUTTON_LEFT) return owned;
+            const bool down = event.type == SDL_MOUSEBUTTONDOWN;
+            if (down ? owned : mouse_on_panel_) clicks_.push_back({x, y, down});
+            mouse_on_panel_ = down && owned;
+            return owned;
+        }
+        case SDL_MOUSEWHEEL:
+            if (!owns(pointer_x_px_, pointer_y_px_)) return false;
+            ImGui::GetIO().MouseWheel += static_cast<float>(event.wheel.y);
+            return true;
         case SDL_FINGERDOWN:
         case SDL_FINGERMOTION:
-        case SDL_FINGERUP:
-            io.MousePos = ImVec2(event.tfinger.x * width, event.tfinger.y * height);
-            io.MouseDown[0] = event.type != SDL_FINGERUP;
-            return gui.owns(io.MousePos.x, io.MousePos.y);
-        case SDL_MOUSEWHEEL: return gui.owns(io.MousePos.x, io.MousePos.y);
+        case SDL_FINGERUP: return receive_finger(event);
+        case SDL_KEYDOWN:
+        case SDL_KEYUP: return receive_key(event);
+        case SDL_TEXTINPUT:
+            if (ImGui::GetIO().WantTextInput) ImGui::GetIO().AddInputCharactersUTF8(event.text.text);
+            return false;
         default: return false;
     }
 }
 
-void Gui::begin_frame(double dt_s) {
+bool Gui::receive_finger(const SDL_Event& event) {
+    const float x = event.tfinger.x * static_cast<float>(window_.width_px());
+    const float y = event.tfinger.y * static_cast<float>(window_.height_px());
+    const bool owned = owns(x, y);
+    if (event.type == SDL_FINGERDOWN && owned && !finger_) {
+        finger_ = event.tfinger.fingerId;
+        clicks_.push_back({x, y, true});
+    }
+    if (finger_ != event.tfinger.fingerId) return owned;
+    pointer_x_px_ = x;
+    pointer_y_px_ = y;
+    if (event.type == SDL_FINGERUP) {
+        clicks_.push_back({x, y, false});
+        pointer_x_px_ = pointer_y_px_ = kNowhere_px;  // a finger that has left hovers nowhere
+        finger_.reset();
+    }
+    return owned;
+}
+
+bool Gui::receive_key(const SDL_Event& event) {
+    ImGuiIO& io = ImGui::GetIO();
+    const SDL_Keysym& key = event.key.keysym;
+    const bool down = event.type == SDL_KEYDOWN;
+    const bool ctrl = (key.mod & KMOD_CTRL) != 0;
+    const auto index = static_cast<std::size_t>(key.scancode);
+    if (index < std::size(io.KeysDown)) io.KeysDown[index] = down && keys_to_panels_;
+    io.KeyCtrl = ctrl;
+    io.KeyShift = (key.mod & KMOD_SHIFT) != 0;
+    if (down && event.key.repeat == 0 && !io.WantTextInput) keys_.push_back({key.sym, ctrl});
+    return keys_to_panels_;
+}
+
+void Gui::begin_frame(double dt_s, bool keys_to_panels) {
     ImGuiIO& io = ImGui::GetIO();
     io.DisplaySize = ImVec2(static_cast<float>(window_.width_px()), static_cast<float>(window_.height_px()));
     io.DeltaTime = std::max(1e-4f, static_cast<float>(dt_s));
+    if (keys_to_panels != keys_to_panels_) std::fill(std::begin(io.KeysDown), std::end(io.KeysDown), false);
+    keys_to_panels_ = keys_to_panels;
+    io.ConfigFlags = keys_to_panels ? ImGuiConfigFlags_NavEnableKeyboard : ImGuiConfigFlags_None;
+    if (clicks_.empty()) {
+        io.MousePos = ImVec2(pointer_x_px_, pointer_y_px_);
+    } else {
+        io.MousePos = ImVec2(clicks_.front().x_px, clicks_.front().y_px);
+        io.MouseDown[0] = clicks_.front().down;
+        clicks_.erase(clicks_.begin());
+    }
     ImGui_ImplOpenGL3_NewFrame();
     ImGui::NewFrame();
     areas_.clear();
+    overflow_.clear();
 }
 
-void Gui::end_frame() { ImGui::Render(); }
+void Gui::end_frame() {
+    ImGui::Render();
+    keys_.clear();
+}
+
+WindowSize Gui::size_px() const { return {ImGui::GetIO().DisplaySize.x, ImGui::GetIO().DisplaySize.y}; }
 
 void Gui::draw() {
     ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
     while (glGetError() != GL_NO_ERROR) {
         // the packaged backend asks desktop GL questions that OpenGL ES answers with an error
     }
+}
+
+bool Gui::pressed(int key, bool ctrl) const {
+    return std::any_of(keys_.begin(), keys_.end(), [&](const Key& k) { return k.key == key && k.ctrl == ctrl; });
 }
 
 }  // namespace palpa

@@ -1,17 +1,18 @@
 #pragma once
-// Dear ImGui on a Window: set up, fed with events, drawn. The panels themselves are in panels.h.
+// Dear ImGui on a Window: set up, fed with events, drawn. What is on it: trial_screen.h and its neighbours.
 
+#include <optional>
+#include <string>
 #include <vector>
 
+#include "app/layout.h"
 #include "platform/window.h"
-
-struct ImDrawList;
 
 namespace palpa {
 
-// A rectangle of the screen that belongs to a panel: presses in it reach no tissue.
-struct PanelArea {
-    float x0 = 0.0f, y0 = 0.0f, x1 = 0.0f, y1 = 0.0f;
+struct WindowSize {
+    float width = 0.0f;  // px
+    float height = 0.0f;
 };
 
 class Gui {
@@ -21,19 +22,52 @@ class Gui {
     Gui(const Gui&) = delete;
     Gui& operator=(const Gui&) = delete;
 
-    void begin_frame(double dt_s);
+    void set_scale(float px_per_mm);  // of what is touched and read; takes effect at once, outside of a frame
+    float mm() const { return mm_; }
+    WindowSize size_px() const;  // of the frame
+
+    // keys_to_panels: arrows, Tab and Space move between the controls instead of the indenter.
+    void begin_frame(double dt_s, bool keys_to_panels);
     void end_frame();  // closes the panels
     void draw();       // hands them to GL
+
+    // Presses in a claimed area reach no tissue (from the next event on, until the next frame says anew).
     void claim(const PanelArea& area) { areas_.push_back(area); }
-    float scale() const { return scale_; }
+    // Whether a key (SDL_Keycode) went down since the last frame. Never while a number is typed.
+    bool pressed(int key, bool ctrl = false) const;
+
+    // A panel that does not fit into its place says so; for tests, and for `run --json`.
+    void note_overflow(const std::string& panel) { overflow_ = panel; }
+    const std::string& overflow() const { return overflow_; }
 
  private:
     static bool filter(const SDL_Event& event, void* self);
+    bool receive(const SDL_Event& event);
+    bool receive_finger(const SDL_Event& event);
+    bool receive_key(const SDL_Event& event);
     bool owns(float x_px, float y_px) const;
+
+    struct Click {
+        float x_px, y_px;
+        bool down;
+    };
+    struct Key {
+        int key;
+        bool ctrl;
+    };
 
     Window& window_;
     std::vector<PanelArea> areas_;  // of the frame before
-    float scale_ = 1.0f;
+    std::vector<Click> clicks_;     // one is handed over per frame, so that none is too quick to be seen
+    std::vector<Key> keys_;
+    std::optional<long long> finger_;  // the one that uses the panels; others may palpate meanwhile
+    bool mouse_on_panel_ = false;
+    bool keys_to_panels_ = false;
+    float pointer_x_px_ = -1e6f;
+    float pointer_y_px_ = -1e6f;
+    float mm_ = 0.0f;
+    std::string font_file_;
+    std::string overflow_;
 };
 
 }  // namespace palpa

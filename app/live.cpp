@@ -1,17 +1,17 @@
 #include "app/live.h"
 
+#include <SDL.h>
+
 #include <algorithm>
-#include <optional>
+#include <exception>
 #include <stdexcept>
 
+#include "app/frame.h"
 #include "app/load.h"
-#include "app/log.h"
 #include "app/prepare.h"
 #include "app/replay.h"
-#include "app/screenshot.h"
+#include "app/save_picture.h"
 #include "files/text.h"
-#include "platform/trace.h"
-#include "platform/window.h"
 #include "render/gl.h"
 
 namespace palpa {
@@ -19,45 +19,29 @@ namespace {
 
 constexpr double kFrame_s = 1.0 / 60.0;  // of our own: software rendering has no vertical sync
 
-// Everything that one run has open.
-struct Live {
-    Scene scene;
-    Plan plan;
-    State state;
-    std::optional<Trace> trace;         // replayed
+// Everything that the app has open while its window is.
+struct App {
+    RunOptions options;
+    Settings settings;
+    std::filesystem::path settings_path;  // empty: this run keeps none
+    Screens screens;
+    Session session;
+    std::optional<Trace> trace;  // replayed
     std::size_t next_row = 0;
-    double trace_shift_s = 0.0;         // window's clock - trace's clock
-    std::optional<RunFiles> files;
-    std::optional<SampleLog> log;
-    std::optional<TraceWriter> record;
+    double trace_shift_s = 0.0;  // window's clock - trace's clock
     FrameTimes times;
     std::int64_t frames = 0;
-    std::vector<double> waiting_s;      // host times of the samples that no frame has shown yet
+    std::vector<double> waiting_s;  // host times of the samples that no frame has shown yet
+    std::string stopped;            // why the trial cannot go on
+    bool quit = false;
 };
 
-// Everything that bad input can refuse, before a window is there.
-void load(const RunOptions& options, Live& live) {
-    live.scene = load_scene(options.scene);
-    if (!live.scene.linear) live.plan = make_plan(live.scene);
-    if (!options.trace.empty()) live.trace = read_trace(options.trace);
-}
-
-// A tissue that has to be computed is, while the window shows how far. False if the window was closed meanwhile.
-bool prepare(Window& window, Gui& gui, Live& live) {
-    PlanInProgress work(live.scene);
-    std::vector<Sample> ignored;
-    while (!work.wait(1.0 / 60.0)) {
-        window.poll(0.0, ignored);
-        if (window.close_requested()) return false;
-        gui.begin_frame(1.0 / 60.0);
-        draw_progress("Preparing the tissue (once; later starts are quick)", work.share());
-        gui.end_frame();
-        clear_screen(window.width_px(), window.height_px());
-        gui.draw();
-        window.present();
-    }
-    live.plan = work.take();
-    return true;
+std::string screen_name(const Window& window) {
+    const int display = std::max(0, SDL_GetWindowDisplayIndex(window.sdl()));
+    SDL_DisplayMode mode{};
+    SDL_GetDesktopDisplayMode(display, &mode);
+    const char* name = SDL_GetDisplayName(display);
+    return std::string(name != nullptr ? name : "screen") + ", " + std::to_string(mode.w) + " x " + std::to_string(mode.h);
 }
 
 std::string device_names(const Window& window) {
@@ -66,141 +50,342 @@ std::string device_names(const Window& window) {
     return names.empty() ? "mouse" : names;
 }
 
-void open(const RunOptions& options, const Window& window, Live& live) {
-    double width_px = window.width_px();
-    double height_px = window.height_px();
-    if (live.trace) {
-        width_px = live.trace->info.screen_width_px;
-        height_px = live.trace->info.screen_height_px;
+TraceInfo info_of(const App& app, const Window& window) {
+    if (app.trace) return app.trace->info;
+    TraceInfo info;
+    info.screen_width_px = window.width_px();
+    info.screen_height_px = window.height_px();
+    if (std::isfinite(app.screens.px_per_mm)) {
+        info.screen_width_mm = info.screen_width_px / app.screens.px_per_mm;
+        info.screen_height_mm = info.screen_height_px / app.screens.px_per_mm;
     }
-    live.state = start(live.scene, live.plan, width_px, height_px);
-    live.state.time_every = 16;
-    if (!options.record.empty()) {
-        TraceInfo info;
-        info.screen_width_px = width_px;
-        info.screen_height_px = height_px;
-        info.device = live.trace ? live.trace->info.device : device_names(window);
-        live.record.emplace(options.record, info);
+    info.device = device_names(window);
+    return info;
+}
+
+void note_devices(const Window& window, App& app) {
+    std::vector<std::string>& notes = app.screens.device_notes;
+    notes.clear();
+    if (app.trace) {
+        notes.push_back("Replay of " + app.options.trace);
+        return;
     }
-    if (!options.log.empty()) {
-        live.files = next_run(options.log, options.participant);
-        live.log.emplace(*live.files);
+    bool pressure = false;
+    for (const PointerDevice& device : window.devices()) pressure = pressure || device.has_pressure;
+    if (!window.input_note().empty()) notes.push_back(window.input_note());
+    if (!pressure) {
+        notes.push_back("No pen or finger with a pressure sensor here. Press with the mouse (hold its button, or turn the wheel) "
+                        "or with the keys (arrows move, Space presses).");
     }
-    live.waiting_s.reserve(4096);
+}
+
+// Takes a problem to the screen instead of out of the program.
+template <class Work>
+bool attempt(App& app, const Work& work) {
+    try {
+        work();
+        return true;
+    } catch (const std::exception& error) {
+        app.screens.problems.push_back(error.what());
+        return false;
+    }
+}
+
+double now_of(const App& app, const Window& window) { return window.now_s() - app.trace_shift_s; }
+
+void begin(const Window& window, const Gui& gui, App& app) {
+    const TrialMode mode = app.settings.test_mode ? TrialMode::test : TrialMode::practice;
+    app.screens.screen = Screen::trial;
+    app.screens.menu = false;
+    app.screens.note.clear();
+    app.stopped.clear();
+    begin_trial({app.options.log, app.options.participant, app.options.record}, info_of(app, window), mode, app.session);
+    if (!app.trace) take_sample(resize_sample(window, gui, app.settings, now_of(app, window)), app.session);
+}
+
+Json result_of(const App& app) {
+    const Session& s = app.session;
+    Json result = run_json(s.scene, s.plan, s.state, app.frames, app.times.latency);
+    const auto ms = [](const Meter& meter, double q) { return 1e-6 * meter.quantile_ns(q); };
+    result["frame_cpu_ms"] = {{"p50", ms(app.times.cpu, 0.5)}, {"p99", ms(app.times.cpu, 0.99)}};
+    result["frame_gl_ms"] = {{"p50", ms(app.times.gl, 0.5)}, {"p99", ms(app.times.gl, 0.99)}};
+    result["trials"] = s.finished;
+    if (!s.trial.finished) result["trials"].push_back(trial_json(s.plan, s.trial));
+    return result;
+}
+
+// The files of the trial so far, whole on the disk; in words on the screen if that fails.
+bool close_trial(App& app) {
+    const std::string where = !app.options.log.empty() ? app.options.log : app.options.record;
+    if (close_files(result_of(app), app.session)) return true;
+    app.stopped = where + ": can no longer be written; stopped (is the disk full?)";
+    return false;
+}
+
+void begin_anew(const Window& window, const Gui& gui, App& app) {
+    if (!close_trial(app)) app.screens.problems.push_back(app.stopped);
+    if (!attempt(app, [&] { begin(window, gui, app); })) app.stopped = app.screens.problems.back();
+}
+
+// A tissue that has to be computed is, while the window shows how far. False if the window was closed meanwhile.
+bool prepare(Window& window, Gui& gui, const Scene& scene, Plan& plan) {
+    if (!scene.linear) {
+        plan = make_plan(scene);
+        return true;
+    }
+    PlanInProgress work(scene);
+    std::vector<Sample> ignored;
+    while (!work.wait(kFrame_s)) {
+        window.poll(0.0, ignored);
+        if (window.close_requested()) return false;
+        gui.begin_frame(kFrame_s, true);
+        draw_progress("Preparing the tissue (once; later starts are quick)", work.share());
+        gui.end_frame();
+        clear_screen(window.width_px(), window.height_px());
+        gui.draw();
+        window.present();
+    }
+    plan = work.take();
+    return true;
+}
+
+// Another scene or profile; whatever is wrong with it, the present one stays.
+void change_scene(Window& window, Gui& gui, const std::string& file, const std::string& profile, App& app) {
+    Scene scene;
+    Plan plan;
+    bool ready = false;
+    const bool good = attempt(app, [&] {
+        scene = load_scene(file);
+        if (!profile.empty()) scene.profile = profile;
+        ready = prepare(window, gui, scene, plan);
+    });
+    if (!good || !ready) return;
+    if (!close_trial(app)) app.screens.problems.push_back(app.stopped);
+    app.session.scene = std::move(scene);
+    app.session.plan = std::move(plan);
+    begin_anew(window, gui, app);
+}
+
+// The eight turns of the tissue in an order that the seed decides, so that nobody learns where its nodules are.
+void turn_tissue(App& app) {
+    Mapping& mapping = app.session.scene.mapping;
+    const int now = mapping.rotate_deg / 90 + (mapping.flip ? 4 : 0);
+    constexpr int kSteps[] = {3, 5};  // both reach all eight before any comes again
+    const int next = (now + kSteps[app.session.scene.seed % 2]) % 8;
+    mapping.rotate_deg = 90 * (next % 4);
+    mapping.flip = next >= 4;
+}
+
+void keep_settings(App& app) {
+    if (app.settings_path.empty()) return;
+    const std::string problem = save_settings(app.settings, app.settings_path);
+    if (!problem.empty()) app.screens.problems.push_back(problem);
+}
+
+void act(Action action, double now_s, App& app) {
+    Sample sample;
+    sample.t_host_s = now_s;
+    sample.phase = Phase::ui;
+    sample.action = action;
+    if (action == Action::mark) {
+        if (!app.session.trial.last_px) return;
+        sample.x_px = app.session.trial.last_px->x();
+        sample.y_px = app.session.trial.last_px->y();
+    }
+    take_sample(sample, app.session);
+    if (!app.session.trial.finished) return;
+    app.screens.debrief = debrief(app.session.plan, app.session.trial);
+    app.screens.screen = Screen::reveal;
+    app.screens.menu = false;
+    if (!close_trial(app)) app.screens.problems.push_back(app.stopped);
+}
+
+void change_settings(const Wishes& wishes, Window& window, Gui& gui, App& app) {
+    if (wishes.left_handed) app.settings.left_handed = *wishes.left_handed;
+    if (wishes.mode) app.settings.test_mode = *wishes.mode == TrialMode::test;
+    if (wishes.full_screen) {
+        app.settings.full_screen = !app.settings.full_screen;
+        SDL_SetWindowFullscreen(window.sdl(), app.settings.full_screen ? SDL_WINDOW_FULLSCREEN_DESKTOP : 0);
+    }
+    if (wishes.px_per_mm) {
+        app.screens.px_per_mm = *wishes.px_per_mm;
+        app.settings.px_per_mm.erase(app.screens.screen_name);
+        if (std::isfinite(*wishes.px_per_mm)) app.settings.px_per_mm[app.screens.screen_name] = *wishes.px_per_mm;
+    }
+    const bool changed = wishes.left_handed || wishes.mode || wishes.full_screen || wishes.px_per_mm || wishes.scene || wishes.profile;
+    if (changed) keep_settings(app);
+    // what was measured with another scale or shown another way is another trial
+    if (wishes.px_per_mm || wishes.mode) begin_anew(window, gui, app);
+}
+
+void carry_out(const Wishes& wishes, Window& window, Gui& gui, App& app) {
+    if (wishes.quit) app.quit = true;
+    if (wishes.action && app.screens.screen == Screen::trial && !app.trace) act(*wishes.action, now_of(app, window), app);
+    if (wishes.screen) {
+        app.screens.screen = *wishes.screen;
+        app.screens.menu = false;
+    }
+    if (wishes.scene) app.settings.scene = *wishes.scene;
+    if (wishes.profile) app.settings.profile = *wishes.profile;
+    if (wishes.scene || wishes.profile) {
+        change_scene(window, gui, wishes.scene.value_or(app.session.scene.file.string()), app.settings.profile, app);
+    }
+    change_settings(wishes, window, gui, app);
+    if (wishes.next) turn_tissue(app);
+    if (wishes.again || wishes.next) begin_anew(window, gui, app);
+    if (wishes.save_picture) {
+        attempt(app, [&] { app.screens.note = "Saved " + save_picture(window, app.options.log).string(); });
+    }
 }
 
 // Rows of the trace that are due, with the trace's own times.
-void take_due_rows(Live& live, double now_s, std::vector<Sample>& out) {
-    const auto& rows = live.trace->samples;
-    while (live.next_row < rows.size() && rows[live.next_row].t_host_s + live.trace_shift_s <= now_s) {
-        out.push_back(rows[live.next_row++]);
-    }
+void take_due_rows(App& app, double now_s, std::vector<Sample>& out) {
+    const auto& rows = app.trace->samples;
+    while (app.next_row < rows.size() && rows[app.next_row].t_host_s <= now_s) out.push_back(rows[app.next_row++]);
 }
 
-void take_sample(Live& live, const Sample& sample) {
-    if (live.record) live.record->write(sample);
-    advance(live.scene, live.plan, sample, live.state);
-    if (live.log) live.log->write(row_of(sample, live.plan, live.state));
-    if (live.waiting_s.size() < live.waiting_s.capacity()) live.waiting_s.push_back(sample.t_host_s + live.trace_shift_s);
+void take(const Sample& sample, App& app) {
+    take_sample(sample, app.session);
+    if (app.waiting_s.size() < app.waiting_s.capacity()) app.waiting_s.push_back(sample.t_host_s);
+    if (!app.session.trial.finished || app.screens.screen != Screen::trial) return;
+    app.screens.debrief = debrief(app.session.plan, app.session.trial);  // a trace that finishes its trial
+    app.screens.screen = Screen::reveal;
 }
 
-std::vector<std::string> device_messages(const Window& window) {
-    std::vector<std::string> messages;
-    bool pen = false;
-    for (const PointerDevice& device : window.devices()) pen = pen || device.has_pressure;
-    if (!window.input_note().empty()) messages.push_back(window.input_note());
-    if (!pen) messages.push_back("No pen or finger with a pressure sensor here. Press with the mouse: hold the button, or turn the wheel.");
-    return messages;
+// A window that changed its size, or a hand that changed sides, is input too: a replay must map positions alike.
+void note_resize(const Window& window, Gui& gui, App& app) {
+    const auto width_px = static_cast<float>(window.width_px());
+    gui.set_scale(control_scale(app.screens.px_per_mm, width_px, static_cast<float>(window.height_px())));
+    if (app.trace || app.session.trial.finished) return;
+    const Sample now = resize_sample(window, gui, app.settings, now_of(app, window));
+    const ScreenArea& area = app.session.state.screen;
+    const bool same = now.x_px == area.x_px && now.y_px == area.y_px && now.width_px == area.width_px && now.height_px == area.height_px;
+    if (!same) take(now, app);
 }
 
-// A window that changed its size is input too: a replay must map positions alike.
-void note_resize(const Window& window, Live& live) {
-    if (live.trace) return;
-    if (window.width_px() == static_cast<int>(live.state.screen_width_px) &&
-        window.height_px() == static_cast<int>(live.state.screen_height_px)) {
-        return;
-    }
-    Sample resize;
-    resize.t_host_s = window.now_s();
-    resize.phase = Phase::ui;
-    resize.action = Action::resize;
-    resize.x_px = window.width_px();
-    resize.y_px = window.height_px();
-    take_sample(live, resize);
-}
-
-void show(Window& window, Live& live, TissueDrawer& tissue, Gui& gui, PanelOptions& panel, double dt_s) {
-    const double now_s = window.now_s() - live.trace_shift_s;
-    draw_frame(live.scene, live.plan, now_s, dt_s, tissue, gui, panel, live.state, live.times);
+void show(Window& window, App& app, TissueDrawer& tissue, Gui& gui, double dt_s) {
+    if (app.frames % 60 == 0) note_devices(window, app);
+    const Session& s = app.session;
+    const Wishes wishes = draw_frame(s.scene, s.plan, s.trial, app.settings, now_of(app, window), dt_s, tissue, gui, app.screens,
+                                     app.session.state, app.times);
     window.present();
-    ++live.frames;
-    const double shown_s = window.now_s();
-    for (const double t_s : live.waiting_s) live.times.latency.add_ns(1e9 * (shown_s - t_s));
-    live.waiting_s.clear();
-    live.times.frames_per_s += 0.05 * (1.0 / std::max(dt_s, 1e-3) - live.times.frames_per_s);
+    ++app.frames;
+    const double shown_s = now_of(app, window);
+    for (const double t_s : app.waiting_s) app.times.latency.add_ns(1e9 * (shown_s - t_s));
+    app.waiting_s.clear();
+    app.times.frames_per_s += 0.05 * (1.0 / std::max(dt_s, 1e-3) - app.times.frames_per_s);
+    carry_out(wishes, window, gui, app);
 }
 
-void finish(const RunOptions& options, Live& live, const Json& result) {
-    bool good = true;
-    if (live.record) good = live.record->sync() && good;
-    if (live.log) good = live.log->sync() && good;
-    if (live.log && good) {
-        const std::string settings = json_text(settings_json(live.scene, live.plan, live.state));
-        write_text_atomically(live.files->file("_settings.json"), settings);
-        write_text_atomically(live.files->file("_performance.json"), json_text(result));
+// A log that can no longer be written stops the trial, in words; what came before is on the disk.
+void watch_files(App& app) {
+    if (!app.stopped.empty() || files_good(app.session)) return;
+    close_trial(app);
+    app.screens.problems.push_back(app.stopped);
+}
+
+bool over(const Window& window, const App& app, double since_s) {
+    if (window.close_requested() || app.quit) return true;
+    if (app.trace && app.next_row == app.trace->samples.size()) return true;
+    return app.options.quit_after_s > 0.0 && since_s > app.options.quit_after_s;
+}
+
+void run_loop(Window& window, Gui& gui, TissueDrawer& tissue, double asked_s, double& first_frame_s, App& app) {
+    const double began_s = window.now_s();
+    double frame_s = began_s;
+    std::vector<Sample> samples;
+    app.waiting_s.reserve(4096);
+    while (!over(window, app, window.now_s() - began_s)) {
+        samples.clear();
+        window.poll(std::max(0.0, frame_s + kFrame_s - window.now_s()), samples);  // 1. read
+        if (app.trace) {
+            samples.clear();
+            take_due_rows(app, now_of(app, window), samples);
+        }
+        note_resize(window, gui, app);
+        if (app.stopped.empty()) {
+            for (const Sample& sample : samples) take(sample, app);                // 2. simulate, 3. log
+        }
+        watch_files(app);
+        const double now_s = window.now_s();
+        if (now_s - frame_s < kFrame_s && app.frames > 0) continue;
+        show(window, app, tissue, gui, now_s - frame_s);                           // 4. show
+        frame_s = now_s;
+        if (app.frames == 1) first_frame_s = 1e-9 * static_cast<double>(steady_ns()) - asked_s;
     }
-    if (!good) throw std::runtime_error((live.log ? options.log : options.record) + ": can no longer be written; stopped (is the disk full?)");
+}
+
+// Everything that bad input can refuse, before a window is there.
+void load(const RunOptions& options, App& app) {
+    app.options = options;
+    app.settings_path = settings_file();
+    std::string problem;
+    app.settings = load_settings(app.settings_path, problem);
+    if (!problem.empty()) app.screens.problems.push_back(problem);
+    if (options.test) app.settings.test_mode = true;
+    if (options.practice) app.settings.test_mode = false;
+    if (options.left_handed) app.settings.left_handed = true;
+    if (options.width_px > 0) app.settings.width_px = options.width_px;
+    if (options.height_px > 0) app.settings.height_px = options.height_px;
+    app.screens.scenes = scene_choices();
+    app.screens.profiles = profile_choices();
+    app.screens.screen = options.screen;
+    if (!options.trace.empty()) {
+        app.trace = read_trace(options.trace);
+        app.settings.width_px = static_cast<int>(app.trace->info.screen_width_px);
+        app.settings.height_px = static_cast<int>(app.trace->info.screen_height_px);
+    }
+    const bool own_choice = options.scene.empty() && !app.trace;  // a replay is the same for everybody
+    Scene& scene = app.session.scene;
+    if (own_choice && !app.settings.scene.empty()) attempt(app, [&] { scene = load_scene(app.settings.scene); });
+    if (scene.name.empty()) scene = load_scene(options.scene);
+    if (own_choice && std::filesystem::exists(app.settings.profile)) scene.profile = app.settings.profile;
+    if (!scene.linear) app.session.plan = make_plan(scene);
+}
+
+void know_screen(const Window& window, App& app) {
+    app.screens.screen_name = screen_name(window);
+    const auto known = app.settings.px_per_mm.find(app.screens.screen_name);
+    if (known != app.settings.px_per_mm.end()) app.screens.card_px_per_mm = app.screens.px_per_mm = known->second;
+}
+
+void remember_window(const Window& window, App& app) {
+    if (app.trace || app.settings.full_screen || app.options.width_px > 0 || app.options.height_px > 0) return;
+    if (app.settings.width_px == window.width_px() && app.settings.height_px == window.height_px()) return;
+    app.settings.width_px = window.width_px();
+    app.settings.height_px = window.height_px();
+    keep_settings(app);
 }
 
 }  // namespace
 
 std::optional<Json> run_live(const RunOptions& options) {
-    WindowOptions window_options;
-    window_options.width_px = options.width_px;
-    window_options.height_px = options.height_px;
     const double asked_s = 1e-9 * static_cast<double>(steady_ns());
-    Live live;
-    load(options, live);
+    App app;
+    load(options, app);
+    WindowOptions window_options;
+    window_options.width_px = app.settings.width_px;
+    window_options.height_px = app.settings.height_px;
     Window window(window_options);
+    if (app.settings.full_screen && !app.trace) SDL_SetWindowFullscreen(window.sdl(), SDL_WINDOW_FULLSCREEN_DESKTOP);
+    know_screen(window, app);
     Gui gui(window);
-    if (live.scene.linear && !prepare(window, gui, live)) return std::nullopt;
-    open(options, window, live);
+    gui.set_scale(control_scale(app.screens.px_per_mm, static_cast<float>(window.width_px()), static_cast<float>(window.height_px())));
+    if (app.session.scene.linear && !prepare(window, gui, app.session.scene, app.session.plan)) return std::nullopt;
+    if (app.trace) app.trace_shift_s = window.now_s() - app.trace->samples.front().t_host_s;
+    const Screen first = app.screens.screen;
+    begin(window, gui, app);
+    app.screens.screen = first;
     TissueDrawer tissue;
-    PanelOptions panel;
-    panel.messages = live.trace ? std::vector<std::string>{"replay of " + options.trace} : device_messages(window);
-
-    const double began_s = window.now_s();
-    if (live.trace) live.trace_shift_s = began_s - live.trace->samples.front().t_host_s;
-    double frame_s = began_s;
     double first_frame_s = 0.0;
-    std::vector<Sample> samples;
-    while (!window.close_requested()) {
-        samples.clear();
-        window.poll(std::max(0.0, frame_s + kFrame_s - window.now_s()), samples);  // 1. read
-        if (live.trace) {
-            samples.clear();
-            take_due_rows(live, window.now_s(), samples);
-        }
-        note_resize(window, live);
-        for (const Sample& sample : samples) take_sample(live, sample);            // 2. simulate, 3. log
-        const double now_s = window.now_s();
-        if (live.frames % 60 == 0 && !live.trace) panel.messages = device_messages(window);
-        if (now_s - frame_s >= kFrame_s || live.frames == 0) {
-            show(window, live, tissue, gui, panel, now_s - frame_s);               // 4. show
-            frame_s = now_s;
-            if (live.frames == 1) first_frame_s = 1e-9 * static_cast<double>(steady_ns()) - asked_s;
-        }
-        const bool failed = (live.log && live.log->failed()) || (live.record && live.record->failed());
-        if (failed) break;  // finish() says so, after it has saved what it can
-        if (live.trace && live.next_row == live.trace->samples.size()) break;
-        if (options.quit_after_s > 0.0 && now_s - began_s > options.quit_after_s) break;
-    }
+    run_loop(window, gui, tissue, asked_s, first_frame_s, app);
     if (!options.screenshot.empty()) save_screen(window, options.screenshot);
-    Json result = run_json(live.scene, live.plan, live.state, live.frames, live.times.latency);
-    result["frame_cpu_ms"] = {{"p50", 1e-6 * live.times.cpu.quantile_ns(0.5)}, {"p99", 1e-6 * live.times.cpu.quantile_ns(0.99)}};
-    result["frame_gl_ms"] = {{"p50", 1e-6 * live.times.gl.quantile_ns(0.5)}, {"p99", 1e-6 * live.times.gl.quantile_ns(0.99)}};
+    remember_window(window, app);
+    Json result = result_of(app);
     result["start_to_first_frame_s"] = first_frame_s;
-    finish(options, live, result);
+    result["overflow"] = gui.overflow();
+    const bool good = close_trial(app);
+    if (!good || !app.stopped.empty()) throw std::runtime_error(app.stopped);
     return result;
 }
 

@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "app/screens.h"
 #include "files/json.h"
 
 namespace palpa {
@@ -18,8 +19,12 @@ struct RunOptions {
     std::string record;       // TRACE.tsv, empty for none
     std::string screenshot;   // of the last frame
     double quit_after_s = 0.0;  // 0: until the window is closed
-    int width_px = 1280;
-    int height_px = 800;
+    int width_px = 0;         // 0: as last time
+    int height_px = 0;
+    bool test = false;        // nodules hidden until the end; neither: as last time
+    bool practice = false;    // nodules shown
+    bool left_handed = false;
+    Screen screen = Screen::trial;  // that is open first
     bool headless = false;
     bool json = false;
 };

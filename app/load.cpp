@@ -1,18 +1,64 @@
 #include "app/load.h"
 
+#include <algorithm>
+#include <cstdlib>
+#include <exception>
+
 #include "app/assets.h"
 #include "files/input_error.h"
+#include "files/json.h"
 
 namespace palpa {
+namespace {
+
+namespace fs = std::filesystem;
+
+fs::path user_folder() {
+    if (const char* data = std::getenv("XDG_DATA_HOME"); data != nullptr && *data == '/') return fs::path(data) / "palpa";
+    if (const char* home = std::getenv("HOME"); home != nullptr && *home == '/') return fs::path(home) / ".local/share/palpa";
+    return {};
+}
+
+std::string name_in(const fs::path& file) {
+    try {
+        const Json json = read_json(file);
+        if (json.contains("name") && json["name"].is_string()) return json["name"];
+    } catch (const std::exception&) {
+        return {};  // another file of the folder; choosing it would say what is wrong
+    }
+    return file.stem().string();
+}
+
+void add_choices(const fs::path& folder, std::vector<Choice>& out) {
+    std::error_code error;
+    for (const auto& entry : fs::directory_iterator(folder, error)) {
+        if (entry.path().extension() != ".json") continue;
+        const std::string name = name_in(entry.path());
+        if (!name.empty()) out.push_back({name, entry.path().string()});
+    }
+}
+
+std::vector<Choice> choices(const char* kind) {
+    std::vector<Choice> out;
+    add_choices(assets_folder() / kind, out);
+    add_choices(user_folder() / kind, out);
+    std::sort(out.begin(), out.end(), [](const Choice& a, const Choice& b) { return a.name < b.name; });
+    return out;
+}
+
+}  // namespace
 
 Scene load_scene(const std::string& name) {
-    const std::filesystem::path assets = assets_folder();
+    const fs::path assets = assets_folder();
     if (name.empty()) return read_scene(assets / "scenes" / "default.json", assets);
-    if (std::filesystem::is_directory(name)) return scene_of_map(name, assets);
-    if (!std::filesystem::exists(name)) throw bad_input(name, "", "nothing", "a scene SCENE.json or a map folder");
+    if (fs::is_directory(name)) return scene_of_map(name, assets);
+    if (!fs::exists(name)) throw bad_input(name, "", "nothing", "a scene SCENE.json or a map folder");
     return read_scene(name, assets);
 }
 
-std::filesystem::path default_trace() { return assets_folder() / "traces" / "raster.tsv"; }
+std::vector<Choice> scene_choices() { return choices("scenes"); }
+std::vector<Choice> profile_choices() { return choices("profiles"); }
+
+fs::path default_trace() { return assets_folder() / "traces" / "raster.tsv"; }
 
 }  // namespace palpa

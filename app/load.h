@@ -1,15 +1,22 @@
 #pragma once
-// What a person names on the command line becomes a scene.
+// What a person names on the command line, or chooses in the menu, becomes a scene.
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
+#include "app/screens.h"
 #include "scene/scene.h"
 
 namespace palpa {
 
 // "" = the default scene; NAME.json = a scene; a folder = a map with default effects.
 Scene load_scene(const std::string& name);
+
+// What the menu offers: the shipped scenes and profiles, and those in the user's data folder
+// ($XDG_DATA_HOME/palpa/scenes and profiles). Files that cannot be read are left out.
+std::vector<Choice> scene_choices();
+std::vector<Choice> profile_choices();
 
 std::filesystem::path default_trace();
 

@@ -1,5 +1,7 @@
 #include "app/log.h"
 
+#include <cmath>
+
 #include "files/text.h"
 
 namespace palpa {
@@ -46,7 +48,9 @@ Json settings_json(const Scene& scene, const Plan& plan, const State& state) {
         json["tissue"]["smoothing_mm"] = 1e3 * tissue->smoothing_m;
     }
     json["profile"] = {{"id", plan.profile.id}, {"a_N", plan.profile.curve.a_N}, {"b", plan.profile.curve.b}};
-    json["screen_px"] = {state.screen_width_px, state.screen_height_px};
+    json["tissue_area_px"] = {state.screen.x_px, state.screen.y_px, state.screen.width_px, state.screen.height_px};
+    if (std::isfinite(state.screen.px_per_m)) json["screen_px_per_mm"] = 1e-3 * state.screen.px_per_m;
+    json["mapping"] = {{"rotate_deg", scene.mapping.rotate_deg}, {"flip", scene.mapping.flip}};
     json["stages"] = Json::array();
     for (const auto* stages : {&plan.sample_stages, &plan.frame_stages}) {
         for (const Stage& stage : *stages) {

@@ -9,10 +9,10 @@ glm::vec2 to_gl(const Eigen::Vector2d& v) { return {v.x(), v.y()}; }
 
 }  // namespace
 
-TissueView tissue_view(const Scene& scene, const State& state) {
+TissueView tissue_view(const Scene& scene, const State& state, float window_width_px, float window_height_px) {
     const View& view = state.view;
     TissueView out;
-    out.area_px = {state.screen_width_px, state.screen_height_px};
+    out.area_px = {window_width_px, window_height_px};
     out.centre_px = to_gl(view.centre_px);
     out.centre_m = to_gl(view.area.centre_m);
     out.size_m = to_gl(view.area.size_m);

@@ -8,7 +8,7 @@
 namespace palpa {
 
 // As the scene maps it; an indirect scene is drawn tilted, since no pen has to lie on it.
-TissueView tissue_view(const Scene& scene, const State& state);
+TissueView tissue_view(const Scene& scene, const State& state, float window_width_px, float window_height_px);
 
 Dent dent_of(const SurfaceCurve& curve, const Avatar& avatar);
 

@@ -36,7 +36,7 @@ class Pen {
  public:
     Pen(const Scene& scene, const Plan& plan, const RasterOptions& options)
         : plan_(plan), options_(options), random_(options.seed), force_scale_(scene.force_scale) {
-        view_ = make_view(scene.mapping, plan.area, options.screen_width_px, options.screen_height_px);
+        view_ = make_view(scene.mapping, plan.area, {options.screen_width_px, options.screen_height_px});
         trace_.info.screen_width_px = options.screen_width_px;
         trace_.info.screen_height_px = options.screen_height_px;
         trace_.info.device = "simulated pen, raster";

@@ -1,5 +1,7 @@
 #include "app/replay.h"
 
+#include "app/session.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -30,7 +32,7 @@ ReplayResult replay(const Scene& scene, const Plan& plan, const Trace& trace, in
     ReplayResult result;
     for (const Nodule& nodule : plan.nodules) result.over.push_back({nodule.id, 0.0});
     State& state = result.state;
-    state = start(scene, plan, trace.info.screen_width_px, trace.info.screen_height_px);
+    state = start(scene, plan, screen_of(trace.info));
     state.time_every = time_every;
     Eigen::VectorXd sink_m;
     bool first = true;

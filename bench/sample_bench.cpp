@@ -30,12 +30,12 @@ struct Loaded {
 
 void samples(benchmark::State& bench, const char* name) {
     const Loaded loaded(name);
-    State state = start(loaded.scene, loaded.plan, 1280, 800);
+    State state = start(loaded.scene, loaded.plan, {1280, 800});
     std::size_t i = 0;
     for (auto _ : bench) {
         if (i == loaded.trace.samples.size()) {
             bench.PauseTiming();
-            state = start(loaded.scene, loaded.plan, 1280, 800);
+            state = start(loaded.scene, loaded.plan, {1280, 800});
             i = 0;
             bench.ResumeTiming();
         }
@@ -43,7 +43,7 @@ void samples(benchmark::State& bench, const char* name) {
         benchmark::DoNotOptimize(state.avatar);
     }
     Meter single;
-    state = start(loaded.scene, loaded.plan, 1280, 800);
+    state = start(loaded.scene, loaded.plan, {1280, 800});
     for (const Sample& sample : loaded.trace.samples) {
         const std::int64_t before_ns = steady_ns();
         advance(loaded.scene, loaded.plan, sample, state);

@@ -7,7 +7,8 @@ namespace {
 
 constexpr std::array<std::string_view, 3> kTools{"pen", "finger", "mouse"};
 constexpr std::array<std::string_view, 6> kPhases{"hover", "down", "move", "up", "cancel", "ui"};
-constexpr std::array<std::string_view, 5> kActions{"n/a", "resize", "mark", "undo", "finish"};
+constexpr std::array<std::string_view, 10> kActions{"n/a", "resize", "mark", "undo", "finish", "confidence_1",
+                                                     "confidence_2", "confidence_3", "confidence_4", "confidence_5"};
 
 template <class Enum, std::size_t N>
 bool parse(std::string_view name, const std::array<std::string_view, N>& names, Enum& out) {

@@ -15,8 +15,11 @@ enum class Tool : std::uint8_t { pen, finger, mouse };
 enum class Phase : std::uint8_t { hover, down, move, up, cancel, ui };
 
 // What a person asked of the program between samples; only rows of phase `ui` carry one.
-// resize: x_px, y_px hold the new size of the screen area, so that a replay maps positions alike.
-enum class Action : std::uint8_t { none, resize, mark, undo, finish };
+// resize: x_px, y_px, width_px, height_px hold the part of the window that the tissue has now, so that a replay maps
+// positions alike. mark: x_px, y_px hold its place. confidence_*: how sure the person is of the last mark.
+enum class Action : std::uint8_t {
+    none, resize, mark, undo, finish, confidence_1, confidence_2, confidence_3, confidence_4, confidence_5
+};
 
 struct Sample {
     double t_host_s = 0.0;             // steady clock of the host, stamped on arrival

@@ -211,18 +211,24 @@ void run_stages(const Scene& scene, const Plan& plan, const Sample& sample, Stat
     }
 }
 
-void resize(const Scene& scene, const Plan& plan, double width_px, double height_px, State& state) {
-    if (!(width_px >= 1.0 && height_px >= 1.0 && width_px < 1e6 && height_px < 1e6)) return;
-    state.screen_width_px = width_px;
-    state.screen_height_px = height_px;
-    state.view = make_view(scene.mapping, plan.area, width_px, height_px);
+void resize(const Scene& scene, const Plan& plan, const ScreenArea& screen, State& state) {
+    constexpr double kMost_px = 1e6;
+    const bool sized = screen.width_px >= 1.0 && screen.height_px >= 1.0 && screen.width_px < kMost_px &&
+                       screen.height_px < kMost_px;
+    if (!sized || !(std::abs(screen.x_px) < kMost_px && std::abs(screen.y_px) < kMost_px)) return;
+    state.screen = screen;
+    state.view = make_view(scene.mapping, plan.area, screen);
+}
+
+ScreenArea area_of(const Sample& resize, const State& state) {
+    return {resize.width_px, resize.height_px, resize.x_px, resize.y_px, state.screen.px_per_m};
 }
 
 }  // namespace
 
-State start(const Scene& scene, const Plan& plan, double screen_width_px, double screen_height_px) {
+State start(const Scene& scene, const Plan& plan, const ScreenArea& screen) {
     State state;
-    resize(scene, plan, screen_width_px, screen_height_px, state);
+    resize(scene, plan, screen, state);
     if (scene.display_ratio) state.display_ratio.emplace();
     if (scene.delay) state.delay.emplace();
     if (const auto* linear = std::get_if<LinearTissue>(&plan.tissue)) state.linear = make_linear_work(*linear);
@@ -233,7 +239,7 @@ void advance(const Scene& scene, const Plan& plan, const Sample& sample, State& 
     ++state.counters.samples;
     state.answered = false;
     if (sample.phase == Phase::ui) {
-        if (sample.action == Action::resize) resize(scene, plan, sample.x_px, sample.y_px, state);
+        if (sample.action == Action::resize) resize(scene, plan, area_of(sample, state), state);
         return;
     }
     if (!std::isfinite(sample.x_px) || !std::isfinite(sample.y_px)) {

@@ -8,8 +8,8 @@ namespace palpa {
 
 inline constexpr double kGrid_Hz = 240.0;
 
-// `screen_*_px`: the area that samples and views refer to.
-State start(const Scene& scene, const Plan& plan, double screen_width_px, double screen_height_px);
+// `screen`: where the tissue is drawn and pressed. A sample of action `resize` changes it.
+State start(const Scene& scene, const Plan& plan, const ScreenArea& screen);
 
 // Goes exactly to the sample's time. The gap since the last sample is walked on the 240 Hz grid of the touch;
 // gaps of more than a minute are cut and the steps counted as dropped.

@@ -1,6 +1,7 @@
 #include "scene/mapping.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace palpa {
 namespace {
@@ -9,10 +10,11 @@ constexpr double kShareOfScreen = 0.94;  // the tissue's longer side against the
 
 }  // namespace
 
-View make_view(const Mapping& mapping, const TissueArea& area, double width_px, double height_px) {
+View make_view(const Mapping& mapping, const TissueArea& area, const ScreenArea& screen) {
     View view;
     view.area = area;
-    view.centre_px = 0.5 * Eigen::Vector2d(width_px, height_px);
+    const Eigen::Vector2d size_px(screen.width_px, screen.height_px);
+    view.centre_px = Eigen::Vector2d(screen.x_px, screen.y_px) + 0.5 * size_px;
 
     Eigen::Matrix2d turn = Eigen::Matrix2d::Identity();
     const Eigen::Matrix2d quarter = (Eigen::Matrix2d() << 0.0, -1.0, 1.0, 0.0).finished();
@@ -26,10 +28,15 @@ View make_view(const Mapping& mapping, const TissueArea& area, double width_px, 
     const bool on_its_side = mapping.rotate_deg % 180 != 0;
     const Eigen::Vector2d shown_m =
         on_its_side ? Eigen::Vector2d(area.size_m.y(), area.size_m.x()) : Eigen::Vector2d(area.size_m);
-    view.px_per_m = kShareOfScreen * std::min(width_px / shown_m.x(), height_px / shown_m.y());
+    const Eigen::Vector2d fill_px_per_m = size_px.cwiseQuotient(shown_m);
+    view.px_per_m = kShareOfScreen * fill_px_per_m.minCoeff();
+    if (mapping.kind == MappingKind::direct && mapping.true_size && std::isfinite(screen.px_per_m)) {
+        view.px_per_m = std::min(view.px_per_m, screen.px_per_m);
+    }
+    view.scale = view.px_per_m / screen.px_per_m;
     view.input_px_per_m.setConstant(view.px_per_m);
     if (mapping.kind == MappingKind::indirect) {
-        view.input_px_per_m = Eigen::Vector2d(width_px / shown_m.x(), height_px / shown_m.y());
+        view.input_px_per_m = fill_px_per_m;
     }
     return view;
 }

@@ -1,6 +1,7 @@
 #include "scene/plan.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "calibration/profile_file.h"
 #include "files/cache.h"
@@ -116,12 +117,55 @@ MapTissue load_map(const Scene& scene) {
     return tissue;
 }
 
+// What reaches a depth at the median place, so that few nodules do not count.
+double median_force_N(const MapTissue& tissue, double depth_m) {
+    const Map& map = tissue.map;
+    const auto above = std::upper_bound(map.depths_m.begin(), map.depths_m.end(), depth_m) - map.depths_m.begin();
+    const auto high = std::min<std::size_t>(static_cast<std::size_t>(above), map.n_depths() - 1);
+    const std::size_t low = high > 0 ? high - 1 : 0;
+    const double low_m = above > 0 ? map.depths_m[low] : 0.0;
+    const double s = std::clamp((depth_m - low_m) / (map.depths_m[high] - low_m + 1e-12), 0.0, 1.0);
+    std::vector<double> forces_N;
+    for (std::size_t cell = 0; cell < map.n_cells(); ++cell) {
+        const double low_N = above > 0 ? static_cast<double>(map.normal_N[low * map.n_cells() + cell]) : 0.0;
+        const double force_N = (1.0 - s) * low_N + s * static_cast<double>(map.normal_N[high * map.n_cells() + cell]);
+        if (std::isfinite(force_N)) forces_N.push_back(force_N);
+    }
+    if (forces_N.empty()) return 0.0;
+    const auto middle = forces_N.begin() + static_cast<std::ptrdiff_t>(forces_N.size() / 2);
+    std::nth_element(forces_N.begin(), middle, forces_N.end());
+    return *middle;
+}
+
+// The same at five places, by bisection: a linear block answers forces with depths.
+double median_force_N(const LinearTissue& tissue, double depth_m) {
+    LinearWork work = make_linear_work(tissue);
+    const Eigen::Vector2d size_m(tissue.phantom.size_m[0], tissue.phantom.size_m[1]);
+    std::vector<double> forces_N;
+    for (const Eigen::Vector2d& share : {Eigen::Vector2d(0.5, 0.5), {0.25, 0.25}, {0.75, 0.25}, {0.25, 0.75}, {0.75, 0.75}}) {
+        double low_N = 0.0;
+        double high_N = kBarOfLinear_N;
+        for (int i = 0; i < 20; ++i) {
+            const double force_N = 0.5 * (low_N + high_N);
+            const LinearAnswer answer = press(tissue, size_m.cwiseProduct(share), force_N, work);
+            (answer.depth_m < depth_m && !answer.saturated ? low_N : high_N) = force_N;
+        }
+        forces_N.push_back(high_N);
+    }
+    std::sort(forces_N.begin(), forces_N.end());
+    return forces_N[2];
+}
+
+std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
 void describe(const MapTissue& tissue, Plan& plan) {
     const Map& map = tissue.map;
     plan.tissue_name = map.name;
     plan.source = map.source.kind;
     plan.nodules = map.nodules;
     plan.greatest_force_N = force_range(map).highest_N;
+    plan.greatest_depth_m = map.depths_m.back();
+    for (const int third : {1, 2}) plan.zone_N[at(third - 1)] = median_force_N(tissue, third * plan.greatest_depth_m / 3.0);
     plan.indenter_radius_m = map.indenter_radius_m;
     const Eigen::Vector2d first(map.origin_m[0], map.origin_m[1]);
     const Eigen::Vector2d last(map.x_of(map.n_x - 1), map.y_of(map.n_y - 1));
@@ -135,6 +179,8 @@ void describe(const LinearTissue& tissue, Plan& plan) {
     plan.source = SourceKind::simulated;
     plan.nodules = placed_nodules(phantom);
     plan.greatest_force_N = kBarOfLinear_N;
+    plan.greatest_depth_m = phantom.depths_m.back();
+    for (const int third : {1, 2}) plan.zone_N[at(third - 1)] = median_force_N(tissue, third * plan.greatest_depth_m / 3.0);
     plan.indenter_radius_m = phantom.indenter_radius_m;
     plan.area.size_m = Eigen::Vector2d(phantom.size_m[0], phantom.size_m[1]);
     plan.area.centre_m = 0.5 * plan.area.size_m;

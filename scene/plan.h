@@ -2,6 +2,7 @@
 // The ordered list of stages that a scene needs, with the data each one needs. What no effect asks for is not
 // in it: it allocates nothing and is never called.
 
+#include <array>
 #include <string>
 #include <variant>
 #include <vector>
@@ -43,6 +44,9 @@ struct Plan {
     SourceKind source = SourceKind::recorded;
     std::vector<Nodule> nodules;
     double greatest_force_N = 1.0;  // of the force bar
+    double greatest_depth_m = 0.0;  // that the tissue is known for
+    // Forces that reach a third and two thirds of it on plain tissue: light, medium and deep palpation.
+    std::array<double, 2> zone_N{0.0, 0.0};
     TissueArea area;
     double indenter_radius_m = 4e-3;
 };

@@ -27,6 +27,7 @@ Mapping read_mapping(JsonReader json) {
         }
     }
     mapping.flip = json.boolean("flip", false);
+    mapping.true_size = json.boolean("true_size", true);
     if (json.has("tissue_mm")) {
         const auto size_mm = json.numbers("tissue_mm", 2, {0.0, 1e4, true});
         mapping.tissue_m = Eigen::Vector2d(1e-3 * size_mm[0], 1e-3 * size_mm[1]);

@@ -53,8 +53,7 @@ struct Extremes {
 struct State {
     Timeline timeline;
     View view;
-    double screen_width_px = 0.0;
-    double screen_height_px = 0.0;
+    ScreenArea screen;
     std::optional<std::int64_t> pointer;  // the one that touches; others are logged, and press nothing
     bool without_level = false;           // the device of this touch does not report what the profile reads
     bool answered = false;                // the last sample belonged to it (or nothing touches)

@@ -1,16 +1,15 @@
 #include "study/sample_log.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cstdio>
 #include <stdexcept>
 
 #include "files/input_error.h"
 #include "files/json.h"
 #include "files/text.h"
+#include "study/rows.h"
 
 namespace palpa {
-namespace {
 
 // One list writes header, explanation and every row.
 template <class Visit>
@@ -19,7 +18,7 @@ void visit_fields(const SampleRow& r, Visit&& visit) {
     visit("t_device_s", r.t_device_s, "s", "time of the sample, device's or X server's clock");
     visit("trial", r.trial, "", "number of the trial");
     visit("pointer_id", r.pointer_id, "", "tells fingers and pens apart while they touch");
-    visit("tool", r.tool, "", "pen, finger or mouse");
+    visit("tool", r.tool, "", "pen, finger, mouse or keyboard");
     visit("phase", r.phase, "", "hover, down, move, up, cancel or ui");
     visit("x_mm", r.x_mm, "mm", "pen on the tissue, map's frame");
     visit("y_mm", r.y_mm, "mm", "pen on the tissue, map's frame");
@@ -35,24 +34,7 @@ void visit_fields(const SampleRow& r, Visit&& visit) {
     visit("ft_source", r.ft_source, "", "where the tangential force comes from: recorded, energy or none");
 }
 
-void append_field(double value, std::string& row) { append_number(value, row); }
-void append_field(std::int64_t value, std::string& row) {
-    char digits[24];
-    const auto [end, error] = std::to_chars(digits, digits + sizeof digits, value);
-    static_cast<void>(error);
-    row.append(digits, end);
-}
-void append_field(std::string_view value, std::string& row) { row.append(value); }
-
-std::string explanation() {
-    Json json;
-    visit_fields(SampleRow{}, [&](std::string_view name, const auto&, std::string_view unit, std::string_view text) {
-        Json& column = json[std::string(name)];
-        column["Description"] = text;
-        if (!unit.empty()) column["Units"] = unit;
-    });
-    return json_text(json);
-}
+namespace {
 
 void write_if_absent(const std::filesystem::path& path, const std::string& text) {
     if (!std::filesystem::exists(path)) write_text_atomically(path, text);
@@ -71,7 +53,7 @@ RunFiles next_run(const std::filesystem::path& directory, std::string_view parti
     std::error_code error;
     std::filesystem::create_directories(files.folder, error);
     if (error) throw std::runtime_error(files.folder.string() + ": cannot be created: " + error.message());
-    write_if_absent(directory / ".bidsignore", "*_samples.tsv\n*_samples.json\n*_marks.tsv\n*_settings.json\n*_performance.json\n");
+    write_if_absent(directory / ".bidsignore", "*_samples.tsv\n*_samples.json\n*_marks.tsv\n*_marks.json\n*_settings.json\n*_performance.json\n");
     write_if_absent(directory / "dataset_description.json", json_text({{"Name", "Palpa"}, {"BIDSVersion", "1.8.0"}}));
     for (int run = 1;; ++run) {
         char number[16];
@@ -82,22 +64,14 @@ RunFiles next_run(const std::filesystem::path& directory, std::string_view parti
 }
 
 SampleLog::SampleLog(const RunFiles& files) : file_(files.file("_samples.tsv")) {
-    write_text_atomically(files.file("_samples.json"), explanation());
-    visit_fields(SampleRow{}, [&](std::string_view name, const auto&, auto&&...) {
-        row_.append(row_.empty() ? "" : "\t").append(name);
-    });
-    file_.append(row_.append("\n"));
+    write_text_atomically(files.file("_samples.json"), explanation_of<SampleRow>());
+    file_.append(header_of<SampleRow>());
     constexpr std::size_t kLongestRow = 1024;
     row_.reserve(kLongestRow);
 }
 
 void SampleLog::write(const SampleRow& row) {
-    row_.clear();
-    visit_fields(row, [&](std::string_view, const auto& field, auto&&...) {
-        if (!row_.empty()) row_.push_back('\t');
-        append_field(field, row_);
-    });
-    row_.push_back('\n');
+    line_of(row, row_);
     file_.append(row_);
 }
 

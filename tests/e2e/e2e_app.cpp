@@ -21,7 +21,8 @@ using namespace palpa::test;
 namespace {
 
 constexpr double kScale = 0.94 * 800 / 120.0;  // px per mm of the default scene on 1280 x 800
-double x_px(double x_mm) { return 640.0 + (x_mm - 60.0) * kScale; }
+constexpr double kColumn_px = 62.0 * 96.0 / 25.4;  // the controls, left of the tissue
+double x_px(double x_mm) { return 0.5 * (kColumn_px + 1280.0) + (x_mm - 60.0) * kScale; }
 double y_px(double y_mm) { return 400.0 - (y_mm - 60.0) * kScale; }
 
 // Hover, press, 25 mm along y = 35 mm at 500 Hz up to the flank of nodule A, and stay there.

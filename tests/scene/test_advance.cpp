@@ -20,7 +20,7 @@ struct Run {
     explicit Run(const char* name) {
         scene = read_scene(kAssets / "scenes" / name, kAssets);
         plan = make_plan(scene);
-        state = start(scene, plan, 1280, 800);
+        state = start(scene, plan, {1280, 800});
     }
     void feed(const Sample& sample) { advance(scene, plan, sample, state); }
     std::int64_t calls(StageId id) const { return state.meters[static_cast<std::size_t>(id)].calls(); }
@@ -87,7 +87,7 @@ TEST_CASE("advance: a sample allocates nothing, an absent effect allocates nothi
     }
     Run run("off.json");
     std::int64_t before = allocations();
-    start(run.scene, run.plan, 1280, 800);
+    start(run.scene, run.plan, {1280, 800});
     CHECK(allocations() == before);
     before = allocations();
     CHECK(std::vector<int>(3).size() == 3);
@@ -218,12 +218,16 @@ TEST_CASE("advance: a resize is a row of its own and moves the mapping") {
     Sample resize;
     resize.phase = Phase::ui;
     resize.action = Action::resize;
-    resize.x_px = 800;
-    resize.y_px = 1280;
+    resize.x_px = 100;
+    resize.y_px = 20;
+    resize.width_px = 800;
+    resize.height_px = 1280;
     run.feed(resize);
-    CHECK(run.state.screen_width_px == 800);
-    CHECK((px_of_tissue(run.state.view, run.plan.area.centre_m) - Eigen::Vector2d(400, 640)).norm() < 1e-9);
-    resize.x_px = -1;
+    CHECK(run.state.screen.width_px == 800);
+    CHECK((px_of_tissue(run.state.view, run.plan.area.centre_m) - Eigen::Vector2d(500, 660)).norm() < 1e-9);
+    resize.width_px = -1;
     run.feed(resize);
-    CHECK(run.state.screen_width_px == 800);
+    resize.width_px = kMissing;
+    run.feed(resize);
+    CHECK(run.state.screen.width_px == 800);
 }

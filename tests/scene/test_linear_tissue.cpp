@@ -111,7 +111,7 @@ TEST_CASE("linear tissue: palpated live a sample allocates nothing and two runs 
         ::setenv("XDG_CACHE_HOME", block.folder.path().c_str(), 1);
         plan = make_plan(scene);
     }
-    State states[2] = {start(scene, plan, 600, 600), start(scene, plan, 600, 600)};
+    State states[2] = {start(scene, plan, {600, 600}), start(scene, plan, {600, 600})};
     std::int64_t allocated = 0;
     for (State& state : states) {
         for (int i = 0; i < 600; ++i) {

@@ -18,7 +18,7 @@ TEST_CASE("mapping: direct mapping draws a point where the pen that means it is,
             Mapping mapping;
             mapping.rotate_deg = deg;
             mapping.flip = flip;
-            const View view = make_view(mapping, kArea, 1280, 800);
+            const View view = make_view(mapping, kArea, {1280, 800});
             for (const Eigen::Vector2d& px : {Eigen::Vector2d(640, 400), {300, 120}, {900.5, 777}}) {
                 CAPTURE(deg);
                 CAPTURE(flip);
@@ -35,7 +35,7 @@ TEST_CASE("mapping: x to the right, y upwards; turned counter-clockwise; flipped
         Mapping mapping;
         mapping.rotate_deg = deg;
         mapping.flip = flip;
-        const View view = make_view(mapping, kArea, 1000, 1000);
+        const View view = make_view(mapping, kArea, {1000, 1000});
         const Eigen::Vector2d d = px_of_tissue(view, kArea.centre_m + Eigen::Vector2d(0.01, 0.0)) - view.centre_px;
         return Eigen::Vector2d(d / view.px_per_m / 0.01);
     };
@@ -43,14 +43,14 @@ TEST_CASE("mapping: x to the right, y upwards; turned counter-clockwise; flipped
     CHECK((right_of_centre(90, false) - Eigen::Vector2d(0, -1)).norm() < 1e-12);  // up on the screen
     CHECK((right_of_centre(0, true) - Eigen::Vector2d(-1, 0)).norm() < 1e-12);
     CHECK((right_of_centre(90, true) - Eigen::Vector2d(0, 1)).norm() < 1e-12);
-    const View view = make_view({}, kArea, 1000, 1000);
+    const View view = make_view({}, kArea, {1000, 1000});
     CHECK(px_of_tissue(view, kArea.centre_m + Eigen::Vector2d(0.0, 0.01)).y() < 500.0);
 }
 
 TEST_CASE("mapping: indirect stretches the whole pad over the tissue") {
     Mapping mapping;
     mapping.kind = MappingKind::indirect;
-    const View view = make_view(mapping, kArea, 1280, 800);
+    const View view = make_view(mapping, kArea, {1280, 800});
     CHECK((tissue_of_px(view, {0, 800}) - Eigen::Vector2d(0.0, 0.0)).norm() < 1e-12);
     CHECK((tissue_of_px(view, {1280, 0}) - Eigen::Vector2d(0.12, 0.10)).norm() < 1e-12);
     CHECK(on_tissue(view, {0.0001, 0.0001}));
@@ -62,7 +62,7 @@ TEST_CASE("mapping: the tissue fits onto any screen") {
         for (const int deg : {0, 90}) {
             Mapping mapping;
             mapping.rotate_deg = deg;
-            const View view = make_view(mapping, kArea, screen.x(), screen.y());
+            const View view = make_view(mapping, kArea, {screen.x(), screen.y()});
             for (const double sx : {-0.5, 0.5}) {
                 for (const double sy : {-0.5, 0.5}) {
                     const Eigen::Vector2d corner = kArea.centre_m + Eigen::Vector2d(sx, sy).cwiseProduct(kArea.size_m);
@@ -74,4 +74,20 @@ TEST_CASE("mapping: the tissue fits onto any screen") {
             }
         }
     }
+}
+
+TEST_CASE("mapping: direct mapping is true to size where the screen's scale is known, unless that does not fit") {
+    constexpr double kScale_px_per_m = 3780.0;  // 96 per inch
+    const ScreenArea known{1000, 700, 236, 0, kScale_px_per_m};
+    const View view = make_view({}, kArea, known);
+    CHECK(view.px_per_m == doctest::Approx(kScale_px_per_m));
+    CHECK(view.scale == doctest::Approx(1.0));
+    CHECK((tissue_of_px(view, {236 + 500, 350}) - kArea.centre_m).norm() < 1e-12);
+
+    const View small = make_view({}, kArea, {300, 300, 0, 0, kScale_px_per_m});
+    CHECK(small.scale == doctest::Approx(0.94 * 300 / 0.12 / kScale_px_per_m));
+    Mapping fitted;
+    fitted.true_size = false;
+    CHECK(make_view(fitted, kArea, known).px_per_m == doctest::Approx(0.94 * 700 / 0.10));
+    CHECK(std::isnan(make_view({}, kArea, {1000, 700}).scale));
 }

@@ -1,0 +1,115 @@
+#include "app/frame.h"
+
+#include "app/picture.h"
+#include "render/gl.h"
+#include "render/png.h"
+#include "scene/advance.h"
+
+namespace palpa {
+namespace {
+
+Layout layout_now(const Gui& gui, float width_px, float height_px, const Settings& settings) {
+    return layout_of(width_px, height_px, gui.mm(), settings.left_handed);
+}
+
+struct Surface {
+    Dent dent;
+    Relief relief;
+};
+
+Surface surface_of(const Scene& scene, const Plan& plan, const Avatar& avatar, State& state) {
+    Surface surface;
+    if (!scene.surface) return surface;
+    if (const auto* linear = std::get_if<LinearTissue>(&plan.tissue)) {
+        Eigen::VectorXd sink_m;
+        surface_now(*linear, state, sink_m);
+        surface.relief = relief_of(*linear, sink_m, avatar);
+    } else {
+        surface.dent = dent_of(surface_now(scene, plan, state), avatar);
+    }
+    return surface;
+}
+
+void draw_panels(const Shown& shown, const Layout& layout, Gui& gui, Screens& screens, Wishes& wishes) {
+    take_keys(shown, gui, screens, wishes);
+    if (screens.screen == Screen::scale) return draw_scale_screen(shown, gui, screens, wishes);
+    if (screens.screen == Screen::reveal) {
+        draw_reveal_on_tissue(shown, gui, screens.debrief);
+        draw_reveal_panel(shown, layout, gui, screens, wishes);
+    } else {
+        draw_on_tissue(shown, gui);
+        draw_trial_panel(shown, layout, gui, screens, wishes);
+    }
+    if (screens.menu) {
+        draw_menu(shown, layout, gui, screens, wishes);
+    } else if (screens.cost) {
+        draw_cost(shown, layout, gui);
+    }
+}
+
+}  // namespace
+
+Wishes draw_frame(const Scene& scene, const Plan& plan, const Trial& trial, const Settings& settings, double now_s,
+                  double dt_s, TissueDrawer& tissue, Gui& gui, Screens& screens, State& state, FrameTimes& times) {
+    const std::int64_t began_ns = steady_ns();
+    const bool keys_to_panels = screens.menu || screens.screen != Screen::trial;
+    gui.begin_frame(dt_s, keys_to_panels);
+    const WindowSize window = gui.size_px();
+    Shown shown{scene, plan, state, trial, settings, times, {}, {}, 0.0};
+    shown.avatar = trial.finished ? Avatar{} : avatar_at(scene, state, now_s);
+    shown.view = tissue_view(scene, state, window.width, window.height);
+    shown.trial_s = trial.finished ? trial.now_s - trial.began_s : std::max(0.0, now_s - trial.began_s);
+    Wishes wishes;
+    draw_panels(shown, layout_now(gui, window.width, window.height, settings), gui, screens, wishes);
+    const Surface surface = trial.finished ? Surface{} : surface_of(scene, plan, shown.avatar, state);
+    Ball ball = ball_of(plan, state, shown.avatar);
+    if (trial.finished) ball.radius_m = 0.0f;
+    gui.end_frame();
+    const std::int64_t built_ns = steady_ns();
+    tissue.draw(shown.view, surface.dent, surface.relief, ball);
+    gui.draw();
+    times.cpu.add_ns(static_cast<double>(built_ns - began_ns));
+    times.gl.add_ns(static_cast<double>(steady_ns() - built_ns));
+    return wishes;
+}
+
+Sample resize_sample(const Window& window, const Gui& gui, const Settings& settings, double t_host_s) {
+    const Layout layout = layout_now(gui, static_cast<float>(window.width_px()), static_cast<float>(window.height_px()), settings);
+    Sample sample;
+    sample.t_host_s = t_host_s;
+    sample.phase = Phase::ui;
+    sample.action = Action::resize;
+    sample.x_px = static_cast<double>(layout.tissue_px.x0);
+    sample.y_px = static_cast<double>(layout.tissue_px.y0);
+    sample.width_px = static_cast<double>(layout.tissue_px.width());
+    sample.height_px = static_cast<double>(layout.tissue_px.height());
+    return sample;
+}
+
+void save_screen(const Window& window, const std::filesystem::path& png) {
+    write_png(png, window.width_px(), window.height_px(), read_pixels(window.width_px(), window.height_px()));
+}
+
+std::string draw_picture(const Scene& scene, const Plan& plan, const Trial& trial, const Settings& settings,
+                         const Screens& screens, int width_px, int height_px, State& state,
+                         const std::filesystem::path& png) {
+    WindowOptions options;
+    options.visible = false;
+    options.width_px = width_px;
+    options.height_px = height_px;
+    Window window(options);
+    Gui gui(window);
+    TissueDrawer tissue;
+    FrameTimes times;
+    Screens open = screens;
+    std::string overflow;
+    gui.set_scale(control_scale(screens.px_per_mm, static_cast<float>(width_px), static_cast<float>(height_px)));
+    for (int i = 0; i < 3; ++i) {
+        draw_frame(scene, plan, trial, settings, state.timeline.now_s, 1.0 / 60.0, tissue, gui, open, state, times);
+        overflow = gui.overflow();
+    }
+    save_screen(window, png);
+    return overflow;
+}
+
+}  // namespace palpa

@@ -1,0 +1,29 @@
+#pragma once
+// Who gets which part of the window: the tissue as much as it can, the controls a column on the side away from the
+// drawing hand, or on a window that is taller than wide a strip above the tissue.
+
+namespace palpa {
+
+// A rectangle of the window, px.
+struct PanelArea {
+    float x0 = 0.0f, y0 = 0.0f, x1 = 0.0f, y1 = 0.0f;
+    float width() const { return x1 - x0; }
+    float height() const { return y1 - y0; }
+    bool holds(float x, float y) const { return x >= x0 && x < x1 && y >= y0 && y < y1; }
+};
+
+struct Layout {
+    bool column = true;    // controls beside the tissue; false: above it
+    bool controls = true;  // false: the window is too small for them, keys still work
+    PanelArea controls_px;
+    PanelArea tissue_px;
+};
+
+// `mm`: px per millimetre of what is touched.
+Layout layout_of(float width_px, float height_px, float mm, bool left_handed);
+
+// px per millimetre for controls: the screen's own scale where it is known, else that of a desk's screen (96 per inch),
+// more on larger windows.
+float control_scale(double px_per_mm, float width_px, float height_px);
+
+}  // namespace palpa

@@ -1,0 +1,169 @@
+// The menu over the tissue, the cost table, and the keys.
+
+#include <SDL_keycode.h>
+
+#include <algorithm>
+
+#include "app/look.h"
+#include "app/screens.h"
+
+namespace palpa {
+namespace {
+
+PanelArea menu_area(const Layout& layout, float mm) {
+    const PanelArea& t = layout.tissue_px;
+    PanelArea area = t;
+    area.x1 = std::min(t.x1, t.x0 + 132.0f * mm);
+    return area;
+}
+
+void choices(const char* title, const std::vector<Choice>& list, const std::string& chosen, float height_px, const Gui& gui,
+             std::optional<std::string>& wish) {
+    ImGui::TextDisabled("%s", title);
+    ImGui::BeginChild(title, ImVec2(0.0f, height_px), false);
+    for (const Choice& choice : list) {
+        ImGui::PushID(choice.file.c_str());
+        ImGui::PushStyleVar(ImGuiStyleVar_ButtonTextAlign, ImVec2(0.0f, 0.5f));
+        ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, ImVec2(1.5f * gui.mm(), 0.0f));
+        if (big_button(choice.name.c_str(), "", {0.0f, kTarget_mm, true, choice.file == chosen}, gui)) wish = choice.file;
+        ImGui::PopStyleVar(2);
+        ImGui::PopID();
+    }
+    ImGui::EndChild();
+}
+
+void pair(const char* left, const char* right, bool right_chosen, const Gui& gui, bool& chose_left, bool& chose_right) {
+    const float width_px = share_of_line_px(2);
+    chose_left = big_button(left, "", {width_px, kTarget_mm, true, !right_chosen}, gui);
+    ImGui::SameLine();
+    chose_right = big_button(right, "", {width_px, kTarget_mm, true, right_chosen}, gui);
+}
+
+void right_side(const Shown& shown, const Gui& gui, Screens& screens, Wishes& wishes) {
+    bool left = false;
+    bool right = false;
+    ImGui::TextDisabled("Trial");
+    pair("Practice", "Test", shown.trial.mode == TrialMode::test, gui, left, right);
+    if (left) wishes.mode = TrialMode::practice;
+    if (right) wishes.mode = TrialMode::test;
+    if (big_button("Begin anew", "R", {}, gui)) wishes.again = true;
+    ImGui::TextDisabled("Drawing hand");
+    pair("Left", "Right", !shown.settings.left_handed, gui, left, right);
+    if (left) wishes.left_handed = true;
+    if (right) wishes.left_handed = false;
+    ImGui::TextDisabled("Screen and devices");
+    if (big_button("Size of the screen", "Z", {}, gui)) wishes.screen = Screen::scale;
+    if (big_button("Device check", "D", {}, gui)) wishes.screen = Screen::devices;
+    if (big_button("Cost", "C", {0.0f, kTarget_mm, true, screens.cost}, gui)) screens.cost = !screens.cost;
+    if (big_button("Full screen", "F11", {0.0f, kTarget_mm, true, shown.settings.full_screen}, gui)) wishes.full_screen = true;
+    if (big_button("Quit", "Ctrl Q", {}, gui)) wishes.quit = true;
+}
+
+void stage_rows(const Shown& shown, const std::vector<Stage>& stages) {
+    for (const Stage& stage : stages) {
+        const Meter& meter = shown.state.meters[static_cast<std::size_t>(stage.id)];
+        ImGui::TableNextRow();
+        ImGui::TableNextColumn();
+        ImGui::TextUnformatted(name_of(stage.id));
+        ImGui::TableNextColumn();
+        ImGui::TextWrapped("%s", stage.fidelity.c_str());
+        ImGui::TableNextColumn();
+        ImGui::TextWrapped("%s", stage.error.c_str());
+        ImGui::TableNextColumn();
+        ImGui::Text("%.2f", 1e-3 * meter.quantile_ns(0.5));
+        ImGui::TableNextColumn();
+        ImGui::Text("%.2f", 1e-3 * meter.quantile_ns(0.99));
+        ImGui::TableNextColumn();
+        ImGui::Text("%lld", static_cast<long long>(meter.calls()));
+    }
+}
+
+void frame_line(const Shown& shown) {
+    const FrameTimes& t = shown.times;
+    const auto ms = [](const Meter& meter, double q) { return 1e-6 * meter.quantile_ns(q); };
+    ImGui::TextWrapped("Sample to frame %.1f ms (99 %%: %.1f). Frame %.2f ms besides drawing (99 %%: %.2f), drawing %.1f ms. "
+                       "%.0f frames/s, %lld samples, %lld steps dropped.",
+                       ms(t.latency, 0.5), ms(t.latency, 0.99), ms(t.cpu, 0.5), ms(t.cpu, 0.99), ms(t.gl, 0.5), t.frames_per_s,
+                       static_cast<long long>(shown.state.counters.samples),
+                       static_cast<long long>(shown.state.counters.dropped_steps));
+}
+
+void trial_keys(const Shown& shown, const Gui& gui, Wishes& wishes) {
+    if (gui.pressed(SDLK_m) && shown.trial.last_px) wishes.action = Action::mark;
+    if (gui.pressed(SDLK_u) || gui.pressed(SDLK_z, true) || gui.pressed(SDLK_BACKSPACE)) wishes.action = Action::undo;
+    if (gui.pressed(SDLK_f)) wishes.action = Action::finish;
+    if (gui.pressed(SDLK_h)) wishes.press_by_hold = true;
+    for (int i = 0; i < 5; ++i) {
+        if (gui.pressed(SDLK_1 + i) || gui.pressed(SDLK_KP_1 + i)) {
+            wishes.action = static_cast<Action>(static_cast<int>(Action::confidence_1) + i);
+        }
+    }
+}
+
+}  // namespace
+
+void draw_menu(const Shown& shown, const Layout& layout, Gui& gui, Screens& screens, Wishes& wishes) {
+    const PanelArea area = menu_area(layout, gui.mm());
+    begin_panel("menu", area, gui);
+    if (ImGui::IsWindowAppearing()) ImGui::SetWindowFocus();
+    const bool two_columns = area.width() >= 110.0f * gui.mm();
+    const float half_px = two_columns ? share_of_line_px(2) : 0.0f;
+    const float height_px = two_columns ? ImGui::GetContentRegionAvail().y : 0.5f * ImGui::GetContentRegionAvail().y;
+    ImGui::BeginChild("what", ImVec2(half_px, height_px), false);
+    const float line_px = ImGui::GetFontSize() + 2.0f * ImGui::GetStyle().ItemSpacing.y;
+    const float list_px = ImGui::GetContentRegionAvail().y - 2.0f * line_px;
+    choices("Scene", screens.scenes, shown.scene.file.string(), 0.62f * list_px, gui, wishes.scene);
+    choices("Pressure profile", screens.profiles, shown.scene.profile.string(), 0.36f * list_px, gui, wishes.profile);
+    ImGui::EndChild();
+    if (two_columns) ImGui::SameLine();
+    ImGui::BeginChild("how");
+    right_side(shown, gui, screens, wishes);
+    ImGui::EndChild();
+    end_panel("menu", gui);
+}
+
+void draw_cost(const Shown& shown, const Layout& layout, Gui& gui) {
+    const PanelArea& t = layout.tissue_px;
+    const float height_px = std::min(0.55f * t.height(), 80.0f * gui.mm());
+    begin_panel("cost", {t.x0, t.y1 - height_px, t.x1, t.y1}, gui, 0.9f);
+    constexpr ImGuiTableFlags kFlags = ImGuiTableFlags_RowBg | ImGuiTableFlags_SizingStretchProp | ImGuiTableFlags_ScrollY;
+    const float text_px = 2.4f * (ImGui::GetFontSize() + ImGui::GetStyle().ItemSpacing.y);
+    if (ImGui::BeginTable("stages", 6, kFlags, ImVec2(0.0f, ImGui::GetContentRegionAvail().y - text_px))) {
+        ImGui::TableSetupScrollFreeze(0, 1);
+        constexpr const char* kColumns[] = {"stage", "fidelity", "error", "us", "us, 99 %", "calls"};
+        constexpr float kWidths[] = {1.4f, 4.0f, 4.0f, 0.8f, 1.0f, 1.0f};
+        for (int i = 0; i < 6; ++i) ImGui::TableSetupColumn(kColumns[i], ImGuiTableColumnFlags_WidthStretch, kWidths[i]);
+        ImGui::TableHeadersRow();
+        stage_rows(shown, shown.plan.sample_stages);
+        stage_rows(shown, shown.plan.frame_stages);
+        ImGui::EndTable();
+    }
+    frame_line(shown);
+    end_panel("cost", gui);
+}
+
+void take_keys(const Shown& shown, const Gui& gui, Screens& screens, Wishes& wishes) {
+    if (gui.pressed(SDLK_q, true)) wishes.quit = true;
+    if (gui.pressed(SDLK_F11)) wishes.full_screen = true;
+    if (gui.pressed(SDLK_F10) || (gui.pressed(SDLK_TAB) && !screens.menu && screens.screen == Screen::trial)) {
+        screens.menu = !screens.menu;
+    }
+    if (gui.pressed(SDLK_ESCAPE)) {
+        screens.problems.clear();
+        if (screens.screen == Screen::devices || screens.screen == Screen::scale) {
+            wishes.screen = shown.trial.finished ? Screen::reveal : Screen::trial;
+        } else {
+            screens.menu = false;
+        }
+    }
+    if (gui.pressed(SDLK_c)) screens.cost = !screens.cost;
+    if (gui.pressed(SDLK_d)) wishes.screen = Screen::devices;
+    if (gui.pressed(SDLK_z)) wishes.screen = Screen::scale;
+    if (gui.pressed(SDLK_r)) wishes.again = true;
+    if (gui.pressed(SDLK_s, true)) wishes.save_picture = true;
+    if (screens.screen == Screen::trial) trial_keys(shown, gui, wishes);
+    if (screens.screen == Screen::reveal && gui.pressed(SDLK_n)) wishes.next = true;
+    if (screens.screen == Screen::reveal && gui.pressed(SDLK_s)) wishes.save_picture = true;
+}
+
+}  // namespace palpa

@@ -1,0 +1,14 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "platform/window.h"
+
+namespace palpa {
+
+// Saves what the window shows under a new name with the date: in the log's folder if there is one, else among the
+// person's pictures (xdg-user-dirs), else in the home folder. Throws std::runtime_error.
+std::filesystem::path save_picture(const Window& window, const std::string& log_folder);
+
+}  // namespace palpa

@@ -1,0 +1,94 @@
+#pragma once
+// What the app shows, screen by screen. The functions draw from what they are given and say what the person asked for
+// in Wishes; the loop (live.cpp) carries it out. So a picture can be drawn without a window on a screen.
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/gui.h"
+#include "app/settings.h"
+#include "app/trial.h"
+#include "render/tissue.h"
+#include "scene/scene.h"
+
+namespace palpa {
+
+enum class Screen : std::uint8_t { trial, reveal, devices, scale };
+
+// Times of the frame loop.
+struct FrameTimes {
+    Meter latency;  // sample to the end of the frame that shows it
+    Meter cpu;      // a frame up to the calls of GL
+    Meter gl;       // the calls of GL; with software rendering that is where the drawing is done
+    double frames_per_s = 0.0;
+};
+
+struct Choice {
+    std::string name;  // as shown
+    std::string file;
+};
+
+// What is open, and what a person has typed so far; means nothing to a replay.
+struct Screens {
+    Screen screen = Screen::trial;
+    bool menu = false;
+    bool cost = false;
+    std::vector<Choice> scenes;
+    std::vector<Choice> profiles;
+    std::vector<std::string> device_notes;  // about pens, fingers, pressure
+    std::vector<std::string> problems;      // what went wrong, newest last, until it is dismissed
+    std::string note;                       // what went well ("saved ...")
+    bool offer_hold = false;                // a pen or finger without pressure: offer to press by time
+    std::string screen_name;                // key of Settings::px_per_mm
+    double px_per_mm = kMissing;            // of this screen; NaN: not measured
+    double card_px_per_mm = 3.78;           // while it is being measured
+    Debrief debrief;                        // of the finished trial
+};
+
+// All that a screen is drawn from.
+struct Shown {
+    const Scene& scene;
+    const Plan& plan;
+    const State& state;
+    const Trial& trial;
+    const Settings& settings;
+    const FrameTimes& times;
+    Avatar avatar;
+    TissueView view;
+    double trial_s = 0.0;
+};
+
+struct Wishes {
+    std::optional<Action> action;         // mark, confidence, undo, finish
+    std::optional<std::string> scene;     // file
+    std::optional<std::string> profile;   // file; empty: the scene's own
+    std::optional<Screen> screen;
+    std::optional<TrialMode> mode;
+    std::optional<bool> left_handed;
+    std::optional<double> px_per_mm;      // of this screen, measured; NaN: forget it
+    bool again = false;                   // the same tissue once more
+    bool next = false;                    // turned another way
+    bool save_picture = false;
+    bool full_screen = false;             // the other way round
+    bool press_by_hold = false;
+    bool quit = false;
+};
+
+// Marks, lag, pen and (in practice) nodules, over the tissue.
+void draw_on_tissue(const Shown& shown, const Gui& gui);
+
+void draw_trial_panel(const Shown& shown, const Layout& layout, Gui& gui, Screens& screens, Wishes& wishes);
+void draw_menu(const Shown& shown, const Layout& layout, Gui& gui, Screens& screens, Wishes& wishes);
+void draw_cost(const Shown& shown, const Layout& layout, Gui& gui);
+void draw_reveal_on_tissue(const Shown& shown, const Gui& gui, const Debrief& debrief);
+void draw_reveal_panel(const Shown& shown, const Layout& layout, Gui& gui, Screens& screens, Wishes& wishes);
+void draw_scale_screen(const Shown& shown, Gui& gui, Screens& screens, Wishes& wishes);
+
+// The keys that all of this can be done with.
+void take_keys(const Shown& shown, const Gui& gui, Screens& screens, Wishes& wishes);
+
+// A bar in the middle of the screen, while nothing else can be shown.
+void draw_progress(const std::string& what, double share);
+
+}  // namespace palpa

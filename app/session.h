@@ -1,0 +1,53 @@
+#pragma once
+// The scene that is palpated now, the trial on it, and the files that it is written to: one run of the log per trial.
+
+#include <optional>
+#include <string>
+
+#include "app/trial.h"
+#include "platform/trace.h"
+#include "scene/scene.h"
+#include "scene/state.h"
+#include "study/sample_log.h"
+#include "study/trial_log.h"
+
+namespace palpa {
+
+// What a session writes; empty: nothing.
+struct SessionFiles {
+    std::string log;                 // folder
+    std::string participant = "01";
+    std::string record;              // TRACE.tsv; later trials get TRACE-2.tsv and so on
+};
+
+struct Session {
+    Scene scene;
+    Plan plan;
+    State state;
+    Trial trial;
+    std::string device;  // for the log
+    int trials = 0;      // begun
+    std::optional<RunFiles> files;
+    std::optional<SampleLog> log;
+    std::optional<TrialLog> trial_log;
+    std::optional<TraceWriter> record;
+    Json finished = Json::array();  // trial_json of each finished trial
+};
+
+// A trace's screen as the area of the tissue, until a sample of action resize says otherwise.
+ScreenArea screen_of(const TraceInfo& info);
+
+// Begins a trial on session.scene and session.plan: a new state, new files. `info`: the window, as it goes into the
+// trace. Throws InputError or std::runtime_error if a file cannot be made; the session then has no files.
+void begin_trial(const SessionFiles& files, const TraceInfo& info, TrialMode mode, Session& session);
+
+// Advances, observes, writes. After the sample that finishes the trial its results are on the disk.
+void take_sample(const Sample& sample, Session& session);
+
+// False once anything could not be written.
+bool files_good(const Session& session);
+
+// Puts everything on the disk, `performance` included, and closes the files. Returns false if some of it failed.
+bool close_files(const Json& performance, Session& session);
+
+}  // namespace palpa
