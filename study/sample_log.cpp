@@ -19,7 +19,7 @@ void visit_fields(const SampleRow& r, Visit&& visit) {
     visit("t_device_s", r.t_device_s, "s", "time of the sample, device's or X server's clock");
     visit("trial", r.trial, "", "number of the trial");
     visit("pointer_id", r.pointer_id, "", "tells fingers and pens apart while they touch");
-    visit("tool", r.tool, "", "pen, finger or mouse");
+    visit("tool", r.tool, "", "pen, finger, mouse or keyboard");
     visit("phase", r.phase, "", "hover, down, move, up, cancel or ui");
     visit("x_mm", r.x_mm, "mm", "pen on the tissue, map's frame");
     visit("y_mm", r.y_mm, "mm", "pen on the tissue, map's frame");
