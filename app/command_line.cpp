@@ -34,6 +34,7 @@ int run_command_line(int argc, char** argv) {
     app.require_subcommand(1);
     add_run(app);
     add_explain(app);
+    add_devices(app);
     add_maps(app);
     add_fem(app);
     add_bench(app);

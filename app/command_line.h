@@ -12,6 +12,7 @@ int run_command_line(int argc, char** argv);
 // Each adds its subcommand; what it does runs as the subcommand's callback and throws to fail.
 void add_run(CLI::App& app);
 void add_explain(CLI::App& app);
+void add_devices(CLI::App& app);
 void add_maps(CLI::App& app);
 void add_fem(CLI::App& app);
 void add_bench(CLI::App& app);

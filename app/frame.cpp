@@ -32,6 +32,7 @@ Surface surface_of(const Scene& scene, const Plan& plan, const Avatar& avatar, S
 
 void draw_panels(const Shown& shown, const Layout& layout, Gui& gui, Screens& screens, Wishes& wishes) {
     take_keys(shown, gui, screens, wishes);
+    if (screens.screen == Screen::devices) return draw_device_screen(shown, gui, screens, wishes);
     if (screens.screen == Screen::scale) return draw_scale_screen(shown, gui, screens, wishes);
     if (screens.screen == Screen::reveal) {
         draw_reveal_on_tissue(shown, gui, screens.debrief);
@@ -52,7 +53,7 @@ void draw_panels(const Shown& shown, const Layout& layout, Gui& gui, Screens& sc
 Wishes draw_frame(const Scene& scene, const Plan& plan, const Trial& trial, const Settings& settings, double now_s,
                   double dt_s, TissueDrawer& tissue, Gui& gui, Screens& screens, State& state, FrameTimes& times) {
     const std::int64_t began_ns = steady_ns();
-    const bool keys_to_panels = screens.menu || screens.screen != Screen::trial;
+    const bool keys_to_panels = screens.menu || screens.screen == Screen::reveal || screens.screen == Screen::scale;
     gui.begin_frame(dt_s, keys_to_panels);
     const WindowSize window = gui.size_px();
     Shown shown{scene, plan, state, trial, settings, times, {}, {}, 0.0};

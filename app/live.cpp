@@ -12,6 +12,8 @@
 #include "app/replay.h"
 #include "app/save_picture.h"
 #include "files/text.h"
+#include "platform/hold_press.h"
+#include "platform/pressure.h"
 #include "render/gl.h"
 
 namespace palpa {
@@ -31,6 +33,8 @@ struct App {
     double trace_shift_s = 0.0;  // window's clock - trace's clock
     FrameTimes times;
     std::int64_t frames = 0;
+    PressureWatch pressure;
+    HoldPress hold;
     std::vector<double> waiting_s;  // host times of the samples that no frame has shown yet
     std::string stopped;            // why the trial cannot go on
     bool quit = false;
@@ -63,6 +67,36 @@ TraceInfo info_of(const App& app, const Window& window) {
     return info;
 }
 
+constexpr const char* kOtherWays =
+    "Press with the mouse (hold its button, or turn the wheel) or with the keys (arrows move, Space presses).";
+
+bool named(const std::vector<PointerDevice>& devices, const std::string& name) {
+    return std::any_of(devices.begin(), devices.end(), [&](const PointerDevice& d) { return d.name == name; });
+}
+
+// Plugged in or out while the app runs.
+void note_changes(const std::vector<PointerDevice>& now, Screens& screens) {
+    for (const PointerDevice& device : screens.devices) {
+        if (!named(now, device.name)) screens.note = device.name + " is gone.";
+    }
+    for (const PointerDevice& device : now) {
+        if (!screens.devices.empty() && !named(screens.devices, device.name)) screens.note = device.name + " is here.";
+    }
+    screens.devices = now;
+}
+
+// A pen or finger that touches without a true pressure, and what to do about it.
+void note_pressure(Tool tool, App& app) {
+    const PressureKind kind = pressure_kind(app.pressure, tool);
+    const bool held = tool == Tool::pen ? app.hold.pen : app.hold.finger;
+    const std::string name(name_of(tool));
+    if (held) app.screens.device_notes.push_back("The " + name + " presses harder the longer it is held.");
+    if (held || (kind != PressureKind::constant && kind != PressureKind::missing)) return;
+    const std::string found = kind == PressureKind::missing ? "no pressure" : "always the same pressure: it has no sensor";
+    app.screens.device_notes.push_back("This " + name + " reports " + found + ". Press by holding, or: " + kOtherWays);
+    app.screens.offer_hold = true;
+}
+
 void note_devices(const Window& window, App& app) {
     std::vector<std::string>& notes = app.screens.device_notes;
     notes.clear();
@@ -70,13 +104,13 @@ void note_devices(const Window& window, App& app) {
         notes.push_back("Replay of " + app.options.trace);
         return;
     }
-    bool pressure = false;
-    for (const PointerDevice& device : window.devices()) pressure = pressure || device.has_pressure;
+    note_changes(window.devices(), app.screens);
     if (!window.input_note().empty()) notes.push_back(window.input_note());
-    if (!pressure) {
-        notes.push_back("No pen or finger with a pressure sensor here. Press with the mouse (hold its button, or turn the wheel) "
-                        "or with the keys (arrows move, Space presses).");
-    }
+    app.screens.offer_hold = false;
+    for (const Tool tool : {Tool::pen, Tool::finger}) note_pressure(tool, app);
+    const auto& devices = app.screens.devices;
+    const bool pressure = std::any_of(devices.begin(), devices.end(), [](const PointerDevice& d) { return d.has_pressure; });
+    if (!pressure) notes.push_back("No pen or finger with a pressure sensor here. " + std::string(kOtherWays));
 }
 
 // Takes a problem to the screen instead of out of the program.
@@ -200,6 +234,26 @@ void act(Action action, double now_s, App& app) {
     if (!close_trial(app)) app.screens.problems.push_back(app.stopped);
 }
 
+// A press that is going on when its screen goes ends there.
+void open_screen(Screen screen, double now_s, App& app) {
+    const State& state = app.session.state;
+    if (app.screens.screen == Screen::trial && screen != Screen::trial && state.pointer) {
+        Sample end;
+        end.t_host_s = now_s;
+        end.pointer_id = *state.pointer;
+        end.tool = state.pointer_tool;
+        end.phase = Phase::cancel;
+        end.x_px = end.y_px = kMissing;
+        take_sample(end, app.session);
+    }
+    if (screen == Screen::devices) {
+        app.screens.check = std::make_shared<DeviceCheck>();
+        app.screens.dots.clear();
+    }
+    app.screens.screen = screen;
+    app.screens.menu = false;
+}
+
 void change_settings(const Wishes& wishes, Window& window, Gui& gui, App& app) {
     if (wishes.left_handed) app.settings.left_handed = *wishes.left_handed;
     if (wishes.mode) app.settings.test_mode = *wishes.mode == TrialMode::test;
@@ -221,10 +275,7 @@ void change_settings(const Wishes& wishes, Window& window, Gui& gui, App& app) {
 void carry_out(const Wishes& wishes, Window& window, Gui& gui, App& app) {
     if (wishes.quit) app.quit = true;
     if (wishes.action && app.screens.screen == Screen::trial && !app.trace) act(*wishes.action, now_of(app, window), app);
-    if (wishes.screen) {
-        app.screens.screen = *wishes.screen;
-        app.screens.menu = false;
-    }
+    if (wishes.screen) open_screen(*wishes.screen, now_of(app, window), app);
     if (wishes.scene) app.settings.scene = *wishes.scene;
     if (wishes.profile) app.settings.profile = *wishes.profile;
     if (wishes.scene || wishes.profile) {
@@ -232,6 +283,14 @@ void carry_out(const Wishes& wishes, Window& window, Gui& gui, App& app) {
     }
     change_settings(wishes, window, gui, app);
     if (wishes.next) turn_tissue(app);
+    if (wishes.press_by_hold && app.screens.offer_hold) {
+        const auto lacks = [&](Tool tool) {
+            const PressureKind kind = pressure_kind(app.pressure, tool);
+            return kind == PressureKind::constant || kind == PressureKind::missing;
+        };
+        app.hold.pen = app.hold.pen || lacks(Tool::pen);
+        app.hold.finger = app.hold.finger || lacks(Tool::finger);
+    }
     if (wishes.again || wishes.next) begin_anew(window, gui, app);
     if (wishes.save_picture) {
         attempt(app, [&] { app.screens.note = "Saved " + save_picture(window, app.options.log).string(); });
@@ -250,6 +309,36 @@ void take(const Sample& sample, App& app) {
     if (!app.session.trial.finished || app.screens.screen != Screen::trial) return;
     app.screens.debrief = debrief(app.session.plan, app.session.trial);  // a trace that finishes its trial
     app.screens.screen = Screen::reveal;
+}
+
+// Where the samples of one turn of the loop go: to the tissue, or to the device check.
+void take_all(double now_s, std::vector<Sample>& samples, App& app) {
+    if (app.trace) {
+        for (const Sample& sample : samples) take(sample, app);
+        return;
+    }
+    for (const Sample& sample : samples) watch(sample, app.pressure);
+    if (app.screens.screen == Screen::devices) {
+        for (const Sample& sample : samples) {
+            observe(sample, *app.screens.check);
+            add_dot(sample, app.screens);
+        }
+        return;
+    }
+    if (app.hold.pen || app.hold.finger) press_by_hold(now_s, app.hold, samples);
+    if (app.screens.screen != Screen::trial || !app.stopped.empty()) return;
+    for (const Sample& sample : samples) take(sample, app);
+}
+
+// The keys move the indenter over the tissue, 30 mm/s, as long as no panel wants them.
+void place_keyboard(Window& window, const App& app) {
+    constexpr double kSpeed_m_per_s = 0.03;
+    const ScreenArea& a = app.session.state.screen;
+    if (app.screens.menu || app.screens.screen == Screen::reveal || app.screens.screen == Screen::scale) {
+        window.set_keyboard(0.0, 0.0, 0.0, 0.0, 0.0);
+    } else {
+        window.set_keyboard(a.x_px, a.y_px, a.x_px + a.width_px, a.y_px + a.height_px, kSpeed_m_per_s * app.session.state.view.px_per_m);
+    }
 }
 
 // A window that changed its size, or a hand that changed sides, is input too: a replay must map positions alike.
@@ -303,9 +392,8 @@ void run_loop(Window& window, Gui& gui, TissueDrawer& tissue, double asked_s, do
             take_due_rows(app, now_of(app, window), samples);
         }
         note_resize(window, gui, app);
-        if (app.stopped.empty()) {
-            for (const Sample& sample : samples) take(sample, app);                // 2. simulate, 3. log
-        }
+        place_keyboard(window, app);
+        take_all(window.now_s(), samples, app);                                    // 2. simulate, 3. log
         watch_files(app);
         const double now_s = window.now_s();
         if (now_s - frame_s < kFrame_s && app.frames > 0) continue;

@@ -90,6 +90,8 @@ Json run_json(const Scene& scene, const Plan& plan, const State& state, std::int
                       {"off_tissue", counters.off_tissue},
                       {"unmeasured", counters.unmeasured},
                       {"not_numbers", counters.not_numbers},
+                      {"distrusted", counters.distrusted},
+                      {"palms", counters.palms},
                       {"backwards", state.timeline.backwards},
                       {"late", state.timeline.late},
                       {"duplicate_times", state.timeline.duplicates},

@@ -2,10 +2,12 @@
 // What the app shows, screen by screen. The functions draw from what they are given and say what the person asked for
 // in Wishes; the loop (live.cpp) carries it out. So a picture can be drawn without a window on a screen.
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "app/device_check.h"
 #include "app/gui.h"
 #include "app/settings.h"
 #include "app/trial.h"
@@ -29,6 +31,11 @@ struct Choice {
     std::string file;
 };
 
+struct Dot {
+    float x_px, y_px, pressure;
+    bool touching;
+};
+
 // What is open, and what a person has typed so far; means nothing to a replay.
 struct Screens {
     Screen screen = Screen::trial;
@@ -44,6 +51,9 @@ struct Screens {
     double px_per_mm = kMissing;            // of this screen; NaN: not measured
     double card_px_per_mm = 3.78;           // while it is being measured
     Debrief debrief;                        // of the finished trial
+    std::vector<PointerDevice> devices;
+    std::shared_ptr<DeviceCheck> check;     // what they sent while the device check was open
+    std::vector<Dot> dots;                  // the last places in its test area
 };
 
 // All that a screen is drawn from.
@@ -83,6 +93,8 @@ void draw_menu(const Shown& shown, const Layout& layout, Gui& gui, Screens& scre
 void draw_cost(const Shown& shown, const Layout& layout, Gui& gui);
 void draw_reveal_on_tissue(const Shown& shown, const Gui& gui, const Debrief& debrief);
 void draw_reveal_panel(const Shown& shown, const Layout& layout, Gui& gui, Screens& screens, Wishes& wishes);
+void draw_device_screen(const Shown& shown, Gui& gui, Screens& screens, Wishes& wishes);
+void add_dot(const Sample& sample, Screens& screens);
 void draw_scale_screen(const Shown& shown, Gui& gui, Screens& screens, Wishes& wishes);
 
 // The keys that all of this can be done with.

@@ -4,31 +4,23 @@
 #include <cstdint>
 #include <vector>
 
+#include "platform/held_pressure.h"
 #include "platform/sample.h"
 
 namespace palpa {
 
-inline constexpr double kMouseGrid_Hz = 240.0;      // samples of a button that is held still
-inline constexpr double kWheelStep = 0.05;          // pressure per notch of the wheel
 inline constexpr std::int64_t kMousePointerId = 0;  // fingers count from 1, pens down from -1
 
 struct Mouse {
-    double hold_s = 2.0;  // from no pressure to full
+    HeldPressure button;
     double x_px = 0.0;
     double y_px = 0.0;
-    bool down = false;
-    double down_s = 0.0;         // when the button went down
     std::int64_t last_tick = 0;  // grid points up to this one have their sample
-    bool by_wheel = false;       // the wheel has set `wheel_level`; the button's time no longer counts
-    double wheel_level = 0.0;    // 0..1
 };
 
-// What the mouse presses with at `t_host_s`, 0..1. With the button up: what the wheel is set to.
-double mouse_pressure(const Mouse& mouse, double t_host_s);
-
-// Appends one sample for each grid point k / kMouseGrid_Hz up to and with `t_host_s` that has none yet, while
-// the button is held. Call it before any other sample of that time, so that samples stay in order. These
-// samples have no device time: no device sent them.
+// Appends one sample for each grid point up to and with `t_host_s` that has none yet, while the button is held.
+// Call it before any other sample of that time, so that samples stay in order. These samples have no device
+// time: no device sent them.
 void hold_mouse(double t_host_s, Mouse& mouse, std::vector<Sample>& out);
 
 // The mouse's own events, each appended as a sample: hover or move, down, up.
@@ -37,8 +29,7 @@ void move_mouse(double t_host_s, double t_device_s, double x_px, double y_px, Mo
 void press_mouse(double t_host_s, double t_device_s, Mouse& mouse, std::vector<Sample>& out);
 void release_mouse(double t_host_s, double t_device_s, Mouse& mouse, std::vector<Sample>& out);
 
-// Notches away from the person press harder. Appends a sample if the button is down. Turned back to zero
-// with the button up, the button's time counts again.
+// Notches away from the person press harder. Appends a sample if the button is down.
 void turn_wheel(double t_host_s, double t_device_s, double notches, Mouse& mouse, std::vector<Sample>& out);
 
 }  // namespace palpa

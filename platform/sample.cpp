@@ -5,7 +5,7 @@
 namespace palpa {
 namespace {
 
-constexpr std::array<std::string_view, 3> kTools{"pen", "finger", "mouse"};
+constexpr std::array<std::string_view, kToolCount> kTools{"pen", "finger", "mouse", "keyboard"};
 constexpr std::array<std::string_view, 6> kPhases{"hover", "down", "move", "up", "cancel", "ui"};
 constexpr std::array<std::string_view, 10> kActions{"n/a", "resize", "mark", "undo", "finish", "confidence_1",
                                                      "confidence_2", "confidence_3", "confidence_4", "confidence_5"};

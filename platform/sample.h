@@ -11,7 +11,8 @@ namespace palpa {
 // A number that the device did not report. Written as "n/a" in files.
 inline constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 
-enum class Tool : std::uint8_t { pen, finger, mouse };
+enum class Tool : std::uint8_t { pen, finger, mouse, keyboard };
+inline constexpr int kToolCount = 4;
 enum class Phase : std::uint8_t { hover, down, move, up, cancel, ui };
 
 // What a person asked of the program between samples; only rows of phase `ui` carry one.

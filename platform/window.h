@@ -18,7 +18,7 @@ struct WindowOptions {
     int width_px = 1280;
     int height_px = 800;
     bool visible = true;       // false: an off-screen context that needs no display
-    double mouse_hold_s = 2.0; // how long the mouse button is held for full pressure
+    double mouse_hold_s = 2.0; // how long the mouse button or the Space key is held for full pressure
 };
 
 // What a pointing device reports, for messages to the person ("this pen has no pressure sensor").
@@ -29,6 +29,10 @@ struct PointerDevice {
     bool has_pressure = false;
     double pressure_min = 0.0;  // counts
     double pressure_max = 0.0;  // counts
+    std::int64_t levels = 0;    // how many counts there are from the one to the other; 0 without pressure
+    bool has_tilt = false;
+    bool has_contact_size = false;
+    std::vector<std::string> axes{};  // as the driver calls them
 };
 
 // One window. Throws std::runtime_error with a message for people if there is no display or no OpenGL ES 3.
@@ -53,11 +57,20 @@ class Window {
     // SDL_MOUSEBUTTONDOWN too.
     void set_event_filter(bool (*filter)(const SDL_Event& event, void* user), void* user);
 
+    // A pointer moved by keys, in this area (px of the drawing area; an empty one turns it off, as it is at the
+    // start): arrows move it at this speed, slower with Shift; Space presses harder the longer it is held; Page Up
+    // and Page Down set how hard. It starts in the middle of the area; call again when the area changes. It gets
+    // only keys for whose SDL_KEYDOWN the event filter returned false, and while one is held a sample each
+    // 1/240 s.
+    void set_keyboard(double x0_px, double y0_px, double x1_px, double y1_px, double speed_px_per_s);
+
     bool close_requested() const;
     void present();            // shows what was drawn
     double now_s() const;      // steady clock; the same as t_host_s
     int width_px() const;      // drawing area
     int height_px() const;
+    double keyboard_x_px() const;  // the cursor that keys move
+    double keyboard_y_px() const;
     double mouse_pressure() const;  // what the mouse presses with now (wheel or hold), or its wheel is set to
     std::vector<PointerDevice> devices() const;
     std::string input_note() const;  // why no pen or finger has pressure here, for people; empty if they may

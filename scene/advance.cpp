@@ -36,19 +36,29 @@ struct RiseOnLinear {
     }
 };
 
+constexpr double kUnbelievable = 0.9;  // share of the profile's range; no hand begins a touch there within one sample
+
+bool has_sensor(Tool tool) { return tool == Tool::pen || tool == Tool::finger; }
+
 bool is_touching(Phase phase) { return phase == Phase::down || phase == Phase::move; }
 
 void calibrate(const Scene& scene, const Plan& plan, const Sample& sample, State& state) {
     state.touch.force_N = 0.0;
     if (!is_touching(sample.phase)) return;
     double level = level_of(plan.profile, sample);
-    if (std::isnan(level) && sample.tool == Tool::mouse) {
-        // a mouse has no sensor: its made-up 0 ... 1 is a share of the profile's range
+    if (std::isnan(level) && !has_sensor(sample.tool)) {
+        // the made-up 0 ... 1 is a share of the profile's range
         level = plan.profile.level_lowest + sample.pressure * (plan.profile.level_highest - plan.profile.level_lowest);
     }
     state.without_level = std::isnan(level);
     if (state.without_level) {
         ++state.counters.without_level;
+        return;
+    }
+    // Some pens report full pressure in their first sample, whatever the force.
+    const double believable = plan.profile.level_lowest + kUnbelievable * (plan.profile.level_highest - plan.profile.level_lowest);
+    if (sample.phase == Phase::down && has_sensor(sample.tool) && level > believable) {
+        ++state.counters.distrusted;
         return;
     }
     state.touch.force_N = scene.force_scale * force_N(plan.profile, level, state.counters.levels_clamped);
@@ -180,17 +190,6 @@ void walk_grid(const Scene& scene, double to_s, State& state) {
     }
 }
 
-// Whose sample is it? Sets state.answered.
-void follow_pointer(const Sample& sample, State& state) {
-    if (is_touching(sample.phase) && !state.pointer) {
-        state.pointer = sample.pointer_id;
-        state.touch_began_s = state.timeline.now_s;
-        state.grid_step = 0;
-    }
-    state.answered = !state.pointer || *state.pointer == sample.pointer_id;
-    if (state.answered && !is_touching(sample.phase)) state.pointer.reset();
-}
-
 void run_stages(const Scene& scene, const Plan& plan, const Sample& sample, State& state) {
     const bool time = state.time_every > 0 && state.counters.samples % state.time_every == 0;
     if (!time) {
@@ -209,6 +208,54 @@ void run_stages(const Scene& scene, const Plan& plan, const Sample& sample, Stat
         meter.add_ns(static_cast<double>(after_ns - before_ns));
         before_ns = after_ns;
     }
+}
+
+void note_palm(std::int64_t pointer_id, Palms& palms) {
+    const auto end = palms.pointers.begin() + static_cast<std::ptrdiff_t>(palms.count);
+    if (std::find(palms.pointers.begin(), end, pointer_id) != end || palms.count == palms.pointers.size()) return;
+    palms.pointers[palms.count++] = pointer_id;
+}
+
+// Is the pointer one of them? With its lift it is for the last time; one that comes down anew is not.
+bool is_palm(const Sample& sample, Palms& palms) {
+    for (std::size_t i = 0; i < palms.count; ++i) {
+        if (palms.pointers[i] != sample.pointer_id) continue;
+        if (sample.phase != Phase::move) palms.pointers[i] = palms.pointers[--palms.count];
+        return sample.phase != Phase::down;
+    }
+    return false;
+}
+
+// A pen takes over from a finger, which may be the hand that holds it; the finger's touch ends here.
+void take_over(const Scene& scene, const Plan& plan, State& state) {
+    Sample end;
+    end.pointer_id = *state.pointer;
+    end.tool = Tool::finger;
+    end.phase = Phase::cancel;
+    end.x_px = end.y_px = kMissing;  // where it was
+    run_stages(scene, plan, end, state);
+    note_palm(*state.pointer, state.palms);
+    ++state.counters.palms;
+    state.pointer.reset();
+}
+
+// Whose sample is it? Sets state.answered.
+void follow_pointer(const Scene& scene, const Plan& plan, const Sample& sample, State& state) {
+    const bool touching = is_touching(sample.phase);
+    const bool finger_presses = state.pointer && state.pointer_tool == Tool::finger;
+    const bool pen_presses = state.pointer && state.pointer_tool == Tool::pen;
+    if (touching && sample.tool == Tool::pen && finger_presses) take_over(scene, plan, state);
+    state.answered = false;
+    if (is_palm(sample, state.palms)) return;
+    if (touching && sample.tool == Tool::finger && pen_presses) note_palm(sample.pointer_id, state.palms);
+    if (touching && !state.pointer) {
+        state.pointer = sample.pointer_id;
+        state.pointer_tool = sample.tool;
+        state.touch_began_s = state.timeline.now_s;
+        state.grid_step = 0;
+    }
+    state.answered = !state.pointer || *state.pointer == sample.pointer_id;
+    if (state.answered && !touching) state.pointer.reset();
 }
 
 void resize(const Scene& scene, const Plan& plan, const ScreenArea& screen, State& state) {
@@ -251,7 +298,7 @@ void advance(const Scene& scene, const Plan& plan, const Sample& sample, State& 
     if (!in_order && is_touching(sample.phase)) return;
     const bool was_touching = state.pointer.has_value();
     if (was_touching) walk_grid(scene, state.timeline.now_s, state);
-    follow_pointer(sample, state);
+    follow_pointer(scene, plan, sample, state);
     if (!state.answered) return;
     run_stages(scene, plan, sample, state);
     state.avatar.p_m = state.touch.p_m - state.avatar.lag_m;

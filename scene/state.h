@@ -36,6 +36,8 @@ struct Counters {
     std::int64_t dropped_steps = 0;
     std::int64_t levels_clamped = 0;  // outside the profile's range
     std::int64_t without_level = 0;   // touching, but the device reported no level
+    std::int64_t distrusted = 0;      // first samples of a press with a level that no touch begins with
+    std::int64_t palms = 0;           // fingers' touches that ended because a pen came
     std::int64_t saturated = 0;
     std::int64_t off_tissue = 0;      // touching beside the tissue
     std::int64_t not_numbers = 0;     // a position that is not finite
@@ -50,11 +52,19 @@ struct Extremes {
     double lag_at_s = 0.0;  // when the lag was greatest
 };
 
+// Fingers that rested on the screen while a pen pressed: hands. None of them presses until it is lifted.
+struct Palms {
+    std::array<std::int64_t, 16> pointers{};
+    std::size_t count = 0;
+};
+
 struct State {
     Timeline timeline;
     View view;
     ScreenArea screen;
     std::optional<std::int64_t> pointer;  // the one that touches; others are logged, and press nothing
+    Tool pointer_tool = Tool::mouse;
+    Palms palms;
     bool without_level = false;           // the device of this touch does not report what the profile reads
     bool answered = false;                // the last sample belonged to it (or nothing touches)
     Touch touch;

@@ -1,6 +1,7 @@
 #include "platform/linux/pointers.h"
 
 #include <SDL.h>
+#include <algorithm>
 #include <utility>
 
 namespace palpa {
@@ -156,11 +157,48 @@ void receive_finger(const SDL_TouchFingerEvent& finger, double t_host_s, Pointer
     pointers.made.push_back(sample);
 }
 
+std::optional<PointerKey> pointer_key(SDL_Keycode key) {
+    switch (key) {
+        case SDLK_LEFT:
+            return PointerKey::left;
+        case SDLK_RIGHT:
+            return PointerKey::right;
+        case SDLK_UP:
+            return PointerKey::up;
+        case SDLK_DOWN:
+            return PointerKey::down;
+        case SDLK_SPACE:
+            return PointerKey::press;
+        case SDLK_PAGEUP:
+            return PointerKey::harder;
+        case SDLK_PAGEDOWN:
+            return PointerKey::softer;
+        default:
+            return std::nullopt;
+    }
+}
+
+void receive_key(const SDL_KeyboardEvent& key, bool on_panel, double t_host_s, Pointers& pointers) {
+    set_slow(t_host_s, (key.keysym.mod & KMOD_SHIFT) != 0, pointers.keyboard);
+    const auto which = pointer_key(key.keysym.sym);
+    if (!which || key.repeat != 0) return;
+    if (key.state == SDL_RELEASED) {
+        key_up(t_host_s, *which, pointers.keyboard, pointers.made);
+    } else if (!on_panel) {
+        key_down(t_host_s, *which, pointers.keyboard, pointers.made);
+    }
+}
+
 void receive_window(const SDL_WindowEvent& event, double t_host_s, Pointers& pointers) {
     if (event.event == SDL_WINDOWEVENT_CLOSE) pointers.close_requested = true;
     if (event.event == SDL_WINDOWEVENT_FOCUS_LOST) {
-        pointers.mouse.down = false;
+        pointers.mouse.button.down = false;
+        release_keys(pointers.keyboard);
         cancel_all(t_host_s, pointers.presses, pointers.pending);
+        // SDL lets all keys go just before it says that the focus is lost: that was no key coming up
+        for (Sample& sample : pointers.pending) {
+            if (sample.tool == Tool::keyboard && sample.phase == Phase::up) sample.phase = Phase::cancel;
+        }
     }
     const bool other_screen =
         event.event == SDL_WINDOWEVENT_SIZE_CHANGED || event.event == SDL_WINDOWEVENT_DISPLAY_CHANGED;
@@ -179,6 +217,9 @@ bool of_other_window(const SDL_Event& event, const Pointers& pointers) {
             return event.button.windowID != ours;
         case SDL_MOUSEWHEEL:
             return event.wheel.windowID != ours;
+        case SDL_KEYDOWN:
+        case SDL_KEYUP:
+            return event.key.windowID != ours;
         case SDL_FINGERDOWN:
         case SDL_FINGERMOTION:
         case SDL_FINGERUP:
@@ -219,6 +260,11 @@ void receive_sdl(const SDL_Event& event, bool on_panel, double t_host_s, Pointer
         case SDL_MOUSEBUTTONUP:
             receive_button(event.button, t_host_s, pointers);
             break;
+        case SDL_KEYDOWN:
+        case SDL_KEYUP:
+            receive_key(event.key, on_panel, t_host_s, pointers);
+            on_panel = false;  // a key that a panel took made no sample
+            break;
         case SDL_FINGERDOWN:
             on_panel = on_panel || pointers.finger_on_panel.value_or(false);
             pointers.finger_on_panel = on_panel;
@@ -250,7 +296,21 @@ void receive(const SDL_Event& event, double t_host_s, Pointers& pointers) {
 
 void hold(double t_host_s, Pointers& pointers) {
     hold_mouse(t_host_s, pointers.mouse, pointers.made);
+    if (key_held(pointers.keyboard)) {
+        hold_keys(t_host_s, pointers.keyboard, pointers.made);
+        // both are held: two runs of grid points, each in order
+        std::stable_sort(pointers.made.begin(), pointers.made.end(),
+                         [](const Sample& a, const Sample& b) { return a.t_host_s < b.t_host_s; });
+    }
     admit_made(PressOwner::tissue, pointers);
+}
+
+void set_keyboard_area(double t_host_s, const KeyboardArea& area, Pointers& pointers) {
+    hold(t_host_s, pointers);
+    set_area(area, pointers.keyboard);
+    if (!is_on(pointers.keyboard)) {
+        cancel_gone(t_host_s, kKeyboardPointerId, pointers.presses, pointers.pending);
+    }
 }
 
 }  // namespace palpa

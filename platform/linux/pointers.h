@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "platform/linux/xinput.h"
+#include "platform/keyboard.h"
 #include "platform/mouse.h"
 #include "platform/press.h"
 #include "platform/sample.h"
@@ -18,6 +19,7 @@ struct Pointers {
     SDL_Window* window = nullptr;
     std::optional<XInput> xinput;  // absent: no pressure, fingers come from SDL
     Mouse mouse;
+    Keyboard keyboard;
     Presses presses;
     bool (*filter)(const SDL_Event& event, void* user) = nullptr;
     void* filter_user = nullptr;
@@ -36,7 +38,10 @@ struct Pointers {
 // Takes one event; call it for each, in order, from an SDL event watch.
 void receive(const SDL_Event& event, double t_host_s, Pointers& pointers);
 
-// Lets a held mouse button press on until now.
+// Lets a held mouse button or key go on until now.
 void hold(double t_host_s, Pointers& pointers);
+
+// As Window::set_keyboard. A press that is going on when it is turned off ends with phase cancel.
+void set_keyboard_area(double t_host_s, const KeyboardArea& area, Pointers& pointers);
 
 }  // namespace palpa

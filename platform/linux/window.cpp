@@ -33,10 +33,14 @@ void wait_for_event(double wait_s, const Pointers& pointers) {
 
 PointerDevice describe(const XiDevice& device) {
     const bool has_pressure = device.pressure.number >= 0 && device.pressure.hi > device.pressure.lo;
-    PointerDevice out{device.id, device.name, device.tool, has_pressure, 0.0, 0.0};
+    PointerDevice out{device.id, device.name, device.tool, has_pressure};
+    out.has_tilt = device.tilt_x.number >= 0 && device.tilt_y.number >= 0;
+    out.has_contact_size = device.touch_major.number >= 0;
+    out.axes = device.axes;
     if (has_pressure) {
         out.pressure_min = device.pressure.lo;
         out.pressure_max = device.pressure.hi;
+        out.levels = std::llround(device.pressure.hi - device.pressure.lo) + 1;
     }
     return out;
 }
@@ -46,7 +50,8 @@ PointerDevice describe(const XiDevice& device) {
 struct Window::Impl {
     explicit Impl(const WindowOptions& options) : gl(options) {
         pointers.window = gl.sdl();
-        pointers.mouse.hold_s = options.mouse_hold_s;
+        pointers.mouse.button.hold_s = options.mouse_hold_s;
+        pointers.keyboard.button.hold_s = options.mouse_hold_s;
         pointers.xinput = open_xinput(gl.sdl());
         if (pointers.xinput) SDL_EventState(SDL_SYSWMEVENT, SDL_ENABLE);
         SDL_AddEventWatch(watch, &pointers);
@@ -64,8 +69,9 @@ Window::~Window() = default;
 
 void Window::poll(double wait_s, std::vector<Sample>& out) {
     Pointers& pointers = impl_->pointers;
-    // a held mouse button makes a sample per grid point without any event
-    const double longest_s = pointers.mouse.down ? 1.0 / kMouseGrid_Hz : wait_s;
+    // a held button or key makes a sample per grid point without any event
+    const bool held = pointers.mouse.button.down || key_held(pointers.keyboard);
+    const double longest_s = held ? 1.0 / kHoldGrid_Hz : wait_s;
     if (wait_s > 0.0 && pointers.pending.empty()) wait_for_event(std::min(wait_s, longest_s), pointers);
     SDL_PumpEvents();
     SDL_FlushEvents(SDL_FIRSTEVENT, SDL_LASTEVENT);  // the watch has seen them
@@ -77,6 +83,18 @@ void Window::poll(double wait_s, std::vector<Sample>& out) {
 void Window::set_event_filter(bool (*filter)(const SDL_Event& event, void* user), void* user) {
     impl_->pointers.filter = filter;
     impl_->pointers.filter_user = user;
+}
+
+void Window::set_keyboard(double x0_px, double y0_px, double x1_px, double y1_px, double speed_px_per_s) {
+    set_keyboard_area(steady_s(), {x0_px, y0_px, x1_px, y1_px, speed_px_per_s}, impl_->pointers);
+}
+
+double Window::keyboard_x_px() const {
+    return impl_->pointers.keyboard.x_px;
+}
+
+double Window::keyboard_y_px() const {
+    return impl_->pointers.keyboard.y_px;
 }
 
 bool Window::close_requested() const {
@@ -106,13 +124,13 @@ int Window::height_px() const {
 double Window::mouse_pressure() const {
     const Pointers& pointers = impl_->pointers;
     const bool pressing = presses_tissue(pointers.presses, kMousePointerId);
-    if (pointers.mouse.down && !pressing) return 0.0;  // the press is a panel's
-    return palpa::mouse_pressure(pointers.mouse, steady_s());
+    if (pointers.mouse.button.down && !pressing) return 0.0;  // the press is a panel's
+    return pressure_at(pointers.mouse.button, steady_s());
 }
 
 std::vector<PointerDevice> Window::devices() const {
     const auto& xinput = impl_->pointers.xinput;
-    if (!xinput) return {{0, "mouse", Tool::mouse, false, 0.0, 0.0}};
+    if (!xinput) return {{0, "mouse", Tool::mouse}};
     std::vector<PointerDevice> devices;
     for (const XiDevice& device : xinput->state.devices) {
         const bool made_by_server = device.name.find("XTEST") != std::string::npos;

@@ -81,6 +81,7 @@ XiDevice describe(Display* display, const XIDeviceInfo& info) {
         const std::string label = label_of(display, valuator.label);
         pen_pressure |= label == "Abs Pressure";
         add_axis(valuator, label, device);
+        device.axes.push_back(label);
     }
     device.tool = tool_of_device(touch_class, pen_pressure);
     return device;

@@ -28,6 +28,7 @@ struct XiDevice {
     Axis x, y;  // absolute ones only
     Axis pressure, tilt_x, tilt_y;
     Axis touch_major, touch_minor;
+    std::vector<std::string> axes{};  // labels of all its axes
 };
 
 // "Abs Pressure" makes a pen, a touch class a touch screen (whatever else it has), all else is a mouse.

@@ -37,7 +37,7 @@ Called palpa_with(const std::string& arguments, const std::string& before = "") 
 }  // namespace
 
 TEST_CASE("command line: help and version exist for every command") {
-    for (const char* command : {"", "run", "explain", "maps", "maps info", "maps sample", "maps import", "maps generate", "bench trace", "bench accuracy",
+    for (const char* command : {"", "run", "explain", "devices", "maps", "maps info", "maps sample", "maps import", "maps generate", "bench trace", "bench accuracy",
                                 "bench accuracy mechanics"}) {
         CAPTURE(command);
         const Called help = palpa_with(std::string(command) + " --help");
@@ -73,6 +73,13 @@ TEST_CASE("command line: a log is written in the BIDS layout and repeats byte fo
     CHECK(std::filesystem::exists(folder / ("a" + stem + "_performance.json")));
     CHECK(palpa_with(call + (folder / "a").string()).status == 0);
     CHECK(std::filesystem::exists(folder / "a/sub-01/beh/sub-01_task-palpation_run-02_samples.tsv"));
+}
+
+TEST_CASE("command line: devices without a display says so") {
+    const Called devices = palpa_with("devices --json", "env -u DISPLAY -u WAYLAND_DISPLAY");
+    CHECK(devices.status == 1);
+    CHECK(devices.out.empty());
+    CHECK(contains(devices.err, "no display: DISPLAY is not set"));
 }
 
 TEST_CASE("command line: a picture of the greatest lag needs no display") {

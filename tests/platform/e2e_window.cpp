@@ -1,7 +1,9 @@
 // The window with real events: a pen, fingers and a mouse of an X server (run it under with-xorg).
 #define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
 #include <SDL.h>
+#include <algorithm>
 #include <atomic>
+#include <chrono>
 #include <cmath>
 #include <cstdlib>
 #include <doctest/doctest.h>
@@ -11,7 +13,7 @@
 #include <thread>
 #include <vector>
 
-#include "platform/mouse.h"
+#include "platform/keyboard.h"
 #include "platform/window.h"
 
 using palpa::Phase;
@@ -52,7 +54,7 @@ std::string write_script(const std::vector<Row>& rows) {
     return path.string();
 }
 
-// Polls like an application until the script is over and nothing has come for 0.3 s.
+// Polls like an application until the script is over and nothing has come for 0.3 s, or has not stopped for 1 s.
 std::vector<Sample> play(const std::vector<Row>& rows, Window& window) {
     std::vector<Sample> samples;
     for (int i = 0; i < 20; ++i) window.poll(0.01, samples);  // what appearing brings with it
@@ -66,8 +68,10 @@ std::vector<Sample> play(const std::vector<Row>& rows, Window& window) {
         over = true;
     });
     double last_s = window.now_s();
-    while (!over || window.now_s() - last_s < 0.3) {
+    double ended_s = last_s;
+    while (!over || (window.now_s() - last_s < 0.3 && window.now_s() - ended_s < 1.0)) {
         const std::size_t before = samples.size();
+        if (!over) ended_s = window.now_s();
         window.poll(0.016, samples);
         if (samples.size() > before) last_s = window.now_s();
     }
@@ -222,6 +226,143 @@ TEST_CASE("unplugged: a pen that goes while it presses ends its press") {
     MESSAGE("it ended with ", std::string(name_of(samples[0].phase)));
 }
 
+TEST_CASE("plugging: a pen that goes and comes again costs the fingers no sample") {
+    Window window(small_window());
+    const auto pens = [&] {
+        int count = 0;
+        for (const palpa::PointerDevice& device : window.devices()) count += device.tool == Tool::pen ? 1 : 0;
+        return count;
+    };
+    std::vector<Row> rows;
+    for (int i = 0; i < 400; ++i) {  // 2 s at 200 Hz
+        const char* phase = i == 0 ? "down" : i == 399 ? "up" : "move";
+        rows.push_back({0.005 * i, "touch", 1, phase, 400.0 + i, 500.0, i == 399 ? 0.0 : std::round(2.047 * i) / 2047.0});
+    }
+    std::atomic<bool> over = false;
+    std::thread hand([&] {
+        const auto run = [](const char* what) { CHECK(std::system(what) == 0); };
+        for (const char* what : {PALPA_XORG_PEN " --disable pen", PALPA_XORG_PEN " --enable pen", PALPA_XORG_PEN " --disable pen"}) {
+            std::this_thread::sleep_for(std::chrono::milliseconds(500));
+            run(what);
+        }
+        over = true;
+    });
+    CHECK(pens() == 1);
+    std::vector<Sample> samples = play(rows, window);
+    hand.join();
+    CHECK(over);
+    window.poll(0.05, samples);
+    CHECK(pens() == 0);
+    std::vector<Sample> fingers = of_tool(Tool::finger, samples);
+    REQUIRE(fingers.size() == rows.size());
+    fingers.back().pressure = 0.0;
+    check_against(rows, fingers, window);
+
+    REQUIRE(std::system(PALPA_XORG_PEN " --enable pen") == 0);
+    const double start_s = window.now_s();
+    while (window.now_s() - start_s < 0.3) window.poll(0.05, samples);
+    CHECK(pens() == 1);
+    for (const palpa::PointerDevice& device : window.devices()) {
+        CAPTURE(device.name);
+        if (device.tool == Tool::pen) CHECK(device.levels == 1001);
+        if (device.tool == Tool::finger) CHECK(device.levels == 2048);
+        if (device.tool == Tool::mouse) CHECK(device.levels == 0);
+        CHECK_FALSE(device.has_tilt);
+        CHECK_FALSE(device.axes.empty());
+    }
+}
+
+TEST_CASE("keyboard: arrows, Space and Page Up press; keys that a panel takes do not; losing the focus cancels") {
+    Window window(small_window());
+    window.set_keyboard(200.0, 100.0, 800.0, 600.0, 240.0);
+    constexpr int kSpace = 65, kRight = 102, kDown = 104, kPageUp = 99, kTab = 23, kShift = 50;
+    struct Panel {
+        bool has_focus = false;
+        int tabs = 0;
+    } panel;
+    window.set_event_filter(
+        [](const SDL_Event& event, void* user) {
+            auto& it = *static_cast<Panel*>(user);
+            if (event.type != SDL_KEYDOWN) return false;
+            if (event.key.keysym.sym == SDLK_TAB && event.key.repeat == 0) {
+                ++it.tabs;
+                it.has_focus = !it.has_focus;
+                return true;
+            }
+            return it.has_focus;
+        },
+        &panel);
+    std::vector<Row> rows;
+    const auto key = [&](double t_s, int code, const char* phase) { rows.push_back({t_s, "key", code, phase, 0.0, 0.0, 0.0}); };
+    const auto tap = [&](double t_s, int code) {
+        key(t_s, code, "down");
+        key(t_s + 0.02, code, "up");
+    };
+    key(0.1, kRight, "down");
+    key(0.6, kRight, "up");
+    key(0.7, kSpace, "down");  // held long enough for the server to repeat it
+    key(1.0, kShift, "down");
+    key(1.1, kDown, "down");
+    key(1.6, kDown, "up");
+    key(1.65, kShift, "up");
+    key(1.7, kSpace, "up");
+    for (int i = 0; i < 4; ++i) tap(1.8 + 0.05 * i, kPageUp);
+    tap(2.1, kSpace);
+    tap(2.2, kTab);  // the panel's turn
+    tap(2.3, kSpace);
+    key(2.4, kRight, "down");
+    key(2.5, kRight, "up");
+    tap(2.6, kTab);
+    key(2.7, kRight, "down");
+    key(2.75, kSpace, "down");
+    std::vector<Sample> samples = play(rows, window);
+
+    CHECK(panel.tabs == 2);
+    check_in_order(samples);
+    std::vector<Sample> downs, ups;
+    int early_hovers = 0;
+    for (const Sample& sample : of_tool(Tool::keyboard, samples)) {
+        CHECK(sample.pointer_id == palpa::kKeyboardPointerId);
+        if (sample.phase == Phase::down) downs.push_back(sample);
+        if (sample.phase == Phase::up) ups.push_back(sample);
+        early_hovers += sample.phase == Phase::hover && downs.empty() ? 1 : 0;
+    }
+    REQUIRE(downs.size() == 3);
+    REQUIRE(ups.size() == 2);
+    CHECK(early_hovers > 100);  // 0.5 s on the grid
+    const double right_px = downs[0].x_px - 500.0;
+    CHECK(right_px > 100.0);
+    CHECK(right_px < 160.0);
+    CHECK(downs[0].y_px == 350.0);
+    CHECK(ups[0].y_px - 350.0 > 0.8 * 0.5 * 240.0 * palpa::kSlowShare);
+    CHECK(ups[0].y_px - 350.0 < 1.5 * 0.5 * 240.0 * palpa::kSlowShare);
+    CHECK(downs[0].pressure == 0.0);
+    double hardest = 0.0;
+    for (const Sample& sample : samples) {
+        if (sample.phase == Phase::move && sample.t_host_s < ups[0].t_host_s) hardest = std::max(hardest, sample.pressure);
+    }
+    CHECK(hardest > 0.9);  // held for 1 s of 1 s
+    CHECK(downs[1].pressure == doctest::Approx(0.2));
+    CHECK(downs[1].x_px == downs[0].x_px);
+    CHECK(downs[2].x_px > downs[1].x_px);  // Space and arrow of the panel's turn did nothing
+
+    samples.clear();
+    SDL_HideWindow(window.sdl());
+    const double start_s = window.now_s();
+    while (window.now_s() - start_s < 0.6) window.poll(0.05, samples);
+    REQUIRE_FALSE(samples.empty());
+    const double ended_s = samples.back().t_host_s;
+    int cancels = 0, others = 0;
+    for (const Sample& sample : samples) {
+        if (sample.phase == Phase::move || sample.phase == Phase::hover) continue;
+        (sample.phase == Phase::cancel ? cancels : others) += 1;
+    }
+    CHECK(cancels == 1);
+    CHECK(others == 0);
+    while (window.now_s() - start_s < 0.8) window.poll(0.05, samples);
+    CHECK(samples.back().t_host_s == ended_s);  // and nothing is held
+}
+
 TEST_CASE("panel: presses that start on it reach no tissue, and it hears of each once") {
     Window window(small_window());
     int origin_x = 0, origin_y = 0;
@@ -317,7 +458,7 @@ TEST_CASE("mouse: every motion, pressure by holding and by wheel") {
     // one per grid point between each down and its up, as they arrived
     double held_s = 0.0;
     for (std::size_t i = 0; i < 2; ++i) held_s += ups[i].t_host_s - downs[i].t_host_s;
-    CHECK(std::abs(static_cast<double>(held.size()) - held_s * palpa::kMouseGrid_Hz) <= 2.0);
+    CHECK(std::abs(static_cast<double>(held.size()) - held_s * palpa::kHoldGrid_Hz) <= 2.0);
     CHECK(downs[0].pressure == 0.0);
     const double by_time = (moves[99].t_host_s - downs[0].t_host_s) / 1.0;
     CHECK(moves[99].pressure == doctest::Approx(by_time).epsilon(1e-9));

@@ -9,24 +9,24 @@ using palpa::Sample;
 
 namespace {
 
-constexpr double kTick_s = 1.0 / palpa::kMouseGrid_Hz;
+constexpr double kTick_s = 1.0 / palpa::kHoldGrid_Hz;
 constexpr double kRounding = 1e-9;  // of sums of seconds near 1000
 
 }  // namespace
 
 TEST_CASE("mouse pressure: rises with time from 0 to 1 and stays there") {
     Mouse mouse;
-    mouse.hold_s = 2.0;
+    mouse.button.hold_s = 2.0;
     std::vector<Sample> out;
-    CHECK(palpa::mouse_pressure(mouse, 1000.0) == 0.0);
+    CHECK(palpa::pressure_at(mouse.button, 1000.0) == 0.0);
     palpa::press_mouse(1000.0, 5.0, mouse, out);
     for (const auto& [after_s, pressure] :
          {std::pair{0.0, 0.0}, {0.5, 0.25}, {1.0, 0.5}, {2.0, 1.0}, {9.0, 1.0}}) {
         CAPTURE(after_s);
-        CHECK(palpa::mouse_pressure(mouse, 1000.0 + after_s) == doctest::Approx(pressure).epsilon(kRounding));
+        CHECK(palpa::pressure_at(mouse.button, 1000.0 + after_s) == doctest::Approx(pressure).epsilon(kRounding));
     }
     palpa::release_mouse(1003.0, 8.0, mouse, out);
-    CHECK(palpa::mouse_pressure(mouse, 1004.0) == 0.0);
+    CHECK(palpa::pressure_at(mouse.button, 1004.0) == 0.0);
     REQUIRE(out.size() == 2);
     CHECK(out[0].phase == Phase::down);
     CHECK(out[0].t_device_s == 5.0);
@@ -37,7 +37,7 @@ TEST_CASE("mouse pressure: rises with time from 0 to 1 and stays there") {
 
 TEST_CASE("mouse pressure: a hold time of zero is full pressure at once") {
     Mouse mouse;
-    mouse.hold_s = 0.0;
+    mouse.button.hold_s = 0.0;
     std::vector<Sample> out;
     palpa::press_mouse(1.0, 1.0, mouse, out);
     CHECK(out[0].pressure == 1.0);
@@ -99,10 +99,10 @@ TEST_CASE("mouse pressure: the wheel during a press takes over where holding has
     REQUIRE(out.size() == 2);
     CHECK(out[1].phase == Phase::move);
     CHECK(out[1].pressure == doctest::Approx(0.6));
-    CHECK(palpa::mouse_pressure(mouse, 20.0) == doctest::Approx(0.6));  // time counts no more
+    CHECK(palpa::pressure_at(mouse.button, 20.0) == doctest::Approx(0.6));  // time counts no more
     palpa::turn_wheel(21.0, 2.0, -100.0, mouse, out);
     CHECK(out[2].pressure == 0.0);
-    CHECK(palpa::mouse_pressure(mouse, 30.0) == 0.0);
+    CHECK(palpa::pressure_at(mouse.button, 30.0) == 0.0);
     palpa::turn_wheel(31.0, 2.0, 100.0, mouse, out);
     CHECK(out[3].pressure == 1.0);
 }
@@ -114,9 +114,9 @@ TEST_CASE("mouse pressure: the wheel before a press sets it, and turned to zero 
     CHECK(out.empty());
     palpa::press_mouse(2.0, 0.0, mouse, out);
     CHECK(out[0].pressure == doctest::Approx(0.2));
-    CHECK(palpa::mouse_pressure(mouse, 5.0) == doctest::Approx(0.2));
+    CHECK(palpa::pressure_at(mouse.button, 5.0) == doctest::Approx(0.2));
     palpa::release_mouse(6.0, 0.0, mouse, out);
     palpa::turn_wheel(7.0, 0.0, -4.0, mouse, out);
     palpa::press_mouse(8.0, 0.0, mouse, out);
-    CHECK(palpa::mouse_pressure(mouse, 9.0) == doctest::Approx(0.5));
+    CHECK(palpa::pressure_at(mouse.button, 9.0) == doctest::Approx(0.5));
 }

@@ -231,3 +231,116 @@ TEST_CASE("advance: a resize is a row of its own and moves the mapping") {
     run.feed(resize);
     CHECK(run.state.screen.width_px == 800);
 }
+
+TEST_CASE("advance: a pen that reports full pressure in its first sample presses from the second on") {
+    Run run("default.json");
+    const Eigen::Vector2d middle(640, 400);
+    run.feed(pen(0.00, Phase::down, middle, 1.0));
+    CHECK(run.state.touch.down);
+    CHECK(run.state.contact.normal_N == 0.0);
+    CHECK(run.state.contact.depth_m == 0.0);
+    CHECK(run.state.counters.distrusted == 1);
+    CHECK(run.state.counters.levels_clamped == 0);
+    run.feed(pen(0.01, Phase::move, middle, 0.1));
+    CHECK(run.state.contact.normal_N == doctest::Approx(0.1008 * std::exp(0.42081)).epsilon(1e-6));
+    run.feed(pen(0.02, Phase::move, middle, 0.95));  // a move may be as hard as it likes
+    CHECK(run.state.contact.normal_N > 5.0);
+    CHECK(run.state.extremes.force_at_s > 0.015);
+    run.feed(pen(0.03, Phase::up, middle, 0.0));
+
+    run.feed(pen(0.04, Phase::down, middle, 0.9));
+    CHECK(run.state.contact.normal_N > 0.0);
+    run.feed(pen(0.05, Phase::up, middle, 0.0));
+    for (const Tool tool : {Tool::mouse, Tool::keyboard}) {  // a wheel may be set to full before the press
+        Sample set = pen(0.06, Phase::down, middle, 1.0);
+        set.tool = tool;
+        run.feed(set);
+        CHECK(run.state.contact.normal_N > 5.0);
+        set.phase = Phase::up;
+        run.feed(set);
+    }
+    CHECK(run.state.counters.distrusted == 1);
+}
+
+TEST_CASE("advance: a keyboard presses with its share of any profile's range, as a mouse does") {
+    Run run("touchpad.json");
+    REQUIRE(run.plan.profile.level == LevelField::pressure_raw);
+    double force[2] = {};
+    int i = 0;
+    for (const Tool tool : {Tool::mouse, Tool::keyboard}) {
+        Sample sample = pen(0.1 * i, Phase::down, px_of_tissue(run.state.view, {0.06, 0.06}), 0.5);
+        sample.tool = tool;
+        sample.pointer_id = i;
+        sample.pressure_raw = kMissing;
+        run.feed(sample);
+        force[i++] = run.state.contact.normal_N;
+        sample.phase = Phase::up;
+        run.feed(sample);
+    }
+    CHECK(force[0] > 0.0);
+    CHECK(force[1] == force[0]);
+}
+
+namespace {
+
+Sample finger(double t_s, Phase phase, const Eigen::Vector2d& px, std::int64_t id) {
+    Sample sample = pen(t_s, phase, px, 0.76);
+    sample.tool = Tool::finger;
+    sample.pointer_id = id;
+    return sample;
+}
+
+}  // namespace
+
+TEST_CASE("advance: a pen takes over from a finger, which is the hand until it lifts") {
+    Run run("default.json");
+    const Eigen::Vector2d hand(700, 500), tip(640, 400);
+    run.feed(finger(0.00, Phase::down, hand, 8));
+    for (int i = 1; i < 20; ++i) run.feed(finger(0.01 * i, Phase::move, hand + Eigen::Vector2d(i, 0), 8));
+    CHECK(run.state.contact.normal_N > 0.0);
+    run.feed(pen(0.20, Phase::hover, tip));  // near is not down
+    CHECK(*run.state.pointer == 8);
+    run.feed(pen(0.21, Phase::down, tip, 0.76));
+    CHECK(run.state.answered);
+    CHECK(*run.state.pointer == 3);
+    CHECK(run.state.avatar.lag_m.norm() == 0.0);  // a touch of its own, no jump
+    CHECK(run.state.counters.palms == 1);
+
+    const double pen_N = run.state.contact.normal_N;
+    run.feed(finger(0.22, Phase::move, hand, 8));
+    run.feed(finger(0.23, Phase::down, hand, 9));  // more of the hand
+    CHECK_FALSE(run.state.answered);
+    CHECK(run.state.contact.normal_N == pen_N);
+    run.feed(pen(0.24, Phase::up, tip, 0.0));
+    for (const std::int64_t id : {8, 9}) {
+        run.feed(finger(0.25, Phase::move, hand, id));
+        CHECK_FALSE(run.state.answered);
+        CHECK_FALSE(run.state.touch.down);
+    }
+    run.feed(finger(0.26, Phase::up, hand, 8));
+    run.feed(finger(0.27, Phase::down, hand, 8));  // this one means it
+    CHECK(run.state.answered);
+    CHECK(run.state.touch.down);
+    run.feed(finger(0.28, Phase::up, hand, 8));
+    run.feed(finger(0.29, Phase::cancel, hand, 9));
+    run.feed(finger(0.30, Phase::down, hand, 9));
+    CHECK(run.state.touch.down);
+}
+
+TEST_CASE("advance: taking over ends the finger's touch as a lift would") {
+    for (const char* name : {"default.json", "delay.json"}) {
+        CAPTURE(name);
+        Run lifted(name), taken(name);
+        for (Run* run : {&lifted, &taken}) {
+            const auto px_at = [&](double x_m) { return px_of_tissue(run->state.view, {x_m, 0.035}); };
+            run->feed(finger(0.0, Phase::down, px_at(0.01), 8));
+            for (int i = 1; i <= 200; ++i) run->feed(finger(0.005 * i, Phase::move, px_at(0.01 + 0.9e-4 * i), 8));
+            CHECK(run->state.avatar.lag_m.norm() > 0.0);
+            if (run == &lifted) run->feed(finger(1.1, Phase::up, px_at(0.03), 8));
+            run->feed(pen(1.1, Phase::down, px_at(0.02), 0.7));
+            for (int i = 1; i <= 200; ++i) run->feed(pen(1.1 + 0.005 * i, Phase::move, px_at(0.02 + 1e-4 * i), 0.7));
+        }
+        CHECK(taken.state.avatar.lag_m == lifted.state.avatar.lag_m);
+        CHECK(taken.state.contact.normal_N == lifted.state.contact.normal_N);
+    }
+}

@@ -119,6 +119,13 @@ void InputDevice::button(int number, bool pressed, Axes axes) {
     send_message(socket_, message);
 }
 
+void InputDevice::key(int code, bool pressed) {
+    auto message = new_message<xf86ITEventKey>(XF86IT_EVENT_KEY);
+    message.key_code = code;
+    message.is_press = pressed ? 1 : 0;
+    send_message(socket_, message);
+}
+
 void InputDevice::proximity(bool in, Axes axes) {
     auto message = new_message<xf86ITEventProximity>(XF86IT_EVENT_PROXIMITY);
     message.is_prox_in = in ? 1 : 0;

@@ -22,6 +22,7 @@ class InputDevice {
     void move_to(Axes axes);
     void move_by(Axes axes);
     void button(int number, bool pressed, Axes axes);
+    void key(int code, bool pressed);  // X keycode
     void proximity(bool in, Axes axes);
     enum class Touch : std::uint8_t { begin, update, end };
     void touch(std::uint32_t id, Touch what, Axes axes);

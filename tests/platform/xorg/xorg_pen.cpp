@@ -1,6 +1,6 @@
-// Plays a script of pen, finger and mouse on the X server of with-xorg (1280 x 800 px), in real time:
+// Plays a script of pen, finger, mouse and keyboard on the X server of with-xorg (1280 x 800 px), in real time:
 //
-//   xorg_pen [SCRIPT.tsv]      stdin without a file; devices from XORG_PEN, XORG_TOUCH, XORG_MOUSE
+//   xorg_pen [SCRIPT.tsv]      stdin without a file; devices from XORG_PEN, XORG_TOUCH, XORG_MOUSE, XORG_KEYBOARD
 //   xorg_pen --disable NAME    as if the device (pen, touch, mouse) were unplugged; --enable: plugged in
 //   again
 //
@@ -8,7 +8,9 @@
 //
 //   t_s  kind  id  phase  x_px  y_px  pressure
 //
-// kind: pen | touch | mouse. id: of the touch, else 0. phase: hover | down | move | up, for the mouse also
+// kind: pen | touch | mouse | key. id: of the touch, of the key its keycode on this server (65 space, 100 left,
+// 102 right, 98 up, 104 down, 99 and 105 page up and down, 50 shift, 36 enter, 9 escape, 23 tab, 97 home, 103 end;
+// others: 10..19 digits 1..0, 24..33 Q..P, 38..46 A..L, 52..58 Z..M; down and up only), else 0. phase: hover | down | move | up, for the mouse also
 // wheel (pressure = notches). pressure: 0..1 of the device's range. A mouse moves by counts: its first row
 // starts by pushing it into the screen's top left corner. At the end it prints how many events it sent, in
 // which time, and by how much it was late at most.
@@ -53,7 +55,7 @@ struct Row {
 };
 
 struct Devices {
-    std::unique_ptr<InputDevice> pen, touch, mouse;
+    std::unique_ptr<InputDevice> pen, touch, mouse, keyboard;
     bool pen_near = false;
     int mouse_x_px = 0;
     int mouse_y_px = 0;
@@ -143,11 +145,18 @@ void play_mouse(const Row& row, Devices& devices) {
     mouse.sync();
 }
 
+void play_key(const Row& row, Devices& devices) {
+    InputDevice& keyboard = device(devices.keyboard, "XORG_KEYBOARD");
+    keyboard.key(row.id, row.phase == "down");
+    keyboard.sync();
+}
+
 void play(const Row& row, Devices& devices) {
     if (row.kind == "pen") return play_pen(row, devices);
     if (row.kind == "touch") return play_touch(row, devices);
     if (row.kind == "mouse") return play_mouse(row, devices);
-    throw std::runtime_error("script: kind is " + row.kind + ", want pen, touch or mouse");
+    if (row.kind == "key") return play_key(row, devices);
+    throw std::runtime_error("script: kind is " + row.kind + ", want pen, touch, mouse or key");
 }
 
 void run(std::istream& in) {

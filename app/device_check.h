@@ -1,0 +1,86 @@
+#pragma once
+// What the pointing devices really send, measured from their samples: rate, pressure, clock. Nothing here
+// allocates, so that it can run beside everything else.
+
+#include <array>
+#include <bitset>
+#include <cstdint>
+
+#include "platform/pressure.h"
+#include "platform/sample.h"
+#include "scene/meter.h"
+
+namespace palpa {
+
+// Straight line of (device - host) over host time, by least squares with running sums.
+struct ClockFit {
+    std::int64_t count = 0;
+    double first_host_s = 0.0;
+    double first_device_s = 0.0;
+    double mean_host_s = 0.0;     // since the first
+    double mean_ahead_s = 0.0;    // device - host, since the first
+    double sum_host_host = 0.0;   // of products of differences from the means, s^2
+    double sum_host_ahead = 0.0;
+    double sum_ahead_ahead = 0.0;
+};
+
+struct Drift {
+    double ppm = kMissing;  // positive: the device's clock is fast; NaN before 30 samples over some 4 s
+    double standard_error_ppm = kMissing;  // if delays come by chance; a computer that gets busy meanwhile adds to it
+};
+
+struct Range {
+    double lowest = kMissing;
+    double highest = kMissing;
+};
+
+// All pointers of one tool together.
+struct ToolCheck {
+    static constexpr std::size_t kMostValues = 65536;
+    std::int64_t samples = 0;
+    std::int64_t touching = 0;
+    Range x_px, y_px;
+    Range pressure;          // 0..1, while touching
+    Range pressure_raw;      // counts, while touching
+    std::bitset<kMostValues> values;  // of the pressure, each count (or 1/65535) that came
+    bool tilt = false;
+    bool contact_size = false;
+    Meter gaps;              // between samples of one pointer
+    std::int64_t gap_count = 0;
+    double gaps_s = 0.0;     // their sum
+    ClockFit clock;
+};
+
+// A pointer that is being followed from sample to sample.
+struct PointerTime {
+    bool used = false;
+    std::int64_t pointer_id = 0;
+    double t_host_s = 0.0;
+    double t_device_s = kMissing;
+};
+
+struct DeviceCheck {
+    std::array<ToolCheck, kToolCount> tools;
+    PressureWatch pressure;
+    std::array<PointerTime, 32> pointers;
+};
+
+// A gap longer than this is a rest, not part of the rate: many devices send nothing while they are held still.
+inline constexpr double kRest_s = 0.25;
+
+// Call it with every sample as the device sent it. Rows of phase ui are not looked at.
+void observe(const Sample& sample, DeviceCheck& check);
+
+const ToolCheck& of_tool(Tool tool, const DeviceCheck& check);
+
+// 0 before there are two samples. Gaps by the device's own clock where it has one.
+double rate_Hz(const ToolCheck& tool);
+double median_gap_s(const ToolCheck& tool);  // to 2 %
+double worst_gap_s(const ToolCheck& tool);
+
+std::int64_t distinct_pressures(const ToolCheck& tool);
+Drift clock_drift(const ToolCheck& tool);
+
+const char* name_of(PressureKind kind);
+
+}  // namespace palpa

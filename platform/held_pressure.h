@@ -1,0 +1,38 @@
+#pragma once
+// Pressure for what has no sensor: a button, a key, a pen or a finger presses harder the longer it is held, or
+// as hard as a level says that is set in notches.
+
+#include <cstdint>
+
+namespace palpa {
+
+inline constexpr double kHoldGrid_Hz = 240.0;  // samples of what is held still
+inline constexpr double kLevelStep = 0.05;     // pressure per notch
+
+struct HeldPressure {
+    double hold_s = 2.0;  // from no pressure to full
+    bool down = false;
+    double down_s = 0.0;    // when it went down
+    bool by_level = false;  // a notch has set `level`; the time no longer counts
+    double level = 0.0;     // 0..1
+};
+
+// Share of the hold time that has passed, 0..1. A hold time of 0 or less is full pressure at once.
+double held_share(double held_s, double hold_s);
+
+// What it presses with at `t_host_s`, 0..1. While up: what its level is set to.
+double pressure_at(const HeldPressure& held, double t_host_s);
+
+// A notch during a press goes on from the pressure that holding has reached. Turned back to zero while up, the
+// time counts again.
+void turn_level(double t_host_s, double notches, HeldPressure& held);
+
+// The grid: point k is at k / kHoldGrid_Hz. last_grid_point: the last one up to and with `t_s`.
+std::int64_t last_grid_point(double t_s);
+double grid_time_s(std::int64_t point);
+
+// The grid points from here up to `now` have no sample yet if `done` was the last that has one. After a minute
+// or more without a call (the computer slept) only the last minute is made up.
+std::int64_t first_grid_point(std::int64_t done, std::int64_t now);
+
+}  // namespace palpa

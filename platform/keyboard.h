@@ -1,0 +1,64 @@
+#pragma once
+// A pointer moved by keys: arrows move its cursor, a held press key presses harder the longer it is held, or as
+// hard as the level keys say.
+
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include "platform/held_pressure.h"
+#include "platform/sample.h"
+
+namespace palpa {
+
+// Fingers count from 1, pens down from -1 by their device's number, which never gets near this one.
+inline constexpr std::int64_t kKeyboardPointerId = std::numeric_limits<std::int64_t>::min();
+inline constexpr double kSlowShare = 0.2;  // of the speed, with Shift
+
+enum class PointerKey : std::uint8_t { left, right, up, down, press, harder, softer };
+
+// Where the cursor may move, and how fast. An empty area turns the pointer off.
+struct KeyboardArea {
+    double x0_px = 0.0;
+    double y0_px = 0.0;
+    double x1_px = 0.0;
+    double y1_px = 0.0;
+    double speed_px_per_s = 0.0;
+};
+
+struct Keyboard {
+    KeyboardArea area;
+    HeldPressure button;
+    double x_px = 0.0;  // the cursor, at moved_s
+    double y_px = 0.0;
+    double moved_s = 0.0;
+    std::array<bool, 4> held{};  // left, right, up, down
+    bool slow = false;           // Shift is held
+    std::int64_t last_tick = 0;  // grid points up to this one have their sample
+};
+
+bool is_on(const Keyboard& keyboard);
+bool key_held(const Keyboard& keyboard);  // an arrow or the press key: samples come without events
+
+// A new area; the cursor starts in its middle if the pointer was off, else it is moved inside. Turned off, all
+// keys are released; the caller cancels a press that was going on.
+void set_area(const KeyboardArea& area, Keyboard& keyboard);
+
+// Appends one sample for each grid point up to and with `t_host_s` that has none yet, while a key is held: hover,
+// or move while it presses. Call it before any other sample of that time, so that samples stay in order. No
+// sample of a keyboard has a device time.
+void hold_keys(double t_host_s, Keyboard& keyboard, std::vector<Sample>& out);
+
+// Keys as they go down and come up; call hold_keys with the same time first. A sample is appended where one is
+// news: a press, its end, an arrow let go (the cursor has stopped), a level changed during a press. Off, all
+// keys are ignored; one that is held already is too.
+void key_down(double t_host_s, PointerKey key, Keyboard& keyboard, std::vector<Sample>& out);
+void key_up(double t_host_s, PointerKey key, Keyboard& keyboard, std::vector<Sample>& out);
+
+void set_slow(double t_host_s, bool slow, Keyboard& keyboard);  // Shift
+
+// Lets all keys go without a word; the caller cancels the press.
+void release_keys(Keyboard& keyboard);
+
+}  // namespace palpa

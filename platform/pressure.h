@@ -1,0 +1,43 @@
+#pragma once
+// Whether a device's pressure is one. A pen or touch screen without a sensor reports a constant (0, 0.5, 1) or
+// nothing at all; the person should hear of it and be offered another way to press.
+
+#include <array>
+#include <cstdint>
+
+#include "platform/sample.h"
+
+namespace palpa {
+
+enum class PressureKind : std::uint8_t {
+    unknown,   // not enough of it yet
+    varies,    // a sensor
+    constant,  // the same value in each sample of at least 0.5 s and 30 samples
+    missing    // samples touch without any pressure
+};
+
+// What has come of one tool, all its pointers together.
+struct ToolPressure {
+    std::int64_t without = 0;     // touching samples that had no pressure
+    std::int64_t with = 0;        // touching samples after the first of each press, with pressure
+    double first = kMissing;      // pressure of the first of these
+    bool changed = false;
+    double touching_s = 0.0;      // between samples of a touch
+    double last_s = kMissing;     // time of the sample before; missing while nothing touches
+};
+
+struct PressureWatch {
+    std::array<ToolPressure, kToolCount> tools;
+};
+
+// Call it with every sample, before press_by_hold() changes its pressure. Allocates nothing. The first sample of
+// a press is not compared, since some pens lie in it (scene/advance.cpp).
+void watch(const Sample& sample, PressureWatch& watch);
+
+// The verdict so far; a constant that moves after all corrects it.
+PressureKind pressure_kind(const PressureWatch& watch, Tool tool);
+
+// The value that never changed, NaN unless the kind is constant.
+double constant_pressure(const PressureWatch& watch, Tool tool);
+
+}  // namespace palpa
