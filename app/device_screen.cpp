@@ -16,7 +16,7 @@ std::string range_text(const Range& range, int digits) {
 void said_lines(const Screens& screens) {
     ImGui::TextDisabled("Says that it has");
     for (const PointerDevice& device : screens.devices) {
-        std::string text = std::string(name_of(device.tool)) + " " + device.name + ": ";
+        std::string text = device.name + " (" + std::string(name_of(device.tool)) + "): ";
         text += device.has_pressure ? "pressure " + fixed(device.pressure_min, 0) + " ... " + fixed(device.pressure_max, 0) + ", " +
                                           std::to_string(device.levels) + " levels"
                                     : "no pressure";
@@ -28,6 +28,7 @@ void said_lines(const Screens& screens) {
 }
 
 std::string verdict(Tool which, const DeviceCheck& check) {
+    if (which == Tool::mouse || which == Tool::keyboard) return "by time held or level set, no sensor";
     switch (pressure_kind(check.pressure, which)) {
         case PressureKind::varies: return "varies: a sensor";
         case PressureKind::constant: return "always " + fixed(constant_pressure(check.pressure, which), 2) + ": no sensor";

@@ -168,8 +168,19 @@ bool Gui::receive_key(const SDL_Event& event) {
     const SDL_Keysym& key = event.key.keysym;
     const bool down = event.type == SDL_KEYDOWN;
     const bool ctrl = (key.mod & KMOD_CTRL) != 0;
-    const auto index = static_cast<std::size_t>(key.scancode);
-    if (index < std::size(io.KeysDown)) io.KeysDown[index] = down && keys_to_panels_;
+    // Enter presses a button as Space does, except where a number is typed
+    const bool activates = key.scancode == SDL_SCANCODE_RETURN && !io.WantTextInput;
+    const auto index = static_cast<std::size_t>(activates ? SDL_SCANCODE_SPACE : key.scancode);
+    if (index < std::size(io.KeysDown)) {
+        if (down && keys_to_panels_) {
+            io.KeysDown[index] = true;
+            fresh_keys_.push_back(index);
+        } else if (std::find(fresh_keys_.begin(), fresh_keys_.end(), index) == fresh_keys_.end()) {
+            io.KeysDown[index] = false;
+        } else {
+            let_go_.push_back(index);  // no frame has seen it down yet
+        }
+    }
     io.KeyCtrl = ctrl;
     io.KeyShift = (key.mod & KMOD_SHIFT) != 0;
     if (down && event.key.repeat == 0 && !io.WantTextInput) keys_.push_back({key.sym, ctrl});
@@ -199,6 +210,9 @@ void Gui::begin_frame(double dt_s, bool keys_to_panels) {
 void Gui::end_frame() {
     ImGui::Render();
     keys_.clear();
+    fresh_keys_.clear();
+    for (const std::size_t key : let_go_) ImGui::GetIO().KeysDown[key] = false;
+    let_go_.clear();
 }
 
 WindowSize Gui::size_px() const { return {ImGui::GetIO().DisplaySize.x, ImGui::GetIO().DisplaySize.y}; }

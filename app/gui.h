@@ -60,6 +60,8 @@ class Gui {
     std::vector<PanelArea> areas_;  // of the frame before
     std::vector<Click> clicks_;     // one is handed over per frame, so that none is too quick to be seen
     std::vector<Key> keys_;
+    std::vector<std::size_t> fresh_keys_;  // down since the last frame,
+    std::vector<std::size_t> let_go_;      // and up again already: up after the next one
     std::optional<long long> finger_;  // the one that uses the panels; others may palpate meanwhile
     bool mouse_on_panel_ = false;
     bool keys_to_panels_ = false;

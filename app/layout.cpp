@@ -6,7 +6,7 @@
 namespace palpa {
 namespace {
 
-constexpr float kColumn_mm = 62.0f;  // five targets of 9 mm side by side, and margins
+constexpr float kColumn_mm = 64.0f;  // five targets of 9 mm side by side, and margins
 constexpr float kStrip_mm = 66.0f;
 constexpr float kLeastColumnHeight_mm = 92.0f;
 constexpr float kLeastStripWidth_mm = 84.0f;

@@ -68,7 +68,7 @@ TraceInfo info_of(const App& app, const Window& window) {
 }
 
 constexpr const char* kOtherWays =
-    "Press with the mouse (hold its button, or turn the wheel) or with the keys (arrows move, Space presses).";
+    "Other ways to press: the mouse (hold its button, or turn the wheel) and the keys (arrows move, Space presses).";
 
 bool named(const std::vector<PointerDevice>& devices, const std::string& name) {
     return std::any_of(devices.begin(), devices.end(), [&](const PointerDevice& d) { return d.name == name; });
@@ -93,7 +93,7 @@ void note_pressure(Tool tool, App& app) {
     if (held) app.screens.device_notes.push_back("The " + name + " presses harder the longer it is held.");
     if (held || (kind != PressureKind::constant && kind != PressureKind::missing)) return;
     const std::string found = kind == PressureKind::missing ? "no pressure" : "always the same pressure: it has no sensor";
-    app.screens.device_notes.push_back("This " + name + " reports " + found + ". Press by holding, or: " + kOtherWays);
+    app.screens.device_notes.push_back("This " + name + " reports " + found + ".");
     app.screens.offer_hold = true;
 }
 
@@ -110,7 +110,8 @@ void note_devices(const Window& window, App& app) {
     for (const Tool tool : {Tool::pen, Tool::finger}) note_pressure(tool, app);
     const auto& devices = app.screens.devices;
     const bool pressure = std::any_of(devices.begin(), devices.end(), [](const PointerDevice& d) { return d.has_pressure; });
-    if (!pressure) notes.push_back("No pen or finger with a pressure sensor here. " + std::string(kOtherWays));
+    if (!pressure) notes.push_back("No pen or finger with a pressure sensor here.");
+    if (!pressure || app.screens.offer_hold) notes.push_back(kOtherWays);
 }
 
 // Takes a problem to the screen instead of out of the program.

@@ -58,6 +58,18 @@ void paragraph(const std::string& text) {
     ImGui::PopTextWrapPos();
 }
 
+void one_line(std::string text) {
+    const float width_px = ImGui::GetContentRegionAvail().x;
+    if (ImGui::CalcTextSize(text.c_str()).x > width_px) {
+        while (!text.empty() && ImGui::CalcTextSize((text + "...").c_str()).x > width_px) {
+            while (!text.empty() && (text.back() & 0xC0) == 0x80) text.pop_back();  // a whole character of UTF-8
+            if (!text.empty()) text.pop_back();
+        }
+        text += "...";
+    }
+    ImGui::TextDisabled("%s", text.c_str());
+}
+
 void warning_paragraph(const std::string& text) {
     ImGui::PushTextWrapPos(0.0f);
     ImGui::TextColored(ImVec4(1.0f, 0.84f, 0.35f, 1.0f), "! %s", text.c_str());

@@ -41,6 +41,7 @@ bool big_button(const char* label, const char* key, const ButtonLook& look, cons
 float share_of_line_px(int count);
 
 void paragraph(const std::string& text);      // wrapped, pale
+void one_line(std::string text);              // pale; what does not fit is left out, so that nothing below it moves
 void warning_paragraph(const std::string& text);  // wrapped, with a mark in front
 void value_line(const char* name, const std::string& value, float column_px);
 

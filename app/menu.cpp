@@ -20,12 +20,13 @@ PanelArea menu_area(const Layout& layout, float mm) {
 void choices(const char* title, const std::vector<Choice>& list, const std::string& chosen, float height_px, const Gui& gui,
              std::optional<std::string>& wish) {
     ImGui::TextDisabled("%s", title);
-    ImGui::BeginChild(title, ImVec2(0.0f, height_px), false);
+    ImGui::BeginChild(title, ImVec2(0.0f, height_px), false, ImGuiWindowFlags_NavFlattened);
     for (const Choice& choice : list) {
         ImGui::PushID(choice.file.c_str());
         ImGui::PushStyleVar(ImGuiStyleVar_ButtonTextAlign, ImVec2(0.0f, 0.5f));
         ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, ImVec2(1.5f * gui.mm(), 0.0f));
         if (big_button(choice.name.c_str(), "", {0.0f, kTarget_mm, true, choice.file == chosen}, gui)) wish = choice.file;
+        if (choice.file == chosen) ImGui::SetItemDefaultFocus();  // where arrow keys start
         ImGui::PopStyleVar(2);
         ImGui::PopID();
     }
@@ -109,14 +110,14 @@ void draw_menu(const Shown& shown, const Layout& layout, Gui& gui, Screens& scre
     const bool two_columns = area.width() >= 110.0f * gui.mm();
     const float half_px = two_columns ? share_of_line_px(2) : 0.0f;
     const float height_px = two_columns ? ImGui::GetContentRegionAvail().y : 0.5f * ImGui::GetContentRegionAvail().y;
-    ImGui::BeginChild("what", ImVec2(half_px, height_px), false);
+    ImGui::BeginChild("what", ImVec2(half_px, height_px), false, ImGuiWindowFlags_NavFlattened);
     const float line_px = ImGui::GetFontSize() + 2.0f * ImGui::GetStyle().ItemSpacing.y;
     const float list_px = ImGui::GetContentRegionAvail().y - 2.0f * line_px;
     choices("Scene", screens.scenes, shown.scene.file.string(), 0.62f * list_px, gui, wishes.scene);
     choices("Pressure profile", screens.profiles, shown.scene.profile.string(), 0.36f * list_px, gui, wishes.profile);
     ImGui::EndChild();
     if (two_columns) ImGui::SameLine();
-    ImGui::BeginChild("how");
+    ImGui::BeginChild("how", ImVec2(0.0f, 0.0f), false, ImGuiWindowFlags_NavFlattened);
     right_side(shown, gui, screens, wishes);
     ImGui::EndChild();
     end_panel("menu", gui);

@@ -17,8 +17,11 @@ void draw_run(const Shown& shown, const Coverage& c, int row, int first, int las
     const double y0 = c.y_m + row * c.cell_m;
     const double y1 = y0 + c.cell_m;
     if (level == PalpationLevel::none) {  // hatching, so that "never touched" is not one more colour
-        if (row % 3 != 0) return;
-        draw.AddLine(on_screen(shown.view, x0, y0), on_screen(shown.view, x1, y0), IM_COL32(20, 22, 24, 110), 0.25f * mm);
+        for (int i = first; i <= last; ++i) {
+            if ((i + c.n_y - row) % 4 != 0) continue;  // diagonals from cell to cell
+            const double x_m = c.x_m + i * c.cell_m;
+            draw.AddLine(on_screen(shown.view, x_m, y0), on_screen(shown.view, x_m + c.cell_m, y1), IM_COL32(20, 22, 24, 70), 0.2f * mm);
+        }
         return;
     }
     const ImU32 colour = kAreaTints[static_cast<int>(level) - 1];
@@ -110,17 +113,21 @@ void result_lines(const Shown& shown, const Debrief& debrief, const Gui& gui) {
 
 void legend(const Debrief& debrief, const Gui& gui) {
     ImGui::TextDisabled("Area examined");
-    constexpr const char* kNames[3] = {"light or deeper", "medium or deeper", "deep"};
-    for (int level = 1; level <= 3; ++level) {
+    constexpr const char* kNames[kPalpationLevels] = {"not touched", "light or deeper", "medium or deeper", "deep"};
+    ImDrawList& draw = *ImGui::GetWindowDrawList();
+    for (int level = kPalpationLevels - 1; level >= 0; --level) {
         const ImVec2 at = ImGui::GetCursorScreenPos();
         const float side_px = ImGui::GetFontSize();
-        const ImU32 solid = kAreaTints[level - 1] | IM_COL32(0, 0, 0, 255);
-        ImGui::GetWindowDrawList()->AddRectFilled(at, ImVec2(at.x + side_px, at.y + side_px), solid);
+        const ImVec2 end(at.x + side_px, at.y + side_px);
+        if (level > 0) draw.AddRectFilled(at, end, kAreaTints[level - 1] | IM_COL32(0, 0, 0, 255));
+        for (float s = 0.0f; level == 0 && s < 0.99f; s += 0.25f) {  // hatched
+            draw.AddLine(ImVec2(at.x + s * side_px, end.y), ImVec2(end.x, at.y + s * side_px), kPale);
+            draw.AddLine(ImVec2(at.x, end.y - s * side_px), ImVec2(end.x - s * side_px, at.y), kPale);
+        }
         ImGui::Dummy(ImVec2(side_px, side_px));
         ImGui::SameLine();
-        value_line(kNames[level - 1], percent(debrief.area.at_least[level]), 30.0f * gui.mm());
+        value_line(kNames[level], percent(debrief.area.at_least[level]), 38.0f * gui.mm());
     }
-    value_line("hatched: never touched", percent(debrief.area.at_least[0]), 34.0f * gui.mm() + ImGui::GetFontSize());
 }
 
 void buttons(const Gui& gui, Screens& screens, Wishes& wishes) {
@@ -150,14 +157,14 @@ void draw_reveal_panel(const Shown& shown, const Layout& layout, Gui& gui, Scree
     begin_panel("reveal", layout.controls_px, gui);
     const float half_px = layout.column ? 0.0f : share_of_line_px(2);
     ImGui::BeginGroup();
-    if (!layout.column) ImGui::BeginChild("results", ImVec2(half_px, 0.0f));
+    if (!layout.column) ImGui::BeginChild("results", ImVec2(half_px, 0.0f), false, ImGuiWindowFlags_NavFlattened);
     if (layout.column) buttons(gui, screens, wishes);
     result_lines(shown, screens.debrief, gui);
     if (!layout.column) ImGui::EndChild();
     ImGui::EndGroup();
     if (!layout.column) {
         ImGui::SameLine();
-        ImGui::BeginChild("legend");
+        ImGui::BeginChild("legend", ImVec2(0.0f, 0.0f), false, ImGuiWindowFlags_NavFlattened);
         buttons(gui, screens, wishes);
     }
     legend(screens.debrief, gui);

@@ -27,8 +27,9 @@ void draw_force_bar(const Shown& shown, float height_px, const Gui& gui) {
         const float top = y_of(bounds_N[zone + 1]);
         const float bottom = y_of(bounds_N[zone]);
         draw.AddRectFilled(ImVec2(at.x, top), ImVec2(at.x + width_px, bottom), kForceTints[zone]);
-        if (bottom - top < 2.0f * text_px) continue;
+        if (bottom - top < 1.1f * text_px) continue;
         draw.AddText(ImVec2(at.x + width_px + 1.5f * mm, 0.5f * (top + bottom - text_px)), kPale, kZones[zone]);
+        if (bottom - top < 2.0f * text_px) continue;
         const std::string bound = fixed(bounds_N[zone + 1], 1) + (zone == 2 ? " N" : "");
         draw.AddText(ImGui::GetFont(), 0.7f * text_px, ImVec2(at.x + width_px + 1.5f * mm, top), kPale, bound.c_str());
         draw.AddLine(ImVec2(at.x + width_px, top), ImVec2(at.x + width_px + mm, top), kPale);
@@ -42,7 +43,7 @@ void draw_force_bar(const Shown& shown, float height_px, const Gui& gui) {
 }
 
 void draw_numbers(const Shown& shown, const Gui& gui) {
-    const float column_px = 15.0f * gui.mm();
+    const float column_px = 13.5f * gui.mm();
     const Contact& contact = shown.state.contact;
     ImGui::BeginGroup();
     value_line("Force", fixed(contact.normal_N, 2) + " N", column_px);
@@ -127,7 +128,7 @@ void draw_messages(const Shown& shown, const Gui& gui, Screens& screens, Wishes&
 
 void column_panel(const Shown& shown, Gui& gui, Screens& screens, Wishes& wishes) {
     draw_header(shown, gui, screens);
-    paragraph(shown.scene.name);
+    one_line(shown.scene.name);
     // what is left after the rest, within reason
     const float rest_px = 62.0f * gui.mm() + 3.0f * ImGui::GetFontSize();
     const float bar_px = std::clamp(ImGui::GetContentRegionAvail().y - rest_px, 16.0f * gui.mm(), 55.0f * gui.mm());
@@ -138,7 +139,7 @@ void column_panel(const Shown& shown, Gui& gui, Screens& screens, Wishes& wishes
     draw_numbers(shown, gui);
     draw_contact_note(shown);
     draw_actions(shown, gui, wishes);
-    ImGui::BeginChild("messages");  // long ones scroll in what is left
+    ImGui::BeginChild("messages", ImVec2(0.0f, 0.0f), false, ImGuiWindowFlags_NavFlattened);  // long ones scroll in what is left
     draw_messages(shown, gui, screens, wishes);
     ImGui::EndChild();
 }
@@ -161,7 +162,7 @@ void strip_panel(const Shown& shown, Gui& gui, Screens& screens, Wishes& wishes)
     draw_messages(shown, gui, screens, wishes);
     ImGui::EndChild();
     ImGui::SetCursorPos(ImVec2(left_px + wide_px - right_px, top_px));
-    ImGui::BeginChild("right", ImVec2(right_px, height_px), false);
+    ImGui::BeginChild("right", ImVec2(right_px, height_px), false, ImGuiWindowFlags_NavFlattened);
     draw_header(shown, gui, screens);
     draw_actions(shown, gui, wishes);
     if (ImGui::GetScrollMaxY() > 1.0f) gui.note_overflow("actions");

@@ -13,7 +13,7 @@ inline constexpr int kPalpationLevels = 4;
 struct Coverage {
     double x_m = 0.0;  // lower left corner
     double y_m = 0.0;
-    double cell_m = 1.5e-3;
+    double cell_m = 1e-3;
     int n_x = 0;
     int n_y = 0;
     double full_depth_m = 0.0;

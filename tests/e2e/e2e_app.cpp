@@ -21,7 +21,7 @@ using namespace palpa::test;
 namespace {
 
 constexpr double kScale = 0.94 * 800 / 120.0;  // px per mm of the default scene on 1280 x 800
-constexpr double kColumn_px = 62.0 * 96.0 / 25.4;  // the controls, left of the tissue
+constexpr double kColumn_px = 64.0 * 96.0 / 25.4;  // the controls, left of the tissue
 double x_px(double x_mm) { return 0.5 * (kColumn_px + 1280.0) + (x_mm - 60.0) * kScale; }
 double y_px(double y_mm) { return 400.0 - (y_mm - 60.0) * kScale; }
 
@@ -51,7 +51,7 @@ TEST_CASE("app: a pen on a real X server presses the tissue, and the run replays
     const int rows = write_script(folder / "script.tsv");
     int app_status = -1;
     std::thread app([&] {
-        const std::string command = std::string("timeout 60 " PALPA_PROGRAM " run --json --quit-after-s 8 --record ") +
+        const std::string command = "XDG_CONFIG_HOME=" + path("config") + std::string(" timeout 60 " PALPA_PROGRAM " run --json --quit-after-s 8 --record ") +
                                     path("t.tsv") + " --log " + path("live") + " --screenshot " + path("p.png") + " >" +
                                     path("out.json");
         app_status = status_of(std::system(command.c_str()));

@@ -9,7 +9,7 @@ using namespace palpa;
 
 TEST_CASE("coverage: the area of a press is that of its disc, and levels are thirds of the depth") {
     Coverage c = make_coverage(0.0, 0.0, 0.12, 0.12, 0.006);
-    CHECK(c.n_x == 80);
+    CHECK(c.n_x == 120);
     cover(0.06, 0.06, 0.03, 0.0025, c);
     const double disc = std::numbers::pi * 0.03 * 0.03 / (0.12 * 0.12);
     CoverageShares shares = shares_of(c);
@@ -20,7 +20,7 @@ TEST_CASE("coverage: the area of a press is that of its disc, and levels are thi
     CHECK(deepest_near(c, 0.06, 0.06, 0.001) == doctest::Approx(0.0025));
     CHECK(deepest_near(c, 0.01, 0.01, 0.001) == 0.0);
     cover(0.0607, 0.0607, 0.0, 0.005, c);  // no radius: the cell that holds it
-    CHECK(shares_of(c).at_least[3] == doctest::Approx(1.0 / (80 * 80)));
+    CHECK(shares_of(c).at_least[3] == doctest::Approx(1.0 / (120 * 120)));
     cover(0.0607, 0.0607, 0.03, 0.001, c);  // lighter than before changes nothing
     CHECK(deepest_near(c, 0.0607, 0.0607, 0.001) == doctest::Approx(0.005));
 }

@@ -1,0 +1,204 @@
+// Whole trials on a real X server, in one run of the app: by pen, by two fingers, by keyboard alone; and a device that
+// is unplugged and plugged in again. Run it under tests/platform/xorg/with-xorg.
+
+#include <doctest/doctest.h>
+#include <stdlib.h>
+#include <sys/wait.h>
+
+#include <chrono>
+#include <fstream>
+#include <string>
+#include <thread>
+
+#include "app/layout.h"
+#include "files/json.h"
+#include "files/text.h"
+#include "scene/mapping.h"
+#include "tests/temporary_folder.h"
+
+using namespace palpa;
+using namespace palpa::test;
+
+namespace {
+
+constexpr float kMm = 96.0f / 25.4f;  // px per mm of the controls on a screen that nobody measured
+
+struct Point {
+    double x_px, y_px;
+};
+
+// Where the default scene draws a place.
+Point place(double x_mm, double y_mm) {
+    const PanelArea t = layout_of(1280, 800, kMm, false).tissue_px;
+    const ScreenArea screen{static_cast<double>(t.width()), static_cast<double>(t.height()), static_cast<double>(t.x0), 0.0};
+    const View view = make_view({}, {{0.06, 0.06}, {0.12, 0.12}}, screen);
+    const Eigen::Vector2d px = px_of_tissue(view, {1e-3 * x_mm, 1e-3 * y_mm});
+    return {px.x(), px.y()};
+}
+
+// The middle of controls, as the screenshot of this size shows them.
+constexpr Point kMenu{58, 27}, kSecondScene{360, 91}, kMark{120, 335}, kSure4{162, 405}, kSure2{72, 405}, kUndo{62, 446},
+    kFinish{176, 446}, kAgain{64, 33};
+enum Key { kF10 = 76, kEnter = 36, kSpace = 65, kLeft = 100, kRight = 102, kUp = 98, kDown = 104, kM = 58, kU = 30, kF = 41, k5 = 14, kN = 57 };
+
+class Script {
+ public:
+    explicit Script(const std::filesystem::path& file) : out_(file) { out_ << "t_s\tkind\tid\tphase\tx_px\ty_px\tpressure\n"; }
+    void wait(double seconds) { t_s_ += seconds; }
+    void row(const char* kind, int id, const char* phase, Point at, double pressure) {
+        out_ << t_s_ << '\t' << kind << '\t' << id << '\t' << phase << '\t' << at.x_px << '\t' << at.y_px << '\t' << pressure << '\n';
+    }
+    void tap(const char* kind, int id, Point at) {
+        if (kind[0] == 'p') row(kind, id, "hover", at, 0.0);
+        wait(0.05);
+        row(kind, id, "down", at, 0.3);
+        wait(0.08);
+        row(kind, id, "up", at, 0.0);
+        wait(0.25);
+    }
+    // Strokes 6 mm through a place and stays down; `lift` ends it.
+    void stroke(const char* kind, int id, double x_mm, double y_mm) {
+        if (kind[0] == 'p') row(kind, id, "hover", place(x_mm - 3, y_mm), 0.0);
+        wait(0.05);
+        row(kind, id, "down", place(x_mm - 3, y_mm), 0.2);
+        for (int i = 0; i <= 100; ++i) {
+            wait(0.004);
+            row(kind, id, "move", place(x_mm - 3 + 0.06 * i, y_mm), 0.76 + 0.0004 * i);  // no hand is constant
+        }
+        for (int i = 0; i <= 20; ++i) {
+            wait(0.004);
+            row(kind, id, "move", place(x_mm + 3 - 0.15 * i, y_mm), 0.78);
+        }
+    }
+    void lift(const char* kind, int id, double x_mm, double y_mm) {
+        row(kind, id, "up", place(x_mm, y_mm), 0.0);
+        wait(0.2);
+    }
+    void key(int code, double seconds = 0.06) {
+        row("key", code, "down", {0, 0}, 0.0);
+        wait(seconds);
+        row("key", code, "up", {0, 0}, 0.0);
+        wait(0.12);
+    }
+    double close() {  // how long it plays
+        out_.close();
+        return t_s_;
+    }
+
+ private:
+    std::ofstream out_;
+    double t_s_ = 0.0;
+};
+
+void by_pen(Script& script) {
+    script.tap("pen", 0, kMenu);
+    script.tap("pen", 0, kSecondScene);  // "Silicone phantom, delay"
+    script.wait(2.5);  // the scene is read anew
+    script.stroke("pen", 0, 35, 35);
+    script.lift("pen", 0, 35, 35);
+    script.tap("pen", 0, kMark);
+    script.tap("pen", 0, kSure4);
+    script.stroke("pen", 0, 90, 90);
+    script.lift("pen", 0, 90, 90);
+    script.tap("pen", 0, kMark);
+    script.tap("pen", 0, kUndo);
+    script.tap("pen", 0, kFinish);
+    script.tap("pen", 0, kAgain);
+    script.row("pen", 0, "hover", place(60, 5), 0.0);
+}
+
+// One finger stays on the tissue while another one marks.
+void by_two_fingers(Script& script) {
+    script.stroke("touch", 0, 85, 45);
+    script.tap("touch", 1, kMark);
+    script.tap("touch", 1, kSure2);
+    script.lift("touch", 0, 85, 45);
+    script.stroke("touch", 0, 20, 100);
+    script.lift("touch", 0, 20, 100);
+    script.tap("touch", 0, kMark);
+    script.tap("touch", 0, kFinish);
+}
+
+// From the middle of the tissue to nodule A; speed 30 mm/s.
+void by_keyboard(Script& script) {
+    script.key(kF10);  // the menu: another scene by arrows and Enter
+    script.wait(0.3);
+    script.key(kDown);  // from the chosen "delay" to "display ratio"
+    script.key(kEnter);
+    script.wait(2.5);  // the scene is read anew
+    script.key(kLeft, 25.0 / 30.0);
+    script.key(kDown, 25.0 / 30.0);
+    script.key(kSpace, 1.5);
+    script.key(kM);
+    script.key(k5);
+    script.key(kM);
+    script.key(kU);
+    script.key(kF);
+}
+
+int status_of(int status) { return WIFEXITED(status) ? WEXITSTATUS(status) : -1; }
+
+}  // namespace
+
+TEST_CASE("app: whole trials by pen, by two fingers and by keyboard alone") {
+    const TemporaryFolder folder;
+    const auto path = [&](const char* name) { return (folder / name).string(); };
+    Script script(folder / "script.tsv");
+    by_pen(script);
+    by_two_fingers(script);
+    script.wait(0.3);
+    by_keyboard(script);
+    script.wait(0.5);
+    int app_status = -1;
+    const double seconds = script.close() + 6.0;
+    std::thread app([&] {
+        const std::string command = "XDG_CONFIG_HOME=" + path("config") + " HOME=" + path("home") + " timeout 90 " PALPA_PROGRAM
+                                    " run --test --json --quit-after-s " + std::to_string(seconds) + " --log " + path("log") +
+                                    " --record " + path("t.tsv") + " --screenshot " + path("p.png") + " >" + path("out.json");
+        app_status = status_of(std::system(command.c_str()));
+    });
+    for (int i = 0; i < 200 && !std::filesystem::exists(folder / "t.tsv"); ++i) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(1500));
+    CHECK(status_of(std::system((std::string("timeout 60 " PALPA_XORG_PEN " ") + path("script.tsv")).c_str())) == 0);
+    app.join();
+    if (const char* keep = ::getenv("PALPA_KEEP_PICTURE")) {
+        write_text_atomically(keep, read_text(folder / "p.png"));
+        write_text_atomically(std::string(keep) + ".json", read_text(folder / "out.json"));
+    }
+    REQUIRE(app_status == 0);
+    const Json result = read_json(folder / "out.json");
+    CHECK(result["overflow"] == "");
+    CHECK(result["dropped_steps"] == 0);
+    REQUIRE(result["trials"].size() == 3);
+
+    const Json& pen = result["trials"][0];
+    CHECK(pen["finished"] == true);
+    CHECK(pen["tp"] == 1);
+    CHECK(pen["fp"] == 0);
+    REQUIRE(pen["marks"].size() == 1);
+    CHECK(pen["marks"][0]["confidence"] == 4);
+    CHECK(pen["marks"][0]["distance_mm"].get<double>() < 1.0);
+    CHECK(pen["nodules"][0]["finding"] == "found");
+    CHECK(pen["nodules"][2]["finding"] == "not touched");
+
+    const Json& fingers = result["trials"][1];
+    CHECK(fingers["tp"] == 1);
+    CHECK(fingers["fp"] == 1);
+    REQUIRE(fingers["marks"].size() == 2);
+    CHECK(fingers["marks"][0]["confidence"] == 2);
+    CHECK(fingers["nodules"][1]["finding"] == "found");
+
+    const Json& keys = result["trials"][2];
+    CHECK(keys["finished"] == true);
+    CHECK(keys["tp"] == 1);
+    REQUIRE(keys["marks"].size() == 1);
+    CHECK(keys["marks"][0]["confidence"] == 5);
+
+    // run 1 is the trial that choosing a scene ended, run 2 the pen's
+    const std::string marks = read_text(folder / "log/sub-01/beh/sub-01_task-palpation_run-02_marks.tsv");
+    CHECK(marks.find("\t4\tA\t") != std::string::npos);
+    const std::string samples = read_text(folder / "log/sub-01/beh/sub-01_task-palpation_run-03_samples.tsv");
+    CHECK(samples.find("finger\tmove") != std::string::npos);
+}
