@@ -323,6 +323,19 @@ TEST_CASE("advance: a pen takes over from a finger, which is the hand until it l
     CHECK(run.state.touch.down);
 }
 
+TEST_CASE("advance: a finger that the pen pushed out stays out though it was still meanwhile; down anew it counts") {
+    Run run("default.json");
+    const Eigen::Vector2d hand(700, 500), tip(640, 400);
+    run.feed(finger(0.00, Phase::down, hand, 8));
+    run.feed(pen(0.10, Phase::down, tip));
+    run.feed(pen(0.20, Phase::up, tip));
+    run.feed(finger(0.30, Phase::move, hand, 8));
+    CHECK_FALSE(run.state.touch.down);
+    run.feed(finger(0.40, Phase::down, hand, 8));  // its lift was lost
+    CHECK(run.state.touch.down);
+    CHECK(run.state.answered);
+}
+
 TEST_CASE("advance: taking over ends the finger's touch as a lift would") {
     for (const char* name : {"default.json", "delay.json"}) {
         CAPTURE(name);
