@@ -346,8 +346,8 @@ TEST_CASE("advance: taking over ends the finger's touch as a lift would") {
             for (int i = 1; i <= 200; ++i) run->feed(finger(0.005 * i, Phase::move, px_at(0.01 + 0.9e-4 * i), 8));
             CHECK(run->state.avatar.lag_m.norm() > 0.0);
             if (run == &lifted) run->feed(finger(1.1, Phase::up, px_at(0.03), 8));
-            run->feed(pen(1.1, Phase::down, px_at(0.02), 0.7));
-            for (int i = 1; i <= 200; ++i) run->feed(pen(1.1 + 0.005 * i, Phase::move, px_at(0.02 + 1e-4 * i), 0.7));
+            run->feed(pen(1.1, Phase::down, px_at(0.028), 0.7));  // where the finger is: no jump ends the lag
+            for (int i = 1; i <= 10; ++i) run->feed(pen(1.1 + 0.005 * i, Phase::move, px_at(0.028 + 5e-5 * i), 0.7));
         }
         CHECK(taken.state.avatar.lag_m == lifted.state.avatar.lag_m);
         CHECK(taken.state.contact.normal_N == lifted.state.contact.normal_N);
