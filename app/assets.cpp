@@ -6,17 +6,35 @@
 #include "files/input_error.h"
 
 namespace palpa {
+namespace {
 
-std::filesystem::path assets_folder() {
-    const char* chosen = std::getenv("PALPA_ASSETS");
+namespace fs = std::filesystem;
+
+bool holds_scenes(const fs::path& folder) {
+    std::error_code none;
+    return fs::is_directory(folder / "scenes", none);
+}
+
+}  // namespace
+
+fs::path assets_beside(const fs::path& program) {
     std::string tried;
-    for (const char* place : {chosen, PALPA_SOURCE_ASSETS, PALPA_INSTALLED_ASSETS}) {
-        if (place == nullptr) continue;
-        if (std::filesystem::is_directory(std::filesystem::path(place) / "scenes")) return place;
-        if (place == chosen) throw bad_input("PALPA_ASSETS", "", shown(place), "a folder with scenes, maps, profiles");
-        tried += std::string(tried.empty() ? "" : ", ") + place;
+    for (fs::path folder = program.parent_path(); !folder.empty(); folder = folder.parent_path()) {
+        for (const fs::path& place : {folder / PALPA_DATA_FOLDER "/palpa/assets", folder / "assets"}) {
+            if (holds_scenes(place)) return place;
+            tried += (tried.empty() ? "" : ", ") + place.string();
+        }
+        if (folder == folder.parent_path()) break;
     }
     throw InputError("assets: found no folder with scenes in " + tried + "; set PALPA_ASSETS to where they are");
+}
+
+fs::path assets_folder() {
+    if (const char* chosen = std::getenv("PALPA_ASSETS")) {
+        if (holds_scenes(chosen)) return chosen;
+        throw bad_input("PALPA_ASSETS", "", shown(chosen), "a folder with scenes, maps, profiles");
+    }
+    return assets_beside(fs::read_symlink("/proc/self/exe"));
 }
 
 }  // namespace palpa

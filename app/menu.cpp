@@ -79,14 +79,14 @@ void stage_rows(const Shown& shown, const std::vector<Stage>& stages) {
     }
 }
 
-void frame_line(const Shown& shown) {
+std::string frame_text(const Shown& shown) {
     const FrameTimes& t = shown.times;
     const auto ms = [](const Meter& meter, double q) { return 1e-6 * meter.quantile_ns(q); };
-    ImGui::TextWrapped("Sample to frame %.1f ms (99 %%: %.1f). Frame %.2f ms besides drawing (99 %%: %.2f), drawing %.1f ms. "
-                       "%.0f frames/s, %lld samples, %lld steps dropped.",
-                       ms(t.latency, 0.5), ms(t.latency, 0.99), ms(t.cpu, 0.5), ms(t.cpu, 0.99), ms(t.gl, 0.5), t.frames_per_s,
-                       static_cast<long long>(shown.state.counters.samples),
-                       static_cast<long long>(shown.state.counters.dropped_steps));
+    return "Sample to frame " + fixed(ms(t.latency, 0.5), 1) + " ms (99 %: " + fixed(ms(t.latency, 0.99), 1) + "). Frame " +
+           fixed(ms(t.cpu, 0.5), 2) + " ms besides drawing (99 %: " + fixed(ms(t.cpu, 0.99), 2) + "), drawing " +
+           fixed(ms(t.gl, 0.5), 1) + " ms. " + fixed(t.frames_per_s, 0) + " frames/s, " +
+           std::to_string(shown.state.counters.samples) + " samples, " + std::to_string(shown.state.counters.dropped_steps) +
+           " steps dropped.";
 }
 
 void trial_keys(const Shown& shown, const Gui& gui, Wishes& wishes) {
@@ -128,18 +128,20 @@ void draw_cost(const Shown& shown, const Layout& layout, Gui& gui) {
     const float height_px = std::min(0.55f * t.height(), 80.0f * gui.mm());
     begin_panel("cost", {t.x0, t.y1 - height_px, t.x1, t.y1}, gui, 0.9f);
     constexpr ImGuiTableFlags kFlags = ImGuiTableFlags_RowBg | ImGuiTableFlags_SizingStretchProp | ImGuiTableFlags_ScrollY;
-    const float text_px = 2.4f * (ImGui::GetFontSize() + ImGui::GetStyle().ItemSpacing.y);
+    const std::string text = frame_text(shown);
+    const ImVec2 text_size = ImGui::CalcTextSize(text.c_str(), nullptr, false, ImGui::GetContentRegionAvail().x);
+    const float text_px = text_size.y + 2.0f * ImGui::GetStyle().ItemSpacing.y;
     if (ImGui::BeginTable("stages", 6, kFlags, ImVec2(0.0f, ImGui::GetContentRegionAvail().y - text_px))) {
         ImGui::TableSetupScrollFreeze(0, 1);
         constexpr const char* kColumns[] = {"stage", "fidelity", "error", "us", "us, 99 %", "calls"};
-        constexpr float kWidths[] = {1.4f, 4.0f, 4.0f, 0.8f, 1.0f, 1.0f};
+        constexpr float kWidths[] = {1.9f, 4.0f, 4.0f, 0.8f, 1.1f, 1.0f};
         for (int i = 0; i < 6; ++i) ImGui::TableSetupColumn(kColumns[i], ImGuiTableColumnFlags_WidthStretch, kWidths[i]);
         ImGui::TableHeadersRow();
         stage_rows(shown, shown.plan.sample_stages);
         stage_rows(shown, shown.plan.frame_stages);
         ImGui::EndTable();
     }
-    frame_line(shown);
+    ImGui::TextWrapped("%s", text.c_str());
     end_panel("cost", gui);
 }
 

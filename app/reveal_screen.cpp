@@ -67,8 +67,8 @@ void draw_nodules(const Shown& shown, const Debrief& debrief, float mm, ImDrawLi
             draw.AddCircle(at, radius_px, kDark, 48, 1.3f * mm);
             draw.AddCircle(at, radius_px, kInk, 48, 0.8f * mm);
         } else {
-            dashed_circle(draw, at, radius_px, kDark, 1.3f * mm);
-            dashed_circle(draw, at, radius_px, kLag, 0.8f * mm);
+            draw.AddCircle(at, radius_px, kDark, 48, 1.3f * mm);
+            dashed_circle(draw, at, radius_px, kInk, 0.8f * mm);
         }
         const std::string text = nodule.id + ": " + (found ? "found" : std::string("missed, ") + name_of(debrief.findings[i]));
         rimmed_text(draw, ImVec2(at.x + radius_px + mm, at.y + 0.3f * ImGui::GetFontSize()), kInk, text);
@@ -82,7 +82,7 @@ void draw_marks(const Shown& shown, const Score& score, float mm, ImDrawList& dr
         const MarkKind kind = score.marks[i].kind;
         if (kind == MarkKind::false_mark) {
             cross(draw, at, 1.7f * mm, kDark, 1.3f * mm);
-            cross(draw, at, 1.7f * mm, kLag, 0.7f * mm);
+            cross(draw, at, 1.7f * mm, kInk, 0.7f * mm);
         } else {
             draw.AddCircleFilled(at, 1.7f * mm, kDark);
             if (kind == MarkKind::hit) draw.AddCircleFilled(at, 1.3f * mm, kInk);

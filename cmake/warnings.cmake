@@ -12,6 +12,8 @@ target_compile_options(palpa_flags INTERFACE -ffp-contract=off)
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
     target_compile_options(palpa_flags INTERFACE -fno-tree-loop-vectorize)
 endif()
+# Messages of assert name files as they lie in the project, not where this machine keeps it.
+target_compile_options(palpa_flags INTERFACE -fmacro-prefix-map=${PROJECT_SOURCE_DIR}/=)
 if(PALPA_SANITIZE)
     target_compile_options(palpa_flags INTERFACE -fsanitize=${PALPA_SANITIZE} -fno-omit-frame-pointer
                                                  -fno-sanitize-recover=all)

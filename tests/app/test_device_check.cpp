@@ -130,6 +130,18 @@ TEST_CASE("device check: a clock that runs 120 ppm fast is found within its erro
     }
 }
 
+TEST_CASE("device check: without delays the drift is exact, from few samples too") {
+    auto check = std::make_unique<DeviceCheck>();
+    for (int i = 0; i < 30; ++i) {
+        Sample sample = pen(0.2 * i, Phase::hover, 0.0);
+        sample.t_device_s = 0.2 * i * (1.0 - 1e-3);
+        observe(sample, *check);
+    }
+    const Drift drift = clock_drift(of_tool(Tool::pen, *check));
+    CHECK(drift.ppm == doctest::Approx(-1000.0).epsilon(1e-9));
+    CHECK(drift.standard_error_ppm < 1e-3);
+}
+
 TEST_CASE("device check: no drift from too little") {
     auto check = std::make_unique<DeviceCheck>();
     for (int i = 0; i < 600; ++i) {  // 3 s

@@ -327,6 +327,19 @@ TEST_CASE("advance: a pen takes over from a finger, which is the hand until it l
     CHECK(run.state.touch.down);
 }
 
+TEST_CASE("advance: a finger that the pen pushed out stays out though it was still meanwhile; down anew it counts") {
+    Run run("default.json");
+    const Eigen::Vector2d hand(700, 500), tip(640, 400);
+    run.feed(finger(0.00, Phase::down, hand, 8));
+    run.feed(pen(0.10, Phase::down, tip));
+    run.feed(pen(0.20, Phase::up, tip));
+    run.feed(finger(0.30, Phase::move, hand, 8));
+    CHECK_FALSE(run.state.touch.down);
+    run.feed(finger(0.40, Phase::down, hand, 8));  // its lift was lost
+    CHECK(run.state.touch.down);
+    CHECK(run.state.answered);
+}
+
 TEST_CASE("advance: taking over ends the finger's touch as a lift would") {
     for (const char* name : {"default.json", "delay.json"}) {
         CAPTURE(name);
@@ -337,8 +350,8 @@ TEST_CASE("advance: taking over ends the finger's touch as a lift would") {
             for (int i = 1; i <= 200; ++i) run->feed(finger(0.005 * i, Phase::move, px_at(0.01 + 0.9e-4 * i), 8));
             CHECK(run->state.avatar.lag_m.norm() > 0.0);
             if (run == &lifted) run->feed(finger(1.1, Phase::up, px_at(0.03), 8));
-            run->feed(pen(1.1, Phase::down, px_at(0.02), 0.7));
-            for (int i = 1; i <= 200; ++i) run->feed(pen(1.1 + 0.005 * i, Phase::move, px_at(0.02 + 1e-4 * i), 0.7));
+            run->feed(pen(1.1, Phase::down, px_at(0.028), 0.7));  // where the finger is: no jump ends the lag
+            for (int i = 1; i <= 10; ++i) run->feed(pen(1.1 + 0.005 * i, Phase::move, px_at(0.028 + 5e-5 * i), 0.7));
         }
         CHECK(taken.state.avatar.lag_m == lifted.state.avatar.lag_m);
         CHECK(taken.state.contact.normal_N == lifted.state.contact.normal_N);

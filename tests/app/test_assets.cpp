@@ -1,0 +1,35 @@
+#include "app/assets.h"
+
+#include <doctest/doctest.h>
+
+#include "tests/error_message.h"
+#include "tests/temporary_folder.h"
+
+using namespace palpa;
+using namespace palpa::test;
+namespace fs = std::filesystem;
+
+TEST_CASE("assets: found beside the program, installed or in a build folder, wherever the tree was moved") {
+    const TemporaryFolder folder;
+    const fs::path root = folder / "opt/somewhere";
+    fs::create_directories(root / "share/palpa/assets/scenes");
+    fs::create_directories(root / "bin");
+    CHECK(assets_beside(root / "bin/palpa") == root / "share/palpa/assets");
+
+    const fs::path source = folder / "source";
+    fs::create_directories(source / "assets/scenes");
+    for (const char* program : {"build/release/palpa", "build/dev/tests/app/test_app"}) {
+        CHECK(assets_beside(source / program) == source / "assets");
+    }
+    fs::create_directories(source / "share/palpa/assets/scenes");  // installed into the sources: that one
+    CHECK(assets_beside(source / "bin/palpa") == source / "share/palpa/assets");
+}
+
+TEST_CASE("assets: a folder of that name without scenes is another program's; without any the message names the places") {
+    const TemporaryFolder folder;
+    fs::create_directories(folder / "x/assets");
+    const std::string message = message_of([&] { assets_beside(folder / "x/bin/palpa"); });
+    CHECK(contains(message, (folder / "x/assets").string()));
+    CHECK(contains(message, (folder / "x/bin/share/palpa/assets").string()));
+    CHECK(contains(message, "PALPA_ASSETS"));
+}

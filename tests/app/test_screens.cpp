@@ -1,0 +1,164 @@
+// Every screen at the sizes of desks and tablets: nothing blank, nothing that does not fit. Drawn without a display.
+
+#include <doctest/doctest.h>
+#include <png.h>
+#include <stdlib.h>
+
+#include <set>
+
+#include "app/frame.h"
+#include "app/load.h"
+#include "scene/advance.h"
+#include "tests/temporary_folder.h"
+
+using namespace palpa;
+using namespace palpa::test;
+
+namespace {
+
+struct Picture {
+    int width = 0;
+    int height = 0;
+    std::vector<unsigned char> rgb;
+};
+
+Picture read_png(const std::filesystem::path& path) {
+    png_image image{};
+    image.version = PNG_IMAGE_VERSION;
+    REQUIRE(png_image_begin_read_from_file(&image, path.c_str()));
+    image.format = PNG_FORMAT_RGB;
+    Picture out{static_cast<int>(image.width), static_cast<int>(image.height), {}};
+    out.rgb.resize(PNG_IMAGE_SIZE(image));
+    REQUIRE(png_image_finish_read(&image, nullptr, out.rgb.data(), 0, nullptr));
+    return out;
+}
+
+std::size_t colours_in(const Picture& picture, const PanelArea& area) {
+    std::set<int> colours;
+    for (int y = static_cast<int>(area.y0); y < static_cast<int>(area.y1); ++y) {
+        for (int x = static_cast<int>(area.x0); x < static_cast<int>(area.x1); ++x) {
+            const unsigned char* p = &picture.rgb[3 * static_cast<std::size_t>(y * picture.width + x)];
+            colours.insert((p[0] << 16) | (p[1] << 8) | p[2]);
+        }
+    }
+    return colours.size();
+}
+
+// The default trace, finished, with a hit and a false mark.
+Trace finished_trace(const Plan& plan, const State& state) {
+    Trace trace = read_trace(default_trace());
+    const auto act = [&](Action action, double x_m, double y_m) {
+        Sample sample;
+        sample.t_host_s = trace.samples.back().t_host_s + 0.1;
+        sample.phase = Phase::ui;
+        sample.action = action;
+        const Eigen::Vector2d px = px_of_tissue(state.view, {x_m, y_m});
+        sample.x_px = px.x();
+        sample.y_px = px.y();
+        trace.samples.push_back(sample);
+    };
+    act(Action::mark, plan.nodules[0].x_m, plan.nodules[0].y_m);
+    act(Action::confidence_5, 0.0, 0.0);
+    act(Action::mark, 0.1, 0.1);
+    act(Action::finish, 0.0, 0.0);
+    return trace;
+}
+
+struct Case {
+    int width_px, height_px;
+    double px_per_mm;
+    bool left_handed;
+};
+
+void check_case(const Session& session, Screens screens, const Case& c, const std::string& name, const TemporaryFolder& folder) {
+    CAPTURE(name);
+    CAPTURE(c.width_px);
+    CAPTURE(c.height_px);
+    Settings settings;
+    settings.left_handed = c.left_handed;
+    screens.px_per_mm = c.px_per_mm;
+    State state = session.state;
+    const float mm = control_scale(c.px_per_mm, static_cast<float>(c.width_px), static_cast<float>(c.height_px));
+    const Layout layout = layout_of(static_cast<float>(c.width_px), static_cast<float>(c.height_px), mm, c.left_handed);
+    const PanelArea& t = layout.tissue_px;
+    Sample resize;
+    resize.phase = Phase::ui;
+    resize.action = Action::resize;
+    resize.x_px = static_cast<double>(t.x0);
+    resize.y_px = static_cast<double>(t.y0);
+    resize.width_px = static_cast<double>(t.width());
+    resize.height_px = static_cast<double>(t.height());
+    advance(session.scene, session.plan, resize, state);
+    const auto file = folder / "p.png";
+    const std::string overflow = draw_picture(session.scene, session.plan, session.trial, settings, screens, c.width_px, c.height_px, state, file);
+    CHECK(overflow == "");
+    const Picture picture = read_png(file);
+    CHECK(picture.width == c.width_px);
+    constexpr std::size_t kTextHas = 40;  // colours of smoothed letters
+    const bool covers_all = screens.screen == Screen::scale || screens.screen == Screen::devices;
+    const PanelArea all{0.0f, 0.0f, static_cast<float>(c.width_px), static_cast<float>(c.height_px)};
+    if (layout.controls) CHECK(colours_in(picture, covers_all ? all : layout.controls_px) > kTextHas);
+    CHECK(colours_in(picture, covers_all ? all : layout.tissue_px) > kTextHas);
+    if (const char* keep = ::getenv("PALPA_KEEP_PICTURES")) {
+        const std::string size = std::to_string(c.width_px) + "x" + std::to_string(c.height_px);
+        std::filesystem::copy_file(file, std::filesystem::path(keep) / (name + "-" + size + (c.left_handed ? "-left" : "") + ".png"),
+                                   std::filesystem::copy_options::overwrite_existing);
+    }
+}
+
+}  // namespace
+
+TEST_CASE("screens: every screen fits and is drawn at the sizes of desks and tablets") {
+    const TemporaryFolder folder;
+    Session session;
+    session.scene = load_scene("");
+    session.plan = make_plan(session.scene);
+    const Trace whole = read_trace(default_trace());
+    begin_trial({}, whole.info, TrialMode::practice, session);
+    for (std::size_t i = 0; i < 400; ++i) take_sample(whole.samples[i], session);  // in the middle of a stroke
+
+    Screens trial;
+    trial.scenes = scene_choices();
+    trial.profiles = profile_choices();
+    trial.screen_name = "DUMMY0, 1280 x 800";
+    trial.problems = {"scene.json: tissue.map: found nothing, expected a map folder"};
+    trial.offer_hold = true;
+    trial.device_notes = {"This pen reports always the same pressure: it has no sensor."};
+    Screens menu = trial;
+    menu.menu = true;
+    Screens cost = trial;
+    cost.cost = true;
+    Screens scale = trial;
+    scale.screen = Screen::scale;
+    Screens devices = trial;
+    devices.screen = Screen::devices;
+    devices.check = std::make_shared<DeviceCheck>();
+    devices.devices = {{1, "A pen with a long name", Tool::pen, true, 0.0, 8191.0, 8192, true, false, {}}};
+    for (std::size_t i = 0; i < 400; ++i) observe(whole.samples[i], *devices.check);
+    for (std::size_t i = 0; i < 400; ++i) add_dot(whole.samples[i], devices);
+
+    Session done;
+    done.scene = session.scene;
+    done.plan = session.plan;
+    begin_trial({}, whole.info, TrialMode::test, done);
+    for (const Sample& sample : finished_trace(done.plan, done.state).samples) take_sample(sample, done);
+    REQUIRE(done.trial.finished);
+    Screens reveal = trial;
+    reveal.screen = Screen::reveal;
+    reveal.problems.clear();
+    reveal.debrief = debrief(done.plan, done.trial);
+
+    constexpr double kTablet_px_per_mm = 11.8;  // 10.1 inch with 2560 x 1600
+    const Case cases[] = {{1280, 800, kMissing, false}, {800, 1280, kMissing, false}, {2560, 1600, kMissing, true},
+                          {2560, 1600, kTablet_px_per_mm, false}, {1600, 2560, kTablet_px_per_mm, false},
+                          {1024, 600, kMissing, true}, {200, 100, kMissing, false}};
+    for (const Case& c : cases) {
+        check_case(session, trial, c, "trial", folder);
+        if (c.width_px < 600) continue;  // panels need some room
+        check_case(session, menu, c, "menu", folder);
+        check_case(session, cost, c, "cost", folder);
+        check_case(session, scale, c, "scale", folder);
+        check_case(session, devices, c, "devices", folder);
+        check_case(done, reveal, c, "reveal", folder);
+    }
+}
