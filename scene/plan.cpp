@@ -56,7 +56,9 @@ Stage tangential_stage(const MapTissue& tissue, const TangentialOptions& options
         return stage;
     }
     const bool recorded = tissue.map.tangential == TangentialKind::recorded;
-    stage.fidelity = recorded ? "energy gradient + recorded resistance" : "energy gradient";
+    const bool slid = recorded && tissue.map.source.kind == SourceKind::simulated;
+    stage.fidelity = slid ? "energy gradient + friction of the simulated slide along +x"
+                          : (recorded ? "energy gradient + recorded resistance" : "energy gradient");
     stage.error = "derived from the normal force (work argument), not measured";
     if (tissue.smoothing_m > 0.0) {
         stage.fidelity += ", smoothed by " + mm_text(tissue.smoothing_m);
