@@ -141,6 +141,15 @@ TEST_CASE("linear tissue: friction sticks, then slides at mu N, turns back with 
     leap_to(0.001);
     leap_to(x_m);
     CHECK(leap.work.drag_N.x() == doctest::Approx(slid_N).epsilon(0.02));
+    // a long way in one call is walked in half spacings
+    LinearWork walked = make_linear_work(block.tissue);
+    for (const double at_m : {0.022, 0.024, 0.026, 0.028}) drag(block.tissue, {at_m, y_m}, 2e-3, walked);
+    LinearWork at_once = make_linear_work(block.tissue);
+    for (const double at_m : {0.022, 0.028}) drag(block.tissue, {at_m, y_m}, 2e-3, at_once);
+    REQUIRE(at_once.friction.touch == walked.friction.touch);
+    for (std::size_t i = 0; i < walked.friction.force_N.size(); ++i) {
+        CHECK(at_once.friction.force_N[i] == doctest::Approx(walked.friction.force_N[i]).epsilon(1e-9));
+    }
     while (x_m > 0.024) slide_to(x_m -= 2e-4);
     CHECK(block.work.drag_N.x() == doctest::Approx(-mu * force_N).epsilon(0.05));
     drag(block.tissue, {x_m, y_m}, 0.0, block.work);
