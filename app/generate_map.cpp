@@ -10,10 +10,10 @@
 
 #include "app/child_jobs.h"
 #include "app/map_parts.h"
+#include "app/map_source.h"
 #include "files/input_error.h"
 #include "files/json.h"
 #include "files/text.h"
-#include "mechanics/linear_range.h"
 #include "stiffnessmaps/analytic.h"
 #include "stiffnessmaps/grid.h"
 #include "stiffnessmaps/map_file.h"
@@ -139,39 +139,6 @@ void compute_part(const MapTask& task, const Part& part) {
     }
 }
 
-// Smallest depth at which the gauge exceeds a limit, the width of the contact by Hertz.
-double depth_at_ratio_m(const Phantom& p, double limit) {
-    double low = 0.0;
-    double high = p.size_m[2];
-    for (int i = 0; i < 60; ++i) {
-        const double d = 0.5 * (low + high);
-        const double width_m = 2.0 * std::sqrt(p.indenter_radius_m * std::min(d, p.indenter_radius_m));
-        (mechanics::linearity_ratio(d, p.size_m[2], width_m) > limit ? high : low) = d;
-    }
-    return high;
-}
-
-std::string mm(double metres) { return short_number(1e3 * metres) + " mm"; }
-
-std::string how_made(const MapTask& task) {
-    const Phantom& p = task.phantom;
-    const double contact_radius_m = std::sqrt(p.indenter_radius_m * std::min(p.depths_m.front(), p.indenter_radius_m));
-    std::string how = "Linear finite elements (B-bar hexahedra), a frictionless sphere rolled over the phantom: " +
-                      mm(task.mesh.contact_m) + " between nodes under the tool (contact radius / spacing " +
-                      short_number(contact_radius_m / task.mesh.contact_m) + " at " + mm(p.depths_m.front()) +
-                      "), nodules " + short_number(task.mesh.cells_across) + " cells across, the block's sides every " +
-                      mm(task.mesh.surface_m[0]) + ". Tangential force: slope of the contact's energy, central differences on the grid.";
-    how += " The tissue's Young's modulus, " + number_text(p.tissue.young_Pa) + " Pa, is " +
-           (p.tissue.assumed ? "ASSUMED." : "the phantom's.");
-    const double amber_m = depth_at_ratio_m(p, mechanics::kAmber);
-    const double red_m = depth_at_ratio_m(p, mechanics::kRed);
-    if (p.depths_m.back() > amber_m) {
-        how += " Leaves the linear range (larger of depth / contact width and depth / thickness): amber, above 10 %, from " +
-               mm(amber_m) + "; red, above 25 %, from " + mm(red_m) + ".";
-    }
-    return how;
-}
-
 // Joins the finished lines; throws std::runtime_error when some are missing.
 Map joined(const MapTask& task) {
     const Phantom& p = task.phantom;
@@ -179,19 +146,32 @@ Map joined(const MapTask& task) {
     const std::size_t n_depths = p.depths_m.size();
     const std::size_t n_cells = p.n_x * p.n_y;
     map.normal_N.resize(n_depths * n_cells);
-    std::vector<std::vector<double>> energy_J(n_depths, std::vector<double>(n_cells));
     const auto gaps = missing(task, p.n_y, line_name);
     if (!gaps.empty()) {
         throw std::runtime_error(task.folder.string() + ": " + std::to_string(gaps.size()) + " of " + std::to_string(p.n_y) +
                                  " lines are not there yet (first: line " + std::to_string(gaps.front()) + ")");
     }
+    const bool rough = is_rough(task);
+    std::vector<std::vector<double>> energy_J(rough ? 0 : n_depths, std::vector<double>(n_cells));
+    if (rough) {
+        map.tangential = TangentialKind::recorded;  // as a recording of a sliding tool: friction is in the arrays
+        map.tangential_x_N.resize(n_depths * n_cells);
+        map.tangential_y_N.resize(n_depths * n_cells);
+    }
+    const std::size_t per_cell = n_depths * (rough ? 3 : 2);
     for (std::size_t j = 0; j < p.n_y; ++j) {
         const Numbers numbers = *read_piece(task, line_name(j));
         for (std::size_t i = 0; i < p.n_x; ++i) {
+            const double* at = &numbers[per_cell * i];
             for (std::size_t k = 0; k < n_depths; ++k) {
-                const double* at = &numbers[2 * n_depths * i];
-                map.normal_N[k * n_cells + j * p.n_x + i] = static_cast<float>(at[k]);
-                energy_J[k][j * p.n_x + i] = at[n_depths + k];
+                const std::size_t cell = j * p.n_x + i;
+                map.normal_N[k * n_cells + cell] = static_cast<float>(at[k]);
+                if (rough) {
+                    map.tangential_x_N[k * n_cells + cell] = static_cast<float>(at[n_depths + k]);
+                    map.tangential_y_N[k * n_cells + cell] = static_cast<float>(at[2 * n_depths + k]);
+                } else {
+                    energy_J[k][cell] = at[n_depths + k];
+                }
             }
         }
     }
@@ -216,44 +196,62 @@ void merge(const GenerateOptions& options, const MapTask& task) {
                 map.n_y, map.n_depths(), short_number(range.lowest_N).c_str(), short_number(range.highest_N).c_str());
 }
 
-Json convergence_json(const MapTask& task, const MapTask& refined, const Map& map, double& largest, double& median) {
+struct Differences {
+    double largest = 0.0;
+    double median = 0.0;
+    double largest_tangential = 0.0;  // with friction: either array
+};
+
+Json convergence_json(const MapTask& task, const MapTask& refined, const Map& map, Differences& found) {
     const double greatest_N = force_range(map).highest_N;
     const mechanics::RollingTables tables = read_windows(refined);
     std::vector<double> differences;
     Json points = Json::array();
     for (const Cell& cell : probe_cells(task.phantom, kProbes)) {
-        const Numbers reference = press_cell(refined, tables, cell);
+        const std::vector<mechanics::RollingForce> reference = press_cell(refined, tables, cell);
         Json in_map = Json::array();
+        Json refined_N = Json::array();
         for (std::size_t d = 0; d < map.n_depths(); ++d) {
-            const auto force = static_cast<double>(map.normal_N[d * map.n_cells() + cell.j * map.n_x + cell.i]);
+            const std::size_t at = d * map.n_cells() + cell.j * map.n_x + cell.i;
+            const auto force = static_cast<double>(map.normal_N[at]);
             in_map.push_back(force);
-            differences.push_back(std::abs(force - reference[d]) / greatest_N);
+            refined_N.push_back(reference[d].normal_N);
+            differences.push_back(std::abs(force - reference[d].normal_N) / greatest_N);
+            if (!is_rough(task)) continue;
+            const double off_x_N = std::abs(static_cast<double>(map.tangential_x_N[at]) - reference[d].tangential_x_N);
+            const double off_y_N = std::abs(static_cast<double>(map.tangential_y_N[at]) - reference[d].tangential_y_N);
+            found.largest_tangential = std::max({found.largest_tangential, off_x_N / greatest_N, off_y_N / greatest_N});
         }
         points.push_back({{"x_mm", 1e3 * map.x_of(cell.i)}, {"y_mm", 1e3 * map.y_of(cell.j)}, {"map_N", in_map},
-                          {"refined_N", reference}});
+                          {"refined_N", refined_N}});
     }
     std::sort(differences.begin(), differences.end());
-    largest = differences.back();
-    median = differences[differences.size() / 2];
+    found.largest = differences.back();
+    found.median = differences[differences.size() / 2];
     const auto mesh_json = [](const MapTask& t) {
         return Json{{"contact_spacing_mm", 1e3 * t.mesh.contact_m},
                     {"side_spacing_mm", {1e3 * t.mesh.surface_m[0], 1e3 * t.mesh.surface_m[1]}},
                     {"cells_across_nodule", t.mesh.cells_across}};
     };
-    return {{"what", "normal force of the map against all its meshes refined once, at stated points"},
+    Json report{{"what", "normal force of the map against all its meshes refined once, at stated points"},
             {"mesh", mesh_json(task)},
             {"refined_mesh", mesh_json(refined)},
             {"greatest_force_N", greatest_N},
-            {"max_difference", largest},
-            {"median_difference", median},
+            {"max_difference", found.largest},
+            {"median_difference", found.median},
             {"differences_are", "shares of the greatest force"},
             {"depths_mm", map_json(map)["depths_mm"]},
             {"points", points}};
+    if (is_rough(task)) report["max_tangential_difference"] = found.largest_tangential;
+    return report;
 }
 
 void check(const GenerateOptions& options, const MapTask& task, const MapTask& refined) {
     Map map = read_map(options.output);
     const Map expected = map_of_phantom(task.phantom);
+    if (is_rough(task) && (map.tangential_x_N.empty() || map.tangential_y_N.empty())) {
+        throw bad_input(options.output.string(), "", "no tangential arrays", "a map made from " + options.phantom.string());
+    }
     if (map.n_x != expected.n_x || map.n_y != expected.n_y || map_json(map)["depths_mm"] != map_json(expected)["depths_mm"]) {
         throw bad_input(options.output.string(), "", "another grid or other depths", "a map made from " + options.phantom.string());
     }
@@ -266,12 +264,12 @@ void check(const GenerateOptions& options, const MapTask& task, const MapTask& r
         run_jobs(window_calls(options, windows, true), options.jobs,
                  [&] { progress.show(static_cast<double>(files_there(refined, n_windows, window_of))); });
     }
-    double largest = 0.0;
-    double median = 0.0;
-    const Json report = convergence_json(task, refined, map, largest, median);
+    Differences differences;
+    const Json report = convergence_json(task, refined, map, differences);
     write_text_atomically(without_slash(options.output) / "convergence.json", report.dump(1) + "\n");
-    const std::string found = std::to_string(kProbes) + " points against meshes refined once: " + short_number(100.0 * largest) +
-                              " % of the greatest force at most, " + short_number(100.0 * median) + " % in the median";
+    std::string found = std::to_string(kProbes) + " points against meshes refined once: " + short_number(100.0 * differences.largest) +
+                        " % of the greatest force at most, " + short_number(100.0 * differences.median) + " % in the median";
+    if (is_rough(task)) found += "; tangential force " + short_number(100.0 * differences.largest_tangential) + " % of it at most";
     map.source.how = map.source.how.substr(0, map.source.how.find(kChecked)) + kChecked + " " + found + " (convergence.json).";
     write_text_atomically(without_slash(options.output) / "map.json", map_json(map).dump(2) + "\n");
     fs::remove_all(refined.folder);
@@ -289,6 +287,15 @@ int number_from_environment(const char* name) {
         throw bad_input(name, "", text == nullptr ? "nothing" : shown(text), "a whole number (or give --part i/n)");
     }
     return static_cast<int>(value);
+}
+
+void refuse_beyond_analytic(const Phantom& phantom, const fs::path& file) {
+    if (phantom.indenter != IndenterShape::sphere) {
+        throw bad_input(file.string(), "indenter.shape", "cylinder", "sphere with --method analytic");
+    }
+    if (!phantom.rolling && phantom.friction > 0.0) {
+        throw bad_input(file.string(), "indenter.friction", short_number(phantom.friction), "0 with --method analytic");
+    }
 }
 
 }  // namespace
@@ -320,7 +327,9 @@ std::optional<Part> part_from_environment() {
 
 void generate_map(const GenerateOptions& options) {
     if (options.analytic) {
-        const Map map = analytic_map(read_phantom(options.phantom));
+        const Phantom phantom = read_phantom(options.phantom);
+        refuse_beyond_analytic(phantom, options.phantom);
+        const Map map = analytic_map(phantom);
         write_map(map, options.output);
         std::printf("%s: %zu x %zu cells, %zu depths; analytic stand-in, not a simulation\n", options.output.c_str(),
                     map.n_x, map.n_y, map.n_depths());

@@ -13,7 +13,7 @@
 namespace palpa {
 namespace {
 
-constexpr std::uint64_t kVersion = 1;  // of the files and of the numbers in them
+constexpr std::uint64_t kVersion = 2;  // of the files and of the numbers in them
 constexpr char kMagic[8] = {'p', 'a', 'l', 'p', 'a', 'n', 'u', 'm'};
 
 struct Fnv {
@@ -34,7 +34,8 @@ std::uint64_t fingerprint_of(const MapTask& task) {
     const mechanics::RollingMesh& q = task.mesh;
     const Phantom& p = task.phantom;
     fnv.add(&kVersion, sizeof kVersion);
-    fnv.add({m.size_m[0], m.size_m[1], m.size_m[2], m.tissue.young_Pa, m.tissue.poisson, m.radius_m});
+    fnv.add({m.size_m[0], m.size_m[1], m.size_m[2], m.tissue.young_Pa, m.tissue.poisson, m.radius_m, m.length_m,
+             m.friction, m.shape == mechanics::IndenterShape::cylinder ? 1.0 : 0.0});
     for (const mechanics::Inclusion& i : m.inclusions) {
         fnv.add({i.sphere.centre_m[0], i.sphere.centre_m[1], i.sphere.centre_m[2], i.sphere.radius_m,
                  i.material.young_Pa, i.material.poisson});
@@ -66,13 +67,6 @@ void write_piece(const MapTask& task, const std::string& name, const Numbers& nu
 }
 
 void check_phantom(const Phantom& phantom, const std::filesystem::path& file) {
-    if (phantom.indenter != IndenterShape::sphere) {
-        refuse(file, "indenter.shape", "cylinder", "sphere (a cylinder touches the whole width of the block)");
-    }
-    if (!phantom.rolling && phantom.friction > 0.0) {
-        refuse(file, "indenter.friction", short_number(phantom.friction),
-               "0, or \"contact\": \"rolling\" (generated maps are frictionless)");
-    }
     if (phantom.depths_m.back() >= phantom.size_m[2]) {
         refuse(file, "depths_mm", short_number(1e3 * phantom.depths_m.back()),
                "depths less than the thickness, " + short_number(1e3 * phantom.size_m[2]) + " mm");
@@ -88,14 +82,27 @@ void check_phantom(const Phantom& phantom, const std::filesystem::path& file) {
     }
 }
 
+void append(const std::vector<double>& list, Numbers& out) { out.insert(out.end(), list.begin(), list.end()); }
+
+// One list, or with friction three of the same length, from `first` to the end.
+template <class Table>
+void take_lists(const MapTask& task, const Numbers& numbers, std::ptrdiff_t first, Table& table) {
+    const std::ptrdiff_t n = (static_cast<std::ptrdiff_t>(numbers.size()) - first) / (is_rough(task) ? 3 : 1);
+    const auto at = numbers.begin() + first;
+    table.value.assign(at, at + n);
+    if (!is_rough(task)) return;
+    table.along_x.assign(at + n, at + 2 * n);
+    table.along_y.assign(at + 2 * n, at + 3 * n);
+}
+
 Numbers numbers_of(const mechanics::PairTable& table) {
     Numbers out{static_cast<double>(table.x_m.size()), static_cast<double>(table.y_m.size()),
                 static_cast<double>(table.reach_x), static_cast<double>(table.reach_y)};
-    for (const auto* list : {&table.x_m, &table.y_m, &table.value}) out.insert(out.end(), list->begin(), list->end());
+    for (const auto* list : {&table.x_m, &table.y_m, &table.value, &table.along_x, &table.along_y}) append(*list, out);
     return out;
 }
 
-mechanics::PairTable pair_table_of(const Numbers& numbers) {
+mechanics::PairTable pair_table_of(const MapTask& task, const Numbers& numbers) {
     mechanics::PairTable table;
     const auto n_x = static_cast<std::ptrdiff_t>(numbers[0]);
     const auto n_y = static_cast<std::ptrdiff_t>(numbers[1]);
@@ -104,18 +111,23 @@ mechanics::PairTable pair_table_of(const Numbers& numbers) {
     const auto lines = numbers.begin() + 4;
     table.x_m.assign(lines, lines + n_x);
     table.y_m.assign(lines + n_x, lines + n_x + n_y);
-    table.value.assign(lines + n_x + n_y, numbers.end());
+    take_lists(task, numbers, 4 + n_x + n_y, table);
     return table;
 }
 
 Numbers numbers_of(const mechanics::LayerKernel& kernel) {
-    Numbers out{kernel.spacing_m[0], kernel.spacing_m[1], static_cast<double>(kernel.n)};
-    out.insert(out.end(), kernel.value.begin(), kernel.value.end());
+    Numbers out{kernel.spacing_m[0], kernel.spacing_m[1], static_cast<double>(kernel.n_x), static_cast<double>(kernel.n_y)};
+    for (const auto* list : {&kernel.value, &kernel.along_x, &kernel.along_y}) append(*list, out);
     return out;
 }
 
-mechanics::LayerKernel layer_kernel_of(const Numbers& numbers) {
-    return {{numbers[0], numbers[1]}, static_cast<int>(numbers[2]), {numbers.begin() + 3, numbers.end()}};
+mechanics::LayerKernel layer_kernel_of(const MapTask& task, const Numbers& numbers) {
+    mechanics::LayerKernel kernel;
+    kernel.spacing_m = {numbers[0], numbers[1]};
+    kernel.n_x = static_cast<int>(numbers[2]);
+    kernel.n_y = static_cast<int>(numbers[3]);
+    take_lists(task, numbers, 4, kernel);
+    return kernel;
 }
 
 }  // namespace
@@ -137,7 +149,10 @@ MapTask make_map_task(const std::filesystem::path& phantom_file, const std::file
         inclusion.material = {nodule.material.young_Pa, nodule.material.poisson};
         model.inclusions.push_back(inclusion);
     }
+    if (phantom.indenter == IndenterShape::cylinder) model.shape = mechanics::IndenterShape::cylinder;
     model.radius_m = phantom.indenter_radius_m;
+    model.length_m = phantom.indenter_length_m;
+    model.friction = phantom.rolling ? 0.0 : phantom.friction;
     model.least_depth_m = phantom.depths_m.front();
     model.greatest_depth_m = phantom.depths_m.back();
     try {
@@ -199,9 +214,9 @@ mechanics::RollingTables read_windows(const MapTask& task) {
         const auto numbers = read_piece(task, window_name(window));
         if (!numbers) throw std::runtime_error((task.folder / window_name(window)).string() + ": not there");
         if (window == window_count(task) - 1) {
-            tables.contact = layer_kernel_of(*numbers);
+            tables.contact = layer_kernel_of(task, *numbers);
         } else {
-            tables.parts.push_back(pair_table_of(*numbers));
+            tables.parts.push_back(pair_table_of(task, *numbers));
         }
     }
     return tables;
@@ -217,7 +232,12 @@ void compute_line(const MapTask& task, const mechanics::RollingTables& tables, s
         const double x_m = p.origin_m[0] + p.spacing_m[0] * static_cast<double>(i);
         mechanics::roll_to(task.model, task.mesh, tables, x_m, y_m, p.depths_m, work, forces);
         for (const auto& force : forces) numbers.push_back(force.normal_N);
-        for (const auto& force : forces) numbers.push_back(force.energy_J);
+        if (!is_rough(task)) {
+            for (const auto& force : forces) numbers.push_back(force.energy_J);
+            continue;
+        }
+        for (const auto& force : forces) numbers.push_back(force.tangential_x_N);
+        for (const auto& force : forces) numbers.push_back(force.tangential_y_N);
     }
     write_piece(task, line_name(line), numbers);
 }
@@ -258,16 +278,15 @@ std::vector<Cell> probe_cells(const Phantom& phantom, std::size_t count) {
     return cells;
 }
 
-Numbers press_cell(const MapTask& task, const mechanics::RollingTables& tables, const Cell& cell) {
+std::vector<mechanics::RollingForce> press_cell(const MapTask& task, const mechanics::RollingTables& tables,
+                                                const Cell& cell) {
     const Phantom& p = task.phantom;
     const double x_m = p.origin_m[0] + p.spacing_m[0] * static_cast<double>(cell.i);
     const double y_m = p.origin_m[1] + p.spacing_m[1] * static_cast<double>(cell.j);
     mechanics::RollingWork work;
     std::vector<mechanics::RollingForce> forces;
     mechanics::roll_to(task.model, task.mesh, tables, x_m, y_m, p.depths_m, work, forces);
-    Numbers numbers;
-    for (const auto& force : forces) numbers.push_back(force.normal_N);
-    return numbers;
+    return forces;
 }
 
 }  // namespace palpa

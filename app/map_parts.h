@@ -21,8 +21,8 @@ struct MapTask {
     std::uint64_t fingerprint = 0;
 };
 
-// Throws InputError naming the phantom's key for what the finite elements cannot do (friction, cylinder,
-// indenter off the tissue, depth through the block, nodules that overlap).
+// Throws InputError naming the phantom's key for what the finite elements cannot do (indenter off the tissue,
+// depth through the block, nodules that overlap).
 MapTask make_map_task(const std::filesystem::path& phantom_file, const std::filesystem::path& folder,
                       double coarseness);
 
@@ -37,7 +37,8 @@ std::optional<Numbers> read_piece(const MapTask& task, const std::string& name);
 
 void compute_window(const MapTask& task, int window);
 mechanics::RollingTables read_windows(const MapTask& task);  // all there, or std::runtime_error
-// Per cell along x: normal force (N) at each depth, then contact energy (J) at each depth.
+// Per cell along x: normal force (N) at each depth, then contact energy (J) at each depth; with friction instead of
+// the energy the tangential force (N) along x at each depth, then that along y.
 void compute_line(const MapTask& task, const mechanics::RollingTables& tables, std::size_t line);
 
 // Cells that the map is checked at: around the nodules, and spread over the grid, its edges included.
@@ -46,7 +47,9 @@ struct Cell {
     std::size_t j = 0;
 };
 std::vector<Cell> probe_cells(const Phantom& phantom, std::size_t count);
-// Normal forces at each depth over a cell.
-Numbers press_cell(const MapTask& task, const mechanics::RollingTables& tables, const Cell& cell);
+// With friction: slides.
+inline bool is_rough(const MapTask& task) { return task.model.friction > 0.0; }
+// Forces at each depth over a cell.
+std::vector<mechanics::RollingForce> press_cell(const MapTask& task, const mechanics::RollingTables& tables, const Cell& cell);
 
 }  // namespace palpa

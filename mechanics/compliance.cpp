@@ -41,6 +41,10 @@ Compliance empty_compliance(const Mesh& mesh, const SurfaceRequest& request) {
     out.thickness_m = out.surface_z_m - mesh.nodes_m.row(2).minCoeff();
     out.normal_m_per_N.resize(n_surface, out.n_touch);
     if (request.tangential) out.full_m_per_N.resize(3 * out.n_touch, 3 * out.n_touch);
+    if (request.sideways) {
+        out.along_x_m_per_N.resize(n_surface, out.n_touch);
+        out.along_y_m_per_N.resize(n_surface, out.n_touch);
+    }
     return out;
 }
 
@@ -69,6 +73,10 @@ void store_column(const Reduction& reduction, const Eigen::Ref<const Eigen::Vect
     };
     if (direction == 0) {
         for (int i = 0; i < out.normal_m_per_N.rows(); ++i) out.normal_m_per_N(i, touched) = row(i, 0);
+        for (int i = 0; i < out.along_x_m_per_N.rows(); ++i) {
+            out.along_x_m_per_N(i, touched) = row(i, 1);
+            out.along_y_m_per_N(i, touched) = row(i, 2);
+        }
     }
     if (!tangential) return;
     for (int i = 0; i < out.n_touch; ++i) {
@@ -153,7 +161,8 @@ Compliance surface_compliance(const Mesh& mesh, const Factored& factored, const 
 std::uint64_t fingerprint(const Problem& problem, const SurfaceRequest& request) {
     Fnv fnv;
     const auto element = static_cast<std::uint64_t>(problem.element);
-    const std::uint64_t flags[3] = {kFormatVersion, element, request.tangential ? 1u : 0u};
+    const std::uint64_t asked = (request.tangential ? 1u : 0u) + (request.sideways ? 2u : 0u);
+    const std::uint64_t flags[3] = {kFormatVersion, element, asked};
     fnv.add_list(flags, 3);
     fnv.add_list(problem.mesh.nodes_m.data(), static_cast<std::size_t>(problem.mesh.nodes_m.size()));
     fnv.add_list(problem.mesh.cells.data(), static_cast<std::size_t>(problem.mesh.cells.size()));

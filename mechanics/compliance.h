@@ -18,6 +18,7 @@ struct SurfaceRequest {
         touch_nodes;  // mesh nodes that a tool can touch; one column each (three with tangential)
     std::vector<int> other_nodes;  // further nodes whose depression is wanted; rows only
     bool tangential = false;       // also all three components between touch nodes, for friction
+    bool sideways = false;         // also how pressing moves the surface along x and y, for steady sliding
     int block = 64;                // right-hand sides solved at once
 };
 
@@ -35,6 +36,10 @@ struct Compliance {
     double thickness_m = 0.0;     // down to the lowest node of the mesh
     // Depression (towards -z) at row per newton pressing (towards -z) at column: n_surface x n_touch.
     Eigen::MatrixXd normal_m_per_N;
+    // Displacement along +x (+y) at row per newton pressing at column, n_surface x n_touch; empty unless asked
+    // for sideways. By Maxwell-Betti also the depression at column per newton along +x (+y) at row.
+    Eigen::MatrixXd along_x_m_per_N;
+    Eigen::MatrixXd along_y_m_per_N;
     // Touch nodes only, 3 n_touch squared, empty unless asked for. Row 3 k + c: c = 0 into the tissue, 1
     // along x, 2 along y.
     Eigen::MatrixXd full_m_per_N;

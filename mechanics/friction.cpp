@@ -117,6 +117,13 @@ void collect(const Compliance& c, const Pose& pose, const FrictionWork& w, Frict
 
 }  // namespace
 
+FrictionWork make_friction_work(const Compliance& compliance, int most_in_reach) {
+    FrictionWork work;
+    prepare(compliance, work.contact);
+    make_room(most_in_reach, work);
+    return work;
+}
+
 void slide_to(const Compliance& compliance, const Tool& tool, const FrictionOptions& options,
               FrictionWork& work, FrictionState& state, Contact& contact) {
     if (compliance.full_m_per_N.rows() != 3 * compliance.n_touch) {

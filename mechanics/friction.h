@@ -40,6 +40,9 @@ struct FrictionWork {
     Eigen::VectorXd u_before_m;  // at the last step
 };
 
+// Room for `most_in_reach` nodes, so that nothing is allocated later.
+FrictionWork make_friction_work(const Compliance& compliance, int most_in_reach);
+
 // Moves the tool to its pose in one step (a slide takes many: at most half a node spacing each) and solves
 // there. Needs a compliance with tangential = true; throws LoadError otherwise. A pose that is not finite
 // holds everything.

@@ -1,6 +1,7 @@
 #pragma once
-// Virtual rolling indentation: the force on a frictionless sphere at many places of a bonded block that holds
-// stiff spheres, from a few finite element tables instead of one mesh that is fine everywhere.
+// Virtual rolling indentation: the force on a frictionless sphere or cylinder, or on one that slides steadily with
+// friction, at many places of a bonded block that holds stiff spheres, from a few finite element tables instead of
+// one mesh that is fine everywhere.
 //
 // Under the tool the surface compliance (depression at a by a unit force at b) is taken apart:
 //
@@ -12,13 +13,15 @@
 //
 // S and T are smooth (inclusions are some way down), so they are stored on a few sample lines and interpolated
 // by cubics. G does not depend on the place: the lattice of contact nodes moves with the tool, so rolling over
-// nodes makes no ripple at all. All by finite elements (hex8_bbar), linear, small displacements.
+// nodes makes no ripple at all. All by finite elements (hex8_bbar), linear, small displacements. With friction the
+// same columns also tell how pressing moves the surface sideways, taken apart likewise (steady_sliding.h).
 
 #include <functional>
 #include <span>
 #include <vector>
 
 #include "mechanics/contact.h"
+#include "mechanics/steady_sliding.h"
 
 namespace palpa::mechanics {
 
@@ -31,36 +34,45 @@ struct RollingModel {
     std::array<double, 3> size_m{0.12, 0.12, 0.025};
     Material tissue;
     std::vector<Inclusion> inclusions;  // apart from each other and inside the block
-    double radius_m = 0.004;            // of the sphere that rolls
+    IndenterShape shape = IndenterShape::sphere;
+    double radius_m = 0.004;
+    double length_m = 0.0;  // of a cylinder
+    double friction = 0.0;  // coefficient; 0: rolls, or slides without friction
     double least_depth_m = 0.002;
     double greatest_depth_m = 0.007;
 };
 
 // How fine each table is.
 struct RollingMesh {
-    double contact_m = 0.0;                   // lattice under the tool
+    double contact_m = 0.0;                   // lattice under the tool; divides a cylinder's length
     std::array<double, 2> surface_m{0.0, 0.0};  // of S; divides half the block
     double cells_across = 8.0;                // cells over the diameter of an inclusion
     double reach_m = 0.0;                     // how far beyond an inclusion T goes before it is faded to 0
 };
-// sqrt(R d) / contact_m > 4 at the least depth, as long as that needs at most 600 nodes. coarseness 1 is meant
-// for maps, larger ones for quick tests. Throws LoadError / MaterialError for a model that cannot be computed.
+// sqrt(R d) / contact_m > 4 at the least depth, as long as that needs at most about 600 nodes. coarseness 1 is
+// meant for maps, larger ones for quick tests, 0.5 for a check: half of every spacing, whatever that needs. Throws
+// LoadError / MaterialError for a model that cannot be computed.
 RollingMesh choose_rolling_mesh(const RollingModel& model, double coarseness = 1.0);
 
-// G at offsets (i, j) times the spacing, i, j >= 0: value[j n + i], m/N.
+// G at offsets (i, j) times the spacing, i, j >= 0: value[j n_x + i], m/N. along_x, along_y: how far the point at
+// that offset from the load moves along x and y; empty without friction.
 struct LayerKernel {
     std::array<double, 2> spacing_m{0.0, 0.0};
-    int n = 0;
+    int n_x = 0;
+    int n_y = 0;
     std::vector<double> value;
+    std::vector<double> along_x, along_y;
 };
 
-// A symmetric function of two surface points near each other. value[node][dy + reach_y][dx + reach_x], node =
-// iy n_x + ix, dx and dy in sample lines.
+// Functions of two surface points near each other. value[node][dy + reach_y][dx + reach_x], node = iy n_x + ix, dx
+// and dy in sample lines: depression at the node by pressing at node + (dx, dy), symmetric. along_x, along_y: how
+// far the node moves along x and y; empty without friction.
 struct PairTable {
     std::vector<double> x_m, y_m;
     int reach_x = 0;
     int reach_y = 0;
     std::vector<double> value;
+    std::vector<double> along_x, along_y;
 };
 
 LayerKernel contact_kernel(const RollingModel& model, const RollingMesh& mesh);
@@ -75,9 +87,10 @@ struct RollingTables {
     std::vector<PairTable> parts;  // sides, then the groups
 };
 
-// One place and depth. The tangential force is that of the pressure on the tool, sum p d(delta)/dx: the slope
-// of the energy, but summed over a coarse rim once the depth nears the radius (contact_geometry.h). For maps
-// take the slope of energy_J.
+// One place and depth. Without friction the tangential force is that of the pressure on the tool, sum p
+// d(delta)/dx: the slope of the energy, but summed over a coarse rim once the depth nears the radius
+// (contact_geometry.h). For maps take the slope of energy_J. With friction: normal_N and tangential_x_N of a slide
+// along +x, tangential_y_N of one along +y, energy_J NaN.
 struct RollingForce {
     double normal_N = 0.0;
     double tangential_x_N = 0.0;
@@ -89,6 +102,7 @@ struct RollingForce {
 struct RollingWork {
     Compliance patch;
     ContactWork contact;
+    SteadyWork slide;
     Contact answer;
     std::vector<double> lattice_x, lattice_y;  // tool-centred nodes
     std::vector<int> lattice_i, lattice_j;
@@ -96,7 +110,8 @@ struct RollingWork {
 };
 
 // Forces at each depth (ascending) with the tool's lowest point over (x, y). The tool may hang over a side;
-// throws LoadError when nothing of the block is under it, or a depth is not in 0 .. thickness.
+// throws LoadError when nothing of the block is under it, or a depth is not in 0 .. thickness, SolverError when a
+// slide does not settle (far too much friction).
 void roll_to(const RollingModel& model, const RollingMesh& mesh, const RollingTables& tables, double x_m,
              double y_m, std::span<const double> depths_m, RollingWork& work, std::vector<RollingForce>& out);
 

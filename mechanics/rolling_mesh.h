@@ -1,10 +1,22 @@
 #pragma once
-// Coordinate lists and plain blocks for rolling.h; only its own sources include this.
+// Coordinate lists, plain blocks and checks for rolling.h; only its own sources include this.
 
 #include "mechanics/rolling.h"
 #include "mechanics/statics.h"
 
 namespace palpa::mechanics {
+
+// Throws LoadError / MaterialError for a model that cannot be computed.
+void check_model(const RollingModel& model);
+
+// Half the width, along x and y, of the rectangle that holds the contact nodes: the whole sphere; of a cylinder
+// what is at most its greatest depth above the surface, and half its length.
+std::array<double, 2> footprint_m(const RollingModel& model);
+
+Indenter indenter_of(const RollingModel& model);
+
+// One contact solve, two with friction: along x and along y. Throws SolverError when a slide does not settle.
+RollingForce force_at(const RollingModel& model, const Compliance& compliance, const Tool& tool, RollingWork& work);
 
 // Where cells along one axis must not be larger than `cell_m`.
 struct FineZone {

@@ -104,12 +104,19 @@ void sink(const Plan& plan, State& state) {
     state.counters.unmeasured += !state.contact.measured;
 }
 
+void rub(const Plan& plan, State& state) {
+    if (!state.touch.down) return let_go(*state.linear);
+    drag(std::get<LinearTissue>(plan.tissue), state.touch.p_m, state.contact.depth_m, *state.linear);
+}
+
 double tangential_N(const MapTissue& tissue, State& state) {
     return tangential_force_N(tissue.field, state.place, state.heading, state.contact.depth_m);
 }
 
 double tangential_N(const LinearTissue& tissue, State& state) {
-    return tangential_force_N(tissue, state.touch.p_m, state.heading, state.contact.depth_m, *state.linear);
+    const double depth_m = state.contact.depth_m;
+    if (tissue.friction) return rough_tangential_force_N(tissue, state.touch.p_m, state.heading, depth_m, *state.linear);
+    return tangential_force_N(tissue, state.touch.p_m, state.heading, depth_m, *state.linear);
 }
 
 void resist(const Scene& scene, const Plan& plan, State& state) {
@@ -154,6 +161,7 @@ void run_stage(StageId id, const Scene& scene, const Plan& plan, const Sample& s
         case StageId::calibration: return calibrate(scene, plan, sample, state);
         case StageId::position: return place(sample, state);
         case StageId::depth: return sink(plan, state);
+        case StageId::friction: return rub(plan, state);
         case StageId::tangential: return resist(scene, plan, state);
         case StageId::display_ratio:
         case StageId::delay: return lag(scene, plan, state);

@@ -17,6 +17,9 @@ namespace {
 
 constexpr int kLayers = 9;              // over the thickness, finer towards the surface
 constexpr double kDeepestShare = 0.45;  // of the thickness: deeper poses stop here, far beyond the linear range
+constexpr double kMostCompliance_GB = 1.0;  // with friction: nine times the frictionless one
+constexpr int kMostSlides = 16;         // half spacings a sample: more than two contact radii, friction is steady by then
+constexpr double kFrictionTolerance = 1e-5;  // of the largest force: 2e-6 from the converged one (docs/performance.md)
 constexpr int kMostInContact = 256;     // nodes; more would be a tool of 16 spacings
 
 mechanics::Material material_of(const Elastic& elastic) { return {elastic.young_Pa, elastic.poisson}; }
@@ -55,7 +58,9 @@ std::vector<double> plain(const Eigen::Ref<const Eigen::MatrixXd>& values) {
 }
 
 CachedArrays arrays_of(const mechanics::Compliance& c) {
-    return {plain(c.position_m), plain(c.area_m2), {c.surface_z_m, c.thickness_m, c.asymmetry}, plain(c.normal_m_per_N)};
+    CachedArrays out{plain(c.position_m), plain(c.area_m2), {c.surface_z_m, c.thickness_m, c.asymmetry}, plain(c.normal_m_per_N)};
+    if (c.full_m_per_N.size() > 0) out.push_back(plain(c.full_m_per_N));
+    return out;
 }
 
 // True if the cache holds a whole compliance of these nodes.
@@ -64,7 +69,8 @@ bool restore(const std::filesystem::path& cache, std::uint64_t number, const mec
     if (cache.empty()) return false;
     const auto arrays = read_cache(cache, number);
     const auto n = request.touch_nodes.size();
-    if (!arrays || arrays->size() != 4) return false;
+    if (!arrays || arrays->size() != (request.tangential ? 5u : 4u)) return false;
+    if (request.tangential && arrays->back().size() != 9 * n * n) return false;
     const auto& [position, area, numbers, normal] = std::tie((*arrays)[0], (*arrays)[1], (*arrays)[2], (*arrays)[3]);
     if (position.size() != 3 * n || area.size() != n || numbers.size() != 3 || normal.size() != n * n) return false;
     const auto rows = static_cast<Eigen::Index>(n);
@@ -76,6 +82,7 @@ bool restore(const std::filesystem::path& cache, std::uint64_t number, const mec
     out.thickness_m = numbers[1];
     out.asymmetry = numbers[2];
     out.normal_m_per_N = Eigen::Map<const Eigen::MatrixXd>(normal.data(), rows, rows);
+    if (request.tangential) out.full_m_per_N = Eigen::Map<const Eigen::MatrixXd>(arrays->back().data(), 3 * rows, 3 * rows);
     return true;
 }
 
@@ -83,6 +90,17 @@ void press_to(const LinearTissue& tissue, const Eigen::Vector2d& p_m, double dep
               mechanics::Contact& contact) {
     const mechanics::Tool tool{tissue.indenter, {p_m.x(), p_m.y(), depth_m}};
     mechanics::press_to_depth(tissue.compliance, {&tool, 1}, contact_options(tissue), work, contact);
+}
+
+// Of the frictionless contact, both signs.
+double energy_slope_N(const LinearTissue& tissue, const Eigen::Vector2d& p_m, const Eigen::Vector2d& u, double depth_m,
+                      LinearWork& work) {
+    if (u.isZero() || !(depth_m > 0.0)) return 0.0;
+    const double window_m = std::min(tissue.spacing_m[0], tissue.spacing_m[1]);
+    press_to(tissue, p_m + 0.5 * window_m * u, depth_m, work.work, work.probe);
+    const double ahead_J = work.probe.energy_J;
+    press_to(tissue, p_m - 0.5 * window_m * u, depth_m, work.work, work.probe);
+    return (ahead_J - work.probe.energy_J) / window_m;
 }
 
 }  // namespace
@@ -94,6 +112,8 @@ LinearTissue make_linear_tissue(const LinearOptions& options, const std::filesys
     tissue.indenter.shape = tissue.phantom.indenter == IndenterShape::sphere ? mechanics::IndenterShape::sphere
                                                                              : mechanics::IndenterShape::cylinder;
     tissue.indenter.radius_m = tissue.phantom.indenter_radius_m;
+    if (tissue.indenter.shape == mechanics::IndenterShape::cylinder) tissue.indenter.length_m = tissue.phantom.indenter_length_m;
+    tissue.friction = options.friction;
     const auto nodes_along = [&](double length_m) {
         return 1 + static_cast<std::size_t>(std::max(2.0, std::round(length_m / options.spacing_m)));
     };
@@ -105,19 +125,29 @@ LinearTissue make_linear_tissue(const LinearOptions& options, const std::filesys
                                                           short_number(1e3 * options.spacing_m) + " mm",
                         "at most 20000 (a larger spacing_mm)");
     }
+    const double full_GB = 8e-9 * 10.0 * std::pow(static_cast<double>(tissue.n_x * tissue.n_y), 2.0);
+    if (options.friction && full_GB > kMostCompliance_GB) {
+        throw bad_input(options.phantom.string(), "", short_number(full_GB) + " GB of compliance with friction, at " +
+                                                          short_number(1e3 * options.spacing_m) + " mm",
+                        "at most " + short_number(kMostCompliance_GB) + " GB (a larger spacing_mm, or no friction)");
+    }
     tissue.spacing_m[0] = tissue.phantom.size_m[0] / static_cast<double>(tissue.n_x - 1);
     tissue.spacing_m[1] = tissue.phantom.size_m[1] / static_cast<double>(tissue.n_y - 1);
 
     const mechanics::Problem problem = problem_of(tissue.phantom, tissue.n_x, tissue.n_y);
     tissue.mesh_nodes = static_cast<int>(problem.mesh.nodes_m.cols());
     const mechanics::Faces outer = mechanics::boundary_faces(problem.mesh);
-    const mechanics::SurfaceRequest request = mechanics::request_rectangle(
+    mechanics::SurfaceRequest request = mechanics::request_rectangle(
         problem.mesh, outer, {0.0, tissue.phantom.size_m[0], 0.0, tissue.phantom.size_m[1]});
+    request.tangential = options.friction.has_value();
     const std::uint64_t number = mechanics::fingerprint(problem, request);
     tissue.from_cache = restore(cache, number, request, tissue.compliance);
     if (tissue.from_cache) return tissue;
-    const mechanics::Factored factored = mechanics::factorise(problem, mechanics::best_solver());
-    tissue.compliance = mechanics::surface_compliance(problem.mesh, factored, request, progress);
+    {
+        // the factor is gone before the cache copies the compliance
+        const mechanics::Factored factored = mechanics::factorise(problem, mechanics::best_solver());
+        tissue.compliance = mechanics::surface_compliance(problem.mesh, factored, request, progress);
+    }
     if (!cache.empty()) tissue.cache_warning = write_cache(cache, number, arrays_of(tissue.compliance));
     return tissue;
 }
@@ -125,7 +155,12 @@ LinearTissue make_linear_tissue(const LinearOptions& options, const std::filesys
 LinearWork make_linear_work(const LinearTissue& tissue) {
     LinearWork out;
     out.work = mechanics::make_contact_work(tissue.compliance, kMostInContact);
-    for (mechanics::Contact* contact : {&out.contact, &out.probe}) {
+    if (tissue.friction) {
+        out.friction_work = mechanics::make_friction_work(tissue.compliance, kMostInContact);
+        out.friction.touch.reserve(kMostInContact);
+        out.friction.force_N.reserve(3 * kMostInContact);
+    }
+    for (mechanics::Contact* contact : {&out.contact, &out.probe, &out.sliding}) {
         contact->touch.reserve(kMostInContact);
         contact->by_tool.reserve(kMostInContact);
         contact->force_N.reserve(kMostInContact);
@@ -160,12 +195,50 @@ double probe_depth_m(const LinearTissue& tissue, const Eigen::Vector2d& p_m, dou
 
 double tangential_force_N(const LinearTissue& tissue, const Eigen::Vector2d& p_m, const Eigen::Vector2d& u,
                           double depth_m, LinearWork& work) {
-    if (u.isZero() || !(depth_m > 0.0)) return 0.0;
-    const double window_m = std::min(tissue.spacing_m[0], tissue.spacing_m[1]);
-    press_to(tissue, p_m + 0.5 * window_m * u, depth_m, work.work, work.probe);
-    const double ahead_J = work.probe.energy_J;
-    press_to(tissue, p_m - 0.5 * window_m * u, depth_m, work.work, work.probe);
-    return std::max(0.0, (ahead_J - work.probe.energy_J) / window_m);
+    return std::max(0.0, energy_slope_N(tissue, p_m, u, depth_m, work));
+}
+
+double rough_tangential_force_N(const LinearTissue& tissue, const Eigen::Vector2d& p_m, const Eigen::Vector2d& u,
+                                double depth_m, LinearWork& work) {
+    return std::max(0.0, energy_slope_N(tissue, p_m, u, depth_m, work) + u.dot(work.drag_N));
+}
+
+void let_go(LinearWork& work) {
+    work.friction.touching = false;
+    work.friction.touch.clear();
+    work.friction.force_N.clear();
+    work.drag_N.setZero();
+}
+
+void drag(const LinearTissue& tissue, const Eigen::Vector2d& p_m, double depth_m, LinearWork& work) {
+    if (!tissue.friction || !(depth_m > 0.0)) return let_go(work);
+    mechanics::FrictionOptions options;
+    options.coefficient = *tissue.friction;
+    options.tolerance = kFrictionTolerance;
+    options.max_depth_m = kDeepestShare * tissue.phantom.size_m[2];
+    const auto slide = [&](const Eigen::Vector2d& at_m, double at_depth_m) {
+        mechanics::slide_to(tissue.compliance, {tissue.indenter, {at_m.x(), at_m.y(), at_depth_m}}, options,
+                            work.friction_work, work.friction, work.sliding);
+    };
+    const double step_m = 0.5 * std::min(tissue.spacing_m[0], tissue.spacing_m[1]);
+    const mechanics::Pose& last = work.friction.pose;
+    Eigen::Vector2d from_m = work.friction.touching ? Eigen::Vector2d(last.x_m, last.y_m) : p_m;
+    double from_depth_m = work.friction.touching ? last.depth_m : depth_m;
+    if ((p_m - from_m).norm() > kMostSlides * step_m) {
+        from_m = p_m - kMostSlides * step_m * (p_m - from_m).normalized();
+        from_depth_m = depth_m;
+        let_go(work);
+        slide(from_m, from_depth_m);
+    }
+    const int steps = std::max(1, static_cast<int>(std::ceil((p_m - from_m).norm() / step_m - 1e-9)));
+    for (int k = 1; k <= steps; ++k) {
+        const double share = static_cast<double>(k) / steps;
+        slide(from_m + share * (p_m - from_m), from_depth_m + share * (depth_m - from_depth_m));
+    }
+    work.drag_N.setZero();
+    for (std::size_t k = 0; k < work.friction.touch.size(); ++k) {
+        work.drag_N += Eigen::Vector2d(work.friction.force_N[3 * k + 1], work.friction.force_N[3 * k + 2]);
+    }
 }
 
 void surface_sink_m(const LinearTissue& tissue, const LinearWork& work, Eigen::VectorXd& out_m) {

@@ -1,14 +1,17 @@
 #pragma once
 // A block of linear elastic tissue with stiff nodules, palpated live: the frictionless contact of the indenter is
-// solved anew at every sample on a precomputed surface compliance. Shapes and materials come from a phantom.
+// solved anew at every sample on a precomputed surface compliance; where asked for, Coulomb friction drags along from
+// sample to sample. Shapes and materials come from a phantom.
 
 #include <Eigen/Core>
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
 
 #include "mechanics/compliance.h"
 #include "mechanics/contact.h"
+#include "mechanics/friction.h"
 #include "stiffnessmaps/phantom.h"
 
 namespace palpa {
@@ -16,6 +19,7 @@ namespace palpa {
 struct LinearOptions {
     std::filesystem::path phantom;
     double spacing_m = 2e-3;  // of the surface nodes; cost of the precomputation grows with its power -6
+    std::optional<double> friction;  // coefficient, > 0; absent: frictionless
 };
 
 // Plain data, constant while it runs. Positions are the phantom's: its corner at the origin.
@@ -26,6 +30,7 @@ struct LinearTissue {
     std::size_t n_x = 0;  // surface nodes, x fastest; height field of the picture
     std::size_t n_y = 0;
     double spacing_m[2] = {0.0, 0.0};
+    std::optional<double> friction;
     int mesh_nodes = 0;
     bool from_cache = false;
     std::string cache_warning;  // why it could not be stored, for people; empty if it was
@@ -37,6 +42,11 @@ struct LinearWork {
     mechanics::Contact contact;  // of the touch
     mechanics::Contact probe;    // of places beside it
     double depth_m = 0.0;        // where the search for the depth starts
+    // With friction only. What the next sample starts from is `friction`.
+    mechanics::FrictionState friction;
+    mechanics::FrictionWork friction_work;
+    mechanics::Contact sliding;
+    Eigen::Vector2d drag_N = Eigen::Vector2d::Zero();  // Coulomb force; positive opposes motion along +x (+y)
 };
 
 // Builds the mesh, factors it and computes the compliance: seconds to minutes, unless `cache` (a folder; empty: none)
@@ -62,6 +72,16 @@ double probe_depth_m(const LinearTissue& tissue, const Eigen::Vector2d& p_m, dou
 // takes out the ripple of the node-wise contact. Never negative. Two contact solves.
 double tangential_force_N(const LinearTissue& tissue, const Eigen::Vector2d& p_m, const Eigen::Vector2d& u,
                           double depth_m, LinearWork& work);
+
+// Drags the rough tool from where it was to p at a depth, in steps of at most half a node spacing (after a jump the
+// last 16 of them; what came before has worn off) and leaves the Coulomb force in work.drag_N. The contact on the way
+// has friction in its pressure too, so its normal force differs a little from the one that was pressed with.
+void drag(const LinearTissue& tissue, const Eigen::Vector2d& p_m, double depth_m, LinearWork& work);
+// Lifted: forgets.
+void let_go(LinearWork& work);
+// tangential_force_N and the Coulomb force along u; what goes downhill lowers the sum, which is never negative.
+double rough_tangential_force_N(const LinearTissue& tissue, const Eigen::Vector2d& p_m, const Eigen::Vector2d& u,
+                                double depth_m, LinearWork& work);
 
 // Sink of the surface nodes under the contact last pressed, n_x * n_y, metres downwards.
 void surface_sink_m(const LinearTissue& tissue, const LinearWork& work, Eigen::VectorXd& out_m);

@@ -18,6 +18,10 @@ constexpr const char* kLinearError =
     "1.3 % of the depth (median, worst 2.4 %) against 1.2 mm on the shipped block at 2 mm; a contact radius below two "
     "spacings is worse";
 
+constexpr const char* kFrictionError =
+    "tangential force 0.2 % of mu F (median, worst 4 %) against 1.5 mm on the shipped block at 2 mm, raster trace, mu 0.3";
+constexpr double kFriction_us = 75.0;  // p99 145
+
 std::string mm_text(double metres) { return short_number(1e3 * metres) + " mm"; }
 
 Stage calibration_stage(const Plan& plan) {
@@ -57,7 +61,9 @@ Stage tangential_stage(const MapTissue& tissue, const TangentialOptions& options
         return stage;
     }
     const bool recorded = tissue.map.tangential == TangentialKind::recorded;
-    stage.fidelity = recorded ? "energy gradient + recorded resistance" : "energy gradient";
+    const bool slid = recorded && tissue.map.source.kind == SourceKind::simulated;
+    stage.fidelity = slid ? "energy gradient + friction of the simulated slide along +x"
+                          : (recorded ? "energy gradient + recorded resistance" : "energy gradient");
     stage.error = "derived from the normal force (work argument), not measured";
     if (tissue.smoothing_m > 0.0) {
         stage.fidelity += ", smoothed by " + mm_text(tissue.smoothing_m);
@@ -66,9 +72,17 @@ Stage tangential_stage(const MapTissue& tissue, const TangentialOptions& options
     return stage;
 }
 
+Stage friction_stage(const LinearTissue& tissue) {
+    return {StageId::friction, false,
+            "Coulomb friction " + short_number(*tissue.friction) + ", stick and slip of every node, in steps of at most " +
+                mm_text(0.5 * tissue.spacing_m[0]),
+            kFrictionError, kFriction_us};
+}
+
 Stage tangential_stage(const LinearTissue& tissue, const TangentialOptions&) {
     return {StageId::tangential, false,
-            "slope of the elastic energy over " + mm_text(tissue.spacing_m[0]) + ", two contact solves",
+            "slope of the elastic energy over " + mm_text(tissue.spacing_m[0]) + ", two contact solves" +
+                (tissue.friction ? ", and friction" : ""),
             "detail below one node spacing is averaged away", 70.0};
 }
 
@@ -98,6 +112,10 @@ void add_isotonic_note(const MapTissue& tissue, Plan& plan) {
 
 void add_notes(const LinearTissue& tissue, const Scene&, Plan& plan) {
     if (!tissue.cache_warning.empty()) plan.notes.push_back(tissue.cache_warning);
+    if (tissue.friction) {
+        plan.notes.push_back("friction acts on the tangential force, not on the avatar's lag: under the same force it is the same "
+                             "here and a reference distance before");
+    }
     plan.notes.push_back("the tissue is simulated: linear elastic, small displacements, moduli of " + tissue.phantom.name +
                          "; the panel shows when a press leaves the linear range");
 }
@@ -191,6 +209,8 @@ void add_stages(const Scene& scene, Plan& plan) {
     plan.sample_stages.push_back(calibration_stage(plan));
     plan.sample_stages.push_back({StageId::position, false, direct ? "direct" : "indirect", "exact", 0.01});
     std::visit([&](const auto& tissue) { plan.sample_stages.push_back(depth_stage(tissue)); }, plan.tissue);
+    const auto* linear = std::get_if<LinearTissue>(&plan.tissue);
+    if (linear != nullptr && linear->friction) plan.sample_stages.push_back(friction_stage(*linear));
     std::visit([&](const auto& tissue) { plan.sample_stages.push_back(tangential_stage(tissue, scene.tangential)); },
                plan.tissue);
     const PathParameters path = path_of(scene);
@@ -221,6 +241,7 @@ const char* name_of(StageId id) {
         case StageId::calibration: return "calibration";
         case StageId::position: return "position";
         case StageId::depth: return "depth";
+        case StageId::friction: return "friction";
         case StageId::tangential: return "tangential";
         case StageId::display_ratio: return "display_ratio";
         case StageId::delay: return "delay";

@@ -15,8 +15,8 @@
 
 namespace palpa {
 
-enum class StageId : std::size_t { calibration, position, depth, tangential, display_ratio, delay, surface };
-inline constexpr std::size_t kStageCount = 7;
+enum class StageId : std::size_t { calibration, position, depth, friction, tangential, display_ratio, delay, surface };
+inline constexpr std::size_t kStageCount = 8;
 
 struct Stage {
     StageId id;

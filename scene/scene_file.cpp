@@ -88,6 +88,7 @@ void read_tissue(JsonReader json, const fs::path& file, const fs::path& assets, 
     LinearOptions options;
     options.phantom = find_file(block.text("phantom"), file, assets / "phantoms");
     options.spacing_m = 1e-3 * block.number("spacing_mm", {0.2, 100.0}, 1e3 * options.spacing_m);
+    if (block.has("friction")) options.friction = block.number("friction", {0.0, 10.0, true});
     block.finish();
     scene.linear = options;
     json.finish();

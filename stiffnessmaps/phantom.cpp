@@ -80,6 +80,11 @@ Phantom read_phantom(const std::filesystem::path& path) {
     JsonReader indenter = json.object("indenter");
     phantom.indenter = static_cast<IndenterShape>(indenter.choice("shape", {"sphere", "cylinder"}));
     phantom.indenter_radius_m = 1e-3 * indenter.number("radius_mm", {0.0, 1e3, true});
+    if (phantom.indenter == IndenterShape::cylinder) {
+        phantom.indenter_length_m = 1e-3 * indenter.number("length_mm", {0.0, 1e4, true});
+    } else if (indenter.has("length_mm")) {
+        indenter.fail("length_mm", short_number(indenter.number("length_mm", {-1e9, 1e9})), "none: a sphere has no length");
+    }
     phantom.rolling = indenter.choice("contact", {"rolling", "sliding"}) == 0;
     phantom.friction = indenter.number("friction", {0.0, 10.0}, 0.0);
     indenter.finish();

@@ -27,8 +27,9 @@ struct Phantom {
     std::vector<PhantomNodule> nodules;
     IndenterShape indenter = IndenterShape::sphere;
     double indenter_radius_m = 0.0;
+    double indenter_length_m = 0.0;  // of a cylinder, whose axis lies along y
     bool rolling = true;
-    double friction = 0.0;
+    double friction = 0.0;  // coefficient; counts when it slides
     std::vector<double> depths_m;
     double origin_m[2] = {0.0, 0.0};
     double spacing_m[2] = {0.0, 0.0};

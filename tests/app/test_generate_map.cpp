@@ -9,6 +9,7 @@
 
 #include "app/map_parts.h"
 #include "files/text.h"
+#include "stiffnessmaps/field.h"
 #include "stiffnessmaps/map_file.h"
 #include "tests/error_message.h"
 #include "tests/temporary_folder.h"
@@ -112,6 +113,47 @@ TEST_CASE("generate: killed in the middle, it goes on from what is finished; dam
     CHECK(bench.bytes("f.map") != bench.bytes("whole.map"));
 }
 
+TEST_CASE("generate: a cylinder that slides with friction, in one process or two, checked, looked up in both directions") {
+    const Bench bench;
+    const std::string sliding = replaced(replaced(kPhantom, "rolling\"", "sliding\", \"friction\": 0.3"), "\"sphere\"", "\"cylinder\", \"length_mm\": 6");
+    write_text_atomically(bench / "p.json", sliding);
+    CHECK(bench.generate("one.map", "--jobs 1").status == 0);
+    CHECK(bench.generate("two.map", "--jobs 2").status == 0);
+    CHECK(bench.bytes("one.map") == bench.bytes("two.map"));
+    const Map map = read_map(bench / "one.map");
+    CHECK(map.tangential == TangentialKind::recorded);
+    CHECK(map.indenter == IndenterShape::cylinder);
+    for (const char* words : {"cylinder 6 mm long", "slides steadily with a friction coefficient of 0.3", "for motion along -x and -y friction has the other sign"}) {
+        CHECK(contains(map.source.how, words));
+    }
+    const auto at = [&](const std::vector<float>& array, std::size_t i) { return array[map.n_cells() + 4 * map.n_x + i]; };
+    const auto share = [&](std::size_t i) { return at(map.tangential_x_N, i) / at(map.normal_N, i); };
+    CHECK(share(8) > 0.3f);   // friction, and uphill before the nodule
+    CHECK(share(12) < 0.3f);  // and downhill behind it
+    CHECK(share(12) > 0.1f);
+    CHECK(at(map.tangential_y_N, 10) > 0.2f * at(map.normal_N, 10));
+
+    // the avatar's rule takes friction as even: it opposes motion along -x as well
+    const Field field = make_field(map, {});
+    const Place place = place_at(field, {map.x_of(10), map.y_of(4)});
+    const double forth_N = tangential_force_N(field, place, {1.0, 0.0}, 0.002);
+    const double back_N = tangential_force_N(field, place, {-1.0, 0.0}, 0.002);
+    CHECK(forth_N > 0.2 * normal_force_N(field, place, 0.002));
+    CHECK(back_N > 0.2 * normal_force_N(field, place, 0.002));
+    // the arrays as they stand are right along + only
+    const Field raw = make_field(map, {TangentialForce::recorded});
+    CHECK(tangential_force_N(raw, place, {1.0, 0.0}, 0.002) > 0.0);
+    CHECK(tangential_force_N(raw, place, {-1.0, 0.0}, 0.002) < 0.0);
+
+    CHECK(bench.generate("one.map", "--check").status == 0);
+    CHECK(contains(read_map(bench / "one.map").source.how, "tangential force "));
+    CHECK(contains(read_text(bench / "one.map" / "convergence.json"), "max_tangential_difference"));
+    CHECK(bench.shell("timeout 60 " PALPA_PROGRAM " maps info " + (bench / "one.map").string()).status == 0);
+    write_text_atomically(bench / "s.json", R"({"name": "s", "tissue": {"map": "one.map"}})");
+    CHECK(bench.shell("timeout 60 " PALPA_PROGRAM " explain " + (bench / "s.json").string()).status == 0);
+    CHECK(contains(read_text(bench / "out"), "friction of the simulated slide along +x"));
+}
+
 TEST_CASE("generate: bad input ends with status 2 and says what was expected") {
     const Bench bench;
     const auto refused = [&](const std::string& from, const std::string& to, const std::string& options, const char* words) {
@@ -122,8 +164,11 @@ TEST_CASE("generate: bad input ends with status 2 and says what was expected") {
         CHECK(contains(called.err, words));
         CHECK_FALSE(fs::exists(bench / "n.map"));
     };
-    refused("rolling\"", "sliding\", \"friction\": 0.3", "", "indenter.friction: found 0.3, expected 0");
-    refused("\"sphere\"", "\"cylinder\"", "", "indenter.shape: found cylinder, expected sphere");
+    refused("rolling\"", "sliding\", \"friction\": -0.3", "", "indenter.friction: found -0.3");
+    refused("rolling\"", "sliding\", \"friction\": 0.3", "--method analytic", "indenter.friction: found 0.3, expected 0 with --method analytic");
+    refused("\"sphere\"", "\"cylinder\", \"length_mm\": 5", "--method analytic", "indenter.shape: found cylinder, expected sphere with --method analytic");
+    refused("\"sphere\"", "\"cylinder\"", "", "length_mm");
+    refused("\"sphere\"", "\"cylinder\", \"length_mm\": 0.01", "", "a quarter of the nodes' spacing");
     refused("[1, 2]", "[1, 12]", "", "depths less than the thickness, 12 mm");
     refused("[0, 2]", "[-2, 2]", "", "expected an indenter on the tissue, 0 to 40 mm");
     refused("0.45, \"assumed\"", "0.5, \"assumed\"", "", "poisson");

@@ -94,3 +94,29 @@ TEST_CASE("fingerprint: equal for equal inputs, another for any change") {
     more.tangential = true;
     CHECK(fingerprint(problem, more) != key);
 }
+
+TEST_CASE("compliance: asked for sideways it is what the full one holds, and nothing else changes") {
+    const Problem problem =
+        slab_problem(hex_box(graded_box(0.1, 0.05, 8, 4, 0.005)), Element::hex8_bbar, {2500.0, 0.45});
+    SurfaceRequest request = request_rectangle(problem.mesh, boundary_faces(problem.mesh), {0.03, 0.07, 0.03, 0.07});
+    const Factored factored = factorise(problem, best_solver());
+    const Compliance plain = surface_compliance(problem.mesh, factored, request);
+    CHECK(plain.along_x_m_per_N.size() == 0);
+    const std::uint64_t number = fingerprint(problem, request);
+    request.sideways = true;
+    CHECK(fingerprint(problem, request) != number);
+    const Compliance sideways = surface_compliance(problem.mesh, factored, request);
+    CHECK(sideways.normal_m_per_N == plain.normal_m_per_N);
+    CHECK(sideways.full_m_per_N.size() == 0);
+    CHECK(sideways.along_x_m_per_N.rows() == plain.normal_m_per_N.rows());
+    request.tangential = true;
+    request.sideways = false;
+    const Compliance full = surface_compliance(problem.mesh, factored, request);
+    const double size = full.full_m_per_N.cwiseAbs().maxCoeff();
+    for (int i = 0; i < full.n_touch; ++i) {
+        for (int j = 0; j < full.n_touch; ++j) {
+            CHECK(std::abs(sideways.along_x_m_per_N(i, j) - full.full_m_per_N(3 * i + 1, 3 * j)) < 1e-12 * size);
+            CHECK(std::abs(sideways.along_y_m_per_N(i, j) - full.full_m_per_N(3 * i + 2, 3 * j)) < 1e-12 * size);
+        }
+    }
+}

@@ -4,47 +4,9 @@
 
 #include "mechanics/error.h"
 #include "mechanics/rolling_mesh.h"
+#include "tests/mechanics/rolling_block.h"
 
 using namespace palpa::mechanics;
-
-namespace {
-
-// A small block, a sphere of 3 mm that goes 1 and 2 mm deep, and coarse tables.
-RollingModel block(std::vector<Inclusion> inclusions) {
-    RollingModel model;
-    model.size_m = {0.05, 0.05, 0.0125};
-    model.tissue = {40e3, 0.45};
-    model.inclusions = std::move(inclusions);
-    model.radius_m = 0.003;
-    model.least_depth_m = 0.001;
-    model.greatest_depth_m = 0.002;
-    return model;
-}
-Inclusion ball(double x_m, double y_m, double diameter_m) {
-    return {{{x_m, y_m, 0.0125 - 0.003 - 0.5 * diameter_m}, 0.5 * diameter_m}, {2e6, 0.45}};  // top 3 mm deep
-}
-
-const std::vector<double> kDepths_m{0.001, 0.002};
-
-struct Roller {
-    explicit Roller(RollingModel m, double contact_m = 0.0) : model(std::move(m)), mesh(choose_rolling_mesh(model, 2.0)) {
-        if (contact_m > 0.0) mesh.contact_m = contact_m;
-        tables.contact = contact_kernel(model, mesh);
-        tables.parts.push_back(side_table(model, mesh));
-        for (const auto& group : inclusion_groups(model, mesh)) tables.parts.push_back(inclusion_table(model, mesh, group));
-    }
-    RollingForce at(double x_m, double y_m, std::size_t depth = 1) {
-        roll_to(model, mesh, tables, x_m, y_m, kDepths_m, work, forces);
-        return forces[depth];
-    }
-    RollingModel model;
-    RollingMesh mesh;
-    RollingTables tables;
-    RollingWork work;
-    std::vector<RollingForce> forces;
-};
-
-}  // namespace
 
 TEST_CASE("rolling: coordinates pass through the ends of every zone and rise") {
     const Eigen::VectorXd x = zoned_coordinates_m(0.1, {{0.02, 0.03, 0.002}, {0.025, 0.05, 0.001}, {-1.0, 0.005, 0.003}}, 1.3, 0.02);
@@ -56,7 +18,7 @@ TEST_CASE("rolling: coordinates pass through the ends of every zone and rise") {
 }
 
 TEST_CASE("rolling: taken apart and put together is one mesh of the whole block, within 4 % of the greatest force") {
-    Roller roller(block({ball(0.02, 0.025, 0.005)}));
+    Roller roller(rolling_block({ball(0.02, 0.025, 0.005)}));
     const double greatest_N = roller.at(0.02, 0.025).normal_N;
     for (const auto& [x, y] : {std::pair{0.02, 0.025}, {0.0245, 0.025}, {0.038, 0.02}, {0.048, 0.025}, {0.0, 0.025}, {0.049, 0.002}}) {
         CAPTURE(x);
@@ -70,7 +32,7 @@ TEST_CASE("rolling: taken apart and put together is one mesh of the whole block,
 }
 
 TEST_CASE("rolling: stiffer over each ball in the order of size, force rises with depth") {
-    Roller roller(block({ball(0.0125, 0.0125, 0.006), ball(0.0375, 0.0375, 0.004)}));
+    Roller roller(rolling_block({ball(0.0125, 0.0125, 0.006), ball(0.0375, 0.0375, 0.004)}));
     const double plain_N = roller.at(0.0375, 0.0125).normal_N;
     const double small_N = roller.at(0.0375, 0.0375).normal_N;
     const double large_N = roller.at(0.0125, 0.0125).normal_N;
@@ -80,7 +42,7 @@ TEST_CASE("rolling: stiffer over each ball in the order of size, force rises wit
 }
 
 TEST_CASE("rolling: two balls pressed at mirrored places give mirrored answers") {
-    Roller roller(block({ball(0.0125, 0.025, 0.005), ball(0.0375, 0.025, 0.005)}));
+    Roller roller(rolling_block({ball(0.0125, 0.025, 0.005), ball(0.0375, 0.025, 0.005)}));
     for (const double x : {0.004, 0.0101, 0.0133, 0.02}) {
         const RollingForce left = roller.at(x, 0.021);
         const RollingForce right = roller.at(0.05 - x, 0.029);
@@ -91,7 +53,7 @@ TEST_CASE("rolling: two balls pressed at mirrored places give mirrored answers")
 }
 
 TEST_CASE("rolling: the tangential force of the pressure is the slope of the energy within 5 %; it rises on approach and falls behind") {
-    Roller roller(block({ball(0.025, 0.025, 0.006)}), 3e-4);  // the sum over the rim of the contact needs small nodes
+    Roller roller(rolling_block({ball(0.025, 0.025, 0.006)}), 3e-4);  // the sum over the rim of the contact needs small nodes
     const double h_m = 2e-4;
     const auto slope_N = [&](double x) {
         return (roller.at(x + h_m, 0.025).energy_J - roller.at(x - h_m, 0.025).energy_J) / (2.0 * h_m);
@@ -108,7 +70,7 @@ TEST_CASE("rolling: the tangential force of the pressure is the slope of the ene
 }
 
 TEST_CASE("rolling, hard case 21: no ripple where nodes pass under the tool") {
-    Roller roller(block({}));
+    Roller roller(rolling_block({}));
     std::vector<double> force_N;
     for (int i = 0; i <= 20; ++i) force_N.push_back(roller.at(0.022 + 0.1 * i * roller.mesh.contact_m, 0.025).normal_N);
     for (std::size_t i = 1; i + 1 < force_N.size(); ++i) {
@@ -117,15 +79,15 @@ TEST_CASE("rolling, hard case 21: no ripple where nodes pass under the tool") {
 }
 
 TEST_CASE("rolling: what cannot be computed is told with numbers") {
-    CHECK_THROWS_WITH_AS(choose_rolling_mesh(block({ball(0.02, 0.025, 0.005), ball(0.023, 0.025, 0.005)})),
+    CHECK_THROWS_WITH_AS(choose_rolling_mesh(rolling_block({ball(0.02, 0.025, 0.005), ball(0.023, 0.025, 0.005)})),
                          doctest::Contains("overlap"), LoadError);
-    CHECK_THROWS_WITH_AS(choose_rolling_mesh(block({ball(0.001, 0.025, 0.005)})), doctest::Contains("reaches out"), LoadError);
-    RollingModel deep = block({});
+    CHECK_THROWS_WITH_AS(choose_rolling_mesh(rolling_block({ball(0.001, 0.025, 0.005)})), doctest::Contains("reaches out"), LoadError);
+    RollingModel deep = rolling_block({});
     deep.greatest_depth_m = 0.013;
     CHECK_THROWS_WITH_AS(choose_rolling_mesh(deep), doctest::Contains("less than the thickness"), LoadError);
-    RollingModel incompressible = block({});
+    RollingModel incompressible = rolling_block({});
     incompressible.tissue.poisson = 0.5;
     CHECK_THROWS_AS(choose_rolling_mesh(incompressible), MaterialError);
-    Roller roller(block({}));
+    Roller roller(rolling_block({}));
     CHECK_THROWS_WITH_AS(roller.at(-0.004, 0.02), doctest::Contains("off the tissue"), LoadError);
 }

@@ -2,9 +2,11 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "files/cache.h"
+#include "files/input_error.h"
 #include "files/text.h"
 #include "scene/advance.h"
 #include "tests/scene/allocations.h"
@@ -27,7 +29,8 @@ struct Block {
     LinearOptions options;
     LinearTissue tissue;
     LinearWork work;
-    Block() {
+    explicit Block(std::optional<double> friction = {}) {
+        options.friction = friction;
         write_text_atomically(folder / "block.json", kPhantom);
         options.phantom = folder / "block.json";
         options.spacing_m = 4e-3;
@@ -97,10 +100,76 @@ TEST_CASE("linear tissue: a second start reads the cache to the same bits, a dam
     const LinearTissue anew = make_linear_tissue(block.options, block.folder / "cache", {});
     CHECK_FALSE(anew.from_cache);
     CHECK(anew.compliance.normal_m_per_N == block.tissue.compliance.normal_m_per_N);
+
+    Block rough(0.3);  // more of it, under another number
+    const LinearTissue rough_again = make_linear_tissue(rough.options, rough.folder / "cache", {});
+    CHECK(rough_again.from_cache);
+    CHECK(rough_again.compliance.full_m_per_N == rough.tissue.compliance.full_m_per_N);
+    CHECK(rough_again.compliance.full_m_per_N.rows() == 3 * rough_again.compliance.n_touch);
+}
+
+TEST_CASE("linear tissue: friction sticks, then slides at mu N, turns back with the tool, and is forgotten when lifted") {
+    const double mu = 0.3;
+    const double force_N = 1.0;
+    Block block(mu);
+    const double y_m = 0.045;  // beside the nodule
+    const auto slide_to = [&](double x_m) {
+        const LinearAnswer answer = press(block.tissue, {x_m, y_m}, force_N, block.work);
+        drag(block.tissue, {x_m, y_m}, answer.depth_m, block.work);
+        return block.work.drag_N.x();
+    };
+    CHECK(std::abs(slide_to(0.020)) < 0.1 * mu * force_N);  // straight down
+    const double stuck_N = slide_to(0.0201);
+    CHECK(stuck_N > 0.005);
+    CHECK(stuck_N < 0.5 * mu * force_N);
+    double x_m = 0.0201;
+    while (x_m < 0.036) {
+        CHECK(slide_to(x_m += 2e-4) <= mu * force_N * 1.05);
+        REQUIRE(!block.work.sliding.flags.not_settled);
+    }
+    // 5 %: the rough contact is as deep as the smooth one, and so presses a little more or less
+    CHECK(block.work.drag_N.x() == doctest::Approx(mu * force_N).epsilon(0.05));
+    CHECK(rough_tangential_force_N(block.tissue, {x_m, y_m}, {1.0, 0.0}, block.work.depth_m, block.work) > 0.2);
+    CHECK(rough_tangential_force_N(block.tissue, {x_m, y_m}, {-1.0, 0.0}, block.work.depth_m, block.work) == 0.0);
+    const double slid_N = block.work.drag_N.x();
+    // in one leap the last two contact radii are walked, from a fresh touch
+    Block leap(mu);
+    const auto leap_to = [&](double at_m) {
+        const LinearAnswer answer = press(leap.tissue, {at_m, y_m}, force_N, leap.work);
+        drag(leap.tissue, {at_m, y_m}, answer.depth_m, leap.work);
+    };
+    leap_to(0.001);
+    leap_to(x_m);
+    CHECK(leap.work.drag_N.x() == doctest::Approx(slid_N).epsilon(0.02));
+    // a long way in one call is walked in half spacings
+    LinearWork walked = make_linear_work(block.tissue);
+    for (const double at_m : {0.022, 0.024, 0.026, 0.028}) drag(block.tissue, {at_m, y_m}, 2e-3, walked);
+    LinearWork at_once = make_linear_work(block.tissue);
+    for (const double at_m : {0.022, 0.028}) drag(block.tissue, {at_m, y_m}, 2e-3, at_once);
+    REQUIRE(at_once.friction.touch == walked.friction.touch);
+    for (std::size_t i = 0; i < walked.friction.force_N.size(); ++i) {
+        CHECK(at_once.friction.force_N[i] == doctest::Approx(walked.friction.force_N[i]).epsilon(1e-9));
+    }
+    while (x_m > 0.024) slide_to(x_m -= 2e-4);
+    CHECK(block.work.drag_N.x() == doctest::Approx(-mu * force_N).epsilon(0.05));
+    drag(block.tissue, {x_m, y_m}, 0.0, block.work);
+    CHECK(block.work.drag_N.isZero(0.0));
+    CHECK(block.work.friction.touch.empty());
+    CHECK(std::abs(slide_to(x_m)) < 0.1 * mu * force_N);
+}
+
+TEST_CASE("linear tissue: a compliance with friction beyond 1 GB is refused before it is computed") {
+    Block block;
+    block.options.friction = 0.3;
+    block.options.spacing_m = 0.9e-3;
+    CHECK_THROWS_WITH_AS(make_linear_tissue(block.options, {}, {}), doctest::Contains("GB of compliance with friction"), InputError);
 }
 
 TEST_CASE("linear tissue: palpated live a sample allocates nothing and two runs agree to the last bit") {
-    Block block;
+    std::optional<double> friction;
+    SUBCASE("frictionless") {}
+    SUBCASE("with friction") { friction = 0.3; }
+    Block block(friction);
     Scene scene;
     scene.linear = block.options;
     scene.profile = PALPA_SOURCE_DIR "/assets/profiles/s-pen.json";
@@ -111,10 +180,16 @@ TEST_CASE("linear tissue: palpated live a sample allocates nothing and two runs 
         ::setenv("XDG_CACHE_HOME", block.folder.path().c_str(), 1);
         plan = make_plan(scene);
     }
-    State states[2] = {start(scene, plan, {600, 600}), start(scene, plan, {600, 600})};
+    const bool rubs = std::any_of(plan.sample_stages.begin(), plan.sample_stages.end(),
+                                  [](const Stage& stage) { return stage.id == StageId::friction; });
+    CHECK(rubs == friction.has_value());
+    State states[3] = {start(scene, plan, {600, 600}), start(scene, plan, {600, 600}), {}};
     std::int64_t allocated = 0;
+    constexpr int kStored = 300;  // in the middle of a slide; the third run goes on from the state then
     for (State& state : states) {
-        for (int i = 0; i < 600; ++i) {
+        const bool goes_on = &state == &states[2];
+        for (int i = goes_on ? kStored : 0; i < 600; ++i) {
+            if (&state == &states[1] && i == kStored) states[2] = state;
             Sample sample;
             sample.t_host_s = 2e-3 * i;
             sample.phase = i == 0 ? Phase::down : Phase::move;
@@ -124,7 +199,7 @@ TEST_CASE("linear tissue: palpated live a sample allocates nothing and two runs 
             sample.pressure = 0.45;
             const std::int64_t before = allocations();
             advance(scene, plan, sample, state);
-            if (i > 0) allocated += allocations() - before;
+            if (i > 0 && !goes_on) allocated += allocations() - before;
         }
     }
     CHECK(allocated == 0);
@@ -132,4 +207,16 @@ TEST_CASE("linear tissue: palpated live a sample allocates nothing and two runs 
     CHECK(states[0].extremes.lag_m == states[1].extremes.lag_m);
     CHECK(states[0].avatar.p_m == states[1].avatar.p_m);
     CHECK(states[0].contact.depth_m == states[1].contact.depth_m);
+    for (const State* other : {&states[1], &states[2]}) {
+        CHECK(states[0].contact.tangential_N == other->contact.tangential_N);
+        CHECK(states[0].linear->drag_N == other->linear->drag_N);
+        CHECK(states[0].linear->friction.force_N == other->linear->friction.force_N);
+    }
+    CHECK((states[0].linear->drag_N.x() > 0.1) == friction.has_value());
+    Sample lift;
+    lift.t_host_s = 2.0;
+    lift.phase = Phase::up;
+    lift.x_px = lift.y_px = 300.0;
+    advance(scene, plan, lift, states[0]);
+    CHECK(states[0].linear->drag_N.isZero(0.0));
 }

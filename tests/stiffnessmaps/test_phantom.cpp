@@ -33,4 +33,8 @@ TEST_CASE("phantom: absurd blocks are refused by key") {
     CHECK(contains(said("[2, 3, 4, 5, 6, 7]", "[3, 2]"), "expected ascending depths"));
     CHECK(contains(said("159, 59", "159.5, 59"), "grid.count: found 159.5"));
     CHECK(contains(said("rolling", "jumping"), "indenter.contact: found 'jumping'"));
+    CHECK(contains(said("\"sphere\"", "\"cylinder\""), "length_mm"));
+    CHECK(said("\"sphere\"", "\"cylinder\", \"length_mm\": 20") == "");
+    CHECK(contains(said("\"sphere\"", "\"cylinder\", \"length_mm\": 0"), "indenter.length_mm: found 0"));
+    CHECK(contains(said("\"sphere\"", "\"sphere\", \"length_mm\": 20"), "indenter.length_mm: found 20, expected none: a sphere has no length"));
 }
