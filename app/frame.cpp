@@ -69,6 +69,7 @@ Wishes draw_frame(const Scene& scene, const Plan& plan, const Trial& trial, cons
     const std::int64_t built_ns = steady_ns();
     tissue.draw(shown.view, surface.dent, surface.relief, ball);
     gui.draw();
+    times.built_ns = built_ns;
     times.cpu.add_ns(static_cast<double>(built_ns - began_ns));
     times.gl.add_ns(static_cast<double>(steady_ns() - built_ns));
     return wishes;

@@ -144,6 +144,8 @@ Json result_of(const App& app) {
     const auto ms = [](const Meter& meter, double q) { return 1e-6 * meter.quantile_ns(q); };
     result["frame_cpu_ms"] = {{"p50", ms(app.times.cpu, 0.5)}, {"p99", ms(app.times.cpu, 0.99)}};
     result["frame_gl_ms"] = {{"p50", ms(app.times.gl, 0.5)}, {"p99", ms(app.times.gl, 0.99)}};
+    result["latency_besides_drawing_ms"] = {{"p50", ms(app.times.ready, 0.5)}, {"p99", ms(app.times.ready, 0.99)}};
+    result["problems"] = app.screens.problems;
     result["trials"] = s.finished;
     if (!s.trial.finished) result["trials"].push_back(trial_json(s.plan, s.trial));
     return result;
@@ -361,7 +363,11 @@ void show(Window& window, App& app, TissueDrawer& tissue, Gui& gui, double dt_s)
     window.present();
     ++app.frames;
     const double shown_s = now_of(app, window);
-    for (const double t_s : app.waiting_s) app.times.latency.add_ns(1e9 * (shown_s - t_s));
+    const double ready_s = 1e-9 * static_cast<double>(app.times.built_ns) - app.trace_shift_s;
+    for (const double t_s : app.waiting_s) {
+        app.times.latency.add_ns(1e9 * (shown_s - t_s));
+        app.times.ready.add_ns(1e9 * (ready_s - t_s));
+    }
     app.waiting_s.clear();
     app.times.frames_per_s += 0.05 * (1.0 / std::max(dt_s, 1e-3) - app.times.frames_per_s);
     carry_out(wishes, window, gui, app);

@@ -82,7 +82,8 @@ void stage_rows(const Shown& shown, const std::vector<Stage>& stages) {
 std::string frame_text(const Shown& shown) {
     const FrameTimes& t = shown.times;
     const auto ms = [](const Meter& meter, double q) { return 1e-6 * meter.quantile_ns(q); };
-    return "Sample to frame " + fixed(ms(t.latency, 0.5), 1) + " ms (99 %: " + fixed(ms(t.latency, 0.99), 1) + "). Frame " +
+    return "Sample to frame " + fixed(ms(t.latency, 0.5), 1) + " ms (99 %: " + fixed(ms(t.latency, 0.99), 1) +
+           "), besides drawing " + fixed(ms(t.ready, 0.5), 1) + " ms. Frame " +
            fixed(ms(t.cpu, 0.5), 2) + " ms besides drawing (99 %: " + fixed(ms(t.cpu, 0.99), 2) + "), drawing " +
            fixed(ms(t.gl, 0.5), 1) + " ms. " + fixed(t.frames_per_s, 0) + " frames/s, " +
            std::to_string(shown.state.counters.samples) + " samples, " + std::to_string(shown.state.counters.dropped_steps) +

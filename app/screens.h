@@ -21,6 +21,8 @@ enum class Screen : std::uint8_t { trial, reveal, devices, scale };
 // Times of the frame loop.
 struct FrameTimes {
     Meter latency;  // sample to the end of the frame that shows it
+    Meter ready;    // sample to the moment when that frame is ready to be drawn: without the rasteriser
+    std::int64_t built_ns = 0;  // that moment, steady clock
     Meter cpu;      // a frame up to the calls of GL
     Meter gl;       // the calls of GL; with software rendering that is where the drawing is done
     double frames_per_s = 0.0;
