@@ -6,6 +6,7 @@
 #include <imgui.h>
 
 #include <algorithm>
+#include <stdexcept>
 
 #include "app/font.h"
 
@@ -66,7 +67,7 @@ Gui::Gui(Window& window) : window_(window), font_file_(system_font_file()) {
     ImGuiIO& io = ImGui::GetIO();
     io.IniFilename = nullptr;
     map_keys(io);
-    ImGui_ImplOpenGL3_Init("#version 300 es");
+    if (!ImGui_ImplOpenGL3_Init("#version 300 es")) throw std::runtime_error("the panels cannot be drawn: Dear ImGui found no OpenGL (libGL)");
     set_scale(control_scale(kMissing, static_cast<float>(window.width_px()), static_cast<float>(window.height_px())));
     window.set_event_filter(&Gui::filter, this);
 }

@@ -94,7 +94,8 @@ void note_pressure(Tool tool, App& app) {
     if (held || (kind != PressureKind::constant && kind != PressureKind::missing)) return;
     const std::string found = kind == PressureKind::missing ? "no pressure" : "always the same pressure: it has no sensor";
     app.screens.device_notes.push_back("This " + name + " reports " + found + ".");
-    app.screens.offer_hold = true;
+    // a profile of counts or contact areas reads what holding does not make
+    app.screens.offer_hold = app.session.plan.profile.level == LevelField::pressure;
 }
 
 void note_devices(const Window& window, App& app) {
@@ -424,7 +425,6 @@ void load(const RunOptions& options, App& app) {
     if (options.height_px > 0) app.settings.height_px = options.height_px;
     app.screens.scenes = scene_choices();
     app.screens.profiles = profile_choices();
-    app.screens.screen = options.screen;
     if (!options.trace.empty()) {
         app.trace = read_trace(options.trace);
         app.settings.width_px = static_cast<int>(app.trace->info.screen_width_px);
@@ -468,9 +468,8 @@ std::optional<Json> run_live(const RunOptions& options) {
     gui.set_scale(control_scale(app.screens.px_per_mm, static_cast<float>(window.width_px()), static_cast<float>(window.height_px())));
     if (app.session.scene.linear && !prepare(window, gui, app.session.scene, app.session.plan)) return std::nullopt;
     if (app.trace) app.trace_shift_s = window.now_s() - app.trace->samples.front().t_host_s;
-    const Screen first = app.screens.screen;
     begin(window, gui, app);
-    app.screens.screen = first;
+    if (options.screen != Screen::trial) open_screen(options.screen, now_of(app, window), app);
     TissueDrawer tissue;
     double first_frame_s = 0.0;
     run_loop(window, gui, tissue, asked_s, first_frame_s, app);

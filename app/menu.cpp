@@ -13,7 +13,7 @@ namespace {
 PanelArea menu_area(const Layout& layout, float mm) {
     const PanelArea& t = layout.tissue_px;
     PanelArea area = t;
-    area.x1 = std::min(t.x1, t.x0 + 132.0f * mm);
+    area.x1 = std::min(t.x1, t.x0 + 150.0f * mm);
     return area;
 }
 
@@ -109,7 +109,7 @@ void draw_menu(const Shown& shown, const Layout& layout, Gui& gui, Screens& scre
     begin_panel("menu", area, gui);
     if (ImGui::IsWindowAppearing()) ImGui::SetWindowFocus();
     const bool two_columns = area.width() >= 110.0f * gui.mm();
-    const float half_px = two_columns ? share_of_line_px(2) : 0.0f;
+    const float half_px = two_columns ? 1.15f * share_of_line_px(2) : 0.0f;
     const float height_px = two_columns ? ImGui::GetContentRegionAvail().y : 0.5f * ImGui::GetContentRegionAvail().y;
     ImGui::BeginChild("what", ImVec2(half_px, height_px), false, ImGuiWindowFlags_NavFlattened);
     const float line_px = ImGui::GetFontSize() + 2.0f * ImGui::GetStyle().ItemSpacing.y;

@@ -70,8 +70,11 @@ void draw_nodules(const Shown& shown, const Debrief& debrief, float mm, ImDrawLi
             draw.AddCircle(at, radius_px, kDark, 48, 1.3f * mm);
             dashed_circle(draw, at, radius_px, kInk, 0.8f * mm);
         }
-        const std::string text = nodule.id + ": " + (found ? "found" : std::string("missed, ") + name_of(debrief.findings[i]));
-        rimmed_text(draw, ImVec2(at.x + radius_px + mm, at.y + 0.3f * ImGui::GetFontSize()), kInk, text);
+        const std::string text = nodule.id + (found ? ": found" : ": missed");  // why: in the panel
+        const float width_px = ImGui::CalcTextSize(text.c_str()).x;
+        const bool fits = at.x + radius_px + mm + width_px < ImGui::GetIO().DisplaySize.x;
+        rimmed_text(draw, ImVec2(fits ? at.x + radius_px + mm : at.x - radius_px - mm - width_px, at.y + 0.3f * ImGui::GetFontSize()),
+                    kInk, text);
     }
 }
 
