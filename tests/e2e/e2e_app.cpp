@@ -2,18 +2,14 @@
 // recorded replays without a window to the same log, byte for byte. Run it under tests/platform/xorg/with-xorg.
 
 #include <doctest/doctest.h>
-#include <stdlib.h>
-#include <sys/wait.h>
 
-#include <chrono>
 #include <cmath>
 #include <fstream>
 #include <string>
-#include <thread>
 
 #include "files/json.h"
 #include "files/text.h"
-#include "tests/temporary_folder.h"
+#include "tests/e2e/run_app.h"
 
 using namespace palpa;
 using namespace palpa::test;
@@ -41,29 +37,14 @@ int write_script(const std::filesystem::path& file) {
     return rows;
 }
 
-int status_of(int status) { return WIFEXITED(status) ? WEXITSTATUS(status) : -1; }
-
 }  // namespace
 
 TEST_CASE("app: a pen on a real X server presses the tissue, and the run replays byte for byte") {
     const TemporaryFolder folder;
     const auto path = [&](const char* name) { return (folder / name).string(); };
     const int rows = write_script(folder / "script.tsv");
-    int app_status = -1;
-    std::thread app([&] {
-        const std::string command = "XDG_CONFIG_HOME=" + path("config") + std::string(" timeout 60 " PALPA_PROGRAM " run --json --quit-after-s 8 --record ") +
-                                    path("t.tsv") + " --log " + path("live") + " --screenshot " + path("p.png") + " >" +
-                                    path("out.json");
-        app_status = status_of(std::system(command.c_str()));
-    });
-    // the recording is opened after the window, so the pen may come once it is there
-    for (int i = 0; i < 200 && !std::filesystem::exists(folder / "t.tsv"); ++i) {
-        std::this_thread::sleep_for(std::chrono::milliseconds(50));
-    }
-    std::this_thread::sleep_for(std::chrono::milliseconds(1500));
-    CHECK(status_of(std::system((std::string("timeout 30 " PALPA_XORG_PEN " ") + path("script.tsv")).c_str())) == 0);
-    app.join();
-    REQUIRE(app_status == 0);
+    const std::string arguments = "--quit-after-s 8 --log " + path("live") + " --screenshot " + path("p.png");
+    REQUIRE(run_app(folder, arguments, [&] { CHECK(play_script(folder) == 0); }) == 0);
 
     const Json result = read_json(folder / "out.json");
     MESSAGE("samples ", result["samples"].dump(), ", lag ", result["max_lag_mm"].dump(), " mm, sample to frame ",
@@ -76,13 +57,11 @@ TEST_CASE("app: a pen on a real X server presses the tissue, and the run replays
     CHECK(result["counts"]["without_level"] == 0);
 
     const std::string replay = std::string(PALPA_PROGRAM " run --headless --replay ") + path("t.tsv") + " --log " + path("again") + " >/dev/null";
-    CHECK(status_of(std::system(replay.c_str())) == 0);
+    CHECK(shell(replay) == 0);
     const std::string log = "/sub-01/beh/sub-01_task-palpation_run-01_samples.tsv";
     const std::string live = read_text(path("live") + log);
     CHECK(live == read_text(path("again") + log));
     CHECK(live.find("pen\tmove") != std::string::npos);
 
-    const std::string png = read_text(folder / "p.png");
-    CHECK(png.size() > 20000);
-    if (const char* keep = ::getenv("PALPA_KEEP_PICTURE")) write_text_atomically(keep, png);
+    CHECK(std::filesystem::file_size(folder / "p.png") > 20000);
 }

@@ -2,9 +2,7 @@
 // under tests/platform/xorg/with-xorg.
 
 #include <doctest/doctest.h>
-#include <sys/wait.h>
 
-#include <chrono>
 #include <fstream>
 #include <string>
 #include <thread>
@@ -12,16 +10,14 @@
 #include "files/json.h"
 #include "files/text.h"
 #include "tests/error_message.h"
-#include "tests/temporary_folder.h"
+#include "tests/e2e/run_app.h"
 
 using namespace palpa;
 using namespace palpa::test;
 
 namespace {
 
-int status_of(int status) { return WIFEXITED(status) ? WEXITSTATUS(status) : -1; }
-
-int run(const std::string& command) { return status_of(std::system(("timeout 60 " + command).c_str())); }
+int run(const std::string& command) { return shell("timeout 60 " + command); }
 
 const Json& device(const char* tool, const Json& json) {
     for (const Json& entry : json["devices"]) {
@@ -74,8 +70,8 @@ TEST_CASE("devices: what a pen and two fingers really send") {
     write_script(folder / "script.tsv");
     int status = -1;
     std::thread command([&] { status = run(PALPA_PROGRAM " devices --json --seconds 9 >" + out); });
-    std::this_thread::sleep_for(std::chrono::milliseconds(3000));  // its window is there by then, sanitizers and all
-    CHECK(run(PALPA_XORG_PEN " " + (folder / "script.tsv").string()) == 0);
+    sleep_s(3.0);  // its window is there by then, sanitizers and all
+    CHECK(play_script(folder) == 0);
     command.join();
     REQUIRE(status == 0);
     const Json json = read_json(out);

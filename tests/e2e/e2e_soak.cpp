@@ -3,24 +3,19 @@
 
 #include <doctest/doctest.h>
 #include <stdlib.h>
-#include <sys/wait.h>
 
-#include <chrono>
 #include <cmath>
 #include <fstream>
 #include <string>
-#include <thread>
 
 #include "files/json.h"
 #include "platform/trace.h"
-#include "tests/temporary_folder.h"
+#include "tests/e2e/run_app.h"
 
 using namespace palpa;
 using namespace palpa::test;
 
 namespace {
-
-int status_of(int status) { return WIFEXITED(status) ? WEXITSTATUS(status) : -1; }
 
 // Both fingers move and press at each millisecond. Returns how many moves each makes.
 int write_script(const std::filesystem::path& file, double seconds) {
@@ -48,19 +43,8 @@ TEST_CASE("app: two pointers at 1,000 Hz, and no sample is lost") {
     const char* wanted = ::getenv("PALPA_SOAK_S");
     const double seconds = wanted != nullptr ? std::stod(wanted) : 3.0;
     const int moves = write_script(folder / "script.tsv", seconds);
-    int app_status = -1;
-    std::thread app([&] {
-        const std::string command = "XDG_CONFIG_HOME=" + path("c") + " timeout 900 " PALPA_PROGRAM " run --json --quit-after-s " +
-                                    std::to_string(seconds + 6.0) + " --record " + path("t.tsv") + " --log " + path("log") + " >" + path("out.json");
-        app_status = status_of(std::system(command.c_str()));
-    });
-    for (int i = 0; i < 200 && !std::filesystem::exists(folder / "t.tsv"); ++i) {
-        std::this_thread::sleep_for(std::chrono::milliseconds(50));
-    }
-    std::this_thread::sleep_for(std::chrono::milliseconds(1500));
-    CHECK(status_of(std::system((std::string("timeout 900 " PALPA_XORG_PEN " ") + path("script.tsv")).c_str())) == 0);
-    app.join();
-    REQUIRE(app_status == 0);
+    const std::string arguments = "--quit-after-s " + std::to_string(seconds + 6.0) + " --log " + path("log");
+    REQUIRE(run_app(folder, arguments, [&] { CHECK(play_script(folder) == 0); }) == 0);
     const Trace trace = read_trace(folder / "t.tsv");
     std::int64_t first = 0;
     int counts[2] = {0, 0};

@@ -2,19 +2,15 @@
 // is unplugged and plugged in again. Run it under tests/platform/xorg/with-xorg.
 
 #include <doctest/doctest.h>
-#include <stdlib.h>
-#include <sys/wait.h>
 
-#include <chrono>
 #include <fstream>
 #include <string>
-#include <thread>
 
 #include "app/layout.h"
 #include "files/json.h"
 #include "files/text.h"
 #include "scene/mapping.h"
-#include "tests/temporary_folder.h"
+#include "tests/e2e/run_app.h"
 
 using namespace palpa;
 using namespace palpa::test;
@@ -136,8 +132,6 @@ void by_keyboard(Script& script) {
     script.key(kF);
 }
 
-int status_of(int status) { return WIFEXITED(status) ? WEXITSTATUS(status) : -1; }
-
 }  // namespace
 
 TEST_CASE("app: whole trials by pen, by two fingers and by keyboard alone") {
@@ -149,25 +143,9 @@ TEST_CASE("app: whole trials by pen, by two fingers and by keyboard alone") {
     script.wait(0.3);
     by_keyboard(script);
     script.wait(0.5);
-    int app_status = -1;
-    const double seconds = script.close() + 6.0;
-    std::thread app([&] {
-        const std::string command = "XDG_CONFIG_HOME=" + path("config") + " HOME=" + path("home") + " timeout 90 " PALPA_PROGRAM
-                                    " run --test --json --quit-after-s " + std::to_string(seconds) + " --log " + path("log") +
-                                    " --record " + path("t.tsv") + " --screenshot " + path("p.png") + " >" + path("out.json");
-        app_status = status_of(std::system(command.c_str()));
-    });
-    for (int i = 0; i < 200 && !std::filesystem::exists(folder / "t.tsv"); ++i) {
-        std::this_thread::sleep_for(std::chrono::milliseconds(50));
-    }
-    std::this_thread::sleep_for(std::chrono::milliseconds(1500));
-    CHECK(status_of(std::system((std::string("timeout 60 " PALPA_XORG_PEN " ") + path("script.tsv")).c_str())) == 0);
-    app.join();
-    if (const char* keep = ::getenv("PALPA_KEEP_PICTURE")) {
-        write_text_atomically(keep, read_text(folder / "p.png"));
-        write_text_atomically(std::string(keep) + ".json", read_text(folder / "out.json"));
-    }
-    REQUIRE(app_status == 0);
+    const std::string seconds = std::to_string(script.close() + 6.0);
+    const std::string arguments = "--test --quit-after-s " + seconds + " --log " + path("log") + " --screenshot " + path("p.png");
+    REQUIRE(run_app(folder, arguments, [&] { CHECK(play_script(folder) == 0); }) == 0);
     const Json result = read_json(folder / "out.json");
     CHECK(result["overflow"] == "");
     CHECK(result["dropped_steps"] == 0);

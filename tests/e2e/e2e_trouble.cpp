@@ -3,54 +3,33 @@
 // tests/platform/xorg/with-xorg.
 
 #include <doctest/doctest.h>
-#include <stdlib.h>
-#include <sys/wait.h>
 
 #include <algorithm>
-#include <chrono>
 #include <fstream>
-#include <functional>
 #include <string>
-#include <thread>
 
 #include "files/json.h"
 #include "files/text.h"
 #include "tests/error_message.h"
-#include "tests/temporary_folder.h"
+#include "tests/e2e/run_app.h"
 
 using namespace palpa;
 using namespace palpa::test;
 
 namespace {
 
-int status_of(int status) { return WIFEXITED(status) ? WEXITSTATUS(status) : -1; }
-
-int shell(const std::string& command) { return status_of(std::system(command.c_str())); }
-
-void sleep_s(double seconds) { std::this_thread::sleep_for(std::chrono::duration<double>(seconds)); }
-
-// Runs the app with `arguments` and does `meanwhile` once its window is there. Returns its exit status.
-int run_app(const TemporaryFolder& folder, const std::string& arguments, const std::function<void()>& meanwhile) {
-    const std::string home = folder.path().string();
-    int status = -1;
-    std::thread app([&] {
-        status = shell("XDG_CONFIG_HOME=" + home + " HOME=" + home + " PALPA_ASSETS=" + home + "/assets timeout 60 " PALPA_PROGRAM
-                       " run --json --record " + home + "/t.tsv " + arguments + " >" + home + "/out.json 2>" + home + "/err.txt");
-    });
-    for (int i = 0; i < 200 && !std::filesystem::exists(folder / "t.tsv"); ++i) sleep_s(0.05);
-    sleep_s(1.5);
-    meanwhile();
-    app.join();
-    return status;
-}
-
 void copy_assets(const TemporaryFolder& folder) {
     std::filesystem::copy(PALPA_SOURCE_DIR "/assets", folder / "assets", std::filesystem::copy_options::recursive);
 }
 
+int run_with_copy(const TemporaryFolder& folder, const std::string& arguments, const std::function<void()>& meanwhile) {
+    ::setenv("PALPA_ASSETS", (folder / "assets").c_str(), 1);
+    return run_app(folder, arguments, meanwhile);
+}
+
 void play(const TemporaryFolder& folder, const std::string& rows) {
     std::ofstream(folder / "script.tsv") << "t_s\tkind\tid\tphase\tx_px\ty_px\tpressure\n" << rows;
-    CHECK(shell("timeout 30 " PALPA_XORG_PEN " " + (folder / "script.tsv").string()) == 0);
+    CHECK(play_script(folder) == 0);
 }
 
 std::string tap(double t_s, const char* x_px, const char* y_px) {
@@ -65,7 +44,7 @@ std::string tap(double t_s, const char* x_px, const char* y_px) {
 TEST_CASE("scene broken: choosing it says what is wrong, and the present scene goes on") {
     const TemporaryFolder folder;
     copy_assets(folder);
-    const int status = run_app(folder, "--quit-after-s 6", [&] {
+    const int status = run_with_copy(folder, "--quit-after-s 6", [&] {
         std::ofstream(folder / "assets/scenes/delay.json") << "{\"name\": \"broken\", \"tissue\": 3}";
         play(folder, tap(0.0, "58", "27") + tap(0.6, "360", "91"));  // the menu, its second scene
     });
@@ -90,20 +69,19 @@ TEST_CASE("disk full: the trial stops in words, what was logged before is there,
         rows += std::to_string(0.02 + 0.001 * i) + "\tpen\t0\tmove\t" + std::to_string(760 + 0.05 * i) + "\t400\t" +
                 std::to_string(0.5 + 0.1 * ((i / 50) % 2)) + "\n";
     }
-    const int status = run_app(folder, "--quit-after-s 7 --screenshot " + (folder / "p.png").string() + " --log " + small,
+    const int status = run_with_copy(folder, "--quit-after-s 7 --screenshot " + (folder / "p.png").string() + " --log " + small,
                                [&] { play(folder, rows); });
     const std::string samples = read_text(folder / "small/sub-01/beh/sub-01_task-palpation_run-01_samples.tsv");
     CHECK(shell("umount " + small) == 0);
     CHECK(status == 1);
     CHECK(contains(read_text(folder / "err.txt"), "can no longer be written; stopped (is the disk full?)"));
     CHECK(std::count(samples.begin(), samples.end(), '\n') > 100);
-    if (const char* keep = ::getenv("PALPA_KEEP_PICTURE")) write_text_atomically(keep, read_text(folder / "p.png"));
 }
 
 TEST_CASE("unplugged: a pen that goes in the middle of a press ends it, and another one is taken") {
     const TemporaryFolder folder;
     copy_assets(folder);
-    const int status = run_app(folder, "--quit-after-s 7", [&] {
+    const int status = run_with_copy(folder, "--quit-after-s 7", [&] {
         play(folder, "0\tpen\t0\thover\t760\t400\t0\n0.05\tpen\t0\tdown\t760\t400\t0.2\n0.1\tpen\t0\tmove\t770\t400\t0.6\n");
         CHECK(shell("timeout 10 " PALPA_XORG_PEN " --disable pen") == 0);
         sleep_s(1.5);
@@ -125,7 +103,7 @@ TEST_CASE("unplugged: a pen that goes in the middle of a press ends it, and anot
 TEST_CASE("tiny: a window of 200 x 100 px has no room for controls, and the keys still mark and finish") {
     const TemporaryFolder folder;
     copy_assets(folder);
-    const int status = run_app(folder, "--quit-after-s 7 --width-px 200 --height-px 100 --test", [&] {
+    const int status = run_with_copy(folder, "--quit-after-s 7 --width-px 200 --height-px 100 --test", [&] {
         play(folder, "0\tkey\t65\tdown\t0\t0\t0\n1.2\tkey\t65\tup\t0\t0\t0\n1.5\tkey\t58\tdown\t0\t0\t0\n1.6\tkey\t58\tup\t0\t0\t0\n"
                      "2.0\tkey\t41\tdown\t0\t0\t0\n2.1\tkey\t41\tup\t0\t0\t0\n");
     });

@@ -1,0 +1,50 @@
+#pragma once
+// The app, run as a person runs it, in a folder of the test's own (settings, home) under tests/platform/xorg/with-xorg.
+
+#include <stdlib.h>
+#include <sys/wait.h>
+
+#include <chrono>
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <thread>
+
+#include "files/text.h"
+#include "tests/temporary_folder.h"
+
+namespace palpa::test {
+
+// The command's exit status, -1 if it did not end by itself.
+inline int shell(const std::string& command) {
+    const int status = std::system(command.c_str());
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+}
+
+inline void sleep_s(double seconds) { std::this_thread::sleep_for(std::chrono::duration<double>(seconds)); }
+
+// Plays FOLDER/script.tsv on the X server.
+inline int play_script(const TemporaryFolder& folder) {
+    return shell("timeout 900 " PALPA_XORG_PEN " " + (folder / "script.tsv").string());
+}
+
+// Runs `palpa run --json --record FOLDER/t.tsv ARGUMENTS >FOLDER/out.json` and does `meanwhile` once the window is there.
+// Returns its exit status. PALPA_KEEP_PICTURE names a copy of FOLDER/p.png.
+inline int run_app(const TemporaryFolder& folder, const std::string& arguments, const std::function<void()>& meanwhile) {
+    const std::string home = folder.path().string();
+    int status = -1;
+    std::thread app([&] {
+        status = shell("XDG_CONFIG_HOME=" + home + "/config HOME=" + home + " timeout 900 " PALPA_PROGRAM " run --json --record " + home +
+                       "/t.tsv " + arguments + " >" + home + "/out.json 2>" + home + "/err.txt");
+    });
+    // the recording is opened after the window, so input may come once it is there
+    for (int i = 0; i < 200 && !std::filesystem::exists(folder / "t.tsv"); ++i) sleep_s(0.05);
+    sleep_s(1.5);
+    meanwhile();
+    app.join();
+    const char* keep = ::getenv("PALPA_KEEP_PICTURE");
+    if (keep != nullptr && std::filesystem::exists(folder / "p.png")) write_text_atomically(keep, read_text(folder / "p.png"));
+    return status;
+}
+
+}  // namespace palpa::test
