@@ -235,17 +235,6 @@ void read_loads(JsonReader& json, const CaseMesh& mesh, FemCase& out) {
         if (out.indenter) entry.fail("indenter", "a second indenter", "one");
         out.indenter = read_indenter(entry.object("indenter"), mesh);
     }
-    if (!out.indenter) return;
-    // its contact is found from the tissue at rest
-    if (!out.pressures.empty() || !out.tractions.empty())
-        json.fail("loads", "an indenter beside other loads", "an indenter alone");
-    for (const CaseSupport& support : out.supports) {
-        if (support.value_m != 0.0) {
-            json.fail("supports",
-                      short_number(1e3 * support.value_m) + " mm at " + support.name + " beside an indenter",
-                      "supports at 0 mm with an indenter");
-        }
-    }
 }
 
 }  // namespace

@@ -218,7 +218,8 @@ IndenterContact result_of(const Compliance& c, const Pressed& pressed, const Fem
 
 }  // namespace
 
-IndenterContact press_indenter(const FemCase& model, const Factored& factored, const FemProgress& progress) {
+IndenterContact press_indenter(const FemCase& model, const Factored& factored, const Eigen::Matrix3Xd& before_m,
+                               const FemProgress& progress) {
     const auto start = std::chrono::steady_clock::now();
     const CaseIndenter& indenter = *model.indenter;
     const double R = indenter.indenter.radius_m;
@@ -233,7 +234,10 @@ IndenterContact press_indenter(const FemCase& model, const Factored& factored, c
         if (rectangle.request.touch_nodes.size() < 16 && !rectangle.whole) continue;
         check_size(rectangle, model);
         set_held_aside(model, factored, rectangle);
-        const Compliance c = surface_compliance(model.problem.mesh, factored, rectangle.request, columns);
+        Compliance c = surface_compliance(model.problem.mesh, factored, rectangle.request, columns);
+        for (int touch = 0; touch < c.n_touch; ++touch) {  // the surface that the tool meets
+            c.position_m(2, touch) += before_m(2, c.node[static_cast<std::size_t>(touch)]);
+        }
         const Pressed pressed =
             indenter.friction > 0.0 ? press_rough(c, indenter, model) : press_smooth(c, indenter, model);
         const bool inside = !at_rim(c, pressed, rectangle) && !pressed.contact.flags.over_edge;

@@ -24,10 +24,11 @@ struct IndenterContact {
     bool over_edge = false;  // part of the tool is beside the tissue
 };
 
-// Compliance of a rectangle around the tool, enlarged until the contact lies inside; then the contact.
+// `before_m`: how the other loads and supports move every node, 3 x nodes; the tool then comes down to its depth below
+// the surface as it was at rest. Compliance of a rectangle around the tool, enlarged until the contact lies inside; then the contact.
 // Friction: the tool goes straight down in equal steps, so that what sticks first stays. Throws InputError
 // for a force that the tissue cannot take and for a tool on supported nodes.
 IndenterContact press_indenter(const FemCase& model, const mechanics::Factored& factored,
-                               const FemProgress& progress);
+                               const Eigen::Matrix3Xd& before_m, const FemProgress& progress);
 
 }  // namespace palpa

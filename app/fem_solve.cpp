@@ -203,9 +203,11 @@ FemResult solve_case(const FemCase& model, const FemProgress& progress) {
     add_pressures(model, loads);
     add_tractions(model, loads);
     if (model.indenter) {
-        result.contact = press_indenter(model, *factored, progress);
-        loads.force_N = result.contact->force_N;
-        loads.applied_N = result.contact->normal_N;
+        // everything is linear, so the tool finds the tissue as the other loads and supports leave it
+        const Matrix3Xd before_m = solve(*factored, loads.force_N).u_m;
+        result.contact = press_indenter(model, *factored, before_m, progress);
+        loads.force_N += result.contact->force_N;
+        loads.applied_N += result.contact->normal_N;
         loads.centre = LoadCentre{centre_on_side(mesh, Side::zmax, model.indenter->centre_m),
                                   faces_on(mesh, model.outer, Side::zmax), 0.0};
     }

@@ -233,6 +233,55 @@ TEST_CASE("indenter: supports beside it do not matter, supports under it are ref
     CHECK(solved(corner("0")).contact->normal_N > 0.0);
 }
 
+TEST_CASE("indenter beside other loads: a block that rises by its support meets the tool as one that it sinks into deeper") {
+    const std::string mesh = R"({"box": {"size_mm": [60, 60, 20], "elements": [12, 12, 5], "grading": {"centre_mm": [30, 30], "finest_mm": 1.5}}})";
+    const auto pressed = [&](double raised_mm, double depth_mm, const std::string& friction) {
+        const std::string support = "[{\"face\": \"zmin\", \"fix\": \"xy\"}, {\"face\": \"zmin\", \"fix\": \"z\", \"value_mm\": " +
+                                    number_text(raised_mm) + "}]";
+        const std::string tool = R"([{"indenter": {"shape": "sphere", "radius_mm": 8, "centre_mm": [30, 30], "depth_mm": )" +
+                                 number_text(depth_mm) + friction + "}}]";
+        return solved(case_text(mesh, "hex8-bbar", support, tool));
+    };
+    for (const char* friction : {"", ", \"friction\": 0.3"}) {
+        CAPTURE(friction);
+        const FemResult deeper = pressed(0.0, 1.5, friction);
+        const FemResult risen = pressed(0.5, 1.0, friction);
+        REQUIRE(deeper.contact);
+        REQUIRE(risen.contact);
+        CHECK(risen.contact->nodes == deeper.contact->nodes);
+        // with friction the last halves of the way differ: sticking begins elsewhere
+        CHECK(risen.contact->normal_N == doctest::Approx(deeper.contact->normal_N).epsilon(*friction == '\0' ? 1e-9 : 0.01));
+    }
+}
+
+TEST_CASE("indenter beside other loads: where it touches, the surface has the tool's shape; nowhere it pulls") {
+    const std::string mesh = R"({"box": {"size_mm": [60, 60, 20], "elements": [12, 12, 5], "grading": {"centre_mm": [30, 30], "finest_mm": 1.5}}})";
+    const std::string tool = R"({"indenter": {"shape": "sphere", "radius_mm": 8, "centre_mm": [30, 30], "depth_mm": 1}})";
+    const std::string pulled = "[{\"traction_Pa\": [0, 0, 60], \"face\": \"zmax\"}, " + tool + "]";
+    const FemResult alone = solved(case_text(mesh, "hex8-bbar", kClamped, "[" + tool + "]"));
+    const FemCase model = case_of(case_text(mesh, "hex8-bbar", kClamped, pulled));
+    const FemResult r = solved(model);
+    REQUIRE(r.contact);
+    CHECK(r.contact->normal_N > 1.05 * alone.contact->normal_N);  // the pulled surface is higher
+    CHECK(r.residual < 1e-9);
+    int touching = 0;
+    for (Eigen::Index node = 0; node < r.solution.u_m.cols(); ++node) {
+        const Eigen::Vector3d x_m = model.problem.mesh.nodes_m.col(node);
+        if (x_m.z() < 0.02 - 1e-12) continue;
+        const double away_m = std::hypot(x_m.x() - 0.03, x_m.y() - 0.03);
+        if (away_m >= 0.008) continue;
+        const double tool_m = 0.02 - 0.001 + 0.008 - std::sqrt(0.008 * 0.008 - away_m * away_m);
+        const double above_m = x_m.z() + r.solution.u_m(2, node) - tool_m;
+        CHECK(above_m < 1e-10);
+        const double pressing_N = -r.contact->force_N(2, node);
+        CHECK(pressing_N >= 0.0);
+        if (pressing_N <= 0.0) continue;
+        ++touching;
+        CHECK(std::abs(above_m) < 1e-10);
+    }
+    CHECK(touching == r.contact->nodes);
+}
+
 TEST_CASE("hard case 12: stiffness contrast 1e6, 1e8, and rigid beyond") {
     const auto with = [](double contrast) {
         return solved(case_text(
