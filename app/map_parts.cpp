@@ -13,7 +13,7 @@
 namespace palpa {
 namespace {
 
-constexpr std::uint64_t kVersion = 2;  // of the files and of the numbers in them
+constexpr std::uint64_t kVersion = 3;  // of the files and of the numbers in them
 constexpr char kMagic[8] = {'p', 'a', 'l', 'p', 'a', 'n', 'u', 'm'};
 
 struct Fnv {

@@ -20,6 +20,13 @@ constexpr int kFactor = 2;
 constexpr int kSolve = 3;
 constexpr int kErrorNoMemory = -9;
 
+// Orderings that give the same factor, to the last bit, at every call. Scotch, which MUMPS would choose for the larger
+// systems, depends on the race of its threads and on the calls before. PORD is as fast there; it ends the process
+// where all equations touch each other, so the small ones, where that can be, are left to minimum fill.
+constexpr int kMinimumFill = 2;
+constexpr int kPord = 4;
+constexpr int kSmall = 10000;  // equations
+
 // icntl as the users' guide numbers it, from 1
 MUMPS_INT& icntl(DMUMPS_STRUC_C& id, int i) {
     return id.icntl[i - 1];
@@ -56,7 +63,6 @@ MumpsFactor::MumpsFactor() {
     id.comm_fortran = -987654;  // MPI_COMM_WORLD of the sequential stub
     call(id, kInit);
     for (int i = 1; i <= 4; ++i) icntl(id, i) = i == 4 ? 0 : -1;  // silent
-    icntl(id, 7) = 5;    // METIS; MUMPS falls back by itself where it is missing
     icntl(id, 14) = 30;  // per cent of memory beyond the estimate
     icntl(id, 16) = 1;   // threads
 }
@@ -81,6 +87,7 @@ void analyse(const LowerMatrix& A, MumpsFactor& factor) {
     id.nnz = static_cast<MUMPS_INT8>(factor.row.size());
     id.irn = factor.row.data();
     id.jcn = factor.column.data();
+    icntl(id, 7) = id.n < kSmall ? kMinimumFill : kPord;
     call(id, kAnalyse);
     check(id, "analysis");
 }

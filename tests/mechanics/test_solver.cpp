@@ -1,5 +1,6 @@
 #include <doctest/doctest.h>
 #include <thread>
+#include <vector>
 
 #include "mechanics/error.h"
 #include "mechanics/solver.h"
@@ -64,6 +65,28 @@ TEST_CASE("solver: new values on the same pattern, and two solvers in two thread
     two = solve_with(best_solver(), A, b);
     other.join();
     CHECK((one.array() == two.array()).all());
+}
+
+// Maps promise equal bytes between runs. The ordering is what broke it, from 10 000 equations on; this system has more.
+TEST_CASE("solver: the same system has the same solution to the last bit, wherever it lies in memory") {
+    const int n = 20;
+    const Problem problem =
+        slab_problem(hex_box(graded_box(0.1, 0.05, n, n / 2, 0.005)), Element::hex8_bbar, {2500.0, 0.45});
+    const LowerMatrix K = stiffness_N_per_m(problem.mesh, problem.element, problem.materials);
+    const LowerMatrix A = reduce(K, make_reduction(problem.mesh, problem.supports, {}));
+    constexpr int kColumns = 3;
+    Eigen::MatrixXd first;
+    for (int repeat = 0; repeat < 3; ++repeat) {
+        SparseCholesky solver(best_solver());
+        solver.analyse(A);
+        solver.factor(A);
+        std::vector<double> memory(static_cast<std::size_t>(kColumns * A.rows() + repeat));
+        Eigen::Map<Eigen::MatrixXd> block(memory.data() + repeat, A.rows(), kColumns);
+        for (int k = 0; k < kColumns; ++k) block.col(k).setLinSpaced(-1.0, 1.0 + k);
+        solver.solve(block);
+        if (repeat == 0) first = block;
+        CHECK((block.array() == first.array()).all());
+    }
 }
 
 TEST_CASE("solver: a matrix that is not positive definite is refused") {
