@@ -1,5 +1,6 @@
 #include "app/log.h"
 
+#include "calibration/profile_file.h"
 #include "files/text.h"
 
 namespace palpa {
@@ -45,7 +46,8 @@ Json settings_json(const Scene& scene, const Plan& plan, const State& state) {
         json["tissue"]["count"] = {tissue->map.n_x, tissue->map.n_y};
         json["tissue"]["smoothing_mm"] = 1e3 * tissue->smoothing_m;
     }
-    json["profile"] = {{"id", plan.profile.id}, {"a_N", plan.profile.curve.a_N}, {"b", plan.profile.curve.b}};
+    json["profile"] = {{"id", plan.profile.id}, {"model", name_of(plan.profile.curve.model)}};
+    json["profile"].update(parameters_json(plan.profile.curve));
     json["screen_px"] = {state.screen_width_px, state.screen_height_px};
     json["stages"] = Json::array();
     for (const auto* stages : {&plan.sample_stages, &plan.frame_stages}) {
