@@ -35,6 +35,7 @@ int run_command_line(int argc, char** argv) {
     add_run(app);
     add_explain(app);
     add_maps(app);
+    add_calibrate(app);
     add_fem(app);
     add_bench(app);
     try {

@@ -13,6 +13,7 @@ int run_command_line(int argc, char** argv);
 void add_run(CLI::App& app);
 void add_explain(CLI::App& app);
 void add_maps(CLI::App& app);
+void add_calibrate(CLI::App& app);
 void add_fem(CLI::App& app);
 void add_bench(CLI::App& app);
 void add_bench_accuracy(CLI::App& bench);
