@@ -17,5 +17,6 @@ void add_calibrate(CLI::App& app);
 void add_fem(CLI::App& app);
 void add_bench(CLI::App& app);
 void add_bench_accuracy(CLI::App& bench);
+void add_bench_pens(CLI::App& bench);
 
 }  // namespace palpa
