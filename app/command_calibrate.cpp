@@ -241,8 +241,9 @@ void add_compare(CLI::App& calibrate) {
 }  // namespace
 
 void add_calibrate(CLI::App& app) {
-    CLI::App* calibrate = app.add_subcommand("calibrate", "Pressure level to newtons: fit, check, compare");
+    CLI::App* calibrate = app.add_subcommand("calibrate", "Pressure level to newtons: record, fit, check, compare");
     calibrate->require_subcommand(1);
+    add_calibrate_record(*calibrate);
     add_fit(*calibrate);
     add_check(*calibrate);
     add_compare(*calibrate);

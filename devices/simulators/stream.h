@@ -20,6 +20,7 @@ struct StreamOptions {
     double seconds = 0.0;        // 0: until it is ended
     double greatest_N = 3.0;     // of each press
     double period_s = 4.0;       // from one press to the next
+    int steps = 0;               // a staircase of so many still moments; 0: one wave
     double noise_N = 0.0;
     double lag_s = 0.0;          // of the sensor behind the hand
     double lose = 0.0;           // share of the records
@@ -35,6 +36,7 @@ inline void add_stream_options(CLI::App& app, StreamOptions& options) {
     app.add_option("--seconds", options.seconds, "0: until it is ended")->capture_default_str();
     app.add_option("--greatest-N", options.greatest_N, "of each press")->capture_default_str();
     app.add_option("--period-s", options.period_s, "from one press to the next")->check(CLI::Range(1e-3, 1e6))->capture_default_str();
+    app.add_option("--steps", options.steps, "a staircase of so many still moments up; 0: one wave")->check(CLI::Range(0, 1000))->capture_default_str();
     app.add_option("--noise-N", options.noise_N)->capture_default_str();
     app.add_option("--lag-s", options.lag_s, "of the sensor behind the hand")->capture_default_str();
     app.add_option("--lose", options.lose, "share of the records")->check(CLI::Range(0.0, 1.0))->capture_default_str();
@@ -45,10 +47,16 @@ inline void add_stream_options(CLI::App& app, StreamOptions& options) {
     app.add_option("--seed", options.seed)->capture_default_str();
 }
 
-// The hand: presses of a raised cosine, beginning without load at time 0 of the steady clock's multiples of the period,
-// so that another program can follow it.
+// The hand. It presses in step with the steady clock's multiples of the period, so that programs that know nothing of
+// each other follow the same hand: a raised cosine, or a staircase from 0.055 N up by equal factors and a lift at the end.
 inline double hand_N(const StreamOptions& options, double steady_now_s) {
-    return options.greatest_N * (0.5 - 0.5 * std::cos(2.0 * std::numbers::pi * steady_now_s / options.period_s));
+    const double share = steady_now_s / options.period_s - std::floor(steady_now_s / options.period_s);
+    if (options.steps == 0) return options.greatest_N * (0.5 - 0.5 * std::cos(2.0 * std::numbers::pi * share));
+    constexpr double kPressed = 0.85;
+    if (share >= kPressed) return 0.0;
+    const double step = std::floor(share / kPressed * options.steps);
+    constexpr double kFirst_N = 0.055;
+    return kFirst_N * std::pow(options.greatest_N / kFirst_N, step / std::max(options.steps - 1, 1));
 }
 
 struct Sent {

@@ -38,7 +38,7 @@ Called palpa_with(const std::string& arguments, const std::string& before = "") 
 
 TEST_CASE("command line: help and version exist for every command") {
     for (const char* command : {"", "run", "explain", "maps", "maps info", "maps sample", "maps import", "maps generate", "bench trace", "bench pens", "bench accuracy",
-                                "calibrate", "calibrate fit", "calibrate check", "calibrate compare",
+                                "calibrate", "calibrate record", "calibrate fit", "calibrate check", "calibrate compare",
                                 "bench accuracy mechanics"}) {
         CAPTURE(command);
         const Called help = palpa_with(std::string(command) + " --help");
