@@ -98,10 +98,6 @@ struct Recording {
     std::optional<RawFiles> raw;
     RecordSession session;
     Knowledge knowledge;
-    // zero: the mean without touch before the first press
-    double zero_sum_N = 0.0;
-    std::int64_t zero_n = 0;
-    std::optional<double> zero_N;
     double touched_s = -1.0;    // ended last
     std::string typed;          // the line that is being typed
     std::int64_t samples = 0;
@@ -133,22 +129,21 @@ void take_levels(Recording& recording, const std::vector<Sample>& samples) {
     }
 }
 
-// The zero is taken while nothing touches, for half a second at least, and fixed by the first press.
+// The zero is taken while nothing touches, and fixed by the first point of the run.
 void take_forces(Recording& recording) {
     std::vector<ForceReading> readings;
     recording.sensor->poll(readings);
+    RecordSession& session = recording.session;
+    const RecordOptions& options = recording.arguments.options;
+    const bool knows_touch = recording.samples > 0 || recording.arguments.levels.empty();  // a stream may begin amid a press
     for (const ForceReading& reading : readings) {
         ++recording.readings;
         recording.raw->write(reading);
-        constexpr double kRest_s = 0.2;
-        const bool resting = !recording.session.touching && reading.t_host_s - recording.touched_s > kRest_s;
-        const bool knows_touch = recording.samples > 0 || recording.arguments.levels.empty();  // a stream may begin amid a press
-        if (resting && knows_touch && recording.session.points.size() == recording.resumed) {
-            recording.zero_sum_N += reading.force_N;
-            ++recording.zero_n;
-        }
-        if (recording.zero_n >= 5) recording.zero_N = recording.zero_sum_N / static_cast<double>(recording.zero_n);
-        if (recording.zero_N) take_force(recording.arguments.options, reading.t_host_s, reading.force_N - *recording.zero_N, recording.session);
+        constexpr double kLift_s = 0.1;
+        const bool resting = knows_touch && !session.touching && reading.t_host_s - recording.touched_s > kLift_s;
+        if (!resting) session.rest.clear();
+        if (resting && session.points.size() == recording.resumed) take_rest(options, reading.t_host_s, reading.force_N, session);
+        if (!std::isnan(session.zero_N)) take_force(options, reading.t_host_s, reading.force_N - session.zero_N, session);
     }
 }
 
@@ -183,7 +178,8 @@ void tell(const Recording& recording, double level) {
     const RecordOptions& options = recording.arguments.options;
     const int band = target_band(options, recording.session, recording.knowledge.band_error);
     const double force_N = recording.session.forces.empty() ? kMissing : recording.session.forces.back().value;
-    const std::string target = band < 0 ? "lift the pen" : "press to " + short_number(100.0 * band / options.bands) + " - " + short_number(100.0 * (band + 1) / options.bands) + " %";
+    const bool zero_missing = recording.sensor && std::isnan(recording.session.zero_N);
+    const std::string target = zero_missing ? "do not touch (zero)" : band < 0 ? "lift the pen" : "press to " + short_number(100.0 * band / options.bands) + " - " + short_number(100.0 * (band + 1) / options.bands) + " %";
     std::string health;
     if (recording.sensor) {
         const SensorHealth now = recording.sensor->health();
@@ -231,8 +227,7 @@ Json result_of(const Recording& recording) {
               {"relative_half_interval", knowledge.band_error}, {"samples", recording.samples}, {"file", points_file(recording.arguments).string()}};
     if (recording.sensor) {
         json["sensor"] = {{"name", recording.sensor->name()}, {"readings", recording.readings}, {"health", health_json(recording.sensor->health())}};
-        json["sensor"]["zero_N"] = nullptr;
-        if (recording.zero_N) json["sensor"]["zero_N"] = *recording.zero_N;
+        json["sensor"]["zero_N"] = recording.session.zero_N;
     }
     return json;
 }
@@ -254,7 +249,7 @@ void open_session(const RecordArguments& arguments, RecordSession& session) {
 Json record_calibration(const RecordArguments& arguments) {
     std::unique_ptr<ForceSensor> device = open_sensor(arguments);
     if (!device && arguments.levels == "-") throw bad_input("--levels", "", "-", "a file or pipe: standard input is for the typed numbers");
-    Recording recording{arguments, nullptr, nullptr, std::nullopt, {}, {}, 0.0, 0, std::nullopt, -1.0, "", 0, 0, 0, -1, false};
+    Recording recording{arguments, nullptr, nullptr, std::nullopt, {}, {}, -1.0, "", 0, 0, 0, -1, false};
     open_session(arguments, recording.session);
     recording.resumed = recording.session.points.size();
     recording.source = arguments.levels.empty() ? open_level_window() : open_level_stream(arguments.levels);

@@ -43,13 +43,16 @@ bool force_in(const std::deque<RecordSession::Timed>& forces, double from_s, dou
         sum[half] += force.value;
         ++n[half];
     }
-    if (n[0] < 2 || n[1] < 2) return false;  // the sensor is slow, or has stopped
+    if (n[0] == 0 || n[1] == 0) return false;  // the sensor has stopped
     mean_N = (sum[0] + sum[1]) / (n[0] + n[1]);
     moved_N = std::abs(sum[1] / n[1] - sum[0] / n[0]);
     return true;
 }
 
-std::string percent(double share) { return short_number(std::round(100.0 * share)) + " %"; }
+std::string percent(double share) {
+    if (share > 1.0) return "over 100 %";
+    return short_number(std::round(100.0 * share)) + " %";
+}
 
 CalibrationRows rows_of(const std::vector<CapturedPoint>& points) {
     CalibrationRows rows;
@@ -90,6 +93,17 @@ void take_level(const RecordOptions& options, double t_s, double level, bool tou
 void take_force(const RecordOptions& options, double t_s, double force_N, RecordSession& session) {
     session.forces.push_back({t_s, force_N});
     drop_before(t_s - 2.0 * options.steady_s, session.forces);
+}
+
+void take_rest(const RecordOptions& options, double t_s, double shown_N, RecordSession& session) {
+    constexpr double kRest_s = 0.4;
+    session.rest.push_back({t_s, shown_N});
+    drop_before(t_s - kRest_s, session.rest);
+    if (t_s - session.rest.front().t_s < 0.9 * kRest_s) return;
+    double mean_N = 0.0;
+    double moved_N = 0.0;
+    if (!force_in(session.rest, session.rest.front().t_s, t_s, mean_N, moved_N)) return;
+    if (moved_N <= 0.25 * options.least_tolerance_N) session.zero_N = mean_N;
 }
 
 bool capture(const RecordOptions& options, double now_s, RecordSession& session) {

@@ -36,6 +36,8 @@ struct RecordSession {
     };
     std::deque<Timed> levels;   // the last second or so, and one before the still moment
     std::deque<Timed> forces;
+    std::deque<Timed> rest;     // what the sensor shows while nothing touches
+    double zero_N = kMissing;   // to be subtracted from what it shows
     bool touching = false;
     double lifted_s = 0.0;      // since when not
     int repeat = 0;             // 0, 1, ...; one press and release is one
@@ -48,6 +50,10 @@ struct RecordSession {
 // Every sample as it arrives, each stream in order of time. A pen that does not touch has level 0.
 void take_level(const RecordOptions& options, double t_s, double level, bool touching, RecordSession& session);
 void take_force(const RecordOptions& options, double t_s, double force_N, RecordSession& session);
+
+// What the sensor shows while the pen does not touch. 0.4 s without movement are the zero, the latest count:
+// a hand that already leans on the sensor does not hold so still.
+void take_rest(const RecordOptions& options, double t_s, double shown_N, RecordSession& session);
 
 // Captures a point if both signals have held still up to `now_s`: the mean force and the median level of that time.
 // One place is captured once in a press: the next must be half a band away.

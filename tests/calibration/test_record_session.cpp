@@ -71,6 +71,21 @@ TEST_CASE("record: nothing is captured without a sensor, without touch, or on th
     CHECK_FALSE(capture(options, 3.4, session));
 }
 
+TEST_CASE("record: the zero is 0.4 s of rest, not a hand that already leans on the sensor") {
+    RecordOptions options;
+    RecordSession session;
+    std::mt19937_64 random(2);
+    std::normal_distribution<double> normal;
+    double t_s = 0.0;
+    for (int i = 0; i < 30; ++i, t_s += 0.01) take_rest(options, t_s, 2.1, session);
+    CHECK(std::isnan(session.zero_N));  // 0.3 s only
+    for (int i = 0; i < 40; ++i, t_s += 0.01) take_rest(options, t_s, 2.1 + 0.01 * normal(random), session);
+    CHECK(session.zero_N == doctest::Approx(2.1).epsilon(0.003));
+    const double before_N = session.zero_N;
+    for (int i = 0; i < 300; ++i, t_s += 0.01) take_rest(options, t_s, 2.4 + 0.002 * i, session);  // 0.2 N/s
+    CHECK(session.zero_N == doctest::Approx(before_N).epsilon(0.003));
+}
+
 TEST_CASE("record: it is enough when every band is known to 5 %, and until then it says what is missing") {
     RecordOptions options;
     options.steady_s = 0.2;
