@@ -62,8 +62,8 @@ double force_of(const Table& table, const Columns& columns) {
 
 PressPhase phase_of(const Table& table, std::size_t column) {
     const auto text = table.field(column);
-    if (text == "press") return PressPhase::press;
-    if (text != "release") table.fail(column, "press or release");
+    if (text == "press" || text == "loading") return PressPhase::press;
+    if (text != "release" && text != "unloading") table.fail(column, "press or release");
     return PressPhase::release;
 }
 

@@ -76,15 +76,15 @@ TEST_CASE("record: killed in the middle, all that was captured is there, and it 
     SimulatorProcess sensor(PALPA_LOAD_CELL_SIMULATOR, {"--rate-Hz", "200", "--steps", "20", "--greatest-N", "2.6", "--period-s", "4", "--silent-from-s", "8",
                                                         "--silent-s", "1.5", "--link", (folder / "cell").string()});
     const std::string serial = " --sensor serial:" + sensor.port() + " --N-per-count 2.5e-5 --levels - --steady-s 0.1 ";
-    shell(kPen + "--seconds 5.5 | timeout -s KILL 5 " PALPA_PROGRAM " calibrate record -o " + session + serial);
+    shell(kPen + "--seconds 8 | timeout -s KILL 7 " PALPA_PROGRAM " calibrate record -o " + session + serial);
     const std::string before = read_text(session + "/points.csv");
     const auto had = std::count(before.begin(), before.end(), '\n') - 1;
     CHECK(had > 5);
     CHECK(before.back() == '\n');
     CHECK(std::count(before.begin(), before.end(), ',') == 4 * (had + 1));
 
-    // the cell is unplugged and comes back meanwhile
-    const Called resumed = shell(kPen + "--seconds 9 | " + kRecord + "-o " + session + serial + "--resume --json");
+    // the cell is unplugged and comes back meanwhile; each run needs one lift (4 s at most) for its zero
+    const Called resumed = shell(kPen + "--seconds 12 | " + kRecord + "-o " + session + serial + "--resume --json");
     CAPTURE(resumed.err);
     REQUIRE(resumed.status == 0);
     const Json json = parse_json(resumed.out, "stdout");
