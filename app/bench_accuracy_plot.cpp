@@ -3,6 +3,7 @@
 #include <cstdlib>
 
 #include "app/bench_accuracy.h"
+#include "app/gnuplot.h"
 #include "files/text.h"
 
 namespace palpa {
@@ -100,12 +101,6 @@ plot f using (step(0)):(err_of("live step", "compliance")):(step(0)):(late(0)) w
      f using (step(0)):(err_of("sparse solver", "Eigen")):(step(0)):(late(0)) with xerrorbars ls 4 title "Eigen, one right-hand side"
 unset multiplot
 )gp";
-
-std::string shell_quoted(const std::string& text) {
-    std::string out = "'";
-    for (const char c : text) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
-    return out + "'";
-}
 
 }  // namespace
 

@@ -36,6 +36,7 @@ void add_bench(CLI::App& app) {
     CLI::App* bench = app.add_subcommand("bench", "What to measure with");
     bench->require_subcommand(1);
     add_bench_accuracy(*bench);
+    add_bench_pens(*bench);
     auto options = std::make_shared<TraceOptions>();
     CLI::App* trace = bench->add_subcommand("trace", "A simulated pen sweeps the tissue: writes a trace");
     trace->add_option("SCENE", options->scene, "scene JSON or map folder (default: the default scene)");

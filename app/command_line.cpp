@@ -36,6 +36,7 @@ int run_command_line(int argc, char** argv) {
     add_explain(app);
     add_devices(app);
     add_maps(app);
+    add_calibrate(app);
     add_fem(app);
     add_bench(app);
     try {

@@ -14,8 +14,11 @@ void add_run(CLI::App& app);
 void add_explain(CLI::App& app);
 void add_devices(CLI::App& app);
 void add_maps(CLI::App& app);
+void add_calibrate(CLI::App& app);
+void add_calibrate_record(CLI::App& calibrate);
 void add_fem(CLI::App& app);
 void add_bench(CLI::App& app);
 void add_bench_accuracy(CLI::App& bench);
+void add_bench_pens(CLI::App& bench);
 
 }  // namespace palpa

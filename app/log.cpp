@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "calibration/profile_file.h"
 #include "files/text.h"
 
 namespace palpa {
@@ -47,7 +48,8 @@ Json settings_json(const Scene& scene, const Plan& plan, const State& state) {
         json["tissue"]["count"] = {tissue->map.n_x, tissue->map.n_y};
         json["tissue"]["smoothing_mm"] = 1e3 * tissue->smoothing_m;
     }
-    json["profile"] = {{"id", plan.profile.id}, {"a_N", plan.profile.curve.a_N}, {"b", plan.profile.curve.b}};
+    json["profile"] = {{"id", plan.profile.id}, {"model", name_of(plan.profile.curve.model)}};
+    json["profile"].update(parameters_json(plan.profile.curve));
     json["tissue_area_px"] = {state.screen.x_px, state.screen.y_px, state.screen.width_px, state.screen.height_px};
     if (std::isfinite(state.screen.px_per_m)) json["screen_px_per_mm"] = 1e-3 * state.screen.px_per_m;
     json["mapping"] = {{"rotate_deg", scene.mapping.rotate_deg}, {"flip", scene.mapping.flip}};

@@ -1,7 +1,6 @@
 #include "calibration/profile.h"
 
 #include <algorithm>
-#include <cmath>
 #include <numbers>
 
 namespace palpa {
@@ -19,13 +18,12 @@ double level_of(const Profile& profile, const Sample& sample) {
 double force_N(const Profile& profile, double level, std::int64_t& clamped) {
     const double inside = std::clamp(level, profile.level_lowest, profile.level_highest);
     if (inside != level) ++clamped;
-    return profile.curve.a_N * std::exp(profile.curve.b * inside);
+    return std::max(0.0, value_N(profile.curve, inside));
 }
 
 double level_at_force(const Profile& profile, double force_N) {
     if (!(force_N > 0.0)) return profile.level_lowest;
-    const double level = std::log(force_N / profile.curve.a_N) / profile.curve.b;
-    return std::clamp(level, profile.level_lowest, profile.level_highest);
+    return std::clamp(level_at(profile.curve, force_N), profile.level_lowest, profile.level_highest);
 }
 
 const char* name_of(LevelField level) {

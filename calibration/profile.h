@@ -5,16 +5,10 @@
 #include <string>
 #include <vector>
 
+#include "calibration/curve.h"
 #include "platform/sample.h"
 
 namespace palpa {
-
-// f = a exp(b level), newtons. Source: Li et al., eqs. 1, 5 and 6. The curve never reaches zero force: a pen
-// that does not touch has force 0 by its phase, never by the curve.
-struct ExponentialCurve {
-    double a_N = 0.0;
-    double b = 0.0;  // per level; > 0
-};
 
 enum class LevelField { pressure, pressure_raw, contact_area };
 
@@ -34,10 +28,13 @@ struct CalibrationPoint {
 struct Profile {
     std::string id;  // of the file
     DeviceNames device;
-    ExponentialCurve curve;
+    Curve curve;
     LevelField level = LevelField::pressure;
-    double level_lowest = 0.0;
+    double level_lowest = 0.0;   // what the device can report; levels are clamped to this range
     double level_highest = 1.0;
+    double fitted_lowest = kMissing;   // the part of it that the points cover; beyond, the curve is extrapolated
+    double fitted_highest = kMissing;
+    double median_relative_error = kMissing;  // on points left out of the fit, where known
     double full_contact_area_px2 = 0.0;  // contact_area only: the ellipse whose level is 1
     std::vector<CalibrationPoint> points;  // what the curve was fitted to, where known
 };
@@ -46,7 +43,8 @@ struct Profile {
 // contact_area: pi/4 width height / full_contact_area_px2.
 double level_of(const Profile& profile, const Sample& sample);
 
-// Force at a level. Levels outside the range are clamped, and `clamped` is counted up.
+// Force at a level. Levels outside the range are clamped, and `clamped` is counted up. No curve reaches down to the
+// force zero of a pen that does not touch: that is known by the sample's phase. Never below zero.
 double force_N(const Profile& profile, double level, std::int64_t& clamped);
 
 // Level at a force, clamped to the range: the inverse of force_N inside it.

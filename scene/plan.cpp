@@ -26,9 +26,13 @@ std::string mm_text(double metres) { return short_number(1e3 * metres) + " mm"; 
 
 Stage calibration_stage(const Plan& plan) {
     Stage stage{StageId::calibration, false, "", "", 0.03};
-    stage.fidelity = "exponential curve " + plan.profile.id + " from " + name_of(plan.profile.level);
-    stage.error = plan.profile.points.empty() ? "not known: the profile brings no points"
-                                              : std::to_string(plan.profile.points.size()) + " points in the profile";
+    stage.fidelity = std::string(name_of(plan.profile.curve.model)) + " curve " + plan.profile.id + " from " + name_of(plan.profile.level);
+    if (!std::isnan(plan.profile.median_relative_error)) {
+        stage.error = short_number(100.0 * plan.profile.median_relative_error) + " % of the force (median over points left out of the fit)";
+    } else {
+        stage.error = plan.profile.points.empty() ? "not known: the profile brings no points"
+                                                  : std::to_string(plan.profile.points.size()) + " points in the profile";
+    }
     return stage;
 }
 

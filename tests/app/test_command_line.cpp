@@ -37,7 +37,8 @@ Called palpa_with(const std::string& arguments, const std::string& before = "") 
 }  // namespace
 
 TEST_CASE("command line: help and version exist for every command") {
-    for (const char* command : {"", "run", "explain", "devices", "maps", "maps info", "maps sample", "maps import", "maps generate", "bench trace", "bench accuracy",
+    for (const char* command : {"", "run", "explain", "devices", "maps", "maps info", "maps sample", "maps import", "maps generate", "bench trace", "bench pens", "bench accuracy",
+                                "calibrate", "calibrate record", "calibrate fit", "calibrate check", "calibrate compare",
                                 "bench accuracy mechanics"}) {
         CAPTURE(command);
         const Called help = palpa_with(std::string(command) + " --help");

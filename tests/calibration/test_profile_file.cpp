@@ -45,3 +45,50 @@ TEST_CASE("profile file: points need as many levels as forces") {
     const std::string points = R"("points": {"level": [0, 0.5], "force_N": [0.1]}, "model")";
     CHECK(contains(said(with("\"model\"", points)), "points.force_N: found an array of 1, expected an array of 2 numbers"));
 }
+
+namespace {
+
+std::string of_model(const std::string& model, const std::string& parameters) {
+    return R"({"device": {}, "model": ")" + model + R"(", "parameters": )" + parameters + R"(, "level": "pressure", "level_range": [0, 1]})";
+}
+
+}  // namespace
+
+TEST_CASE("profile file: every model is written and read back to the last bit") {
+    const TemporaryFolder folder;
+    Profile profile;
+    profile.device.pen = "pen \"x\"";
+    profile.fitted_lowest = 0.01;
+    profile.fitted_highest = 0.97;
+    profile.points = {{0.1, 0.2}, {0.3, 0.4}};
+    std::vector<Curve> curves(3);
+    curves[0] = {CurveModel::exponential, 0.1 / 3.0, 4.2, 0.0, {}, {}, {}};
+    curves[1] = {CurveModel::exponential_offset, -0.1 / 3.0, -4.2, 0.07, {}, {}, {}};
+    curves[2] = {CurveModel::power, 1.0 / 3.0, 1.7, 0.0, {}, {}, {}};
+    curves.push_back(monotone_cubic({0.0, 0.1, 1.0}, {1.0 / 30.0, 0.4, 2.0}));
+    for (const Curve& curve : curves) {
+        profile.curve = curve;
+        write_profile(profile, {{"median_relative_error", 0.031}}, folder / "p.json");
+        const Profile back = read_profile(folder / "p.json");
+        CAPTURE(name_of(curve.model));
+        CHECK(back.curve.model == curve.model);
+        for (double x = 0.0; x <= 1.0; x += 0.01) CHECK(value_N(back.curve, x) == value_N(curve, x));
+        CHECK(back.device.pen == profile.device.pen);
+        CHECK(back.fitted_highest == 0.97);
+        CHECK(back.median_relative_error == 0.031);
+        CHECK(back.points.size() == 2);
+    }
+}
+
+TEST_CASE("profile file: parameters of every model are checked by key") {
+    CHECK(contains(said(of_model("power", R"({"a_N": 2, "b": -1})")), "parameters.b: found -1"));
+    CHECK(contains(said(of_model("power", R"({"a_N": 2})")), "parameters.b: found nothing"));
+    CHECK(contains(said(of_model("exponential_offset", R"({"a_N": -2, "b": 1, "offset_N": 3})")), "the curve must rise"));
+    CHECK(contains(said(of_model("exponential_offset", R"({"a_N": 2, "b": 1, "offset_N": -30})")), "a force that rises above 0"));
+    CHECK(contains(said(of_model("monotone_cubic", R"({"level": [0, 0], "force_N": [1, 2]})")), "parameters.level: found 0 after 0"));
+    CHECK(contains(said(of_model("monotone_cubic", R"({"level": [0, 1], "force_N": [2, 1]})")), "parameters.force_N: found 1 after 2"));
+    CHECK(contains(said(of_model("monotone_cubic", R"({"level": [0, 1], "force_N": [2]})")), "an array of 2 numbers"));
+    CHECK(contains(said(of_model("monotone_cubic", R"({"level": [0], "force_N": [2]})")), "two at least"));
+    CHECK(contains(said(of_model("monotone_cubic", R"({"level": [0, 1], "force_N": [0, 1]})")), "> 0"));
+    CHECK(said(of_model("monotone_cubic", R"({"level": [0.1, 0.9], "force_N": [0.1, 1]})")) == "");
+}

@@ -1,0 +1,104 @@
+#include "calibration/bootstrap.h"
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+namespace palpa {
+namespace {
+
+// 97.5 % quantiles of Student's t for 1 ... 30 degrees of freedom.
+constexpr double kStudent[] = {12.706, 4.303, 3.182, 2.776, 2.571, 2.447, 2.365, 2.306, 2.262, 2.228, 2.201, 2.179, 2.160, 2.145, 2.131,
+                               2.120,  2.110, 2.101, 2.093, 2.086, 2.080, 2.074, 2.069, 2.064, 2.060, 2.056, 2.052, 2.048, 2.045, 2.042};
+
+double widening(int repeats) {
+    const int freedom = repeats - 1;
+    const double student = freedom <= 30 ? kStudent[freedom - 1] : 1.96 + 2.4 / freedom;
+    return std::sqrt(static_cast<double>(repeats) / freedom) * student / 1.95996;
+}
+
+int repeats_of(const FitPoints& points) {
+    std::vector<int> seen = points.repeat;
+    std::sort(seen.begin(), seen.end());
+    return static_cast<int>(std::unique(seen.begin(), seen.end()) - seen.begin());
+}
+
+// A whole number below n, evenly but for n / 2^32.
+Eigen::Index below(Eigen::Index n, std::uint32_t random) {
+    return static_cast<Eigen::Index>((static_cast<std::uint64_t>(random) * static_cast<std::uint64_t>(n)) >> 32);
+}
+
+void draw(const FitPoints& points, bool over_repeats, std::mt19937_64& random, Eigen::ArrayXd& drawn, Eigen::ArrayXd& count) {
+    const Eigen::Index units = drawn.size();
+    drawn.setZero();
+    for (Eigen::Index i = 0; i < units; i += 2) {
+        const std::uint64_t bits = random();
+        drawn(below(units, static_cast<std::uint32_t>(bits))) += 1.0;
+        if (i + 1 < units) drawn(below(units, static_cast<std::uint32_t>(bits >> 32))) += 1.0;
+    }
+    if (!over_repeats) {
+        count = drawn;
+        return;
+    }
+    for (Eigen::Index i = 0; i < count.size(); ++i) count(i) = drawn(points.repeat[static_cast<std::size_t>(i)]);
+}
+
+Interval interval_of(std::vector<double>& values, double estimate, double widened) {
+    const auto at = [&](double share) {
+        const auto i = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1) + 0.5);
+        std::nth_element(values.begin(), values.begin() + i, values.end());
+        return values[static_cast<std::size_t>(i)];
+    };
+    const double low = at(0.025);
+    const double high = at(0.975);
+    return {estimate + widened * (low - estimate), estimate + widened * (high - estimate)};
+}
+
+}  // namespace
+
+Bootstrap bootstrap(const FitPoints& points, const FitOptions& options, const Curve& fitted, const std::vector<double>& level, int fits,
+                    std::uint64_t seed) {
+    Bootstrap out;
+    const int repeats = repeats_of(points);
+    out.over_repeats = repeats >= 3;
+    const double widened = out.over_repeats ? widening(repeats) : 1.0;
+    const bool cubic = options.model == CurveModel::monotone_cubic;
+    FitWorkspace work;
+    FitStart start;
+    CubicBins bins;
+    if (cubic) {
+        bins = cubic_bins(points, options.knots);
+    } else if (!start_fit(points, options, work, start)) {
+        return out;
+    }
+    // `repeat` may have gaps where a press has no usable point: every number up to the greatest is a unit
+    const auto units = out.over_repeats ? Eigen::Index{1} + *std::max_element(points.repeat.begin(), points.repeat.end()) : points.level.size();
+    Eigen::ArrayXd drawn(units);
+    Eigen::ArrayXd count(points.level.size());
+    std::mt19937_64 random(seed);
+    std::vector<std::vector<double>> force_N(level.size());
+    std::vector<double> a_N, b, offset_N;
+    for (int i = 0; i < fits; ++i) {
+        draw(points, out.over_repeats, random, drawn, count);
+        const auto curve = cubic ? fit_cubic(points, bins, count) : refit(points, options, count, start, work);
+        if (!curve) continue;
+        ++out.fits;
+        a_N.push_back(curve->a_N);
+        b.push_back(curve->b);
+        offset_N.push_back(curve->offset_N);
+        for (std::size_t k = 0; k < level.size(); ++k) force_N[k].push_back(value_N(*curve, level[k]));
+    }
+    if (out.fits == 0) return out;
+    out.a_N = interval_of(a_N, fitted.a_N, widened);
+    out.b = interval_of(b, fitted.b, widened);
+    out.offset_N = interval_of(offset_N, fitted.offset_N, widened);
+    out.level = level;
+    for (std::size_t k = 0; k < level.size(); ++k) {
+        const Interval band = interval_of(force_N[k], value_N(fitted, level[k]), widened);
+        out.low_N.push_back(std::max(0.0, band.low));
+        out.high_N.push_back(band.high);
+    }
+    return out;
+}
+
+}  // namespace palpa

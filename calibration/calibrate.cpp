@@ -1,0 +1,135 @@
+#include "calibration/calibrate.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "files/input_error.h"
+#include "files/text.h"
+
+namespace palpa {
+namespace {
+
+// Spearman's rank correlation of level and force.
+double rank_correlation(const FitPoints& points) {
+    const auto n = static_cast<std::size_t>(points.level.size());
+    std::vector<std::size_t> order(n);
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+        return points.force_N(static_cast<Eigen::Index>(a)) < points.force_N(static_cast<Eigen::Index>(b));
+    });
+    // the points are in order of level, so their index is their rank there
+    double squares = 0.0;
+    for (std::size_t rank = 0; rank < n; ++rank) {
+        const double apart = static_cast<double>(rank) - static_cast<double>(order[rank]);
+        squares += apart * apart;
+    }
+    const auto count = static_cast<double>(n);
+    return 1.0 - 6.0 * squares / (count * (count * count - 1.0));
+}
+
+FitPoints rising_points(const CalibrationRows& rows, LevelRange range, const Ends& ends) {
+    FitPoints points = fit_points(rows, range, ends);
+    if (distinct_levels(points) < 3) {
+        throw bad_input(rows.file, "level", std::to_string(distinct_levels(points)) + " distinct levels below saturation", "3 at least");
+    }
+    if (rank_correlation(points) < 0.3) {
+        throw bad_input(rows.file, "force_N", "forces that do not rise with the level (rank correlation " + short_number(rank_correlation(points)) + ")",
+                        "a force that rises (columns exchanged, or sensor and pen not pressed together?)");
+    }
+    return points;
+}
+
+LevelsDelivered levels_of(const FitPoints& points, LevelRange range) {
+    LevelsDelivered levels;
+    levels.distinct = static_cast<std::size_t>(distinct_levels(points));
+    for (Eigen::Index i = 1; i < points.level.size(); ++i) {
+        const double step = points.level(i) - points.level(i - 1);
+        if (step <= 0.0 || points.level(i) > range.highest) continue;
+        if (!(step >= levels.smallest_step)) levels.smallest_step = step;
+        if (step <= levels.widest_gap) continue;
+        levels.widest_gap = step;
+        levels.gap_from = points.level(i - 1);
+    }
+    return levels;
+}
+
+std::size_t slips_in(const Calibration& calibration) {
+    const bool log_error = calibration.chosen.error == ErrorModel::log;
+    std::vector<double> off;
+    for (Eigen::Index i = 0; i < calibration.points.level.size(); ++i) {
+        const double measured_N = calibration.points.force_N(i);
+        const double predicted_N = calibration.chosen.predicted_N(i);
+        if (log_error && !(measured_N > 0.0 && predicted_N > 0.0)) continue;
+        off.push_back(std::abs(log_error ? std::log(measured_N / predicted_N) : measured_N - predicted_N));
+    }
+    const double scale = 1.4826 * quantile(off, 0.5);
+    const double least = log_error ? 0.05 : 0.01 * calibration.force_at_full_N;  // too small to call a slip
+    // 8 scales: a curve between sparse points is off by 5 here and there without any slip
+    return static_cast<std::size_t>(std::count_if(off.begin(), off.end(), [&](double v) { return v > 8.0 * scale && v > least; }));
+}
+
+std::vector<double> band_levels(LevelRange range) {
+    constexpr int kPlaces = 100;
+    std::vector<double> levels;
+    for (int i = 0; i <= kPlaces; ++i) levels.push_back(range.lowest + (range.highest - range.lowest) * i / kPlaces);
+    return levels;
+}
+
+Curve fitted_curve(const FitPoints& points, const CalibrateOptions& options, LevelRange range, const std::string& file, Candidate& chosen) {
+    chosen = choose(points, candidates(points, options.model, options.error, options.robust, range.highest), options.error);
+    std::optional<Curve> curve;
+    if (chosen.predicted_N.size() > 0) curve = fit_curve(points, chosen.options);
+    const bool usable = curve && value_N(*curve, range.highest) > std::max(0.0, value_N(*curve, range.lowest)) && value_N(*curve, range.highest) < 1000.0;
+    if (usable) return *curve;
+    const std::string model = options.model ? std::string(name_of(*options.model)) : "auto";
+    throw bad_input(file, "--model " + model, "no rising curve below 1000 N through " + std::to_string(points.level.size()) + " points",
+                    "points that determine it (more levels, or another model)");
+}
+
+}  // namespace
+
+Calibration calibrate(const CalibrationRows& measured, const CalibrateOptions& options) {
+    Calibration out;
+    out.n_points = measured.level.size();
+    const LevelRange range = options.range.value_or(level_range_of(measured.level));
+    CalibrationRows rows = measured;
+    if (options.remove_lag && !rows.time_s.empty()) {
+        const FitPoints rough = rising_points(rows, range, ends_of(rows, range));
+        if (const auto curve = fit_cubic(rough, cubic_bins(rough, 24))) out.lag_s = lag_s(rows, *curve, range);
+        if (out.lag_s) rows = without_lag(rows, *out.lag_s);
+    }
+    out.ends = ends_of(rows, range);
+    out.points = rising_points(rows, range, out.ends);
+
+    Profile& profile = out.profile;
+    profile.curve = fitted_curve(out.points, options, range, rows.file, out.chosen);
+    profile.device = rows.device;
+    profile.level = options.level.value_or(range.highest > 1.0 ? LevelField::pressure_raw : LevelField::pressure);
+    if (profile.level == LevelField::contact_area) profile.full_contact_area_px2 = options.full_contact_area_px2;
+    profile.level_lowest = range.lowest;
+    profile.level_highest = range.highest;
+    const Eigen::Index n = out.points.level.size();
+    profile.fitted_lowest = out.points.level(0);
+    profile.fitted_highest = out.points.level(n - 1);
+    for (Eigen::Index i = 0; i < n; ++i) profile.points.push_back({out.points.level(i), out.points.force_N(i)});
+
+    out.fitted_N = Eigen::ArrayXd::NullaryExpr(n, [&](Eigen::Index i) { return value_N(profile.curve, out.points.level(i)); });
+    out.quality = fit_quality(out.points.force_N, out.fitted_N);
+    out.bands = error_bands(out.points.level, out.points.force_N, out.chosen.predicted_N, range);
+    out.median_relative_error = median_relative_error(out.points.level, out.points.force_N, out.chosen.predicted_N, range);
+    profile.median_relative_error = out.median_relative_error;
+    out.force_at_full_N = value_N(profile.curve, range.highest);
+    out.by_repeats = folds_of(out.points) == out.points.repeat;
+    if (options.bootstrap_fits > 0) {
+        out.bootstrap = bootstrap(out.points, out.chosen.options, profile.curve, band_levels(range), options.bootstrap_fits, options.seed);
+    }
+    out.hysteresis = hysteresis_of(rows, range);
+    out.drift = drift_of(out.points, profile.curve);
+    out.levels = levels_of(out.points, range);
+    out.slips = slips_in(out);
+    out.warnings = warnings_of(out, rows.notes);
+    return out;
+}
+
+}  // namespace palpa

@@ -1,0 +1,221 @@
+#include "calibration/points.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <set>
+
+#include "files/input_error.h"
+#include "files/text.h"
+
+namespace palpa {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+std::string line_of(const CalibrationRows& rows, std::size_t i) { return "line " + std::to_string(rows.line[i]); }
+
+std::vector<std::size_t> by_level(const std::vector<double>& level) {
+    std::vector<std::size_t> order(level.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return level[a] < level[b]; });
+    return order;
+}
+
+double median_of(std::vector<double> values) {
+    const std::size_t half = values.size() / 2;
+    std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(half), values.end());
+    const double upper = values[half];
+    if (values.size() % 2 == 1) return upper;
+    return 0.5 * (upper + *std::max_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(half)));
+}
+
+void check_enough(const CalibrationRows& rows) {
+    const std::set<double> levels(rows.level.begin(), rows.level.end());
+    if (levels.size() < 3) {
+        throw bad_input(rows.file, "level", std::to_string(levels.size()) + " distinct levels in " + std::to_string(rows.level.size()) + " rows",
+                        "3 at least");
+    }
+    const auto [lowest, highest] = std::minmax_element(rows.force_N.begin(), rows.force_N.end());
+    if (*lowest == *highest) {
+        throw bad_input(rows.file, "force_N", "the same force, " + short_number(*lowest) + " N, in every row",
+                        "forces that rise with the level (is the sensor connected?)");
+    }
+}
+
+// A pen's full scale is 1 to 10 N, 100 to 1,000 gf.
+void check_unit(const CalibrationRows& rows) {
+    const double highest_N = *std::max_element(rows.force_N.begin(), rows.force_N.end());
+    if (highest_N > 60.0) {
+        throw bad_input(rows.file, "force_N", "forces up to " + short_number(highest_N) + " N",
+                        "less than 60 N under a pen or finger (gram-force? name the column force_gf; --any-force if it is right)");
+    }
+    if (highest_N < 0.15) {
+        throw bad_input(rows.file, "force_gf", "no force above " + short_number(highest_N) + " N (" + short_number(highest_N / 9.80665e-3) + " gf)",
+                        "more than 0.15 N at the highest level (newtons? name the column force_N; --any-force if it is right)");
+    }
+    // rows in another unit than their neighbours in level are off by 102
+    const auto order = by_level(rows.level);
+    for (std::size_t i = 0; i < order.size(); ++i) {
+        constexpr std::size_t kNear = 3;
+        std::vector<double> near;
+        for (std::size_t j = i > kNear ? i - kNear : 0; j < std::min(order.size(), i + kNear + 1); ++j) {
+            if (j != i) near.push_back(rows.force_N[order[j]]);
+        }
+        const double factor = rows.force_N[order[i]] / median_of(near);
+        const bool gf_here = factor > 50.0 && factor < 200.0;
+        const bool N_here = factor < 1.0 / 50.0 && factor > 1.0 / 200.0;
+        if (rows.level[order[i]] > 0.0 && (gf_here || N_here)) {
+            throw bad_input(rows.file, line_of(rows, order[i]) + ", force", short_number(rows.force_N[order[i]]) + " N",
+                            "about " + short_number(median_of(near)) + " N as at levels beside it (gram-force and newtons mixed up?)");
+        }
+    }
+}
+
+void check_times(const CalibrationRows& rows) {
+    for (std::size_t i = 1; i < rows.time_s.size(); ++i) {
+        if (rows.time_s[i] > rows.time_s[i - 1]) continue;
+        if (!rows.repeat.empty() && rows.repeat[i] != rows.repeat[i - 1]) continue;  // each repeat may have its own zero
+        throw bad_input(rows.file, line_of(rows, i) + ", time_s", number_text(rows.time_s[i]) + " after " + number_text(rows.time_s[i - 1]),
+                        "times that rise (sorted, none twice)");
+    }
+}
+
+// The same force again and again while the level moves on: the sensor stopped, or its line was cut.
+void check_running(const CalibrationRows& rows) {
+    if (rows.time_s.empty()) return;
+    const auto [lowest, highest] = std::minmax_element(rows.level.begin(), rows.level.end());
+    constexpr std::size_t kLong = 10;
+    for (std::size_t from = 0; from < rows.level.size();) {
+        std::size_t to = from;
+        double low = rows.level[from];
+        double high = low;
+        while (to + 1 < rows.level.size() && rows.force_N[to + 1] == rows.force_N[from]) {
+            ++to;
+            low = std::min(low, rows.level[to]);
+            high = std::max(high, rows.level[to]);
+        }
+        if (to - from + 1 >= kLong && high - low > 0.2 * (*highest - *lowest)) {
+            throw bad_input(rows.file, "lines " + std::to_string(rows.line[from]) + " to " + std::to_string(rows.line[to]) + ", force",
+                            short_number(rows.force_N[from]) + " N all the time while the level goes from " + short_number(low) + " to " + short_number(high),
+                            "a force that follows (the sensor stopped?)");
+        }
+        from = to + 1;
+    }
+}
+
+// Noise of the force near one end: second differences of neighbours in level, robustly. `rows` are in order of level.
+double noise_N(const std::vector<double>& force_N) {
+    if (force_N.size() < 3) return 0.0;
+    std::vector<double> bends;
+    for (std::size_t i = 1; i + 1 < force_N.size(); ++i) bends.push_back(std::abs(force_N[i] - 0.5 * (force_N[i - 1] + force_N[i + 1])));
+    return 1.4826 * median_of(bends) / std::sqrt(1.5);
+}
+
+// The quarter of the rows next to one end, the rows at the very end not among them.
+std::vector<double> quarter(const CalibrationRows& rows, const std::vector<std::size_t>& order, double lowest, double highest, bool top) {
+    std::vector<double> inside;
+    for (const std::size_t i : order) {
+        if (rows.level[i] > lowest && rows.level[i] < highest) inside.push_back(rows.force_N[i]);
+    }
+    const std::size_t n = std::min(inside.size(), std::max<std::size_t>(inside.size() / 4, 5));
+    const auto count = static_cast<std::ptrdiff_t>(n);
+    return top ? std::vector<double>(inside.end() - count, inside.end()) : std::vector<double>(inside.begin(), inside.begin() + count);
+}
+
+int repeat_of(const CalibrationRows& rows, std::size_t i) { return rows.repeat.empty() ? 0 : rows.repeat[i]; }
+
+int repeats_in(const CalibrationRows& rows) {
+    return rows.repeat.empty() ? 1 : 1 + *std::max_element(rows.repeat.begin(), rows.repeat.end());
+}
+
+double activation(const CalibrationRows& rows, double lowest) {
+    std::vector<double> first(static_cast<std::size_t>(repeats_in(rows)), kInfinity);
+    for (std::size_t i = 0; i < rows.level.size(); ++i) {
+        double& force_N = first[static_cast<std::size_t>(repeat_of(rows, i))];
+        if (rows.level[i] > lowest) force_N = std::min(force_N, rows.force_N[i]);
+    }
+    first.erase(std::remove(first.begin(), first.end(), kInfinity), first.end());
+    return median_of(first);
+}
+
+}  // namespace
+
+void check_rows(const CalibrationRows& rows, bool any_force) {
+    check_enough(rows);
+    if (!any_force) check_unit(rows);
+    check_times(rows);
+    check_running(rows);
+}
+
+LevelRange level_range_of(const std::vector<double>& level) {
+    const double highest = *std::max_element(level.begin(), level.end());
+    if (highest <= 1.0) return {0.0, 1.0};
+    double full = 3.0;
+    while (full < highest) full = 2.0 * full + 1.0;
+    return {0.0, full};
+}
+
+Ends ends_of(const CalibrationRows& rows, LevelRange range) {
+    Ends ends;
+    ends.activation_N = activation(rows, range.lowest);
+    const auto order = by_level(rows.level);
+    const double top = rows.level[order.back()];
+    // Rows in the last 2 % of the levels: on a curve that rises to its end they differ by a tenth in force.
+    const double plateau = top >= range.highest ? range.highest : top - 0.02 * (range.highest - range.lowest);
+    double lowest_N = kInfinity;
+    double highest_N = 0.0;
+    std::size_t n = 0;
+    for (std::size_t i = 0; i < rows.level.size(); ++i) {
+        if (rows.level[i] < plateau) continue;
+        lowest_N = std::min(lowest_N, rows.force_N[i]);
+        highest_N = std::max(highest_N, rows.force_N[i]);
+        ++n;
+    }
+    const double noise = noise_N(quarter(rows, order, range.lowest, plateau, true));
+    const bool full = top >= range.highest;
+    const bool still = n >= 3 && highest_N > 1.25 * lowest_N && highest_N - lowest_N > 6.0 * noise;
+    if (full || still) {
+        ends.saturation_N = lowest_N;
+        ends.saturation_level = plateau;
+        ends.above_saturation_N = highest_N;
+        for (std::size_t i = 0; i < rows.level.size(); ++i) ends.saturated += rows.level[i] >= plateau && rows.force_N[i] > lowest_N + 3.0 * noise;
+    }
+    double silent_N = 0.0;
+    for (std::size_t i = 0; i < rows.level.size(); ++i) {
+        if (rows.level[i] <= range.lowest) silent_N = std::max(silent_N, rows.force_N[i]);
+    }
+    for (std::size_t i = 0; i < rows.level.size(); ++i) ends.silent += rows.level[i] <= range.lowest && rows.force_N[i] < silent_N;
+    return ends;
+}
+
+FitPoints fit_points(const CalibrationRows& rows, LevelRange range, const Ends& ends) {
+    const auto order = by_level(rows.level);
+    double silent_N = 0.0;
+    for (std::size_t i = 0; i < rows.level.size(); ++i) {
+        if (rows.level[i] <= range.lowest) silent_N = std::max(silent_N, rows.force_N[i]);
+    }
+    const double floor_N = silent_N - 3.0 * noise_N(quarter(rows, order, range.lowest, range.highest, false));
+    const double plateau = std::isnan(ends.saturation_level) ? kInfinity : ends.saturation_level;
+    const double ceiling_N = ends.saturation_N + 3.0 * noise_N(quarter(rows, order, range.lowest, plateau, true));
+    std::vector<std::size_t> kept;
+    for (const std::size_t i : order) {
+        const bool silent = rows.level[i] <= range.lowest && rows.force_N[i] < floor_N;
+        const bool saturated = rows.level[i] >= plateau && rows.force_N[i] > ceiling_N;
+        if (!silent && !saturated) kept.push_back(i);
+    }
+    FitPoints points;
+    const auto n = static_cast<Eigen::Index>(kept.size());
+    points.level.resize(n);
+    points.force_N.resize(n);
+    for (Eigen::Index k = 0; k < n; ++k) {
+        const std::size_t i = kept[static_cast<std::size_t>(k)];
+        points.level(k) = rows.level[i];
+        points.force_N(k) = rows.force_N[i];
+        if (!rows.repeat.empty()) points.repeat.push_back(rows.repeat[i]);
+    }
+    return points;
+}
+
+}  // namespace palpa

@@ -1,0 +1,48 @@
+#pragma once
+// A load cell behind an HX711 and an Arduino: lines "t_us,raw\n", micros() and the signed 24-bit reading.
+//
+// Supported: lines cut in half when the port is opened, garbled lines (skipped to the next newline), micros() that
+// starts anew every 71.6 minutes, loss by the clock's gaps, lines that come twice or out of order, a port that is
+// unplugged and comes back. Not yet: other line formats. Tried against devices/simulators only.
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "devices/force_sensor.h"
+
+namespace palpa {
+
+struct LoadCellLine {
+    std::uint32_t t_us = 0;
+    std::int32_t raw = 0;  // -2^23 ... 2^23 - 1
+};
+
+// Lines out of bytes, as they come.
+struct LineParser {
+    std::string line;
+    bool skipping = true;  // until the first newline: the port was opened amid a line
+};
+// True when `byte` ends a good line. Garbled lines are counted.
+bool feed(std::uint8_t byte, LineParser& parser, SensorHealth& health, LoadCellLine& out);
+
+// The clock's readings, and what they say about the stream.
+struct LoadCellClock {
+    bool started = false;
+    std::uint32_t last_us = 0;
+    std::int64_t total_us = 0;
+    double period_us = 0.0;    // learned: the shortest usual step
+    std::int64_t steps = 0;
+};
+// False for a line that came twice or late. Counts loss once the period is known (after 16 steps).
+bool take_time(std::uint32_t t_us, LoadCellClock& clock, SensorHealth& health);
+
+struct LoadCellOptions {
+    std::string path;
+    int baud = 115200;
+    double N_per_count = 0.0;
+};
+std::unique_ptr<ForceSensor> open_load_cell(const LoadCellOptions& options);
+
+}  // namespace palpa

@@ -1,0 +1,39 @@
+#pragma once
+// A sensor in a thread of its own, behind poll().
+
+#include <atomic>
+#include <memory>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+#include "devices/force_sensor.h"
+#include "devices/spsc_ring.h"
+
+namespace palpa {
+
+class SensorReader {
+ public:
+    explicit SensorReader(std::unique_ptr<ForceSensor> sensor);
+    ~SensorReader();
+    SensorReader(const SensorReader&) = delete;
+    SensorReader& operator=(const SensorReader&) = delete;
+
+    // Appends everything that arrived since the last call, oldest first. Never blocks.
+    void poll(std::vector<ForceReading>& out);
+    SensorHealth health() const;
+    const std::string& name() const { return name_; }
+
+ private:
+    void run();
+
+    std::unique_ptr<ForceSensor> sensor_;  // the thread's alone, once it runs
+    std::string name_;
+    SpscRing<ForceReading, 1 << 16> ring_;  // nine seconds at 7 kHz
+    mutable std::mutex health_guard_;       // of the copy below; taken a hundred times a second
+    SensorHealth health_;
+    std::atomic<bool> stop_{false};
+    std::thread thread_;
+};
+
+}  // namespace palpa

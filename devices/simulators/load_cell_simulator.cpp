@@ -1,0 +1,103 @@
+// An Arduino with an HX711 on a pseudo-terminal: lines "t_us,raw". Prints "port PATH" first, and at its end what it
+// sent. Unplugged, the terminal is closed; plugged in again, it is a new one behind the same --link.
+
+#include <fcntl.h>
+#include <poll.h>
+#include <stdlib.h>
+#include <sys/wait.h>
+#include <termios.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <string>
+
+#include "devices/load_cell.h"
+#include "devices/simulators/stream.h"
+
+using namespace palpa;
+using namespace palpa::simulators;
+
+namespace {
+
+struct Terminal {
+    int master = -1;
+    int slave = -1;  // kept open, so that a reader may come and go
+    std::string path;
+};
+
+Terminal plug_in(const std::string& link) {
+    Terminal terminal;
+    terminal.master = ::posix_openpt(O_RDWR | O_NOCTTY | O_NONBLOCK);
+    if (terminal.master < 0 || ::grantpt(terminal.master) != 0 || ::unlockpt(terminal.master) != 0) return {};
+    terminal.path = ::ptsname(terminal.master);
+    terminal.slave = ::open(terminal.path.c_str(), O_RDWR | O_NOCTTY);
+    termios settings{};
+    ::tcgetattr(terminal.slave, &settings);
+    ::cfmakeraw(&settings);
+    ::tcsetattr(terminal.slave, TCSANOW, &settings);
+    if (!link.empty()) {
+        std::filesystem::remove(link);
+        std::filesystem::create_symlink(terminal.path, link);
+    }
+    return terminal;
+}
+
+void unplug(Terminal& terminal) {
+    ::close(terminal.slave);
+    ::close(terminal.master);
+    terminal = {};
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    StreamOptions options;
+    std::string link;
+    std::uint32_t first_us = 0;
+    double counts_per_N = 40000.0;
+    std::int32_t zero = 84000;
+    double garble = 0.0;
+    CLI::App app("A simulated load cell (HX711, Arduino) on a pseudo-terminal");
+    add_stream_options(app, options);
+    app.add_option("--link", link, "symbolic link to the terminal");
+    app.add_option("--first-us", first_us, "of the clock, to see it wrap around");
+    app.add_option("--counts-per-N", counts_per_N)->capture_default_str();
+    app.add_option("--zero", zero, "counts without load")->capture_default_str();
+    app.add_option("--garble", garble, "share of the lines with a broken character")->check(CLI::Range(0.0, 1.0));
+    CLI11_PARSE(app, argc, argv);
+    Terminal terminal = plug_in(link);
+    if (terminal.master < 0) {
+        std::perror("load_cell_simulator");
+        return 1;
+    }
+    std::printf("port %s\n", link.empty() ? terminal.path.c_str() : link.c_str());
+    std::fflush(stdout);
+    end_on_signals();
+
+    Line<LoadCellLine> line(options);
+    const auto send = [&](const LoadCellLine& reading) {
+        std::string text = std::to_string(reading.t_us) + "," + std::to_string(reading.raw) + "\r\n";
+        if (std::uniform_real_distribution<double>()(line.random) < garble) text[text.size() / 2] = '?';
+        const ssize_t n = ::write(terminal.master, text.data(), text.size());  // full: nobody reads; the text is gone
+        static_cast<void>(n);
+    };
+    const double began_s = steady_s();
+    const double step_s = 1.0 / options.rate_Hz;
+    for (double due_s = began_s; ended == 0 && (options.seconds <= 0.0 || due_s - began_s < options.seconds); due_s += step_s) {
+        std::this_thread::sleep_for(std::chrono::duration<double>(std::max(0.0, due_s - steady_s())));
+        const bool gone = silent(options, due_s - began_s);
+        if (gone && terminal.master >= 0) unplug(terminal);
+        if (!gone && terminal.master < 0) terminal = plug_in(link);
+        if (gone) continue;
+        LoadCellLine reading;
+        reading.t_us = first_us + static_cast<std::uint32_t>(static_cast<std::int64_t>(1e6 * (due_s - began_s)));
+        const double force_N = hand_N(options, due_s - options.lag_s) + line.noise_N();
+        reading.raw = zero + static_cast<std::int32_t>(std::lround(counts_per_N * force_N));
+        line.pass(reading, send);
+    }
+    print_sent(line.sent);
+    // what was sent stays readable until the reader has taken it
+    for (int i = 0; i < 20 && ended == 0; ++i) std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    if (!link.empty()) std::filesystem::remove(link);
+    return 0;
+}

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+
+namespace palpa {
+
+// Datagrams to and from one address. Meant for a thread of its own.
+class UdpPort {
+ public:
+    // Throws std::runtime_error with the system's reason.
+    UdpPort(const std::string& host, int port);
+    ~UdpPort();
+    UdpPort(const UdpPort&) = delete;
+    UdpPort& operator=(const UdpPort&) = delete;
+
+    bool send(const std::uint8_t* bytes, std::size_t count);
+    // Bytes of one datagram, 0 if none came within `wait_s` (0: what is there already) or nobody listens over there.
+    int receive(double wait_s, std::uint8_t* bytes, std::size_t room);
+
+ private:
+    int fd_ = -1;
+};
+
+}  // namespace palpa

@@ -1,0 +1,142 @@
+// palpa calibrate record with simulated pens and sensors, end to end.
+
+#include <doctest/doctest.h>
+#include <signal.h>
+#include <sys/wait.h>
+
+#include <cmath>
+#include <filesystem>
+#include <string>
+
+#include "files/json.h"
+#include "files/text.h"
+#include "tests/devices/simulator_process.h"
+#include "tests/error_message.h"
+#include "tests/temporary_folder.h"
+
+using namespace palpa;
+using namespace palpa::test;
+
+namespace {
+
+struct Called {
+    int status = 0;
+    std::string out;
+    std::string err;
+};
+
+Called shell(const std::string& script) {
+    const TemporaryFolder folder;
+    const std::string command = "( " + script + " ) >" + (folder / "out").string() + " 2>" + (folder / "err").string();
+    const int status = std::system(command.c_str());
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_text(folder / "out"), read_text(folder / "err")};
+}
+
+const std::string kRecord = "timeout 100 " PALPA_PROGRAM " calibrate record ";
+const std::string kHand = " --steps 20 --greatest-N 2.6 --period-s 4 ";
+const std::string kPen = PALPA_PEN_SIMULATOR + kHand;
+
+}  // namespace
+
+TEST_CASE("record: pen and Net F/T give points until the curve is known; they fit, and both raw streams are kept") {
+    const TemporaryFolder folder;
+    const std::string session = (folder / "s").string();
+    SimulatorProcess sensor(PALPA_NETFT_SIMULATOR, {"--rate-Hz", "2000", "--steps", "20", "--greatest-N", "2.6", "--period-s", "4", "--noise-N", "0.002"});
+    const std::string netft = " --sensor netft:127.0.0.1:" + sensor.port();
+    const Called record = shell(kPen + "--seconds 60 | " + kRecord + "-o " + session + netft + " --levels - --steady-s 0.1 --seconds 50 --json");
+    CAPTURE(record.err);
+    REQUIRE(record.status == 0);
+    const Json json = parse_json(record.out, "stdout");
+    CHECK(json["done"] == true);
+    CHECK(json["repeats"].get<int>() >= 3);
+    CHECK(json["sensor"]["health"]["lost"] == 0);
+    CHECK(json["sensor"]["health"]["overflowed"] == 0);
+    CHECK(std::abs(json["sensor"]["zero_N"].get<double>()) < 0.01);
+    CHECK(contains(record.err, "1 of 3 repeats"));
+
+    const Called fit = shell("timeout 60 " PALPA_PROGRAM " calibrate fit " + session + "/points.csv -o " + (folder / "p.json").string() + " --json");
+    REQUIRE(fit.status == 0);
+    const Json fitted = parse_json(fit.out, "stdout");
+    // the simulated pen: level = log(F / 0.05) / log(2.5 / 0.05)
+    CHECK(fitted["median_relative_error"].get<double>() < 0.01);
+    CHECK(fitted["force_at_full_N"].get<double>() == doctest::Approx(2.5).epsilon(0.05));
+    const std::string forces = read_text(session + "/forces-01.tsv");
+    CHECK(contains(forces, "t_host_s\tt_device_s\tforce_N\traw"));
+    CHECK(std::count(forces.begin(), forces.end(), '\n') > 10000);
+    CHECK(contains(read_text(session + "/levels-01.tsv"), "t_host_s\tt_device_s\tphase\tlevel"));
+
+    const Called again = shell(kRecord + "-o " + session + netft + " --levels /dev/null");
+    CHECK(again.status == 2);
+    CHECK(contains(again.err, "--resume"));
+}
+
+TEST_CASE("record: killed in the middle, all that was captured is there, and it is gone on with") {
+    const TemporaryFolder folder;
+    const std::string session = (folder / "s").string();
+    SimulatorProcess sensor(PALPA_LOAD_CELL_SIMULATOR, {"--rate-Hz", "200", "--steps", "20", "--greatest-N", "2.6", "--period-s", "4", "--silent-from-s", "8",
+                                                        "--silent-s", "1.5", "--link", (folder / "cell").string()});
+    const std::string serial = " --sensor serial:" + sensor.port() + " --N-per-count 2.5e-5 --levels - --steady-s 0.1 ";
+    shell(kPen + "--seconds 8 | timeout -s KILL 7 " PALPA_PROGRAM " calibrate record -o " + session + serial);
+    const std::string before = read_text(session + "/points.csv");
+    const auto had = std::count(before.begin(), before.end(), '\n') - 1;
+    CHECK(had > 5);
+    CHECK(before.back() == '\n');
+    CHECK(std::count(before.begin(), before.end(), ',') == 4 * (had + 1));
+
+    // the cell is unplugged and comes back meanwhile; each run needs one lift (4 s at most) for its zero
+    const Called resumed = shell(kPen + "--seconds 12 | " + kRecord + "-o " + session + serial + "--resume --json");
+    CAPTURE(resumed.err);
+    REQUIRE(resumed.status == 0);
+    const Json json = parse_json(resumed.out, "stdout");
+    const std::string after = read_text(session + "/points.csv");
+    CHECK(after.substr(0, before.size()) == before);
+    CHECK(json["points"].get<long>() > had + 5);
+    CHECK(json["sensor"]["zero_N"].get<double>() == doctest::Approx(2.1).epsilon(0.01));  // 84,000 counts without load
+    CHECK(json["sensor"]["health"]["stalls"].get<int>() >= 1);
+    CHECK(contains(resumed.err, "has stopped"));
+    CHECK(std::filesystem::exists(session + "/forces-02.tsv"));
+    CHECK(std::filesystem::file_size(session + "/forces-01.tsv") > 1000);
+}
+
+TEST_CASE("record: what a scale shows is typed in while the pen is held still") {
+    const TemporaryFolder folder;
+    const std::string session = (folder / "s").string();
+    const std::string fifo = (folder / "levels").string();
+    // one step: the pen is held at one level for 5 of 6 seconds
+    const Called record = shell("mkfifo " + fifo + "; " PALPA_PEN_SIMULATOR " --steps 1 --period-s 6 --seconds 7 >" + fifo +
+                                " & (echo abc; for i in 1 2 3 4 5 6 7 8 9 10 11 12; do sleep 0.5; echo 12; done; sleep 2) | " + kRecord + "-o " + session +
+                                " --sensor typed --levels " + fifo + " --json");
+    CAPTURE(record.err);
+    REQUIRE(record.status == 0);
+    CHECK(contains(record.err, "found 'abc', expected what the scale shows"));
+    CHECK(parse_json(record.out, "stdout")["points"].get<int>() >= 1);
+    CHECK(contains(read_text(session + "/points.csv"), number_text(12 * 9.80665e-3)));
+}
+
+TEST_CASE("record: what cannot work is said at once, or after five seconds of silence") {
+    const TemporaryFolder folder;
+    const std::string session = (folder / "s").string();
+    const auto refused = [&](const std::string& arguments, int status, const char* word) {
+        const Called called = shell(kRecord + "-o " + session + " " + arguments);
+        CAPTURE(called.err);
+        CHECK(called.status == status);
+        CHECK(contains(called.err, word));
+    };
+    refused("--sensor usb:x --levels /dev/null", 2, "netft:HOST[:PORT], serial:PATH or typed");
+    refused("--sensor serial:/dev/null --levels /dev/null", 2, "--N-per-count");
+    refused("--sensor serial:/dev/null --N-per-count 1 --levels /dev/null", 1, "not a serial port");
+    refused("--sensor serial:/dev/null --N-per-count 1 --baud 12345 --levels /dev/null", 2, "--baud: found 12345");
+    refused("--sensor netft:127.0.0.1:0 --levels /dev/null", 2, "netft:HOST:PORT");
+    refused("--sensor typed --levels -", 2, "standard input is for the typed numbers");
+    refused("--sensor typed --resume --levels /dev/null", 2, "the session to resume");
+    refused("--sensor typed --level pressure_raw --levels /dev/null", 2, "--level-range");
+    const Called window = shell("env -u DISPLAY -u WAYLAND_DISPLAY " + kRecord + "-o " + session + " --sensor netft:127.0.0.1:9");
+    CHECK(window.status == 1);
+    CHECK(contains(window.err, "--levels FILE"));
+    CHECK_FALSE(std::filesystem::exists(session));
+    write_text_atomically(folder / "levels", "0\n0.5\nhalf\n");
+    refused("--sensor typed --levels " + (folder / "levels").string() + " </dev/null", 2, "line 3: found 'half', expected a level >= 0");
+    const Called silent = shell(PALPA_PEN_SIMULATOR " --seconds 8 | " + kRecord + "-o " + session + "2 --sensor netft:127.0.0.1:9 --levels -");
+    CHECK(silent.status == 1);
+    CHECK(contains(silent.err, "no reading in 5 s"));
+}

@@ -1,0 +1,190 @@
+#include "calibration/calibrate.h"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <random>
+
+#include "tests/error_message.h"
+
+using namespace palpa;
+using namespace palpa::test;
+
+namespace {
+
+constexpr unsigned kSeed = 7;
+
+void add_row(double level, double force_N, int repeat, CalibrationRows& rows) {
+    rows.level.push_back(level);
+    rows.force_N.push_back(force_N);
+    rows.repeat.push_back(repeat);
+    rows.line.push_back(rows.line.size() + 2);
+}
+
+// Presses of one pen, each a little off as a whole, each point a little more.
+CalibrationRows presses(int repeats, int points, double repeat_error, double point_error, std::mt19937_64& random) {
+    std::normal_distribution<double> normal;
+    CalibrationRows rows;
+    for (int r = 0; r < repeats; ++r) {
+        const double offset = repeat_error * normal(random);
+        for (int i = 0; i < points; ++i) {
+            const double x = (i + 0.5) / points;
+            add_row(x, 0.1 * std::exp(4.0 * x + offset + point_error * normal(random)), r, rows);
+        }
+    }
+    return rows;
+}
+
+bool any_with(const std::vector<std::string>& texts, const std::string& part) {
+    return std::any_of(texts.begin(), texts.end(), [&](const std::string& text) { return contains(text, part); });
+}
+
+// 0.25 Hz up and down, the level `lag_s` late, the force at a level `loop` of itself greater when pressing.
+CalibrationRows waves(double lag_s, double loop, std::mt19937_64& random) {
+    std::normal_distribution<double> normal;
+    CalibrationRows rows;
+    for (int i = 0; i < 4000; ++i) {
+        const double t_s = 0.005 * i;
+        const auto force_N = [](double t) { return 0.06 + 2.6 * (0.5 - 0.5 * std::cos(0.5 * M_PI * t)); };
+        const bool pressing = std::fmod(t_s - lag_s + 4.0, 4.0) < 2.0;
+        const double felt_N = force_N(t_s - lag_s) / (pressing ? 1.0 + loop : 1.0);
+        rows.time_s.push_back(t_s);
+        rows.level.push_back(std::clamp(std::log(felt_N / 0.05) / std::log(3.0 / 0.05), 0.0, 1.0));
+        rows.force_N.push_back(std::max(0.0, force_N(t_s) + 0.004 * normal(random)));
+        rows.line.push_back(static_cast<std::size_t>(i + 2));
+    }
+    return rows;
+}
+
+}  // namespace
+
+TEST_CASE("calibrate: left-out points choose the law that made the data, and its error") {
+    std::mt19937_64 random(kSeed);
+    std::normal_distribution<double> normal;
+    CalibrationRows power, loud;
+    for (int i = 1; i <= 2000; ++i) {
+        const double x = i / 2000.0;
+        add_row(x, 3.0 * std::pow(x, 1.6) * std::exp(0.05 * normal(random)), 0, power);
+        add_row(x, std::max(0.0, 0.1 * std::exp(4.0 * x) + 0.1 * normal(random)), 0, loud);
+    }
+    const Calibration a = calibrate(power, {});
+    CHECK(a.profile.curve.model == CurveModel::power);
+    CHECK(a.chosen.error == ErrorModel::log);
+    CHECK(a.profile.curve.b == doctest::Approx(1.6).epsilon(0.01));
+    const Calibration b = calibrate(loud, {});
+    CHECK(b.chosen.error == ErrorModel::newton);
+    CHECK(b.profile.curve.model != CurveModel::power);
+}
+
+TEST_CASE("calibrate: 95 % intervals over repeats hold the truth about that often") {
+    // 200 pens, 6 presses that differ by 5 %. Single points would promise sqrt(20) too much.
+    std::mt19937_64 random(kSeed);
+    CAPTURE(kSeed);
+    CalibrateOptions options;
+    options.model = CurveModel::exponential;
+    options.error = ErrorModel::log;
+    options.bootstrap_fits = 300;
+    int by_repeats = 0;
+    int by_points = 0;
+    for (int pen = 0; pen < 200; ++pen) {
+        CalibrationRows rows = presses(6, 20, 0.05, 0.02, random);
+        const auto holds = [&] {
+            const Bootstrap boot = calibrate(rows, options).bootstrap;
+            const double truth_N = 0.1 * std::exp(4.0 * boot.level[50]);
+            return boot.low_N[50] < truth_N && truth_N < boot.high_N[50];
+        };
+        by_repeats += holds();
+        rows.repeat.clear();
+        by_points += holds();
+    }
+    MESSAGE("of 200 intervals, the truth was in ", by_repeats, " (repeats drawn) and ", by_points, " (points drawn)");
+    CHECK(by_repeats > 176);
+    CHECK(by_points < 110);
+}
+
+TEST_CASE("calibrate: the lag between pen and sensor is found and removed") {
+    std::mt19937_64 random(kSeed);
+    for (const double lag : {0.043, -0.02, 0.0, 0.11}) {
+        CAPTURE(lag);
+        const CalibrationRows rows = waves(lag, 0.0, random);
+        const Calibration calibration = calibrate(rows, {});
+        REQUIRE(calibration.lag_s);
+        CHECK(std::abs(*calibration.lag_s - lag) < 1e-3);  // a fifth of a sample
+        CHECK(calibration.quality.r2_newton > 0.999);
+        CHECK(std::abs(calibration.hysteresis->median_relative) < 0.01);
+    }
+    CalibrateOptions keep;
+    keep.remove_lag = false;
+    CHECK(calibrate(waves(0.11, 0.0, random), keep).quality.r2_newton < 0.98);
+    // a ramp alone fits any lag
+    CalibrationRows ramp = waves(0.043, 0.0, random);
+    for (auto* column : {&ramp.level, &ramp.force_N, &ramp.time_s}) column->resize(380);
+    ramp.line.resize(380);
+    CHECK_FALSE(calibrate(ramp, {}).lag_s);
+}
+
+TEST_CASE("calibrate: the loop between pressing and releasing is reported, by phase or by time") {
+    std::mt19937_64 random(kSeed);
+    CalibrationRows rows;
+    for (int i = 1; i < 60; ++i) {
+        const double x = i / 60.0;
+        add_row(x, 0.1 * std::exp(3.5 * x) * 1.2, 0, rows);
+        rows.phase.push_back(PressPhase::press);
+        add_row(x, 0.1 * std::exp(3.5 * x), 0, rows);
+        rows.phase.push_back(PressPhase::release);
+    }
+    const Calibration by_phase = calibrate(rows, {});
+    REQUIRE(by_phase.hysteresis);
+    CHECK(by_phase.hysteresis->median_relative == doctest::Approx(0.2 / 1.1).epsilon(0.02));
+    CHECK(any_with(by_phase.warnings, "more force than releasing"));
+    CalibrateOptions keep;
+    keep.remove_lag = false;
+    const Calibration by_time = calibrate(waves(0.0, 0.2, random), keep);
+    REQUIRE(by_time.hysteresis);
+    CHECK(by_time.hysteresis->median_relative == doctest::Approx(0.2 / 1.1).epsilon(0.15));
+}
+
+TEST_CASE("calibrate: repeats that drift are told") {
+    CalibrationRows rows;
+    for (int r = 0; r < 5; ++r) {
+        for (int i = 1; i <= 30; ++i) add_row(i / 30.0, 0.1 * std::exp(4.0 * i / 30.0) * (1.0 + 0.04 * r), r, rows);
+    }
+    const Calibration calibration = calibrate(rows, {});
+    REQUIRE(calibration.drift);
+    CHECK(calibration.drift->per_repeat == doctest::Approx(0.04).epsilon(0.15));
+    CHECK(calibration.by_repeats);
+    CHECK(any_with(calibration.warnings, "repeats differ by"));
+}
+
+TEST_CASE("calibrate: warnings in plain words, for pens and for fingers") {
+    CalibrationRows pen;
+    CalibrationRows finger;
+    for (int i = 0; i <= 300; ++i) {
+        const double F = 0.04 + 0.015 * i;
+        add_row(std::clamp(std::log(F / 0.05) / std::log(2.8 / 0.05), 0.0, 1.0), F, 0, pen);
+        add_row(0.7 * (1.0 - std::exp(-F / 0.4)), F, 0, finger);
+    }
+    const Calibration calibration = calibrate(pen, {});
+    CHECK(calibration.ends.saturation_N == doctest::Approx(2.8).epsilon(0.01));
+    CHECK(any_with(calibration.warnings, "N this pen reports full pressure"));
+    CHECK(calibration.force_at_full_N == doctest::Approx(2.8).epsilon(0.02));
+    CalibrateOptions options;
+    options.level = LevelField::contact_area;
+    const Calibration area = calibrate(finger, options);
+    CHECK(any_with(area.warnings, "the contact area grows no more"));
+    CHECK(area.profile.full_contact_area_px2 > 0.0);
+
+    CalibrationRows few;
+    for (const double x : {0.3, 0.35, 0.4, 0.7, 0.75}) add_row(x, 0.1 * std::exp(4.0 * x), 0, few);
+    const auto warnings = calibrate(few, {}).warnings;
+    CHECK(any_with(warnings, "light touch below"));
+    CHECK(any_with(warnings, "are extrapolated"));
+    CHECK(any_with(warnings, "no point between 40 % and 70 %"));
+    CHECK(any_with(warnings, "only 5 distinct levels"));
+}
+
+TEST_CASE("hard case 3: forces that do not rise are refused") {
+    CalibrationRows rows;
+    for (int i = 0; i < 20; ++i) add_row(i / 20.0, 2.0 - 0.05 * i, 0, rows);
+    CHECK(contains(message_of([&] { calibrate(rows, {}); }), "forces that do not rise with the level"));
+}

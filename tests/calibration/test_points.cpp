@@ -1,0 +1,113 @@
+#include "calibration/points.h"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+#include "files/text.h"
+#include "tests/error_message.h"
+#include "tests/temporary_folder.h"
+
+using namespace palpa;
+using namespace palpa::test;
+
+namespace {
+
+CalibrationRows read(const std::string& text, const ReadOptions& options = {}) {
+    const TemporaryFolder folder;
+    write_text_atomically(folder / "d.csv", text);
+    return read_points(folder / "d.csv", options);
+}
+
+std::string said(const std::string& text, const ReadOptions& options = {}) {
+    return message_of([&] { read(text, options); });
+}
+
+}  // namespace
+
+TEST_CASE("points: columns by name, gram-force becomes newtons") {
+    const CalibrationRows rows = read("repeat,force_gf,level,phase,time_s\nb,10,0.1,press,1\nb,100,0.5,press,2\na,200,0.9,release,0\n");
+    CHECK(rows.force_N[1] == doctest::Approx(0.980665));
+    CHECK(rows.repeat == std::vector<int>{0, 0, 1});
+    CHECK(rows.phase[2] == PressPhase::release);
+    CHECK(rows.line[2] == 4);
+    CHECK(read("pressure_norm,force_N\n0,0.1\n0.5,1\n1,2\n").level[1] == 0.5);
+    CHECK(read("level,force_N,pen\n0,0.1,a\n0.5,1,a\n0.7,2,b\n1,2,a\n", {{{"pen", "a"}}, false, true}).level.size() == 3);
+    const CalibrationRows sessions = read("level,force_N,pen\n0,0.1,a\n0.5,1,a\n1,2,a\n0.5,2,b\n");
+    CHECK(contains(sessions.notes.at(0), "2 sessions"));
+    CHECK(sessions.repeat.back() == 1);
+}
+
+TEST_CASE("hard case 3: every kind of bad points has a message that names it") {
+    const std::string head = "level,force_N\n";
+    CHECK(contains(said(head + "0,0.1\n0.5,1\n0,0.2\n0.5,1.1\n"), "2 distinct levels in 4 rows, expected 3 at least"));
+    CHECK(contains(said(head), "no rows"));
+    CHECK(contains(said(head + "0,1\n0.5,1\n1,1\n"), "the same force, 1 N, in every row"));
+    CHECK(contains(said(head + "0,0.1\n0.5,-0.01\n1,2\n"), "line 3, force_N: found '-0.01', expected a force >= 0"));
+    CHECK(contains(said(head + "0,0.1\n0.5,nan\n1,2\n"), "line 3, force_N: found 'nan', expected a finite number"));
+    CHECK(contains(said(head + "0,0.1\n0.5,\n1,2\n"), "line 3, force_N: found '', expected a finite number"));
+    CHECK(contains(said(head + "0,0.1\n-0.5,1\n1,2\n"), "line 3, level: found '-0.5', expected a level >= 0"));
+    CHECK(contains(said(head + "0,0.1\n0.5,inf\n1,2\n"), "finite number"));
+    CHECK(contains(said("level,weight\n0,0.1\n"), "expected a column 'force_N'"));
+    CHECK(contains(said("pressure,force_N\n0,0.1\n"), "expected a column 'level'"));
+    CHECK(contains(said("level,force_N,phase\n0,0.1,down\n"), "expected press or release"));
+    CHECK(contains(said(head + "0,0.1\n0.5,1\n1,2\n", {{{"level", "7"}}, false, true}), "no row with level=7"));
+    CHECK(contains(said(head + "0,0.1\n0.5,1\n1,2\n", {{{"pen", "7"}}, false, true}), "expected a column 'pen'"));
+}
+
+TEST_CASE("hard case 3: gram-force and newtons mixed up are seen") {
+    CHECK(contains(said("level,force_N\n0,5\n0.5,80\n1,250\n"), "forces up to 250 N, expected less than 60 N"));
+    CHECK(said("level,force_N\n0,5\n0.5,80\n1,250\n", {{}, true, true}) == "");
+    CHECK(contains(said("level,force_gf\n0,0.05\n0.5,0.8\n1,2.5\n"), "(2.5 gf), expected more than 0.15 N"));
+    CHECK(contains(said("level,force_N,force_gf\n0,0.1,10.2\n0.5,1,102\n1,2,2\n"), "line 4, force_gf: found '2', expected 203.9 gf"));
+    std::string mixed = "level,force_N\n";
+    for (int i = 1; i <= 12; ++i) mixed += number_text(i / 12.0) + "," + number_text(i == 7 ? 0.4 * 101.97 : 0.05 * i) + "\n";
+    CHECK(contains(said(mixed), "line 8, force: found 40.79 N, expected about"));
+}
+
+TEST_CASE("hard case 3: times that do not rise, and a sensor that stands still") {
+    const std::string head = "time_s,level,force_N\n";
+    CHECK(contains(said(head + "0,0,0.1\n2,0.5,1\n1,1,2\n"), "line 4, time_s: found 1 after 2, expected times that rise"));
+    CHECK(contains(said(head + "0,0,0.1\n1,0.5,1\n1,1,2\n"), "line 4, time_s: found 1 after 1"));
+    CHECK(said("time_s,repeat,level,force_N\n0,1,0,0.1\n1,1,0.5,1\n0,2,1,2\n") == "");
+    std::string stopped = head;
+    for (int i = 0; i < 40; ++i) stopped += number_text(0.1 * i) + "," + number_text(i / 40.0) + "," + number_text(i < 20 ? 0.1 + 0.05 * i : 1.05) + "\n";
+    CHECK(contains(said(stopped), "lines 21 to 41, force: found 1.05 N all the time while the level goes from 0.475 to 0.975"));
+}
+
+TEST_CASE("points: silence below activation and the plateau above saturation are told from the curve") {
+    CalibrationRows rows;
+    for (int i = 0; i <= 400; ++i) {
+        const double F = 0.01 * i;  // 0 to 4 N; activation at 0.05, full at 2.8
+        rows.force_N.push_back(F);
+        rows.level.push_back(std::clamp(std::log(std::max(F, 1e-9) / 0.05) / std::log(2.8 / 0.05), 0.0, 1.0));
+        rows.line.push_back(static_cast<std::size_t>(i + 2));
+    }
+    const Ends ends = ends_of(rows, {0.0, 1.0});
+    CHECK(ends.activation_N == doctest::Approx(0.06));
+    CHECK(ends.saturation_N == doctest::Approx(2.8));
+    CHECK(ends.above_saturation_N == doctest::Approx(4.0));
+    const FitPoints points = fit_points(rows, {0.0, 1.0}, ends);
+    CHECK(points.level.size() > 270);
+    CHECK(points.level.size() < 285);  // the silent and the saturated rows are gone but for the nearest
+    CHECK((points.level.tail(points.level.size() - 1) >= points.level.head(points.level.size() - 1)).all());
+
+    // a finger's area that flattens at 0.62 with noise: no hard stop, and no full scale
+    for (std::size_t i = 0; i < rows.level.size(); ++i) {
+        rows.level[i] = 0.62 * (1.0 - std::exp(-rows.force_N[i] / 0.3)) + 0.002 * std::sin(1e3 * static_cast<double>(i));
+    }
+    const Ends area = ends_of(rows, {0.0, 1.0});
+    CHECK(area.saturation_N > 0.8);
+    CHECK(area.saturation_N < 1.3);
+
+    // a curve that simply ends is not saturated
+    for (std::size_t i = 0; i < rows.level.size(); ++i) rows.level[i] = std::clamp(std::log(std::max(rows.force_N[i], 1e-9) / 0.05) / 5.0, 0.0, 1.0);
+    CHECK(std::isnan(ends_of(rows, {0.0, 1.0}).saturation_N));
+}
+
+TEST_CASE("points: the range of counts is the next power of two") {
+    CHECK(level_range_of({0.0, 0.9}).highest == 1.0);
+    CHECK(level_range_of({0.0, 1023.0}).highest == 1023.0);
+    CHECK(level_range_of({0.0, 1024.0}).highest == 2047.0);
+    CHECK(level_range_of({0.0, 8000.0}).highest == 8191.0);
+}

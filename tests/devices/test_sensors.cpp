@@ -1,0 +1,160 @@
+// Sensors against their simulators, over loopback UDP and a pseudo-terminal.
+
+#include <doctest/doctest.h>
+
+#include <chrono>
+#include <cmath>
+#include <cstdlib>
+#include <functional>
+#include <thread>
+
+#include "devices/load_cell.h"
+#include "devices/netft.h"
+#include "devices/sensor_reader.h"
+#include "tests/devices/simulator_process.h"
+#include "tests/temporary_folder.h"
+
+using namespace palpa;
+using namespace palpa::test;
+
+namespace {
+
+struct Sent {
+    long long records = 0, lost = 0, duplicate = 0, reordered = 0;
+};
+
+Sent parse(const std::string& text) {
+    Sent sent;
+    REQUIRE(std::sscanf(text.c_str(), "sent %lld lost %lld duplicate %lld reordered %lld", &sent.records, &sent.lost, &sent.duplicate, &sent.reordered) == 4);
+    return sent;
+}
+
+// Reads until `done` says so, 30 s at most.
+std::vector<ForceReading> read_until(SensorReader& reader, const std::function<bool(const std::vector<ForceReading>&)>& done) {
+    std::vector<ForceReading> all;
+    const double until_s = steady_s() + 30.0;
+    while (steady_s() < until_s && !done(all)) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(5));
+        reader.poll(all);
+    }
+    return all;
+}
+
+SensorReader* open_reader(const SimulatorProcess& simulator, std::unique_ptr<SensorReader>& reader) {
+    NetFtOptions options;
+    options.host = "127.0.0.1";
+    options.port = std::atoi(simulator.port().c_str());
+    reader = std::make_unique<SensorReader>(open_netft(options));
+    return reader.get();
+}
+
+}  // namespace
+
+TEST_CASE("Net F/T: 7 kHz with nothing lost, times and forces as sent") {
+    // PALPA_LONG_S: for how long (3 s here; 60 s in the long run)
+    const char* asked = std::getenv("PALPA_LONG_S");
+    const std::string seconds = asked != nullptr ? asked : "3";
+    SimulatorProcess simulator(PALPA_NETFT_SIMULATOR, {"--rate-Hz", "7000", "--seconds", seconds, "--first-sequence", "4294960000"});
+    std::unique_ptr<SensorReader> reader;
+    open_reader(simulator, reader);
+    const double until_s = steady_s() + std::atof(seconds.c_str()) + 0.7;
+    std::vector<ForceReading> all;
+    while (steady_s() < until_s) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(5));
+        reader->poll(all);
+    }
+    const Sent sent = parse(simulator.line());
+    const SensorHealth health = reader->health();
+    MESSAGE("sent ", sent.records, ", received ", health.received, " in ", seconds, " s");
+    CHECK(sent.records > 6000 * (std::atoi(seconds.c_str()) - 1));
+    CHECK(static_cast<long long>(all.size()) == sent.records);
+    CHECK(health.received == sent.records);
+    CHECK(health.lost == 0);
+    CHECK(health.overflowed == 0);
+    CHECK(health.duplicate + health.reordered + health.malformed + health.faults == 0);
+    int wrong = 0;
+    for (std::size_t i = 1; i < all.size(); ++i) {
+        wrong += all[i].t_host_s < all[i - 1].t_host_s;
+        wrong += std::abs(all[i].t_device_s - all[i - 1].t_device_s - 1.0 / 7000.0) > 1e-9;  // across the wrap-around too
+        wrong += std::abs(all[i].force_N - all[i - 1].force_N) > 1e-3;                        // 3 N, 0.25 Hz: 0.34 mN a step
+    }
+    CHECK(wrong == 0);
+}
+
+TEST_CASE("Net F/T: lost, duplicate and reordered records are counted as the line made them") {
+    SimulatorProcess simulator(PALPA_NETFT_SIMULATOR, {"--rate-Hz", "2000", "--seconds", "2", "--lose", "0.02", "--duplicate", "0.03", "--reorder", "0.02",
+                                                       "--noise-N", "0.01", "--seed", "7", "--status", "2147483648"});
+    std::unique_ptr<SensorReader> reader;
+    open_reader(simulator, reader);
+    const auto all = read_until(*reader, [&](const auto& so_far) { return !so_far.empty() && !reader->health().alive; });
+    const Sent sent = parse(simulator.line());
+    const SensorHealth health = reader->health();
+    CHECK(sent.lost > 20);
+    CHECK(sent.duplicate > 20);
+    CHECK(sent.reordered > 20);
+    CHECK(std::abs(health.lost - sent.lost) <= 2);  // a loss before the first or after the last record has no witness
+    CHECK(health.duplicate == sent.duplicate);
+    CHECK(std::abs(health.reordered - sent.reordered) <= 1);
+    CHECK(health.faults == health.received);
+    CHECK(health.stalls == 1);
+    for (std::size_t i = 1; i < all.size(); ++i) REQUIRE(all[i].t_device_s > all[i - 1].t_device_s);
+}
+
+TEST_CASE("Net F/T: a sensor that falls silent is asked again, and goes on") {
+    SimulatorProcess simulator(PALPA_NETFT_SIMULATOR, {"--rate-Hz", "500", "--silent-from-s", "0.5", "--silent-s", "1.2"});
+    std::unique_ptr<SensorReader> reader;
+    open_reader(simulator, reader);
+    bool was_gone = false;
+    read_until(*reader, [&](const auto& so_far) {
+        was_gone = was_gone || (so_far.size() > 10 && !reader->health().alive);
+        return was_gone && reader->health().alive;
+    });
+    const SensorHealth health = reader->health();
+    CHECK(health.stalls == 1);
+    CHECK(health.reconnects >= 1);
+    CHECK(health.alive);
+}
+
+TEST_CASE("load cell: lines, clock wrap-around, loss, repetition, garbled lines") {
+    const TemporaryFolder folder;
+    SimulatorProcess simulator(PALPA_LOAD_CELL_SIMULATOR, {"--rate-Hz", "200", "--seconds", "3", "--first-us", "4293967295", "--lose", "0.03", "--duplicate", "0.03",
+                                                           "--reorder", "0.02", "--garble", "0.02", "--seed", "3"});
+    LoadCellOptions options;
+    options.path = simulator.port();
+    options.N_per_count = 1.0 / 40000.0;
+    SensorReader reader(open_load_cell(options));
+    const auto all = read_until(reader, [&](const auto& so_far) { return !so_far.empty() && !reader.health().alive; });
+    const Sent sent = parse(simulator.line());
+    const SensorHealth health = reader.health();
+    CAPTURE(sent.records);
+    CHECK(sent.records >= 590);
+    CHECK(health.malformed > 3);
+    CHECK(health.duplicate > 5);
+    CHECK(health.reordered > 2);
+    // a garbled line is a gap in the clock too
+    CHECK(std::abs(health.lost - sent.lost - health.malformed) <= 8);
+    CHECK(health.received + sent.lost + sent.reordered + health.malformed >= sent.records - 8);
+    for (std::size_t i = 1; i < all.size(); ++i) REQUIRE(all[i].t_device_s > all[i - 1].t_device_s);
+    CHECK(all.back().t_device_s == doctest::Approx(3.0).epsilon(0.03));
+    CHECK(all.front().raw >= 84000);
+}
+
+TEST_CASE("load cell: unplugged and plugged in again, it goes on by itself") {
+    const TemporaryFolder folder;
+    const std::string link = (folder / "cell").string();
+    SimulatorProcess simulator(PALPA_LOAD_CELL_SIMULATOR, {"--rate-Hz", "100", "--silent-from-s", "0.8", "--silent-s", "1.0", "--link", link});
+    LoadCellOptions options;
+    options.path = simulator.port();
+    options.N_per_count = 1.0 / 40000.0;
+    SensorReader reader(open_load_cell(options));
+    bool was_gone = false;
+    const auto all = read_until(reader, [&](const auto& so_far) {
+        was_gone = was_gone || (so_far.size() > 10 && !reader.health().alive);
+        return was_gone && reader.health().alive;
+    });
+    CHECK(reader.health().reconnects == 1);
+    CHECK(reader.health().stalls == 1);
+    CHECK(all.size() > 50);
+    CHECK_THROWS_WITH_AS(open_load_cell({(folder / "none").string(), 115200, 1.0}), doctest::Contains("none: cannot be opened"), std::runtime_error);
+    CHECK_THROWS_WITH_AS(open_load_cell({"/dev/null", 115200, 1.0}), doctest::Contains("is not a serial port"), std::runtime_error);
+}
