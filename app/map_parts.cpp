@@ -9,6 +9,7 @@
 #include "files/input_error.h"
 #include "files/text.h"
 #include "mechanics/error.h"
+#include "stiffnessmaps/map_file.h"
 
 namespace palpa {
 namespace {
@@ -67,6 +68,7 @@ void write_piece(const MapTask& task, const std::string& name, const Numbers& nu
 }
 
 void check_phantom(const Phantom& phantom, const std::filesystem::path& file) {
+    check_map(map_of_phantom(phantom), file.string());  // what could not be written after all the computing
     if (phantom.depths_m.back() >= phantom.size_m[2]) {
         refuse(file, "depths_mm", short_number(1e3 * phantom.depths_m.back()),
                "depths less than the thickness, " + short_number(1e3 * phantom.size_m[2]) + " mm");

@@ -21,8 +21,9 @@ constexpr int kSolve = 3;
 constexpr int kErrorNoMemory = -9;
 
 // Orderings that give the same factor, to the last bit, at every call. Scotch, which MUMPS would choose for the larger
-// systems, depends on the race of its threads and on the calls before. PORD is as fast there; it ends the process
-// where all equations touch each other, so the small ones, where that can be, are left to minimum fill.
+// systems, depends on the race of its threads and on the calls before; PORD factors as fast at 30 000 equations and a
+// quarter slower at 70 000. It ends the process where all equations touch each other, so the small systems, where that
+// can be, are left to minimum fill.
 constexpr int kMinimumFill = 2;
 constexpr int kPord = 4;
 constexpr int kSmall = 10000;  // equations

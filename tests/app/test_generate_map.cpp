@@ -163,6 +163,7 @@ TEST_CASE("generate: bad input ends with status 2 and says what was expected") {
         CHECK(called.status == 2);
         CHECK(contains(called.err, words));
         CHECK_FALSE(fs::exists(bench / "n.map"));
+        CHECK_FALSE(fs::exists(bench / "n.map.lines"));  // nothing was computed
     };
     refused("rolling\"", "sliding\", \"friction\": -0.3", "", "indenter.friction: found -0.3");
     refused("rolling\"", "sliding\", \"friction\": 0.3", "--method analytic", "indenter.friction: found 0.3, expected 0 with --method analytic");
@@ -173,6 +174,7 @@ TEST_CASE("generate: bad input ends with status 2 and says what was expected") {
     refused("[0, 2]", "[-2, 2]", "", "expected an indenter on the tissue, 0 to 40 mm");
     refused("0.45, \"assumed\"", "0.5, \"assumed\"", "", "poisson");
     refused("40000", "-1", "", "young_Pa");
+    refused("[21, 10]", "[9, 10]", "", "p.json: nodules A: found x 20, y 18 mm, expected a place on the map");
     refused("}],", "}, {\"id\": \"B\", \"centre_mm\": [22, 18, 6], \"diameter_mm\": 6, \"young_Pa\": 2e6, \"poisson\": 0.45}],", "", "overlap");
     refused("40000", "40000", "--part 3/2", "i/n with 1 <= i <= n");
     CHECK(message_of([] { parse_part("2"); }) != "");
