@@ -23,6 +23,7 @@ namespace {
 void write_pen(const simulators::StreamOptions& hand, double from_s, double seconds, const std::filesystem::path& file) {
     std::ofstream out(file);
     out << "t_s\tkind\tid\tphase\tx_px\ty_px\tpressure\n";
+    out << "-1.5\tpen\t0\thover\t600\t400\t0\n";
     bool down = false;
     for (int i = 0; i < static_cast<int>(200.0 * seconds); ++i) {
         const double felt_N = std::max(simulators::hand_N(hand, from_s + 0.005 * i), 1e-9);
@@ -39,25 +40,26 @@ TEST_CASE("record: a pen on a real X server and a force sensor give points of on
     const TemporaryFolder folder;
     const auto path = [&](const char* name) { return (folder / name).string(); };
     simulators::StreamOptions hand;
-    hand.steps = 8;  // each held for a second: pen and sensor start some tenths apart
+    hand.steps = 16;  // each too short to be taken for the sensor's rest before the pen is there
     hand.greatest_N = 2.4;
-    hand.period_s = 8.0;
-    SimulatorProcess sensor(PALPA_NETFT_SIMULATOR, {"--rate-Hz", "1000", "--steps", "8", "--greatest-N", "2.4", "--period-s", "8"});
+    hand.period_s = 5.0;
+    SimulatorProcess sensor(PALPA_NETFT_SIMULATOR, {"--rate-Hz", "1000", "--steps", "16", "--greatest-N", "2.4", "--period-s", "5"});
     int status = -1;
     std::thread session([&] {
         const std::string command = "timeout 60 " PALPA_PROGRAM " calibrate record -o " + path("s") + " --sensor netft:127.0.0.1:" + sensor.port() +
-                                    " --steady-s 0.12 --seconds 24 --json >" + path("out.json");
+                                    " --steady-s 0.12 --seconds 18 --json >" + path("out.json");
         status = shell(command);
     });
     // the streams are opened after the window, so the pen may come once they are there
     for (int i = 0; i < 200 && !std::filesystem::exists(folder / "s/levels-01.tsv"); ++i) sleep_s(0.05);
     sleep_s(1.5);
-    write_pen(hand, steady_s() + 0.35, 18.0, folder / "pen.tsv");  // xorg_pen needs about so long to begin
-    CHECK(shell("timeout 30 " PALPA_XORG_PEN " " + path("pen.tsv")) == 0);
+    const double from_s = steady_s() + 2.0;  // time to open the device; from then on one hand moves pen and sensor
+    write_pen(hand, from_s, 11.0, folder / "pen.tsv");
+    CHECK(shell("timeout 40 " PALPA_XORG_PEN " " + path("pen.tsv") + " " + number_text(from_s)) == 0);
     session.join();
     REQUIRE(status == 0);
     const Json result = read_json(folder / "out.json");
-    CHECK(result["points"].get<int>() > 7);
+    CHECK(result["points"].get<int>() > 12);
     CHECK(result["samples"].get<int>() > 2000);
     CHECK(result["sensor"]["health"]["lost"] == 0);
 

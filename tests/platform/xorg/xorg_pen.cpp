@@ -1,6 +1,6 @@
 // Plays a script of pen, finger, mouse and keyboard on the X server of with-xorg (1280 x 800 px), in real time:
 //
-//   xorg_pen [SCRIPT.tsv]      stdin without a file; devices from XORG_PEN, XORG_TOUCH, XORG_MOUSE, XORG_KEYBOARD
+//   xorg_pen [SCRIPT.tsv [START_S]]   stdin without a file; t_s = 0 is START_S of the steady clock (now if absent); devices from XORG_PEN, XORG_TOUCH, XORG_MOUSE, XORG_KEYBOARD
 //   xorg_pen --disable NAME    as if the device (pen, touch, mouse) were unplugged; --enable: plugged in
 //   again
 //
@@ -159,15 +159,16 @@ void play(const Row& row, Devices& devices) {
     throw std::runtime_error("script: kind is " + row.kind + ", want pen, touch, mouse or key");
 }
 
-void run(std::istream& in) {
+// start_s: when t_s = 0 is, on the steady clock; 0: now.
+void run(std::istream& in, double start_s) {
     using Clock = std::chrono::steady_clock;
+    const auto seconds = [](double s) { return std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(s)); };
     const std::vector<Row> rows = read_script(in);
     Devices devices;
     double late_s = 0.0;
-    const auto start = Clock::now();
+    const auto start = start_s > 0.0 ? Clock::time_point(seconds(start_s)) : Clock::now();
     for (const Row& row : rows) {
-        const auto due =
-            start + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(row.t_s));
+        const auto due = start + seconds(row.t_s);
         std::this_thread::sleep_until(due);
         late_s = std::max(late_s, std::chrono::duration<double>(Clock::now() - due).count());
         play(row, devices);
@@ -204,19 +205,19 @@ int main(int argc, char** argv) {
     try {
         const std::string first = argc > 1 ? argv[1] : "";
         const bool switches = first == "--disable" || first == "--enable";
-        if (argc > 3 || (argc == 3) != switches) {
-            throw std::runtime_error("usage: xorg_pen [SCRIPT.tsv] | --disable NAME | --enable NAME");
+        if (argc > 3 || (switches && argc != 3)) {
+            throw std::runtime_error("usage: xorg_pen [SCRIPT.tsv [START_S]] | --disable NAME | --enable NAME");
         }
         if (switches) {
             palpa::xorg::set_enabled(argv[2], first == "--enable" ? 1 : 0);
             return 0;
         }
         std::ifstream file;
-        if (argc == 2) {
+        if (argc >= 2) {
             file.open(argv[1]);
             if (!file) throw std::runtime_error(std::string(argv[1]) + ": cannot be read");
         }
-        palpa::xorg::run(argc == 2 ? file : std::cin);
+        palpa::xorg::run(argc >= 2 ? file : std::cin, argc == 3 ? std::stod(argv[2]) : 0.0);
     } catch (const std::exception& error) {
         std::fprintf(stderr, "xorg_pen: %s\n", error.what());
         return 1;
