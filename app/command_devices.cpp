@@ -72,7 +72,7 @@ Json device_json(const PointerDevice& device) {
 
 Json seen_json(Tool which, const DeviceCheck& check) {
     const ToolCheck& tool = of_tool(which, check);
-    const Drift drift = clock_drift(tool);
+    const ClockDrift drift = clock_drift(tool);
     Json json{{"samples", tool.samples}, {"touching", tool.touching}, {"rate_Hz", rate_Hz(tool)}};
     json["gap_ms"] = {{"median", 1e3 * median_gap_s(tool)}, {"worst", 1e3 * worst_gap_s(tool)}};
     json["pressure"] = name_of(pressure_kind(check.pressure, which));
@@ -114,7 +114,7 @@ void print_seen(Tool which, const DeviceCheck& check) {
             std::printf("  pressure %.3g to %.3g, %lld different values\n", tool.pressure.lowest, tool.pressure.highest,
                         static_cast<long long>(distinct_pressures(tool)));
     }
-    if (const Drift drift = clock_drift(tool); std::isfinite(drift.ppm)) {
+    if (const ClockDrift drift = clock_drift(tool); std::isfinite(drift.ppm)) {
         std::printf("  its clock runs %+.0f ppm (standard error %.0f) against the computer's\n", drift.ppm, drift.standard_error_ppm);
     }
     std::printf("  x %.1f to %.1f px, y %.1f to %.1f px\n", tool.x_px.lowest, tool.x_px.highest, tool.y_px.lowest, tool.y_px.highest);

@@ -102,7 +102,7 @@ double worst_gap_s(const ToolCheck& tool) { return 1e-9 * tool.gaps.worst_ns(); 
 std::int64_t distinct_pressures(const ToolCheck& tool) { return static_cast<std::int64_t>(tool.values.count()); }
 
 // slope = S_ha / S_hh,  its variance = (S_aa - slope S_ha) / ((n - 2) S_hh)
-Drift clock_drift(const ToolCheck& tool) {
+ClockDrift clock_drift(const ToolCheck& tool) {
     const ClockFit& clock = tool.clock;
     const double n = static_cast<double>(clock.count);
     // n samples evenly over T have a variance of T^2 / 12; a delay that changes by 1 ms in 1 s looks like 1000 ppm

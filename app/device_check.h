@@ -24,7 +24,7 @@ struct ClockFit {
     double sum_ahead_ahead = 0.0;
 };
 
-struct Drift {
+struct ClockDrift {
     double ppm = kMissing;  // positive: the device's clock is fast; NaN before 30 samples over some 4 s
     double standard_error_ppm = kMissing;  // if delays come by chance; a computer that gets busy meanwhile adds to it
 };
@@ -79,7 +79,7 @@ double median_gap_s(const ToolCheck& tool);  // to 2 %
 double worst_gap_s(const ToolCheck& tool);
 
 std::int64_t distinct_pressures(const ToolCheck& tool);
-Drift clock_drift(const ToolCheck& tool);
+ClockDrift clock_drift(const ToolCheck& tool);
 
 const char* name_of(PressureKind kind);
 

@@ -48,7 +48,7 @@ void seen_lines(Tool which, const DeviceCheck& check, const Gui& gui) {
     value_line("", range_text(tool.pressure, 3) + ", " + std::to_string(distinct_pressures(tool)) + " values", column_px);
     value_line("Counts", range_text(tool.pressure_raw, 0), column_px);
     value_line("Rate", fixed(rate_Hz(tool), 0) + " Hz, worst gap " + fixed(1e3 * worst_gap_s(tool), 0) + " ms", column_px);
-    const Drift drift = clock_drift(tool);
+    const ClockDrift drift = clock_drift(tool);
     const std::string clock = std::isfinite(drift.ppm) ? fixed(drift.ppm, 0) + " +- " + fixed(drift.standard_error_ppm, 0) + " ppm" : "-";
     value_line("Clock drift", clock, column_px);
     value_line("Tilt, size", std::string(tool.tilt ? "tilt" : "-") + ", " + (tool.contact_size ? "size" : "-"), column_px);

@@ -1,5 +1,6 @@
 #include "app/frame.h"
 
+#include "app/calibrate_screen.h"
 #include "app/picture.h"
 #include "render/gl.h"
 #include "render/png.h"
@@ -34,6 +35,7 @@ void draw_panels(const Shown& shown, const Layout& layout, Gui& gui, Screens& sc
     take_keys(shown, gui, screens, wishes);
     if (screens.screen == Screen::devices) return draw_device_screen(shown, gui, screens, wishes);
     if (screens.screen == Screen::scale) return draw_scale_screen(shown, gui, screens, wishes);
+    if (screens.screen == Screen::calibrate && screens.calibrate) return draw_calibrate_screen(shown, gui, *screens.calibrate, wishes);
     if (screens.screen == Screen::reveal) {
         draw_reveal_on_tissue(shown, gui, screens.debrief);
         draw_reveal_panel(shown, layout, gui, screens, wishes);
@@ -53,7 +55,7 @@ void draw_panels(const Shown& shown, const Layout& layout, Gui& gui, Screens& sc
 Wishes draw_frame(const Scene& scene, const Plan& plan, const Trial& trial, const Settings& settings, double now_s,
                   double dt_s, TissueDrawer& tissue, Gui& gui, Screens& screens, State& state, FrameTimes& times) {
     const std::int64_t began_ns = steady_ns();
-    const bool keys_to_panels = screens.menu || screens.screen == Screen::reveal || screens.screen == Screen::scale;
+    const bool keys_to_panels = screens.menu || (screens.screen != Screen::trial && screens.screen != Screen::devices);
     gui.begin_frame(dt_s, keys_to_panels);
     const WindowSize window = gui.size_px();
     Shown shown{scene, plan, state, trial, settings, times, {}, {}, 0.0};

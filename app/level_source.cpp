@@ -10,7 +10,9 @@
 #include <stdexcept>
 #include <thread>
 
+#include "app/calibrate_screen.h"
 #include "app/record_calibration.h"
+#include "app/recording.h"
 #include "files/input_error.h"
 #include "files/text.h"
 #include "platform/window.h"
@@ -69,16 +71,28 @@ class LevelStream : public LevelSource {
     int fd_ = -1;
 };
 
-// An empty window to press on; advice stands in the terminal.
+// A window to press on, with the same guide as the app's screen.
 class LevelWindow : public LevelSource {
  public:
-    LevelWindow() : window_(options()) {}
+    LevelWindow() : window_(options()), gui_(window_) {}
 
     bool poll(double wait_s, std::vector<Sample>& out) override {
         window_.poll(wait_s, out);
+        return !window_.close_requested() && !stopped_;
+    }
+
+    void show(Recording& recording) override {
+        constexpr double kFrame_s = 1.0 / 60.0;
+        const double now_s = window_.now_s();
+        if (now_s - shown_s_ < kFrame_s) return;
+        gui_.begin_frame(now_s - shown_s_, true);
+        shown_s_ = now_s;
+        refresh_fit(recording, guide_);
+        stopped_ = draw_guide(recording, gui_, guide_).stop;
+        gui_.end_frame();
         clear_screen(window_.width_px(), window_.height_px());
+        gui_.draw();
         window_.present();
-        return !window_.close_requested();
     }
 
  private:
@@ -88,6 +102,10 @@ class LevelWindow : public LevelSource {
         return options;
     }
     Window window_;
+    Gui gui_;
+    Guide guide_;
+    double shown_s_ = 0.0;
+    bool stopped_ = false;
 };
 
 }  // namespace

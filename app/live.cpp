@@ -6,6 +6,7 @@
 #include <exception>
 #include <stdexcept>
 
+#include "app/calibrate_screen.h"
 #include "app/frame.h"
 #include "app/load.h"
 #include "app/prepare.h"
@@ -238,6 +239,13 @@ void act(Action action, double now_s, App& app) {
     if (!close_trial(app)) app.screens.problems.push_back(app.stopped);
 }
 
+// What was recorded is on the disk; a profile that was kept can be chosen at once.
+void close_calibrate(App& app) {
+    stop_recording(*app.screens.calibrate);
+    app.screens.calibrate.reset();
+    app.screens.profiles = profile_choices();
+}
+
 // A press that is going on when its screen goes ends there.
 void open_screen(Screen screen, double now_s, App& app) {
     const State& state = app.session.state;
@@ -254,6 +262,8 @@ void open_screen(Screen screen, double now_s, App& app) {
         app.screens.check = std::make_shared<DeviceCheck>();
         app.screens.dots.clear();
     }
+    if (screen == Screen::calibrate && !app.screens.calibrate) app.screens.calibrate = make_calibrate_form();
+    if (app.screens.screen == Screen::calibrate && screen != Screen::calibrate) close_calibrate(app);
     app.screens.screen = screen;
     app.screens.menu = false;
 }
@@ -329,6 +339,7 @@ void take_all(double now_s, std::vector<Sample>& samples, App& app) {
         }
         return;
     }
+    if (app.screens.screen == Screen::calibrate) return step_calibrate(samples, *app.screens.calibrate);
     if (app.hold.pen || app.hold.finger) press_by_hold(now_s, app.hold, samples);
     if (app.screens.screen != Screen::trial || !app.stopped.empty()) return;
     for (const Sample& sample : samples) take(sample, app);
@@ -338,7 +349,7 @@ void take_all(double now_s, std::vector<Sample>& samples, App& app) {
 void place_keyboard(Window& window, const App& app) {
     constexpr double kSpeed_m_per_s = 0.03;
     const ScreenArea& a = app.session.state.screen;
-    if (app.screens.menu || app.screens.screen == Screen::reveal || app.screens.screen == Screen::scale) {
+    if (app.screens.menu || (app.screens.screen != Screen::trial && app.screens.screen != Screen::devices)) {
         window.set_keyboard(0.0, 0.0, 0.0, 0.0, 0.0);
     } else {
         window.set_keyboard(a.x_px, a.y_px, a.x_px + a.width_px, a.y_px + a.height_px, kSpeed_m_per_s * app.session.state.view.px_per_m);
@@ -474,6 +485,7 @@ std::optional<Json> run_live(const RunOptions& options) {
     double first_frame_s = 0.0;
     run_loop(window, gui, tissue, asked_s, first_frame_s, app);
     if (!options.screenshot.empty()) save_screen(window, options.screenshot);
+    if (app.screens.calibrate) stop_recording(*app.screens.calibrate);
     remember_window(window, app);
     Json result = result_of(app);
     result["start_to_first_frame_s"] = first_frame_s;

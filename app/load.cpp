@@ -13,12 +13,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-fs::path user_folder() {
-    if (const char* data = std::getenv("XDG_DATA_HOME"); data != nullptr && *data == '/') return fs::path(data) / "palpa";
-    if (const char* home = std::getenv("HOME"); home != nullptr && *home == '/') return fs::path(home) / ".local/share/palpa";
-    return {};
-}
-
 std::string name_in(const fs::path& file) {
     try {
         const Json json = read_json(file);
@@ -47,6 +41,12 @@ std::vector<Choice> choices(const char* kind) {
 }
 
 }  // namespace
+
+fs::path user_folder() {
+    if (const char* data = std::getenv("XDG_DATA_HOME"); data != nullptr && *data == '/') return fs::path(data) / "palpa";
+    if (const char* home = std::getenv("HOME"); home != nullptr && *home == '/') return fs::path(home) / ".local/share/palpa";
+    return {};
+}
 
 Scene load_scene(const std::string& name) {
     const fs::path assets = assets_folder();

@@ -55,6 +55,7 @@ void right_side(const Shown& shown, const Gui& gui, Screens& screens, Wishes& wi
     ImGui::TextDisabled("Screen and devices");
     if (big_button("Size of the screen", "Z", {}, gui)) wishes.screen = Screen::scale;
     if (big_button("Device check", "D", {}, gui)) wishes.screen = Screen::devices;
+    if (big_button("Calibrate pressure", "P", {}, gui)) wishes.screen = Screen::calibrate;
     if (big_button("Cost", "C", {0.0f, kTarget_mm, true, screens.cost}, gui)) screens.cost = !screens.cost;
     if (big_button("Full screen", "F11", {0.0f, kTarget_mm, true, shown.settings.full_screen}, gui)) wishes.full_screen = true;
     if (big_button("Quit", "Ctrl Q", {}, gui)) wishes.quit = true;
@@ -154,7 +155,7 @@ void take_keys(const Shown& shown, const Gui& gui, Screens& screens, Wishes& wis
     }
     if (gui.pressed(SDLK_ESCAPE)) {
         screens.problems.clear();
-        if (screens.screen == Screen::devices || screens.screen == Screen::scale) {
+        if (screens.screen != Screen::trial && screens.screen != Screen::reveal) {
             wishes.screen = shown.trial.finished ? Screen::reveal : Screen::trial;
         } else {
             screens.menu = false;
@@ -163,6 +164,7 @@ void take_keys(const Shown& shown, const Gui& gui, Screens& screens, Wishes& wis
     if (gui.pressed(SDLK_c)) screens.cost = !screens.cost;
     if (gui.pressed(SDLK_d)) wishes.screen = Screen::devices;
     if (gui.pressed(SDLK_z)) wishes.screen = Screen::scale;
+    if (gui.pressed(SDLK_p)) wishes.screen = Screen::calibrate;
     if (gui.pressed(SDLK_r)) wishes.again = true;
     if (gui.pressed(SDLK_s, true)) wishes.save_picture = true;
     if (screens.screen == Screen::trial) trial_keys(shown, gui, wishes);

@@ -28,12 +28,18 @@ struct RecordArguments {
     RecordOptions options;
 };
 
+struct Recording;
+
+inline constexpr double kN_per_gf = 9.80665e-3;
+
 // Where levels come from.
 class LevelSource {
  public:
     virtual ~LevelSource() = default;
     // Appends what arrived; waits up to `wait_s`. False once there will be no more.
     virtual bool poll(double wait_s, std::vector<Sample>& out) = 0;
+    // A window shows what to press next; a stream has nobody to show it to.
+    virtual void show(Recording&) {}
 };
 std::unique_ptr<LevelSource> open_level_stream(const std::string& path);  // level in Sample::pressure
 std::unique_ptr<LevelSource> open_level_window();

@@ -16,7 +16,7 @@
 
 namespace palpa {
 
-enum class Screen : std::uint8_t { trial, reveal, devices, scale };
+enum class Screen : std::uint8_t { trial, reveal, devices, scale, calibrate };
 
 // Times of the frame loop.
 struct FrameTimes {
@@ -38,6 +38,8 @@ struct Dot {
     bool touching;
 };
 
+struct CalibrateForm;  // calibrate_screen.h
+
 // What is open, and what a person has typed so far; means nothing to a replay.
 struct Screens {
     Screen screen = Screen::trial;
@@ -56,6 +58,7 @@ struct Screens {
     std::vector<PointerDevice> devices;
     std::shared_ptr<DeviceCheck> check;     // what they sent while the device check was open
     std::vector<Dot> dots;                  // the last places in its test area
+    std::shared_ptr<CalibrateForm> calibrate;  // while its screen is open
 };
 
 // All that a screen is drawn from.

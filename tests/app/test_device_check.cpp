@@ -122,7 +122,7 @@ TEST_CASE("device check: a clock that runs 120 ppm fast is found within its erro
             sample.t_device_s = 31.0 + true_s * (1.0 + 1e-6 * ppm);
             observe(sample, *check);
         }
-        const Drift drift = clock_drift(of_tool(Tool::pen, *check));
+        const ClockDrift drift = clock_drift(of_tool(Tool::pen, *check));
         // of a line through n points with uniform noise: sigma / (T sqrt(n / 12))
         const double expected_error_ppm = 1e6 * 0.004 / std::sqrt(12.0) / (60.0 * std::sqrt(14400.0 / 12.0));
         CHECK(drift.standard_error_ppm == doctest::Approx(expected_error_ppm).epsilon(0.05));
@@ -137,7 +137,7 @@ TEST_CASE("device check: without delays the drift is exact, from few samples too
         sample.t_device_s = 0.2 * i * (1.0 - 1e-3);
         observe(sample, *check);
     }
-    const Drift drift = clock_drift(of_tool(Tool::pen, *check));
+    const ClockDrift drift = clock_drift(of_tool(Tool::pen, *check));
     CHECK(drift.ppm == doctest::Approx(-1000.0).epsilon(1e-9));
     CHECK(drift.standard_error_ppm < 1e-3);
 }
@@ -158,7 +158,7 @@ TEST_CASE("device check: observing allocates nothing") {
     auto check = std::make_unique<DeviceCheck>();
     const auto before = test::allocations();
     for (int i = 0; i < 1000; ++i) observe(pen(0.001 * i, Phase::move, 0.001 * i), *check);
-    const Drift drift = clock_drift(of_tool(Tool::pen, *check));
+    const ClockDrift drift = clock_drift(of_tool(Tool::pen, *check));
     CHECK(std::isnan(drift.ppm));
     CHECK(distinct_pressures(of_tool(Tool::pen, *check)) == 1000);
     CHECK(test::allocations() == before);
