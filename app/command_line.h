@@ -15,6 +15,7 @@ void add_explain(CLI::App& app);
 void add_devices(CLI::App& app);
 void add_maps(CLI::App& app);
 void add_fem(CLI::App& app);
+void add_study(CLI::App& app);
 void add_bench(CLI::App& app);
 void add_bench_accuracy(CLI::App& bench);
 

@@ -1,0 +1,86 @@
+// palpa study as a person calls it.
+
+#include <doctest/doctest.h>
+#include <sys/wait.h>
+
+#include <cstdlib>
+#include <filesystem>
+
+#include "files/json.h"
+#include "files/text.h"
+#include "tests/error_message.h"
+#include "tests/temporary_folder.h"
+
+using namespace palpa;
+using namespace palpa::test;
+
+namespace {
+
+const std::string kCounts = PALPA_SOURCE_DIR "/assets/counts/paper.tsv";
+
+struct Called {
+    int status = 0;
+    std::string out;
+    std::string err;
+};
+
+Called study(const std::string& arguments) {
+    const TemporaryFolder folder;
+    const std::string command = "timeout 120 " PALPA_PROGRAM " study " + arguments + " >" + (folder / "out").string() +
+                                " 2>" + (folder / "err").string() + " </dev/null";
+    const int status = std::system(command.c_str());
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_text(folder / "out"), read_text(folder / "err")};
+}
+
+void refused(const std::string& arguments, const std::string& word) {
+    const Called called = study(arguments);
+    CAPTURE(arguments);
+    CAPTURE(called.err);
+    CHECK(called.status == 2);
+    CHECK(contains(called.err, word));
+}
+
+}  // namespace
+
+TEST_CASE("command study: help exists for every command") {
+    for (const char* command : {"", "analyse"}) {
+        CAPTURE(command);
+        const Called help = study(std::string(command) + " --help");
+        CHECK(help.status == 0);
+        CHECK(help.out.size() > 100);
+    }
+}
+
+TEST_CASE("command study analyse: counts become tables, JSON and figures") {
+    const TemporaryFolder folder;
+    const Called called = study("analyse " + kCounts + " --json -o " + (folder / "report").string());
+    CHECK(called.status == 0);
+    const Json json = parse_json(called.out, "stdout");
+    CHECK(json["conditions"]["S-pen"]["se"].get<double>() == doctest::Approx(55.0 / 60.0));
+    CHECK(json == read_json(folder / "report/report.json"));
+    for (const char* name : {"sensitivity.tsv", "nodules.tsv", "ppv.tsv", "pairs.tsv", "ppv_pairs.tsv", "report.md", "figures.gp"}) {
+        CAPTURE(name);
+        CHECK(std::filesystem::exists(folder / (std::string("report/") + name)));
+    }
+    if (std::system("command -v gnuplot >/dev/null 2>&1") != 0) {
+        MESSAGE("not checked: gnuplot is not installed");
+        CHECK(contains(called.err, "gnuplot is not installed"));
+        return;
+    }
+    CHECK(called.err.empty());
+    for (const char* name : {"sensitivity", "nodules", "ppv"}) {
+        CAPTURE(name);
+        CHECK(read_text(folder / (std::string("report/") + name + ".png")).substr(1, 3) == "PNG");
+        CHECK(read_text(folder / (std::string("report/") + name + ".pdf")).substr(0, 4) == "%PDF");
+        CHECK(contains(read_text(folder / (std::string("report/") + name + ".svg")), "Touchpad"));
+    }
+}
+
+TEST_CASE("command study analyse: bad input ends with status 2 and says what was expected") {
+    const TemporaryFolder folder;
+    write_text_atomically(folder / "c.tsv", "condition\ttp\tfn\tfp\tn\npen\t61\t0\t0\t60\n");
+    refused("analyse " + (folder / "none.tsv").string(), "none.tsv: found nothing, expected a folder of logs or a table");
+    refused("analyse " + (folder / "c.tsv").string(), "c.tsv: line 2, tp: found '61', expected at most n = 60");
+    refused("analyse " + kCounts + " -o " + (folder / "c.tsv").string(), "c.tsv: found no folder");
+    refused("analyse " + kCounts + " --level 2", "--level");
+}
