@@ -11,6 +11,7 @@ namespace palpa {
 void add_study(CLI::App& app) {
     CLI::App* study = app.add_subcommand("study", "Studies: who gets what, simulated participants, tables and figures");
     study->require_subcommand(1);
+    add_study_order(*study);
     add_study_analyse(*study);
 }
 

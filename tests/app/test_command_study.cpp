@@ -43,7 +43,7 @@ void refused(const std::string& arguments, const std::string& word) {
 }  // namespace
 
 TEST_CASE("command study: help exists for every command") {
-    for (const char* command : {"", "analyse"}) {
+    for (const char* command : {"", "analyse", "order"}) {
         CAPTURE(command);
         const Called help = study(std::string(command) + " --help");
         CHECK(help.status == 0);
@@ -83,4 +83,40 @@ TEST_CASE("command study analyse: bad input ends with status 2 and says what was
     refused("analyse " + (folder / "c.tsv").string(), "c.tsv: line 2, tp: found '61', expected at most n = 60");
     refused("analyse " + kCounts + " -o " + (folder / "c.tsv").string(), "c.tsv: found no folder");
     refused("analyse " + kCounts + " --level 2", "--level");
+}
+
+TEST_CASE("command study order: who gets what, with seeds and balance") {
+    const std::string protocol = PALPA_SOURCE_DIR "/assets/protocols/";
+    const Called called = study("order " + protocol + "paper.json --participants 40 --json");
+    REQUIRE(called.status == 0);
+    const Json json = parse_json(called.out, "stdout");
+    REQUIRE(json["participants"].size() == 40);
+    CHECK(json["seed"] == 2014);
+    CHECK(json["sha256"].get<std::string>().size() == 64);
+    CHECK(json["participants"][0]["group"] == "I");
+    CHECK(json["participants"][0]["trials"].size() == 4);
+    CHECK(json["participants"][1]["trials"].size() == 6);
+    CHECK(json["participants"][1]["trials"][0]["block"] == "practice");
+    CHECK(json["imbalance"].size() == 2);
+    CHECK(study("order " + protocol + "paper.json --participants 40 --json").out == called.out);
+    const Called people = study("order " + protocol + "effects.json --participants 7");
+    CHECK(contains(people.out, "a multiple of 6 people would balance the order"));
+    CHECK(contains(people.out, "-- break --"));
+    CHECK(contains(study("order " + protocol + "softer.json --participants 1").out, "kPa, reference first"));
+}
+
+TEST_CASE("command study: a protocol that names a missing scene, map or profile is refused with its condition") {
+    const TemporaryFolder folder;
+    const auto with_scene = [&](const std::string& scene, const std::string& more = "") {
+        write_text_atomically(folder / "p.json", R"({"name": "n", "version": "1", "seed": 1, "order": "fixed",
+            "conditions": [{"id": "pen", "modality": "pen", "scene": ")" + scene + "\"" + more + "}]}");
+        return "order " + (folder / "p.json").string() + " --participants 1";
+    };
+    write_text_atomically(folder / "s.json", R"({"name": "s", "tissue": {"map": "none.map"}})");
+    refused(with_scene("none.json"), "p.json: conditions[0] 'pen': ");
+    refused(with_scene("none.json"), "none.json: cannot be read");
+    refused(with_scene("s.json"), "none.map");
+    refused(with_scene("default.json", R"(, "profile": "none.json")"), "profiles/none.json: cannot be read");
+    refused("order " + (folder / "q.json").string() + " --participants 1", "q.json: cannot be read");
+    refused("order " PALPA_SOURCE_DIR "/assets/protocols/paper.json --participants 0", "--participants");
 }
