@@ -8,6 +8,7 @@
 #include "app/study_figures.h"
 #include "files/input_error.h"
 #include "files/text.h"
+#include "study/read_logs.h"
 #include "study/report.h"
 
 namespace palpa {
@@ -37,7 +38,7 @@ void write_report(const Report& report, const fs::path& folder) {
 
 Observations read_observations(const std::string& input) {
     if (!fs::exists(input)) throw bad_input(input, "", "nothing", "a folder of logs or a table COUNTS.tsv");
-    return read_counts(input);
+    return fs::is_directory(input) ? read_study(input) : read_counts(input);
 }
 
 void analyse(const AnalyseOptions& options) {
