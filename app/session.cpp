@@ -78,7 +78,13 @@ void write_marks(const Score& score, Session& session) {
 }
 
 void sync_all_but_events(Session& session) {
-    if (session.settings) session.settings->sync();
+    if (session.label) {
+        try {
+            sync_file(session.files->file("_settings.json"));
+        } catch (const std::exception&) {
+            session.failed = true;
+        }
+    }
     if (session.log) session.log->sync();
     session.trial_log->sync_marks();
 }
@@ -108,11 +114,16 @@ std::filesystem::path trace_name(const std::string& first, int trial) {
     return path;
 }
 
+void write_settled(const std::filesystem::path& file, const Json& json, const Session& session) {
+    if (session.sync_rows) return write_text_atomically(file, json_text(json));
+    write_text_whole(file, json_text(json));
+}
+
 void drop_files(Session& session) {
     session.record.reset();
     session.trial_log.reset();
     session.log.reset();
-    session.settings.reset();
+    session.failed = false;
     session.files.reset();
 }
 
@@ -126,9 +137,7 @@ void open_files(const SessionFiles& files, const TraceInfo& info, Session& sessi
         if (files.label) {
             Json settings = settings_json(session.scene, session.plan, session.state);
             settings["study"] = files.label->study;
-            session.settings.emplace(session.files->file("_settings.json"));
-            session.settings->append(json_text(settings));
-            if (files.sync_rows) session.settings->sync();
+            write_settled(session.files->file("_settings.json"), settings, session);  // before the first sample
         }
         if (files.samples) session.log.emplace(*session.files, alone);
         session.trial_log.emplace(*session.files, LogOptions{files.sync_rows, alone});
@@ -184,7 +193,7 @@ void flush_if_due(Session& session) {
 
 bool files_good(const Session& session) {
     return !(session.record && session.record->failed()) && !(session.log && session.log->failed()) &&
-           !(session.trial_log && session.trial_log->failed()) && !(session.settings && session.settings->failed());
+           !(session.trial_log && session.trial_log->failed()) && !session.failed;
 }
 
 bool close_files(const Json& performance, Session& session) {
@@ -193,18 +202,13 @@ bool close_files(const Json& performance, Session& session) {
     bool good = files_good(session);
     if (session.files && good) {
         try {
-            if (!session.settings) {
+            if (!session.label) {
                 const Json settings = settings_json(session.scene, session.plan, session.state);
                 write_text_atomically(session.files->file("_settings.json"), json_text(settings));
             }
             Json with_clock = performance;
             with_clock["began_utc"] = session.began_utc;
-            const auto file = session.files->file("_performance.json");
-            if (session.sync_rows) {
-                write_text_atomically(file, json_text(with_clock));
-            } else {
-                AppendFile(file).append(json_text(with_clock));
-            }
+            write_settled(session.files->file("_performance.json"), with_clock, session);
         } catch (const std::exception&) {
             good = false;
         }

@@ -33,9 +33,9 @@ struct Session {
     std::optional<RunFiles> files;
     std::optional<SampleLog> log;
     std::optional<TrialLog> trial_log;
-    std::optional<AppendFile> settings;  // of a study's trial: written before its first sample
     std::optional<TrialLabel> label;
     bool sync_rows = true;
+    bool failed = false;  // settings could not be put on the disk
     std::string began_utc;
     std::int64_t flushed_ns = 0;  // steady clock
     std::optional<TraceWriter> record;

@@ -99,16 +99,19 @@ void add_strokes(bool along_x, SimulatedPerson& person) {
 }
 
 // First along x, then along y through where x was felt, then on with the search.
-// Along x, then along y through where x was felt, and again until the place no longer moves; then on with the search.
+// Along the way it was felt (x or y), then across through where it was felt, and again until the place no longer moves;
+// then on with the search.
 void begin_check(SimulatedPerson& person) {
-    person.check = SimulatedPerson::Check::along_x;
+    const ScreenPlace ahead = person.way.empty() ? person.at : person.way.back();
+    const bool along_x = std::abs(ahead.x_m - person.at.x_m) >= std::abs(ahead.y_m - person.at.y_m);
+    person.check = along_x ? SimulatedPerson::Check::along_x : SimulatedPerson::Check::along_y;
     person.doubt = person.at;
     person.best = 0.0;
     person.halves = person.passes_over = person.passes_before = 0;
     person.above = true;  // what caused the doubt does not count again
     person.way.push_back(person.at);
     person.way_before = person.way.size();
-    add_strokes(true, person);
+    add_strokes(along_x, person);
 }
 
 void end_check(bool convinced, SimulatedPerson& person, Move& out) {

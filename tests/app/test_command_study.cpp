@@ -43,7 +43,7 @@ void refused(const std::string& arguments, const std::string& word) {
 }  // namespace
 
 TEST_CASE("command study: help exists for every command") {
-    for (const char* command : {"", "analyse", "order"}) {
+    for (const char* command : {"", "analyse", "order", "simulate"}) {
         CAPTURE(command);
         const Called help = study(std::string(command) + " --help");
         CHECK(help.status == 0);
@@ -119,4 +119,89 @@ TEST_CASE("command study: a protocol that names a missing scene, map or profile 
     refused(with_scene("default.json", R"(, "profile": "none.json")"), "profiles/none.json: cannot be read");
     refused("order " + (folder / "q.json").string() + " --participants 1", "q.json: cannot be read");
     refused("order " PALPA_SOURCE_DIR "/assets/protocols/paper.json --participants 0", "--participants");
+}
+
+TEST_CASE("command study simulate: simulated people find more with the laws than without, and their logs say what they are") {
+    const TemporaryFolder folder;
+    const std::string effects = PALPA_SOURCE_DIR "/assets/protocols/effects.json";
+    const std::string log = (folder / "log").string();
+    const std::string call = "simulate " + effects + " --participants 24 --seed 1 -o " + log;
+    const Called called = study(call + " --json");
+    REQUIRE(called.status == 0);
+    const Json done = parse_json(called.out, "stdout");
+    CHECK(done["trials"] == 72);
+    CHECK(done["samples"].get<int>() > 72 * 3500);
+    const std::string stem = log + "/sub-sim0001/beh/sub-sim0001_task-palpation_run-01";
+    CHECK(read_json(stem + "_settings.json")["study"]["simulated"] == true);
+    CHECK(read_json(stem + "_settings.json")["study"]["map_sha256"]["normal_N.npy"].get<std::string>().size() == 64);
+    CHECK(read_json(log + "/study.json")["simulated"] == true);
+    CHECK(contains(read_text(stem + "_samples.tsv"), "\tpen\tmove\t"));
+    CHECK(contains(read_text(log + "/.bidsignore"), "study.json"));
+
+    const Called again = study(call + " --json");
+    CHECK(parse_json(again.out, "stdout")["trials"] == 0);
+    CHECK(parse_json(again.out, "stdout")["already_there"] == 72);
+
+    const Called analysed = study("analyse " + log + " --json");
+    REQUIRE(analysed.status == 0);
+    const Json report = parse_json(analysed.out, "stdout");
+    CHECK(report["simulated"] == true);
+    CHECK(report["trials"] == 72);
+    int against_off = 0;
+    for (const Json& pair : report["pairs"]) {
+        if (pair["b"] != "off" && pair["a"] != "off") continue;
+        CHECK(pair["higher"] != "off");
+        CHECK(pair["significant"] == true);
+        CHECK(pair["p_holm"].get<double>() < 0.05);
+        CHECK(pair["paired"]["n"] == 72);
+        CHECK(pair["participants_in_both"] == 24);
+        ++against_off;
+    }
+    CHECK(against_off == 2);
+    const Json& ratio = report["conditions"]["display ratio"];
+    CHECK(ratio["ppv"].get<double>() > 0.8);
+    CHECK(ratio["nodules"]["A"]["se"].get<double>() > ratio["nodules"]["C"]["se"].get<double>());
+    CHECK(ratio["time_s"]["n"] == 24);
+    CHECK(ratio["path_mm"]["mean"].get<double>() > 1000.0);
+    CHECK(ratio["mean_force_N"]["mean"].get<double>() > 1.0);
+
+    // --samples none leaves out samples and changes nothing else; so does the number of jobs
+    const std::string lean = (folder / "lean").string();
+    REQUIRE(study("simulate " + effects + " --participants 24 --seed 1 --samples none -j 1 -o " + lean).status == 0);
+    CHECK_FALSE(std::filesystem::exists(lean + "/sub-sim0001/beh/sub-sim0001_task-palpation_run-01_samples.tsv"));
+    CHECK(parse_json(study("analyse " + lean + " --json").out, "stdout")["conditions"] == report["conditions"]);
+
+    refused("simulate " + effects + " --participants 24 --seed 2 -o " + log, "seed 1, expected simulated participants of seed 2");
+    refused("simulate " PALPA_SOURCE_DIR "/assets/protocols/paper.json --participants 2 --seed 1 -o " + log, "two versions of a protocol");
+    refused("analyse " + folder.path().string(), "found no trial");
+}
+
+TEST_CASE("command study simulate: the paper's protocol leaves hands out; forced choices are logged and analysed") {
+    const TemporaryFolder folder;
+    const std::string protocols = PALPA_SOURCE_DIR "/assets/protocols/";
+    const Called paper = study("simulate " + protocols + "paper.json --participants 4 -o " + (folder / "p").string() + " --json");
+    REQUIRE(paper.status == 0);
+    CHECK(parse_json(paper.out, "stdout")["trials"] == 6);
+    CHECK(parse_json(paper.out, "stdout")["left_out"] == 4);
+    const Json report = parse_json(study("analyse " + (folder / "p").string() + " --json").out, "stdout");
+    CHECK(report["conditions"].size() == 3);
+    CHECK(report["conditions"].contains("Bare finger"));
+
+    REQUIRE(study("simulate " + protocols + "softer.json --participants 6 -o " + (folder / "c").string()).status == 0);
+    const Json choices = parse_json(study("analyse " + (folder / "c").string() + " --json").out, "stdout");
+    CHECK(choices["choices"].size() == 12);
+    CHECK(choices["choices"][0]["n"] == 240);
+    CHECK(choices["choices"][0]["t_over_participants"]["df"] == 5.0);
+    const Json again = parse_json(study("simulate " + protocols + "softer.json --participants 6 -o " + (folder / "c").string() + " --json").out, "stdout");
+    CHECK(again["trials"] == 0);
+    CHECK(again["already_there"] == 480);
+}
+
+TEST_CASE("command study simulate: a disk that cannot be written stops the study with a message") {
+    const TemporaryFolder folder;
+    write_text_atomically(folder / "file", "x");
+    const std::string effects = PALPA_SOURCE_DIR "/assets/protocols/effects.json";
+    const Called called = study("simulate " + effects + " --participants 1 -o " + (folder / "file").string());
+    CHECK(called.status == 1);
+    CHECK(contains(called.err, "cannot be made"));
 }
