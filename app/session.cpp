@@ -96,6 +96,7 @@ void write_event(const Sample& sample, Session& session) {
         const Score score = debrief(session.plan, session.trial).score;
         write_marks(score, session);
         sync_all_but_events(session);  // first the rest, then the row that says that it is complete
+        if (!files_good(session)) return;
         row.duration_s = row.onset_s;
         row.true_positives = score.true_positives;
         row.false_positives = score.false_positives;

@@ -198,6 +198,18 @@ std::optional<PlannedTrial> next_trial(const PlannedParticipant& plan, const std
     return std::nullopt;
 }
 
+StudyProgress progress_of(const fs::path& directory, const Protocol& protocol, const std::string& code) {
+    std::vector<std::string> notes;
+    const std::vector<Person> people = read_people(directory, notes);
+    const auto it = std::find_if(people.begin(), people.end(), [&](const Person& one) { return one.code == code; });
+    StudyProgress out;
+    out.known = it != people.end();
+    out.plan = plan_participant(protocol, static_cast<int>(it - people.begin()) + 1);
+    out.finished = finished_trials(directory, code);
+    out.next = next_trial(out.plan, out.finished);
+    return out;
+}
+
 std::string instructions_for(const Protocol& protocol, const PlannedTrial& trial) {
     const Condition& condition = protocol.conditions[trial.condition];
     std::string text = protocol.instructions;

@@ -51,6 +51,15 @@ std::set<int> finished_trials(const std::filesystem::path& directory, const std:
 // The first trial that is not finished yet: where a study goes on after a break, a crash or a power cut. Nothing: done.
 std::optional<PlannedTrial> next_trial(const PlannedParticipant& plan, const std::set<int>& finished);
 
+// Where a participant stands: what a screen needs to begin, or to go on after a crash.
+struct StudyProgress {
+    bool known = false;           // the code is in participants.tsv already
+    PlannedParticipant plan;      // of the place that the code has there, or of the next free one
+    std::set<int> finished;
+    std::optional<PlannedTrial> next;  // nothing: everything is done
+};
+StudyProgress progress_of(const std::filesystem::path& directory, const Protocol& protocol, const std::string& code);
+
 // What the participant reads before this trial.
 std::string instructions_for(const Protocol& protocol, const PlannedTrial& trial);
 

@@ -197,8 +197,25 @@ TEST_CASE("command study simulate: the paper's protocol leaves hands out; forced
     CHECK(again["already_there"] == 480);
 }
 
-TEST_CASE("command study simulate: a disk that cannot be written stops the study with a message") {
+TEST_CASE("command study simulate: a disk that is full or cannot be written stops the study with a message") {
     const TemporaryFolder folder;
+    {
+        // no file may grow beyond 64 KB, as on a disk that is nearly full: samples do not fit, so no trial is finished
+        const TemporaryFolder said;
+        const std::string log = (folder / "log").string();
+        const std::string command = "trap '' XFSZ; ulimit -f 128; timeout 60 " PALPA_PROGRAM " study simulate " PALPA_SOURCE_DIR
+                                    "/assets/protocols/effects.json --participants 3 -j 1 -o " + log + " 2>" + (said / "err").string();
+        const int status = std::system(command.c_str());
+        CHECK(WEXITSTATUS(status) == 1);
+        CHECK(contains(read_text(said / "err"), "could not be written to its end (is the disk full?); the study stops here"));
+        const std::string events = read_text(log + "/sub-sim0001/beh/sub-sim0001_task-palpation_run-01_events.tsv");
+        CHECK_FALSE(contains(events, "finish"));
+        CHECK_FALSE(std::filesystem::exists(log + "/sub-sim0001/beh/sub-sim0001_task-palpation_run-02_events.tsv"));
+        // with room again it goes on
+        const Called again = study("simulate " PALPA_SOURCE_DIR "/assets/protocols/effects.json --participants 3 --json -o " + log);
+        CHECK(parse_json(again.out, "stdout")["trials"] == 9);
+        CHECK(parse_json(study("analyse " + log + " --json").out, "stdout")["interrupted_trials"] == 1);
+    }
     write_text_atomically(folder / "file", "x");
     const std::string effects = PALPA_SOURCE_DIR "/assets/protocols/effects.json";
     const Called called = study("simulate " + effects + " --participants 1 -o " + (folder / "file").string());

@@ -92,7 +92,9 @@ TEST_CASE("command study: killed at random moments it loses no finished trial, a
     Random random(kSeed);
     const TemporaryFolder folder;
     int status = 0;
+    const auto began = std::chrono::steady_clock::now();
     REQUIRE(run_and_kill(folder / "whole", kPatience_s, status));
+    const double whole_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
     REQUIRE(status == 0);
     const Json expected = results_of(folder / "whole");
     int killed = 0, studies = 0, interrupted = 0;
@@ -101,7 +103,7 @@ TEST_CASE("command study: killed at random moments it loses no finished trial, a
         std::map<std::string, std::string> before;
         // a study that came to its end by itself begins anew
         for (bool done = false; !done && killed < kills;) {
-            done = run_and_kill(log, random.uniform(0.0, 0.3), status);
+            done = run_and_kill(log, random.uniform(0.0, 0.7 * whole_s), status);
             killed += done ? 0 : 1;
             CAPTURE(killed);
             const auto after = finished(log);

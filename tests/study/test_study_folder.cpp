@@ -116,6 +116,21 @@ TEST_CASE("study folder: it goes on at the first trial that is not finished") {
     CHECK_FALSE(next_trial(plan, {1, 2, 3, 4}));
 }
 
+TEST_CASE("study folder: a code keeps its place, a new one gets the next") {
+    const TemporaryFolder folder;
+    const Protocol protocol = protocol_of(folder);
+    add_people(folder.path(), {Person{"x7"}, Person{"b2"}});
+    const StudyProgress second = progress_of(folder.path(), protocol, "b2");
+    CHECK(second.known);
+    CHECK(second.plan.number == 2);
+    CHECK(second.next->trial == 1);
+    const StudyProgress fresh = progress_of(folder.path(), protocol, "new");
+    CHECK_FALSE(fresh.known);
+    CHECK(fresh.plan.number == 3);
+    for (int trial = 1; trial <= 4; ++trial) write_run(folder.path(), "x7", trial, "a", 1, true, "x");
+    CHECK_FALSE(progress_of(folder.path(), protocol, "x7").next);
+}
+
 TEST_CASE("study folder: instructions hold the study's, the condition's, practice and the limit") {
     const TemporaryFolder folder;
     const Protocol protocol = protocol_of(folder);
