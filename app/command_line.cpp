@@ -38,6 +38,7 @@ int run_command_line(int argc, char** argv) {
     add_maps(app);
     add_calibrate(app);
     add_fem(app);
+    add_study(app);
     add_bench(app);
     try {
         app.parse(with_default_command(argc, argv, app));

@@ -59,6 +59,11 @@ Json settings_json(const Scene& scene, const Plan& plan, const State& state) {
             json["stages"].push_back({{"name", name_of(stage.id)}, {"fidelity", stage.fidelity}});
         }
     }
+    json["nodules"] = Json::array();
+    for (const Nodule& nodule : plan.nodules) {
+        json["nodules"].push_back({{"id", nodule.id}, {"x_mm", 1e3 * nodule.x_m}, {"y_mm", 1e3 * nodule.y_m}});
+        if (nodule.diameter_m) json["nodules"].back()["diameter_mm"] = 1e3 * *nodule.diameter_m;
+    }
     json["notes"] = plan.notes;
     return json;
 }

@@ -59,8 +59,10 @@ void take_levels(const std::vector<Sample>& samples, Recording& recording) {
         ++recording.samples;
         recording.raw->write(sample, level);
         const bool touching = touches(sample, level);
-        if (touching || recording.session.touching) recording.touched_s = sample.t_host_s;
-        take_level(recording.arguments.options, sample.t_host_s, touching ? level : 0.0, touching, recording.session);
+        move_to(sample, recording.timeline);
+        const double t_s = recording.timeline.now_s;
+        if (touching || recording.session.touching) recording.touched_s = t_s;
+        take_level(recording.arguments.options, t_s, touching ? level : 0.0, touching, recording.session);
     }
 }
 

@@ -10,6 +10,7 @@
 #include "app/record_calibration.h"
 #include "devices/sensor_reader.h"
 #include "files/append_file.h"
+#include "scene/timeline.h"
 
 namespace palpa {
 
@@ -31,6 +32,7 @@ struct Recording {
     std::optional<RawFiles> raw;
     RecordSession session;
     Knowledge knowledge;
+    Timeline timeline;          // when samples really came: a slow frame holds them up, but not their device's clock
     double began_s = 0.0;
     double synced_s = 0.0;
     double touched_s = -1.0;    // ended last

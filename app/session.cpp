@@ -1,6 +1,7 @@
 #include "app/session.h"
 
 #include <cmath>
+#include <ctime>
 #include <exception>
 
 #include "app/log.h"
@@ -26,14 +27,27 @@ const char* event_name(Action action) {
     }
 }
 
+std::string utc_now() {
+    const std::time_t now = std::time(nullptr);
+    std::tm utc{};
+    gmtime_r(&now, &utc);
+    char text[32];
+    std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &utc);
+    return text;
+}
+
 EventRow event_row(const Session& session, Action action) {
     const Scene& scene = session.scene;
     EventRow row;
     row.onset_s = session.trial.now_s - session.trial.began_s;
     row.trial_type = event_name(action);
     row.block = name_of(session.trial.mode);
-    row.condition = condition_of(scene);
-    row.device_id = session.device;
+    row.condition = session.label ? std::string_view(session.label->condition) : condition_of(scene);
+    row.device_id = session.label ? std::string_view(session.label->device) : std::string_view(session.device);
+    if (session.label) {
+        row.trial = session.label->trial;
+        row.order_id = session.label->order_id;
+    }
     row.calibration_id = session.plan.profile.id;
     row.map_id = session.plan.tissue_name;
     row.map_rotation_deg = scene.mapping.rotate_deg;
@@ -48,6 +62,7 @@ void write_marks(const Score& score, Session& session) {
         const Mark& mark = session.trial.marks[i];
         const MarkScore& found = score.marks[i];
         MarkRow row;
+        if (session.label) row.trial = session.label->trial;
         row.onset_s = mark.onset_s;
         row.mark = static_cast<std::int64_t>(i) + 1;
         row.x_mm = 1e3 * mark.p_m.x();
@@ -62,18 +77,36 @@ void write_marks(const Score& score, Session& session) {
     }
 }
 
+void sync_all_but_events(Session& session) {
+    if (session.label) {
+        try {
+            sync_file(session.files->file("_settings.json"));
+        } catch (const std::exception&) {
+            session.failed = true;
+        }
+    }
+    if (session.log) session.log->sync();
+    session.trial_log->sync_marks();
+}
+
 void write_event(const Sample& sample, Session& session) {
     if (!session.trial_log || sample.phase != Phase::ui || sample.action == Action::resize) return;
     EventRow row = event_row(session, sample.action);
     if (sample.action == Action::finish) {
         const Score score = debrief(session.plan, session.trial).score;
-        write_marks(score, session);  // first the marks, then the row that says that they are complete
+        write_marks(score, session);
+        sync_all_but_events(session);  // first the rest, then the row that says that it is complete
+        if (!files_good(session)) return;
         row.duration_s = row.onset_s;
         row.true_positives = score.true_positives;
         row.false_positives = score.false_positives;
         row.false_negatives = score.false_negatives;
+        row.path_mm = 1e3 * session.trial.pressed_m;
+        row.mean_force_N = mean_force_N(session.trial);
+        row.max_force_N = session.trial.max_force_N;
     }
     session.trial_log->write(row);
+    if (sample.action == Action::finish) session.trial_log->sync_events();
 }
 
 std::filesystem::path trace_name(const std::string& first, int trial) {
@@ -82,10 +115,16 @@ std::filesystem::path trace_name(const std::string& first, int trial) {
     return path;
 }
 
+void write_settled(const std::filesystem::path& file, const Json& json, const Session& session) {
+    if (session.sync_rows) return write_text_atomically(file, json_text(json));
+    write_text_whole(file, json_text(json));
+}
+
 void drop_files(Session& session) {
     session.record.reset();
     session.trial_log.reset();
     session.log.reset();
+    session.failed = false;
     session.files.reset();
 }
 
@@ -95,8 +134,14 @@ void open_files(const SessionFiles& files, const TraceInfo& info, Session& sessi
         if (!files.record.empty()) session.record.emplace(trace_name(files.record, session.trials), info);
         if (files.log.empty()) return;
         session.files = next_run(files.log, files.participant);
-        session.log.emplace(*session.files);
-        session.trial_log.emplace(*session.files);
+        const bool alone = !files.label;  // a study explains its columns once, at the top
+        if (files.label) {
+            Json settings = settings_json(session.scene, session.plan, session.state);
+            settings["study"] = files.label->study;
+            write_settled(session.files->file("_settings.json"), settings, session);  // before the first sample
+        }
+        if (files.samples) session.log.emplace(*session.files, alone);
+        session.trial_log.emplace(*session.files, LogOptions{files.sync_rows, alone});
     } catch (...) {
         drop_files(session);
         throw;
@@ -117,6 +162,9 @@ void begin_trial(const SessionFiles& files, const TraceInfo& info, TrialMode mod
     session.state.time_every = 16;
     session.trial = make_trial(session.plan, mode);
     session.device = info.device;
+    session.label = files.label;
+    session.sync_rows = files.sync_rows;
+    session.began_utc = utc_now();
     open_files(files, info, session);
     if (session.trial_log) session.trial_log->write(event_row(session, Action::none));
 }
@@ -128,15 +176,25 @@ void take_sample(const Sample& sample, Session& session) {
     observe(session.plan, sample, session.state, session.trial);
     if (session.log) session.log->write(row_of(sample, session.plan, session.state));
     write_event(sample, session);
+    flush_if_due(session);
     if (!session.trial.finished) return;
     session.finished.push_back(trial_json(session.plan, session.trial));
     if (session.record) session.record->sync();
     if (session.log) session.log->sync();
 }
 
+void flush_if_due(Session& session) {
+    constexpr std::int64_t kEvery_ns = 80'000'000;
+    if (!session.log) return;
+    const std::int64_t now_ns = steady_ns();
+    if (now_ns - session.flushed_ns < kEvery_ns) return;
+    session.log->flush();
+    session.flushed_ns = now_ns;
+}
+
 bool files_good(const Session& session) {
     return !(session.record && session.record->failed()) && !(session.log && session.log->failed()) &&
-           !(session.trial_log && session.trial_log->failed());
+           !(session.trial_log && session.trial_log->failed()) && !session.failed;
 }
 
 bool close_files(const Json& performance, Session& session) {
@@ -145,9 +203,13 @@ bool close_files(const Json& performance, Session& session) {
     bool good = files_good(session);
     if (session.files && good) {
         try {
-            const Json settings = settings_json(session.scene, session.plan, session.state);
-            write_text_atomically(session.files->file("_settings.json"), json_text(settings));
-            write_text_atomically(session.files->file("_performance.json"), json_text(performance));
+            if (!session.label) {
+                const Json settings = settings_json(session.scene, session.plan, session.state);
+                write_text_atomically(session.files->file("_settings.json"), json_text(settings));
+            }
+            Json with_clock = performance;
+            with_clock["began_utc"] = session.began_utc;
+            write_settled(session.files->file("_performance.json"), with_clock, session);
         } catch (const std::exception&) {
             good = false;
         }

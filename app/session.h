@@ -18,6 +18,9 @@ struct SessionFiles {
     std::string log;                 // folder
     std::string participant = "01";
     std::string record;              // TRACE.tsv; later trials get TRACE-2.tsv and so on
+    bool samples = true;             // false: events, marks and settings only
+    bool sync_rows = true;           // false: rows are on the disk when the trial ends, for simulations
+    std::optional<TrialLabel> label{};  // of a study's trial
 };
 
 struct Session {
@@ -30,6 +33,11 @@ struct Session {
     std::optional<RunFiles> files;
     std::optional<SampleLog> log;
     std::optional<TrialLog> trial_log;
+    std::optional<TrialLabel> label;
+    bool sync_rows = true;
+    bool failed = false;  // settings could not be put on the disk
+    std::string began_utc;
+    std::int64_t flushed_ns = 0;  // steady clock
     std::optional<TraceWriter> record;
     Json finished = Json::array();  // trial_json of each finished trial
 };
@@ -40,6 +48,10 @@ ScreenArea screen_of(const TraceInfo& info);
 // Begins a trial on session.scene and session.plan: a new state, new files. `info`: the window, as it goes into the
 // trace. Throws InputError or std::runtime_error if a file cannot be made; the session then has no files.
 void begin_trial(const SessionFiles& files, const TraceInfo& info, TrialMode mode, Session& session);
+
+// Hands what was logged to the system if that was last done 80 ms ago: what a killed process loses. take_sample() calls
+// it; a loop that waits for samples may too.
+void flush_if_due(Session& session);
 
 // Advances, observes, writes. After the sample that finishes the trial its results are on the disk.
 void take_sample(const Sample& sample, Session& session);

@@ -35,6 +35,26 @@ void add_to_path(const State& state, Trial& trial) {
     trial.path.push_back({p_m, static_cast<float>(state.contact.depth_m), begins});
 }
 
+// Way and force while pressing. A jitter below the dead band is no way, so the sampling rate does not matter.
+void measure_press(const State& state, double now_s, Trial& trial) {
+    constexpr double kDeadBand_m = 0.5e-3;
+    if (!trial.pressing) {
+        trial.rope_m = state.touch.p_m;
+    } else {
+        const double dt_s = now_s - trial.pressed_at_s;
+        trial.pressed_s += dt_s;
+        trial.impulse_Ns += 0.5 * dt_s * (trial.pressed_N + state.touch.force_N);
+    }
+    const double moved_m = (state.touch.p_m - trial.rope_m).norm();
+    if (moved_m >= kDeadBand_m) {
+        trial.pressed_m += moved_m;
+        trial.rope_m = state.touch.p_m;
+    }
+    trial.max_force_N = std::max(trial.max_force_N, state.touch.force_N);
+    trial.pressed_at_s = now_s;
+    trial.pressed_N = state.touch.force_N;
+}
+
 void observe_press(const Plan& plan, const Sample& sample, const State& state, Trial& trial) {
     if (!state.answered) return;  // another finger's, or from the past
     const bool pressing = state.touch.down && state.touch.force_N > 0.0;
@@ -47,6 +67,7 @@ void observe_press(const Plan& plan, const Sample& sample, const State& state, T
     const double R_m = plan.indenter_radius_m;
     const double footprint_m = std::sqrt(R_m * std::min(state.contact.depth_m, R_m));  // Hertz
     cover(state.touch.p_m.x(), state.touch.p_m.y(), footprint_m, state.contact.depth_m, trial.coverage);
+    measure_press(state, trial.now_s, trial);
     add_to_path(state, trial);
     trial.pressing = true;
 }
@@ -98,6 +119,8 @@ void observe(const Plan& plan, const Sample& sample, const State& state, Trial& 
     observe_press(plan, sample, state, trial);
 }
 
+double mean_force_N(const Trial& trial) { return trial.impulse_Ns / trial.pressed_s; }
+
 Debrief debrief(const Plan& plan, const Trial& trial) {
     Debrief out;
     const std::vector<Target> targets = targets_of(plan);
@@ -124,6 +147,8 @@ Json trial_json(const Plan& plan, const Trial& trial) {
     json["fn"] = result.score.false_negatives;
     json["sensitivity"] = number_or_null(result.score.sensitivity);
     json["ppv"] = number_or_null(result.score.ppv);
+    json["path_mm"] = 1e3 * trial.pressed_m;
+    json["mean_force_N"] = number_or_null(mean_force_N(trial));
     json["marks"] = Json::array();
     for (std::size_t i = 0; i < trial.marks.size(); ++i) {
         const Mark& mark = trial.marks[i];

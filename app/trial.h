@@ -38,6 +38,13 @@ struct Trial {
     std::vector<PathPoint> path;  // at most kPathPoints; thinned by half when full
     double path_step_m = 0.5e-3;
     bool pressing = false;
+    double pressed_m = 0.0;   // way while pressing, jitter left out
+    double pressed_s = 0.0;
+    double impulse_Ns = 0.0;  // force over that time
+    double max_force_N = 0.0;
+    Eigen::Vector2d rope_m = Eigen::Vector2d::Zero();
+    double pressed_at_s = 0.0;  // time of the last sample that pressed
+    double pressed_N = 0.0;
     std::optional<Eigen::Vector2d> last_px;  // where the tissue was last pressed: where a mark goes
 };
 inline constexpr std::size_t kPathPoints = 20000;
@@ -46,6 +53,9 @@ Trial make_trial(const Plan& plan, TrialMode mode);
 
 // Call it after advance() with the same sample.
 void observe(const Plan& plan, const Sample& sample, const State& state, Trial& trial);
+
+// Over the time that the pen presses; NaN if it never did.
+double mean_force_N(const Trial& trial);
 
 // Why a nodule was found or not, for the person.
 enum class Finding : std::uint8_t { found, not_touched, too_light, not_marked };

@@ -45,7 +45,7 @@ namespace {
     throw std::runtime_error(path.string() + ": cannot be written: " + std::strerror(errno));
 }
 
-void write_and_sync(const std::filesystem::path& path, std::string_view text) {
+void write_new(const std::filesystem::path& path, std::string_view text, bool sync) {
     const int fd = ::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
     if (fd < 0) fail_writing(path);
     while (!text.empty()) {
@@ -58,21 +58,36 @@ void write_and_sync(const std::filesystem::path& path, std::string_view text) {
         }
         text.remove_prefix(static_cast<std::size_t>(n));
     }
-    if (::fsync(fd) != 0 || ::close(fd) != 0) fail_writing(path);
+    const bool synced = !sync || ::fsync(fd) == 0;
+    if (::close(fd) != 0 || !synced) fail_writing(path);
 }
 
-}  // namespace
-
-void write_text_atomically(const std::filesystem::path& path, std::string_view text) {
+void write_and_rename(const std::filesystem::path& path, std::string_view text, bool sync) {
     std::filesystem::path aside = path;
     aside += ".part-" + std::to_string(::getpid());
-    write_and_sync(aside, text);
+    write_new(aside, text, sync);
     if (::rename(aside.c_str(), path.c_str()) != 0) {
         const int reason = errno;
         ::unlink(aside.c_str());
         errno = reason;
         fail_writing(path);
     }
+}
+
+}  // namespace
+
+void write_text_atomically(const std::filesystem::path& path, std::string_view text) {
+    write_and_rename(path, text, true);
+}
+
+void write_text_whole(const std::filesystem::path& path, std::string_view text) { write_and_rename(path, text, false); }
+
+void sync_file(const std::filesystem::path& path) {
+    const int fd = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+    if (fd < 0) fail_writing(path);
+    const bool synced = ::fsync(fd) == 0;
+    ::close(fd);
+    if (!synced) fail_writing(path);
 }
 
 bool parse_number(std::string_view text, double& out) {

@@ -14,6 +14,12 @@ std::string read_text(const std::filesystem::path& path, std::size_t limit_bytes
 // Throws std::runtime_error with the system's reason.
 void write_text_atomically(const std::filesystem::path& path, std::string_view text);
 
+// The same without waiting for the disk: whole or not at all after a kill, not after a power cut.
+void write_text_whole(const std::filesystem::path& path, std::string_view text);
+
+// Waits until a file that is there is on the disk. Throws std::runtime_error.
+void sync_file(const std::filesystem::path& path);
+
 // The whole of `text` as a finite or non-finite double ("1e-3", "nan"); false if any of it is not a number.
 // A leading '+' is accepted, a decimal comma is not.
 bool parse_number(std::string_view text, double& out);

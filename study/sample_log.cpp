@@ -42,7 +42,14 @@ void write_if_absent(const std::filesystem::path& path, const std::string& text)
 
 }  // namespace
 
-RunFiles next_run(const std::filesystem::path& directory, std::string_view participant) {
+void prepare_dataset(const std::filesystem::path& directory) {
+    write_if_absent(directory / ".bidsignore", "*_samples.tsv\n*_samples.json\n*_marks.tsv\n*_marks.json\n*_settings.json\n*_performance.json\nstudy.json\nprotocol.json\n");
+    write_if_absent(directory / "dataset_description.json", json_text({{"Name", "Palpa"}, {"BIDSVersion", "1.8.0"}}));
+}
+
+void explain_samples_once(const std::filesystem::path& json) { write_if_absent(json, explanation_of<SampleRow>()); }
+
+RunFiles next_run(const std::filesystem::path& directory, std::string_view participant, std::string_view task) {
     const bool plain = !participant.empty() && std::all_of(participant.begin(), participant.end(), [](char c) {
         return (c >= '0' && c <= '9') || (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z');
     });
@@ -53,18 +60,19 @@ RunFiles next_run(const std::filesystem::path& directory, std::string_view parti
     std::error_code error;
     std::filesystem::create_directories(files.folder, error);
     if (error) throw std::runtime_error(files.folder.string() + ": cannot be created: " + error.message());
-    write_if_absent(directory / ".bidsignore", "*_samples.tsv\n*_samples.json\n*_marks.tsv\n*_marks.json\n*_settings.json\n*_performance.json\n");
-    write_if_absent(directory / "dataset_description.json", json_text({{"Name", "Palpa"}, {"BIDSVersion", "1.8.0"}}));
+    prepare_dataset(directory);
     for (int run = 1;; ++run) {
         char number[16];
         std::snprintf(number, sizeof number, "%02d", run);
-        files.stem = subject + "_task-palpation_run-" + number;
-        if (!std::filesystem::exists(files.file("_samples.tsv"))) return files;
+        files.stem = subject + "_task-" + std::string(task) + "_run-" + number;
+        const bool taken = std::filesystem::exists(files.file("_samples.tsv")) || std::filesystem::exists(files.file("_settings.json")) ||
+                           std::filesystem::exists(files.file("_events.tsv"));
+        if (!taken) return files;
     }
 }
 
-SampleLog::SampleLog(const RunFiles& files) : file_(files.file("_samples.tsv")) {
-    write_text_atomically(files.file("_samples.json"), explanation_of<SampleRow>());
+SampleLog::SampleLog(const RunFiles& files, bool sidecar) : file_(files.file("_samples.tsv")) {
+    if (sidecar) write_text_atomically(files.file("_samples.json"), explanation_of<SampleRow>());
     file_.append(header_of<SampleRow>());
     constexpr std::size_t kLongestRow = 1024;
     row_.reserve(kLongestRow);

@@ -43,12 +43,20 @@ struct RunFiles {
     std::string stem;  // sub-01_task-palpation_run-01
     std::filesystem::path file(std::string_view suffix) const { return folder / (stem + std::string(suffix)); }
 };
-RunFiles next_run(const std::filesystem::path& directory, std::string_view participant);
+RunFiles next_run(const std::filesystem::path& directory, std::string_view participant,
+                  std::string_view task = "palpation");
+
+// .bidsignore and dataset_description.json, where they are not there yet.
+void prepare_dataset(const std::filesystem::path& directory);
+
+// The columns of samples explained once for a whole dataset.
+void explain_samples_once(const std::filesystem::path& json);
 
 class SampleLog {
  public:
-    explicit SampleLog(const RunFiles& files);
+    explicit SampleLog(const RunFiles& files, bool sidecar = true);
     void write(const SampleRow& row);  // allocates nothing after the first row
+    bool flush() { return file_.flush(); }
     bool sync() { return file_.sync(); }
     bool failed() const { return file_.failed(); }
 

@@ -12,7 +12,7 @@ void visit_fields(const EventRow& r, Visit&& visit) {
     visit("block", r.block, "", "practice (nodules shown) or test (hidden)");
     visit("trial", r.trial, "", "number of the trial");
     visit("order_id", r.order_id, "", "row of the protocol's order");
-    visit("condition", r.condition, "", "law of the avatar: display_ratio, delay or none");
+    visit("condition", r.condition, "", "of the protocol; without one the law of the avatar: display_ratio, delay or none");
     visit("device_id", r.device_id, "", "pen, touch screen or mouse");
     visit("calibration_id", r.calibration_id, "", "profile of the pressure");
     visit("map_id", r.map_id, "", "tissue");
@@ -23,6 +23,9 @@ void visit_fields(const EventRow& r, Visit&& visit) {
     visit("tp", r.true_positives, "", "nodules found");
     visit("fp", r.false_positives, "", "marks on no nodule");
     visit("fn", r.false_negatives, "", "nodules missed");
+    visit("path_mm", r.path_mm, "mm", "way of the pen while it presses");
+    visit("mean_force_N", r.mean_force_N, "N", "over the time that it presses");
+    visit("max_force_N", r.max_force_N, "N", "greatest force");
 }
 
 template <class Visit>
@@ -38,32 +41,68 @@ void visit_fields(const MarkRow& r, Visit&& visit) {
     visit("hit", r.hit, "", "1: the mark that finds the nodule");
 }
 
+template <class Visit>
+void visit_fields(const ChoiceRow& r, Visit&& visit) {
+    visit("onset", r.onset_s, "s", "since the run began");
+    visit("duration", r.duration_s, "s", "until the answer");
+    visit("trial_type", r.trial_type, "", "choice");
+    visit("block", r.block, "", "practice or test");
+    visit("trial", r.trial, "", "number of the trial");
+    visit("order_id", r.order_id, "", "row of the protocol's order");
+    visit("condition", r.condition, "", "of the protocol");
+    visit("device_id", r.device_id, "", "of the protocol");
+    visit("seed", r.seed, "", "of the trial");
+    visit("reference_kPa", r.reference_kPa, "kPa", "Young's modulus of the reference");
+    visit("comparison_kPa", r.comparison_kPa, "kPa", "Young's modulus of the comparison");
+    visit("first", r.first, "", "which came first: reference or comparison");
+    visit("answer", r.answer, "", "which was called softer: reference or comparison");
+    visit("correct", r.correct, "", "1: the softer one");
+}
+
 namespace {
 
 template <class Row>
-void begin(const std::filesystem::path& sidecar, AppendFile& file) {
-    write_text_atomically(sidecar, explanation_of<Row>());
+void begin(const std::filesystem::path& sidecar, const LogOptions& options, AppendFile& file) {
+    if (options.sidecars) write_text_atomically(sidecar, explanation_of<Row>());
     file.append(header_of<Row>());
-    file.sync();
+    if (options.sync_rows) file.sync();
+}
+
+template <class Row>
+bool add(const Row& row, bool sync, std::string& line, AppendFile& file) {
+    line_of(row, line);
+    file.append(line);
+    return sync ? file.sync() : !file.failed();
+}
+
+template <class Row>
+void explain_once(const std::filesystem::path& file) {
+    if (!std::filesystem::exists(file)) write_text_atomically(file, explanation_of<Row>());
 }
 
 }  // namespace
 
-TrialLog::TrialLog(const RunFiles& files) : events_(files.file("_events.tsv")), marks_(files.file("_marks.tsv")) {
-    begin<EventRow>(files.file("_events.json"), events_);
-    begin<MarkRow>(files.file("_marks.json"), marks_);
+TrialLog::TrialLog(const RunFiles& files, const LogOptions& options)
+    : events_(files.file("_events.tsv")), marks_(files.file("_marks.tsv")), sync_rows_(options.sync_rows) {
+    begin<EventRow>(files.file("_events.json"), options, events_);
+    begin<MarkRow>(files.file("_marks.json"), options, marks_);
 }
 
-bool TrialLog::write(const EventRow& row) {
-    line_of(row, line_);
-    events_.append(line_);
-    return events_.sync();
+bool TrialLog::write(const EventRow& row) { return add(row, sync_rows_, line_, events_); }
+bool TrialLog::write(const MarkRow& row) { return add(row, sync_rows_, line_, marks_); }
+
+ChoiceLog::ChoiceLog(const RunFiles& files) : file_(files.file("_events.tsv")) {
+    begin<ChoiceRow>("", {true, false}, file_);
 }
 
-bool TrialLog::write(const MarkRow& row) {
-    line_of(row, line_);
-    marks_.append(line_);
-    return marks_.sync();
+bool ChoiceLog::write(const ChoiceRow& row) { return add(row, true, line_, file_); }
+
+void prepare_log_folder(const std::filesystem::path& directory) {
+    prepare_dataset(directory);
+    explain_once<EventRow>(directory / "task-palpation_events.json");
+    explain_once<MarkRow>(directory / "task-palpation_marks.json");
+    explain_once<ChoiceRow>(directory / "task-softer_events.json");
+    explain_samples_once(directory / "task-palpation_samples.json");
 }
 
 }  // namespace palpa

@@ -11,6 +11,7 @@
 #include <string_view>
 
 #include "files/append_file.h"
+#include "files/json.h"
 #include "study/sample_log.h"
 
 namespace palpa {
@@ -34,6 +35,9 @@ struct EventRow {
     double true_positives = kMissing;
     double false_positives = kMissing;
     double false_negatives = kMissing;
+    double path_mm = kMissing;        // these three on the row finish: of the pen while it presses
+    double mean_force_N = kMissing;
+    double max_force_N = kMissing;
 };
 
 struct MarkRow {
@@ -49,18 +53,69 @@ struct MarkRow {
     std::int64_t hit = 0;
 };
 
+// One of a study's trials, as its protocol plans it.
+struct TrialLabel {
+    std::string condition;
+    std::string device;
+    int trial = 1;
+    int order_id = 0;
+    Json study;  // for the settings: protocol, version, hash, participant, what is simulated
+};
+
+// One choice between two stimuli; ..._task-softer_..._events.tsv, a row each.
+struct ChoiceRow {
+    static constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
+    double onset_s = 0.0;  // since the run began
+    double duration_s = kMissing;
+    std::string_view trial_type = "choice";
+    std::string_view block = "test";
+    std::int64_t trial = 1;
+    std::int64_t order_id = 0;
+    std::string_view condition = "n/a";
+    std::string_view device_id = "n/a";
+    std::int64_t seed = 0;
+    double reference_kPa = 0.0;
+    double comparison_kPa = 0.0;
+    std::string_view first = "reference";   // or comparison
+    std::string_view answer = "reference";  // which was called softer
+    std::int64_t correct = 0;
+};
+
+struct LogOptions {
+    bool sync_rows = true;  // each row is on the disk when write() returns; false: when sync() returns
+    bool sidecars = true;   // a JSON file beside each table; false: they stand once at the top of the dataset
+};
+
 class TrialLog {
  public:
-    explicit TrialLog(const RunFiles& files);
+    explicit TrialLog(const RunFiles& files, const LogOptions& options = {});
     // Return false once anything could not be written.
     bool write(const EventRow& row);
     bool write(const MarkRow& row);
+    bool sync_marks() { return marks_.sync(); }
+    bool sync_events() { return events_.sync(); }
     bool failed() const { return events_.failed() || marks_.failed(); }
 
  private:
     AppendFile events_;
     AppendFile marks_;
     std::string line_;
+    bool sync_rows_;
 };
+
+// Choices of one participant, each on the disk when write() returns.
+class ChoiceLog {
+ public:
+    explicit ChoiceLog(const RunFiles& files);
+    bool write(const ChoiceRow& row);
+
+ private:
+    AppendFile file_;
+    std::string line_;
+};
+
+// What every folder of logs has, and the explanations that hold for all its tables (BIDS: a JSON file higher up is
+// inherited). Leaves alone what is there.
+void prepare_log_folder(const std::filesystem::path& directory);
 
 }  // namespace palpa

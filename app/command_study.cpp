@@ -1,0 +1,19 @@
+// palpa study: protocols, simulated participants, analysis
+
+#include "app/command_study.h"
+
+#include <CLI/CLI.hpp>
+
+#include "app/command_line.h"
+
+namespace palpa {
+
+void add_study(CLI::App& app) {
+    CLI::App* study = app.add_subcommand("study", "Studies: who gets what, simulated participants, tables and figures");
+    study->require_subcommand(1);
+    add_study_order(*study);
+    add_study_simulate(*study);
+    add_study_analyse(*study);
+}
+
+}  // namespace palpa

@@ -1,0 +1,16 @@
+#pragma once
+// The figures of a study, by gnuplot: sensitivity, sensitivity by nodule, and positive predictive value, as in figures
+// 11, 12 and 13 of Li et al.
+
+#include <filesystem>
+#include <string>
+
+#include "study/report.h"
+
+namespace palpa {
+
+// Writes figures.gp beside the report's .tsv tables, which must be in `folder` already, and draws sensitivity, nodules
+// and ppv as .svg, .pdf and .png. Returns what went wrong, or "".
+std::string draw_figures(const Report& report, const std::filesystem::path& folder);
+
+}  // namespace palpa

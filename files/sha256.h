@@ -1,0 +1,11 @@
+#pragma once
+// SHA-256 (FIPS 180-4): what a log names so that anybody can check with `sha256sum` which file it was made with.
+
+#include <string>
+#include <string_view>
+
+namespace palpa {
+
+std::string sha256_hex(std::string_view bytes);
+
+}  // namespace palpa

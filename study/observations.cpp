@@ -1,0 +1,128 @@
+#include "study/observations.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <optional>
+
+#include "files/input_error.h"
+#include "files/table.h"
+#include "files/text.h"
+
+namespace palpa {
+namespace {
+
+constexpr double kMostCounts = 1e9;
+
+std::int64_t count(const Table& table, std::size_t column) {
+    const double value = table.number(column);
+    if (!(value >= 0.0 && value <= kMostCounts) || value != std::floor(value)) {
+        table.fail(column, "a whole number from 0 to 1e9");
+    }
+    return static_cast<std::int64_t>(value);
+}
+
+std::optional<std::size_t> optional_column(const Table& table, std::string_view name) {
+    if (!table.has_column(name)) return std::nullopt;
+    return table.column(name);
+}
+
+int name_index(const Table& table, std::optional<std::size_t> column, std::vector<std::string>& names) {
+    if (!column || table.field(*column) == "n/a" || table.field(*column).empty()) return -1;
+    return index_of(table.field(*column), names);
+}
+
+int condition_index(const Table& table, std::size_t column, Observations& out) {
+    const int index = name_index(table, column, out.conditions);
+    if (index < 0) table.fail(column, "a name");
+    return index;
+}
+
+// The same people, condition and item in two rows would be counted twice.
+class Unique {
+ public:
+    void add(const Table& table, std::size_t column, const std::array<int, 3>& key) {
+        const auto [it, fresh] = first_line_.emplace(key, table.line());
+        if (!fresh) {
+            table.fail(column, "it once: line " + std::to_string(it->second) +
+                                   " has the same condition, participant and nodule or comparison");
+        }
+    }
+
+ private:
+    std::map<std::array<int, 3>, std::size_t> first_line_;
+};
+
+void read_marks(Table& table, Observations& out) {
+    const std::size_t condition = table.column("condition");
+    const std::size_t tp = table.column("tp"), fn = table.column("fn"), fp = table.column("fp");
+    const auto n = optional_column(table, "n");
+    const auto nodule = optional_column(table, "nodule");
+    const auto participant = optional_column(table, "participant");
+    Unique unique;
+    while (table.next()) {
+        Observation row;
+        row.condition = condition_index(table, condition, out);
+        row.nodule = name_index(table, nodule, out.nodules);
+        row.participant = name_index(table, participant, out.participants);
+        row.tp = count(table, tp);
+        row.fn = count(table, fn);
+        const bool no_marks_told = row.nodule >= 0 && table.field(fp) == "n/a";
+        row.fp = no_marks_told ? 0 : count(table, fp);
+        if (n && row.tp > count(table, *n)) {
+            table.fail(tp, "at most n = " + std::string(table.field(*n)) + ": no more can be found than there are");
+        }
+        if (n && row.tp + row.fn != count(table, *n)) table.fail(*n, "tp + fn = " + std::to_string(row.tp + row.fn));
+        unique.add(table, condition, {row.condition, row.nodule, row.participant});
+        out.rows.push_back(row);
+    }
+}
+
+void read_choices(Table& table, Observations& out) {
+    const std::size_t condition = table.column("condition");
+    const std::size_t correct = table.column("correct"), n = table.column("n");
+    const auto comparison = optional_column(table, "comparison");
+    const auto participant = optional_column(table, "participant");
+    Unique unique;
+    while (table.next()) {
+        Choices row;
+        row.condition = condition_index(table, condition, out);
+        row.comparison = name_index(table, comparison, out.comparisons);
+        row.participant = name_index(table, participant, out.participants);
+        row.correct = count(table, correct);
+        row.n = count(table, n);
+        if (row.correct > row.n) table.fail(correct, "at most n = " + std::to_string(row.n));
+        unique.add(table, condition, {row.condition, row.comparison, row.participant});
+        out.choices.push_back(row);
+    }
+}
+
+}  // namespace
+
+int index_of(std::string_view name, std::vector<std::string>& names) {
+    const auto at = std::find(names.begin(), names.end(), name) - names.begin();
+    if (at == static_cast<std::ptrdiff_t>(names.size())) names.emplace_back(name);
+    return static_cast<int>(at);
+}
+
+Observations read_counts(const std::filesystem::path& tsv) {
+    Table table = read_tsv(tsv);
+    Observations out;
+    for (const std::string& column : table.columns()) {
+        constexpr std::array<std::string_view, 8> kKnown{"condition", "tp", "fn", "fp", "n", "nodule", "participant", "correct"};
+        if (column != "comparison" && std::find(kKnown.begin(), kKnown.end(), column) == kKnown.end()) {
+            throw bad_input(tsv.string(), "line 1", "the column " + shown(column),
+                            "condition tp fn fp [n] [nodule] [participant], or condition correct n [comparison] [participant]");
+        }
+    }
+    if (table.has_column("correct")) {
+        read_choices(table, out);
+    } else {
+        read_marks(table, out);
+    }
+    if (out.conditions.empty()) throw bad_input(tsv.string(), "", "no rows", "one row of counts at least");
+    return out;
+}
+
+}  // namespace palpa

@@ -1,0 +1,154 @@
+#include "study/protocol.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "files/input_error.h"
+#include "files/json.h"
+#include "files/sha256.h"
+#include "files/text.h"
+
+namespace palpa {
+namespace {
+
+constexpr const char* kModalities[] = {"touchpad", "pen", "finger", "mouse", "tangible", "shape-display", "hand"};
+constexpr const char* kOrders[] = {"fixed", "random", "latin", "williams"};
+
+std::string new_id(JsonReader& json, std::set<std::string>& known) {
+    const std::string id = json.text("id");
+    if (id.empty() || id.find_first_of("\t\n\r") != std::string::npos) json.fail("id", shown(id), "a name without tabs");
+    if (!known.insert(id).second) json.fail("id", shown(id) + " a second time", "each name once");
+    return id;
+}
+
+Condition read_condition(JsonReader json, TaskKind task, std::set<std::string>& known) {
+    Condition condition;
+    condition.id = new_id(json, known);
+    condition.title = json.text("title", condition.id);
+    condition.modality = static_cast<Modality>(
+        json.choice("modality", {"touchpad", "pen", "finger", "mouse", "tangible", "shape-display", "hand"}));
+    condition.scene = json.text("scene", "");
+    condition.profile = json.text("profile", "");
+    condition.device = json.text("device", "n/a");
+    condition.instructions = json.text("instructions", "");
+    const bool by_hand = condition.modality == Modality::hand;
+    if (by_hand && !condition.scene.empty()) json.fail("scene", shown(condition.scene), "none: a real phantom has no scene");
+    if (!by_hand && condition.scene.empty() && task == TaskKind::find) json.fail("scene", "nothing", "a scene file");
+    json.finish();
+    return condition;
+}
+
+Group read_group(JsonReader json, const std::vector<Condition>& conditions, std::set<std::string>& known) {
+    Group group;
+    group.id = new_id(json, known);
+    const Json& list = json.any("conditions");
+    if (!list.is_array() || list.empty()) json.fail("conditions", described(list), "an array of conditions' ids");
+    for (const Json& entry : list) {
+        const auto same = [&](const Condition& one) { return entry.is_string() && one.id == entry.get_ref<const std::string&>(); };
+        const auto it = std::find_if(conditions.begin(), conditions.end(), same);
+        if (it == conditions.end()) json.fail("conditions", described(entry), "the id of a condition of this protocol");
+        const auto index = static_cast<std::size_t>(it - conditions.begin());
+        if (std::count(group.conditions.begin(), group.conditions.end(), index) > 0) {
+            json.fail("conditions", described(entry) + " a second time", "each condition once (use repeats)");
+        }
+        group.conditions.push_back(index);
+    }
+    json.finish();
+    return group;
+}
+
+Item read_item(JsonReader json, std::set<std::string>& known) {
+    Item item;
+    item.id = new_id(json, known);
+    item.text = json.text("text");
+    if (json.has("from") || json.has("to")) {
+        item.from = json.integer("from", -100, 100);
+        item.to = json.integer("to", *item.from + 1, 100);
+    }
+    if (json.has("choices")) {
+        if (item.from) json.fail("choices", "a scale too", "either choices or from and to");
+        const Json& list = json.any("choices");
+        if (!list.is_array() || list.size() < 2) json.fail("choices", described(list), "two texts or more");
+        for (const Json& entry : list) {
+            if (!entry.is_string()) json.fail("choices", described(entry), "a text");
+            item.choices.push_back(entry.get<std::string>());
+        }
+    }
+    json.finish();
+    return item;
+}
+
+std::vector<Item> read_items(JsonReader& json, std::string_view key) {
+    std::vector<Item> items;
+    std::set<std::string> known;
+    for (JsonReader& item : json.objects(key)) items.push_back(read_item(item, known));
+    return items;
+}
+
+ChoiceTask read_choice(JsonReader json) {
+    ChoiceTask task;
+    task.reference_kPa = json.number("reference_kPa", {0.0, 1e6, true});
+    task.comparisons_kPa = json.numbers("comparisons_kPa", 0, {0.0, 1e6, true});
+    for (const double comparison : task.comparisons_kPa) {
+        if (comparison == task.reference_kPa) json.fail("comparisons_kPa", short_number(comparison), "values unlike the reference");
+    }
+    task.repeats = json.integer("repeats", 1, 1000, task.repeats);
+    task.alternate_conditions = json.boolean("alternate_conditions", false);
+    json.finish();
+    return task;
+}
+
+void read_practice(JsonReader json, Protocol& protocol) {
+    protocol.practice_trials = json.integer("trials", 0, 100);
+    protocol.practice_limit_s = json.number("time_limit_s", {0.0, 86400.0}, 0.0);
+    json.finish();
+}
+
+}  // namespace
+
+Protocol read_protocol(const std::filesystem::path& file) {
+    Protocol protocol;
+    protocol.file = file;
+    protocol.text = read_text(file, 1 << 24);
+    protocol.sha256 = sha256_hex(protocol.text);
+    const Json root = parse_json(protocol.text, file.string());
+    JsonReader json(root, file.string());
+    protocol.name = json.text("name");
+    protocol.version = json.text("version");
+    protocol.seed = static_cast<std::uint32_t>(json.integer("seed", 0, 2000000000));
+    if (auto choice = json.optional_object("choice")) {
+        protocol.task = TaskKind::choice;
+        protocol.choice = read_choice(*choice);
+    }
+    std::set<std::string> conditions, groups;
+    for (JsonReader& entry : json.objects("conditions")) {
+        protocol.conditions.push_back(read_condition(entry, protocol.task, conditions));
+    }
+    if (protocol.conditions.empty()) json.fail("conditions", "nothing", "one condition at least");
+    for (JsonReader& entry : json.objects("groups")) protocol.groups.push_back(read_group(entry, protocol.conditions, groups));
+    if (protocol.groups.empty()) {
+        protocol.groups.push_back({"all", {}});
+        for (std::size_t i = 0; i < protocol.conditions.size(); ++i) protocol.groups[0].conditions.push_back(i);
+    }
+    if (json.has("assignment")) protocol.assignment = static_cast<Assignment>(json.choice("assignment", {"alternate", "random"}));
+    protocol.order = static_cast<OrderKind>(json.choice("order", {"fixed", "random", "latin", "williams"}));
+    protocol.repeats = json.integer("repeats", 1, 1000, 1);
+    protocol.turn_maps = json.boolean("turn_maps", true);
+    protocol.flip_maps = json.boolean("flip_maps", false);
+    protocol.time_limit_s = json.number("time_limit_s", {0.0, 86400.0}, 0.0);
+    if (auto practice = json.optional_object("practice")) read_practice(*practice, protocol);
+    protocol.break_every_trials = json.integer("break_every_trials", 0, 10000, 0);
+    protocol.count_told = json.boolean("nodule_count_told", false);
+    protocol.instructions = json.text("instructions", "");
+    protocol.demographics = read_items(json, "demographics");
+    protocol.ratings = read_items(json, "ratings");
+    json.finish();
+    return protocol;
+}
+
+const char* name_of(Modality modality) { return kModalities[static_cast<int>(modality)]; }
+const char* name_of(OrderKind order) { return kOrders[static_cast<int>(order)]; }
+const char* name_of(TaskKind task) { return task == TaskKind::find ? "find" : "choice"; }
+
+}  // namespace palpa

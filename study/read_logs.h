@@ -1,0 +1,50 @@
+#pragma once
+// Logs back into numbers. Whatever a kill or a power cut left behind can be read: a line that was cut off is left out
+// and noted, a trial without its last row is an interrupted one.
+
+#include <filesystem>
+#include <limits>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "study/observations.h"
+
+namespace palpa {
+
+// `text` up to its last newline; what is behind it was cut off and is noted.
+std::string_view whole_lines(std::string_view text, const std::string& file, std::vector<std::string>& notes);
+
+// One run: ..._events.tsv.
+struct RunLog {
+    std::filesystem::path events;
+    bool finished = false;
+    bool practice = false;
+    int trial = 0;
+    std::string condition;
+    double duration_s = std::numeric_limits<double>::quiet_NaN();
+    std::int64_t tp = 0, fp = 0, fn = 0;
+    double path_m = std::numeric_limits<double>::quiet_NaN();
+    double mean_force_N = std::numeric_limits<double>::quiet_NaN();
+    double max_force_N = std::numeric_limits<double>::quiet_NaN();
+    struct Choice {
+        int trial = 0;
+        std::string condition;
+        std::string comparison;
+        bool correct = false;
+        bool practice = false;
+    };
+    std::vector<Choice> choices;  // of a run of forced choices, each one finished
+};
+
+// Throws InputError for a line that is not cut off and yet cannot be read.
+RunLog read_run(const std::filesystem::path& events, std::vector<std::string>& notes);
+
+// sub-XX/beh/*_events.tsv, by name.
+std::vector<std::filesystem::path> events_files(const std::filesystem::path& subject);
+
+// All runs of all participants. Practice and interrupted trials are counted, not taken. Throws InputError for logs of
+// two versions of a protocol, a participant who stands twice in participants.tsv, and files that are no logs.
+Observations read_study(const std::filesystem::path& directory);
+
+}  // namespace palpa

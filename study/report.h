@@ -1,0 +1,111 @@
+#pragma once
+// The analysis of a study: the paper's way, and beside it what takes account of people who did several conditions, of
+// the clustering of nodules in people, and of many comparisons.
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "files/json.h"
+#include "study/bootstrap.h"
+#include "study/observations.h"
+#include "study/statistics.h"
+
+namespace palpa {
+
+// A proportion with its intervals.
+struct Share {
+    Proportion x;
+    Interval wilson;
+    std::optional<Interval> bootstrap;  // over participants; absent with fewer than two
+};
+
+struct NoduleResult {
+    std::string nodule;
+    Share se;
+};
+
+// Of one quantity over trials.
+struct Spread {
+    int n = 0;
+    double mean = 0.0;
+    double sd = 0.0;
+    double lower_quartile = 0.0;
+    double median = 0.0;
+    double upper_quartile = 0.0;
+};
+
+struct ConditionResult {
+    std::string name;
+    std::int64_t tp = 0;
+    std::int64_t fn = 0;
+    std::int64_t fp = 0;
+    std::optional<Share> se;   // absent: there was nothing to find
+    std::optional<Share> ppv;  // absent: nobody marked anything
+    std::vector<NoduleResult> nodules;
+    int participants = 0;  // 0: not told
+    std::optional<Spread> duration_s, path_m, mean_force_N, max_force_N;
+};
+
+struct PairResult {
+    std::string a;
+    std::string b;
+    std::string higher;   // a, b or "" if equal
+    double delta = 0.0;   // |p_a - p_b|
+    double combined_interval = 0.0;
+    bool significant = false;       // delta > combined_interval: the paper's test, without any correction
+    Interval newcombe;              // of p_a - p_b, as if independent
+    double p = 1.0;                 // of the paper's test
+    double p_holm = 1.0;            // corrected for all pairs of the table
+    std::optional<PairedCounts> paired;  // nodules that the same people judged under both conditions
+    Interval newcombe_paired;            // of p_a - p_b; with `paired`
+    double mcnemar_p = 1.0;
+    std::optional<Interval> bootstrap;   // of p_a - p_b, over participants
+    int participants_in_both = 0;
+};
+
+struct ChoiceResult {
+    std::string condition;
+    std::string comparison;  // "": all
+    Share correct;
+    double binomial_p = 1.0;
+    std::optional<TTest> over_people;   // their shares against one half
+    std::optional<TTest> over_answers;  // 0 and 1 against one half, as the paper's t(239); not independent
+};
+
+struct ReportOptions {
+    BootstrapOptions bootstrap;  // its level is that of every interval
+};
+
+struct Report {
+    ReportOptions options;
+    std::vector<ConditionResult> conditions;
+    std::vector<PairResult> pairs;      // sensitivity
+    std::vector<PairResult> ppv_pairs;
+    std::vector<ChoiceResult> choices;
+    std::vector<std::string> notes;
+    int participants = 0;
+    std::int64_t trials = 0;             // finished tests; 0 for a table of counts
+    std::int64_t practice_trials = 0;
+    std::int64_t interrupted_trials = 0;
+    bool simulated = false;
+};
+
+Report make_report(const Observations& seen, const ReportOptions& options);
+
+Spread spread_of(std::vector<double> values);
+
+Json report_json(const Report& report);
+
+// One table of the report, for a .tsv and for Markdown.
+struct ReportTable {
+    std::string name;   // of the file
+    std::string title;
+    std::vector<std::string> columns;
+    std::vector<std::vector<std::string>> rows;
+};
+std::vector<ReportTable> report_tables(const Report& report);
+std::string tsv_text(const ReportTable& table);
+std::string report_markdown(const Report& report);  // all tables, with methods and notes
+
+}  // namespace palpa

@@ -1,0 +1,114 @@
+#include <cmath>
+
+#include "study/report.h"
+
+namespace palpa {
+namespace {
+
+Json interval(const Interval& ci) { return {ci.low, ci.high}; }
+
+Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+
+void add_share(const std::string& key, const std::optional<Share>& share, Json& json) {
+    json[key] = share ? Json(share->x.p()) : Json(nullptr);
+    json[key + "_ci"] = share ? interval(share->wilson) : Json(nullptr);
+    if (share) json[key + "_n"] = share->x.n;
+    if (share && share->bootstrap) json[key + "_bootstrap_ci"] = interval(*share->bootstrap);
+}
+
+void add_spread(const char* key, double scale, const std::optional<Spread>& spread, Json& json) {
+    if (!spread) return;
+    json[key] = {{"n", spread->n},
+                 {"mean", scale * spread->mean},
+                 {"sd", scale * spread->sd},
+                 {"quartiles", {scale * spread->lower_quartile, scale * spread->median, scale * spread->upper_quartile}}};
+}
+
+Json condition_json(const ConditionResult& condition) {
+    Json json{{"tp", condition.tp}, {"fn", condition.fn}, {"fp", condition.fp}};
+    add_share("se", condition.se, json);
+    add_share("ppv", condition.ppv, json);
+    if (condition.participants > 0) json["participants"] = condition.participants;
+    for (const NoduleResult& nodule : condition.nodules) {
+        Json& entry = json["nodules"][nodule.nodule];
+        entry = {{"tp", nodule.se.x.k}, {"fn", nodule.se.x.n - nodule.se.x.k}};
+        add_share("se", nodule.se, entry);
+    }
+    add_spread("time_s", 1.0, condition.duration_s, json);
+    add_spread("path_mm", 1e3, condition.path_m, json);
+    add_spread("mean_force_N", 1.0, condition.mean_force_N, json);
+    add_spread("max_force_N", 1.0, condition.max_force_N, json);
+    return json;
+}
+
+Json pair_json(const PairResult& pair) {
+    Json json{{"a", pair.a},
+              {"b", pair.b},
+              {"delta", pair.delta},
+              {"higher", pair.higher.empty() ? Json(nullptr) : Json(pair.higher)},
+              {"combined_interval", pair.combined_interval},
+              {"significant", pair.significant},
+              {"newcombe_ci", interval(pair.newcombe)},
+              {"p", pair.p},
+              {"p_holm", pair.p_holm}};
+    if (pair.paired) {
+        json["paired"] = {{"n", pair.paired->n()},
+                          {"both", pair.paired->both},
+                          {"only_a", pair.paired->only_a},
+                          {"only_b", pair.paired->only_b},
+                          {"neither", pair.paired->neither},
+                          {"newcombe_ci", interval(pair.newcombe_paired)},
+                          {"mcnemar_p", pair.mcnemar_p}};
+    }
+    if (pair.bootstrap) json["bootstrap_ci"] = interval(*pair.bootstrap);
+    if (pair.participants_in_both > 0) json["participants_in_both"] = pair.participants_in_both;
+    return json;
+}
+
+Json t_json(const TTest& test) {
+    return {{"mean", test.mean}, {"t", number(test.t)}, {"df", test.df}, {"p", test.p}, {"ci", interval(test.ci)}};
+}
+
+Json choice_json(const ChoiceResult& choice) {
+    Json json{{"condition", choice.condition}, {"comparison", choice.comparison.empty() ? Json(nullptr) : Json(choice.comparison)}};
+    json["correct"] = choice.correct.x.k;
+    json["n"] = choice.correct.x.n;
+    add_share("share", choice.correct, json);
+    json["chance"] = 0.5;
+    json["binomial_p"] = choice.binomial_p;
+    if (choice.over_people) json["t_over_participants"] = t_json(*choice.over_people);
+    if (choice.over_answers) json["t_over_answers"] = t_json(*choice.over_answers);
+    return json;
+}
+
+}  // namespace
+
+Json report_json(const Report& report) {
+    Json json;
+    json["simulated"] = report.simulated;
+    json["level"] = report.options.bootstrap.level;
+    json["z"] = z_of_level(report.options.bootstrap.level);
+    json["methods"] = {{"se_ci", "Wilson score"},
+                       {"combined_interval", "Li et al.: square root of the sum of squared facing Wilson arms"},
+                       {"p_holm", "Holm over all pairs of the list, p of the combined interval"},
+                       {"paired", "Newcombe 1998 method 10 for pairs; McNemar's exact test"},
+                       {"bootstrap_ci", "percentile bootstrap over participants"},
+                       {"bootstrap_resamples", report.options.bootstrap.resamples},
+                       {"bootstrap_seed", report.options.bootstrap.seed}};
+    json["participants"] = report.participants;
+    json["trials"] = report.trials;
+    json["practice_trials"] = report.practice_trials;
+    json["interrupted_trials"] = report.interrupted_trials;
+    json["conditions"] = Json::object();
+    for (const ConditionResult& condition : report.conditions) json["conditions"][condition.name] = condition_json(condition);
+    json["pairs"] = Json::array();
+    for (const PairResult& pair : report.pairs) json["pairs"].push_back(pair_json(pair));
+    json["ppv_pairs"] = Json::array();
+    for (const PairResult& pair : report.ppv_pairs) json["ppv_pairs"].push_back(pair_json(pair));
+    if (!report.choices.empty()) json["choices"] = Json::array();
+    for (const ChoiceResult& choice : report.choices) json["choices"].push_back(choice_json(choice));
+    json["notes"] = report.notes;
+    return json;
+}
+
+}  // namespace palpa

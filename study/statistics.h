@@ -1,0 +1,93 @@
+#pragma once
+// Proportions and their intervals, as studies of palpation report them. Counts in, numbers out; no files.
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace palpa {
+
+// `k` of `n`. All functions need 0 <= k <= n and n >= 1.
+struct Proportion {
+    std::int64_t k = 0;
+    std::int64_t n = 1;
+    double p() const { return static_cast<double>(k) / static_cast<double>(n); }
+};
+
+struct Interval {
+    double low = 0.0;
+    double high = 0.0;
+};
+
+// x with P(X <= x) = p for a standard normal X, 0 < p < 1. Exact to rounding.
+double normal_quantile(double p);
+
+// Two-sided standard score of a confidence level: 0.95 -> 1.959963984540054.
+double z_of_level(double level);
+
+// Wilson's score interval (1927), as in Li et al., section 4:
+//
+//     (p + z^2/2n +- z sqrt(p (1-p)/n + z^2/4n^2)) / (1 + z^2/n)
+//
+// written so that k = 0 gives exactly 0 and k = n exactly 1.
+Interval wilson(const Proportion& x, double z);
+
+// The paper's "combined interval" of the two proportions, p1 <= p2:
+//
+//     CI = sqrt((U1 - p1)^2 + (L2 - p2)^2)          U1, L2: Wilson's limits that face each other
+//
+// The paper calls p2 - p1 significant where it is greater than CI. It is the lower arm of newcombe().
+double combined_interval(const Proportion& a, const Proportion& b, double z);
+
+// Newcombe's hybrid score interval of p_a - p_b, independent samples. Source: Newcombe, Statistics in Medicine
+// 17 (1998) 873, method 10 (without continuity correction).
+Interval newcombe(const Proportion& a, const Proportion& b, double z);
+
+// The p value that belongs to the combined interval: 2 P(X > z) for the z at which |p_a - p_b| equals it. So
+// p < 1 - level exactly where the paper's test says significant.
+double combined_p(const Proportion& a, const Proportion& b);
+
+// The same items judged under two conditions.
+struct PairedCounts {
+    std::int64_t both = 0;    // found under both
+    std::int64_t only_a = 0;
+    std::int64_t only_b = 0;
+    std::int64_t neither = 0;
+    std::int64_t n() const { return both + only_a + only_b + neither; }
+};
+
+// Newcombe's interval of p_a - p_b for pairs, square-and-add with the correlation of the two. Source: Newcombe,
+// Statistics in Medicine 17 (1998) 2635, method 10: the correlation's numerator is drawn towards 0 by n/2.
+Interval newcombe_paired(const PairedCounts& counts, double z);
+
+// McNemar's exact test: the pairs that differ, against one half.
+double mcnemar_p(const PairedCounts& counts);
+
+// Exact binomial test, two-sided: all outcomes that are no likelier than the one seen (to 1e-7 of its
+// probability, so that ties are not split by rounding).
+double exact_binomial_p(const Proportion& x, double chance);
+
+// Student's t against a mean that chance would give.
+struct TTest {
+    double mean = 0.0;
+    double t = 0.0;       // infinite where all values are the same and not `chance`
+    double df = 0.0;
+    double p = 1.0;       // two-sided
+    Interval ci;          // of the mean
+};
+TTest t_test(std::span<const double> values, double chance, double level);  // two values at least
+
+// Two-sided p value of Student's t, and the t of a confidence level.
+double student_p(double t, double df);
+double student_quantile(double level, double df);
+
+// Regularised incomplete beta function I_x(a, b), by its continued fraction (DLMF 8.17.22).
+double incomplete_beta(double a, double b, double x);
+
+// Quantile of values in rising order, linear between them (numpy's default).
+double quantile(std::span<const double> sorted, double q);
+
+// Holm's step-down correction (Scand. J. Statist. 6 (1979) 65): adjusted p values in the order given.
+std::vector<double> holm(std::span<const double> p);
+
+}  // namespace palpa

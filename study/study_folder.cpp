@@ -1,0 +1,223 @@
+#include "study/study_folder.h"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <map>
+#include <stdexcept>
+
+#include "files/input_error.h"
+#include "files/json.h"
+#include "files/text.h"
+#include "study/read_logs.h"
+#include "study/sample_log.h"
+#include "study/trial_log.h"
+
+namespace palpa {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kPeopleHeader =
+    "participant_id\tage\tsex\thandedness\tvision\tpalpation_experience\tvr_experience\tgroup\n";
+
+std::string line_of(const Person& p) {
+    std::string line = "sub-" + p.code;
+    for (const std::string* field : {&p.age, &p.sex, &p.handedness, &p.vision, &p.palpation_experience, &p.vr_experience, &p.group}) {
+        line += "\t";
+        for (const char c : *field) line.push_back(static_cast<unsigned char>(c) < 0x20 ? ' ' : c);
+    }
+    return line + "\n";
+}
+
+std::string version_text(const std::string& version, const std::string& sha256) {
+    return "version " + shown(version) + " (sha256 " + sha256.substr(0, 12) + "...)";
+}
+
+bool has_logs(const fs::path& directory) {
+    for (const auto& entry : fs::directory_iterator(directory)) {
+        if (entry.path().filename().string().rfind("sub-", 0) == 0) return true;
+    }
+    return false;
+}
+
+void check_same(const fs::path& file, const StudyIdentity& found, const Protocol& protocol, const StudyKind& kind) {
+    if (found.sha256 != protocol.sha256) {
+        throw bad_input(file.string(), "sha256",
+                        shown(found.name) + " " + version_text(found.version, found.sha256),
+                        shown(protocol.name) + " " + version_text(protocol.version, protocol.sha256) +
+                            ": two versions of a protocol never share a folder");
+    }
+    const auto told = [](const StudyKind& k) {
+        return k.simulated ? "simulated participants of seed " + std::to_string(k.seed) : std::string("people");
+    };
+    if (found.kind.simulated != kind.simulated || found.kind.seed != kind.seed) {
+        throw bad_input(file.string(), "simulated", told(found.kind), told(kind) + ": they never share a folder");
+    }
+}
+
+[[noreturn]] void fail_writing(const fs::path& path) {
+    throw std::runtime_error(path.string() + ": cannot be written: " + std::strerror(errno));
+}
+
+// At the end of a file that may be there already; on the disk when it returns.
+void append_synced(const fs::path& path, std::string_view text) {
+    const int fd = ::open(path.c_str(), O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC, 0644);
+    if (fd < 0) fail_writing(path);
+    char last = '\n';
+    const off_t size = ::lseek(fd, 0, SEEK_END);
+    std::string whole(text);
+    // after a line that was cut off a new one begins
+    if (size > 0 && ::pread(fd, &last, 1, size - 1) == 1 && last != '\n') whole.insert(0, "\n");
+    std::string_view rest = whole;
+    while (!rest.empty()) {
+        const ssize_t n = ::write(fd, rest.data(), rest.size());
+        if (n < 0 && errno == EINTR) continue;
+        if (n <= 0) {
+            ::close(fd);
+            fail_writing(path);
+        }
+        rest.remove_prefix(static_cast<std::size_t>(n));
+    }
+    const bool synced = ::fsync(fd) == 0;
+    ::close(fd);
+    if (!synced) fail_writing(path);
+}
+
+std::vector<std::string_view> fields_of(std::string_view line) {
+    std::vector<std::string_view> out;
+    while (true) {
+        const auto end = line.find('\t');
+        out.push_back(line.substr(0, end));
+        if (end == std::string_view::npos) return out;
+        line.remove_prefix(end + 1);
+    }
+}
+
+}  // namespace
+
+void open_study(const fs::path& directory, const Protocol& protocol, const StudyKind& kind) {
+    std::error_code error;
+    fs::create_directories(directory, error);
+    if (error || !fs::is_directory(directory)) {
+        throw std::runtime_error(directory.string() + ": cannot be made: " + (error ? error.message() : "a file is in the way"));
+    }
+    const fs::path file = directory / "study.json";
+    if (const auto found = read_identity(directory)) return check_same(file, *found, protocol, kind);
+    if (has_logs(directory)) {
+        throw bad_input(directory.string(), "", "logs (sub-...) but no study.json", "an empty folder, or one of this protocol");
+    }
+    prepare_log_folder(directory);
+    write_text_atomically(directory / "protocol.json", protocol.text);
+    Json json{{"protocol", protocol.name},
+              {"version", protocol.version},
+              {"sha256", protocol.sha256},
+              {"simulated", kind.simulated},
+              {"simulation_seed", kind.seed},
+              {"program", kind.program}};
+    write_text_atomically(file, json_text(json));  // last: from here on the folder is a study
+}
+
+std::optional<StudyIdentity> read_identity(const fs::path& directory) {
+    const fs::path file = directory / "study.json";
+    if (!fs::exists(file)) return std::nullopt;
+    const Json root = read_json(file);
+    JsonReader json(root, file.string());
+    StudyIdentity out;
+    out.name = json.text("protocol");
+    out.version = json.text("version");
+    out.sha256 = json.text("sha256");
+    out.kind.simulated = json.boolean("simulated", false);
+    out.kind.seed = static_cast<std::uint64_t>(json.number("simulation_seed", {0.0, 9e15}, 0.0));
+    out.kind.program = json.text("program", "");
+    json.finish();
+    return out;
+}
+
+std::vector<Person> read_people(const fs::path& directory, std::vector<std::string>& notes) {
+    const fs::path file = directory / "participants.tsv";
+    std::vector<Person> people;
+    if (!fs::exists(file)) return people;
+    const std::string text = read_text(file);
+    std::string_view rest = whole_lines(text, file.string(), notes);
+    std::map<std::string, int> first_line;
+    for (int line = 1; !rest.empty(); ++line) {
+        const auto end = rest.find('\n');
+        std::string_view row = rest.substr(0, end);
+        rest.remove_prefix(end + 1);
+        if (!row.empty() && row.back() == '\r') row.remove_suffix(1);
+        if (line == 1 || row.empty()) continue;
+        const auto fields = fields_of(row);
+        if (fields.size() != 8 || fields[0].substr(0, 4) != "sub-") {
+            notes.push_back(file.string() + ": line " + std::to_string(line) + " is left out: " + shown(row) +
+                            " is not a participant with 8 fields");
+            continue;
+        }
+        const auto field = [&](std::size_t i) { return std::string(fields[i]); };
+        people.push_back({field(0).substr(4), field(1), field(2), field(3), field(4), field(5), field(6), field(7)});
+        const auto [it, fresh] = first_line.emplace(people.back().code, line);
+        if (!fresh) {
+            throw bad_input(file.string(), "line " + std::to_string(line) + ", participant_id", shown(fields[0]),
+                            "it once: line " + std::to_string(it->second) + " has the same code");
+        }
+    }
+    return people;
+}
+
+void add_people(const fs::path& directory, const std::vector<Person>& people) {
+    std::vector<std::string> notes;
+    std::set<std::string> known;
+    for (const Person& one : read_people(directory, notes)) known.insert(one.code);
+    const fs::path file = directory / "participants.tsv";
+    std::string lines;
+    if (!fs::exists(file) || fs::file_size(file) == 0) lines = kPeopleHeader;
+    for (const Person& one : people) {
+        if (known.insert(one.code).second) lines += line_of(one);
+    }
+    if (!lines.empty()) append_synced(file, lines);
+}
+
+std::set<int> finished_trials(const fs::path& directory, const std::string& code) {
+    std::set<int> finished;
+    for (const fs::path& file : events_files(directory / ("sub-" + code))) {
+        std::vector<std::string> notes;
+        const RunLog run = read_run(file, notes);
+        if (run.finished) finished.insert(run.trial);
+        for (const RunLog::Choice& choice : run.choices) finished.insert(choice.trial);
+    }
+    return finished;
+}
+
+std::optional<PlannedTrial> next_trial(const PlannedParticipant& plan, const std::set<int>& finished) {
+    for (const PlannedTrial& trial : plan.trials) {
+        if (finished.count(trial.trial) == 0) return trial;
+    }
+    return std::nullopt;
+}
+
+StudyProgress progress_of(const fs::path& directory, const Protocol& protocol, const std::string& code) {
+    std::vector<std::string> notes;
+    const std::vector<Person> people = read_people(directory, notes);
+    const auto it = std::find_if(people.begin(), people.end(), [&](const Person& one) { return one.code == code; });
+    StudyProgress out;
+    out.known = it != people.end();
+    out.plan = plan_participant(protocol, static_cast<int>(it - people.begin()) + 1);
+    out.finished = finished_trials(directory, code);
+    out.next = next_trial(out.plan, out.finished);
+    return out;
+}
+
+std::string instructions_for(const Protocol& protocol, const PlannedTrial& trial) {
+    const Condition& condition = protocol.conditions[trial.condition];
+    std::string text = protocol.instructions;
+    if (!condition.instructions.empty()) text += (text.empty() ? "" : "\n\n") + condition.instructions;
+    if (trial.practice) text += "\n\nThis is practice: you see where the harder places are.";
+    const double limit_s = trial.practice ? protocol.practice_limit_s : protocol.time_limit_s;
+    if (limit_s > 0.0) text += "\n\nYou have " + short_number(limit_s) + " seconds.";
+    return text;
+}
+
+}  // namespace palpa

@@ -1,0 +1,66 @@
+#pragma once
+// The folder of one study: DIR/protocol.json (a copy), DIR/study.json (which version of it, and how), the people, and
+// the runs of study/sample_log.h. Whatever is there is never overwritten; a study that was interrupted goes on in it.
+
+#include <filesystem>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "study/order.h"
+
+namespace palpa {
+
+struct StudyKind {
+    bool simulated = false;
+    std::uint64_t seed = 0;      // of the simulation
+    std::string program;         // and version
+};
+
+// Makes the folder, or goes on in one of the same protocol and kind. Throws InputError naming both versions if another
+// protocol's logs are there, std::runtime_error if it cannot be written.
+void open_study(const std::filesystem::path& directory, const Protocol& protocol, const StudyKind& kind);
+
+// What study.json says; nothing if there is none (logs of single runs). Throws InputError if it cannot be read.
+struct StudyIdentity {
+    std::string name;
+    std::string version;
+    std::string sha256;
+    StudyKind kind;
+};
+std::optional<StudyIdentity> read_identity(const std::filesystem::path& directory);
+
+// One line of participants.tsv; unknown is n/a.
+struct Person {
+    std::string code;  // without "sub-"
+    std::string age = "n/a", sex = "n/a", handedness = "n/a", vision = "n/a";
+    std::string palpation_experience = "n/a", vr_experience = "n/a", group = "n/a";
+};
+
+// In the order of the file. A last line that was cut off is left out and noted. Throws InputError for a code that
+// stands twice.
+std::vector<Person> read_people(const std::filesystem::path& directory, std::vector<std::string>& notes);
+
+// Adds those whose codes are not there yet, on the disk when it returns. Throws std::runtime_error if it cannot.
+void add_people(const std::filesystem::path& directory, const std::vector<Person>& people);
+
+// Trials of this participant that are finished and on the disk.
+std::set<int> finished_trials(const std::filesystem::path& directory, const std::string& code);
+
+// The first trial that is not finished yet: where a study goes on after a break, a crash or a power cut. Nothing: done.
+std::optional<PlannedTrial> next_trial(const PlannedParticipant& plan, const std::set<int>& finished);
+
+// Where a participant stands: what a screen needs to begin, or to go on after a crash.
+struct StudyProgress {
+    bool known = false;           // the code is in participants.tsv already
+    PlannedParticipant plan;      // of the place that the code has there, or of the next free one
+    std::set<int> finished;
+    std::optional<PlannedTrial> next;  // nothing: everything is done
+};
+StudyProgress progress_of(const std::filesystem::path& directory, const Protocol& protocol, const std::string& code);
+
+// What the participant reads before this trial.
+std::string instructions_for(const Protocol& protocol, const PlannedTrial& trial);
+
+}  // namespace palpa

@@ -1,0 +1,224 @@
+// palpa study as a person calls it.
+
+#include <doctest/doctest.h>
+#include <sys/wait.h>
+
+#include <cstdlib>
+#include <filesystem>
+
+#include "files/json.h"
+#include "files/text.h"
+#include "tests/error_message.h"
+#include "tests/temporary_folder.h"
+
+using namespace palpa;
+using namespace palpa::test;
+
+namespace {
+
+const std::string kCounts = PALPA_SOURCE_DIR "/assets/counts/paper.tsv";
+
+struct Called {
+    int status = 0;
+    std::string out;
+    std::string err;
+};
+
+Called study(const std::string& arguments) {
+    const TemporaryFolder folder;
+    const std::string command = "timeout 120 " PALPA_PROGRAM " study " + arguments + " >" + (folder / "out").string() +
+                                " 2>" + (folder / "err").string() + " </dev/null";
+    const int status = std::system(command.c_str());
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_text(folder / "out"), read_text(folder / "err")};
+}
+
+void refused(const std::string& arguments, const std::string& word) {
+    const Called called = study(arguments);
+    CAPTURE(arguments);
+    CAPTURE(called.err);
+    CHECK(called.status == 2);
+    CHECK(contains(called.err, word));
+}
+
+}  // namespace
+
+TEST_CASE("command study: help exists for every command") {
+    for (const char* command : {"", "analyse", "order", "simulate"}) {
+        CAPTURE(command);
+        const Called help = study(std::string(command) + " --help");
+        CHECK(help.status == 0);
+        CHECK(help.out.size() > 100);
+    }
+}
+
+TEST_CASE("command study analyse: counts become tables, JSON and figures") {
+    const TemporaryFolder folder;
+    const Called called = study("analyse " + kCounts + " --json -o " + (folder / "report").string());
+    CHECK(called.status == 0);
+    const Json json = parse_json(called.out, "stdout");
+    CHECK(json["conditions"]["S-pen"]["se"].get<double>() == doctest::Approx(55.0 / 60.0));
+    CHECK(json == read_json(folder / "report/report.json"));
+    for (const char* name : {"sensitivity.tsv", "nodules.tsv", "ppv.tsv", "pairs.tsv", "ppv_pairs.tsv", "report.md", "figures.gp"}) {
+        CAPTURE(name);
+        CHECK(std::filesystem::exists(folder / (std::string("report/") + name)));
+    }
+    if (std::system("command -v gnuplot >/dev/null 2>&1") != 0) {
+        MESSAGE("not checked: gnuplot is not installed");
+        CHECK(contains(called.err, "gnuplot is not installed"));
+        return;
+    }
+    CHECK(called.err.empty());
+    for (const char* name : {"sensitivity", "nodules", "ppv"}) {
+        CAPTURE(name);
+        CHECK(read_text(folder / (std::string("report/") + name + ".png")).substr(1, 3) == "PNG");
+        CHECK(read_text(folder / (std::string("report/") + name + ".pdf")).substr(0, 4) == "%PDF");
+        CHECK(contains(read_text(folder / (std::string("report/") + name + ".svg")), "Touchpad"));
+    }
+}
+
+TEST_CASE("command study analyse: bad input ends with status 2 and says what was expected") {
+    const TemporaryFolder folder;
+    write_text_atomically(folder / "c.tsv", "condition\ttp\tfn\tfp\tn\npen\t61\t0\t0\t60\n");
+    refused("analyse " + (folder / "none.tsv").string(), "none.tsv: found nothing, expected a folder of logs or a table");
+    refused("analyse " + (folder / "c.tsv").string(), "c.tsv: line 2, tp: found '61', expected at most n = 60");
+    refused("analyse " + kCounts + " -o " + (folder / "c.tsv").string(), "c.tsv: found no folder");
+    refused("analyse " + kCounts + " --level 2", "--level");
+}
+
+TEST_CASE("command study order: who gets what, with seeds and balance") {
+    const std::string protocol = PALPA_SOURCE_DIR "/assets/protocols/";
+    const Called called = study("order " + protocol + "paper.json --participants 40 --json");
+    REQUIRE(called.status == 0);
+    const Json json = parse_json(called.out, "stdout");
+    REQUIRE(json["participants"].size() == 40);
+    CHECK(json["seed"] == 2014);
+    CHECK(json["sha256"].get<std::string>().size() == 64);
+    CHECK(json["participants"][0]["group"] == "I");
+    CHECK(json["participants"][0]["trials"].size() == 4);
+    CHECK(json["participants"][1]["trials"].size() == 6);
+    CHECK(json["participants"][1]["trials"][0]["block"] == "practice");
+    CHECK(json["imbalance"].size() == 2);
+    CHECK(study("order " + protocol + "paper.json --participants 40 --json").out == called.out);
+    const Called people = study("order " + protocol + "effects.json --participants 7");
+    CHECK(contains(people.out, "a multiple of 6 people would balance the order"));
+    CHECK(contains(people.out, "-- break --"));
+    CHECK(contains(study("order " + protocol + "softer.json --participants 1").out, "kPa, reference first"));
+}
+
+TEST_CASE("command study: a protocol that names a missing scene, map or profile is refused with its condition") {
+    const TemporaryFolder folder;
+    const auto with_scene = [&](const std::string& scene, const std::string& more = "") {
+        write_text_atomically(folder / "p.json", R"({"name": "n", "version": "1", "seed": 1, "order": "fixed",
+            "conditions": [{"id": "pen", "modality": "pen", "scene": ")" + scene + "\"" + more + "}]}");
+        return "order " + (folder / "p.json").string() + " --participants 1";
+    };
+    write_text_atomically(folder / "s.json", R"({"name": "s", "tissue": {"map": "none.map"}})");
+    refused(with_scene("none.json"), "p.json: conditions[0] 'pen': ");
+    refused(with_scene("none.json"), "none.json: cannot be read");
+    refused(with_scene("s.json"), "none.map");
+    refused(with_scene("default.json", R"(, "profile": "none.json")"), "profiles/none.json: cannot be read");
+    refused("order " + (folder / "q.json").string() + " --participants 1", "q.json: cannot be read");
+    refused("order " PALPA_SOURCE_DIR "/assets/protocols/paper.json --participants 0", "--participants");
+}
+
+TEST_CASE("command study simulate: simulated people find more with the laws than without, and their logs say what they are") {
+    const TemporaryFolder folder;
+    const std::string effects = PALPA_SOURCE_DIR "/assets/protocols/effects.json";
+    const std::string log = (folder / "log").string();
+    const std::string call = "simulate " + effects + " --participants 24 --seed 1 -o " + log;
+    const Called called = study(call + " --json");
+    REQUIRE(called.status == 0);
+    const Json done = parse_json(called.out, "stdout");
+    CHECK(done["trials"] == 72);
+    CHECK(done["samples"].get<int>() > 72 * 3500);
+    const std::string stem = log + "/sub-sim0001/beh/sub-sim0001_task-palpation_run-01";
+    CHECK(read_json(stem + "_settings.json")["study"]["simulated"] == true);
+    CHECK(read_json(stem + "_settings.json")["study"]["map_sha256"]["normal_N.npy"].get<std::string>().size() == 64);
+    CHECK(read_json(log + "/study.json")["simulated"] == true);
+    CHECK(contains(read_text(stem + "_samples.tsv"), "\tpen\tmove\t"));
+    CHECK(contains(read_text(log + "/.bidsignore"), "study.json"));
+
+    const Called again = study(call + " --json");
+    CHECK(parse_json(again.out, "stdout")["trials"] == 0);
+    CHECK(parse_json(again.out, "stdout")["already_there"] == 72);
+
+    const Called analysed = study("analyse " + log + " --json");
+    REQUIRE(analysed.status == 0);
+    const Json report = parse_json(analysed.out, "stdout");
+    CHECK(report["simulated"] == true);
+    CHECK(report["trials"] == 72);
+    int against_off = 0;
+    for (const Json& pair : report["pairs"]) {
+        if (pair["b"] != "off" && pair["a"] != "off") continue;
+        CHECK(pair["higher"] != "off");
+        CHECK(pair["significant"] == true);
+        CHECK(pair["p_holm"].get<double>() < 0.05);
+        CHECK(pair["paired"]["n"] == 72);
+        CHECK(pair["participants_in_both"] == 24);
+        ++against_off;
+    }
+    CHECK(against_off == 2);
+    const Json& ratio = report["conditions"]["display ratio"];
+    CHECK(ratio["ppv"].get<double>() > 0.8);
+    CHECK(ratio["nodules"]["A"]["se"].get<double>() > ratio["nodules"]["C"]["se"].get<double>());
+    CHECK(ratio["time_s"]["n"] == 24);
+    CHECK(ratio["path_mm"]["mean"].get<double>() > 1000.0);
+    CHECK(ratio["mean_force_N"]["mean"].get<double>() > 1.0);
+
+    // --samples none leaves out samples and changes nothing else; so does the number of jobs
+    const std::string lean = (folder / "lean").string();
+    REQUIRE(study("simulate " + effects + " --participants 24 --seed 1 --samples none -j 1 -o " + lean).status == 0);
+    CHECK_FALSE(std::filesystem::exists(lean + "/sub-sim0001/beh/sub-sim0001_task-palpation_run-01_samples.tsv"));
+    CHECK(parse_json(study("analyse " + lean + " --json").out, "stdout")["conditions"] == report["conditions"]);
+
+    refused("simulate " + effects + " --participants 24 --seed 2 -o " + log, "seed 1, expected simulated participants of seed 2");
+    refused("simulate " PALPA_SOURCE_DIR "/assets/protocols/paper.json --participants 2 --seed 1 -o " + log, "two versions of a protocol");
+    refused("analyse " + folder.path().string(), "found no trial");
+}
+
+TEST_CASE("command study simulate: the paper's protocol leaves hands out; forced choices are logged and analysed") {
+    const TemporaryFolder folder;
+    const std::string protocols = PALPA_SOURCE_DIR "/assets/protocols/";
+    const Called paper = study("simulate " + protocols + "paper.json --participants 4 -o " + (folder / "p").string() + " --json");
+    REQUIRE(paper.status == 0);
+    CHECK(parse_json(paper.out, "stdout")["trials"] == 6);
+    CHECK(parse_json(paper.out, "stdout")["left_out"] == 4);
+    const Json report = parse_json(study("analyse " + (folder / "p").string() + " --json").out, "stdout");
+    CHECK(report["conditions"].size() == 3);
+    CHECK(report["conditions"].contains("Bare finger"));
+
+    REQUIRE(study("simulate " + protocols + "softer.json --participants 6 -o " + (folder / "c").string()).status == 0);
+    const Json choices = parse_json(study("analyse " + (folder / "c").string() + " --json").out, "stdout");
+    CHECK(choices["choices"].size() == 12);
+    CHECK(choices["choices"][0]["n"] == 240);
+    CHECK(choices["choices"][0]["t_over_participants"]["df"] == 5.0);
+    const Json again = parse_json(study("simulate " + protocols + "softer.json --participants 6 -o " + (folder / "c").string() + " --json").out, "stdout");
+    CHECK(again["trials"] == 0);
+    CHECK(again["already_there"] == 480);
+}
+
+TEST_CASE("command study simulate: a disk that is full or cannot be written stops the study with a message") {
+    const TemporaryFolder folder;
+    {
+        // no file may grow beyond 64 KB, as on a disk that is nearly full: samples do not fit, so no trial is finished
+        const TemporaryFolder said;
+        const std::string log = (folder / "log").string();
+        const std::string command = "trap '' XFSZ; ulimit -f 128; timeout 60 " PALPA_PROGRAM " study simulate " PALPA_SOURCE_DIR
+                                    "/assets/protocols/effects.json --participants 3 -j 1 -o " + log + " 2>" + (said / "err").string();
+        const int status = std::system(command.c_str());
+        CHECK(WEXITSTATUS(status) == 1);
+        CHECK(contains(read_text(said / "err"), "could not be written to its end (is the disk full?); the study stops here"));
+        const std::string events = read_text(log + "/sub-sim0001/beh/sub-sim0001_task-palpation_run-01_events.tsv");
+        CHECK_FALSE(contains(events, "finish"));
+        CHECK_FALSE(std::filesystem::exists(log + "/sub-sim0001/beh/sub-sim0001_task-palpation_run-02_events.tsv"));
+        // with room again it goes on
+        const Called again = study("simulate " PALPA_SOURCE_DIR "/assets/protocols/effects.json --participants 3 --json -o " + log);
+        CHECK(parse_json(again.out, "stdout")["trials"] == 9);
+        CHECK(parse_json(study("analyse " + log + " --json").out, "stdout")["interrupted_trials"] == 1);
+    }
+    write_text_atomically(folder / "file", "x");
+    const std::string effects = PALPA_SOURCE_DIR "/assets/protocols/effects.json";
+    const Called called = study("simulate " + effects + " --participants 1 -o " + (folder / "file").string());
+    CHECK(called.status == 1);
+    CHECK(contains(called.err, "cannot be made"));
+}

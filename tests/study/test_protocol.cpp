@@ -1,0 +1,63 @@
+#include "study/protocol.h"
+
+#include <doctest/doctest.h>
+
+#include "files/sha256.h"
+#include "files/text.h"
+#include "tests/error_message.h"
+#include "tests/temporary_folder.h"
+
+using namespace palpa;
+using namespace palpa::test;
+
+namespace {
+
+const std::string kProtocols = PALPA_SOURCE_DIR "/assets/protocols/";
+
+std::string refused(const std::string& text) {
+    const TemporaryFolder folder;
+    write_text_atomically(folder / "p.json", text);
+    return message_of([&] { read_protocol(folder / "p.json"); });
+}
+
+// A protocol with `conditions` and whatever else.
+std::string with(const std::string& conditions, const std::string& rest = "") {
+    return R"({"name": "n", "version": "1", "seed": 1, "order": "fixed", "conditions": [)" + conditions + "]" + rest + "}";
+}
+
+const std::string kPen = R"({"id": "pen", "modality": "pen", "scene": "default.json"})";
+
+}  // namespace
+
+TEST_CASE("protocol: the shipped ones read as they are meant") {
+    const Protocol paper = read_protocol(kProtocols + "paper.json");
+    CHECK(paper.conditions.size() == 5);
+    REQUIRE(paper.groups.size() == 2);
+    CHECK(paper.groups[1].conditions == std::vector<std::size_t>{2, 3, 4});
+    CHECK(paper.conditions[0].modality == Modality::hand);
+    CHECK(paper.time_limit_s == 60.0);
+    CHECK(paper.practice_trials == 1);
+    CHECK_FALSE(paper.count_told);
+    CHECK(paper.demographics.size() == 6);
+    CHECK(paper.sha256 == sha256_hex(read_text(kProtocols + "paper.json")));
+    const Protocol softer = read_protocol(kProtocols + "softer.json");
+    CHECK(softer.task == TaskKind::choice);
+    CHECK(softer.choice.comparisons_kPa.size() == 5);
+    CHECK(read_protocol(kProtocols + "effects.json").groups.size() == 1);
+}
+
+TEST_CASE("protocol: what is wrong is named with its key") {
+    CHECK(refused(with(kPen)).empty());
+    CHECK(contains(refused(with("")), "conditions: found nothing, expected one condition"));
+    CHECK(contains(refused(with(kPen + "," + kPen)), "conditions[1].id: found 'pen' a second time"));
+    CHECK(contains(refused(with(R"({"id": "x", "modality": "nose", "scene": "s"})")), "conditions[0].modality: found 'nose'"));
+    CHECK(contains(refused(with(R"({"id": "x", "modality": "pen"})")), "conditions[0].scene: found nothing"));
+    CHECK(contains(refused(with(R"({"id": "x", "modality": "hand", "scene": "s.json"})")), "a real phantom has no scene"));
+    CHECK(contains(refused(with(kPen, R"(, "groups": [{"id": "g", "conditions": ["pin"]}])")), "groups[0].conditions: found 'pin'"));
+    CHECK(contains(refused(with(kPen, R"(, "groups": [{"id": "g", "conditions": ["pen", "pen"]}])")), "found 'pen' a second time"));
+    CHECK(contains(refused(with(kPen, R"(, "time_limit": 3)")), "time_limit: found an unknown key"));
+    CHECK(contains(refused(with(kPen, R"(, "seed": 2)")), "seed: found the key twice"));
+    CHECK(contains(refused(with(kPen, R"(, "choice": {"reference_kPa": 1, "comparisons_kPa": [1]})")), "values unlike the reference"));
+    CHECK(contains(refused(with(kPen, R"(, "ratings": [{"id": "a", "text": "t", "from": 5, "to": 1}])")), "ratings[0].to: found 1"));
+    CHECK(contains(refused("{"), "line 1, column"));
+}

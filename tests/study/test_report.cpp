@@ -1,0 +1,137 @@
+#include "study/report.h"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+#include "files/text.h"
+#include "tests/error_message.h"
+
+using namespace palpa;
+using namespace palpa::test;
+
+namespace {
+
+// Twenty people, two nodules, two conditions: b finds one nodule more in half of the people.
+Observations paired_study() {
+    Observations seen;
+    for (const char* name : {"a", "b"}) index_of(name, seen.conditions);
+    for (const char* name : {"N1", "N2"}) index_of(name, seen.nodules);
+    for (int person = 0; person < 20; ++person) {
+        index_of("p" + std::to_string(person), seen.participants);
+        for (int condition = 0; condition < 2; ++condition) {
+            for (int nodule = 0; nodule < 2; ++nodule) {
+                const bool hit = nodule == 0 ? person % 4 != 0 : (condition == 1 && person % 2 == 0);
+                seen.rows.push_back({condition, person, nodule, 0, hit, !hit, 0});
+            }
+            seen.rows.push_back({condition, person, -1, 0, 0, 0, person == 3 ? 1 : 0});
+            seen.trials.push_back({condition, person, 30.0 + person, 1.0, 2.0, std::nan("")});
+        }
+    }
+    return seen;
+}
+
+}  // namespace
+
+TEST_CASE("report: the paper's counts give its verdicts, and Holm's correction keeps three of five differences") {
+    const Observations seen = read_counts(PALPA_SOURCE_DIR "/assets/counts/paper.tsv");
+    const Json json = report_json(make_report(seen, {}));
+    CHECK(json["conditions"].size() == 5);
+    const Json& touchpad = json["conditions"]["Touchpad"];
+    CHECK(touchpad["tp"] == 31);
+    CHECK(touchpad["fn"] == 29);
+    CHECK(touchpad["fp"] == 5);
+    CHECK(touchpad["se_ci"][0].get<double>() == doctest::Approx(0.393078).epsilon(2e-6));
+    CHECK(touchpad["ppv_ci"][1].get<double>() == doctest::Approx(0.939182).epsilon(2e-6));
+    CHECK(touchpad["nodules"]["C"]["tp"] == 3);
+    CHECK(json["pairs"].size() == 10);
+    CHECK(json["ppv_pairs"].size() == 10);
+    int significant = 0, corrected = 0;
+    for (const Json& pair : json["pairs"]) {
+        significant += pair["significant"].get<bool>();
+        corrected += pair["p_holm"].get<double>() < 0.05;
+        CHECK(pair["delta"].get<double>() >= 0.0);
+        CHECK_FALSE(pair.contains("paired"));  // the counts do not tell who was who
+        if (pair["a"] != "S-pen" || pair["b"] != "Bare finger") continue;
+        CHECK(pair["combined_interval"].get<double>() == doctest::Approx(0.119343).epsilon(5e-6));
+        CHECK(pair["significant"] == false);
+        CHECK(pair["higher"] == "S-pen");
+    }
+    CHECK(significant == 5);
+    CHECK(corrected == 3);
+}
+
+TEST_CASE("report: people who did both conditions are compared in pairs, over participants") {
+    const Report report = make_report(paired_study(), {});
+    REQUIRE(report.conditions.size() == 2);
+    CHECK(report.conditions[0].tp == 15);
+    CHECK(report.conditions[1].tp == 25);
+    CHECK(report.conditions[1].fp == 1);
+    CHECK(report.conditions[0].participants == 20);
+    CHECK(report.conditions[0].se->bootstrap);
+    REQUIRE(report.pairs.size() == 1);
+    const PairResult& pair = report.pairs[0];
+    REQUIRE(pair.paired);
+    CHECK(pair.paired->both == 15);
+    CHECK(pair.paired->only_a == 0);
+    CHECK(pair.paired->only_b == 10);
+    CHECK(pair.paired->neither == 15);
+    CHECK(pair.higher == "b");
+    CHECK(pair.delta == doctest::Approx(0.25));
+    CHECK(pair.mcnemar_p == doctest::Approx(2.0 / 1024.0));
+    CHECK(pair.p > pair.mcnemar_p);  // independent samples see less
+    REQUIRE(pair.bootstrap);
+    CHECK(pair.bootstrap->high < 0.0);
+    CHECK(pair.participants_in_both == 20);
+    CHECK(report.conditions[0].duration_s->median == doctest::Approx(39.5));
+    CHECK_FALSE(report.conditions[0].max_force_N);
+    CHECK(contains(report_markdown(report), "| a | time_s | 20 | 39.500 |"));
+}
+
+TEST_CASE("report: nothing to find and nobody who marks leave no shares, and no pairs") {
+    Observations seen;
+    index_of("empty", seen.conditions);
+    index_of("full", seen.conditions);
+    seen.rows.push_back({0, -1, -1, 0, 0, 0, 2});
+    seen.rows.push_back({1, -1, -1, 0, 0, 3, 0});
+    const Json json = report_json(make_report(seen, {}));
+    CHECK(json["conditions"]["empty"]["se"].is_null());
+    CHECK(json["conditions"]["empty"]["ppv"] == 0.0);
+    CHECK(json["conditions"]["full"]["ppv_ci"].is_null());
+    CHECK(json["pairs"].empty());
+    CHECK(json["ppv_pairs"].empty());
+}
+
+TEST_CASE("report: forced choices against chance, over people and over answers") {
+    Observations seen;
+    index_of("with", seen.conditions);
+    for (int person = 0; person < 6; ++person) {
+        index_of("p" + std::to_string(person), seen.participants);
+        seen.choices.push_back({0, person, -1, 60 + person, 80});
+    }
+    const Report report = make_report(seen, {});
+    REQUIRE(report.choices.size() == 1);
+    const ChoiceResult& choice = report.choices[0];
+    CHECK(choice.correct.x.k == 375);
+    CHECK(choice.correct.x.n == 480);
+    REQUIRE(choice.over_people);
+    CHECK(choice.over_people->df == 5.0);
+    CHECK(choice.over_people->mean == doctest::Approx(62.5 / 80.0));
+    CHECK(choice.over_answers->df == 479.0);
+    CHECK(choice.binomial_p < 1e-30);
+    CHECK(contains(report_markdown(report), "| with | all | 375 | 480 |"));
+}
+
+TEST_CASE("report: tables have a value in every column, and Markdown keeps its bars") {
+    Observations seen = paired_study();
+    seen.conditions[0] = "a|b";
+    seen.simulated = true;
+    const Report report = make_report(seen, {});
+    for (const ReportTable& table : report_tables(report)) {
+        CAPTURE(table.name);
+        for (const auto& row : table.rows) CHECK(row.size() == table.columns.size());
+    }
+    CHECK(contains(report_markdown(report), "a\\|b"));
+    CHECK(contains(report_markdown(report), "SIMULATED"));
+    CHECK(report_json(report)["simulated"] == true);
+}
