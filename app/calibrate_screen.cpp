@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <ctime>
 #include <exception>
 
 #include "app/load.h"
@@ -66,13 +67,24 @@ std::filesystem::path free_profile(const CalibrateForm& form) {
     return file;
 }
 
+std::string today() {
+    const std::time_t now = std::time(nullptr);
+    std::tm local{};
+    localtime_r(&now, &local);
+    char text[16];
+    std::strftime(text, sizeof text, "%Y-%m-%d", &local);
+    return text;
+}
+
 void keep_profile(CalibrateForm& form) {
     attempt(form, [&] {
         close_recording(*form.recording);
         CalibrateOptions options;
         options.range = form.recording->arguments.options.range;
         CalibrationRows rows = read_points(points_file(form.recording->arguments), {});
-        const Calibration calibration = calibrate(rows, options);
+        Calibration calibration = calibrate(rows, options);
+        calibration.profile.device.pen = form.name;
+        calibration.profile.device.date = today();
         const std::filesystem::path file = free_profile(form);
         const Json quality{{"median_relative_error", calibration.median_relative_error}, {"n_points", calibration.n_points},
                            {"warnings", calibration.warnings}};
