@@ -368,6 +368,7 @@ void note_resize(const Window& window, Gui& gui, App& app) {
 }
 
 void show(Window& window, App& app, TissueDrawer& tissue, Gui& gui, double dt_s) {
+    flush_if_due(app.session);  // also while nothing moves
     if (app.frames % 60 == 0) note_devices(window, app);
     const Session& s = app.session;
     const Wishes wishes = draw_frame(s.scene, s.plan, s.trial, app.settings, now_of(app, window), dt_s, tissue, gui, app.screens,
