@@ -32,6 +32,8 @@ void write_pen(const simulators::StreamOptions& hand, double from_s, double seco
         down = level > 0.0;
         out << 0.005 * i << "\tpen\t0\t" << phase << '\t' << 600 + i % 2 << "\t400\t" << level << '\n';
     }
+    // a pen that stayed down at one level would be paired with the hand's further presses
+    if (down) out << seconds << "\tpen\t0\tup\t600\t400\t0\n";
 }
 
 }  // namespace
