@@ -44,20 +44,6 @@ void attempt(CalibrateForm& form, const Work& work) {
     }
 }
 
-CalibrationRows rows_of(const std::vector<CapturedPoint>& points) {
-    CalibrationRows rows;
-    rows.file = "the points so far";
-    for (const CapturedPoint& point : points) {
-        rows.line.push_back(rows.line.size() + 2);
-        rows.level.push_back(point.level);
-        rows.force_N.push_back(point.force_N);
-        rows.time_s.push_back(point.time_s);
-        rows.repeat.push_back(point.repeat);
-        rows.phase.push_back(point.phase);
-    }
-    return rows;
-}
-
 // Beside what is there already: NAME, NAME-2, ...
 std::filesystem::path free_profile(const CalibrateForm& form) {
     const std::filesystem::path folder = user_folder() / "profiles";

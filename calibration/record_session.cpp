@@ -54,6 +54,8 @@ std::string percent(double share) {
     return short_number(std::round(100.0 * share)) + " %";
 }
 
+}  // namespace
+
 CalibrationRows rows_of(const std::vector<CapturedPoint>& points) {
     CalibrationRows rows;
     rows.file = "the session";
@@ -65,8 +67,6 @@ CalibrationRows rows_of(const std::vector<CapturedPoint>& points) {
     }
     return rows;
 }
-
-}  // namespace
 
 int band_of(const RecordOptions& options, double level) {
     const double share = (level - options.range.lowest) / width(options);

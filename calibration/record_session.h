@@ -73,6 +73,9 @@ struct Knowledge {
 };
 Knowledge knowledge_of(const RecordOptions& options, const std::vector<CapturedPoint>& points);
 
+// Levels, forces and repeats, for a fit. Not the times: a session that was gone on with may have two clocks.
+CalibrationRows rows_of(const std::vector<CapturedPoint>& points);
+
 // The file that a session is kept in: columns time_s, level, force_N, repeat, phase. Read back to resume; throws
 // InputError for a file that is none.
 std::string points_csv(const std::vector<CapturedPoint>& points);
