@@ -129,6 +129,7 @@ void open_session(const RecordArguments& arguments, RecordSession& session) {
         if (!arguments.resume) throw bad_input(file.string(), "", "a session", "a new folder, or --resume to go on with it");
         session.points = read_session(file);
         for (const CapturedPoint& point : session.points) session.repeat = std::max(session.repeat, point.repeat + 1);
+        if (!session.points.empty()) session.clock_shift_s = std::max(0.0, session.points.back().time_s + 1.0 - steady_s());
         return;
     }
     if (arguments.resume) throw bad_input(file.string(), "", "nothing", "the session to resume");

@@ -118,7 +118,7 @@ bool capture(const RecordOptions& options, double now_s, RecordSession& session)
     const bool same_place = std::abs(level - session.last_level) < apart && std::abs(force_N - session.last_force_N) < 0.1 * session.last_force_N;
     if (same_place) return false;
     const bool rising = std::isnan(session.last_level) || force_N >= session.last_force_N;
-    session.points.push_back({now_s, level, force_N, session.repeat, rising ? PressPhase::press : PressPhase::release});
+    session.points.push_back({now_s + session.clock_shift_s, level, force_N, session.repeat, rising ? PressPhase::press : PressPhase::release});
     session.captured_in_repeat = true;
     session.last_level = level;
     session.last_force_N = force_N;

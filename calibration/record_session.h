@@ -22,7 +22,7 @@ struct RecordOptions {
 };
 
 struct CapturedPoint {
-    double time_s = 0.0;  // the end of the still moment, host clock
+    double time_s = 0.0;  // the end of the still moment, host clock + the session's clock_shift_s
     double level = 0.0;
     double force_N = 0.0;
     int repeat = 0;
@@ -44,6 +44,7 @@ struct RecordSession {
     bool captured_in_repeat = false;
     double last_level = kMissing;  // captured last in this repeat
     double last_force_N = 0.0;
+    double clock_shift_s = 0.0;    // so that times rise when the computer was started anew in between
     std::vector<CapturedPoint> points;
 };
 
