@@ -339,6 +339,9 @@ void generate_map(const GenerateOptions& options) {
         return make_map_task(options.phantom, pieces_folder(options.output, refined), options.coarseness * (refined ? 0.5 : 1.0));
     };
     const MapTask task = task_of(options.refined);
+    if (options.window && !(*options.window >= 0 && *options.window < window_count(task))) {
+        throw bad_input("--window", "", std::to_string(*options.window), "0 to " + std::to_string(window_count(task) - 1));
+    }
     if (options.window) return compute_window(task, *options.window);
     if (!options.check || !fs::exists(options.output)) {
         refuse_existing(options.output);
