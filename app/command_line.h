@@ -17,6 +17,7 @@ void add_maps(CLI::App& app);
 void add_calibrate(CLI::App& app);
 void add_calibrate_record(CLI::App& calibrate);
 void add_fem(CLI::App& app);
+void add_serve(CLI::App& app);
 void add_study(CLI::App& app);
 void add_bench(CLI::App& app);
 void add_bench_accuracy(CLI::App& bench);

@@ -13,6 +13,7 @@ void add_study(CLI::App& app) {
     study->require_subcommand(1);
     add_study_order(*study);
     add_study_simulate(*study);
+    add_study_import(*study);
     add_study_analyse(*study);
 }
 
