@@ -40,7 +40,7 @@ void add_serve(CLI::App& app) {
     command->add_option("--tls-cert", options.tls_cert, "certificate in PEM; with it tablets pair by a code that is shown at the start");
     command->add_option("--tls-key", options.tls_key, "its private key in PEM");
     command->add_option("--collect", options.collect, "folder for the logs of tablets; without it none are taken");
-    command->add_option("--web", arguments->web, "folder of the built web app (default: build/web beside the assets, if it is there)");
+    command->add_option("--web", arguments->web, "folder of the built web app (default: build/web/site beside the assets, if it is there)");
     command->add_option("--session-h", arguments->hours, "how long a paired tablet stays paired, hours")->check(CLI::Range(0.0001, 8760.0))->capture_default_str();
     command->add_option("--lock-s", options.tries.first_lock_s, "first lock-out after five wrong codes, seconds; doubles with each more")
         ->check(CLI::Range(0.1, 3600.0))->capture_default_str();

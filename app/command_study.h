@@ -10,6 +10,8 @@ namespace palpa {
 void add_study_analyse(CLI::App& study);
 void add_study_import(CLI::App& study);
 void add_study_order(CLI::App& study);
+void add_study_run(CLI::App& study);
 void add_study_simulate(CLI::App& study);
+void add_study_watch(CLI::App& study);
 
 }  // namespace palpa

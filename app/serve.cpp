@@ -114,7 +114,7 @@ sigset_t end_signals() {
 fs::path web_folder_beside(const fs::path& assets) {
     const fs::path root = assets.parent_path();
     // as built in the sources, and as installed beside the assets
-    for (const fs::path& place : {root / "build/web/app/web", root / "build/web", root / "web"}) {
+    for (const fs::path& place : {root / "build/web/site", root / "web"}) {
         std::error_code none;
         if (fs::is_regular_file(place / "index.html", none)) return place;
     }

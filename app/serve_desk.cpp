@@ -218,7 +218,7 @@ void get(const Request& req, Desk& desk, Response& res) {
 httplib::Headers strict_headers() {
     return {{"Content-Security-Policy",
              "default-src 'self'; script-src 'self' 'wasm-unsafe-eval'; worker-src 'self'; style-src 'self'; img-src 'self' data: blob:; "
-             "connect-src 'self'; object-src 'none'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'"},
+             "connect-src 'self'; object-src 'none'; base-uri 'none'; form-action 'self'; frame-ancestors 'none'"},
             {"Cross-Origin-Opener-Policy", "same-origin"},
             {"Cross-Origin-Embedder-Policy", "require-corp"},
             {"Cross-Origin-Resource-Policy", "same-origin"},

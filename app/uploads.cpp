@@ -11,6 +11,7 @@
 #include <cstring>
 #include <ctime>
 
+#include "files/append_file.h"
 #include "files/durable.h"
 #include "files/input_error.h"
 #include "files/text.h"
@@ -128,11 +129,7 @@ void Uploads::read_index(std::vector<std::string>& notes) {
         const std::string_view row = rest.substr(0, rest.find('\n'));
         rest.remove_prefix(row.size() + 1);
         if (line == 1 || row.empty()) continue;
-        std::vector<std::string_view> fields;
-        for (std::string_view left = row;; left.remove_prefix(fields.back().size() + 1)) {
-            fields.push_back(left.substr(0, left.find('\t')));
-            if (fields.back().size() == left.size()) break;
-        }
+        const auto fields = fields_of(row, '\t');
         if (fields.size() != 7 || !is_hash(fields[1])) {
             notes.push_back(file.string() + ": line " + std::to_string(line) + " is left out: " + shown(row) + " is not an upload with 7 fields");
             continue;

@@ -20,31 +20,6 @@ namespace {
 
 }  // namespace
 
-void append_synced(const std::filesystem::path& path, std::string_view text) {
-    const int fd = ::open(path.c_str(), O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC, 0644);
-    if (fd < 0) fail_writing(path);
-    char last = '\n';
-    const off_t size = ::lseek(fd, 0, SEEK_END);
-    std::string whole(text);
-    if (size > 0 && ::pread(fd, &last, 1, size - 1) == 1 && last != '\n') whole.insert(0, "\n");
-    std::string_view rest = whole;
-    while (!rest.empty()) {
-        const ssize_t n = ::write(fd, rest.data(), rest.size());
-        if (n < 0 && errno == EINTR) continue;
-        if (n <= 0) {
-            const int reason = errno;
-            ::close(fd);
-            errno = reason;
-            fail_writing(path);
-        }
-        rest.remove_prefix(static_cast<std::size_t>(n));
-    }
-    const bool synced = ::fsync(fd) == 0;
-    ::close(fd);
-    if (!synced) fail_writing(path);
-    if (size == 0) sync_folder(path.has_parent_path() ? path.parent_path() : std::filesystem::path("."));
-}
-
 void sync_folder(const std::filesystem::path& folder) {
     const int fd = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
     const bool synced = fd >= 0 && ::fsync(fd) == 0;

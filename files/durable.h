@@ -6,10 +6,6 @@
 
 namespace palpa {
 
-// At the end of a file that may be there already; on the disk, file and folder, when it returns. After a line that was
-// cut off a new one begins. Throws std::runtime_error.
-void append_synced(const std::filesystem::path& path, std::string_view text);
-
 // Waits until a folder's entries are on the disk. Throws std::runtime_error.
 void sync_folder(const std::filesystem::path& folder);
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <array>
-#include <set>
+#include <map>
 
 #include "files/input_error.h"
 #include "files/json.h"
@@ -18,10 +18,10 @@ constexpr int kMostFiles = 100000;
 
 constexpr std::array<std::string_view, 8> kTrialEndings{"_events.tsv",  "_events.json",  "_marks.tsv",     "_marks.json",
                                                         "_samples.tsv", "_samples.json", "_settings.json", "_performance.json"};
-constexpr std::array<std::string_view, 7> kDatasetNames{"dataset_description.json",    ".bidsignore",
+constexpr std::array<std::string_view, 8> kDatasetNames{"dataset_description.json",    ".bidsignore",
                                                         "protocol.json",               "task-palpation_events.json",
                                                         "task-palpation_marks.json",   "task-palpation_samples.json",
-                                                        "task-softer_events.json"};
+                                                        "task-softer_events.json",      "task-ratings_beh.json"};
 
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 bool is_plain(char c) { return is_digit(c) || (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z'); }
@@ -40,11 +40,13 @@ bool take_all(bool (*wanted)(char), std::size_t longest, std::string_view& out, 
     return !out.empty() && out.size() <= longest;
 }
 
+// Of a run, or a participant's ratings.
 bool is_trial_file(std::string_view rest) {
     std::string_view subject, again, task, run;
-    return take("sub-", rest) && take_all(is_plain, kLongestLabel, subject, rest) && take("/beh/sub-", rest) &&
-           take_all(is_plain, kLongestLabel, again, rest) && again == subject && take("_task-", rest) &&
-           take_all(is_plain, kLongestLabel, task, rest) && take("_run-", rest) && take_all(is_digit, kLongestRun, run, rest) &&
+    const bool of_subject = take("sub-", rest) && take_all(is_plain, kLongestLabel, subject, rest) && take("/beh/sub-", rest) &&
+           take_all(is_plain, kLongestLabel, again, rest) && again == subject && take("_task-", rest);
+    if (!of_subject || rest == "ratings_beh.tsv") return of_subject;
+    return take_all(is_plain, kLongestLabel, task, rest) && take("_run-", rest) && take_all(is_digit, kLongestRun, run, rest) &&
            std::find(kTrialEndings.begin(), kTrialEndings.end(), rest) != kTrialEndings.end();
 }
 
@@ -57,13 +59,12 @@ std::string one_line(std::string_view text) {
     return text.size() > kLongestMessage ? out.substr(0, kLongestMessage - 3) + "..." : out;
 }
 
-BundleFile read_file(JsonReader& json, std::set<std::string>& names) {
+BundleFile read_file(JsonReader& json) {
     json.only({"name", "sha256", "text"});
     BundleFile file;
     file.name = json.text("name");
     const auto kind = kind_of_log_file(file.name);
     if (!kind) json.fail("name", shown(file.name), "a file of a study's log, such as sub-01/beh/sub-01_task-palpation_run-01_events.tsv");
-    if (!names.insert(file.name).second) json.fail("name", shown(file.name) + " a second time", "each file once");
     file.kind = *kind;
     file.sha256 = json.text("sha256");
     file.text = json.text("text");
@@ -81,8 +82,13 @@ Bundle read_checked(std::string_view bytes, const std::string& file_name) {
     std::vector<JsonReader> files = json.objects("files");
     if (files.empty() || files.size() > kMostFiles) json.fail("files", std::to_string(files.size()) + " files", "1 to " + std::to_string(kMostFiles));
     Bundle bundle;
-    std::set<std::string> names;
-    for (JsonReader& file : files) bundle.files.push_back(read_file(file, names));
+    std::map<std::string, std::string> hashes;
+    for (JsonReader& json_file : files) {
+        BundleFile file = read_file(json_file);
+        const auto [it, fresh] = hashes.emplace(file.name, file.sha256);
+        if (it->second != file.sha256) json_file.fail("name", shown(file.name) + " again with other content", "each file once");
+        if (fresh) bundle.files.push_back(std::move(file));
+    }
     return bundle;
 }
 

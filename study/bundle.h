@@ -15,7 +15,8 @@ namespace palpa {
 
 // What a name in a folder of logs can be.
 enum class LogFileKind {
-    trial,    // sub-XX/beh/sub-XX_task-YY_run-NN_{events,marks,samples}.{tsv,json}, _settings.json, _performance.json
+    trial,    // sub-XX/beh/sub-XX_task-YY_run-NN_{events,marks,samples}.{tsv,json}, _settings.json, _performance.json;
+              // sub-XX/beh/sub-XX_task-ratings_beh.tsv
     dataset,  // dataset_description.json, .bidsignore, protocol.json, task-..._....json: alike for a whole study
     people,   // participants.tsv
     identity  // study.json
@@ -25,7 +26,7 @@ enum class LogFileKind {
 std::optional<LogFileKind> kind_of_log_file(std::string_view name);
 
 struct BundleFile {
-    std::string name;  // of one of the kinds above, each once in a bundle
+    std::string name;  // of one of the kinds above; what stands twice alike in a bundle is here once
     LogFileKind kind = LogFileKind::trial;
     std::string sha256;  // 64 lower-case hex digits, of `text`
     std::string text;
@@ -36,7 +37,7 @@ struct Bundle {
 };
 
 // From bytes, whatever they are. Throws InputError with `file_name`, key, found and expected: no JSON, another version,
-// unknown keys, a name that no log has or that stands twice, a hash that is not the text's. The message is one line of
+// unknown keys, a name that no log has, two contents for one name, a hash that is not the text's. The message is one line of
 // 400 characters at most, without control characters.
 Bundle read_bundle(std::string_view bytes, const std::string& file_name);
 

@@ -4,7 +4,7 @@
 #include <map>
 #include <stdexcept>
 
-#include "files/durable.h"
+#include "files/append_file.h"
 #include "files/input_error.h"
 #include "files/json.h"
 #include "files/text.h"
@@ -52,16 +52,6 @@ void check_same(const fs::path& file, const StudyIdentity& found, const Protocol
     };
     if (found.kind.simulated != kind.simulated || found.kind.seed != kind.seed) {
         throw bad_input(file.string(), "simulated", told(found.kind), told(kind) + ": they never share a folder");
-    }
-}
-
-std::vector<std::string_view> fields_of(std::string_view line) {
-    std::vector<std::string_view> out;
-    while (true) {
-        const auto end = line.find('\t');
-        out.push_back(line.substr(0, end));
-        if (end == std::string_view::npos) return out;
-        line.remove_prefix(end + 1);
     }
 }
 
@@ -125,7 +115,7 @@ std::vector<Person> people_in(std::string_view participants_tsv, const std::stri
         rest.remove_prefix(end + 1);
         if (!row.empty() && row.back() == '\r') row.remove_suffix(1);
         if (line == 1 || row.empty()) continue;
-        const auto fields = fields_of(row);
+        const auto fields = fields_of(row, '\t');
         if (fields.size() != 8 || fields[0].substr(0, 4) != "sub-") {
             notes.push_back(file_name + ": line " + std::to_string(line) + " is left out: " + shown(row) +
                             " is not a participant with 8 fields");

@@ -42,6 +42,10 @@ TEST_CASE("bundle: names of logs and no others") {
         CAPTURE(name);
         CHECK(kind_of_log_file(name) == LogFileKind::trial);
     }
+    CHECK(kind_of_log_file("sub-01/beh/sub-01_task-ratings_beh.tsv") == LogFileKind::trial);
+    CHECK_FALSE(kind_of_log_file("sub-01/beh/sub-02_task-ratings_beh.tsv").has_value());
+    CHECK_FALSE(kind_of_log_file("sub-01/beh/sub-01_task-ratings_beh.tsv/").has_value());
+    CHECK_FALSE(kind_of_log_file("sub-01/now.json").has_value());
     CHECK(kind_of_log_file("study.json") == LogFileKind::identity);
     CHECK(kind_of_log_file("protocol.json") == LogFileKind::dataset);
     CHECK(kind_of_log_file(".bidsignore") == LogFileKind::dataset);
@@ -73,7 +77,8 @@ TEST_CASE("bundle: what is refused, and how it is said") {
     CHECK(contains(refusal(bundle_text({changed})), "files[0].sha256: found "));
     CHECK(contains(refusal(bundle_text({upper})), "files[0].sha256"));
     CHECK(contains(refusal(bundle_text({more})), "files[0].mode: found an unknown key"));
-    CHECK(contains(refusal(bundle_text({file_json(kName, "a"), file_json(kName, "a")})), "a second time"));
+    CHECK(contains(refusal(bundle_text({file_json(kName, "a"), file_json(kName, "b")})), "files[1].name: found "));
+    CHECK(read_bundle(bundle_text({file_json(kName, "a"), file_json(kName, "a")}), "b").files.size() == 1);
     CHECK(contains(refusal(bundle_text({})), "0 files"));
     CHECK(contains(refusal(R"({"palpa_bundle": 1})"), "files: found nothing"));
     CHECK(contains(refusal(R"({"palpa_bundle": 2, "files": []})"), "palpa_bundle: found 2"));
