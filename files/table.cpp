@@ -72,6 +72,10 @@ bool Table::next() {
     return true;
 }
 
+double Table::done() const {
+    return text_.empty() ? 1.0 : static_cast<double>(std::min(at_, text_.size())) / static_cast<double>(text_.size());
+}
+
 void Table::fail(std::size_t column, std::string_view expected) const {
     throw bad_input(file_, "line " + std::to_string(line_) + ", " + columns_[column], shown(fields_[column]),
                     expected);

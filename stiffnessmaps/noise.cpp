@@ -34,7 +34,9 @@ double second_difference_N(const Map& map, double q) {
 
 }  // namespace
 
-double normal_noise_N(const Map& map) {
+double normal_noise_N(const Map& map) { return map.noise_N ? *map.noise_N : estimated_noise_N(map); }
+
+double estimated_noise_N(const Map& map) {
     constexpr double kMedianOfNormal = 0.6745;
     return second_difference_N(map, 0.5) / (kMedianOfNormal * std::sqrt(6.0));
 }
