@@ -203,6 +203,9 @@ void import_map(const Arguments& a) {
     options.progress = progress_on_terminal();
     options.depths_m = depths_m(a.depths, "--depths-mm", false);
     if (a.output.empty() && !a.explain) throw bad_input("maps import", "", "no output", "-o NAME.map (or --explain, to see what would be chosen)");
+    if (std::filesystem::exists(a.output)) {  // before a long import, not after it
+        throw bad_input(a.output, "", "something of that name", "a new name (nothing is overwritten)");
+    }
     ImportReport report;
     const Map map = import_recording({a.files.begin(), a.files.end()}, options, report);
     if (options.progress) std::fprintf(stderr, "\r\033[K");

@@ -166,6 +166,37 @@ ImportResidual residual_of(const Map& map, const RecordedPoints& recorded) {
     return out;
 }
 
+ImportResidual residual_of_numbers(const Map& map) {
+    ImportResidual out;
+    out.greatest_N = force_range(map).highest_N;
+    std::vector<double> residuals;
+    std::vector<double> forces;
+    std::vector<std::size_t> layer;
+    for (std::size_t cell = 0; cell < map.n_cells(); ++cell) {
+        forces.assign(1, 0.0);  // no force at the surface, as look-up has it
+        layer.assign(1, 0);
+        for (std::size_t k = 0; k < map.n_depths(); ++k) {
+            const float force = map.normal_N[k * map.n_cells() + cell];
+            if (std::isnan(force)) continue;
+            forces.push_back(static_cast<double>(force));
+            layer.push_back(k);
+        }
+        make_isotonic(forces);
+        for (std::size_t i = 1; i < forces.size(); ++i) {
+            const double raw = static_cast<double>(map.normal_N[layer[i] * map.n_cells() + cell]);
+            residuals.push_back(std::abs(std::max(forces[i], 0.0) - raw));
+            if (residuals.back() <= out.worst_N) continue;
+            out.worst_N = residuals.back();
+            out.worst_x_m = map.x_of(cell % map.n_x);
+            out.worst_y_m = map.y_of(cell / map.n_x);
+            out.worst_depth_m = map.depths_m[layer[i]];
+        }
+    }
+    out.n = residuals.size();
+    out.median_N = median(std::move(residuals));
+    return out;
+}
+
 void finish_map(Map& map, const RecordedPoints& recorded, bool measured_tangential, const ImportOptions& options,
                 const std::string& file, ImportReport& report) {
     refuse_no_forces(map, file);
@@ -187,7 +218,7 @@ void finish_map(Map& map, const RecordedPoints& recorded, bool measured_tangenti
     add_choice(map.source, "over_depth", "isotonic at look-up", "the raw forces are kept in the map", "");
     add_choice(map.source, "indenter_radius_mm", choice_mm(options.indenter_radius_m), "recordings do not say", "--indenter-radius-mm");
     check_map(map, file);
-    report.residual = residual_of(map, recorded);
+    report.residual = recorded.x_m.empty() ? residual_of_numbers(map) : residual_of(map, recorded);
 }
 
 }  // namespace palpa

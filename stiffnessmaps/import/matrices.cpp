@@ -283,16 +283,8 @@ Map import_matrices(const std::vector<fs::path>& files, const ImportOptions& opt
                      : options.quantity == Quantity::stiffness ? "a slice of stiffness; force = stiffness times depth"
                                                                : "a slice of Young's moduli; force by a contact formula on an even half space";
     report.rows = map.normal_N.size();
-    RecordedPoints recorded;
-    for (std::size_t k = 0; k < map.n_depths(); ++k) {
-        for (std::size_t cell = 0; cell < map.n_cells(); ++cell) {
-            const float force = map.normal_N[k * map.n_cells() + cell];
-            if (std::isnan(force)) continue;
-            recorded.add(map.x_of(cell % map.n_x), map.y_of(cell / map.n_x), map.depths_m[k], static_cast<double>(force));
-        }
-    }
-    report.points = recorded.x_m.size();
-    finish_map(map, recorded, measured, options, stack.first_file, report);
+    report.points = map.normal_N.size() - missing_count(map);
+    finish_map(map, {}, measured, options, stack.first_file, report);
     return map;
 }
 

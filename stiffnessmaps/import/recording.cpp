@@ -18,8 +18,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-Table open_table(const fs::path& path) {
+Table open_table(const fs::path& path, ImportReport& report) {
     std::string text = read_text(path);
+    if (!text.empty() && text.back() != '\n') report.notes.push_back(path.string() + ": its last line has no end: is the file whole?");
     const char separator = separator_of(std::string_view(text).substr(0, text.find('\n')));
     return Table(std::move(text), path.string(), separator);
 }
@@ -48,7 +49,7 @@ Map import_tables(const std::vector<fs::path>& files, const ImportOptions& optio
     Sliding sliding;
     const std::string all = files.size() == 1 ? files[0].string() : files[0].string() + " and " + std::to_string(files.size() - 1) + " more";
     for (std::size_t i = 0; i < files.size(); ++i) {
-        Table table = open_table(files[i]);
+        Table table = open_table(files[i], report);
         const Columns columns = find_columns(table, options);
         report.form = options.form.value_or(form_of(columns, table));
         if (i == 0) {

@@ -156,7 +156,7 @@ void take_surface(Sliding& sliding, const ImportOptions& options, double pitch_m
     surface = fit_surface(sliding.samples, options.surface_node_m.value_or(pitch_m), file);
     add_choice(source, "surface", "estimated", "height and compliance of the tissue fitted to where the tool was at which force",
                "--surface-z-mm, --at-depth-mm");
-    add_choice(source, "surface_node_mm", choice_mm(surface.node_m), "the map's pitch", "--surface-node-mm",
+    add_choice(source, "surface_node_mm", choice_mm(surface.node_m), "the map's pitch, or as fine as 4000 nodes and 8 samples a node allow", "--surface-node-mm",
                options.surface_node_m.has_value());
     add_choice(source, "surface_deviation_mm", choice_mm(surface.deviation_m), "of the samples' heights from that fit", "");
     add_choice(source, "surface_exponent", surface.exponent, "depth as force to this power, 1 or 2/3: whichever left less", "");

@@ -17,7 +17,7 @@ namespace {
 using Eigen::Index;
 
 constexpr std::size_t kMostSamples = 100'000;  // the fit needs no more
-constexpr std::size_t kMostNodes = 10'000;
+constexpr std::size_t kMostNodes = 4'000;
 
 struct Corner {
     std::array<std::size_t, 4> node;

@@ -100,6 +100,24 @@ TEST_CASE("gridding: the filled copy has no gap, keeps what was measured, and go
     }
 }
 
+TEST_CASE("finish: the residual of a map's own numbers is what look-up makes of them") {
+    Map map = map_of(5, 4, {1e-3, 2e-3, 3e-3}, [](double x, double y, double d) { return 500.0 * d + 30.0 * x + std::sin(4e3 * y + 3e3 * d); });
+    map.normal_N[27] = std::numeric_limits<float>::quiet_NaN();
+    RecordedPoints recorded;
+    for (std::size_t i = 0; i < map.normal_N.size(); ++i) {
+        if (std::isnan(map.normal_N[i])) continue;
+        const std::size_t cell = i % map.n_cells();
+        recorded.add(map.x_of(cell % map.n_x), map.y_of(cell / map.n_x), map.depths_m[i / map.n_cells()], static_cast<double>(map.normal_N[i]));
+    }
+    const ImportResidual numbers = residual_of_numbers(map);
+    const ImportResidual sampled = residual_of(map, recorded);
+    CHECK(numbers.n == 59);
+    CHECK(numbers.n == sampled.n);
+    CHECK(numbers.worst_N > 0.1);
+    CHECK(numbers.worst_N == doctest::Approx(sampled.worst_N).epsilon(1e-4));
+    CHECK(numbers.median_N == doctest::Approx(sampled.median_N).epsilon(1e-4));
+}
+
 TEST_CASE("robust: medians and deviations that wild values do not move") {
     CHECK(median({3.0, 1.0, 2.0}) == 2.0);
     CHECK(median({}) == 0.0);
@@ -109,4 +127,12 @@ TEST_CASE("robust: medians and deviations that wild values do not move") {
     std::vector<double> values;
     for (int i = 0; i < 5000; ++i) values.push_back(i % 20 == 0 ? 1e6 : normal(random));
     CHECK(robust_deviation(values) == doctest::Approx(0.3).epsilon(0.1));
+    // a spike on a slope stands out; its neighbours, a kink and a step do not
+    CHECK(lone_outliers({0, 0, 0, 1, 2, 9, 4, 5, 6, 6, 6, 0, 0}, 0.5) ==
+          std::vector<bool>{false, false, false, false, false, true, false, false, false, false, false, false, false});
+    std::vector<double> differences;
+    std::vector<double> noisy;
+    for (int i = 0; i < 5000; ++i) noisy.push_back(1e-6 * i * i + normal(random));
+    add_fourth_differences(noisy, differences);
+    CHECK(noise_of_fourth_differences(differences) == doctest::Approx(0.3).epsilon(0.05));
 }

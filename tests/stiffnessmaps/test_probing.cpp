@@ -87,6 +87,10 @@ TEST_CASE("probing: bad recordings are refused by line and column") {
     CHECK(contains(refusal(off), "line 27, x: found -4.7 mm, expected a position on the regular grid of 2 mm"));
     CHECK(contains(refusal(small() + point(9, -4.0, 7.0)), "line 27: found a second point in the cell of line 2: two grids in one file?"));
     CHECK(contains(refusal(small().substr(0, small().size() - 6)), "found 6 fields"));  // cut
+    ImportReport report;
+    imported(small().substr(0, small().size() - 1), {}, &report);  // cut within the last number, or just without a line end
+    REQUIRE(report.notes.size() == 1);
+    CHECK(contains(report.notes[0], "its last line has no end: is the file whole?"));
 }
 
 TEST_CASE("probing: two grids in one file are told, and one of them can be chosen") {
