@@ -276,6 +276,8 @@ Map import_matrices(const std::vector<fs::path>& files, const ImportOptions& opt
     check_grid(plan.x, plan.y, plan.depths_m.size(), stack.first_file);
     start_map(plan, map);
     map.normal_N = joined(stack);
+    stack.layers.clear();
+    stack.layers.shrink_to_fit();
     map.tangential_x_N = tangential_of(along_x, stack, options);
     map.tangential_y_N = tangential_of(along_y, stack, options);
     const bool measured = !map.tangential_x_N.empty() || !map.tangential_y_N.empty();
