@@ -94,6 +94,16 @@ void sync_file(const std::filesystem::path& path) {
     if (!synced) fail_writing(path);
 }
 
+std::vector<std::string_view> fields_of(std::string_view line, char separator) {
+    std::vector<std::string_view> out;
+    while (true) {
+        const auto end = line.find(separator);
+        out.push_back(line.substr(0, end));
+        if (end == std::string_view::npos) return out;
+        line.remove_prefix(end + 1);
+    }
+}
+
 bool parse_number(std::string_view text, double& out) {
     if (!text.empty() && text.front() == '+') text.remove_prefix(1);
     if (text.empty() || text.front() == '+') return false;

@@ -1,14 +1,10 @@
 #include "study/study_folder.h"
 
-#include <fcntl.h>
-#include <unistd.h>
-
 #include <algorithm>
-#include <cerrno>
-#include <cstring>
 #include <map>
 #include <stdexcept>
 
+#include "files/append_file.h"
 #include "files/input_error.h"
 #include "files/json.h"
 #include "files/text.h"
@@ -56,44 +52,6 @@ void check_same(const fs::path& file, const StudyIdentity& found, const Protocol
     };
     if (found.kind.simulated != kind.simulated || found.kind.seed != kind.seed) {
         throw bad_input(file.string(), "simulated", told(found.kind), told(kind) + ": they never share a folder");
-    }
-}
-
-[[noreturn]] void fail_writing(const fs::path& path) {
-    throw std::runtime_error(path.string() + ": cannot be written: " + std::strerror(errno));
-}
-
-// At the end of a file that may be there already; on the disk when it returns.
-void append_synced(const fs::path& path, std::string_view text) {
-    const int fd = ::open(path.c_str(), O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC, 0644);
-    if (fd < 0) fail_writing(path);
-    char last = '\n';
-    const off_t size = ::lseek(fd, 0, SEEK_END);
-    std::string whole(text);
-    // after a line that was cut off a new one begins
-    if (size > 0 && ::pread(fd, &last, 1, size - 1) == 1 && last != '\n') whole.insert(0, "\n");
-    std::string_view rest = whole;
-    while (!rest.empty()) {
-        const ssize_t n = ::write(fd, rest.data(), rest.size());
-        if (n < 0 && errno == EINTR) continue;
-        if (n <= 0) {
-            ::close(fd);
-            fail_writing(path);
-        }
-        rest.remove_prefix(static_cast<std::size_t>(n));
-    }
-    const bool synced = ::fsync(fd) == 0;
-    ::close(fd);
-    if (!synced) fail_writing(path);
-}
-
-std::vector<std::string_view> fields_of(std::string_view line) {
-    std::vector<std::string_view> out;
-    while (true) {
-        const auto end = line.find('\t');
-        out.push_back(line.substr(0, end));
-        if (end == std::string_view::npos) return out;
-        line.remove_prefix(end + 1);
     }
 }
 
@@ -150,7 +108,7 @@ std::vector<Person> read_people(const fs::path& directory, std::vector<std::stri
         rest.remove_prefix(end + 1);
         if (!row.empty() && row.back() == '\r') row.remove_suffix(1);
         if (line == 1 || row.empty()) continue;
-        const auto fields = fields_of(row);
+        const auto fields = fields_of(row, '\t');
         if (fields.size() != 8 || fields[0].substr(0, 4) != "sub-") {
             notes.push_back(file.string() + ": line " + std::to_string(line) + " is left out: " + shown(row) +
                             " is not a participant with 8 fields");
