@@ -29,6 +29,8 @@ NpyArray read_array(const std::filesystem::path& path, const std::string& datase
 
 NpyArray parse_number_matrix(std::string_view text,
                              const std::string& file);  // rows of numbers, NaN for n/a or nothing
+// The libraries behind these are not safe against every file (HDF5 1.10 reads and writes beyond its memory on
+// some): read_array runs them in a process of their own, and nothing else should call them on strangers' files.
 NpyArray read_matlab(const std::filesystem::path& path, const std::string& dataset);
 NpyArray read_hdf5(const std::filesystem::path& path, const std::string& dataset);
 NpyArray read_png(const std::filesystem::path& path);  // grey, 8 or 16 bits

@@ -76,7 +76,8 @@ void check_sizes(const Sliding& sliding, const Columns& columns, const ImportOpt
         double sum = 0.0;
         for (const auto& component : s.force_N)
             sum += static_cast<double>(component[i]) * static_cast<double>(component[i]);
-        forces_N.push_back(std::sqrt(sum));
+        forces_N.push_back(sliding.normal_N.empty() ? std::sqrt(sum)
+                                                    : std::abs(static_cast<double>(sliding.normal_N[i])));
     }
     check_force_size(quantile(std::move(forces_N), 0.99), columns, options, file);
     const Bounds2 b = bounds_of(s);

@@ -137,6 +137,27 @@ TEST_CASE("sliding: at constant depth the depth must be known, and is then kept 
     CHECK(known.depths_m[0] == doctest::Approx(2e-3));
 }
 
+TEST_CASE("sliding: depths that the recording has are taken as they are, and units that cannot be are told") {
+    const auto text_of = [](double depths, double forces) {
+        std::string text = "t_s,x_mm,y_mm,depth,fn\n";
+        for (int i = 0; i < 4000; ++i) {
+            const double depth = 1.0 + i / 1000;
+            for (const double v : {0.01 * i, 0.2 * (i % 100), 2.0 * ((i / 100) % 10), depths * depth}) text += number_text(v) + ",";
+            text += number_text(forces * 0.7 * depth) + "\n";
+        }
+        return text;
+    };
+    ImportOptions options;
+    options.form = RecordingForm::sliding;
+    const Map map = imported(text_of(1.0, 1.0), options);
+    REQUIRE(map.n_depths() == 4);
+    CHECK(map.depths_m[3] == doctest::Approx(4e-3));
+    CHECK(map.tangential == TangentialKind::none);
+    CHECK(force_in(map, 10.0, 10.0, 3.0) == doctest::Approx(2.1).epsilon(0.001));
+    CHECK(contains(refusal(text_of(1e-3, 1.0), options), "--depth-unit m"));
+    CHECK(contains(refusal(text_of(1.0, 1e3), options), "--force-unit mN"));
+}
+
 TEST_CASE("sliding: bad recordings are refused by line and column") {
     const std::string text = raster({});
     std::string back = text;
