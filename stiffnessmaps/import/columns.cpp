@@ -220,6 +220,10 @@ void check_force_size(double greatest_N, const Columns& columns, const ImportOpt
 }
 
 void check_length_size(double extent_m, const ImportOptions& options, const std::string& file) {
+    constexpr double kAbsurd_m = 100.0;
+    if (!(extent_m <= kAbsurd_m)) {
+        throw bad_input(file, "", "places that extend over " + short_number(extent_m) + " m", "at most 100 m");
+    }
     if (options.length_unit || extent_m == 0.0) return;
     constexpr double kLeast_m = 1e-3;
     constexpr double kMost_m = 1.0;

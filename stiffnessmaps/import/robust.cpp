@@ -8,6 +8,7 @@
 namespace palpa {
 
 double quantile(std::vector<double> values, double q) {
+    std::erase_if(values, [](double v) { return !std::isfinite(v); });  // what has no order
     if (values.empty()) return 0.0;
     const double last = static_cast<double>(values.size() - 1);
     const auto at = values.begin() + static_cast<std::ptrdiff_t>(std::clamp(q, 0.0, 1.0) * last + 0.5);

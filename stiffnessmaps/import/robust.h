@@ -5,7 +5,7 @@
 
 namespace palpa {
 
-double quantile(std::vector<double> values, double q);  // q 0 ... 1; 0 if there are none
+double quantile(std::vector<double> values, double q);  // q 0 ... 1, of the finite ones; 0 if there are none
 inline double median(std::vector<double> values) {
     return quantile(std::move(values), 0.5);
 }

@@ -127,6 +127,7 @@ TEST_CASE("finish: the residual of a map's own numbers is what look-up makes of 
 TEST_CASE("robust: medians and deviations that wild values do not move") {
     CHECK(median({3.0, 1.0, 2.0}) == 2.0);
     CHECK(median({}) == 0.0);
+    CHECK(median({NAN, 3.0, INFINITY, 1.0, 2.0, -INFINITY}) == 2.0);
     CHECK(quantile({5.0, 1.0, 2.0, 3.0, 4.0}, 1.0) == 5.0);
     std::mt19937 random(5);
     std::normal_distribution<double> normal(2.0, 0.3);

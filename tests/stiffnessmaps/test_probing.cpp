@@ -163,6 +163,7 @@ TEST_CASE("probing: units that cannot be are asked about, and taken when confirm
     CHECK(map.spacing_m[0] == doctest::Approx(2e-3));
     CHECK(map.depths_m.back() == doctest::Approx(4e-3));
     CHECK(map.normal_N.back() == doctest::Approx(2.0f));
+    CHECK(contains(message_of([&] { imported(text_of(1e6, 1.0, 1000.0), options); }), "expected at most 100 m"));
     // a negative sign is not guessed
     CHECK(contains(refusal(text_of(1.0, 1.0, -1.0)), "--negate-force"));
     ImportOptions negated;
