@@ -18,6 +18,7 @@ void add_maps_import(CLI::App& maps);
 void add_calibrate(CLI::App& app);
 void add_calibrate_record(CLI::App& calibrate);
 void add_fem(CLI::App& app);
+void add_serve(CLI::App& app);
 void add_study(CLI::App& app);
 void add_bench(CLI::App& app);
 void add_bench_accuracy(CLI::App& bench);

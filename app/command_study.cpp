@@ -14,6 +14,7 @@ void add_study(CLI::App& app) {
     add_study_order(*study);
     add_study_run(*study);
     add_study_simulate(*study);
+    add_study_import(*study);
     add_study_analyse(*study);
     add_study_watch(*study);
 }

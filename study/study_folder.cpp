@@ -82,8 +82,12 @@ void open_study(const fs::path& directory, const Protocol& protocol, const Study
 std::optional<StudyIdentity> read_identity(const fs::path& directory) {
     const fs::path file = directory / "study.json";
     if (!fs::exists(file)) return std::nullopt;
-    const Json root = read_json(file);
-    JsonReader json(root, file.string());
+    return identity_in(read_text(file), file.string());
+}
+
+StudyIdentity identity_in(std::string_view study_json, const std::string& file_name) {
+    const Json root = parse_json(study_json, file_name);
+    JsonReader json(root, file_name);
     StudyIdentity out;
     out.name = json.text("protocol");
     out.version = json.text("version");
@@ -97,10 +101,13 @@ std::optional<StudyIdentity> read_identity(const fs::path& directory) {
 
 std::vector<Person> read_people(const fs::path& directory, std::vector<std::string>& notes) {
     const fs::path file = directory / "participants.tsv";
+    if (!fs::exists(file)) return {};
+    return people_in(read_text(file), file.string(), notes);
+}
+
+std::vector<Person> people_in(std::string_view participants_tsv, const std::string& file_name, std::vector<std::string>& notes) {
     std::vector<Person> people;
-    if (!fs::exists(file)) return people;
-    const std::string text = read_text(file);
-    std::string_view rest = whole_lines(text, file.string(), notes);
+    std::string_view rest = whole_lines(participants_tsv, file_name, notes);
     std::map<std::string, int> first_line;
     for (int line = 1; !rest.empty(); ++line) {
         const auto end = rest.find('\n');
@@ -110,7 +117,7 @@ std::vector<Person> read_people(const fs::path& directory, std::vector<std::stri
         if (line == 1 || row.empty()) continue;
         const auto fields = fields_of(row, '\t');
         if (fields.size() != 8 || fields[0].substr(0, 4) != "sub-") {
-            notes.push_back(file.string() + ": line " + std::to_string(line) + " is left out: " + shown(row) +
+            notes.push_back(file_name + ": line " + std::to_string(line) + " is left out: " + shown(row) +
                             " is not a participant with 8 fields");
             continue;
         }
@@ -118,7 +125,7 @@ std::vector<Person> read_people(const fs::path& directory, std::vector<std::stri
         people.push_back({field(0).substr(4), field(1), field(2), field(3), field(4), field(5), field(6), field(7)});
         const auto [it, fresh] = first_line.emplace(people.back().code, line);
         if (!fresh) {
-            throw bad_input(file.string(), "line " + std::to_string(line) + ", participant_id", shown(fields[0]),
+            throw bad_input(file_name, "line " + std::to_string(line) + ", participant_id", shown(fields[0]),
                             "it once: line " + std::to_string(it->second) + " has the same code");
         }
     }
