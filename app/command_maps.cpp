@@ -1,4 +1,4 @@
-// palpa maps info | sample | import | generate
+// palpa maps info | sample | import | generate, and those of command_maps.h
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
@@ -6,6 +6,7 @@
 #include <thread>
 
 #include "app/command_line.h"
+#include "app/command_maps.h"
 #include "app/generate_map.h"
 #include "avatar/display_ratio.h"
 #include "files/input_error.h"
@@ -254,6 +255,7 @@ void add_maps(CLI::App& app) {
     add_sample(*maps);
     add_import(*maps);
     add_generate(*maps);
+    add_maps_detect(*maps);
 }
 
 }  // namespace palpa
