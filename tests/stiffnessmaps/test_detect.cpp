@@ -100,7 +100,7 @@ TEST_CASE("detect: noise alone makes no claim that is not warned about") {
     CHECK(found > 20);  // else nothing was put to the test
 }
 
-TEST_CASE("detect: planted nodules are found to within 1 mm, with their size and contrast") {
+TEST_CASE("detect: planted nodules are found to within a cell of 1.58 mm, with their size and contrast") {
     const std::vector<Bump> bumps{{20e-3, 15e-3, 0.0, 4e-3, 1.8}, {70e-3, 40e-3, 0.0, 3e-3, 2.0}, {60e-3, 12e-3, 12e-3, 3e-3, 1.6}};
     for (unsigned seed = 1; seed <= 20; ++seed) {
         CAPTURE(seed);
@@ -111,7 +111,7 @@ TEST_CASE("detect: planted nodules are found to within 1 mm, with their size and
             const StiffRegion& r = *std::min_element(d.regions.begin(), d.regions.end(), [&](const auto& a, const auto& c) { return away_m(a) < away_m(c); });
             CAPTURE(b.x_m);
             CHECK(r.sure);
-            CHECK(away_m(r) < 1e-3);
+            CHECK(away_m(r) < 1.58e-3);
             if (b.half_length_m > 0.0) {  // the flank falls to half at 1.18 sigma; smoothing widens it
                 CHECK(r.length_m == doctest::Approx(2.0 * b.half_length_m + 2.36 * b.sigma_m).epsilon(0.2));
                 CHECK(std::abs(r.angle_deg) < 8.0);
