@@ -249,13 +249,16 @@ void add_generate(CLI::App& maps) {
 }  // namespace
 
 void add_maps(CLI::App& app) {
-    CLI::App* maps = app.add_subcommand("maps", "Stiffness maps: info, sample, import, generate");
+    CLI::App* maps = app.add_subcommand("maps", "Stiffness maps: info, sample, import, generate, detect, plot, export, compare");
     maps->require_subcommand(1);
     add_info(*maps);
     add_sample(*maps);
     add_import(*maps);
     add_generate(*maps);
     add_maps_detect(*maps);
+    add_maps_plot(*maps);
+    add_maps_export(*maps);
+    add_maps_compare(*maps);
 }
 
 }  // namespace palpa
