@@ -182,17 +182,26 @@ void draw_nodule(const Nodule& nodule, const Frame& f, float mm, ImDrawList& dra
     const double radius_m = 0.5 * nodule.diameter_m.value_or(4e-3);
     const double half_m = std::max(0.0, 0.5 * nodule.length_m.value_or(0.0) - radius_m);
     const double turn = nodule.angle_deg.value_or(0.0) * std::numbers::pi / 180.0;
-    constexpr int kPoints = 64;
+    // even steps along the outline, so that dashes are alike on ends and sides
+    const double round_m = std::numbers::pi * radius_m;
+    const double length_m = 2.0 * (round_m + 2.0 * half_m);
+    const auto place_at_share = [&](double share) {
+        double s = share * length_m;
+        const double side = s < 0.5 * length_m ? 1.0 : -1.0;
+        if (side < 0.0) s -= 0.5 * length_m;
+        const double a = s < round_m ? s / radius_m - 0.5 * std::numbers::pi : 0.0;  // the end on that side, then the long side
+        const double along = s < round_m ? half_m + radius_m * std::cos(a) : half_m - (s - round_m);
+        const double across = s < round_m ? radius_m * std::sin(a) : radius_m;
+        const double x = side * along;
+        const double y = side * across;
+        return f.px(nodule.x_m + x * std::cos(turn) - y * std::sin(turn), nodule.y_m + x * std::sin(turn) + y * std::cos(turn));
+    };
+    constexpr int kPoints = 96;
     ImVec2 points[kPoints + 1];
-    for (int k = 0; k <= kPoints; ++k) {
-        const double a = 2.0 * std::numbers::pi * k / kPoints;
-        const double along = radius_m * std::cos(a) + (std::cos(a) >= 0.0 ? half_m : -half_m);
-        const double across = radius_m * std::sin(a);
-        points[k] = f.px(nodule.x_m + along * std::cos(turn) - across * std::sin(turn), nodule.y_m + along * std::sin(turn) + across * std::cos(turn));
-    }
+    for (int k = 0; k <= kPoints; ++k) points[k] = place_at_share((k % kPoints) / static_cast<double>(kPoints));
     draw.AddPolyline(points, kPoints, kDark, ImDrawFlags_Closed, 1.1f * mm);
     for (int k = 0; k < kPoints; ++k) {
-        if (!nodule.placed && k % 4 >= 2) continue;
+        if (!nodule.placed && k % 6 >= 3) continue;
         draw.AddLine(points[k], points[k + 1], kInk, 0.6f * mm);
     }
     const ImVec2 at = f.px(nodule.x_m, nodule.y_m);
@@ -260,15 +269,16 @@ namespace {
 
 struct DepthCurve {
     std::vector<ImVec2> points;  // mm, N
-    std::string name;
+    std::string name;   // which one, and its force at the shown depth
+    std::string place;  // left out where there is no room
     ImU32 colour;
 };
 
 DepthCurve curve_at(const MapBrowser& browser, const Eigen::Vector2d& p_m, ImU32 colour, const std::string& name) {
     const Place place = place_at(browser.field, p_m);
-    DepthCurve out{{}, name + "(" + fixed(1e3 * p_m.x(), 1) + ", " + fixed(1e3 * p_m.y(), 1) + ") mm", colour};
+    DepthCurve out{{}, name, "  at " + fixed(1e3 * p_m.x(), 1) + ", " + fixed(1e3 * p_m.y(), 1) + " mm", colour};
     if (!place.measured) {
-        out.name += ": not measured";
+        out.name += "not measured";
         return out;
     }
     for (const double depth_m : browser.field.depths_m) {
@@ -276,7 +286,8 @@ DepthCurve curve_at(const MapBrowser& browser, const Eigen::Vector2d& p_m, ImU32
         out.points.emplace_back(static_cast<float>(1e3 * depth_m), static_cast<float>(normal_force_N(browser.field, place, depth_m)));
     }
     const double shown_m = browser.map.depths_m[static_cast<std::size_t>(browser.depth)];
-    if (shown_m <= greatest_depth_m(browser.field, place) * (1.0 + 1e-9)) out.name += ": " + fixed(normal_force_N(browser.field, place, shown_m), 2) + " N";
+    const bool known = shown_m <= greatest_depth_m(browser.field, place) * (1.0 + 1e-9);
+    out.name += known ? fixed(normal_force_N(browser.field, place, shown_m), 2) + " N" : "-";
     return out;
 }
 
@@ -332,7 +343,9 @@ void draw_map_curves(const MapBrowser& browser, const std::optional<Eigen::Vecto
         for (const ImVec2& p : curve.points) points.push_back(px(p.x, p.y));
         if (points.size() > 1) draw.AddPolyline(points.data(), static_cast<int>(points.size()), curve.colour, 0, 0.5f * mm);
         for (const ImVec2& p : points) draw.AddCircleFilled(p, 0.8f * mm, curve.colour);
-        draw.AddText(ImVec2(low.x + 2.0f * mm, line_y), curve.colour, curve.name.c_str());
+        const std::string whole = curve.name + curve.place;
+        const bool fits = low.x + 2.0f * mm + ImGui::CalcTextSize(whole.c_str()).x < high.x - 0.25f * (high.x - low.x);
+        draw.AddText(ImVec2(low.x + 2.0f * mm, line_y), curve.colour, fits ? whole.c_str() : curve.name.c_str());
         line_y += text_px + 0.4f * mm;
     }
     if (curves.empty()) {
