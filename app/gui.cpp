@@ -170,7 +170,7 @@ bool Gui::receive_key(const SDL_Event& event) {
     const bool down = event.type == SDL_KEYDOWN;
     const bool ctrl = (key.mod & KMOD_CTRL) != 0;
     // Enter presses a button as Space does, except where a number is typed
-    const bool activates = key.scancode == SDL_SCANCODE_RETURN && !io.WantTextInput;
+    const bool activates = key.scancode == SDL_SCANCODE_RETURN && !io.WantTextInput && !keep_enter_;
     const auto index = static_cast<std::size_t>(activates ? SDL_SCANCODE_SPACE : key.scancode);
     if (index < std::size(io.KeysDown)) {
         if (down && keys_to_panels_) {

@@ -13,6 +13,7 @@
 #include "app/prepare.h"
 #include "app/replay.h"
 #include "app/save_picture.h"
+#include "app/study_run.h"
 #include "files/text.h"
 #include "platform/hold_press.h"
 #include "platform/pressure.h"
@@ -103,6 +104,7 @@ void note_pressure(Tool tool, App& app) {
 void note_devices(const Window& window, App& app) {
     std::vector<std::string>& notes = app.screens.device_notes;
     notes.clear();
+    if (app.screens.study) return note_changes(window.devices(), app.screens);
     if (app.trace) {
         notes.push_back("Replay of " + app.options.trace);
         return;
@@ -168,6 +170,24 @@ void begin_anew(const Window& window, const Gui& gui, App& app) {
     if (!attempt(app, [&] { begin(window, gui, app); })) app.stopped = app.screens.problems.back();
 }
 
+void begin_study_trial(const Window& window, const Gui& gui, App& app) {
+    StudyRun& run = *app.screens.study;
+    run.start_trial = false;
+    try {
+        const StudyScene& due = due_scene(run);
+        const PlannedTrial& trial = due_trial(run);
+        const bool known = trial.practice && run.protocol.task == TaskKind::find;
+        app.session.scene = scene_of(due, trial);
+        app.session.plan = *due.plan;
+        app.screens.note.clear();
+        begin_trial(due_files(run), info_of(app, window), known ? TrialMode::practice : TrialMode::test, app.session);
+        take_sample(resize_sample(window, gui, app.settings, now_of(app, window)), app.session);
+        app.screens.screen = Screen::trial;
+    } catch (const std::exception& error) {
+        stop_study(error.what(), run);
+    }
+}
+
 // A tissue that has to be computed is, while the window shows how far. False if the window was closed meanwhile.
 bool prepare(Window& window, Gui& gui, const Scene& scene, Plan& plan) {
     if (!scene.linear) {
@@ -223,7 +243,16 @@ void keep_settings(App& app) {
     if (!problem.empty()) app.screens.problems.push_back(problem);
 }
 
+// Nothing is revealed; the next step comes once the trial is on the disk.
+void finish_study_trial(App& app) {
+    app.screens.screen = Screen::study;
+    if (close_trial(app)) return trial_finished(*app.screens.study);
+    stop_study(app.stopped, *app.screens.study);
+}
+
 void act(Action action, double now_s, App& app) {
+    const bool choice = app.screens.study && app.screens.study->protocol.task == TaskKind::choice;
+    if (choice && action != Action::finish) return;  // there is nothing to mark
     Sample sample;
     sample.t_host_s = now_s;
     sample.phase = Phase::ui;
@@ -235,6 +264,7 @@ void act(Action action, double now_s, App& app) {
     }
     take_sample(sample, app.session);
     if (!app.session.trial.finished) return;
+    if (app.screens.study) return finish_study_trial(app);
     app.screens.debrief = debrief(app.session.plan, app.session.trial);
     app.screens.screen = Screen::reveal;
     app.screens.menu = false;
@@ -250,7 +280,7 @@ void close_calibrate(App& app) {
 
 // A press that is going on when its screen goes ends there.
 void open_screen(Screen screen, double now_s, App& app) {
-    if (screen == Screen::maps && !may_show_maps(app.session.trial)) {
+    if (screen == Screen::maps && (app.screens.study || !may_show_maps(app.session.trial))) {
         app.screens.note = "Maps show where nodules are: finish the test first (F).";
         app.screens.menu = false;
         return;
@@ -295,8 +325,18 @@ void change_settings(const Wishes& wishes, Window& window, Gui& gui, App& app) {
     if (wishes.px_per_mm || wishes.mode) begin_anew(window, gui, app);
 }
 
+// What a study's screen has led to, and the end of a trial's time.
+void follow_study(const Window& window, const Gui& gui, App& app) {
+    StudyRun& run = *app.screens.study;
+    if (run.start_trial) begin_study_trial(window, gui, app);
+    if (app.screens.screen != Screen::trial) return;
+    const double limit_s = due_limit_s(run);
+    if (limit_s > 0.0 && now_of(app, window) - app.session.trial.began_s >= limit_s) act(Action::finish, now_of(app, window), app);
+}
+
 void carry_out(const Wishes& wishes, Window& window, Gui& gui, App& app) {
     if (wishes.quit) app.quit = true;
+    if (app.screens.study) follow_study(window, gui, app);
     if (wishes.action && app.screens.screen == Screen::trial && !app.trace) act(*wishes.action, now_of(app, window), app);
     if (wishes.screen) open_screen(*wishes.screen, now_of(app, window), app);
     if (wishes.scene) app.settings.scene = *wishes.scene;
@@ -334,6 +374,14 @@ void take(const Sample& sample, App& app) {
     app.screens.screen = Screen::reveal;
 }
 
+// A study's trial is done with the device that its condition names.
+bool allowed(const Sample& sample, App& app) {
+    const Modality modality = due_condition(*app.screens.study).modality;
+    if (sample.phase == Phase::ui || tool_allowed(modality, sample.tool)) return true;
+    if (sample.phase == Phase::down) app.screens.note = std::string("This trial is done with the ") + name_of(modality) + ".";
+    return false;
+}
+
 // Where the samples of one turn of the loop go: to the tissue, or to the device check.
 void take_all(double now_s, std::vector<Sample>& samples, App& app) {
     if (app.trace) {
@@ -351,14 +399,17 @@ void take_all(double now_s, std::vector<Sample>& samples, App& app) {
     if (app.screens.screen == Screen::calibrate) return step_calibrate(samples, *app.screens.calibrate);
     if (app.hold.pen || app.hold.finger) press_by_hold(now_s, app.hold, samples);
     if (app.screens.screen != Screen::trial || !app.stopped.empty()) return;
-    for (const Sample& sample : samples) take(sample, app);
+    for (const Sample& sample : samples) {
+        if (!app.screens.study || allowed(sample, app)) take(sample, app);
+    }
 }
 
 // The keys move the indenter over the tissue, 30 mm/s, as long as no panel wants them.
 void place_keyboard(Window& window, const App& app) {
     constexpr double kSpeed_m_per_s = 0.03;
     const ScreenArea& a = app.session.state.screen;
-    if (app.screens.menu || (app.screens.screen != Screen::trial && app.screens.screen != Screen::devices)) {
+    const bool elsewhere = app.screens.study && app.screens.screen != Screen::trial;
+    if (elsewhere || app.screens.menu || (app.screens.screen != Screen::trial && app.screens.screen != Screen::devices)) {
         window.set_keyboard(0.0, 0.0, 0.0, 0.0, 0.0);
     } else {
         window.set_keyboard(a.x_px, a.y_px, a.x_px + a.width_px, a.y_px + a.height_px, kSpeed_m_per_s * app.session.state.view.px_per_m);
@@ -369,7 +420,8 @@ void place_keyboard(Window& window, const App& app) {
 void note_resize(const Window& window, Gui& gui, App& app) {
     const auto width_px = static_cast<float>(window.width_px());
     gui.set_scale(control_scale(app.screens.px_per_mm, width_px, static_cast<float>(window.height_px())));
-    if (app.trace || app.session.trial.finished) return;
+    const bool none = app.screens.study && app.screens.screen != Screen::trial;
+    if (app.trace || none || app.session.trial.finished) return;
     const Sample now = resize_sample(window, gui, app.settings, now_of(app, window));
     const ScreenArea& area = app.session.state.screen;
     const bool same = now.x_px == area.x_px && now.y_px == area.y_px && now.width_px == area.width_px && now.height_px == area.height_px;
@@ -399,6 +451,10 @@ void show(Window& window, App& app, TissueDrawer& tissue, Gui& gui, double dt_s)
 void watch_files(App& app) {
     if (!app.stopped.empty() || files_good(app.session)) return;
     close_trial(app);
+    if (app.screens.study) {
+        app.screens.screen = Screen::study;
+        return stop_study(app.stopped, *app.screens.study);
+    }
     app.screens.problems.push_back(app.stopped);
 }
 
@@ -444,6 +500,14 @@ void load(const RunOptions& options, App& app) {
     if (options.left_handed) app.settings.left_handed = true;
     if (options.width_px > 0) app.settings.width_px = options.width_px;
     if (options.height_px > 0) app.settings.height_px = options.height_px;
+    if (!options.protocol.empty()) {
+        app.settings_path.clear();  // what a study fixes is nobody's choice to keep
+        app.screens.study = std::make_shared<StudyRun>(open_study_run(read_protocol(options.protocol), options.log, options.participant));
+        app.screens.screen = Screen::study;
+        app.session.scene = load_scene("");  // behind the first screens
+        app.session.plan = make_plan(app.session.scene);
+        return;
+    }
     app.screens.scenes = scene_choices();
     app.screens.profiles = profile_choices();
     if (!options.trace.empty()) {
@@ -473,6 +537,15 @@ void remember_window(const Window& window, App& app) {
     keep_settings(app);
 }
 
+// A trial that goes on is an interrupted one. Throws std::runtime_error if the study had to stop.
+std::optional<Json> close_study(const Gui& gui, App& app) {
+    const StudyRun& run = *app.screens.study;
+    if (app.screens.screen == Screen::trial && !close_trial(app)) throw std::runtime_error(app.stopped);
+    if (!run.stopped.empty()) throw std::runtime_error(run.stopped);
+    return Json{{"participant", run.code}, {"step", name_of(run.step)}, {"finished", run.progress.finished.size()},
+                {"of", run.progress.plan.trials.size()}, {"overflow", gui.overflow()}};
+}
+
 }  // namespace
 
 std::optional<Json> run_live(const RunOptions& options) {
@@ -489,7 +562,7 @@ std::optional<Json> run_live(const RunOptions& options) {
     gui.set_scale(control_scale(app.screens.px_per_mm, static_cast<float>(window.width_px()), static_cast<float>(window.height_px())));
     if (app.session.scene.linear && !prepare(window, gui, app.session.scene, app.session.plan)) return std::nullopt;
     if (app.trace) app.trace_shift_s = window.now_s() - app.trace->samples.front().t_host_s;
-    begin(window, gui, app);
+    if (!app.screens.study) begin(window, gui, app);
     if (options.screen != Screen::trial) open_screen(options.screen, now_of(app, window), app);
     TissueDrawer tissue;
     double first_frame_s = 0.0;
@@ -497,6 +570,7 @@ std::optional<Json> run_live(const RunOptions& options) {
     if (!options.screenshot.empty()) save_screen(window, options.screenshot);
     if (app.screens.calibrate) stop_recording(*app.screens.calibrate);
     remember_window(window, app);
+    if (app.screens.study) return close_study(gui, app);
     Json result = result_of(app);
     result["start_to_first_frame_s"] = first_frame_s;
     result["overflow"] = gui.overflow();

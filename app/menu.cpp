@@ -152,6 +152,11 @@ void draw_cost(const Shown& shown, const Layout& layout, Gui& gui) {
 void take_keys(const Shown& shown, const Gui& gui, Screens& screens, Wishes& wishes) {
     if (gui.pressed(SDLK_q, true)) wishes.quit = true;
     if (gui.pressed(SDLK_F11)) wishes.full_screen = true;
+    if (screens.study) {  // the rest would change what the protocol says, or tell what it hides
+        if (gui.pressed(SDLK_ESCAPE)) screens.problems.clear();
+        if (screens.screen == Screen::trial) trial_keys(shown, gui, wishes);
+        return;
+    }
     if (gui.pressed(SDLK_F10) || (gui.pressed(SDLK_TAB) && !screens.menu && screens.screen == Screen::trial)) {
         screens.menu = !screens.menu;
     }

@@ -20,7 +20,7 @@
 // 5. A region is sure if that is more than the highest of so many independent areas reaches once in a thousand maps,
 //    times 1.5 (a region is drawn around the highest cells, not laid anywhere). Independent areas: the map's area by the
 //    larger of the region's and that over which the excess is alike (integral scales of its autocorrelation).
-//    In maps of noise alone, white or correlated over up to 6 mm, none of 2000 was sure; variation that is smooth over
+//    In maps of noise alone, white or correlated over up to 7 mm, none of 1120 was sure; variation that is smooth over
 //    more than half of the window cannot be told from a nodule (sure in 4 of 100 at 12 mm).
 //
 // Uses OpenCV (core, imgproc); not for the web.

@@ -7,7 +7,7 @@
 #include <random>
 
 #include "stiffnessmaps/grid.h"
-#include "stiffnessmaps/import/probing.h"
+#include "stiffnessmaps/import/recording.h"
 #include "stiffnessmaps/map_file.h"
 #include "tests/error_message.h"
 #include "tests/stiffnessmaps/test_maps.h"
@@ -56,8 +56,8 @@ Map noisy(std::size_t n_x, std::size_t n_y, double pitch_m, double share, double
 
 Map recording(const char* name) {
     const auto file = std::filesystem::path(PALPA_RECORDINGS) / "probing" / name;
-    ProbingReport report;
-    return import_probing(file, 3e-3, report);
+    ImportReport report;
+    return import_recording({file}, {}, report);
 }
 
 bool recordings_are_there() {
