@@ -1,4 +1,4 @@
-// palpa maps info | sample | import | generate
+// palpa maps info | sample | import | generate, and those of command_maps.h
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
@@ -6,6 +6,7 @@
 #include <thread>
 
 #include "app/command_line.h"
+#include "app/command_maps.h"
 #include "app/generate_map.h"
 #include "app/map_info.h"
 #include "files/input_error.h"
@@ -180,12 +181,16 @@ void add_generate(CLI::App& maps) {
 }  // namespace
 
 void add_maps(CLI::App& app) {
-    CLI::App* maps = app.add_subcommand("maps", "Stiffness maps: info, sample, import, generate");
+    CLI::App* maps = app.add_subcommand("maps", "Stiffness maps: info, sample, import, generate, detect, plot, export, compare");
     maps->require_subcommand(1);
     add_info(*maps);
     add_sample(*maps);
     add_maps_import(*maps);
     add_generate(*maps);
+    add_maps_detect(*maps);
+    add_maps_plot(*maps);
+    add_maps_export(*maps);
+    add_maps_compare(*maps);
 }
 
 }  // namespace palpa

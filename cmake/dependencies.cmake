@@ -35,3 +35,11 @@ if(PALPA_MUMPS)
     # MUMPS first, then OpenBLAS: its symbols win over whatever libblas.so.3 the system has chosen
     target_link_libraries(palpa_mumps INTERFACE ${MUMPS_LIBRARY} ${OPENBLAS_LIBRARY})
 endif()
+
+# Images: two modules of OpenCV. Its CMake files come only with the package of all modules, five times as large.
+find_library(OPENCV_CORE_LIBRARY opencv_core REQUIRED)
+find_library(OPENCV_IMGPROC_LIBRARY opencv_imgproc REQUIRED)
+find_path(OPENCV_INCLUDE opencv2/imgproc.hpp PATH_SUFFIXES opencv4 REQUIRED)
+add_library(palpa_opencv INTERFACE)
+target_include_directories(palpa_opencv SYSTEM INTERFACE ${OPENCV_INCLUDE})
+target_link_libraries(palpa_opencv INTERFACE ${OPENCV_IMGPROC_LIBRARY} ${OPENCV_CORE_LIBRARY})

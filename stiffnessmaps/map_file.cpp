@@ -285,4 +285,9 @@ void write_map(const Map& map, const fs::path& folder) {
     }
 }
 
+void replace_map_json(const Map& map, const fs::path& folder) {
+    check_map(map, folder.string());
+    write_text_atomically(folder / "map.json", json_text(map_json(map)));
+}
+
 }  // namespace palpa
