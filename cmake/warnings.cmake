@@ -14,6 +14,10 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_L
 endif()
 # Messages of assert name files as they lie in the project, not where this machine keeps it.
 target_compile_options(palpa_flags INTERFACE -fmacro-prefix-map=${PROJECT_SOURCE_DIR}/=)
+# Sizes have 32 bits on the web: what is read as 64 is compared with what is there before it is used.
+if(EMSCRIPTEN)
+    target_compile_options(palpa_flags INTERFACE -Wno-shorten-64-to-32)
+endif()
 if(PALPA_SANITIZE)
     target_compile_options(palpa_flags INTERFACE -fsanitize=${PALPA_SANITIZE} -fno-omit-frame-pointer
                                                  -fno-sanitize-recover=all)
