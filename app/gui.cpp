@@ -216,8 +216,8 @@ void Gui::end_frame() {
 WindowSize Gui::size_px() const { return {ImGui::GetIO().DisplaySize.x, ImGui::GetIO().DisplaySize.y}; }
 
 void Gui::renew_drawing() {
-    ImGui_ImplOpenGL3_DestroyDeviceObjects();
-    ImGui_ImplOpenGL3_CreateDeviceObjects();
+    ImGui_ImplOpenGL3_Shutdown();  // its buffers' sizes are forgotten with them only here
+    ImGui_ImplOpenGL3_Init("#version 300 es");
 }
 
 void Gui::draw() {

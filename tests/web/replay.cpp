@@ -2,6 +2,8 @@
 //     replay SCENE.json TRACE.tsv FOLDER [REPEATS]
 // Prints microseconds per sample of the fastest repeat. Built for node.js and, to compare, for this machine.
 
+#include <stdlib.h>
+
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
@@ -39,6 +41,7 @@ void run(const char* scene_file, const char* trace_file, const char* folder, int
 
 int main(int argc, char** argv) {
     if (argc < 4) return std::fprintf(stderr, "replay SCENE.json TRACE.tsv FOLDER [REPEATS]\n"), 2;
+    setenv("PALPA_ASSETS", PALPA_SOURCE_DIR "/assets", 1);  // node.js hands on no environment
     try {
         run(argv[1], argv[2], argv[3], argc > 4 ? std::atoi(argv[4]) : 5);
     } catch (const std::exception& error) {
