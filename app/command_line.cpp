@@ -39,6 +39,7 @@ int run_command_line(int argc, char** argv) {
     add_calibrate(app);
     add_fem(app);
     add_study(app);
+    add_serve(app);
     add_bench(app);
     try {
         app.parse(with_default_command(argc, argv, app));

@@ -12,8 +12,11 @@ void add_study(CLI::App& app) {
     CLI::App* study = app.add_subcommand("study", "Studies: who gets what, simulated participants, tables and figures");
     study->require_subcommand(1);
     add_study_order(*study);
+    add_study_run(*study);
     add_study_simulate(*study);
+    add_study_import(*study);
     add_study_analyse(*study);
+    add_study_watch(*study);
 }
 
 }  // namespace palpa

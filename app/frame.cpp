@@ -34,6 +34,7 @@ void draw_panels(const Shown& shown, const Layout& layout, Gui& gui, Screens& sc
     if (screens.screen == Screen::devices) return draw_device_screen(shown, gui, screens, wishes);
     if (screens.screen == Screen::scale) return draw_scale_screen(shown, gui, screens, wishes);
     if (screens.screen == Screen::calibrate && screens.calibrate) return draw_calibrate_screen(shown, gui, *screens.calibrate, wishes);
+    if (screens.screen == Screen::study && screens.study) return draw_study_screen(shown.now_s, gui, *screens.study, wishes);
     if (screens.screen == Screen::reveal) {
         draw_reveal_on_tissue(shown, gui, screens.debrief);
         draw_reveal_panel(shown, layout, gui, screens, wishes);
@@ -54,9 +55,10 @@ Wishes draw_frame(const Scene& scene, const Plan& plan, const Trial& trial, cons
                   double dt_s, TissueDrawer& tissue, Gui& gui, Screens& screens, State& state, FrameTimes& times) {
     const std::int64_t began_ns = steady_ns();
     const bool keys_to_panels = screens.menu || (screens.screen != Screen::trial && screens.screen != Screen::devices);
+    gui.keep_enter(screens.screen == Screen::study);
     gui.begin_frame(dt_s, keys_to_panels);
     const WindowSize window = gui.size_px();
-    Shown shown{scene, plan, state, trial, settings, times, {}, {}, 0.0};
+    Shown shown{scene, plan, state, trial, settings, times, {}, {}, 0.0, now_s};
     shown.avatar = trial.finished ? Avatar{} : avatar_at(scene, state, now_s);
     shown.view = tissue_view(scene, state, window.width, window.height);
     shown.trial_s = trial.finished ? trial.now_s - trial.began_s : std::max(0.0, now_s - trial.began_s);

@@ -169,7 +169,7 @@ bool Gui::receive_key(const WindowEvent& event) {
     ImGuiIO& io = ImGui::GetIO();
     const bool down = event.kind == WindowEvent::Kind::key_down;
     // Enter presses a button as Space does, except where a number is typed
-    const bool activates = event.key == key::enter && !io.WantTextInput;
+    const bool activates = event.key == key::enter && !io.WantTextInput && !keep_enter_;
     const auto index = static_cast<std::size_t>(activates ? key::space : event.key);
     if (down && keys_to_panels_) {
         io.KeysDown[index] = true;

@@ -29,6 +29,8 @@ class Gui {
     // keys_to_panels: arrows, Tab and Space move between the controls instead of the indenter.
     void begin_frame(double dt_s, bool keys_to_panels);
     void end_frame();  // closes the panels
+    // Enter is the screen's own key (pressed()) instead of that of the control which has the focus.
+    void keep_enter(bool keep) { keep_enter_ = keep; }
     void draw();       // hands them to GL
     void renew_drawing();  // all that GL held was lost
 
@@ -67,6 +69,7 @@ class Gui {
     std::optional<std::int64_t> finger_;  // the one that uses the panels; others may palpate meanwhile
     bool mouse_on_panel_ = false;
     bool keys_to_panels_ = false;
+    bool keep_enter_ = false;
     float pointer_x_px_ = -1e6f;
     float pointer_y_px_ = -1e6f;
     float mm_ = 0.0f;

@@ -10,6 +10,7 @@
 #include "app/prepare.h"
 #include "app/replay.h"
 #include "app/save_picture.h"
+#include "app/study_run.h"
 #include "files/text.h"
 #include "platform/hold_press.h"
 #include "platform/pressure.h"
@@ -93,6 +94,7 @@ void note_pressure(Tool tool, App& app) {
 void note_devices(const Window& window, App& app) {
     std::vector<std::string>& notes = app.screens.device_notes;
     notes.clear();
+    if (app.screens.study) return note_changes(window.devices(), app.screens);
     if (app.trace) {
         notes.push_back("Replay of " + app.options.trace);
         return;
@@ -178,6 +180,24 @@ void begin_when_kept(const Window& window, const Gui& gui, App& app) {
     if (app.begin_waits && app.keeper->ready()) begin_anew(window, gui, app);
 }
 
+void begin_study_trial(const Window& window, const Gui& gui, App& app) {
+    StudyRun& run = *app.screens.study;
+    run.start_trial = false;
+    try {
+        const StudyScene& due = due_scene(run);
+        const PlannedTrial& trial = due_trial(run);
+        const bool known = trial.practice && run.protocol.task == TaskKind::find;
+        app.session.scene = scene_of(due, trial);
+        app.session.plan = *due.plan;
+        app.screens.note.clear();
+        begin_trial(due_files(run), info_of(app, window), known ? TrialMode::practice : TrialMode::test, app.session);
+        take_sample(resize_sample(window, gui, app.settings, now_of(app, window)), app.session);
+        app.screens.screen = Screen::trial;
+    } catch (const std::exception& error) {
+        stop_study(error.what(), run);
+    }
+}
+
 // A tissue that has to be computed is, while the window shows how far. False if the window was closed meanwhile.
 bool prepare(Window& window, Gui& gui, const Scene& scene, Plan& plan) {
     if (!scene.linear) {
@@ -234,7 +254,16 @@ void keep_settings(App& app) {
     if (app.keeper != nullptr) app.keeper->keep_settings(app.settings_path);
 }
 
+// Nothing is revealed; the next step comes once the trial is on the disk.
+void finish_study_trial(App& app) {
+    app.screens.screen = Screen::study;
+    if (close_trial(app)) return trial_finished(*app.screens.study);
+    stop_study(app.stopped, *app.screens.study);
+}
+
 void act(Action action, double now_s, App& app) {
+    const bool choice = app.screens.study && app.screens.study->protocol.task == TaskKind::choice;
+    if (choice && action != Action::finish) return;  // there is nothing to mark
     Sample sample;
     sample.t_host_s = now_s;
     sample.phase = Phase::ui;
@@ -246,6 +275,7 @@ void act(Action action, double now_s, App& app) {
     }
     take_sample(sample, app.session);
     if (!app.session.trial.finished) return;
+    if (app.screens.study) return finish_study_trial(app);
     app.screens.debrief = debrief(app.session.plan, app.session.trial);
     app.screens.screen = Screen::reveal;
     app.screens.menu = false;
@@ -299,8 +329,18 @@ void change_settings(const Wishes& wishes, Window& window, Gui& gui, App& app) {
     if (wishes.px_per_mm || wishes.mode) begin_anew(window, gui, app);
 }
 
+// What a study's screen has led to, and the end of a trial's time.
+void follow_study(const Window& window, const Gui& gui, App& app) {
+    StudyRun& run = *app.screens.study;
+    if (run.start_trial) begin_study_trial(window, gui, app);
+    if (app.screens.screen != Screen::trial) return;
+    const double limit_s = due_limit_s(run);
+    if (limit_s > 0.0 && now_of(app, window) - app.session.trial.began_s >= limit_s) act(Action::finish, now_of(app, window), app);
+}
+
 void carry_out(const Wishes& wishes, Window& window, Gui& gui, App& app) {
     if (wishes.quit) app.quit = true;
+    if (app.screens.study) follow_study(window, gui, app);
     if (wishes.action && app.screens.screen == Screen::trial && !app.trace) act(*wishes.action, now_of(app, window), app);
     if (wishes.screen) open_screen(*wishes.screen, now_of(app, window), app);
     if (wishes.scene) app.settings.scene = *wishes.scene;
@@ -339,6 +379,14 @@ void take(const Sample& sample, App& app) {
     app.screens.screen = Screen::reveal;
 }
 
+// A study's trial is done with the device that its condition names.
+bool allowed(const Sample& sample, App& app) {
+    const Modality modality = due_condition(*app.screens.study).modality;
+    if (sample.phase == Phase::ui || tool_allowed(modality, sample.tool)) return true;
+    if (sample.phase == Phase::down) app.screens.note = std::string("This trial is done with the ") + name_of(modality) + ".";
+    return false;
+}
+
 // Where the samples of one turn of the loop go: to the tissue, or to the device check.
 void take_all(double now_s, std::vector<Sample>& samples, App& app) {
     if (app.trace) {
@@ -356,14 +404,17 @@ void take_all(double now_s, std::vector<Sample>& samples, App& app) {
     if (app.screens.screen == Screen::calibrate) return step_calibrate(samples, *app.screens.calibrate);
     if (app.hold.pen || app.hold.finger) press_by_hold(now_s, app.hold, samples);
     if (app.screens.screen != Screen::trial || !app.stopped.empty() || app.begin_waits) return;
-    for (const Sample& sample : samples) take(sample, app);
+    for (const Sample& sample : samples) {
+        if (!app.screens.study || allowed(sample, app)) take(sample, app);
+    }
 }
 
 // The keys move the indenter over the tissue, 30 mm/s, as long as no panel wants them.
 void place_keyboard(Window& window, const App& app) {
     constexpr double kSpeed_m_per_s = 0.03;
     const ScreenArea& a = app.session.state.screen;
-    if (app.screens.menu || (app.screens.screen != Screen::trial && app.screens.screen != Screen::devices)) {
+    const bool elsewhere = app.screens.study && app.screens.screen != Screen::trial;
+    if (elsewhere || app.screens.menu || (app.screens.screen != Screen::trial && app.screens.screen != Screen::devices)) {
         window.set_keyboard(0.0, 0.0, 0.0, 0.0, 0.0);
     } else {
         window.set_keyboard(a.x_px, a.y_px, a.x_px + a.width_px, a.y_px + a.height_px, kSpeed_m_per_s * app.session.state.view.px_per_m);
@@ -378,7 +429,8 @@ float scale_now(const App& app, const Window& window) {
 // A window that changed its size, or a hand that changed sides, is input too: a replay must map positions alike.
 void note_resize(const Window& window, Gui& gui, App& app) {
     gui.set_scale(scale_now(app, window));
-    if (app.trace || app.session.trial.finished) return;
+    const bool none = app.screens.study && app.screens.screen != Screen::trial;
+    if (app.trace || none || app.session.trial.finished) return;
     const Sample now = resize_sample(window, gui, app.settings, now_of(app, window));
     const ScreenArea& area = app.session.state.screen;
     const bool same = now.x_px == area.x_px && now.y_px == area.y_px && now.width_px == area.width_px && now.height_px == area.height_px;
@@ -407,6 +459,10 @@ void show(Window& window, App& app, TissueDrawer& tissue, Gui& gui, double dt_s)
 void watch_files(App& app) {
     if (!app.stopped.empty() || files_good(app.session)) return;
     close_trial(app);
+    if (app.screens.study) {
+        app.screens.screen = Screen::study;
+        return stop_study(app.stopped, *app.screens.study);
+    }
     app.screens.problems.push_back(app.stopped);
 }
 
@@ -422,6 +478,14 @@ void load(const RunOptions& options, App& app) {
     if (options.left_handed) app.settings.left_handed = true;
     if (options.width_px > 0) app.settings.width_px = options.width_px;
     if (options.height_px > 0) app.settings.height_px = options.height_px;
+    if (!options.protocol.empty()) {
+        app.settings_path.clear();  // what a study fixes is nobody's choice to keep
+        app.screens.study = std::make_shared<StudyRun>(open_study_run(read_protocol(options.protocol), options.log, options.participant));
+        app.screens.screen = Screen::study;
+        app.session.scene = load_scene("");  // behind the first screens
+        app.session.plan = make_plan(app.session.scene);
+        return;
+    }
     app.screens.scenes = scene_choices();
     app.screens.profiles = profile_choices();
     if (!options.trace.empty()) {
@@ -463,6 +527,15 @@ bool prepare_chosen(Window& window, Gui& gui, App& app) {
     return prepare(window, gui, s.scene, s.plan);
 }
 
+// A trial that goes on is an interrupted one. Throws std::runtime_error if the study had to stop.
+Json close_study(const Gui& gui, App& app) {
+    const StudyRun& run = *app.screens.study;
+    if (app.screens.screen == Screen::trial && !close_trial(app)) throw std::runtime_error(app.stopped);
+    if (!run.stopped.empty()) throw std::runtime_error(run.stopped);
+    return Json{{"participant", run.code}, {"step", name_of(run.step)}, {"finished", run.progress.finished.size()},
+                {"of", run.progress.plan.trials.size()}, {"overflow", gui.overflow()}};
+}
+
 }  // namespace
 
 struct Live::Impl {
@@ -481,7 +554,7 @@ struct Live::Impl {
         ready = !app.session.scene.linear || prepare_chosen(*window, *gui, app);
         if (!ready) return;
         if (app.trace) app.trace_shift_s = window->now_s() - app.trace->samples.front().t_host_s;
-        begin(*window, *gui, app);
+        if (!app.screens.study) begin(*window, *gui, app);
         if (options.screen != Screen::trial) open_screen(options.screen, now_of(app, *window), app);
         tissue.emplace();
         app.waiting_s.reserve(4096);
@@ -571,6 +644,7 @@ Json Live::close() {
     if (!it.app.options.screenshot.empty()) save_screen(*it.window, it.app.options.screenshot);
     if (it.app.screens.calibrate) stop_recording(*it.app.screens.calibrate);
     remember_window(*it.window, it.app);
+    if (it.app.screens.study) return close_study(*it.gui, it.app);
     Json result = result_of(it.app);
     result["start_to_first_frame_s"] = it.first_frame_s;
     result["overflow"] = it.gui->overflow();

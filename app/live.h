@@ -28,6 +28,7 @@ struct RunOptions {
     bool practice = false;    // nodules shown
     bool left_handed = false;
     Screen screen = Screen::trial;  // that is open first
+    std::string protocol;     // of a study: its trials, instead of a scene; `log` is its folder
     bool headless = false;
     bool json = false;
 };

@@ -42,6 +42,7 @@ Json settings_json(const Scene& scene, const Plan& plan, const State& state) {
     json["scene"]["name"] = scene.name;
     if (!scene.file.empty()) json["scene"]["file"] = read_json(scene.file);
     json["scene"]["force_scale"] = scene.force_scale;
+    json["scene"]["stiffness_scale"] = scene.stiffness_scale;
     json["scene"]["seed"] = scene.seed;
     json["tissue"] = {{"name", plan.tissue_name}, {"source", name_of(plan.source)}};
     if (const auto* tissue = std::get_if<MapTissue>(&plan.tissue)) {

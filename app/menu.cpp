@@ -151,8 +151,13 @@ void draw_cost(const Shown& shown, const Layout& layout, Gui& gui) {
 
 void take_keys(const Shown& shown, const Gui& gui, Screens& screens, Wishes& wishes) {
     if (gui.pressed('q', true) && !screens.keeps_trials) wishes.quit = true;
-    if (gui.pressed('t')) wishes.trials = true;
     if (gui.pressed(key::f11)) wishes.full_screen = true;
+    if (screens.study) {  // the rest would change what the protocol says, or tell what it hides
+        if (gui.pressed(key::escape)) screens.problems.clear();
+        if (screens.screen == Screen::trial) trial_keys(shown, gui, wishes);
+        return;
+    }
+    if (gui.pressed('t')) wishes.trials = true;
     if (gui.pressed(key::f10) || (gui.pressed(key::tab) && !screens.menu && screens.screen == Screen::trial)) {
         screens.menu = !screens.menu;
     }

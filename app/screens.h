@@ -16,7 +16,7 @@
 
 namespace palpa {
 
-enum class Screen : std::uint8_t { trial, reveal, devices, scale, calibrate };
+enum class Screen : std::uint8_t { trial, reveal, devices, scale, calibrate, study };
 
 // Times of the frame loop.
 struct FrameTimes {
@@ -39,6 +39,7 @@ struct Dot {
 };
 
 struct CalibrateForm;  // calibrate_form.h
+struct StudyRun;       // study_run.h
 
 // What is open, and what a person has typed so far; means nothing to a replay.
 struct Screens {
@@ -61,6 +62,7 @@ struct Screens {
     std::shared_ptr<DeviceCheck> check;     // what they sent while the device check was open
     std::vector<Dot> dots;                  // the last places in its test area
     std::shared_ptr<CalibrateForm> calibrate;  // while its screen is open
+    std::shared_ptr<StudyRun> study;        // the app runs a study: no menu, no truth before the end
 };
 
 // All that a screen is drawn from.
@@ -74,6 +76,7 @@ struct Shown {
     Avatar avatar;
     TissueView view;
     double trial_s = 0.0;
+    double now_s = 0.0;
 };
 
 struct Wishes {
@@ -103,6 +106,7 @@ void draw_reveal_on_tissue(const Shown& shown, const Gui& gui, const Debrief& de
 void draw_reveal_panel(const Shown& shown, const Layout& layout, Gui& gui, Screens& screens, Wishes& wishes);
 void draw_device_screen(const Shown& shown, Gui& gui, Screens& screens, Wishes& wishes);
 void add_dot(const Sample& sample, Screens& screens);
+void draw_study_screen(double now_s, Gui& gui, StudyRun& run, Wishes& wishes);
 void draw_scale_screen(const Shown& shown, Gui& gui, Screens& screens, Wishes& wishes);
 
 // The keys that all of this can be done with.

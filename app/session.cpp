@@ -135,7 +135,7 @@ void open_files(const SessionFiles& files, const TraceInfo& info, Session& sessi
     try {
         if (!files.record.empty()) session.record.emplace(trace_name(files.record, session.trials), info);
         if (files.log.empty()) return;
-        session.files = next_run(files.log, files.participant, "palpation", files.first_run);
+        session.files = next_run(files.log, files.participant, files.task, files.first_run);
         const bool alone = !files.label;  // a study explains its columns once, at the top
         if (files.label) {
             Json settings = settings_json(session.scene, session.plan, session.state);
@@ -176,7 +176,11 @@ void take_sample(const Sample& sample, Session& session) {
     if (session.record) session.record->write(sample);
     advance(session.scene, session.plan, sample, session.state);
     observe(session.plan, sample, session.state, session.trial);
-    if (session.log) session.log->write(row_of(sample, session.plan, session.state));
+    if (session.log) {
+        SampleRow row = row_of(sample, session.plan, session.state);
+        if (session.label) row.trial = session.label->trial;
+        session.log->write(row);
+    }
     write_event(sample, session);
     flush_if_due(session);
     if (!session.trial.finished) return;

@@ -3,6 +3,8 @@
 #include "app/assets.h"
 #include "app/prepare.h"
 #include "files/input_error.h"
+#include "files/sha256.h"
+#include "files/text.h"
 
 namespace palpa {
 namespace {
@@ -16,6 +18,11 @@ fs::path find_beside(const Protocol& protocol, const std::string& name, const ch
     const fs::path beside = (protocol.file.parent_path() / given).lexically_normal();
     if (fs::exists(beside) || given.has_parent_path()) return beside;
     return assets_folder() / kind / given;
+}
+
+std::string hash_of_file(const fs::path& file) {
+    std::error_code error;
+    return fs::is_regular_file(file, error) ? sha256_hex(read_text(file)) : "n/a";
 }
 
 StudyScene load(const Protocol& protocol, const Condition& condition) {
@@ -43,6 +50,35 @@ StudyScenes load_study_scenes(const Protocol& protocol) {
         }
     }
     return scenes;
+}
+
+Json identity_of(const std::optional<StudyScene>& scene) {
+    Json json = Json::object();
+    if (!scene) return json;
+    json["profile_sha256"] = hash_of_file(scene->scene.profile);
+    if (scene->scene.linear) {
+        json["phantom_sha256"] = hash_of_file(scene->scene.linear->phantom);
+        return json;
+    }
+    for (const char* name : {"map.json", "normal_N.npy", "tangential_x_N.npy", "tangential_y_N.npy"}) {
+        const std::string hash = hash_of_file(scene->scene.map / name);
+        if (hash != "n/a") json["map_sha256"][name] = hash;
+    }
+    return json;
+}
+
+TrialLabel label_of(const Protocol& protocol, const PlannedParticipant& who, const PlannedTrial& trial, const Json& identity) {
+    const Condition& condition = protocol.conditions[trial.condition];
+    Json study{{"protocol", protocol.name},
+               {"version", protocol.version},
+               {"sha256", protocol.sha256},
+               {"seed", protocol.seed},
+               {"participant_number", who.number},
+               {"group", protocol.groups[who.group].id},
+               {"modality", name_of(condition.modality)},
+               {"trial_seed", trial.seed}};
+    study.update(identity);
+    return {condition.id, condition.device, trial.trial, who.order_id, study};
 }
 
 Scene scene_of(const StudyScene& scene, const PlannedTrial& trial) {

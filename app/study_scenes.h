@@ -6,6 +6,7 @@
 
 #include "scene/plan.h"
 #include "study/order.h"
+#include "study/trial_log.h"
 
 namespace palpa {
 
@@ -18,6 +19,12 @@ using StudyScenes = std::vector<std::optional<StudyScene>>;
 
 // Throws InputError that names the protocol, the condition and what is wrong with its scene, map or profile.
 StudyScenes load_study_scenes(const Protocol& protocol);
+
+// Hashes of what a trial is made from: profile, and map or phantom.
+Json identity_of(const std::optional<StudyScene>& scene);
+
+// Of this trial, for its events and its settings.
+TrialLabel label_of(const Protocol& protocol, const PlannedParticipant& who, const PlannedTrial& trial, const Json& identity);
 
 // The scene as this trial shows it.
 Scene scene_of(const StudyScene& scene, const PlannedTrial& trial);

@@ -14,7 +14,6 @@
 
 #include "app/assets.h"
 #include "app/session.h"
-#include "files/sha256.h"
 #include "files/text.h"
 #include "scene/mapping.h"
 #include "study/simulated_person.h"
@@ -100,30 +99,15 @@ double greatest_force_N(const Session& session) {
     return session.scene.force_scale * force_N(session.plan.profile, session.plan.profile.level_highest, clamped);
 }
 
-Json study_json(const Shared& shared, const PlannedParticipant& who, const PlannedTrial& trial) {
-    const Protocol& protocol = shared.protocol;
-    Json json{{"protocol", protocol.name},
-              {"version", protocol.version},
-              {"sha256", protocol.sha256},
-              {"seed", protocol.seed},
-              {"participant_number", who.number},
-              {"group", protocol.groups[who.group].id},
-              {"modality", name_of(protocol.conditions[trial.condition].modality)},
-              {"trial_seed", trial.seed},
-              {"simulated", true},
-              {"simulation_seed", shared.options.seed}};
-    json.update(shared.identities[trial.condition]);
-    return json;
-}
-
 SessionFiles files_of(const Shared& shared, const PlannedParticipant& who, const PlannedTrial& trial) {
-    const Condition& condition = shared.protocol.conditions[trial.condition];
     SessionFiles files;
     files.log = shared.options.output.string();
     files.participant = code_of(who.number);
     files.samples = shared.options.samples;
     files.sync_rows = false;  // nobody waits; the trial is on the disk before the next begins
-    files.label = TrialLabel{condition.id, condition.device, trial.trial, who.order_id, study_json(shared, who, trial)};
+    files.label = label_of(shared.protocol, who, trial, shared.identities[trial.condition]);
+    files.label->study["simulated"] = true;
+    files.label->study["simulation_seed"] = shared.options.seed;
     return files;
 }
 
@@ -258,26 +242,6 @@ void work(Shared& shared) {
         if (!shared.error) shared.error = std::current_exception();
         shared.stop = true;
     }
-}
-
-std::string hash_of_file(const std::filesystem::path& file) {
-    std::error_code error;
-    return std::filesystem::is_regular_file(file, error) ? sha256_hex(read_text(file)) : "n/a";
-}
-
-Json identity_of(const std::optional<StudyScene>& scene) {
-    Json json = Json::object();
-    if (!scene) return json;
-    json["profile_sha256"] = hash_of_file(scene->scene.profile);
-    if (scene->scene.linear) {
-        json["phantom_sha256"] = hash_of_file(scene->scene.linear->phantom);
-        return json;
-    }
-    for (const char* name : {"map.json", "normal_N.npy", "tangential_x_N.npy", "tangential_y_N.npy"}) {
-        const std::string hash = hash_of_file(scene->scene.map / name);
-        if (hash != "n/a") json["map_sha256"][name] = hash;
-    }
-    return json;
 }
 
 void add_everybody(const Protocol& protocol, const SimulateOptions& options) {

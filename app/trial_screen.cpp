@@ -5,6 +5,7 @@
 
 #include "app/look.h"
 #include "app/screens.h"
+#include "app/study_run.h"
 #include "mechanics/linear_range.h"
 
 namespace palpa {
@@ -42,12 +43,15 @@ void draw_force_bar(const Shown& shown, float height_px, const Gui& gui) {
     ImGui::Dummy(ImVec2(width_px, height_px));
 }
 
-void draw_numbers(const Shown& shown, const Gui& gui) {
+// Of a forced choice: there is nothing to mark, and no number may tell how soft it is.
+bool is_interval(const Screens& screens) { return screens.study && screens.study->protocol.task == TaskKind::choice; }
+
+void draw_numbers(const Shown& shown, const Gui& gui, const Screens& screens) {
     const float column_px = 13.5f * gui.mm();
     const Contact& contact = shown.state.contact;
     ImGui::BeginGroup();
     value_line("Force", fixed(contact.normal_N, 2) + " N", column_px);
-    value_line("Depth", fixed(1e3 * contact.depth_m, 2) + " mm", column_px);
+    if (!is_interval(screens)) value_line("Depth", fixed(1e3 * contact.depth_m, 2) + " mm", column_px);
     // in a test the lag is what the eye has to judge, so no number tells it
     if (shown.trial.mode == TrialMode::practice) {
         value_line("Lag", fixed(1e3 * shown.avatar.lag_m.norm(), 2) + " mm", column_px);
@@ -68,7 +72,24 @@ void draw_contact_note(const Shown& shown) {
     ImGui::TextColored(ImVec4(1.0f, 0.84f, 0.35f, 1.0f), "%s", note);
 }
 
+// A participant has no menu, and sees which trial this is and the time that is left.
+void draw_study_header(const Shown& shown, const StudyRun& run) {
+    const double limit_s = due_limit_s(run);
+    const double left_s = limit_s > 0.0 ? std::max(0.0, std::ceil(limit_s - shown.trial_s)) : shown.trial_s;
+    const char* what = due_trial(run).practice ? "  practice" : "";
+    ImGui::SetWindowFontScale(1.3f);
+    ImGui::Text("%s%s", clock_text(left_s).c_str(), what);
+    ImGui::SetWindowFontScale(1.0f);
+    if (run.protocol.task == TaskKind::choice) {
+        ImGui::TextWrapped("%s", run.interval == 0 ? "First surface" : "Second surface");
+        paragraph("Pair " + progress_text(run));
+    } else {
+        paragraph("Trial " + progress_text(run));
+    }
+}
+
 void draw_header(const Shown& shown, const Gui& gui, Screens& screens) {
+    if (screens.study) return draw_study_header(shown, *screens.study);
     const float line_px = kTarget_mm * gui.mm();
     if (big_button(screens.menu ? "Close" : "Menu", "F10", {26.0f * gui.mm(), kTarget_mm, true, screens.menu}, gui)) {
         screens.menu = !screens.menu;
@@ -98,7 +119,11 @@ void draw_confidence(const Shown& shown, const Gui& gui, Wishes& wishes) {
     }
 }
 
-void draw_actions(const Shown& shown, const Gui& gui, Wishes& wishes) {
+void draw_actions(const Shown& shown, const Gui& gui, const Screens& screens, Wishes& wishes) {
+    if (is_interval(screens)) {
+        if (big_button("Felt", "F", {0.0f, kMark_mm, true, false}, gui)) wishes.action = Action::finish;
+        return;
+    }
     const std::string mark = "Mark  " + std::to_string(shown.trial.marks.size()) + "###mark";
     if (big_button(mark.c_str(), "M", {0.0f, kMark_mm, shown.trial.last_px.has_value(), false}, gui)) wishes.action = Action::mark;
     draw_confidence(shown, gui, wishes);
@@ -119,6 +144,7 @@ void draw_messages(const Shown& shown, const Gui& gui, Screens& screens, Wishes&
     for (const std::string& note : screens.device_notes) paragraph(note);
     if (!screens.note.empty()) paragraph(screens.note);
     if (!screens.trials_note.empty()) paragraph(screens.trials_note);
+    if (screens.study) return;  // what the tissue is made of, the settings tell
     if (shown.plan.source == SourceKind::analytic) paragraph("Tissue: analytic stand-in, no recording");
     if (shown.plan.source == SourceKind::simulated) paragraph("Tissue: simulated, no recording");
     if (std::isfinite(shown.state.view.scale) && shown.scene.mapping.kind == MappingKind::direct &&
@@ -129,7 +155,7 @@ void draw_messages(const Shown& shown, const Gui& gui, Screens& screens, Wishes&
 
 void column_panel(const Shown& shown, Gui& gui, Screens& screens, Wishes& wishes) {
     draw_header(shown, gui, screens);
-    one_line(shown.scene.name);
+    if (!screens.study) one_line(shown.scene.name);
     // what is left after the rest, within reason
     const float rest_px = 62.0f * gui.mm() + 3.0f * ImGui::GetFontSize();
     const float bar_px = std::clamp(ImGui::GetContentRegionAvail().y - rest_px, 16.0f * gui.mm(), 55.0f * gui.mm());
@@ -137,9 +163,9 @@ void column_panel(const Shown& shown, Gui& gui, Screens& screens, Wishes& wishes
     draw_force_bar(shown, bar_px, gui);
     ImGui::SameLine();
     ImGui::SetCursorPosX(left_px + 26.0f * gui.mm());
-    draw_numbers(shown, gui);
-    draw_contact_note(shown);
-    draw_actions(shown, gui, wishes);
+    draw_numbers(shown, gui, screens);
+    if (!is_interval(screens)) draw_contact_note(shown);
+    draw_actions(shown, gui, screens, wishes);
     ImGui::BeginChild("messages", ImVec2(0.0f, 0.0f), false, ImGuiWindowFlags_NavFlattened);  // long ones scroll in what is left
     draw_messages(shown, gui, screens, wishes);
     ImGui::EndChild();
@@ -158,14 +184,14 @@ void strip_panel(const Shown& shown, Gui& gui, Screens& screens, Wishes& wishes)
     draw_force_bar(shown, std::max(16.0f * mm, height_px - rest_px - 12.0f * mm), gui);
     ImGui::SameLine();
     ImGui::SetCursorPosX(26.0f * mm);
-    draw_numbers(shown, gui);
-    draw_contact_note(shown);
+    draw_numbers(shown, gui, screens);
+    if (!is_interval(screens)) draw_contact_note(shown);
     draw_messages(shown, gui, screens, wishes);
     ImGui::EndChild();
     ImGui::SetCursorPos(ImVec2(left_px + wide_px - right_px, top_px));
     ImGui::BeginChild("right", ImVec2(right_px, height_px), false, ImGuiWindowFlags_NavFlattened);
     draw_header(shown, gui, screens);
-    draw_actions(shown, gui, wishes);
+    draw_actions(shown, gui, screens, wishes);
     if (ImGui::GetScrollMaxY() > 1.0f) gui.note_overflow("actions");
     ImGui::EndChild();
 }

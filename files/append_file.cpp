@@ -12,6 +12,25 @@ namespace {
 
 constexpr std::size_t kBuffer_bytes = 64 * 1024;
 
+bool write_all(int fd, std::string_view rest) {
+    while (!rest.empty()) {
+        const ssize_t n = ::write(fd, rest.data(), rest.size());
+        if (n > 0) rest.remove_prefix(static_cast<std::size_t>(n));
+        if (n < 0 && errno != EINTR) return false;
+    }
+    return true;
+}
+
+// A file that is new is there after a power cut only once its folder is on the disk too.
+bool sync_folder_of(const std::filesystem::path& path) {
+    const auto folder = path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");
+    const int fd = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    if (fd < 0) return false;
+    const bool synced = ::fsync(fd) == 0;
+    ::close(fd);
+    return synced;
+}
+
 }  // namespace
 
 AppendFile::AppendFile(const std::filesystem::path& path) : path_(path) {
@@ -33,27 +52,30 @@ void AppendFile::append(std::string_view text) {
 }
 
 bool AppendFile::flush() {
-    std::string_view rest = buffer_;
-    while (!rest.empty() && !failed_) {
-        const ssize_t n = ::write(fd_, rest.data(), rest.size());
-        if (n > 0) {
-            rest.remove_prefix(static_cast<std::size_t>(n));
-        } else if (n < 0 && errno != EINTR) {
-            failed_ = true;
-        }
-    }
+    if (!failed_ && !write_all(fd_, buffer_)) failed_ = true;
     buffer_.clear();
     return !failed_;
 }
 
 bool AppendFile::sync() {
     if (!flush()) return false;
-    if (::fsync(fd_) != 0) failed_ = true;
-    const auto folder = path_.has_parent_path() ? path_.parent_path() : std::filesystem::path(".");
-    const int folder_fd = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-    if (folder_fd < 0 || ::fsync(folder_fd) != 0) failed_ = true;
-    if (folder_fd >= 0) ::close(folder_fd);
+    if (::fsync(fd_) != 0 || !sync_folder_of(path_)) failed_ = true;
     return !failed_;
+}
+
+void append_synced(const std::filesystem::path& path, std::string_view text) {
+    const auto fail = [&] { throw std::runtime_error(path.string() + ": cannot be written: " + std::strerror(errno)); };
+    const int fd = ::open(path.c_str(), O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC, 0644);
+    if (fd < 0) fail();
+    char last = '\n';
+    const off_t size = ::lseek(fd, 0, SEEK_END);
+    std::string whole(text);
+    if (size > 0 && ::pread(fd, &last, 1, size - 1) == 1 && last != '\n') whole.insert(0, "\n");
+    const bool good = write_all(fd, whole) && ::fsync(fd) == 0;
+    const int error = errno;
+    ::close(fd);
+    errno = error;
+    if (!good || !sync_folder_of(path)) fail();
 }
 
 }  // namespace palpa

@@ -35,4 +35,8 @@ class AppendFile {
     bool failed_ = false;
 };
 
+// Whole lines at the end of a file that may be there already; after a line that was cut off a new one begins. On the
+// disk when it returns. Throws std::runtime_error.
+void append_synced(const std::filesystem::path& path, std::string_view text);
+
 }  // namespace palpa

@@ -8,6 +8,7 @@
 #include <cerrno>
 #include <cmath>
 #include <cstdio>
+#include <cstdint>
 #include <cstring>
 #include <fstream>
 #include <stdexcept>
@@ -24,6 +25,9 @@ std::string read_text(const std::filesystem::path& path, std::size_t limit_bytes
     std::FILE* file = std::fopen(path.c_str(), "rb");
     if (file == nullptr) throw InputError(path.string() + ": cannot be read: " + std::strerror(errno));
     std::string text;
+    // its size is known for most files: growing would take three times the memory for a moment
+    const std::uintmax_t size = std::filesystem::file_size(path, error);
+    if (!error && size <= limit_bytes) text.reserve(size + 1);
     std::array<char, 1 << 16> buffer;
     while (const std::size_t n = std::fread(buffer.data(), 1, buffer.size(), file)) {
         text.append(buffer.data(), n);
@@ -87,6 +91,16 @@ void sync_file(const std::filesystem::path& path) {
     const bool synced = ::fsync(fd) == 0;
     ::close(fd);
     if (!synced) fail_writing(path);
+}
+
+std::vector<std::string_view> fields_of(std::string_view line, char separator) {
+    std::vector<std::string_view> out;
+    while (true) {
+        const auto end = line.find(separator);
+        out.push_back(line.substr(0, end));
+        if (end == std::string_view::npos) return out;
+        line.remove_prefix(end + 1);
+    }
 }
 
 std::string number_text(double value) {

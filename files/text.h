@@ -1,9 +1,10 @@
 #pragma once
-// Whole files as text; numbers to and from text, independent of the locale.
+// Whole files as text; fields of a line; numbers to and from text, independent of the locale.
 
 #include <filesystem>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace palpa {
 
@@ -19,6 +20,9 @@ void write_text_whole(const std::filesystem::path& path, std::string_view text);
 
 // Waits until a file that is there is on the disk. Throws std::runtime_error.
 void sync_file(const std::filesystem::path& path);
+
+// What stands between the separators; one field where there is none.
+std::vector<std::string_view> fields_of(std::string_view line, char separator);
 
 // The whole of `text` as a finite or non-finite double ("1e-3", "nan"); false if any of it is not a number.
 // A leading '+' is accepted, a decimal comma is not.

@@ -131,11 +131,23 @@ MapTissue load_map(const Scene& scene) {
         throw bad_input(scene.file.string(), "avatar force", "recorded",
                         "energy: the map " + tissue.map.name + " holds no recorded tangential force");
     }
+    for (std::vector<float>* forces_N : {&tissue.map.normal_N, &tissue.map.tangential_x_N, &tissue.map.tangential_y_N}) {
+        for (float& force_N : *forces_N) force_N *= static_cast<float>(scene.stiffness_scale);
+    }
     tissue.noise_N = normal_noise_N(tissue.map);
     const double gate_N = scene.display_ratio.value_or(DisplayRatio{}).gate_N;
     tissue.smoothing_m = scene.tangential.smoothing_m.value_or(
         default_smoothing_m(tissue.map, tissue.noise_N, path_of(scene).reference_m, gate_N));
     tissue.field = make_field(tissue.map, {scene.tangential.force, tissue.smoothing_m});
+    return tissue;
+}
+
+LinearTissue load_linear(const Scene& scene, const mechanics::Progress& progress) {
+    LinearTissue tissue = make_linear_tissue(*scene.linear, cache_folder(), progress);
+    mechanics::Compliance& c = tissue.compliance;
+    for (Eigen::MatrixXd* m_per_N : {&c.normal_m_per_N, &c.along_x_m_per_N, &c.along_y_m_per_N, &c.full_m_per_N}) {
+        *m_per_N /= scene.stiffness_scale;
+    }
     return tissue;
 }
 
@@ -258,7 +270,7 @@ Plan make_plan(const Scene& scene, const mechanics::Progress& progress) {
     Plan plan;
     plan.profile = read_profile(scene.profile);
     if (scene.linear) {
-        plan.tissue = make_linear_tissue(*scene.linear, cache_folder(), progress);
+        plan.tissue = load_linear(scene, progress);
     } else {
         plan.tissue = load_map(scene);
     }
@@ -271,6 +283,9 @@ Plan make_plan(const Scene& scene, const mechanics::Progress& progress) {
     add_stages(scene, plan);
     std::visit([&](const auto& tissue) { add_notes(tissue, scene, plan); }, plan.tissue);
     if (const auto* tissue = std::get_if<MapTissue>(&plan.tissue)) add_isotonic_note(*tissue, plan);
+    if (scene.stiffness_scale != 1.0) {
+        plan.notes.push_back("the tissue's forces are multiplied by " + short_number(scene.stiffness_scale));
+    }
     if (scene.force_scale != 1.0) {
         plan.notes.push_back("phantom force: the pen's newtons are multiplied by " + short_number(scene.force_scale));
     }

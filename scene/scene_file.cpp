@@ -80,6 +80,7 @@ Delay read_delay(JsonReader json, TangentialOptions& tangential) {
 void read_tissue(JsonReader json, const fs::path& file, const fs::path& assets, Scene& scene) {
     const bool linear = json.has("linear");
     if (linear == json.has("map")) json.fail("", linear ? "two tissues" : "no tissue", "either map or linear");
+    scene.stiffness_scale = json.number("stiffness_scale", {0.0, 1e3, true}, scene.stiffness_scale);
     if (!linear) {
         scene.map = find_file(json.text("map"), file, assets / "maps");
         return json.finish();

@@ -1,5 +1,6 @@
 #pragma once
-// Map folders: NAME.map/ with map.json, normal_N.npy, tangential_x_N.npy, tangential_y_N.npy.
+// Map folders: NAME.map/ with map.json, normal_N.npy and, where there, tangential_x_N.npy, tangential_y_N.npy and
+// filled_normal_N.npy.
 
 #include <filesystem>
 

@@ -40,6 +40,13 @@ struct Choices {
     std::int64_t n = 0;
 };
 
+// An answer to one of the protocol's questions; a number, or one of its choices as it was written.
+struct Answer {
+    std::string condition;  // n/a: asked before the trials
+    std::string item;
+    std::string value;
+};
+
 struct Observations {
     std::vector<std::string> conditions;  // in the order of their first row
     std::vector<std::string> participants;
@@ -48,6 +55,7 @@ struct Observations {
     std::vector<Observation> rows;
     std::vector<TrialFigures> trials;
     std::vector<Choices> choices;
+    std::vector<Answer> answers;
     std::vector<std::string> notes;  // what a reader must know: interrupted trials, lines cut off, clocks set back
     bool simulated = false;          // some of it, at least
     std::int64_t practice_trials = 0;

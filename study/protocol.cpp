@@ -22,6 +22,19 @@ std::string new_id(JsonReader& json, std::set<std::string>& known) {
     return id;
 }
 
+std::vector<std::string> read_names(JsonReader& json, std::string_view key) {
+    std::vector<std::string> names;
+    const Json& list = json.any(key);
+    if (!list.is_array() || list.empty()) json.fail(key, described(list), "an array of names");
+    for (const Json& entry : list) {
+        const std::string name = entry.is_string() ? entry.get<std::string>() : "";
+        if (name.empty() || name.find_first_of("\t\n\r") != std::string::npos) json.fail(key, described(entry), "a name without tabs");
+        if (std::count(names.begin(), names.end(), name) > 0) json.fail(key, shown(name) + " a second time", "each name once");
+        names.push_back(name);
+    }
+    return names;
+}
+
 Condition read_condition(JsonReader json, TaskKind task, std::set<std::string>& known) {
     Condition condition;
     condition.id = new_id(json, known);
@@ -32,9 +45,11 @@ Condition read_condition(JsonReader json, TaskKind task, std::set<std::string>& 
     condition.profile = json.text("profile", "");
     condition.device = json.text("device", "n/a");
     condition.instructions = json.text("instructions", "");
+    if (json.has("nodules")) condition.nodules = read_names(json, "nodules");
     const bool by_hand = condition.modality == Modality::hand;
     if (by_hand && !condition.scene.empty()) json.fail("scene", shown(condition.scene), "none: a real phantom has no scene");
     if (!by_hand && condition.scene.empty() && task == TaskKind::find) json.fail("scene", "nothing", "a scene file");
+    if (!by_hand && !condition.nodules.empty()) json.fail("nodules", "names", "none: a scene knows its nodules");
     json.finish();
     return condition;
 }

@@ -22,6 +22,7 @@ struct Condition {
     std::string profile;   // instead of the scene's; empty: the scene's
     std::string device;    // free text, for the log
     std::string instructions;
+    std::vector<std::string> nodules;  // by hand: names of the phantom's, for the answers that are typed in
 };
 
 struct Group {

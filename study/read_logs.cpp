@@ -10,6 +10,7 @@
 #include "files/json.h"
 #include "files/table.h"
 #include "files/text.h"
+#include "study/ratings.h"
 #include "study/study_folder.h"
 
 namespace palpa {
@@ -235,6 +236,7 @@ std::vector<fs::path> events_files(const fs::path& subject) {
     for (const auto& entry : fs::directory_iterator(subject / "beh", error)) {
         const std::string name = entry.path().filename().string();
         constexpr std::string_view kEnd = "_events.tsv";
+        if (name.find("_task-interval_") != std::string::npos) continue;
         if (name.size() > kEnd.size() && name.compare(name.size() - kEnd.size(), kEnd.size(), kEnd) == 0) files.push_back(entry.path());
     }
     // run-100 comes after run-99
@@ -259,6 +261,7 @@ Observations read_study(const fs::path& directory) {
         out.participants.push_back(subject.filename().string().substr(4));
         Subject reader(static_cast<int>(out.participants.size()) - 1);
         for (const fs::path& events : events_files(subject)) reader.add(events, identity, out);
+        for (const Rating& r : read_ratings(directory, out.participants.back(), out.notes)) out.answers.push_back({r.condition, r.item, r.value});
     }
     if (out.rows.empty() && out.choices.empty() && out.interrupted_trials == 0) {
         throw bad_input(directory.string(), "", "no trial", "sub-XX/beh/..._events.tsv of one trial at least");

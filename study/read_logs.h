@@ -40,7 +40,7 @@ struct RunLog {
 // Throws InputError for a line that is not cut off and yet cannot be read.
 RunLog read_run(const std::filesystem::path& events, std::vector<std::string>& notes);
 
-// sub-XX/beh/*_events.tsv, by name.
+// sub-XX/beh/*_events.tsv, by name; without the intervals of forced choices, whose answers stand in task-softer.
 std::vector<std::filesystem::path> events_files(const std::filesystem::path& subject);
 
 // All runs of all participants. Practice and interrupted trials are counted, not taken. Throws InputError for logs of

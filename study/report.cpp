@@ -5,6 +5,10 @@
 #include <cmath>
 #include <map>
 #include <numeric>
+#include <set>
+#include <utility>
+
+#include "files/text.h"
 
 namespace palpa {
 namespace {
@@ -194,6 +198,32 @@ std::optional<ChoiceResult> choice_result(const Observations& seen, int conditio
     return out;
 }
 
+// One row of a scale, or one for each text that was chosen.
+void add_ratings(const Answer& like, const std::vector<Answer>& answers, Report& report) {
+    std::vector<double> numbers;
+    std::map<std::string, int> texts;
+    for (const Answer& one : answers) {
+        if (one.condition != like.condition || one.item != like.item || one.value == "n/a") continue;
+        double number = 0.0;
+        if (parse_number(one.value, number) && std::isfinite(number)) numbers.push_back(number);
+        ++texts[one.value];
+    }
+    int n = 0;
+    for (const auto& [value, count] : texts) n += count;
+    if (n > 0 && n == static_cast<int>(numbers.size())) {
+        report.ratings.push_back({like.condition, like.item, spread_of(numbers), "", n});
+        return;
+    }
+    for (const auto& [value, count] : texts) report.ratings.push_back({like.condition, like.item, std::nullopt, value, count});
+}
+
+void add_ratings(const std::vector<Answer>& answers, Report& report) {
+    std::set<std::pair<std::string, std::string>> done;
+    for (const Answer& one : answers) {
+        if (done.emplace(one.condition, one.item).second) add_ratings(one, answers, report);
+    }
+}
+
 }  // namespace
 
 Spread spread_of(std::vector<double> values) {
@@ -227,6 +257,7 @@ Report make_report(const Observations& seen, const ReportOptions& options) {
             if (const auto choice = choice_result(seen, c, k, options)) report.choices.push_back(*choice);
         }
     }
+    add_ratings(seen.answers, report);
     report.pairs = all_pairs(seen, report.conditions, Quantity::sensitivity, options);
     report.ppv_pairs = all_pairs(seen, report.conditions, Quantity::ppv, options);
     return report;

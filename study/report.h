@@ -73,6 +73,15 @@ struct ChoiceResult {
     std::optional<TTest> over_answers;  // 0 and 1 against one half, as the paper's t(239); not independent
 };
 
+// Answers to one question about one condition.
+struct RatingResult {
+    std::string condition;
+    std::string item;
+    std::optional<Spread> spread;  // of a scale; else
+    std::string value;             // one of the texts that were chosen
+    int n = 0;                     // who chose it, or who answered at all
+};
+
 struct ReportOptions {
     BootstrapOptions bootstrap;  // its level is that of every interval
 };
@@ -83,6 +92,7 @@ struct Report {
     std::vector<PairResult> pairs;      // sensitivity
     std::vector<PairResult> ppv_pairs;
     std::vector<ChoiceResult> choices;
+    std::vector<RatingResult> ratings;
     std::vector<std::string> notes;
     int participants = 0;
     std::int64_t trials = 0;             // finished tests; 0 for a table of counts

@@ -81,6 +81,19 @@ Json choice_json(const ChoiceResult& choice) {
     return json;
 }
 
+Json rating_json(const RatingResult& rating) {
+    Json json{{"condition", rating.condition}, {"item", rating.item}, {"n", rating.n}};
+    if (rating.spread) {
+        json["mean"] = rating.spread->mean;
+        json["sd"] = number(rating.spread->sd);
+        json["median"] = rating.spread->median;
+        json["quartiles"] = {rating.spread->lower_quartile, rating.spread->upper_quartile};
+    } else {
+        json["answer"] = rating.value;
+    }
+    return json;
+}
+
 }  // namespace
 
 Json report_json(const Report& report) {
@@ -107,6 +120,7 @@ Json report_json(const Report& report) {
     for (const PairResult& pair : report.ppv_pairs) json["ppv_pairs"].push_back(pair_json(pair));
     if (!report.choices.empty()) json["choices"] = Json::array();
     for (const ChoiceResult& choice : report.choices) json["choices"].push_back(choice_json(choice));
+    for (const RatingResult& rating : report.ratings) json["ratings"].push_back(rating_json(rating));
     json["notes"] = report.notes;
     return json;
 }

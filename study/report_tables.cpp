@@ -134,6 +134,18 @@ ReportTable choice_table(const Report& report) {
     return table;
 }
 
+ReportTable rating_table(const Report& report) {
+    ReportTable table{"ratings", "Answers of the participants",
+                      {"condition", "item", "answer", "n", "mean", "sd", "lower_quartile", "median", "upper_quartile"}, {}};
+    for (const RatingResult& r : report.ratings) {
+        Row row{r.condition, r.item, r.spread ? "scale" : r.value, whole(r.n)};
+        const Spread s = r.spread.value_or(Spread{});
+        for (const double x : {s.mean, s.sd, s.lower_quartile, s.median, s.upper_quartile}) row.push_back(r.spread ? fixed(x, 2) : kNone);
+        table.rows.push_back(row);
+    }
+    return table;
+}
+
 void append_row(const Row& row, const char* before, const char* between, const char* after, std::string& out) {
     out += before;
     for (std::size_t i = 0; i < row.size(); ++i) out.append(i == 0 ? "" : between).append(row[i]);
@@ -159,6 +171,7 @@ std::vector<ReportTable> report_tables(const Report& report) {
     add(pair_table("ppv_pairs", "Positive predictive value: all pairs of conditions", report.ppv_pairs));
     add(trial_table(report));
     add(choice_table(report));
+    add(rating_table(report));
     return tables;
 }
 

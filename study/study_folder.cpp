@@ -1,14 +1,10 @@
 #include "study/study_folder.h"
 
-#include <fcntl.h>
-#include <unistd.h>
-
 #include <algorithm>
-#include <cerrno>
-#include <cstring>
 #include <map>
 #include <stdexcept>
 
+#include "files/append_file.h"
 #include "files/input_error.h"
 #include "files/json.h"
 #include "files/text.h"
@@ -59,44 +55,6 @@ void check_same(const fs::path& file, const StudyIdentity& found, const Protocol
     }
 }
 
-[[noreturn]] void fail_writing(const fs::path& path) {
-    throw std::runtime_error(path.string() + ": cannot be written: " + std::strerror(errno));
-}
-
-// At the end of a file that may be there already; on the disk when it returns.
-void append_synced(const fs::path& path, std::string_view text) {
-    const int fd = ::open(path.c_str(), O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC, 0644);
-    if (fd < 0) fail_writing(path);
-    char last = '\n';
-    const off_t size = ::lseek(fd, 0, SEEK_END);
-    std::string whole(text);
-    // after a line that was cut off a new one begins
-    if (size > 0 && ::pread(fd, &last, 1, size - 1) == 1 && last != '\n') whole.insert(0, "\n");
-    std::string_view rest = whole;
-    while (!rest.empty()) {
-        const ssize_t n = ::write(fd, rest.data(), rest.size());
-        if (n < 0 && errno == EINTR) continue;
-        if (n <= 0) {
-            ::close(fd);
-            fail_writing(path);
-        }
-        rest.remove_prefix(static_cast<std::size_t>(n));
-    }
-    const bool synced = ::fsync(fd) == 0;
-    ::close(fd);
-    if (!synced) fail_writing(path);
-}
-
-std::vector<std::string_view> fields_of(std::string_view line) {
-    std::vector<std::string_view> out;
-    while (true) {
-        const auto end = line.find('\t');
-        out.push_back(line.substr(0, end));
-        if (end == std::string_view::npos) return out;
-        line.remove_prefix(end + 1);
-    }
-}
-
 }  // namespace
 
 void open_study(const fs::path& directory, const Protocol& protocol, const StudyKind& kind) {
@@ -124,8 +82,12 @@ void open_study(const fs::path& directory, const Protocol& protocol, const Study
 std::optional<StudyIdentity> read_identity(const fs::path& directory) {
     const fs::path file = directory / "study.json";
     if (!fs::exists(file)) return std::nullopt;
-    const Json root = read_json(file);
-    JsonReader json(root, file.string());
+    return identity_in(read_text(file), file.string());
+}
+
+StudyIdentity identity_in(std::string_view study_json, const std::string& file_name) {
+    const Json root = parse_json(study_json, file_name);
+    JsonReader json(root, file_name);
     StudyIdentity out;
     out.name = json.text("protocol");
     out.version = json.text("version");
@@ -139,10 +101,13 @@ std::optional<StudyIdentity> read_identity(const fs::path& directory) {
 
 std::vector<Person> read_people(const fs::path& directory, std::vector<std::string>& notes) {
     const fs::path file = directory / "participants.tsv";
+    if (!fs::exists(file)) return {};
+    return people_in(read_text(file), file.string(), notes);
+}
+
+std::vector<Person> people_in(std::string_view participants_tsv, const std::string& file_name, std::vector<std::string>& notes) {
     std::vector<Person> people;
-    if (!fs::exists(file)) return people;
-    const std::string text = read_text(file);
-    std::string_view rest = whole_lines(text, file.string(), notes);
+    std::string_view rest = whole_lines(participants_tsv, file_name, notes);
     std::map<std::string, int> first_line;
     for (int line = 1; !rest.empty(); ++line) {
         const auto end = rest.find('\n');
@@ -150,9 +115,9 @@ std::vector<Person> read_people(const fs::path& directory, std::vector<std::stri
         rest.remove_prefix(end + 1);
         if (!row.empty() && row.back() == '\r') row.remove_suffix(1);
         if (line == 1 || row.empty()) continue;
-        const auto fields = fields_of(row);
+        const auto fields = fields_of(row, '\t');
         if (fields.size() != 8 || fields[0].substr(0, 4) != "sub-") {
-            notes.push_back(file.string() + ": line " + std::to_string(line) + " is left out: " + shown(row) +
+            notes.push_back(file_name + ": line " + std::to_string(line) + " is left out: " + shown(row) +
                             " is not a participant with 8 fields");
             continue;
         }
@@ -160,7 +125,7 @@ std::vector<Person> read_people(const fs::path& directory, std::vector<std::stri
         people.push_back({field(0).substr(4), field(1), field(2), field(3), field(4), field(5), field(6), field(7)});
         const auto [it, fresh] = first_line.emplace(people.back().code, line);
         if (!fresh) {
-            throw bad_input(file.string(), "line " + std::to_string(line) + ", participant_id", shown(fields[0]),
+            throw bad_input(file_name, "line " + std::to_string(line) + ", participant_id", shown(fields[0]),
                             "it once: line " + std::to_string(it->second) + " has the same code");
         }
     }

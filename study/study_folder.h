@@ -30,17 +30,20 @@ struct StudyIdentity {
     StudyKind kind;
 };
 std::optional<StudyIdentity> read_identity(const std::filesystem::path& directory);
+StudyIdentity identity_in(std::string_view study_json, const std::string& file_name);
 
 // One line of participants.tsv; unknown is n/a.
 struct Person {
     std::string code;  // without "sub-"
     std::string age = "n/a", sex = "n/a", handedness = "n/a", vision = "n/a";
     std::string palpation_experience = "n/a", vr_experience = "n/a", group = "n/a";
+    bool operator==(const Person&) const = default;
 };
 
 // In the order of the file. A last line that was cut off is left out and noted. Throws InputError for a code that
 // stands twice.
 std::vector<Person> read_people(const std::filesystem::path& directory, std::vector<std::string>& notes);
+std::vector<Person> people_in(std::string_view participants_tsv, const std::string& file_name, std::vector<std::string>& notes);
 
 // Adds those whose codes are not there yet, on the disk when it returns. Throws std::runtime_error if it cannot.
 void add_people(const std::filesystem::path& directory, const std::vector<Person>& people);

@@ -1,5 +1,6 @@
 #include "study/trial_log.h"
 
+#include "study/ratings.h"
 #include "study/rows.h"
 
 namespace palpa {
@@ -103,6 +104,7 @@ void prepare_log_folder(const std::filesystem::path& directory) {
     explain_once<MarkRow>(directory / "task-palpation_marks.json");
     explain_once<ChoiceRow>(directory / "task-softer_events.json");
     explain_samples_once(directory / "task-palpation_samples.json");
+    explain_ratings_once(directory);
 }
 
 }  // namespace palpa

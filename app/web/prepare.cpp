@@ -18,4 +18,9 @@ bool PlanInProgress::wait(double) { return true; }
 void PlanInProgress::cancel() {}
 Plan PlanInProgress::take() { return {}; }
 
+Plan make_plan_here(const Scene& scene) {
+    if (scene.linear) return PlanInProgress(scene).take();
+    return make_plan(scene);
+}
+
 }  // namespace palpa

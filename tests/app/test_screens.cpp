@@ -8,6 +8,7 @@
 
 #include "app/frame.h"
 #include "app/load.h"
+#include "app/study_run.h"
 #include "scene/advance.h"
 #include "tests/temporary_folder.h"
 
@@ -95,7 +96,7 @@ void check_case(const Session& session, Screens screens, const Case& c, const st
     const Picture picture = read_png(file);
     CHECK(picture.width == c.width_px);
     constexpr std::size_t kTextHas = 40;  // colours of smoothed letters
-    const bool covers_all = screens.screen == Screen::scale || screens.screen == Screen::devices;
+    const bool covers_all = screens.screen == Screen::scale || screens.screen == Screen::devices || screens.screen == Screen::study;
     const PanelArea all{0.0f, 0.0f, static_cast<float>(c.width_px), static_cast<float>(c.height_px)};
     if (layout.controls) CHECK(colours_in(picture, covers_all ? all : layout.controls_px) > kTextHas);
     CHECK(colours_in(picture, covers_all ? all : layout.tissue_px) > kTextHas);
@@ -160,5 +161,41 @@ TEST_CASE("screens: every screen fits and is drawn at the sizes of desks and tab
         check_case(session, scale, c, "scale", folder);
         check_case(session, devices, c, "devices", folder);
         check_case(done, reveal, c, "reveal", folder);
+    }
+}
+
+TEST_CASE("screens: every step of a study fits, and none tells where the nodules are") {
+    const TemporaryFolder folder;
+    Session session;
+    session.scene = load_scene("");
+    session.plan = make_plan(session.scene);
+    const Trace whole = read_trace(default_trace());
+    begin_trial({}, whole.info, TrialMode::test, session);
+    for (std::size_t i = 0; i < 400; ++i) take_sample(whole.samples[i], session);
+    const auto run = std::make_shared<StudyRun>();
+    run->protocol = read_protocol(PALPA_SOURCE_DIR "/assets/protocols/paper.json");
+    run->scenes = load_study_scenes(run->protocol);
+    run->directory = folder / "log";
+    std::filesystem::create_directories(run->directory);
+    run->code = "07";
+    run->progress = progress_of(run->directory, run->protocol, run->code);
+    run->progress.next = run->progress.plan.trials.front();
+    run->stopped = "log: found 12 MB free, expected 64 MB for a trial; the study stops here";
+    Screens screens;
+    screens.study = run;
+    const Case cases[] = {{1280, 800, kMissing, false}, {800, 1280, kMissing, false}, {2560, 1600, 11.8, false}, {1024, 600, kMissing, true}};
+    for (const Case& c : cases) {
+        for (int step = 0; step <= static_cast<int>(StudyStep::stopped); ++step) {
+            run->step = static_cast<StudyStep>(step);
+            const bool by_hand = run->step == StudyStep::typed;
+            for (const PlannedTrial& trial : run->progress.plan.trials) {
+                const Modality modality = run->protocol.conditions[trial.condition].modality;
+                if (!trial.practice && (modality == Modality::hand) == by_hand) run->progress.next = trial;
+            }
+            run->answers.clear();
+            run->typed.nodules = {4, kMissed, 0};
+            screens.screen = run->step == StudyStep::trial ? Screen::trial : Screen::study;
+            check_case(session, screens, c, std::string("study-") + name_of(run->step), folder);
+        }
     }
 }

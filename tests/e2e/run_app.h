@@ -28,23 +28,29 @@ inline int play_script(const TemporaryFolder& folder) {
     return shell("timeout 900 " PALPA_XORG_PEN " " + (folder / "script.tsv").string());
 }
 
-// Runs `palpa run --json --record FOLDER/t.tsv ARGUMENTS >FOLDER/out.json` and does `meanwhile` once the window is there.
+// Runs `palpa ARGUMENTS >FOLDER/out.json` and does `meanwhile` once `sign` is there, and with it the window.
 // Returns its exit status. PALPA_KEEP_PICTURE names a copy of FOLDER/p.png.
-inline int run_app(const TemporaryFolder& folder, const std::string& arguments, const std::function<void()>& meanwhile) {
+inline int run_program(const TemporaryFolder& folder, const std::string& arguments, const std::filesystem::path& sign,
+                       const std::function<void()>& meanwhile) {
     const std::string home = folder.path().string();
     int status = -1;
     std::thread app([&] {
-        status = shell("XDG_CONFIG_HOME=" + home + "/config HOME=" + home + " timeout 900 " PALPA_PROGRAM " run --json --record " + home +
-                       "/t.tsv " + arguments + " >" + home + "/out.json 2>" + home + "/err.txt");
+        status = shell("XDG_CONFIG_HOME=" + home + "/config HOME=" + home + " timeout 900 " PALPA_PROGRAM " " + arguments + " >" + home +
+                       "/out.json 2>" + home + "/err.txt");
     });
-    // the recording is opened after the window, so input may come once it is there
-    for (int i = 0; i < 200 && !std::filesystem::exists(folder / "t.tsv"); ++i) sleep_s(0.05);
+    for (int i = 0; i < 200 && !std::filesystem::exists(sign); ++i) sleep_s(0.05);
     sleep_s(1.5);
     meanwhile();
     app.join();
     const char* keep = ::getenv("PALPA_KEEP_PICTURE");
     if (keep != nullptr && std::filesystem::exists(folder / "p.png")) write_text_atomically(keep, read_text(folder / "p.png"));
     return status;
+}
+
+// `palpa run`; the recording is opened after the window, so input may come once it is there.
+inline int run_app(const TemporaryFolder& folder, const std::string& arguments, const std::function<void()>& meanwhile) {
+    const std::string trace = (folder / "t.tsv").string();
+    return run_program(folder, "run --json --record " + trace + " " + arguments, trace, meanwhile);
 }
 
 }  // namespace palpa::test

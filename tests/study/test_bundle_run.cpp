@@ -5,6 +5,7 @@
 #include "files/json.h"
 #include "files/sha256.h"
 #include "files/text.h"
+#include "study/bundle.h"
 #include "study/trial_log.h"
 #include "tests/temporary_folder.h"
 
@@ -28,6 +29,7 @@ TEST_CASE("bundle of a run: all its files with their hashes, and nothing else") 
         CHECK(file["sha256"] == sha256_hex(file["text"].get<std::string>()));
     }
     CHECK(json["files"][0]["name"] == "sub-07/beh/sub-07_task-palpation_run-01_events.json");
+    CHECK(read_bundle(bundle_text(run), "x.json").files.size() == 5);  // what the desk makes of it
 }
 
 TEST_CASE("bundle of a run: a first run may be asked for, and none is overwritten") {

@@ -1,12 +1,13 @@
 // No trial is lost on a tablet: storage, the desk, export, reload, no network.
 
 import assert from 'node:assert/strict';
+import {execFileSync, spawn} from 'node:child_process';
 import crypto from 'node:crypto';
 import fs from 'node:fs';
 import os from 'node:os';
 import path from 'node:path';
 import test from 'node:test';
-import {frames, pen, report, started, withPage} from './browser.mjs';
+import {frames, openBrowser, pen, report, site, started, withPage} from './browser.mjs';
 
 // A press, and the end of the trial.
 async function finishTrial(browser, x = 800) {
@@ -177,3 +178,35 @@ test('a second tab does not start beside the first', () => withPage({quiet: true
     await second.goto(desk.url);
     await second.waitForFunction(() => document.getElementById('message').textContent.includes('another tab'), null, {timeout: 20000});
 }));
+
+test('the real desk: a trial goes from the page into a folder of logs', {skip: process.env.PALPA ? false : 'no palpa of the desktop'}, async () => {
+    const folder = fs.mkdtempSync(path.join(os.tmpdir(), 'palpa-desk-'));
+    const collected = path.join(folder, 'collected');
+    const desk = spawn(process.env.PALPA, ['serve', '--collect', collected, '--web', site, '--port', '0', '--json'], {stdio: ['ignore', 'pipe', 'inherit']});
+    const browser = await openBrowser();
+    try {
+        const lines = [];
+        desk.stdout.on('data', (text) => lines.push(...String(text).split('\n').filter(Boolean)));
+        await until('the desk listens', () => lines.length > 0);
+        const {page} = browser;
+        await page.goto(JSON.parse(lines[0]).urls[0]);
+        await started(page);
+        await frames(page, 2);
+        await finishTrial(browser);
+        const uploads = () => fs.existsSync(collected) ? fs.readdirSync(collected).filter((name) => name.endsWith('.upload')) : [];
+        await until('the trial is at the desk', () => uploads().length === 1);
+        await until('the tablet knows', async () => (await stored(page)).every((trial) => trial.sent && trial.text === ''));
+        const study = path.join(folder, 'study');
+        const imported = () => JSON.parse(execFileSync(process.env.PALPA, ['study', 'import', path.join(collected, uploads()[0]), '-o', study, '--json']));
+        assert.equal(imported().written.length, 8);
+        assert.equal(imported().already_there.length, 8);
+        const subject = fs.readdirSync(study).find((name) => name.startsWith('sub-tablet'));
+        const events = fs.readFileSync(path.join(study, subject, 'beh', `${subject}_task-palpation_run-01_events.tsv`), 'utf8');
+        assert.match(events, /\tfinish\t/);
+    } finally {
+        await browser.close();
+        desk.kill('SIGTERM');
+        await new Promise((resolve) => desk.exitCode === null ? desk.once('exit', resolve) : resolve());
+        fs.rmSync(folder, {recursive: true});
+    }
+});

@@ -1,0 +1,25 @@
+#pragma once
+// The head of an HTTP request, checked before the HTTP library sees it: its parser takes any number of header lines,
+// puts ranges through a regular expression and inflates what a client has deflated.
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+namespace palpa {
+
+inline constexpr std::size_t kLongestHead_bytes = 16 * 1024;
+
+struct CheckedHead {
+    int refused = 0;                  // HTTP status; 0: fine
+    std::string text;                 // what the library gets, the blank line included
+    std::uint64_t content_bytes = 0;  // announced
+};
+
+// `head`: from the request line to the blank line. Refused: control characters, folded and nameless lines, over 100
+// lines (431), a target over 1024 bytes (414), two lengths or one that is no number (400), PUT or POST without length
+// and chunked bodies (411), encoded and multipart bodies (415). Lines that ask for ranges and compression are left out.
+CheckedHead check_head(std::string_view head);
+
+}  // namespace palpa

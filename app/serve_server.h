@@ -1,0 +1,43 @@
+#pragma once
+// cpp-httplib's server on connections of app/serve_connection.h: it parses requests and writes answers, and this says
+// who is listened to, how long, and how many at a time.
+
+#include <httplib.h>
+
+#include <atomic>
+#include <map>
+#include <mutex>
+#include <string>
+
+#include "app/serve_connection.h"
+
+namespace palpa {
+
+struct Places {
+    std::size_t in_all = 128;        // connections served at a time, a thread each; as many again may wait
+    std::size_t of_one_address = 64; // so that one client never takes all
+    int requests = 100;              // of one connection
+};
+
+class DeskServer : public httplib::Server {
+ public:
+    DeskServer(TlsContext tls, const Patience& patience, const Places& places);
+
+    // Port 0: any that is free. Returns the port. Throws std::runtime_error with the system's reason.
+    int bind(const std::string& address, int port);
+    // Serves until end() is called, by another thread; then what is under way is let come to its end, for a moment.
+    void serve() { listen_after_bind(); }
+    void end();
+
+ private:
+    bool process_and_close_socket(socket_t socket) override;
+
+    TlsContext tls_;
+    Patience patience_;
+    Places places_;
+    std::atomic<bool> ending_ = false;
+    std::mutex mutex_;
+    std::map<std::string, std::size_t> connections_;  // by address
+};
+
+}  // namespace palpa

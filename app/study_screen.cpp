@@ -1,0 +1,282 @@
+// What a participant sees between the trials of a study, and where the experimenter types. It tells nothing of what was
+// found or is to be found.
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "app/look.h"
+#include "app/screens.h"
+#include "app/study_run.h"
+
+namespace palpa {
+namespace {
+
+bool enter_pressed(const Gui& gui) { return gui.pressed(key::enter) || gui.pressed(key::pad_enter); }
+
+// The one way on; Enter does it too.
+bool forward(const char* label, const Gui& gui, bool enabled = true) {
+    const float width_px = std::min(70.0f * gui.mm(), ImGui::GetContentRegionAvail().x);
+    const bool asked = big_button(label, "Enter", {width_px, kMark_mm, enabled, false}, gui);
+    return asked || (enabled && enter_pressed(gui));
+}
+
+void title(const std::string& text) {
+    ImGui::SetWindowFontScale(1.4f);
+    ImGui::TextWrapped("%s", text.c_str());
+    ImGui::SetWindowFontScale(1.0f);
+}
+
+// Beside a button, at the height of its word.
+void beside(const std::string& text, const Gui& gui) {
+    ImGui::SetCursorPosY(ImGui::GetCursorPosY() + 0.5f * (kTarget_mm * gui.mm() - ImGui::GetFontSize()));
+    ImGui::TextUnformatted(text.c_str());
+}
+
+void gap(const Gui& gui) { ImGui::Dummy(ImVec2(0.0f, 2.0f * gui.mm())); }
+
+void draw_code(Gui& gui, StudyRun& run) {
+    title("Who is here?");
+    paragraph("A code for the participant, no name: letters and digits. Whoever was here before goes on with the same code.");
+    if (run.answers.empty()) run.answers = {free_code(run)};
+    char text[24];
+    std::snprintf(text, sizeof text, "%s", run.answers[0].c_str());
+    ImGui::SetNextItemWidth(60.0f * gui.mm());
+    if (ImGui::IsWindowAppearing()) ImGui::SetKeyboardFocusHere();
+    const bool entered = ImGui::InputText("code", text, sizeof text, ImGuiInputTextFlags_EnterReturnsTrue);
+    run.answers[0] = text;
+    gap(gui);
+    if (forward("Go on", gui) || entered) enter_code(run.answers[0], run);
+    if (!run.note.empty()) warning_paragraph(run.note);
+}
+
+void draw_again(Gui& gui, StudyRun& run) {
+    title("Participant " + run.code + " has been here");
+    paragraph(std::to_string(run.progress.finished.size()) + " of " + std::to_string(run.progress.plan.trials.size()) +
+              " trials are done. A trial that was interrupted is done once more.");
+    gap(gui);
+    if (forward("Go on with the study", gui)) return same_person(true, run);
+    if (big_button("Somebody else", "", {70.0f * gui.mm(), kTarget_mm, true, false}, gui)) same_person(false, run);
+}
+
+void draw_choices(const std::vector<std::string>& choices, float least_px, const Gui& gui, std::string& answer) {
+    const float gap_px = ImGui::GetStyle().ItemSpacing.x;
+    const float right_px = ImGui::GetCursorPosX() + ImGui::GetContentRegionAvail().x;
+    for (std::size_t i = 0; i < choices.size(); ++i) {
+        const float width_px = std::max(least_px, ImGui::CalcTextSize(choices[i].c_str()).x + 6.0f * gui.mm());
+        if (i > 0) {
+            ImGui::SameLine();
+            if (ImGui::GetCursorPosX() + width_px > right_px + 0.5f * gap_px) ImGui::NewLine();
+        }
+        ImGui::PushID(static_cast<int>(i));
+        const bool chosen = answer == choices[i];
+        if (big_button(choices[i].c_str(), "", {width_px, kTarget_mm, true, chosen}, gui)) answer = chosen ? "" : choices[i];
+        ImGui::PopID();
+    }
+}
+
+void draw_item(const Item& item, const Gui& gui, std::string& answer) {
+    ImGui::TextWrapped("%s", item.text.c_str());
+    if (!item.choices.empty()) return draw_choices(item.choices, 0.0f, gui, answer);
+    constexpr int kMostButtons = 11;
+    if (item.from && *item.to - *item.from < kMostButtons) {
+        std::vector<std::string> steps;
+        for (int i = *item.from; i <= *item.to; ++i) steps.push_back(std::to_string(i));
+        return draw_choices(steps, 11.0f * gui.mm(), gui, answer);
+    }
+    ImGui::SetNextItemWidth(40.0f * gui.mm());
+    char text[120];
+    std::snprintf(text, sizeof text, "%s", answer.c_str());
+    const ImGuiInputTextFlags flags = item.from ? ImGuiInputTextFlags_CharsDecimal : ImGuiInputTextFlags_None;
+    if (ImGui::InputText("##text", text, sizeof text, flags)) answer = text;
+}
+
+// A number out of its range is no answer.
+bool acceptable(const Item& item, const std::string& answer) {
+    if (answer.empty() || !item.from) return true;
+    double value = 0.0;
+    return std::sscanf(answer.c_str(), "%lf", &value) == 1 && value >= *item.from && value <= *item.to;
+}
+
+void draw_items(Gui& gui, StudyRun& run) {
+    const std::vector<Item>& items = due_items(run);
+    run.answers.resize(items.size());
+    title(run.step == StudyStep::questions ? "Some questions first" : "How was it?");
+    if (run.step == StudyStep::ratings) paragraph(run.protocol.conditions[run.rated].title);
+    paragraph("You may leave any of them open.");
+    const float below_px = (kMark_mm + 4.0f) * gui.mm();
+    ImGui::BeginChild("items", ImVec2(0.0f, ImGui::GetContentRegionAvail().y - below_px), false, ImGuiWindowFlags_NavFlattened);
+    bool good = true;
+    for (std::size_t i = 0; i < items.size(); ++i) {
+        ImGui::PushID(static_cast<int>(i));
+        draw_item(items[i], gui, run.answers[i]);
+        if (!acceptable(items[i], run.answers[i])) {
+            good = false;
+            warning_paragraph("A number from " + std::to_string(*items[i].from) + " to " + std::to_string(*items[i].to) + ".");
+        }
+        ImGui::PopID();
+        gap(gui);
+    }
+    ImGui::EndChild();
+    if (forward("Go on", gui, good)) submit_answers(run);
+}
+
+void draw_instructions(Gui& gui, StudyRun& run) {
+    const PlannedTrial& trial = due_trial(run);
+    title((trial.practice ? "Practice, trial " : "Trial ") + progress_text(run));
+    const float below_px = (kMark_mm + 4.0f) * gui.mm();
+    ImGui::BeginChild("text", ImVec2(0.0f, ImGui::GetContentRegionAvail().y - below_px), false, ImGuiWindowFlags_NavFlattened);
+    ImGui::TextWrapped("%s", instructions_for(run.protocol, trial).c_str());
+    if (run.protocol.count_told && run.protocol.task == TaskKind::find) {
+        gap(gui);
+        ImGui::TextWrapped("There are %zu of them.", due_nodules(run).size());
+    }
+    ImGui::EndChild();
+    if (forward("Begin", gui)) begin_step(run);
+}
+
+void draw_present(Gui& gui, StudyRun& run) {
+    title("Pair " + progress_text(run));
+    ImGui::TextWrapped("%s", run.interval == 0 ? "Feel the first surface." : "Now feel the second surface.");
+    gap(gui);
+    if (forward("Felt", gui)) interval_presented(run);
+}
+
+void draw_question(double now_s, Gui& gui, StudyRun& run) {
+    title("Which one was softer?");
+    gap(gui);
+    const float width_px = std::min(60.0f * gui.mm(), share_of_line_px(2));
+    const bool first = big_button("The first", "1", {width_px, 2.0f * kMark_mm, true, false}, gui) || gui.pressed('1') || gui.pressed(key::pad_0 + 1);
+    ImGui::SameLine();
+    const bool second = big_button("The second", "2", {width_px, 2.0f * kMark_mm, true, false}, gui) || gui.pressed('2') || gui.pressed(key::pad_0 + 2);
+    gap(gui);
+    paragraph("Pair " + progress_text(run));
+    if (first || second) choose_softer(first, now_s, run);
+}
+
+void stepper(const char* name, const Gui& gui, int& value) {
+    ImGui::PushID(name);
+    if (big_button("-", "", {12.0f * gui.mm(), kTarget_mm, value > 0, false}, gui)) --value;
+    ImGui::SameLine();
+    ImGui::BeginGroup();
+    beside(std::to_string(value), gui);
+    ImGui::EndGroup();
+    ImGui::SameLine();
+    if (big_button("+", "", {12.0f * gui.mm(), kTarget_mm, value < 1000, false}, gui)) ++value;
+    ImGui::SameLine();
+    ImGui::BeginGroup();
+    beside(name, gui);
+    ImGui::EndGroup();
+    ImGui::PopID();
+}
+
+void draw_nodule_line(const std::string& name, const Gui& gui, int& said) {
+    ImGui::PushID(name.c_str());
+    ImGui::BeginGroup();
+    beside(name, gui);
+    ImGui::EndGroup();
+    ImGui::SameLine(22.0f * gui.mm());
+    if (big_button("missed", "", {24.0f * gui.mm(), kTarget_mm, true, said == kMissed}, gui)) said = kMissed;
+    ImGui::SameLine();
+    if (big_button("found", "", {24.0f * gui.mm(), kTarget_mm, true, said == 0}, gui)) said = 0;
+    constexpr const char* kDigits[5] = {"1", "2", "3", "4", "5"};
+    for (int i = 1; i <= 5; ++i) {
+        ImGui::SameLine();
+        if (big_button(kDigits[i - 1], "", {10.0f * gui.mm(), kTarget_mm, true, said == i}, gui)) said = i;
+    }
+    ImGui::PopID();
+}
+
+void draw_typed_clock(double now_s, const Gui& gui, StudyRun& run) {
+    TypedAnswers& typed = run.typed;
+    const bool runs = run.typed_began_s > 0.0;
+    if (runs) typed.duration_s = now_s - run.typed_began_s;
+    const char* label = runs ? "Stop the clock" : typed.duration_s > 0.0 ? "Start the clock anew" : "Start the clock";
+    if (big_button(label, "T", {60.0f * gui.mm(), kTarget_mm, true, runs}, gui) || gui.pressed('t')) run.typed_began_s = runs ? 0.0 : now_s;
+    ImGui::SameLine();
+    const double limit_s = due_limit_s(run);
+    std::string text = clock_text(typed.duration_s);
+    if (limit_s > 0.0) text += " of " + clock_text(limit_s);
+    if (limit_s > 0.0 && typed.duration_s >= limit_s) text += ": the time is over";
+    ImGui::BeginGroup();
+    beside(text, gui);
+    ImGui::EndGroup();
+}
+
+void draw_typed(double now_s, Gui& gui, StudyRun& run) {
+    const Condition& condition = due_condition(run);
+    title("Experimenter: trial " + progress_text(run) + ", " + condition.title);
+    paragraph(condition.modality == Modality::hand ? "The participant palpates the phantom; type what was said."
+                                                   : "This device is not driven from here; type what was said.");
+    draw_typed_clock(now_s, gui, run);
+    const float below_px = (kMark_mm + 4.0f) * gui.mm();
+    ImGui::BeginChild("answers", ImVec2(0.0f, ImGui::GetContentRegionAvail().y - below_px), false, ImGuiWindowFlags_NavFlattened);
+    const std::vector<std::string> names = due_nodules(run);
+    if (names.empty()) {
+        stepper("nodules found", gui, run.typed.found);
+        stepper("nodules missed", gui, run.typed.missed);
+    } else {
+        paragraph("Found, and how sure: 1 unsure to 5 sure.");
+        for (std::size_t i = 0; i < names.size(); ++i) draw_nodule_line(names[i], gui, run.typed.nodules[i]);
+    }
+    stepper("marks on no nodule", gui, run.typed.false_marks);
+    ImGui::EndChild();
+    const bool timed = run.typed.duration_s > 0.0 && run.typed_began_s == 0.0;
+    if (forward("Keep", gui, timed)) submit_typed(run);
+}
+
+void draw_done(Gui& gui, StudyRun& run, Wishes& wishes) {
+    title("That was all. Thank you!");
+    paragraph("Participant " + run.code + ": " + std::to_string(run.progress.finished.size()) + " trials, all on the disk.");
+    gap(gui);
+    if (forward("Next participant", gui)) same_person(false, run);
+    if (big_button("Close", "Ctrl Q", {70.0f * gui.mm(), kTarget_mm, true, false}, gui)) wishes.quit = true;
+}
+
+void draw_stopped(Gui& gui, const StudyRun& run, Wishes& wishes) {
+    title("The study stops here");
+    warning_paragraph(run.stopped);
+    paragraph("Everything that was finished before is on the disk. Start the study again with the same code to go on.");
+    gap(gui);
+    if (big_button("Close", "Ctrl Q", {70.0f * gui.mm(), kMark_mm, true, false}, gui)) wishes.quit = true;
+}
+
+void draw_pause(double now_s, Gui& gui, StudyRun& run) {
+    title("Time for a break");
+    paragraph("Trial " + progress_text(run) + " comes next. Go on when you like.");
+    gap(gui);
+    ImGui::Text("%s", clock_text(now_s - run.step_began_s).c_str());
+    gap(gui);
+    if (forward("Go on", gui)) begin_step(run);
+}
+
+}  // namespace
+
+void draw_study_screen(double now_s, Gui& gui, StudyRun& run, Wishes& wishes) {
+    if (run.step_began_s == 0.0) run.step_began_s = now_s;
+    const WindowSize window = gui.size_px();
+    ImGui::GetBackgroundDrawList()->AddRectFilled(ImVec2(0.0f, 0.0f), ImVec2(window.width, window.height), kDark);
+    // lines of text that can be read, in the middle of a large window
+    const float width_px = std::min(window.width, 170.0f * gui.mm());
+    const float height_px = std::min(window.height, 190.0f * gui.mm());
+    const float x0 = 0.5f * (window.width - width_px);
+    const float y0 = 0.5f * (window.height - height_px);
+    begin_panel("study", {x0, y0, x0 + width_px, y0 + height_px}, gui);
+    switch (run.step) {
+        case StudyStep::code: draw_code(gui, run); break;
+        case StudyStep::again: draw_again(gui, run); break;
+        case StudyStep::questions:
+        case StudyStep::ratings: draw_items(gui, run); break;
+        case StudyStep::instructions: draw_instructions(gui, run); break;
+        case StudyStep::trial: break;  // on the tissue
+        case StudyStep::present: draw_present(gui, run); break;
+        case StudyStep::question: draw_question(now_s, gui, run); break;
+        case StudyStep::typed: draw_typed(now_s, gui, run); break;
+        case StudyStep::pause: draw_pause(now_s, gui, run); break;
+        case StudyStep::done: draw_done(gui, run, wishes); break;
+        case StudyStep::stopped: draw_stopped(gui, run, wishes); break;
+    }
+    end_panel("study", gui);
+}
+
+}  // namespace palpa

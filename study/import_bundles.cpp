@@ -1,0 +1,206 @@
+#include "study/import_bundles.h"
+
+#include <algorithm>
+#include <cctype>
+#include <map>
+#include <optional>
+#include <set>
+#include <stdexcept>
+
+#include "files/durable.h"
+#include "files/input_error.h"
+#include "files/sha256.h"
+#include "files/text.h"
+#include "study/bundle.h"
+#include "study/study_folder.h"
+#include "study/trial_log.h"
+
+namespace palpa {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t kLargestBundle_bytes = std::size_t{1} << 30;
+
+Bundle read_whole(const fs::path& file) { return read_bundle(read_text(file, kLargestBundle_bytes), file.string()); }
+
+bool same_study(const StudyIdentity& a, const StudyIdentity& b) {
+    return a.name == b.name && a.version == b.version && a.sha256 == b.sha256 && a.kind.simulated == b.kind.simulated &&
+           a.kind.seed == b.kind.seed;
+}
+
+bool has_subjects(const fs::path& directory) {
+    std::error_code none;
+    for (const auto& entry : fs::directory_iterator(directory, none)) {
+        if (entry.path().filename().string().rfind("sub-", 0) == 0) return true;
+    }
+    return false;
+}
+
+// What all bundles hold together, and what of it is new.
+class Plan {
+ public:
+    explicit Plan(const fs::path& directory) : directory_(directory) {
+        if (!fs::exists(directory)) return;
+        if (!fs::is_directory(directory)) throw bad_input(directory.string(), "", "a file", "a study's folder, or a name that is free");
+        std::vector<std::string> notes;
+        for (Person& one : read_people(directory, notes)) known_.emplace(one.code, one);
+        identity_ = read_identity(directory);
+        logs_without_identity_ = !identity_ && has_subjects(directory);
+    }
+
+    void add(const BundleFile& file, const std::string& from) {
+        if (file.kind == LogFileKind::people) return add_people_of(file, from);
+        if (file.kind == LogFileKind::identity) return add_identity(file, from);
+        const auto [it, fresh] = first_.emplace(file.name, std::pair(file.sha256, from));
+        if (!fresh && it->second.first != file.sha256) {
+            throw bad_input(from, file.name, "other content than in " + it->second.second, "the same, or another name");
+        }
+        if (fresh && !is_there(file, from)) new_.insert(file.name);
+        if (fresh && new_.count(file.name) == 0) report.already_there.push_back(file.name);
+    }
+
+    bool is_new(const BundleFile& file, const std::string& from) const {
+        const auto it = first_.find(file.name);
+        if (new_.count(file.name) == 0) return false;
+        if (it->second.first != file.sha256) throw bad_input(from, file.name, "content that changed while it was read", "the file left alone");
+        return true;
+    }
+
+    ImportReport report;
+    std::vector<Person> people;                                    // new ones
+    std::optional<std::string> identity_text;                      // of a study.json that is not there yet
+
+ private:
+    bool is_there(const BundleFile& file, const std::string& from) const {
+        fs::path path = directory_;
+        for (const fs::path& part : fs::path(file.name)) {
+            path /= part;
+            const auto status = fs::symlink_status(path);
+            if (fs::is_symlink(status)) throw bad_input(from, file.name, "a link in the way: " + path.string(), "folders and files");
+            if (!fs::exists(status)) return false;
+            const bool last = path == directory_ / file.name;
+            if (last ? !fs::is_regular_file(status) : !fs::is_directory(status)) {
+                throw bad_input(from, file.name, path.string() + " in the way", last ? "a file, or nothing" : "a folder, or nothing");
+            }
+        }
+        if (sha256_hex(read_text(path)) == file.sha256) return true;
+        throw bad_input(from, file.name, "other content than in " + path.string(), "the same, or a name that is free: nothing is overwritten");
+    }
+
+    void add_people_of(const BundleFile& file, const std::string& from) {
+        refuse_link(file, from);
+        std::vector<std::string> notes;
+        for (const Person& one : people_in(file.text, from + ": " + file.name, notes)) {
+            if (one.code.empty() || !std::all_of(one.code.begin(), one.code.end(), [](unsigned char c) { return c < 128 && std::isalnum(c) != 0; })) {
+                throw bad_input(from, file.name, shown("sub-" + one.code), "a code of letters and digits");
+            }
+            const auto [it, fresh] = known_.emplace(one.code, one);
+            if (fresh) {
+                people.push_back(one);
+            } else if (!(it->second == one)) {
+                throw bad_input(from, file.name, "sub-" + one.code + " described otherwise than in the study", "the same participant, or another code");
+            }
+        }
+        if (!notes.empty()) throw bad_input(from, file.name, "a line that is no participant", "lines with 8 fields: " + notes.front());
+    }
+
+    void add_identity(const BundleFile& file, const std::string& from) {
+        refuse_link(file, from);
+        const StudyIdentity its = identity_in(file.text, from + ": " + file.name);
+        if (logs_without_identity_) {
+            throw bad_input(from, file.name, "a study", "logs of single runs, as in " + directory_.string() + ", which has no study.json");
+        }
+        if (identity_ && !same_study(*identity_, its)) {
+            throw bad_input(from, file.name, shown(its.name) + " version " + shown(its.version) + ", sha256 " + shown(its.sha256.substr(0, 12)),
+                            shown(identity_->name) + " version " + shown(identity_->version) + ", sha256 " +
+                                shown(identity_->sha256.substr(0, 12)) + ": two studies never share a folder");
+        }
+        if (identity_) return;
+        identity_ = its;
+        identity_text = file.text;
+    }
+
+    void refuse_link(const BundleFile& file, const std::string& from) const {
+        if (fs::is_symlink(fs::symlink_status(directory_ / file.name))) {
+            throw bad_input(from, file.name, "a link in the way", "a file");
+        }
+    }
+
+    fs::path directory_;
+    std::map<std::string, std::pair<std::string, std::string>> first_;  // name to hash and the bundle it came from
+    std::set<std::string> new_;
+    std::map<std::string, Person> known_;
+    std::optional<StudyIdentity> identity_;
+    bool logs_without_identity_ = false;
+};
+
+// Files of this import; they go again unless keep() is called.
+class NewFiles {
+ public:
+    explicit NewFiles(const fs::path& directory) : directory_(directory) {}
+    ~NewFiles() {
+        std::error_code ignored;
+        for (const fs::path& path : paths_) fs::remove(path, ignored);
+    }
+    NewFiles(const NewFiles&) = delete;
+    NewFiles& operator=(const NewFiles&) = delete;
+
+    void write(const std::string& name, const std::string& text) {
+        const fs::path path = directory_ / name;
+        fs::create_directories(path.parent_path());
+        if (!write_new_text(path, text)) throw bad_input(path.string(), "", "a file that was not there before", "the folder left alone meanwhile");
+        paths_.push_back(path);
+        folders_.insert(path.parent_path());
+        folders_.insert(path.parent_path().parent_path());
+        folders_.insert(directory_);
+    }
+
+    void keep() {
+        for (const fs::path& folder : folders_) sync_folder(folder.empty() ? fs::path(".") : folder);
+        paths_.clear();
+    }
+
+ private:
+    fs::path directory_;
+    std::vector<fs::path> paths_;
+    std::set<fs::path> folders_;
+};
+
+bool is_events(const BundleFile& file) { return file.name.find("_events.tsv") != std::string::npos; }
+
+}  // namespace
+
+ImportReport import_bundles(const std::vector<fs::path>& bundles, const fs::path& directory) {
+    Plan plan(directory);
+    // twice from the disk, so that only one bundle is in memory at a time
+    for (const fs::path& path : bundles) {
+        for (const BundleFile& file : read_whole(path).files) plan.add(file, path.string());
+    }
+    fs::create_directories(directory);
+    NewFiles written(directory);
+    for (const fs::path& path : bundles) {
+        Bundle bundle = read_whole(path);
+        // a trial counts when its events end with `finish`, so they come after all else
+        std::stable_sort(bundle.files.begin(), bundle.files.end(),
+                         [](const BundleFile& a, const BundleFile& b) { return is_events(a) < is_events(b); });
+        for (const BundleFile& file : bundle.files) {
+            const auto& done = plan.report.written;
+            if (file.kind == LogFileKind::people || file.kind == LogFileKind::identity || !plan.is_new(file, path.string())) continue;
+            if (std::find(done.begin(), done.end(), file.name) != done.end()) continue;  // in two bundles alike
+            written.write(file.name, file.text);
+            plan.report.written.push_back(file.name);
+        }
+    }
+    if (plan.identity_text) {
+        written.write("study.json", *plan.identity_text);
+        plan.report.written.push_back("study.json");
+    }
+    written.keep();
+    prepare_log_folder(directory);
+    add_people(directory, plan.people);
+    plan.report.people_added = static_cast<int>(plan.people.size());
+    return plan.report;
+}
+
+}  // namespace palpa

@@ -1,0 +1,69 @@
+#include "study/ratings.h"
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "files/append_file.h"
+#include "files/input_error.h"
+#include "files/json.h"
+#include "files/text.h"
+#include "study/read_logs.h"
+
+namespace palpa {
+namespace {
+
+namespace fs = std::filesystem;
+
+fs::path file_of(const fs::path& directory, const std::string& code) {
+    return directory / ("sub-" + code) / "beh" / ("sub-" + code + "_task-ratings_beh.tsv");
+}
+
+std::string one_field(std::string text) {
+    std::replace_if(text.begin(), text.end(), [](char c) { return c == '\t' || c == '\n' || c == '\r'; }, ' ');
+    return text.empty() ? "n/a" : text;
+}
+
+}  // namespace
+
+void add_ratings(const fs::path& directory, const std::string& code, const std::vector<Rating>& ratings) {
+    if (ratings.empty()) return;
+    const fs::path file = file_of(directory, code);
+    std::error_code error;
+    fs::create_directories(file.parent_path(), error);
+    if (error) throw std::runtime_error(file.parent_path().string() + ": cannot be created: " + error.message());
+    std::string lines;
+    if (!fs::exists(file) || fs::file_size(file) == 0) lines = "condition\titem\tvalue\n";
+    for (const Rating& r : ratings) lines += one_field(r.condition) + "\t" + one_field(r.item) + "\t" + one_field(r.value) + "\n";
+    append_synced(file, lines);
+}
+
+std::vector<Rating> read_ratings(const fs::path& directory, const std::string& code, std::vector<std::string>& notes) {
+    std::vector<Rating> out;
+    const fs::path file = file_of(directory, code);
+    if (!fs::exists(file)) return out;
+    const std::string text = read_text(file);
+    const std::string_view whole = whole_lines(text, file.string(), notes);
+    if (whole.empty()) return out;
+    int line = 0;
+    for (const std::string_view row : fields_of(whole.substr(0, whole.size() - 1), '\n')) {
+        ++line;
+        const auto fields = fields_of(row, '\t');
+        if (line == 1 || row.empty()) continue;
+        if (fields.size() != 3) {  // cut off, and gone on after
+            notes.push_back(file.string() + ": line " + std::to_string(line) + " is left out: " + shown(row) + " is not an answer with 3 fields");
+            continue;
+        }
+        out.push_back({std::string(fields[0]), std::string(fields[1]), std::string(fields[2])});
+    }
+    return out;
+}
+
+void explain_ratings_once(const fs::path& directory) {
+    const fs::path file = directory / "task-ratings_beh.json";
+    if (fs::exists(file)) return;
+    write_text_atomically(file, json_text({{"condition", {{"Description", "of the protocol, after whose trials it was asked; n/a: before all trials"}}},
+                                           {"item", {{"Description", "id of the question in protocol.json"}}},
+                                           {"value", {{"Description", "the answer, as it was chosen or typed; n/a: none"}}}}));
+}
+
+}  // namespace palpa

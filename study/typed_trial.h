@@ -1,0 +1,31 @@
+#pragma once
+// A trial that the program did not see: by hand on a real phantom, or on a device that it does not drive. The
+// experimenter types what the participant said; the log has the form of every other trial.
+
+#include <string>
+#include <vector>
+
+#include "study/sample_log.h"
+#include "study/trial_log.h"
+
+namespace palpa {
+
+inline constexpr int kMissed = -1;  // of TypedAnswers::nodules
+
+struct TypedAnswers {
+    std::vector<int> nodules;  // by nodule of the phantom: kMissed, or found with confidence 1 to 5 (0: not said)
+    int found = 0;             // these two where the phantom's nodules have no names
+    int missed = 0;
+    int false_marks = 0;
+    double duration_s = 0.0;
+};
+
+int found_of(const TypedAnswers& answers);
+int missed_of(const TypedAnswers& answers);
+
+// Settings, marks and events of one run, all on the disk when it returns, the row `finish` last. `nodules`: their names,
+// as many as answers.nodules. Throws std::runtime_error if something cannot be written: the trial is then interrupted.
+void write_typed_trial(const RunFiles& files, const TrialLabel& label, bool practice, std::int64_t seed,
+                       const std::vector<std::string>& nodules, const TypedAnswers& answers);
+
+}  // namespace palpa

@@ -1,0 +1,160 @@
+// A study with a person, on a real X server: instructions, a trial by pen, a trial typed in, the thanks; and the same
+// after the program was killed in the middle of a trial. Run it under tests/platform/xorg/with-xorg.
+
+#include <doctest/doctest.h>
+
+#include <fstream>
+#include <string>
+
+#include "files/json.h"
+#include "files/text.h"
+#include "scene/mapping.h"
+#include "study/read_logs.h"
+#include "tests/e2e/run_app.h"
+
+using namespace palpa;
+using namespace palpa::test;
+
+namespace {
+
+enum Key { kEnter = 36, kT = 28, kM = 58, kF = 41, k4 = 13, kMenuKey = 76, kC = 54 };
+
+class Script {
+ public:
+    explicit Script(const std::filesystem::path& file) : out_(file) { out_ << "t_s\tkind\tid\tphase\tx_px\ty_px\tpressure\n"; }
+    void wait(double seconds) { t_s_ += seconds; }
+    void key(int code) {
+        row("key", code, "down", 0, 0, 0.0);
+        wait(0.06);
+        row("key", code, "up", 0, 0, 0.0);
+        wait(0.3);
+    }
+    // A press that strokes from left to right in the middle of the tissue and stays there if it is not lifted.
+    void stroke(double seconds, bool lift) {
+        row("pen", 0, "hover", 600, 400, 0.0);
+        wait(0.05);
+        row("pen", 0, "down", 600, 400, 0.2);
+        const int n = static_cast<int>(seconds / 0.004);
+        for (int i = 0; i <= n; ++i) {
+            wait(0.004);
+            row("pen", 0, "move", 600 + 300.0 * i / n, 400, 0.6 + 0.0001 * i);
+        }
+        if (lift) row("pen", 0, "up", 900, 400, 0.0);
+        wait(0.2);
+    }
+    double close() {
+        out_.close();
+        return t_s_;
+    }
+    double now_s() const { return t_s_; }
+
+ private:
+    void row(const char* kind, int id, const char* phase, double x_px, double y_px, double pressure) {
+        out_ << t_s_ << '\t' << kind << '\t' << id << '\t' << phase << '\t' << x_px << '\t' << y_px << '\t' << pressure << '\n';
+    }
+    std::ofstream out_;
+    double t_s_ = 0.0;
+};
+
+void write_protocol(const TemporaryFolder& folder) {
+    write_text_atomically(folder / "p.json", R"({"name": "n", "version": "1", "seed": 1, "order": "fixed", "turn_maps": false,
+        "time_limit_s": 60, "instructions": "Find what is harder.", "conditions": [
+        {"id": "pen", "modality": "pen", "scene": ")" PALPA_SOURCE_DIR R"(/assets/scenes/default.json"},
+        {"id": "hand", "modality": "hand", "nodules": ["A"]}]})");
+}
+
+std::string study(const TemporaryFolder& folder, const std::string& rest) {
+    return "study run " + (folder / "p.json").string() + " --log " + (folder / "log").string() + " --participant 07 --json " + rest;
+}
+
+}  // namespace
+
+TEST_CASE("study: a person goes through it by pen and keys, and the menu stays closed") {
+    const TemporaryFolder folder;
+    write_protocol(folder);
+    Script script(folder / "script.tsv");
+    script.wait(3.0);
+    script.key(kEnter);  // begin
+    script.wait(1.0);
+    script.key(kMenuKey);
+    script.key(kC);  // no cost table either
+    script.stroke(0.6, true);
+    script.key(kM);
+    script.key(k4);
+    script.key(kF);
+    script.wait(0.5);
+    script.key(kEnter);  // the trial by hand
+    script.key(kT);
+    script.wait(1.0);
+    script.key(kT);
+    script.key(kEnter);  // keep: A missed
+    script.wait(0.5);
+    const std::string seconds = std::to_string(script.close() + 5.0);
+    const std::string arguments = study(folder, "--quit-after-s " + seconds + " --screenshot " + (folder / "p.png").string());
+    REQUIRE(run_program(folder, arguments, folder / "log/sub-07/now.json", [&] { CHECK(play_script(folder) == 0); }) == 0);
+    const Json result = read_json(folder / "out.json");
+    CHECK(result["finished"] == 2);
+    CHECK(result["step"] == "done");
+    CHECK(result["overflow"] == "");
+    const Observations seen = read_study(folder / "log");
+    CHECK(seen.notes.empty());
+    REQUIRE(seen.trials.size() == 2);
+    CHECK(seen.trials[0].path_m > 0.01);
+    CHECK(seen.trials[1].duration_s > 0.9);
+    CHECK(read_text(folder / "log/sub-07/beh/sub-07_task-palpation_run-01_marks.tsv").find("\t4\t") != std::string::npos);
+    const Json settings = read_json(folder / "log/sub-07/beh/sub-07_task-palpation_run-01_settings.json");
+    CHECK(settings["study"]["map_sha256"]["normal_N.npy"].get<std::string>().size() == 64);
+}
+
+TEST_CASE("killed: the interrupted trial comes again, and at most 100 ms of its samples are lost") {
+    const TemporaryFolder folder;
+    write_protocol(folder);
+    Script script(folder / "script.tsv");
+    script.wait(3.0);
+    script.key(kEnter);
+    script.wait(1.0);
+    script.stroke(4.0, true);  // killed meanwhile
+    script.wait(8.0);          // and started again
+    script.key(kEnter);        // it is the same person
+    script.key(kEnter);        // begin
+    script.wait(1.0);
+    script.stroke(0.5, true);
+    script.key(kF);
+    script.wait(0.5);
+    script.close();
+    std::thread hand([&] {
+        for (int i = 0; i < 200 && !std::filesystem::exists(folder / "log/sub-07/now.json"); ++i) sleep_s(0.05);
+        sleep_s(1.5);
+        CHECK(play_script(folder) == 0);
+    });
+    const std::filesystem::path samples = folder / "log/sub-07/beh/sub-07_task-palpation_run-01_samples.tsv";
+    std::string at_kill;
+    std::thread killer([&] {
+        const auto size = [&] {
+            std::error_code error;
+            const auto bytes = std::filesystem::file_size(samples, error);
+            return error ? std::uintmax_t{0} : bytes;
+        };
+        for (int i = 0; i < 600 && size() < 30000; ++i) sleep_s(0.02);  // in the middle of the stroke
+        shell("pkill -KILL -f '" PALPA_PROGRAM " study run " + (folder / "p.json").string() + "'");
+        // the last sample that is in the file against the system's steady clock, which the samples carry
+        const std::string text = read_text(samples);
+        const auto last = text.rfind('\n', text.rfind('\n') - 1) + 1;
+        const double now_s = std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+        at_kill = text.substr(last, text.find('\t', last) - last) + " " + std::to_string(now_s);
+    });
+    CHECK(run_program(folder, study(folder, "--quit-after-s 60"), folder / "log/sub-07/now.json", [] {}) != 0);
+    killer.join();
+    const std::string arguments = study(folder, "--quit-after-s 14");
+    REQUIRE(run_program(folder, arguments, folder / "log/sub-07/now.json", [] {}) == 0);
+    hand.join();
+    CAPTURE(at_kill);
+    const Observations seen = read_study(folder / "log");
+    CHECK(seen.interrupted_trials == 1);
+    CHECK(seen.trials.size() == 1);
+    CHECK(read_json(folder / "out.json")["finished"] == 1);
+    const double sample_s = std::stod(at_kill);
+    const double killed_s = std::stod(at_kill.substr(at_kill.find(' ')));
+    MESSAGE("last sample on the disk " << 1e3 * (killed_s - sample_s) << " ms before the kill was over");
+    CHECK(killed_s > sample_s);
+}

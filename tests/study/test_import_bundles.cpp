@@ -1,0 +1,170 @@
+#include "study/import_bundles.h"
+
+#include <doctest/doctest.h>
+#include <sys/resource.h>
+
+#include <csignal>
+#include <filesystem>
+#include <map>
+
+#include "files/json.h"
+#include "files/sha256.h"
+#include "files/text.h"
+#include "tests/error_message.h"
+#include "tests/temporary_folder.h"
+
+using namespace palpa;
+using namespace palpa::test;
+
+namespace {
+
+namespace fs = std::filesystem;
+
+using Texts = std::vector<std::pair<std::string, std::string>>;
+
+std::string run_file(const std::string& code, const std::string& ending) {
+    return "sub-" + code + "/beh/sub-" + code + "_task-palpation_run-01" + ending;
+}
+
+fs::path write_bundle(const fs::path& path, const Texts& texts) {
+    Json files = Json::array();
+    for (const auto& [name, text] : texts) files.push_back({{"name", name}, {"sha256", sha256_hex(text)}, {"text", text}});
+    write_text_atomically(path, Json{{"palpa_bundle", 1}, {"files", files}}.dump());
+    return path;
+}
+
+// Every file below the folder.
+std::map<std::string, std::string> tree(const fs::path& folder) {
+    std::map<std::string, std::string> out;
+    if (!fs::exists(folder)) return out;
+    for (const auto& entry : fs::recursive_directory_iterator(folder)) {
+        if (entry.is_regular_file()) out[fs::relative(entry.path(), folder).string()] = read_text(entry.path());
+    }
+    return out;
+}
+
+const std::string kHeader = "participant_id\tage\tsex\thandedness\tvision\tpalpation_experience\tvr_experience\tgroup\n";
+std::string people(const std::string& lines) { return kHeader + lines; }
+const std::string kAnna = "sub-01\t30\tf\tright\tn/a\tn/a\tn/a\ta\n";
+const std::string kBert = "sub-02\t31\tm\tleft\tn/a\tn/a\tn/a\ta\n";
+std::string study(const std::string& sha, const std::string& program) {
+    return R"({"protocol": "p", "version": "1", "sha256": ")" + sha + R"(", "simulated": false, "simulation_seed": 0, "program": ")" + program + "\"}";
+}
+
+}  // namespace
+
+TEST_CASE("import bundles: tablets' logs become one study; a second time nothing happens") {
+    const TemporaryFolder folder;
+    const auto a = write_bundle(folder / "a", {{run_file("01", "_events.tsv"), "e1\n"}, {run_file("01", "_samples.tsv"), "s1\n"},
+                                               {"participants.tsv", people(kAnna)}, {"study.json", study("aa", "tablet")}, {"protocol.json", "{}"}});
+    const auto b = write_bundle(folder / "b", {{run_file("02", "_events.tsv"), "e2\n"}, {"participants.tsv", people(kBert)},
+                                               {"study.json", study("aa", "another tablet")}, {"protocol.json", "{}"}});
+    const ImportReport first = import_bundles({a, b}, folder / "study");
+    CHECK(first.written.size() == 5);
+    CHECK(first.already_there.empty());
+    CHECK(first.people_added == 2);
+    const auto made = tree(folder / "study");
+    CHECK(made.at(run_file("01", "_events.tsv")) == "e1\n");
+    CHECK(made.at(run_file("01", "_samples.tsv")) == "s1\n");
+    CHECK(made.at(run_file("02", "_events.tsv")) == "e2\n");
+    CHECK(made.at("participants.tsv") == people(kAnna + kBert));
+    CHECK(made.at("study.json") == study("aa", "tablet"));
+    CHECK(made.count("task-palpation_events.json") == 1);
+    const ImportReport again = import_bundles({b, a}, folder / "study");
+    CHECK(again.written.empty());
+    CHECK(again.already_there.size() == 4);
+    CHECK(again.people_added == 0);
+    CHECK(tree(folder / "study") == made);
+}
+
+TEST_CASE("import bundles: what does not fit is refused before anything is written") {
+    const TemporaryFolder folder;
+    const auto good = write_bundle(folder / "good", {{run_file("01", "_events.tsv"), "e1\n"}, {"participants.tsv", people(kAnna)},
+                                                     {"study.json", study("aa", "x")}});
+    import_bundles({good}, folder / "study");
+    const auto before = tree(folder / "study");
+    const std::string fresh = run_file("09", "_events.tsv");
+    const auto refused = [&](const Texts& texts, const std::string& why) {
+        Texts with_fresh{{fresh, "fresh\n"}};
+        with_fresh.insert(with_fresh.end(), texts.begin(), texts.end());
+        const auto bundle = write_bundle(folder / "bad", with_fresh);
+        const std::string message = message_of([&] { import_bundles({bundle}, folder / "study"); });
+        CAPTURE(message);
+        CHECK(contains(message, why));
+        CHECK(tree(folder / "study") == before);
+    };
+    refused({{run_file("01", "_events.tsv"), "other\n"}}, "nothing is overwritten");
+    refused({{"participants.tsv", people("sub-01\t99\tf\tright\tn/a\tn/a\tn/a\ta\n")}}, "described otherwise");
+    refused({{"participants.tsv", people("../x\n")}}, "no participant");
+    refused({{"participants.tsv", people("sub-03\tcut")}}, "no participant");
+    refused({{"participants.tsv", people("sub-../x\t1\tf\tright\tn/a\tn/a\tn/a\ta\n")}}, "letters and digits");
+    refused({{"study.json", study("bb", "x")}}, "two studies never share a folder");
+    refused({{"study.json", "{}"}}, "study.json: protocol: found nothing");
+    refused({{"../evil", "x"}}, "files[1].name");
+    const auto twice = write_bundle(folder / "twice", {{fresh, "another fresh\n"}});
+    const auto once = write_bundle(folder / "once", {{fresh, "fresh\n"}});
+    CHECK(contains(message_of([&] { import_bundles({once, twice}, folder / "study"); }), "other content than in"));
+    write_text_atomically(folder / "trial", "onset\n");
+    CHECK(contains(message_of([&] { import_bundles({once, folder / "trial"}, folder / "study"); }), "not valid JSON"));
+    CHECK(contains(message_of([&] { import_bundles({once, folder / "none"}, folder / "study"); }), "cannot be read"));
+    CHECK(tree(folder / "study") == before);
+}
+
+TEST_CASE("import bundles: links are not followed") {
+    const TemporaryFolder folder;
+    fs::create_directories(folder / "elsewhere");
+    const auto bundle = write_bundle(folder / "b", {{run_file("01", "_events.tsv"), "e1\n"}, {"participants.tsv", people(kAnna)}, {"study.json", study("aa", "x")}});
+    const auto refused = [&] { return contains(message_of([&] { import_bundles({bundle}, folder / "study"); }), "a link in the way"); };
+    fs::create_directories(folder / "study");
+    fs::create_symlink(folder / "elsewhere", folder / "study" / "sub-01");
+    CHECK(refused());
+    fs::remove(folder / "study" / "sub-01");
+    fs::create_directories(folder / "study" / "sub-01" / "beh");
+    fs::create_symlink(folder / "elsewhere" / "new", folder / "study" / run_file("01", "_events.tsv"));
+    CHECK(refused());
+    fs::remove_all(folder / "study" / "sub-01");
+    for (const char* name : {"participants.tsv", "study.json"}) {
+        fs::create_symlink(folder / "elsewhere" / "new", folder / "study" / name);
+        CHECK(refused());
+        fs::remove(folder / "study" / name);
+    }
+    CHECK(fs::is_empty(folder / "elsewhere"));
+    import_bundles({bundle}, folder / "study");
+    CHECK(read_text(folder / "study" / run_file("01", "_events.tsv")) == "e1\n");
+}
+
+TEST_CASE("import bundles: logs of single runs and a study do not mix") {
+    const TemporaryFolder folder;
+    import_bundles({write_bundle(folder / "a", {{run_file("01", "_events.tsv"), "e1\n"}})}, folder / "logs");
+    const auto of_study = write_bundle(folder / "b", {{run_file("02", "_events.tsv"), "e2\n"}, {"study.json", study("aa", "x")}});
+    CHECK(contains(message_of([&] { import_bundles({of_study}, folder / "logs"); }), "which has no study.json"));
+    CHECK_FALSE(fs::exists(folder / "logs" / "sub-02"));
+}
+
+TEST_CASE("import bundles: a file where a folder must be, and the other way round") {
+    const TemporaryFolder folder;
+    const auto bundle = write_bundle(folder / "b", {{run_file("01", "_samples.tsv"), "s1\n"}, {run_file("02", "_events.tsv"), "e2\n"}});
+    fs::create_directories(folder / "study");
+    write_text_atomically(folder / "study" / "sub-02", "in the way");
+    const auto refused = [&] { return contains(message_of([&] { import_bundles({bundle}, folder / "study"); }), "in the way, expected"); };
+    CHECK(refused());
+    fs::remove(folder / "study" / "sub-02");
+    fs::create_directories(folder / "study" / run_file("02", "_events.tsv"));
+    CHECK(refused());
+    CHECK(tree(folder / "study").empty());
+}
+
+TEST_CASE("import bundles: what a full disk interrupts is taken back") {
+    const TemporaryFolder folder;
+    const auto bundle = write_bundle(folder / "b", {{run_file("01", "_samples.tsv"), "s1\n"}, {run_file("02", "_samples.tsv"), std::string(20000, 'x')}});
+    rlimit before{};
+    getrlimit(RLIMIT_FSIZE, &before);
+    std::signal(SIGXFSZ, SIG_IGN);
+    const rlimit small{4096, before.rlim_max};
+    setrlimit(RLIMIT_FSIZE, &small);
+    CHECK_THROWS_AS(import_bundles({bundle}, folder / "study"), std::runtime_error);
+    setrlimit(RLIMIT_FSIZE, &before);
+    CHECK(tree(folder / "study").empty());
+    import_bundles({bundle}, folder / "study");
+    CHECK(tree(folder / "study").at(run_file("01", "_samples.tsv")) == "s1\n");
+}
