@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 
+#include "app/calibrate_form.h"
 #include "app/gui.h"
 #include "app/recording.h"
 #include "app/screens.h"
@@ -42,14 +43,5 @@ struct CalibrateForm {
     Guide guide;
     std::string problem;
 };
-
-std::shared_ptr<CalibrateForm> make_calibrate_form();
-void draw_calibrate_screen(const Shown& shown, Gui& gui, CalibrateForm& form, Wishes& wishes);
-
-// Samples and readings of one turn of the loop. What goes wrong is told in form.problem.
-void step_calibrate(const std::vector<Sample>& samples, CalibrateForm& form);
-
-// Puts what was recorded on the disk and closes the sensor. A session of the same name can be gone on with.
-void stop_recording(CalibrateForm& form);
 
 }  // namespace palpa

@@ -1,6 +1,5 @@
 // palpa devices: the pens, touch screens and mice that are there, and what they really send.
 
-#include <SDL.h>
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
@@ -29,9 +28,9 @@ void show(Window& window) {
     window.present();
 }
 
-void tell_time_left(double left_s, const Window& window) {
+void tell_time_left(double left_s, Window& window) {
     const std::string left = std::to_string(static_cast<int>(std::ceil(left_s)));
-    SDL_SetWindowTitle(window.sdl(), ("Palpa: press here with pen and fingers, " + left + " s left").c_str());
+    window.set_title("Palpa: press here with pen and fingers, " + left + " s left");
     if (isatty(STDERR_FILENO) != 0) std::fprintf(stderr, "\rpress in the window with pen and fingers: %s s left ", left.c_str());
 }
 
@@ -56,10 +55,6 @@ void watch_devices(double seconds, Window& window, DeviceCheck& check) {
     if (isatty(STDERR_FILENO) != 0) std::fputc('\n', stderr);
 }
 
-// n/a of traces is null here
-Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
-Json range_json(const Range& range) { return {number(range.lowest), number(range.highest)}; }
-
 Json device_json(const PointerDevice& device) {
     Json json{{"name", device.name}, {"tool", name_of(device.tool)}, {"has_pressure", device.has_pressure}};
     json["pressure_range"] = device.has_pressure ? Json{device.pressure_min, device.pressure_max} : Json(nullptr);
@@ -67,24 +62,6 @@ Json device_json(const PointerDevice& device) {
     json["has_tilt"] = device.has_tilt;
     json["has_contact_size"] = device.has_contact_size;
     json["axes"] = device.axes;
-    return json;
-}
-
-Json seen_json(Tool which, const DeviceCheck& check) {
-    const ToolCheck& tool = of_tool(which, check);
-    const ClockDrift drift = clock_drift(tool);
-    Json json{{"samples", tool.samples}, {"touching", tool.touching}, {"rate_Hz", rate_Hz(tool)}};
-    json["gap_ms"] = {{"median", 1e3 * median_gap_s(tool)}, {"worst", 1e3 * worst_gap_s(tool)}};
-    json["pressure"] = name_of(pressure_kind(check.pressure, which));
-    json["pressure_range"] = range_json(tool.pressure);
-    json["pressure_raw_range"] = range_json(tool.pressure_raw);
-    json["distinct_pressures"] = distinct_pressures(tool);
-    json["tilt"] = tool.tilt;
-    json["contact_size"] = tool.contact_size;
-    json["clock_drift_ppm"] = number(drift.ppm);
-    json["clock_drift_standard_error_ppm"] = number(drift.standard_error_ppm);
-    json["x_px"] = range_json(tool.x_px);
-    json["y_px"] = range_json(tool.y_px);
     return json;
 }
 
@@ -138,11 +115,10 @@ void list_devices(const DevicesOptions& options) {
     if (!options.json && !window.input_note().empty()) std::printf("note: %s\n", window.input_note().c_str());
     if (options.seconds > 0.0) {
         json["seconds"] = options.seconds;
-        json["seen"] = Json::object();
+        json["seen"] = check_json(*check);
         if (!options.json) std::printf("\nin %g s came:\n", options.seconds);
         for (const Tool tool : {Tool::pen, Tool::finger, Tool::mouse, Tool::keyboard}) {
             if (of_tool(tool, *check).samples == 0) continue;
-            json["seen"][std::string(name_of(tool))] = seen_json(tool, *check);
             if (!options.json) print_seen(tool, *check);
         }
         if (!options.json && json["seen"].empty()) std::printf("nothing\n");

@@ -55,6 +55,10 @@ PointerTime& slot_of(std::int64_t pointer_id, DeviceCheck& check) {
 }
 
 void note_gap(const Sample& sample, PointerTime& pointer, ToolCheck& tool) {
+    if (!pointer.used || pointer.t_host_s != sample.t_host_s) ++tool.deliveries;
+    const double delay_s = sample.t_host_s - sample.t_device_s;
+    constexpr double kSameClock_s = 5.0;  // clocks that differ by more have another beginning
+    if (delay_s >= 0.0 && delay_s < kSameClock_s) tool.delays.add_ns(1e9 * delay_s);
     if (pointer.used) {
         const double by_device_s = sample.t_device_s - pointer.t_device_s;
         const double gap_s = std::isnan(by_device_s) ? sample.t_host_s - pointer.t_host_s : by_device_s;
@@ -65,6 +69,30 @@ void note_gap(const Sample& sample, PointerTime& pointer, ToolCheck& tool) {
         }
     }
     pointer = {true, sample.pointer_id, sample.t_host_s, sample.t_device_s};
+}
+
+// n/a of traces is null here
+Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+Json range_json(const Range& range) { return {number(range.lowest), number(range.highest)}; }
+
+Json seen_json(Tool which, const DeviceCheck& check) {
+    const ToolCheck& tool = of_tool(which, check);
+    const ClockDrift drift = clock_drift(tool);
+    Json json{{"samples", tool.samples}, {"touching", tool.touching}, {"rate_Hz", rate_Hz(tool)}};
+    json["gap_ms"] = {{"median", 1e3 * median_gap_s(tool)}, {"worst", 1e3 * worst_gap_s(tool)}};
+    json["pressure"] = name_of(pressure_kind(check.pressure, which));
+    json["pressure_range"] = range_json(tool.pressure);
+    json["pressure_raw_range"] = range_json(tool.pressure_raw);
+    json["distinct_pressures"] = distinct_pressures(tool);
+    json["tilt"] = tool.tilt;
+    json["contact_size"] = tool.contact_size;
+    json["clock_drift_ppm"] = number(drift.ppm);
+    json["clock_drift_standard_error_ppm"] = number(drift.standard_error_ppm);
+    json["samples_per_delivery"] = number(samples_per_delivery(tool));
+    json["delay_ms"] = number(1e3 * median_delay_s(tool));
+    json["x_px"] = range_json(tool.x_px);
+    json["y_px"] = range_json(tool.y_px);
+    return json;
 }
 
 }  // namespace
@@ -110,6 +138,20 @@ ClockDrift clock_drift(const ToolCheck& tool) {
     const double slope = clock.sum_host_ahead / clock.sum_host_host;
     const double left = std::max(0.0, clock.sum_ahead_ahead - slope * clock.sum_host_ahead);
     return {1e6 * slope, 1e6 * std::sqrt(left / ((n - 2.0) * clock.sum_host_host))};
+}
+
+double samples_per_delivery(const ToolCheck& tool) {
+    return tool.deliveries > 0 ? static_cast<double>(tool.samples) / static_cast<double>(tool.deliveries) : kMissing;
+}
+
+double median_delay_s(const ToolCheck& tool) { return tool.delays.timed() > 0 ? 1e-9 * tool.delays.quantile_ns(0.5) : kMissing; }
+
+Json check_json(const DeviceCheck& check) {
+    Json json = Json::object();
+    for (const Tool tool : {Tool::pen, Tool::finger, Tool::mouse, Tool::keyboard}) {
+        if (of_tool(tool, check).samples > 0) json[std::string(name_of(tool))] = seen_json(tool, check);
+    }
+    return json;
 }
 
 const char* name_of(PressureKind kind) {

@@ -6,6 +6,7 @@
 #include <bitset>
 #include <cstdint>
 
+#include "files/json.h"
 #include "platform/pressure.h"
 #include "platform/sample.h"
 #include "scene/meter.h"
@@ -49,6 +50,8 @@ struct ToolCheck {
     std::int64_t gap_count = 0;
     double gaps_s = 0.0;     // their sum
     ClockFit clock;
+    std::int64_t deliveries = 0;  // of samples of one pointer at one moment: fewer than samples where the system collects them
+    Meter delays;                 // from the device's clock to the host's, where both count from the same moment
 };
 
 // A pointer that is being followed from sample to sample.
@@ -81,6 +84,13 @@ double worst_gap_s(const ToolCheck& tool);
 std::int64_t distinct_pressures(const ToolCheck& tool);
 ClockDrift clock_drift(const ToolCheck& tool);
 
+// Samples that come at once; 1: each by itself.
+double samples_per_delivery(const ToolCheck& tool);
+double median_delay_s(const ToolCheck& tool);  // NaN if the clocks cannot be compared
+
 const char* name_of(PressureKind kind);
+
+// What each tool sent, by its name, for files and programs. NaN is null.
+Json check_json(const DeviceCheck& check);
 
 }  // namespace palpa

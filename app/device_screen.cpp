@@ -17,9 +17,9 @@ void said_lines(const Screens& screens) {
     ImGui::TextDisabled("Says that it has");
     for (const PointerDevice& device : screens.devices) {
         std::string text = device.name + " (" + std::string(name_of(device.tool)) + "): ";
-        text += device.has_pressure ? "pressure " + fixed(device.pressure_min, 0) + " ... " + fixed(device.pressure_max, 0) + ", " +
-                                          std::to_string(device.levels) + " levels"
+        text += device.has_pressure ? "pressure " + fixed(device.pressure_min, 0) + " ... " + fixed(device.pressure_max, 0)
                                     : "no pressure";
+        if (device.levels > 0) text += ", " + std::to_string(device.levels) + " levels";
         if (device.has_tilt) text += ", tilt";
         if (device.has_contact_size) text += ", contact size";
         ImGui::TextWrapped("%s", text.c_str());
@@ -35,7 +35,7 @@ std::string verdict(Tool which, const DeviceCheck& check) {
         case PressureKind::missing: return "none";
         case PressureKind::unknown: break;
     }
-    return "press and vary for a second";
+    return "vary it for a second";
 }
 
 void seen_lines(Tool which, const DeviceCheck& check, const Gui& gui) {
@@ -51,6 +51,8 @@ void seen_lines(Tool which, const DeviceCheck& check, const Gui& gui) {
     const ClockDrift drift = clock_drift(tool);
     const std::string clock = std::isfinite(drift.ppm) ? fixed(drift.ppm, 0) + " +- " + fixed(drift.standard_error_ppm, 0) + " ppm" : "-";
     value_line("Clock drift", clock, column_px);
+    const std::string delivery = fixed(samples_per_delivery(tool), 1) + " at a time, " + fixed(1e3 * median_delay_s(tool), 0) + " ms late";
+    if (which != Tool::keyboard) value_line("Delivered", delivery, column_px);
     value_line("Tilt, size", std::string(tool.tilt ? "tilt" : "-") + ", " + (tool.contact_size ? "size" : "-"), column_px);
     value_line("Samples", std::to_string(tool.samples), column_px);
 }

@@ -1,10 +1,8 @@
 #include "app/frame.h"
 
-#include "app/calibrate_screen.h"
+#include "app/calibrate_form.h"
 #include "app/map_screen.h"
 #include "app/picture.h"
-#include "render/gl.h"
-#include "render/png.h"
 #include "scene/advance.h"
 
 namespace palpa {
@@ -92,32 +90,6 @@ Sample resize_sample(const Window& window, const Gui& gui, const Settings& setti
     sample.width_px = static_cast<double>(layout.tissue_px.width());
     sample.height_px = static_cast<double>(layout.tissue_px.height());
     return sample;
-}
-
-void save_screen(const Window& window, const std::filesystem::path& png) {
-    write_png(png, window.width_px(), window.height_px(), read_pixels(window.width_px(), window.height_px()));
-}
-
-std::string draw_picture(const Scene& scene, const Plan& plan, const Trial& trial, const Settings& settings,
-                         const Screens& screens, int width_px, int height_px, State& state,
-                         const std::filesystem::path& png) {
-    WindowOptions options;
-    options.visible = false;
-    options.width_px = width_px;
-    options.height_px = height_px;
-    Window window(options);
-    Gui gui(window);
-    TissueDrawer tissue;
-    FrameTimes times;
-    Screens open = screens;
-    std::string overflow;
-    gui.set_scale(control_scale(screens.px_per_mm, static_cast<float>(width_px), static_cast<float>(height_px)));
-    for (int i = 0; i < 3; ++i) {
-        draw_frame(scene, plan, trial, settings, state.timeline.now_s, 1.0 / 60.0, tissue, gui, open, state, times);
-        overflow = gui.overflow();
-    }
-    save_screen(window, png);
-    return overflow;
 }
 
 }  // namespace palpa

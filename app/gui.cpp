@@ -1,7 +1,6 @@
 #include "app/gui.h"
 
 #include <GLES3/gl3.h>
-#include <SDL.h>
 #include <backends/imgui_impl_opengl3.h>
 #include <imgui.h>
 
@@ -19,18 +18,17 @@ constexpr float kNowhere_px = -1e6f;
 void map_keys(ImGuiIO& io) {
     struct Pair {
         ImGuiKey_ gui;
-        SDL_Scancode sdl;
+        int key;
     };
     constexpr Pair kPairs[] = {
-        {ImGuiKey_Tab, SDL_SCANCODE_TAB},           {ImGuiKey_LeftArrow, SDL_SCANCODE_LEFT},
-        {ImGuiKey_RightArrow, SDL_SCANCODE_RIGHT},  {ImGuiKey_UpArrow, SDL_SCANCODE_UP},
-        {ImGuiKey_DownArrow, SDL_SCANCODE_DOWN},    {ImGuiKey_PageUp, SDL_SCANCODE_PAGEUP},
-        {ImGuiKey_PageDown, SDL_SCANCODE_PAGEDOWN}, {ImGuiKey_Home, SDL_SCANCODE_HOME},
-        {ImGuiKey_End, SDL_SCANCODE_END},           {ImGuiKey_Delete, SDL_SCANCODE_DELETE},
-        {ImGuiKey_Backspace, SDL_SCANCODE_BACKSPACE}, {ImGuiKey_Space, SDL_SCANCODE_SPACE},
-        {ImGuiKey_Enter, SDL_SCANCODE_RETURN},      {ImGuiKey_Escape, SDL_SCANCODE_ESCAPE},
-        {ImGuiKey_KeyPadEnter, SDL_SCANCODE_KP_ENTER}, {ImGuiKey_A, SDL_SCANCODE_A}};
-    for (const Pair& pair : kPairs) io.KeyMap[pair.gui] = pair.sdl;
+        {ImGuiKey_Tab, key::tab},           {ImGuiKey_LeftArrow, key::left},  {ImGuiKey_RightArrow, key::right},
+        {ImGuiKey_UpArrow, key::up},        {ImGuiKey_DownArrow, key::down},  {ImGuiKey_PageUp, key::page_up},
+        {ImGuiKey_PageDown, key::page_down}, {ImGuiKey_Home, key::home},      {ImGuiKey_End, key::end},
+        {ImGuiKey_Delete, key::del},        {ImGuiKey_Backspace, key::backspace}, {ImGuiKey_Space, key::space},
+        {ImGuiKey_Enter, key::enter},       {ImGuiKey_Escape, key::escape},   {ImGuiKey_KeyPadEnter, key::pad_enter},
+        {ImGuiKey_A, 'a'}};
+    static_assert(key::count <= IM_ARRAYSIZE(ImGuiIO::KeysDown));
+    for (const Pair& pair : kPairs) io.KeyMap[pair.gui] = pair.key;
 }
 
 ImVec4 colour(int r, int g, int b, float alpha = 1.0f) {
@@ -109,54 +107,57 @@ bool Gui::owns(float x_px, float y_px) const {
     return std::any_of(areas_.begin(), areas_.end(), [&](const PanelArea& area) { return area.holds(x_px, y_px); });
 }
 
-bool Gui::filter(const SDL_Event& event, void* self) { return static_cast<Gui*>(self)->receive(event); }
+bool Gui::filter(const WindowEvent& event, void* self) { return static_cast<Gui*>(self)->receive(event); }
 
-bool Gui::receive(const SDL_Event& event) {
-    switch (event.type) {
-        case SDL_MOUSEMOTION:
-            if (event.motion.which == SDL_TOUCH_MOUSEID) return false;
-            pointer_x_px_ = static_cast<float>(event.motion.x);
-            pointer_y_px_ = static_cast<float>(event.motion.y);
+bool Gui::receive(const WindowEvent& event) {
+    using Kind = WindowEvent::Kind;
+    switch (event.kind) {
+        case Kind::pointer_move:
+            if (event.made_from_touch) return false;
+            pointer_x_px_ = static_cast<float>(event.x_px);
+            pointer_y_px_ = static_cast<float>(event.y_px);
             return false;
-        case SDL_MOUSEBUTTONDOWN:
-        case SDL_MOUSEBUTTONUP: {
-            const auto x = static_cast<float>(event.button.x);
-            const auto y = static_cast<float>(event.button.y);
-            const bool owned = owns(x, y);
-            if (event.button.which == SDL_TOUCH_MOUSEID || event.button.button != SDL_BUTTON_LEFT) return owned;
-            const bool down = event.type == SDL_MOUSEBUTTONDOWN;
-            if (down ? owned : mouse_on_panel_) clicks_.push_back({x, y, down});
-            mouse_on_panel_ = down && owned;
-            return owned;
-        }
-        case SDL_MOUSEWHEEL:
+        case Kind::button_down:
+        case Kind::button_up: return receive_button(event);
+        case Kind::wheel:
             if (!owns(pointer_x_px_, pointer_y_px_)) return false;
-            ImGui::GetIO().MouseWheel += static_cast<float>(event.wheel.y);
+            ImGui::GetIO().MouseWheel += static_cast<float>(event.notches);
             return true;
-        case SDL_FINGERDOWN:
-        case SDL_FINGERMOTION:
-        case SDL_FINGERUP: return receive_finger(event);
-        case SDL_KEYDOWN:
-        case SDL_KEYUP: return receive_key(event);
-        case SDL_TEXTINPUT:
-            if (ImGui::GetIO().WantTextInput) ImGui::GetIO().AddInputCharactersUTF8(event.text.text);
+        case Kind::finger_down:
+        case Kind::finger_move:
+        case Kind::finger_up: return receive_finger(event);
+        case Kind::key_down:
+        case Kind::key_up: return receive_key(event);
+        case Kind::text:
+            if (ImGui::GetIO().WantTextInput) ImGui::GetIO().AddInputCharactersUTF8(event.text.c_str());
             return false;
-        default: return false;
     }
+    return false;
 }
 
-bool Gui::receive_finger(const SDL_Event& event) {
-    const float x = event.tfinger.x * static_cast<float>(window_.width_px());
-    const float y = event.tfinger.y * static_cast<float>(window_.height_px());
+bool Gui::receive_button(const WindowEvent& event) {
+    const auto x = static_cast<float>(event.x_px);
+    const auto y = static_cast<float>(event.y_px);
     const bool owned = owns(x, y);
-    if (event.type == SDL_FINGERDOWN && owned && !finger_) {
-        finger_ = event.tfinger.fingerId;
+    if (event.made_from_touch) return owned;
+    const bool down = event.kind == WindowEvent::Kind::button_down;
+    if (down ? owned : mouse_on_panel_) clicks_.push_back({x, y, down});
+    mouse_on_panel_ = down && owned;
+    return owned;
+}
+
+bool Gui::receive_finger(const WindowEvent& event) {
+    const auto x = static_cast<float>(event.x_px);
+    const auto y = static_cast<float>(event.y_px);
+    const bool owned = owns(x, y);
+    if (event.kind == WindowEvent::Kind::finger_down && owned && !finger_) {
+        finger_ = event.finger_id;
         clicks_.push_back({x, y, true});
     }
-    if (finger_ != event.tfinger.fingerId) return owned;
+    if (finger_ != event.finger_id) return owned;
     pointer_x_px_ = x;
     pointer_y_px_ = y;
-    if (event.type == SDL_FINGERUP) {
+    if (event.kind == WindowEvent::Kind::finger_up) {
         clicks_.push_back({x, y, false});
         pointer_x_px_ = pointer_y_px_ = kNowhere_px;  // a finger that has left hovers nowhere
         finger_.reset();
@@ -164,27 +165,23 @@ bool Gui::receive_finger(const SDL_Event& event) {
     return owned;
 }
 
-bool Gui::receive_key(const SDL_Event& event) {
+bool Gui::receive_key(const WindowEvent& event) {
     ImGuiIO& io = ImGui::GetIO();
-    const SDL_Keysym& key = event.key.keysym;
-    const bool down = event.type == SDL_KEYDOWN;
-    const bool ctrl = (key.mod & KMOD_CTRL) != 0;
+    const bool down = event.kind == WindowEvent::Kind::key_down;
     // Enter presses a button as Space does, except where a number is typed
-    const bool activates = key.scancode == SDL_SCANCODE_RETURN && !io.WantTextInput && !keep_enter_;
-    const auto index = static_cast<std::size_t>(activates ? SDL_SCANCODE_SPACE : key.scancode);
-    if (index < std::size(io.KeysDown)) {
-        if (down && keys_to_panels_) {
-            io.KeysDown[index] = true;
-            fresh_keys_.push_back(index);
-        } else if (std::find(fresh_keys_.begin(), fresh_keys_.end(), index) == fresh_keys_.end()) {
-            io.KeysDown[index] = false;
-        } else {
-            let_go_.push_back(index);  // no frame has seen it down yet
-        }
+    const bool activates = event.key == key::enter && !io.WantTextInput && !keep_enter_;
+    const auto index = static_cast<std::size_t>(activates ? key::space : event.key);
+    if (down && keys_to_panels_) {
+        io.KeysDown[index] = true;
+        fresh_keys_.push_back(index);
+    } else if (std::find(fresh_keys_.begin(), fresh_keys_.end(), index) == fresh_keys_.end()) {
+        io.KeysDown[index] = false;
+    } else {
+        let_go_.push_back(index);  // no frame has seen it down yet
     }
-    io.KeyCtrl = ctrl;
-    io.KeyShift = (key.mod & KMOD_SHIFT) != 0;
-    if (down && event.key.repeat == 0 && !io.WantTextInput) keys_.push_back({key.sym, ctrl});
+    io.KeyCtrl = event.ctrl;
+    io.KeyShift = event.shift;
+    if (down && !event.repeat && !io.WantTextInput) keys_.push_back({event.key, event.ctrl});
     return keys_to_panels_;
 }
 
@@ -217,6 +214,11 @@ void Gui::end_frame() {
 }
 
 WindowSize Gui::size_px() const { return {ImGui::GetIO().DisplaySize.x, ImGui::GetIO().DisplaySize.y}; }
+
+void Gui::renew_drawing() {
+    ImGui_ImplOpenGL3_Shutdown();  // its buffers' sizes are forgotten with them only here
+    ImGui_ImplOpenGL3_Init("#version 300 es");
+}
 
 void Gui::draw() {
     ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());

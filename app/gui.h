@@ -32,10 +32,11 @@ class Gui {
     // Enter is the screen's own key (pressed()) instead of that of the control which has the focus.
     void keep_enter(bool keep) { keep_enter_ = keep; }
     void draw();       // hands them to GL
+    void renew_drawing();  // all that GL held was lost
 
     // Presses in a claimed area reach no tissue (from the next event on, until the next frame says anew).
     void claim(const PanelArea& area) { areas_.push_back(area); }
-    // Whether a key (SDL_Keycode) went down since the last frame. Never while a number is typed.
+    // Whether a key (platform/window_event.h) went down since the last frame. Never while a number is typed.
     bool pressed(int key, bool ctrl = false) const;
 
     // A panel that does not fit into its place says so; for tests, and for `run --json`.
@@ -43,10 +44,11 @@ class Gui {
     const std::string& overflow() const { return overflow_; }
 
  private:
-    static bool filter(const SDL_Event& event, void* self);
-    bool receive(const SDL_Event& event);
-    bool receive_finger(const SDL_Event& event);
-    bool receive_key(const SDL_Event& event);
+    static bool filter(const WindowEvent& event, void* self);
+    bool receive(const WindowEvent& event);
+    bool receive_button(const WindowEvent& event);
+    bool receive_finger(const WindowEvent& event);
+    bool receive_key(const WindowEvent& event);
     bool owns(float x_px, float y_px) const;
 
     struct Click {
@@ -64,7 +66,7 @@ class Gui {
     std::vector<Key> keys_;
     std::vector<std::size_t> fresh_keys_;  // down since the last frame,
     std::vector<std::size_t> let_go_;      // and up again already: up after the next one
-    std::optional<long long> finger_;  // the one that uses the panels; others may palpate meanwhile
+    std::optional<std::int64_t> finger_;  // the one that uses the panels; others may palpate meanwhile
     bool mouse_on_panel_ = false;
     bool keys_to_panels_ = false;
     bool keep_enter_ = false;

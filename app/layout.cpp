@@ -39,8 +39,13 @@ Layout layout_of(float width_px, float height_px, float mm, bool left_handed) {
     return out;
 }
 
-float control_scale(double px_per_mm, float width_px, float height_px) {
+float control_scale(double px_per_mm, float width_px, float height_px, double touch_px_per_mm) {
     if (std::isfinite(px_per_mm)) return static_cast<float>(px_per_mm);
+    if (std::isfinite(touch_px_per_mm)) {
+        auto scale = static_cast<float>(touch_px_per_mm);
+        for (int i = 0; i < 10 && !layout_of(width_px, height_px, scale, false).controls; ++i) scale *= 0.93f;
+        return scale;
+    }
     constexpr float kDesk_px_per_mm = 96.0f / 25.4f;
     return kDesk_px_per_mm * std::clamp(std::min(width_px, height_px) / 800.0f, 1.0f, 2.0f);
 }

@@ -2,6 +2,8 @@
 // Who gets which part of the window: the tissue as much as it can, the controls a column on the side away from the
 // drawing hand, or on a window that is taller than wide a strip above the tissue.
 
+#include <limits>
+
 namespace palpa {
 
 // A rectangle of the window, px.
@@ -23,7 +25,9 @@ struct Layout {
 Layout layout_of(float width_px, float height_px, float mm, bool left_handed);
 
 // px per millimetre for controls: the screen's own scale where it is known, else that of a desk's screen (96 per inch),
-// more on larger windows.
-float control_scale(double px_per_mm, float width_px, float height_px);
+// more on larger windows. touch_px_per_mm: what the system says of a screen that is touched (NaN: nothing); taken as far
+// as the controls then fit.
+float control_scale(double px_per_mm, float width_px, float height_px,
+                    double touch_px_per_mm = std::numeric_limits<double>::quiet_NaN());
 
 }  // namespace palpa

@@ -1,12 +1,10 @@
 #include "app/live.h"
 
-#include <SDL.h>
-
 #include <algorithm>
 #include <exception>
 #include <stdexcept>
 
-#include "app/calibrate_screen.h"
+#include "app/calibrate_form.h"
 #include "app/frame.h"
 #include "app/load.h"
 #include "app/map_screen.h"
@@ -40,16 +38,10 @@ struct App {
     HoldPress hold;
     std::vector<double> waiting_s;  // host times of the samples that no frame has shown yet
     std::string stopped;            // why the trial cannot go on
+    TrialKeeper* keeper = nullptr;  // may be null
+    bool begin_waits = false;       // for the keeper to have the last trial
     bool quit = false;
 };
-
-std::string screen_name(const Window& window) {
-    const int display = std::max(0, SDL_GetWindowDisplayIndex(window.sdl()));
-    SDL_DisplayMode mode{};
-    SDL_GetDesktopDisplayMode(display, &mode);
-    const char* name = SDL_GetDisplayName(display);
-    return std::string(name != nullptr ? name : "screen") + ", " + std::to_string(mode.w) + " x " + std::to_string(mode.h);
-}
 
 std::string device_names(const Window& window) {
     std::string names;
@@ -85,7 +77,6 @@ void note_changes(const std::vector<PointerDevice>& now, Screens& screens) {
     for (const PointerDevice& device : now) {
         if (!screens.devices.empty() && !named(screens.devices, device.name)) screens.note = device.name + " is here.";
     }
-    screens.devices = now;
 }
 
 // A pen or finger that touches without a true pressure, and what to do about it.
@@ -109,7 +100,9 @@ void note_devices(const Window& window, App& app) {
         notes.push_back("Replay of " + app.options.trace);
         return;
     }
-    note_changes(window.devices(), app.screens);
+    if (window.lists_devices()) note_changes(window.devices(), app.screens);
+    app.screens.devices = window.devices();
+    if (app.keeper != nullptr) app.screens.trials_note = app.keeper->note();
     if (!window.input_note().empty()) notes.push_back(window.input_note());
     app.screens.offer_hold = false;
     for (const Tool tool : {Tool::pen, Tool::finger}) note_pressure(tool, app);
@@ -140,7 +133,10 @@ void begin(const Window& window, const Gui& gui, App& app) {
     app.screens.menu = false;
     app.screens.note.clear();
     app.stopped.clear();
-    begin_trial({app.options.log, app.options.participant, app.options.record}, info_of(app, window), mode, app.session);
+    app.begin_waits = false;
+    SessionFiles files{app.options.log, app.options.participant, app.options.record};
+    files.first_run = app.options.first_run;
+    begin_trial(files, info_of(app, window), mode, app.session);
     if (!app.trace) take_sample(resize_sample(window, gui, app.settings, now_of(app, window)), app.session);
 }
 
@@ -152,6 +148,7 @@ Json result_of(const App& app) {
     result["frame_gl_ms"] = {{"p50", ms(app.times.gl, 0.5)}, {"p99", ms(app.times.gl, 0.99)}};
     result["latency_besides_drawing_ms"] = {{"p50", ms(app.times.ready, 0.5)}, {"p99", ms(app.times.ready, 0.99)}};
     result["problems"] = app.screens.problems;
+    if (app.screens.check) result["device_check"] = check_json(*app.screens.check);
     result["trials"] = s.finished;
     if (!s.trial.finished) result["trials"].push_back(trial_json(s.plan, s.trial));
     return result;
@@ -160,14 +157,29 @@ Json result_of(const App& app) {
 // The files of the trial so far, whole on the disk; in words on the screen if that fails.
 bool close_trial(App& app) {
     const std::string where = !app.options.log.empty() ? app.options.log : app.options.record;
-    if (close_files(result_of(app), app.session)) return true;
+    const std::optional<RunFiles> files = app.session.files;
+    const bool good = close_files(result_of(app), app.session);
+    if (app.keeper != nullptr && files) app.keeper->keep(*files, true);
+    if (good) return true;
     app.stopped = where + ": can no longer be written; stopped (is the disk full?)";
     return false;
 }
 
 void begin_anew(const Window& window, const Gui& gui, App& app) {
     if (!close_trial(app)) app.screens.problems.push_back(app.stopped);
+    if (app.keeper != nullptr && !app.keeper->ready()) {
+        app.begin_waits = true;  // no trial begins before the last one is safe
+        return;
+    }
     if (!attempt(app, [&] { begin(window, gui, app); })) app.stopped = app.screens.problems.back();
+}
+
+void begin_when_kept(const Window& window, const Gui& gui, App& app) {
+    if (app.keeper == nullptr) return;
+    for (std::string problem = app.keeper->problem(); !problem.empty(); problem = app.keeper->problem()) {
+        app.screens.problems.push_back(problem);
+    }
+    if (app.begin_waits && app.keeper->ready()) begin_anew(window, gui, app);
 }
 
 void begin_study_trial(const Window& window, const Gui& gui, App& app) {
@@ -241,6 +253,7 @@ void keep_settings(App& app) {
     if (app.settings_path.empty()) return;
     const std::string problem = save_settings(app.settings, app.settings_path);
     if (!problem.empty()) app.screens.problems.push_back(problem);
+    if (app.keeper != nullptr) app.keeper->keep_settings(app.settings_path);
 }
 
 // Nothing is revealed; the next step comes once the trial is on the disk.
@@ -311,8 +324,8 @@ void change_settings(const Wishes& wishes, Window& window, Gui& gui, App& app) {
     if (wishes.left_handed) app.settings.left_handed = *wishes.left_handed;
     if (wishes.mode) app.settings.test_mode = *wishes.mode == TrialMode::test;
     if (wishes.full_screen) {
-        app.settings.full_screen = !app.settings.full_screen;
-        SDL_SetWindowFullscreen(window.sdl(), app.settings.full_screen ? SDL_WINDOW_FULLSCREEN_DESKTOP : 0);
+        app.settings.full_screen = !window.full_screen();
+        window.set_full_screen(app.settings.full_screen);
     }
     if (wishes.px_per_mm) {
         app.screens.px_per_mm = *wishes.px_per_mm;
@@ -354,6 +367,7 @@ void carry_out(const Wishes& wishes, Window& window, Gui& gui, App& app) {
         app.hold.pen = app.hold.pen || lacks(Tool::pen);
         app.hold.finger = app.hold.finger || lacks(Tool::finger);
     }
+    if (wishes.trials && app.keeper != nullptr) app.keeper->open();
     if (wishes.again || wishes.next) begin_anew(window, gui, app);
     if (wishes.save_picture) {
         attempt(app, [&] { app.screens.note = "Saved " + save_picture(window, app.options.log).string(); });
@@ -398,7 +412,7 @@ void take_all(double now_s, std::vector<Sample>& samples, App& app) {
     }
     if (app.screens.screen == Screen::calibrate) return step_calibrate(samples, *app.screens.calibrate);
     if (app.hold.pen || app.hold.finger) press_by_hold(now_s, app.hold, samples);
-    if (app.screens.screen != Screen::trial || !app.stopped.empty()) return;
+    if (app.screens.screen != Screen::trial || !app.stopped.empty() || app.begin_waits) return;
     for (const Sample& sample : samples) {
         if (!app.screens.study || allowed(sample, app)) take(sample, app);
     }
@@ -416,10 +430,14 @@ void place_keyboard(Window& window, const App& app) {
     }
 }
 
+float scale_now(const App& app, const Window& window) {
+    return control_scale(app.screens.px_per_mm, static_cast<float>(window.width_px()), static_cast<float>(window.height_px()),
+                         window.touch_px_per_mm());
+}
+
 // A window that changed its size, or a hand that changed sides, is input too: a replay must map positions alike.
 void note_resize(const Window& window, Gui& gui, App& app) {
-    const auto width_px = static_cast<float>(window.width_px());
-    gui.set_scale(control_scale(app.screens.px_per_mm, width_px, static_cast<float>(window.height_px())));
+    gui.set_scale(scale_now(app, window));
     const bool none = app.screens.study && app.screens.screen != Screen::trial;
     if (app.trace || none || app.session.trial.finished) return;
     const Sample now = resize_sample(window, gui, app.settings, now_of(app, window));
@@ -429,7 +447,6 @@ void note_resize(const Window& window, Gui& gui, App& app) {
 }
 
 void show(Window& window, App& app, TissueDrawer& tissue, Gui& gui, double dt_s) {
-    flush_if_due(app.session);  // also while nothing moves
     if (app.frames % 60 == 0) note_devices(window, app);
     const Session& s = app.session;
     const Wishes wishes = draw_frame(s.scene, s.plan, s.trial, app.settings, now_of(app, window), dt_s, tissue, gui, app.screens,
@@ -456,36 +473,6 @@ void watch_files(App& app) {
         return stop_study(app.stopped, *app.screens.study);
     }
     app.screens.problems.push_back(app.stopped);
-}
-
-bool over(const Window& window, const App& app, double since_s) {
-    if (window.close_requested() || app.quit) return true;
-    if (app.trace && app.next_row == app.trace->samples.size()) return true;
-    return app.options.quit_after_s > 0.0 && since_s > app.options.quit_after_s;
-}
-
-void run_loop(Window& window, Gui& gui, TissueDrawer& tissue, double asked_s, double& first_frame_s, App& app) {
-    const double began_s = window.now_s();
-    double frame_s = began_s;
-    std::vector<Sample> samples;
-    app.waiting_s.reserve(4096);
-    while (!over(window, app, window.now_s() - began_s)) {
-        samples.clear();
-        window.poll(std::max(0.0, frame_s + kFrame_s - window.now_s()), samples);  // 1. read
-        if (app.trace) {
-            samples.clear();
-            take_due_rows(app, now_of(app, window), samples);
-        }
-        note_resize(window, gui, app);
-        place_keyboard(window, app);
-        take_all(window.now_s(), samples, app);                                    // 2. simulate, 3. log
-        watch_files(app);
-        const double now_s = window.now_s();
-        if (now_s - frame_s < kFrame_s && app.frames > 0) continue;
-        show(window, app, tissue, gui, now_s - frame_s);                           // 4. show
-        frame_s = now_s;
-        if (app.frames == 1) first_frame_s = 1e-9 * static_cast<double>(steady_ns()) - asked_s;
-    }
 }
 
 // Everything that bad input can refuse, before a window is there.
@@ -524,8 +511,9 @@ void load(const RunOptions& options, App& app) {
 }
 
 void know_screen(const Window& window, App& app) {
-    app.screens.screen_name = screen_name(window);
+    app.screens.screen_name = window.screen_name();
     const auto known = app.settings.px_per_mm.find(app.screens.screen_name);
+    if (std::isfinite(window.touch_px_per_mm())) app.screens.card_px_per_mm = window.touch_px_per_mm();
     if (known != app.settings.px_per_mm.end()) app.screens.card_px_per_mm = app.screens.px_per_mm = known->second;
 }
 
@@ -537,8 +525,19 @@ void remember_window(const Window& window, App& app) {
     keep_settings(app);
 }
 
+// A choice of last time that can no longer be prepared must not lock the person out.
+bool prepare_chosen(Window& window, Gui& gui, App& app) {
+    Session& s = app.session;
+    const bool own_choice = app.options.scene.empty() && !app.trace && !app.settings.scene.empty();
+    if (!own_choice) return prepare(window, gui, s.scene, s.plan);
+    bool ready = false;
+    if (attempt(app, [&] { ready = prepare(window, gui, s.scene, s.plan); })) return ready;
+    s.scene = load_scene("");
+    return prepare(window, gui, s.scene, s.plan);
+}
+
 // A trial that goes on is an interrupted one. Throws std::runtime_error if the study had to stop.
-std::optional<Json> close_study(const Gui& gui, App& app) {
+Json close_study(const Gui& gui, App& app) {
     const StudyRun& run = *app.screens.study;
     if (app.screens.screen == Screen::trial && !close_trial(app)) throw std::runtime_error(app.stopped);
     if (!run.stopped.empty()) throw std::runtime_error(run.stopped);
@@ -548,35 +547,127 @@ std::optional<Json> close_study(const Gui& gui, App& app) {
 
 }  // namespace
 
-std::optional<Json> run_live(const RunOptions& options) {
-    const double asked_s = 1e-9 * static_cast<double>(steady_ns());
+struct Live::Impl {
+    explicit Impl(const RunOptions& options, TrialKeeper* keeper) {
+        app.keeper = keeper;
+        app.screens.keeps_trials = keeper != nullptr;
+        load(options, app);
+        WindowOptions window_options;
+        window_options.width_px = app.settings.width_px;
+        window_options.height_px = app.settings.height_px;
+        window.emplace(window_options);
+        if (app.settings.full_screen && !app.trace) window->set_full_screen(true);
+        know_screen(*window, app);
+        gui.emplace(*window);
+        gui->set_scale(scale_now(app, *window));
+        ready = !app.session.scene.linear || prepare_chosen(*window, *gui, app);
+        if (!ready) return;
+        if (app.trace) app.trace_shift_s = window->now_s() - app.trace->samples.front().t_host_s;
+        if (!app.screens.study) begin(*window, *gui, app);
+        if (options.screen != Screen::trial) open_screen(options.screen, now_of(app, *window), app);
+        tissue.emplace();
+        app.waiting_s.reserve(4096);
+        began_s = frame_s = window->now_s();
+    }
+
+    bool over() const {
+        if (window->close_requested() || app.quit) return true;
+        if (app.trace && app.next_row == app.trace->samples.size()) return true;
+        return app.options.quit_after_s > 0.0 && window->now_s() - began_s > app.options.quit_after_s;
+    }
+
+    void take_samples(double wait_s) {
+        samples.clear();
+        window->poll(wait_s, samples);                 // 1. read
+        if (app.trace) {
+            samples.clear();
+            take_due_rows(app, now_of(app, *window), samples);
+        }
+        begin_when_kept(*window, *gui, app);
+        note_resize(*window, *gui, app);
+        place_keyboard(*window, app);
+        take_all(window->now_s(), samples, app);       // 2. simulate, 3. log
+        watch_files(app);
+        flush_if_due(app.session);  // also while nothing moves, and nothing is drawn
+    }
+
     App app;
-    load(options, app);
-    WindowOptions window_options;
-    window_options.width_px = app.settings.width_px;
-    window_options.height_px = app.settings.height_px;
-    Window window(window_options);
-    if (app.settings.full_screen && !app.trace) SDL_SetWindowFullscreen(window.sdl(), SDL_WINDOW_FULLSCREEN_DESKTOP);
-    know_screen(window, app);
-    Gui gui(window);
-    gui.set_scale(control_scale(app.screens.px_per_mm, static_cast<float>(window.width_px()), static_cast<float>(window.height_px())));
-    if (app.session.scene.linear && !prepare(window, gui, app.session.scene, app.session.plan)) return std::nullopt;
-    if (app.trace) app.trace_shift_s = window.now_s() - app.trace->samples.front().t_host_s;
-    if (!app.screens.study) begin(window, gui, app);
-    if (options.screen != Screen::trial) open_screen(options.screen, now_of(app, window), app);
-    TissueDrawer tissue;
+    std::optional<Window> window;
+    std::optional<Gui> gui;
+    std::optional<TissueDrawer> tissue;  // goes before the window
+    bool ready = false;
+    double asked_s = 1e-9 * static_cast<double>(steady_ns());
+    double began_s = 0.0;
+    double frame_s = 0.0;
     double first_frame_s = 0.0;
-    run_loop(window, gui, tissue, asked_s, first_frame_s, app);
-    if (!options.screenshot.empty()) save_screen(window, options.screenshot);
-    if (app.screens.calibrate) stop_recording(*app.screens.calibrate);
-    remember_window(window, app);
-    if (app.screens.study) return close_study(gui, app);
-    Json result = result_of(app);
-    result["start_to_first_frame_s"] = first_frame_s;
-    result["overflow"] = gui.overflow();
-    const bool good = close_trial(app);
-    if (!good || !app.stopped.empty()) throw std::runtime_error(app.stopped);
+    std::vector<Sample> samples;
+};
+
+Live::Live(const RunOptions& options, TrialKeeper* keeper) : impl_(std::make_unique<Impl>(options, keeper)) {}
+Live::~Live() = default;
+
+bool Live::ready() const { return impl_->ready; }
+
+bool Live::turn(Draw draw) {
+    Impl& it = *impl_;
+    if (it.over()) return false;
+    const bool due = draw == Draw::when_due;
+    it.take_samples(due ? std::max(0.0, it.frame_s + kFrame_s - it.window->now_s()) : 0.0);
+    const double now_s = it.window->now_s();
+    if (draw == Draw::nothing) return true;
+    if (due && now_s - it.frame_s < kFrame_s && it.app.frames > 0) return true;
+    show(*it.window, it.app, *it.tissue, *it.gui, now_s - it.frame_s);  // 4. show
+    it.frame_s = now_s;
+    if (it.app.frames == 1) it.first_frame_s = 1e-9 * static_cast<double>(steady_ns()) - it.asked_s;
+    return true;
+}
+
+void Live::out_of_sight(bool hidden) {
+    Impl& it = *impl_;
+    it.take_samples(0.0);  // presses that end now
+    it.frame_s = it.window->now_s();
+    if (it.app.trace || it.app.session.trial.finished || it.app.begin_waits) return;
+    Sample sample;
+    sample.t_host_s = now_of(it.app, *it.window);
+    sample.phase = Phase::ui;
+    sample.action = hidden ? Action::hidden : Action::shown;
+    take(sample, it.app);
+    if (!hidden || it.app.keeper == nullptr || !it.app.session.files) return;
+    if (it.app.session.log) it.app.session.log->flush();
+    it.app.keeper->keep(*it.app.session.files, false);
+}
+
+void Live::renew_drawing() {
+    impl_->gui->renew_drawing();
+    impl_->tissue.emplace();
+}
+
+Json Live::report() const {
+    Json result = result_of(impl_->app);
+    result["overflow"] = impl_->gui->overflow();
     return result;
+}
+
+Json Live::close() {
+    Impl& it = *impl_;
+    if (!it.app.options.screenshot.empty()) save_screen(*it.window, it.app.options.screenshot);
+    if (it.app.screens.calibrate) stop_recording(*it.app.screens.calibrate);
+    remember_window(*it.window, it.app);
+    if (it.app.screens.study) return close_study(*it.gui, it.app);
+    Json result = result_of(it.app);
+    result["start_to_first_frame_s"] = it.first_frame_s;
+    result["overflow"] = it.gui->overflow();
+    const bool good = close_trial(it.app);
+    if (!good || !it.app.stopped.empty()) throw std::runtime_error(it.app.stopped);
+    return result;
+}
+
+std::optional<Json> run_live(const RunOptions& options) {
+    Live live(options);
+    if (!live.ready()) return std::nullopt;
+    while (live.turn(Live::Draw::when_due)) {
+    }
+    return live.close();
 }
 
 }  // namespace palpa

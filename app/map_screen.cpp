@@ -1,7 +1,5 @@
 #include "app/map_screen.h"
 
-#include <SDL_keycode.h>
-
 #include <algorithm>
 #include <cmath>
 #include <exception>
@@ -98,22 +96,22 @@ void map_list(float height_px, const Gui& gui, MapBrowser& browser) {
 void take_map_keys(const Gui& gui, MapBrowser& browser) {
     for (int i = 0; i < 4; ++i) {
         const auto quantity = static_cast<MapQuantity>(i);
-        if ((gui.pressed(SDLK_1 + i) || gui.pressed(SDLK_KP_1 + i)) && has_quantity(browser.map, quantity)) browser.quantity = quantity;
+        if ((gui.pressed('1' + i) || gui.pressed(key::pad_0 + 1 + i)) && has_quantity(browser.map, quantity)) browser.quantity = quantity;
     }
     const Map& map = browser.map;
-    if (gui.pressed(SDLK_PAGEDOWN)) browser.depth = std::min(browser.depth + 1, static_cast<int>(map.n_depths()) - 1);
-    if (gui.pressed(SDLK_PAGEUP)) browser.depth = std::max(browser.depth - 1, 0);
+    if (gui.pressed(key::page_down)) browser.depth = std::min(browser.depth + 1, static_cast<int>(map.n_depths()) - 1);
+    if (gui.pressed(key::page_up)) browser.depth = std::max(browser.depth - 1, 0);
     const double width_m = map.x_of(map.n_x - 1) - map.x_of(0);
     const double height_m = map.y_of(map.n_y - 1) - map.y_of(0);
     const double step_m = std::max(width_m, height_m) / 40.0;
-    const double right = (gui.pressed(SDLK_l) ? 1.0 : 0.0) - (gui.pressed(SDLK_j) ? 1.0 : 0.0);
-    const double up = (gui.pressed(SDLK_i) ? 1.0 : 0.0) - (gui.pressed(SDLK_k) ? 1.0 : 0.0);
+    const double right = (gui.pressed('l') ? 1.0 : 0.0) - (gui.pressed('j') ? 1.0 : 0.0);
+    const double up = (gui.pressed('i') ? 1.0 : 0.0) - (gui.pressed('k') ? 1.0 : 0.0);
     if (right != 0.0 || up != 0.0) {
         const Eigen::Vector2d middle(map.x_of(0) + 0.5 * width_m, map.y_of(0) + 0.5 * height_m);
         const Eigen::Vector2d p = browser.pointed_m.value_or(middle) + step_m * Eigen::Vector2d(right, up);
         browser.pointed_m = Eigen::Vector2d(std::clamp(p.x(), map.x_of(0), map.x_of(map.n_x - 1)), std::clamp(p.y(), map.y_of(0), map.y_of(map.n_y - 1)));
     }
-    if (gui.pressed(SDLK_o) && browser.pointed_m) add_pin(*browser.pointed_m, browser);
+    if (gui.pressed('o') && browser.pointed_m) add_pin(*browser.pointed_m, browser);
 }
 
 struct Areas {

@@ -1,7 +1,5 @@
 // The menu over the tissue, the cost table, and the keys.
 
-#include <SDL_keycode.h>
-
 #include <algorithm>
 
 #include "app/look.h"
@@ -60,7 +58,11 @@ void right_side(const Shown& shown, const Gui& gui, Screens& screens, Wishes& wi
     if (big_button("Maps", "B", {0.0f, kTarget_mm, may_show_maps(shown.trial), false}, gui)) wishes.screen = Screen::maps;
     if (big_button("Cost", "C", {0.0f, kTarget_mm, true, screens.cost}, gui)) screens.cost = !screens.cost;
     if (big_button("Full screen", "F11", {0.0f, kTarget_mm, true, shown.settings.full_screen}, gui)) wishes.full_screen = true;
-    if (big_button("Quit", "Ctrl Q", {}, gui)) wishes.quit = true;
+    if (screens.keeps_trials) {
+        if (big_button("Trials", "T", {}, gui)) wishes.trials = true;
+    } else if (big_button("Quit", "Ctrl Q", {}, gui)) {
+        wishes.quit = true;
+    }
 }
 
 void stage_rows(const Shown& shown, const std::vector<Stage>& stages) {
@@ -94,12 +96,12 @@ std::string frame_text(const Shown& shown) {
 }
 
 void trial_keys(const Shown& shown, const Gui& gui, Wishes& wishes) {
-    if (gui.pressed(SDLK_m) && shown.trial.last_px) wishes.action = Action::mark;
-    if (gui.pressed(SDLK_u) || gui.pressed(SDLK_z, true) || gui.pressed(SDLK_BACKSPACE)) wishes.action = Action::undo;
-    if (gui.pressed(SDLK_f)) wishes.action = Action::finish;
-    if (gui.pressed(SDLK_h)) wishes.press_by_hold = true;
+    if (gui.pressed('m') && shown.trial.last_px) wishes.action = Action::mark;
+    if (gui.pressed('u') || gui.pressed('z', true) || gui.pressed(key::backspace)) wishes.action = Action::undo;
+    if (gui.pressed('f')) wishes.action = Action::finish;
+    if (gui.pressed('h')) wishes.press_by_hold = true;
     for (int i = 0; i < 5; ++i) {
-        if (gui.pressed(SDLK_1 + i) || gui.pressed(SDLK_KP_1 + i)) {
+        if (gui.pressed('1' + i) || gui.pressed(key::pad_0 + 1 + i)) {
             wishes.action = static_cast<Action>(static_cast<int>(Action::confidence_1) + i);
         }
     }
@@ -150,17 +152,18 @@ void draw_cost(const Shown& shown, const Layout& layout, Gui& gui) {
 }
 
 void take_keys(const Shown& shown, const Gui& gui, Screens& screens, Wishes& wishes) {
-    if (gui.pressed(SDLK_q, true)) wishes.quit = true;
-    if (gui.pressed(SDLK_F11)) wishes.full_screen = true;
+    if (gui.pressed('q', true) && !screens.keeps_trials) wishes.quit = true;
+    if (gui.pressed(key::f11)) wishes.full_screen = true;
     if (screens.study) {  // the rest would change what the protocol says, or tell what it hides
-        if (gui.pressed(SDLK_ESCAPE)) screens.problems.clear();
+        if (gui.pressed(key::escape)) screens.problems.clear();
         if (screens.screen == Screen::trial) trial_keys(shown, gui, wishes);
         return;
     }
-    if (gui.pressed(SDLK_F10) || (gui.pressed(SDLK_TAB) && !screens.menu && screens.screen == Screen::trial)) {
+    if (gui.pressed('t')) wishes.trials = true;
+    if (gui.pressed(key::f10) || (gui.pressed(key::tab) && !screens.menu && screens.screen == Screen::trial)) {
         screens.menu = !screens.menu;
     }
-    if (gui.pressed(SDLK_ESCAPE)) {
+    if (gui.pressed(key::escape)) {
         screens.problems.clear();
         if (screens.screen != Screen::trial && screens.screen != Screen::reveal) {
             wishes.screen = shown.trial.finished ? Screen::reveal : Screen::trial;
@@ -168,16 +171,16 @@ void take_keys(const Shown& shown, const Gui& gui, Screens& screens, Wishes& wis
             screens.menu = false;
         }
     }
-    if (gui.pressed(SDLK_c)) screens.cost = !screens.cost;
-    if (gui.pressed(SDLK_d)) wishes.screen = Screen::devices;
-    if (gui.pressed(SDLK_z)) wishes.screen = Screen::scale;
-    if (gui.pressed(SDLK_p)) wishes.screen = Screen::calibrate;
-    if (gui.pressed(SDLK_b)) wishes.screen = Screen::maps;
-    if (gui.pressed(SDLK_r)) wishes.again = true;
-    if (gui.pressed(SDLK_s, true)) wishes.save_picture = true;
+    if (gui.pressed('c')) screens.cost = !screens.cost;
+    if (gui.pressed('d')) wishes.screen = Screen::devices;
+    if (gui.pressed('z')) wishes.screen = Screen::scale;
+    if (gui.pressed('p')) wishes.screen = Screen::calibrate;
+    if (gui.pressed('b')) wishes.screen = Screen::maps;
+    if (gui.pressed('r')) wishes.again = true;
+    if (gui.pressed('s', true)) wishes.save_picture = true;
     if (screens.screen == Screen::trial) trial_keys(shown, gui, wishes);
-    if (screens.screen == Screen::reveal && gui.pressed(SDLK_n)) wishes.next = true;
-    if (screens.screen == Screen::reveal && gui.pressed(SDLK_s)) wishes.save_picture = true;
+    if (screens.screen == Screen::reveal && gui.pressed('n')) wishes.next = true;
+    if (screens.screen == Screen::reveal && gui.pressed('s')) wishes.save_picture = true;
 }
 
 }  // namespace palpa

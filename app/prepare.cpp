@@ -2,38 +2,49 @@
 
 #include <unistd.h>
 
+#include <atomic>
 #include <chrono>
 #include <cstdio>
+#include <future>
 
 namespace palpa {
 
-PlanInProgress::PlanInProgress(const Scene& scene) {
-    result_ = std::async(std::launch::async, [this, scene] {
+struct PlanInProgress::Work {
+    std::atomic<int> done{0};
+    std::atomic<int> total{0};
+    std::atomic<bool> cancel{false};
+    std::future<Plan> result;
+};
+
+PlanInProgress::PlanInProgress(const Scene& scene) : work_(std::make_unique<Work>()) {
+    work_->result = std::async(std::launch::async, [&work = *work_, scene] {
         mechanics::Progress progress;
-        progress.cancel = &cancel_;
-        progress.report = [this](int done, int total) {
-            done_ = done;
-            total_ = total;
+        progress.cancel = &work.cancel;
+        progress.report = [&work](int done, int total) {
+            work.done = done;
+            work.total = total;
         };
         return make_plan(scene, progress);
     });
 }
 
 PlanInProgress::~PlanInProgress() {
-    cancel_ = true;
-    if (result_.valid()) result_.wait();
+    work_->cancel = true;
+    if (work_->result.valid()) work_->result.wait();
 }
 
 double PlanInProgress::share() const {
-    const int total = total_;
-    return total > 0 ? static_cast<double>(done_) / total : 0.0;
+    const int total = work_->total;
+    return total > 0 ? static_cast<double>(work_->done) / total : 0.0;
 }
 
 bool PlanInProgress::wait(double seconds) {
-    return result_.wait_for(std::chrono::duration<double>(seconds)) == std::future_status::ready;
+    return work_->result.wait_for(std::chrono::duration<double>(seconds)) == std::future_status::ready;
 }
 
-Plan PlanInProgress::take() { return result_.get(); }
+void PlanInProgress::cancel() { work_->cancel = true; }
+
+Plan PlanInProgress::take() { return work_->result.get(); }
 
 Plan make_plan_here(const Scene& scene) {
     if (!scene.linear || !isatty(STDERR_FILENO)) return make_plan(scene);

@@ -1,8 +1,7 @@
 #pragma once
 // Making a plan that takes seconds, in a worker thread, while somebody is told how far it is.
 
-#include <atomic>
-#include <future>
+#include <memory>
 
 #include "scene/plan.h"
 
@@ -17,14 +16,12 @@ class PlanInProgress {
 
     double share() const;         // done, 0 ... 1
     bool wait(double seconds);    // true once it is ready
-    void cancel() { cancel_ = true; }
+    void cancel();
     Plan take();                  // once; throws what make_plan threw
 
  private:
-    std::atomic<int> done_{0};
-    std::atomic<int> total_{0};
-    std::atomic<bool> cancel_{false};
-    std::future<Plan> result_;
+    struct Work;
+    std::unique_ptr<Work> work_;
 };
 
 // make_plan on the command line: what is done of what, on a terminal.

@@ -173,6 +173,7 @@ void draw_reveal_panel(const Shown& shown, const Layout& layout, Gui& gui, Scree
     legend(screens.debrief, gui);
     for (const std::string& problem : screens.problems) warning_paragraph(problem);
     if (!screens.note.empty()) paragraph(screens.note);
+    if (!screens.trials_note.empty()) paragraph(screens.trials_note);
     if (!layout.column) ImGui::EndChild();
     end_panel("reveal", gui);
 }

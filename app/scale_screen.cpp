@@ -1,7 +1,5 @@
 // How large a millimetre is on this screen: a bank card held against it, or a number.
 
-#include <SDL_keycode.h>
-
 #include <algorithm>
 #include <cmath>
 
@@ -52,8 +50,8 @@ void draw_scale_screen(const Shown& shown, Gui& gui, Screens& screens, Wishes& w
     ImGui::TextWrapped("Hold a bank card against the screen and make the frame as large as the card.");
     step_buttons(gui, screens.card_px_per_mm);
     if (!ImGui::GetIO().WantTextInput) {
-        if (gui.pressed(SDLK_PLUS) || gui.pressed(SDLK_EQUALS) || gui.pressed(SDLK_KP_PLUS)) screens.card_px_per_mm *= 1.002;
-        if (gui.pressed(SDLK_MINUS) || gui.pressed(SDLK_KP_MINUS)) screens.card_px_per_mm /= 1.002;
+        if (gui.pressed('+') || gui.pressed('=') || gui.pressed(key::pad_plus)) screens.card_px_per_mm *= 1.002;
+        if (gui.pressed('-') || gui.pressed(key::pad_minus)) screens.card_px_per_mm /= 1.002;
     }
     ImGui::SetNextItemWidth(40.0f * gui.mm());
     ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, ImVec2(2.0f * gui.mm(), 0.5f * (kTarget_mm * gui.mm() - ImGui::GetFontSize())));

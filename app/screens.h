@@ -38,7 +38,7 @@ struct Dot {
     bool touching;
 };
 
-struct CalibrateForm;  // calibrate_screen.h
+struct CalibrateForm;  // calibrate_form.h
 struct MapBrowser;     // map_screen.h
 struct StudyRun;       // study_run.h
 
@@ -56,6 +56,8 @@ struct Screens {
     std::string screen_name;                // key of Settings::px_per_mm
     double px_per_mm = kMissing;            // of this screen; NaN: not measured
     double card_px_per_mm = 3.78;           // while it is being measured
+    std::string trials_note;                // what is kept, and what the desk has
+    bool keeps_trials = false;              // in the browser: a screen of its own, no way to quit
     Debrief debrief;                        // of the finished trial
     std::vector<PointerDevice> devices;
     std::shared_ptr<DeviceCheck> check;     // what they sent while the device check was open
@@ -92,6 +94,7 @@ struct Wishes {
     bool save_picture = false;
     bool full_screen = false;             // the other way round
     bool press_by_hold = false;
+    bool trials = false;                  // show what is kept
     bool quit = false;
 };
 

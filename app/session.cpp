@@ -23,6 +23,8 @@ const char* event_name(Action action) {
         case Action::undo: return "undo";
         case Action::finish: return "finish";
         case Action::resize: return "resize";
+        case Action::hidden: return "hidden";
+        case Action::shown: return "shown";
         default: return "confidence";
     }
 }
@@ -133,7 +135,7 @@ void open_files(const SessionFiles& files, const TraceInfo& info, Session& sessi
     try {
         if (!files.record.empty()) session.record.emplace(trace_name(files.record, session.trials), info);
         if (files.log.empty()) return;
-        session.files = next_run(files.log, files.participant, files.task);
+        session.files = next_run(files.log, files.participant, files.task, files.first_run);
         const bool alone = !files.label;  // a study explains its columns once, at the top
         if (files.label) {
             Json settings = settings_json(session.scene, session.plan, session.state);

@@ -22,6 +22,7 @@ struct SessionFiles {
     bool sync_rows = true;           // false: rows are on the disk when the trial ends, for simulations
     std::optional<TrialLabel> label{};  // of a study's trial
     std::string task = "palpation";
+    int first_run = 1;               // runs before it are known to be taken, elsewhere
 };
 
 struct Session {

@@ -1,8 +1,6 @@
 // What a participant sees between the trials of a study, and where the experimenter types. It tells nothing of what was
 // found or is to be found.
 
-#include <SDL_keycode.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -14,7 +12,7 @@
 namespace palpa {
 namespace {
 
-bool enter_pressed(const Gui& gui) { return gui.pressed(SDLK_RETURN) || gui.pressed(SDLK_KP_ENTER); }
+bool enter_pressed(const Gui& gui) { return gui.pressed(key::enter) || gui.pressed(key::pad_enter); }
 
 // The one way on; Enter does it too.
 bool forward(const char* label, const Gui& gui, bool enabled = true) {
@@ -148,9 +146,9 @@ void draw_question(double now_s, Gui& gui, StudyRun& run) {
     title("Which one was softer?");
     gap(gui);
     const float width_px = std::min(60.0f * gui.mm(), share_of_line_px(2));
-    const bool first = big_button("The first", "1", {width_px, 2.0f * kMark_mm, true, false}, gui) || gui.pressed(SDLK_1) || gui.pressed(SDLK_KP_1);
+    const bool first = big_button("The first", "1", {width_px, 2.0f * kMark_mm, true, false}, gui) || gui.pressed('1') || gui.pressed(key::pad_0 + 1);
     ImGui::SameLine();
-    const bool second = big_button("The second", "2", {width_px, 2.0f * kMark_mm, true, false}, gui) || gui.pressed(SDLK_2) || gui.pressed(SDLK_KP_2);
+    const bool second = big_button("The second", "2", {width_px, 2.0f * kMark_mm, true, false}, gui) || gui.pressed('2') || gui.pressed(key::pad_0 + 2);
     gap(gui);
     paragraph("Pair " + progress_text(run));
     if (first || second) choose_softer(first, now_s, run);
@@ -194,7 +192,7 @@ void draw_typed_clock(double now_s, const Gui& gui, StudyRun& run) {
     const bool runs = run.typed_began_s > 0.0;
     if (runs) typed.duration_s = now_s - run.typed_began_s;
     const char* label = runs ? "Stop the clock" : typed.duration_s > 0.0 ? "Start the clock anew" : "Start the clock";
-    if (big_button(label, "T", {60.0f * gui.mm(), kTarget_mm, true, runs}, gui) || gui.pressed(SDLK_t)) run.typed_began_s = runs ? 0.0 : now_s;
+    if (big_button(label, "T", {60.0f * gui.mm(), kTarget_mm, true, runs}, gui) || gui.pressed('t')) run.typed_began_s = runs ? 0.0 : now_s;
     ImGui::SameLine();
     const double limit_s = due_limit_s(run);
     std::string text = clock_text(typed.duration_s);

@@ -75,7 +75,7 @@ void observe_press(const Plan& plan, const Sample& sample, const State& state, T
 void act(const Sample& sample, const State& state, Trial& trial) {
     const auto first = static_cast<int>(Action::confidence_1);
     const int confidence = static_cast<int>(sample.action) - first + 1;
-    if (confidence >= 1 && !trial.marks.empty()) trial.marks.back().confidence = confidence;
+    if (confidence >= 1 && confidence <= 5 && !trial.marks.empty()) trial.marks.back().confidence = confidence;
     if (sample.action == Action::undo && !trial.marks.empty()) trial.marks.pop_back();
     if (sample.action == Action::finish) trial.finished = true;
     if (sample.action != Action::mark || !std::isfinite(sample.x_px + sample.y_px)) return;

@@ -143,6 +143,7 @@ void draw_messages(const Shown& shown, const Gui& gui, Screens& screens, Wishes&
     if (screens.offer_hold && big_button("Press by holding", "H", {}, gui)) wishes.press_by_hold = true;
     for (const std::string& note : screens.device_notes) paragraph(note);
     if (!screens.note.empty()) paragraph(screens.note);
+    if (!screens.trials_note.empty()) paragraph(screens.trials_note);
     if (screens.study) return;  // what the tissue is made of, the settings tell
     if (shown.plan.source == SourceKind::analytic) paragraph("Tissue: analytic stand-in, no recording");
     if (shown.plan.source == SourceKind::simulated) paragraph("Tissue: simulated, no recording");

@@ -1,4 +1,8 @@
 # Everything from Debian 12; scripts/setup installs it.
+if(EMSCRIPTEN)
+    include(cmake/web.cmake)
+    return()
+endif()
 
 find_package(PkgConfig REQUIRED)
 find_package(Threads REQUIRED)

@@ -14,20 +14,31 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_L
 endif()
 # Messages of assert name files as they lie in the project, not where this machine keeps it.
 target_compile_options(palpa_flags INTERFACE -fmacro-prefix-map=${PROJECT_SOURCE_DIR}/=)
+# Sizes have 32 bits on the web: what is read as 64 is compared with what is there before it is used.
+if(EMSCRIPTEN)
+    target_compile_options(palpa_flags INTERFACE -Wno-shorten-64-to-32)
+endif()
 if(PALPA_SANITIZE)
     target_compile_options(palpa_flags INTERFACE -fsanitize=${PALPA_SANITIZE} -fno-omit-frame-pointer
                                                  -fno-sanitize-recover=all)
     target_link_options(palpa_flags INTERFACE -fsanitize=${PALPA_SANITIZE})
 endif()
 
+# DESK: sources that browsers do without.
 function(palpa_library name)
-    cmake_parse_arguments(ARG "" "" "SOURCES;USES" ${ARGN})
+    cmake_parse_arguments(ARG "" "" "SOURCES;DESK;USES" ${ARGN})
+    if(NOT EMSCRIPTEN)
+        list(APPEND ARG_SOURCES ${ARG_DESK})
+    endif()
     add_library(palpa_${name} STATIC ${ARG_SOURCES})
     target_link_libraries(palpa_${name} PUBLIC palpa_flags ${ARG_USES})
 endfunction()
 
 function(palpa_executable name)
-    cmake_parse_arguments(ARG "" "" "SOURCES;USES" ${ARGN})
+    cmake_parse_arguments(ARG "" "" "SOURCES;DESK;USES" ${ARGN})
+    if(NOT EMSCRIPTEN)
+        list(APPEND ARG_SOURCES ${ARG_DESK})
+    endif()
     add_executable(${name} ${ARG_SOURCES})
     target_link_libraries(${name} PRIVATE palpa_flags ${ARG_USES})
 endfunction()

@@ -6,7 +6,6 @@
 
 #include <array>
 #include <cerrno>
-#include <charconv>
 #include <cmath>
 #include <cstdio>
 #include <cstdint>
@@ -102,24 +101,6 @@ std::vector<std::string_view> fields_of(std::string_view line, char separator) {
         if (end == std::string_view::npos) return out;
         line.remove_prefix(end + 1);
     }
-}
-
-bool parse_number(std::string_view text, double& out) {
-    if (!text.empty() && text.front() == '+') text.remove_prefix(1);
-    if (text.empty() || text.front() == '+') return false;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), out);
-    return error == std::errc() && end == text.data() + text.size();
-}
-
-void append_number(double value, std::string& out) {
-    if (std::isnan(value)) {
-        out.append("n/a");
-        return;
-    }
-    std::array<char, 32> buffer;
-    const auto [end, error] = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value);
-    static_cast<void>(error);  // 32 characters hold every double
-    out.append(buffer.data(), end);
 }
 
 std::string number_text(double value) {

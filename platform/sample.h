@@ -17,9 +17,10 @@ enum class Phase : std::uint8_t { hover, down, move, up, cancel, ui };
 
 // What a person asked of the program between samples; only rows of phase `ui` carry one.
 // resize: x_px, y_px, width_px, height_px hold the part of the window that the tissue has now, so that a replay maps
-// positions alike. mark: x_px, y_px hold its place. confidence_*: how sure the person is of the last mark.
+// positions alike. hidden, shown: the window went out of sight and came back; nothing is sampled in between. mark: x_px, y_px hold its place. confidence_*: how sure the person is of the last mark.
 enum class Action : std::uint8_t {
-    none, resize, mark, undo, finish, confidence_1, confidence_2, confidence_3, confidence_4, confidence_5
+    none, resize, mark, undo, finish, confidence_1, confidence_2, confidence_3, confidence_4, confidence_5,
+    hidden, shown
 };
 
 struct Sample {

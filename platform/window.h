@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "platform/sample.h"
+#include "platform/window_event.h"
 
-union SDL_Event;
 struct SDL_Window;
 
 namespace palpa {
@@ -50,17 +50,16 @@ class Window {
     // still (a sample each 1/240 s), a cancel.
     void poll(double wait_s, std::vector<Sample>& out);
 
-    // Called with every SDL event as it arrives, before it becomes a sample (Dear ImGui listens here). If it
-    // returns true for SDL_MOUSEBUTTONDOWN or SDL_FINGERDOWN, that whole press belongs to a panel and none of
-    // its samples come out of poll(); judge by the place in the event, since the pointer may not have been
-    // there before. True for SDL_MOUSEWHEEL: the wheel sets no pressure. A pen's press comes as
-    // SDL_MOUSEBUTTONDOWN too.
-    void set_event_filter(bool (*filter)(const SDL_Event& event, void* user), void* user);
+    // Called with every event as it arrives, before it becomes a sample (Dear ImGui listens here). If it returns
+    // true for button_down or finger_down, that whole press belongs to a panel and none of its samples come out of
+    // poll(); judge by the place in the event, since the pointer may not have been there before. True for wheel: it
+    // sets no pressure. A pen's press comes as button_down too.
+    void set_event_filter(EventFilter filter, void* user);
 
     // A pointer moved by keys, in this area (px of the drawing area; an empty one turns it off, as it is at the
     // start): arrows move it at this speed, slower with Shift; Space presses harder the longer it is held; Page Up
     // and Page Down set how hard. It starts in the middle of the area; call again when the area changes. It gets
-    // only keys for whose SDL_KEYDOWN the event filter returned false, and while one is held a sample each
+    // only keys for whose key_down the event filter returned false, and while one is held a sample each
     // 1/240 s.
     void set_keyboard(double x0_px, double y0_px, double x1_px, double y1_px, double speed_px_per_s);
 
@@ -73,8 +72,15 @@ class Window {
     double keyboard_y_px() const;
     double mouse_pressure() const;  // what the mouse presses with now (wheel or hold), or its wheel is set to
     std::vector<PointerDevice> devices() const;
+    bool lists_devices() const;  // false, in a browser: only those are known that have sent something
     std::string input_note() const;  // why no pen or finger has pressure here, for people; empty if they may
-    SDL_Window* sdl() const;
+    void set_title(const std::string& title);
+    bool full_screen() const;
+    void set_full_screen(bool full);
+    std::string screen_name() const;  // of the screen that the window is on, with its size
+    // px per millimetre as far as the system knows what its screen is touched with; NaN: unknown, as on a desktop
+    double touch_px_per_mm() const;
+    SDL_Window* sdl() const;  // desktop only
 
  private:
     struct Impl;

@@ -49,7 +49,7 @@ void prepare_dataset(const std::filesystem::path& directory) {
 
 void explain_samples_once(const std::filesystem::path& json) { write_if_absent(json, explanation_of<SampleRow>()); }
 
-RunFiles next_run(const std::filesystem::path& directory, std::string_view participant, std::string_view task) {
+RunFiles next_run(const std::filesystem::path& directory, std::string_view participant, std::string_view task, int first) {
     const bool plain = !participant.empty() && std::all_of(participant.begin(), participant.end(), [](char c) {
         return (c >= '0' && c <= '9') || (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z');
     });
@@ -61,7 +61,7 @@ RunFiles next_run(const std::filesystem::path& directory, std::string_view parti
     std::filesystem::create_directories(files.folder, error);
     if (error) throw std::runtime_error(files.folder.string() + ": cannot be created: " + error.message());
     prepare_dataset(directory);
-    for (int run = 1;; ++run) {
+    for (int run = first;; ++run) {
         char number[16];
         std::snprintf(number, sizeof number, "%02d", run);
         files.stem = subject + "_task-" + std::string(task) + "_run-" + number;

@@ -36,7 +36,7 @@ struct SampleRow {
     std::string_view ft_source = "n/a";
 };
 
-// Where run `run` of participant `participant` goes; the number is the first that is free (01, 02, ...).
+// Where run `run` of participant `participant` goes; the number is the first that is free from `first` on.
 // Creates the folders. Throws std::runtime_error if it cannot.
 struct RunFiles {
     std::filesystem::path folder;
@@ -44,7 +44,7 @@ struct RunFiles {
     std::filesystem::path file(std::string_view suffix) const { return folder / (stem + std::string(suffix)); }
 };
 RunFiles next_run(const std::filesystem::path& directory, std::string_view participant,
-                  std::string_view task = "palpation");
+                  std::string_view task = "palpation", int first = 1);
 
 // .bidsignore and dataset_description.json, where they are not there yet.
 void prepare_dataset(const std::filesystem::path& directory);

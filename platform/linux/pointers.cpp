@@ -7,8 +7,13 @@
 namespace palpa {
 namespace {
 
-bool ask_filter(const SDL_Event& event, const Pointers& pointers) {
+bool ask_filter(const WindowEvent& event, const Pointers& pointers) {
     return pointers.filter != nullptr && pointers.filter(event, pointers.filter_user);
+}
+
+bool ask_filter(const SDL_Event& event, const Pointers& pointers) {
+    const auto for_panels = window_event(event, pointers.window);
+    return for_panels && ask_filter(*for_panels, pointers);
 }
 
 PressOwner owner_if(bool on_panel) {
@@ -22,46 +27,22 @@ void admit_made(PressOwner down_owner, Pointers& pointers) {
     pointers.made.clear();
 }
 
-struct Scale {
-    double x = 1.0;
-    double y = 1.0;
-};
-
-// SDL counts in window units; on screens of high density the drawing area has more px than that.
-Scale px_per_unit(const Pointers& pointers) {
-    int width = 0, height = 0, width_px = 0, height_px = 0;
-    SDL_GetWindowSize(pointers.window, &width, &height);
-    SDL_GL_GetDrawableSize(pointers.window, &width_px, &height_px);
-    if (width <= 0 || height <= 0) return {};
-    return {static_cast<double>(width_px) / width, static_cast<double>(height_px) / height};
-}
-
 // SDL's event for a pen's tip comes after the pen's own, too late to ask whose the press is.
 bool pen_on_panel(const Sample& sample, const Pointers& pointers) {
-    const Scale scale = px_per_unit(pointers);
-    SDL_Event event{};
-    event.type = SDL_MOUSEBUTTONDOWN;
-    event.button.timestamp = SDL_GetTicks();
-    event.button.windowID = SDL_GetWindowID(pointers.window);
-    event.button.button = SDL_BUTTON_LEFT;
-    event.button.state = SDL_PRESSED;
-    event.button.clicks = 1;
-    event.button.x = static_cast<int>(sample.x_px / scale.x);
-    event.button.y = static_cast<int>(sample.y_px / scale.y);
+    WindowEvent event;
+    event.kind = WindowEvent::Kind::button_down;
+    event.x_px = sample.x_px;
+    event.y_px = sample.y_px;
     return ask_filter(event, pointers);
 }
 
 // SDL reports no finger of a touch screen that was plugged in after the start.
 bool finger_on_panel(const Sample& sample, const Pointers& pointers) {
-    int width_px = 0, height_px = 0;
-    SDL_GL_GetDrawableSize(pointers.window, &width_px, &height_px);
-    SDL_Event event{};
-    event.type = SDL_FINGERDOWN;
-    event.tfinger.timestamp = SDL_GetTicks();
-    event.tfinger.windowID = SDL_GetWindowID(pointers.window);
-    event.tfinger.fingerId = sample.pointer_id;
-    event.tfinger.x = static_cast<float>(sample.x_px / width_px);
-    event.tfinger.y = static_cast<float>(sample.y_px / height_px);
+    WindowEvent event;
+    event.kind = WindowEvent::Kind::finger_down;
+    event.finger_id = sample.pointer_id;
+    event.x_px = sample.x_px;
+    event.y_px = sample.y_px;
     return ask_filter(event, pointers);
 }
 
@@ -116,14 +97,14 @@ bool is_mouse(Uint32 which, const Pointers& pointers) {
 
 void receive_motion(const SDL_MouseMotionEvent& motion, double t_host_s, Pointers& pointers) {
     if (!is_mouse(motion.which, pointers)) return;
-    const Scale scale = px_per_unit(pointers);
+    const Scale scale = px_per_unit(pointers.window);
     move_mouse(t_host_s, mouse_device_s(motion.timestamp, pointers), motion.x * scale.x, motion.y * scale.y,
                pointers.mouse, pointers.made);
 }
 
 void receive_button(const SDL_MouseButtonEvent& button, double t_host_s, Pointers& pointers) {
     if (button.button != SDL_BUTTON_LEFT || !is_mouse(button.which, pointers)) return;
-    const Scale scale = px_per_unit(pointers);
+    const Scale scale = px_per_unit(pointers.window);
     const double t_device_s = mouse_device_s(button.timestamp, pointers);
     pointers.mouse.x_px = button.x * scale.x;
     pointers.mouse.y_px = button.y * scale.y;

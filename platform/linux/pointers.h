@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "platform/linux/window_event.h"
 #include "platform/linux/xinput.h"
 #include "platform/keyboard.h"
 #include "platform/mouse.h"
@@ -21,7 +22,7 @@ struct Pointers {
     Mouse mouse;
     Keyboard keyboard;
     Presses presses;
-    bool (*filter)(const SDL_Event& event, void* user) = nullptr;
+    EventFilter filter = nullptr;
     void* filter_user = nullptr;
 
     // A device's own event comes right before the one by which it moves the common pointer, so the last one

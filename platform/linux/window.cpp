@@ -80,7 +80,7 @@ void Window::poll(double wait_s, std::vector<Sample>& out) {
     pointers.pending.clear();
 }
 
-void Window::set_event_filter(bool (*filter)(const SDL_Event& event, void* user), void* user) {
+void Window::set_event_filter(EventFilter filter, void* user) {
     impl_->pointers.filter = filter;
     impl_->pointers.filter_user = user;
 }
@@ -139,6 +139,10 @@ std::vector<PointerDevice> Window::devices() const {
     return devices;
 }
 
+bool Window::lists_devices() const {
+    return true;
+}
+
 std::string Window::input_note() const {
     if (impl_->pointers.xinput) return {};
     const char* driver = SDL_GetCurrentVideoDriver();
@@ -148,6 +152,30 @@ std::string Window::input_note() const {
                "mouse (hold its button, or turn its wheel)";
     }
     return "no pressure of pens or fingers with the display driver " + std::string(name) + ": it needs X11";
+}
+
+void Window::set_title(const std::string& title) {
+    SDL_SetWindowTitle(sdl(), title.c_str());
+}
+
+bool Window::full_screen() const {
+    return (SDL_GetWindowFlags(sdl()) & SDL_WINDOW_FULLSCREEN_DESKTOP) != 0;
+}
+
+void Window::set_full_screen(bool full) {
+    SDL_SetWindowFullscreen(sdl(), full ? SDL_WINDOW_FULLSCREEN_DESKTOP : 0);
+}
+
+std::string Window::screen_name() const {
+    const int display = std::max(0, SDL_GetWindowDisplayIndex(sdl()));
+    SDL_DisplayMode mode{};
+    SDL_GetDesktopDisplayMode(display, &mode);
+    const char* name = SDL_GetDisplayName(display);
+    return std::string(name != nullptr ? name : "screen") + ", " + std::to_string(mode.w) + " x " + std::to_string(mode.h);
+}
+
+double Window::touch_px_per_mm() const {
+    return kMissing;
 }
 
 SDL_Window* Window::sdl() const {

@@ -53,6 +53,28 @@ TEST_CASE("device check: a rest is not part of the rate, and host times in a bur
     CHECK(worst_gap_s(tool) == doctest::Approx(0.01).epsilon(1e-6));
 }
 
+TEST_CASE("device check: how many samples come at a time, and how late") {
+    auto check = std::make_unique<DeviceCheck>();
+    CHECK(std::isnan(median_delay_s(of_tool(Tool::pen, *check))));
+    CHECK(std::isnan(samples_per_delivery(of_tool(Tool::pen, *check))));
+    for (int i = 0; i < 400; ++i) {  // 240 Hz, handed over four at a time with the last of them
+        Sample sample = pen(10.0 + (i / 4 * 4 + 3) / 240.0 + 2e-3, Phase::move, 0.4);
+        sample.t_device_s = 10.0 + i / 240.0;
+        observe(sample, *check);
+    }
+    const ToolCheck& tool = of_tool(Tool::pen, *check);
+    CHECK(samples_per_delivery(tool) == 4.0);
+    CHECK(median_delay_s(tool) > 2e-3);
+    CHECK(median_delay_s(tool) < 2e-3 + 3.0 / 240.0);
+    CHECK(check_json(*check)["pen"]["samples_per_delivery"] == 4.0);
+    Sample other = pen(20.0, Phase::move, 0.4);
+    other.t_device_s = 1e6;  // a clock of its own
+    auto alone = std::make_unique<DeviceCheck>();
+    observe(other, *alone);
+    CHECK(std::isnan(median_delay_s(of_tool(Tool::pen, *alone))));
+    CHECK(check_json(*alone)["pen"]["delay_ms"].is_null());
+}
+
 TEST_CASE("device check: fingers count together, each with its own gaps") {
     auto check = std::make_unique<DeviceCheck>();
     for (int i = 0; i < 300; ++i) {

@@ -31,6 +31,16 @@ TEST_CASE("layout: controls and tissue share the window without overlapping, wha
     }
 }
 
+TEST_CASE("layout: a touched screen's own scale is used as far as the controls fit, a measured one always") {
+    const double unknown = std::numeric_limits<double>::quiet_NaN();
+    CHECK(control_scale(unknown, 2560.0f, 1600.0f, 12.6) == doctest::Approx(12.6));
+    CHECK(control_scale(unknown, 1600.0f, 2560.0f, 12.6) == doctest::Approx(12.6));
+    const float small = control_scale(unknown, 1170.0f, 2532.0f, 18.9);  // a telephone
+    CHECK(small < 18.0f);
+    CHECK(layout_of(1170.0f, 2532.0f, small, false).controls);
+    CHECK(control_scale(18.0, 1170.0f, 2532.0f, 18.9) == doctest::Approx(18.0));
+}
+
 TEST_CASE("layout: a column beside the tissue away from the hand, a strip above it on an upright window") {
     const Layout right = layout_of(1280, 800, 3.78f, false);
     CHECK(right.column);

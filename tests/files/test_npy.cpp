@@ -61,8 +61,9 @@ TEST_CASE("hard case 31: npy with impossible sizes, other types and cut ends") {
     const auto dictionary = [&](const std::string& shape) {
         return with_header("{'descr': '<f4', 'fortran_order': False, 'shape': " + shape + ", }", "");
     };
-    CHECK(contains(said(dictionary("(1000000000000, 1000000000000)")), "a size that fits into memory"));
-    CHECK(contains(said(dictionary("(1000000000000,)")), "expected 4000000000000 for the shape"));
+    const bool wide = sizeof(std::size_t) > 4;  // else such numbers are refused as they stand
+    CHECK(contains(said(dictionary("(1000000000000, 1000000000000)")), wide ? "a size that fits into memory" : "whole numbers"));
+    CHECK(contains(said(dictionary("(1000000000000,)")), wide ? "expected 4000000000000 for the shape" : "whole numbers"));
     CHECK(contains(said(dictionary("(-1, 4)")), "whole numbers >= 0"));
     CHECK(contains(said(dictionary("(99999999999999999999999,)")), "whole numbers >= 0"));
     CHECK(contains(said(dictionary("nonsense")), "shape"));

@@ -20,7 +20,8 @@ TEST_CASE("rolling: coordinates pass through the ends of every zone and rise") {
 TEST_CASE("rolling: taken apart and put together is one mesh of the whole block, within 4 % of the greatest force") {
     Roller roller(rolling_block({ball(0.02, 0.025, 0.005)}));
     const double greatest_N = roller.at(0.02, 0.025).normal_N;
-    for (const auto& [x, y] : {std::pair{0.02, 0.025}, {0.0245, 0.025}, {0.038, 0.02}, {0.048, 0.025}, {0.0, 0.025}, {0.049, 0.002}}) {
+    for (const auto& place : {std::pair{0.02, 0.025}, {0.0245, 0.025}, {0.038, 0.02}, {0.048, 0.025}, {0.0, 0.025}, {0.049, 0.002}}) {
+        const double x = place.first, y = place.second;
         CAPTURE(x);
         const auto one = press_on_one_mesh(roller.model, roller.mesh.contact_m, roller.mesh.cells_across, x, y, kDepths_m);
         for (std::size_t k = 0; k < 2; ++k) {

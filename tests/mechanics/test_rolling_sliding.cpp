@@ -28,7 +28,8 @@ const Places kPlaces{{0.0245, 0.024}, {0.048, 0.025}, {0.0, 0.025}, {0.049, 0.00
 
 void compare_with_one_mesh(Roller& roller, const Places& places, double most) {
     const double greatest_N = roller.at(0.02, 0.025).normal_N;
-    for (const auto& [x, y] : places) {
+    for (const auto& place : places) {
+        const double x = place.first, y = place.second;
         CAPTURE(x);
         const auto one = press_on_one_mesh(roller.model, roller.mesh.contact_m, roller.mesh.cells_across, x, y, kDepths_m);
         for (std::size_t k = 0; k < 2; ++k) {
@@ -79,7 +80,8 @@ TEST_CASE("sliding: a mirrored phantom gives mirrored answers, a transposed one 
     Roller over_y(rough(rolling_block({ball(0.015, 0.030, 0.005)}), mu));
     Roller transposed(rough(rolling_block({ball(0.020, 0.015, 0.005)}), mu));
     Roller over_x(rough(rolling_block({ball(0.035, 0.020, 0.005)}), mu));
-    for (const auto& [x, y] : {std::pair{0.013, 0.022}, {0.001, 0.018}, {0.030, 0.049}}) {
+    for (const auto& place : {std::pair{0.013, 0.022}, {0.001, 0.018}, {0.030, 0.049}}) {
+        const double x = place.first, y = place.second;
         CAPTURE(x);
         const RollingForce f = roller.at(x, y);
         CHECK(over_y.at(x, 0.05 - y).normal_N == doctest::Approx(f.normal_N).epsilon(1e-8));

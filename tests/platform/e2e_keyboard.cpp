@@ -21,10 +21,10 @@ TEST_CASE("keyboard: arrows, Space and Page Up press; keys that a panel takes do
         int tabs = 0;
     } panel;
     window.set_event_filter(
-        [](const SDL_Event& event, void* user) {
+        [](const WindowEvent& event, void* user) {
             auto& it = *static_cast<Panel*>(user);
-            if (event.type != SDL_KEYDOWN) return false;
-            if (event.key.keysym.sym == SDLK_TAB && event.key.repeat == 0) {
+            if (event.kind != WindowEvent::Kind::key_down) return false;
+            if (event.key == key::tab && !event.repeat) {
                 ++it.tabs;
                 it.has_focus = !it.has_focus;
                 return true;

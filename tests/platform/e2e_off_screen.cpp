@@ -87,7 +87,7 @@ TEST_CASE("off screen: losing the focus cancels a press, and its release is not 
 
 TEST_CASE("off screen: a press that a panel owns stays silent until its release") {
     Window window(off_screen());
-    window.set_event_filter([](const SDL_Event& event, void*) { return event.type == SDL_MOUSEBUTTONDOWN; },
+    window.set_event_filter([](const WindowEvent& event, void*) { return event.kind == WindowEvent::Kind::button_down; },
                             nullptr);
     std::vector<Sample> samples;
     window.poll(0.0, samples);

@@ -99,15 +99,13 @@ TEST_CASE("panel: presses that start on it reach no tissue, and it hears of each
         int finger_downs = 0;
     } panel{200.0};
     window.set_event_filter(
-        [](const SDL_Event& event, void* user) {
+        [](const WindowEvent& event, void* user) {
             auto& it = *static_cast<Panel*>(user);
-            if (event.type == SDL_MOUSEBUTTONDOWN) {
-                it.button_downs += event.button.which != SDL_TOUCH_MOUSEID ? 1 : 0;
-                return event.button.x < it.right_px;
-            }
-            it.finger_downs += event.type == SDL_FINGERDOWN ? 1 : 0;
-            return event.type == SDL_FINGERDOWN &&
-                   static_cast<double>(event.tfinger.x) * 1000.0 < it.right_px;
+            const bool finger = event.kind == WindowEvent::Kind::finger_down;
+            const bool button = event.kind == WindowEvent::Kind::button_down;
+            it.button_downs += button && !event.made_from_touch ? 1 : 0;
+            it.finger_downs += finger ? 1 : 0;
+            return (button || finger) && event.x_px < it.right_px;
         },
         &panel);
 

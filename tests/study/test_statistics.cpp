@@ -283,7 +283,7 @@ with open("holm.tsv", "w") as out:
     std::vector<double> p;
     for (std::size_t i = 0; i < counts.size(); ++i) {
         REQUIRE(expected.next());
-        const auto& [a, b] = counts[i];
+        const Proportion &a = counts[i].first, &b = counts[i].second;
         CAPTURE(a.k);
         CAPTURE(a.n);
         CAPTURE(b.k);

@@ -1,0 +1,35 @@
+// What is on the screen, as a file.
+
+#include "app/frame.h"
+#include "render/gl.h"
+#include "render/png.h"
+
+namespace palpa {
+
+void save_screen(const Window& window, const std::filesystem::path& png) {
+    write_png(png, window.width_px(), window.height_px(), read_pixels(window.width_px(), window.height_px()));
+}
+
+std::string draw_picture(const Scene& scene, const Plan& plan, const Trial& trial, const Settings& settings,
+                         const Screens& screens, int width_px, int height_px, State& state,
+                         const std::filesystem::path& png) {
+    WindowOptions options;
+    options.visible = false;
+    options.width_px = width_px;
+    options.height_px = height_px;
+    Window window(options);
+    Gui gui(window);
+    TissueDrawer tissue;
+    FrameTimes times;
+    Screens open = screens;
+    std::string overflow;
+    gui.set_scale(control_scale(screens.px_per_mm, static_cast<float>(width_px), static_cast<float>(height_px)));
+    for (int i = 0; i < 3; ++i) {
+        draw_frame(scene, plan, trial, settings, state.timeline.now_s, 1.0 / 60.0, tissue, gui, open, state, times);
+        overflow = gui.overflow();
+    }
+    save_screen(window, png);
+    return overflow;
+}
+
+}  // namespace palpa

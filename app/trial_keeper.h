@@ -1,0 +1,24 @@
+#pragma once
+// Where trials go besides the folder that they are written to. In a browser that folder is memory, and this keeps them.
+
+#include <filesystem>
+#include <string>
+
+#include "study/sample_log.h"
+
+namespace palpa {
+
+class TrialKeeper {
+ public:
+    virtual ~TrialKeeper() = default;
+
+    // Copies the files of a run as they are now. finished: no more will be written to them.
+    virtual void keep(const RunFiles& files, bool finished) = 0;
+    virtual bool ready() const = 0;         // all that was given is safe
+    virtual std::string problem() = 0;      // why something is not, for people; each once, then ""
+    virtual std::string note() const = 0;   // what is kept, for people
+    virtual void keep_settings(const std::filesystem::path& file) = 0;
+    virtual void open() = 0;                // shows the person all that is kept
+};
+
+}  // namespace palpa

@@ -1,0 +1,8 @@
+#include "app/font.h"
+
+namespace palpa {
+
+// DejaVu Sans, packed beside the program.
+std::string system_font_file() { return "/font.ttf"; }
+
+}  // namespace palpa

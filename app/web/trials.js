@@ -1,0 +1,286 @@
+// Trials are kept in the browser's storage (IndexedDB) until the desk has said that it has the same bytes.
+// A trial: {name, text, sha256, finished, exported, sent}; text is gone once it was sent (docs/tablet.md).
+'use strict';
+
+const palpaTrials = (() => {
+    const kStore = 'trials';
+    const kAgain_ms = 15000;
+    const kWait_ms = 3000;
+    const trials = new Map(); // by name, without texts
+    const problems = [];
+    const unsaved = new Map(); // what the storage would not take, by name
+    let database = null;
+    let writing = 0;
+    let sending = false;
+    let openDialog = () => {};
+    let changed = () => {};
+    let lastWord = '';         // of the desk
+    let persistent = false;
+    let open_to_all = false;   // the desk asks for no code
+
+    const remember = (key, value) => {
+        try {
+            if (value === null) localStorage.removeItem(key);
+            else localStorage.setItem(key, value);
+            return true;
+        } catch (full) {
+            return false;
+        }
+    };
+    const recall = (key) => {
+        try {
+            return localStorage.getItem(key) || '';
+        } catch (forbidden) {
+            return '';
+        }
+    };
+    const tell = (text) => {
+        problems.push(text);
+        changed();
+    };
+
+    const hex = (bytes) => Array.from(bytes, (byte) => byte.toString(16).padStart(2, '0')).join('');
+    const tabletName = () => {
+        let name = recall('palpa-tablet');
+        if (!/^[0-9a-f]{8}$/.test(name)) {
+            name = hex(crypto.getRandomValues(new Uint8Array(4)));
+            remember('palpa-tablet', name);
+        }
+        return name;
+    };
+    // Who palpates: ?participant=07 in the address, kept; else the tablet itself.
+    const participant = () => {
+        const asked = new URLSearchParams(location.search).get('participant');
+        if (asked !== null && /^[0-9A-Za-z]{1,64}$/.test(asked)) remember('palpa-participant', asked);
+        return recall('palpa-participant') || `tablet${tabletName()}`;
+    };
+    // Names of runs are never given twice, whatever became of their trials.
+    const runOf = (name) => Number((/_run-([0-9]+)$/.exec(name) || [0, 0])[1]);
+    const nextRun = () => 1 + Math.max(Number(recall('palpa-runs')) || 0, ...[...trials.keys()].map(runOf));
+    const current = new Set(); // of this page
+
+    const request = (mode, work) => new Promise((resolve, reject) => {
+        if (database === null) return reject(new Error('the browser has no storage for this page'));
+        const transaction = database.transaction(kStore, mode, mode === 'readwrite' ? {durability: 'strict'} : {});
+        const asked = work(transaction.objectStore(kStore));
+        transaction.oncomplete = () => resolve(asked ? asked.result : undefined);
+        transaction.onerror = transaction.onabort = () => reject(transaction.error || new Error('broken off'));
+    });
+
+    const open = () => new Promise((resolve, reject) => {
+        const asked = indexedDB.open('palpa', 1);
+        asked.onupgradeneeded = () => asked.result.createObjectStore(kStore, {keyPath: 'name'});
+        asked.onsuccess = () => resolve(asked.result);
+        asked.onerror = () => reject(asked.error);
+        asked.onblocked = () => reject(new Error('another page holds it'));
+    });
+
+    const note = (trial) => trials.set(trial.name, {name: trial.name, sha256: trial.sha256, finished: trial.finished,
+                                                     exported: !!trial.exported, sent: !!trial.sent});
+    // A list beside the storage: what is missing from that was taken away by the browser.
+    const noteNames = () => remember('palpa-kept', JSON.stringify([...trials.values()].filter((t) => !t.sent).map((t) => t.name)));
+
+    const findMissing = () => {
+        let names = [];
+        try {
+            names = JSON.parse(recall('palpa-kept') || '[]');
+        } catch (broken) {
+            return;
+        }
+        const gone = names.filter((name) => !trials.has(name));
+        if (gone.length > 0) tell(`${gone.length} trial(s) that were kept here are gone: the browser has removed them (${gone.join(', ')}).`);
+    };
+
+    // Two pages would give the same names. The lock goes with the page that holds it.
+    const isAlone = () => new Promise((resolve) => {
+        if (!navigator.locks) return resolve(true);
+        navigator.locks.request('palpa', {signal: AbortSignal.timeout(kWait_ms)}, () => {
+            resolve(true);
+            return new Promise(() => {});
+        }).catch(() => resolve(false));
+    });
+
+    const start = async (dialog) => {
+        openDialog = dialog;
+        if (!await isAlone()) throw new Error('Palpa is open in another tab or window of this browser; close one of them');
+        try {
+            database = await open();
+            database.onclose = () => tell('The browser has closed its storage: trials are not kept any more. Export what is there.');
+            for (const trial of await request('readonly', (store) => store.getAll())) note(trial);
+            findMissing();
+            noteNames();
+            if (navigator.storage && navigator.storage.persist) persistent = await navigator.storage.persist();
+        } catch (error) {
+            tell(`Trials cannot be kept in this browser (${error.message}): export each one after it.`);
+        }
+        await askDesk();
+        const code = new URLSearchParams(location.hash.slice(1)).get('code'); // of the square that the desk shows
+        if (code) {
+            history.replaceState(null, '', location.pathname + location.search);
+            await pair(code);
+        }
+        setInterval(send, kAgain_ms);
+        window.addEventListener('online', send);
+        send();
+    };
+
+    // Some desks take logs from everybody, some from nobody.
+    const askDesk = async () => {
+        try {
+            const answer = await fetch('api/health');
+            if (!answer.ok || !(answer.headers.get('Content-Type') || '').includes('json')) return;
+            const {pairing, collects} = await answer.json();
+            open_to_all = pairing === false && collects === true;
+            if (collects === false) lastWord = 'This desk takes no logs (it was started without --collect).';
+        } catch (away) {
+            // no desk: trials wait here
+        }
+    };
+    const maySend = () => open_to_all || recall('palpa-token') !== '';
+
+    const put = async (name, text, sha256, finished) => {
+        ++writing;
+        const isNew = !current.has(name);
+        current.add(name);
+        remember('palpa-runs', String(Math.max(Number(recall('palpa-runs')) || 0, runOf(name))));
+        const trial = {name, text, sha256, finished, exported: false, sent: false};
+        try {
+            await request('readwrite', (store) => isNew ? store.add(trial) : store.put(trial)); // never over another page's
+            unsaved.delete(name);
+            note(trial);
+            noteNames();
+        } catch (error) {
+            unsaved.set(name, trial);
+            const full = error && error.name === 'QuotaExceededError';
+            tell(`Trial ${name} is not kept: ${full ? 'the storage of this browser is full' : error.message}. Menu, Trials, Export saves it to a file; the next trial waits for that.`);
+        } finally {
+            --writing;
+        }
+        changed();
+        if (finished) send();
+    };
+
+    const read = (name) => request('readonly', (store) => store.get(name));
+
+    const sendOne = async (name) => {
+        const trial = await read(name);
+        if (!trial || trial.sent) return true;
+        const answer = await fetch(`api/logs/${encodeURIComponent(name)}`, {
+            method: 'PUT',
+            headers: {'Content-Type': 'application/json', 'X-Content-SHA256': trial.sha256,
+                      ...(recall('palpa-token') ? {Authorization: `Bearer ${recall('palpa-token')}`} : {})},
+            body: trial.text,
+        });
+        if (answer.status === 401 || answer.status === 403) {
+            remember('palpa-token', null);
+            lastWord = 'The desk does not know this tablet any more: pair again.';
+            return false;
+        }
+        const confirmed = answer.ok ? (await answer.json()).sha256 : '';
+        if (confirmed !== trial.sha256) {
+            lastWord = answer.ok ? `The desk has other bytes of ${name}; it is sent again.` : `The desk answered ${answer.status} to ${name}.`;
+            return false;
+        }
+        // the desk has it: from here on only its name is kept
+        await request('readwrite', (store) => store.put({...trial, text: '', sent: true}));
+        note({...trial, sent: true});
+        noteNames();
+        lastWord = '';
+        return true;
+    };
+
+    // A trial that is going on is neither sent nor exported, since its files still grow; one that an earlier page left is.
+    const isOver = (t) => t.finished || !current.has(t.name);
+    const toSend = () => [...trials.values()].filter((t) => !t.sent && isOver(t));
+
+    const send = async () => {
+        if (sending || !maySend()) return;
+        sending = true;
+        try {
+            for (const {name} of toSend()) {
+                if (!await sendOne(name)) break;
+            }
+        } catch (error) {
+            lastWord = 'The desk is not reachable; trials wait here.';
+        } finally {
+            sending = false;
+        }
+        changed();
+    };
+
+    const pair = async (code) => {
+        try {
+            const answer = await fetch('api/pair', {method: 'POST', headers: {'Content-Type': 'application/json'}, body: JSON.stringify({code})});
+            const token = answer.ok ? (await answer.json()).token : '';
+            if (token) remember('palpa-token', token);
+            lastWord = token ? 'Paired.' : `The desk does not take this code (${answer.status}).`;
+        } catch (error) {
+            lastWord = 'The desk is not reachable.';
+        }
+        changed();
+        await send();
+    };
+
+    const download = (name, text) => {
+        const link = document.createElement('a');
+        link.href = URL.createObjectURL(new Blob([text], {type: 'application/json'}));
+        link.download = name;
+        link.click();
+        setTimeout(() => URL.revokeObjectURL(link.href), 60000);
+    };
+
+    // All that the desk does not have, in one file; also what the storage would not take.
+    const exportAll = async () => {
+        const kept = database === null ? [] : (await request('readonly', (store) => store.getAll())).filter((t) => !t.sent);
+        const all = [...kept.filter((t) => !unsaved.has(t.name)), ...unsaved.values()].filter(isOver);
+        const files = all.flatMap((trial) => JSON.parse(trial.text).files);
+        const day = new Date().toISOString().replace(/[-:]|\.\d+/g, '');
+        download(`palpa-trials-${tabletName()}-${day}.json`, JSON.stringify({palpa_bundle: 1, files}, null, 1) + '\n');
+        for (const trial of kept.filter(isOver)) {
+            await request('readwrite', (store) => store.put({...trial, exported: true}));
+            note({...trial, exported: true});
+        }
+        unsaved.clear();
+        changed();
+    };
+
+    const removeExported = async () => {
+        for (const {name, exported, sent} of [...trials.values()]) {
+            if (!exported && !sent) continue;
+            await request('readwrite', (store) => store.delete(name));
+            trials.delete(name);
+        }
+        noteNames();
+        changed();
+    };
+
+    const words = (trial) => trial.sent ? 'at the desk' : !isOver(trial) ? 'going on' : `${trial.finished ? 'waiting' : 'broken off, waiting'}${trial.exported ? ', exported' : ''}`;
+
+    const state = () => {
+        const waiting = [...trials.values()].filter((t) => !t.sent && isOver(t)).length + unsaved.size;
+        const paired = maySend();
+        const lines = [`${waiting} waiting, ${[...trials.values()].filter((t) => t.sent).length} at the desk.`];
+        lines.push(recall('palpa-token') !== '' ? 'Paired with the desk.' : open_to_all ? 'The desk takes logs without a code.' : 'Not paired with a desk.');
+        if (!persistent) lines.push('The browser may remove what is kept here when space is short: send or export, or put Palpa on the home screen.');
+        if (lastWord) lines.push(lastWord);
+        return {lines, paired, waiting, trials: [...trials.values(), ...unsaved.values()].map((t) => ({...t, words: unsaved.has(t.name) ? 'NOT kept: export it' : words(t)}))};
+    };
+
+    const noteText = () => {
+        const {waiting, paired} = state();
+        if (unsaved.size > 0) return `${unsaved.size} trial(s) NOT kept: Menu, Trials, Export.`;
+        return waiting === 0 ? 'All trials are at the desk or exported.' : `${waiting} trial(s) kept on this tablet${paired ? ', not yet at the desk' : ''}.`;
+    };
+
+    return {
+        start, put, tell, send, pair, exportAll, removeExported, state,
+        ready: () => writing === 0 && unsaved.size === 0,
+        nextProblem: () => problems.shift() || '',
+        note: () => trials.size + unsaved.size > 0 ? noteText() : 'Trials are kept on this tablet.',
+        participant, nextRun,
+        settings: () => recall('palpa-settings'),
+        keepSettings: (text) => { if (!remember('palpa-settings', text)) tell('Settings are not kept: the storage of this browser is full.'); },
+        open: () => openDialog(),
+        onChange: (callback) => { changed = callback; },
+    };
+})();

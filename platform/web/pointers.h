@@ -1,0 +1,58 @@
+#pragma once
+// A browser's Pointer Events, keys and wheel: events in, samples out. Knows no browser, so that it can be tested.
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "platform/keyboard.h"
+#include "platform/mouse.h"
+#include "platform/press.h"
+#include "platform/sample.h"
+#include "platform/window_event.h"
+
+namespace palpa {
+
+// One event as the browser tells it; each one of a coalesced list by itself.
+struct BrowserPointer {
+    enum class Kind : std::uint8_t { down, move, up, cancel };
+    Kind kind = Kind::move;
+    std::int64_t pointer_id = 0;
+    Tool tool = Tool::mouse;
+    double x_px = 0.0;       // of the drawing area
+    double y_px = 0.0;
+    double pressure = 0.0;   // 0..1
+    double tilt_x_deg = 0.0;
+    double tilt_y_deg = 0.0;
+    double width_px = 0.0;   // contact
+    double height_px = 0.0;
+    double time_s = 0.0;     // the clock of now_s()
+    int buttons = 0;         // bit mask: 1 the tip or the left button, 32 a pen's other end
+};
+
+struct Pointers {
+    Mouse mouse;
+    Keyboard keyboard;
+    Presses presses;
+    EventFilter filter = nullptr;
+    void* filter_user = nullptr;
+    std::vector<std::int64_t> touching;     // pens and fingers, by their number in samples
+    std::array<bool, kToolCount> seen{};    // tools that have sent something
+    std::vector<Sample> made;               // scratch
+    std::vector<Sample> pending;            // for the next poll()
+};
+
+void receive(const BrowserPointer& event, double t_host_s, Pointers& pointers);
+void receive_wheel(double notches, double t_device_s, double t_host_s, Pointers& pointers);
+void receive_key(const WindowEvent& event, double t_host_s, Pointers& pointers);
+
+// The window has lost the focus, or is out of sight: what presses is cancelled.
+void release_all(double t_host_s, Pointers& pointers);
+
+// Lets a held mouse button or key go on until now.
+void hold(double t_host_s, Pointers& pointers);
+
+// As Window::set_keyboard.
+void set_keyboard_area(double t_host_s, const KeyboardArea& area, Pointers& pointers);
+
+}  // namespace palpa

@@ -1,0 +1,174 @@
+// The browser's window: a canvas with WebGL 2, and what is sent to it. There is one, and it never goes.
+
+#include "platform/window.h"
+
+#include <emscripten.h>
+#include <emscripten/html5.h>
+
+#include <stdexcept>
+
+#include "platform/web/browser.h"
+#include "platform/web/pointers.h"
+
+namespace palpa {
+namespace {
+
+// CSS px per millimetre of glass that is touched: 160 per inch. Tablets have 120 to 160, so that targets come out
+// larger rather than smaller than asked for.
+constexpr double kTouch_css_px_per_mm = 160.0 / 25.4;
+
+Pointers* open_pointers = nullptr;  // of the one window; the browser calls functions, not objects
+
+void open_gl() {
+    EmscriptenWebGLContextAttributes attributes;
+    emscripten_webgl_init_context_attributes(&attributes);
+    attributes.majorVersion = 2;
+    attributes.alpha = false;
+    attributes.depth = true;
+    attributes.antialias = false;
+    attributes.powerPreference = EM_WEBGL_POWER_PREFERENCE_HIGH_PERFORMANCE;
+    const EMSCRIPTEN_WEBGL_CONTEXT_HANDLE context = emscripten_webgl_create_context("#canvas", &attributes);
+    if (context <= 0) throw std::runtime_error("this browser gives no WebGL 2, which Palpa draws with");
+    emscripten_webgl_make_context_current(context);
+}
+
+}  // namespace
+
+struct Window::Impl {
+    explicit Impl(const WindowOptions& options) {
+        browser::fit_canvas();
+        browser::set_title(options.title.c_str());
+        open_gl();
+        pointers.mouse.button.hold_s = options.mouse_hold_s;
+        pointers.keyboard.button.hold_s = options.mouse_hold_s;
+        open_pointers = &pointers;
+        browser::listen();
+    }
+    ~Impl() { open_pointers = nullptr; }
+    Impl(const Impl&) = delete;
+    Impl& operator=(const Impl&) = delete;
+
+    Pointers pointers;
+};
+
+Window::Window(const WindowOptions& options) : impl_(std::make_unique<Impl>(options)) {}
+Window::~Window() = default;
+
+void Window::poll(double, std::vector<Sample>& out) {
+    Pointers& pointers = impl_->pointers;
+    browser::fit_canvas();
+    hold(browser::now_s(), pointers);
+    out.insert(out.end(), pointers.pending.begin(), pointers.pending.end());
+    pointers.pending.clear();
+}
+
+void Window::set_event_filter(EventFilter filter, void* user) {
+    impl_->pointers.filter = filter;
+    impl_->pointers.filter_user = user;
+}
+
+void Window::set_keyboard(double x0_px, double y0_px, double x1_px, double y1_px, double speed_px_per_s) {
+    set_keyboard_area(browser::now_s(), {x0_px, y0_px, x1_px, y1_px, speed_px_per_s}, impl_->pointers);
+}
+
+bool Window::close_requested() const { return false; }
+void Window::present() {}
+double Window::now_s() const { return browser::now_s(); }
+int Window::width_px() const { return browser::canvas_width_px(); }
+int Window::height_px() const { return browser::canvas_height_px(); }
+double Window::keyboard_x_px() const { return impl_->pointers.keyboard.x_px; }
+double Window::keyboard_y_px() const { return impl_->pointers.keyboard.y_px; }
+
+double Window::mouse_pressure() const {
+    const Pointers& pointers = impl_->pointers;
+    if (pointers.mouse.button.down && !presses_tissue(pointers.presses, kMousePointerId)) return 0.0;
+    return pressure_at(pointers.mouse.button, browser::now_s());
+}
+
+// A browser lists no devices: what can be here until it is seen to have no sensor (platform/pressure.h).
+std::vector<PointerDevice> Window::devices() const {
+    const auto seen = [&](Tool tool) { return impl_->pointers.seen[static_cast<std::size_t>(tool)]; };
+    std::vector<PointerDevice> devices;
+    const auto add = [&](int id, const char* name, Tool tool) {
+        PointerDevice device{id, name, tool, tool != Tool::mouse};
+        device.pressure_max = device.has_pressure ? 1.0 : 0.0;
+        devices.push_back(device);
+    };
+    if (seen(Tool::pen)) add(1, "pen", Tool::pen);
+    if (browser::has_touch_screen() || seen(Tool::finger)) add(2, "touch screen", Tool::finger);
+    if (seen(Tool::mouse) || devices.empty()) add(0, "mouse", Tool::mouse);
+    return devices;
+}
+
+bool Window::lists_devices() const { return false; }
+
+std::string Window::input_note() const {
+    if (browser::is_secure()) return {};
+    return "this page came without https, so that the browser keeps samples between frames from it";
+}
+
+void Window::set_title(const std::string& title) { browser::set_title(title.c_str()); }
+bool Window::full_screen() const { return browser::full_screen(); }
+void Window::set_full_screen(bool full) { browser::set_full_screen(full); }
+
+std::string Window::screen_name() const {
+    return "browser, " + std::to_string(browser::screen_long_px()) + " x " + std::to_string(browser::screen_short_px());
+}
+
+double Window::touch_px_per_mm() const {
+    return browser::has_touch_screen() ? kTouch_css_px_per_mm * browser::px_per_css_px() : kMissing;
+}
+
+}  // namespace palpa
+
+// What the page sends (platform/web/browser.cpp).
+extern "C" {
+
+EMSCRIPTEN_KEEPALIVE void palpa_pointer(int kind, double pointer_id, int tool, double x_css, double y_css, double pressure,
+                                        double tilt_x_deg, double tilt_y_deg, double width_css, double height_css,
+                                        double time_ms, int buttons) {
+    using namespace palpa;
+    if (open_pointers == nullptr) return;
+    const double scale = browser::px_per_css_px();
+    BrowserPointer event;
+    event.kind = static_cast<BrowserPointer::Kind>(kind);
+    event.pointer_id = static_cast<std::int64_t>(pointer_id);
+    event.tool = tool == 0 ? Tool::pen : tool == 1 ? Tool::finger : Tool::mouse;
+    event.x_px = scale * x_css;
+    event.y_px = scale * y_css;
+    event.pressure = pressure;
+    event.tilt_x_deg = tilt_x_deg;
+    event.tilt_y_deg = tilt_y_deg;
+    event.width_px = scale * width_css;
+    event.height_px = scale * height_css;
+    event.time_s = 1e-3 * time_ms;
+    event.buttons = buttons;
+    receive(event, browser::now_s(), *open_pointers);
+}
+
+EMSCRIPTEN_KEEPALIVE void palpa_wheel(double notches, double time_ms) {
+    if (palpa::open_pointers == nullptr) return;
+    receive_wheel(notches, 1e-3 * time_ms, palpa::browser::now_s(), *palpa::open_pointers);
+}
+
+EMSCRIPTEN_KEEPALIVE void palpa_key(int down, int code, int typed, int ctrl, int shift, int repeat) {
+    using namespace palpa;
+    if (open_pointers == nullptr) return;
+    WindowEvent event;
+    event.kind = down != 0 ? WindowEvent::Kind::key_down : WindowEvent::Kind::key_up;
+    event.key = code;
+    event.ctrl = ctrl != 0;
+    event.shift = shift != 0;
+    event.repeat = repeat != 0;
+    receive_key(event, browser::now_s(), *open_pointers);
+    if (down == 0 || typed < ' ' || typed > '~' || open_pointers->filter == nullptr) return;
+    event.kind = WindowEvent::Kind::text;
+    event.text = static_cast<char>(typed);
+    open_pointers->filter(event, open_pointers->filter_user);
+}
+
+EMSCRIPTEN_KEEPALIVE void palpa_focus_lost() {
+    if (palpa::open_pointers != nullptr) release_all(palpa::browser::now_s(), *palpa::open_pointers);
+}
+
+}
