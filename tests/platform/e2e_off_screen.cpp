@@ -13,6 +13,7 @@
 using palpa::Phase;
 using palpa::Sample;
 using palpa::Window;
+using palpa::WindowEvent;
 using palpa::WindowOptions;
 
 namespace {
