@@ -14,6 +14,7 @@ void add_run(CLI::App& app);
 void add_explain(CLI::App& app);
 void add_devices(CLI::App& app);
 void add_maps(CLI::App& app);
+void add_maps_import(CLI::App& maps);
 void add_calibrate(CLI::App& app);
 void add_calibrate_record(CLI::App& calibrate);
 void add_fem(CLI::App& app);

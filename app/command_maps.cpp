@@ -1,4 +1,4 @@
-// palpa maps info | sample | import | generate
+// palpa maps info | sample | import | generate, and those of command_maps.h
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
@@ -6,36 +6,16 @@
 #include <thread>
 
 #include "app/command_line.h"
+#include "app/command_maps.h"
 #include "app/generate_map.h"
-#include "avatar/display_ratio.h"
+#include "app/map_info.h"
 #include "files/input_error.h"
 #include "files/text.h"
 #include "stiffnessmaps/field.h"
-#include "stiffnessmaps/import/probing.h"
 #include "stiffnessmaps/map_file.h"
-#include "stiffnessmaps/noise.h"
 
 namespace palpa {
 namespace {
-
-Json info_json(const Map& map, const Field& field) {
-    Json json = map_json(map);
-    json["shape"] = {map.n_depths(), map.n_y, map.n_x};
-    json["missing"] = missing_count(map);
-    const ForceRange range = force_range(map);
-    json["force_range_N"] = {range.lowest_N, range.highest_N};
-    json["not_rising_with_depth"] = field.isotonic_changed;
-    const DisplayRatio law = display_ratio_clear();
-    const double noise_N = normal_noise_N(map);
-    json["noise_N"] = noise_N;
-    json["smoothing_mm"] = 1e3 * default_smoothing_m(map, noise_N, law.path.reference_m, law.gate_N);
-    if (map.tangential == TangentialKind::recorded) {
-        const TangentialAgreement agreement = tangential_agreement(map, field);
-        json["tangential_against_energy"] = {
-            {"correlation", agreement.correlation}, {"slope", agreement.slope}, {"n", agreement.n}};
-    }
-    return json;
-}
 
 void print_info(const Map& map, const Json& info) {
     const ForceRange range = force_range(map);
@@ -82,7 +62,7 @@ void add_info(CLI::App& maps) {
     command->add_flag("--json", options->json, "one JSON object: map.json with shape, missing, force_range_N, ...");
     command->callback([options] {
         const Map map = read_map(options->map);
-        const Json info = info_json(map, make_field(map, {}));
+        const Json info = map_info(map, make_field(map, {}));
         if (options->json) {
             std::fputs(json_text(info).c_str(), stdout);
         } else {
@@ -149,53 +129,6 @@ void add_sample(CLI::App& maps) {
     command->callback([options] { sample_map(*options); });
 }
 
-struct ImportOptions {
-    std::string csv;
-    std::string output;
-    double indenter_radius_mm = 3.0;
-    bool json = false;
-};
-
-void import_map(const ImportOptions& options) {
-    ProbingReport report;
-    const Map map = import_probing(options.csv, 1e-3 * options.indenter_radius_mm, report);
-    write_map(map, options.output);
-    const double greatest_N = force_range(map).highest_N;
-    if (options.json) {
-        Json json = info_json(map, make_field(map, {}));
-        json["import"] = {{"rows", report.rows},
-                          {"points", report.points},
-                          {"rejected_rows", report.rejected_rows},
-                          {"rejected_points", report.rejected_points},
-                          {"missing_cells", report.missing_cells},
-                          {"median_offset_N", report.median_offset_N},
-                          {"median_residual_N", report.median_residual_N},
-                          {"worst_residual_N", report.worst_residual_N}};
-        std::fputs(json_text(json).c_str(), stdout);
-        return;
-    }
-    std::printf("%s: %zu points become %zu x %zu cells of %.2f x %.2f mm, %zu depths to %.2f mm\n",
-                options.output.c_str(), report.points, map.n_x, map.n_y, 1e3 * map.spacing_m[0],
-                1e3 * map.spacing_m[1], map.n_depths(), 1e3 * map.depths_m.back());
-    std::printf("  %zu cells missing; %zu of %zu rows and %zu points rejected; %.3g N at contact subtracted (median)\n",
-                report.missing_cells, report.rejected_rows, report.rows, report.rejected_points, report.median_offset_N);
-    std::printf("  map against recording: %.2g N median, %.2g N worst, of %.3g N\n", report.median_residual_N,
-                report.worst_residual_N, greatest_N);
-}
-
-void add_import(CLI::App& maps) {
-    auto options = std::make_shared<ImportOptions>();
-    CLI::App* command = maps.add_subcommand("import", "Point-wise probing recorded by a robot becomes a map");
-    command->add_option("FILE", options->csv,
-                        "CSV with point, ref_x_mm, ref_y_mm, depth_cmd_mm, depth_mm, fn_N")->required();
-    command->add_option("-o,--output", options->output, "new map folder NAME.map")->required();
-    command->add_option("--indenter-radius-mm", options->indenter_radius_mm,
-                        "ball tip of the robot (default 3, assumed: recordings do not say)")
-        ->check(CLI::Range(1e-3, 1e3));
-    command->add_flag("--json", options->json, "one JSON object: as `maps info`, and how the import went");
-    command->callback([options] { import_map(*options); });
-}
-
 struct GenerateArguments {
     GenerateOptions options;
     std::string phantom;
@@ -248,12 +181,16 @@ void add_generate(CLI::App& maps) {
 }  // namespace
 
 void add_maps(CLI::App& app) {
-    CLI::App* maps = app.add_subcommand("maps", "Stiffness maps: info, sample, import, generate");
+    CLI::App* maps = app.add_subcommand("maps", "Stiffness maps: info, sample, import, generate, detect, plot, export, compare");
     maps->require_subcommand(1);
     add_info(*maps);
     add_sample(*maps);
-    add_import(*maps);
+    add_maps_import(*maps);
     add_generate(*maps);
+    add_maps_detect(*maps);
+    add_maps_plot(*maps);
+    add_maps_export(*maps);
+    add_maps_compare(*maps);
 }
 
 }  // namespace palpa

@@ -118,9 +118,10 @@ void add_run(CLI::App& app) {
     command->add_option("--height-px", options->height_px, "of the window (800)")->check(CLI::Range(100, 16384));
     command->add_flag("--practice", options->practice, "nodules shown");
     command->add_flag("--test", options->test, "nodules hidden until the trial is finished")->excludes("--practice");
-    command->add_option("--screen", options->screen, "opened first: trial, devices, scale or calibrate")
+    command->add_option("--screen", options->screen, "opened first: trial, devices, scale, calibrate or maps")
         ->transform(CLI::CheckedTransformer(std::map<std::string, Screen>{
-            {"trial", Screen::trial}, {"devices", Screen::devices}, {"scale", Screen::scale}, {"calibrate", Screen::calibrate}}));
+            {"trial", Screen::trial}, {"devices", Screen::devices}, {"scale", Screen::scale}, {"calibrate", Screen::calibrate},
+            {"maps", Screen::maps}}));
     command->add_flag("--left-handed", options->left_handed, "controls on the right");
     command->callback([options] {
         if (options->headless) return run_headless(*options);

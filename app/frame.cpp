@@ -1,6 +1,7 @@
 #include "app/frame.h"
 
 #include "app/calibrate_screen.h"
+#include "app/map_screen.h"
 #include "app/picture.h"
 #include "render/gl.h"
 #include "render/png.h"
@@ -36,6 +37,7 @@ void draw_panels(const Shown& shown, const Layout& layout, Gui& gui, Screens& sc
     if (screens.screen == Screen::devices) return draw_device_screen(shown, gui, screens, wishes);
     if (screens.screen == Screen::scale) return draw_scale_screen(shown, gui, screens, wishes);
     if (screens.screen == Screen::calibrate && screens.calibrate) return draw_calibrate_screen(shown, gui, *screens.calibrate, wishes);
+    if (screens.screen == Screen::maps && screens.maps) return draw_map_screen(shown, gui, *screens.maps, wishes);
     if (screens.screen == Screen::study && screens.study) return draw_study_screen(shown.now_s, gui, *screens.study, wishes);
     if (screens.screen == Screen::reveal) {
         draw_reveal_on_tissue(shown, gui, screens.debrief);

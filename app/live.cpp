@@ -9,6 +9,7 @@
 #include "app/calibrate_screen.h"
 #include "app/frame.h"
 #include "app/load.h"
+#include "app/map_screen.h"
 #include "app/prepare.h"
 #include "app/replay.h"
 #include "app/save_picture.h"
@@ -135,6 +136,7 @@ double now_of(const App& app, const Window& window) { return window.now_s() - ap
 void begin(const Window& window, const Gui& gui, App& app) {
     const TrialMode mode = app.settings.test_mode ? TrialMode::test : TrialMode::practice;
     app.screens.screen = Screen::trial;
+    app.screens.maps.reset();
     app.screens.menu = false;
     app.screens.note.clear();
     app.stopped.clear();
@@ -278,6 +280,11 @@ void close_calibrate(App& app) {
 
 // A press that is going on when its screen goes ends there.
 void open_screen(Screen screen, double now_s, App& app) {
+    if (screen == Screen::maps && (app.screens.study || !may_show_maps(app.session.trial))) {
+        app.screens.note = "Maps show where nodules are: finish the test first (F).";
+        app.screens.menu = false;
+        return;
+    }
     const State& state = app.session.state;
     if (app.screens.screen == Screen::trial && screen != Screen::trial && state.pointer) {
         Sample end;
@@ -294,6 +301,8 @@ void open_screen(Screen screen, double now_s, App& app) {
     }
     if (screen == Screen::calibrate && !app.screens.calibrate) app.screens.calibrate = make_calibrate_form();
     if (app.screens.screen == Screen::calibrate && screen != Screen::calibrate) close_calibrate(app);
+    if (screen == Screen::maps && !app.screens.maps) app.screens.maps = make_map_browser(app.session.scene, map_choices());
+    if (screen != Screen::maps) app.screens.maps.reset();
     app.screens.screen = screen;
     app.screens.menu = false;
 }

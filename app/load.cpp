@@ -59,6 +59,20 @@ Scene load_scene(const std::string& name) {
 std::vector<Choice> scene_choices() { return choices("scenes"); }
 std::vector<Choice> profile_choices() { return choices("profiles"); }
 
+std::vector<Choice> map_choices() {
+    std::vector<Choice> out;
+    for (const fs::path& folder : {assets_folder() / "maps", user_folder() / "maps"}) {
+        std::error_code error;
+        for (const auto& entry : fs::directory_iterator(folder, error)) {
+            if (entry.path().extension() != ".map") continue;
+            const std::string name = name_in(entry.path() / "map.json");
+            if (!name.empty()) out.push_back({name, entry.path().string()});
+        }
+    }
+    std::sort(out.begin(), out.end(), [](const Choice& a, const Choice& b) { return a.name < b.name; });
+    return out;
+}
+
 fs::path default_trace() { return assets_folder() / "traces" / "raster.tsv"; }
 
 }  // namespace palpa

@@ -17,6 +17,7 @@ Scene load_scene(const std::string& name);
 // ($XDG_DATA_HOME/palpa/scenes and profiles). Files that cannot be read are left out.
 std::vector<Choice> scene_choices();
 std::vector<Choice> profile_choices();
+std::vector<Choice> map_choices();  // folders NAME.map, of the assets and of $XDG_DATA_HOME/palpa/maps
 std::filesystem::path user_folder();  // empty if neither XDG_DATA_HOME nor HOME names one
 
 std::filesystem::path default_trace();

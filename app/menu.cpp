@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "app/look.h"
+#include "app/map_screen.h"
 #include "app/screens.h"
 
 namespace palpa {
@@ -56,6 +57,7 @@ void right_side(const Shown& shown, const Gui& gui, Screens& screens, Wishes& wi
     if (big_button("Size of the screen", "Z", {}, gui)) wishes.screen = Screen::scale;
     if (big_button("Device check", "D", {}, gui)) wishes.screen = Screen::devices;
     if (big_button("Calibrate pressure", "P", {}, gui)) wishes.screen = Screen::calibrate;
+    if (big_button("Maps", "B", {0.0f, kTarget_mm, may_show_maps(shown.trial), false}, gui)) wishes.screen = Screen::maps;
     if (big_button("Cost", "C", {0.0f, kTarget_mm, true, screens.cost}, gui)) screens.cost = !screens.cost;
     if (big_button("Full screen", "F11", {0.0f, kTarget_mm, true, shown.settings.full_screen}, gui)) wishes.full_screen = true;
     if (big_button("Quit", "Ctrl Q", {}, gui)) wishes.quit = true;
@@ -170,6 +172,7 @@ void take_keys(const Shown& shown, const Gui& gui, Screens& screens, Wishes& wis
     if (gui.pressed(SDLK_d)) wishes.screen = Screen::devices;
     if (gui.pressed(SDLK_z)) wishes.screen = Screen::scale;
     if (gui.pressed(SDLK_p)) wishes.screen = Screen::calibrate;
+    if (gui.pressed(SDLK_b)) wishes.screen = Screen::maps;
     if (gui.pressed(SDLK_r)) wishes.again = true;
     if (gui.pressed(SDLK_s, true)) wishes.save_picture = true;
     if (screens.screen == Screen::trial) trial_keys(shown, gui, wishes);

@@ -16,7 +16,7 @@
 
 namespace palpa {
 
-enum class Screen : std::uint8_t { trial, reveal, devices, scale, calibrate, study };
+enum class Screen : std::uint8_t { trial, reveal, devices, scale, calibrate, study, maps };
 
 // Times of the frame loop.
 struct FrameTimes {
@@ -39,6 +39,7 @@ struct Dot {
 };
 
 struct CalibrateForm;  // calibrate_screen.h
+struct MapBrowser;     // map_screen.h
 struct StudyRun;       // study_run.h
 
 // What is open, and what a person has typed so far; means nothing to a replay.
@@ -60,6 +61,7 @@ struct Screens {
     std::shared_ptr<DeviceCheck> check;     // what they sent while the device check was open
     std::vector<Dot> dots;                  // the last places in its test area
     std::shared_ptr<CalibrateForm> calibrate;  // while its screen is open
+    std::shared_ptr<MapBrowser> maps;          // likewise
     std::shared_ptr<StudyRun> study;        // the app runs a study: no menu, no truth before the end
 };
 

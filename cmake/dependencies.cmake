@@ -16,6 +16,10 @@ pkg_check_modules(FONTCONFIG REQUIRED IMPORTED_TARGET fontconfig)
 find_package(OpenSSL 3 REQUIRED)
 pkg_check_modules(HTTPLIB REQUIRED IMPORTED_TARGET cpp-httplib)
 pkg_check_modules(QRENCODE REQUIRED IMPORTED_TARGET libqrencode)
+# recordings: MATLAB, HDF5 and TIFF files
+pkg_check_modules(MATIO REQUIRED IMPORTED_TARGET matio)
+pkg_check_modules(HDF5 REQUIRED IMPORTED_TARGET hdf5)
+find_package(TIFF REQUIRED)
 if(PALPA_BENCH)
     find_package(benchmark 1.7 REQUIRED)
 endif()
@@ -31,3 +35,11 @@ if(PALPA_MUMPS)
     # MUMPS first, then OpenBLAS: its symbols win over whatever libblas.so.3 the system has chosen
     target_link_libraries(palpa_mumps INTERFACE ${MUMPS_LIBRARY} ${OPENBLAS_LIBRARY})
 endif()
+
+# Images: two modules of OpenCV. Its CMake files come only with the package of all modules, five times as large.
+find_library(OPENCV_CORE_LIBRARY opencv_core REQUIRED)
+find_library(OPENCV_IMGPROC_LIBRARY opencv_imgproc REQUIRED)
+find_path(OPENCV_INCLUDE opencv2/imgproc.hpp PATH_SUFFIXES opencv4 REQUIRED)
+add_library(palpa_opencv INTERFACE)
+target_include_directories(palpa_opencv SYSTEM INTERFACE ${OPENCV_INCLUDE})
+target_link_libraries(palpa_opencv INTERFACE ${OPENCV_IMGPROC_LIBRARY} ${OPENCV_CORE_LIBRARY})

@@ -70,7 +70,7 @@ void append_synced(const std::filesystem::path& path, std::string_view text) {
     char last = '\n';
     const off_t size = ::lseek(fd, 0, SEEK_END);
     std::string whole(text);
-    if (size > 0 && ::pread(fd, &last, 1, size - 1) == 1 && last != '\n') whole.insert(0, "\n");
+    if (size > 0 && ::pread(fd, &last, 1, size - 1) == 1 && last != '\n') whole.insert(whole.begin(), '\n');
     const bool good = write_all(fd, whole) && ::fsync(fd) == 0;
     const int error = errno;
     ::close(fd);

@@ -17,11 +17,10 @@ Table::Table(std::string text, std::string file_name, char separator)
     if (!next_line(header) || header.empty()) throw bad_input(file_, "line 1", "nothing", "a header line");
     split(header);
     columns_.assign(fields_.begin(), fields_.end());
-    for (std::size_t i = 0; i < columns_.size(); ++i) {
-        if (std::count(columns_.begin(), columns_.end(), columns_[i]) > 1) {
-            throw bad_input(file_, "line 1", "the column " + shown(columns_[i]) + " twice", "it once");
-        }
-    }
+    std::vector<std::string_view> sorted = fields_;
+    std::sort(sorted.begin(), sorted.end());
+    const auto twice = std::adjacent_find(sorted.begin(), sorted.end());
+    if (twice != sorted.end()) throw bad_input(file_, "line 1", "the column " + shown(*twice) + " twice", "it once");
 }
 
 bool Table::has_column(std::string_view name) const {
@@ -70,6 +69,10 @@ bool Table::next() {
                             (comma_for_point ? " (a decimal comma? numbers need a point)" : ""));
     }
     return true;
+}
+
+double Table::done() const {
+    return text_.empty() ? 1.0 : static_cast<double>(std::min(at_, text_.size())) / static_cast<double>(text_.size());
 }
 
 void Table::fail(std::size_t column, std::string_view expected) const {

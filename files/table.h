@@ -28,6 +28,7 @@ class Table {
     double finite_number(std::size_t column) const;  // NaN throws too
     [[noreturn]] void fail(std::size_t column, std::string_view expected) const;
     std::size_t line() const { return line_; }
+    double done() const;  // share of the text that was handed out, 0 ... 1
     const std::string& file() const { return file_; }
 
  private:

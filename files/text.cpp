@@ -9,6 +9,7 @@
 #include <charconv>
 #include <cmath>
 #include <cstdio>
+#include <cstdint>
 #include <cstring>
 #include <fstream>
 #include <stdexcept>
@@ -25,6 +26,9 @@ std::string read_text(const std::filesystem::path& path, std::size_t limit_bytes
     std::FILE* file = std::fopen(path.c_str(), "rb");
     if (file == nullptr) throw InputError(path.string() + ": cannot be read: " + std::strerror(errno));
     std::string text;
+    // its size is known for most files: growing would take three times the memory for a moment
+    const std::uintmax_t size = std::filesystem::file_size(path, error);
+    if (!error && size <= limit_bytes) text.reserve(size + 1);
     std::array<char, 1 << 16> buffer;
     while (const std::size_t n = std::fread(buffer.data(), 1, buffer.size(), file)) {
         text.append(buffer.data(), n);

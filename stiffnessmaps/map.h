@@ -4,6 +4,7 @@
 
 #include <optional>
 #include <string>
+#include <variant>
 #include <vector>
 
 namespace palpa {
@@ -23,11 +24,20 @@ struct Nodule {
     std::optional<double> angle_deg;
 };
 
+// One thing that was chosen, by the program or by a person, when a recording became this map.
+struct SourceChoice {
+    std::string key;  // "pitch_mm"
+    std::variant<double, std::string, std::vector<double>> value;
+    std::string how;     // why this value
+    std::string option;  // what chooses another one: "--pitch-mm"
+};
+
 struct MapSource {
     SourceKind kind = SourceKind::recorded;
     std::string how;
     std::string from;
     std::string licence;
+    std::vector<SourceChoice> choices;
 };
 
 struct Map {
@@ -42,6 +52,9 @@ struct Map {
     std::vector<float> normal_N;
     std::vector<float> tangential_x_N;
     std::vector<float> tangential_y_N;
+    // Empty, or normal_N with every gap closed, for programs that cannot do with NaN; look-up does not read it.
+    std::vector<float> filled_normal_N;
+    std::optional<double> noise_N;  // standard deviation of the normal force, where it was estimated at import
     TangentialKind tangential = TangentialKind::none;
     IndenterShape indenter = IndenterShape::sphere;
     double indenter_radius_m = 4e-3;

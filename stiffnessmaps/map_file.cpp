@@ -2,6 +2,7 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
@@ -42,12 +43,30 @@ Nodule read_nodule(JsonReader json) {
     return nodule;
 }
 
+SourceChoice read_choice(JsonReader json) {
+    SourceChoice choice;
+    choice.key = json.text("key");
+    const Json& value = json.any("value");
+    if (value.is_number()) {
+        choice.value = json.number("value", kAnyNumber);
+    } else if (value.is_array()) {
+        choice.value = json.numbers("value", 0, kAnyNumber);
+    } else {
+        choice.value = json.text("value");
+    }
+    choice.how = json.text("how", "");
+    choice.option = json.text("option", "");
+    json.finish();
+    return choice;
+}
+
 MapSource read_source(JsonReader json) {
     MapSource source;
     source.kind = static_cast<SourceKind>(json.choice("kind", {"recorded", "simulated", "analytic"}));
     source.how = json.text("how", "");
     source.from = json.text("from", "");
     source.licence = json.text("licence", "");
+    for (JsonReader& choice : json.objects("choices")) source.choices.push_back(read_choice(choice));
     json.finish();
     return source;
 }
@@ -83,6 +102,17 @@ std::vector<float> read_forces(const fs::path& path, const Map& map, std::vector
     if (array.shape != shape) throw bad_input(path.string(), "shape", shape_text(array.shape), shape_text(shape));
     check_forces(array.values, path.string());
     return std::move(array.values);
+}
+
+void check_filled(const Map& map, const std::string& file) {
+    if (map.filled_normal_N.empty()) return;
+    for (std::size_t i = 0; i < map.normal_N.size(); ++i) {
+        const float filled = map.filled_normal_N[i];
+        if (std::isnan(filled) || (!std::isnan(map.normal_N[i]) && filled != map.normal_N[i])) {
+            throw bad_input(file, "value " + std::to_string(i), short_number(static_cast<double>(filled)),
+                            "the force of normal_N.npy where it was measured, and a number where it was not");
+        }
+    }
 }
 
 void check_area(const Map& map, const std::string& file) {
@@ -127,6 +157,8 @@ Map read_map(const fs::path& folder) {
     for (JsonReader& nodule : json.objects("nodules")) map.nodules.push_back(read_nodule(nodule));
     map.source = read_source(json.object("source"));
 
+    if (json.has("noise_N")) map.noise_N = json.number("noise_N", {0.0, 1e5});
+
     std::vector<std::size_t> shape;
     if (json.has("count")) {
         const int n_x = static_cast<int>(json.numbers("count", 2, {1.0, 1e6})[0]);
@@ -146,12 +178,32 @@ Map read_map(const fs::path& folder) {
     if (map.tangential == TangentialKind::recorded && map.tangential_x_N.empty() && map.tangential_y_N.empty()) {
         throw bad_input(file.string(), "tangential", "recorded", "tangential_x_N.npy or tangential_y_N.npy beside it");
     }
+    if (const fs::path path = folder / "filled_normal_N.npy"; fs::exists(path)) {
+        map.filled_normal_N = read_forces(path, map, shape);
+        check_filled(map, path.string());
+    }
     check_area(map, file.string());
     if (missing_count(map) == map.normal_N.size()) {
         throw bad_input((folder / "normal_N.npy").string(), "", "no force that was measured", "at least one");
     }
     return map;
 }
+
+namespace {
+
+Json choices_json(const std::vector<SourceChoice>& choices) {
+    Json json = Json::array();
+    for (const SourceChoice& choice : choices) {
+        Json entry{{"key", choice.key}};
+        std::visit([&](const auto& value) { entry["value"] = value; }, choice.value);
+        entry["how"] = choice.how;
+        entry["option"] = choice.option;
+        json.push_back(entry);
+    }
+    return json;
+}
+
+}  // namespace
 
 Json map_json(const Map& map) {
     Json json;
@@ -163,6 +215,7 @@ Json map_json(const Map& map) {
     for (const double depth_m : map.depths_m) json["depths_mm"].push_back(mm(depth_m));
     json["tangential"] = name_of(map.tangential);
     json["indenter"] = {{"shape", name_of(map.indenter)}, {"radius_mm", mm(map.indenter_radius_m)}};
+    if (map.noise_N) json["noise_N"] = *map.noise_N;
     json["nodules"] = Json::array();
     for (const Nodule& nodule : map.nodules) {
         Json entry{{"id", nodule.id},
@@ -179,6 +232,7 @@ Json map_json(const Map& map) {
                       {"how", map.source.how},
                       {"from", map.source.from},
                       {"licence", map.source.licence}};
+    if (!map.source.choices.empty()) json["source"]["choices"] = choices_json(map.source.choices);
     return json;
 }
 
@@ -196,6 +250,7 @@ void check_map(const Map& map, const std::string& file) {
     check_forces(map.normal_N, file);
     check_forces(map.tangential_x_N, file);
     check_forces(map.tangential_y_N, file);
+    check_filled(map, file);
     check_area(map, file);
 }
 
@@ -220,6 +275,7 @@ void write_map(const Map& map, const fs::path& folder) {
         write_array("normal_N.npy", map.normal_N);
         write_array("tangential_x_N.npy", map.tangential_x_N);
         write_array("tangential_y_N.npy", map.tangential_y_N);
+        write_array("filled_normal_N.npy", map.filled_normal_N);
         write_text_atomically(aside / "map.json", json_text(map_json(map)));
         fs::rename(aside, target);
     } catch (const std::exception&) {
@@ -227,6 +283,11 @@ void write_map(const Map& map, const fs::path& folder) {
         fs::remove_all(aside, ignored);
         throw;
     }
+}
+
+void replace_map_json(const Map& map, const fs::path& folder) {
+    check_map(map, folder.string());
+    write_text_atomically(folder / "map.json", json_text(map_json(map)));
 }
 
 }  // namespace palpa

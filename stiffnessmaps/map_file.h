@@ -1,5 +1,6 @@
 #pragma once
-// Map folders: NAME.map/ with map.json, normal_N.npy, tangential_x_N.npy, tangential_y_N.npy.
+// Map folders: NAME.map/ with map.json, normal_N.npy and, where there, tangential_x_N.npy, tangential_y_N.npy and
+// filled_normal_N.npy.
 
 #include <filesystem>
 
@@ -16,6 +17,10 @@ void check_map(const Map& map, const std::string& file);
 
 // Writes a new folder, whole or not at all. Throws InputError if something of that name exists.
 void write_map(const Map& map, const std::filesystem::path& folder);
+
+// Replaces map.json of a map that is there (its nodules, its source); the arrays stay. Comments in it are lost. Throws
+// std::runtime_error if it cannot be written.
+void replace_map_json(const Map& map, const std::filesystem::path& folder);
 
 Json map_json(const Map& map);  // the contents of map.json
 

@@ -5,9 +5,12 @@
 
 namespace palpa {
 
-// Standard deviation of white noise in the normal force (N), from second differences along x and y
-// (median absolute value / (0.6745 sqrt(6)), robust against edges of nodules). 0 if the map is too small.
+// Standard deviation of white noise in the normal force (N): what the map says of itself, or else the estimate.
 double normal_noise_N(const Map& map);
+
+// The same from second differences along x and y (median absolute value / (0.6745 sqrt(6)), robust against edges
+// of nodules). 0 if the map is too small.
+double estimated_noise_N(const Map& map);
 
 // Smallest Gaussian sigma (m) for which noise of `noise_N` leaves sd(df) <= gate_N / 3 in the energy force:
 //   sd(df) = s_ref s_E sqrt(3 dx dy / (16 pi)) / sigma^3,  s_E = noise sqrt(sum of squared trapezoid weights)

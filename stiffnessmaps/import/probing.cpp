@@ -1,223 +1,356 @@
 #include "stiffnessmaps/import/probing.h"
 
+#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
+#include <numbers>
+#include <unordered_map>
 
 #include "files/input_error.h"
 #include "files/table.h"
 #include "files/text.h"
-#include "stiffnessmaps/field.h"
-#include "stiffnessmaps/map_file.h"
+#include "stiffnessmaps/import/choices.h"
+#include "stiffnessmaps/import/columns.h"
+#include "stiffnessmaps/import/finish.h"
+#include "stiffnessmaps/import/gridding.h"
+#include "stiffnessmaps/import/probing_curve.h"
+#include "stiffnessmaps/import/robust.h"
 
 namespace palpa {
 namespace {
 
 constexpr double kOffCommand_m = 1e-3;
+constexpr double kSamePlace_m = 0.2e-3;
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
-struct Point {
-    double x_m = 0.0;
-    double y_m = 0.0;
-    std::size_t line = 0;
-    std::vector<double> depth_m;  // ascending, from the contact on
-    std::vector<double> force_N;  // less the force at contact
+// Finds the place that a row belongs to.
+class Places {
+  public:
+    explicit Places(std::vector<ProbedPoint>& points) : points_(points) {}
+
+    ProbedPoint& of_number(const Table& table, std::size_t column, std::size_t line, double x_m, double y_m,
+                           std::size_t x_column) {
+        const double id = table.finite_number(column);
+        if (id != std::floor(id) || std::abs(id) > 1e9) table.fail(column, "a whole number");
+        const auto [it, is_new] = by_number_.try_emplace(static_cast<std::int64_t>(id), points_.size());
+        if (is_new) return add(x_m, y_m, line);
+        ProbedPoint& point = points_[it->second];
+        if (x_m != point.x_m || y_m != point.y_m) {
+            table.fail(x_column,
+                       "the position of line " + std::to_string(point.line) + " for the same point");
+        }
+        return point;
+    }
+
+    ProbedPoint& near(double x_m, double y_m, std::size_t line) {
+        const auto same = [&](const ProbedPoint& p) {
+            return std::hypot(p.x_m - x_m, p.y_m - y_m) <= kSamePlace_m;
+        };
+        if (!points_.empty() && same(points_.back())) return points_.back();
+        for (std::int64_t b = -1; b <= 1; ++b) {
+            for (std::int64_t a = -1; a <= 1; ++a) {
+                const auto [from, to] = by_square_.equal_range(square(x_m, a, y_m, b));
+                for (auto it = from; it != to; ++it) {
+                    if (same(points_[it->second])) return points_[it->second];
+                }
+            }
+        }
+        by_square_.emplace(square(x_m, 0, y_m, 0), points_.size());
+        return add(x_m, y_m, line);
+    }
+
+  private:
+    static std::int64_t square(double x_m, std::int64_t a, double y_m, std::int64_t b) {
+        constexpr double kFar = 1e9;
+        const auto i = static_cast<std::int64_t>(std::clamp(std::floor(x_m / kSamePlace_m), -kFar, kFar)) + a;
+        const auto j = static_cast<std::int64_t>(std::clamp(std::floor(y_m / kSamePlace_m), -kFar, kFar)) + b;
+        return i * 4'000'000'007 + j;
+    }
+    ProbedPoint& add(double x_m, double y_m, std::size_t line) {
+        points_.emplace_back();
+        points_.back().x_m = x_m;
+        points_.back().y_m = y_m;
+        points_.back().line = line;
+        return points_.back();
+    }
+    std::vector<ProbedPoint>& points_;
+    std::unordered_map<std::int64_t, std::size_t> by_number_;
+    std::unordered_multimap<std::int64_t, std::size_t> by_square_;
 };
 
-double median(std::vector<double> values) {
-    if (values.empty()) return 0.0;
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
+// The force along the surface's normal: as recorded, from the recorded normal, or along z.
+double normal_force(const Table& table, const Columns& columns) {
+    if (columns.has(Role::normal_force)) return value_of(table, columns, Role::normal_force);
+    if (!columns.has(Role::normal_z)) return value_of(table, columns, Role::force_z);
+    return value_of(table, columns, Role::force_x) * value_of(table, columns, Role::normal_x) +
+           value_of(table, columns, Role::force_y) * value_of(table, columns, Role::normal_y) +
+           value_of(table, columns, Role::force_z) * value_of(table, columns, Role::normal_z);
 }
 
-std::map<long, Point> read_points(const std::filesystem::path& csv, ProbingReport& report,
-                                  std::vector<double>& offsets_N) {
-    Table table = read_csv(csv);
-    const std::size_t point = table.column("point");
-    const std::size_t x = table.column("ref_x_mm");
-    const std::size_t y = table.column("ref_y_mm");
-    const std::size_t commanded = table.column("depth_cmd_mm");
-    const std::size_t depth = table.column("depth_mm");
-    const std::size_t force = table.column("fn_N");
-
-    std::map<long, Point> points;
-    while (table.next()) {
-        ++report.rows;
-        const double id = table.finite_number(point);
-        if (id != std::floor(id) || std::abs(id) > 1e9) table.fail(point, "a whole number");
-        const double x_m = 1e-3 * table.finite_number(x);
-        const double y_m = 1e-3 * table.finite_number(y);
-        auto [it, is_new] = points.try_emplace(static_cast<long>(id));
-        Point& p = it->second;
-        if (is_new) {
-            p.x_m = x_m;
-            p.y_m = y_m;
-            p.line = table.line();
-        } else if (x_m != p.x_m || y_m != p.y_m) {
-            table.fail(x, "the position of line " + std::to_string(p.line) + " for the same point");
-        }
-        const double depth_m = 1e-3 * table.number(depth);
-        const double force_N = table.number(force);
-        const double commanded_m = 1e-3 * table.number(commanded);
-        const bool moved_on = p.depth_m.empty() || depth_m > p.depth_m.back();
-        if (!moved_on || std::isnan(force_N) || !(std::abs(depth_m - commanded_m) < kOffCommand_m)) {
-            ++report.rejected_rows;
-            continue;
-        }
-        if (p.depth_m.empty()) offsets_N.push_back(force_N);
-        p.depth_m.push_back(depth_m);
-        p.force_N.push_back(force_N);
-    }
-    for (auto& [id, p] : points) {
-        if (p.depth_m.empty()) continue;
-        const double depth_offset_m = p.depth_m.front();
-        const double offset_N = p.force_N.front();
-        for (double& d : p.depth_m) d -= depth_offset_m;
-        for (double& f : p.force_N) f -= offset_N;
-    }
-    return points;
-}
-
-// Coordinates that appear, and the pitch that they are multiples of.
-struct Axis {
-    double origin_m = 0.0;
-    double pitch_m = 1e-3;
-    std::size_t n = 1;
-};
-
-Axis find_axis(const std::map<long, Point>& points, bool along_y, const std::string& file) {
-    std::vector<double> places;
-    for (const auto& [id, p] : points) places.push_back(along_y ? p.y_m : p.x_m);
-    std::sort(places.begin(), places.end());
-    constexpr double kSame_m = 1e-5;
-    std::vector<double> steps;
-    for (std::size_t i = 1; i < places.size(); ++i) {
-        if (places[i] - places[i - 1] > kSame_m) steps.push_back(places[i] - places[i - 1]);
-    }
-    Axis axis;
-    axis.origin_m = places.front();
-    if (steps.empty()) return axis;
-    const double about_m = median(steps);  // a gap in the grid makes some steps longer, never most
-    const double count = std::round((places.back() - places.front()) / about_m);
-    constexpr double kMost = 10000.0;
-    if (count >= kMost) {
-        throw bad_input(file, along_y ? "ref_y_mm" : "ref_x_mm", short_number(1e3 * about_m) + " mm between positions",
-                        "a regular grid");
-    }
-    axis.n = 1 + static_cast<std::size_t>(count);
-    axis.pitch_m = (places.back() - places.front()) / count;
-    return axis;
-}
-
-std::size_t index_on(const Axis& axis, double place_m, std::string_view column, const Point& p,
-                     const std::string& file) {
-    const double at = (place_m - axis.origin_m) / axis.pitch_m;
-    constexpr double kOffGrid = 0.1;  // of the pitch
-    if (std::abs(at - std::round(at)) > kOffGrid) {
-        throw bad_input(file, "line " + std::to_string(p.line) + ", " + std::string(column),
-                        short_number(1e3 * place_m) + " mm",
-                        "a position on the regular grid of " + short_number(1e3 * axis.pitch_m) + " mm");
-    }
-    return static_cast<std::size_t>(std::llround(at));
-}
-
-// Force at a depth from a point's own steps; NaN beyond its greatest depth (5 % of a step is let pass).
-double force_at(const Point& p, double depth_m, double step_m) {
-    const auto& d = p.depth_m;
-    if (depth_m > d.back() + 0.05 * step_m) return std::numeric_limits<double>::quiet_NaN();
-    std::size_t i = 1;
-    while (i + 1 < d.size() && d[i] < depth_m) ++i;
-    const double s = (depth_m - d[i - 1]) / (d[i] - d[i - 1]);
-    return p.force_N[i - 1] + s * (p.force_N[i] - p.force_N[i - 1]);
-}
-
-void measure_residuals(const Map& map, const std::map<long, Point>& points, ProbingReport& report) {
-    const Field field = make_field(map, {});
-    std::vector<double> residuals;
-    for (const auto& [id, p] : points) {
-        if (p.depth_m.size() < 2) continue;
-        const Place place = place_at(field, {p.x_m, p.y_m});
-        for (std::size_t i = 1; i < p.depth_m.size(); ++i) {
-            if (p.depth_m[i] > greatest_depth_m(field, place)) continue;
-            residuals.push_back(std::abs(normal_force_N(field, place, p.depth_m[i]) - p.force_N[i]));
-        }
-    }
-    if (residuals.empty()) return;
-    report.worst_residual_N = *std::max_element(residuals.begin(), residuals.end());
-    report.median_residual_N = median(residuals);
+void need_columns(const Columns& columns, const Table& table) {
+    need(columns, table, {Role::x, Role::y});
+    if (!columns.has(Role::depth) && !columns.has(Role::z)) need(columns, table, {Role::depth});
+    if (columns.has(Role::normal_force)) return;
+    if (!columns.has(Role::force_z)) need(columns, table, {Role::normal_force});
+    if (columns.has(Role::normal_z))
+        need(columns, table, {Role::normal_x, Role::normal_y, Role::force_x, Role::force_y});
 }
 
 }  // namespace
 
-Map import_probing(const std::filesystem::path& csv, double indenter_radius_m, ProbingReport& report) {
-    const std::string file = csv.string();
-    std::vector<double> offsets_N;
-    auto points = read_points(csv, report, offsets_N);
-    report.points = points.size();
-    report.median_offset_N = median(offsets_N);
-    std::vector<double> greatest_m;
-    std::vector<double> steps;
-    for (const auto& [id, p] : points) {
-        if (p.depth_m.size() < 2) {
-            ++report.rejected_points;
+Probing read_probing(Table& table, const Columns& columns, const ImportOptions& options,
+                     ImportReport& report) {
+    need_columns(columns, table);
+    Probing probing;
+    probing.depth_from_z = !columns.has(Role::depth);
+    const bool lateral = probing.depth_from_z && options.remove_tilt && !columns.has(Role::normal_force) &&
+                         columns.has(Role::force_x) && columns.has(Role::force_y);
+    const double sign = options.negate_force ? -1.0 : 1.0;
+    Places places(probing.points);
+    std::size_t not_numbers = 0;
+    constexpr double kFar_m = std::numeric_limits<double>::infinity();
+    std::array<double, 4> extent_m{kFar_m, -kFar_m, kFar_m, -kFar_m};
+    std::vector<double> all_depths_m;  // every so many, to see whether the unit can be
+    std::vector<double> all_forces_N;
+    while (table.next()) {
+        ++report.rows;
+        if ((report.rows & 0xffff) == 0 && options.progress) options.progress("reading", table.done());
+        const double x_m = value_of(table, columns, Role::x);
+        const double y_m = value_of(table, columns, Role::y);
+        if (std::isnan(x_m) || std::isnan(y_m)) {
+            ++not_numbers;
             continue;
         }
+        if (!inside_region(options.region_m, x_m, y_m)) continue;
+        extent_m = {std::min(extent_m[0], x_m), std::max(extent_m[1], x_m), std::min(extent_m[2], y_m),
+                    std::max(extent_m[3], y_m)};
+        ProbedPoint& p = columns.has(Role::point)
+                             ? places.of_number(table, columns[Role::point].index, table.line(), x_m, y_m,
+                                                columns[Role::x].index)
+                             : places.near(x_m, y_m, table.line());
+        const double depth_m =
+            probing.depth_from_z ? -value_of(table, columns, Role::z) : value_of(table, columns, Role::depth);
+        const double force_N = sign * normal_force(table, columns);
+        if (std::isnan(depth_m) || std::isnan(force_N)) {
+            ++not_numbers;
+            continue;
+        }
+        if (all_depths_m.size() < 1000 || report.rows % 64 == 0) {
+            all_depths_m.push_back(std::abs(depth_m));
+            all_forces_N.push_back(std::abs(force_N));
+        }
+        const double off_m = columns.has(Role::commanded_depth)
+                                 ? depth_m - value_of(table, columns, Role::commanded_depth)
+                                 : 0.0;
+        const bool moved_on = p.depth_m.empty() || depth_m > p.depth_m.back();
+        if (!moved_on || !(std::abs(off_m) < kOffCommand_m)) {
+            ++report.rejected_rows;
+            continue;
+        }
+        p.depth_m.push_back(depth_m);
+        p.force_N.push_back(force_N);
+        if (!lateral) continue;
+        p.lateral_N[0].push_back(sign * value_of(table, columns, Role::force_x));
+        p.lateral_N[1].push_back(sign * value_of(table, columns, Role::force_y));
+    }
+    report.rejected_rows += not_numbers;
+    if (probing.points.empty() || not_numbers == report.rows) {
+        throw bad_input(table.file(), "",
+                        report.rows == 0   ? "no rows"
+                        : options.region_m ? "no row with numbers in the region"
+                                           : "no row with numbers",
+                        "probing at several depths");
+    }
+    constexpr double kNearlyAll = 0.99;  // a wild row is no other unit
+    if (!probing.depth_from_z) check_depth_size(quantile(all_depths_m, kNearlyAll), options, table.file());
+    check_force_size(quantile(all_forces_N, kNearlyAll), columns, options, table.file());
+    check_length_size(std::max(extent_m[1] - extent_m[0], extent_m[3] - extent_m[2]), options, table.file());
+    return probing;
+}
+
+namespace {
+
+struct GridChoice {
+    GridPlan plan;
+    bool on_grid = true;
+};
+
+std::string at_line(const ProbedPoint& p) {
+    return "line " + std::to_string(p.line);
+}
+
+void refuse_off_grid(const Probing& probing, const Axis& axis, bool along_y, const std::string& file) {
+    for (const ProbedPoint& p : probing.points) {
+        const double place_m = along_y ? p.y_m : p.x_m;
+        if (index_on(axis, place_m)) continue;
+        throw bad_input(file, at_line(p) + (along_y ? ", y" : ", x"), short_number(1e3 * place_m) + " mm",
+                        "a position on the regular grid of " + short_number(1e3 * axis.pitch_m) +
+                            " mm that the other points lie on (scattered points: --grid plane)");
+    }
+}
+
+// On the grid that the places lie on, or scattered; throws where they form two grids.
+GridChoice choose_grid(const Probing& probing, const ImportOptions& options, const std::string& file) {
+    std::vector<double> x_m;
+    std::vector<double> y_m;
+    for (const ProbedPoint& p : probing.points) {
+        x_m.push_back(p.x_m);
+        y_m.push_back(p.y_m);
+    }
+    const double near_m = neighbour_distance_m(x_m, y_m);
+    if (const std::size_t groups = group_count(x_m, y_m, 3.0 * near_m); groups > 1 && !options.gridding) {
+        throw bad_input(
+            file, "",
+            std::to_string(groups) + " groups of points far from each other: two grids in one file?",
+            "one; choose by --region-mm X0,X1,Y0,Y1, or take all as one by --grid plane (or on-grid)");
+    }
+    GridChoice choice;
+    const auto x = fit_axis(x_m);
+    const auto y = fit_axis(y_m);
+    const std::size_t n = probing.points.size();
+    const bool sparse = !x || !y ||
+                        static_cast<double>(x->axis.n) * static_cast<double>(y->axis.n) >
+                            20.0 * static_cast<double>(n) + 100.0;
+    const bool scattered = sparse || 2 * (x->off + y->off) > n;
+    const bool asked_on_grid = options.gridding == Gridding::on_grid;
+    choice.on_grid = asked_on_grid || (!options.gridding && !options.pitch_m && !scattered);
+    if (choice.on_grid) {
+        if (!x || !y)
+            throw bad_input(file, "", "positions all over the place",
+                            "a regular grid (scattered points: --grid plane)");
+        refuse_off_grid(probing, x->axis, false, file);
+        refuse_off_grid(probing, y->axis, true, file);
+        choice.plan.x = x->axis;
+        choice.plan.y = y->axis;
+        choice.plan.method = Gridding::on_grid;
+        return choice;
+    }
+    const double pitch_m = options.pitch_m.value_or(std::max(near_m, 1e-6));
+    const auto [x_low, x_high] = std::minmax_element(x_m.begin(), x_m.end());
+    const auto [y_low, y_high] = std::minmax_element(y_m.begin(), y_m.end());
+    choice.plan.x = covering_axis(*x_low, *x_high, pitch_m);
+    choice.plan.y = covering_axis(*y_low, *y_high, pitch_m);
+    choice.plan.method = options.gridding.value_or(Gridding::plane);
+    choice.plan.radius_m = options.radius_m.value_or(std::max(1.5 * near_m, pitch_m));
+    return choice;
+}
+
+void fill_on_grid(const Probing& probing, const GridPlan& plan, Map& map, const std::string& file) {
+    map.normal_N.assign(map.n_depths() * map.n_cells(), static_cast<float>(kNaN));
+    std::vector<std::size_t> line(map.n_cells(), 0);
+    for (const ProbedPoint& p : probing.points) {
+        const std::size_t cell = *index_on(plan.y, p.y_m) * map.n_x + *index_on(plan.x, p.x_m);
+        if (line[cell] != 0) {
+            throw bad_input(
+                file, at_line(p),
+                "a second point in the cell of line " + std::to_string(line[cell]) +
+                    ": two grids in one file?",
+                "one point in one cell (to take all together: --grid plane, median or inverse-distance)");
+        }
+        line[cell] = p.line;
+        for (std::size_t k = 0; k < map.n_depths(); ++k) {
+            map.normal_N[k * map.n_cells() + cell] =
+                static_cast<float>(force_at(p, map.depths_m[k], map.depths_m.front()));
+        }
+    }
+}
+
+void fill_scattered(const Probing& probing, const GridPlan& plan, Map& map, const std::string& file) {
+    Samples samples;
+    for (const ProbedPoint& p : probing.points) {
+        for (const double depth_m : map.depths_m) {
+            const double force_N = force_at(p, depth_m, map.depths_m.front());
+            if (std::isnan(force_N)) continue;
+            samples.x_m.push_back(p.x_m);
+            samples.y_m.push_back(p.y_m);
+            samples.depth_m.push_back(depth_m);
+            samples.force_N.push_back(force_N);
+        }
+    }
+    check_enough_samples(plan, samples.size(), file);
+    map.normal_N = grid_samples(samples, plan).normal_N;
+}
+
+void note_grid(const GridPlan& plan, bool on_grid, const ImportOptions& options, MapSource& source) {
+    add_choice(source, "grid", on_grid ? "on-grid" : name_of(plan.method),
+               on_grid ? "the points lie on a regular grid" : "the points lie on no regular grid", "--grid",
+               options.gridding.has_value());
+    add_choice(source, "pitch_mm", choice_mm({plan.x.pitch_m, plan.y.pitch_m}),
+               on_grid ? "step between the places" : "median distance to the nearest point", "--pitch-mm",
+               options.pitch_m.has_value());
+    if (on_grid) return;
+    add_choice(source, "radius_mm", choice_mm(plan.radius_m), "1.5 times the distance to the nearest point",
+               "--radius-mm", options.radius_m.has_value());
+}
+
+std::vector<double> choose_depths(const Probing& probing, const ImportOptions& options, MapSource& source) {
+    if (!options.depths_m.empty()) {
+        add_choice(source, "depths_mm", choice_mm(options.depths_m), "", "--depths-mm", true);
+        return options.depths_m;
+    }
+    std::vector<double> greatest_m;
+    std::vector<double> steps;
+    for (const ProbedPoint& p : probing.points) {
         greatest_m.push_back(p.depth_m.back());
         steps.push_back(static_cast<double>(p.depth_m.size() - 1));
     }
-    if (greatest_m.empty()) throw bad_input(file, "", "no point with two depths or more", "probing at several depths");
+    constexpr double kMostLayers = 100.0;
+    const std::size_t n = options.layers ? static_cast<std::size_t>(*options.layers)
+                                         : static_cast<std::size_t>(std::min(median(steps), kMostLayers));
+    const double step_m = median(greatest_m) / static_cast<double>(n);
+    std::vector<double> depths_m;
+    for (std::size_t k = 1; k <= n; ++k) depths_m.push_back(step_m * static_cast<double>(k));
+    add_choice(source, "layers", static_cast<double>(n), "the points' median number of steps", "--layers",
+               options.layers.has_value());
+    add_choice(source, "depths_mm", choice_mm(depths_m), "equal steps to the points' median greatest depth",
+               "--depths-mm");
+    return depths_m;
+}
 
+}  // namespace
+
+Map map_of_probing(Probing& probing, const ImportOptions& options, const std::string& file,
+                   ImportReport& report) {
     Map map;
-    map.name = csv.stem().string();
-    const Axis x = find_axis(points, false, file);
-    const Axis y = find_axis(points, true, file);
-    map.origin_m[0] = x.origin_m;
-    map.origin_m[1] = y.origin_m;
-    map.spacing_m[0] = x.pitch_m;
-    map.spacing_m[1] = y.pitch_m;
-    map.n_x = x.n;
-    map.n_y = y.n;
-    const auto n_depths = static_cast<std::size_t>(median(steps));
-    const double step_m = median(greatest_m) / static_cast<double>(n_depths);
-    for (std::size_t k = 1; k <= n_depths; ++k) map.depths_m.push_back(step_m * static_cast<double>(k));
+    MapSource& source = map.source;
+    report.points = probing.points.size();
+    const std::size_t before = probing.points.size();
+    std::erase_if(probing.points, [](const ProbedPoint& p) { return p.depth_m.size() < 2; });
+    if (probing.points.empty()) {
+        throw bad_input(file, "", "no point with two depths or more",
+                        "probing at several depths (if the tip presses towards +z: --column depth=NAME)");
+    }
+    clean_curves(probing, options, source, report);
+    report.rejected_points = before - probing.points.size();
+    if (probing.points.empty())
+        throw bad_input(file, "", "no point with two depths in contact",
+                        "forces that rise with depth (is the sign the other way round? --negate-force)");
 
-    constexpr std::size_t kMostValues = 20'000'000;
-    if (map.n_cells() > kMostValues / map.n_depths()) {
-        throw bad_input(file, "", std::to_string(map.n_x) + " x " + std::to_string(map.n_y) + " cells of " +
-                                      short_number(1e3 * x.pitch_m) + " x " + short_number(1e3 * y.pitch_m) + " mm",
-                        "a grid of at most 20 million forces (is a position far off the others?)");
+    const GridChoice grid = choose_grid(probing, options, file);
+    note_grid(grid.plan, grid.on_grid, options, source);
+    GridPlan plan = grid.plan;
+    plan.depths_m = choose_depths(probing, options, source);
+    check_grid(plan.x, plan.y, plan.depths_m.size(), file);
+    start_map(plan, map);
+    if (grid.on_grid) {
+        fill_on_grid(probing, plan, map, file);
+    } else {
+        fill_scattered(probing, plan, map, file);
     }
-    std::vector<double> deepest_N;
-    for (const auto& [id, p] : points) {
-        if (p.depth_m.size() >= 2) deepest_N.push_back(p.force_N.back());
+    source.how = "point-wise probing; ";
+    source.how += grid.on_grid
+                      ? "on the grid of its places"
+                      : "scattered places brought onto a grid by " + std::string(name_of(plan.method));
+    source.how += "; force at contact subtracted point by point (median " +
+                  short_number(report.median_offset_N) + " N); linear between a point's own depths";
+
+    RecordedPoints recorded;
+    for (const ProbedPoint& p : probing.points) {
+        for (std::size_t i = 1; i < p.depth_m.size(); ++i)
+            recorded.add(p.x_m, p.y_m, p.depth_m[i], p.force_N[i]);
     }
-    if (!(median(deepest_N) > 0.0)) {
-        throw bad_input(file, "fn_N", short_number(median(deepest_N)) + " N at the greatest depths (median, less the force at contact)",
-                        "forces that rise with depth (is the sign the other way round?)");
-    }
-    map.normal_N.assign(map.n_depths() * map.n_cells(), std::numeric_limits<float>::quiet_NaN());
-    std::vector<bool> taken(map.n_cells(), false);
-    for (const auto& [id, p] : points) {
-        if (p.depth_m.size() < 2) continue;
-        const std::size_t cell = index_on(y, p.y_m, "ref_y_mm", p, file) * map.n_x + index_on(x, p.x_m, "ref_x_mm", p, file);
-        if (taken[cell]) throw bad_input(file, "line " + std::to_string(p.line), "a second point in one cell", "one");
-        taken[cell] = true;
-        for (std::size_t k = 0; k < n_depths; ++k) {
-            map.normal_N[k * map.n_cells() + cell] = static_cast<float>(force_at(p, map.depths_m[k], step_m));
-        }
-    }
-    report.missing_cells = static_cast<std::size_t>(std::count(taken.begin(), taken.end(), false));
-    map.tangential = TangentialKind::none;
-    map.indenter = IndenterShape::sphere;
-    map.indenter_radius_m = indenter_radius_m;
-    map.source.kind = SourceKind::recorded;
-    map.source.how = "point-wise probing; grid from the commanded positions; force at contact subtracted point by "
-                     "point (median " + short_number(report.median_offset_N) + " N); linear between a point's own depths";
-    map.source.from = csv.filename().string();
-    map.source.licence = "that of the recording";
-    check_map(map, file);
-    measure_residuals(map, points, report);
+    finish_map(map, recorded, false, options, file, report);
     return map;
 }
 

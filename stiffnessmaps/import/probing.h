@@ -1,29 +1,42 @@
 #pragma once
-// Point-wise probing by a robot becomes a map: at each point of a grid a ball tip is pressed along the
-// surface normal in depth steps, and the force is recorded at each.
+// Point-wise probing becomes a map: at each of many places a tip is pressed in, and the force is recorded at
+// several depths.
 
 #include <filesystem>
 
-#include "stiffnessmaps/map.h"
+#include "stiffnessmaps/import/options.h"
 
 namespace palpa {
 
-struct ProbingReport {
-    std::size_t rows = 0;
-    std::size_t points = 0;
-    std::size_t rejected_rows = 0;     // depth off its command by more than 1 mm: the arm had stopped
-    std::size_t rejected_points = 0;   // fewer than two depths left
-    std::size_t missing_cells = 0;     // of the grid
-    double median_offset_N = 0.0;      // force at contact, subtracted point by point
-    double median_residual_N = 0.0;    // |map - recording| at the recorded depths
-    double worst_residual_N = 0.0;
+class Table;
+struct Columns;
+
+// Depth and force of one place, ascending in depth, from the contact on.
+struct ProbedPoint {
+    double x_m = 0.0;
+    double y_m = 0.0;
+    double z_m = 0.0;  // at contact, where depth comes from z
+    std::size_t line = 0;
+    std::vector<double> depth_m;
+    std::vector<double> force_N;       // normal
+    std::vector<double> lateral_N[2];  // only where the tilt is to be removed
 };
 
-// Reads columns point, ref_x_mm, ref_y_mm, depth_cmd_mm, depth_mm, fn_N (others are passed over). The grid
-// comes from the commanded positions, which must lie on a regular grid along x and y; the depths are as many
-// as the points' median number of steps, equally spaced up to the median greatest depth. Each point's curve,
-// less its force at contact, is interpolated linearly between its own depths; beyond its greatest depth the
-// cell is missing. Throws InputError.
-Map import_probing(const std::filesystem::path& csv, double indenter_radius_m, ProbingReport& report);
+struct Probing {
+    std::vector<ProbedPoint> points;
+    bool depth_from_z = false;
+};
+
+// Rows of one place are told by the column `point`, or else by a position within 0.2 mm. Rows are passed over
+// (and counted) that are not numbers, whose depth is not beyond the last one's, or that are off their command
+// by more than 1 mm (the arm had stopped). Throws InputError.
+Probing read_probing(Table& table, const Columns& columns, const ImportOptions& options,
+                     ImportReport& report);
+
+// What `read_probing` returns, as a map: on the grid that the places lie on, or else scattered places brought
+// onto one (gridding.h). Each place's curve, less its force at contact, is interpolated linearly between its
+// own depths; beyond its greatest depth it is missing. Choices go to map.source. Throws InputError.
+Map map_of_probing(Probing& probing, const ImportOptions& options, const std::string& file,
+                   ImportReport& report);
 
 }  // namespace palpa

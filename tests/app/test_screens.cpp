@@ -4,10 +4,13 @@
 #include <png.h>
 #include <stdlib.h>
 
+#include <algorithm>
+#include <limits>
 #include <set>
 
 #include "app/frame.h"
 #include "app/load.h"
+#include "app/map_screen.h"
 #include "app/study_run.h"
 #include "scene/advance.h"
 #include "tests/temporary_folder.h"
@@ -96,7 +99,8 @@ void check_case(const Session& session, Screens screens, const Case& c, const st
     const Picture picture = read_png(file);
     CHECK(picture.width == c.width_px);
     constexpr std::size_t kTextHas = 40;  // colours of smoothed letters
-    const bool covers_all = screens.screen == Screen::scale || screens.screen == Screen::devices || screens.screen == Screen::study;
+    const bool covers_all = screens.screen == Screen::scale || screens.screen == Screen::devices || screens.screen == Screen::study ||
+                            screens.screen == Screen::maps;
     const PanelArea all{0.0f, 0.0f, static_cast<float>(c.width_px), static_cast<float>(c.height_px)};
     if (layout.controls) CHECK(colours_in(picture, covers_all ? all : layout.controls_px) > kTextHas);
     CHECK(colours_in(picture, covers_all ? all : layout.tissue_px) > kTextHas);
@@ -149,6 +153,15 @@ TEST_CASE("screens: every screen fits and is drawn at the sizes of desks and tab
     reveal.problems.clear();
     reveal.debrief = debrief(done.plan, done.trial);
 
+    Screens maps = trial;
+    maps.screen = Screen::maps;
+    maps.maps = make_map_browser(session.scene, map_choices());
+    REQUIRE(maps.maps->problem == "");
+    add_pin({0.035, 0.035}, *maps.maps);
+    add_pin({0.100, 0.100}, *maps.maps);
+    maps.maps->pointed_m = Eigen::Vector2d(0.060, 0.088);
+    maps.maps->quantity = MapQuantity::normal;
+
     constexpr double kTablet_px_per_mm = 11.8;  // 10.1 inch with 2560 x 1600
     const Case cases[] = {{1280, 800, kMissing, false}, {800, 1280, kMissing, false}, {2560, 1600, kMissing, true},
                           {2560, 1600, kTablet_px_per_mm, false}, {1600, 2560, kTablet_px_per_mm, false},
@@ -160,6 +173,7 @@ TEST_CASE("screens: every screen fits and is drawn at the sizes of desks and tab
         check_case(session, cost, c, "cost", folder);
         check_case(session, scale, c, "scale", folder);
         check_case(session, devices, c, "devices", folder);
+        check_case(session, maps, c, "maps", folder);
         check_case(done, reveal, c, "reveal", folder);
     }
 }
@@ -198,4 +212,80 @@ TEST_CASE("screens: every step of a study fits, and none tells where the nodules
             check_case(session, screens, c, std::string("study-") + name_of(run->step), folder);
         }
     }
+}
+
+TEST_CASE("screens: the map browser shows every kind of matrix, cells that were not measured, placed and detected nodules") {
+    const TemporaryFolder folder;
+    Session session;
+    session.scene = load_scene("");
+    session.plan = make_plan(session.scene);
+    begin_trial({}, read_trace(default_trace()).info, TrialMode::practice, session);
+    Screens screens;
+    screens.screen = Screen::maps;
+    screens.maps = make_map_browser(session.scene, map_choices());
+    Map& map = screens.maps->map;
+    for (std::size_t cell = 0; cell < map.n_cells(); ++cell) {
+        if (cell % map.n_x < 20 && cell / map.n_x < 12) screens.maps->stiffness_N_per_m[cell] = std::numeric_limits<double>::quiet_NaN();
+    }
+    for (std::size_t k = 0; k < map.n_depths(); ++k) map.normal_N[k * map.n_cells() + 700] = std::numeric_limits<float>::quiet_NaN();
+    Nodule found;
+    found.id = "D1";
+    found.placed = false;
+    found.x_m = 0.03;
+    found.y_m = 0.095;
+    found.diameter_m = 8e-3;
+    found.length_m = 30e-3;
+    found.angle_deg = 25.0;
+    map.nodules.push_back(found);
+    constexpr const char* kNames[] = {"maps-normal", "maps-sideways-x", "maps-sideways-y", "maps-stiffness"};
+    for (int i = 0; i < 4; ++i) {
+        screens.maps->quantity = static_cast<MapQuantity>(i);
+        check_case(session, screens, {1280, 800, kMissing, false}, kNames[i], folder);
+    }
+}
+
+TEST_CASE("screens: during a test the map browser shows nothing of any map") {
+    const TemporaryFolder folder;
+    Session session;
+    session.scene = load_scene("");
+    session.plan = make_plan(session.scene);
+    const Trace whole = read_trace(default_trace());
+    begin_trial({}, whole.info, TrialMode::test, session);
+    for (std::size_t i = 0; i < 400; ++i) take_sample(whole.samples[i], session);
+    REQUIRE_FALSE(may_show_maps(session.trial));
+    Screens screens;
+    screens.screen = Screen::maps;
+    screens.maps = make_map_browser(session.scene, map_choices());
+    const auto coloured = [&](const Session& of) {
+        const auto file = folder / "p.png";
+        State state = of.state;
+        draw_picture(of.scene, of.plan, of.trial, {}, screens, 1280, 800, state, file);
+        const Picture picture = read_png(file);
+        int count = 0;
+        for (std::size_t at = 0; at < picture.rgb.size(); at += 3) {
+            const int high = std::max({picture.rgb[at], picture.rgb[at + 1], picture.rgb[at + 2]});
+            const int low = std::min({picture.rgb[at], picture.rgb[at + 1], picture.rgb[at + 2]});
+            count += high - low > 60;
+        }
+        return count;
+    };
+    CHECK(coloured(session) < 2000);  // the panels are grey
+    for (const Sample& sample : finished_trace(session.plan, session.state).samples) take_sample(sample, session);
+    REQUIRE(session.trial.finished);
+    CHECK(may_show_maps(session.trial));
+    CHECK(coloured(session) > 100000);
+}
+
+TEST_CASE("screens: a map that cannot be read leaves the one that is shown, and says why") {
+    Session session;
+    session.scene = load_scene("");
+    const auto browser = make_map_browser(session.scene, map_choices());
+    REQUIRE(browser->map.n_cells() > 0);
+    const std::string name = browser->map.name;
+    choose_map("/no/such.map", *browser);
+    CHECK(browser->problem.find("/no/such.map") != std::string::npos);
+    CHECK(browser->map.name == name);
+    for (int i = 0; i < 6; ++i) add_pin({0.01 * i, 0.05}, *browser);
+    CHECK(browser->pins_m.size() == kPins);
+    CHECK(browser->pins_m.back().x() == doctest::Approx(0.05));
 }

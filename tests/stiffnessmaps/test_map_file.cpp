@@ -53,6 +53,32 @@ TEST_CASE("map file: what is written reads back") {
     CHECK(std::distance(std::filesystem::directory_iterator(folder.path()), {}) == 1);
 }
 
+TEST_CASE("map file: choices, noise and the filled copy read back; a copy that differs is refused") {
+    const TemporaryFolder folder;
+    Map map = small();
+    map.normal_N[5] = std::numeric_limits<float>::quiet_NaN();
+    map.filled_normal_N = map.normal_N;
+    map.filled_normal_N[5] = 1.5f;
+    map.noise_N = 0.02;
+    map.source.choices = {{"grid", std::string("plane"), "no regular grid", "--grid"}, {"pitch_mm", std::vector<double>{1.0, 2.0}, "", "--pitch-mm"},
+                          {"noise_N", 0.02, "", ""}};
+    write_map(map, folder / "x.map");
+    const Map back = read_map(folder / "x.map");
+    CHECK(map_json(back) == map_json(map));
+    CHECK(back.filled_normal_N == map.filled_normal_N);
+    CHECK(back.source.choices.size() == 3);
+    CHECK(std::get<std::vector<double>>(back.source.choices[1].value)[1] == 2.0);
+    const auto said = [&](std::size_t i, float value) {
+        NpyArray array{{2, 3, 4}, map.filled_normal_N};
+        array.values[i] = value;
+        write_text_atomically(folder / "x.map/filled_normal_N.npy", npy_bytes(array));
+        return message_of([&] { read_map(folder / "x.map"); });
+    };
+    CHECK(contains(said(5, NAN), "filled_normal_N.npy: value 5"));
+    CHECK(contains(said(6, 100.0f), "value 6: found 100, expected the force of normal_N.npy"));
+    CHECK(said(5, 7.0f) == "");
+}
+
 TEST_CASE("hard case 7: a transposed or otherwise wrong array is an error, not a picture") {
     const TemporaryFolder folder;
     write_map(small(), folder / "x.map");

@@ -48,3 +48,10 @@ TEST_CASE("noise: none in a smooth map, none to estimate in a tiny one") {
     CHECK(normal_noise_N(map_of(2, 2, kPaperDepths_m, [](double, double, double d) { return d; })) == 0.0);
     CHECK(smoothing_sigma_m(Map{}, 0.0, 3e-4, 2e-3) == 0.0);
 }
+
+TEST_CASE("noise: what a map says of itself comes before the estimate") {
+    Map map = map_of(30, 30, kPaperDepths_m, [](double x, double y, double d) { return 300 * d + x + y; });
+    map.noise_N = 0.03;
+    CHECK(normal_noise_N(map) == 0.03);
+    CHECK(estimated_noise_N(map) < 1e-6);
+}

@@ -1,0 +1,22 @@
+#pragma once
+// MATLAB's array file, version 5, by libmatio: what MATLAB, Octave and scipy.io.loadmat read.
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace palpa {
+
+struct MatArray {
+    std::string name;                 // a name of MATLAB: letters, digits, underscores
+    std::vector<std::size_t> shape;   // at least two
+    std::vector<float> values;        // C order: the last index runs fastest (the file has the first fastest)
+};
+
+// Whole or not at all. Throws std::runtime_error if it cannot be written.
+void write_mat(const std::vector<MatArray>& arrays, const std::filesystem::path& path);
+
+// Throws InputError if the file is none, or has no array of single numbers of that name.
+MatArray read_mat(const std::string& name, const std::filesystem::path& path);
+
+}  // namespace palpa

@@ -1,0 +1,235 @@
+#include "stiffnessmaps/import/finish.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "files/input_error.h"
+#include "files/text.h"
+#include "stiffnessmaps/field.h"
+#include "stiffnessmaps/grid.h"
+#include "stiffnessmaps/import/choices.h"
+#include "stiffnessmaps/import/robust.h"
+#include "stiffnessmaps/map_file.h"
+#include "stiffnessmaps/noise.h"
+
+namespace palpa {
+namespace {
+
+constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
+
+// Force at the deepest layer that each cell has.
+std::vector<double> deepest_forces(const Map& map) {
+    std::vector<double> out;
+    for (std::size_t cell = 0; cell < map.n_cells(); ++cell) {
+        for (std::size_t k = map.n_depths(); k-- > 0;) {
+            const float force = map.normal_N[k * map.n_cells() + cell];
+            if (std::isnan(force)) continue;
+            out.push_back(static_cast<double>(force));
+            break;
+        }
+    }
+    return out;
+}
+
+void refuse_no_forces(const Map& map, const std::string& file) {
+    const std::vector<double> deepest_N = deepest_forces(map);
+    if (deepest_N.empty()) {
+        throw bad_input(
+            file, "", "no force that was measured: all " + std::to_string(map.n_cells()) + " cells are empty",
+            "forces at the map's depths (is the pitch too fine, are the depths too great?)");
+    }
+    if (median(deepest_N) > 0.0) return;
+    throw bad_input(file, "", short_number(median(deepest_N)) + " N at the greatest depths (median)",
+                    "forces that rise with depth (is the sign the other way round? --negate-force)");
+}
+
+// Depth by depth, the cells' gaps between measured layers closed along the cell's own curve.
+void close_inner_gaps(const Map& map, std::vector<float>& out) {
+    for (std::size_t cell = 0; cell < map.n_cells(); ++cell) {
+        double from_m = 0.0;
+        double from_N = 0.0;
+        std::size_t next = 0;
+        for (std::size_t k = 0; k < map.n_depths(); ++k) {
+            const float force = map.normal_N[k * map.n_cells() + cell];
+            if (std::isnan(force)) continue;
+            for (; next < k; ++next) {
+                const double s = (map.depths_m[next] - from_m) / (map.depths_m[k] - from_m);
+                out[next * map.n_cells() + cell] =
+                    static_cast<float>(from_N + s * (static_cast<double>(force) - from_N));
+            }
+            next = k + 1;
+            from_m = map.depths_m[k];
+            from_N = static_cast<double>(force);
+        }
+    }
+}
+
+// Tangential force from the energy's slope at every cell and depth that was measured.
+void derive_tangential(Map& map) {
+    FieldOptions options;
+    options.sigma_m = std::max(map.spacing_m[0], map.spacing_m[1]);
+    const Field field = make_field(map, options);
+    map.tangential_x_N.assign(map.normal_N.size(), kNaN);
+    map.tangential_y_N.assign(map.normal_N.size(), kNaN);
+    for (std::size_t k = 0; k < map.n_depths(); ++k) {
+        for (std::size_t cell = 0; cell < map.n_cells(); ++cell) {
+            const std::size_t at = k * map.n_cells() + cell;
+            if (std::isnan(map.normal_N[at])) continue;
+            const Place place = place_at(field, {map.x_of(cell % map.n_x), map.y_of(cell / map.n_x)});
+            const Eigen::Vector2d slope = energy_gradient_N(field, place, map.depths_m[k]);
+            map.tangential_x_N[at] = static_cast<float>(slope.x());
+            map.tangential_y_N[at] = static_cast<float>(slope.y());
+        }
+    }
+    map.tangential = TangentialKind::energy;
+}
+
+void choose_tangential(Map& map, bool measured, const ImportOptions& options, const std::string& file) {
+    const TangentialChoice choice =
+        options.tangential.value_or(measured ? TangentialChoice::measured : TangentialChoice::none);
+    if (choice == TangentialChoice::measured && !measured) {
+        throw bad_input(file, "", "no force that resists motion along +x or +y",
+                        "a recording of a sliding tool, or matrices of it; else --tangential energy or none");
+    }
+    if (choice != TangentialChoice::measured) {
+        map.tangential_x_N.clear();
+        map.tangential_y_N.clear();
+    }
+    map.tangential = choice == TangentialChoice::measured ? TangentialKind::recorded : TangentialKind::none;
+    if (choice == TangentialChoice::energy) derive_tangential(map);
+    add_choice(map.source, "tangential", name_of(choice),
+               measured ? "the recording has the force that resists motion along + the axes"
+                        : "nothing slid: what resists motion is derived from the normal force at look-up",
+               "--tangential", options.tangential.has_value());
+}
+
+}  // namespace
+
+void start_map(const GridPlan& plan, Map& map) {
+    map.origin_m[0] = plan.x.origin_m;
+    map.origin_m[1] = plan.y.origin_m;
+    map.spacing_m[0] = plan.x.pitch_m;
+    map.spacing_m[1] = plan.y.pitch_m;
+    map.n_x = plan.x.n;
+    map.n_y = plan.y.n;
+    map.depths_m = plan.depths_m;
+}
+
+void check_enough_samples(const GridPlan& plan, std::size_t n_samples, const std::string& file) {
+    constexpr double kSpare = 10'000.0;
+    const double cells = static_cast<double>(plan.x.n) * static_cast<double>(plan.y.n);
+    if (cells <= static_cast<double>(n_samples) + kSpare) return;
+    throw bad_input(
+        file, "",
+        short_number(cells) + " cells of " + short_number(1e3 * plan.x.pitch_m) + " mm for " +
+            std::to_string(n_samples) + " samples",
+        "fewer cells than samples: a greater --pitch-mm, or is a place far off the others (--region-mm)?");
+}
+
+std::vector<float> filled_forces(const Map& map) {
+    std::vector<float> out = map.normal_N;
+    close_inner_gaps(map, out);
+    const GridShape shape{map.n_x, map.n_y, map.spacing_m[0], map.spacing_m[1]};
+    std::vector<double> step(map.n_cells());
+    for (std::size_t k = 0; k < map.n_depths(); ++k) {
+        const auto above = [&](std::size_t cell) {
+            return k == 0 ? 0.0 : static_cast<double>(out[(k - 1) * map.n_cells() + cell]);
+        };
+        bool any = false;
+        for (std::size_t cell = 0; cell < map.n_cells(); ++cell) {
+            step[cell] = static_cast<double>(out[k * map.n_cells() + cell]) - above(cell);
+            any = any || !std::isnan(step[cell]);
+        }
+        if (any) fill_missing(step, shape);
+        for (std::size_t cell = 0; cell < map.n_cells(); ++cell) {
+            float& force = out[k * map.n_cells() + cell];
+            if (std::isnan(force)) force = static_cast<float>(above(cell) + (any ? step[cell] : 0.0));
+        }
+    }
+    return out;
+}
+
+ImportResidual residual_of(const Map& map, const RecordedPoints& recorded) {
+    const Field field = make_field(map, {});
+    ImportResidual out;
+    out.greatest_N = force_range(map).highest_N;
+    std::vector<double> residuals;
+    for (std::size_t i = 0; i < recorded.x_m.size(); ++i) {
+        const Place place = place_at(field, {recorded.x_m[i], recorded.y_m[i]});
+        const double depth_m = static_cast<double>(recorded.depth_m[i]);
+        constexpr double kHair_m = 1e-9;
+        if (!place.inside || !place.measured || depth_m > greatest_depth_m(field, place) + kHair_m) continue;
+        const double off_N =
+            std::abs(normal_force_N(field, place, depth_m) - static_cast<double>(recorded.force_N[i]));
+        residuals.push_back(off_N);
+        if (off_N <= out.worst_N) continue;
+        out.worst_N = off_N;
+        out.worst_x_m = recorded.x_m[i];
+        out.worst_y_m = recorded.y_m[i];
+        out.worst_depth_m = depth_m;
+    }
+    out.n = residuals.size();
+    out.median_N = median(std::move(residuals));
+    return out;
+}
+
+ImportResidual residual_of_numbers(const Map& map) {
+    ImportResidual out;
+    out.greatest_N = force_range(map).highest_N;
+    std::vector<double> residuals;  // every so many, for the median
+    const std::size_t step = 1 + map.normal_N.size() / 2'000'000;
+    std::vector<double> forces;
+    std::vector<std::size_t> layer;
+    for (std::size_t cell = 0; cell < map.n_cells(); ++cell) {
+        forces.assign(1, 0.0);  // no force at the surface, as look-up has it
+        layer.assign(1, 0);
+        for (std::size_t k = 0; k < map.n_depths(); ++k) {
+            const float force = map.normal_N[k * map.n_cells() + cell];
+            if (std::isnan(force)) continue;
+            forces.push_back(static_cast<double>(force));
+            layer.push_back(k);
+        }
+        make_isotonic(forces);
+        for (std::size_t i = 1; i < forces.size(); ++i) {
+            const double raw = static_cast<double>(map.normal_N[layer[i] * map.n_cells() + cell]);
+            const double off_N = std::abs(std::max(forces[i], 0.0) - raw);
+            if (out.n++ % step == 0) residuals.push_back(off_N);
+            if (off_N <= out.worst_N) continue;
+            out.worst_N = off_N;
+            out.worst_x_m = map.x_of(cell % map.n_x);
+            out.worst_y_m = map.y_of(cell / map.n_x);
+            out.worst_depth_m = map.depths_m[layer[i]];
+        }
+    }
+    out.median_N = median(std::move(residuals));
+    return out;
+}
+
+void finish_map(Map& map, const RecordedPoints& recorded, bool measured_tangential,
+                const ImportOptions& options, const std::string& file, ImportReport& report) {
+    refuse_no_forces(map, file);
+    map.indenter = options.indenter;
+    map.indenter_radius_m = options.indenter_radius_m;
+    map.source.kind = SourceKind::recorded;
+    if (options.progress) options.progress("checking", 0.0);
+    choose_tangential(map, measured_tangential, options, file);
+    for (std::size_t cell = 0; cell < map.n_cells(); ++cell) {
+        bool measured = false;
+        for (std::size_t k = 0; k < map.n_depths(); ++k)
+            measured = measured || !std::isnan(map.normal_N[k * map.n_cells() + cell]);
+        report.missing_cells += !measured;
+    }
+    if (options.fill) map.filled_normal_N = filled_forces(map);
+    add_choice(map.source, "filled", options.fill ? "neighbours" : "none",
+               "gaps stay gaps in normal_N.npy; filled_normal_N.npy beside it has none", "--no-fill");
+    map.noise_N = estimated_noise_N(map);
+    add_choice(map.source, "noise_N", *map.noise_N, "second differences along x and y", "");
+    add_choice(map.source, "over_depth", "isotonic at look-up", "the raw forces are kept in the map", "");
+    add_choice(map.source, "indenter_radius_mm", choice_mm(options.indenter_radius_m),
+               "recordings do not say", "--indenter-radius-mm");
+    check_map(map, file);
+    report.residual = recorded.x_m.empty() ? residual_of_numbers(map) : residual_of(map, recorded);
+}
+
+}  // namespace palpa

@@ -1,0 +1,177 @@
+#include "stiffnessmaps/import/probing_curve.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "files/input_error.h"
+#include "files/text.h"
+#include "stiffnessmaps/import/choices.h"
+#include "stiffnessmaps/import/probing.h"
+#include "stiffnessmaps/import/robust.h"
+
+namespace palpa {
+namespace {
+
+void erase_row(ProbedPoint& p, std::size_t i) {
+    const auto at = static_cast<std::ptrdiff_t>(i);
+    p.depth_m.erase(p.depth_m.begin() + at);
+    p.force_N.erase(p.force_N.begin() + at);
+    for (auto& lateral : p.lateral_N) {
+        if (!lateral.empty()) lateral.erase(lateral.begin() + at);
+    }
+}
+
+void reject_outliers(Probing& probing, double deviations, ImportReport& report) {
+    std::vector<double> differences;
+    std::vector<double> greatest_N;
+    for (const ProbedPoint& p : probing.points) {
+        add_fourth_differences(p.force_N, differences);
+        greatest_N.push_back(*std::max_element(p.force_N.begin(), p.force_N.end()));
+    }
+    const double least_N =
+        1e-3 * std::abs(median(std::move(greatest_N)));  // a sensor that counts in steps may have no noise
+    const double limit_N =
+        deviations * std::max(noise_of_fourth_differences(std::move(differences)), least_N);
+    for (ProbedPoint& p : probing.points) {
+        const std::vector<bool> outlier = lone_outliers(p.force_N, limit_N);
+        for (std::size_t i = outlier.size(); i-- > 0;) {
+            if (!outlier[i]) continue;
+            erase_row(p, i);
+            ++report.outliers;
+            ++report.rejected_rows;
+        }
+    }
+}
+
+// From its first row on.
+double start_at_first_row(ProbedPoint& p) {
+    const double depth_m = p.depth_m.front();
+    const double force_N = p.force_N.front();
+    for (double& d : p.depth_m) d -= depth_m;
+    for (double& f : p.force_N) f -= force_N;
+    p.z_m = -depth_m;
+    return force_N;
+}
+
+// From where the force crosses the threshold; returns the force in the air. A place whose force never crosses
+// is emptied.
+double start_at_threshold(ProbedPoint& p, double threshold_N) {
+    const std::size_t in_air = std::min<std::size_t>(3, p.force_N.size());
+    const double offset_N =
+        median({p.force_N.begin(), p.force_N.begin() + static_cast<std::ptrdiff_t>(in_air)});
+    for (double& f : p.force_N) f -= offset_N;
+    std::size_t first = 0;
+    while (first < p.force_N.size() && p.force_N[first] < threshold_N) ++first;
+    if (first == 0 || first == p.force_N.size()) {
+        if (first != 0) {
+            p.depth_m.clear();
+            p.force_N.clear();
+        }
+        if (!p.depth_m.empty()) start_at_first_row(p);
+        return offset_N;
+    }
+    const double s = (threshold_N - p.force_N[first - 1]) / (p.force_N[first] - p.force_N[first - 1]);
+    const double contact_m = p.depth_m[first - 1] + s * (p.depth_m[first] - p.depth_m[first - 1]);
+    p.z_m = -contact_m;
+    // the last row in the air becomes the contact
+    p.depth_m[first - 1] = contact_m;
+    p.force_N[first - 1] = 0.0;
+    for (std::size_t i = 1; i < first; ++i) erase_row(p, 0);
+    for (double& d : p.depth_m) d -= contact_m;
+    if (p.depth_m.size() > 1 && !(p.depth_m[1] > 0.0)) erase_row(p, 1);
+    return offset_N;
+}
+
+// Plane z = a + b x + c y through the contact heights; (b, c).
+Eigen::Vector2d contact_slope(const Probing& probing) {
+    Eigen::Matrix3d A = Eigen::Matrix3d::Zero();
+    Eigen::Vector3d right = Eigen::Vector3d::Zero();
+    Eigen::Vector3d middle = Eigen::Vector3d::Zero();
+    for (const ProbedPoint& p : probing.points) middle += Eigen::Vector3d(p.x_m, p.y_m, p.z_m);
+    middle /= static_cast<double>(probing.points.size());
+    for (const ProbedPoint& p : probing.points) {
+        const Eigen::Vector3d row(1.0, p.x_m - middle.x(), p.y_m - middle.y());
+        A += row * row.transpose();
+        right += row * (p.z_m - middle.z());
+    }
+    A.diagonal().tail<2>().array() += 1e-12;  // one line of places has no slope across it
+    return A.ldlt().solve(right).tail<2>();
+}
+
+void remove_tilt(Probing& probing, MapSource& source) {
+    const Eigen::Vector2d slope = contact_slope(probing);
+    const double length = std::sqrt(1.0 + slope.squaredNorm());
+    for (ProbedPoint& p : probing.points) {
+        for (std::size_t i = 0; i < p.depth_m.size(); ++i) {
+            p.depth_m[i] /= length;
+            if (p.lateral_N[0].empty()) continue;
+            const double lateral = slope.x() * p.lateral_N[0][i] + slope.y() * p.lateral_N[1][i];
+            p.force_N[i] = (p.force_N[i] - lateral) / length;
+        }
+    }
+    const double tilt_deg = std::atan(slope.norm()) * 180.0 / std::numbers::pi;
+    add_choice(source, "tilt_removed_deg", std::round(1e3 * tilt_deg) / 1e3,
+               "plane through the contact heights", "--tilt keep");
+}
+
+}  // namespace
+
+void clean_curves(Probing& probing, const ImportOptions& options, MapSource& source, ImportReport& report) {
+    constexpr double kOutliers = 20.0;
+    const double deviations = options.outliers.value_or(kOutliers);
+    if (deviations > 0.0) reject_outliers(probing, deviations, report);
+    add_choice(source, "outliers_deviations", deviations,
+               "a single force that far outside the range of the two beside it; " +
+                   std::to_string(report.outliers) + " left out",
+               "--outliers", options.outliers.has_value());
+
+    const Contact contact =
+        options.contact.value_or(probing.depth_from_z ? Contact::threshold : Contact::first_row);
+    double threshold_N = options.contact_force_N.value_or(0.0);
+    if (contact == Contact::threshold && !options.contact_force_N) {
+        std::vector<double> steps_N;  // between the first rows, which are in the air
+        std::vector<double> greatest_N;
+        for (const ProbedPoint& p : probing.points) {
+            steps_N.push_back(p.force_N[1] - p.force_N[0]);
+            greatest_N.push_back(p.force_N.back());
+        }
+        constexpr double kAboveNoise = 4.0;
+        constexpr double kLeastShare = 0.01;  // of the places' greatest force
+        threshold_N =
+            std::max(kAboveNoise * robust_deviation(steps_N), kLeastShare * std::abs(median(greatest_N)));
+    }
+    std::vector<double> offsets_N;
+    for (ProbedPoint& p : probing.points) {
+        for (auto& lateral : p.lateral_N) {  // its zero, as the normal force's
+            for (std::size_t i = lateral.size(); i-- > 0;) lateral[i] -= lateral[0];
+        }
+        offsets_N.push_back(contact == Contact::first_row ? start_at_first_row(p)
+                                                          : start_at_threshold(p, threshold_N));
+    }
+    report.median_offset_N = median(offsets_N);
+    std::erase_if(probing.points, [](const ProbedPoint& p) { return p.depth_m.size() < 2; });
+    add_choice(source, "contact", contact == Contact::first_row ? "first-row" : "threshold",
+               probing.depth_from_z ? "depth comes from z, the surface must be found"
+                                    : "the recording has depths: its robot had found the surface",
+               "--contact", options.contact.has_value());
+    if (contact == Contact::threshold) {
+        add_choice(source, "contact_force_N", threshold_N,
+                   "4 deviations of the force in the air, or 1 % of the greatest", "--contact-force-N",
+                   options.contact_force_N.has_value());
+    }
+    if (probing.depth_from_z && options.remove_tilt && !probing.points.empty()) remove_tilt(probing, source);
+}
+
+double force_at(const ProbedPoint& p, double depth_m, double step_m) {
+    const auto& d = p.depth_m;
+    if (depth_m > d.back() + 0.05 * step_m) return std::numeric_limits<double>::quiet_NaN();
+    std::size_t i = 1;
+    while (i + 1 < d.size() && d[i] < depth_m) ++i;
+    const double s = (depth_m - d[i - 1]) / (d[i] - d[i - 1]);
+    return p.force_N[i - 1] + s * (p.force_N[i] - p.force_N[i - 1]);
+}
+
+}  // namespace palpa

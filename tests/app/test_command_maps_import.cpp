@@ -1,0 +1,162 @@
+// `palpa maps import` as a person calls it: options, choices, JSON, refusals.
+
+#include <cmath>
+#include <doctest/doctest.h>
+#include <filesystem>
+#include <set>
+#include <string>
+#include <sys/wait.h>
+
+#include "files/json.h"
+#include "files/text.h"
+#include "stiffnessmaps/map_file.h"
+#include "tests/error_message.h"
+#include "tests/temporary_folder.h"
+
+using namespace palpa;
+using namespace palpa::test;
+
+namespace {
+
+struct Called {
+    int status = 0;
+    std::string out;
+    std::string err;
+};
+
+Called import(const TemporaryFolder& folder, const std::string& arguments) {
+    const std::string command = "cd " + folder.path().string() +
+                                " && timeout 60 " PALPA_PROGRAM " maps import " + arguments +
+                                " >out 2>err </dev/null";
+    const int status = std::system(command.c_str());
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_text(folder / "out"),
+            read_text(folder / "err")};
+}
+
+// 4 x 3 places, 0.5 N/mm, with columns that nobody could guess.
+std::string odd_table() {
+    std::string text = "where,across,along,how_deep_mm,push_mN\n";
+    for (int p = 0; p < 12; ++p) {
+        for (int k = 0; k < 5; ++k) {
+            text += std::to_string(p) + "," + std::to_string(3 * (p % 4)) + "," +
+                    std::to_string(2 * (p / 4)) + "," + std::to_string(k) + "," + std::to_string(500 * k) +
+                    "\n";
+        }
+    }
+    return text;
+}
+
+const std::string kColumns =
+    "--column point=where --column x=across --column y=along --column depth=how_deep_mm --column fn=push_mN ";
+
+}  // namespace
+
+TEST_CASE(
+    "maps import: columns by name; what was chosen is printed, is in the map, and each with the option that "
+    "changes it") {
+    const TemporaryFolder folder;
+    write_text_atomically(folder / "r.csv", odd_table());
+    CHECK(contains(import(folder, "r.csv -o x.map").err,
+                   "expected probing (x, y, depth or z, fn or fz, ...) or sliding"));
+    const Called called = import(folder, "r.csv " + kColumns + "-o x.map --explain");
+    CAPTURE(called.err);
+    REQUIRE(called.status == 0);
+    CHECK(contains(called.out, "12 points become 4 x 3 cells of 3.00 x 2.00 mm, 4 depths to 4.00 mm"));
+    CHECK(contains(called.out, "map against recording: "));
+    CHECK(called.err == "");
+    const Map map = read_map(folder / "x.map");
+    CHECK(map.normal_N.back() == doctest::Approx(2.0f));
+    CHECK(map.noise_N.has_value());
+    const std::string help = [&] {
+        import(folder, "--help");
+        return read_text(folder / "out");
+    }();
+    CHECK(map.source.choices.size() > 8);
+    for (const SourceChoice& choice : map.source.choices) {
+        CAPTURE(choice.key);
+        CHECK(contains(called.out, choice.key));
+        CHECK((!choice.how.empty() || !choice.option.empty()));
+        // every option that it names exists
+        for (std::size_t at = choice.option.find("--"); at != std::string::npos;
+             at = choice.option.find("--", at + 2)) {
+            const std::string option = choice.option.substr(at, choice.option.find_first_of(" ,", at) - at);
+            CHECK(contains(help, option));
+        }
+    }
+    // without an output nothing is written
+    CHECK(import(folder, "r.csv " + kColumns + "--explain").status == 0);
+    CHECK(contains(import(folder, "r.csv " + kColumns).err, "expected -o NAME.map"));
+    CHECK(contains(import(folder, "r.csv " + kColumns + "-o x.map").err, "nothing is overwritten"));
+}
+
+TEST_CASE("maps import: the JSON has the map, the residual and its shares") {
+    const TemporaryFolder folder;
+    write_text_atomically(folder / "r.csv", odd_table());
+    const Called called =
+        import(folder, "r.csv " + kColumns + "--depths-mm 1,2.5 --name block --licence CC0 -o x.map --json");
+    CAPTURE(called.err);
+    REQUIRE(called.status == 0);
+    const Json json = parse_json(called.out, "stdout");
+    CHECK(json["shape"] == Json({2, 3, 4}));
+    CHECK(json["depths_mm"] == Json({1.0, 2.5}));
+    CHECK(json["name"] == "block");
+    CHECK(json["source"]["licence"] == "CC0");
+    CHECK(json["import"]["form"] == "probing");
+    CHECK(json["import"]["residual_points"] == 24);
+    CHECK(json["import"]["median_residual_share"].get<double>() < 1e-6);
+    CHECK(json["import"]["greatest_force_N"].get<double>() == doctest::Approx(1.25));
+    std::set<std::string> keys;
+    for (const Json& choice : json["source"]["choices"]) keys.insert(choice["key"].get<std::string>());
+    for (const char* key : {"form", "columns", "grid", "pitch_mm", "depths_mm", "contact",
+                            "outliers_deviations", "tangential", "filled", "noise_N"}) {
+        CAPTURE(key);
+        CHECK(keys.count(key) == 1);
+    }
+}
+
+TEST_CASE("maps import: matrices, one file per depth") {
+    const TemporaryFolder folder;
+    write_text_atomically(folder / "normal_2mm.csv", "0.2,0.3\n0.4,\n");
+    write_text_atomically(folder / "normal_4mm.csv", "0.5,0.6\n0.9,1.2\n");
+    const Called called = import(
+        folder,
+        "normal_4mm.csv normal_2mm.csv --spacing-mm 0.76,2 --origin-mm 5,6 -o m.map --tangential energy");
+    CAPTURE(called.err);
+    REQUIRE(called.status == 0);
+    const Map map = read_map(folder / "m.map");
+    CHECK(map.depths_m.size() == 2);
+    CHECK(std::isnan(map.normal_N[3]));
+    CHECK(map.filled_normal_N[3] == doctest::Approx(0.6f));
+    CHECK(map.tangential == TangentialKind::energy);
+    CHECK(map.spacing_m[1] == doctest::Approx(2e-3));
+    CHECK(std::filesystem::exists(folder / "m.map/filled_normal_N.npy"));
+    CHECK(import(folder, "normal_4mm.csv normal_2mm.csv --spacing-mm 1 --no-fill -o n.map").status == 0);
+    CHECK_FALSE(std::filesystem::exists(folder / "n.map/filled_normal_N.npy"));
+}
+
+TEST_CASE("maps import: what cannot be ends with status 2, says what, and leaves nothing behind") {
+    const TemporaryFolder folder;
+    write_text_atomically(folder / "r.csv", odd_table());
+    write_text_atomically(folder / "mN.csv",
+                          "x,y,depth,fn\n0,0,0,0\n0,0,1,900\n0,0,2,2100\n5,0,0,0\n5,0,1,900\n5,0,2,2100\n");
+    const auto refused = [&](const std::string& arguments, const char* word) {
+        const Called called = import(folder, arguments);
+        CAPTURE(arguments);
+        CAPTURE(called.err);
+        CHECK(called.status == 2);
+        CHECK(contains(called.err, word));
+        CHECK_FALSE(std::filesystem::exists(folder / "n.map"));
+    };
+    refused("mN.csv -o n.map", "--force-unit mN");
+    refused("r.csv " + kColumns + "--column where -o n.map", "expected ROLE=NAME");
+    refused("r.csv " + kColumns + "--depths-mm 2,1 -o n.map", "expected ascending depths");
+    refused("r.csv " + kColumns + "--depths-mm 1,two -o n.map", "--depths-mm: found '1,two'");
+    refused("r.csv " + kColumns + "--region-mm 1,2 -o n.map", "--region-mm: found 2 numbers, expected 4");
+    refused("r.csv " + kColumns + "--region-mm 100,200,100,200 -o n.map", "in the region");
+    refused("r.csv " + kColumns + "--grid hexagons -o n.map", "--grid");
+    refused("r.csv " + kColumns + "--form sliding -o n.map", "a column for t");
+    refused("none.csv -o n.map", "none.csv: cannot be read");
+    refused("r.csv " + kColumns + "-o none/n.map", "no folder to put it into");
+    CHECK(import(folder, "mN.csv --force-unit mN -o n.map").status == 0);
+    CHECK(read_map(folder / "n.map").normal_N.back() == doctest::Approx(2.1f));
+}

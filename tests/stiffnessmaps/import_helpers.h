@@ -1,0 +1,38 @@
+#pragma once
+// Recordings written by a test, and what importing them says.
+
+#include <filesystem>
+
+#include "files/text.h"
+#include "stiffnessmaps/import/recording.h"
+#include "tests/error_message.h"
+#include "tests/temporary_folder.h"
+
+namespace palpa::test {
+
+inline Map imported(const std::string& text, const ImportOptions& options = {},
+                    ImportReport* report = nullptr) {
+    const TemporaryFolder folder;
+    write_text_atomically(folder / "r.csv", text);
+    ImportReport unused;
+    return import_recording({folder / "r.csv"}, options, report != nullptr ? *report : unused);
+}
+
+inline std::string refusal(const std::string& text, const ImportOptions& options = {}) {
+    return message_of([&] { imported(text, options); });
+}
+
+// A recording beside the checkout; empty if it is not there.
+inline std::filesystem::path recording(const std::string& name) {
+    const std::filesystem::path file = std::filesystem::path(PALPA_RECORDINGS) / name;
+    return std::filesystem::exists(file) ? file : std::filesystem::path();
+}
+
+inline const SourceChoice* choice_of(const Map& map, const std::string& key) {
+    for (const SourceChoice& choice : map.source.choices) {
+        if (choice.key == key) return &choice;
+    }
+    return nullptr;
+}
+
+}  // namespace palpa::test

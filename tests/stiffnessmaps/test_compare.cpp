@@ -1,0 +1,86 @@
+#include "stiffnessmaps/compare.h"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "tests/error_message.h"
+#include "tests/stiffnessmaps/test_maps.h"
+
+using namespace palpa;
+using namespace palpa::test;
+
+namespace {
+
+const auto plane = [](double x, double y, double d) { return d * (300.0 + 4000.0 * x + 2000.0 * y); };
+
+Map placed(Map map, double x_m, double y_m) {
+    map.origin_m[0] += x_m;
+    map.origin_m[1] += y_m;
+    return map;
+}
+
+}  // namespace
+
+TEST_CASE("compare: a map against itself differs by nothing") {
+    const Map map = map_of(20, 15, kPaperDepths_m, plane);
+    const MapDifference d = compare_maps(map, "a", map, "b");
+    CHECK(d.all.n == map.normal_N.size());
+    CHECK(d.all.greatest_N < 1e-6);
+    CHECK(d.correlation == doctest::Approx(1.0));
+    CHECK(d.grid_of == "a");
+}
+
+TEST_CASE("compare: bias, median, RMS and the greatest difference with its place") {
+    const Map a = map_of(20, 15, kPaperDepths_m, plane);
+    Map b = a;
+    for (float& force : b.normal_N) force += 0.25f;
+    b.normal_N[2 * b.n_cells() + 4 * b.n_x + 7] += 3.0f;
+    const MapDifference d = compare_maps(a, "a", b, "b");
+    const auto n = static_cast<double>(d.all.n);
+    CHECK(d.all.median_N == doctest::Approx(0.25).epsilon(1e-4));
+    CHECK(d.all.greatest_N > 0.9);  // the curve over depth is made to rise, so a single spike is shared with its neighbours
+    CHECK(d.all.at_x_m == doctest::Approx(a.x_of(7)));
+    CHECK(d.all.at_y_m == doctest::Approx(a.y_of(4)));
+    CHECK(d.all.bias_N == doctest::Approx(0.25 + 3.0 / n).epsilon(1e-3));
+    CHECK(d.depths.size() == kPaperDepths_m.size());
+}
+
+TEST_CASE("compare: on the coarser grid, the common area and the common depths") {
+    const Map fine = map_of(41, 31, {1e-3, 2e-3, 3e-3, 4e-3}, plane);
+    Map coarse = map_of(8, 8, {2e-3, 4e-3, 6e-3}, [](double, double, double) { return 0.0; });
+    coarse.spacing_m[0] = coarse.spacing_m[1] = 3.7e-3;
+    coarse = placed(coarse, 25e-3, -10e-3);
+    for (std::size_t at = 0; at < coarse.normal_N.size(); ++at) {
+        const std::size_t cell = at % coarse.n_cells();
+        coarse.normal_N[at] = static_cast<float>(plane(coarse.x_of(cell % coarse.n_x), coarse.y_of(cell / coarse.n_x), coarse.depths_m[at / coarse.n_cells()]));
+    }
+    for (const bool swapped : {false, true}) {
+        const MapDifference d = swapped ? compare_maps(coarse, "coarse", fine, "fine") : compare_maps(fine, "fine", coarse, "coarse");
+        CHECK(d.grid_of == (swapped ? "a" : "b"));
+        CHECK(d.depths_of == (swapped ? "a" : "b"));
+        CHECK(d.a.spacing_m[0] == doctest::Approx(3.7e-3));
+        CHECK(d.a.n_depths() == 2);
+        CHECK(d.a.n_x < 8);
+        CHECK(d.a.x_of(d.a.n_x - 1) <= fine.x_of(40) + 0.5e-3 + 1e-9);
+        CHECK(d.all.n > 20);
+        CHECK(d.all.median_N < 1e-5);  // a plane is interpolated exactly
+    }
+}
+
+TEST_CASE("compare: what one of them has not measured is left out; nothing in common is refused") {
+    const Map a = map_of(12, 10, kPaperDepths_m, plane);
+    Map holes = a;
+    for (std::size_t k = 0; k < a.n_depths(); ++k) holes.normal_N[k * a.n_cells() + 5] = std::numeric_limits<float>::quiet_NaN();
+    CHECK(compare_maps(a, "a", holes, "b").all.n == (a.n_cells() - 1) * a.n_depths());
+    const Map away = placed(a, 0.5, 0.0);
+    const std::string said = message_of([&] { compare_maps(a, "a.map", away, "b.map"); });
+    CHECK(contains(said, "b.map: found a map of x 500 to 511, y 0 to 9 mm, expected one that overlaps a.map, x 0 to 11, y 0 to 9 mm"));
+    Map left = a;
+    Map right = a;
+    for (std::size_t at = 0; at < a.normal_N.size(); ++at) {
+        (at % a.n_x < 6 ? right : left).normal_N[at] = std::numeric_limits<float>::quiet_NaN();
+    }
+    CHECK(contains(message_of([&] { compare_maps(left, "a.map", right, "b.map"); }), "no place and depth where both maps were measured"));
+}
