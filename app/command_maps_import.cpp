@@ -1,12 +1,11 @@
 // palpa maps import
 
-#include <unistd.h>
-
 #include <CLI/CLI.hpp>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <memory>
+#include <unistd.h>
 
 #include "app/command_line.h"
 #include "app/map_info.h"
@@ -21,10 +20,12 @@ namespace {
 struct Arguments {
     std::vector<std::string> files;
     std::string output;
-    std::string form, grid, contact, tangential, tilt, quantity, indenter, length_unit, depth_unit, force_unit, axes;
+    std::string form, grid, contact, tangential, tilt, quantity, indenter, length_unit, depth_unit,
+        force_unit, axes;
     std::string depths, at_depths, spacing, origin, region;  // lists of mm
     std::vector<std::string> columns, tangential_x, tangential_y;
-    std::optional<double> pitch_mm, radius_mm, contact_force_N, surface_z_mm, surface_node_mm, outliers, scale, missing;
+    std::optional<double> pitch_mm, radius_mm, contact_force_N, surface_z_mm, surface_node_mm, outliers,
+        scale, missing;
     std::optional<int> layers;
     double indenter_radius_mm = 3.0;
     double cylinder_length_mm = 20.0;
@@ -62,7 +63,9 @@ std::vector<double> depths_m(const std::string& text, const char* option, bool a
     for (std::size_t i = 0; i < out.size(); ++i) {
         if (!(out[i] > 0.0)) throw bad_input(option, "", short_number(1e3 * out[i]), "depths > 0");
         if (ascending && i > 0 && !(out[i] > out[i - 1])) {
-            throw bad_input(option, "", short_number(1e3 * out[i]) + " after " + short_number(1e3 * out[i - 1]), "ascending depths");
+            throw bad_input(option, "",
+                            short_number(1e3 * out[i]) + " after " + short_number(1e3 * out[i - 1]),
+                            "ascending depths");
         }
     }
     return out;
@@ -79,17 +82,24 @@ std::optional<Enum> choice(const std::string& text, std::initializer_list<const 
     return std::nullopt;
 }
 
-std::optional<double> metres(const std::optional<double>& mm) { return mm ? std::optional<double>(1e-3 * *mm) : std::nullopt; }
+std::optional<double> metres(const std::optional<double>& mm) {
+    return mm ? std::optional<double>(1e-3 * *mm) : std::nullopt;
+}
 
 void set_array_options(const Arguments& a, ImportOptions& options) {
-    const std::vector<double> spacing = a.spacing.find(',') == std::string::npos ? lengths_m(a.spacing, "--spacing-mm", 1) : lengths_m(a.spacing, "--spacing-mm", 2);
+    const std::vector<double> spacing = a.spacing.find(',') == std::string::npos
+                                            ? lengths_m(a.spacing, "--spacing-mm", 1)
+                                            : lengths_m(a.spacing, "--spacing-mm", 2);
     if (!spacing.empty()) options.spacing_m = {spacing.front(), spacing.back()};
-    if (!spacing.empty() && !(spacing.front() > 0.0 && spacing.back() > 0.0)) throw bad_input("--spacing-mm", "", shown(a.spacing), "distances > 0");
+    if (!spacing.empty() && !(spacing.front() > 0.0 && spacing.back() > 0.0))
+        throw bad_input("--spacing-mm", "", shown(a.spacing), "distances > 0");
     const std::vector<double> origin = lengths_m(a.origin, "--origin-mm", 2);
     if (!origin.empty()) options.origin_m = {origin[0], origin[1]};
-    options.quantity = choice<Quantity>(a.quantity, {"force", "stiffness", "young"}).value_or(Quantity::force);
+    options.quantity =
+        choice<Quantity>(a.quantity, {"force", "stiffness", "young"}).value_or(Quantity::force);
     options.scale_stated = a.scale.has_value();
-    options.scale = a.scale.value_or(1.0) * (options.quantity == Quantity::force ? 1.0 : 1e3);  // N/mm and kPa
+    options.scale =
+        a.scale.value_or(1.0) * (options.quantity == Quantity::force ? 1.0 : 1e3);  // N/mm and kPa
     options.offset = a.offset;
     options.missing = a.missing;
     options.poisson = a.poisson;
@@ -104,12 +114,14 @@ ImportOptions options_of(const Arguments& a) {
     options.form = choice<RecordingForm>(a.form, {"probing", "sliding", "matrices"});
     options.name = a.name;
     options.licence = a.licence;
-    options.indenter = choice<IndenterShape>(a.indenter, {"sphere", "cylinder"}).value_or(IndenterShape::sphere);
+    options.indenter =
+        choice<IndenterShape>(a.indenter, {"sphere", "cylinder"}).value_or(IndenterShape::sphere);
     options.indenter_radius_m = 1e-3 * a.indenter_radius_mm;
     options.cylinder_length_m = 1e-3 * a.cylinder_length_mm;
     for (const std::string& column : a.columns) {
         const auto equals = column.find('=');
-        if (equals == std::string::npos) throw bad_input("--column", "", shown(column), "ROLE=NAME, such as x=pos_x_mm");
+        if (equals == std::string::npos)
+            throw bad_input("--column", "", shown(column), "ROLE=NAME, such as x=pos_x_mm");
         if (!options.columns.emplace(column.substr(0, equals), column.substr(equals + 1)).second) {
             throw bad_input("--column", "", shown(column.substr(0, equals)) + " twice", "it once");
         }
@@ -142,10 +154,12 @@ std::function<void(const char*, double)> progress_on_terminal() {
     if (::isatty(STDERR_FILENO) == 0) return {};
     const auto start = std::chrono::steady_clock::now();
     return [start](const char* what, double done) {
-        const double spent_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+        const double spent_s =
+            std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
         if (spent_s < 1.0) return;
         std::fprintf(stderr, "\r\033[K%s", what);
-        if (done > 0.0) std::fprintf(stderr, " %.0f %%, %.0f s left", 100.0 * done, spent_s * (1.0 - done) / done);
+        if (done > 0.0)
+            std::fprintf(stderr, " %.0f %%, %.0f s left", 100.0 * done, spent_s * (1.0 - done) / done);
         std::fflush(stderr);
     };
 }
@@ -154,15 +168,16 @@ std::string value_text(const SourceChoice& choice) {
     if (const auto* text = std::get_if<std::string>(&choice.value)) return *text;
     if (const auto* number = std::get_if<double>(&choice.value)) return short_number(*number);
     std::string out;
-    for (const double value : std::get<std::vector<double>>(choice.value)) out += (out.empty() ? "" : ", ") + short_number(value);
+    for (const double value : std::get<std::vector<double>>(choice.value))
+        out += (out.empty() ? "" : ", ") + short_number(value);
     return out;
 }
 
 void print_choices(const Map& map) {
     std::printf("what was chosen, why, and what chooses otherwise:\n");
     for (const SourceChoice& choice : map.source.choices) {
-        std::printf("  %-22s %s\n%25s%s%s%s\n", choice.key.c_str(), value_text(choice).c_str(), "", choice.how.c_str(),
-                    choice.option.empty() ? "" : "; ", choice.option.c_str());
+        std::printf("  %-22s %s\n%25s%s%s%s\n", choice.key.c_str(), value_text(choice).c_str(), "",
+                    choice.how.c_str(), choice.option.empty() ? "" : "; ", choice.option.c_str());
     }
 }
 
@@ -182,27 +197,38 @@ Json import_json(const ImportReport& report) {
             {"greatest_force_N", residual.greatest_N},
             {"median_residual_share", residual.median_share()},
             {"worst_residual_share", residual.worst_share()},
-            {"worst_residual_at_mm", {1e3 * residual.worst_x_m, 1e3 * residual.worst_y_m, 1e3 * residual.worst_depth_m}},
+            {"worst_residual_at_mm",
+             {1e3 * residual.worst_x_m, 1e3 * residual.worst_y_m, 1e3 * residual.worst_depth_m}},
             {"notes", report.notes}};
 }
 
 void print_report(const std::string& name, const Map& map, const ImportReport& report) {
     const ImportResidual& residual = report.residual;
-    const char* unit = report.form == RecordingForm::probing ? "points" : report.form == RecordingForm::sliding ? "samples" : "numbers";
-    std::printf("%s: %zu %s become %zu x %zu cells of %.2f x %.2f mm, %zu depths to %.2f mm\n", name.c_str(), report.points,
-                unit, map.n_x, map.n_y, 1e3 * map.spacing_m[0], 1e3 * map.spacing_m[1], map.n_depths(), 1e3 * map.depths_m.back());
-    std::printf("  %zu cells missing; %zu of %zu rows and %zu points rejected (%zu outliers)", report.missing_cells,
-                report.rejected_rows, report.rows, report.rejected_points, report.outliers);
-    if (report.form == RecordingForm::probing) std::printf("; %.3g N at contact subtracted (median)", report.median_offset_N);
-    std::printf("\n  map against recording: %.2g N median, %.2g N worst, of %.3g N (%.2g %%, %.2g %%); noise %.2g N\n", residual.median_N,
-                residual.worst_N, residual.greatest_N, 100.0 * residual.median_share(), 100.0 * residual.worst_share(), map.noise_N.value_or(0.0));
+    const char* unit = report.form == RecordingForm::probing   ? "points"
+                       : report.form == RecordingForm::sliding ? "samples"
+                                                               : "numbers";
+    std::printf("%s: %zu %s become %zu x %zu cells of %.2f x %.2f mm, %zu depths to %.2f mm\n", name.c_str(),
+                report.points, unit, map.n_x, map.n_y, 1e3 * map.spacing_m[0], 1e3 * map.spacing_m[1],
+                map.n_depths(), 1e3 * map.depths_m.back());
+    std::printf("  %zu cells missing; %zu of %zu rows and %zu points rejected (%zu outliers)",
+                report.missing_cells, report.rejected_rows, report.rows, report.rejected_points,
+                report.outliers);
+    if (report.form == RecordingForm::probing)
+        std::printf("; %.3g N at contact subtracted (median)", report.median_offset_N);
+    std::printf(
+        "\n  map against recording: %.2g N median, %.2g N worst, of %.3g N (%.2g %%, %.2g %%); noise %.2g "
+        "N\n",
+        residual.median_N, residual.worst_N, residual.greatest_N, 100.0 * residual.median_share(),
+        100.0 * residual.worst_share(), map.noise_N.value_or(0.0));
 }
 
 void import_map(const Arguments& a) {
     ImportOptions options = options_of(a);
     options.progress = progress_on_terminal();
     options.depths_m = depths_m(a.depths, "--depths-mm", false);
-    if (a.output.empty() && !a.explain) throw bad_input("maps import", "", "no output", "-o NAME.map (or --explain, to see what would be chosen)");
+    if (a.output.empty() && !a.explain)
+        throw bad_input("maps import", "", "no output",
+                        "-o NAME.map (or --explain, to see what would be chosen)");
     if (std::filesystem::exists(a.output)) {  // before a long import, not after it
         throw bad_input(a.output, "", "something of that name", "a new name (nothing is overwritten)");
     }
@@ -222,28 +248,38 @@ void import_map(const Arguments& a) {
 }
 
 void add_table_options(CLI::App& command, Arguments& a) {
-    const auto number = [&](const char* name, std::optional<double>& value, const char* help, double lowest, double highest) {
+    const auto number = [&](const char* name, std::optional<double>& value, const char* help, double lowest,
+                            double highest) {
         command.add_option(name, value, help)->check(CLI::Range(lowest, highest))->group("Tables");
     };
     const auto text = [&](const char* name, std::string& value, const char* help) {
         return command.add_option(name, value, help)->group("Tables");
     };
-    command.add_option("--column", a.columns, "ROLE=NAME, as often as needed; roles: t, point, x, y, z, depth, depth_cmd, fn, fx, fy, fz, n_x, n_y, n_z")
-        ->allow_extra_args(false)->group("Tables");
-    text("--length-unit", a.length_unit, "of x, y, z: mm, m, um (default: the name's, else mm)")->check(CLI::IsMember({"mm", "m", "um"}));
+    command
+        .add_option("--column", a.columns,
+                    "ROLE=NAME, as often as needed; roles: t, point, x, y, z, depth, depth_cmd, fn, fx, fy, "
+                    "fz, n_x, n_y, n_z")
+        ->allow_extra_args(false)
+        ->group("Tables");
+    text("--length-unit", a.length_unit, "of x, y, z: mm, m, um (default: the name's, else mm)")
+        ->check(CLI::IsMember({"mm", "m", "um"}));
     text("--depth-unit", a.depth_unit, "of depths: mm, m, um")->check(CLI::IsMember({"mm", "m", "um"}));
-    text("--force-unit", a.force_unit, "N or mN (default: the name's, else N)")->check(CLI::IsMember({"N", "mN"}));
+    text("--force-unit", a.force_unit, "N or mN (default: the name's, else N)")
+        ->check(CLI::IsMember({"N", "mN"}));
     command.add_flag("--negate-force", a.negate_force, "forces have the other sign")->group("Tables");
     text("--region-mm", a.region, "X0,X1,Y0,Y1: only what lies in it");
     text("--tilt", a.tilt, "remove (default) or keep")->check(CLI::IsMember({"remove", "keep"}));
-    number("--outliers", a.outliers, "robust deviations beyond which a force is left out (default 20; 0: none)", 0.0, 1e6);
-    text("--grid", a.grid, "on-grid, plane, inverse-distance or median")->check(CLI::IsMember({"on-grid", "plane", "inverse-distance", "median"}));
+    number("--outliers", a.outliers,
+           "robust deviations beyond which a force is left out (default 20; 0: none)", 0.0, 1e6);
+    text("--grid", a.grid, "on-grid, plane, inverse-distance or median")
+        ->check(CLI::IsMember({"on-grid", "plane", "inverse-distance", "median"}));
     number("--pitch-mm", a.pitch_mm, "of the map, where the places lie on no grid", 0.01, 1000.0);
     number("--radius-mm", a.radius_mm, "that a cell then draws from", 0.01, 1000.0);
     command.add_option("--layers", a.layers, "depths of the map")->check(CLI::Range(1, 200))->group("Tables");
     text("--contact", a.contact, "first-row or threshold")->check(CLI::IsMember({"first-row", "threshold"}));
     number("--contact-force-N", a.contact_force_N, "the threshold", 0.0, 100.0);
-    number("--surface-z-mm", a.surface_z_mm, "sliding: a flat surface at this height, instead of an estimated one", -1e5, 1e5);
+    number("--surface-z-mm", a.surface_z_mm,
+           "sliding: a flat surface at this height, instead of an estimated one", -1e5, 1e5);
     number("--surface-node-mm", a.surface_node_mm, "sliding: nodes of the estimated surface", 0.1, 1000.0);
     text("--at-depth-mm", a.at_depths, "sliding at constant depth: the depth of each file");
 }
@@ -254,41 +290,63 @@ void add_array_options(CLI::App& command, Arguments& a) {
     };
     text("--spacing-mm", a.spacing, "DX,DY: distance between the numbers");
     text("--origin-mm", a.origin, "X,Y of the first number (default 0,0)");
-    text("--quantity", a.quantity, "force (N, default), stiffness (N/mm) or young (kPa)")->check(CLI::IsMember({"force", "stiffness", "young"}));
-    command.add_option("--scale", a.scale, "N, N/mm or kPa for one of the file's; images must state it")->group("Arrays");
+    text("--quantity", a.quantity, "force (N, default), stiffness (N/mm) or young (kPa)")
+        ->check(CLI::IsMember({"force", "stiffness", "young"}));
+    command.add_option("--scale", a.scale, "N, N/mm or kPa for one of the file's; images must state it")
+        ->group("Arrays");
     command.add_option("--offset", a.offset, "subtracted from the file's numbers before")->group("Arrays");
     command.add_option("--missing", a.missing, "the number that means not measured")->group("Arrays");
     text("--axes", a.axes, "order of three-dimensional arrays (default dyx: depth, y, x)")
         ->check(CLI::IsMember({"dyx", "dxy", "ydx", "yxd", "xdy", "xyd"}));
     text("--dataset", a.dataset, "name in a MATLAB or HDF5 file that holds several arrays");
-    command.add_option("--tangential-x", a.tangential_x, "files of the force that opposes motion along +x (default: by their names)")->group("Arrays");
+    command
+        .add_option("--tangential-x", a.tangential_x,
+                    "files of the force that opposes motion along +x (default: by their names)")
+        ->group("Arrays");
     command.add_option("--tangential-y", a.tangential_y, "the same along +y")->group("Arrays");
-    command.add_option("--poisson", a.poisson, "of the tissue, for Young's moduli (default 0.5)")->check(CLI::Range(0.0, 0.5))->group("Arrays");
-    command.add_option("--cylinder-length-mm", a.cylinder_length_mm, "for Young's moduli under a cylinder (default 20)")
-        ->check(CLI::Range(0.1, 1e4))->group("Arrays");
+    command.add_option("--poisson", a.poisson, "of the tissue, for Young's moduli (default 0.5)")
+        ->check(CLI::Range(0.0, 0.5))
+        ->group("Arrays");
+    command
+        .add_option("--cylinder-length-mm", a.cylinder_length_mm,
+                    "for Young's moduli under a cylinder (default 20)")
+        ->check(CLI::Range(0.1, 1e4))
+        ->group("Arrays");
 }
 
 }  // namespace
 
 void add_maps_import(CLI::App& maps) {
     auto a = std::make_shared<Arguments>();
-    CLI::App* command = maps.add_subcommand("import", "A recording becomes a map: probing, sliding, matrices of force, slices of stiffness");
-    command->add_option("FILE", a->files, "a table with a header line (probing, sliding), or arrays: .npy, text, MATLAB, HDF5, PNG, TIFF")->required();
+    CLI::App* command = maps.add_subcommand(
+        "import", "A recording becomes a map: probing, sliding, matrices of force, slices of stiffness");
+    command
+        ->add_option(
+            "FILE", a->files,
+            "a table with a header line (probing, sliding), or arrays: .npy, text, MATLAB, HDF5, PNG, TIFF")
+        ->required();
     command->add_option("-o,--output", a->output, "new map folder NAME.map");
     command->add_option("--form", a->form, "probing, sliding or matrices (default: told from the file)")
         ->check(CLI::IsMember({"probing", "sliding", "matrices"}));
-    command->add_option("--depths-mm", a->depths, "D1,D2,...: the map's depths; of matrices, the depth of each in their order");
-    command->add_option("--tangential", a->tangential, "measured, energy (derived from the normal force) or none")
+    command->add_option("--depths-mm", a->depths,
+                        "D1,D2,...: the map's depths; of matrices, the depth of each in their order");
+    command
+        ->add_option("--tangential", a->tangential,
+                     "measured, energy (derived from the normal force) or none")
         ->check(CLI::IsMember({"measured", "energy", "none"}));
     command->add_flag("--no-fill", a->no_fill, "no filled_normal_N.npy beside the raw forces");
-    command->add_option("--indenter", a->indenter, "sphere (default) or cylinder")->check(CLI::IsMember({"sphere", "cylinder"}));
-    command->add_option("--indenter-radius-mm", a->indenter_radius_mm, "of the tool's tip (default 3, assumed: recordings do not say)")
+    command->add_option("--indenter", a->indenter, "sphere (default) or cylinder")
+        ->check(CLI::IsMember({"sphere", "cylinder"}));
+    command
+        ->add_option("--indenter-radius-mm", a->indenter_radius_mm,
+                     "of the tool's tip (default 3, assumed: recordings do not say)")
         ->check(CLI::Range(1e-3, 1e3));
     command->add_option("--name", a->name, "of the map (default: the file's)");
     command->add_option("--licence", a->licence, "of the recording, for the map's source");
     add_table_options(*command, *a);
     add_array_options(*command, *a);
-    command->add_flag("--explain", a->explain, "also prints what was chosen, why, and what chooses otherwise");
+    command->add_flag("--explain", a->explain,
+                      "also prints what was chosen, why, and what chooses otherwise");
     command->add_flag("--json", a->json, "one JSON object: as `maps info`, and how the import went");
     command->callback([a] { import_map(*a); });
 }

@@ -1,14 +1,13 @@
 #include "stiffnessmaps/import/apart.h"
 
-#include <signal.h>
-#include <sys/resource.h>
-#include <sys/wait.h>
-#include <unistd.h>
-
 #include <array>
 #include <cerrno>
 #include <cstring>
+#include <signal.h>
 #include <stdexcept>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include "files/input_error.h"
 
@@ -94,7 +93,9 @@ NpyArray read_apart(const std::string& file, const char* library, const std::fun
     }
     if (!WIFEXITED(status) || WEXITSTATUS(status) != 0 || said.empty()) {
         const bool slow = WIFSIGNALED(status) && WTERMSIG(status) == SIGXCPU;
-        throw bad_input(file, "", slow ? "over a minute of work for " + std::string(library) : "what " + std::string(library) + " cannot read without failing",
+        throw bad_input(file, "",
+                        slow ? "over a minute of work for " + std::string(library)
+                             : "what " + std::string(library) + " cannot read without failing",
                         "a whole file of moderate size");
     }
     if (said.front() == kRefused) throw InputError(said.substr(1));

@@ -1,6 +1,6 @@
 #pragma once
-// Libraries that read files from strangers run in a process of their own: what crashes them, or makes them run or
-// grow without end, is then a message about the file.
+// Libraries that read files from strangers run in a process of their own: what crashes them, or makes them
+// run or grow without end, is then a message about the file.
 
 #include <functional>
 #include <string>
@@ -9,8 +9,9 @@
 
 namespace palpa {
 
-// What `read` returns, or throws as InputError. Throws InputError that names `file` and `library` where the process
-// crashes, takes more than a minute of the processor or some gigabytes of memory. Only for callers with one thread.
+// What `read` returns, or throws as InputError. Throws InputError that names `file` and `library` where the
+// process crashes, takes more than a minute of the processor or some gigabytes of memory. Only for callers
+// with one thread.
 NpyArray read_apart(const std::string& file, const char* library, const std::function<NpyArray()>& read);
 
 }  // namespace palpa

@@ -39,7 +39,8 @@ char matrix_separator(std::string_view line) {
     return line.find(separator) == std::string_view::npos ? ' ' : separator;
 }
 
-// Calls visit(field) for the fields of a line; runs of blanks are one separator. False as soon as visit says so.
+// Calls visit(field) for the fields of a line; runs of blanks are one separator. False as soon as visit says
+// so.
 template <class Visit>
 bool visit_fields(std::string_view line, char separator, Visit visit) {
     line = separator == '\t' ? line : without_blanks(line);
@@ -73,18 +74,22 @@ bool is_number_line(std::string_view line) {
 
 }  // namespace
 
-std::size_t check_shape(const std::vector<std::size_t>& shape, std::size_t value_bytes, std::size_t stored_bytes, bool packed,
-                        const std::string& file) {
-    if (shape.size() < 2 || shape.size() > 3) throw bad_input(file, "shape", shape_text(shape), "two or three dimensions");
+std::size_t check_shape(const std::vector<std::size_t>& shape, std::size_t value_bytes,
+                        std::size_t stored_bytes, bool packed, const std::string& file) {
+    if (shape.size() < 2 || shape.size() > 3)
+        throw bad_input(file, "shape", shape_text(shape), "two or three dimensions");
     constexpr std::size_t kMost = 20'000'000;
     constexpr double kMostPacked = 1032.0;
     double n = 1.0;
     for (const std::size_t d : shape) n *= static_cast<double>(d);
     if (n == 0.0) throw bad_input(file, "shape", shape_text(shape), "at least one number");
-    if (n > static_cast<double>(kMost)) throw bad_input(file, "shape", shape_text(shape), "at most 20 million numbers");
+    if (n > static_cast<double>(kMost))
+        throw bad_input(file, "shape", shape_text(shape), "at most 20 million numbers");
     const double can = static_cast<double>(stored_bytes) * (packed ? kMostPacked : 1.0);
     if (n * static_cast<double>(value_bytes) > can) {
-        throw bad_input(file, "shape", shape_text(shape), "numbers that fit into its " + std::to_string(stored_bytes) + " bytes (is the file whole?)");
+        throw bad_input(
+            file, "shape", shape_text(shape),
+            "numbers that fit into its " + std::to_string(stored_bytes) + " bytes (is the file whole?)");
     }
     return static_cast<std::size_t>(n);
 }
@@ -92,7 +97,9 @@ std::size_t check_shape(const std::vector<std::size_t>& shape, std::size_t value
 std::optional<ArrayKind> array_kind(const fs::path& path) {
     constexpr std::size_t kEnough = 1 << 16;
     const std::string bytes = first_bytes(path, kEnough);
-    const auto starts = [&](std::string_view magic, std::size_t at = 0) { return bytes.compare(at < bytes.size() ? at : bytes.size(), magic.size(), magic) == 0; };
+    const auto starts = [&](std::string_view magic, std::size_t at = 0) {
+        return bytes.compare(at < bytes.size() ? at : bytes.size(), magic.size(), magic) == 0;
+    };
     const std::string_view hdf5("\x89HDF\r\n\x1a\n", 8);
     if (starts("\x93NUMPY")) return ArrayKind::npy;
     if (starts("MATLAB 5.0")) return ArrayKind::matlab;
@@ -100,8 +107,8 @@ std::optional<ArrayKind> array_kind(const fs::path& path) {
         if (starts(hdf5, at)) return ArrayKind::hdf5;
     }
     if (starts("\x89PNG\r\n\x1a\n")) return ArrayKind::png;
-    for (const std::string_view tiff : {std::string_view("II*\0", 4), std::string_view("MM\0*", 4), std::string_view("II+\0", 4),
-                                        std::string_view("MM\0+", 4)}) {
+    for (const std::string_view tiff : {std::string_view("II*\0", 4), std::string_view("MM\0*", 4),
+                                        std::string_view("II+\0", 4), std::string_view("MM\0+", 4)}) {
         if (starts(tiff)) return ArrayKind::tiff;
     }
     std::string_view text = bytes;
@@ -130,8 +137,9 @@ NpyArray parse_number_matrix(std::string_view text, const std::string& file) {
         visit_fields(line, separator, [&](std::string_view field) {
             float value = 0.0f;
             if (!parse_cell(field, value)) {
-                throw bad_input(file, "line " + std::to_string(line_number) + ", number " + std::to_string(n + 1), shown(field),
-                                "a finite number or n/a");
+                throw bad_input(file,
+                                "line " + std::to_string(line_number) + ", number " + std::to_string(n + 1),
+                                shown(field), "a finite number or n/a");
             }
             array.values.push_back(value);
             ++n;
@@ -152,15 +160,29 @@ NpyArray parse_number_matrix(std::string_view text, const std::string& file) {
 NpyArray read_array(const fs::path& path, const std::string& dataset) {
     const std::string file = path.string();
     const auto kind = array_kind(path);
-    if (!kind) throw bad_input(file, "", "another kind of file", "an array: .npy, rows of numbers, MATLAB, HDF5, PNG or TIFF");
+    if (!kind)
+        throw bad_input(file, "", "another kind of file",
+                        "an array: .npy, rows of numbers, MATLAB, HDF5, PNG or TIFF");
     NpyArray array;
     switch (*kind) {
-        case ArrayKind::npy: array = read_npy(path); break;
-        case ArrayKind::text: array = parse_number_matrix(read_text(path), file); break;
-        case ArrayKind::matlab: array = read_apart(file, "the MATLAB reader", [&] { return read_matlab(path, dataset); }); break;
-        case ArrayKind::hdf5: array = read_apart(file, "the HDF5 library", [&] { return read_hdf5(path, dataset); }); break;
-        case ArrayKind::png: array = read_apart(file, "the PNG library", [&] { return read_png(path); }); break;
-        case ArrayKind::tiff: array = read_apart(file, "the TIFF library", [&] { return read_tiff(path); }); break;
+        case ArrayKind::npy:
+            array = read_npy(path);
+            break;
+        case ArrayKind::text:
+            array = parse_number_matrix(read_text(path), file);
+            break;
+        case ArrayKind::matlab:
+            array = read_apart(file, "the MATLAB reader", [&] { return read_matlab(path, dataset); });
+            break;
+        case ArrayKind::hdf5:
+            array = read_apart(file, "the HDF5 library", [&] { return read_hdf5(path, dataset); });
+            break;
+        case ArrayKind::png:
+            array = read_apart(file, "the PNG library", [&] { return read_png(path); });
+            break;
+        case ArrayKind::tiff:
+            array = read_apart(file, "the TIFF library", [&] { return read_tiff(path); });
+            break;
     }
     check_shape(array.shape, 1, array.values.size(), false, file);
     return array;

@@ -28,7 +28,9 @@ const std::array<KnownRole, kRoles>& known_roles() {
         {Role::y, "y", {"ref_y", "y", "pos_y", "y_pos", "position_y", "contact_y", "py", "tip_y"}},
         {Role::z, "z", {"z", "pos_z", "z_pos", "position_z", "pz", "tip_z"}},
         {Role::depth, "depth", {"depth", "indentation", "penetration", "indent"}},
-        {Role::commanded_depth, "depth_cmd", {"depth_cmd", "cmd_depth", "commanded_depth", "depth_commanded"}},
+        {Role::commanded_depth,
+         "depth_cmd",
+         {"depth_cmd", "cmd_depth", "commanded_depth", "depth_commanded"}},
         {Role::normal_force, "fn", {"fn", "normal_force", "force_normal", "f_n", "force", "load", "f"}},
         {Role::force_x, "fx", {"fx", "force_x", "f_x", "x_force"}},
         {Role::force_y, "fy", {"fy", "force_y", "f_y", "y_force"}},
@@ -40,9 +42,15 @@ const std::array<KnownRole, kRoles>& known_roles() {
     return known;
 }
 
-bool is_force(Role role) { return role >= Role::normal_force && role <= Role::force_z; }
-bool is_depth(Role role) { return role == Role::depth || role == Role::commanded_depth; }
-bool is_position(Role role) { return role == Role::x || role == Role::y || role == Role::z; }
+bool is_force(Role role) {
+    return role >= Role::normal_force && role <= Role::force_z;
+}
+bool is_depth(Role role) {
+    return role == Role::depth || role == Role::commanded_depth;
+}
+bool is_position(Role role) {
+    return role == Role::x || role == Role::y || role == Role::z;
+}
 
 struct Unit {
     const char* name;
@@ -50,8 +58,15 @@ struct Unit {
     char of;  // l length, f force, t time
 };
 // m stands for metres and never for anything else: "fx_m" is a force in no unit
-constexpr std::array<Unit, 9> kUnits{{{"mm", 1e-3, 'l'}, {"um", 1e-6, 'l'}, {"cm", 1e-2, 'l'}, {"m", 1.0, 'l'}, {"mN", 1e-3, 'f'},
-                                      {"kN", 1e3, 'f'}, {"N", 1.0, 'f'}, {"ms", 1e-3, 't'}, {"s", 1.0, 't'}}};
+constexpr std::array<Unit, 9> kUnits{{{"mm", 1e-3, 'l'},
+                                      {"um", 1e-6, 'l'},
+                                      {"cm", 1e-2, 'l'},
+                                      {"m", 1.0, 'l'},
+                                      {"mN", 1e-3, 'f'},
+                                      {"kN", 1e3, 'f'},
+                                      {"N", 1.0, 'f'},
+                                      {"ms", 1e-3, 't'},
+                                      {"s", 1.0, 't'}}};
 
 struct SplitName {
     std::string bare;            // lower case
@@ -68,7 +83,8 @@ std::string lower(std::string_view text) {
 SplitName split_name(std::string_view name) {
     const auto blank = [](char c) { return c == ' ' || c == '"' || c == '\''; };
     while (!name.empty() && blank(name.front())) name.remove_prefix(1);
-    while (!name.empty() && (blank(name.back()) || name.back() == ')' || name.back() == ']')) name.remove_suffix(1);
+    while (!name.empty() && (blank(name.back()) || name.back() == ')' || name.back() == ']'))
+        name.remove_suffix(1);
     const auto cut = name.find_last_of("_ ([");
     if (cut != std::string_view::npos && cut > 0) {
         const std::string_view last = name.substr(cut + 1);
@@ -88,7 +104,9 @@ char kind_of(Role role) {
     return role == Role::time ? 't' : ' ';
 }
 
-double metres_of(LengthUnit unit) { return unit == LengthUnit::mm ? 1e-3 : unit == LengthUnit::m ? 1.0 : 1e-6; }
+double metres_of(LengthUnit unit) {
+    return unit == LengthUnit::mm ? 1e-3 : unit == LengthUnit::m ? 1.0 : 1e-6;
+}
 
 double unit_of(Role role, const SplitName& name, const ImportOptions& options, const std::string& column,
                const std::string& file) {
@@ -99,8 +117,10 @@ double unit_of(Role role, const SplitName& name, const ImportOptions& options, c
     if (name.unit != nullptr) {
         if (name.unit->of != kind) {
             throw bad_input(file, "line 1", "the column " + shown(column) + " as " + name_of(role),
-                            kind == 'f' ? "a force (N, mN)" : kind == 'l' ? "a length (mm, m, um)"
-                                        : kind == 't' ? "a time (s, ms)" : "a number without a unit");
+                            kind == 'f'   ? "a force (N, mN)"
+                            : kind == 'l' ? "a length (mm, m, um)"
+                            : kind == 't' ? "a time (s, ms)"
+                                          : "a number without a unit");
         }
         return name.unit->to_SI;
     }
@@ -132,12 +152,15 @@ std::string all_roles() {
 
 }  // namespace
 
-const char* name_of(Role role) { return known_roles()[static_cast<std::size_t>(role)].name; }
+const char* name_of(Role role) {
+    return known_roles()[static_cast<std::size_t>(role)].name;
+}
 
 Columns find_columns(const Table& table, const ImportOptions& options) {
     for (const auto& [role, name] : options.columns) {
         const auto& known = known_roles();
-        const bool is_known = std::any_of(known.begin(), known.end(), [&](const KnownRole& k) { return role == k.name; });
+        const bool is_known =
+            std::any_of(known.begin(), known.end(), [&](const KnownRole& k) { return role == k.name; });
         if (!is_known) throw bad_input("--column", "", shown(role), "one of " + all_roles());
         table.column(name);
     }
@@ -163,7 +186,8 @@ void need(const Columns& columns, const Table& table, std::initializer_list<Role
         std::string found = "the columns";
         for (const std::string& column : table.columns()) found += " " + shown(column);
         std::string expected = "a column for " + std::string(known.name) + " (";
-        for (const std::string_view usual : known.usual) expected += (expected.back() == '(' ? "" : ", ") + std::string(usual);
+        for (const std::string_view usual : known.usual)
+            expected += (expected.back() == '(' ? "" : ", ") + std::string(usual);
         throw bad_input(table.file(), "line 1", found,
                         expected + ", with or without a unit; or name it: --column " + known.name + "=NAME)");
     }
@@ -171,33 +195,42 @@ void need(const Columns& columns, const Table& table, std::initializer_list<Role
 
 RecordingForm form_of(const Columns& columns, const Table& table) {
     const bool forces = columns.has(Role::force_z) || columns.has(Role::normal_force);
-    if (columns.has(Role::time) && columns.has(Role::z) && forces && !columns.has(Role::point)) return RecordingForm::sliding;
+    if (columns.has(Role::time) && columns.has(Role::z) && forces && !columns.has(Role::point))
+        return RecordingForm::sliding;
     if (columns.has(Role::point) || columns.has(Role::depth)) return RecordingForm::probing;
     if (columns.has(Role::z) && forces) return RecordingForm::probing;
     std::string found = "the columns";
     for (const std::string& column : table.columns()) found += " " + shown(column);
     throw bad_input(table.file(), "line 1", found,
-                    "probing (x, y, depth or z, fn or fz, ...) or sliding (t, x, y, z, fx, fy, fz); name them with --column");
+                    "probing (x, y, depth or z, fn or fz, ...) or sliding (t, x, y, z, fx, fy, fz); name "
+                    "them with --column");
 }
 
-void check_force_size(double greatest_N, const Columns& columns, const ImportOptions& options, const std::string& file) {
+void check_force_size(double greatest_N, const Columns& columns, const ImportOptions& options,
+                      const std::string& file) {
     if (options.force_unit || greatest_N == 0.0) return;
     constexpr double kLeast_N = 0.01;
     constexpr double kMost_N = 200.0;
     if (greatest_N >= kLeast_N && greatest_N <= kMost_N) return;
     const Role role = columns.has(Role::normal_force) ? Role::normal_force : Role::force_z;
-    throw bad_input(file, columns.has(role) ? columns[role].name : "",
-                    "a greatest force of " + short_number(greatest_N) + " N",
-                    "from 0.01 to 200 N on soft tissue: state the column's unit by --force-unit mN, or N if it is right");
+    throw bad_input(
+        file, columns.has(role) ? columns[role].name : "",
+        "a greatest force of " + short_number(greatest_N) + " N",
+        "from 0.01 to 200 N on soft tissue: state the column's unit by --force-unit mN, or N if it is right");
 }
 
 void check_length_size(double extent_m, const ImportOptions& options, const std::string& file) {
+    constexpr double kAbsurd_m = 100.0;
+    if (!(extent_m <= kAbsurd_m)) {
+        throw bad_input(file, "", "places that extend over " + short_number(extent_m) + " m", "at most 100 m");
+    }
     if (options.length_unit || extent_m == 0.0) return;
     constexpr double kLeast_m = 1e-3;
     constexpr double kMost_m = 1.0;
     if (extent_m >= kLeast_m && extent_m <= kMost_m) return;
-    throw bad_input(file, "", "places that extend over " + short_number(1e3 * extent_m) + " mm",
-                    "from 1 to 1000 mm: state the unit of the positions by --length-unit m, um, or mm if it is right");
+    throw bad_input(
+        file, "", "places that extend over " + short_number(1e3 * extent_m) + " mm",
+        "from 1 to 1000 mm: state the unit of the positions by --length-unit m, um, or mm if it is right");
 }
 
 void check_depth_size(double greatest_m, const ImportOptions& options, const std::string& file) {
@@ -205,8 +238,9 @@ void check_depth_size(double greatest_m, const ImportOptions& options, const std
     constexpr double kLeast_m = 0.05e-3;
     constexpr double kMost_m = 0.1;
     if (greatest_m >= kLeast_m && greatest_m <= kMost_m) return;
-    throw bad_input(file, "", "a greatest depth of " + short_number(1e3 * greatest_m) + " mm",
-                    "from 0.05 to 100 mm: state the unit of the depths by --depth-unit m, um, or mm if it is right");
+    throw bad_input(
+        file, "", "a greatest depth of " + short_number(1e3 * greatest_m) + " mm",
+        "from 0.05 to 100 mm: state the unit of the depths by --depth-unit m, um, or mm if it is right");
 }
 
 char separator_of(std::string_view first_line) {

@@ -1,6 +1,6 @@
 #pragma once
-// Which column of a table is what, and in which unit: by the person's word, by usual names, by the unit in the
-// name (x_mm, "Fz [N]", force_mN), and by what the numbers can be.
+// Which column of a table is what, and in which unit: by the person's word, by usual names, by the unit in
+// the name (x_mm, "Fz [N]", force_mN), and by what the numbers can be.
 
 #include <array>
 #include <optional>
@@ -13,8 +13,20 @@
 namespace palpa {
 
 enum class Role {
-    time, point, x, y, z, depth, commanded_depth, normal_force,
-    force_x, force_y, force_z, normal_x, normal_y, normal_z,
+    time,
+    point,
+    x,
+    y,
+    z,
+    depth,
+    commanded_depth,
+    normal_force,
+    force_x,
+    force_y,
+    force_z,
+    normal_x,
+    normal_y,
+    normal_z,
 };
 inline constexpr std::size_t kRoles = 14;
 const char* name_of(Role role);  // as in --column: "x", "depth_cmd", "fn", ...
@@ -22,7 +34,7 @@ const char* name_of(Role role);  // as in --column: "x", "depth_cmd", "fn", ...
 struct Column {
     std::size_t index = 0;
     double to_SI = 1.0;
-    std::string name;   // in the file
+    std::string name;  // in the file
 };
 
 struct Columns {
@@ -46,7 +58,8 @@ inline double value_of(const Table& table, const Columns& columns, Role role) {
 }
 
 // Refuses numbers of another unit than they claim, unless the person has stated the unit.
-void check_force_size(double greatest_N, const Columns& columns, const ImportOptions& options, const std::string& file);
+void check_force_size(double greatest_N, const Columns& columns, const ImportOptions& options,
+                      const std::string& file);
 void check_length_size(double extent_m, const ImportOptions& options, const std::string& file);
 void check_depth_size(double greatest_m, const ImportOptions& options, const std::string& file);
 

@@ -35,8 +35,9 @@ std::vector<double> deepest_forces(const Map& map) {
 void refuse_no_forces(const Map& map, const std::string& file) {
     const std::vector<double> deepest_N = deepest_forces(map);
     if (deepest_N.empty()) {
-        throw bad_input(file, "", "no force that was measured: all " + std::to_string(map.n_cells()) + " cells are empty",
-                        "forces at the map's depths (is the pitch too fine, are the depths too great?)");
+        throw bad_input(
+            file, "", "no force that was measured: all " + std::to_string(map.n_cells()) + " cells are empty",
+            "forces at the map's depths (is the pitch too fine, are the depths too great?)");
     }
     if (median(deepest_N) > 0.0) return;
     throw bad_input(file, "", short_number(median(deepest_N)) + " N at the greatest depths (median)",
@@ -54,7 +55,8 @@ void close_inner_gaps(const Map& map, std::vector<float>& out) {
             if (std::isnan(force)) continue;
             for (; next < k; ++next) {
                 const double s = (map.depths_m[next] - from_m) / (map.depths_m[k] - from_m);
-                out[next * map.n_cells() + cell] = static_cast<float>(from_N + s * (static_cast<double>(force) - from_N));
+                out[next * map.n_cells() + cell] =
+                    static_cast<float>(from_N + s * (static_cast<double>(force) - from_N));
             }
             next = k + 1;
             from_m = map.depths_m[k];
@@ -84,7 +86,8 @@ void derive_tangential(Map& map) {
 }
 
 void choose_tangential(Map& map, bool measured, const ImportOptions& options, const std::string& file) {
-    const TangentialChoice choice = options.tangential.value_or(measured ? TangentialChoice::measured : TangentialChoice::none);
+    const TangentialChoice choice =
+        options.tangential.value_or(measured ? TangentialChoice::measured : TangentialChoice::none);
     if (choice == TangentialChoice::measured && !measured) {
         throw bad_input(file, "", "no force that resists motion along +x or +y",
                         "a recording of a sliding tool, or matrices of it; else --tangential energy or none");
@@ -117,9 +120,11 @@ void check_enough_samples(const GridPlan& plan, std::size_t n_samples, const std
     constexpr double kSpare = 10'000.0;
     const double cells = static_cast<double>(plan.x.n) * static_cast<double>(plan.y.n);
     if (cells <= static_cast<double>(n_samples) + kSpare) return;
-    throw bad_input(file, "", short_number(cells) + " cells of " + short_number(1e3 * plan.x.pitch_m) + " mm for " +
-                                  std::to_string(n_samples) + " samples",
-                    "fewer cells than samples: a greater --pitch-mm, or is a place far off the others (--region-mm)?");
+    throw bad_input(
+        file, "",
+        short_number(cells) + " cells of " + short_number(1e3 * plan.x.pitch_m) + " mm for " +
+            std::to_string(n_samples) + " samples",
+        "fewer cells than samples: a greater --pitch-mm, or is a place far off the others (--region-mm)?");
 }
 
 std::vector<float> filled_forces(const Map& map) {
@@ -128,7 +133,9 @@ std::vector<float> filled_forces(const Map& map) {
     const GridShape shape{map.n_x, map.n_y, map.spacing_m[0], map.spacing_m[1]};
     std::vector<double> step(map.n_cells());
     for (std::size_t k = 0; k < map.n_depths(); ++k) {
-        const auto above = [&](std::size_t cell) { return k == 0 ? 0.0 : static_cast<double>(out[(k - 1) * map.n_cells() + cell]); };
+        const auto above = [&](std::size_t cell) {
+            return k == 0 ? 0.0 : static_cast<double>(out[(k - 1) * map.n_cells() + cell]);
+        };
         bool any = false;
         for (std::size_t cell = 0; cell < map.n_cells(); ++cell) {
             step[cell] = static_cast<double>(out[k * map.n_cells() + cell]) - above(cell);
@@ -153,7 +160,8 @@ ImportResidual residual_of(const Map& map, const RecordedPoints& recorded) {
         const double depth_m = static_cast<double>(recorded.depth_m[i]);
         constexpr double kHair_m = 1e-9;
         if (!place.inside || !place.measured || depth_m > greatest_depth_m(field, place) + kHair_m) continue;
-        const double off_N = std::abs(normal_force_N(field, place, depth_m) - static_cast<double>(recorded.force_N[i]));
+        const double off_N =
+            std::abs(normal_force_N(field, place, depth_m) - static_cast<double>(recorded.force_N[i]));
         residuals.push_back(off_N);
         if (off_N <= out.worst_N) continue;
         out.worst_N = off_N;
@@ -198,8 +206,8 @@ ImportResidual residual_of_numbers(const Map& map) {
     return out;
 }
 
-void finish_map(Map& map, const RecordedPoints& recorded, bool measured_tangential, const ImportOptions& options,
-                const std::string& file, ImportReport& report) {
+void finish_map(Map& map, const RecordedPoints& recorded, bool measured_tangential,
+                const ImportOptions& options, const std::string& file, ImportReport& report) {
     refuse_no_forces(map, file);
     map.indenter = options.indenter;
     map.indenter_radius_m = options.indenter_radius_m;
@@ -208,7 +216,8 @@ void finish_map(Map& map, const RecordedPoints& recorded, bool measured_tangenti
     choose_tangential(map, measured_tangential, options, file);
     for (std::size_t cell = 0; cell < map.n_cells(); ++cell) {
         bool measured = false;
-        for (std::size_t k = 0; k < map.n_depths(); ++k) measured = measured || !std::isnan(map.normal_N[k * map.n_cells() + cell]);
+        for (std::size_t k = 0; k < map.n_depths(); ++k)
+            measured = measured || !std::isnan(map.normal_N[k * map.n_cells() + cell]);
         report.missing_cells += !measured;
     }
     if (options.fill) map.filled_normal_N = filled_forces(map);
@@ -217,7 +226,8 @@ void finish_map(Map& map, const RecordedPoints& recorded, bool measured_tangenti
     map.noise_N = estimated_noise_N(map);
     add_choice(map.source, "noise_N", *map.noise_N, "second differences along x and y", "");
     add_choice(map.source, "over_depth", "isotonic at look-up", "the raw forces are kept in the map", "");
-    add_choice(map.source, "indenter_radius_mm", choice_mm(options.indenter_radius_m), "recordings do not say", "--indenter-radius-mm");
+    add_choice(map.source, "indenter_radius_mm", choice_mm(options.indenter_radius_m),
+               "recordings do not say", "--indenter-radius-mm");
     check_map(map, file);
     report.residual = recorded.x_m.empty() ? residual_of_numbers(map) : residual_of(map, recorded);
 }

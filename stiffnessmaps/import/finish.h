@@ -1,6 +1,6 @@
 #pragma once
-// What every form of recording ends with: checks, the filled copy, noise, tangential force, and how far the map is
-// from what was recorded.
+// What every form of recording ends with: checks, the filled copy, noise, tangential force, and how far the
+// map is from what was recorded.
 
 #include <string>
 
@@ -28,16 +28,16 @@ void start_map(const GridPlan& plan, Map& map);
 // More cells than samples is a pitch that is too fine.
 void check_enough_samples(const GridPlan& plan, std::size_t n_samples, const std::string& file);
 
-// A map without gaps: between measured depths linear (from (0, 0) on); beyond a cell's deepest measurement, and in cells
-// without any, each layer's step in force is the mean of the neighbours' steps. Layers without any force stay as they are
-// above. [depth][y][x].
+// A map without gaps: between measured depths linear (from (0, 0) on); beyond a cell's deepest measurement,
+// and in cells without any, each layer's step in force is the mean of the neighbours' steps. Layers without
+// any force stay as they are above. [depth][y][x].
 std::vector<float> filled_forces(const Map& map);
 
-// Refuses a map without forces, or whose forces fall with depth; then fills, estimates the noise, derives the tangential
-// force where asked for, writes its choices, and measures the residual. `measured_tangential`: the map has arrays of its own.
-// `recorded` empty: the map's numbers are the recording.
-void finish_map(Map& map, const RecordedPoints& recorded, bool measured_tangential, const ImportOptions& options,
-                const std::string& file, ImportReport& report);
+// Refuses a map without forces, or whose forces fall with depth; then fills, estimates the noise, derives the
+// tangential force where asked for, writes its choices, and measures the residual. `measured_tangential`: the
+// map has arrays of its own. `recorded` empty: the map's numbers are the recording.
+void finish_map(Map& map, const RecordedPoints& recorded, bool measured_tangential,
+                const ImportOptions& options, const std::string& file, ImportReport& report);
 
 // |map - recording| at every recorded point that is not deeper than the map there.
 ImportResidual residual_of(const Map& map, const RecordedPoints& recorded);

@@ -24,7 +24,8 @@ constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 struct SquareIndex {
     double side_m;
     static std::uint64_t key(std::int32_t i, std::int32_t j) {
-        return (static_cast<std::uint64_t>(static_cast<std::uint32_t>(i)) << 32) | static_cast<std::uint32_t>(j);
+        return (static_cast<std::uint64_t>(static_cast<std::uint32_t>(i)) << 32) |
+               static_cast<std::uint32_t>(j);
     }
     std::int32_t square(double place_m) const {
         constexpr double kFar = 1e9;
@@ -119,7 +120,8 @@ double neighbour_distance_m(const std::vector<double>& x_m, const std::vector<do
     const SquareIndex index{std::max({std::sqrt(area / static_cast<double>(n)), line, 1e-7})};
     std::unordered_map<std::uint64_t, std::vector<std::uint32_t>> squares;
     for (std::size_t i = 0; i < n; ++i) {
-        squares[SquareIndex::key(index.square(x_m[i]), index.square(y_m[i]))].push_back(static_cast<std::uint32_t>(i));
+        squares[SquareIndex::key(index.square(x_m[i]), index.square(y_m[i]))].push_back(
+            static_cast<std::uint32_t>(i));
     }
     std::vector<double> nearest_m;
     const std::size_t step = 1 + n / 20000;  // the median needs no more
@@ -127,7 +129,8 @@ double neighbour_distance_m(const std::vector<double>& x_m, const std::vector<do
         double best = std::numeric_limits<double>::infinity();
         for (std::int32_t b = -1; b <= 1; ++b) {
             for (std::int32_t a = -1; a <= 1; ++a) {
-                const auto at = squares.find(SquareIndex::key(index.square(x_m[i]) + a, index.square(y_m[i]) + b));
+                const auto at =
+                    squares.find(SquareIndex::key(index.square(x_m[i]) + a, index.square(y_m[i]) + b));
                 if (at == squares.end()) continue;
                 std::size_t looked_at = 0;
                 for (const std::uint32_t j : at->second) {
@@ -145,7 +148,8 @@ double neighbour_distance_m(const std::vector<double>& x_m, const std::vector<do
 std::size_t group_count(const std::vector<double>& x_m, const std::vector<double>& y_m, double link_m) {
     const SquareIndex index{std::max(link_m, 1e-7)};
     std::unordered_map<std::uint64_t, std::size_t> squares;  // how many places
-    for (std::size_t i = 0; i < x_m.size(); ++i) ++squares[SquareIndex::key(index.square(x_m[i]), index.square(y_m[i]))];
+    for (std::size_t i = 0; i < x_m.size(); ++i)
+        ++squares[SquareIndex::key(index.square(x_m[i]), index.square(y_m[i]))];
     const std::size_t enough = std::max<std::size_t>(4, x_m.size() / 20);
     std::size_t groups = 0;
     std::vector<std::uint64_t> to_visit;
@@ -174,19 +178,28 @@ std::size_t group_count(const std::vector<double>& x_m, const std::vector<double
     return groups;
 }
 
+bool inside_region(const std::optional<std::array<double, 4>>& region_m, double x_m, double y_m) {
+    if (!region_m) return true;
+    const auto& [x_from, x_to, y_from, y_to] = *region_m;
+    return x_m >= x_from && x_m <= x_to && y_m >= y_from && y_m <= y_to;
+}
+
 void check_grid(const Axis& x, const Axis& y, std::size_t n_depths, const std::string& file) {
     constexpr std::size_t kMostValues = 20'000'000;
     const double values = static_cast<double>(x.n) * static_cast<double>(y.n) * static_cast<double>(n_depths);
     if (values <= static_cast<double>(kMostValues)) return;
-    throw bad_input(file, "", std::to_string(x.n) + " x " + std::to_string(y.n) + " cells of " +
-                                  short_number(1e3 * x.pitch_m) + " x " + short_number(1e3 * y.pitch_m) + " mm and " +
-                                  std::to_string(n_depths) + " depths",
-                    "a grid of at most 20 million forces (is a position far off the others? else --pitch-mm, --region-mm)");
+    throw bad_input(file, "",
+                    std::to_string(x.n) + " x " + std::to_string(y.n) + " cells of " +
+                        short_number(1e3 * x.pitch_m) + " x " + short_number(1e3 * y.pitch_m) + " mm and " +
+                        std::to_string(n_depths) + " depths",
+                    "a grid of at most 20 million forces (is a position far off the others? else --pitch-mm, "
+                    "--region-mm)");
 }
 
 namespace {
 
-// Sums of a weighted linear regression over (1, u, v, w), u and v in radii, w in thicknesses of the thicker layer beside.
+// Sums of a weighted linear regression over (1, u, v, w), u and v in radii, w in thicknesses of the thicker
+// layer beside.
 struct PlaneSums {
     double a[10] = {};  // upper triangle of sum of weight b b^T
     double f[4] = {};   // sum of weight b force
@@ -241,7 +254,8 @@ std::vector<LayerRange> layer_ranges(const std::vector<double>& depths_m) {
 }
 
 // How far a depth lies from a layer, in layers' distances; 1 or more: it does not belong to it.
-double layers_off(const std::vector<double>& depths_m, const LayerRange& range, std::size_t layer, double depth_m) {
+double layers_off(const std::vector<double>& depths_m, const LayerRange& range, std::size_t layer,
+                  double depth_m) {
     const double off_m = depth_m - depths_m[layer];
     return off_m / (off_m < 0.0 ? range.below_m : range.above_m);
 }
@@ -250,7 +264,8 @@ double layers_off(const std::vector<double>& depths_m, const LayerRange& range, 
 template <class Visit>
 void visit_cells(const GridPlan& plan, double x_m, double y_m, Visit visit) {
     const auto first = [&](const Axis& axis, double place_m) {
-        return static_cast<std::size_t>(std::max(0.0, std::ceil((place_m - plan.radius_m - axis.origin_m) / axis.pitch_m)));
+        return static_cast<std::size_t>(
+            std::max(0.0, std::ceil((place_m - plan.radius_m - axis.origin_m) / axis.pitch_m)));
     };
     for (std::size_t j = first(plan.y, y_m); j < plan.y.n && plan.y.at(j) <= y_m + plan.radius_m; ++j) {
         const double v = (y_m - plan.y.at(j)) / plan.radius_m;
@@ -261,7 +276,8 @@ void visit_cells(const GridPlan& plan, double x_m, double y_m, Visit visit) {
     }
 }
 
-void weighted_means(const Samples& samples, const GridPlan& plan, const std::vector<float>& values, std::vector<float>& out) {
+void weighted_means(const Samples& samples, const GridPlan& plan, const std::vector<float>& values,
+                    std::vector<float>& out) {
     if (values.empty()) return;
     const auto ranges = layer_ranges(plan.depths_m);
     constexpr double kEnough = 0.5;  // half of one sample in the middle
@@ -292,7 +308,8 @@ std::vector<float> by_planes(const Samples& samples, const GridPlan& plan) {
         for (std::size_t s = 0; s < samples.size(); ++s) {
             const double w = layers_off(plan.depths_m, ranges[layer], layer, samples.depth_m[s]);
             if (!(std::abs(w) < 1.0)) continue;
-            const double off = (samples.depth_m[s] - plan.depths_m[layer]) / std::max(ranges[layer].below_m, ranges[layer].above_m);
+            const double off = (samples.depth_m[s] - plan.depths_m[layer]) /
+                               std::max(ranges[layer].below_m, ranges[layer].above_m);
             const double carried = inverse ? plan.depths_m[layer] / samples.depth_m[s] : 1.0;
             visit_cells(plan, samples.x_m[s], samples.y_m[s], [&](std::size_t cell, double u, double v) {
                 const double rr = u * u + v * v;
@@ -316,10 +333,13 @@ std::vector<float> by_medians(const Samples& samples, const GridPlan& plan) {
     };
     std::vector<Entry> entries;
     for (std::size_t s = 0; s < samples.size(); ++s) {
-        const auto nearest = [](const Axis& axis, double place_m) { return std::round((place_m - axis.origin_m) / axis.pitch_m); };
+        const auto nearest = [](const Axis& axis, double place_m) {
+            return std::round((place_m - axis.origin_m) / axis.pitch_m);
+        };
         const double i = nearest(plan.x, samples.x_m[s]);
         const double j = nearest(plan.y, samples.y_m[s]);
-        if (i < 0.0 || j < 0.0 || i >= static_cast<double>(plan.x.n) || j >= static_cast<double>(plan.y.n)) continue;
+        if (i < 0.0 || j < 0.0 || i >= static_cast<double>(plan.x.n) || j >= static_cast<double>(plan.y.n))
+            continue;
         const std::size_t cell = static_cast<std::size_t>(j) * plan.x.n + static_cast<std::size_t>(i);
         for (std::size_t layer = 0; layer < plan.depths_m.size(); ++layer) {
             const double depth_m = samples.depth_m[s];

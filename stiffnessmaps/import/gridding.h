@@ -16,9 +16,9 @@ struct Axis {
     double at(std::size_t i) const { return origin_m + pitch_m * static_cast<double>(i); }
 };
 
-// The regular axis that most places lie on: the pitch is the median step between places that differ, the origin
-// and pitch then the best fit. `off` counts places farther than a tenth of the pitch from it. Empty if there is
-// none (more than 10000 positions).
+// The regular axis that most places lie on: the pitch is the median step between places that differ, the
+// origin and pitch then the best fit. `off` counts places farther than a tenth of the pitch from it. Empty if
+// there is none (more than 10000 positions).
 struct AxisFit {
     Axis axis;
     std::size_t off = 0;
@@ -34,11 +34,12 @@ Axis covering_axis(double lowest_m, double highest_m, double pitch_m);
 // Median distance from a place to its nearest neighbour; 0 if there is only one.
 double neighbour_distance_m(const std::vector<double>& x_m, const std::vector<double>& y_m);
 
-// How many separate groups the places form that hold at least a twentieth of them each: places less than `link_m`
-// apart are of one group. More than one: two grids in one file.
+// How many separate groups the places form that hold at least a twentieth of them each: places less than
+// `link_m` apart are of one group. More than one: two grids in one file.
 std::size_t group_count(const std::vector<double>& x_m, const std::vector<double>& y_m, double link_m);
 
-// Forces at places and depths. The tangential forces are empty, or NaN where the motion was not along + the axis.
+// Forces at places and depths. The tangential forces are empty, or NaN where the motion was not along + the
+// axis.
 struct Samples {
     std::vector<double> x_m;
     std::vector<double> y_m;
@@ -73,7 +74,10 @@ struct Gridded {
 // radius away on one side, or more than half a layer deeper or shallower: nothing is extrapolated.
 Gridded grid_samples(const Samples& samples, const GridPlan& plan);
 
-// Refuses a grid that no map should have. `points` places are to be put on it.
+// Whether --region-mm, x from, x to, y from, y to, lets a place in; without one everything is in.
+bool inside_region(const std::optional<std::array<double, 4>>& region_m, double x_m, double y_m);
+
+// Refuses a grid that no map should have.
 void check_grid(const Axis& x, const Axis& y, std::size_t n_depths, const std::string& file);
 
 }  // namespace palpa

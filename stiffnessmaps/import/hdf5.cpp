@@ -1,10 +1,9 @@
 // HDF5 files, and MATLAB 7.3 files, which are HDF5.
 
-#include <hdf5.h>
-
 #include <algorithm>
 #include <array>
 #include <fstream>
+#include <hdf5.h>
 
 #include "files/input_error.h"
 #include "stiffnessmaps/import/arrays.h"
@@ -14,7 +13,7 @@ namespace {
 
 // An identifier of the library, given back when it is no longer needed.
 class Handle {
- public:
+  public:
     Handle(hid_t id, herr_t (*close)(hid_t)) : id_(id), close_(close) {}
     ~Handle() {
         if (id_ >= 0) close_(id_);
@@ -24,7 +23,7 @@ class Handle {
     hid_t id() const { return id_; }
     bool there() const { return id_ >= 0; }
 
- private:
+  private:
     hid_t id_;
     herr_t (*close_)(hid_t);
 };
@@ -92,7 +91,8 @@ NpyArray with_axes_reversed(const NpyArray& from) {
     const std::size_t n_2 = out.shape.size() == 3 ? out.shape[2] : 1;
     for (std::size_t i = 0; i < n_0; ++i) {
         for (std::size_t j = 0; j < n_1; ++j) {
-            for (std::size_t k = 0; k < n_2; ++k) out.values[(i * n_1 + j) * n_2 + k] = from.values[i + n_0 * (j + n_1 * k)];
+            for (std::size_t k = 0; k < n_2; ++k)
+                out.values[(i * n_1 + j) * n_2 + k] = from.values[i + n_0 * (j + n_1 * k)];
         }
     }
     return out;
@@ -110,14 +110,17 @@ NpyArray read_hdf5(const std::filesystem::path& path, const std::string& dataset
     if (!data.there()) throw bad_input(file, "", "nothing of that name", "an array " + shown(name));
     NpyArray array;
     array.shape = grid_shape(data.id());
-    if (array.shape.empty()) throw bad_input(file, name, "something else", "an array of numbers with two or three dimensions");
+    if (array.shape.empty())
+        throw bad_input(file, name, "something else", "an array of numbers with two or three dimensions");
     const Handle type(H5Dget_type(data.id()), H5Tclose);
     const Handle how(H5Dget_create_plist(data.id()), H5Pclose);
     if (H5Pget_external_count(how.id()) > 0 || H5Pget_layout(how.id()) == H5D_VIRTUAL) {
         throw bad_input(file, name, "numbers that stand in other files", "numbers in this one");
     }
-    const auto stored = std::min<std::size_t>(H5Dget_storage_size(data.id()), std::filesystem::file_size(path));
-    const std::size_t n = check_shape(array.shape, H5Tget_size(type.id()), stored, H5Pget_nfilters(how.id()) > 0, file);
+    const auto stored =
+        std::min<std::size_t>(H5Dget_storage_size(data.id()), std::filesystem::file_size(path));
+    const std::size_t n =
+        check_shape(array.shape, H5Tget_size(type.id()), stored, H5Pget_nfilters(how.id()) > 0, file);
     array.values.resize(n);
     if (H5Dread(data.id(), H5T_NATIVE_FLOAT, H5S_ALL, H5S_ALL, H5P_DEFAULT, array.values.data()) < 0) {
         throw bad_input(file, name, "an array that cannot be read to its end", "a whole file");

@@ -1,12 +1,11 @@
 // Grey images, by libpng and libtiff: a number a pixel, nothing scaled.
 
-#include <png.h>
-#include <tiffio.h>
-
 #include <csetjmp>
 #include <cstdio>
 #include <cstring>
 #include <memory>
+#include <png.h>
+#include <tiffio.h>
 
 #include "files/input_error.h"
 #include "files/text.h"
@@ -50,7 +49,8 @@ std::string decode_png(const std::string& bytes, std::size_t line, std::vector<u
     png_set_read_fn(png, &source, give_bytes);
     png_read_info(png, info);
     png_set_interlace_handling(png);
-    if (png_get_rowbytes(png, info) != line || png_get_image_height(png, info) != starts.size()) png_error(png, "another size than its header's");
+    if (png_get_rowbytes(png, info) != line || png_get_image_height(png, info) != starts.size())
+        png_error(png, "another size than its header's");
     png_read_image(png, starts.data());
     png_read_end(png, nullptr);
     png_destroy_read_struct(&png, &info, nullptr);
@@ -63,11 +63,17 @@ NpyArray read_png(const std::filesystem::path& path) {
     const std::string file = path.string();
     const std::string bytes = read_text(path);
     constexpr std::size_t kHeader = 33;  // signature and IHDR
-    if (bytes.size() < kHeader || std::string_view(bytes).substr(12, 4) != "IHDR") throw bad_input(file, "", "no PNG header", "a whole image");
-    const auto byte = [&](std::size_t i) { return static_cast<std::size_t>(static_cast<unsigned char>(bytes[i])); };
-    const auto big_endian = [&](std::size_t i) { return byte(i) << 24 | byte(i + 1) << 16 | byte(i + 2) << 8 | byte(i + 3); };
+    if (bytes.size() < kHeader || std::string_view(bytes).substr(12, 4) != "IHDR")
+        throw bad_input(file, "", "no PNG header", "a whole image");
+    const auto byte = [&](std::size_t i) {
+        return static_cast<std::size_t>(static_cast<unsigned char>(bytes[i]));
+    };
+    const auto big_endian = [&](std::size_t i) {
+        return byte(i) << 24 | byte(i + 1) << 16 | byte(i + 2) << 8 | byte(i + 3);
+    };
     if (byte(25) != 0 || (byte(24) != 8 && byte(24) != 16)) {
-        throw bad_input(file, "", "an image with colours, transparency or under 8 bits", "grey values of 8 or 16 bits");
+        throw bad_input(file, "", "an image with colours, transparency or under 8 bits",
+                        "grey values of 8 or 16 bits");
     }
     const bool wide = byte(24) == 16;
     NpyArray array;
@@ -80,7 +86,8 @@ NpyArray read_png(const std::filesystem::path& path) {
     const std::string failed = decode_png(bytes, line, rows);
     if (!failed.empty()) throw bad_input(file, "", failed, "a whole image");
     for (std::size_t i = 0; i < n; ++i) {
-        array.values[i] = wide ? static_cast<float>(rows[2 * i] << 8 | rows[2 * i + 1]) : static_cast<float>(rows[i]);
+        array.values[i] =
+            wide ? static_cast<float>(rows[2 * i] << 8 | rows[2 * i + 1]) : static_cast<float>(rows[i]);
     }
     return array;
 }
@@ -115,9 +122,12 @@ Format format_of(TIFF* tiff, const std::string& file) {
     TIFFGetFieldDefaulted(tiff, TIFFTAG_COMPRESSION, &compression);
     f.packed = compression != COMPRESSION_NONE;
     const bool whole = f.kind == SAMPLEFORMAT_UINT || f.kind == SAMPLEFORMAT_INT;
-    const bool known = (whole && (f.bits == 8 || f.bits == 16 || f.bits == 32)) || (f.kind == SAMPLEFORMAT_IEEEFP && f.bits == 32);
+    const bool known = (whole && (f.bits == 8 || f.bits == 16 || f.bits == 32)) ||
+                       (f.kind == SAMPLEFORMAT_IEEEFP && f.bits == 32);
     if (samples != 1 || !known || photometric != PHOTOMETRIC_MINISBLACK) {
-        throw bad_input(file, "", std::to_string(samples) + " numbers of " + std::to_string(f.bits) + " bits a pixel, or another meaning of them",
+        throw bad_input(file, "",
+                        std::to_string(samples) + " numbers of " + std::to_string(f.bits) +
+                            " bits a pixel, or another meaning of them",
                         "grey values of 8, 16 or 32 bits, black the smallest");
     }
     return f;
@@ -133,36 +143,48 @@ float taken(const unsigned char* at) {
 float number_at(const Format& f, const unsigned char* at) {
     const bool sign = f.kind == SAMPLEFORMAT_INT;
     switch (f.bits) {
-        case 8: return sign ? taken<std::int8_t>(at) : taken<std::uint8_t>(at);
-        case 16: return sign ? taken<std::int16_t>(at) : taken<std::uint16_t>(at);
-        default: return f.kind == SAMPLEFORMAT_IEEEFP ? taken<float>(at) : sign ? taken<std::int32_t>(at) : taken<std::uint32_t>(at);
+        case 8:
+            return sign ? taken<std::int8_t>(at) : taken<std::uint8_t>(at);
+        case 16:
+            return sign ? taken<std::int16_t>(at) : taken<std::uint16_t>(at);
+        default:
+            return f.kind == SAMPLEFORMAT_IEEEFP ? taken<float>(at)
+                   : sign                        ? taken<std::int32_t>(at)
+                                                 : taken<std::uint32_t>(at);
     }
 }
 
 void read_strips(TIFF* tiff, const Format& f, std::size_t offset, NpyArray& array, const std::string& file) {
     const std::size_t line = f.width * f.bytes();
-    if (TIFFScanlineSize64(tiff) != line) throw bad_input(file, "", "lines of another length", "a whole image");
+    if (TIFFScanlineSize64(tiff) != line)
+        throw bad_input(file, "", "lines of another length", "a whole image");
     std::vector<unsigned char> row(line);
     for (std::uint32_t y = 0; y < f.height; ++y) {
-        if (TIFFReadScanline(tiff, row.data(), y, 0) != 1) throw bad_input(file, "row " + std::to_string(y), "nothing that can be read", "a whole image");
-        for (std::size_t x = 0; x < f.width; ++x) array.values[offset + y * std::size_t{f.width} + x] = number_at(f, &row[x * f.bytes()]);
+        if (TIFFReadScanline(tiff, row.data(), y, 0) != 1)
+            throw bad_input(file, "row " + std::to_string(y), "nothing that can be read", "a whole image");
+        for (std::size_t x = 0; x < f.width; ++x)
+            array.values[offset + y * std::size_t{f.width} + x] = number_at(f, &row[x * f.bytes()]);
     }
 }
 
-void read_tiles(TIFF* tiff, const Format& f, std::size_t stored_bytes, std::size_t offset, NpyArray& array, const std::string& file) {
+void read_tiles(TIFF* tiff, const Format& f, std::size_t stored_bytes, std::size_t offset, NpyArray& array,
+                const std::string& file) {
     std::uint32_t wide = 0;
     std::uint32_t high = 0;
     TIFFGetField(tiff, TIFFTAG_TILEWIDTH, &wide);
     TIFFGetField(tiff, TIFFTAG_TILELENGTH, &high);
     check_shape({high, wide}, f.bytes(), stored_bytes, true, file);
     std::vector<unsigned char> tile(std::size_t{wide} * high * f.bytes());
-    if (TIFFTileSize64(tiff) != tile.size()) throw bad_input(file, "", "tiles of another size", "a whole image");
+    if (TIFFTileSize64(tiff) != tile.size())
+        throw bad_input(file, "", "tiles of another size", "a whole image");
     for (std::uint32_t y = 0; y < f.height; y += high) {
         for (std::uint32_t x = 0; x < f.width; x += wide) {
-            if (TIFFReadTile(tiff, tile.data(), x, y, 0, 0) < 0) throw bad_input(file, "", "a tile that cannot be read", "a whole image");
+            if (TIFFReadTile(tiff, tile.data(), x, y, 0, 0) < 0)
+                throw bad_input(file, "", "a tile that cannot be read", "a whole image");
             for (std::uint32_t b = 0; b < high && y + b < f.height; ++b) {
                 for (std::uint32_t a = 0; a < wide && x + a < f.width; ++a) {
-                    array.values[offset + (y + b) * std::size_t{f.width} + x + a] = number_at(f, &tile[(b * std::size_t{wide} + a) * f.bytes()]);
+                    array.values[offset + (y + b) * std::size_t{f.width} + x + a] =
+                        number_at(f, &tile[(b * std::size_t{wide} + a) * f.bytes()]);
                 }
             }
         }
@@ -185,7 +207,8 @@ NpyArray read_tiff(const std::filesystem::path& path) {
     do {
         const Format f = format_of(tiff.get(), file);
         if (pages == 0) first = f;
-        if (f.width != first.width || f.height != first.height) throw bad_input(file, "", "pages of several sizes", "one size");
+        if (f.width != first.width || f.height != first.height)
+            throw bad_input(file, "", "pages of several sizes", "one size");
         if (++pages > kMostPages) throw bad_input(file, "", "more than 1000 pages", "fewer");
         const std::size_t n = check_shape({f.height, f.width}, f.bytes(), stored, f.packed, file);
         check_shape({pages, f.height, f.width}, f.bytes(), stored, f.packed, file);
@@ -197,7 +220,8 @@ NpyArray read_tiff(const std::filesystem::path& path) {
             read_strips(tiff.get(), f, offset, array, file);
         }
     } while (TIFFReadDirectory(tiff.get()) == 1);
-    array.shape = pages == 1 ? std::vector<std::size_t>{first.height, first.width} : std::vector<std::size_t>{pages, first.height, first.width};
+    array.shape = pages == 1 ? std::vector<std::size_t>{first.height, first.width}
+                             : std::vector<std::size_t>{pages, first.height, first.width};
     return array;
 }
 

@@ -1,10 +1,9 @@
 // MATLAB version 5 files, by matio.
 
-#include <matio.h>
-
 #include <algorithm>
 #include <cstdint>
 #include <fstream>
+#include <matio.h>
 #include <memory>
 
 #include "files/input_error.h"
@@ -15,29 +14,52 @@ namespace {
 
 std::size_t bytes_of(matio_classes type) {
     switch (type) {
-        case MAT_C_DOUBLE: case MAT_C_INT64: case MAT_C_UINT64: return 8;
-        case MAT_C_SINGLE: case MAT_C_INT32: case MAT_C_UINT32: return 4;
-        case MAT_C_INT16: case MAT_C_UINT16: return 2;
-        case MAT_C_INT8: case MAT_C_UINT8: return 1;
-        default: return 0;  // no plain numbers
+        case MAT_C_DOUBLE:
+        case MAT_C_INT64:
+        case MAT_C_UINT64:
+            return 8;
+        case MAT_C_SINGLE:
+        case MAT_C_INT32:
+        case MAT_C_UINT32:
+            return 4;
+        case MAT_C_INT16:
+        case MAT_C_UINT16:
+            return 2;
+        case MAT_C_INT8:
+        case MAT_C_UINT8:
+            return 1;
+        default:
+            return 0;  // no plain numbers
     }
 }
 
 template <class Value>
-float value_at(const void* data, std::size_t i) { return static_cast<float>(static_cast<const Value*>(data)[i]); }
+float value_at(const void* data, std::size_t i) {
+    return static_cast<float>(static_cast<const Value*>(data)[i]);
+}
 
 float number_at(const matvar_t& variable, std::size_t i) {
     switch (variable.class_type) {
-        case MAT_C_DOUBLE: return value_at<double>(variable.data, i);
-        case MAT_C_SINGLE: return value_at<float>(variable.data, i);
-        case MAT_C_INT64: return value_at<std::int64_t>(variable.data, i);
-        case MAT_C_UINT64: return value_at<std::uint64_t>(variable.data, i);
-        case MAT_C_INT32: return value_at<std::int32_t>(variable.data, i);
-        case MAT_C_UINT32: return value_at<std::uint32_t>(variable.data, i);
-        case MAT_C_INT16: return value_at<std::int16_t>(variable.data, i);
-        case MAT_C_UINT16: return value_at<std::uint16_t>(variable.data, i);
-        case MAT_C_INT8: return value_at<std::int8_t>(variable.data, i);
-        default: return value_at<std::uint8_t>(variable.data, i);
+        case MAT_C_DOUBLE:
+            return value_at<double>(variable.data, i);
+        case MAT_C_SINGLE:
+            return value_at<float>(variable.data, i);
+        case MAT_C_INT64:
+            return value_at<std::int64_t>(variable.data, i);
+        case MAT_C_UINT64:
+            return value_at<std::uint64_t>(variable.data, i);
+        case MAT_C_INT32:
+            return value_at<std::int32_t>(variable.data, i);
+        case MAT_C_UINT32:
+            return value_at<std::uint32_t>(variable.data, i);
+        case MAT_C_INT16:
+            return value_at<std::int16_t>(variable.data, i);
+        case MAT_C_UINT16:
+            return value_at<std::uint16_t>(variable.data, i);
+        case MAT_C_INT8:
+            return value_at<std::int8_t>(variable.data, i);
+        default:
+            return value_at<std::uint8_t>(variable.data, i);
     }
 }
 
@@ -46,7 +68,8 @@ std::vector<std::size_t> shape_of(const matvar_t& variable) {
 }
 
 bool is_grid(const matvar_t& variable) {
-    if (bytes_of(variable.class_type) == 0 || variable.isComplex != 0 || variable.dims == nullptr) return false;
+    if (bytes_of(variable.class_type) == 0 || variable.isComplex != 0 || variable.dims == nullptr)
+        return false;
     if (variable.rank < 2 || variable.rank > 3) return false;
     const auto shape = shape_of(variable);
     return std::count(shape.begin(), shape.end(), 1u) + 1 < variable.rank;  // two axes longer than one
@@ -76,15 +99,18 @@ std::string choose(mat_t* mat, const std::string& dataset, const std::string& fi
         if (!found.empty() && dataset.empty()) found = "*";
         if (found.empty()) found = name;
     }
-    if (!dataset.empty()) throw bad_input(file, "", grids.empty() ? "no arrays" : "the arrays" + grids, "an array " + shown(dataset));
-    if (found.empty()) throw bad_input(file, "", "no array of real numbers with two or three dimensions", "one");
+    if (!dataset.empty())
+        throw bad_input(file, "", grids.empty() ? "no arrays" : "the arrays" + grids,
+                        "an array " + shown(dataset));
+    if (found.empty())
+        throw bad_input(file, "", "no array of real numbers with two or three dimensions", "one");
     if (found == "*") throw bad_input(file, "", "the arrays" + grids, "one of them named by --dataset");
     return found;
 }
 
-// matio reads a cut file without a word. Each element of the file says its length: they must end where the file ends.
-// Source: MATLAB MAT-File Format, level 5: 128 bytes of header with the byte order at its end, then elements of type (4 bytes),
-// length (4 bytes), data.
+// matio reads a cut file without a word. Each element of the file says its length: they must end where the
+// file ends. Source: MATLAB MAT-File Format, level 5: 128 bytes of header with the byte order at its end,
+// then elements of type (4 bytes), length (4 bytes), data.
 void refuse_cut(const std::filesystem::path& path) {
     constexpr std::uint64_t kHeader = 128;
     const std::uint64_t size = std::filesystem::file_size(path);
@@ -95,14 +121,17 @@ void refuse_cut(const std::filesystem::path& path) {
         in.read(bytes.data(), static_cast<std::streamsize>(n));
         return bytes;
     };
-    const auto cut = [&] { return bad_input(path.string(), "", "an end within an array: a cut file", "a whole file"); };
+    const auto cut = [&] {
+        return bad_input(path.string(), "", "an end within an array: a cut file", "a whole file");
+    };
     if (size < kHeader) throw cut();
     const bool little_endian = bytes_at(kHeader - 2, 2) == "IM";
     for (std::uint64_t at = kHeader; size - at >= 8;) {
         const std::string tag = bytes_at(at, 8);
         std::uint64_t length = 0;
         for (std::size_t i = 0; i < 4; ++i) {
-            length |= std::uint64_t{static_cast<unsigned char>(tag[4 + i])} << (little_endian ? 8 * i : 24 - 8 * i);
+            length |= std::uint64_t{static_cast<unsigned char>(tag[4 + i])}
+                      << (little_endian ? 8 * i : 24 - 8 * i);
         }
         if (length > size - at - 8) throw cut();
         at += 8 + length;
@@ -122,7 +151,9 @@ NpyArray read_matlab(const std::filesystem::path& path, const std::string& datas
     const std::string name = choose(mat.get(), dataset, file);
     Mat_Rewind(mat.get());
     Variable variable(Mat_VarReadInfo(mat.get(), name.c_str()));
-    if (!variable || !is_grid(*variable)) throw bad_input(file, name, "something else", "an array of real numbers with two or three dimensions");
+    if (!variable || !is_grid(*variable))
+        throw bad_input(file, name, "something else",
+                        "an array of real numbers with two or three dimensions");
     NpyArray array;
     array.shape = shape_of(*variable);
     const bool packed = variable->compression != MAT_COMPRESSION_NONE;
@@ -138,7 +169,8 @@ NpyArray read_matlab(const std::filesystem::path& path, const std::string& datas
     const std::size_t n_2 = array.shape.size() == 3 ? array.shape[2] : 1;
     for (std::size_t i = 0; i < n_0; ++i) {  // MATLAB's first index runs fastest
         for (std::size_t j = 0; j < n_1; ++j) {
-            for (std::size_t k = 0; k < n_2; ++k) array.values[(i * n_1 + j) * n_2 + k] = number_at(*variable, i + n_0 * (j + n_1 * k));
+            for (std::size_t k = 0; k < n_2; ++k)
+                array.values[(i * n_1 + j) * n_2 + k] = number_at(*variable, i + n_0 * (j + n_1 * k));
         }
     }
     return array;

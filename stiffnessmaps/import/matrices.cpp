@@ -35,22 +35,29 @@ std::string lower(std::string text) {
 
 bool says_tangential(const fs::path& path) {
     const std::string name = lower(path.stem().string());
-    return name.find("tangential") != std::string::npos || name.find("shear") != std::string::npos || name.substr(0, 3) == "ft_" ||
-           name.find("_ft") != std::string::npos;
+    return name.find("tangential") != std::string::npos || name.find("shear") != std::string::npos ||
+           name.substr(0, 3) == "ft_" || name.find("_ft") != std::string::npos;
 }
 
-bool says_along_y(const fs::path& path) { return lower(path.stem().string()).find("tangential_y") != std::string::npos; }
+bool says_along_y(const fs::path& path) {
+    return lower(path.stem().string()).find("tangential_y") != std::string::npos;
+}
 
 // "normal_3.5mm" -> 3.5 mm: the last number in the name that mm follows.
 std::optional<double> depth_in_name(const fs::path& path) {
     const std::string name = path.stem().string();
-    for (std::size_t unit = name.rfind("mm"); unit != std::string::npos && unit > 0; unit = name.rfind("mm", unit - 1)) {
+    for (std::size_t unit = name.rfind("mm"); unit != std::string::npos && unit > 0;
+         unit = name.rfind("mm", unit - 1)) {
         std::size_t end = unit;
         while (end > 0 && (name[end - 1] == ' ' || name[end - 1] == '_')) --end;
         std::size_t begin = end;
-        while (begin > 0 && (std::isdigit(static_cast<unsigned char>(name[begin - 1])) != 0 || name[begin - 1] == '.')) --begin;
+        while (begin > 0 &&
+               (std::isdigit(static_cast<unsigned char>(name[begin - 1])) != 0 || name[begin - 1] == '.'))
+            --begin;
         double value = 0.0;
-        if (begin < end && parse_number(std::string_view(name).substr(begin, end - begin), value) && value > 0.0) return 1e-3 * value;
+        if (begin < end && parse_number(std::string_view(name).substr(begin, end - begin), value) &&
+            value > 0.0)
+            return 1e-3 * value;
     }
     return std::nullopt;
 }
@@ -67,7 +74,8 @@ void put_in_order(NpyArray& array, const std::string& axes) {
     out.values.reserve(array.values.size());
     for (std::size_t k = 0; k < out.shape[0]; ++k) {
         for (std::size_t j = 0; j < out.shape[1]; ++j) {
-            for (std::size_t i = 0; i < out.shape[2]; ++i) out.values.push_back(array.values[k * stride[d] + j * stride[y] + i * stride[x]]);
+            for (std::size_t i = 0; i < out.shape[2]; ++i)
+                out.values.push_back(array.values[k * stride[d] + j * stride[y] + i * stride[x]]);
         }
     }
     array = std::move(out);
@@ -76,7 +84,9 @@ void put_in_order(NpyArray& array, const std::string& axes) {
 void append(const fs::path& path, const ImportOptions& options, Stack& stack) {
     NpyArray array = read_array(path, options.dataset);
     if (is_image(*array_kind(path)) && !options.scale_stated) {
-        throw bad_input(path.string(), "", "an image of counts without a unit", "what one count is: --scale, with --quantity force (N), stiffness (N/mm) or young (kPa)");
+        throw bad_input(
+            path.string(), "", "an image of counts without a unit",
+            "what one count is: --scale, with --quantity force (N), stiffness (N/mm) or young (kPa)");
     }
     if (array.shape.size() == 3) put_in_order(array, options.axes);
     const std::size_t n_y = array.shape[array.shape.size() - 2];
@@ -87,7 +97,8 @@ void append(const fs::path& path, const ImportOptions& options, Stack& stack) {
         stack.first_file = path.string();
     }
     if (n_y != stack.n_y || n_x != stack.n_x) {
-        throw bad_input(path.string(), "shape", shape_text({n_y, n_x}), shape_text({stack.n_y, stack.n_x}) + " as in " + stack.first_file + " (two grids?)");
+        throw bad_input(path.string(), "shape", shape_text({n_y, n_x}),
+                        shape_text({stack.n_y, stack.n_x}) + " as in " + stack.first_file + " (two grids?)");
     }
     const std::size_t n = n_x * n_y;
     constexpr std::size_t kMostValues = 20'000'000;
@@ -100,13 +111,15 @@ void append(const fs::path& path, const ImportOptions& options, Stack& stack) {
     }
 }
 
-std::vector<double> depths_of(const std::vector<fs::path>& files, const Stack& stack, const ImportOptions& options, bool& from_names) {
+std::vector<double> depths_of(const std::vector<fs::path>& files, const Stack& stack,
+                              const ImportOptions& options, bool& from_names) {
     const std::size_t n = stack.layers.size();
     from_names = false;
     if (!options.depths_m.empty()) {
         if (options.depths_m.size() == n) return options.depths_m;
         throw bad_input(stack.first_file, "", std::to_string(n) + " matrices",
-                        std::to_string(options.depths_m.size()) + ", one for each depth of --depths-mm (another order of axes: --axes)");
+                        std::to_string(options.depths_m.size()) +
+                            ", one for each depth of --depths-mm (another order of axes: --axes)");
     }
     std::vector<double> depths_m;
     for (const fs::path& file : files) {
@@ -114,8 +127,9 @@ std::vector<double> depths_of(const std::vector<fs::path>& files, const Stack& s
     }
     from_names = true;
     if (depths_m.size() == n && files.size() == n) return depths_m;
-    throw bad_input(stack.first_file, "", std::to_string(n) + " matrices in " + std::to_string(files.size()) + " files, with a depth in " +
-                                              std::to_string(depths_m.size()) + " of their names",
+    throw bad_input(stack.first_file, "",
+                    std::to_string(n) + " matrices in " + std::to_string(files.size()) +
+                        " files, with a depth in " + std::to_string(depths_m.size()) + " of their names",
                     "the depth of each: --depths-mm, or names such as normal_3mm.csv");
 }
 
@@ -123,13 +137,15 @@ std::vector<double> depths_of(const std::vector<fs::path>& files, const Stack& s
 void sort_layers(Stack& stack) {
     std::vector<std::size_t> order(stack.layers.size());
     for (std::size_t k = 0; k < order.size(); ++k) order[k] = k;
-    std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return stack.depths_m[a] < stack.depths_m[b]; });
+    std::sort(order.begin(), order.end(),
+              [&](std::size_t a, std::size_t b) { return stack.depths_m[a] < stack.depths_m[b]; });
     Stack sorted = stack;
     for (std::size_t k = 0; k < order.size(); ++k) {
         sorted.depths_m[k] = stack.depths_m[order[k]];
         sorted.layers[k] = std::move(stack.layers[order[k]]);
         if (k > 0 && !(sorted.depths_m[k] > sorted.depths_m[k - 1])) {
-            throw bad_input(stack.first_file, "", "the depth " + short_number(1e3 * sorted.depths_m[k]) + " mm twice", "each once");
+            throw bad_input(stack.first_file, "",
+                            "the depth " + short_number(1e3 * sorted.depths_m[k]) + " mm twice", "each once");
         }
     }
     stack = std::move(sorted);
@@ -137,13 +153,15 @@ void sort_layers(Stack& stack) {
 
 // In SI units of the quantity; NaN where not measured.
 void scale(Stack& stack, const ImportOptions& options) {
-    const double factor = options.scale * (options.negate_force ? -1.0 : 1.0) *
-                          (options.quantity == Quantity::force && options.force_unit == ForceUnit::mN ? 1e-3 : 1.0);
+    const double factor =
+        options.scale * (options.negate_force ? -1.0 : 1.0) *
+        (options.quantity == Quantity::force && options.force_unit == ForceUnit::mN ? 1e-3 : 1.0);
     for (auto& layer : stack.layers) {
         for (float& value : layer) {
             if (std::isnan(value)) continue;
             const bool missing = options.missing && static_cast<double>(value) == *options.missing;
-            value = missing ? std::numeric_limits<float>::quiet_NaN() : static_cast<float>(factor * (static_cast<double>(value) - options.offset));
+            value = missing ? std::numeric_limits<float>::quiet_NaN()
+                            : static_cast<float>(factor * (static_cast<double>(value) - options.offset));
         }
     }
 }
@@ -166,27 +184,36 @@ void check_size(const Stack& stack, const ImportOptions& options) {
     if (options.quantity == Quantity::force) {
         check_force_size(most, Columns{}, options, stack.first_file);
     } else if (options.quantity == Quantity::stiffness && !(most >= 1.0 && most <= 1e6)) {
-        throw bad_input(stack.first_file, "", "stiffnesses up to " + short_number(1e-3 * most) + " N/mm", "from 0.001 to 1000 N/mm: state the unit by --scale, N/mm for one of the file's");
+        throw bad_input(stack.first_file, "", "stiffnesses up to " + short_number(1e-3 * most) + " N/mm",
+                        "from 0.001 to 1000 N/mm: state the unit by --scale, N/mm for one of the file's");
     } else if (options.quantity == Quantity::young && !(most >= 50.0 && most <= 1e7)) {
-        throw bad_input(stack.first_file, "", "Young's moduli up to " + short_number(1e-3 * most) + " kPa", "from 0.05 to 10000 kPa: state the unit by --scale, kPa for one of the file's");
+        throw bad_input(stack.first_file, "", "Young's moduli up to " + short_number(1e-3 * most) + " kPa",
+                        "from 0.05 to 10000 kPa: state the unit by --scale, kPa for one of the file's");
     }
 }
 
 // One slice becomes forces at each depth.
 void forces_from_slice(Stack& stack, const ImportOptions& options, ImportReport& report) {
-    if (options.depths_m.empty()) throw bad_input(stack.first_file, "", "a slice without depths", "the depths that the forces are wanted at: --depths-mm");
-    if (stack.layers.size() != 1) throw bad_input(stack.first_file, "", std::to_string(stack.layers.size()) + " slices", "one");
+    if (options.depths_m.empty())
+        throw bad_input(stack.first_file, "", "a slice without depths",
+                        "the depths that the forces are wanted at: --depths-mm");
+    if (stack.layers.size() != 1)
+        throw bad_input(stack.first_file, "", std::to_string(stack.layers.size()) + " slices", "one");
     const std::vector<float> slice = stack.layers.front();
     stack.layers.clear();
     stack.depths_m = options.depths_m;
     for (const double depth_m : stack.depths_m) {
-        const double per_unit = options.quantity == Quantity::stiffness ? depth_m : elastic_force_N(1.0, depth_m, options);
+        const double per_unit =
+            options.quantity == Quantity::stiffness ? depth_m : elastic_force_N(1.0, depth_m, options);
         std::vector<float> layer = slice;
         for (float& value : layer) value = static_cast<float>(per_unit * static_cast<double>(value));
         stack.layers.push_back(std::move(layer));
     }
-    const bool beyond = options.quantity == Quantity::young && options.indenter == IndenterShape::sphere && stack.depths_m.back() > 0.5 * options.indenter_radius_m;
-    if (beyond) report.notes.push_back("depths beyond half the indenter's radius are beyond what Hertz's formula is made for");
+    const bool beyond = options.quantity == Quantity::young && options.indenter == IndenterShape::sphere &&
+                        stack.depths_m.back() > 0.5 * options.indenter_radius_m;
+    if (beyond)
+        report.notes.push_back(
+            "depths beyond half the indenter's radius are beyond what Hertz's formula is made for");
 }
 
 std::vector<float> joined(const Stack& stack) {
@@ -196,17 +223,20 @@ std::vector<float> joined(const Stack& stack) {
     return out;
 }
 
-std::vector<float> tangential_of(const std::vector<fs::path>& files, const Stack& normal, const ImportOptions& options) {
+std::vector<float> tangential_of(const std::vector<fs::path>& files, const Stack& normal,
+                                 const ImportOptions& options) {
     if (files.empty()) return {};
     Stack stack;
     for (const fs::path& file : files) append(file, options, stack);
     if (stack.n_x != normal.n_x || stack.n_y != normal.n_y) {
-        throw bad_input(stack.first_file, "shape", shape_text({stack.n_y, stack.n_x}), shape_text({normal.n_y, normal.n_x}) + " as in " + normal.first_file);
+        throw bad_input(stack.first_file, "shape", shape_text({stack.n_y, stack.n_x}),
+                        shape_text({normal.n_y, normal.n_x}) + " as in " + normal.first_file);
     }
     bool from_names = false;
     stack.depths_m = depths_of(files, stack, options, from_names);
     sort_layers(stack);
-    if (stack.depths_m != normal.depths_m) throw bad_input(stack.first_file, "", "other depths than the normal force has", "the same");
+    if (stack.depths_m != normal.depths_m)
+        throw bad_input(stack.first_file, "", "other depths than the normal force has", "the same");
     ImportOptions unsigned_options = options;
     unsigned_options.negate_force = false;  // the normal force's sign
     scale(stack, unsigned_options);
@@ -214,20 +244,30 @@ std::vector<float> tangential_of(const std::vector<fs::path>& files, const Stack
 }
 
 void note_choices(const ImportOptions& options, bool from_names, const Stack& stack, MapSource& source) {
-    add_choice(source, "form", "matrices", "arrays, by their first bytes", "--form", options.form.has_value());
-    add_choice(source, "spacing_mm", choice_mm({options.spacing_m[0], options.spacing_m[1]}), "", "--spacing-mm", true);
-    add_choice(source, "origin_mm", choice_mm({options.origin_m[0], options.origin_m[1]}), "the first number lies at 0, 0 unless told otherwise", "--origin-mm");
-    add_choice(source, "depths_mm", choice_mm(stack.depths_m), "numbers before mm in the files' names", "--depths-mm", !from_names);
-    const char* quantity = options.quantity == Quantity::force ? "force" : options.quantity == Quantity::stiffness ? "stiffness" : "young";
-    add_choice(source, "quantity", quantity, "arrays hold forces unless told otherwise", "--quantity", options.quantity != Quantity::force);
+    add_choice(source, "form", "matrices", "arrays, by their first bytes", "--form",
+               options.form.has_value());
+    add_choice(source, "spacing_mm", choice_mm({options.spacing_m[0], options.spacing_m[1]}), "",
+               "--spacing-mm", true);
+    add_choice(source, "origin_mm", choice_mm({options.origin_m[0], options.origin_m[1]}),
+               "the first number lies at 0, 0 unless told otherwise", "--origin-mm");
+    add_choice(source, "depths_mm", choice_mm(stack.depths_m), "numbers before mm in the files' names",
+               "--depths-mm", !from_names);
+    const char* quantity = options.quantity == Quantity::force       ? "force"
+                           : options.quantity == Quantity::stiffness ? "stiffness"
+                                                                     : "young";
+    add_choice(source, "quantity", quantity, "arrays hold forces unless told otherwise", "--quantity",
+               options.quantity != Quantity::force);
     const double unit = options.quantity == Quantity::force ? 1.0 : 1e3;
-    add_choice(source, "scale", options.scale / unit, "N, N/mm or kPa for one of the file's", "--scale", options.scale_stated);
+    add_choice(source, "scale", options.scale / unit, "N, N/mm or kPa for one of the file's", "--scale",
+               options.scale_stated);
     if (options.missing) add_choice(source, "missing", *options.missing, "", "--missing", true);
     if (options.offset != 0.0) add_choice(source, "offset", options.offset, "", "--offset", true);
     if (options.quantity == Quantity::young) {
         const bool sphere = options.indenter == IndenterShape::sphere;
-        add_choice(source, "contact_formula", sphere ? "Hertz, sphere on a half space" : "line contact, cylinder on a half space",
-                   "the indenter's shape", "--indenter, --indenter-radius-mm, --cylinder-length-mm, --poisson");
+        add_choice(source, "contact_formula",
+                   sphere ? "Hertz, sphere on a half space" : "line contact, cylinder on a half space",
+                   "the indenter's shape",
+                   "--indenter, --indenter-radius-mm, --cylinder-length-mm, --poisson");
         add_choice(source, "poisson", options.poisson, "soft tissue hardly changes its volume", "--poisson");
     }
 }
@@ -236,7 +276,8 @@ void note_choices(const ImportOptions& options, bool from_names, const Stack& st
 
 double elastic_force_N(double young_Pa, double depth_m, const ImportOptions& options) {
     const double modulus = young_Pa / (1.0 - options.poisson * options.poisson);
-    if (options.indenter == IndenterShape::cylinder) return std::numbers::pi / 4.0 * modulus * options.cylinder_length_m * depth_m;
+    if (options.indenter == IndenterShape::cylinder)
+        return std::numbers::pi / 4.0 * modulus * options.cylinder_length_m * depth_m;
     return 4.0 / 3.0 * modulus * std::sqrt(options.indenter_radius_m) * std::pow(depth_m, 1.5);
 }
 
@@ -249,13 +290,16 @@ Map import_matrices(const std::vector<fs::path>& files, const ImportOptions& opt
         const bool tangential = says_tangential(file) && files.size() > 1;
         (!tangential ? normal_files : says_along_y(file) ? along_y : along_x).push_back(file);
     }
-    if (normal_files.empty()) throw bad_input(files.front().string(), "", "tangential forces alone", "normal forces as well");
+    if (normal_files.empty())
+        throw bad_input(files.front().string(), "", "tangential forces alone", "normal forces as well");
     if (!(options.spacing_m[0] > 0.0)) {
-        throw bad_input(normal_files.front().string(), "", "an array without a scale", "the distance between its numbers: --spacing-mm DX,DY");
+        throw bad_input(normal_files.front().string(), "", "an array without a scale",
+                        "the distance between its numbers: --spacing-mm DX,DY");
     }
     Stack stack;
     for (std::size_t i = 0; i < normal_files.size(); ++i) {
-        if (options.progress) options.progress("reading", static_cast<double>(i) / static_cast<double>(files.size()));
+        if (options.progress)
+            options.progress("reading", static_cast<double>(i) / static_cast<double>(files.size()));
         append(normal_files[i], options, stack);
     }
     scale(stack, options);
@@ -282,8 +326,9 @@ Map import_matrices(const std::vector<fs::path>& files, const ImportOptions& opt
     map.tangential_y_N = tangential_of(along_y, stack, options);
     const bool measured = !map.tangential_x_N.empty() || !map.tangential_y_N.empty();
     map.source.how = options.quantity == Quantity::force ? "matrices of force, one for each depth"
-                     : options.quantity == Quantity::stiffness ? "a slice of stiffness; force = stiffness times depth"
-                                                               : "a slice of Young's moduli; force by a contact formula on an even half space";
+                     : options.quantity == Quantity::stiffness
+                         ? "a slice of stiffness; force = stiffness times depth"
+                         : "a slice of Young's moduli; force by a contact formula on an even half space";
     report.rows = map.normal_N.size();
     report.points = map.normal_N.size() - missing_count(map);
     finish_map(map, {}, measured, options, stack.first_file, report);

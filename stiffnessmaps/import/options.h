@@ -1,6 +1,6 @@
 #pragma once
-// How a recording becomes a map: every choice that a person may make otherwise, and what came of it. What is not
-// set is chosen from the recording; either way it stands in the map's source.choices.
+// How a recording becomes a map: every choice that a person may make otherwise, and what came of it. What is
+// not set is chosen from the recording; either way it stands in the map's source.choices.
 
 #include <array>
 #include <filesystem>
@@ -43,10 +43,10 @@ struct ImportOptions {
     // the grid
     std::optional<Gridding> gridding;
     std::optional<double> pitch_m;
-    std::optional<double> radius_m;   // that a cell draws from, where the points do not lie on a grid
-    std::vector<double> depths_m;     // of the map's layers; for matrices those of the files
-    std::optional<int> layers;        // how many, where the depths are chosen
-    bool fill = true;                 // store filled_normal_N too
+    std::optional<double> radius_m;  // that a cell draws from, where the points do not lie on a grid
+    std::vector<double> depths_m;    // of the map's layers; for matrices those of the files
+    std::optional<int> layers;       // how many, where the depths are chosen
+    bool fill = true;                // store filled_normal_N too
     std::optional<TangentialChoice> tangential;
 
     // probing
@@ -54,21 +54,21 @@ struct ImportOptions {
     std::optional<double> contact_force_N;  // where contact begins, for Contact::threshold
 
     // sliding
-    std::optional<double> surface_z_m;   // a flat surface that is known, instead of one that is estimated
-    std::vector<double> at_depths_m;     // of each file, recorded at constant depth
+    std::optional<double> surface_z_m;     // a flat surface that is known, instead of one that is estimated
+    std::vector<double> at_depths_m;       // of each file, recorded at constant depth
     std::optional<double> surface_node_m;  // spacing of the estimated surface's nodes
 
     // arrays
     std::array<double, 2> spacing_m{0.0, 0.0};  // must be stated
     std::array<double, 2> origin_m{0.0, 0.0};
     Quantity quantity = Quantity::force;
-    double scale = 1.0;              // SI units of `quantity` for one unit of the file
-    bool scale_stated = false;       // counts of an image mean nothing without it
-    double offset = 0.0;             // of the file's numbers, subtracted before the scale
-    std::optional<double> missing;   // the number that stands for "not measured", besides NaN
+    double scale = 1.0;             // SI units of `quantity` for one unit of the file
+    bool scale_stated = false;      // counts of an image mean nothing without it
+    double offset = 0.0;            // of the file's numbers, subtracted before the scale
+    std::optional<double> missing;  // the number that stands for "not measured", besides NaN
     double poisson = 0.5;
-    std::string axes = "dyx";        // order of a three-dimensional array's axes: d depth, y, x
-    std::string dataset;             // in MATLAB and HDF5 files; empty: the only array
+    std::string axes = "dyx";  // order of a three-dimensional array's axes: d depth, y, x
+    std::string dataset;       // in MATLAB and HDF5 files; empty: the only array
     std::vector<std::filesystem::path> tangential_x;
     std::vector<std::filesystem::path> tangential_y;
 
@@ -99,7 +99,7 @@ struct ImportReport {
     std::size_t missing_cells = 0;    // of the grid
     double median_offset_N = 0.0;     // force at contact, subtracted point by point
     ImportResidual residual;
-    std::vector<std::string> notes;   // what a person should know, in plain words
+    std::vector<std::string> notes;  // what a person should know, in plain words
 };
 
 const char* name_of(RecordingForm form);

@@ -26,23 +26,27 @@ constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 // Finds the place that a row belongs to.
 class Places {
- public:
+  public:
     explicit Places(std::vector<ProbedPoint>& points) : points_(points) {}
 
-    ProbedPoint& of_number(const Table& table, std::size_t column, std::size_t line, double x_m, double y_m, std::size_t x_column) {
+    ProbedPoint& of_number(const Table& table, std::size_t column, std::size_t line, double x_m, double y_m,
+                           std::size_t x_column) {
         const double id = table.finite_number(column);
         if (id != std::floor(id) || std::abs(id) > 1e9) table.fail(column, "a whole number");
         const auto [it, is_new] = by_number_.try_emplace(static_cast<std::int64_t>(id), points_.size());
         if (is_new) return add(x_m, y_m, line);
         ProbedPoint& point = points_[it->second];
         if (x_m != point.x_m || y_m != point.y_m) {
-            table.fail(x_column, "the position of line " + std::to_string(point.line) + " for the same point");
+            table.fail(x_column,
+                       "the position of line " + std::to_string(point.line) + " for the same point");
         }
         return point;
     }
 
     ProbedPoint& near(double x_m, double y_m, std::size_t line) {
-        const auto same = [&](const ProbedPoint& p) { return std::hypot(p.x_m - x_m, p.y_m - y_m) <= kSamePlace_m; };
+        const auto same = [&](const ProbedPoint& p) {
+            return std::hypot(p.x_m - x_m, p.y_m - y_m) <= kSamePlace_m;
+        };
         if (!points_.empty() && same(points_.back())) return points_.back();
         for (std::int64_t b = -1; b <= 1; ++b) {
             for (std::int64_t a = -1; a <= 1; ++a) {
@@ -56,7 +60,7 @@ class Places {
         return add(x_m, y_m, line);
     }
 
- private:
+  private:
     static std::int64_t square(double x_m, std::int64_t a, double y_m, std::int64_t b) {
         constexpr double kFar = 1e9;
         const auto i = static_cast<std::int64_t>(std::clamp(std::floor(x_m / kSamePlace_m), -kFar, kFar)) + a;
@@ -75,10 +79,6 @@ class Places {
     std::unordered_multimap<std::int64_t, std::size_t> by_square_;
 };
 
-bool inside(const std::optional<std::array<double, 4>>& region_m, double x_m, double y_m) {
-    return !region_m || (x_m >= (*region_m)[0] && x_m <= (*region_m)[1] && y_m >= (*region_m)[2] && y_m <= (*region_m)[3]);
-}
-
 // The force along the surface's normal: as recorded, from the recorded normal, or along z.
 double normal_force(const Table& table, const Columns& columns) {
     if (columns.has(Role::normal_force)) return value_of(table, columns, Role::normal_force);
@@ -93,12 +93,14 @@ void need_columns(const Columns& columns, const Table& table) {
     if (!columns.has(Role::depth) && !columns.has(Role::z)) need(columns, table, {Role::depth});
     if (columns.has(Role::normal_force)) return;
     if (!columns.has(Role::force_z)) need(columns, table, {Role::normal_force});
-    if (columns.has(Role::normal_z)) need(columns, table, {Role::normal_x, Role::normal_y, Role::force_x, Role::force_y});
+    if (columns.has(Role::normal_z))
+        need(columns, table, {Role::normal_x, Role::normal_y, Role::force_x, Role::force_y});
 }
 
 }  // namespace
 
-Probing read_probing(Table& table, const Columns& columns, const ImportOptions& options, ImportReport& report) {
+Probing read_probing(Table& table, const Columns& columns, const ImportOptions& options,
+                     ImportReport& report) {
     need_columns(columns, table);
     Probing probing;
     probing.depth_from_z = !columns.has(Role::depth);
@@ -120,12 +122,15 @@ Probing read_probing(Table& table, const Columns& columns, const ImportOptions& 
             ++not_numbers;
             continue;
         }
-        if (!inside(options.region_m, x_m, y_m)) continue;
-        extent_m = {std::min(extent_m[0], x_m), std::max(extent_m[1], x_m), std::min(extent_m[2], y_m), std::max(extent_m[3], y_m)};
-        ProbedPoint& p = columns.has(Role::point) ? places.of_number(table, columns[Role::point].index, table.line(), x_m, y_m,
-                                                                     columns[Role::x].index)
-                                                  : places.near(x_m, y_m, table.line());
-        const double depth_m = probing.depth_from_z ? -value_of(table, columns, Role::z) : value_of(table, columns, Role::depth);
+        if (!inside_region(options.region_m, x_m, y_m)) continue;
+        extent_m = {std::min(extent_m[0], x_m), std::max(extent_m[1], x_m), std::min(extent_m[2], y_m),
+                    std::max(extent_m[3], y_m)};
+        ProbedPoint& p = columns.has(Role::point)
+                             ? places.of_number(table, columns[Role::point].index, table.line(), x_m, y_m,
+                                                columns[Role::x].index)
+                             : places.near(x_m, y_m, table.line());
+        const double depth_m =
+            probing.depth_from_z ? -value_of(table, columns, Role::z) : value_of(table, columns, Role::depth);
         const double force_N = sign * normal_force(table, columns);
         if (std::isnan(depth_m) || std::isnan(force_N)) {
             ++not_numbers;
@@ -135,7 +140,9 @@ Probing read_probing(Table& table, const Columns& columns, const ImportOptions& 
             all_depths_m.push_back(std::abs(depth_m));
             all_forces_N.push_back(std::abs(force_N));
         }
-        const double off_m = columns.has(Role::commanded_depth) ? depth_m - value_of(table, columns, Role::commanded_depth) : 0.0;
+        const double off_m = columns.has(Role::commanded_depth)
+                                 ? depth_m - value_of(table, columns, Role::commanded_depth)
+                                 : 0.0;
         const bool moved_on = p.depth_m.empty() || depth_m > p.depth_m.back();
         if (!moved_on || !(std::abs(off_m) < kOffCommand_m)) {
             ++report.rejected_rows;
@@ -149,8 +156,10 @@ Probing read_probing(Table& table, const Columns& columns, const ImportOptions& 
     }
     report.rejected_rows += not_numbers;
     if (probing.points.empty() || not_numbers == report.rows) {
-        throw bad_input(table.file(), "", report.rows == 0 ? "no rows" : options.region_m ? "no row with numbers in the region"
-                                                                                            : "no row with numbers",
+        throw bad_input(table.file(), "",
+                        report.rows == 0   ? "no rows"
+                        : options.region_m ? "no row with numbers in the region"
+                                           : "no row with numbers",
                         "probing at several depths");
     }
     constexpr double kNearlyAll = 0.99;  // a wild row is no other unit
@@ -167,7 +176,9 @@ struct GridChoice {
     bool on_grid = true;
 };
 
-std::string at_line(const ProbedPoint& p) { return "line " + std::to_string(p.line); }
+std::string at_line(const ProbedPoint& p) {
+    return "line " + std::to_string(p.line);
+}
 
 void refuse_off_grid(const Probing& probing, const Axis& axis, bool along_y, const std::string& file) {
     for (const ProbedPoint& p : probing.points) {
@@ -189,19 +200,25 @@ GridChoice choose_grid(const Probing& probing, const ImportOptions& options, con
     }
     const double near_m = neighbour_distance_m(x_m, y_m);
     if (const std::size_t groups = group_count(x_m, y_m, 3.0 * near_m); groups > 1 && !options.gridding) {
-        throw bad_input(file, "", std::to_string(groups) + " groups of points far from each other: two grids in one file?",
-                        "one; choose by --region-mm X0,X1,Y0,Y1, or take all as one by --grid plane (or on-grid)");
+        throw bad_input(
+            file, "",
+            std::to_string(groups) + " groups of points far from each other: two grids in one file?",
+            "one; choose by --region-mm X0,X1,Y0,Y1, or take all as one by --grid plane (or on-grid)");
     }
     GridChoice choice;
     const auto x = fit_axis(x_m);
     const auto y = fit_axis(y_m);
     const std::size_t n = probing.points.size();
-    const bool sparse = !x || !y || static_cast<double>(x->axis.n) * static_cast<double>(y->axis.n) > 20.0 * static_cast<double>(n) + 100.0;
+    const bool sparse = !x || !y ||
+                        static_cast<double>(x->axis.n) * static_cast<double>(y->axis.n) >
+                            20.0 * static_cast<double>(n) + 100.0;
     const bool scattered = sparse || 2 * (x->off + y->off) > n;
     const bool asked_on_grid = options.gridding == Gridding::on_grid;
     choice.on_grid = asked_on_grid || (!options.gridding && !options.pitch_m && !scattered);
     if (choice.on_grid) {
-        if (!x || !y) throw bad_input(file, "", "positions all over the place", "a regular grid (scattered points: --grid plane)");
+        if (!x || !y)
+            throw bad_input(file, "", "positions all over the place",
+                            "a regular grid (scattered points: --grid plane)");
         refuse_off_grid(probing, x->axis, false, file);
         refuse_off_grid(probing, y->axis, true, file);
         choice.plan.x = x->axis;
@@ -225,12 +242,16 @@ void fill_on_grid(const Probing& probing, const GridPlan& plan, Map& map, const 
     for (const ProbedPoint& p : probing.points) {
         const std::size_t cell = *index_on(plan.y, p.y_m) * map.n_x + *index_on(plan.x, p.x_m);
         if (line[cell] != 0) {
-            throw bad_input(file, at_line(p), "a second point in the cell of line " + std::to_string(line[cell]) + ": two grids in one file?",
-                            "one point in one cell (to take all together: --grid plane, median or inverse-distance)");
+            throw bad_input(
+                file, at_line(p),
+                "a second point in the cell of line " + std::to_string(line[cell]) +
+                    ": two grids in one file?",
+                "one point in one cell (to take all together: --grid plane, median or inverse-distance)");
         }
         line[cell] = p.line;
         for (std::size_t k = 0; k < map.n_depths(); ++k) {
-            map.normal_N[k * map.n_cells() + cell] = static_cast<float>(force_at(p, map.depths_m[k], map.depths_m.front()));
+            map.normal_N[k * map.n_cells() + cell] =
+                static_cast<float>(force_at(p, map.depths_m[k], map.depths_m.front()));
         }
     }
 }
@@ -256,10 +277,11 @@ void note_grid(const GridPlan& plan, bool on_grid, const ImportOptions& options,
                on_grid ? "the points lie on a regular grid" : "the points lie on no regular grid", "--grid",
                options.gridding.has_value());
     add_choice(source, "pitch_mm", choice_mm({plan.x.pitch_m, plan.y.pitch_m}),
-               on_grid ? "step between the places" : "median distance to the nearest point", "--pitch-mm", options.pitch_m.has_value());
+               on_grid ? "step between the places" : "median distance to the nearest point", "--pitch-mm",
+               options.pitch_m.has_value());
     if (on_grid) return;
-    add_choice(source, "radius_mm", choice_mm(plan.radius_m), "1.5 times the distance to the nearest point", "--radius-mm",
-               options.radius_m.has_value());
+    add_choice(source, "radius_mm", choice_mm(plan.radius_m), "1.5 times the distance to the nearest point",
+               "--radius-mm", options.radius_m.has_value());
 }
 
 std::vector<double> choose_depths(const Probing& probing, const ImportOptions& options, MapSource& source) {
@@ -279,25 +301,30 @@ std::vector<double> choose_depths(const Probing& probing, const ImportOptions& o
     const double step_m = median(greatest_m) / static_cast<double>(n);
     std::vector<double> depths_m;
     for (std::size_t k = 1; k <= n; ++k) depths_m.push_back(step_m * static_cast<double>(k));
-    add_choice(source, "layers", static_cast<double>(n), "the points' median number of steps", "--layers", options.layers.has_value());
-    add_choice(source, "depths_mm", choice_mm(depths_m), "equal steps to the points' median greatest depth", "--depths-mm");
+    add_choice(source, "layers", static_cast<double>(n), "the points' median number of steps", "--layers",
+               options.layers.has_value());
+    add_choice(source, "depths_mm", choice_mm(depths_m), "equal steps to the points' median greatest depth",
+               "--depths-mm");
     return depths_m;
 }
 
 }  // namespace
 
-Map map_of_probing(Probing& probing, const ImportOptions& options, const std::string& file, ImportReport& report) {
+Map map_of_probing(Probing& probing, const ImportOptions& options, const std::string& file,
+                   ImportReport& report) {
     Map map;
     MapSource& source = map.source;
     report.points = probing.points.size();
     const std::size_t before = probing.points.size();
     std::erase_if(probing.points, [](const ProbedPoint& p) { return p.depth_m.size() < 2; });
     if (probing.points.empty()) {
-        throw bad_input(file, "", "no point with two depths or more", "probing at several depths (if the tip presses towards +z: --column depth=NAME)");
+        throw bad_input(file, "", "no point with two depths or more",
+                        "probing at several depths (if the tip presses towards +z: --column depth=NAME)");
     }
     clean_curves(probing, options, source, report);
     report.rejected_points = before - probing.points.size();
-    if (probing.points.empty()) throw bad_input(file, "", "no point with two depths in contact",
+    if (probing.points.empty())
+        throw bad_input(file, "", "no point with two depths in contact",
                         "forces that rise with depth (is the sign the other way round? --negate-force)");
 
     const GridChoice grid = choose_grid(probing, options, file);
@@ -312,13 +339,16 @@ Map map_of_probing(Probing& probing, const ImportOptions& options, const std::st
         fill_scattered(probing, plan, map, file);
     }
     source.how = "point-wise probing; ";
-    source.how += grid.on_grid ? "on the grid of its places" : "scattered places brought onto a grid by " + std::string(name_of(plan.method));
-    source.how += "; force at contact subtracted point by point (median " + short_number(report.median_offset_N) +
-                  " N); linear between a point's own depths";
+    source.how += grid.on_grid
+                      ? "on the grid of its places"
+                      : "scattered places brought onto a grid by " + std::string(name_of(plan.method));
+    source.how += "; force at contact subtracted point by point (median " +
+                  short_number(report.median_offset_N) + " N); linear between a point's own depths";
 
     RecordedPoints recorded;
     for (const ProbedPoint& p : probing.points) {
-        for (std::size_t i = 1; i < p.depth_m.size(); ++i) recorded.add(p.x_m, p.y_m, p.depth_m[i], p.force_N[i]);
+        for (std::size_t i = 1; i < p.depth_m.size(); ++i)
+            recorded.add(p.x_m, p.y_m, p.depth_m[i], p.force_N[i]);
     }
     finish_map(map, recorded, false, options, file, report);
     return map;

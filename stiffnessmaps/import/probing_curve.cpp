@@ -31,8 +31,10 @@ void reject_outliers(Probing& probing, double deviations, ImportReport& report) 
         add_fourth_differences(p.force_N, differences);
         greatest_N.push_back(*std::max_element(p.force_N.begin(), p.force_N.end()));
     }
-    const double least_N = 1e-3 * std::abs(median(std::move(greatest_N)));  // a sensor that counts in steps may have no noise
-    const double limit_N = deviations * std::max(noise_of_fourth_differences(std::move(differences)), least_N);
+    const double least_N =
+        1e-3 * std::abs(median(std::move(greatest_N)));  // a sensor that counts in steps may have no noise
+    const double limit_N =
+        deviations * std::max(noise_of_fourth_differences(std::move(differences)), least_N);
     for (ProbedPoint& p : probing.points) {
         const std::vector<bool> outlier = lone_outliers(p.force_N, limit_N);
         for (std::size_t i = outlier.size(); i-- > 0;) {
@@ -54,10 +56,12 @@ double start_at_first_row(ProbedPoint& p) {
     return force_N;
 }
 
-// From where the force crosses the threshold; returns the force in the air. A place whose force never crosses is emptied.
+// From where the force crosses the threshold; returns the force in the air. A place whose force never crosses
+// is emptied.
 double start_at_threshold(ProbedPoint& p, double threshold_N) {
     const std::size_t in_air = std::min<std::size_t>(3, p.force_N.size());
-    const double offset_N = median({p.force_N.begin(), p.force_N.begin() + static_cast<std::ptrdiff_t>(in_air)});
+    const double offset_N =
+        median({p.force_N.begin(), p.force_N.begin() + static_cast<std::ptrdiff_t>(in_air)});
     for (double& f : p.force_N) f -= offset_N;
     std::size_t first = 0;
     while (first < p.force_N.size() && p.force_N[first] < threshold_N) ++first;
@@ -109,7 +113,8 @@ void remove_tilt(Probing& probing, MapSource& source) {
         }
     }
     const double tilt_deg = std::atan(slope.norm()) * 180.0 / std::numbers::pi;
-    add_choice(source, "tilt_removed_deg", std::round(1e3 * tilt_deg) / 1e3, "plane through the contact heights", "--tilt keep");
+    add_choice(source, "tilt_removed_deg", std::round(1e3 * tilt_deg) / 1e3,
+               "plane through the contact heights", "--tilt keep");
 }
 
 }  // namespace
@@ -119,10 +124,12 @@ void clean_curves(Probing& probing, const ImportOptions& options, MapSource& sou
     const double deviations = options.outliers.value_or(kOutliers);
     if (deviations > 0.0) reject_outliers(probing, deviations, report);
     add_choice(source, "outliers_deviations", deviations,
-               "a single force that far outside the range of the two beside it; " + std::to_string(report.outliers) + " left out", "--outliers",
-               options.outliers.has_value());
+               "a single force that far outside the range of the two beside it; " +
+                   std::to_string(report.outliers) + " left out",
+               "--outliers", options.outliers.has_value());
 
-    const Contact contact = options.contact.value_or(probing.depth_from_z ? Contact::threshold : Contact::first_row);
+    const Contact contact =
+        options.contact.value_or(probing.depth_from_z ? Contact::threshold : Contact::first_row);
     double threshold_N = options.contact_force_N.value_or(0.0);
     if (contact == Contact::threshold && !options.contact_force_N) {
         std::vector<double> steps_N;  // between the first rows, which are in the air
@@ -133,23 +140,27 @@ void clean_curves(Probing& probing, const ImportOptions& options, MapSource& sou
         }
         constexpr double kAboveNoise = 4.0;
         constexpr double kLeastShare = 0.01;  // of the places' greatest force
-        threshold_N = std::max(kAboveNoise * robust_deviation(steps_N), kLeastShare * std::abs(median(greatest_N)));
+        threshold_N =
+            std::max(kAboveNoise * robust_deviation(steps_N), kLeastShare * std::abs(median(greatest_N)));
     }
     std::vector<double> offsets_N;
     for (ProbedPoint& p : probing.points) {
         for (auto& lateral : p.lateral_N) {  // its zero, as the normal force's
             for (std::size_t i = lateral.size(); i-- > 0;) lateral[i] -= lateral[0];
         }
-        offsets_N.push_back(contact == Contact::first_row ? start_at_first_row(p) : start_at_threshold(p, threshold_N));
+        offsets_N.push_back(contact == Contact::first_row ? start_at_first_row(p)
+                                                          : start_at_threshold(p, threshold_N));
     }
     report.median_offset_N = median(offsets_N);
     std::erase_if(probing.points, [](const ProbedPoint& p) { return p.depth_m.size() < 2; });
     add_choice(source, "contact", contact == Contact::first_row ? "first-row" : "threshold",
-               probing.depth_from_z ? "depth comes from z, the surface must be found" : "the recording has depths: its robot had found the surface",
+               probing.depth_from_z ? "depth comes from z, the surface must be found"
+                                    : "the recording has depths: its robot had found the surface",
                "--contact", options.contact.has_value());
     if (contact == Contact::threshold) {
-        add_choice(source, "contact_force_N", threshold_N, "4 deviations of the force in the air, or 1 % of the greatest",
-                   "--contact-force-N", options.contact_force_N.has_value());
+        add_choice(source, "contact_force_N", threshold_N,
+                   "4 deviations of the force in the air, or 1 % of the greatest", "--contact-force-N",
+                   options.contact_force_N.has_value());
     }
     if (probing.depth_from_z && options.remove_tilt && !probing.points.empty()) remove_tilt(probing, source);
 }

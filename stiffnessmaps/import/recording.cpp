@@ -20,7 +20,8 @@ namespace fs = std::filesystem;
 
 Table open_table(const fs::path& path, ImportReport& report) {
     std::string text = read_text(path);
-    if (!text.empty() && text.back() != '\n') report.notes.push_back(path.string() + ": its last line has no end: is the file whole?");
+    if (!text.empty() && text.back() != '\n')
+        report.notes.push_back(path.string() + ": its last line has no end: is the file whole?");
     const char separator = separator_of(std::string_view(text).substr(0, text.find('\n')));
     return Table(std::move(text), path.string(), separator);
 }
@@ -29,15 +30,18 @@ void note_columns(const Columns& columns, const ImportOptions& options, MapSourc
     std::string used;
     for (std::size_t r = 0; r < kRoles; ++r) {
         const auto role = static_cast<Role>(r);
-        if (columns.has(role)) used += (used.empty() ? "" : ", ") + std::string(name_of(role)) + "=" + columns[role].name;
+        if (columns.has(role))
+            used += (used.empty() ? "" : ", ") + std::string(name_of(role)) + "=" + columns[role].name;
     }
-    add_choice(source, "columns", used, "usual names, with the units that they name", "--column, --length-unit, --depth-unit, --force-unit",
-               !options.columns.empty());
+    add_choice(source, "columns", used, "usual names, with the units that they name",
+               "--column, --length-unit, --depth-unit, --force-unit", !options.columns.empty());
 }
 
 Map import_tables(const std::vector<fs::path>& files, const ImportOptions& options, ImportReport& report) {
     if (!options.at_depths_m.empty() && options.at_depths_m.size() != files.size()) {
-        throw bad_input("--at-depth-mm", "", std::to_string(options.at_depths_m.size()) + " depths for " + std::to_string(files.size()) + " files",
+        throw bad_input("--at-depth-mm", "",
+                        std::to_string(options.at_depths_m.size()) + " depths for " +
+                            std::to_string(files.size()) + " files",
                         "one for each file");
     }
     if (!std::is_sorted(options.depths_m.begin(), options.depths_m.end(), std::less_equal<>())) {
@@ -47,21 +51,26 @@ Map import_tables(const std::vector<fs::path>& files, const ImportOptions& optio
     MapSource before;  // what is chosen before the map is there
     Probing probing;
     Sliding sliding;
-    const std::string all = files.size() == 1 ? files[0].string() : files[0].string() + " and " + std::to_string(files.size() - 1) + " more";
+    const std::string all = files.size() == 1
+                                ? files[0].string()
+                                : files[0].string() + " and " + std::to_string(files.size() - 1) + " more";
     for (std::size_t i = 0; i < files.size(); ++i) {
         Table table = open_table(files[i], report);
         const Columns columns = find_columns(table, options);
         report.form = options.form.value_or(form_of(columns, table));
         if (i == 0) {
-            add_choice(before, "form", name_of(report.form), "the columns that the file has", "--form", options.form.has_value());
+            add_choice(before, "form", name_of(report.form), "the columns that the file has", "--form",
+                       options.form.has_value());
             note_columns(columns, options, before);
         }
         if (report.form == RecordingForm::sliding) {
-            read_sliding(table, columns, options, options.at_depths_m.empty() ? 0.0 : options.at_depths_m[i], sliding, report);
+            read_sliding(table, columns, options, options.at_depths_m.empty() ? 0.0 : options.at_depths_m[i],
+                         sliding, report);
         } else if (i == 0) {
             probing = read_probing(table, columns, options, report);
         } else {
-            throw bad_input(files[i].string(), "", "a second file of probing", "one table (or --form sliding, --form matrices)");
+            throw bad_input(files[i].string(), "", "a second file of probing",
+                            "one table (or --form sliding, --form matrices)");
         }
     }
     map = report.form == RecordingForm::sliding ? map_of_sliding(sliding, options, all, report)
@@ -74,7 +83,8 @@ Map import_tables(const std::vector<fs::path>& files, const ImportOptions& optio
 
 Map import_recording(const std::vector<fs::path>& files, const ImportOptions& options, ImportReport& report) {
     if (files.empty()) throw bad_input("maps import", "", "no file", "one or more");
-    const bool arrays = options.form ? *options.form == RecordingForm::matrices : is_array_file(files.front());
+    const bool arrays =
+        options.form ? *options.form == RecordingForm::matrices : is_array_file(files.front());
     Map map = arrays ? import_matrices(files, options, report) : import_tables(files, options, report);
     map.name = options.name.empty() ? files.front().stem().string() : options.name;
     map.source.from = files.front().filename().string();
@@ -85,28 +95,38 @@ Map import_recording(const std::vector<fs::path>& files, const ImportOptions& op
 
 const char* name_of(RecordingForm form) {
     switch (form) {
-        case RecordingForm::probing: return "probing";
-        case RecordingForm::sliding: return "sliding";
-        case RecordingForm::matrices: return "matrices";
+        case RecordingForm::probing:
+            return "probing";
+        case RecordingForm::sliding:
+            return "sliding";
+        case RecordingForm::matrices:
+            return "matrices";
     }
     return "probing";
 }
 
 const char* name_of(Gridding gridding) {
     switch (gridding) {
-        case Gridding::on_grid: return "on-grid";
-        case Gridding::plane: return "plane";
-        case Gridding::inverse_distance: return "inverse-distance";
-        case Gridding::median: return "median";
+        case Gridding::on_grid:
+            return "on-grid";
+        case Gridding::plane:
+            return "plane";
+        case Gridding::inverse_distance:
+            return "inverse-distance";
+        case Gridding::median:
+            return "median";
     }
     return "plane";
 }
 
 const char* name_of(TangentialChoice choice) {
     switch (choice) {
-        case TangentialChoice::measured: return "measured";
-        case TangentialChoice::energy: return "energy";
-        case TangentialChoice::none: return "none";
+        case TangentialChoice::measured:
+            return "measured";
+        case TangentialChoice::energy:
+            return "energy";
+        case TangentialChoice::none:
+            return "none";
     }
     return "none";
 }

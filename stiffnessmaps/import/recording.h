@@ -8,9 +8,10 @@
 
 namespace palpa {
 
-// The form is what `options.form` says, or is told from the files: tables by their columns (columns.h), arrays by their
-// first bytes or as numbers without a header (arrays.h). Several files are one recording: one array per depth, or one table
-// after the other. Throws InputError.
-Map import_recording(const std::vector<std::filesystem::path>& files, const ImportOptions& options, ImportReport& report);
+// The form is what `options.form` says, or is told from the files: tables by their columns (columns.h),
+// arrays by their first bytes or as numbers without a header (arrays.h). Several files are one recording: one
+// array per depth, or one table after the other. Throws InputError.
+Map import_recording(const std::vector<std::filesystem::path>& files, const ImportOptions& options,
+                     ImportReport& report);
 
 }  // namespace palpa

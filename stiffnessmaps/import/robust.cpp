@@ -8,6 +8,7 @@
 namespace palpa {
 
 double quantile(std::vector<double> values, double q) {
+    std::erase_if(values, [](double v) { return !std::isfinite(v); });  // what has no order
     if (values.empty()) return 0.0;
     const double last = static_cast<double>(values.size() - 1);
     const auto at = values.begin() + static_cast<std::ptrdiff_t>(std::clamp(q, 0.0, 1.0) * last + 0.5);
@@ -45,9 +46,13 @@ void add_fourth_differences(const std::vector<double>& values, std::vector<doubl
     }
 }
 
-double noise_of_fourth_differences(std::vector<double> differences) { return robust_deviation(std::move(differences)) / std::sqrt(70.0); }
+double noise_of_fourth_differences(std::vector<double> differences) {
+    return robust_deviation(std::move(differences)) / std::sqrt(70.0);
+}
 
-double choice_mm(double metres) { return std::round(metres * 1e9) / 1e6; }
+double choice_mm(double metres) {
+    return std::round(metres * 1e9) / 1e6;
+}
 
 std::vector<double> choice_mm(const std::vector<double>& metres) {
     std::vector<double> out;

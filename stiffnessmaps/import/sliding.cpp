@@ -11,16 +11,12 @@
 #include "stiffnessmaps/import/choices.h"
 #include "stiffnessmaps/import/columns.h"
 #include "stiffnessmaps/import/robust.h"
+#include "stiffnessmaps/import/sliding_tangential.h"
 
 namespace palpa {
 namespace {
 
-constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 constexpr double kLeastPitch_m = 0.5e-3;
-
-bool inside(const std::optional<std::array<double, 4>>& region_m, double x_m, double y_m) {
-    return !region_m || (x_m >= (*region_m)[0] && x_m <= (*region_m)[1] && y_m >= (*region_m)[2] && y_m <= (*region_m)[3]);
-}
 
 struct Bounds2 {
     double low[2] = {std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
@@ -40,7 +36,8 @@ Bounds2 bounds_of(const SurfaceSamples& s) {
 
 double length_of_path(const SurfaceSamples& s) {
     double length_m = 0.0;
-    for (std::size_t i = 1; i < s.size(); ++i) length_m += std::hypot(s.x_m[i] - s.x_m[i - 1], s.y_m[i] - s.y_m[i - 1]);
+    for (std::size_t i = 1; i < s.size(); ++i)
+        length_m += std::hypot(s.x_m[i] - s.x_m[i - 1], s.y_m[i] - s.y_m[i - 1]);
     return length_m;
 }
 
@@ -70,14 +67,17 @@ double default_pitch_m(const SurfaceSamples& s, const Bounds2& bounds) {
     return std::max(kLeastPitch_m, std::round(std::max(passes_m, samples_m) / kLeastPitch_m) * kLeastPitch_m);
 }
 
-void check_sizes(const Sliding& sliding, const Columns& columns, const ImportOptions& options, const std::string& file) {
+void check_sizes(const Sliding& sliding, const Columns& columns, const ImportOptions& options,
+                 const std::string& file) {
     const SurfaceSamples& s = sliding.samples;
     std::vector<double> forces_N;
     const std::size_t step = 1 + s.size() / 20000;
     for (std::size_t i = 0; i < s.size(); i += step) {
         double sum = 0.0;
-        for (const auto& component : s.force_N) sum += static_cast<double>(component[i]) * static_cast<double>(component[i]);
-        forces_N.push_back(std::sqrt(sum));
+        for (const auto& component : s.force_N)
+            sum += static_cast<double>(component[i]) * static_cast<double>(component[i]);
+        forces_N.push_back(sliding.normal_N.empty() ? std::sqrt(sum)
+                                                    : std::abs(static_cast<double>(sliding.normal_N[i])));
     }
     check_force_size(quantile(std::move(forces_N), 0.99), columns, options, file);
     const Bounds2 b = bounds_of(s);
@@ -86,8 +86,8 @@ void check_sizes(const Sliding& sliding, const Columns& columns, const ImportOpt
 
 }  // namespace
 
-void read_sliding(Table& table, const Columns& columns, const ImportOptions& options, double at_depth_m, Sliding& sliding,
-                  ImportReport& report) {
+void read_sliding(Table& table, const Columns& columns, const ImportOptions& options, double at_depth_m,
+                  Sliding& sliding, ImportReport& report) {
     need(columns, table, {Role::time, Role::x, Role::y});
     const bool has_depth = columns.has(Role::depth) || at_depth_m > 0.0;
     if (!has_depth) need(columns, table, {Role::z});
@@ -97,10 +97,13 @@ void read_sliding(Table& table, const Columns& columns, const ImportOptions& opt
     if (!has_depth && !has_lateral) need(columns, table, {Role::force_x, Role::force_y});
     SurfaceSamples& s = sliding.samples;
     if (s.size() > 0 && (has_depth == sliding.depth_m.empty() || has_normal == sliding.normal_N.empty())) {
-        throw bad_input(table.file(), "line 1", "other columns than in the file before it", "the same in all files");
+        throw bad_input(table.file(), "line 1", "other columns than in the file before it",
+                        "the same in all files");
     }
     const double sign = options.negate_force ? -1.0 : 1.0;
-    const auto force = [&](Role role) { return columns.has(role) ? static_cast<float>(sign * value_of(table, columns, role)) : 0.0f; };
+    const auto force = [&](Role role) {
+        return columns.has(role) ? static_cast<float>(sign * value_of(table, columns, role)) : 0.0f;
+    };
     std::size_t used = 0;
     double last_s = -std::numeric_limits<double>::infinity();
     while (table.next()) {
@@ -108,20 +111,25 @@ void read_sliding(Table& table, const Columns& columns, const ImportOptions& opt
         if ((report.rows & 0xffff) == 0 && options.progress) options.progress("reading", table.done());
         const double t_s = value_of(table, columns, Role::time);
         if (t_s < last_s) {
-            table.fail(columns[Role::time].index, "a time that is not before the last row's, " + number_text(last_s) + " s (two recordings in one file?)");
+            table.fail(columns[Role::time].index, "a time that is not before the last row's, " +
+                                                      number_text(last_s) +
+                                                      " s (two recordings in one file?)");
         }
         const double x_m = value_of(table, columns, Role::x);
         const double y_m = value_of(table, columns, Role::y);
         const double z_m = columns.has(Role::z) ? value_of(table, columns, Role::z) : 0.0;
-        const double depth_m = at_depth_m > 0.0 ? at_depth_m : columns.has(Role::depth) ? value_of(table, columns, Role::depth) : 0.0;
-        const float f[4] = {force(Role::force_x), force(Role::force_y), force(Role::force_z), force(Role::normal_force)};
+        const double depth_m = at_depth_m > 0.0           ? at_depth_m
+                               : columns.has(Role::depth) ? value_of(table, columns, Role::depth)
+                                                          : 0.0;
+        const float f[4] = {force(Role::force_x), force(Role::force_y), force(Role::force_z),
+                            force(Role::normal_force)};
         const double sum = t_s + x_m + y_m + z_m + depth_m + static_cast<double>(f[0] + f[1] + f[2] + f[3]);
         if (!std::isfinite(sum)) {
             ++report.rejected_rows;
             continue;
         }
         last_s = t_s;
-        if (!inside(options.region_m, x_m, y_m)) continue;
+        if (!inside_region(options.region_m, x_m, y_m)) continue;
         ++used;
         sliding.time_s.push_back(t_s);
         s.x_m.push_back(x_m);
@@ -132,18 +140,21 @@ void read_sliding(Table& table, const Columns& columns, const ImportOptions& opt
         if (has_normal) sliding.normal_N.push_back(f[3]);
     }
     if (used < 16) {
-        throw bad_input(table.file(), "", std::to_string(used) + " rows with numbers" + (options.region_m ? " in the region" : ""),
-                        "a recording of at least 16");
+        throw bad_input(
+            table.file(), "",
+            std::to_string(used) + " rows with numbers" + (options.region_m ? " in the region" : ""),
+            "a recording of at least 16");
     }
     check_sizes(sliding, columns, options, table.file());
 }
 
 namespace {
 
-void take_surface(Sliding& sliding, const ImportOptions& options, double pitch_m, const std::string& file, Surface& surface,
-                  MapSource& source) {
+void take_surface(Sliding& sliding, const ImportOptions& options, double pitch_m, const std::string& file,
+                  Surface& surface, MapSource& source) {
     if (!sliding.depth_m.empty()) {
-        add_choice(source, "surface", "recorded", "the recording has depths", "--at-depth-mm", !options.at_depths_m.empty());
+        add_choice(source, "surface", "recorded", "the recording has depths", "--at-depth-mm",
+                   !options.at_depths_m.empty());
         return;
     }
     if (options.surface_z_m) {
@@ -154,75 +165,20 @@ void take_surface(Sliding& sliding, const ImportOptions& options, double pitch_m
     }
     if (options.progress) options.progress("estimating the surface", 0.0);
     surface = fit_surface(sliding.samples, options.surface_node_m.value_or(pitch_m), file);
-    add_choice(source, "surface", "estimated", "height and compliance of the tissue fitted to where the tool was at which force",
+    add_choice(source, "surface", "estimated",
+               "height and compliance of the tissue fitted to where the tool was at which force",
                "--surface-z-mm, --at-depth-mm");
-    add_choice(source, "surface_node_mm", choice_mm(surface.node_m), "the map's pitch, or as fine as 4000 nodes and 8 samples a node allow", "--surface-node-mm",
+    add_choice(source, "surface_node_mm", choice_mm(surface.node_m),
+               "the map's pitch, or as fine as 4000 nodes and 8 samples a node allow", "--surface-node-mm",
                options.surface_node_m.has_value());
-    add_choice(source, "surface_deviation_mm", choice_mm(surface.deviation_m), "of the samples' heights from that fit", "");
-    add_choice(source, "surface_exponent", surface.exponent, "depth as force to this power, 1 or 2/3: whichever left less", "");
+    add_choice(source, "surface_deviation_mm", choice_mm(surface.deviation_m),
+               "of the samples' heights from that fit", "");
+    add_choice(source, "surface_exponent", surface.exponent,
+               "depth as force to this power, 1 or 2/3: whichever left less", "");
     add_choice(source, "surface_tilt_deg", std::round(1e3 * surface.tilt_deg) / 1e3,
-               options.remove_tilt ? "depth and force are along the surface's normal" : "kept: depth and force are along z", "--tilt",
-               !options.remove_tilt);
-}
-
-// Direction of sample i's motion, from 0.1 s before to 0.1 s after it; 0 where it stands still.
-struct Motion {
-    double x = 0.0;
-    double y = 0.0;
-};
-
-std::vector<float> against(const Sliding& sliding, const Surface& surface, bool along_y, const std::vector<Motion>& motion) {
-    const SurfaceSamples& s = sliding.samples;
-    constexpr double kAlong = 0.8;  // cosine
-    std::vector<float> out(s.size(), kNaN);
-    for (std::size_t i = 0; i < s.size(); ++i) {
-        if ((along_y ? motion[i].y : motion[i].x) < kAlong) continue;
-        const SurfacePoint p = surface_at(surface, s.x_m[i], s.y_m[i]);
-        // the axis, laid into the surface
-        const std::size_t a = along_y ? 1 : 0;
-        double e[3] = {along_y ? 0.0 : 1.0, along_y ? 1.0 : 0.0, 0.0};
-        for (std::size_t c = 0; c < 3; ++c) e[c] -= p.normal[a] * p.normal[c];
-        const double length = std::sqrt(e[0] * e[0] + e[1] * e[1] + e[2] * e[2]);
-        if (!(length > 1e-6)) continue;
-        double force = 0.0;
-        for (std::size_t c = 0; c < 3; ++c) force += e[c] / length * static_cast<double>(s.force_N[c][i]);
-        out[i] = static_cast<float>(-force);  // the force on the tool pulls it back
-    }
-    return out;
-}
-
-std::vector<Motion> motions(const Sliding& sliding) {
-    const SurfaceSamples& s = sliding.samples;
-    std::vector<Motion> out(s.size());
-    constexpr double kWindow_s = 0.1;
-    constexpr double kStill_m = 0.05e-3;
-    std::size_t from = 0;
-    std::size_t to = 0;
-    for (std::size_t i = 0; i < s.size(); ++i) {
-        // files follow each other: a clock that goes back is another file
-        const auto near = [&](std::size_t j) { return std::abs(sliding.time_s[j] - sliding.time_s[i]) <= kWindow_s; };
-        from = std::min(from, i);
-        while (from < i && !near(from)) ++from;
-        to = std::max(to, i);
-        while (to + 1 < s.size() && near(to + 1)) ++to;
-        const double dx = s.x_m[to] - s.x_m[from];
-        const double dy = s.y_m[to] - s.y_m[from];
-        const double length = std::hypot(dx, dy);
-        if (length > kStill_m) out[i] = {dx / length, dy / length};
-    }
-    return out;
-}
-
-// Median share of the normal force with which the tool is held back along its motion; below 0 the sign is wrong.
-double drag(const Samples& samples) {
-    std::vector<double> shares;
-    for (std::size_t i = 0; i < samples.size(); ++i) {
-        for (const auto& tangential : {&samples.tangential_x_N, &samples.tangential_y_N}) {
-            const float t = (*tangential)[i];
-            if (!std::isnan(t) && samples.force_N[i] > 0.05) shares.push_back(static_cast<double>(t) / samples.force_N[i]);
-        }
-    }
-    return median(std::move(shares));
+               options.remove_tilt ? "depth and force are along the surface's normal"
+                                   : "kept: depth and force are along z",
+               "--tilt", !options.remove_tilt);
 }
 
 // Depths that the recording kept to: groups of depths with empty space between them. Empty if it did not.
@@ -255,11 +211,12 @@ std::vector<double> choose_depths(const Samples& samples, const ImportOptions& o
     std::vector<double> depths_m;
     if (!options.layers) {
         const std::set<double> stated(options.at_depths_m.begin(), options.at_depths_m.end());
-        depths_m = stated.empty() ? kept_depths(samples.depth_m) : std::vector<double>(stated.begin(), stated.end());
+        depths_m =
+            stated.empty() ? kept_depths(samples.depth_m) : std::vector<double>(stated.begin(), stated.end());
     }
     if (!depths_m.empty()) {
-        add_choice(source, "depths_mm", choice_mm(depths_m), "the depths that the tool kept to", "--depths-mm, --layers",
-                   !options.at_depths_m.empty());
+        add_choice(source, "depths_mm", choice_mm(depths_m), "the depths that the tool kept to",
+                   "--depths-mm, --layers", !options.at_depths_m.empty());
         return depths_m;
     }
     constexpr int kLayers = 8;
@@ -267,8 +224,10 @@ std::vector<double> choose_depths(const Samples& samples, const ImportOptions& o
     constexpr double kNearlyAll = 0.9;
     const double greatest_m = quantile(samples.depth_m, kNearlyAll);
     for (int k = 1; k <= n; ++k) depths_m.push_back(greatest_m * k / n);
-    add_choice(source, "layers", static_cast<double>(n), "enough for a curve", "--layers", options.layers.has_value());
-    add_choice(source, "depths_mm", choice_mm(depths_m), "equal steps to the depth that 90 % of the samples do not exceed", "--depths-mm");
+    add_choice(source, "layers", static_cast<double>(n), "enough for a curve", "--layers",
+               options.layers.has_value());
+    add_choice(source, "depths_mm", choice_mm(depths_m),
+               "equal steps to the depth that 90 % of the samples do not exceed", "--depths-mm");
     return depths_m;
 }
 
@@ -285,7 +244,8 @@ Samples indentations(const Sliding& sliding, const Surface& surface, const Impor
         Indentation in;
         if (!sliding.depth_m.empty()) {
             in.depth_m = static_cast<double>(sliding.depth_m[i]);
-            in.force_N = static_cast<double>(sliding.normal_N.empty() ? s.force_N[2][i] : sliding.normal_N[i]);
+            in.force_N =
+                static_cast<double>(sliding.normal_N.empty() ? s.force_N[2][i] : sliding.normal_N[i]);
         } else if (options.remove_tilt) {
             in = indentation_of(surface, s, i);
         } else {
@@ -305,29 +265,12 @@ std::vector<bool> outliers(const std::vector<double>& force_N, double deviations
     const std::size_t step = part * (1 + force_N.size() / 100'000);
     for (std::size_t i = 0; i < force_N.size(); i += step) {
         const auto from = force_N.begin() + static_cast<std::ptrdiff_t>(i);
-        add_fourth_differences({from, from + static_cast<std::ptrdiff_t>(std::min(part, force_N.size() - i))}, differences);
+        add_fourth_differences({from, from + static_cast<std::ptrdiff_t>(std::min(part, force_N.size() - i))},
+                               differences);
     }
     const double least_N = 1e-3 * quantile(force_N, 0.95);  // a sensor that counts in steps may have no noise
-    return lone_outliers(force_N, deviations * std::max(noise_of_fourth_differences(std::move(differences)), least_N));
-}
-
-// The force against motion along +x and +y, where the recording has it and its sign can be.
-bool take_tangential(const Sliding& sliding, const Surface& surface, const ImportOptions& options, Samples& pressed,
-                     ImportReport& report) {
-    const auto& lateral = sliding.samples.force_N;
-    const auto silent = [](const std::vector<float>& f) { return std::all_of(f.begin(), f.end(), [](float v) { return v == 0.0f; }); };
-    const bool wanted = options.tangential.value_or(TangentialChoice::measured) == TangentialChoice::measured;
-    if (!wanted || (silent(lateral[0]) && silent(lateral[1]))) return false;
-    const std::vector<Motion> motion = motions(sliding);
-    pressed.tangential_x_N = against(sliding, surface, false, motion);
-    pressed.tangential_y_N = against(sliding, surface, true, motion);
-    const double share = drag(pressed);
-    if (share > 0.0 || options.tangential) return true;
-    report.notes.push_back("the lateral force does not hold the tool back (median " + short_number(share) +
-                           " of the normal force): it is not stored; --tangential measured stores it");
-    pressed.tangential_x_N.clear();
-    pressed.tangential_y_N.clear();
-    return false;
+    return lone_outliers(force_N,
+                         deviations * std::max(noise_of_fourth_differences(std::move(differences)), least_N));
 }
 
 // In place: only samples below the surface that are no outliers.
@@ -352,7 +295,8 @@ void drop_out_of_contact(const std::vector<bool>& outlier, Samples& samples) {
 
 }  // namespace
 
-Map map_of_sliding(Sliding& sliding, const ImportOptions& options, const std::string& file, ImportReport& report) {
+Map map_of_sliding(Sliding& sliding, const ImportOptions& options, const std::string& file,
+                   ImportReport& report) {
     Map map;
     MapSource& source = map.source;
     const SurfaceSamples& s = sliding.samples;
@@ -372,13 +316,15 @@ Map map_of_sliding(Sliding& sliding, const ImportOptions& options, const std::st
     report.outliers = static_cast<std::size_t>(std::count(outlier.begin(), outlier.end(), true));
     report.rejected_rows += report.outliers;
     add_choice(source, "outliers_deviations", deviations,
-               "a single force that far outside the range of the two beside it; " + std::to_string(report.outliers) + " left out",
+               "a single force that far outside the range of the two beside it; " +
+                   std::to_string(report.outliers) + " left out",
                "--outliers", options.outliers.has_value());
     const bool measured_tangential = take_tangential(sliding, surface, options, pressed, report);
     drop_out_of_contact(outlier, pressed);
     report.points = pressed.size();
     if (pressed.size() < 16) {
-        throw bad_input(file, "", std::to_string(pressed.size()) + " samples below the surface", "a tool that presses into the tissue");
+        throw bad_input(file, "", std::to_string(pressed.size()) + " samples below the surface",
+                        "a tool that presses into the tissue");
     }
 
     GridPlan plan;
@@ -387,11 +333,15 @@ Map map_of_sliding(Sliding& sliding, const ImportOptions& options, const std::st
     plan.method = options.gridding.value_or(Gridding::plane);
     plan.radius_m = options.radius_m.value_or(pitch_m);
     plan.least = 3;
-    if (plan.method == Gridding::on_grid) throw bad_input("--grid", "", "on-grid for a sliding tool", "plane, inverse-distance or median");
-    add_choice(source, "grid", name_of(plan.method), "samples of a sliding tool lie on no grid", "--grid", options.gridding.has_value());
-    add_choice(source, "pitch_mm", choice_mm(pitch_m), "two passes a cell and some four samples a cell and layer, by the area covered",
-               "--pitch-mm", options.pitch_m.has_value());
-    add_choice(source, "radius_mm", choice_mm(plan.radius_m), "the pitch", "--radius-mm", options.radius_m.has_value());
+    if (plan.method == Gridding::on_grid)
+        throw bad_input("--grid", "", "on-grid for a sliding tool", "plane, inverse-distance or median");
+    add_choice(source, "grid", name_of(plan.method), "samples of a sliding tool lie on no grid", "--grid",
+               options.gridding.has_value());
+    add_choice(source, "pitch_mm", choice_mm(pitch_m),
+               "two passes a cell and some four samples a cell and layer, by the area covered", "--pitch-mm",
+               options.pitch_m.has_value());
+    add_choice(source, "radius_mm", choice_mm(plan.radius_m), "the pitch", "--radius-mm",
+               options.radius_m.has_value());
     plan.depths_m = choose_depths(pressed, options, source);
     check_grid(plan.x, plan.y, plan.depths_m.size(), file);
     check_enough_samples(plan, pressed.size(), file);
@@ -401,11 +351,15 @@ Map map_of_sliding(Sliding& sliding, const ImportOptions& options, const std::st
     map.normal_N = std::move(gridded.normal_N);
     map.tangential_x_N = std::move(gridded.tangential_x_N);
     map.tangential_y_N = std::move(gridded.tangential_y_N);
-    source.how = std::string("sliding tool; surface ") + (surface.height_m.empty() ? "recorded" : options.surface_z_m ? "stated" : "estimated") +
+    source.how = std::string("sliding tool; surface ") +
+                 (surface.height_m.empty() ? "recorded"
+                  : options.surface_z_m    ? "stated"
+                                           : "estimated") +
                  "; samples brought onto a grid by " + name_of(plan.method);
 
     RecordedPoints recorded;
-    for (std::size_t i = 0; i < pressed.size(); ++i) recorded.add(pressed.x_m[i], pressed.y_m[i], pressed.depth_m[i], pressed.force_N[i]);
+    for (std::size_t i = 0; i < pressed.size(); ++i)
+        recorded.add(pressed.x_m[i], pressed.y_m[i], pressed.depth_m[i], pressed.force_N[i]);
     pressed = {};
     finish_map(map, recorded, measured_tangential, options, file, report);
     return map;

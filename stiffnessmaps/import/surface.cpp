@@ -58,7 +58,8 @@ struct Chosen {
     std::vector<double> weight;
 };
 
-void add_smoothness(const Surface& surface, double weight_s, double weight_c, std::vector<Eigen::Triplet<double>>& out) {
+void add_smoothness(const Surface& surface, double weight_s, double weight_c,
+                    std::vector<Eigen::Triplet<double>>& out) {
     const auto n = static_cast<Index>(surface.n_x * surface.n_y);
     const auto add = [&](Index first, Index second, Index third) {
         const std::array<Index, 3> node{first, second, third};
@@ -82,7 +83,8 @@ void add_smoothness(const Surface& surface, double weight_s, double weight_c, st
 }
 
 // One weighted least-squares solution; the residuals' robust deviation with it.
-Fit solve(const Surface& surface, const SurfaceSamples& samples, const Chosen& chosen, std::vector<double>& residual_m) {
+Fit solve(const Surface& surface, const SurfaceSamples& samples, const Chosen& chosen,
+          std::vector<double>& residual_m) {
     const std::size_t n = surface.n_x * surface.n_y;
     const std::size_t n_m = chosen.sample.size();
     // sums per square of four nodes, then into the matrix
@@ -120,8 +122,9 @@ Fit solve(const Surface& surface, const SurfaceSamples& samples, const Chosen& c
         }
     }
     const double per_node = static_cast<double>(n_m) / static_cast<double>(n);
-    // shares of the samples on a node; found on two recordings and a raster over a lump with a known answer, 2026-11: the
-    // residual changes by a tenth from 0.3 to 0.01, and a compliance held stiffer than the surface bends the surface instead
+    // shares of the samples on a node; found on two recordings and a raster over a lump with a known answer,
+    // 2026-11: the residual changes by a tenth from 0.3 to 0.01, and a compliance held stiffer than the
+    // surface bends the surface instead
     constexpr double kSurface = 0.1;
     constexpr double kCompliance = 0.03;
     add_smoothness(surface, kSurface * per_node, kCompliance * per_node, entries);
@@ -167,19 +170,22 @@ double force_variety(const Surface& surface, const SurfaceSamples& samples, cons
     return median(std::move(variety));
 }
 
-void take_normals(const Surface& surface, const SurfaceSamples& samples, double exponent, double typical_N, Chosen& chosen) {
+void take_normals(const Surface& surface, const SurfaceSamples& samples, double exponent, double typical_N,
+                  Chosen& chosen) {
     for (std::size_t m = 0; m < chosen.sample.size(); ++m) {
         const std::size_t s = chosen.sample[m];
         const SurfacePoint p = surface_at(surface, samples.x_m[s], samples.y_m[s]);
         double force_N = 0.0;
-        for (std::size_t a = 0; a < 3; ++a) force_N += p.normal[a] * static_cast<double>(samples.force_N[a][s]);
+        for (std::size_t a = 0; a < 3; ++a)
+            force_N += p.normal[a] * static_cast<double>(samples.force_N[a][s]);
         chosen.n_z[m] = p.normal[2];
         chosen.push[m] = std::pow(std::max(force_N, 0.0) / typical_N, exponent);
     }
 }
 
 // Robust least squares, with the normals of the last solution.
-Fit fit_robustly(Surface surface, const SurfaceSamples& samples, Chosen chosen, double exponent, double typical_N) {
+Fit fit_robustly(Surface surface, const SurfaceSamples& samples, Chosen chosen, double exponent,
+                 double typical_N) {
     Fit fit;
     std::vector<double> residual_m;
     constexpr int kRounds = 5;
@@ -221,8 +227,10 @@ SurfacePoint surface_at(const Surface& surface, double x_m, double y_m) {
     for (std::size_t k = 0; k < 4; ++k) out.height_m += c.weight[k] * s[c.node[k]];
     const double b = c.weight[2] + c.weight[3];
     const double a = c.weight[1] + c.weight[3];
-    const double along_x = ((1 - b) * (s[c.node[1]] - s[c.node[0]]) + b * (s[c.node[3]] - s[c.node[2]])) / surface.node_m;
-    const double along_y = ((1 - a) * (s[c.node[2]] - s[c.node[0]]) + a * (s[c.node[3]] - s[c.node[1]])) / surface.node_m;
+    const double along_x =
+        ((1 - b) * (s[c.node[1]] - s[c.node[0]]) + b * (s[c.node[3]] - s[c.node[2]])) / surface.node_m;
+    const double along_y =
+        ((1 - a) * (s[c.node[2]] - s[c.node[0]]) + a * (s[c.node[3]] - s[c.node[1]])) / surface.node_m;
     const double length = std::sqrt(1.0 + along_x * along_x + along_y * along_y);
     out.normal[0] = -along_x / length;
     out.normal[1] = -along_y / length;
@@ -234,7 +242,8 @@ Indentation indentation_of(const Surface& surface, const SurfaceSamples& samples
     const SurfacePoint p = surface_at(surface, samples.x_m[i], samples.y_m[i]);
     Indentation out;
     out.depth_m = p.normal[2] * (p.height_m - samples.z_m[i]);
-    for (std::size_t a = 0; a < 3; ++a) out.force_N += p.normal[a] * static_cast<double>(samples.force_N[a][i]);
+    for (std::size_t a = 0; a < 3; ++a)
+        out.force_N += p.normal[a] * static_cast<double>(samples.force_N[a][i]);
     return out;
 }
 
@@ -245,14 +254,16 @@ Surface fit_surface(const SurfaceSamples& samples, double node_m, const std::str
     surface.origin_m[0] = *x_low;
     surface.origin_m[1] = *y_low;
     const double area = (*x_high - *x_low + node_m) * (*y_high - *y_low + node_m);
-    const double most_nodes = std::min(static_cast<double>(kMostNodes), 1.0 + static_cast<double>(samples.size()) / 8.0);
+    const double most_nodes =
+        std::min(static_cast<double>(kMostNodes), 1.0 + static_cast<double>(samples.size()) / 8.0);
     surface.node_m = std::max(node_m, std::sqrt(area / most_nodes));
     surface.n_x = 1 + static_cast<std::size_t>(std::ceil((*x_high - *x_low) / surface.node_m));
     surface.n_y = 1 + static_cast<std::size_t>(std::ceil((*y_high - *y_low) / surface.node_m));
 
     std::vector<double> forces_N;
     const std::size_t step = 1 + samples.size() / kMostSamples;
-    for (std::size_t s = 0; s < samples.size(); s += step) forces_N.push_back(static_cast<double>(samples.force_N[2][s]));
+    for (std::size_t s = 0; s < samples.size(); s += step)
+        forces_N.push_back(static_cast<double>(samples.force_N[2][s]));
     const double great_N = quantile(forces_N, 0.95);
     constexpr double kTouching = 0.02;  // of a great force: less is no contact
     Chosen chosen;
@@ -260,8 +271,9 @@ Surface fit_surface(const SurfaceSamples& samples, double node_m, const std::str
         if (static_cast<double>(samples.force_N[2][s]) > kTouching * great_N) chosen.sample.push_back(s);
     }
     if (!(great_N > 0.0) || chosen.sample.size() < 16) {
-        throw bad_input(file, "", "a 95th percentile of the force along z of " + short_number(great_N) + " N",
-                        "a tool that presses, with a positive force along z (the other sign: --negate-force)");
+        throw bad_input(
+            file, "", "a 95th percentile of the force along z of " + short_number(great_N) + " N",
+            "a tool that presses, with a positive force along z (the other sign: --negate-force)");
     }
     chosen.push.resize(chosen.sample.size());
     chosen.n_z.resize(chosen.sample.size());
@@ -270,9 +282,12 @@ Surface fit_surface(const SurfaceSamples& samples, double node_m, const std::str
     take_normals(surface, samples, 1.0, great_N, chosen);
     constexpr double kLeastVariety = 0.2;
     if (const double variety = force_variety(surface, samples, chosen); variety < kLeastVariety) {
-        throw bad_input(file, "", "a force that hardly changes from pass to pass (by " + short_number(100.0 * variety) + " %)",
-                        "forces from light to strong, to tell the surface; or its height by --surface-z-mm; or the depth of "
-                        "each file by --at-depth-mm");
+        throw bad_input(
+            file, "",
+            "a force that hardly changes from pass to pass (by " + short_number(100.0 * variety) + " %)",
+            "forces from light to strong, to tell the surface; or its height by --surface-z-mm; or the depth "
+            "of "
+            "each file by --at-depth-mm");
     }
     Fit best;
     for (const double exponent : {1.0, 2.0 / 3.0}) {
@@ -281,7 +296,8 @@ Surface fit_surface(const SurfaceSamples& samples, double node_m, const std::str
         best = std::move(fit);
         surface.exponent = exponent;
     }
-    if (best.height_m.empty()) throw bad_input(file, "", "no surface through the samples", "places that extend along x and y");
+    if (best.height_m.empty())
+        throw bad_input(file, "", "no surface through the samples", "places that extend along x and y");
     surface.height_m = std::move(best.height_m);
     surface.deviation_m = best.deviation_m;
     measure_tilt(surface);

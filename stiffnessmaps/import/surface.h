@@ -1,13 +1,13 @@
 #pragma once
 // The surface of a tissue under a sliding tool, from where the tool was and how hard it pressed.
 //
-// Between the nodes of a square grid surface height s and compliance c are bilinear, and a sample at height z under
-// the normal force F obeys
+// Between the nodes of a square grid surface height s and compliance c are bilinear, and a sample at height z
+// under the normal force F obeys
 //     n_z (s(x, y) - z) = c(x, y) F^m
 // along the surface's own normal n. s and c are the least-squares solution over all samples in contact, with
-// second differences along x and y held small (smoothness) and samples far off weighed less (Huber), repeated with
-// the normals of the last solution. m is 1 or 2/3 (a ball, Hertz), whichever leaves less. Where the force never
-// changes s and c cannot be told apart, and it says so.
+// second differences along x and y held small (smoothness) and samples far off weighed less (Huber), repeated
+// with the normals of the last solution. m is 1 or 2/3 (a ball, Hertz), whichever leaves less. Where the
+// force never changes s and c cannot be told apart, and it says so.
 
 #include <string>
 #include <vector>
@@ -27,10 +27,10 @@ struct Surface {
     double node_m = 1e-3;
     std::size_t n_x = 0;
     std::size_t n_y = 0;
-    std::vector<double> height_m;    // [y][x]
+    std::vector<double> height_m;  // [y][x]
     double exponent = 1.0;
-    double deviation_m = 0.0;        // robust, of the samples' heights from the model
-    double tilt_deg = 0.0;           // of the plane through it
+    double deviation_m = 0.0;  // robust, of the samples' heights from the model
+    double tilt_deg = 0.0;     // of the plane through it
 };
 
 struct SurfacePoint {

@@ -1,12 +1,11 @@
 // `palpa maps import` as a person calls it: options, choices, JSON, refusals.
 
-#include <doctest/doctest.h>
-#include <sys/wait.h>
-
 #include <cmath>
+#include <doctest/doctest.h>
 #include <filesystem>
 #include <set>
 #include <string>
+#include <sys/wait.h>
 
 #include "files/json.h"
 #include "files/text.h"
@@ -26,9 +25,12 @@ struct Called {
 };
 
 Called import(const TemporaryFolder& folder, const std::string& arguments) {
-    const std::string command = "cd " + folder.path().string() + " && timeout 60 " PALPA_PROGRAM " maps import " + arguments + " >out 2>err </dev/null";
+    const std::string command = "cd " + folder.path().string() +
+                                " && timeout 60 " PALPA_PROGRAM " maps import " + arguments +
+                                " >out 2>err </dev/null";
     const int status = std::system(command.c_str());
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_text(folder / "out"), read_text(folder / "err")};
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_text(folder / "out"),
+            read_text(folder / "err")};
 }
 
 // 4 x 3 places, 0.5 N/mm, with columns that nobody could guess.
@@ -36,20 +38,26 @@ std::string odd_table() {
     std::string text = "where,across,along,how_deep_mm,push_mN\n";
     for (int p = 0; p < 12; ++p) {
         for (int k = 0; k < 5; ++k) {
-            text += std::to_string(p) + "," + std::to_string(3 * (p % 4)) + "," + std::to_string(2 * (p / 4)) + "," + std::to_string(k) + "," + std::to_string(500 * k) + "\n";
+            text += std::to_string(p) + "," + std::to_string(3 * (p % 4)) + "," +
+                    std::to_string(2 * (p / 4)) + "," + std::to_string(k) + "," + std::to_string(500 * k) +
+                    "\n";
         }
     }
     return text;
 }
 
-const std::string kColumns = "--column point=where --column x=across --column y=along --column depth=how_deep_mm --column fn=push_mN ";
+const std::string kColumns =
+    "--column point=where --column x=across --column y=along --column depth=how_deep_mm --column fn=push_mN ";
 
 }  // namespace
 
-TEST_CASE("maps import: columns by name; what was chosen is printed, is in the map, and each with the option that changes it") {
+TEST_CASE(
+    "maps import: columns by name; what was chosen is printed, is in the map, and each with the option that "
+    "changes it") {
     const TemporaryFolder folder;
     write_text_atomically(folder / "r.csv", odd_table());
-    CHECK(contains(import(folder, "r.csv -o x.map").err, "expected probing (x, y, depth or z, fn or fz, ...) or sliding"));
+    CHECK(contains(import(folder, "r.csv -o x.map").err,
+                   "expected probing (x, y, depth or z, fn or fz, ...) or sliding"));
     const Called called = import(folder, "r.csv " + kColumns + "-o x.map --explain");
     CAPTURE(called.err);
     REQUIRE(called.status == 0);
@@ -69,7 +77,8 @@ TEST_CASE("maps import: columns by name; what was chosen is printed, is in the m
         CHECK(contains(called.out, choice.key));
         CHECK((!choice.how.empty() || !choice.option.empty()));
         // every option that it names exists
-        for (std::size_t at = choice.option.find("--"); at != std::string::npos; at = choice.option.find("--", at + 2)) {
+        for (std::size_t at = choice.option.find("--"); at != std::string::npos;
+             at = choice.option.find("--", at + 2)) {
             const std::string option = choice.option.substr(at, choice.option.find_first_of(" ,", at) - at);
             CHECK(contains(help, option));
         }
@@ -83,7 +92,8 @@ TEST_CASE("maps import: columns by name; what was chosen is printed, is in the m
 TEST_CASE("maps import: the JSON has the map, the residual and its shares") {
     const TemporaryFolder folder;
     write_text_atomically(folder / "r.csv", odd_table());
-    const Called called = import(folder, "r.csv " + kColumns + "--depths-mm 1,2.5 --name block --licence CC0 -o x.map --json");
+    const Called called =
+        import(folder, "r.csv " + kColumns + "--depths-mm 1,2.5 --name block --licence CC0 -o x.map --json");
     CAPTURE(called.err);
     REQUIRE(called.status == 0);
     const Json json = parse_json(called.out, "stdout");
@@ -97,7 +107,8 @@ TEST_CASE("maps import: the JSON has the map, the residual and its shares") {
     CHECK(json["import"]["greatest_force_N"].get<double>() == doctest::Approx(1.25));
     std::set<std::string> keys;
     for (const Json& choice : json["source"]["choices"]) keys.insert(choice["key"].get<std::string>());
-    for (const char* key : {"form", "columns", "grid", "pitch_mm", "depths_mm", "contact", "outliers_deviations", "tangential", "filled", "noise_N"}) {
+    for (const char* key : {"form", "columns", "grid", "pitch_mm", "depths_mm", "contact",
+                            "outliers_deviations", "tangential", "filled", "noise_N"}) {
         CAPTURE(key);
         CHECK(keys.count(key) == 1);
     }
@@ -107,7 +118,9 @@ TEST_CASE("maps import: matrices, one file per depth") {
     const TemporaryFolder folder;
     write_text_atomically(folder / "normal_2mm.csv", "0.2,0.3\n0.4,\n");
     write_text_atomically(folder / "normal_4mm.csv", "0.5,0.6\n0.9,1.2\n");
-    const Called called = import(folder, "normal_4mm.csv normal_2mm.csv --spacing-mm 0.76,2 --origin-mm 5,6 -o m.map --tangential energy");
+    const Called called = import(
+        folder,
+        "normal_4mm.csv normal_2mm.csv --spacing-mm 0.76,2 --origin-mm 5,6 -o m.map --tangential energy");
     CAPTURE(called.err);
     REQUIRE(called.status == 0);
     const Map map = read_map(folder / "m.map");
@@ -124,7 +137,8 @@ TEST_CASE("maps import: matrices, one file per depth") {
 TEST_CASE("maps import: what cannot be ends with status 2, says what, and leaves nothing behind") {
     const TemporaryFolder folder;
     write_text_atomically(folder / "r.csv", odd_table());
-    write_text_atomically(folder / "mN.csv", "x,y,depth,fn\n0,0,0,0\n0,0,1,900\n0,0,2,2100\n5,0,0,0\n5,0,1,900\n5,0,2,2100\n");
+    write_text_atomically(folder / "mN.csv",
+                          "x,y,depth,fn\n0,0,0,0\n0,0,1,900\n0,0,2,2100\n5,0,0,0\n5,0,1,900\n5,0,2,2100\n");
     const auto refused = [&](const std::string& arguments, const char* word) {
         const Called called = import(folder, arguments);
         CAPTURE(arguments);

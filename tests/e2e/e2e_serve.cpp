@@ -192,7 +192,7 @@ TEST_CASE("serve: without TLS this machine alone, without a code") {
 
 TEST_CASE("serve: a wrong code a thousand times") {
     const Place place;
-    DeskProcess desk(place.with_tls({"--lock-s", "20"}));
+    DeskProcess desk(place.with_tls({"--lock-s", "10"}));
     const auto client = tablet(place.folder, desk.port);
     const std::string wrong = desk.code == "000000" ? "000001" : "000000";
     std::map<int, int> statuses;
@@ -205,7 +205,7 @@ TEST_CASE("serve: a wrong code a thousand times") {
         if (result->status == 429) wait_s = std::stod(result->get_header_value("Retry-After"));
     }
     CHECK(statuses[401] >= 5);
-    CHECK(statuses[401] <= 9);  // a try after each lock-out that ended meanwhile
+    CHECK(statuses[401] <= 10);  // a try after each lock-out that ended meanwhile
     CHECK(statuses[401] + statuses[429] == 1000);
     const auto locked = pair_with(desk.code, *client);
     CHECK(locked->status == 429);
@@ -377,7 +377,7 @@ TEST_CASE("serve: fifty tablets at once, none lost, none mixed up") {
             const std::string token = token_of(desk.code, *client);
             const std::string label = "tablet-" + std::to_string(i);
             for (int log = 0; log < kLogs; ++log) {
-                const std::string bytes = noise(random, static_cast<std::size_t>(random.uniform(1000.0, 1e6)));
+                const std::string bytes = noise(random, static_cast<std::size_t>(random.uniform(1000.0, 4e5)));
                 const auto result = upload(label, bytes, token, *client);
                 if (!result || result->status != 201 || Json::parse(result->body)["sha256"] != sha256_hex(bytes)) ++failed;
                 const std::lock_guard lock(mutex);
@@ -410,7 +410,7 @@ TEST_CASE("serve: fifty tablets at once, none lost, none mixed up") {
 
 TEST_CASE("serve: killed in the middle of uploads and started again, nothing is lost and nothing is half there") {
     const Place place;
-    constexpr int kKills = 4, kTablets = 8;
+    constexpr int kKills = 3, kTablets = 8;
     constexpr std::uint64_t kSeed = 21;
     CAPTURE(kSeed);
     Random random(kSeed);

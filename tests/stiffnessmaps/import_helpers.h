@@ -10,7 +10,8 @@
 
 namespace palpa::test {
 
-inline Map imported(const std::string& text, const ImportOptions& options = {}, ImportReport* report = nullptr) {
+inline Map imported(const std::string& text, const ImportOptions& options = {},
+                    ImportReport* report = nullptr) {
     const TemporaryFolder folder;
     write_text_atomically(folder / "r.csv", text);
     ImportReport unused;

@@ -1,15 +1,13 @@
-#include "stiffnessmaps/import/arrays.h"
-
+#include <cmath>
 #include <doctest/doctest.h>
+#include <limits>
+#include <random>
 #include <signal.h>
 #include <unistd.h>
 
-#include <cmath>
-#include <limits>
-#include <random>
-
 #include "files/text.h"
 #include "stiffnessmaps/import/apart.h"
+#include "stiffnessmaps/import/arrays.h"
 #include "tests/error_message.h"
 #include "tests/stiffnessmaps/array_writers.h"
 #include "tests/temporary_folder.h"
@@ -31,7 +29,8 @@ std::vector<Value> counted(std::size_t n, double step = 1.0) {
 
 void check_counted(const NpyArray& array, const std::vector<std::size_t>& shape, double step = 1.0) {
     CHECK(array.shape == shape);
-    for (std::size_t i = 0; i < array.values.size(); ++i) REQUIRE(array.values[i] == doctest::Approx(step * static_cast<double>(i)));
+    for (std::size_t i = 0; i < array.values.size(); ++i)
+        REQUIRE(array.values[i] == doctest::Approx(step * static_cast<double>(i)));
 }
 
 std::string said(const std::filesystem::path& path, const std::string& dataset = "") {
@@ -76,7 +75,9 @@ TEST_CASE("arrays: the same numbers come out of every kind of file") {
     write_png(folder / "eight.png", 4, 3, counted<std::uint16_t>(12, 20.0), 8);
     check_counted(read_array(folder / "eight.png", ""), {3, 4}, 20.0);
 
-    for (const char* text : {"0,1,2,3\n4,5,6,7\n8,9,10,11\n", "\xef\xbb\xbf 0 1  2 3\r\n4 5 6 7 \r\n\r\n8 9 10 11", "0\t1\t2\t3\n4\t5\t6\t7\n8\t9\t10\t11\n", "0; 1; 2; 3\n4;5;6;7\n8;9;10;11\n"}) {
+    for (const char* text :
+         {"0,1,2,3\n4,5,6,7\n8,9,10,11\n", "\xef\xbb\xbf 0 1  2 3\r\n4 5 6 7 \r\n\r\n8 9 10 11",
+          "0\t1\t2\t3\n4\t5\t6\t7\n8\t9\t10\t11\n", "0; 1; 2; 3\n4;5;6;7\n8;9;10;11\n"}) {
         write_text_whole(folder / "a.txt", text);
         check_counted(read_array(folder / "a.txt", ""), {3, 4});
     }
@@ -94,7 +95,8 @@ TEST_CASE("arrays: of several in one file one must be named") {
     write_hdf5(folder / "a.h5", "shear", {2, 3}, counted<float>(6, 2.0));
     for (const char* name : {"a.mat", "a.h5"}) {
         CAPTURE(name);
-        CHECK(contains(said(folder / name), "the arrays 'normal' (2, 3) 'shear' (2, 3), expected one of them named by --dataset"));
+        CHECK(contains(said(folder / name),
+                       "the arrays 'normal' (2, 3) 'shear' (2, 3), expected one of them named by --dataset"));
         check_counted(read_array(folder / name, "shear"), {2, 3}, 2.0);
         CHECK(contains(said(folder / name, "other"), "expected an array 'other'"));
     }
@@ -108,7 +110,8 @@ TEST_CASE("arrays: 10^12 cells in a header are refused before anything is alloca
 
     // uncompressed: the dimensions stand in the file as two int32
     write_mat(folder / "a.mat", "F", {7, 11}, counted<double>(77));
-    patch(folder / "a.mat", std::string("\7\0\0\0\13\0\0\0", 8), std::string("\x40\x42\x0f\0\x40\x42\x0f\0", 8));
+    patch(folder / "a.mat", std::string("\7\0\0\0\13\0\0\0", 8),
+          std::string("\x40\x42\x0f\0\x40\x42\x0f\0", 8));
     CHECK(contains(said(folder / "a.mat"), "found (1000000, 1000000), expected at most 20 million numbers"));
     write_mat(folder / "b.mat", "F", {7, 11}, counted<double>(77));
     patch(folder / "b.mat", std::string("\7\0\0\0\13\0\0\0", 8), std::string("\x00\x08\0\0\x00\x08\0\0", 8));
@@ -120,12 +123,15 @@ TEST_CASE("arrays: 10^12 cells in a header are refused before anything is alloca
     CHECK(contains(said(folder / "b.h5"), "found (3000, 3000), expected numbers that fit into its"));
 
     write_png(folder / "a.png", 4, 3, counted<std::uint16_t>(12));
-    patch(folder / "a.png", std::string("\0\0\0\4\0\0\0\3", 8), std::string("\0\x0f\x42\x40\0\x0f\x42\x40", 8));
+    patch(folder / "a.png", std::string("\0\0\0\4\0\0\0\3", 8),
+          std::string("\0\x0f\x42\x40\0\x0f\x42\x40", 8));
     CHECK(contains(said(folder / "a.png"), "found (1000000, 1000000), expected at most 20 million numbers"));
     write_tiff(folder / "a.tif", 1234, 3, counted<std::uint16_t>(3702), 0, COMPRESSION_NONE);
-    patch(folder / "a.tif", std::string("\0\1\3\0\1\0\0\0\xd2\4\0\0", 12), std::string("\0\1\4\0\1\0\0\0\x40\x42\x0f\0", 12));
+    patch(folder / "a.tif", std::string("\0\1\3\0\1\0\0\0\xd2\4\0\0", 12),
+          std::string("\0\1\4\0\1\0\0\0\x40\x42\x0f\0", 12));
     CHECK(contains(said(folder / "a.tif"), "found (3, 1000000), expected numbers that fit into its"));
-    patch(folder / "a.tif", std::string("\1\1\3\0\1\0\0\0\3\0\0\0", 12), std::string("\1\1\4\0\1\0\0\0\x40\x42\x0f\0", 12));
+    patch(folder / "a.tif", std::string("\1\1\3\0\1\0\0\0\3\0\0\0", 12),
+          std::string("\1\1\4\0\1\0\0\0\x40\x42\x0f\0", 12));
     CHECK(contains(said(folder / "a.tif"), "found (1000000, 1000000), expected at most 20 million numbers"));
 }
 
@@ -149,7 +155,9 @@ TEST_CASE("arrays: cut files are refused by name") {
         const std::string bytes = read_text(folder / name);
         for (const double share : {0.02, 0.3, 0.6, 0.95}) {
             CAPTURE(share);
-            write_text_whole(folder / name, bytes.substr(0, static_cast<std::size_t>(share * static_cast<double>(bytes.size()))));
+            write_text_whole(
+                folder / name,
+                bytes.substr(0, static_cast<std::size_t>(share * static_cast<double>(bytes.size()))));
             const std::string message = said(folder / name);
             CAPTURE(message);
             CHECK(contains(message, name));
@@ -192,7 +200,8 @@ TEST_CASE("arrays: files with bytes changed at random never end in anything but 
         const std::string bytes = read_text(folder / name);
         for (int round = 0; round < 40; ++round) {
             std::string changed = bytes;
-            for (unsigned k = 0; k < 1 + random() % 8; ++k) changed[16 + random() % (changed.size() - 16)] = static_cast<char>(random());
+            for (unsigned k = 0; k < 1 + random() % 8; ++k)
+                changed[16 + random() % (changed.size() - 16)] = static_cast<char>(random());
             write_text_whole(folder / name, changed);
             CAPTURE(name);
             CAPTURE(round);
@@ -207,10 +216,21 @@ TEST_CASE("arrays: files with bytes changed at random never end in anything but 
 }
 
 TEST_CASE("apart: a library that crashes, or never ends its work, is a message about the file") {
-    const auto said_by = [](const std::function<NpyArray()>& read) { return message_of([&] { read_apart("x.h5", "the library", read); }); };
+    const auto said_by = [](const std::function<NpyArray()>& read) {
+        return message_of([&] { read_apart("x.h5", "the library", read); });
+    };
     CHECK(said_by([]() -> NpyArray { return {{1, 2}, {3.0f, 4.0f}}; }) == "");
-    CHECK(said_by([]() -> NpyArray { throw InputError("x.h5: found a, expected b"); }) == "x.h5: found a, expected b");
-    CHECK(contains(said_by([]() -> NpyArray { ::raise(SIGSEGV); return {}; }), "x.h5: found what the library cannot read without failing"));
+    CHECK(said_by([]() -> NpyArray { throw InputError("x.h5: found a, expected b"); }) ==
+          "x.h5: found a, expected b");
+    CHECK(contains(said_by([]() -> NpyArray {
+                       ::raise(SIGSEGV);
+                       return {};
+                   }),
+                   "x.h5: found what the library cannot read without failing"));
     CHECK(contains(said_by([]() -> NpyArray { ::_exit(3); }), "cannot read without failing"));
-    CHECK(contains(said_by([]() -> NpyArray { ::raise(SIGXCPU); return {}; }), "over a minute of work for the library"));
+    CHECK(contains(said_by([]() -> NpyArray {
+                       ::raise(SIGXCPU);
+                       return {};
+                   }),
+                   "over a minute of work for the library"));
 }

@@ -1,11 +1,9 @@
-#include "stiffnessmaps/import/gridding.h"
-
-#include <doctest/doctest.h>
-
 #include <cmath>
+#include <doctest/doctest.h>
 #include <random>
 
 #include "stiffnessmaps/import/finish.h"
+#include "stiffnessmaps/import/gridding.h"
 #include "stiffnessmaps/import/robust.h"
 #include "tests/stiffnessmaps/test_maps.h"
 
@@ -14,7 +12,8 @@ using namespace palpa::test;
 
 TEST_CASE("gridding: an axis is found with gaps in it, with jitter, and with a stray place beside it") {
     std::vector<double> places;
-    for (const int i : {0, 1, 2, 5, 6, 7, 8, 20, 1, 2, 3}) places.push_back(0.3 + 1.5e-3 * i + (i % 2) * 2e-5);
+    for (const int i : {0, 1, 2, 5, 6, 7, 8, 20, 1, 2, 3})
+        places.push_back(0.3 + 1.5e-3 * i + (i % 2) * 2e-5);
     auto fit = fit_axis(places);
     REQUIRE(fit.has_value());
     CHECK(fit->off == 0);
@@ -61,7 +60,8 @@ TEST_CASE("gridding: a linear field comes back exactly, and nothing is extrapola
         samples.x_m.push_back(20e-3 * at(random));
         samples.y_m.push_back(10e-3 * at(random));
         samples.depth_m.push_back(3e-3 * at(random));
-        samples.force_N.push_back(0.2 + 10.0 * samples.x_m.back() - 20.0 * samples.y_m.back() + 400.0 * samples.depth_m.back());
+        samples.force_N.push_back(0.2 + 10.0 * samples.x_m.back() - 20.0 * samples.y_m.back() +
+                                  400.0 * samples.depth_m.back());
     }
     GridPlan plan;
     plan.x = {-10e-3, 2e-3, 21};
@@ -75,22 +75,25 @@ TEST_CASE("gridding: a linear field comes back exactly, and nothing is extrapola
         if (std::isnan(out.normal_N[i])) continue;
         ++measured;
         const std::size_t cell = i % plan.n_cells();
-        const double wanted = 0.2 + 10.0 * plan.x.at(cell % 21) - 20.0 * plan.y.at(cell / 21) + 400.0 * plan.depths_m[i / plan.n_cells()];
+        const double wanted = 0.2 + 10.0 * plan.x.at(cell % 21) - 20.0 * plan.y.at(cell / 21) +
+                              400.0 * plan.depths_m[i / plan.n_cells()];
         CHECK(static_cast<double>(out.normal_N[i]) == doctest::Approx(wanted).epsilon(2e-3));
         CHECK(plan.x.at(cell % 21) > -1e-3);
         CHECK(plan.x.at(cell % 21) < 21e-3);
     }
     CHECK(measured > 100);
     // no sample is deeper than 3 mm: the layer at 4 mm stays empty
-    for (std::size_t cell = 0; cell < plan.n_cells(); ++cell) CHECK(std::isnan(out.normal_N[2 * plan.n_cells() + cell]));
+    for (std::size_t cell = 0; cell < plan.n_cells(); ++cell)
+        CHECK(std::isnan(out.normal_N[2 * plan.n_cells() + cell]));
 }
 
 TEST_CASE("gridding: the filled copy has no gap, keeps what was measured, and goes on as its neighbours do") {
-    Map map = map_of(5, 4, {1e-3, 2e-3, 3e-3}, [](double x, double, double d) { return 500.0 * d * (1.0 + 20.0 * x); });
+    Map map = map_of(5, 4, {1e-3, 2e-3, 3e-3},
+                     [](double x, double, double d) { return 500.0 * d * (1.0 + 20.0 * x); });
     const std::vector<float> whole = map.normal_N;
     const float nan = std::numeric_limits<float>::quiet_NaN();
-    map.normal_N[20 + 7] = nan;                            // between two depths of one cell
-    map.normal_N[40 + 12] = nan;                           // its deepest
+    map.normal_N[20 + 7] = nan;                                            // between two depths of one cell
+    map.normal_N[40 + 12] = nan;                                           // its deepest
     for (const std::size_t k : {0u, 20u, 40u}) map.normal_N[k + 2] = nan;  // a whole cell
     const std::vector<float> filled = filled_forces(map);
     for (std::size_t i = 0; i < filled.size(); ++i) {
@@ -101,13 +104,16 @@ TEST_CASE("gridding: the filled copy has no gap, keeps what was measured, and go
 }
 
 TEST_CASE("finish: the residual of a map's own numbers is what look-up makes of them") {
-    Map map = map_of(5, 4, {1e-3, 2e-3, 3e-3}, [](double x, double y, double d) { return 500.0 * d + 30.0 * x + std::sin(4e3 * y + 3e3 * d); });
+    Map map = map_of(5, 4, {1e-3, 2e-3, 3e-3}, [](double x, double y, double d) {
+        return 500.0 * d + 30.0 * x + std::sin(4e3 * y + 3e3 * d);
+    });
     map.normal_N[27] = std::numeric_limits<float>::quiet_NaN();
     RecordedPoints recorded;
     for (std::size_t i = 0; i < map.normal_N.size(); ++i) {
         if (std::isnan(map.normal_N[i])) continue;
         const std::size_t cell = i % map.n_cells();
-        recorded.add(map.x_of(cell % map.n_x), map.y_of(cell / map.n_x), map.depths_m[i / map.n_cells()], static_cast<double>(map.normal_N[i]));
+        recorded.add(map.x_of(cell % map.n_x), map.y_of(cell / map.n_x), map.depths_m[i / map.n_cells()],
+                     static_cast<double>(map.normal_N[i]));
     }
     const ImportResidual numbers = residual_of_numbers(map);
     const ImportResidual sampled = residual_of(map, recorded);
@@ -121,6 +127,7 @@ TEST_CASE("finish: the residual of a map's own numbers is what look-up makes of 
 TEST_CASE("robust: medians and deviations that wild values do not move") {
     CHECK(median({3.0, 1.0, 2.0}) == 2.0);
     CHECK(median({}) == 0.0);
+    CHECK(median({NAN, 3.0, INFINITY, 1.0, 2.0, -INFINITY}) == 2.0);
     CHECK(quantile({5.0, 1.0, 2.0, 3.0, 4.0}, 1.0) == 5.0);
     std::mt19937 random(5);
     std::normal_distribution<double> normal(2.0, 0.3);
@@ -129,7 +136,8 @@ TEST_CASE("robust: medians and deviations that wild values do not move") {
     CHECK(robust_deviation(values) == doctest::Approx(0.3).epsilon(0.1));
     // a spike on a slope stands out; its neighbours, a kink and a step do not
     CHECK(lone_outliers({0, 0, 0, 1, 2, 9, 4, 5, 6, 6, 6, 0, 0}, 0.5) ==
-          std::vector<bool>{false, false, false, false, false, true, false, false, false, false, false, false, false});
+          std::vector<bool>{false, false, false, false, false, true, false, false, false, false, false, false,
+                            false});
     std::vector<double> differences;
     std::vector<double> noisy;
     for (int i = 0; i < 5000; ++i) noisy.push_back(1e-6 * i * i + normal(random));

@@ -1,10 +1,8 @@
-#include "stiffnessmaps/import/matrices.h"
-
-#include <doctest/doctest.h>
-
 #include <cmath>
+#include <doctest/doctest.h>
 #include <limits>
 
+#include "stiffnessmaps/import/matrices.h"
 #include "stiffnessmaps/map_file.h"
 #include "tests/stiffnessmaps/array_writers.h"
 #include "tests/stiffnessmaps/import_helpers.h"
@@ -17,7 +15,9 @@ namespace {
 std::string matrix(double newtons, std::size_t n_x = 4, std::size_t n_y = 3) {
     std::string text;
     for (std::size_t j = 0; j < n_y; ++j) {
-        for (std::size_t i = 0; i < n_x; ++i) text += (i > 0 ? "," : "") + number_text(newtons + 0.01 * static_cast<double>(i) + 0.1 * static_cast<double>(j));
+        for (std::size_t i = 0; i < n_x; ++i)
+            text += (i > 0 ? "," : "") +
+                    number_text(newtons + 0.01 * static_cast<double>(i) + 0.1 * static_cast<double>(j));
         text += "\n";
     }
     return text;
@@ -78,17 +78,22 @@ TEST_CASE("matrices: what is not stated is asked for") {
     write_text_whole(folder / "empty_4mm.csv", "nan,nan\nnan,nan\n");
     write_png(folder / "d_2mm.png", 4, 3, std::vector<std::uint16_t>(12, 900));
     CHECK(contains(said({"b_3mm.csv"}, {}), "--spacing-mm DX,DY"));
-    CHECK(contains(said({"a.csv"}, spaced()), "found 1 matrices in 1 files, with a depth in 0 of their names, expected the depth of each: --depths-mm"));
-    CHECK(contains(said({"b_3mm.csv", "c_4mm.csv"}, spaced()), "c_4mm.csv: shape: found (3, 5), expected (3, 4) as in"));
+    CHECK(contains(said({"a.csv"}, spaced()),
+                   "found 1 matrices in 1 files, with a depth in 0 of their names, expected the depth of "
+                   "each: --depths-mm"));
+    CHECK(contains(said({"b_3mm.csv", "c_4mm.csv"}, spaced()),
+                   "c_4mm.csv: shape: found (3, 5), expected (3, 4) as in"));
     CHECK(contains(said({"b_3mm.csv", "b_3mm.csv"}, spaced()), "the depth 3 mm twice"));
     CHECK(contains(said({"mN_4mm.csv"}, spaced()), "--force-unit mN"));
     CHECK(contains(said({"empty_4mm.csv"}, spaced()), "no number: all cells are empty"));
-    CHECK(contains(said({"d_2mm.png"}, spaced()), "an image of counts without a unit, expected what one count is: --scale"));
+    CHECK(contains(said({"d_2mm.png"}, spaced()),
+                   "an image of counts without a unit, expected what one count is: --scale"));
     ImportOptions options = spaced();
     options.force_unit = ForceUnit::mN;
     CHECK(said({"mN_4mm.csv"}, options) == "");
     options.depths_m = {1e-3, 2e-3};
-    CHECK(contains(said({"mN_4mm.csv"}, options), "found 1 matrices, expected 2, one for each depth of --depths-mm"));
+    CHECK(contains(said({"mN_4mm.csv"}, options),
+                   "found 1 matrices, expected 2, one for each depth of --depths-mm"));
 }
 
 TEST_CASE("matrices: a three-dimensional array in any order of its axes") {
@@ -109,7 +114,9 @@ TEST_CASE("matrices: a three-dimensional array in any order of its axes") {
     CHECK(map.n_y == 3);
     CHECK(map.normal_N[12 + 4 + 3] == doctest::Approx(2.13f));
     options.axes = "dyx";
-    CHECK(contains(message_of([&] { import_recording({folder / "a.mat"}, options, report); }), "found 3 matrices, expected 2, one for each depth of --depths-mm (another order of axes: --axes)"));
+    CHECK(contains(
+        message_of([&] { import_recording({folder / "a.mat"}, options, report); }),
+        "found 3 matrices, expected 2, one for each depth of --depths-mm (another order of axes: --axes)"));
 }
 
 TEST_CASE("matrices: slices of stiffness and elasticity become forces by a stated formula") {
@@ -122,7 +129,11 @@ TEST_CASE("matrices: slices of stiffness and elasticity become forces by a state
     options.scale = 0.005e3;  // 5 Pa a count: 10 kPa
     options.scale_stated = true;
     options.missing = 0.0;
-    CHECK(contains(message_of([&] { ImportReport r; import_recording({folder / "e.png"}, options, r); }), "--depths-mm"));
+    CHECK(contains(message_of([&] {
+                       ImportReport r;
+                       import_recording({folder / "e.png"}, options, r);
+                   }),
+                   "--depths-mm"));
     options.depths_m = {1e-3, 4e-3};
     options.indenter_radius_m = 4e-3;
     ImportReport report;
@@ -137,7 +148,8 @@ TEST_CASE("matrices: slices of stiffness and elasticity become forces by a state
     CHECK(contains(report.notes[0], "Hertz"));
     REQUIRE(choice_of(map, "contact_formula") != nullptr);
     options.indenter = IndenterShape::cylinder;
-    CHECK(elastic_force_N(1e4, 1e-3, options) == doctest::Approx(3.14159265 / 4.0 * 1e4 / 0.75 * 20e-3 * 1e-3));
+    CHECK(elastic_force_N(1e4, 1e-3, options) ==
+          doctest::Approx(3.14159265 / 4.0 * 1e4 / 0.75 * 20e-3 * 1e-3));
     // stiffness: a straight line
     write_text_whole(folder / "k.csv", "0.5,1\n2,n/a\n");
     options.quantity = Quantity::stiffness;
@@ -146,5 +158,6 @@ TEST_CASE("matrices: slices of stiffness and elasticity become forces by a state
     const Map k = import_recording({folder / "k.csv"}, options, report);
     CHECK(k.normal_N[4] == doctest::Approx(2.0f));
     options.scale = 1e6;  // N/mm taken for kN/mm
-    CHECK(contains(message_of([&] { import_recording({folder / "k.csv"}, options, report); }), "expected from 0.001 to 1000 N/mm"));
+    CHECK(contains(message_of([&] { import_recording({folder / "k.csv"}, options, report); }),
+                   "expected from 0.001 to 1000 N/mm"));
 }

@@ -1,12 +1,10 @@
-#include "stiffnessmaps/import/probing.h"
-
-#include <doctest/doctest.h>
-
 #include <algorithm>
 #include <cmath>
+#include <doctest/doctest.h>
 #include <random>
 
 #include "stiffnessmaps/field.h"
+#include "stiffnessmaps/import/probing.h"
 #include "tests/stiffnessmaps/import_helpers.h"
 
 using namespace palpa;
@@ -17,8 +15,8 @@ namespace {
 constexpr const char* kHeader = "point,depth_step,ref_x_mm,ref_y_mm,depth_cmd_mm,depth_mm,fn_N\n";
 
 std::string row(int point, int step, double x, double y, double depth, double force) {
-    return std::to_string(point) + "," + std::to_string(step) + "," + number_text(x) + "," + number_text(y) + "," +
-           number_text(depth) + "," + number_text(depth + 0.001) + "," + number_text(force) + "\n";
+    return std::to_string(point) + "," + std::to_string(step) + "," + number_text(x) + "," + number_text(y) +
+           "," + number_text(depth) + "," + number_text(depth + 0.001) + "," + number_text(force) + "\n";
 }
 
 std::string point(int id, double x, double y, double stiffness = 0.5) {
@@ -45,7 +43,8 @@ std::string replaced(const std::string& from, const std::string& to) {
 
 }  // namespace
 
-TEST_CASE("probing: grid from the commanded positions, force at contact subtracted, missing cells stay missing") {
+TEST_CASE(
+    "probing: grid from the commanded positions, force at contact subtracted, missing cells stay missing") {
     ImportReport report;
     const Map map = imported(small(), {}, &report);
     CHECK(report.form == RecordingForm::probing);
@@ -78,17 +77,21 @@ TEST_CASE("probing: bad recordings are refused by line and column") {
     CHECK(contains(refusal(replaced("-4,7,1", "-4,7,one")), "line 3, depth_cmd_mm: found 'one'"));
     CHECK(contains(refusal(replaced("-4,7,1", "-4,7.7,1")), "expected the position of line 2"));
     CHECK(contains(refusal(replaced("-2,7,0", "-2.9,7,0")), "expected the position of line 7"));
-    CHECK(contains(refusal("point,ref_x_mm,ref_y_mm,depth_cmd_mm,depth_mm,fn_N\n1,0,0,0,0,0\n1,0,0,0,0,1\n"), "no point with two depths"));
+    CHECK(contains(refusal("point,ref_x_mm,ref_y_mm,depth_cmd_mm,depth_mm,fn_N\n1,0,0,0,0,0\n1,0,0,0,0,1\n"),
+                   "no point with two depths"));
     CHECK(contains(refusal("point;ref_x_mm;fn_N\n1;2;3\n"), "expected a column for y"));
     CHECK(contains(refusal(kHeader), "no rows"));
     // off the grid, and twice in one cell
     std::string off = small();
     off += point(9, -4.7, 7.0);
-    CHECK(contains(refusal(off), "line 27, x: found -4.7 mm, expected a position on the regular grid of 2 mm"));
-    CHECK(contains(refusal(small() + point(9, -4.0, 7.0)), "line 27: found a second point in the cell of line 2: two grids in one file?"));
+    CHECK(
+        contains(refusal(off), "line 27, x: found -4.7 mm, expected a position on the regular grid of 2 mm"));
+    CHECK(contains(refusal(small() + point(9, -4.0, 7.0)),
+                   "line 27: found a second point in the cell of line 2: two grids in one file?"));
     CHECK(contains(refusal(small().substr(0, small().size() - 6)), "found 6 fields"));  // cut
     ImportReport report;
-    imported(small().substr(0, small().size() - 1), {}, &report);  // cut within the last number, or just without a line end
+    imported(small().substr(0, small().size() - 1), {},
+             &report);  // cut within the last number, or just without a line end
     REQUIRE(report.notes.size() == 1);
     CHECK(contains(report.notes[0], "its last line has no end: is the file whole?"));
 }
@@ -105,13 +108,15 @@ TEST_CASE("probing: two grids in one file are told, and one of them can be chose
     CHECK(map.origin_m[0] == doctest::Approx(80e-3));
 }
 
-TEST_CASE("probing: rows that are not numbers are passed over and counted; a file of nothing else is refused") {
+TEST_CASE(
+    "probing: rows that are not numbers are passed over and counted; a file of nothing else is refused") {
     std::string text = small();
     text += "0,5,-4,7,5,nan,n/a\n0,5,-4,7,5,,\n";
     ImportReport report;
     imported(text, {}, &report);
     CHECK(report.rejected_rows == 2);
-    CHECK(contains(refusal(std::string(kHeader) + "0,0,0,0,0,nan,nan\n0,1,0,0,1,nan,nan\n"), "no row with numbers"));
+    CHECK(contains(refusal(std::string(kHeader) + "0,0,0,0,0,nan,nan\n0,1,0,0,1,nan,nan\n"),
+                   "no row with numbers"));
     // every cell empty at the depths asked for
     ImportOptions deep;
     deep.depths_m = {20e-3};
@@ -133,16 +138,23 @@ TEST_CASE("probing: units that cannot be are asked about, and taken when confirm
         std::string text = "x,y,depth,force\n";
         for (int p = 0; p < 6; ++p) {
             for (int k = 0; k < 5; ++k) {
-                for (const double value : {lengths * 2.0 * (p % 3), lengths * 2.0 * (p / 3), depths * k}) text += number_text(value) + ",";
+                for (const double value : {lengths * 2.0 * (p % 3), lengths * 2.0 * (p / 3), depths * k})
+                    text += number_text(value) + ",";
                 text += number_text(forces * 0.5 * k) + "\n";
             }
         }
         return text;
     };
     CHECK(refusal(text_of(1.0, 1.0, 1.0)) == "");
-    CHECK(contains(refusal(text_of(1.0, 1.0, 1000.0)), "force: found a greatest force of 2000 N, expected from 0.01 to 200 N on soft tissue: state the column's unit by --force-unit mN"));
-    CHECK(contains(refusal(text_of(1e-3, 1.0, 1.0)), "places that extend over 0.004 mm, expected from 1 to 1000 mm: state the unit of the positions by --length-unit m"));
-    CHECK(contains(refusal(text_of(1.0, 1e-3, 1.0)), "a greatest depth of 0.004 mm, expected from 0.05 to 100 mm: state the unit of the depths by --depth-unit m"));
+    CHECK(contains(refusal(text_of(1.0, 1.0, 1000.0)),
+                   "force: found a greatest force of 2000 N, expected from 0.01 to 200 N on soft tissue: "
+                   "state the column's unit by --force-unit mN"));
+    CHECK(contains(refusal(text_of(1e-3, 1.0, 1.0)),
+                   "places that extend over 0.004 mm, expected from 1 to 1000 mm: state the unit of the "
+                   "positions by --length-unit m"));
+    CHECK(contains(refusal(text_of(1.0, 1e-3, 1.0)),
+                   "a greatest depth of 0.004 mm, expected from 0.05 to 100 mm: state the unit of the depths "
+                   "by --depth-unit m"));
     ImportOptions options;
     options.force_unit = ForceUnit::mN;
     options.length_unit = LengthUnit::m;
@@ -151,6 +163,7 @@ TEST_CASE("probing: units that cannot be are asked about, and taken when confirm
     CHECK(map.spacing_m[0] == doctest::Approx(2e-3));
     CHECK(map.depths_m.back() == doctest::Approx(4e-3));
     CHECK(map.normal_N.back() == doctest::Approx(2.0f));
+    CHECK(contains(message_of([&] { imported(text_of(1e6, 1.0, 1000.0), options); }), "expected at most 100 m"));
     // a negative sign is not guessed
     CHECK(contains(refusal(text_of(1.0, 1.0, -1.0)), "--negate-force"));
     ImportOptions negated;
@@ -162,7 +175,8 @@ TEST_CASE("probing: any columns, named or by usual names, with the unit in the n
     std::string text = "Pos X [m]\tPos Y [m]\tIndent (um)\tLoad_mN\n";
     for (int p = 0; p < 4; ++p) {
         for (int k = 0; k < 4; ++k) {
-            text += number_text(0.003 * (p % 2)) + "\t" + number_text(0.003 * (p / 2)) + "\t" + std::to_string(1000 * k) + "\t" + std::to_string(400 * k) + "\n";
+            text += number_text(0.003 * (p % 2)) + "\t" + number_text(0.003 * (p / 2)) + "\t" +
+                    std::to_string(1000 * k) + "\t" + std::to_string(400 * k) + "\n";
         }
     }
     CHECK(contains(refusal(text), "expected a column for x"));
@@ -174,14 +188,16 @@ TEST_CASE("probing: any columns, named or by usual names, with the unit in the n
     options.columns["fz"] = "Load";
     CHECK(contains(message_of([&] { imported(text, options); }), "expected a column 'Load'"));
     options.columns = {{"weight", "Load_mN"}};
-    CHECK(contains(message_of([&] { imported(text, options); }), "--column: found 'weight', expected one of t, point, x"));
+    CHECK(contains(message_of([&] { imported(text, options); }),
+                   "--column: found 'weight', expected one of t, point, x"));
     options.columns = {{"x", "Load_mN"}};
-    CHECK(contains(message_of([&] { imported(text, options); }), "found the column 'Load_mN' as x, expected a length"));
+    CHECK(contains(message_of([&] { imported(text, options); }),
+                   "found the column 'Load_mN' as x, expected a length"));
 }
 
 TEST_CASE("probing: height and force in the air are enough: contact is found, the tilt removed") {
-    // a plane tilted by 10 degrees about y; the ball comes straight down; force 0.8 N/mm along the plane's normal, friction none,
-    // an offset of 0.3 N on z
+    // a plane tilted by 10 degrees about y; the ball comes straight down; force 0.8 N/mm along the plane's
+    // normal, friction none, an offset of 0.3 N on z
     const double tilt = 10.0 * 3.14159265358979 / 180.0;
     std::string text = "x_mm,y_mm,z_mm,fx_N,fy_N,fz_N\n";
     for (int p = 0; p < 16; ++p) {
@@ -190,7 +206,8 @@ TEST_CASE("probing: height and force in the air are enough: contact is found, th
         for (int k = 0; k < 30; ++k) {
             const double z = surface + 1.03 - 0.15 * k;
             const double force = std::max(0.0, 0.8 * std::cos(tilt) * (surface - z));
-            for (const double v : {x, 3.0 * (p / 4), z, -std::sin(tilt) * force, 0.0, 0.3 + std::cos(tilt) * force}) {
+            for (const double v :
+                 {x, 3.0 * (p / 4), z, -std::sin(tilt) * force, 0.0, 0.3 + std::cos(tilt) * force}) {
                 text += number_text(v) + (v == 0.3 + std::cos(tilt) * force ? "\n" : ",");
             }
         }
@@ -202,7 +219,8 @@ TEST_CASE("probing: height and force in the air are enough: contact is found, th
     const Field field = make_field(map, {});
     for (const double depth_m : {1e-3, 2e-3, 3e-3}) {
         CAPTURE(depth_m);
-        CHECK(normal_force_N(field, place_at(field, {4e-3, 5e-3}), depth_m) == doctest::Approx(800.0 * depth_m).epsilon(0.03));
+        CHECK(normal_force_N(field, place_at(field, {4e-3, 5e-3}), depth_m) ==
+              doctest::Approx(800.0 * depth_m).epsilon(0.03));
     }
     ImportOptions keep;
     keep.remove_tilt = false;
@@ -212,7 +230,9 @@ TEST_CASE("probing: height and force in the air are enough: contact is found, th
 TEST_CASE("probing: a single wild force is left out by the stated rule, and kept when asked for") {
     std::string text = kHeader;
     for (int p = 0; p < 9; ++p) {
-        for (int k = 0; k < 10; ++k) text += row(p, k, 2.0 * (p % 3), 2.0 * (p / 3), 0.5 * k, 0.4 * k + 0.002 * ((k * 7 + p * 3) % 5) + (p == 4 && k == 5 ? 3.0 : 0.0));
+        for (int k = 0; k < 10; ++k)
+            text += row(p, k, 2.0 * (p % 3), 2.0 * (p / 3), 0.5 * k,
+                        0.4 * k + 0.002 * ((k * 7 + p * 3) % 5) + (p == 4 && k == 5 ? 3.0 : 0.0));
     }
     ImportReport report;
     const Map map = imported(text, {}, &report);
@@ -251,7 +271,8 @@ TEST_CASE("probing: scattered places are brought onto a grid by each method") {
             if (std::isnan(map.normal_N[i])) continue;
             const std::size_t cell = i % map.n_cells();
             const double depth = 1e3 * map.depths_m[i / map.n_cells()];
-            const double wanted = depth * (0.5 + 10.0 * map.x_of(cell % map.n_x) + 20.0 * map.y_of(cell / map.n_x));
+            const double wanted =
+                depth * (0.5 + 10.0 * map.x_of(cell % map.n_x) + 20.0 * map.y_of(cell / map.n_x));
             worst = std::max(worst, std::abs(static_cast<double>(map.normal_N[i]) - wanted));
         }
         CHECK(worst < (method == Gridding::plane ? 0.02 : 0.2));
@@ -268,7 +289,8 @@ TEST_CASE("probing: scattered places are brought onto a grid by each method") {
     CHECK(contains(message_of([&] { imported(text, fine); }), "--pitch-mm"));
 }
 
-TEST_CASE("probing: tangential force is derived where asked for, never taken from a tool that did not slide") {
+TEST_CASE(
+    "probing: tangential force is derived where asked for, never taken from a tool that did not slide") {
     ImportOptions options;
     options.tangential = TangentialChoice::energy;
     const Map map = imported(small(), options);
@@ -278,8 +300,10 @@ TEST_CASE("probing: tangential force is derived where asked for, never taken fro
     CHECK(contains(message_of([&] { imported(small(), options); }), "--tangential energy or none"));
 }
 
-TEST_CASE("probing: every real recording imports without options, within 2 % of its greatest force in the median") {
-    for (const char* name : {"meat20150903_region1", "pig_liver_20150826_region1", "probingRAL2018B_T2", "region_small_balls"}) {
+TEST_CASE(
+    "probing: every real recording imports without options, within 2 % of its greatest force in the median") {
+    for (const char* name :
+         {"meat20150903_region1", "pig_liver_20150826_region1", "probingRAL2018B_T2", "region_small_balls"}) {
         const auto file = recording("probing/" + std::string(name) + ".csv");
         if (file.empty()) {
             MESSAGE("not checked: the recordings are not beside the checkout");
@@ -295,7 +319,8 @@ TEST_CASE("probing: every real recording imports without options, within 2 % of 
     }
 }
 
-TEST_CASE("probing: the real recording of a phantom with a stiff inclusion becomes 62 x 39 cells of 1.58 mm") {
+TEST_CASE(
+    "probing: the real recording of a phantom with a stiff inclusion becomes 62 x 39 cells of 1.58 mm") {
     const auto file = recording("probing/probingRAL2018B_T2.csv");
     if (file.empty()) {
         MESSAGE("not checked: the recording is not beside the checkout");
@@ -319,7 +344,7 @@ TEST_CASE("probing: the real recording of a phantom with a stiff inclusion becom
         depths_m.push_back(depth_at(field, place_at(field, p), 1.0).depth_m);
     }
     std::sort(depths_m.begin(), depths_m.end());
-    CHECK(depths_m.front() > 0.3e-3);   // over the inclusion 1 N sinks in less ...
+    CHECK(depths_m.front() > 0.3e-3);  // over the inclusion 1 N sinks in less ...
     CHECK(depths_m.back() < 4.2e-3);
     CHECK(depths_m[depths_m.size() / 2] > 1.3 * depths_m[depths_m.size() / 50]);  // ... than beside it
 }

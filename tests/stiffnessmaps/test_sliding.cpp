@@ -1,10 +1,8 @@
-#include "stiffnessmaps/import/sliding.h"
-
+#include <cmath>
 #include <doctest/doctest.h>
 
-#include <cmath>
-
 #include "stiffnessmaps/field.h"
+#include "stiffnessmaps/import/sliding.h"
 #include "tests/stiffnessmaps/import_helpers.h"
 
 using namespace palpa;
@@ -16,12 +14,12 @@ constexpr double kStiffness_N_per_mm = 0.6;
 constexpr double kFriction = 0.2;
 
 struct Raster {
-    double tilt = 0.0;        // of the surface about y, radians
+    double tilt = 0.0;  // of the surface about y, radians
     double height_mm = -40.0;
-    bool sinusoidal = true;   // depth 0.1 ... 2.9 mm at 1 Hz, else constant
+    bool sinusoidal = true;  // depth 0.1 ... 2.9 mm at 1 Hz, else constant
     double depth_mm = 2.0;
     double friction = kFriction;
-    double lump = 0.0;        // extra stiffness in the middle, share
+    double lump = 0.0;  // extra stiffness in the middle, share
 };
 
 // 40 x 30 mm, lines along x 2 mm apart there and back, two passes out of phase, 100 Hz, 20 mm/s.
@@ -34,8 +32,11 @@ std::string raster(const Raster& r) {
                 const int direction = line % 2 == 0 ? 1 : -1;
                 const double x = direction > 0 ? 0.2 * i : 40.0 - 0.2 * i;
                 const double y = 2.0 * line;
-                const double depth = r.sinusoidal ? 1.5 - 1.4 * std::cos(2.0 * 3.14159265 * 1.03 * t + pass * 2.0) : r.depth_mm;
-                const double lump = 1.0 + r.lump * std::exp(-((x - 20.0) * (x - 20.0) + (y - 15.0) * (y - 15.0)) / 50.0);
+                const double depth = r.sinusoidal
+                                         ? 1.5 - 1.4 * std::cos(2.0 * 3.14159265 * 1.03 * t + pass * 2.0)
+                                         : r.depth_mm;
+                const double lump =
+                    1.0 + r.lump * std::exp(-((x - 20.0) * (x - 20.0) + (y - 15.0) * (y - 15.0)) / 50.0);
                 const double fn = kStiffness_N_per_mm * lump * depth;
                 const double ft = -direction * r.friction * fn;  // on the tool, along the surface
                 const double c = std::cos(r.tilt);
@@ -56,7 +57,8 @@ double force_in(const Map& map, double x_mm, double y_mm, double depth_mm) {
 
 }  // namespace
 
-TEST_CASE("sliding: under a sinusoidal force the surface is found, its tilt removed, and the forces come back") {
+TEST_CASE(
+    "sliding: under a sinusoidal force the surface is found, its tilt removed, and the forces come back") {
     Raster r;
     r.tilt = 0.15;
     r.lump = 0.5;
@@ -67,13 +69,16 @@ TEST_CASE("sliding: under a sinusoidal force the surface is found, its tilt remo
     for (const double depth : {1.0, 1.5, 2.0, 2.4}) {
         CAPTURE(depth);
         CHECK(force_in(map, 6.0, 6.0, depth) == doctest::Approx(kStiffness_N_per_mm * depth).epsilon(0.06));
-        CHECK(force_in(map, 20.0, 15.0, depth) == doctest::Approx(1.5 * kStiffness_N_per_mm * depth).epsilon(0.08));
+        CHECK(force_in(map, 20.0, 15.0, depth) ==
+              doctest::Approx(1.5 * kStiffness_N_per_mm * depth).epsilon(0.08));
     }
     CHECK(report.residual.median_share() < 0.02);
     CHECK(report.residual.n > 5000);
 }
 
-TEST_CASE("sliding: the force against motion along +x is stored as positive; lines that go back are left out of it") {
+TEST_CASE(
+    "sliding: the force against motion along +x is stored as positive; lines that go back are left out of "
+    "it") {
     Raster r;
     const Map map = imported(raster(r));
     REQUIRE(map.tangential == TangentialKind::recorded);
@@ -122,7 +127,8 @@ TEST_CASE("sliding: at constant depth the depth must be known, and is then kept 
     CHECK(force_in(map, 20.0, 15.0, 1.0) == doctest::Approx(kStiffness_N_per_mm).epsilon(0.001));
     CHECK(force_in(map, 20.0, 15.0, 3.0) == doctest::Approx(3.0 * kStiffness_N_per_mm).epsilon(0.001));
     options.at_depths_m.pop_back();
-    CHECK(contains(message_of([&] { import_recording(files, options, report); }), "2 depths for 3 files, expected one for each file"));
+    CHECK(contains(message_of([&] { import_recording(files, options, report); }),
+                   "2 depths for 3 files, expected one for each file"));
     // or the surface's height is
     ImportOptions height;
     height.surface_z_m = -40e-3;
@@ -131,18 +137,41 @@ TEST_CASE("sliding: at constant depth the depth must be known, and is then kept 
     CHECK(known.depths_m[0] == doctest::Approx(2e-3));
 }
 
+TEST_CASE("sliding: depths that the recording has are taken as they are, and units that cannot be are told") {
+    const auto text_of = [](double depths, double forces) {
+        std::string text = "t_s,x_mm,y_mm,depth,fn\n";
+        for (int i = 0; i < 4000; ++i) {
+            const double depth = 1.0 + i / 1000;
+            for (const double v : {0.01 * i, 0.2 * (i % 100), 2.0 * ((i / 100) % 10), depths * depth}) text += number_text(v) + ",";
+            text += number_text(forces * 0.7 * depth) + "\n";
+        }
+        return text;
+    };
+    ImportOptions options;
+    options.form = RecordingForm::sliding;
+    const Map map = imported(text_of(1.0, 1.0), options);
+    REQUIRE(map.n_depths() == 4);
+    CHECK(map.depths_m[3] == doctest::Approx(4e-3));
+    CHECK(map.tangential == TangentialKind::none);
+    CHECK(force_in(map, 10.0, 10.0, 3.0) == doctest::Approx(2.1).epsilon(0.001));
+    CHECK(contains(refusal(text_of(1e-3, 1.0), options), "--depth-unit m"));
+    CHECK(contains(refusal(text_of(1.0, 1e3), options), "--force-unit mN"));
+}
+
 TEST_CASE("sliding: bad recordings are refused by line and column") {
     const std::string text = raster({});
     std::string back = text;
     const auto second = back.find("\n0.02,");
     REQUIRE(second != std::string::npos);
     back.replace(second + 1, 4, "-1.0");
-    CHECK(contains(refusal(back), "line 4, t_s: found '-1.0', expected a time that is not before the last row's, 0.01 s"));
+    CHECK(contains(refusal(back),
+                   "line 4, t_s: found '-1.0', expected a time that is not before the last row's, 0.01 s"));
     CHECK(contains(refusal(text.substr(0, text.find_last_of(','))), "fields, expected 7 as in the header"));
     CHECK(contains(refusal("t_s,x_mm,y_mm,z_mm,fx_N,fy_N,fz_N\n1,2,3,4,5,6,7\n"), "1 rows with numbers"));
     ImportOptions forced;
     forced.form = RecordingForm::sliding;
-    CHECK(contains(message_of([&] { imported("x_mm,y_mm,depth_mm,fn_N\n1,2,3,4\n", forced); }), "a column for t ("));
+    CHECK(contains(message_of([&] { imported("x_mm,y_mm,depth_mm,fn_N\n1,2,3,4\n", forced); }),
+                   "a column for t ("));
     // a force of the other sign presses nothing
     ImportOptions negated;
     negated.negate_force = true;
@@ -167,7 +196,8 @@ TEST_CASE("sliding: every real recording imports without options and says how fa
         CHECK(report.form == RecordingForm::sliding);
         CHECK(map.tangential == TangentialKind::recorded);
         CHECK(report.residual.n > 10000);
-        CHECK(report.residual.median_share() < 0.05);  // the surface is soft and curved, and was never recorded
+        CHECK(report.residual.median_share() <
+              0.05);  // the surface is soft and curved, and was never recorded
         CHECK(static_cast<double>(report.outliers) < 0.01 * static_cast<double>(report.rows));
     }
 }
