@@ -81,7 +81,7 @@ TEST_CASE("detect: noise alone makes no claim that is not warned about") {
     int maps = 0;
     double nearest = 0.0;
     for (const Kind& kind : kinds) {
-        for (unsigned seed = 1; seed <= 30; ++seed) {
+        for (unsigned seed = 1; seed <= 12; ++seed) {
             CAPTURE(kind.alike_m);
             CAPTURE(kind.n_x);
             CAPTURE(seed);
@@ -97,7 +97,7 @@ TEST_CASE("detect: noise alone makes no claim that is not warned about") {
         }
     }
     MESSAGE(maps, " maps of noise: regions in ", found, ", sure in ", sure, "; nearest to sure ", nearest);
-    CHECK(found > 20);  // else nothing was put to the test
+    CHECK(found > 15);  // else nothing was put to the test
 }
 
 TEST_CASE("detect: planted nodules are found to within a cell of 1.58 mm, with their size and contrast") {
