@@ -12,6 +12,7 @@ Arrival track(std::uint32_t number, Sequence& sequence, SensorHealth& health) {
         sequence.started = true;
         sequence.last = number;
         sequence.seen = 1;
+        sequence.since_start = 0;
         return restarted ? Arrival::restart : Arrival::next;
     }
     if (ahead > 0) {
@@ -19,12 +20,13 @@ Arrival track(std::uint32_t number, Sequence& sequence, SensorHealth& health) {
         sequence.seen = ahead < 64 ? (sequence.seen << ahead) | 1u : 1u;
         sequence.last = number;
         sequence.total += ahead;
+        sequence.since_start += ahead;
         return Arrival::next;
     }
     const std::int32_t back = -ahead;
     if (back < 64 && ((sequence.seen >> back) & 1u) == 0) {
         sequence.seen |= std::uint64_t{1} << back;
-        --health.lost;
+        if (back <= sequence.since_start) --health.lost;
         ++health.reordered;
         return Arrival::late;
     }

@@ -1,5 +1,7 @@
 #include "files/input_error.h"
 
+#include "files/printable.h"
+
 namespace palpa {
 
 InputError bad_input(std::string_view file, std::string_view where, std::string_view found,
@@ -7,7 +9,7 @@ InputError bad_input(std::string_view file, std::string_view where, std::string_
     std::string message(file);
     if (!where.empty()) message.append(": ").append(where);
     message.append(": found ").append(found).append(", expected ").append(expected);
-    return InputError(message);
+    return InputError(printable(message));
 }
 
 std::string shown(std::string_view text) {

@@ -5,6 +5,7 @@
 #include <set>
 
 #include "files/input_error.h"
+#include "files/printable.h"
 #include "files/text.h"
 
 namespace palpa {
@@ -57,7 +58,7 @@ Json parse_json(std::string_view text, const std::string& file_name) {
             auto& keys = open_objects.back();
             const auto& key = parsed.get_ref<const std::string&>();
             if (!keys.insert(key).second) {
-                throw InputError(file_name + ": " + key + ": found the key twice, expected it once");
+                throw bad_input(file_name, key, "the key twice", "it once");
             }
         }
         return true;
@@ -68,7 +69,7 @@ Json parse_json(std::string_view text, const std::string& file_name) {
         std::string what = error.what();  // "[json.exception.parse_error.101] parse error at line 1, ...: ..."
         const auto detail = what.find(": ");
         what = detail == std::string::npos ? what : what.substr(detail + 2);
-        throw InputError(file_name + ": " + place_in(text, error.byte) + ": not valid JSON: " + what);
+        throw InputError(printable(file_name + ": " + place_in(text, error.byte) + ": not valid JSON: " + what));
     } catch (const Json::out_of_range& error) {
         throw bad_input(file_name, "", error.what(), "numbers that fit a double");
     }

@@ -67,13 +67,13 @@ Settings read_settings(const fs::path& file, std::vector<std::string>& notes) {
         notes.push_back(file.string() + ": is not there; nodules that were missed cannot be told apart");
         return out;
     }
-    const Json json = read_json(file);
-    if (json.contains("study")) {
-        out.sha256 = json["study"].value("sha256", "");
-        out.simulated = json["study"].value("simulated", false);
+    const Json root = read_json(file);
+    JsonReader json(root, file.string());
+    if (auto study = json.optional_object("study")) {
+        out.sha256 = study->text("sha256", "");
+        out.simulated = study->boolean("simulated", false);
     }
-    if (!json.contains("nodules")) return out;
-    for (const Json& nodule : json["nodules"]) out.nodules.push_back(nodule.at("id").get<std::string>());
+    for (JsonReader& nodule : json.objects("nodules")) out.nodules.push_back(nodule.text("id"));
     return out;
 }
 

@@ -16,6 +16,14 @@ namespace {
 
 constexpr rlim_t kMost_s = 60;
 constexpr rlim_t kMost_bytes = rlim_t{4} << 30;
+// AddressSanitizer does, as GCC and as clang tell of it
+#if defined(__SANITIZE_ADDRESS__)
+constexpr bool kReservesTerabytes = true;
+#elif defined(__has_feature)
+constexpr bool kReservesTerabytes = __has_feature(address_sanitizer);
+#else
+constexpr bool kReservesTerabytes = false;
+#endif
 
 // What the process says: one of these, then an array in .npy form or a message.
 constexpr char kArray = 'a';
@@ -42,9 +50,7 @@ void say(int fd, std::string_view text) {
     for (const int signal : {SIGSEGV, SIGBUS, SIGABRT, SIGFPE, SIGILL, SIGPIPE}) ::signal(signal, SIG_DFL);
     limit(RLIMIT_CORE, 0);
     limit(RLIMIT_CPU, kMost_s);
-#ifndef __SANITIZE_ADDRESS__  // which reserves terabytes
-    limit(RLIMIT_AS, kMost_bytes);
-#endif
+    if (!kReservesTerabytes) limit(RLIMIT_AS, kMost_bytes);
     std::string said;
     try {
         said = kArray + npy_bytes(read());

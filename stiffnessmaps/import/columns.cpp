@@ -159,8 +159,7 @@ const char* name_of(Role role) {
 Columns find_columns(const Table& table, const ImportOptions& options) {
     for (const auto& [role, name] : options.columns) {
         const auto& known = known_roles();
-        const bool is_known =
-            std::any_of(known.begin(), known.end(), [&](const KnownRole& k) { return role == k.name; });
+        const bool is_known = std::any_of(known.begin(), known.end(), [&asked = role](const KnownRole& k) { return asked == k.name; });
         if (!is_known) throw bad_input("--column", "", shown(role), "one of " + all_roles());
         table.column(name);
     }

@@ -55,6 +55,21 @@ TEST_CASE("sequence: loss, repetition, lateness and restart, across the wrap-aro
     CHECK(track(0x40000001, sequence, health) == Arrival::next);
 }
 
+TEST_CASE("sequence: what comes late from before the first record was never counted as lost") {
+    SensorHealth health;
+    Sequence sequence;
+    CHECK(track(100, sequence, health) == Arrival::next);
+    CHECK(track(99, sequence, health) == Arrival::late);
+    CHECK(health.lost == 0);
+    CHECK(track(103, sequence, health) == Arrival::next);
+    CHECK(health.lost == 2);
+    CHECK(track(98, sequence, health) == Arrival::late);
+    CHECK(health.lost == 2);
+    CHECK(track(102, sequence, health) == Arrival::late);
+    CHECK(health.lost == 1);
+    CHECK(health.reordered == 3);
+}
+
 TEST_CASE("load cell: only whole and sensible lines are taken") {
     SensorHealth health;
     LineParser parser;

@@ -2,6 +2,8 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
+
 #include "tests/error_message.h"
 
 using namespace palpa;
@@ -66,4 +68,15 @@ TEST_CASE("json: with only() a misspelt key is named, not the missing one") {
     CHECK(message_of([&] { reader.only({"young_Pa", "poisson"}); }) == "c.json: gel.young_kPa: found an unknown key, expected one of young_Pa poisson");
     CHECK_NOTHROW(reader.only({"young_kPa", "poisson", "law"}));
     CHECK(contains(message_of([&] { reader.fail("", "nothing", "something"); }), "c.json: gel: found nothing"));
+}
+
+TEST_CASE("json: what a broken file holds does not steer the terminal that shows the message, nor flood it") {
+    const std::string escapes = message_of([] { parse_json("{\"a\x1b[2J\x7f\": \x07}", "x.json"); });
+    CHECK(contains(escapes, "x.json: line 1"));
+    CHECK(std::none_of(escapes.begin(), escapes.end(), [](char c) { return (c >= 0 && c < 0x20) || c == 0x7f; }));
+    const auto unknown = [](JsonReader&) {};
+    CHECK(refusal("{\"a\\u001b[31m\": 1}", unknown) == "slab.json: a?[31m: found an unknown key, expected one of");
+    CHECK(refusal("{\"a\\u009bm\\u00e4\": 1}", unknown) == "slab.json: a?m\xc3\xa4: found an unknown key, expected one of");
+    const std::string endless = "{\"a\": \"" + std::string(100'000, 'x');
+    CHECK(message_of([&] { parse_json(endless, "x.json"); }).size() < 5'000);
 }

@@ -195,6 +195,25 @@ TEST_CASE("read logs: two versions in one folder, disagreeing files and double t
     CHECK(contains(message_of([&] { read_study(log); }), "two versions of a protocol in one folder"));
 }
 
+TEST_CASE("read logs: settings that are JSON but not a log's are refused by their key") {
+    const TemporaryFolder folder;
+    const fs::path log = folder / "log";
+    const Protocol protocol = protocol_of(folder);
+    open_study(log, protocol, {});
+    write_run(log, "01", 1, "a", 1, true, protocol.sha256);
+    const fs::path settings = log / "sub-01/beh/sub-01_task-palpation_run-01_settings.json";
+    for (const auto& [text, said] : {std::pair{"[]", "found an array of 0, expected an object"},
+                                     std::pair{R"({"study": 3})", "study: found 3, expected an object"},
+                                     std::pair{R"({"study": {"sha256": 3}})", "study.sha256: found 3, expected a text"},
+                                     std::pair{R"({"study": {"simulated": "no"}})", "study.simulated: found 'no', expected true or false"},
+                                     std::pair{R"({"nodules": {"A": 1}})", "nodules: found an object, expected an array of objects"},
+                                     std::pair{R"({"nodules": ["A"]})", "nodules[0]: found 'A', expected an object"},
+                                     std::pair{R"({"nodules": [{}]})", "nodules[0].id: found nothing, expected a text"}}) {
+        write_text_atomically(settings, text);
+        CHECK(contains(message_of([&] { read_study(log); }), said));
+    }
+}
+
 TEST_CASE("read logs: a time that goes back within a trial is noted with its line") {
     const TemporaryFolder folder;
     const std::string events = write_run(folder.path(), "01", 1, "a", 1, true, "x");

@@ -1,0 +1,19 @@
+#include "files/printable.h"
+
+namespace palpa {
+
+std::string printable(std::string_view message) {
+    constexpr std::size_t kLongest = 4000;
+    std::string out;
+    for (const char c : message.substr(0, kLongest)) {
+        const auto byte = static_cast<unsigned char>(c);
+        // U+0080 to U+009F in UTF-8, which terminals obey too
+        const bool second = !out.empty() && out.back() == '\xc2' && byte >= 0x80 && byte < 0xa0;
+        if (second) out.pop_back();
+        const bool control = (byte < 0x20 && c != '\n') || byte == 0x7f;
+        out.push_back(control || second ? '?' : c);
+    }
+    return message.size() > kLongest ? out + "..." : out;
+}
+
+}  // namespace palpa

@@ -1,0 +1,25 @@
+// The log of forced choices.
+
+#include "study/read_logs.h"
+#include "tests/fuzz/fuzz.h"
+
+using namespace palpa;
+
+namespace {
+
+struct Folder {
+    Folder() { folder.add("sub-01_task-softer_run-01_events.tsv", events); }
+    fuzz::MemoryFile events{"events"};
+    fuzz::MemoryFolder folder;
+};
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    static Folder folder;
+    return fuzz::read_or_refuse([&] {
+        folder.events.with(fuzz::text_of(data, size));
+        std::vector<std::string> notes;
+        read_run(folder.folder.path() / "sub-01_task-softer_run-01_events.tsv", notes);
+    });
+}

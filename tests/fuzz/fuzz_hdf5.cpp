@@ -1,0 +1,11 @@
+// HDF5 files, by their library in a process of its own, as the program reads them.
+
+#include "stiffnessmaps/import/arrays.h"
+#include "tests/fuzz/fuzz.h"
+
+using namespace palpa;
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    static fuzz::MemoryFile file("hdf5");
+    return fuzz::read_or_refuse([&] { read_array(file.with(fuzz::text_of(data, size)), std::string()); });
+}

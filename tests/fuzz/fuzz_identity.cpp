@@ -1,0 +1,10 @@
+// study.json.
+
+#include "study/study_folder.h"
+#include "tests/fuzz/fuzz.h"
+
+using namespace palpa;
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    return fuzz::read_or_refuse([&] { identity_in(fuzz::text_of(data, size), "study.json"); });
+}

@@ -1,0 +1,16 @@
+// Tables of probing as a map.
+
+#include "stiffnessmaps/import/recording.h"
+#include "tests/fuzz/fuzz.h"
+
+using namespace palpa;
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    static fuzz::MemoryFile file("probing");
+    return fuzz::read_or_refuse([&] {
+        ImportOptions options;
+        options.form = RecordingForm::probing;
+        ImportReport report;
+        import_recording({file.with(fuzz::text_of(data, size))}, options, report);
+    });
+}

@@ -1,0 +1,14 @@
+// Calibration profiles; a curve that was taken can be evaluated and inverted.
+
+#include "calibration/profile_file.h"
+#include "tests/fuzz/fuzz.h"
+
+using namespace palpa;
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    static fuzz::MemoryFile file("profile");
+    return fuzz::read_or_refuse([&] {
+        const Profile profile = read_profile(file.with(fuzz::text_of(data, size)));
+        json_text(profile_json(profile, Json::object()));
+    });
+}

@@ -1,0 +1,26 @@
+// Answers to a protocol's questions.
+
+#include "study/ratings.h"
+#include "tests/fuzz/fuzz.h"
+
+using namespace palpa;
+
+namespace {
+
+struct Folder {
+    Folder() { folder.add("sub-01/beh/sub-01_task-ratings_beh.tsv", answers); }
+    fuzz::MemoryFile answers{"answers"};
+    fuzz::MemoryFolder folder;
+};
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    static Folder folder;
+    return fuzz::read_or_refuse([&] {
+        folder.answers.with(fuzz::text_of(data, size));
+        std::vector<std::string> notes;
+        read_ratings(folder.folder.path(), "01", notes);
+        for (const std::string& note : notes) fuzz::check_message(note);
+    });
+}

@@ -1,0 +1,15 @@
+// Who is paired with the desk: trouble is told, never thrown.
+
+#include "app/pairing.h"
+#include "tests/fuzz/fuzz.h"
+
+using namespace palpa;
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    static fuzz::MemoryFile file("sessions");
+    std::string trouble;
+    const Sessions sessions(file.with(fuzz::text_of(data, size)), {}, trouble);
+    sessions.device_of("token", 0.0);
+    if (!trouble.empty()) fuzz::check_message(trouble);
+    return 0;
+}

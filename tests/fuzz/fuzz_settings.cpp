@@ -1,0 +1,14 @@
+// The person's settings: trouble is told, never thrown.
+
+#include "app/settings.h"
+#include "tests/fuzz/fuzz.h"
+
+using namespace palpa;
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    static fuzz::MemoryFile file("settings");
+    std::string problem;
+    load_settings(file.with(fuzz::text_of(data, size)), problem);
+    if (!problem.empty()) fuzz::check_message(problem);
+    return 0;
+}

@@ -1,0 +1,11 @@
+// Grey TIFF images.
+
+#include "stiffnessmaps/import/arrays.h"
+#include "tests/fuzz/fuzz.h"
+
+using namespace palpa;
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    static fuzz::MemoryFile file("tiff");
+    return fuzz::read_or_refuse([&] { read_tiff(file.with(fuzz::text_of(data, size))); });
+}

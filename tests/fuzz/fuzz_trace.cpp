@@ -1,0 +1,28 @@
+// Traces: the table, then the JSON file beside it.
+
+#include "platform/trace.h"
+#include "tests/fuzz/fuzz.h"
+
+using namespace palpa;
+
+namespace {
+
+struct Folder {
+    Folder() {
+        folder.add("trace.tsv", table);
+        folder.add("trace.json", sidecar);
+    }
+    fuzz::MemoryFile table{"trace.tsv"};
+    fuzz::MemoryFile sidecar{"trace.json"};
+    fuzz::MemoryFolder folder;
+};
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    static Folder folder;
+    const auto parts = fuzz::parts_of(fuzz::text_of(data, size), 2);
+    folder.table.with(parts[0]);
+    folder.sidecar.with(parts[1]);
+    return fuzz::read_or_refuse([&] { read_trace(folder.folder.path() / "trace.tsv"); });
+}
