@@ -43,12 +43,42 @@ void refused(const std::string& arguments, const std::string& word) {
 }  // namespace
 
 TEST_CASE("command study: help exists for every command") {
-    for (const char* command : {"", "analyse", "order", "simulate"}) {
+    for (const char* command : {"", "analyse", "import", "order", "run", "simulate", "watch"}) {
         CAPTURE(command);
         const Called help = study(std::string(command) + " --help");
         CHECK(help.status == 0);
         CHECK(help.out.size() > 100);
     }
+}
+
+TEST_CASE("command study watch: who is where, what to present, the marks and the last sample of the trial that runs") {
+    const TemporaryFolder folder;
+    const auto text = [&](const std::string& name, const std::string& content) {
+        std::filesystem::create_directories((folder / name).parent_path());
+        write_text_atomically(folder / name, content);
+    };
+    text("study.json", R"({"protocol": "n", "version": "1", "sha256": "x", "simulated": false, "simulation_seed": 0, "program": "p"})");
+    text("participants.tsv", "participant_id\tage\tsex\thandedness\tvision\tpalpation_experience\tvr_experience\tgroup\n"
+                             "sub-07\tn/a\tn/a\tn/a\tn/a\tn/a\tn/a\tall\n");
+    text("sub-07/now.json", R"({"participant": "07", "step": "trial", "finished": 0, "of": 4, "trial": 1, "condition": "pen", "practice": false})");
+    const std::string stem = "sub-07/beh/sub-07_task-palpation_run-01_";
+    text(stem + "events.tsv", "onset\ttrial_type\tblock\ttrial\tcondition\n0\tstart\ttest\t1\tpen\n2\tmark\ttest\t1\tpen\n"
+                              "3\tmark\ttest\t1\tpen\n4\tundo\ttest\t1\tpen\n5\tma");  // the last line is being written
+    text(stem + "samples.tsv", "t_host_s\ttool\tforce_N\n1\tpen\t0.5\n1.1\tpen\t0.75\n1.2\tp");
+    text("sub-08/now.json", R"({"participant": "08", "step": "present", "finished": 3, "of": 4, "trial": 4, "condition": "by hand",
+                                "practice": false, "present_kPa": [1.75, 2], "interval": 1})");
+    const Called called = study("watch " + folder.path().string() + " --json");
+    REQUIRE(called.status == 0);
+    const Json people = parse_json(called.out, "stdout")["people"];
+    REQUIRE(people.size() == 2);
+    CHECK(people[0]["events"]["marks"] == 1);
+    CHECK(people[0]["sample"]["force_N"] == "0.75");
+    CHECK(people[1]["now"]["present_kPa"][1] == 2);
+    const Called words = study("watch " + folder.path().string() + " --participant 08");
+    CHECK(contains(words.out, "first 1.75 kPa, second 2 kPa; now interval 1"));
+    CHECK_FALSE(contains(words.out, "07"));
+    refused("watch " + folder.path().string() + " --participant 09", "--participant: found '09'");
+    refused("watch " + (folder / "sub-07").string(), "no study.json");
 }
 
 TEST_CASE("command study analyse: counts become tables, JSON and figures") {
