@@ -71,15 +71,17 @@ bool kept(StudyRun& run, const Work& work) {
     }
 }
 
+void write_now(const StudyRun& run) {
+    const fs::path subject = run.directory / ("sub-" + run.code);
+    fs::create_directories(subject);
+    write_text_atomically(subject / "now.json", json_text(now_json(run)));
+}
+
 void enter(StudyStep step, StudyRun& run) {
     run.step = step;
     run.step_began_s = 0.0;
     run.answers.clear();
-    if (step == StudyStep::stopped) return;
-    kept(run, [&] {
-        fs::create_directories(run.directory / ("sub-" + run.code));
-        write_text_atomically(run.directory / ("sub-" + run.code) / "now.json", json_text(now_json(run)));
-    });
+    kept(run, [&] { write_now(run); });
 }
 
 void check_room(const StudyRun& run) {
@@ -301,6 +303,12 @@ void stop_study(const std::string& why, StudyRun& run) {
     run.stopped = why;
     run.step = StudyStep::stopped;
     run.start_trial = false;
+    if (run.code.empty()) return;
+    try {
+        write_now(run);  // for the experimenter
+    } catch (const std::exception&) {
+        // the disk is what stopped it; the participant's screen says so
+    }
 }
 
 const PlannedTrial& due_trial(const StudyRun& run) { return *run.progress.next; }

@@ -106,7 +106,7 @@ TEST_CASE("study: a person goes through it by pen and keys, and the menu stays c
     CHECK(settings["study"]["map_sha256"]["normal_N.npy"].get<std::string>().size() == 64);
 }
 
-TEST_CASE("killed: the interrupted trial comes again, and at most 100 ms of its samples are lost") {
+TEST_CASE("killed: the interrupted trial comes again, and its samples up to the kill are on the disk") {
     const TemporaryFolder folder;
     write_protocol(folder);
     Script script(folder / "script.tsv");
