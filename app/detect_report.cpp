@@ -38,10 +38,12 @@ Json region_json(const Map& map, const StiffRegion& r) {
             {"contrast", number_or_null(r.contrast)},
             {"mean_excess_N_per_mm", 1e-3 * r.mean_excess_N_per_m},
             {"noise_N_per_mm", number_or_null(1e-3 * r.noise_N_per_m)},
+            {"noise_from", r.against_edge ? "edge" : "all"},
             {"contrast_to_noise", number_or_null(r.contrast_to_noise)},
             {"contrast_to_noise_needed", r.needed},
             {"independent_areas", r.areas},
             {"at_edge", r.at_edge},
+            {"look", r.look},
             {"placed", placed.empty() ? Json(nullptr) : Json(placed)},
             {"warnings", r.warnings}};
 }
@@ -55,7 +57,8 @@ std::string region_text(const Map& map, const StiffRegion& r) {
     out += "      " + short_number(1e-3 * r.peak_N_per_m) + " N/mm at (" + mm(r.peak_x_m) + ", " + mm(r.peak_y_m) + ") mm over " +
            short_number(1e-3 * r.background_N_per_m) + " around it: ";
     out += std::isfinite(r.contrast) ? short_number(r.contrast) + " times" : "no ratio";
-    if (std::isfinite(r.contrast_to_noise)) out += "; " + short_number(r.contrast_to_noise) + " times the variation of areas of its size (" + short_number(r.needed) + " needed)";
+    if (std::isfinite(r.contrast_to_noise)) out += "; " + short_number(r.contrast_to_noise) + " times the variation of areas of its size" + (r.against_edge ? " at the edge (" : " (") + short_number(r.needed) + " needed)";
+    if (r.look > 1) out += "; found once the sure ones above were set aside";
     return out + "\n";
 }
 

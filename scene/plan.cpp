@@ -97,6 +97,9 @@ void add_notes(const MapTissue& tissue, const Scene& scene, Plan& plan) {
     if (tissue.map.source.kind == SourceKind::simulated) {
         plan.notes.push_back("the tissue is simulated, not recorded: " + tissue.map.source.how);
     }
+    if (plan.nodules.size() < tissue.map.nodules.size()) {
+        plan.notes.push_back("detected nodules of the map are not asked for: where nodules were placed, those alone count");
+    }
     if (scene.tangential.force == TangentialForce::recorded) {
         plan.notes.push_back("tangential force as recorded: right for motion along +x only");
         return;
@@ -196,7 +199,7 @@ void describe(const MapTissue& tissue, Plan& plan) {
     const Map& map = tissue.map;
     plan.tissue_name = map.name;
     plan.source = map.source.kind;
-    plan.nodules = map.nodules;
+    plan.nodules = nodules_to_find(map);
     plan.greatest_force_N = force_range(map).highest_N;
     plan.greatest_depth_m = map.depths_m.back();
     for (const int third : {1, 2}) plan.zone_N[at(third - 1)] = median_force_N(tissue, third * plan.greatest_depth_m / 3.0);

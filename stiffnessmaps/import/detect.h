@@ -14,7 +14,9 @@
 //    lower one.
 // 4. Noise: the region's own shape is laid everywhere on the rest of the map, and the mean excess under it collected
 //    (at least 3/4 of its cells on the rest): the variation of areas of that size and shape, whatever its correlation.
-//    Its spread is taken as in 3, or from its 95th percentile / 1.645 where that is more (heavy tails).
+//    Its spread is taken as in 3, or from its 95th percentile / 1.645 where that is more (heavy tails). For a region at
+//    the edge of what was measured, where a tool turns or leaves the tissue and the background is known from one side
+//    only, the spread of the areas along the edge counts if it is more.
 //    contrast_to_noise = mean excess of the region / that spread. The rest: no soft outliers (a free edge), nothing of
 //    the region and its slopes, and of other regions only those that are not sure.
 // 5. A region is sure if that is more than the highest of so many independent areas reaches once in a thousand maps,
@@ -22,6 +24,9 @@
 //    larger of the region's and that over which the excess is alike (integral scales of its autocorrelation).
 //    In maps of noise alone, white or correlated over up to 7 mm, none of 1120 was sure; variation that is smooth over
 //    more than half of the window cannot be told from a nodule (sure in 4 of 100 at 12 mm).
+// 6. Look again: sure regions and their slopes are set aside, as they raise the background and its spread around them,
+//    and steps 2 to 5 are taken with the rest, for as long as another one turns out sure. Only sure ones are added, and
+//    what an earlier look found keeps its figures. A map without a sure region is not looked at again.
 //
 // Uses OpenCV (core, imgproc); not for the web.
 
@@ -58,10 +63,12 @@ struct StiffRegion {
     double contrast = 0.0;            // peak / background; NaN where the background is not above 0
     double mean_excess_N_per_m = 0.0;
     double noise_N_per_m = 0.0;       // NaN: no area of its size fits beside it
+    bool against_edge = false;        // that noise is of areas along the map's edge
     double contrast_to_noise = 0.0;   // NaN likewise
     double needed = 0.0;              // contrast_to_noise from which it would be sure
     double areas = 0.0;               // independent ones in the map
     bool at_edge = false;             // reaches unmeasured ground: its size is a lower bound
+    int look = 1;                 // 2, ...: found once the sure ones of the looks before were set aside
     bool sure = false;
     std::vector<std::string> warnings;  // why it is not sure, in words
     std::vector<std::size_t> cells;
@@ -81,7 +88,8 @@ struct Detection {
 // Throws InputError for a map without a measured cell, and for options that cannot be; `file` names the map there.
 Detection detect_regions(const Map& map, const std::string& file, const DetectOptions& options);
 
-// The sure regions as the map keeps them: placed nodules stay, detected ones of before go.
+// The sure regions as the map keeps them: placed nodules stay, detected ones of before go. Trials ask for placed ones
+// alone where there are any (nodules_to_find).
 void keep_regions(const Detection& detection, Map& map);
 
 }  // namespace palpa

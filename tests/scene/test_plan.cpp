@@ -5,7 +5,9 @@
 #include <algorithm>
 
 #include "files/text.h"
+#include "stiffnessmaps/map_file.h"
 #include "tests/error_message.h"
+#include "tests/temporary_folder.h"
 
 using namespace palpa;
 using namespace palpa::test;
@@ -50,6 +52,29 @@ TEST_CASE("plan: a person is told what is assumed, derived or scaled") {
     CHECK(noted("phantom force: the pen's newtons are multiplied by 2"));
     CHECK(noted("derived from the normal force (work argument), not measured"));
     CHECK(std::get<MapTissue>(plan.tissue).smoothing_m == 0.0);  // no noise in a simulation
+}
+
+TEST_CASE("plan: a nodule that was placed and detected is asked for once; detected ones count where none was placed") {
+    const TemporaryFolder folder;
+    Map map = read_map(kAssets / "maps/silicone.map");
+    const std::size_t placed = map.nodules.size();
+    Nodule again = map.nodules.front();
+    again.id = "D1";
+    again.placed = false;
+    map.nodules.push_back(again);
+    write_map(map, folder / "both.map");
+    map.nodules = {again};
+    write_map(map, folder / "detected.map");
+    Scene scene = read_scene(kAssets / "scenes/default.json", kAssets);
+    scene.map = folder / "both.map";
+    const Plan both = make_plan(scene);
+    CHECK(both.nodules.size() == placed);
+    CHECK(std::all_of(both.nodules.begin(), both.nodules.end(), [](const Nodule& n) { return n.placed; }));
+    CHECK(std::any_of(both.notes.begin(), both.notes.end(),
+                      [](const std::string& note) { return contains(note, "detected nodules of the map are not asked for"); }));
+    scene.map = folder / "detected.map";
+    REQUIRE(make_plan(scene).nodules.size() == 1);
+    CHECK(make_plan(scene).nodules[0].id == "D1");
 }
 
 TEST_CASE("plan: a map or profile that is not there is named") {

@@ -54,8 +54,8 @@ Map noisy(std::size_t n_x, std::size_t n_y, double pitch_m, double share, double
     return map;
 }
 
-Map recording(const char* name) {
-    const auto file = std::filesystem::path(PALPA_RECORDINGS) / "probing" / name;
+Map recording(const char* name, const char* kind = "probing") {
+    const auto file = std::filesystem::path(PALPA_RECORDINGS) / kind / name;
     ImportReport report;
     return import_recording({file}, {}, report);
 }
@@ -165,13 +165,88 @@ TEST_CASE("detect: the recorded zig-zag inclusion is one long region") {
     CHECK_FALSE(r.at_edge);
 }
 
-TEST_CASE("detect: of the recorded small balls one is wholly in the map") {
+TEST_CASE("detect: of the recorded small balls the clear one and the one that the map's edge cuts") {
     if (!recordings_are_there()) return;
     const Detection d = detect_regions(recording("region_small_balls.csv"), "balls", {});
-    REQUIRE(d.sure() == 1);
+    REQUIRE(d.regions.size() == 2);
+    CHECK(d.sure() == 2);
     CHECK(d.regions[0].x_m == doctest::Approx(-32e-3).epsilon(0.03));
     CHECK(d.regions[0].y_m == doctest::Approx(65.5e-3).epsilon(0.02));
     CHECK(d.regions[0].contrast > 1.5);
+    CHECK(d.regions[0].look == 1);
+    CHECK(d.regions[1].x_m == doctest::Approx(-29.4e-3).epsilon(0.03));
+    CHECK(d.regions[1].y_m == doctest::Approx(53.2e-3).epsilon(0.02));
+    CHECK(d.regions[1].contrast > 1.2);
+    CHECK(d.regions[1].contrast < 1.4);
+    CHECK(d.regions[1].at_edge);
+    CHECK(d.regions[1].look == 2);  // the clear one takes a quarter of this map and hides it
+}
+
+TEST_CASE("detect: the rims of sliding rasters make no claim that is not warned about") {
+    if (!recordings_are_there()) return;
+    for (const char* name : {"ContPalpTrial1.csv", "ContPalpTrial3.csv"}) {
+        CAPTURE(name);
+        const Detection d = detect_regions(recording(name, "sliding"), name, {});
+        CHECK(d.sure() == 0);
+        for (const StiffRegion& r : d.regions) CHECK_FALSE(r.warnings.empty());
+    }
+}
+
+TEST_CASE("detect: a region at the edge is held against the edge's own variation") {
+    const auto with_rim = [](double rim, unsigned seed) {
+        Map map = noisy(40, 30, 1.58e-3, 0.05, 1.5e-3, seed, {{0.0, 22e-3, 0.0, 3e-3, 1.9}});
+        std::mt19937 random(seed);
+        std::normal_distribution<double> normal;
+        std::vector<double> along(2 * (map.n_x + map.n_y));  // alike over some cells along the rim
+        for (double& v : along) v = normal(random);
+        along = smooth(along, {along.size(), 1, 1.0, 1.0}, 1.5);
+        for (std::size_t cell = 0; cell < map.n_cells(); ++cell) {
+            const std::size_t i = cell % map.n_x;
+            const std::size_t j = cell / map.n_x;
+            if (i > 0 && j > 0 && i + 1 < map.n_x && j + 1 < map.n_y) continue;
+            const std::size_t at = j == 0 || j + 1 == map.n_y ? (j == 0 ? i : map.n_x + i) : 2 * map.n_x + (i == 0 ? j : map.n_y + j);
+            for (std::size_t k = 0; k < map.n_depths(); ++k) {
+                map.normal_N[k * map.n_cells() + cell] *= static_cast<float>(std::max(0.1, 1.0 + rim * along[at]));
+            }
+        }
+        return map;
+    };
+    int sure_on_even_rim = 0;
+    int against_edge = 0;
+    for (unsigned seed = 1; seed <= 10; ++seed) {
+        CAPTURE(seed);
+        for (const double rim : {0.0, 1.5}) {
+            const Detection d = detect_regions(with_rim(rim, seed), "rim", {});
+            for (const StiffRegion& r : d.regions) {
+                const bool at_bump = std::hypot(r.x_m, r.y_m - 22e-3) < 4e-3;
+                if (rim == 0.0) sure_on_even_rim += r.sure && at_bump;
+                if (rim > 0.0 && r.at_edge && !at_bump) CHECK_FALSE(r.sure);
+                against_edge += rim > 0.0 && r.at_edge && r.against_edge;
+            }
+        }
+    }
+    CHECK(against_edge > 20);  // else nothing was put to the test
+    CHECK(sure_on_even_rim == 10);
+}
+
+TEST_CASE("detect: what a clear nodule hides is found by looking again, and nothing is made up") {
+    const std::vector<Bump> bumps{{14e-3, 18e-3, 0.0, 4e-3, 2.2}, {30e-3, 14e-3, 0.0, 2.5e-3, 1.25}};
+    int again = 0;
+    for (unsigned seed = 1; seed <= 20; ++seed) {
+        CAPTURE(seed);
+        const Detection d = detect_regions(noisy(26, 24, 1.58e-3, 0.08, 0.0, seed, bumps), "two", {});
+        int clear = 0;
+        for (const StiffRegion& r : d.regions) {
+            if (!r.sure) continue;
+            const auto at = [&](const Bump& b) { return std::hypot(r.x_m - b.x_m, r.y_m - b.y_m) < 3e-3; };
+            CHECK((at(bumps[0]) || at(bumps[1])));
+            clear += at(bumps[0]) && r.look == 1;
+            again += at(bumps[1]) && r.look == 2;
+        }
+        CHECK(clear == 1);
+    }
+    MESSAGE("of 20 hidden ones ", again, " found by looking again");
+    CHECK(again >= 5);
 }
 
 TEST_CASE("detect: recorded liver and meat make no claim that is not warned about") {
