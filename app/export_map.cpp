@@ -76,7 +76,7 @@ void write_folder(const Map& map, fs::path folder) {
         for (MatArray& array : arrays_of(map)) {
             std::vector<std::size_t> shape = array.shape;
             if (shape.size() == 2) shape.erase(shape.begin());  // a row for MATLAB, a vector for NumPy
-            write_text_atomically(aside / (array.name + ".npy"), npy_bytes({shape, std::move(array.values)}));
+            write_npy(aside / (array.name + ".npy"), shape, array.values);
         }
         fs::rename(aside, folder);
     } catch (const fs::filesystem_error& error) {
@@ -94,7 +94,7 @@ void write_array(const Map& map, const std::string& name, const fs::path& file) 
     std::string there;
     for (MatArray& array : arrays_of(map)) {
         if (array.shape.size() != 3) continue;
-        if (array.name == name) return write_text_atomically(file, npy_bytes({array.shape, std::move(array.values)}));
+        if (array.name == name) return write_npy(file, array.shape, array.values);
         there += (there.empty() ? "" : ", ") + array.name;
     }
     throw bad_input(map.name, "", "no array " + shown(name), "one of " + there);

@@ -47,6 +47,11 @@ void draw_figure(const std::string& script, const std::filesystem::path& file, i
     write_text_atomically(commands, "set encoding utf8\n" + set + "set output " + gnuplot_quoted(aside) + "\n" + script + "\nunset output\n");
     const int status = std::system(("gnuplot " + shell_quoted(commands)).c_str());
     ::unlink(commands.c_str());
+    if (status == 0 && file.extension() == ".svg") {  // else a viewer may blend cells into each other and into gaps
+        std::string svg = read_text(aside);
+        for (std::size_t at = svg.find("<image "); at != std::string::npos; at = svg.find("<image ", at + 1)) svg.insert(at + 6, " style='image-rendering:pixelated'");
+        write_text_whole(aside, svg);
+    }
     if (status != 0 || ::rename(aside.c_str(), file.c_str()) != 0) {
         ::unlink(aside.c_str());
         throw std::runtime_error(file.string() + ": gnuplot could not draw it");

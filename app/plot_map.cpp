@@ -94,8 +94,8 @@ double tic_step(double range, double count) {
 
 class Script {
  public:
-    Script(const std::string& title, double height_px)
-        : text_(kHead + ("set label 99 " + quoted(title) + " at screen 0.5, screen " + text_of(1.0 - 16.0 / height_px) + " center font ',13'\n")) {}
+    Script(const std::string& title, double width_px, double height_px)
+        : width_px_(width_px), height_px_(height_px), text_(kHead + ("set label 99 " + quoted(title) + " at screen 0.5, screen " + text_of(1.0 - 16.0 / height_px) + " center font ',13'\n")) {}
     void add(const std::string& text) { text_ += text; }
 
     std::string block(const std::string& rows) {
@@ -104,7 +104,10 @@ class Script {
         return name;
     }
 
-    void image(const Image& im, const Box& box) {
+    void image(const Image& im, Box box) {
+        // as wide as the picture will be, so that the colour bar stands beside it
+        const double aspect = im.dy * static_cast<double>(im.n_y) / (im.dx * static_cast<double>(im.n_x));
+        if (!im.down) box.x1 = std::min(box.x1, box.x0 + (box.y1 - box.y0) * height_px_ / aspect / width_px_);
         std::string rows;
         for (std::size_t j = 0; j < im.n_y; ++j) {
             for (std::size_t i = 0; i < im.n_x; ++i) {
@@ -132,7 +135,7 @@ class Script {
         if (im.small && im.x_label.empty()) text_ += "set format x ''\n";
         text_ += im.before;
         text_ += "set object 1 rectangle from graph 0,0 to graph 1,1 fc rgb '#9a9a9a' fs pattern 4 noborder behind\nset grid noxtics noytics\n";
-        text_ += "set xtics " + text_of(tic_step(im.dx * static_cast<double>(im.n_x), (box.x1 - box.x0) * 20.0)) + "\n";
+        text_ += "set xtics " + text_of(tic_step(im.dx * static_cast<double>(im.n_x), (box.x1 - box.x0) * width_px_ / 70.0)) + "\n";
         text_ += im.down ? "set ytics autofreq\n" : "set ytics " + text_of(tic_step(im.dy * static_cast<double>(im.n_y), (box.x1 - box.x0) * 20.0)) + "\n";
         text_ += "plot " + data + " using 1:2:3 with image notitle" + im.over + "\nunset object 1\nunset label\nset key default\nset xtics autofreq\nset ytics autofreq\nset format x '% h'\nset format y '% h'\n";
     }
@@ -145,6 +148,8 @@ class Script {
     std::string whole() const { return blocks_text_ + "set multiplot\n" + text_ + "unset multiplot\n"; }
 
  private:
+    double width_px_;
+    double height_px_;
     std::string text_;
     std::string blocks_text_;
     int blocks_ = 0;
@@ -245,7 +250,7 @@ Image stiffness_image(const Map& map) {
 
 Image nodules_image(const Map& map, const Detection& detection, Script& script) {
     Image im = stiffness_image(map);
-    im.title = "Stiffness, with nodules";
+    im.title = "Stiffness";
     outline(map, detection, script, im);
     return im;
 }
@@ -396,7 +401,7 @@ void matrices(const Map& map, double y0, double y1, double height_px, Script& sc
             if (!last) im.x_label = "";
             const double top = y1 - cell_h * static_cast<double>(row);
             const double x = left + cell_w * static_cast<double>(column);
-            script.image(im, {x, x + 0.86 * cell_w, top - cell_h + 46.0 / height_px, top - 26.0 / height_px});
+            script.image(im, {x, x + 0.86 * cell_w, top - cell_h + 52.0 / height_px, top - 26.0 / height_px});
         }
     }
 }
@@ -431,15 +436,15 @@ void plot_map(const Map& map, const Detection& detection, const PlotOptions& opt
     };
     switch (options.what) {
         case PlotWhat::stiffness: {
-            Script script(map.name, single_height);
+            Script script(map.name, single_width, single_height);
             return single(stiffness_image(map), script);
         }
         case PlotWhat::nodules: {
-            Script script(map.name, single_height);
+            Script script(map.name, single_width, single_height);
             return single(nodules_image(map, detection, script), script);
         }
         case PlotWhat::curves: {
-            Script script(map.name, 600);
+            Script script(map.name, 900, 600);
             curves(map, field, curve_places(map, detection, options), {0.1, 0.97, 0.12, 0.88}, script);
             return draw_figure(script.whole(), file, 900, 600);
         }
@@ -447,7 +452,7 @@ void plot_map(const Map& map, const Detection& detection, const PlotOptions& opt
             const int width = 900;
             const double picture = std::min(900.0, 0.74 * width * aspect);
             const int height = clamped(picture + 440.0);
-            Script script(map.name, height);
+            Script script(map.name, width, height);
             script.image(depth_image(map, field, force_N), {0.09, 0.85, 1.0 - (65.0 + picture) / height, 1.0 - 65.0 / height});
             script.image(section_image(map, field, row), {0.09, 0.85, 60.0 / height, 270.0 / height});
             return draw_figure(script.whole(), file, width, height);
@@ -455,9 +460,9 @@ void plot_map(const Map& map, const Detection& detection, const PlotOptions& opt
         case PlotWhat::matrices: {
             const int width = 1400;
             const auto columns = static_cast<double>(columns_of(map));
-            const double cell = std::min(320.0, 0.85 * width / columns * 0.86 * aspect) + 72.0;
+            const double cell = std::min(320.0, 0.85 * width / columns * 0.86 * aspect) + 78.0;
             const int height = clamped(cell * static_cast<double>(matrix_rows(map)) + 50.0);
-            Script script(map.name, height);
+            Script script(map.name, width, height);
             matrices(map, 0.0, 1.0 - 40.0 / height, height, script);
             return draw_figure(script.whole(), file, width, height);
         }
@@ -465,12 +470,12 @@ void plot_map(const Map& map, const Detection& detection, const PlotOptions& opt
             const int width = 1400;
             const double picture = std::min(640.0, 0.37 * width * aspect);
             const auto columns = static_cast<double>(columns_of(map));
-            const double cell = std::min(320.0, 0.85 * width / columns * 0.86 * aspect) + 72.0;
+            const double cell = std::min(320.0, 0.85 * width / columns * 0.86 * aspect) + 78.0;
             const double small = cell * static_cast<double>(matrix_rows(map));
             const double height = std::floor(65.0 + picture + 100.0 + 310.0 + small);
             const double top = 1.0 - 65.0 / height;
             const double first = top - picture / height;
-            Script script(map.name, height);
+            Script script(map.name, width, height);
             script.image(nodules_image(map, detection, script), {0.06, 0.43, first, top});
             script.image(depth_image(map, field, force_N), {0.55, 0.92, first, top});
             const double second = first - 100.0 / height;
@@ -511,7 +516,7 @@ void plot_difference(const MapDifference& d, const std::filesystem::path& file) 
     const int height = clamped(0.23 * width * std::clamp(aspect_of(d.a), 0.25, 3.0) + 150.0);
     const double low = 60.0 / height;
     const double high = 1.0 - 80.0 / height;
-    Script script("Normal force of two maps, and their difference", height);
+    Script script("Normal force of two maps, and their difference", width, height);
     script.image(a, {0.05, 0.28, low, high});
     script.image(b, {0.385, 0.615, low, high});
     script.image(apart, {0.71, 0.94, low, high});

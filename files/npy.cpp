@@ -3,9 +3,11 @@
 #include <bit>
 #include <charconv>
 #include <cstring>
+#include <fstream>
 #include <limits>
 
 #include "files/input_error.h"
+#include "files/pieces.h"
 #include "files/text.h"
 
 namespace palpa {
@@ -16,31 +18,32 @@ static_assert(std::endian::native == std::endian::little, "arrays are read as th
 constexpr std::string_view kMagic("\x93NUMPY", 6);
 
 struct Header {
-    std::string_view text;
-    std::size_t data_offset = 0;
+    std::size_t from = 0;  // of its text
+    std::size_t length = 0;
+    std::size_t data_offset() const { return from + length; }
 };
 
-Header find_header(std::string_view bytes, const std::string& file) {
-    if (bytes.size() < 10 || bytes.substr(0, 6) != kMagic) {
+// `start`: at least the first 12 bytes of a file of `file_bytes`, or all of it.
+Header find_header(std::string_view start, std::size_t file_bytes, const std::string& file) {
+    if (start.size() < 10 || start.substr(0, 6) != kMagic) {
         throw bad_input(file, "", "no NumPy magic number", "an .npy file");
     }
-    const auto byte = [&](std::size_t i) { return static_cast<std::size_t>(static_cast<unsigned char>(bytes[i])); };
+    const auto byte = [&](std::size_t i) { return static_cast<std::size_t>(static_cast<unsigned char>(start[i])); };
     const std::size_t version = byte(6);
     if (version != 1 && version != 2) {
         throw bad_input(file, "", "format version " + std::to_string(version), "version 1 or 2");
     }
-    std::size_t offset = 10;
-    std::size_t length = byte(8) + (byte(9) << 8);
+    Header header{10, byte(8) + (byte(9) << 8)};
     if (version == 2) {
-        if (bytes.size() < 12) throw bad_input(file, "", "a truncated header", "an .npy file");
-        length += (byte(10) << 16) + (byte(11) << 24);
-        offset = 12;
+        if (start.size() < 12) throw bad_input(file, "", "a truncated header", "an .npy file");
+        header.length += (byte(10) << 16) + (byte(11) << 24);
+        header.from = 12;
     }
-    if (length > bytes.size() - offset) {
-        throw bad_input(file, "", "a header of " + std::to_string(length) + " bytes in a file of " +
-                                      std::to_string(bytes.size()), "a header that fits");
+    if (header.length > file_bytes - header.from) {
+        throw bad_input(file, "", "a header of " + std::to_string(header.length) + " bytes in a file of " +
+                                      std::to_string(file_bytes), "a header that fits");
     }
-    return {bytes.substr(offset, length), offset + length};
+    return header;
 }
 
 // The text after "'key':", leading blanks removed.
@@ -82,14 +85,68 @@ std::size_t count_of(const std::vector<std::size_t>& shape, const std::string& f
 }
 
 template <class Value>
-std::vector<float> read_values(std::string_view data) {
-    std::vector<float> out(data.size() / sizeof(Value));
-    for (std::size_t i = 0; i < out.size(); ++i) {
+void take_values(const char* from, std::size_t n, float* to) {
+    for (std::size_t i = 0; i < n; ++i) {
         Value value;
-        std::memcpy(&value, data.data() + i * sizeof(Value), sizeof(Value));
-        out[i] = static_cast<float>(value);
+        std::memcpy(&value, from + i * sizeof(Value), sizeof(Value));
+        to[i] = static_cast<float>(value);
     }
-    return out;
+}
+
+// What the header's text says.
+struct Layout {
+    std::vector<std::size_t> shape;
+    bool is_double = false;
+    std::size_t count = 0;
+    std::size_t value_bytes() const { return is_double ? 8 : 4; }
+};
+
+Layout layout_of(std::string_view text, std::size_t data_bytes, const std::string& file) {
+    Layout layout;
+    const auto type = after_key(text, "descr", file).substr(0, 5);
+    layout.is_double = type == "'<f8'";
+    if (!layout.is_double && type != "'<f4'") {
+        throw bad_input(file, "descr", shown(type), "'<f4' or '<f8' (little-endian float32 or float64)");
+    }
+    if (after_key(text, "fortran_order", file).substr(0, 5) != "False") {
+        throw bad_input(file, "fortran_order", "True", "False (C order)");
+    }
+    layout.shape = parse_shape(after_key(text, "shape", file), file);
+    layout.count = count_of(layout.shape, file);
+    const std::size_t wanted_bytes = layout.count * layout.value_bytes();
+    if (data_bytes != wanted_bytes) {
+        throw bad_input(file, "", std::to_string(data_bytes) + " bytes of data",
+                        std::to_string(wanted_bytes) + " for the shape " + shape_text(layout.shape));
+    }
+    return layout;
+}
+
+void take_values(const Layout& layout, const char* from, std::size_t n, float* to) {
+    layout.is_double ? take_values<double>(from, n, to) : take_values<float>(from, n, to);
+}
+
+// The same as parse_npy, a part of the file at a time.
+NpyArray read_in_parts(std::ifstream& in, std::size_t file_bytes, const std::string& file) {
+    const auto read = [&](char* to, std::size_t n) {
+        in.read(to, static_cast<std::streamsize>(n));
+        if (static_cast<std::size_t>(in.gcount()) != n) throw InputError(file + ": cannot be read to its end");
+    };
+    std::string start(std::min<std::size_t>(file_bytes, 12), '\0');
+    read(start.data(), start.size());
+    const Header header = find_header(start, file_bytes, file);
+    std::string text(header.length, '\0');
+    in.seekg(static_cast<std::streamoff>(header.from));
+    read(text.data(), text.size());
+    const Layout layout = layout_of(text, file_bytes - header.data_offset(), file);
+    NpyArray array{layout.shape, std::vector<float>(layout.count)};
+    constexpr std::size_t kPart = 1 << 16;  // numbers
+    std::vector<char> part(std::min(kPart, layout.count) * layout.value_bytes());
+    for (std::size_t at = 0; at < layout.count; at += kPart) {
+        const std::size_t n = std::min(kPart, layout.count - at);
+        read(part.data(), n * layout.value_bytes());
+        take_values(layout, part.data(), n, &array.values[at]);
+    }
+    return array;
 }
 
 }  // namespace
@@ -101,31 +158,24 @@ std::string shape_text(const std::vector<std::size_t>& shape) {
 }
 
 NpyArray parse_npy(std::string_view bytes, const std::string& file) {
-    const Header header = find_header(bytes, file);
-    const auto type = after_key(header.text, "descr", file).substr(0, 5);
-    const bool is_double = type == "'<f8'";
-    if (!is_double && type != "'<f4'") {
-        throw bad_input(file, "descr", shown(type), "'<f4' or '<f8' (little-endian float32 or float64)");
-    }
-    if (after_key(header.text, "fortran_order", file).substr(0, 5) != "False") {
-        throw bad_input(file, "fortran_order", "True", "False (C order)");
-    }
-    NpyArray array;
-    array.shape = parse_shape(after_key(header.text, "shape", file), file);
-    const std::size_t wanted_bytes = count_of(array.shape, file) * (is_double ? 8 : 4);
-    const std::string_view data = bytes.substr(header.data_offset);
-    if (data.size() != wanted_bytes) {
-        throw bad_input(file, "", std::to_string(data.size()) + " bytes of data",
-                        std::to_string(wanted_bytes) + " for the shape " + shape_text(array.shape));
-    }
-    array.values = is_double ? read_values<double>(data) : read_values<float>(data);
+    const Header header = find_header(bytes, bytes.size(), file);
+    const std::string_view data = bytes.substr(header.data_offset());
+    const Layout layout = layout_of(bytes.substr(header.from, header.length), data.size(), file);
+    NpyArray array{layout.shape, std::vector<float>(layout.count)};
+    take_values(layout, data.data(), layout.count, array.values.data());
     return array;
 }
 
-NpyArray read_npy(const std::filesystem::path& path) { return parse_npy(read_text(path), path.string()); }
+NpyArray read_npy(const std::filesystem::path& path) {
+    std::error_code error;
+    const std::uintmax_t bytes = std::filesystem::file_size(path, error);
+    std::ifstream in(path, std::ios::binary);
+    if (error || !in || !std::filesystem::is_regular_file(path)) return parse_npy(read_text(path), path.string());
+    return read_in_parts(in, bytes, path.string());
+}
 
-std::string npy_bytes(const NpyArray& array) {
-    std::string header = "{'descr': '<f4', 'fortran_order': False, 'shape': " + shape_text(array.shape) + ", }";
+std::string npy_header(const std::vector<std::size_t>& shape) {
+    std::string header = "{'descr': '<f4', 'fortran_order': False, 'shape': " + shape_text(shape) + ", }";
     constexpr std::size_t kPreamble = 10;
     constexpr std::size_t kAlignment = 64;
     while ((kPreamble + header.size() + 1) % kAlignment != 0) header.push_back(' ');
@@ -133,11 +183,21 @@ std::string npy_bytes(const NpyArray& array) {
 
     std::string out(kMagic);
     out.append({'\x01', '\x00', static_cast<char>(header.size() & 0xff), static_cast<char>(header.size() >> 8)});
-    out.append(header);
-    const std::size_t offset = out.size();
-    out.resize(offset + array.values.size() * sizeof(float));
-    std::memcpy(out.data() + offset, array.values.data(), array.values.size() * sizeof(float));
-    return out;
+    return out + header;
+}
+
+namespace {
+
+std::string_view bytes_of(const std::vector<float>& values) {
+    return {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(float)};
+}
+
+}  // namespace
+
+std::string npy_bytes(const NpyArray& array) { return npy_header(array.shape).append(bytes_of(array.values)); }
+
+void write_npy(const std::filesystem::path& path, const std::vector<std::size_t>& shape, const std::vector<float>& values) {
+    write_pieces_atomically(path, {npy_header(shape), bytes_of(values)});
 }
 
 }  // namespace palpa

@@ -18,7 +18,12 @@ struct NpyArray {
 NpyArray read_npy(const std::filesystem::path& path);
 NpyArray parse_npy(std::string_view bytes, const std::string& file_name);
 
-std::string npy_bytes(const NpyArray& array);  // '<f4', version 1.0
+// What stands before the values in such a file: '<f4', version 1.0.
+std::string npy_header(const std::vector<std::size_t>& shape);
+std::string npy_bytes(const NpyArray& array);  // header and values
+
+// Whole or not at all; `values` are written from where they stand.
+void write_npy(const std::filesystem::path& path, const std::vector<std::size_t>& shape, const std::vector<float>& values);
 
 std::string shape_text(const std::vector<std::size_t>& shape);  // "(6, 59, 159)"
 

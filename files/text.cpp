@@ -14,6 +14,7 @@
 #include <stdexcept>
 
 #include "files/input_error.h"
+#include "files/pieces.h"
 
 namespace palpa {
 
@@ -48,27 +49,31 @@ namespace {
     throw std::runtime_error(path.string() + ": cannot be written: " + std::strerror(errno));
 }
 
-void write_new(const std::filesystem::path& path, std::string_view text, bool sync) {
+using Pieces = std::initializer_list<std::string_view>;
+
+void write_new(const std::filesystem::path& path, Pieces pieces, bool sync) {
     const int fd = ::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
     if (fd < 0) fail_writing(path);
-    while (!text.empty()) {
-        const ssize_t n = ::write(fd, text.data(), text.size());
-        if (n < 0 && errno == EINTR) continue;
-        if (n <= 0) {
-            ::close(fd);
-            ::unlink(path.c_str());
-            fail_writing(path);
+    for (std::string_view text : pieces) {
+        while (!text.empty()) {
+            const ssize_t n = ::write(fd, text.data(), text.size());
+            if (n < 0 && errno == EINTR) continue;
+            if (n <= 0) {
+                ::close(fd);
+                ::unlink(path.c_str());
+                fail_writing(path);
+            }
+            text.remove_prefix(static_cast<std::size_t>(n));
         }
-        text.remove_prefix(static_cast<std::size_t>(n));
     }
     const bool synced = !sync || ::fsync(fd) == 0;
     if (::close(fd) != 0 || !synced) fail_writing(path);
 }
 
-void write_and_rename(const std::filesystem::path& path, std::string_view text, bool sync) {
+void write_and_rename(const std::filesystem::path& path, Pieces pieces, bool sync) {
     std::filesystem::path aside = path;
     aside += ".part-" + std::to_string(::getpid());
-    write_new(aside, text, sync);
+    write_new(aside, pieces, sync);
     if (::rename(aside.c_str(), path.c_str()) != 0) {
         const int reason = errno;
         ::unlink(aside.c_str());
@@ -80,10 +85,12 @@ void write_and_rename(const std::filesystem::path& path, std::string_view text, 
 }  // namespace
 
 void write_text_atomically(const std::filesystem::path& path, std::string_view text) {
-    write_and_rename(path, text, true);
+    write_and_rename(path, {text}, true);
 }
 
-void write_text_whole(const std::filesystem::path& path, std::string_view text) { write_and_rename(path, text, false); }
+void write_pieces_atomically(const std::filesystem::path& path, Pieces pieces) { write_and_rename(path, pieces, true); }
+
+void write_text_whole(const std::filesystem::path& path, std::string_view text) { write_and_rename(path, {text}, false); }
 
 void sync_file(const std::filesystem::path& path) {
     const int fd = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);

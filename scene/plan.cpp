@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "calibration/profile_file.h"
 #include "files/cache.h"
@@ -194,6 +195,14 @@ double median_force_N(const LinearTissue& tissue, double depth_m) {
 }
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
+// What a person is to find: the placed nodules, which are the truth; the detected ones where none was placed. A placed
+// nodule that was detected too must not count twice.
+std::vector<Nodule> nodules_to_find(const Map& map) {
+    std::vector<Nodule> placed;
+    std::copy_if(map.nodules.begin(), map.nodules.end(), std::back_inserter(placed), [](const Nodule& n) { return n.placed; });
+    return placed.empty() ? map.nodules : placed;
+}
 
 void describe(const MapTissue& tissue, Plan& plan) {
     const Map& map = tissue.map;

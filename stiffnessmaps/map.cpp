@@ -2,16 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <limits>
 
 namespace palpa {
-
-std::vector<Nodule> nodules_to_find(const Map& map) {
-    std::vector<Nodule> placed;
-    std::copy_if(map.nodules.begin(), map.nodules.end(), std::back_inserter(placed), [](const Nodule& n) { return n.placed; });
-    return placed.empty() ? map.nodules : placed;
-}
 
 std::size_t missing_count(const Map& map) {
     const auto missing = [](float force) { return std::isnan(force); };

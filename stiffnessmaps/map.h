@@ -72,10 +72,6 @@ struct ForceRange {
     double highest_N = 0.0;
 };
 
-// What a person is to find: the placed nodules, which are the truth; the detected ones where none was placed. A placed
-// nodule that was detected too must not count twice.
-std::vector<Nodule> nodules_to_find(const Map& map);
-
 std::size_t missing_count(const Map& map);  // normal forces that are NaN
 ForceRange force_range(const Map& map);     // of the measured normal forces; 0, 0 if there are none
 

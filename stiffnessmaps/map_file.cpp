@@ -268,7 +268,7 @@ void write_map(const Map& map, const fs::path& folder) {
     aside += ".part-" + std::to_string(::getpid());
     const auto write_array = [&](const char* name, const std::vector<float>& values) {
         if (values.empty()) return;
-        write_text_atomically(aside / name, npy_bytes({{map.n_depths(), map.n_y, map.n_x}, values}));
+        write_npy(aside / name, {map.n_depths(), map.n_y, map.n_x}, values);
     };
     try {
         fs::create_directory(aside);

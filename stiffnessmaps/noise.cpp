@@ -9,7 +9,7 @@ namespace {
 
 void second_differences(const Map& map, std::size_t along, std::size_t n, std::size_t stride,
                         std::vector<double>& out) {
-    constexpr std::size_t kEnough = 4'000'000;  // forces; a quantile of every so many is as good
+    constexpr std::size_t kEnough = 1'000'000;  // forces; a quantile of every so many is as good
     const std::size_t step = 1 + map.normal_N.size() / kEnough;
     for (std::size_t k = 0; k < map.n_depths(); ++k) {
         for (std::size_t cell = 0; cell < map.n_cells(); cell += step) {

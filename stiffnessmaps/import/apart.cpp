@@ -10,6 +10,7 @@
 #include <unistd.h>
 
 #include "files/input_error.h"
+#include "stiffnessmaps/import/arrays.h"
 
 namespace palpa {
 namespace {
@@ -25,7 +26,7 @@ constexpr bool kReservesTerabytes = __has_feature(address_sanitizer);
 constexpr bool kReservesTerabytes = false;
 #endif
 
-// What the process says: one of these, then an array in .npy form or a message.
+// What the process says: one of these, then an array (how many axes, the length of each, the numbers) or a message.
 constexpr char kArray = 'a';
 constexpr char kRefused = 'r';
 
@@ -46,6 +47,19 @@ void say(int fd, std::string_view text) {
     }
 }
 
+template <class Value>
+std::string_view bytes_of(const std::vector<Value>& values) {
+    return {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(Value)};
+}
+
+void say_array(int fd, const NpyArray& array) {
+    std::vector<std::uint64_t> axes{array.shape.size()};
+    axes.insert(axes.end(), array.shape.begin(), array.shape.end());
+    say(fd, std::string(1, kArray));
+    say(fd, bytes_of(axes));
+    say(fd, bytes_of(array.values));
+}
+
 [[noreturn]] void run_child(int fd, const std::function<NpyArray()>& read) {
     for (const int signal : {SIGSEGV, SIGBUS, SIGABRT, SIGFPE, SIGILL, SIGPIPE}) ::signal(signal, SIG_DFL);
     limit(RLIMIT_CORE, 0);
@@ -53,7 +67,8 @@ void say(int fd, std::string_view text) {
     if (!kReservesTerabytes) limit(RLIMIT_AS, kMost_bytes);
     std::string said;
     try {
-        said = kArray + npy_bytes(read());
+        const NpyArray array = read();  // what the library held is given back by now
+        say_array(fd, array);
     } catch (const InputError& error) {
         said = kRefused + std::string(error.what());
     } catch (const std::bad_alloc&) {
@@ -65,15 +80,40 @@ void say(int fd, std::string_view text) {
     ::_exit(0);
 }
 
-std::string hear(int fd) {
-    std::string said;
-    std::array<char, 1 << 16> buffer;
-    while (true) {
-        const ssize_t n = ::read(fd, buffer.data(), buffer.size());
-        if (n < 0 && errno == EINTR) continue;
-        if (n <= 0) return said;
-        said.append(buffer.data(), static_cast<std::size_t>(n));
+// Up to n bytes; fewer where the other end falls silent.
+std::size_t hear(int fd, char* to, std::size_t n) {
+    std::size_t heard = 0;
+    while (heard < n) {
+        const ssize_t some = ::read(fd, to + heard, n - heard);
+        if (some < 0 && errno == EINTR) continue;
+        if (some <= 0) break;
+        heard += static_cast<std::size_t>(some);
     }
+    return heard;
+}
+
+// Whether a whole array came. Nothing is allocated beyond what any array may hold.
+bool hear_array(int fd, NpyArray& array) {
+    const auto hear_all = [&](auto* to, std::size_t n) {
+        return hear(fd, reinterpret_cast<char*>(to), n * sizeof(*to)) == n * sizeof(*to);
+    };
+    std::uint64_t n_axes = 0;
+    if (!hear_all(&n_axes, 1) || n_axes > 8) return false;
+    std::vector<std::uint64_t> axes(n_axes);
+    if (!hear_all(axes.data(), n_axes)) return false;
+    double n = 1.0;
+    for (const std::uint64_t axis : axes) n *= static_cast<double>(axis);
+    if (n > static_cast<double>(kMostNumbers)) return false;
+    array.shape.assign(axes.begin(), axes.end());
+    array.values.resize(static_cast<std::size_t>(n));
+    return hear_all(array.values.data(), array.values.size());
+}
+
+std::string hear_message(int fd) {
+    std::string said;
+    std::array<char, 4096> buffer;
+    while (const std::size_t n = hear(fd, buffer.data(), buffer.size())) said.append(buffer.data(), n);
+    return said;
 }
 
 }  // namespace
@@ -92,20 +132,25 @@ NpyArray read_apart(const std::string& file, const char* library, const std::fun
         run_child(ends[1], read);
     }
     ::close(ends[1]);
-    std::string said = hear(ends[0]);
+    char kind = '\0';
+    NpyArray array;
+    std::string refused;
+    bool whole = hear(ends[0], &kind, 1) == 1;
+    if (kind == kArray) whole = hear_array(ends[0], array);
+    if (kind == kRefused) refused = hear_message(ends[0]);
     ::close(ends[0]);
     int status = 0;
     while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
     }
-    if (!WIFEXITED(status) || WEXITSTATUS(status) != 0 || said.empty()) {
+    if (!WIFEXITED(status) || WEXITSTATUS(status) != 0 || !whole) {
         const bool slow = WIFSIGNALED(status) && WTERMSIG(status) == SIGXCPU;
         throw bad_input(file, "",
                         slow ? "over a minute of work for " + std::string(library)
                              : "what " + std::string(library) + " cannot read without failing",
                         "a whole file of moderate size");
     }
-    if (said.front() == kRefused) throw InputError(said.substr(1));
-    return parse_npy(std::string_view(said).substr(1), file);
+    if (kind == kRefused) throw InputError(refused);
+    return array;
 }
 
 }  // namespace palpa

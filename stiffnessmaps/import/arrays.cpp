@@ -78,12 +78,11 @@ std::size_t check_shape(const std::vector<std::size_t>& shape, std::size_t value
                         std::size_t stored_bytes, bool packed, const std::string& file) {
     if (shape.size() < 2 || shape.size() > 3)
         throw bad_input(file, "shape", shape_text(shape), "two or three dimensions");
-    constexpr std::size_t kMost = 20'000'000;
     constexpr double kMostPacked = 1032.0;
     double n = 1.0;
     for (const std::size_t d : shape) n *= static_cast<double>(d);
     if (n == 0.0) throw bad_input(file, "shape", shape_text(shape), "at least one number");
-    if (n > static_cast<double>(kMost))
+    if (n > static_cast<double>(kMostNumbers))
         throw bad_input(file, "shape", shape_text(shape), "at most 20 million numbers");
     const double can = static_cast<double>(stored_bytes) * (packed ? kMostPacked : 1.0);
     if (n * static_cast<double>(value_bytes) > can) {

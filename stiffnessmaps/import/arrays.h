@@ -23,6 +23,8 @@ inline bool is_image(ArrayKind kind) {
     return kind == ArrayKind::png || kind == ArrayKind::tiff;
 }
 
+inline constexpr std::size_t kMostNumbers = 20'000'000;  // in an array, and in a map made of several
+
 // Two or three dimensions. MATLAB and HDF5 files may hold several arrays: `dataset` names one, and may be
 // empty if there is only one. The index order is the file's own (MATLAB's, too: A(i, j, k) is [i][j][k]).
 NpyArray read_array(const std::filesystem::path& path, const std::string& dataset);

@@ -89,7 +89,7 @@ struct Detection {
 Detection detect_regions(const Map& map, const std::string& file, const DetectOptions& options);
 
 // The sure regions as the map keeps them: placed nodules stay, detected ones of before go. Trials ask for placed ones
-// alone where there are any (nodules_to_find).
+// alone where there are any (scene/plan.cpp).
 void keep_regions(const Detection& detection, Map& map);
 
 }  // namespace palpa

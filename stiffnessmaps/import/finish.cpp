@@ -18,10 +18,10 @@ namespace {
 
 constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 
-// Force at the deepest layer that each cell has.
-std::vector<double> deepest_forces(const Map& map) {
+// Force at the deepest layer that each cell has; of many cells every so many.
+std::vector<double> deepest_forces(const Map& map, std::size_t step) {
     std::vector<double> out;
-    for (std::size_t cell = 0; cell < map.n_cells(); ++cell) {
+    for (std::size_t cell = 0; cell < map.n_cells(); cell += step) {
         for (std::size_t k = map.n_depths(); k-- > 0;) {
             const float force = map.normal_N[k * map.n_cells() + cell];
             if (std::isnan(force)) continue;
@@ -33,14 +33,16 @@ std::vector<double> deepest_forces(const Map& map) {
 }
 
 void refuse_no_forces(const Map& map, const std::string& file) {
-    const std::vector<double> deepest_N = deepest_forces(map);
+    std::vector<double> deepest_N = deepest_forces(map, 1 + map.n_cells() / 1'000'000);
+    if (deepest_N.empty()) deepest_N = deepest_forces(map, 1);
     if (deepest_N.empty()) {
         throw bad_input(
             file, "", "no force that was measured: all " + std::to_string(map.n_cells()) + " cells are empty",
             "forces at the map's depths (is the pitch too fine, are the depths too great?)");
     }
-    if (median(deepest_N) > 0.0) return;
-    throw bad_input(file, "", short_number(median(deepest_N)) + " N at the greatest depths (median)",
+    const double typical_N = median(std::move(deepest_N));
+    if (typical_N > 0.0) return;
+    throw bad_input(file, "", short_number(typical_N) + " N at the greatest depths (median)",
                     "forces that rise with depth (is the sign the other way round? --negate-force)");
 }
 
@@ -129,6 +131,7 @@ void check_enough_samples(const GridPlan& plan, std::size_t n_samples, const std
 
 std::vector<float> filled_forces(const Map& map) {
     std::vector<float> out = map.normal_N;
+    if (missing_count(map) == 0) return out;
     close_inner_gaps(map, out);
     const GridShape shape{map.n_x, map.n_y, map.spacing_m[0], map.spacing_m[1]};
     std::vector<double> step(map.n_cells());
@@ -155,6 +158,7 @@ ImportResidual residual_of(const Map& map, const RecordedPoints& recorded) {
     ImportResidual out;
     out.greatest_N = force_range(map).highest_N;
     std::vector<double> residuals;
+    residuals.reserve(recorded.x_m.size());
     for (std::size_t i = 0; i < recorded.x_m.size(); ++i) {
         const Place place = place_at(field, {recorded.x_m[i], recorded.y_m[i]});
         const double depth_m = static_cast<double>(recorded.depth_m[i]);

@@ -14,6 +14,12 @@ struct RecordedPoints {
     std::vector<double> y_m;
     std::vector<float> depth_m;
     std::vector<float> force_N;
+    void reserve(std::size_t n) {
+        x_m.reserve(n);
+        y_m.reserve(n);
+        depth_m.reserve(n);
+        force_N.reserve(n);
+    }
     void add(double x, double y, double depth, double force) {
         x_m.push_back(x);
         y_m.push_back(y);

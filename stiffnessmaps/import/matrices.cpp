@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <numbers>
 
@@ -19,13 +20,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Matrices of one kind, [file][y][x].
+// Matrices of one kind.
 struct Stack {
     std::vector<double> depths_m;  // empty: not yet known
     std::size_t n_y = 0;
     std::size_t n_x = 0;
-    std::vector<std::vector<float>> layers;
+    std::vector<float> values;  // [layer][y][x]
     std::string first_file;
+    std::size_t n_layers() const { return values.size() / (n_x * n_y); }
 };
 
 std::string lower(std::string text) {
@@ -81,6 +83,10 @@ void put_in_order(NpyArray& array, const std::string& axes) {
     array = std::move(out);
 }
 
+void check_count(std::size_t n, const std::string& file) {
+    if (n > kMostNumbers) throw bad_input(file, "", "more than 20 million numbers with all files and depths", "less");
+}
+
 void append(const fs::path& path, const ImportOptions& options, Stack& stack) {
     NpyArray array = read_array(path, options.dataset);
     if (is_image(*array_kind(path)) && !options.scale_stated) {
@@ -91,7 +97,7 @@ void append(const fs::path& path, const ImportOptions& options, Stack& stack) {
     if (array.shape.size() == 3) put_in_order(array, options.axes);
     const std::size_t n_y = array.shape[array.shape.size() - 2];
     const std::size_t n_x = array.shape.back();
-    if (stack.layers.empty()) {
+    if (stack.values.empty()) {
         stack.n_y = n_y;
         stack.n_x = n_x;
         stack.first_file = path.string();
@@ -100,20 +106,17 @@ void append(const fs::path& path, const ImportOptions& options, Stack& stack) {
         throw bad_input(path.string(), "shape", shape_text({n_y, n_x}),
                         shape_text({stack.n_y, stack.n_x}) + " as in " + stack.first_file + " (two grids?)");
     }
-    const std::size_t n = n_x * n_y;
-    constexpr std::size_t kMostValues = 20'000'000;
-    if (n * (stack.layers.size() + array.values.size() / n) > kMostValues) {
-        throw bad_input(path.string(), "", "more than 20 million numbers with the files before it", "less");
-    }
-    for (std::size_t at = 0; at < array.values.size(); at += n) {
-        const auto from = array.values.begin() + static_cast<std::ptrdiff_t>(at);
-        stack.layers.emplace_back(from, from + static_cast<std::ptrdiff_t>(n));
+    check_count(stack.values.size() + array.values.size(), path.string());
+    if (stack.values.empty()) {
+        stack.values = std::move(array.values);
+    } else {
+        stack.values.insert(stack.values.end(), array.values.begin(), array.values.end());
     }
 }
 
 std::vector<double> depths_of(const std::vector<fs::path>& files, const Stack& stack,
                               const ImportOptions& options, bool& from_names) {
-    const std::size_t n = stack.layers.size();
+    const std::size_t n = stack.n_layers();
     from_names = false;
     if (!options.depths_m.empty()) {
         if (options.depths_m.size() == n) return options.depths_m;
@@ -135,20 +138,18 @@ std::vector<double> depths_of(const std::vector<fs::path>& files, const Stack& s
 
 // Layers in ascending depth.
 void sort_layers(Stack& stack) {
-    std::vector<std::size_t> order(stack.layers.size());
-    for (std::size_t k = 0; k < order.size(); ++k) order[k] = k;
-    std::sort(order.begin(), order.end(),
-              [&](std::size_t a, std::size_t b) { return stack.depths_m[a] < stack.depths_m[b]; });
-    Stack sorted = stack;
-    for (std::size_t k = 0; k < order.size(); ++k) {
-        sorted.depths_m[k] = stack.depths_m[order[k]];
-        sorted.layers[k] = std::move(stack.layers[order[k]]);
-        if (k > 0 && !(sorted.depths_m[k] > sorted.depths_m[k - 1])) {
-            throw bad_input(stack.first_file, "",
-                            "the depth " + short_number(1e3 * sorted.depths_m[k]) + " mm twice", "each once");
-        }
+    const auto n = static_cast<std::ptrdiff_t>(stack.n_x * stack.n_y);
+    for (std::size_t k = 0; k + 1 < stack.depths_m.size(); ++k) {  // by selection, so that each is moved once, in place
+        const auto from = stack.depths_m.begin() + static_cast<std::ptrdiff_t>(k);
+        const auto least = std::min_element(from, stack.depths_m.end());
+        if (least == from) continue;
+        std::swap(*from, *least);
+        const auto first = stack.values.begin() + static_cast<std::ptrdiff_t>(k) * n;
+        std::swap_ranges(first, first + n, stack.values.begin() + (least - stack.depths_m.begin()) * n);
     }
-    stack = std::move(sorted);
+    const auto twice = std::adjacent_find(stack.depths_m.begin(), stack.depths_m.end(), std::greater_equal<>());
+    if (twice == stack.depths_m.end()) return;
+    throw bad_input(stack.first_file, "", "the depth " + short_number(1e3 * *twice) + " mm twice", "each once");
 }
 
 // In SI units of the quantity; NaN where not measured.
@@ -156,22 +157,21 @@ void scale(Stack& stack, const ImportOptions& options) {
     const double factor =
         options.scale * (options.negate_force ? -1.0 : 1.0) *
         (options.quantity == Quantity::force && options.force_unit == ForceUnit::mN ? 1e-3 : 1.0);
-    for (auto& layer : stack.layers) {
-        for (float& value : layer) {
-            if (std::isnan(value)) continue;
-            const bool missing = options.missing && static_cast<double>(value) == *options.missing;
-            value = missing ? std::numeric_limits<float>::quiet_NaN()
-                            : static_cast<float>(factor * (static_cast<double>(value) - options.offset));
-        }
+    for (float& value : stack.values) {
+        if (std::isnan(value)) continue;
+        const bool missing = options.missing && static_cast<double>(value) == *options.missing;
+        value = missing ? std::numeric_limits<float>::quiet_NaN()
+                        : static_cast<float>(factor * (static_cast<double>(value) - options.offset));
     }
 }
 
 double greatest(const Stack& stack) {
     std::vector<double> values;
-    for (const auto& layer : stack.layers) {
-        const std::size_t step = 1 + layer.size() / 20000;
-        for (std::size_t i = 0; i < layer.size(); i += step) {
-            if (!std::isnan(layer[i])) values.push_back(std::abs(static_cast<double>(layer[i])));
+    const std::size_t n = stack.n_x * stack.n_y;
+    const std::size_t step = 1 + n / 20000;
+    for (std::size_t first = 0; first < stack.values.size(); first += n) {
+        for (std::size_t i = first; i < first + n; i += step) {
+            if (!std::isnan(stack.values[i])) values.push_back(std::abs(static_cast<double>(stack.values[i])));
         }
     }
     if (values.empty()) throw bad_input(stack.first_file, "", "no number: all cells are empty", "forces");
@@ -197,30 +197,23 @@ void forces_from_slice(Stack& stack, const ImportOptions& options, ImportReport&
     if (options.depths_m.empty())
         throw bad_input(stack.first_file, "", "a slice without depths",
                         "the depths that the forces are wanted at: --depths-mm");
-    if (stack.layers.size() != 1)
-        throw bad_input(stack.first_file, "", std::to_string(stack.layers.size()) + " slices", "one");
-    const std::vector<float> slice = stack.layers.front();
-    stack.layers.clear();
+    if (stack.n_layers() != 1)
+        throw bad_input(stack.first_file, "", std::to_string(stack.n_layers()) + " slices", "one");
+    const std::vector<float> slice = std::move(stack.values);
+    stack.values.clear();
+    check_count(slice.size() * options.depths_m.size(), stack.first_file);
+    stack.values.reserve(slice.size() * options.depths_m.size());
     stack.depths_m = options.depths_m;
     for (const double depth_m : stack.depths_m) {
         const double per_unit =
             options.quantity == Quantity::stiffness ? depth_m : elastic_force_N(1.0, depth_m, options);
-        std::vector<float> layer = slice;
-        for (float& value : layer) value = static_cast<float>(per_unit * static_cast<double>(value));
-        stack.layers.push_back(std::move(layer));
+        for (const float value : slice) stack.values.push_back(static_cast<float>(per_unit * static_cast<double>(value)));
     }
     const bool beyond = options.quantity == Quantity::young && options.indenter == IndenterShape::sphere &&
                         stack.depths_m.back() > 0.5 * options.indenter_radius_m;
     if (beyond)
         report.notes.push_back(
             "depths beyond half the indenter's radius are beyond what Hertz's formula is made for");
-}
-
-std::vector<float> joined(const Stack& stack) {
-    std::vector<float> out;
-    out.reserve(stack.layers.size() * stack.n_x * stack.n_y);
-    for (const auto& layer : stack.layers) out.insert(out.end(), layer.begin(), layer.end());
-    return out;
 }
 
 std::vector<float> tangential_of(const std::vector<fs::path>& files, const Stack& normal,
@@ -240,7 +233,7 @@ std::vector<float> tangential_of(const std::vector<fs::path>& files, const Stack
     ImportOptions unsigned_options = options;
     unsigned_options.negate_force = false;  // the normal force's sign
     scale(stack, unsigned_options);
-    return joined(stack);
+    return std::move(stack.values);
 }
 
 void note_choices(const ImportOptions& options, bool from_names, const Stack& stack, MapSource& source) {
@@ -319,9 +312,7 @@ Map import_matrices(const std::vector<fs::path>& files, const ImportOptions& opt
     plan.depths_m = stack.depths_m;
     check_grid(plan.x, plan.y, plan.depths_m.size(), stack.first_file);
     start_map(plan, map);
-    map.normal_N = joined(stack);
-    stack.layers.clear();
-    stack.layers.shrink_to_fit();
+    map.normal_N = std::move(stack.values);
     map.tangential_x_N = tangential_of(along_x, stack, options);
     map.tangential_y_N = tangential_of(along_y, stack, options);
     const bool measured = !map.tangential_x_N.empty() || !map.tangential_y_N.empty();

@@ -68,6 +68,10 @@ class Places {
         return i * 4'000'000'007 + j;
     }
     ProbedPoint& add(double x_m, double y_m, std::size_t line) {
+        if (!points_.empty()) {  // most often that place is complete
+            points_.back().depth_m.shrink_to_fit();
+            points_.back().force_N.shrink_to_fit();
+        }
         points_.emplace_back();
         points_.back().x_m = x_m;
         points_.back().y_m = y_m;
@@ -346,10 +350,14 @@ Map map_of_probing(Probing& probing, const ImportOptions& options, const std::st
                   short_number(report.median_offset_N) + " N); linear between a point's own depths";
 
     RecordedPoints recorded;
+    std::size_t n_recorded = 0;
+    for (const ProbedPoint& p : probing.points) n_recorded += p.depth_m.size() - 1;
+    recorded.reserve(n_recorded);
     for (const ProbedPoint& p : probing.points) {
         for (std::size_t i = 1; i < p.depth_m.size(); ++i)
             recorded.add(p.x_m, p.y_m, p.depth_m[i], p.force_N[i]);
     }
+    probing = {};  // the greater part of the memory
     finish_map(map, recorded, false, options, file, report);
     return map;
 }

@@ -35,7 +35,8 @@ Probing read_probing(Table& table, const Columns& columns, const ImportOptions& 
 
 // What `read_probing` returns, as a map: on the grid that the places lie on, or else scattered places brought
 // onto one (gridding.h). Each place's curve, less its force at contact, is interpolated linearly between its
-// own depths; beyond its greatest depth it is missing. Choices go to map.source. Throws InputError.
+// own depths; beyond its greatest depth it is missing. Choices go to map.source. `probing` is used up. Throws
+// InputError.
 Map map_of_probing(Probing& probing, const ImportOptions& options, const std::string& file,
                    ImportReport& report);
 

@@ -358,6 +358,7 @@ Map map_of_sliding(Sliding& sliding, const ImportOptions& options, const std::st
                  "; samples brought onto a grid by " + name_of(plan.method);
 
     RecordedPoints recorded;
+    recorded.reserve(pressed.size());
     for (std::size_t i = 0; i < pressed.size(); ++i)
         recorded.add(pressed.x_m[i], pressed.y_m[i], pressed.depth_m[i], pressed.force_N[i]);
     pressed = {};

@@ -5,9 +5,12 @@
 #include <filesystem>
 #include <set>
 #include <string>
+#include <sys/resource.h>
 #include <sys/wait.h>
+#include <unistd.h>
 
 #include "files/json.h"
+#include "files/npy.h"
 #include "files/text.h"
 #include "stiffnessmaps/map_file.h"
 #include "tests/error_message.h"
@@ -44,6 +47,18 @@ std::string odd_table() {
         }
     }
     return text;
+}
+
+// The most memory (bytes) that any process of an import held, as the system counted it.
+double memory_of_import(const TemporaryFolder& folder, const std::string& arguments) {
+    const pid_t child = ::fork();
+    if (child == 0) ::_exit(import(folder, arguments).status);
+    int status = 0;
+    rusage used{};
+    ::wait4(child, &status, 0, &used);
+    CHECK(WIFEXITED(status));
+    CHECK(WEXITSTATUS(status) == 0);
+    return 1024.0 * static_cast<double>(used.ru_maxrss);
 }
 
 const std::string kColumns =
@@ -160,3 +175,76 @@ TEST_CASE("maps import: what cannot be ends with status 2, says what, and leaves
     CHECK(import(folder, "mN.csv --force-unit mN -o n.map").status == 0);
     CHECK(read_map(folder / "n.map").normal_N.back() == doctest::Approx(2.1f));
 }
+
+TEST_CASE("maps import: hostile recordings end with status 2 and a message that names what is wrong") {
+    const TemporaryFolder folder;
+    // 5 x 5 places, 4 depths; `x_mm` of the first, `fn` of a row
+    const auto grid = [](double x_mm, const auto& fn) {
+        std::string rows;
+        for (int p = 0; p < 25; ++p) {
+            for (int k = 0; k < 4; ++k)
+                rows += std::to_string(x_mm + 2 * (p % 5)) + "," + std::to_string(2 * (p / 5)) + "," + std::to_string(k) + "," + fn(p, k) + "\n";
+        }
+        return rows;
+    };
+    const auto rising = [](int, int k) { return std::to_string(0.5 * k); };
+    const std::string head = "x,y,depth,fn\n";
+    write_text_atomically(folder / "mN.csv", head + grid(0.0, [](int, int k) { return std::to_string(700 * k); }));
+    write_text_atomically(folder / "metres.csv", head + "0,0,0,0\n0,0,0.001,0.9\n0,0,0.002,2\n");
+    write_text_atomically(folder / "column.csv", "x,y,depth\n0,0,0\n0,0,1\n");
+    write_text_atomically(folder / "two.csv", head + grid(0.0, rising) + grid(300.0, rising));
+    write_text_atomically(folder / "nan.csv", head + grid(0.0, [](int, int) { return "nan"; }));
+    write_text_atomically(folder / "empty_2mm.csv", "n/a,n/a\nnan,\n");
+    std::string promised = npy_header({1'000'000, 1'000, 1'000});
+    write_text_atomically(folder / "promised.npy", promised + "abcd");
+    std::string back = "t,x,y,z,fx,fy,fz\n";
+    for (int i = 0; i < 400; ++i)
+        back += std::to_string(i < 200 ? 0.01 * i : 0.01 * i - 1.0) + "," + std::to_string(0.1 * i) + ",0,-1,0,0,0.5\n";
+    write_text_atomically(folder / "back.csv", back);
+    const auto refused = [&](const std::string& arguments, const char* word) {
+        const Called called = import(folder, arguments + " -o n.map");
+        CAPTURE(arguments);
+        CAPTURE(called.err);
+        CHECK(called.status == 2);
+        CHECK(contains(called.err, arguments.substr(0, arguments.find(' '))));
+        CHECK(contains(called.err, word));
+        CHECK_FALSE(std::filesystem::exists(folder / "n.map"));
+    };
+    refused("mN.csv", "state the column's unit by --force-unit mN");
+    refused("metres.csv", "state the unit of the depths by --depth-unit m");
+    refused("column.csv", "expected a column for fn");
+    refused("two.csv", "two grids in one file?");
+    refused("nan.csv", "no row with numbers");
+    refused("empty_2mm.csv --spacing-mm 1", "all cells are empty");
+    refused("promised.npy --spacing-mm 1 --depths-mm 1", "4000000000000 for the shape (1000000, 1000, 1000)");
+    refused("back.csv", "line 202, t: found '1");
+    // some rows that are no numbers are only counted
+    write_text_atomically(folder / "some.csv", head + grid(0.0, [&](int p, int k) { return p == 7 ? std::string("nan") : rising(p, k); }));
+    CHECK(contains(import(folder, "some.csv -o some.map").out, "1 cells missing; 4 of 100 rows and 1 points rejected"));
+}
+
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)  // they multiply it
+TEST_CASE("maps import: takes less than four times the file's size in memory") {
+    const TemporaryFolder folder;
+    const std::size_t n = 1000;
+    NpyArray array{{10, n, n}, std::vector<float>(10 * n * n)};
+    for (std::size_t i = 0; i < array.values.size(); ++i)
+        array.values[i] = 0.1f * static_cast<float>(1 + i / (n * n)) + 1e-5f * static_cast<float>(i % 97);
+    write_npy(folder / "a.npy", array.shape, array.values);
+    array = {};
+    const auto times = [&](const char* file, const std::string& arguments) {
+        const double share = memory_of_import(folder, arguments) / static_cast<double>(std::filesystem::file_size(folder / file));
+        MESSAGE(file, ": ", share, " times its size");
+        return share;
+    };
+    CHECK(times("a.npy", "a.npy --depths-mm 1,2,3,4,5,6,7,8,9,10 --spacing-mm 1 -o a.map") < 4.0);
+    std::string rows = "x_mm,y_mm,depth_mm,fn_N\n";
+    for (int place = 0; place < 250 * 250; ++place) {
+        const std::string at = std::to_string(place % 250) + "," + std::to_string(place / 250) + ",";
+        for (int k = 0; k < 20; ++k) rows += at + std::to_string(0.2 * k) + "," + std::to_string(0.1 * k + 1e-4 * (place % 7)) + "\n";
+    }
+    write_text_atomically(folder / "p.csv", rows);
+    rows = {};
+    CHECK(times("p.csv", "p.csv -o p.map") < 4.0);
+}
+#endif

@@ -5,7 +5,9 @@
 #include <cmath>
 #include <random>
 
+#include "files/text.h"
 #include "tests/error_message.h"
+#include "tests/temporary_folder.h"
 
 using namespace palpa;
 using namespace palpa::test;
@@ -48,6 +50,31 @@ TEST_CASE("npy: double precision and format version 2 are read") {
     two[6] = '\x02';
     two.insert(10, 2, '\0');
     CHECK(parse_npy(two, "a").values == array.values);
+}
+
+TEST_CASE("npy: a file is read in parts as its bytes are at once, and written from where the values stand") {
+    const TemporaryFolder folder;
+    NpyArray large{{3, 70'001}, std::vector<float>(3 * 70'001)};  // no whole number of parts
+    for (std::size_t i = 0; i < large.values.size(); ++i) large.values[i] = 0.25f * static_cast<float>(i);
+    write_npy(folder / "a.npy", large.shape, large.values);
+    CHECK(read_text(folder / "a.npy") == npy_bytes(large));
+    CHECK(read_npy(folder / "a.npy").values == large.values);
+    const std::vector<double> doubles(large.values.begin(), large.values.end());
+    std::string wide = with_header("{'descr': '<f8', 'fortran_order': False, 'shape': (3, 70001), }",
+                                   {reinterpret_cast<const char*>(doubles.data()), 8 * doubles.size()});
+    wide[6] = '\x02';
+    wide.insert(10, 2, '\0');
+    write_text_whole(folder / "b.npy", wide);
+    CHECK(read_npy(folder / "b.npy").shape == large.shape);
+    CHECK(read_npy(folder / "b.npy").values == large.values);
+    const std::string good = npy_bytes(example());
+    for (std::size_t n = 0; n < good.size(); ++n) {  // cut anywhere: the same words
+        write_text_whole(folder / "c.npy", good.substr(0, n));
+        const std::string file = (folder / "c.npy").string();
+        const std::string said = message_of([&] { read_npy(file); });
+        CHECK(said != "");
+        CHECK(said == message_of([&] { parse_npy(good.substr(0, n), file); }));
+    }
 }
 
 TEST_CASE("hard case 31: npy with impossible sizes, other types and cut ends") {

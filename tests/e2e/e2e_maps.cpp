@@ -1,0 +1,157 @@
+// The map browser on a real X server: a map chosen by mouse, depth by pen, kind and depth by keys, places pinned, and out
+// again; what stands on the screen is watched all the while. Run it under tests/platform/xorg/with-xorg.
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <atomic>
+#include <fstream>
+#include <functional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "files/json.h"
+#include "files/text.h"
+#include "stiffnessmaps/map_file.h"
+#include "tests/e2e/run_app.h"
+
+// last: its macros are words of the others
+#include <X11/Xlib.h>
+#include <X11/Xutil.h>
+
+using namespace palpa;
+using namespace palpa::test;
+
+namespace {
+
+struct Point {
+    double x_px, y_px;
+};
+// The middle of controls, as the screenshot of a window of 1280 x 800 px shows them.
+constexpr Point kFirstMap{120, 232}, kSecondMap{120, 273}, kShallower{32, 175}, kBack{85, 35}, kOnMatrix{560, 400};
+enum Key { kB = 56, kEsc = 9, k1 = 10, k4 = 13, kL = 46, kI = 31, kO = 32, kPageUp = 112, kPageDown = 117 };
+
+class Script {
+ public:
+    explicit Script(const std::filesystem::path& file) : out_(file) { out_ << "t_s\tkind\tid\tphase\tx_px\ty_px\tpressure\n"; }
+    void wait(double seconds) { t_s_ += seconds; }
+    void row(const char* kind, const char* phase, Point at, double pressure, int id = 0) {
+        out_ << t_s_ << '\t' << kind << '\t' << id << '\t' << phase << '\t' << at.x_px << '\t' << at.y_px << '\t' << pressure << '\n';
+    }
+    void tap(const char* kind, Point at) {
+        row(kind, kind[0] == 'm' ? "move" : "hover", at, 0.0);
+        wait(0.2);
+        row(kind, "down", at, 0.3);
+        wait(0.15);
+        row(kind, "up", at, 0.0);
+        wait(kSettle_s);
+    }
+    void key(int code) {
+        row("key", "down", {0, 0}, 0.0, code);
+        wait(0.1);
+        row("key", "up", {0, 0}, 0.0, code);
+        wait(kSettle_s);
+    }
+    double close() {
+        out_.close();
+        return t_s_;
+    }
+
+ private:
+    static constexpr double kSettle_s = 1.0;  // long beside the watcher's 50 ms
+    std::ofstream out_;
+    double t_s_ = 0.5;
+};
+
+// What stood for a while in a part of the screen, one after the other; a hash of the pixels.
+class Watcher {
+ public:
+    Watcher(int x, int y, int width, int height)
+        : thread_([=, this] {
+              Display* display = ::XOpenDisplay(nullptr);
+              std::size_t last = 0;
+              int same = 0;
+              while (display != nullptr && !over_) {
+                  XImage* image = ::XGetImage(display, DefaultRootWindow(display), x, y, static_cast<unsigned>(width), static_cast<unsigned>(height), AllPlanes, ZPixmap);
+                  if (image == nullptr) break;
+                  const std::string_view pixels(image->data, static_cast<std::size_t>(image->bytes_per_line) * static_cast<std::size_t>(height));
+                  const std::size_t now = std::hash<std::string_view>{}(pixels);
+                  XDestroyImage(image);
+                  same = now == last ? same + 1 : 0;
+                  last = now;
+                  if (same == 4 && (stood.empty() || stood.back() != now)) stood.push_back(now);
+                  sleep_s(0.05);
+              }
+              if (display != nullptr) ::XCloseDisplay(display);
+          }) {}
+    ~Watcher() { stop(); }
+    Watcher(const Watcher&) = delete;
+    Watcher& operator=(const Watcher&) = delete;
+    void stop() {
+        over_ = true;
+        if (thread_.joinable()) thread_.join();
+    }
+    std::vector<std::size_t> stood;
+
+ private:
+    std::atomic<bool> over_ = false;
+    std::thread thread_;
+};
+
+// A second map in the person's own folder: the shipped one, mirrored.
+void add_map(const TemporaryFolder& folder) {
+    Map map = read_map(PALPA_SOURCE_DIR "/assets/maps/silicone.map");
+    for (auto* forces : {&map.normal_N, &map.tangential_x_N, &map.tangential_y_N}) {
+        for (std::size_t row = 0; row < forces->size(); row += map.n_x) {
+            const auto from = forces->begin() + static_cast<std::ptrdiff_t>(row);
+            std::reverse(from, from + static_cast<std::ptrdiff_t>(map.n_x));
+        }
+    }
+    map.name = "mirrored";
+    map.nodules.clear();
+    const auto maps = folder / ".local/share/palpa/maps";
+    std::filesystem::create_directories(maps);
+    write_map(map, maps / "mirrored.map");
+}
+
+}  // namespace
+
+TEST_CASE("maps: the browser by mouse, pen and keys draws what was asked for, and is left again") {
+    const TemporaryFolder folder;
+    add_map(folder);
+    Script script(folder / "script.tsv");
+    script.key(kB);                    // 0 the trial, 1 the shipped map at its deepest
+    script.tap("mouse", kSecondMap);   // 2 the mirrored one
+    script.tap("pen", kShallower);     // 3 one depth less
+    script.key(kPageDown);             // 4 = 2
+    script.key(k4);                    // 5 stiffness
+    script.key(k1);                    // 6 = 2
+    script.tap("pen", kOnMatrix);      // 7 a pin
+    script.row("pen", "hover", kBack, 0.0);
+    script.wait(0.5);
+    script.key(kI);                    // 8 a point moved by keys
+    script.key(kO);                    // 9 pinned
+    script.tap("mouse", kFirstMap);    // 10 = 1, without pins
+    script.tap("pen", kBack);          // 11 the trial again
+    script.key(kB);                    // 12 = 1
+    script.key(kEsc);                  // 13 the trial
+    const double played_s = script.close();
+    const std::string arguments = "--practice --width-px 1280 --height-px 800 --quit-after-s " + std::to_string(played_s + 8.0) + " --screenshot " + (folder / "p.png").string();
+    std::vector<std::size_t> stood;
+    const int status = run_app(folder, arguments, [&] {
+        Watcher watcher(262, 40, 420, 700);  // within the matrix
+        sleep_s(1.0);
+        CHECK(play_script(folder) == 0);
+        sleep_s(1.0);
+        watcher.stop();
+        stood = watcher.stood;
+    });
+    CAPTURE(read_text(folder / "err.txt"));
+    REQUIRE(status == 0);
+    CHECK(std::filesystem::exists(folder / "p.png"));
+    std::string order;  // the same letter for the same picture
+    for (const std::size_t picture : stood) order += static_cast<char>('a' + (std::find(stood.begin(), stood.end(), picture) - stood.begin()));
+    CAPTURE(order);
+    CHECK(order == "abcdcfchijbaba");
+}
