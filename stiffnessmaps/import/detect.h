@@ -22,8 +22,8 @@
 // 5. A region is sure if that is more than the highest of so many independent areas reaches once in a thousand maps,
 //    times 1.5 (a region is drawn around the highest cells, not laid anywhere). Independent areas: the map's area by the
 //    larger of the region's and that over which the excess is alike (integral scales of its autocorrelation).
-//    In maps of noise alone, white or correlated over up to 7 mm, none of 1120 was sure; variation that is smooth over
-//    more than half of the window cannot be told from a nodule (sure in 4 of 100 at 12 mm).
+//    In maps of noise alone, white or correlated over up to 7 mm, none of 420 was sure, but 3 of 300 that were at most
+//    17 x 30 mm; variation that is smooth over more than half of the window cannot be told from a nodule (4 of 100 at 12 mm).
 // 6. Look again: sure regions and their slopes are set aside, as they raise the background and its spread around them,
 //    and steps 2 to 5 are taken with the rest, for as long as another one turns out sure. Only sure ones are added, and
 //    what an earlier look found keeps its figures. A map without a sure region is not looked at again.

@@ -161,3 +161,14 @@ TEST_CASE("matrices: slices of stiffness and elasticity become forces by a state
     CHECK(contains(message_of([&] { import_recording({folder / "k.csv"}, options, report); }),
                    "expected from 0.001 to 1000 N/mm"));
 }
+
+TEST_CASE("matrices: a slice at many depths holds no more numbers than files may") {
+    const TemporaryFolder folder;
+    write_npy(folder / "k.npy", {1000, 1000}, std::vector<float>(1'000'000, 2.0f));
+    ImportOptions options = spaced();
+    options.quantity = Quantity::stiffness;
+    options.scale = 1e3;
+    for (int k = 1; k <= 21; ++k) options.depths_m.push_back(1e-3 * k);
+    ImportReport report;
+    CHECK(contains(message_of([&] { import_recording({folder / "k.npy"}, options, report); }), "more than 20 million numbers"));
+}
