@@ -2,6 +2,7 @@
 #include <doctest/doctest.h>
 #include <limits>
 
+#include "files/npy.h"
 #include "stiffnessmaps/import/matrices.h"
 #include "stiffnessmaps/map_file.h"
 #include "tests/stiffnessmaps/array_writers.h"
