@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <malloc.h>
 #include <numbers>
 #include <unordered_map>
 
@@ -357,7 +358,8 @@ Map map_of_probing(Probing& probing, const ImportOptions& options, const std::st
         for (std::size_t i = 1; i < p.depth_m.size(); ++i)
             recorded.add(p.x_m, p.y_m, p.depth_m[i], p.force_N[i]);
     }
-    probing = {};  // the greater part of the memory
+    probing = {};  // the greater part of the memory, in pieces that the allocator would keep
+    ::malloc_trim(0);
     finish_map(map, recorded, false, options, file, report);
     return map;
 }

@@ -234,14 +234,14 @@ TEST_CASE("maps import: takes less than four times the file's size in memory") {
     array = {};
     const auto times = [&](const char* file, const std::string& arguments) {
         const double share = memory_of_import(folder, arguments) / static_cast<double>(std::filesystem::file_size(folder / file));
-        MESSAGE(file, ": ", share, " times its size");
+        MESSAGE(std::string(file), ": ", share, " times its size");
         return share;
     };
     CHECK(times("a.npy", "a.npy --depths-mm 1,2,3,4,5,6,7,8,9,10 --spacing-mm 1 -o a.map") < 4.0);
-    std::string rows = "x_mm,y_mm,depth_mm,fn_N\n";
+    std::string rows = "x_mm,y_mm,depth_mm,fn_N,fx_N,fy_N\n";
     for (int place = 0; place < 250 * 250; ++place) {
         const std::string at = std::to_string(place % 250) + "," + std::to_string(place / 250) + ",";
-        for (int k = 0; k < 20; ++k) rows += at + std::to_string(0.2 * k) + "," + std::to_string(0.1 * k + 1e-4 * (place % 7)) + "\n";
+        for (int k = 0; k < 20; ++k) rows += at + std::to_string(0.2 * k) + "," + std::to_string(0.1 * k + 1e-4 * (place % 7)) + ",0.012345,0.023456\n";
     }
     write_text_atomically(folder / "p.csv", rows);
     rows = {};
