@@ -124,6 +124,8 @@ bool attempt(App& app, const Work& work) {
     }
 }
 
+double finger_offset_mm(const App& app) { return app.settings.above_finger ? static_cast<double>(kFingerOffset_mm) : 0.0; }
+
 double now_of(const App& app, const Window& window) { return window.now_s() - app.trace_shift_s; }
 
 void begin(const Window& window, const Gui& gui, App& app) {
@@ -136,6 +138,7 @@ void begin(const Window& window, const Gui& gui, App& app) {
     app.begin_waits = false;
     SessionFiles files{app.options.log, app.options.participant, app.options.record};
     files.first_run = app.options.first_run;
+    files.finger_offset_mm = finger_offset_mm(app);
     begin_trial(files, info_of(app, window), mode, app.session);
     if (!app.trace) take_sample(resize_sample(window, gui, app.settings, now_of(app, window)), app.session);
 }
@@ -192,7 +195,9 @@ void begin_study_trial(const Window& window, const Gui& gui, App& app) {
         app.session.scene = scene_of(due, trial);
         app.session.plan = *due.plan;
         app.screens.note.clear();
-        begin_trial(due_files(run), info_of(app, window), known ? TrialMode::practice : TrialMode::test, app.session);
+        SessionFiles files = due_files(run);
+        files.finger_offset_mm = finger_offset_mm(app);
+        begin_trial(files, info_of(app, window), known ? TrialMode::practice : TrialMode::test, app.session);
         take_sample(resize_sample(window, gui, app.settings, now_of(app, window)), app.session);
         app.screens.screen = Screen::trial;
     } catch (const std::exception& error) {
@@ -322,6 +327,7 @@ void open_screen(Screen screen, double now_s, App& app) {
 
 void change_settings(const Wishes& wishes, Window& window, Gui& gui, App& app) {
     if (wishes.left_handed) app.settings.left_handed = *wishes.left_handed;
+    if (wishes.above_finger) app.settings.above_finger = *wishes.above_finger;
     if (wishes.mode) app.settings.test_mode = *wishes.mode == TrialMode::test;
     if (wishes.full_screen) {
         app.settings.full_screen = !window.full_screen();
@@ -332,10 +338,10 @@ void change_settings(const Wishes& wishes, Window& window, Gui& gui, App& app) {
         app.settings.px_per_mm.erase(app.screens.screen_name);
         if (std::isfinite(*wishes.px_per_mm)) app.settings.px_per_mm[app.screens.screen_name] = *wishes.px_per_mm;
     }
-    const bool changed = wishes.left_handed || wishes.mode || wishes.full_screen || wishes.px_per_mm || wishes.scene || wishes.profile;
+    const bool changed = wishes.left_handed || wishes.above_finger || wishes.mode || wishes.full_screen || wishes.px_per_mm || wishes.scene || wishes.profile;
     if (changed) keep_settings(app);
     // what was measured with another scale or shown another way is another trial
-    if (wishes.px_per_mm || wishes.mode) begin_anew(window, gui, app);
+    if (wishes.px_per_mm || wishes.mode || wishes.above_finger) begin_anew(window, gui, app);
 }
 
 // What a study's screen has led to, and the end of a trial's time.
@@ -394,6 +400,14 @@ bool allowed(const Sample& sample, App& app) {
     if (sample.phase == Phase::ui || tool_allowed(modality, sample.tool)) return true;
     if (sample.phase == Phase::down) app.screens.note = std::string("This trial is done with the ") + name_of(modality) + ".";
     return false;
+}
+
+// A finger that may not hide the avatar indents what lies above it; log and trace hold that place.
+void lift_fingers(float mm, std::vector<Sample>& samples, const App& app) {
+    if (!app.settings.above_finger || app.trace || app.screens.screen != Screen::trial) return;
+    for (Sample& sample : samples) {
+        if (sample.tool == Tool::finger) sample.y_px -= static_cast<double>(kFingerOffset_mm * mm);
+    }
 }
 
 // Where the samples of one turn of the loop go: to the tissue, or to the device check.
@@ -586,6 +600,7 @@ struct Live::Impl {
         begin_when_kept(*window, *gui, app);
         note_resize(*window, *gui, app);
         place_keyboard(*window, app);
+        lift_fingers(gui->mm(), samples, app);
         take_all(window->now_s(), samples, app);       // 2. simulate, 3. log
         watch_files(app);
         flush_if_due(app.session);  // also while nothing moves, and nothing is drawn

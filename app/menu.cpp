@@ -13,6 +13,7 @@ PanelArea menu_area(const Layout& layout, float mm) {
     const PanelArea& t = layout.tissue_px;
     PanelArea area = t;
     area.x1 = std::min(t.x1, t.x0 + 150.0f * mm);
+    if (layout.column) area.y1 = std::max(t.y1, layout.controls_px.y1);
     return area;
 }
 
@@ -51,6 +52,10 @@ void right_side(const Shown& shown, const Gui& gui, Screens& screens, Wishes& wi
     pair("Left", "Right", !shown.settings.left_handed, gui, left, right);
     if (left) wishes.left_handed = true;
     if (right) wishes.left_handed = false;
+    ImGui::TextDisabled("Avatar");
+    pair("Under finger", "Above finger", shown.settings.above_finger, gui, left, right);
+    if (left) wishes.above_finger = false;
+    if (right) wishes.above_finger = true;
     ImGui::TextDisabled("Screen and devices");
     if (big_button("Size of the screen", "Z", {}, gui)) wishes.screen = Screen::scale;
     if (big_button("Device check", "D", {}, gui)) wishes.screen = Screen::devices;
