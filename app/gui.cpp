@@ -3,6 +3,7 @@
 #include <GLES3/gl3.h>
 #include <backends/imgui_impl_opengl3.h>
 #include <imgui.h>
+#include <imgui_internal.h>
 
 #include <algorithm>
 #include <stdexcept>
@@ -225,6 +226,17 @@ void Gui::draw() {
     while (glGetError() != GL_NO_ERROR) {
         // the packaged backend asks desktop GL questions that OpenGL ES answers with an error
     }
+}
+
+std::optional<std::string> Gui::text_typed() const {
+    if (!ImGui::GetIO().WantTextInput) return std::nullopt;
+    const ImGuiInputTextState* state = ImGui::GetInputTextState(ImGui::GetActiveID());
+    if (state == nullptr) return std::nullopt;
+    std::string text(4 * static_cast<std::size_t>(state->CurLenW) + 1, '\0');
+    const ImWchar* letters = state->TextW.Data;
+    const int size = ImTextStrToUtf8(text.data(), static_cast<int>(text.size()), letters, letters + state->CurLenW);
+    text.resize(static_cast<std::size_t>(size));
+    return text;
 }
 
 bool Gui::pressed(int key, bool ctrl) const {

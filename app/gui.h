@@ -38,6 +38,8 @@ class Gui {
     void claim(const PanelArea& area) { areas_.push_back(area); }
     // Whether a key (platform/window_event.h) went down since the last frame. Never while a number is typed.
     bool pressed(int key, bool ctrl = false) const;
+    // What stands in the field that takes letters now; nothing if none does.
+    std::optional<std::string> text_typed() const;
 
     // A panel that does not fit into its place says so; for tests, and for `run --json`.
     void note_overflow(const std::string& panel) { overflow_ = panel; }

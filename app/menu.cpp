@@ -32,6 +32,13 @@ void choices(const char* title, const std::vector<Choice>& list, const std::stri
     ImGui::EndChild();
 }
 
+void pair_of_ways(const char* left, const char* right, const Gui& gui, bool& chose_left, bool& chose_right) {
+    const float width_px = share_of_line_px(2);
+    chose_left = big_button(left, "", {width_px, kTarget_mm, true, false}, gui);
+    ImGui::SameLine();
+    chose_right = big_button(right, "", {width_px, kTarget_mm, true, false}, gui);
+}
+
 void pair(const char* left, const char* right, bool right_chosen, const Gui& gui, bool& chose_left, bool& chose_right) {
     const float width_px = share_of_line_px(2);
     chose_left = big_button(left, "", {width_px, kTarget_mm, true, !right_chosen}, gui);
@@ -59,7 +66,9 @@ void right_side(const Shown& shown, const Gui& gui, Screens& screens, Wishes& wi
     if (big_button("Cost", "C", {0.0f, kTarget_mm, true, screens.cost}, gui)) screens.cost = !screens.cost;
     if (big_button("Full screen", "F11", {0.0f, kTarget_mm, true, shown.settings.full_screen}, gui)) wishes.full_screen = true;
     if (screens.keeps_trials) {
-        if (big_button("Trials", "T", {}, gui)) wishes.trials = true;
+        bool trials = false;
+        pair_of_ways("Trials", "Studies", gui, trials, wishes.studies);
+        wishes.trials = wishes.trials || trials;
     } else if (big_button("Quit", "Ctrl Q", {}, gui)) {
         wishes.quit = true;
     }

@@ -35,7 +35,32 @@ void beside(const std::string& text, const Gui& gui) {
 
 void gap(const Gui& gui) { ImGui::Dummy(ImVec2(0.0f, 2.0f * gui.mm())); }
 
-void draw_code(Gui& gui, StudyRun& run) {
+// For the experimenter: pairing, sending, exporting.
+void trials_button(const Gui& gui, const StudyRun& run, Wishes& wishes) {
+    if (!run.on_tablet) return;
+    if (big_button("Trials on this tablet", "", {std::min(70.0f * gui.mm(), share_of_line_px(1)), kTarget_mm, true, false}, gui)) wishes.trials = true;
+}
+
+// Leaves the study; where there is no window to close, the way to the rest of the app.
+void leave_button(const Gui& gui, const StudyRun& run, Wishes& wishes) {
+    const char* label = run.on_tablet ? "Leave the study" : "Close";
+    const char* key = run.on_tablet ? "" : "Ctrl Q";
+    if (big_button(label, key, {std::min(70.0f * gui.mm(), share_of_line_px(1)), kTarget_mm, true, false}, gui)) wishes.quit = true;
+}
+
+// Where what was done goes: usually for less than a frame.
+void draw_keeping(double now_s, Gui& gui, StudyRun& run, Wishes& wishes) {
+    constexpr double kSoon_s = 0.5;
+    if (run.keeping_began_s == 0.0) run.keeping_began_s = now_s;
+    if (now_s - run.keeping_began_s < kSoon_s && run.warnings.empty()) return;
+    title("One moment");
+    paragraph("What was done is being put into this tablet's storage. The study goes on when it is there.");
+    for (const std::string& warning : run.warnings) warning_paragraph(warning);
+    gap(gui);
+    if (!run.warnings.empty()) trials_button(gui, run, wishes);
+}
+
+void draw_code(Gui& gui, StudyRun& run, Wishes& wishes) {
     title("Who is here?");
     paragraph("A code for the participant, no name: letters and digits. Whoever was here before goes on with the same code.");
     if (run.answers.empty()) run.answers = {free_code(run)};
@@ -48,6 +73,11 @@ void draw_code(Gui& gui, StudyRun& run) {
     gap(gui);
     if (forward("Go on", gui) || entered) enter_code(run.answers[0], run);
     if (!run.note.empty()) warning_paragraph(run.note);
+    for (const std::string& warning : run.warnings) warning_paragraph(warning);
+    if (!run.on_tablet) return;
+    gap(gui);
+    trials_button(gui, run, wishes);
+    leave_button(gui, run, wishes);
 }
 
 void draw_again(Gui& gui, StudyRun& run) {
@@ -227,18 +257,21 @@ void draw_typed(double now_s, Gui& gui, StudyRun& run) {
 
 void draw_done(Gui& gui, StudyRun& run, Wishes& wishes) {
     title("That was all. Thank you!");
-    paragraph("Participant " + run.code + ": " + std::to_string(run.progress.finished.size()) + " trials, all on the disk.");
+    paragraph("Participant " + run.code + ": " + std::to_string(run.progress.finished.size()) + " trials, all " + (run.on_tablet ? "kept on this tablet." : "on the disk."));
     gap(gui);
     if (forward("Next participant", gui)) same_person(false, run);
-    if (big_button("Close", "Ctrl Q", {70.0f * gui.mm(), kTarget_mm, true, false}, gui)) wishes.quit = true;
+    trials_button(gui, run, wishes);
+    leave_button(gui, run, wishes);
 }
 
 void draw_stopped(Gui& gui, const StudyRun& run, Wishes& wishes) {
     title("The study stops here");
     warning_paragraph(run.stopped);
-    paragraph("Everything that was finished before is on the disk. Start the study again with the same code to go on.");
+    paragraph(std::string("Everything that was finished before is ") + (run.on_tablet ? "kept." : "on the disk.") +
+              " Start the study again with the same code to go on.");
     gap(gui);
-    if (big_button("Close", "Ctrl Q", {70.0f * gui.mm(), kMark_mm, true, false}, gui)) wishes.quit = true;
+    trials_button(gui, run, wishes);
+    leave_button(gui, run, wishes);
 }
 
 void draw_pause(double now_s, Gui& gui, StudyRun& run) {
@@ -262,8 +295,13 @@ void draw_study_screen(double now_s, Gui& gui, StudyRun& run, Wishes& wishes) {
     const float x0 = 0.5f * (window.width - width_px);
     const float y0 = 0.5f * (window.height - height_px);
     begin_panel("study", {x0, y0, x0 + width_px, y0 + height_px}, gui);
+    if (run.keeping) {
+        draw_keeping(now_s, gui, run, wishes);
+        return end_panel("study", gui);
+    }
+    run.keeping_began_s = 0.0;
     switch (run.step) {
-        case StudyStep::code: draw_code(gui, run); break;
+        case StudyStep::code: draw_code(gui, run, wishes); break;
         case StudyStep::again: draw_again(gui, run); break;
         case StudyStep::questions:
         case StudyStep::ratings: draw_items(gui, run); break;
