@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <stdexcept>
+#include <utility>
 
 #include "app/font.h"
 
@@ -200,6 +201,7 @@ void Gui::begin_frame(double dt_s, bool keys_to_panels) {
         io.MouseDown[0] = clicks_.front().down;
         clicks_.erase(clicks_.begin());
     }
+    type_what_was_typed();
     ImGui_ImplOpenGL3_NewFrame();
     ImGui::NewFrame();
     areas_.clear();
@@ -237,6 +239,22 @@ std::optional<std::string> Gui::text_typed() const {
     const int size = ImTextStrToUtf8(text.data(), static_cast<int>(text.size()), letters, letters + state->CurLenW);
     text.resize(static_cast<std::size_t>(size));
     return text;
+}
+
+void Gui::type_instead(const std::string& text) { instead_ = text; }
+
+// What was typed elsewhere replaces what stands in the field, once a frame.
+void Gui::type_what_was_typed() {
+    if (!instead_) return;
+    const std::string text = *std::exchange(instead_, std::nullopt);
+    ImGuiIO& io = ImGui::GetIO();
+    ImGuiInputTextState* state = ImGui::GetInputTextState(ImGui::GetActiveID());
+    if (!io.WantTextInput || state == nullptr) return;
+    state->SelectAll();
+    io.ClearInputCharacters();
+    if (!text.empty()) return io.AddInputCharactersUTF8(text.c_str());
+    io.KeysDown[key::backspace] = true;
+    let_go_.push_back(key::backspace);
 }
 
 bool Gui::pressed(int key, bool ctrl) const {

@@ -40,6 +40,7 @@ class Gui {
     bool pressed(int key, bool ctrl = false) const;
     // What stands in the field that takes letters now; nothing if none does.
     std::optional<std::string> text_typed() const;
+    void type_instead(const std::string& text);  // of what stands there
 
     // A panel that does not fit into its place says so; for tests, and for `run --json`.
     void note_overflow(const std::string& panel) { overflow_ = panel; }
@@ -52,6 +53,7 @@ class Gui {
     bool receive_finger(const WindowEvent& event);
     bool receive_key(const WindowEvent& event);
     bool owns(float x_px, float y_px) const;
+    void type_what_was_typed();
 
     struct Click {
         float x_px, y_px;
@@ -68,6 +70,7 @@ class Gui {
     std::vector<Key> keys_;
     std::vector<std::size_t> fresh_keys_;  // down since the last frame,
     std::vector<std::size_t> let_go_;      // and up again already: up after the next one
+    std::optional<std::string> instead_;   // type_instead(), until the next frame
     std::optional<std::int64_t> finger_;  // the one that uses the panels; others may palpate meanwhile
     bool mouse_on_panel_ = false;
     bool keys_to_panels_ = false;

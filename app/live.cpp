@@ -431,6 +431,7 @@ void watch_files(App& app) {
 void keep_part(double now_s, App& app) {
     constexpr double kEvery_s = 1.0;
     if (app.keeper == nullptr || !app.session.files || now_s - app.parted_s < kEvery_s) return;
+    if (!app.screens.study && !app.session.trial.last_px) return;  // a page that was only looked at
     if (app.session.log) app.session.log->flush();
     app.keeper->keep_part(*app.session.files);
     app.parted_s = now_s;
@@ -597,6 +598,7 @@ Json Live::report() const {
 }
 
 std::optional<std::string> Live::text_typed() const { return impl_->gui->text_typed(); }
+void Live::type_instead(const std::string& text) { impl_->gui->type_instead(text); }
 
 Json Live::close() {
     Impl& it = *impl_;

@@ -54,6 +54,7 @@ class Live {
 
     // What stands in the field that takes letters now; nothing if none does. For a screen that brings its own keyboard.
     std::optional<std::string> text_typed() const;
+    void type_instead(const std::string& text);
 
     void renew_drawing();  // the GL context was lost, and is back
     Json report() const;   // as `run --json` so far

@@ -58,6 +58,13 @@ void right_side(const Shown& shown, const Gui& gui, Screens& screens, Wishes& wi
     pair("Left", "Right", !shown.settings.left_handed, gui, left, right);
     if (left) wishes.left_handed = true;
     if (right) wishes.left_handed = false;
+    if (screens.keeps_trials) {
+        ImGui::TextDisabled("On this tablet");
+        left = right = false;
+        pair_of_ways("Trials", "Studies", gui, left, right);
+        wishes.trials = wishes.trials || left;
+        wishes.studies = wishes.studies || right;
+    }
     ImGui::TextDisabled("Screen and devices");
     if (big_button("Size of the screen", "Z", {}, gui)) wishes.screen = Screen::scale;
     if (big_button("Device check", "D", {}, gui)) wishes.screen = Screen::devices;
@@ -65,13 +72,7 @@ void right_side(const Shown& shown, const Gui& gui, Screens& screens, Wishes& wi
     if (big_button("Maps", "B", {0.0f, kTarget_mm, may_show_maps(shown.trial), false}, gui)) wishes.screen = Screen::maps;
     if (big_button("Cost", "C", {0.0f, kTarget_mm, true, screens.cost}, gui)) screens.cost = !screens.cost;
     if (big_button("Full screen", "F11", {0.0f, kTarget_mm, true, shown.settings.full_screen}, gui)) wishes.full_screen = true;
-    if (screens.keeps_trials) {
-        bool trials = false;
-        pair_of_ways("Trials", "Studies", gui, trials, wishes.studies);
-        wishes.trials = wishes.trials || trials;
-    } else if (big_button("Quit", "Ctrl Q", {}, gui)) {
-        wishes.quit = true;
-    }
+    if (!screens.keeps_trials && big_button("Quit", "Ctrl Q", {}, gui)) wishes.quit = true;
 }
 
 void stage_rows(const Shown& shown, const std::vector<Stage>& stages) {
@@ -169,6 +170,7 @@ void take_keys(const Shown& shown, const Gui& gui, Screens& screens, Wishes& wis
         return;
     }
     if (gui.pressed('t')) wishes.trials = true;
+    if (gui.pressed('y')) wishes.studies = true;
     if (gui.pressed(key::f10) || (gui.pressed(key::tab) && !screens.menu && screens.screen == Screen::trial)) {
         screens.menu = !screens.menu;
     }

@@ -33,6 +33,14 @@ void beside(const std::string& text, const Gui& gui) {
     ImGui::TextUnformatted(text.c_str());
 }
 
+// As high as what is touched.
+bool text_field(const char* label, char* text, std::size_t size, ImGuiInputTextFlags flags, const Gui& gui) {
+    ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, ImVec2(2.0f * gui.mm(), 0.5f * (kTarget_mm * gui.mm() - ImGui::GetFontSize())));
+    const bool done = ImGui::InputText(label, text, size, flags);
+    ImGui::PopStyleVar();
+    return done;
+}
+
 void gap(const Gui& gui) { ImGui::Dummy(ImVec2(0.0f, 2.0f * gui.mm())); }
 
 // For the experimenter: pairing, sending, exporting.
@@ -68,7 +76,7 @@ void draw_code(Gui& gui, StudyRun& run, Wishes& wishes) {
     std::snprintf(text, sizeof text, "%s", run.answers[0].c_str());
     ImGui::SetNextItemWidth(60.0f * gui.mm());
     if (ImGui::IsWindowAppearing()) ImGui::SetKeyboardFocusHere();
-    const bool entered = ImGui::InputText("code", text, sizeof text, ImGuiInputTextFlags_EnterReturnsTrue);
+    const bool entered = text_field("code", text, sizeof text, ImGuiInputTextFlags_EnterReturnsTrue, gui);
     run.answers[0] = text;
     gap(gui);
     if (forward("Go on", gui) || entered) enter_code(run.answers[0], run);
@@ -118,7 +126,7 @@ void draw_item(const Item& item, const Gui& gui, std::string& answer) {
     char text[120];
     std::snprintf(text, sizeof text, "%s", answer.c_str());
     const ImGuiInputTextFlags flags = item.from ? ImGuiInputTextFlags_CharsDecimal : ImGuiInputTextFlags_None;
-    if (ImGui::InputText("##text", text, sizeof text, flags)) answer = text;
+    if (text_field("##text", text, sizeof text, flags, gui)) answer = text;
 }
 
 // A number out of its range is no answer.
