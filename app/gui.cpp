@@ -230,7 +230,7 @@ void Gui::draw() {
     }
 }
 
-std::optional<std::string> Gui::text_typed() const {
+std::optional<Gui::TextField> Gui::text_field() const {
     if (!ImGui::GetIO().WantTextInput) return std::nullopt;
     const ImGuiInputTextState* state = ImGui::GetInputTextState(ImGui::GetActiveID());
     if (state == nullptr) return std::nullopt;
@@ -238,7 +238,7 @@ std::optional<std::string> Gui::text_typed() const {
     const ImWchar* letters = state->TextW.Data;
     const int size = ImTextStrToUtf8(text.data(), static_cast<int>(text.size()), letters, letters + state->CurLenW);
     text.resize(static_cast<std::size_t>(size));
-    return text;
+    return TextField{text, text_area_};
 }
 
 void Gui::type_instead(const std::string& text) { instead_ = text; }

@@ -597,7 +597,7 @@ Json Live::report() const {
     return result;
 }
 
-std::optional<std::string> Live::text_typed() const { return impl_->gui->text_typed(); }
+std::optional<Gui::TextField> Live::text_field() const { return impl_->gui->text_field(); }
 void Live::type_instead(const std::string& text) { impl_->gui->type_instead(text); }
 
 Json Live::close() {

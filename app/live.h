@@ -52,8 +52,8 @@ class Live {
     // The window has gone out of sight, or come back: presses end, the gap is logged, what there is is kept.
     void out_of_sight(bool hidden);
 
-    // What stands in the field that takes letters now; nothing if none does. For a screen that brings its own keyboard.
-    std::optional<std::string> text_typed() const;
+    // The field that takes letters now, for a screen that brings its own keyboard.
+    std::optional<Gui::TextField> text_field() const;
     void type_instead(const std::string& text);
 
     void renew_drawing();  // the GL context was lost, and is back

@@ -34,9 +34,12 @@ void beside(const std::string& text, const Gui& gui) {
 }
 
 // As high as what is touched.
-bool text_field(const char* label, char* text, std::size_t size, ImGuiInputTextFlags flags, const Gui& gui) {
+bool text_field(const char* label, char* text, std::size_t size, ImGuiInputTextFlags flags, Gui& gui) {
     ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, ImVec2(2.0f * gui.mm(), 0.5f * (kTarget_mm * gui.mm() - ImGui::GetFontSize())));
+    const ImVec2 low = ImGui::GetCursorScreenPos();
+    const float width_px = ImGui::CalcItemWidth();
     const bool done = ImGui::InputText(label, text, size, flags);
+    if (ImGui::IsItemActive()) gui.note_text_area({low.x, low.y, low.x + width_px, low.y + kTarget_mm * gui.mm()});
     ImGui::PopStyleVar();
     return done;
 }
@@ -101,7 +104,8 @@ void draw_choices(const std::vector<std::string>& choices, float least_px, const
     const float gap_px = ImGui::GetStyle().ItemSpacing.x;
     const float right_px = ImGui::GetCursorPosX() + ImGui::GetContentRegionAvail().x;
     for (std::size_t i = 0; i < choices.size(); ++i) {
-        const float width_px = std::max(least_px, ImGui::CalcTextSize(choices[i].c_str()).x + 6.0f * gui.mm());
+        const float margin_px = (least_px > 0.0f ? 2.0f : 6.0f) * gui.mm();
+        const float width_px = std::max(least_px, ImGui::CalcTextSize(choices[i].c_str()).x + margin_px);
         if (i > 0) {
             ImGui::SameLine();
             if (ImGui::GetCursorPosX() + width_px > right_px + 0.5f * gap_px) ImGui::NewLine();
@@ -113,14 +117,16 @@ void draw_choices(const std::vector<std::string>& choices, float least_px, const
     }
 }
 
-void draw_item(const Item& item, const Gui& gui, std::string& answer) {
+void draw_item(const Item& item, Gui& gui, std::string& answer) {
     ImGui::TextWrapped("%s", item.text.c_str());
     if (!item.choices.empty()) return draw_choices(item.choices, 0.0f, gui, answer);
     constexpr int kMostButtons = 11;
     if (item.from && *item.to - *item.from < kMostButtons) {
         std::vector<std::string> steps;
         for (int i = *item.from; i <= *item.to; ++i) steps.push_back(std::to_string(i));
-        return draw_choices(steps, 11.0f * gui.mm(), gui, answer);
+        // on one line, if that makes no button too small
+        const float share_px = share_of_line_px(static_cast<int>(steps.size()));
+        return draw_choices(steps, share_px > 8.0f * gui.mm() ? std::min(11.0f * gui.mm(), share_px) : 11.0f * gui.mm(), gui, answer);
     }
     ImGui::SetNextItemWidth(40.0f * gui.mm());
     char text[120];

@@ -21,7 +21,9 @@
 // clang-format off
 EM_JS(void, palpa_page_fail, (const char* message), { palpaPage.fail(UTF8ToString(message)); });
 EM_JS(void, palpa_page_refuse, (const char* message), { palpaPage.refuse(UTF8ToString(message)); });
-EM_JS(void, palpa_page_type, (const char* text), { palpaPage.type(UTF8ToString(text)); });
+EM_JS(void, palpa_page_type, (const char* text, double x, double y, double width, double height), {
+    palpaPage.type(UTF8ToString(text), x, y, width, height);
+});
 EM_JS(void, palpa_page_type_end, (), { palpaPage.typeEnd(); });
 EM_JS(void, palpa_page_leave, (), { palpaStudies.leave(); });
 EM_JS(void, palpa_page_started, (), { palpaPage.started(); });
@@ -49,10 +51,15 @@ void stop(const char* message) {
 // A tablet shows its keyboard for fields of the page only.
 void follow_typing() {
     if (!browser::has_touch_screen()) return;
-    const auto text = page.live->text_typed();
-    if (text) palpa_page_type(text->c_str());
-    if (!text && page.types) palpa_page_type_end();
-    page.types = text.has_value();
+    const auto field = page.live->text_field();
+    if (field) {
+        const double scale = 1.0 / browser::px_per_css_px();
+        const PanelArea& area = field->area;
+        const auto css = [&](float px) { return scale * static_cast<double>(px); };
+        palpa_page_type(field->text.c_str(), css(area.x0), css(area.y0), css(area.width()), css(area.height()));
+    }
+    if (!field && page.types) palpa_page_type_end();
+    page.types = field.has_value();
 }
 
 void frame() {

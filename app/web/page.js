@@ -71,13 +71,14 @@ const palpaPage = (() => {
     });
     at('close-studies').addEventListener('click', () => at('studies').close());
 
-    // A tablet's keyboard comes only for a field of the page: what stands there goes to the canvas.
+    // A tablet's keyboard comes only for a field of the page: one stands over the canvas's own, and what is typed goes there.
     const typing = at('typing');
     const kEnter = 13; // of platform/window_event.h
     const kSettled_ms = 300;
     let typed_ms = 0;
-    const type = (text) => {
+    const type = (text, x, y, width, height) => {
         const begins = typing.hidden;
+        Object.assign(typing.style, {left: `${x}px`, top: `${y}px`, width: `${width}px`, height: `${height}px`});
         if (!begins && (typing.value === text || performance.now() - typed_ms < kSettled_ms)) return;
         typing.value = text;
         if (!begins) return;
