@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "app/colour_scale.h"
@@ -58,8 +59,8 @@ Values values_of(const MapBrowser& browser) {
     Values out{browser.map, browser};
     out.apart = browser.quantity == MapQuantity::tangential_x || browser.quantity == MapQuantity::tangential_y;
     if (browser.quantity == MapQuantity::stiffness) out.unit = words::kNewtonsPerMm;
-    double low = INFINITY;
-    double high = -INFINITY;
+    double low = std::numeric_limits<double>::infinity();
+    double high = -low;
     for (std::size_t cell = 0; cell < browser.map.n_cells(); ++cell) {
         const double v = out.at(cell);
         if (std::isnan(v)) continue;

@@ -34,6 +34,13 @@ void choices(const char* title, const std::vector<Choice>& list, const std::stri
     ImGui::EndChild();
 }
 
+void pair_of_ways(const char* left, const char* right, const Gui& gui, bool& chose_left, bool& chose_right) {
+    const float width_px = share_of_line_px(2);
+    chose_left = big_button(left, "", {width_px, kTarget_mm, true, false}, gui);
+    ImGui::SameLine();
+    chose_right = big_button(right, "", {width_px, kTarget_mm, true, false}, gui);
+}
+
 void pair(const char* left, const char* right, bool right_chosen, const Gui& gui, bool& chose_left, bool& chose_right) {
     const float width_px = share_of_line_px(2);
     chose_left = big_button(left, "", {width_px, kTarget_mm, true, !right_chosen}, gui);
@@ -57,6 +64,13 @@ void right_side(const Shown& shown, const Gui& gui, Screens& screens, Wishes& wi
     pair(words::kUnderIt, words::kAboveIt, shown.settings.above_finger, gui, left, right);
     if (left) wishes.above_finger = false;
     if (right) wishes.above_finger = true;
+    if (screens.keeps_trials) {
+        ImGui::TextDisabled(words::kOnThisTablet);
+        left = right = false;
+        pair_of_ways(words::kTrials, words::kStudies, gui, left, right);
+        wishes.trials = wishes.trials || left;
+        wishes.studies = wishes.studies || right;
+    }
     ImGui::TextDisabled(words::kScreenAndDevices);
     if (big_button(words::kSizeOfScreen, "Z", {}, gui)) wishes.screen = Screen::scale;
     if (big_button(words::kDeviceCheck, "D", {}, gui)) wishes.screen = Screen::devices;
@@ -64,11 +78,7 @@ void right_side(const Shown& shown, const Gui& gui, Screens& screens, Wishes& wi
     if (big_button(words::kMaps, "B", {0.0f, kTarget_mm, may_show_maps(shown.trial), false}, gui)) wishes.screen = Screen::maps;
     if (big_button(words::kCost, "C", {0.0f, kTarget_mm, true, screens.cost}, gui)) screens.cost = !screens.cost;
     if (big_button(words::kFullScreen, "F11", {0.0f, kTarget_mm, true, shown.settings.full_screen}, gui)) wishes.full_screen = true;
-    if (screens.keeps_trials) {
-        if (big_button(words::kTrials, "T", {}, gui)) wishes.trials = true;
-    } else if (big_button(words::kQuit, words::kCtrlQ, {}, gui)) {
-        wishes.quit = true;
-    }
+    if (!screens.keeps_trials && big_button(words::kQuit, words::kCtrlQ, {}, gui)) wishes.quit = true;
 }
 
 void stage_rows(const Shown& shown, const std::vector<Stage>& stages) {
@@ -164,6 +174,7 @@ void take_keys(const Shown& shown, const Gui& gui, Screens& screens, Wishes& wis
         return;
     }
     if (gui.pressed('t')) wishes.trials = true;
+    if (gui.pressed('y')) wishes.studies = true;
     if (gui.pressed(key::f10) || (gui.pressed(key::tab) && !screens.menu && screens.screen == Screen::trial)) {
         screens.menu = !screens.menu;
     }

@@ -96,6 +96,7 @@ struct Wishes {
     bool full_screen = false;             // the other way round
     bool press_by_hold = false;
     bool trials = false;                  // show what is kept
+    bool studies = false;                 // let the person choose one
     bool quit = false;
 };
 

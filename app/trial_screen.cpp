@@ -30,7 +30,9 @@ void draw_force_bar(const Shown& shown, float height_px, const Gui& gui) {
         const float bottom = y_of(bounds_N[zone]);
         draw.AddRectFilled(ImVec2(at.x, top), ImVec2(at.x + width_px, bottom), kForceTints[zone]);
         if (bottom - top < 1.1f * text_px) continue;
-        draw.AddText(ImVec2(at.x + width_px + 1.5f * mm, 0.5f * (top + bottom - text_px)), kPale, kZones[zone]);
+        const bool room = width_px + 1.5f * mm + ImGui::CalcTextSize(kZones[zone]).x <= ImGui::GetContentRegionAvail().x;
+        const float name_px = room ? text_px : 0.75f * text_px;
+        draw.AddText(ImGui::GetFont(), name_px, ImVec2(at.x + width_px + 1.5f * mm, 0.5f * (top + bottom - name_px)), kPale, kZones[zone]);
         if (bottom - top < 2.0f * text_px) continue;
         const std::string bound = fixed(bounds_N[zone + 1], 1) + (zone == 2 ? " N" : "");
         draw.AddText(ImGui::GetFont(), 0.7f * text_px, ImVec2(at.x + width_px + 1.5f * mm, top), kPale, bound.c_str());

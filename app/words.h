@@ -46,6 +46,8 @@ inline constexpr const char* kTrials = "Trials";
 inline constexpr const char* kQuit = "Quit";
 inline constexpr const char* kScene = "Scene";
 inline constexpr const char* kPressureProfile = "Pressure profile";
+inline constexpr const char* kOnThisTablet = "On this tablet";
+inline constexpr const char* kStudies = "Studies";
 
 // cost of every stage
 inline constexpr const char* kStage = "stage";
@@ -208,5 +210,69 @@ inline constexpr const char* kNormalForce = "Normal force";
 inline constexpr const char* kForceAgainstX = "Force against +x";
 inline constexpr const char* kForceAgainstY = "Force against +y";
 inline constexpr const char* kAtPlace = "  at {}, {} mm";
+
+// trial: what stands in its messages
+inline constexpr const char* kOtherWays =
+    "Other ways to press: the mouse (hold its button, or turn the wheel) and the keys (arrows move, Space presses).";
+inline constexpr const char* kIsGone = "{} is gone.";
+inline constexpr const char* kIsHere = "{} is here.";
+inline constexpr const char* kHeldPress = "The {} presses harder the longer it is held.";
+inline constexpr const char* kReportsNone = "This {} reports no pressure.";
+inline constexpr const char* kReportsConstant = "This {} reports always the same pressure: it has no sensor.";
+inline constexpr const char* kReplayOf = "Replay of {}";
+inline constexpr const char* kNoSensorHere = "No pen or finger with a pressure sensor here.";
+inline constexpr const char* kCannotBeWritten = "{}: can no longer be written; stopped (is the disk full?)";
+inline constexpr const char* kPreparing = "Preparing the tissue (once; later starts are quick)";
+inline constexpr const char* kSaved = "Saved {}";
+inline constexpr const char* kDoneWith = "This trial is done with the {}.";
+
+// study, between its trials
+inline constexpr const char* kTrialsOnTablet = "Trials on this tablet";
+inline constexpr const char* kLeaveStudy = "Leave the study";
+inline constexpr const char* kOneMoment = "One moment";
+inline constexpr const char* kBeingKept = "What was done is being put into this tablet's storage. The study goes on when it is there.";
+inline constexpr const char* kWhoIsHere = "Who is here?";
+inline constexpr const char* kCodeNoName =
+    "A code for the participant, no name: letters and digits. Whoever was here before goes on with the same code.";
+inline constexpr const char* kCode = "code";
+inline constexpr const char* kGoOnWithStudy = "Go on with the study";
+inline constexpr const char* kSomebodyElse = "Somebody else";
+inline constexpr const char* kQuestionsFirst = "Some questions first";
+inline constexpr const char* kHowWasIt = "How was it?";
+inline constexpr const char* kMayLeaveOpen = "You may leave any of them open.";
+inline constexpr const char* kFeelFirst = "Feel the first surface.";
+inline constexpr const char* kFeelSecond = "Now feel the second surface.";
+inline constexpr const char* kWhichSofter = "Which one was softer?";
+inline constexpr const char* kTheFirst = "The first";
+inline constexpr const char* kTheSecond = "The second";
+inline constexpr const char* kMissed = "missed";
+inline constexpr const char* kFound = "found";
+inline constexpr const char* kStopClock = "Stop the clock";
+inline constexpr const char* kStartClockAnew = "Start the clock anew";
+inline constexpr const char* kStartClock = "Start the clock";
+inline constexpr const char* kTypeWhatWasSaid = "The participant palpates the phantom; type what was said.";
+inline constexpr const char* kNotDriven = "This device is not driven from here; type what was said.";
+inline constexpr const char* kNodulesFound = "nodules found";
+inline constexpr const char* kNodulesMissed = "nodules missed";
+inline constexpr const char* kFoundAndSure = "Found, and how sure: 1 unsure to 5 sure.";
+inline constexpr const char* kFalseMarkCount = "marks on no nodule";
+inline constexpr const char* kThatWasAll = "That was all. Thank you!";
+inline constexpr const char* kNextParticipant = "Next participant";
+inline constexpr const char* kStudyStops = "The study stops here";
+inline constexpr const char* kBreak = "Time for a break";
+inline constexpr const char* kHasBeenHere = "Participant {} has been here";
+inline constexpr const char* kTrialsDone = "{} of {} trials are done. A trial that was interrupted is done once more.";
+inline constexpr const char* kNumberFromTo = "A number from {} to {}.";
+inline constexpr const char* kPracticeOf = "Practice, trial {}";
+inline constexpr const char* kThereAre = "There are {} of them.";
+inline constexpr const char* kTimeOf = "{} of {}";
+inline constexpr const char* kTimeOver = "{} of {}: the time is over";
+inline constexpr const char* kExperimenter = "Experimenter: trial {}, {}";
+inline constexpr const char* kAllOnTablet = "Participant {}: {} trials, all kept on this tablet.";
+inline constexpr const char* kAllOnDisk = "Participant {}: {} trials, all on the disk.";
+inline constexpr const char* kRestKept = "Everything that was finished before is kept. Start the study again with the same code to go on.";
+inline constexpr const char* kRestOnDisk =
+    "Everything that was finished before is on the disk. Start the study again with the same code to go on.";
+inline constexpr const char* kComesNext = "Trial {} comes next. Go on when you like.";
 
 }  // namespace palpa::words

@@ -2,7 +2,7 @@
 # The folder that a server serves: what changes with a build lies in v-HASH, so that no cache ever mixes two builds.
 
 set(versioned palpa.js palpa.wasm palpa.data)
-set(pages page.css page.js trials.js)
+set(pages page.css page.js studies.js trials.js)
 set(icons palpa-64.png palpa-128.png palpa-256.png palpa.svg)
 set(all "")
 foreach(file ${versioned})
