@@ -275,4 +275,68 @@ inline constexpr const char* kRestOnDisk =
     "Everything that was finished before is on the disk. Start the study again with the same code to go on.";
 inline constexpr const char* kComesNext = "Trial {} comes next. Go on when you like.";
 
+// the page around the program, in the browser: cmake/page_words.py hands these to its scripts
+inline constexpr const char* pageLoading = "Loading Palpa";
+inline constexpr const char* pageLeaveStudy = "Leave the study";
+inline constexpr const char* pageYourAnswer = "Your answer";
+inline constexpr const char* pageTrials = "Trials on this tablet";
+inline constexpr const char* pageCode = "Code that the desk shows (palpa serve)";
+inline constexpr const char* pagePair = "Pair with the desk";
+inline constexpr const char* pageSendNow = "Send now";
+inline constexpr const char* pageExport = "Export to one file";
+inline constexpr const char* pageRemove = "Remove what was exported";
+inline constexpr const char* pageClose = "Close";
+inline constexpr const char* pageStudies = "A study by its protocol";
+inline constexpr const char* pageStudyCode = "Code of the participant: letters and digits; empty: it is asked for";
+inline constexpr const char* pageBegin = "Begin";
+inline constexpr const char* pageStopped = "Palpa has stopped: {}";
+inline constexpr const char* pageNotHere = "This study cannot be run here. {}";
+inline constexpr const char* pageLooking = "Looking for protocols";
+inline constexpr const char* pageRemoveAsk =
+    "Remove the exported trials from this tablet? The file that was exported is then the only copy.";
+inline constexpr const char* pageNotLoaded = "the program cannot be loaded; is the desk reachable?";
+inline constexpr const char* pageAnswered = "The desk answered {} to {}.";
+inline constexpr const char* pageInTheApp = "in the app";
+inline constexpr const char* pageOfDeskKept = "of the desk, kept here";
+inline constexpr const char* pageOfDesk = "of the desk";
+inline constexpr const char* pageNoDesk =
+    "No desk is reachable, or this tablet is not paired (Menu, Trials): its protocols are missing here unless they were "
+    "used before.";
+inline constexpr const char* pageNoStorage = "the browser has no storage for this page";
+inline constexpr const char* pageInterrupted = "broken off";
+inline constexpr const char* pageHeldElsewhere = "another page holds it";
+inline constexpr const char* pageGone = "{} trial(s) that were kept here are gone: the browser has removed them ({}).";
+inline constexpr const char* pageSecondTab = "Palpa is open in another tab or window of this browser; close one of them";
+inline constexpr const char* pageStorageClosed = "The browser has closed its storage: trials are not kept any more. Export what is there.";
+inline constexpr const char* pageCannotKeep = "Trials cannot be kept in this browser ({}): export each one after it.";
+inline constexpr const char* pageTakesNoLogs = "This desk takes no logs (it was started without --collect).";
+inline constexpr const char* pageNotKept =
+    "Trial {} is not kept: {}. Menu, Trials, Export saves it to a file; the next trial waits for that.";
+inline constexpr const char* pageStorageFull = "the storage of this browser is full";
+inline constexpr const char* pagePartNotKept = "While it is going on this trial is not kept ({}); it will be tried at its end.";
+inline constexpr const char* pagePairAgain = "The desk does not know this tablet any more: pair again.";
+inline constexpr const char* pageOtherBytes = "The desk has other bytes of {}; it is sent again.";
+inline constexpr const char* pageTrialsWait = "The desk is not reachable; trials wait here.";
+inline constexpr const char* pagePaired = "Paired.";
+inline constexpr const char* pageWrongCode = "The desk does not take this code ({}).";
+inline constexpr const char* pageNotReachable = "The desk is not reachable.";
+inline constexpr const char* pageAtDesk = "at the desk";
+inline constexpr const char* pageGoingOn = "going on";
+inline constexpr const char* pageWaiting = "waiting";
+inline constexpr const char* pageBrokenOff = "broken off, waiting";
+inline constexpr const char* pageExported = ", exported";
+inline constexpr const char* pageHowMany = "{} waiting, {} at the desk.";
+inline constexpr const char* pageIsPaired = "Paired with the desk.";
+inline constexpr const char* pageOpenToAll = "The desk takes logs without a code.";
+inline constexpr const char* pageNotPaired = "Not paired with a desk.";
+inline constexpr const char* pageMayRemove =
+    "The browser may remove what is kept here when space is short: send or export, or put Palpa on the home screen.";
+inline constexpr const char* pageExportIt = "NOT kept: export it";
+inline constexpr const char* pageKeptUnsent = "{} trial(s) kept on this tablet, not yet at the desk.";
+inline constexpr const char* pageKept = "{} trial(s) kept on this tablet.";
+inline constexpr const char* pageAllSafe = "All trials are at the desk or exported.";
+inline constexpr const char* pageKeptHere = "Trials are kept on this tablet.";
+inline constexpr const char* pageSettingsNotKept = "Settings are not kept: the storage of this browser is full.";
+inline constexpr const char* pageUnsaved = "{} trial(s) NOT kept: Menu, Trials, Export.";
+
 }  // namespace palpa::words
