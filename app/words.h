@@ -338,5 +338,6 @@ inline constexpr const char* pageAllSafe = "All trials are at the desk or export
 inline constexpr const char* pageKeptHere = "Trials are kept on this tablet.";
 inline constexpr const char* pageSettingsNotKept = "Settings are not kept: the storage of this browser is full.";
 inline constexpr const char* pageUnsaved = "{} trial(s) NOT kept: Menu, Trials, Export.";
+inline constexpr const char* pageCanvas = "Tissue to press on, and its controls";
 
 }  // namespace palpa::words
