@@ -20,11 +20,14 @@ struct ImportOptions {
 void import(const ImportOptions& options) {
     const ImportReport report = import_bundles({options.bundles.begin(), options.bundles.end()}, options.output);
     if (options.json) {
-        const Json json{{"written", report.written}, {"already_there", report.already_there}, {"people_added", report.people_added}};
+        const Json json{{"written", report.written}, {"already_there", report.already_there}, {"people_added", report.people_added},
+                        {"grown", report.grown}, {"passed_over", report.passed_over}};
         std::fputs(json_text(json).c_str(), stdout);
         return;
     }
     for (const std::string& name : report.already_there) std::printf("%s: there already, the same\n", name.c_str());
+    for (const std::string& name : report.grown) std::printf("%s: answers added\n", name.c_str());
+    for (const std::string& name : report.passed_over) std::printf("%s: a single run, no part of the study; passed over\n", name.c_str());
     std::printf("%s: %zu files written, %zu there already, %d participants added\n", options.output.c_str(), report.written.size(),
                 report.already_there.size(), report.people_added);
 }

@@ -3,9 +3,11 @@
 #include <GLES3/gl3.h>
 #include <backends/imgui_impl_opengl3.h>
 #include <imgui.h>
+#include <imgui_internal.h>
 
 #include <algorithm>
 #include <stdexcept>
+#include <utility>
 
 #include "app/font.h"
 
@@ -199,6 +201,7 @@ void Gui::begin_frame(double dt_s, bool keys_to_panels) {
         io.MouseDown[0] = clicks_.front().down;
         clicks_.erase(clicks_.begin());
     }
+    type_what_was_typed();
     ImGui_ImplOpenGL3_NewFrame();
     ImGui::NewFrame();
     areas_.clear();
@@ -225,6 +228,33 @@ void Gui::draw() {
     while (glGetError() != GL_NO_ERROR) {
         // the packaged backend asks desktop GL questions that OpenGL ES answers with an error
     }
+}
+
+std::optional<Gui::TextField> Gui::text_field() const {
+    if (!ImGui::GetIO().WantTextInput) return std::nullopt;
+    const ImGuiInputTextState* state = ImGui::GetInputTextState(ImGui::GetActiveID());
+    if (state == nullptr) return std::nullopt;
+    std::string text(4 * static_cast<std::size_t>(state->CurLenW) + 1, '\0');
+    const ImWchar* letters = state->TextW.Data;
+    const int size = ImTextStrToUtf8(text.data(), static_cast<int>(text.size()), letters, letters + state->CurLenW);
+    text.resize(static_cast<std::size_t>(size));
+    return TextField{text, text_area_};
+}
+
+void Gui::type_instead(const std::string& text) { instead_ = text; }
+
+// What was typed elsewhere replaces what stands in the field, once a frame.
+void Gui::type_what_was_typed() {
+    if (!instead_) return;
+    const std::string text = *std::exchange(instead_, std::nullopt);
+    ImGuiIO& io = ImGui::GetIO();
+    ImGuiInputTextState* state = ImGui::GetInputTextState(ImGui::GetActiveID());
+    if (!io.WantTextInput || state == nullptr) return;
+    state->SelectAll();
+    io.ClearInputCharacters();
+    if (!text.empty()) return io.AddInputCharactersUTF8(text.c_str());
+    io.KeysDown[key::backspace] = true;
+    let_go_.push_back(key::backspace);
 }
 
 bool Gui::pressed(int key, bool ctrl) const {

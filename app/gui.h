@@ -38,6 +38,14 @@ class Gui {
     void claim(const PanelArea& area) { areas_.push_back(area); }
     // Whether a key (platform/window_event.h) went down since the last frame. Never while a number is typed.
     bool pressed(int key, bool ctrl = false) const;
+    // The field that takes letters now, for a screen that brings its own keyboard; nothing if none does.
+    struct TextField {
+        std::string text;
+        PanelArea area;
+    };
+    std::optional<TextField> text_field() const;
+    void note_text_area(const PanelArea& area) { text_area_ = area; }  // of the one that is drawn and takes letters
+    void type_instead(const std::string& text);                        // of what stands there
 
     // A panel that does not fit into its place says so; for tests, and for `run --json`.
     void note_overflow(const std::string& panel) { overflow_ = panel; }
@@ -50,6 +58,7 @@ class Gui {
     bool receive_finger(const WindowEvent& event);
     bool receive_key(const WindowEvent& event);
     bool owns(float x_px, float y_px) const;
+    void type_what_was_typed();
 
     struct Click {
         float x_px, y_px;
@@ -66,6 +75,8 @@ class Gui {
     std::vector<Key> keys_;
     std::vector<std::size_t> fresh_keys_;  // down since the last frame,
     std::vector<std::size_t> let_go_;      // and up again already: up after the next one
+    PanelArea text_area_{};
+    std::optional<std::string> instead_;   // type_instead(), until the next frame
     std::optional<std::int64_t> finger_;  // the one that uses the panels; others may palpate meanwhile
     bool mouse_on_panel_ = false;
     bool keys_to_panels_ = false;

@@ -6,15 +6,15 @@
 
 #include "app/calibrate_form.h"
 #include "app/frame.h"
+#include "app/live_app.h"
 #include "app/load.h"
 #include "app/map_screen.h"
 #include "app/prepare.h"
 #include "app/replay.h"
 #include "app/save_picture.h"
 #include "app/study_run.h"
+#include "app/words.h"
 #include "files/text.h"
-#include "platform/hold_press.h"
-#include "platform/pressure.h"
 #include "render/gl.h"
 
 namespace palpa {
@@ -22,32 +22,13 @@ namespace {
 
 constexpr double kFrame_s = 1.0 / 60.0;  // of our own: software rendering has no vertical sync
 
-// Everything that the app has open while its window is.
-struct App {
-    RunOptions options;
-    Settings settings;
-    std::filesystem::path settings_path;  // empty: this run keeps none
-    Screens screens;
-    Session session;
-    std::optional<Trace> trace;  // replayed
-    std::size_t next_row = 0;
-    double trace_shift_s = 0.0;  // window's clock - trace's clock
-    FrameTimes times;
-    std::int64_t frames = 0;
-    PressureWatch pressure;
-    HoldPress hold;
-    std::vector<double> waiting_s;  // host times of the samples that no frame has shown yet
-    std::string stopped;            // why the trial cannot go on
-    TrialKeeper* keeper = nullptr;  // may be null
-    bool begin_waits = false;       // for the keeper to have the last trial
-    bool quit = false;
-};
-
 std::string device_names(const Window& window) {
     std::string names;
     for (const PointerDevice& device : window.devices()) names += (names.empty() ? "" : ", ") + device.name;
     return names.empty() ? "mouse" : names;
 }
+
+}  // namespace
 
 TraceInfo info_of(const App& app, const Window& window) {
     if (app.trace) return app.trace->info;
@@ -62,8 +43,7 @@ TraceInfo info_of(const App& app, const Window& window) {
     return info;
 }
 
-constexpr const char* kOtherWays =
-    "Other ways to press: the mouse (hold its button, or turn the wheel) and the keys (arrows move, Space presses).";
+namespace {
 
 bool named(const std::vector<PointerDevice>& devices, const std::string& name) {
     return std::any_of(devices.begin(), devices.end(), [&](const PointerDevice& d) { return d.name == name; });
@@ -72,10 +52,10 @@ bool named(const std::vector<PointerDevice>& devices, const std::string& name) {
 // Plugged in or out while the app runs.
 void note_changes(const std::vector<PointerDevice>& now, Screens& screens) {
     for (const PointerDevice& device : screens.devices) {
-        if (!named(now, device.name)) screens.note = device.name + " is gone.";
+        if (!named(now, device.name)) screens.note = words::filled(words::kIsGone, {device.name});
     }
     for (const PointerDevice& device : now) {
-        if (!screens.devices.empty() && !named(screens.devices, device.name)) screens.note = device.name + " is here.";
+        if (!screens.devices.empty() && !named(screens.devices, device.name)) screens.note = words::filled(words::kIsHere, {device.name});
     }
 }
 
@@ -84,10 +64,10 @@ void note_pressure(Tool tool, App& app) {
     const PressureKind kind = pressure_kind(app.pressure, tool);
     const bool held = tool == Tool::pen ? app.hold.pen : app.hold.finger;
     const std::string name(name_of(tool));
-    if (held) app.screens.device_notes.push_back("The " + name + " presses harder the longer it is held.");
+    if (held) app.screens.device_notes.push_back(words::filled(words::kHeldPress, {name}));
     if (held || (kind != PressureKind::constant && kind != PressureKind::missing)) return;
-    const std::string found = kind == PressureKind::missing ? "no pressure" : "always the same pressure: it has no sensor";
-    app.screens.device_notes.push_back("This " + name + " reports " + found + ".");
+    const char* found = kind == PressureKind::missing ? words::kReportsNone : words::kReportsConstant;
+    app.screens.device_notes.push_back(words::filled(found, {name}));
     // a profile of counts or contact areas reads what holding does not make
     app.screens.offer_hold = app.session.plan.profile.level == LevelField::pressure;
 }
@@ -97,7 +77,7 @@ void note_devices(const Window& window, App& app) {
     notes.clear();
     if (app.screens.study) return note_changes(window.devices(), app.screens);
     if (app.trace) {
-        notes.push_back("Replay of " + app.options.trace);
+        notes.push_back(words::filled(words::kReplayOf, {app.options.trace}));
         return;
     }
     if (window.lists_devices()) note_changes(window.devices(), app.screens);
@@ -108,8 +88,8 @@ void note_devices(const Window& window, App& app) {
     for (const Tool tool : {Tool::pen, Tool::finger}) note_pressure(tool, app);
     const auto& devices = app.screens.devices;
     const bool pressure = std::any_of(devices.begin(), devices.end(), [](const PointerDevice& d) { return d.has_pressure; });
-    if (!pressure) notes.push_back("No pen or finger with a pressure sensor here.");
-    if (!pressure || app.screens.offer_hold) notes.push_back(kOtherWays);
+    if (!pressure) notes.push_back(words::kNoSensorHere);
+    if (!pressure || app.screens.offer_hold) notes.push_back(words::kOtherWays);
 }
 
 // Takes a problem to the screen instead of out of the program.
@@ -124,7 +104,13 @@ bool attempt(App& app, const Work& work) {
     }
 }
 
+}  // namespace
+
+double finger_offset_mm(const App& app) { return app.settings.above_finger ? static_cast<double>(kFingerOffset_mm) : 0.0; }
+
 double now_of(const App& app, const Window& window) { return window.now_s() - app.trace_shift_s; }
+
+namespace {
 
 void begin(const Window& window, const Gui& gui, App& app) {
     const TrialMode mode = app.settings.test_mode ? TrialMode::test : TrialMode::practice;
@@ -136,6 +122,7 @@ void begin(const Window& window, const Gui& gui, App& app) {
     app.begin_waits = false;
     SessionFiles files{app.options.log, app.options.participant, app.options.record};
     files.first_run = app.options.first_run;
+    files.finger_offset_mm = finger_offset_mm(app);
     begin_trial(files, info_of(app, window), mode, app.session);
     if (!app.trace) take_sample(resize_sample(window, gui, app.settings, now_of(app, window)), app.session);
 }
@@ -154,16 +141,19 @@ Json result_of(const App& app) {
     return result;
 }
 
-// The files of the trial so far, whole on the disk; in words on the screen if that fails.
+}  // namespace
+
 bool close_trial(App& app) {
     const std::string where = !app.options.log.empty() ? app.options.log : app.options.record;
     const std::optional<RunFiles> files = app.session.files;
     const bool good = close_files(result_of(app), app.session);
     if (app.keeper != nullptr && files) app.keeper->keep(*files, true);
     if (good) return true;
-    app.stopped = where + ": can no longer be written; stopped (is the disk full?)";
+    app.stopped = words::filled(words::kCannotBeWritten, {where});
     return false;
 }
+
+namespace {
 
 void begin_anew(const Window& window, const Gui& gui, App& app) {
     if (!close_trial(app)) app.screens.problems.push_back(app.stopped);
@@ -182,24 +172,6 @@ void begin_when_kept(const Window& window, const Gui& gui, App& app) {
     if (app.begin_waits && app.keeper->ready()) begin_anew(window, gui, app);
 }
 
-void begin_study_trial(const Window& window, const Gui& gui, App& app) {
-    StudyRun& run = *app.screens.study;
-    run.start_trial = false;
-    try {
-        const StudyScene& due = due_scene(run);
-        const PlannedTrial& trial = due_trial(run);
-        const bool known = trial.practice && run.protocol.task == TaskKind::find;
-        app.session.scene = scene_of(due, trial);
-        app.session.plan = *due.plan;
-        app.screens.note.clear();
-        begin_trial(due_files(run), info_of(app, window), known ? TrialMode::practice : TrialMode::test, app.session);
-        take_sample(resize_sample(window, gui, app.settings, now_of(app, window)), app.session);
-        app.screens.screen = Screen::trial;
-    } catch (const std::exception& error) {
-        stop_study(error.what(), run);
-    }
-}
-
 // A tissue that has to be computed is, while the window shows how far. False if the window was closed meanwhile.
 bool prepare(Window& window, Gui& gui, const Scene& scene, Plan& plan) {
     if (!scene.linear) {
@@ -212,7 +184,7 @@ bool prepare(Window& window, Gui& gui, const Scene& scene, Plan& plan) {
         window.poll(0.0, ignored);
         if (window.close_requested()) return false;
         gui.begin_frame(kFrame_s, true);
-        draw_progress("Preparing the tissue (once; later starts are quick)", work.share());
+        draw_progress(words::kPreparing, work.share());
         gui.end_frame();
         clear_screen(window.width_px(), window.height_px());
         gui.draw();
@@ -256,12 +228,7 @@ void keep_settings(App& app) {
     if (app.keeper != nullptr) app.keeper->keep_settings(app.settings_path);
 }
 
-// Nothing is revealed; the next step comes once the trial is on the disk.
-void finish_study_trial(App& app) {
-    app.screens.screen = Screen::study;
-    if (close_trial(app)) return trial_finished(*app.screens.study);
-    stop_study(app.stopped, *app.screens.study);
-}
+}  // namespace
 
 void act(Action action, double now_s, App& app) {
     const bool choice = app.screens.study && app.screens.study->protocol.task == TaskKind::choice;
@@ -284,6 +251,8 @@ void act(Action action, double now_s, App& app) {
     if (!close_trial(app)) app.screens.problems.push_back(app.stopped);
 }
 
+namespace {
+
 // What was recorded is on the disk; a profile that was kept can be chosen at once.
 void close_calibrate(App& app) {
     stop_recording(*app.screens.calibrate);
@@ -294,7 +263,7 @@ void close_calibrate(App& app) {
 // A press that is going on when its screen goes ends there.
 void open_screen(Screen screen, double now_s, App& app) {
     if (screen == Screen::maps && (app.screens.study || !may_show_maps(app.session.trial))) {
-        app.screens.note = "Maps show where nodules are: finish the test first (F).";
+        app.screens.note = words::kMapsHidden;
         app.screens.menu = false;
         return;
     }
@@ -322,6 +291,7 @@ void open_screen(Screen screen, double now_s, App& app) {
 
 void change_settings(const Wishes& wishes, Window& window, Gui& gui, App& app) {
     if (wishes.left_handed) app.settings.left_handed = *wishes.left_handed;
+    if (wishes.above_finger) app.settings.above_finger = *wishes.above_finger;
     if (wishes.mode) app.settings.test_mode = *wishes.mode == TrialMode::test;
     if (wishes.full_screen) {
         app.settings.full_screen = !window.full_screen();
@@ -332,19 +302,10 @@ void change_settings(const Wishes& wishes, Window& window, Gui& gui, App& app) {
         app.settings.px_per_mm.erase(app.screens.screen_name);
         if (std::isfinite(*wishes.px_per_mm)) app.settings.px_per_mm[app.screens.screen_name] = *wishes.px_per_mm;
     }
-    const bool changed = wishes.left_handed || wishes.mode || wishes.full_screen || wishes.px_per_mm || wishes.scene || wishes.profile;
+    const bool changed = wishes.left_handed || wishes.above_finger || wishes.mode || wishes.full_screen || wishes.px_per_mm || wishes.scene || wishes.profile;
     if (changed) keep_settings(app);
     // what was measured with another scale or shown another way is another trial
-    if (wishes.px_per_mm || wishes.mode) begin_anew(window, gui, app);
-}
-
-// What a study's screen has led to, and the end of a trial's time.
-void follow_study(const Window& window, const Gui& gui, App& app) {
-    StudyRun& run = *app.screens.study;
-    if (run.start_trial) begin_study_trial(window, gui, app);
-    if (app.screens.screen != Screen::trial) return;
-    const double limit_s = due_limit_s(run);
-    if (limit_s > 0.0 && now_of(app, window) - app.session.trial.began_s >= limit_s) act(Action::finish, now_of(app, window), app);
+    if (wishes.px_per_mm || wishes.mode || wishes.above_finger) begin_anew(window, gui, app);
 }
 
 void carry_out(const Wishes& wishes, Window& window, Gui& gui, App& app) {
@@ -368,9 +329,10 @@ void carry_out(const Wishes& wishes, Window& window, Gui& gui, App& app) {
         app.hold.finger = app.hold.finger || lacks(Tool::finger);
     }
     if (wishes.trials && app.keeper != nullptr) app.keeper->open();
+    if (wishes.studies && app.keeper != nullptr) app.keeper->open_studies();
     if (wishes.again || wishes.next) begin_anew(window, gui, app);
     if (wishes.save_picture) {
-        attempt(app, [&] { app.screens.note = "Saved " + save_picture(window, app.options.log).string(); });
+        attempt(app, [&] { app.screens.note = words::filled(words::kSaved, {save_picture(window, app.options.log).string()}); });
     }
 }
 
@@ -388,12 +350,12 @@ void take(const Sample& sample, App& app) {
     app.screens.screen = Screen::reveal;
 }
 
-// A study's trial is done with the device that its condition names.
-bool allowed(const Sample& sample, App& app) {
-    const Modality modality = due_condition(*app.screens.study).modality;
-    if (sample.phase == Phase::ui || tool_allowed(modality, sample.tool)) return true;
-    if (sample.phase == Phase::down) app.screens.note = std::string("This trial is done with the ") + name_of(modality) + ".";
-    return false;
+// A finger that may not hide the avatar indents what lies above it; log and trace hold that place.
+void lift_fingers(float mm, std::vector<Sample>& samples, const App& app) {
+    if (!app.settings.above_finger || app.trace || app.screens.screen != Screen::trial) return;
+    for (Sample& sample : samples) {
+        if (sample.tool == Tool::finger) sample.y_px -= static_cast<double>(kFingerOffset_mm * mm);
+    }
 }
 
 // Where the samples of one turn of the loop go: to the tissue, or to the device check.
@@ -475,6 +437,16 @@ void watch_files(App& app) {
     app.screens.problems.push_back(app.stopped);
 }
 
+// What a reload or an empty battery would cost: a second.
+void keep_part(double now_s, App& app) {
+    constexpr double kEvery_s = 1.0;
+    if (app.keeper == nullptr || !app.session.files || now_s - app.parted_s < kEvery_s) return;
+    if (!app.screens.study && !app.session.trial.last_px) return;  // a page that was only looked at
+    if (app.session.log) app.session.log->flush();
+    app.keeper->keep_part(*app.session.files);
+    app.parted_s = now_s;
+}
+
 // Everything that bad input can refuse, before a window is there.
 void load(const RunOptions& options, App& app) {
     app.options = options;
@@ -487,14 +459,7 @@ void load(const RunOptions& options, App& app) {
     if (options.left_handed) app.settings.left_handed = true;
     if (options.width_px > 0) app.settings.width_px = options.width_px;
     if (options.height_px > 0) app.settings.height_px = options.height_px;
-    if (!options.protocol.empty()) {
-        app.settings_path.clear();  // what a study fixes is nobody's choice to keep
-        app.screens.study = std::make_shared<StudyRun>(open_study_run(read_protocol(options.protocol), options.log, options.participant));
-        app.screens.screen = Screen::study;
-        app.session.scene = load_scene("");  // behind the first screens
-        app.session.plan = make_plan(app.session.scene);
-        return;
-    }
+    if (!options.protocol.empty()) return load_study(options, app);
     app.screens.scenes = scene_choices();
     app.screens.profiles = profile_choices();
     if (!options.trace.empty()) {
@@ -534,15 +499,6 @@ bool prepare_chosen(Window& window, Gui& gui, App& app) {
     if (attempt(app, [&] { ready = prepare(window, gui, s.scene, s.plan); })) return ready;
     s.scene = load_scene("");
     return prepare(window, gui, s.scene, s.plan);
-}
-
-// A trial that goes on is an interrupted one. Throws std::runtime_error if the study had to stop.
-Json close_study(const Gui& gui, App& app) {
-    const StudyRun& run = *app.screens.study;
-    if (app.screens.screen == Screen::trial && !close_trial(app)) throw std::runtime_error(app.stopped);
-    if (!run.stopped.empty()) throw std::runtime_error(run.stopped);
-    return Json{{"participant", run.code}, {"step", name_of(run.step)}, {"finished", run.progress.finished.size()},
-                {"of", run.progress.plan.trials.size()}, {"overflow", gui.overflow()}};
 }
 
 }  // namespace
@@ -586,9 +542,11 @@ struct Live::Impl {
         begin_when_kept(*window, *gui, app);
         note_resize(*window, *gui, app);
         place_keyboard(*window, app);
+        lift_fingers(gui->mm(), samples, app);
         take_all(window->now_s(), samples, app);       // 2. simulate, 3. log
         watch_files(app);
         flush_if_due(app.session);  // also while nothing moves, and nothing is drawn
+        keep_part(window->now_s(), app);
     }
 
     App app;
@@ -626,7 +584,8 @@ void Live::out_of_sight(bool hidden) {
     Impl& it = *impl_;
     it.take_samples(0.0);  // presses that end now
     it.frame_s = it.window->now_s();
-    if (it.app.trace || it.app.session.trial.finished || it.app.begin_waits) return;
+    const bool between = it.app.screens.study && it.app.screens.screen != Screen::trial;
+    if (it.app.trace || it.app.session.trial.finished || it.app.begin_waits || between) return;
     Sample sample;
     sample.t_host_s = now_of(it.app, *it.window);
     sample.phase = Phase::ui;
@@ -645,8 +604,12 @@ void Live::renew_drawing() {
 Json Live::report() const {
     Json result = result_of(impl_->app);
     result["overflow"] = impl_->gui->overflow();
+    if (impl_->app.screens.study) result["study"] = study_json(impl_->app);
     return result;
 }
+
+std::optional<Gui::TextField> Live::text_field() const { return impl_->gui->text_field(); }
+void Live::type_instead(const std::string& text) { impl_->gui->type_instead(text); }
 
 Json Live::close() {
     Impl& it = *impl_;

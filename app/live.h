@@ -52,6 +52,10 @@ class Live {
     // The window has gone out of sight, or come back: presses end, the gap is logged, what there is is kept.
     void out_of_sight(bool hidden);
 
+    // The field that takes letters now, for a screen that brings its own keyboard.
+    std::optional<Gui::TextField> text_field() const;
+    void type_instead(const std::string& text);
+
     void renew_drawing();  // the GL context was lost, and is back
     Json report() const;   // as `run --json` so far
     Json close();          // throws std::runtime_error if a file could not be written

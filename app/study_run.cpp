@@ -124,6 +124,7 @@ void add_person(StudyRun& run) {
     }
     add_ratings(run.directory, run.code, others);
     add_people(run.directory, {person});
+    run.unkept_answers = true;
     run.progress = progress_of(run.directory, run.protocol, run.code);
 }
 
@@ -236,6 +237,7 @@ void submit_answers(StudyRun& run) {
         const bool answered = i < run.answers.size() && !run.answers[i].empty();
         ratings.push_back({run.protocol.conditions[run.rated].id, run.protocol.ratings[i].id, answered ? run.answers[i] : "n/a"});
     }
+    run.unkept_answers = true;
     if (kept(run, [&] { add_ratings(run.directory, run.code, ratings); })) go_on(run);
 }
 
@@ -281,12 +283,13 @@ void choose_softer(bool first, double now_s, StudyRun& run) {
     row.correct = reference == (row.reference_kPa < row.comparison_kPa) ? 1 : 0;
     const bool good = kept(run, [&] {
         if (!run.choices) {
-            run.choices = std::make_unique<ChoiceLog>(next_run(run.directory, run.code, "softer"));
+            run.choices = std::make_unique<ChoiceLog>(next_run(run.directory, run.code, "softer", run.first_run));
             run.choices_began_s = now_s;
         }
         row.onset_s = now_s - run.choices_began_s;
         if (!run.choices->write(row)) throw std::runtime_error(run.directory.string() + ": the choice could not be written; the study stops here");
     });
+    run.unkept_answers = true;
     if (good) finish_due(run);
 }
 
@@ -294,7 +297,9 @@ void submit_typed(StudyRun& run) {
     const PlannedTrial& trial = due_trial(run);
     const bool good = kept(run, [&] {
         TrialLabel label = label_of(run.protocol, run.progress.plan, trial, run.identities[trial.condition]);
-        write_typed_trial(next_run(run.directory, run.code), label, trial.practice, trial.seed, due_nodules(run), run.typed);
+        const RunFiles files = next_run(run.directory, run.code, "palpation", run.first_run);
+        run.unkept_runs.push_back(files);
+        write_typed_trial(files, label, trial.practice, trial.seed, due_nodules(run), run.typed);
     });
     if (good) finish_due(run);
 }
@@ -333,6 +338,7 @@ SessionFiles due_files(const StudyRun& run) {
     SessionFiles files;
     files.log = run.directory.string();
     files.participant = run.code;
+    files.first_run = run.first_run;
     files.label = label_of(run.protocol, run.progress.plan, trial, run.identities[trial.condition]);
     if (run.protocol.task == TaskKind::choice) {
         files.task = "interval";

@@ -55,6 +55,14 @@ struct StudyRun {
     double choices_began_s = 0.0;
     double question_began_s = 0.0;
     std::string stopped;
+    // For a keeper (trial_keeper.h): what it has not been given yet, and what it says.
+    bool on_tablet = false;
+    int first_run = 1;                   // of the log: those before are known to be taken
+    std::vector<RunFiles> unkept_runs;   // typed trials
+    bool unkept_answers = false;
+    bool keeping = false;                // the next step waits
+    double keeping_began_s = 0.0;
+    std::vector<std::string> warnings;
 };
 
 // Loads what the protocol names and opens the folder. Throws InputError (also for a code that has finished), or

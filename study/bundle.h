@@ -25,8 +25,13 @@ enum class LogFileKind {
 // Nothing for every other name: absolute ones, `..`, other folders, other endings.
 std::optional<LogFileKind> kind_of_log_file(std::string_view name);
 
+// Answers, to which lines are added as long as the participant is there: ratings and choices. A later bundle has more of
+// them than an earlier one.
+bool grows(std::string_view name);
+
 struct BundleFile {
-    std::string name;  // of one of the kinds above; what stands twice alike in a bundle is here once
+    std::string name;  // of one of the kinds above; what stands twice alike in a bundle is here once. Only people and what grows
+                     // may stand there with several contents
     LogFileKind kind = LogFileKind::trial;
     std::string sha256;  // 64 lower-case hex digits, of `text`
     std::string text;

@@ -9,6 +9,7 @@
 
 #include "files/durable.h"
 #include "files/input_error.h"
+#include "files/json.h"
 #include "files/sha256.h"
 #include "files/text.h"
 #include "study/bundle.h"
@@ -23,6 +24,20 @@ namespace fs = std::filesystem;
 constexpr std::size_t kLargestBundle_bytes = std::size_t{1} << 30;
 
 Bundle read_whole(const fs::path& file) { return read_bundle(read_text(file, kLargestBundle_bytes), file.string()); }
+
+// What somebody tried on a tablet before the study: settings that name no protocol.
+bool is_single_run(const Bundle& bundle) {
+    bool single = false;
+    for (const BundleFile& file : bundle.files) {
+        if (file.kind == LogFileKind::identity) return false;
+        const bool settings = file.name.find("_settings.json") != std::string::npos;
+        if (settings && Json::accept(file.text)) single = single || !Json::parse(file.text).contains("study");
+    }
+    return single;
+}
+
+// One of two that says all that the other says.
+bool begins_with(const std::string& text, const std::string& other) { return text.compare(0, other.size(), other) == 0; }
 
 bool same_study(const StudyIdentity& a, const StudyIdentity& b) {
     return a.name == b.name && a.version == b.version && a.sha256 == b.sha256 && a.kind.simulated == b.kind.simulated &&
@@ -52,6 +67,7 @@ class Plan {
     void add(const BundleFile& file, const std::string& from) {
         if (file.kind == LogFileKind::people) return add_people_of(file, from);
         if (file.kind == LogFileKind::identity) return add_identity(file, from);
+        if (grows(file.name)) return add_answers(file, from);
         const auto [it, fresh] = first_.emplace(file.name, std::pair(file.sha256, from));
         if (!fresh && it->second.first != file.sha256) {
             throw bad_input(from, file.name, "other content than in " + it->second.second, "the same, or another name");
@@ -67,23 +83,67 @@ class Plan {
         return true;
     }
 
+    bool is_study() const { return identity_.has_value(); }
+
+    // Of what grows, the version that says most, if that is more than the folder has.
+    struct Answers {
+        std::string text;
+        std::string from;
+        bool there = false;  // an earlier version of it
+    };
+    std::map<std::string, Answers> answers;
+
+    // Once all bundles were added.
+    void settle_answers() {
+        for (auto it = answers.begin(); it != answers.end();) {
+            const std::string& name = it->first;
+            Answers& most = it->second;
+            const fs::path path = directory_ / name;
+            most.there = is_taken(name, most.from);
+            const std::string there = most.there ? read_text(path) : "";
+            if (!begins_with(most.text, there) && !begins_with(there, most.text)) {
+                throw bad_input(most.from, name, "other answers than in " + path.string(), "the same ones, or more of them: nothing is overwritten");
+            }
+            const bool more = !most.there || most.text.size() > there.size();
+            if (!more) report.already_there.push_back(name);
+            it = more ? std::next(it) : answers.erase(it);
+        }
+    }
+
     ImportReport report;
     std::vector<Person> people;                                    // new ones
     std::optional<std::string> identity_text;                      // of a study.json that is not there yet
 
  private:
-    bool is_there(const BundleFile& file, const std::string& from) const {
+    void add_answers(const BundleFile& file, const std::string& from) {
+        const auto [it, fresh] = answers.emplace(file.name, Answers{file.text, from, false});
+        Answers& most = it->second;
+        if (fresh || begins_with(most.text, file.text)) return;
+        if (!begins_with(file.text, most.text)) {
+            throw bad_input(from, file.name, "other answers than in " + most.from, "the same ones, or more of them");
+        }
+        most = {file.text, from, false};
+    }
+
+    // Whether there is a file of that name; throws if something else is.
+    bool is_taken(const std::string& name, const std::string& from) const {
         fs::path path = directory_;
-        for (const fs::path& part : fs::path(file.name)) {
+        for (const fs::path& part : fs::path(name)) {
             path /= part;
             const auto status = fs::symlink_status(path);
-            if (fs::is_symlink(status)) throw bad_input(from, file.name, "a link in the way: " + path.string(), "folders and files");
+            if (fs::is_symlink(status)) throw bad_input(from, name, "a link in the way: " + path.string(), "folders and files");
             if (!fs::exists(status)) return false;
-            const bool last = path == directory_ / file.name;
+            const bool last = path == directory_ / name;
             if (last ? !fs::is_regular_file(status) : !fs::is_directory(status)) {
-                throw bad_input(from, file.name, path.string() + " in the way", last ? "a file, or nothing" : "a folder, or nothing");
+                throw bad_input(from, name, path.string() + " in the way", last ? "a file, or nothing" : "a folder, or nothing");
             }
         }
+        return true;
+    }
+
+    bool is_there(const BundleFile& file, const std::string& from) const {
+        if (!is_taken(file.name, from)) return false;
+        const fs::path path = directory_ / file.name;
         if (sha256_hex(read_text(path)) == file.sha256) return true;
         throw bad_input(from, file.name, "other content than in " + path.string(), "the same, or a name that is free: nothing is overwritten");
     }
@@ -174,23 +234,43 @@ bool is_events(const BundleFile& file) { return file.name.find("_events.tsv") !=
 ImportReport import_bundles(const std::vector<fs::path>& bundles, const fs::path& directory) {
     Plan plan(directory);
     // twice from the disk, so that only one bundle is in memory at a time
+    std::vector<fs::path> taken, singles;
     for (const fs::path& path : bundles) {
-        for (const BundleFile& file : read_whole(path).files) plan.add(file, path.string());
+        const Bundle bundle = read_whole(path);
+        const bool single = is_single_run(bundle);
+        (single ? singles : taken).push_back(path);
+        if (single) continue;
+        for (const BundleFile& file : bundle.files) plan.add(file, path.string());
     }
+    for (const fs::path& path : singles) {
+        if (plan.is_study()) {
+            plan.report.passed_over.push_back(path.string());
+            continue;
+        }
+        for (const BundleFile& file : read_whole(path).files) plan.add(file, path.string());
+        taken.push_back(path);
+    }
+    plan.settle_answers();
     fs::create_directories(directory);
     NewFiles written(directory);
-    for (const fs::path& path : bundles) {
+    for (const fs::path& path : taken) {
         Bundle bundle = read_whole(path);
         // a trial counts when its events end with `finish`, so they come after all else
         std::stable_sort(bundle.files.begin(), bundle.files.end(),
                          [](const BundleFile& a, const BundleFile& b) { return is_events(a) < is_events(b); });
         for (const BundleFile& file : bundle.files) {
             const auto& done = plan.report.written;
-            if (file.kind == LogFileKind::people || file.kind == LogFileKind::identity || !plan.is_new(file, path.string())) continue;
+            const bool later = file.kind == LogFileKind::people || file.kind == LogFileKind::identity || grows(file.name);
+            if (later || !plan.is_new(file, path.string())) continue;
             if (std::find(done.begin(), done.end(), file.name) != done.end()) continue;  // in two bundles alike
             written.write(file.name, file.text);
             plan.report.written.push_back(file.name);
         }
+    }
+    for (const auto& [name, most] : plan.answers) {
+        if (most.there) continue;
+        written.write(name, most.text);
+        plan.report.written.push_back(name);
     }
     if (plan.identity_text) {
         written.write("study.json", *plan.identity_text);
@@ -198,6 +278,11 @@ ImportReport import_bundles(const std::vector<fs::path>& bundles, const fs::path
     }
     written.keep();
     prepare_log_folder(directory);
+    for (const auto& [name, most] : plan.answers) {
+        if (!most.there) continue;
+        write_text_atomically(directory / name, most.text);  // begins with what was there
+        plan.report.grown.push_back(name);
+    }
     add_people(directory, plan.people);
     plan.report.people_added = static_cast<int>(plan.people.size());
     return plan.report;

@@ -5,6 +5,8 @@
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
+#include <fstream>
+#include <iterator>
 #include <memory>
 
 #include "files/sha256.h"
@@ -12,15 +14,20 @@
 #include "study/bundle_run.h"
 
 // clang-format off
-EM_JS(void, palpa_trials_put, (const char* name, const char* text, const char* hash, int finished), {
-    palpaTrials.put(UTF8ToString(name), UTF8ToString(text), UTF8ToString(hash), finished !== 0);
+EM_JS(void, palpa_trials_put, (const char* name, const char* text, const char* hash, const char* how, const char* paths), {
+    palpaTrials.put(UTF8ToString(name), UTF8ToString(text), UTF8ToString(hash), UTF8ToString(how),
+                    UTF8ToString(paths).split('\n').filter(Boolean));
 });
+EM_JS(void, palpa_trials_part, (const char* name, const char* path, double offset, const char* text), {
+    palpaTrials.putPart(UTF8ToString(name), UTF8ToString(path), offset, UTF8ToString(text));
+});
+EM_JS(void, palpa_trials_participant, (const char* code), { palpaTrials.setParticipant(UTF8ToString(code)); });
 EM_JS(int, palpa_trials_next_run, (), { return palpaTrials.nextRun(); });
 EM_JS(int, palpa_trials_ready, (), { return palpaTrials.ready() ? 1 : 0; });
 EM_JS(void, palpa_trials_failed, (const char* message), { palpaTrials.tell(UTF8ToString(message)); });
 EM_JS(char*, palpa_trials_text, (int which), {
     const text = which === 0 ? palpaTrials.nextProblem() : which === 1 ? palpaTrials.note() : which === 2 ? palpaTrials.participant()
-                                                                                            : palpaTrials.settings();
+               : which === 3 ? palpaTrials.settings() : which === 4 ? palpaTrials.protocol() : palpaTrials.restore();
     const size = lengthBytesUTF8(text) + 1;
     const copy = _malloc(size);
     stringToUTF8(text, copy, size);
@@ -28,38 +35,92 @@ EM_JS(char*, palpa_trials_text, (int which), {
 });
 EM_JS(void, palpa_trials_keep_settings, (const char* text), { palpaTrials.keepSettings(UTF8ToString(text)); });
 EM_JS(void, palpa_trials_open, (), { palpaTrials.open(); });
+EM_JS(void, palpa_studies_open, (), { palpaPage.openStudies(); });
+EM_JS(void, palpa_studies_restore, (), { palpaStudies.restore(); });
 // clang-format on
 
 namespace palpa {
 namespace {
 
-enum Text { kProblem, kNote, kParticipant, kSettings };
+namespace fs = std::filesystem;
+
+enum Text { kProblem, kNote, kParticipant, kSettings, kProtocol, kBroken };
 
 std::string text_of(Text which) {
     const std::unique_ptr<char, decltype(&std::free)> text(palpa_trials_text(which), &std::free);
     return text.get();
 }
 
-// What the browser's storage has is not needed in memory too; the empty file keeps the number of the run.
+// What the browser's storage has is not needed in memory too; the empty file keeps the number of the run, and a study's
+// events tell which trials are done.
 void empty_files(const RunFiles& run) {
-    for (const auto& entry : std::filesystem::directory_iterator(run.folder)) {
+    const bool study = !study_of(run).empty();
+    for (const auto& entry : fs::directory_iterator(run.folder)) {
         if (entry.path().filename().string().rfind(run.stem + "_", 0) != 0) continue;
+        if (study && entry.path() == run.file("_events.tsv")) continue;
         if (std::FILE* emptied = std::fopen(entry.path().c_str(), "w")) std::fclose(emptied);
     }
 }
 
-}  // namespace
+void put(const std::string& name, const std::string& bundle, const char* how, const std::vector<fs::path>& study) {
+    std::string paths;
+    for (const fs::path& path : study) paths += path.string() + "\n";
+    palpa_trials_put(name.c_str(), bundle.c_str(), sha256_hex(bundle).c_str(), how, paths.c_str());
+}
 
-void BrowserKeeper::keep(const RunFiles& run, bool finished) {
+void keep_run(const RunFiles& run, const char* how) {
     try {
-        const std::string text = bundle_text(run);
-        palpa_trials_put(run.stem.c_str(), text.c_str(), sha256_hex(text).c_str(), finished ? 1 : 0);
-        if (finished) empty_files(run);
+        std::vector<fs::path> study;
+        if (const fs::path directory = study_of(run); !directory.empty()) {
+            study = study_files(directory, code_of(run));
+            if (fs::exists(run.file("_events.tsv"))) study.push_back(run.file("_events.tsv"));
+        }
+        put(run.stem, bundle_text(run), how, study);
     } catch (const std::exception& error) {
         palpa_trials_failed(error.what());
     }
 }
 
+// From `from` on.
+std::string rest_of(const fs::path& file, std::size_t from) {
+    std::ifstream in(file, std::ios::binary);
+    in.seekg(static_cast<std::streamoff>(from));
+    return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+}
+
+}  // namespace
+
+void BrowserKeeper::keep(const RunFiles& run, bool finished) {
+    keep_run(run, finished ? "finished" : "going-on");
+    if (!finished) return;
+    empty_files(run);
+    parts_.clear();
+}
+
+void BrowserKeeper::keep_part(const RunFiles& run) {
+    for (const auto& entry : fs::directory_iterator(run.folder)) {
+        if (entry.path().filename().string().rfind(run.stem + "_", 0) != 0) continue;
+        std::size_t& kept = parts_[entry.path().string()];
+        const std::string text = rest_of(entry.path(), kept);
+        if (text.empty()) continue;
+        palpa_trials_part(run.stem.c_str(), entry.path().c_str(), static_cast<double>(kept), text.c_str());
+        kept += text.size();
+    }
+}
+
+void BrowserKeeper::keep_answers(const fs::path& directory, const std::string& code) {
+    try {
+        char run[16];
+        std::snprintf(run, sizeof run, "%02d", palpa_trials_next_run());
+        put("sub-" + code + "_task-answers_run-" + run, bundle_of_answers(directory, code), "finished", study_files(directory, code));
+    } catch (const std::exception& error) {
+        palpa_trials_failed(error.what());
+    }
+}
+
+void BrowserKeeper::participant(const std::string& code) { palpa_trials_participant(code.c_str()); }
+
+std::string protocol_here() { return text_of(kProtocol); }
 std::string participant_here() { return text_of(kParticipant); }
 int next_run_here() { return palpa_trials_next_run(); }
 
@@ -76,6 +137,16 @@ void BrowserKeeper::keep_settings(const std::filesystem::path& file) {
 }
 
 void BrowserKeeper::open() { palpa_trials_open(); }
+void BrowserKeeper::open_studies() { palpa_studies_open(); }
+
+void restore_studies() {
+    const std::string broken = text_of(kBroken);
+    for (const std::string_view line : fields_of(broken, '\n')) {
+        const fs::path run(line);
+        if (!run.empty()) keep_run({run.parent_path(), run.filename().string()}, "broken-off");
+    }
+    palpa_studies_restore();
+}
 
 void restore_settings(const std::filesystem::path& file) {
     const std::string text = text_of(kSettings);

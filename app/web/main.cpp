@@ -4,16 +4,28 @@
 #include <emscripten/html5.h>
 #include <stdlib.h>
 
+#include <algorithm>
+#include <cctype>
 #include <exception>
+#include <filesystem>
 #include <memory>
 #include <string>
 
 #include "app/live.h"
 #include "app/settings.h"
 #include "app/web/browser_keeper.h"
+#include "files/input_error.h"
+#include "platform/web/browser.h"
+#include "study/protocol.h"
 
 // clang-format off
 EM_JS(void, palpa_page_fail, (const char* message), { palpaPage.fail(UTF8ToString(message)); });
+EM_JS(void, palpa_page_refuse, (const char* message), { palpaPage.refuse(UTF8ToString(message)); });
+EM_JS(void, palpa_page_type, (const char* text, double x, double y, double width, double height), {
+    palpaPage.type(UTF8ToString(text), x, y, width, height);
+});
+EM_JS(void, palpa_page_type_end, (), { palpaPage.typeEnd(); });
+EM_JS(void, palpa_page_leave, (), { palpaStudies.leave(); });
 EM_JS(void, palpa_page_started, (), { palpaPage.started(); });
 // clang-format on
 
@@ -26,6 +38,7 @@ struct Page {
     std::unique_ptr<Live> live;
     bool gl_lost = false;
     bool started = false;
+    bool types = false;  // the page's own field takes letters
     std::string report;
 };
 Page page;  // the browser calls functions, not objects
@@ -35,9 +48,27 @@ void stop(const char* message) {
     palpa_page_fail(message);
 }
 
+// A tablet shows its keyboard for fields of the page only.
+void follow_typing() {
+    if (!browser::has_touch_screen()) return;
+    const auto field = page.live->text_field();
+    if (field) {
+        const double scale = 1.0 / browser::px_per_css_px();
+        const PanelArea& area = field->area;
+        const auto css = [&](float px) { return scale * static_cast<double>(px); };
+        palpa_page_type(field->text.c_str(), css(area.x0), css(area.y0), css(area.width()), css(area.height()));
+    }
+    if (!field && page.types) palpa_page_type_end();
+    page.types = field.has_value();
+}
+
 void frame() {
     try {
-        page.live->turn(page.gl_lost ? Live::Draw::nothing : Live::Draw::now);
+        if (!page.live->turn(page.gl_lost ? Live::Draw::nothing : Live::Draw::now)) {  // the study was left
+            emscripten_cancel_main_loop();
+            return palpa_page_leave();
+        }
+        follow_typing();
         if (!page.started) palpa_page_started();
         page.started = true;
     } catch (const std::exception& error) {
@@ -69,9 +100,34 @@ EM_BOOL gl_restored(int, const void*, void*) {
     return EM_TRUE;
 }
 
+// One folder for one version of one protocol; whoever was here before goes on in it.
+std::string study_folder(const std::string& name, const Protocol& protocol) {
+    std::string folder = name + "-" + protocol.version;
+    std::replace_if(folder.begin(), folder.end(), [](unsigned char c) { return c >= 128 || std::isalnum(c) == 0; }, '-');
+    return "/studies/" + folder;
+}
+
+// The study that the page's address asks for; throws InputError if there is none of that name.
+void choose_study(const std::string& name, RunOptions& options) {
+    const std::filesystem::path folder = "/assets/protocols";
+    const std::filesystem::path file = folder / (name + ".json");
+    std::string known;
+    for (const auto& entry : std::filesystem::directory_iterator(folder)) known += " " + entry.path().stem().string();
+    if (name.find('/') != std::string::npos || !std::filesystem::exists(file)) {
+        throw bad_input("?protocol", "", shown(name), "one of" + known + ", or of a desk that this tablet is paired with");
+    }
+    options.protocol = file.string();
+    options.log = study_folder(name, read_protocol(file));
+}
+
 }  // namespace
 
 extern "C" {
+
+// What the page's own field holds now.
+EMSCRIPTEN_KEEPALIVE void palpa_type(const char* text) {
+    if (page.live) page.live->type_instead(text);
+}
 
 // What `palpa run --json` would print now; for tests and for the curious.
 EMSCRIPTEN_KEEPALIVE const char* palpa_report() {
@@ -82,19 +138,26 @@ EMSCRIPTEN_KEEPALIVE const char* palpa_report() {
 }
 
 int main() {
+    std::string protocol;
     try {
         setenv("PALPA_ASSETS", "/assets", 1);
         setenv("HOME", "/home/web_user", 1);
         restore_settings(settings_file());
+        restore_studies();
+        protocol = protocol_here();
         RunOptions options;
         options.log = "/logs";
         options.participant = participant_here();
         options.first_run = next_run_here();
+        if (!protocol.empty()) choose_study(protocol, options);
         page.live = std::make_unique<Live>(options, &page.keeper);
         emscripten_set_visibilitychange_callback(nullptr, false, visibility);
         emscripten_set_webglcontextlost_callback("#canvas", nullptr, false, gl_lost);
         emscripten_set_webglcontextrestored_callback("#canvas", nullptr, false, gl_restored);
         emscripten_set_main_loop(frame, 0, false);
+    } catch (const InputError& error) {
+        protocol.empty() ? palpa_page_fail(error.what()) : palpa_page_refuse(error.what());
+        return 1;
     } catch (const std::exception& error) {
         palpa_page_fail(error.what());
         return 1;

@@ -5,11 +5,22 @@ const palpaFolder = new URL('.', document.currentScript.src).href;
 
 const palpaPage = (() => {
     const at = (id) => document.getElementById(id);
+    for (const element of document.querySelectorAll('[data-word]')) element.textContent = palpaWords[element.dataset.word];
+    for (const element of document.querySelectorAll('[data-label]')) element.setAttribute('aria-label', palpaWords[element.dataset.label]);
 
     const fail = (text) => {
         at('message').hidden = false;
-        at('message').textContent = 'Palpa has stopped: ' + text;
+        at('message-text').textContent = palpaFilled(palpaWords.stopped, text);
     };
+
+    // A study that cannot be run here, before anybody has begun with it.
+    const refuse = (text) => {
+        at('message').hidden = false;
+        at('message-text').textContent = palpaFilled(palpaWords.notHere, text);
+        at('leave').hidden = false;
+        at('leave').focus();
+    };
+    at('leave').addEventListener('click', () => palpaStudies.leave());
 
     const started = () => { at('message').hidden = true; };
 
@@ -32,6 +43,65 @@ const palpaPage = (() => {
         if (!at('trials').open) at('trials').showModal();
     };
 
+    const openStudies = async () => {
+        at('studies-state').textContent = palpaWords.looking;
+        at('studies-list').replaceChildren();
+        at('begin-study').disabled = true;
+        if (!at('studies').open) at('studies').showModal();
+        const {studies, said} = await palpaStudies.list();
+        at('studies-state').textContent = said;
+        at('studies-list').replaceChildren(...studies.map(({name, title, from}) => {
+            const line = document.createElement('label');
+            const choice = document.createElement('input');
+            choice.type = 'radio';
+            choice.name = 'study';
+            choice.value = name;
+            choice.required = true;
+            const words = document.createElement('span');
+            words.textContent = title;
+            const more = document.createElement('small');
+            more.textContent = `${name}, ${from}`;
+            words.append(document.createElement('br'), more);
+            line.append(choice, words);
+            return line;
+        }));
+        at('begin-study').disabled = studies.length === 0;
+    };
+    at('study').addEventListener('submit', (event) => {
+        event.preventDefault();
+        palpaStudies.begin(new FormData(at('study')).get('study'), at('study-code').value);
+    });
+    at('close-studies').addEventListener('click', () => at('studies').close());
+
+    // A tablet's keyboard comes only for a field of the page: one stands over the canvas's own, and what is typed goes there.
+    const typing = at('typing');
+    const kEnter = 13; // of platform/window_event.h
+    const kSettled_ms = 300;
+    let typed_ms = 0;
+    const type = (text, x, y, width, height) => {
+        const begins = typing.hidden;
+        Object.assign(typing.style, {left: `${x}px`, top: `${y}px`, width: `${width}px`, height: `${height}px`});
+        if (!begins && (typing.value === text || performance.now() - typed_ms < kSettled_ms)) return;
+        typing.value = text;
+        if (!begins) return;
+        typing.hidden = false;
+        typing.focus();
+        typing.select();
+    };
+    const typeEnd = () => {
+        typing.hidden = true;
+        typing.blur();
+    };
+    typing.addEventListener('input', () => {
+        Module.ccall('palpa_type', null, ['string'], [typing.value]);
+        typed_ms = performance.now();
+    });
+    typing.addEventListener('keydown', (event) => {
+        if (event.key !== 'Enter') return;
+        for (const down of [1, 0]) _palpa_key(down, kEnter, 0, 0, 0, 0);
+    });
+    at('canvas').addEventListener('pointerup', () => { if (!typing.hidden) typing.focus(); });
+
     at('pair').addEventListener('submit', async (event) => {
         event.preventDefault();
         await palpaTrials.pair(at('code').value.trim());
@@ -41,20 +111,20 @@ const palpaPage = (() => {
     at('send-now').addEventListener('click', () => palpaTrials.send());
     at('export').addEventListener('click', () => palpaTrials.exportAll());
     at('remove').addEventListener('click', () => {
-        if (confirm('Remove the exported trials from this tablet? The file that was exported is then the only copy.')) palpaTrials.removeExported();
+        if (confirm(palpaWords.removeAsk)) palpaTrials.removeExported();
     });
     at('close-trials').addEventListener('click', () => at('trials').close());
     palpaTrials.onChange(() => { if (at('trials').open) show(); });
 
     window.addEventListener('error', (event) => {
         const script = event.target && event.target.tagName === 'SCRIPT';
-        if (script) fail('the program cannot be loaded; is the desk reachable?');
+        if (script) fail(palpaWords.notLoaded);
         else if (event.message) fail(event.message);
     }, true);
     if ('serviceWorker' in navigator) {
         navigator.serviceWorker.register('service_worker.js').catch(() => {}); // then it needs the desk at every start
     }
-    return {fail, started, openTrials};
+    return {fail, refuse, started, openTrials, openStudies, type, typeEnd};
 })();
 
 var Module = {
@@ -66,6 +136,7 @@ var Module = {
     // trials of earlier days are known before the first one of today
     preRun: [() => {
         addRunDependency('trials');
-        palpaTrials.start(palpaPage.openTrials).then(() => removeRunDependency('trials'), (error) => palpaPage.fail(error.message));
+        palpaTrials.start(palpaPage.openTrials).then(() => palpaStudies.start())
+            .then(() => removeRunDependency('trials'), (error) => palpaPage.fail(error.message));
     }],
 };

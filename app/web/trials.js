@@ -1,14 +1,19 @@
 // Trials are kept in the browser's storage (IndexedDB) until the desk has said that it has the same bytes.
 // A trial: {name, text, sha256, finished, exported, sent}; text is gone once it was sent (docs/tablet.md).
+// Beside them: `study`, files that a study goes on from; `parts` of the trial that is going on; `files` of the desk.
 'use strict';
 
 const palpaTrials = (() => {
-    const kStore = 'trials';
+    const kStores = {trials: 'name', study: 'path', parts: ['name', 'path', 'offset'], files: 'path'}; // and their keys
     const kAgain_ms = 15000;
     const kWait_ms = 3000;
     const trials = new Map(); // by name, without texts
     const problems = [];
-    const unsaved = new Map(); // what the storage would not take, by name
+    const unsaved = new Map(); // what the storage would not take, by name: {trial, files}
+    const restoring = new Set(); // parts of an earlier page that are not a trial yet
+    let studyFiles = [];         // of earlier pages
+    let parts = [];
+    let partsTold = false;
     let database = null;
     let writing = 0;
     let sending = false;
@@ -49,8 +54,11 @@ const palpaTrials = (() => {
         return name;
     };
     // Who palpates: ?participant=07 in the address, kept; else the tablet itself.
+    const asked_for = (key) => new URLSearchParams(location.search).get(key);
+    const protocol = () => asked_for('protocol') === null ? '' : asked_for('protocol').replace(/\.json$/, '');
     const participant = () => {
-        const asked = new URLSearchParams(location.search).get('participant');
+        const asked = asked_for('participant');
+        if (asked_for('protocol') !== null) return asked === null ? '' : asked.slice(0, 64); // a study asks for nobody by itself
         if (asked !== null && /^[0-9A-Za-z]{1,64}$/.test(asked)) remember('palpa-participant', asked);
         return recall('palpa-participant') || `tablet${tabletName()}`;
     };
@@ -59,20 +67,33 @@ const palpaTrials = (() => {
     const nextRun = () => 1 + Math.max(Number(recall('palpa-runs')) || 0, ...[...trials.keys()].map(runOf));
     const current = new Set(); // of this page
 
-    const request = (mode, work) => new Promise((resolve, reject) => {
-        if (database === null) return reject(new Error('the browser has no storage for this page'));
-        const transaction = database.transaction(kStore, mode, mode === 'readwrite' ? {durability: 'strict'} : {});
-        const asked = work(transaction.objectStore(kStore));
+    // The address goes on with whoever is here.
+    const setParticipant = (code) => {
+        const query = new URLSearchParams(location.search);
+        if (!query.has('protocol') || (query.get('participant') ?? '') === code) return;
+        if (code === '') query.delete('participant');
+        else query.set('participant', code);
+        history.replaceState(null, '', `${location.pathname}?${query}`);
+    };
+
+    const request = (mode, work, stores = ['trials'], durability = 'strict') => new Promise((resolve, reject) => {
+        if (database === null) return reject(new Error(palpaWords.noStorage));
+        const transaction = database.transaction(stores, mode, mode === 'readwrite' ? {durability} : {});
+        const asked = work(...stores.map((store) => transaction.objectStore(store)));
         transaction.oncomplete = () => resolve(asked ? asked.result : undefined);
-        transaction.onerror = transaction.onabort = () => reject(transaction.error || new Error('broken off'));
+        transaction.onerror = transaction.onabort = () => reject(transaction.error || new Error(palpaWords.interrupted));
     });
 
     const open = () => new Promise((resolve, reject) => {
-        const asked = indexedDB.open('palpa', 1);
-        asked.onupgradeneeded = () => asked.result.createObjectStore(kStore, {keyPath: 'name'});
+        const asked = indexedDB.open('palpa', 2);
+        asked.onupgradeneeded = () => {
+            for (const [store, keyPath] of Object.entries(kStores)) {
+                if (!asked.result.objectStoreNames.contains(store)) asked.result.createObjectStore(store, {keyPath});
+            }
+        };
         asked.onsuccess = () => resolve(asked.result);
         asked.onerror = () => reject(asked.error);
-        asked.onblocked = () => reject(new Error('another page holds it'));
+        asked.onblocked = () => reject(new Error(palpaWords.heldElsewhere));
     });
 
     const note = (trial) => trials.set(trial.name, {name: trial.name, sha256: trial.sha256, finished: trial.finished,
@@ -88,7 +109,7 @@ const palpaTrials = (() => {
             return;
         }
         const gone = names.filter((name) => !trials.has(name));
-        if (gone.length > 0) tell(`${gone.length} trial(s) that were kept here are gone: the browser has removed them (${gone.join(', ')}).`);
+        if (gone.length > 0) tell(palpaFilled(palpaWords.gone, gone.length, gone.join(', ')));
     };
 
     // Two pages would give the same names. The lock goes with the page that holds it.
@@ -102,16 +123,19 @@ const palpaTrials = (() => {
 
     const start = async (dialog) => {
         openDialog = dialog;
-        if (!await isAlone()) throw new Error('Palpa is open in another tab or window of this browser; close one of them');
+        if (!await isAlone()) throw new Error(palpaWords.secondTab);
         try {
             database = await open();
-            database.onclose = () => tell('The browser has closed its storage: trials are not kept any more. Export what is there.');
+            database.onclose = () => tell(palpaWords.storageClosed);
             for (const trial of await request('readonly', (store) => store.getAll())) note(trial);
+            studyFiles = await request('readonly', (store) => store.getAll(), ['study']);
+            parts = await request('readonly', (store) => store.getAll(), ['parts']);
+            for (const part of parts) restoring.add(part.name);
             findMissing();
             noteNames();
             if (navigator.storage && navigator.storage.persist) persistent = await navigator.storage.persist();
         } catch (error) {
-            tell(`Trials cannot be kept in this browser (${error.message}): export each one after it.`);
+            tell(palpaFilled(palpaWords.cannotKeep, error.message));
         }
         await askDesk();
         const code = new URLSearchParams(location.hash.slice(1)).get('code'); // of the square that the desk shows
@@ -119,7 +143,7 @@ const palpaTrials = (() => {
             history.replaceState(null, '', location.pathname + location.search);
             await pair(code);
         }
-        setInterval(send, kAgain_ms);
+        setInterval(() => { saveAgain(); send(); }, kAgain_ms);
         window.addEventListener('online', send);
         send();
     };
@@ -131,33 +155,85 @@ const palpaTrials = (() => {
             if (!answer.ok || !(answer.headers.get('Content-Type') || '').includes('json')) return;
             const {pairing, collects} = await answer.json();
             open_to_all = pairing === false && collects === true;
-            if (collects === false) lastWord = 'This desk takes no logs (it was started without --collect).';
+            if (collects === false) lastWord = palpaWords.takesNoLogs;
         } catch (away) {
             // no desk: trials wait here
         }
     };
+    const credentials = () => recall('palpa-token') ? {Authorization: `Bearer ${recall('palpa-token')}`} : {};
     const maySend = () => open_to_all || recall('palpa-token') !== '';
 
-    const put = async (name, text, sha256, finished) => {
+    // In one transaction, so that what a study goes on from always fits the trials that are kept.
+    const save = async (trial, files, isNew) => {
+        await request('readwrite', (store, study, partsStore) => {
+            if (isNew) store.add(trial); // never over another page's
+            else store.put(trial);
+            for (const file of files) study.put(file);
+            if (isOver(trial)) partsStore.delete(IDBKeyRange.bound([trial.name], [trial.name, []]));
+        }, ['trials', 'study', 'parts']);
+        unsaved.delete(trial.name);
+        note(trial);
+        noteNames();
+    };
+
+    // Space may have been made meanwhile.
+    const saveAgain = async () => {
+        for (const {trial, files} of [...unsaved.values()]) await save(trial, files, false).catch(() => {});
+        changed();
+    };
+
+    // `how`: finished, going on, or broken off (left by an earlier page). `paths`: of files that the study goes on from.
+    const put = async (name, text, sha256, how, paths) => {
         ++writing;
-        const isNew = !current.has(name);
-        current.add(name);
+        const broken = how === 'broken-off';
+        const finished = how === 'finished';
+        const isNew = !broken && !current.has(name);
+        if (!broken) current.add(name);
+        restoring.delete(name);
         remember('palpa-runs', String(Math.max(Number(recall('palpa-runs')) || 0, runOf(name))));
         const trial = {name, text, sha256, finished, exported: false, sent: false};
+        const files = paths.map((path) => ({path, text: FS.readFile(path, {encoding: 'utf8'})}));
         try {
-            await request('readwrite', (store) => isNew ? store.add(trial) : store.put(trial)); // never over another page's
-            unsaved.delete(name);
-            note(trial);
-            noteNames();
+            await save(trial, files, isNew);
         } catch (error) {
-            unsaved.set(name, trial);
+            unsaved.set(name, {trial, files});
             const full = error && error.name === 'QuotaExceededError';
-            tell(`Trial ${name} is not kept: ${full ? 'the storage of this browser is full' : error.message}. Menu, Trials, Export saves it to a file; the next trial waits for that.`);
+            tell(palpaFilled(palpaWords.notKept, name, full ? palpaWords.storageFull : error.message));
         } finally {
             --writing;
         }
         changed();
-        if (finished) send();
+        if (finished || broken) send();
+    };
+
+    // What was added to a file of the trial that is going on.
+    const putPart = (name, path, offset, text) => {
+        remember('palpa-runs', String(Math.max(Number(recall('palpa-runs')) || 0, runOf(name))));
+        request('readwrite', (store) => { store.put({name, path, offset, text}); }, ['parts'], 'relaxed').catch((error) => {
+            if (!partsTold) tell(palpaFilled(palpaWords.partNotKept, error.message));
+            partsTold = true;
+        });
+    };
+
+    // What earlier pages left, back into the program's files. Returns the runs that were broken off, as folder/name.
+    const restore = () => {
+        const write = (path, text) => {
+            FS.mkdirTree(path.slice(0, path.lastIndexOf('/')));
+            FS.writeFile(path, text);
+        };
+        for (const {path, text} of studyFiles) write(path, text);
+        const texts = new Map();
+        const bytes = new TextEncoder();
+        const sizes = new Map();
+        for (const {path, offset, text} of parts) { // sorted by the storage
+            if ((sizes.get(path) ?? 0) !== offset) continue; // a part before it is missing
+            texts.set(path, (texts.get(path) ?? '') + text);
+            sizes.set(path, offset + bytes.encode(text).length);
+        }
+        for (const [path, text] of texts) write(path, text);
+        const broken = [...new Set(parts.map(({name, path}) => `${path.slice(0, path.lastIndexOf('/'))}/${name}`))];
+        studyFiles = parts = [];
+        return broken.join('\n');
     };
 
     const read = (name) => request('readonly', (store) => store.get(name));
@@ -167,18 +243,17 @@ const palpaTrials = (() => {
         if (!trial || trial.sent) return true;
         const answer = await fetch(`api/logs/${encodeURIComponent(name)}`, {
             method: 'PUT',
-            headers: {'Content-Type': 'application/json', 'X-Content-SHA256': trial.sha256,
-                      ...(recall('palpa-token') ? {Authorization: `Bearer ${recall('palpa-token')}`} : {})},
+            headers: {'Content-Type': 'application/json', 'X-Content-SHA256': trial.sha256, ...credentials()},
             body: trial.text,
         });
         if (answer.status === 401 || answer.status === 403) {
             remember('palpa-token', null);
-            lastWord = 'The desk does not know this tablet any more: pair again.';
+            lastWord = palpaWords.pairAgain;
             return false;
         }
         const confirmed = answer.ok ? (await answer.json()).sha256 : '';
         if (confirmed !== trial.sha256) {
-            lastWord = answer.ok ? `The desk has other bytes of ${name}; it is sent again.` : `The desk answered ${answer.status} to ${name}.`;
+            lastWord = answer.ok ? palpaFilled(palpaWords.otherBytes, name) : palpaFilled(palpaWords.answered, answer.status, name);
             return false;
         }
         // the desk has it: from here on only its name is kept
@@ -190,7 +265,7 @@ const palpaTrials = (() => {
     };
 
     // A trial that is going on is neither sent nor exported, since its files still grow; one that an earlier page left is.
-    const isOver = (t) => t.finished || !current.has(t.name);
+    const isOver = (t) => t.finished || (!current.has(t.name) && !restoring.has(t.name));
     const toSend = () => [...trials.values()].filter((t) => !t.sent && isOver(t));
 
     const send = async () => {
@@ -201,7 +276,7 @@ const palpaTrials = (() => {
                 if (!await sendOne(name)) break;
             }
         } catch (error) {
-            lastWord = 'The desk is not reachable; trials wait here.';
+            lastWord = palpaWords.trialsWait;
         } finally {
             sending = false;
         }
@@ -213,9 +288,9 @@ const palpaTrials = (() => {
             const answer = await fetch('api/pair', {method: 'POST', headers: {'Content-Type': 'application/json'}, body: JSON.stringify({code})});
             const token = answer.ok ? (await answer.json()).token : '';
             if (token) remember('palpa-token', token);
-            lastWord = token ? 'Paired.' : `The desk does not take this code (${answer.status}).`;
+            lastWord = token ? palpaWords.paired : palpaFilled(palpaWords.wrongCode, answer.status);
         } catch (error) {
-            lastWord = 'The desk is not reachable.';
+            lastWord = palpaWords.notReachable;
         }
         changed();
         await send();
@@ -229,13 +304,22 @@ const palpaTrials = (() => {
         setTimeout(() => URL.revokeObjectURL(link.href), 60000);
     };
 
-    // All that the desk does not have, in one file; also what the storage would not take.
+    // All that the desk does not have, in one file; also what the storage would not take. Studies never share one.
     const exportAll = async () => {
         const kept = database === null ? [] : (await request('readonly', (store) => store.getAll())).filter((t) => !t.sent);
-        const all = [...kept.filter((t) => !unsaved.has(t.name)), ...unsaved.values()].filter(isOver);
-        const files = all.flatMap((trial) => JSON.parse(trial.text).files);
+        const all = [...kept.filter((t) => !unsaved.has(t.name)), ...[...unsaved.values()].map(({trial}) => trial)].filter(isOver);
+        const studies = new Map(); // by study.json: its name, and its files
+        for (const trial of all) {
+            const {files} = JSON.parse(trial.text);
+            const identity = files.find((file) => file.name === 'study.json');
+            const key = identity ? identity.sha256 : '';
+            if (!studies.has(key)) studies.set(key, {title: identity ? `-${JSON.parse(identity.text).protocol.replace(/[^0-9A-Za-z]+/g, '-')}` : '', files: new Map()});
+            for (const file of files) studies.get(key).files.set(`${file.name} ${file.sha256}`, file);
+        }
         const day = new Date().toISOString().replace(/[-:]|\.\d+/g, '');
-        download(`palpa-trials-${tabletName()}-${day}.json`, JSON.stringify({palpa_bundle: 1, files}, null, 1) + '\n');
+        for (const {title, files} of studies.values()) {
+            download(`palpa-trials${title}-${tabletName()}-${day}.json`, JSON.stringify({palpa_bundle: 1, files: [...files.values()]}, null, 1) + '\n');
+        }
         for (const trial of kept.filter(isOver)) {
             await request('readwrite', (store) => store.put({...trial, exported: true}));
             note({...trial, exported: true});
@@ -254,32 +338,36 @@ const palpaTrials = (() => {
         changed();
     };
 
-    const words = (trial) => trial.sent ? 'at the desk' : !isOver(trial) ? 'going on' : `${trial.finished ? 'waiting' : 'broken off, waiting'}${trial.exported ? ', exported' : ''}`;
+    const words = (trial) => {
+        if (trial.sent) return palpaWords.atDesk;
+        if (!isOver(trial)) return palpaWords.goingOn;
+        return (trial.finished ? palpaWords.waiting : palpaWords.brokenOff) + (trial.exported ? palpaWords.exported : '');
+    };
 
     const state = () => {
         const waiting = [...trials.values()].filter((t) => !t.sent && isOver(t)).length + unsaved.size;
         const paired = maySend();
-        const lines = [`${waiting} waiting, ${[...trials.values()].filter((t) => t.sent).length} at the desk.`];
-        lines.push(recall('palpa-token') !== '' ? 'Paired with the desk.' : open_to_all ? 'The desk takes logs without a code.' : 'Not paired with a desk.');
-        if (!persistent) lines.push('The browser may remove what is kept here when space is short: send or export, or put Palpa on the home screen.');
+        const lines = [palpaFilled(palpaWords.howMany, waiting, [...trials.values()].filter((t) => t.sent).length)];
+        lines.push(recall('palpa-token') !== '' ? palpaWords.isPaired : open_to_all ? palpaWords.openToAll : palpaWords.notPaired);
+        if (!persistent) lines.push(palpaWords.mayRemove);
         if (lastWord) lines.push(lastWord);
-        return {lines, paired, waiting, trials: [...trials.values(), ...unsaved.values()].map((t) => ({...t, words: unsaved.has(t.name) ? 'NOT kept: export it' : words(t)}))};
+        return {lines, paired, waiting, trials: [...[...trials.values()].filter((t) => !unsaved.has(t.name)), ...[...unsaved.values()].map(({trial}) => trial)].map((t) => ({...t, words: unsaved.has(t.name) ? palpaWords.exportIt : words(t)}))};
     };
 
     const noteText = () => {
         const {waiting, paired} = state();
-        if (unsaved.size > 0) return `${unsaved.size} trial(s) NOT kept: Menu, Trials, Export.`;
-        return waiting === 0 ? 'All trials are at the desk or exported.' : `${waiting} trial(s) kept on this tablet${paired ? ', not yet at the desk' : ''}.`;
+        if (unsaved.size > 0) return palpaFilled(palpaWords.unsaved, unsaved.size);
+        return waiting === 0 ? palpaWords.allSafe : palpaFilled(paired ? palpaWords.keptUnsent : palpaWords.kept, waiting);
     };
 
     return {
-        start, put, tell, send, pair, exportAll, removeExported, state,
+        start, put, putPart, restore, tell, send, pair, exportAll, removeExported, state, request, credentials, protocol, setParticipant,
         ready: () => writing === 0 && unsaved.size === 0,
         nextProblem: () => problems.shift() || '',
-        note: () => trials.size + unsaved.size > 0 ? noteText() : 'Trials are kept on this tablet.',
+        note: () => trials.size + unsaved.size > 0 ? noteText() : palpaWords.keptHere,
         participant, nextRun,
         settings: () => recall('palpa-settings'),
-        keepSettings: (text) => { if (!remember('palpa-settings', text)) tell('Settings are not kept: the storage of this browser is full.'); },
+        keepSettings: (text) => { if (!remember('palpa-settings', text)) tell(palpaWords.settingsNotKept); },
         open: () => openDialog(),
         onChange: (callback) => { changed = callback; },
     };

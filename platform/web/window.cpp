@@ -161,9 +161,11 @@ EMSCRIPTEN_KEEPALIVE void palpa_key(int down, int code, int typed, int ctrl, int
     event.shift = shift != 0;
     event.repeat = repeat != 0;
     receive_key(event, browser::now_s(), *open_pointers);
-    if (down == 0 || typed < ' ' || typed > '~' || open_pointers->filter == nullptr) return;
+    constexpr int kLatin = 0xff;  // what the font has
+    if (down == 0 || typed < ' ' || (typed > '~' && typed < 0xa0) || typed > kLatin || open_pointers->filter == nullptr) return;
     event.kind = WindowEvent::Kind::text;
-    event.text = static_cast<char>(typed);
+    if (typed > '~') event.text += static_cast<char>(0xc0 | (typed >> 6));
+    event.text += static_cast<char>(typed > '~' ? 0x80 | (typed & 0x3f) : typed);
     open_pointers->filter(event, open_pointers->filter_user);
 }
 

@@ -141,6 +141,48 @@ TEST_CASE("import bundles: logs of single runs and a study do not mix") {
     CHECK_FALSE(fs::exists(folder / "logs" / "sub-02"));
 }
 
+TEST_CASE("import bundles: answers grow from bundle to bundle, in any order; other answers are refused") {
+    const TemporaryFolder folder;
+    const std::string name = "sub-01/beh/sub-01_task-ratings_beh.tsv";
+    const std::string one = "condition\titem\tvalue\npen\teffort\t3\n";
+    const std::string two = one + "hand\teffort\t5\n";
+    const std::string three = two + "off\teffort\t1\n";
+    const auto bundle = [&](const char* file, const std::string& text) { return write_bundle(folder / file, {{name, text}, {"study.json", study("aa", "x")}}); };
+    const auto a = bundle("a", one), b = bundle("b", two), c = bundle("c", three);
+    CHECK(import_bundles({b, a}, folder / "study").grown.empty());
+    CHECK(read_text(folder / "study" / name) == two);
+    const ImportReport later = import_bundles({a, c, b}, folder / "study");
+    CHECK(later.grown == std::vector<std::string>{name});
+    CHECK(later.written.empty());
+    CHECK(read_text(folder / "study" / name) == three);
+    CHECK(import_bundles({a}, folder / "study").already_there.size() == 1);
+    CHECK(read_text(folder / "study" / name) == three);
+    const auto other = bundle("d", one + "hand\teffort\t6\n");
+    CHECK(contains(message_of([&] { import_bundles({other}, folder / "study"); }), "other answers than in"));
+    CHECK(contains(message_of([&] { import_bundles({other, b}, folder / "fresh"); }), "other answers than in"));
+    CHECK_FALSE(fs::exists(folder / "fresh"));
+    CHECK(read_text(folder / "study" / name) == three);
+}
+
+TEST_CASE("import bundles: single runs that a tablet took beside a study are passed over, and alone they are taken") {
+    const TemporaryFolder folder;
+    const auto single = write_bundle(folder / "s", {{run_file("tablet1", "_events.tsv"), "e\n"}, {run_file("tablet1", "_settings.json"), R"({"scene": "x"})"}});
+    const auto of_study = write_bundle(folder / "b", {{run_file("02", "_settings.json"), R"({"study": {}})"}, {"study.json", study("aa", "x")}});
+    const ImportReport report = import_bundles({single, of_study}, folder / "study");
+    CHECK(report.passed_over == std::vector<std::string>{single.string()});
+    CHECK_FALSE(fs::exists(folder / "study" / "sub-tablet1"));
+    CHECK(fs::exists(folder / "study" / "sub-02"));
+    CHECK(import_bundles({single}, folder / "study").passed_over.size() == 1);  // the folder is the study's already
+    CHECK(import_bundles({single}, folder / "logs").written.size() == 2);
+}
+
+TEST_CASE("import bundles: several people of one tablet in one file") {
+    const TemporaryFolder folder;
+    const auto file = write_bundle(folder / "b", {{"participants.tsv", people(kAnna)}, {"participants.tsv", people(kBert)}, {"study.json", study("aa", "x")}});
+    CHECK(import_bundles({file}, folder / "study").people_added == 2);
+    CHECK(read_text(folder / "study" / "participants.tsv") == people(kAnna + kBert));
+}
+
 TEST_CASE("import bundles: a file where a folder must be, and the other way round") {
     const TemporaryFolder folder;
     const auto bundle = write_bundle(folder / "b", {{run_file("01", "_samples.tsv"), "s1\n"}, {run_file("02", "_events.tsv"), "e2\n"}});

@@ -7,7 +7,7 @@ import os from 'node:os';
 import path from 'node:path';
 import {createRequire} from 'node:module';
 
-const root = path.resolve(import.meta.dirname ?? path.dirname(new URL(import.meta.url).pathname), '../..');
+export const root = path.resolve(import.meta.dirname ?? path.dirname(new URL(import.meta.url).pathname), '../..');
 const {chromium} = createRequire(path.join(root, 'build/web-tools/'))('playwright-core');
 export const site = process.env.PALPA_SITE ?? path.join(root, 'build/web/site');
 const types = {'.html': 'text/html', '.js': 'text/javascript', '.wasm': 'application/wasm', '.css': 'text/css', '.svg': 'image/svg+xml',

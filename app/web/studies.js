@@ -1,0 +1,127 @@
+// Protocols, and the scenes, maps, profiles and phantoms that they name: those of the app, and those that the desk serves,
+// which are kept in the browser's storage for days without a network. Of two of one name the desk's is taken.
+'use strict';
+
+const palpaStudies = (() => {
+    const kKinds = ['protocols', 'scenes', 'maps', 'profiles', 'phantoms'];
+    const kDefaultProfile = 'profiles/s-pen.json'; // of scenes that name none
+    const kAssets = '/assets';
+    const kWait_ms = 5000;
+    let kept = new Map(); // by path in the assets: {path, bytes, files}; `files` of a protocol: all it needs
+
+    const textOf = (bytes) => new TextDecoder().decode(bytes);
+    // Hand-written JSON has comments.
+    const parse = (text) => {
+        try {
+            return JSON.parse(text.replace(/("(?:[^"\\]|\\.)*")|\/\/[^\n]*|\/\*[^]*?\*\//g, (all, word) => word ?? ''));
+        } catch (broken) {
+            return null; // the program says what is wrong with it
+        }
+    };
+    const words = (json) => typeof json === 'string' ? [json] : json && typeof json === 'object' ? Object.values(json).flatMap(words) : [];
+    const plain = (path) => {
+        const out = [];
+        for (const part of path.split('/')) {
+            if (part === '..') out.pop();
+            else if (part !== '' && part !== '.') out.push(part);
+        }
+        return out.join('/');
+    };
+
+    // A protocol and all that it names, as far as `paths` has it.
+    const collect = async (protocol, paths, read) => {
+        const found = new Map();
+        const waiting = [protocol];
+        while (waiting.length > 0) {
+            const path = waiting.pop();
+            if (found.has(path)) continue;
+            found.set(path, await read(path));
+            if (!path.endsWith('.json')) continue;
+            const folder = path.slice(0, path.lastIndexOf('/'));
+            for (const word of words(parse(textOf(found.get(path))))) {
+                for (const named of [folder, ...kKinds].map((base) => plain(`${base}/${word}`))) {
+                    if (paths.has(named)) waiting.push(named);
+                    if (named.endsWith('.map')) waiting.push(...[...paths].filter((file) => file.startsWith(named + '/')));
+                }
+            }
+            if (path.startsWith('scenes/') && paths.has(kDefaultProfile)) waiting.push(kDefaultProfile);
+        }
+        return found;
+    };
+
+    const ask = async (address) => {
+        const answer = await fetch(address, {headers: palpaTrials.credentials(), cache: 'no-cache', signal: AbortSignal.timeout(kWait_ms)});
+        if (!answer.ok) throw new Error(palpaFilled(palpaWords.answered, answer.status, address));
+        return answer;
+    };
+    const askFile = async (path) => (await ask('files/' + path.split('/').map(encodeURIComponent).join('/'))).arrayBuffer();
+    const atDesk = async () => {
+        const listed = await (await ask('api/files')).json();
+        const files = kKinds.flatMap((kind) => listed[kind] ?? []).flatMap((entry) => entry.files ?? [entry]);
+        return new Set(files.map(({path}) => path.replace(/^\/files\//, '')));
+    };
+
+    // The desk's newest version of a protocol, all of it or nothing. False: the desk has none.
+    const fetchStudy = async (name) => {
+        const protocol = `protocols/${name}.json`;
+        const paths = await atDesk();
+        if (!paths.has(protocol)) return false;
+        const found = await collect(protocol, paths, askFile);
+        const entries = [...found].map(([path, bytes]) => ({path, bytes, files: path === protocol ? [...found.keys()] : kept.get(path)?.files}));
+        await palpaTrials.request('readwrite', (store) => { for (const entry of entries) store.put(entry); }, ['files']);
+        for (const entry of entries) kept.set(entry.path, entry);
+        return true;
+    };
+
+    const start = async () => {
+        try {
+            for (const entry of await palpaTrials.request('readonly', (store) => store.getAll(), ['files'])) kept.set(entry.path, entry);
+        } catch (none) {
+            // no storage: told elsewhere
+        }
+        const name = palpaTrials.protocol();
+        if (name) await fetchStudy(name).catch(() => {}); // away, or not paired: what is kept, or of the app
+    };
+
+    // The desk's files of the study that was asked for take the place of the app's.
+    const restore = () => {
+        const files = kept.get(`protocols/${palpaTrials.protocol()}.json`)?.files ?? [];
+        const maps = new Set(files.filter((path) => path.startsWith('maps/')).map((path) => `${kAssets}/${path.slice(0, path.lastIndexOf('/'))}`));
+        for (const map of maps) {
+            if (!FS.analyzePath(map).exists) continue;
+            for (const file of FS.readdir(map)) if (!file.startsWith('.')) FS.unlink(`${map}/${file}`); // no part of another version stays
+        }
+        for (const path of files) {
+            const to = `${kAssets}/${path}`;
+            FS.mkdirTree(to.slice(0, to.lastIndexOf('/')));
+            FS.writeFile(to, new Uint8Array(kept.get(path).bytes));
+        }
+    };
+
+    // What can be chosen: {name, title, from}, by name.
+    const list = async () => {
+        const out = new Map();
+        const add = (name, text, from) => out.set(name, {name, title: parse(text)?.name ?? name, from});
+        for (const file of FS.readdir(`${kAssets}/protocols`)) {
+            if (file.endsWith('.json')) add(file.slice(0, -5), FS.readFile(`${kAssets}/protocols/${file}`, {encoding: 'utf8'}), palpaWords.inTheApp);
+        }
+        const nameOf = (path) => path.slice('protocols/'.length, -5);
+        const isProtocol = (path) => path.startsWith('protocols/') && path.endsWith('.json');
+        for (const {path, bytes} of kept.values()) if (isProtocol(path)) add(nameOf(path), textOf(bytes), palpaWords.ofDeskKept);
+        let said = '';
+        try {
+            for (const path of [...await atDesk()].filter(isProtocol)) add(nameOf(path), textOf(await askFile(path)), palpaWords.ofDesk);
+        } catch (away) {
+            said = palpaWords.noDesk;
+        }
+        return {studies: [...out.values()].sort((a, b) => a.title < b.title ? -1 : 1), said};
+    };
+
+    const begin = (name, participant) => {
+        const query = new URLSearchParams({protocol: name, ...(participant ? {participant} : {})});
+        location.assign(`${location.pathname}?${query}`);
+    };
+    const leave = () => location.assign(location.pathname);
+
+    return {start, restore, list, begin, leave};
+})();
