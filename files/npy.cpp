@@ -171,7 +171,7 @@ NpyArray read_npy(const std::filesystem::path& path) {
     const std::uintmax_t bytes = std::filesystem::file_size(path, error);
     std::ifstream in(path, std::ios::binary);
     if (error || !in || !std::filesystem::is_regular_file(path)) return parse_npy(read_text(path), path.string());
-    return read_in_parts(in, bytes, path.string());
+    return read_in_parts(in, static_cast<std::size_t>(bytes), path.string());
 }
 
 std::string npy_header(const std::vector<std::size_t>& shape) {
