@@ -74,11 +74,12 @@ void draw_keeping(double now_s, Gui& gui, StudyRun& run, Wishes& wishes) {
 void draw_code(Gui& gui, StudyRun& run, Wishes& wishes) {
     title("Who is here?");
     paragraph("A code for the participant, no name: letters and digits. Whoever was here before goes on with the same code.");
-    if (run.answers.empty()) run.answers = {free_code(run)};
+    const bool fresh = run.answers.empty();
+    if (fresh) run.answers = {free_code(run)};
     char text[24];
     std::snprintf(text, sizeof text, "%s", run.answers[0].c_str());
     ImGui::SetNextItemWidth(60.0f * gui.mm());
-    if (ImGui::IsWindowAppearing()) ImGui::SetKeyboardFocusHere();
+    if (fresh || ImGui::IsWindowAppearing()) ImGui::SetKeyboardFocusHere();
     const bool entered = text_field("code", text, sizeof text, ImGuiInputTextFlags_EnterReturnsTrue, gui);
     run.answers[0] = text;
     gap(gui);
