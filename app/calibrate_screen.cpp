@@ -7,6 +7,7 @@
 
 #include "app/load.h"
 #include "app/look.h"
+#include "app/words.h"
 #include "calibration/profile_file.h"
 #include "files/input_error.h"
 
@@ -75,7 +76,7 @@ void keep_profile(CalibrateForm& form) {
         const Json quality{{"median_relative_error", calibration.median_relative_error}, {"n_points", calibration.n_points},
                            {"warnings", calibration.warnings}};
         write_profile(calibration.profile, quality, file);
-        form.guide.note = "Kept as " + file.string() + "; choose it in the menu.";
+        form.guide.note = words::filled(words::kKeptAs, {file.string()});
         for (const std::string& warning : calibration.warnings) form.guide.note += "\n! " + warning;
         form.recording.reset();
     });
@@ -120,9 +121,9 @@ void draw_plots(const Recording& recording, const Guide& guide, const PanelArea&
         const ImVec2 high = curve.at(static_cast<double>(band + 1) / options.bands, curve.most_y);
         draw.AddRectFilled(ImVec2(low.x, high.y), ImVec2(high.x, low.y), kForceTints[1]);
     }
-    draw_frame_of(curve, "Force over pressure; tinted: press here next", fixed(curve.most_y, 2) + " N", "0 N, 0 %", draw);
+    draw_frame_of(curve, words::kForceOverPressure, fixed(curve.most_y, 2) + " N", "0 N, 0 %", draw);
     Plot rest{{curve.area.x0, split + gap_px, curve.area.x1, area.y1 - 2 * gui.mm()}, 1.0, -0.2, 0.2};
-    draw_frame_of(rest, "What is left without the curve, share of the force", "+20 %", "-20 %", draw);
+    draw_frame_of(rest, words::kResiduals, "+20 %", "-20 %", draw);
     draw.AddLine(rest.at(0.0, 0.0), rest.at(1.0, 0.0), kPale);
     const float dot_px = 0.6f * gui.mm();
     for (const CapturedPoint& point : session.points) {
@@ -146,16 +147,16 @@ void draw_plots(const Recording& recording, const Guide& guide, const PanelArea&
 }
 
 void draw_typed(Recording& recording, const Gui& gui, Guide& guide) {
-    paragraph("Hold the pen still, type what the scale shows, then take it.");
+    paragraph(words::kHoldStill);
     ImGui::SetNextItemWidth(share_of_line_px(2));
-    ImGui::InputDouble("gf", &guide.shown_gf, 0.0, 0.0, "%.2f");
-    if (!big_button("Take", "", {}, gui)) return;
+    ImGui::InputDouble(words::kGramForce, &guide.shown_gf, 0.0, 0.0, "%.2f");
+    if (!big_button(words::kTake, "", {}, gui)) return;
     const bool good = std::isfinite(guide.shown_gf) && guide.shown_gf >= 0.0 && guide.shown_gf < 1e5;
-    guide.note = good && take_typed_N(guide.shown_gf * kN_per_gf, recording) ? "Taken." : "Not taken: hold the pen still at another level.";
+    guide.note = good && take_typed_N(guide.shown_gf * kN_per_gf, recording) ? words::kTaken : words::kNotTaken;
 }
 
 void form_lines(Gui& gui, CalibrateForm& form) {
-    constexpr const char* kKinds[] = {"Scale, typed by hand", "ATI Net F/T", "Load cell, serial port"};
+    constexpr const char* kKinds[] = {words::kTypedScale, words::kNetFt, words::kLoadCell};
     for (int i = 0; i < 3; ++i) {
         if (big_button(kKinds[i], "", {0.0f, kTarget_mm, true, form.kind == i}, gui)) form.kind = i;
     }
@@ -163,18 +164,18 @@ void form_lines(Gui& gui, CalibrateForm& form) {
     const auto field = [&] { ImGui::SetNextItemWidth(width_px); };
     if (form.kind == 1) {
         field();
-        ImGui::InputText("address", form.address, sizeof form.address);
+        ImGui::InputText(words::kAddress, form.address, sizeof form.address);
         field();
-        ImGui::InputDouble("counts per N", &form.counts_per_N, 0.0, 0.0, "%.6g");
+        ImGui::InputDouble(words::kCountsPerN, &form.counts_per_N, 0.0, 0.0, "%.6g");
     }
     if (form.kind == 2) {
         field();
-        ImGui::InputText("port", form.port, sizeof form.port);
+        ImGui::InputText(words::kPort, form.port, sizeof form.port);
         field();
-        ImGui::InputDouble("N per count", &form.N_per_count, 0.0, 0.0, "%.6g");
+        ImGui::InputDouble(words::kNPerCount, &form.N_per_count, 0.0, 0.0, "%.6g");
     }
     field();
-    ImGui::InputText("name", form.name, sizeof form.name);
+    ImGui::InputText(words::kName, form.name, sizeof form.name);
 }
 
 }  // namespace
@@ -206,21 +207,21 @@ GuideWishes draw_guide(Recording& recording, Gui& gui, Guide& guide) {
     const float column_px = 26.0f * gui.mm();
     const RecordSession& session = recording.session;
     const double level = session.levels.empty() ? 0.0 : share_of(recording.arguments.options, session.levels.back().value);
-    value_line("Pressure", fixed(100.0 * level, 1) + " %", column_px);
-    value_line("Force", fixed(session.forces.empty() ? kMissing : session.forces.back().value, 3) + " N", column_px);
-    value_line("Points", std::to_string(session.points.size()), column_px);
-    value_line("Press", std::to_string(session.repeat + 1), column_px);
+    value_line(words::kPressure, fixed(100.0 * level, 1) + " %", column_px);
+    value_line(words::kForce, fixed(session.forces.empty() ? kMissing : session.forces.back().value, 3) + " N", column_px);
+    value_line(words::kPoints, std::to_string(session.points.size()), column_px);
+    value_line(words::kPress, std::to_string(session.repeat + 1), column_px);
     if (!recording.sensor) draw_typed(recording, gui, guide);
-    if (big_button("Make the profile", "", {0.0f, kMark_mm, guide.fit.has_value(), false}, gui)) wishes.keep = true;
-    if (big_button("Stop (can be gone on with)", "", {}, gui)) wishes.stop = true;
+    if (big_button(words::kMakeProfile, "", {0.0f, kMark_mm, guide.fit.has_value(), false}, gui)) wishes.keep = true;
+    if (big_button(words::kStopRecording, "", {}, gui)) wishes.stop = true;
     ImGui::BeginChild("state", ImVec2(0.0f, 0.0f), false, ImGuiWindowFlags_NavFlattened);
     if (recording.sensor) {
         const SensorHealth health = recording.sensor->health();
-        paragraph(recording.sensor->name() + ": " + std::to_string(health.received) + " readings, lost " + std::to_string(health.lost) + ", twice " +
-                  std::to_string(health.duplicate) + ", late " + std::to_string(health.reordered) + ", stalls " + std::to_string(health.stalls));
-        if (recording.silent) warning_paragraph("The sensor has stopped; nothing is captured until it is back.");
+        paragraph(words::filled(words::kSensorHealth, {recording.sensor->name(), std::to_string(health.received), std::to_string(health.lost),
+                                                       std::to_string(health.duplicate), std::to_string(health.reordered), std::to_string(health.stalls)}));
+        if (recording.silent) warning_paragraph(words::kSensorStopped);
     }
-    if (recording.knowledge.done) ImGui::TextWrapped("The curve is known to 5 %% everywhere.");
+    if (recording.knowledge.done) ImGui::TextWrapped("%s", words::kCurveKnown);
     if (!recording.knowledge.done && !recording.knowledge.missing.empty()) paragraph(recording.knowledge.missing);
     if (!guide.note.empty()) paragraph(guide.note);
     ImGui::EndChild();
@@ -245,12 +246,12 @@ void draw_calibrate_screen(const Shown& shown, Gui& gui, CalibrateForm& form, Wi
     ImGui::GetBackgroundDrawList()->AddRectFilled(ImVec2(0.0f, 0.0f), ImVec2(window.width, window.height), kDark);
     begin_panel("calibrate", {0.0f, 0.0f, window.width, window.height}, gui);
     ImGui::BeginChild("form", ImVec2(std::min(110.0f * gui.mm(), ImGui::GetContentRegionAvail().x), 0.0f), false, ImGuiWindowFlags_NavFlattened);
-    if (big_button("Back", "Esc", {40.0f * gui.mm(), kTarget_mm, true, false}, gui)) {
+    if (big_button(words::kBack, words::kEscape, {40.0f * gui.mm(), kTarget_mm, true, false}, gui)) {
         wishes.screen = shown.trial.finished ? Screen::reveal : Screen::trial;
     }
-    ImGui::TextWrapped("Put a force sensor under the tablet, or the tablet on a scale. Then press slowly, hold still, press harder, several times.");
+    ImGui::TextWrapped("%s", words::kHowToCalibrate);
     form_lines(gui, form);
-    if (big_button("Start", "", {0.0f, kMark_mm, true, false}, gui)) {
+    if (big_button(words::kStart, "", {0.0f, kMark_mm, true, false}, gui)) {
         form.problem.clear();
         form.guide = {};
         attempt(form, [&] { form.recording = open_recording(arguments_of(form)); });
@@ -274,8 +275,7 @@ void step_calibrate(const std::vector<Sample>& samples, CalibrateForm& form) {
 void stop_recording(CalibrateForm& form) {
     if (!form.recording) return;
     attempt(form, [&] { close_recording(*form.recording); });
-    form.guide.note = std::to_string(form.recording->session.points.size()) + " points in " + form.recording->arguments.folder +
-                      "; the same name goes on with them.";
+    form.guide.note = words::filled(words::kPointsIn, {std::to_string(form.recording->session.points.size()), form.recording->arguments.folder});
     form.recording.reset();
 }
 

@@ -5,6 +5,7 @@
 
 #include "app/look.h"
 #include "app/screens.h"
+#include "app/words.h"
 
 namespace palpa {
 namespace {
@@ -14,28 +15,28 @@ std::string range_text(const Range& range, int digits) {
 }
 
 void said_lines(const Screens& screens) {
-    ImGui::TextDisabled("Says that it has");
+    ImGui::TextDisabled(words::kSaysItHas);
     for (const PointerDevice& device : screens.devices) {
         std::string text = device.name + " (" + std::string(name_of(device.tool)) + "): ";
-        text += device.has_pressure ? "pressure " + fixed(device.pressure_min, 0) + " ... " + fixed(device.pressure_max, 0)
-                                    : "no pressure";
-        if (device.levels > 0) text += ", " + std::to_string(device.levels) + " levels";
-        if (device.has_tilt) text += ", tilt";
-        if (device.has_contact_size) text += ", contact size";
+        text += device.has_pressure ? words::filled(words::kPressureRange, {fixed(device.pressure_min, 0), fixed(device.pressure_max, 0)})
+                                    : words::kNoPressure;
+        if (device.levels > 0) text += words::filled(words::kLevels, {std::to_string(device.levels)});
+        if (device.has_tilt) text += std::string(", ") + words::kTilt;
+        if (device.has_contact_size) text += std::string(", ") + words::kContactSize;
         ImGui::TextWrapped("%s", text.c_str());
     }
-    if (screens.devices.empty()) paragraph("no device that the system tells us about");
+    if (screens.devices.empty()) paragraph(words::kNoDevice);
 }
 
 std::string verdict(Tool which, const DeviceCheck& check) {
-    if (which == Tool::mouse || which == Tool::keyboard) return "by time held or level set, no sensor";
+    if (which == Tool::mouse || which == Tool::keyboard) return words::kByTimeHeld;
     switch (pressure_kind(check.pressure, which)) {
-        case PressureKind::varies: return "varies: a sensor";
-        case PressureKind::constant: return "always " + fixed(constant_pressure(check.pressure, which), 2) + ": no sensor";
-        case PressureKind::missing: return "none";
+        case PressureKind::varies: return words::kVaries;
+        case PressureKind::constant: return words::filled(words::kAlways, {fixed(constant_pressure(check.pressure, which), 2)});
+        case PressureKind::missing: return words::kNone;
         case PressureKind::unknown: break;
     }
-    return "vary it for a second";
+    return words::kVaryIt;
 }
 
 void seen_lines(Tool which, const DeviceCheck& check, const Gui& gui) {
@@ -44,24 +45,24 @@ void seen_lines(Tool which, const DeviceCheck& check, const Gui& gui) {
     const float column_px = 34.0f * gui.mm();
     ImGui::Separator();
     ImGui::Text("%s", std::string(name_of(which)).c_str());
-    value_line("Pressure", verdict(which, check), column_px);
-    value_line("", range_text(tool.pressure, 3) + ", " + std::to_string(distinct_pressures(tool)) + " values", column_px);
-    value_line("Counts", range_text(tool.pressure_raw, 0), column_px);
-    value_line("Rate", fixed(rate_Hz(tool), 0) + " Hz, worst gap " + fixed(1e3 * worst_gap_s(tool), 0) + " ms", column_px);
+    value_line(words::kPressure, verdict(which, check), column_px);
+    value_line("", words::filled(words::kValues, {range_text(tool.pressure, 3), std::to_string(distinct_pressures(tool))}), column_px);
+    value_line(words::kCounts, range_text(tool.pressure_raw, 0), column_px);
+    value_line(words::kRate, words::filled(words::kRateAndGap, {fixed(rate_Hz(tool), 0), fixed(1e3 * worst_gap_s(tool), 0)}), column_px);
     const ClockDrift drift = clock_drift(tool);
     const std::string clock = std::isfinite(drift.ppm) ? fixed(drift.ppm, 0) + " +- " + fixed(drift.standard_error_ppm, 0) + " ppm" : "-";
-    value_line("Clock drift", clock, column_px);
-    const std::string delivery = fixed(samples_per_delivery(tool), 1) + " at a time, " + fixed(1e3 * median_delay_s(tool), 0) + " ms late";
-    if (which != Tool::keyboard) value_line("Delivered", delivery, column_px);
-    value_line("Tilt, size", std::string(tool.tilt ? "tilt" : "-") + ", " + (tool.contact_size ? "size" : "-"), column_px);
-    value_line("Samples", std::to_string(tool.samples), column_px);
+    value_line(words::kClockDrift, clock, column_px);
+    const std::string delivery = words::filled(words::kAtATime, {fixed(samples_per_delivery(tool), 1), fixed(1e3 * median_delay_s(tool), 0)});
+    if (which != Tool::keyboard) value_line(words::kDelivered, delivery, column_px);
+    value_line(words::kTiltAndSize, std::string(tool.tilt ? words::kTilt : "-") + ", " + (tool.contact_size ? words::kContactSize : "-"), column_px);
+    value_line(words::kSamples, std::to_string(tool.samples), column_px);
 }
 
 void draw_test_area(const PanelArea& area, const Gui& gui, const Screens& screens) {
     ImDrawList& draw = *ImGui::GetBackgroundDrawList();
     draw.AddRectFilled(ImVec2(area.x0, area.y0), ImVec2(area.x1, area.y1), IM_COL32(40, 44, 48, 255));
     draw.AddRect(ImVec2(area.x0, area.y0), ImVec2(area.x1, area.y1), kPale);
-    draw.AddText(ImVec2(area.x0 + 2.0f * gui.mm(), area.y0 + 2.0f * gui.mm()), kInk, "Try pen and fingers here: press lightly, then hard");
+    draw.AddText(ImVec2(area.x0 + 2.0f * gui.mm(), area.y0 + 2.0f * gui.mm()), kInk, words::kTryHere);
     for (const Dot& dot : screens.dots) {
         const float level = std::isfinite(dot.pressure) ? std::clamp(dot.pressure, 0.0f, 1.0f) : 0.0f;
         draw.AddCircle(ImVec2(dot.x_px, dot.y_px), (0.4f + 5.0f * level) * gui.mm(), dot.touching ? kLag : kPale, 16, 0.2f * gui.mm());
@@ -90,7 +91,7 @@ void draw_device_screen(const Shown& shown, Gui& gui, Screens& screens, Wishes& 
     ImGui::GetBackgroundDrawList()->AddRectFilled(ImVec2(0.0f, 0.0f), ImVec2(window.width, window.height), kDark);
     draw_test_area(test, gui, screens);
     begin_panel("devices", panel, gui);
-    if (big_button("Back", "Esc", {40.0f * gui.mm(), kTarget_mm, true, false}, gui)) {
+    if (big_button(words::kBack, words::kEscape, {40.0f * gui.mm(), kTarget_mm, true, false}, gui)) {
         wishes.screen = shown.trial.finished ? Screen::reveal : Screen::trial;
     }
     ImGui::BeginChild("list");  // as many devices as there are: this part may scroll

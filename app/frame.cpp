@@ -9,7 +9,7 @@ namespace palpa {
 namespace {
 
 Layout layout_now(const Gui& gui, float width_px, float height_px, const Settings& settings) {
-    return layout_of(width_px, height_px, gui.mm(), settings.left_handed);
+    return layout_of(width_px, height_px, gui.mm(), settings.left_handed, settings.above_finger);
 }
 
 struct Surface {

@@ -14,7 +14,7 @@ constexpr float kLeastTissue_mm = 30.0f;
 
 }  // namespace
 
-Layout layout_of(float width_px, float height_px, float mm, bool left_handed) {
+Layout layout_of(float width_px, float height_px, float mm, bool left_handed, bool above_finger) {
     Layout out;
     const float column_px = kColumn_mm * mm;
     const float strip_px = std::max(kStrip_mm * mm, std::min(height_px - width_px, 1.3f * kStrip_mm * mm));
@@ -24,7 +24,7 @@ Layout layout_of(float width_px, float height_px, float mm, bool left_handed) {
     const bool strip_fits = width_px >= kLeastStripWidth_mm * mm && below_px >= kLeastTissue_mm * mm;
     out.controls = column_fits || strip_fits;
     out.column = column_fits && (!strip_fits || beside_px >= below_px);
-    out.tissue_px = {0.0f, 0.0f, width_px, height_px};
+    out.tissue_px = {0.0f, 0.0f, width_px, height_px - (above_finger ? kFingerOffset_mm * mm : 0.0f)};
     if (!out.controls) return out;
     if (!out.column) {
         out.controls_px = {0.0f, 0.0f, width_px, strip_px};

@@ -21,8 +21,12 @@ struct Layout {
     PanelArea tissue_px;
 };
 
-// `mm`: px per millimetre of what is touched.
-Layout layout_of(float width_px, float height_px, float mm, bool left_handed);
+// A finger may indent what lies this far above it, so that it does not hide the avatar.
+constexpr float kFingerOffset_mm = 15.0f;
+
+// `mm`: px per millimetre of what is touched. `above_finger`: the tissue ends kFingerOffset_mm above the window's lower edge, so
+// that all of it can be reached from below.
+Layout layout_of(float width_px, float height_px, float mm, bool left_handed, bool above_finger = false);
 
 // px per millimetre for controls: the screen's own scale where it is known, else that of a desk's screen (96 per inch),
 // more on larger windows. touch_px_per_mm: what the system says of a screen that is touched (NaN: nothing); taken as far

@@ -13,6 +13,7 @@
 #include "app/replay.h"
 #include "app/save_picture.h"
 #include "app/study_run.h"
+#include "app/words.h"
 #include "files/text.h"
 #include "render/gl.h"
 
@@ -44,9 +45,6 @@ TraceInfo info_of(const App& app, const Window& window) {
 
 namespace {
 
-constexpr const char* kOtherWays =
-    "Other ways to press: the mouse (hold its button, or turn the wheel) and the keys (arrows move, Space presses).";
-
 bool named(const std::vector<PointerDevice>& devices, const std::string& name) {
     return std::any_of(devices.begin(), devices.end(), [&](const PointerDevice& d) { return d.name == name; });
 }
@@ -54,10 +52,10 @@ bool named(const std::vector<PointerDevice>& devices, const std::string& name) {
 // Plugged in or out while the app runs.
 void note_changes(const std::vector<PointerDevice>& now, Screens& screens) {
     for (const PointerDevice& device : screens.devices) {
-        if (!named(now, device.name)) screens.note = device.name + " is gone.";
+        if (!named(now, device.name)) screens.note = words::filled(words::kIsGone, {device.name});
     }
     for (const PointerDevice& device : now) {
-        if (!screens.devices.empty() && !named(screens.devices, device.name)) screens.note = device.name + " is here.";
+        if (!screens.devices.empty() && !named(screens.devices, device.name)) screens.note = words::filled(words::kIsHere, {device.name});
     }
 }
 
@@ -66,10 +64,10 @@ void note_pressure(Tool tool, App& app) {
     const PressureKind kind = pressure_kind(app.pressure, tool);
     const bool held = tool == Tool::pen ? app.hold.pen : app.hold.finger;
     const std::string name(name_of(tool));
-    if (held) app.screens.device_notes.push_back("The " + name + " presses harder the longer it is held.");
+    if (held) app.screens.device_notes.push_back(words::filled(words::kHeldPress, {name}));
     if (held || (kind != PressureKind::constant && kind != PressureKind::missing)) return;
-    const std::string found = kind == PressureKind::missing ? "no pressure" : "always the same pressure: it has no sensor";
-    app.screens.device_notes.push_back("This " + name + " reports " + found + ".");
+    const char* found = kind == PressureKind::missing ? words::kReportsNone : words::kReportsConstant;
+    app.screens.device_notes.push_back(words::filled(found, {name}));
     // a profile of counts or contact areas reads what holding does not make
     app.screens.offer_hold = app.session.plan.profile.level == LevelField::pressure;
 }
@@ -79,7 +77,7 @@ void note_devices(const Window& window, App& app) {
     notes.clear();
     if (app.screens.study) return note_changes(window.devices(), app.screens);
     if (app.trace) {
-        notes.push_back("Replay of " + app.options.trace);
+        notes.push_back(words::filled(words::kReplayOf, {app.options.trace}));
         return;
     }
     if (window.lists_devices()) note_changes(window.devices(), app.screens);
@@ -90,8 +88,8 @@ void note_devices(const Window& window, App& app) {
     for (const Tool tool : {Tool::pen, Tool::finger}) note_pressure(tool, app);
     const auto& devices = app.screens.devices;
     const bool pressure = std::any_of(devices.begin(), devices.end(), [](const PointerDevice& d) { return d.has_pressure; });
-    if (!pressure) notes.push_back("No pen or finger with a pressure sensor here.");
-    if (!pressure || app.screens.offer_hold) notes.push_back(kOtherWays);
+    if (!pressure) notes.push_back(words::kNoSensorHere);
+    if (!pressure || app.screens.offer_hold) notes.push_back(words::kOtherWays);
 }
 
 // Takes a problem to the screen instead of out of the program.
@@ -108,6 +106,8 @@ bool attempt(App& app, const Work& work) {
 
 }  // namespace
 
+double finger_offset_mm(const App& app) { return app.settings.above_finger ? static_cast<double>(kFingerOffset_mm) : 0.0; }
+
 double now_of(const App& app, const Window& window) { return window.now_s() - app.trace_shift_s; }
 
 namespace {
@@ -122,6 +122,7 @@ void begin(const Window& window, const Gui& gui, App& app) {
     app.begin_waits = false;
     SessionFiles files{app.options.log, app.options.participant, app.options.record};
     files.first_run = app.options.first_run;
+    files.finger_offset_mm = finger_offset_mm(app);
     begin_trial(files, info_of(app, window), mode, app.session);
     if (!app.trace) take_sample(resize_sample(window, gui, app.settings, now_of(app, window)), app.session);
 }
@@ -148,7 +149,7 @@ bool close_trial(App& app) {
     const bool good = close_files(result_of(app), app.session);
     if (app.keeper != nullptr && files) app.keeper->keep(*files, true);
     if (good) return true;
-    app.stopped = where + ": can no longer be written; stopped (is the disk full?)";
+    app.stopped = words::filled(words::kCannotBeWritten, {where});
     return false;
 }
 
@@ -183,7 +184,7 @@ bool prepare(Window& window, Gui& gui, const Scene& scene, Plan& plan) {
         window.poll(0.0, ignored);
         if (window.close_requested()) return false;
         gui.begin_frame(kFrame_s, true);
-        draw_progress("Preparing the tissue (once; later starts are quick)", work.share());
+        draw_progress(words::kPreparing, work.share());
         gui.end_frame();
         clear_screen(window.width_px(), window.height_px());
         gui.draw();
@@ -262,7 +263,7 @@ void close_calibrate(App& app) {
 // A press that is going on when its screen goes ends there.
 void open_screen(Screen screen, double now_s, App& app) {
     if (screen == Screen::maps && (app.screens.study || !may_show_maps(app.session.trial))) {
-        app.screens.note = "Maps show where nodules are: finish the test first (F).";
+        app.screens.note = words::kMapsHidden;
         app.screens.menu = false;
         return;
     }
@@ -290,6 +291,7 @@ void open_screen(Screen screen, double now_s, App& app) {
 
 void change_settings(const Wishes& wishes, Window& window, Gui& gui, App& app) {
     if (wishes.left_handed) app.settings.left_handed = *wishes.left_handed;
+    if (wishes.above_finger) app.settings.above_finger = *wishes.above_finger;
     if (wishes.mode) app.settings.test_mode = *wishes.mode == TrialMode::test;
     if (wishes.full_screen) {
         app.settings.full_screen = !window.full_screen();
@@ -300,10 +302,10 @@ void change_settings(const Wishes& wishes, Window& window, Gui& gui, App& app) {
         app.settings.px_per_mm.erase(app.screens.screen_name);
         if (std::isfinite(*wishes.px_per_mm)) app.settings.px_per_mm[app.screens.screen_name] = *wishes.px_per_mm;
     }
-    const bool changed = wishes.left_handed || wishes.mode || wishes.full_screen || wishes.px_per_mm || wishes.scene || wishes.profile;
+    const bool changed = wishes.left_handed || wishes.above_finger || wishes.mode || wishes.full_screen || wishes.px_per_mm || wishes.scene || wishes.profile;
     if (changed) keep_settings(app);
     // what was measured with another scale or shown another way is another trial
-    if (wishes.px_per_mm || wishes.mode) begin_anew(window, gui, app);
+    if (wishes.px_per_mm || wishes.mode || wishes.above_finger) begin_anew(window, gui, app);
 }
 
 void carry_out(const Wishes& wishes, Window& window, Gui& gui, App& app) {
@@ -330,7 +332,7 @@ void carry_out(const Wishes& wishes, Window& window, Gui& gui, App& app) {
     if (wishes.studies && app.keeper != nullptr) app.keeper->open_studies();
     if (wishes.again || wishes.next) begin_anew(window, gui, app);
     if (wishes.save_picture) {
-        attempt(app, [&] { app.screens.note = "Saved " + save_picture(window, app.options.log).string(); });
+        attempt(app, [&] { app.screens.note = words::filled(words::kSaved, {save_picture(window, app.options.log).string()}); });
     }
 }
 
@@ -346,6 +348,14 @@ void take(const Sample& sample, App& app) {
     if (!app.session.trial.finished || app.screens.screen != Screen::trial) return;
     app.screens.debrief = debrief(app.session.plan, app.session.trial);  // a trace that finishes its trial
     app.screens.screen = Screen::reveal;
+}
+
+// A finger that may not hide the avatar indents what lies above it; log and trace hold that place.
+void lift_fingers(float mm, std::vector<Sample>& samples, const App& app) {
+    if (!app.settings.above_finger || app.trace || app.screens.screen != Screen::trial) return;
+    for (Sample& sample : samples) {
+        if (sample.tool == Tool::finger) sample.y_px -= static_cast<double>(kFingerOffset_mm * mm);
+    }
 }
 
 // Where the samples of one turn of the loop go: to the tissue, or to the device check.
@@ -532,6 +542,7 @@ struct Live::Impl {
         begin_when_kept(*window, *gui, app);
         note_resize(*window, *gui, app);
         place_keyboard(*window, app);
+        lift_fingers(gui->mm(), samples, app);
         take_all(window->now_s(), samples, app);       // 2. simulate, 3. log
         watch_files(app);
         flush_if_due(app.session);  // also while nothing moves, and nothing is drawn

@@ -40,6 +40,7 @@ struct App {
 // live.cpp
 TraceInfo info_of(const App& app, const Window& window);
 double now_of(const App& app, const Window& window);  // of samples
+double finger_offset_mm(const App& app);              // 0, or kFingerOffset_mm
 bool close_trial(App& app);  // its files whole on the disk, and with the keeper; false: app.stopped says why not
 void act(Action action, double now_s, App& app);
 

@@ -8,6 +8,7 @@
 #include "app/live_app.h"
 #include "app/load.h"
 #include "app/study_run.h"
+#include "app/words.h"
 
 namespace palpa {
 namespace {
@@ -22,7 +23,9 @@ void begin_study_trial(const Window& window, const Gui& gui, App& app) {
         app.session.scene = scene_of(due, trial);
         app.session.plan = *due.plan;
         app.screens.note.clear();
-        begin_trial(due_files(run), info_of(app, window), known ? TrialMode::practice : TrialMode::test, app.session);
+        SessionFiles files = due_files(run);
+        files.finger_offset_mm = finger_offset_mm(app);
+        begin_trial(files, info_of(app, window), known ? TrialMode::practice : TrialMode::test, app.session);
         app.parted_s = 0.0;
         take_sample(resize_sample(window, gui, app.settings, now_of(app, window)), app.session);
         app.screens.screen = Screen::trial;
@@ -80,7 +83,7 @@ void follow_study(const Window& window, const Gui& gui, App& app) {
 bool allowed(const Sample& sample, App& app) {
     const Modality modality = due_condition(*app.screens.study).modality;
     if (sample.phase == Phase::ui || tool_allowed(modality, sample.tool)) return true;
-    if (sample.phase == Phase::down) app.screens.note = std::string("This trial is done with the ") + name_of(modality) + ".";
+    if (sample.phase == Phase::down) app.screens.note = words::filled(words::kDoneWith, {name_of(modality)});
     return false;
 }
 

@@ -8,6 +8,7 @@
 #include "app/colour_scale.h"
 #include "app/look.h"
 #include "app/map_screen.h"
+#include "app/words.h"
 #include "files/text.h"
 
 namespace palpa {
@@ -57,7 +58,7 @@ struct Values {
 Values values_of(const MapBrowser& browser) {
     Values out{browser.map, browser};
     out.apart = browser.quantity == MapQuantity::tangential_x || browser.quantity == MapQuantity::tangential_y;
-    if (browser.quantity == MapQuantity::stiffness) out.unit = "N/mm";
+    if (browser.quantity == MapQuantity::stiffness) out.unit = words::kNewtonsPerMm;
     double low = std::numeric_limits<double>::infinity();
     double high = -low;
     for (std::size_t cell = 0; cell < browser.map.n_cells(); ++cell) {
@@ -153,7 +154,7 @@ void draw_axes(const Map& map, const Frame& f, float mm, ImDrawList& draw) {
         draw.AddLine(ImVec2(at.x - mm, at.y), at, kPale);
         small(ImVec2(at.x - 1.4f * mm, at.y - 0.5f * text_px), tic_text(y), 1.0f);
     }
-    small(ImVec2(f.high.x, f.high.y + 1.5f * mm + text_px), "x, y in mm", 1.0f);
+    small(ImVec2(f.high.x, f.high.y + 1.5f * mm + text_px), words::kAxesInMm, 1.0f);
 }
 
 void draw_bar(const Values& values, const Frame& f, ImVec2 low, float width_px, float mm, ImDrawList& draw) {
@@ -219,12 +220,12 @@ void draw_pin(ImVec2 at, std::size_t number, float mm, ImDrawList& draw) {
 }
 
 std::string title_of(const MapBrowser& browser) {
-    const std::string depth = ", " + short_number(1e3 * browser.map.depths_m[static_cast<std::size_t>(browser.depth)]) + " mm deep";
+    const std::string depth = ", " + words::filled(words::kMmDeep, {short_number(1e3 * browser.map.depths_m[static_cast<std::size_t>(browser.depth)])});
     switch (browser.quantity) {
-        case MapQuantity::normal: return "Normal force" + depth;
-        case MapQuantity::tangential_x: return "Force against +x" + depth;
-        case MapQuantity::tangential_y: return "Force against +y" + depth;
-        case MapQuantity::stiffness: return "Stiffness";
+        case MapQuantity::normal: return words::kNormalForce + depth;
+        case MapQuantity::tangential_x: return words::kForceAgainstX + depth;
+        case MapQuantity::tangential_y: return words::kForceAgainstY + depth;
+        case MapQuantity::stiffness: return words::kStiffness;
     }
     return "";
 }
@@ -277,9 +278,9 @@ struct DepthCurve {
 
 DepthCurve curve_at(const MapBrowser& browser, const Eigen::Vector2d& p_m, ImU32 colour, const std::string& name) {
     const Place place = place_at(browser.field, p_m);
-    DepthCurve out{{}, name, "  at " + fixed(1e3 * p_m.x(), 1) + ", " + fixed(1e3 * p_m.y(), 1) + " mm", colour};
+    DepthCurve out{{}, name, words::filled(words::kAtPlace, {fixed(1e3 * p_m.x(), 1), fixed(1e3 * p_m.y(), 1)}), colour};
     if (!place.measured) {
-        out.name += "not measured";
+        out.name += words::kNotMeasured;
         return out;
     }
     for (const double depth_m : browser.field.depths_m) {
@@ -316,7 +317,7 @@ void draw_map_curves(const MapBrowser& browser, const std::optional<Eigen::Vecto
     const auto px = [&](float x_mm, float y_N) {
         return ImVec2(low.x + (high.x - low.x) * x_mm / deepest_mm, high.y - (high.y - low.y) * y_N / (1.08f * most_N));
     };
-    draw.AddText(ImVec2(low.x, corner.y), kInk, "Force over depth");
+    draw.AddText(ImVec2(low.x, corner.y), kInk, words::kForceOverDepth);
     const double step_N = tic_step(1.08 * static_cast<double>(most_N), static_cast<double>((high.y - low.y) / (3.0f * small_px)));
     for (double v = 0.0; v <= 1.08 * static_cast<double>(most_N); v += step_N) {
         const ImVec2 at = px(0.0f, static_cast<float>(v));
@@ -332,7 +333,7 @@ void draw_map_curves(const MapBrowser& browser, const std::optional<Eigen::Vecto
         draw.AddText(ImGui::GetFont(), small_px, ImVec2(at.x - 0.4f * ImGui::CalcTextSize(text.c_str()).x, at.y + 1.2f * mm), kPale, text.c_str());
     }
     draw.AddText(ImGui::GetFont(), small_px, ImVec2(low.x - 2.0f * small_px, low.y - small_px - 0.4f * mm), kPale, "N");
-    const char* x_name = "depth (mm)";
+    const char* x_name = words::kDepthAxis;
     draw.AddText(ImGui::GetFont(), small_px, ImVec2(high.x - 0.8f * ImGui::CalcTextSize(x_name).x, high.y + 1.2f * mm + small_px), kPale, x_name);
     if (browser.quantity != MapQuantity::stiffness) {  // where the matrix lies
         const auto depth_mm = static_cast<float>(1e3 * browser.map.depths_m[static_cast<std::size_t>(browser.depth)]);
@@ -350,7 +351,7 @@ void draw_map_curves(const MapBrowser& browser, const std::optional<Eigen::Vecto
         line_y += text_px + 0.4f * mm;
     }
     if (curves.empty()) {
-        const char* hint = "Point at the map; a press pins a curve";
+        const char* hint = words::kPointAtMap;
         draw.AddText(ImVec2(low.x + 2.0f * mm, line_y), kPale, hint);
     }
     ImGui::Dummy(size_px);

@@ -5,6 +5,7 @@
 #include <exception>
 
 #include "app/look.h"
+#include "app/words.h"
 #include "files/text.h"
 #include "stiffnessmaps/map_file.h"
 #include "stiffnessmaps/noise.h"
@@ -18,18 +19,18 @@ std::string mm(double metres) { return short_number(1e3 * metres); }
 std::vector<std::string> facts_of(const Map& map, const Field& field) {
     const ForceRange range = force_range(map);
     std::vector<std::string> out;
-    out.push_back(std::to_string(map.n_x) + " x " + std::to_string(map.n_y) + " cells of " + mm(map.spacing_m[0]) + " x " + mm(map.spacing_m[1]) + " mm");
-    out.push_back(std::to_string(map.n_depths()) + " depths, " + mm(map.depths_m.front()) + " to " + mm(map.depths_m.back()) + " mm");
-    out.push_back("Force " + short_number(range.lowest_N) + " to " + short_number(range.highest_N) + " N");
+    out.push_back(words::filled(words::kCellsOf, {std::to_string(map.n_x), std::to_string(map.n_y), mm(map.spacing_m[0]), mm(map.spacing_m[1])}));
+    out.push_back(words::filled(words::kDepthsFromTo, {std::to_string(map.n_depths()), mm(map.depths_m.front()), mm(map.depths_m.back())}));
+    out.push_back(words::filled(words::kForceFromTo, {short_number(range.lowest_N), short_number(range.highest_N)}));
     const double missing = 100.0 * static_cast<double>(missing_count(map)) / static_cast<double>(map.normal_N.size());
-    out.push_back(missing > 0.0 ? "Not measured: " + short_number(missing) + " %" : "Measured everywhere");
-    out.push_back("Noise " + short_number(1e3 * normal_noise_N(map)) + " mN; " + std::to_string(field.isotonic_changed) + " forces do not rise with depth");
-    out.push_back(std::string("Tangential force: ") + name_of(map.tangential));
-    out.push_back(std::string("Indenter: ") + name_of(map.indenter) + ", radius " + mm(map.indenter_radius_m) + " mm");
+    out.push_back(missing > 0.0 ? words::filled(words::kShareMissing, {short_number(missing)}) : words::kMeasuredEverywhere);
+    out.push_back(words::filled(words::kNoise, {short_number(1e3 * normal_noise_N(map)), std::to_string(field.isotonic_changed)}));
+    out.push_back(words::filled(words::kTangential, {name_of(map.tangential)}));
+    out.push_back(words::filled(words::kIndenter, {name_of(map.indenter), mm(map.indenter_radius_m)}));
     for (const Nodule& nodule : map.nodules) {
-        std::string text = "Nodule " + nodule.id + " (" + (nodule.placed ? "placed" : "detected") + ") at " + mm(nodule.x_m) + ", " + mm(nodule.y_m) + " mm";
-        if (nodule.length_m) text += ", " + mm(*nodule.length_m) + " mm long";
-        else if (nodule.diameter_m) text += ", " + mm(*nodule.diameter_m) + " mm wide";
+        std::string text = words::filled(nodule.placed ? words::kPlacedNodule : words::kDetectedNodule, {nodule.id, mm(nodule.x_m), mm(nodule.y_m)});
+        if (nodule.length_m) text += words::filled(words::kMmLong, {mm(*nodule.length_m)});
+        else if (nodule.diameter_m) text += words::filled(words::kMmWide, {mm(*nodule.diameter_m)});
         out.push_back(text);
     }
     out.push_back(std::string(name_of(map.source.kind)) + ": " + map.source.how);
@@ -42,7 +43,7 @@ bool same_file(const std::string& a, const std::string& b) {
 }
 
 void quantity_buttons(const Gui& gui, MapBrowser& browser) {
-    constexpr const char* kNames[] = {"Normal", "Sideways x", "Sideways y", "Stiffness"};
+    constexpr const char* kNames[] = {words::kNormal, words::kSidewaysX, words::kSidewaysY, words::kStiffness};
     constexpr const char* kKeys[] = {"1", "2", "3", "4"};
     const float width_px = share_of_line_px(2);
     for (int i = 0; i < 4; ++i) {
@@ -65,7 +66,7 @@ void depth_controls(const Gui& gui, MapBrowser& browser) {
     ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, ImVec2(gui.mm(), 0.5f * (kTarget_mm * gui.mm() - ImGui::GetFontSize())));
     ImGui::PushStyleVar(ImGuiStyleVar_GrabMinSize, 5.0f * gui.mm());
     ImGui::SetNextItemWidth(slider_px);
-    const std::string text = mm(browser.map.depths_m[static_cast<std::size_t>(browser.depth)]) + " mm deep";
+    const std::string text = words::filled(words::kMmDeep, {mm(browser.map.depths_m[static_cast<std::size_t>(browser.depth)])});
     std::string format;
     for (const char c : text) format += c == '%' ? std::string("%%") : std::string(1, c);
     ImGui::SliderInt("##depth", &browser.depth, 0, std::max(last, 1), format.c_str(), ImGuiSliderFlags_NoInput);
@@ -77,7 +78,7 @@ void depth_controls(const Gui& gui, MapBrowser& browser) {
 }
 
 void map_list(float height_px, const Gui& gui, MapBrowser& browser) {
-    ImGui::TextDisabled("Map");
+    ImGui::TextDisabled(words::kMap);
     ImGui::BeginChild("maps", ImVec2(0.0f, height_px), false, ImGuiWindowFlags_NavFlattened);
     std::string wanted;
     for (const Choice& choice : browser.maps) {
@@ -140,7 +141,7 @@ Areas areas_of(float width, float height, float mm_px) {
 }
 
 void back_button(const Shown& shown, const Gui& gui, Wishes& wishes) {
-    if (big_button("Back", "Esc", {40.0f * gui.mm(), kTarget_mm, true, false}, gui)) wishes.screen = shown.trial.finished ? Screen::reveal : Screen::trial;
+    if (big_button(words::kBack, words::kEscape, {40.0f * gui.mm(), kTarget_mm, true, false}, gui)) wishes.screen = shown.trial.finished ? Screen::reveal : Screen::trial;
 }
 
 void draw_controls(const Shown& shown, const Areas& areas, Gui& gui, MapBrowser& browser, Wishes& wishes) {
@@ -205,7 +206,7 @@ std::shared_ptr<MapBrowser> make_map_browser(const Scene& scene, std::vector<Cho
     } else if (!first.empty()) {
         browser->maps.insert(browser->maps.begin(), {scene.map.stem().string(), first});
     }
-    if (first.empty()) browser->problem = "There is no map here: put NAME.map folders into your data folder's maps";
+    if (first.empty()) browser->problem = words::kNoMap;
     else choose_map(first, *browser);
     return browser;
 }
@@ -221,7 +222,7 @@ void draw_map_screen(const Shown& shown, Gui& gui, MapBrowser& browser, Wishes& 
     if (!may_show_maps(shown.trial)) {
         begin_panel("map hidden", {0.0f, 0.0f, window.width, window.height}, gui);
         back_button(shown, gui, wishes);
-        ImGui::TextWrapped("Maps show where nodules are: finish the test first.");
+        ImGui::TextWrapped("%s", words::kMapsHidden);
         end_panel("map hidden", gui);
         return;
     }

@@ -5,6 +5,7 @@
 #include "app/look.h"
 #include "app/map_screen.h"
 #include "app/screens.h"
+#include "app/words.h"
 
 namespace palpa {
 namespace {
@@ -13,6 +14,7 @@ PanelArea menu_area(const Layout& layout, float mm) {
     const PanelArea& t = layout.tissue_px;
     PanelArea area = t;
     area.x1 = std::min(t.x1, t.x0 + 150.0f * mm);
+    if (layout.column) area.y1 = std::max(t.y1, layout.controls_px.y1);
     return area;
 }
 
@@ -49,30 +51,34 @@ void pair(const char* left, const char* right, bool right_chosen, const Gui& gui
 void right_side(const Shown& shown, const Gui& gui, Screens& screens, Wishes& wishes) {
     bool left = false;
     bool right = false;
-    ImGui::TextDisabled("Trial");
-    pair("Practice", "Test", shown.trial.mode == TrialMode::test, gui, left, right);
+    ImGui::TextDisabled(words::kTrial);
+    pair(words::kPractice, words::kTest, shown.trial.mode == TrialMode::test, gui, left, right);
     if (left) wishes.mode = TrialMode::practice;
     if (right) wishes.mode = TrialMode::test;
-    if (big_button("Begin anew", "R", {}, gui)) wishes.again = true;
-    ImGui::TextDisabled("Drawing hand");
-    pair("Left", "Right", !shown.settings.left_handed, gui, left, right);
+    if (big_button(words::kBeginAnew, "R", {}, gui)) wishes.again = true;
+    ImGui::TextDisabled(words::kDrawingHand);
+    pair(words::kLeft, words::kRight, !shown.settings.left_handed, gui, left, right);
     if (left) wishes.left_handed = true;
     if (right) wishes.left_handed = false;
+    ImGui::TextDisabled(words::kAvatarOfFinger);
+    pair(words::kUnderIt, words::kAboveIt, shown.settings.above_finger, gui, left, right);
+    if (left) wishes.above_finger = false;
+    if (right) wishes.above_finger = true;
     if (screens.keeps_trials) {
-        ImGui::TextDisabled("On this tablet");
+        ImGui::TextDisabled(words::kOnThisTablet);
         left = right = false;
-        pair_of_ways("Trials", "Studies", gui, left, right);
+        pair_of_ways(words::kTrials, words::kStudies, gui, left, right);
         wishes.trials = wishes.trials || left;
         wishes.studies = wishes.studies || right;
     }
-    ImGui::TextDisabled("Screen and devices");
-    if (big_button("Size of the screen", "Z", {}, gui)) wishes.screen = Screen::scale;
-    if (big_button("Device check", "D", {}, gui)) wishes.screen = Screen::devices;
-    if (big_button("Calibrate pressure", "P", {}, gui)) wishes.screen = Screen::calibrate;
-    if (big_button("Maps", "B", {0.0f, kTarget_mm, may_show_maps(shown.trial), false}, gui)) wishes.screen = Screen::maps;
-    if (big_button("Cost", "C", {0.0f, kTarget_mm, true, screens.cost}, gui)) screens.cost = !screens.cost;
-    if (big_button("Full screen", "F11", {0.0f, kTarget_mm, true, shown.settings.full_screen}, gui)) wishes.full_screen = true;
-    if (!screens.keeps_trials && big_button("Quit", "Ctrl Q", {}, gui)) wishes.quit = true;
+    ImGui::TextDisabled(words::kScreenAndDevices);
+    if (big_button(words::kSizeOfScreen, "Z", {}, gui)) wishes.screen = Screen::scale;
+    if (big_button(words::kDeviceCheck, "D", {}, gui)) wishes.screen = Screen::devices;
+    if (big_button(words::kCalibratePressure, "P", {}, gui)) wishes.screen = Screen::calibrate;
+    if (big_button(words::kMaps, "B", {0.0f, kTarget_mm, may_show_maps(shown.trial), false}, gui)) wishes.screen = Screen::maps;
+    if (big_button(words::kCost, "C", {0.0f, kTarget_mm, true, screens.cost}, gui)) screens.cost = !screens.cost;
+    if (big_button(words::kFullScreen, "F11", {0.0f, kTarget_mm, true, shown.settings.full_screen}, gui)) wishes.full_screen = true;
+    if (!screens.keeps_trials && big_button(words::kQuit, words::kCtrlQ, {}, gui)) wishes.quit = true;
 }
 
 void stage_rows(const Shown& shown, const std::vector<Stage>& stages) {
@@ -97,12 +103,10 @@ void stage_rows(const Shown& shown, const std::vector<Stage>& stages) {
 std::string frame_text(const Shown& shown) {
     const FrameTimes& t = shown.times;
     const auto ms = [](const Meter& meter, double q) { return 1e-6 * meter.quantile_ns(q); };
-    return "Sample to frame " + fixed(ms(t.latency, 0.5), 1) + " ms (99 %: " + fixed(ms(t.latency, 0.99), 1) +
-           "), besides drawing " + fixed(ms(t.ready, 0.5), 1) + " ms. Frame " +
-           fixed(ms(t.cpu, 0.5), 2) + " ms besides drawing (99 %: " + fixed(ms(t.cpu, 0.99), 2) + "), drawing " +
-           fixed(ms(t.gl, 0.5), 1) + " ms. " + fixed(t.frames_per_s, 0) + " frames/s, " +
-           std::to_string(shown.state.counters.samples) + " samples, " + std::to_string(shown.state.counters.dropped_steps) +
-           " steps dropped.";
+    return words::filled(words::kFrameTimes, {fixed(ms(t.latency, 0.5), 1), fixed(ms(t.latency, 0.99), 1), fixed(ms(t.ready, 0.5), 1),
+                                              fixed(ms(t.cpu, 0.5), 2), fixed(ms(t.cpu, 0.99), 2), fixed(ms(t.gl, 0.5), 1),
+                                              fixed(t.frames_per_s, 0), std::to_string(shown.state.counters.samples),
+                                              std::to_string(shown.state.counters.dropped_steps)});
 }
 
 void trial_keys(const Shown& shown, const Gui& gui, Wishes& wishes) {
@@ -129,8 +133,8 @@ void draw_menu(const Shown& shown, const Layout& layout, Gui& gui, Screens& scre
     ImGui::BeginChild("what", ImVec2(half_px, height_px), false, ImGuiWindowFlags_NavFlattened);
     const float line_px = ImGui::GetFontSize() + 2.0f * ImGui::GetStyle().ItemSpacing.y;
     const float list_px = ImGui::GetContentRegionAvail().y - 2.0f * line_px;
-    choices("Scene", screens.scenes, shown.scene.file.string(), 0.62f * list_px, gui, wishes.scene);
-    choices("Pressure profile", screens.profiles, shown.scene.profile.string(), 0.36f * list_px, gui, wishes.profile);
+    choices(words::kScene, screens.scenes, shown.scene.file.string(), 0.62f * list_px, gui, wishes.scene);
+    choices(words::kPressureProfile, screens.profiles, shown.scene.profile.string(), 0.36f * list_px, gui, wishes.profile);
     ImGui::EndChild();
     if (two_columns) ImGui::SameLine();
     ImGui::BeginChild("how", ImVec2(0.0f, 0.0f), false, ImGuiWindowFlags_NavFlattened);
@@ -149,7 +153,7 @@ void draw_cost(const Shown& shown, const Layout& layout, Gui& gui) {
     const float text_px = text_size.y + 2.0f * ImGui::GetStyle().ItemSpacing.y;
     if (ImGui::BeginTable("stages", 6, kFlags, ImVec2(0.0f, ImGui::GetContentRegionAvail().y - text_px))) {
         ImGui::TableSetupScrollFreeze(0, 1);
-        constexpr const char* kColumns[] = {"stage", "fidelity", "error", "us", "us, 99 %", "calls"};
+        constexpr const char* kColumns[] = {words::kStage, words::kFidelity, words::kError, words::kMicroseconds, words::kMicroseconds99, words::kCalls};
         constexpr float kWidths[] = {1.9f, 4.0f, 4.0f, 0.8f, 1.1f, 1.0f};
         for (int i = 0; i < 6; ++i) ImGui::TableSetupColumn(kColumns[i], ImGuiTableColumnFlags_WidthStretch, kWidths[i]);
         ImGui::TableHeadersRow();

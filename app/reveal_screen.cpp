@@ -5,6 +5,7 @@
 
 #include "app/look.h"
 #include "app/screens.h"
+#include "app/words.h"
 
 namespace palpa {
 namespace {
@@ -70,7 +71,7 @@ void draw_nodules(const Shown& shown, const Debrief& debrief, float mm, ImDrawLi
             draw.AddCircle(at, radius_px, kDark, 48, 1.3f * mm);
             dashed_circle(draw, at, radius_px, kInk, 0.8f * mm);
         }
-        const std::string text = nodule.id + (found ? ": found" : ": missed");  // why: in the panel
+        const std::string text = words::filled(found ? words::kFoundNodule : words::kMissedNodule, {nodule.id});  // why: in the panel
         const float width_px = ImGui::CalcTextSize(text.c_str()).x;
         const bool fits = at.x + radius_px + mm + width_px < ImGui::GetIO().DisplaySize.x;
         rimmed_text(draw, ImVec2(fits ? at.x + radius_px + mm : at.x - radius_px - mm - width_px, at.y + 0.3f * ImGui::GetFontSize()),
@@ -90,10 +91,11 @@ void draw_marks(const Shown& shown, const Score& score, float mm, ImDrawList& dr
             draw.AddCircleFilled(at, 1.7f * mm, kDark);
             if (kind == MarkKind::hit) draw.AddCircleFilled(at, 1.3f * mm, kInk);
         }
-        const std::string word = kind == MarkKind::hit ? "" : kind == MarkKind::again ? " again" : " false";
+        const char* pattern = kind == MarkKind::hit ? "{}" : kind == MarkKind::again ? words::kMarkAgain : words::kMarkFalse;
+        const std::string word = words::filled(pattern, {std::to_string(i + 1)});
         rimmed_text(draw, ImVec2(at.x - 1.5f * mm - ImGui::CalcTextSize(std::to_string(i + 1).c_str()).x,
                                  at.y - 1.2f * ImGui::GetFontSize()),
-                    kInk, std::to_string(i + 1) + word);
+                    kInk, word);
     }
 }
 
@@ -102,21 +104,22 @@ std::string percent(double share) { return std::isfinite(share) ? fixed(100.0 * 
 void result_lines(const Shown& shown, const Debrief& debrief, const Gui& gui) {
     const Score& s = debrief.score;
     const float column_px = 34.0f * gui.mm();
-    ImGui::Text("Found %d of %d", s.true_positives, s.true_positives + s.false_negatives);
-    value_line("Sensitivity", percent(s.sensitivity), column_px);
-    value_line("PPV", percent(s.ppv), column_px);
-    value_line("False marks", std::to_string(s.false_positives), column_px);
-    value_line("Time", clock_text(shown.trial_s), column_px);
+    const std::string found = words::filled(words::kFoundOf, {std::to_string(s.true_positives), std::to_string(s.true_positives + s.false_negatives)});
+    ImGui::TextUnformatted(found.c_str());
+    value_line(words::kSensitivity, percent(s.sensitivity), column_px);
+    value_line(words::kPpv, percent(s.ppv), column_px);
+    value_line(words::kFalseMarks, std::to_string(s.false_positives), column_px);
+    value_line(words::kTime, clock_text(shown.trial_s), column_px);
     for (std::size_t i = 0; i < shown.plan.nodules.size(); ++i) {
         std::string text = shown.plan.nodules[i].id + ": " + name_of(debrief.findings[i]);
-        if (debrief.depth_m[i] > 0.0) text += ", down to " + fixed(1e3 * debrief.depth_m[i], 1) + " mm";
+        if (debrief.depth_m[i] > 0.0) text += words::filled(words::kDownTo, {fixed(1e3 * debrief.depth_m[i], 1)});
         ImGui::TextWrapped("%s", text.c_str());
     }
 }
 
 void legend(const Debrief& debrief, const Gui& gui) {
-    ImGui::TextDisabled("Area examined");
-    constexpr const char* kNames[kPalpationLevels] = {"not touched", "light or deeper", "medium or deeper", "deep"};
+    ImGui::TextDisabled(words::kAreaExamined);
+    constexpr const char* kNames[kPalpationLevels] = {words::kNotTouched, words::kLightOrDeeper, words::kMediumOrDeeper, words::kDeep};
     ImDrawList& draw = *ImGui::GetWindowDrawList();
     for (int level = kPalpationLevels - 1; level >= 0; --level) {
         const ImVec2 at = ImGui::GetCursorScreenPos();
@@ -135,12 +138,12 @@ void legend(const Debrief& debrief, const Gui& gui) {
 
 void buttons(const Gui& gui, Screens& screens, Wishes& wishes) {
     const float width_px = share_of_line_px(2);
-    if (big_button("Again", "R", {width_px, kMark_mm, true, false}, gui)) wishes.again = true;
+    if (big_button(words::kAgain, "R", {width_px, kMark_mm, true, false}, gui)) wishes.again = true;
     ImGui::SameLine();
-    if (big_button("Next", "N", {width_px, kMark_mm, true, false}, gui)) wishes.next = true;
-    if (big_button("Save picture", "S", {width_px, kTarget_mm, true, false}, gui)) wishes.save_picture = true;
+    if (big_button(words::kNext, "N", {width_px, kMark_mm, true, false}, gui)) wishes.next = true;
+    if (big_button(words::kSavePicture, "S", {width_px, kTarget_mm, true, false}, gui)) wishes.save_picture = true;
     ImGui::SameLine();
-    if (big_button(screens.menu ? "Close" : "Menu", "F10", {width_px, kTarget_mm, true, screens.menu}, gui)) {
+    if (big_button(screens.menu ? words::kClose : words::kMenu, "F10", {width_px, kTarget_mm, true, screens.menu}, gui)) {
         screens.menu = !screens.menu;
     }
 }

@@ -5,6 +5,7 @@
 
 #include "app/look.h"
 #include "app/screens.h"
+#include "app/words.h"
 
 namespace palpa {
 namespace {
@@ -28,7 +29,7 @@ void draw_card(const PanelArea& area, float px_per_mm) {
         draw.AddLine(ImVec2(x, high.y - length_px), ImVec2(x, high.y), kPale);
         if (mm % 10 == 0 && mm > 0) draw.AddText(ImVec2(x, high.y - 6.0f * px_per_mm - ImGui::GetFontSize()), kPale, std::to_string(mm).c_str());
     }
-    const char* text = "85.6 x 54.0 mm";
+    const char* text = words::kCardSize;
     draw.AddText(ImVec2(low.x + 4.0f * px_per_mm, low.y + 4.0f * px_per_mm), kInk, text);
 }
 
@@ -47,7 +48,7 @@ void step_buttons(const Gui& gui, double& px_per_mm) {
 void draw_scale_screen(const Shown& shown, Gui& gui, Screens& screens, Wishes& wishes) {
     const ImVec2 screen = ImGui::GetIO().DisplaySize;
     begin_panel("scale", {0.0f, 0.0f, screen.x, screen.y}, gui);
-    ImGui::TextWrapped("Hold a bank card against the screen and make the frame as large as the card.");
+    ImGui::TextWrapped("%s", words::kHoldCard);
     step_buttons(gui, screens.card_px_per_mm);
     if (!ImGui::GetIO().WantTextInput) {
         if (gui.pressed('+') || gui.pressed('=') || gui.pressed(key::pad_plus)) screens.card_px_per_mm *= 1.002;
@@ -55,20 +56,20 @@ void draw_scale_screen(const Shown& shown, Gui& gui, Screens& screens, Wishes& w
     }
     ImGui::SetNextItemWidth(40.0f * gui.mm());
     ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, ImVec2(2.0f * gui.mm(), 0.5f * (kTarget_mm * gui.mm() - ImGui::GetFontSize())));
-    ImGui::InputDouble("px per mm", &screens.card_px_per_mm, 0.0, 0.0, "%.3f");
+    ImGui::InputDouble(words::kPxPerMm, &screens.card_px_per_mm, 0.0, 0.0, "%.3f");
     ImGui::PopStyleVar();
     if (!std::isfinite(screens.card_px_per_mm)) screens.card_px_per_mm = kLeast_px_per_mm;
     screens.card_px_per_mm = std::clamp(screens.card_px_per_mm, kLeast_px_per_mm, kMost_px_per_mm);
     const float width_px = std::min(share_of_line_px(3), 42.0f * gui.mm());
-    if (big_button("Keep", "", {width_px, kMark_mm, true, false}, gui)) wishes.px_per_mm = screens.card_px_per_mm;
+    if (big_button(words::kKeep, "", {width_px, kMark_mm, true, false}, gui)) wishes.px_per_mm = screens.card_px_per_mm;
     ImGui::SameLine();
-    if (big_button("Forget", "", {width_px, kMark_mm, std::isfinite(screens.px_per_mm), false}, gui)) wishes.px_per_mm = kMissing;
+    if (big_button(words::kForget, "", {width_px, kMark_mm, std::isfinite(screens.px_per_mm), false}, gui)) wishes.px_per_mm = kMissing;
     ImGui::SameLine();
-    if (big_button("Back", "Esc", {width_px, kMark_mm, true, false}, gui)) {
+    if (big_button(words::kBack, words::kEscape, {width_px, kMark_mm, true, false}, gui)) {
         wishes.screen = shown.trial.finished ? Screen::reveal : Screen::trial;
     }
-    const std::string kept = std::isfinite(screens.px_per_mm) ? fixed(screens.px_per_mm, 3) + " px per mm" : "not measured";
-    paragraph("This screen (" + screens.screen_name + "): " + kept + ". Where it is known, tissue under the pen is drawn true to size.");
+    const std::string kept = std::isfinite(screens.px_per_mm) ? fixed(screens.px_per_mm, 3) + " " + words::kPxPerMm : words::kNotMeasured;
+    paragraph(words::filled(words::kThisScreen, {screens.screen_name, kept}));
     const float top_px = ImGui::GetCursorScreenPos().y;
     draw_card({0.0f, top_px, screen.x, screen.y}, static_cast<float>(screens.card_px_per_mm));
     end_panel("scale", gui);

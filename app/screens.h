@@ -88,6 +88,7 @@ struct Wishes {
     std::optional<Screen> screen;
     std::optional<TrialMode> mode;
     std::optional<bool> left_handed;
+    std::optional<bool> above_finger;
     std::optional<double> px_per_mm;      // of this screen, measured; NaN: forget it
     bool again = false;                   // the same tissue once more
     bool next = false;                    // turned another way

@@ -117,6 +117,12 @@ std::filesystem::path trace_name(const std::string& first, int trial) {
     return path;
 }
 
+Json settings_of(const Session& session) {
+    Json settings = settings_json(session.scene, session.plan, session.state);
+    if (session.finger_offset_mm != 0.0) settings["finger_offset_mm"] = session.finger_offset_mm;
+    return settings;
+}
+
 void write_settled(const std::filesystem::path& file, const Json& json, const Session& session) {
     if (session.sync_rows) return write_text_atomically(file, json_text(json));
     write_text_whole(file, json_text(json));
@@ -138,7 +144,7 @@ void open_files(const SessionFiles& files, const TraceInfo& info, Session& sessi
         session.files = next_run(files.log, files.participant, files.task, files.first_run);
         const bool alone = !files.label;  // a study explains its columns once, at the top
         if (files.label) {
-            Json settings = settings_json(session.scene, session.plan, session.state);
+            Json settings = settings_of(session);
             settings["study"] = files.label->study;
             write_settled(session.files->file("_settings.json"), settings, session);  // before the first sample
         }
@@ -166,6 +172,7 @@ void begin_trial(const SessionFiles& files, const TraceInfo& info, TrialMode mod
     session.device = info.device;
     session.label = files.label;
     session.sync_rows = files.sync_rows;
+    session.finger_offset_mm = files.finger_offset_mm;
     session.began_utc = utc_now();
     open_files(files, info, session);
     if (session.trial_log) session.trial_log->write(event_row(session, Action::none));
@@ -210,8 +217,7 @@ bool close_files(const Json& performance, Session& session) {
     if (session.files && good) {
         try {
             if (!session.label) {
-                const Json settings = settings_json(session.scene, session.plan, session.state);
-                write_text_atomically(session.files->file("_settings.json"), json_text(settings));
+                write_text_atomically(session.files->file("_settings.json"), json_text(settings_of(session)));
             }
             Json with_clock = performance;
             with_clock["began_utc"] = session.began_utc;

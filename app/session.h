@@ -22,6 +22,7 @@ struct SessionFiles {
     bool sync_rows = true;           // false: rows are on the disk when the trial ends, for simulations
     std::optional<TrialLabel> label{};  // of a study's trial
     std::string task = "palpation";
+    double finger_offset_mm = 0.0;   // positions of fingers were moved up by this, for the settings
     int first_run = 1;               // runs before it are known to be taken, elsewhere
 };
 
@@ -37,6 +38,7 @@ struct Session {
     std::optional<TrialLog> trial_log;
     std::optional<TrialLabel> label;
     bool sync_rows = true;
+    double finger_offset_mm = 0.0;
     bool failed = false;  // settings could not be put on the disk
     std::string began_utc;
     std::int64_t flushed_ns = 0;  // steady clock

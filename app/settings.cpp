@@ -21,6 +21,7 @@ Settings parse(const fs::path& file) {
     s.scene = json.text("scene", s.scene);
     s.profile = json.text("profile", s.profile);
     s.left_handed = json.boolean("left_handed", s.left_handed);
+    s.above_finger = json.boolean("above_finger", s.above_finger);
     s.test_mode = json.boolean("test_mode", s.test_mode);
     s.full_screen = json.boolean("full_screen", s.full_screen);
     s.width_px = json.integer("width_px", 100, 16384, s.width_px);
@@ -35,9 +36,9 @@ Settings parse(const fs::path& file) {
 }
 
 Json json_of(const Settings& s) {
-    Json json{{"scene", s.scene},           {"profile", s.profile},         {"left_handed", s.left_handed},
-              {"test_mode", s.test_mode},   {"full_screen", s.full_screen}, {"width_px", s.width_px},
-              {"height_px", s.height_px},   {"screens", Json::array()}};
+    Json json{{"scene", s.scene},         {"profile", s.profile},         {"left_handed", s.left_handed}, {"above_finger", s.above_finger},
+              {"test_mode", s.test_mode}, {"full_screen", s.full_screen}, {"width_px", s.width_px},       {"height_px", s.height_px},
+              {"screens", Json::array()}};
     for (const auto& [name, px_per_mm] : s.px_per_mm) json["screens"].push_back({{"name", name}, {"px_per_mm", px_per_mm}});
     return json;
 }

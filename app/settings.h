@@ -11,6 +11,7 @@ struct Settings {
     std::string scene;    // empty: the default one
     std::string profile;  // empty: the scene's own
     bool left_handed = false;
+    bool above_finger = false;  // a finger indents what lies kFingerOffset_mm above it, and does not hide it
     bool test_mode = false;
     bool full_screen = false;
     int width_px = 1280;

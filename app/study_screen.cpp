@@ -8,6 +8,7 @@
 #include "app/look.h"
 #include "app/screens.h"
 #include "app/study_run.h"
+#include "app/words.h"
 
 namespace palpa {
 namespace {
@@ -17,7 +18,7 @@ bool enter_pressed(const Gui& gui) { return gui.pressed(key::enter) || gui.press
 // The one way on; Enter does it too.
 bool forward(const char* label, const Gui& gui, bool enabled = true) {
     const float width_px = std::min(70.0f * gui.mm(), ImGui::GetContentRegionAvail().x);
-    const bool asked = big_button(label, "Enter", {width_px, kMark_mm, enabled, false}, gui);
+    const bool asked = big_button(label, words::kEnter, {width_px, kMark_mm, enabled, false}, gui);
     return asked || (enabled && enter_pressed(gui));
 }
 
@@ -49,13 +50,13 @@ void gap(const Gui& gui) { ImGui::Dummy(ImVec2(0.0f, 2.0f * gui.mm())); }
 // For the experimenter: pairing, sending, exporting.
 void trials_button(const Gui& gui, const StudyRun& run, Wishes& wishes) {
     if (!run.on_tablet) return;
-    if (big_button("Trials on this tablet", "", {std::min(70.0f * gui.mm(), share_of_line_px(1)), kTarget_mm, true, false}, gui)) wishes.trials = true;
+    if (big_button(words::kTrialsOnTablet, "", {std::min(70.0f * gui.mm(), share_of_line_px(1)), kTarget_mm, true, false}, gui)) wishes.trials = true;
 }
 
 // Leaves the study; where there is no window to close, the way to the rest of the app.
 void leave_button(const Gui& gui, const StudyRun& run, Wishes& wishes) {
-    const char* label = run.on_tablet ? "Leave the study" : "Close";
-    const char* key = run.on_tablet ? "" : "Ctrl Q";
+    const char* label = run.on_tablet ? words::kLeaveStudy : words::kClose;
+    const char* key = run.on_tablet ? "" : words::kCtrlQ;
     if (big_button(label, key, {std::min(70.0f * gui.mm(), share_of_line_px(1)), kTarget_mm, true, false}, gui)) wishes.quit = true;
 }
 
@@ -64,26 +65,26 @@ void draw_keeping(double now_s, Gui& gui, StudyRun& run, Wishes& wishes) {
     constexpr double kSoon_s = 0.5;
     if (run.keeping_began_s == 0.0) run.keeping_began_s = now_s;
     if (now_s - run.keeping_began_s < kSoon_s && run.warnings.empty()) return;
-    title("One moment");
-    paragraph("What was done is being put into this tablet's storage. The study goes on when it is there.");
+    title(words::kOneMoment);
+    paragraph(words::kBeingKept);
     for (const std::string& warning : run.warnings) warning_paragraph(warning);
     gap(gui);
     if (!run.warnings.empty()) trials_button(gui, run, wishes);
 }
 
 void draw_code(Gui& gui, StudyRun& run, Wishes& wishes) {
-    title("Who is here?");
-    paragraph("A code for the participant, no name: letters and digits. Whoever was here before goes on with the same code.");
+    title(words::kWhoIsHere);
+    paragraph(words::kCodeNoName);
     const bool fresh = run.answers.empty();
     if (fresh) run.answers = {free_code(run)};
     char text[24];
     std::snprintf(text, sizeof text, "%s", run.answers[0].c_str());
     ImGui::SetNextItemWidth(60.0f * gui.mm());
     if (fresh || ImGui::IsWindowAppearing()) ImGui::SetKeyboardFocusHere();
-    const bool entered = text_field("code", text, sizeof text, ImGuiInputTextFlags_EnterReturnsTrue, gui);
+    const bool entered = text_field(words::kCode, text, sizeof text, ImGuiInputTextFlags_EnterReturnsTrue, gui);
     run.answers[0] = text;
     gap(gui);
-    if (forward("Go on", gui) || entered) enter_code(run.answers[0], run);
+    if (forward(words::kGoOn, gui) || entered) enter_code(run.answers[0], run);
     if (!run.note.empty()) warning_paragraph(run.note);
     for (const std::string& warning : run.warnings) warning_paragraph(warning);
     if (!run.on_tablet) return;
@@ -93,12 +94,11 @@ void draw_code(Gui& gui, StudyRun& run, Wishes& wishes) {
 }
 
 void draw_again(Gui& gui, StudyRun& run) {
-    title("Participant " + run.code + " has been here");
-    paragraph(std::to_string(run.progress.finished.size()) + " of " + std::to_string(run.progress.plan.trials.size()) +
-              " trials are done. A trial that was interrupted is done once more.");
+    title(words::filled(words::kHasBeenHere, {run.code}));
+    paragraph(words::filled(words::kTrialsDone, {std::to_string(run.progress.finished.size()), std::to_string(run.progress.plan.trials.size())}));
     gap(gui);
-    if (forward("Go on with the study", gui)) return same_person(true, run);
-    if (big_button("Somebody else", "", {70.0f * gui.mm(), kTarget_mm, true, false}, gui)) same_person(false, run);
+    if (forward(words::kGoOnWithStudy, gui)) return same_person(true, run);
+    if (big_button(words::kSomebodyElse, "", {70.0f * gui.mm(), kTarget_mm, true, false}, gui)) same_person(false, run);
 }
 
 void draw_choices(const std::vector<std::string>& choices, float least_px, const Gui& gui, std::string& answer) {
@@ -146,9 +146,9 @@ bool acceptable(const Item& item, const std::string& answer) {
 void draw_items(Gui& gui, StudyRun& run) {
     const std::vector<Item>& items = due_items(run);
     run.answers.resize(items.size());
-    title(run.step == StudyStep::questions ? "Some questions first" : "How was it?");
+    title(run.step == StudyStep::questions ? words::kQuestionsFirst : words::kHowWasIt);
     if (run.step == StudyStep::ratings) paragraph(run.protocol.conditions[run.rated].title);
-    paragraph("You may leave any of them open.");
+    paragraph(words::kMayLeaveOpen);
     const float below_px = (kMark_mm + 4.0f) * gui.mm();
     ImGui::BeginChild("items", ImVec2(0.0f, ImGui::GetContentRegionAvail().y - below_px), false, ImGuiWindowFlags_NavFlattened);
     bool good = true;
@@ -157,45 +157,45 @@ void draw_items(Gui& gui, StudyRun& run) {
         draw_item(items[i], gui, run.answers[i]);
         if (!acceptable(items[i], run.answers[i])) {
             good = false;
-            warning_paragraph("A number from " + std::to_string(*items[i].from) + " to " + std::to_string(*items[i].to) + ".");
+            warning_paragraph(words::filled(words::kNumberFromTo, {std::to_string(*items[i].from), std::to_string(*items[i].to)}));
         }
         ImGui::PopID();
         gap(gui);
     }
     ImGui::EndChild();
-    if (forward("Go on", gui, good)) submit_answers(run);
+    if (forward(words::kGoOn, gui, good)) submit_answers(run);
 }
 
 void draw_instructions(Gui& gui, StudyRun& run) {
     const PlannedTrial& trial = due_trial(run);
-    title((trial.practice ? "Practice, trial " : "Trial ") + progress_text(run));
+    title(words::filled(trial.practice ? words::kPracticeOf : words::kTrialOf, {progress_text(run)}));
     const float below_px = (kMark_mm + 4.0f) * gui.mm();
     ImGui::BeginChild("text", ImVec2(0.0f, ImGui::GetContentRegionAvail().y - below_px), false, ImGuiWindowFlags_NavFlattened);
     ImGui::TextWrapped("%s", instructions_for(run.protocol, trial).c_str());
     if (run.protocol.count_told && run.protocol.task == TaskKind::find) {
         gap(gui);
-        ImGui::TextWrapped("There are %zu of them.", due_nodules(run).size());
+        ImGui::TextWrapped("%s", words::filled(words::kThereAre, {std::to_string(due_nodules(run).size())}).c_str());
     }
     ImGui::EndChild();
-    if (forward("Begin", gui)) begin_step(run);
+    if (forward(words::kBegin, gui)) begin_step(run);
 }
 
 void draw_present(Gui& gui, StudyRun& run) {
-    title("Pair " + progress_text(run));
-    ImGui::TextWrapped("%s", run.interval == 0 ? "Feel the first surface." : "Now feel the second surface.");
+    title(words::filled(words::kPairOf, {progress_text(run)}));
+    ImGui::TextWrapped("%s", run.interval == 0 ? words::kFeelFirst : words::kFeelSecond);
     gap(gui);
-    if (forward("Felt", gui)) interval_presented(run);
+    if (forward(words::kFelt, gui)) interval_presented(run);
 }
 
 void draw_question(double now_s, Gui& gui, StudyRun& run) {
-    title("Which one was softer?");
+    title(words::kWhichSofter);
     gap(gui);
     const float width_px = std::min(60.0f * gui.mm(), share_of_line_px(2));
-    const bool first = big_button("The first", "1", {width_px, 2.0f * kMark_mm, true, false}, gui) || gui.pressed('1') || gui.pressed(key::pad_0 + 1);
+    const bool first = big_button(words::kTheFirst, "1", {width_px, 2.0f * kMark_mm, true, false}, gui) || gui.pressed('1') || gui.pressed(key::pad_0 + 1);
     ImGui::SameLine();
-    const bool second = big_button("The second", "2", {width_px, 2.0f * kMark_mm, true, false}, gui) || gui.pressed('2') || gui.pressed(key::pad_0 + 2);
+    const bool second = big_button(words::kTheSecond, "2", {width_px, 2.0f * kMark_mm, true, false}, gui) || gui.pressed('2') || gui.pressed(key::pad_0 + 2);
     gap(gui);
-    paragraph("Pair " + progress_text(run));
+    paragraph(words::filled(words::kPairOf, {progress_text(run)}));
     if (first || second) choose_softer(first, now_s, run);
 }
 
@@ -221,9 +221,9 @@ void draw_nodule_line(const std::string& name, const Gui& gui, int& said) {
     beside(name, gui);
     ImGui::EndGroup();
     ImGui::SameLine(22.0f * gui.mm());
-    if (big_button("missed", "", {24.0f * gui.mm(), kTarget_mm, true, said == kMissed}, gui)) said = kMissed;
+    if (big_button(words::kMissed, "", {24.0f * gui.mm(), kTarget_mm, true, said == kMissed}, gui)) said = kMissed;
     ImGui::SameLine();
-    if (big_button("found", "", {24.0f * gui.mm(), kTarget_mm, true, said == 0}, gui)) said = 0;
+    if (big_button(words::kFound, "", {24.0f * gui.mm(), kTarget_mm, true, said == 0}, gui)) said = 0;
     constexpr const char* kDigits[5] = {"1", "2", "3", "4", "5"};
     for (int i = 1; i <= 5; ++i) {
         ImGui::SameLine();
@@ -236,13 +236,12 @@ void draw_typed_clock(double now_s, const Gui& gui, StudyRun& run) {
     TypedAnswers& typed = run.typed;
     const bool runs = run.typed_began_s > 0.0;
     if (runs) typed.duration_s = now_s - run.typed_began_s;
-    const char* label = runs ? "Stop the clock" : typed.duration_s > 0.0 ? "Start the clock anew" : "Start the clock";
+    const char* label = runs ? words::kStopClock : typed.duration_s > 0.0 ? words::kStartClockAnew : words::kStartClock;
     if (big_button(label, "T", {60.0f * gui.mm(), kTarget_mm, true, runs}, gui) || gui.pressed('t')) run.typed_began_s = runs ? 0.0 : now_s;
     ImGui::SameLine();
     const double limit_s = due_limit_s(run);
     std::string text = clock_text(typed.duration_s);
-    if (limit_s > 0.0) text += " of " + clock_text(limit_s);
-    if (limit_s > 0.0 && typed.duration_s >= limit_s) text += ": the time is over";
+    if (limit_s > 0.0) text = words::filled(typed.duration_s < limit_s ? words::kTimeOf : words::kTimeOver, {text, clock_text(limit_s)});
     ImGui::BeginGroup();
     beside(text, gui);
     ImGui::EndGroup();
@@ -250,52 +249,51 @@ void draw_typed_clock(double now_s, const Gui& gui, StudyRun& run) {
 
 void draw_typed(double now_s, Gui& gui, StudyRun& run) {
     const Condition& condition = due_condition(run);
-    title("Experimenter: trial " + progress_text(run) + ", " + condition.title);
-    paragraph(condition.modality == Modality::hand ? "The participant palpates the phantom; type what was said."
-                                                   : "This device is not driven from here; type what was said.");
+    title(words::filled(words::kExperimenter, {progress_text(run), condition.title}));
+    paragraph(condition.modality == Modality::hand ? words::kTypeWhatWasSaid
+                                                   : words::kNotDriven);
     draw_typed_clock(now_s, gui, run);
     const float below_px = (kMark_mm + 4.0f) * gui.mm();
     ImGui::BeginChild("answers", ImVec2(0.0f, ImGui::GetContentRegionAvail().y - below_px), false, ImGuiWindowFlags_NavFlattened);
     const std::vector<std::string> names = due_nodules(run);
     if (names.empty()) {
-        stepper("nodules found", gui, run.typed.found);
-        stepper("nodules missed", gui, run.typed.missed);
+        stepper(words::kNodulesFound, gui, run.typed.found);
+        stepper(words::kNodulesMissed, gui, run.typed.missed);
     } else {
-        paragraph("Found, and how sure: 1 unsure to 5 sure.");
+        paragraph(words::kFoundAndSure);
         for (std::size_t i = 0; i < names.size(); ++i) draw_nodule_line(names[i], gui, run.typed.nodules[i]);
     }
-    stepper("marks on no nodule", gui, run.typed.false_marks);
+    stepper(words::kFalseMarkCount, gui, run.typed.false_marks);
     ImGui::EndChild();
     const bool timed = run.typed.duration_s > 0.0 && run.typed_began_s == 0.0;
-    if (forward("Keep", gui, timed)) submit_typed(run);
+    if (forward(words::kKeep, gui, timed)) submit_typed(run);
 }
 
 void draw_done(Gui& gui, StudyRun& run, Wishes& wishes) {
-    title("That was all. Thank you!");
-    paragraph("Participant " + run.code + ": " + std::to_string(run.progress.finished.size()) + " trials, all " + (run.on_tablet ? "kept on this tablet." : "on the disk."));
+    title(words::kThatWasAll);
+    paragraph(words::filled(run.on_tablet ? words::kAllOnTablet : words::kAllOnDisk, {run.code, std::to_string(run.progress.finished.size())}));
     gap(gui);
-    if (forward("Next participant", gui)) same_person(false, run);
+    if (forward(words::kNextParticipant, gui)) same_person(false, run);
     trials_button(gui, run, wishes);
     leave_button(gui, run, wishes);
 }
 
 void draw_stopped(Gui& gui, const StudyRun& run, Wishes& wishes) {
-    title("The study stops here");
+    title(words::kStudyStops);
     warning_paragraph(run.stopped);
-    paragraph(std::string("Everything that was finished before is ") + (run.on_tablet ? "kept." : "on the disk.") +
-              " Start the study again with the same code to go on.");
+    paragraph(run.on_tablet ? words::kRestKept : words::kRestOnDisk);
     gap(gui);
     trials_button(gui, run, wishes);
     leave_button(gui, run, wishes);
 }
 
 void draw_pause(double now_s, Gui& gui, StudyRun& run) {
-    title("Time for a break");
-    paragraph("Trial " + progress_text(run) + " comes next. Go on when you like.");
+    title(words::kBreak);
+    paragraph(words::filled(words::kComesNext, {progress_text(run)}));
     gap(gui);
     ImGui::Text("%s", clock_text(now_s - run.step_began_s).c_str());
     gap(gui);
-    if (forward("Go on", gui)) begin_step(run);
+    if (forward(words::kGoOn, gui)) begin_step(run);
 }
 
 }  // namespace

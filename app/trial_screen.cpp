@@ -6,6 +6,7 @@
 #include "app/look.h"
 #include "app/screens.h"
 #include "app/study_run.h"
+#include "app/words.h"
 #include "mechanics/linear_range.h"
 
 namespace palpa {
@@ -22,7 +23,7 @@ void draw_force_bar(const Shown& shown, float height_px, const Gui& gui) {
     };
     ImDrawList& draw = *ImGui::GetWindowDrawList();
     const double bounds_N[4] = {0.0, shown.plan.zone_N[0], shown.plan.zone_N[1], full_N};
-    constexpr const char* kZones[3] = {"light", "medium", "deep"};
+    constexpr const char* kZones[3] = {words::kLight, words::kMedium, words::kDeep};
     const float text_px = ImGui::GetFontSize();
     for (std::size_t zone = 0; zone < 3; ++zone) {
         const float top = y_of(bounds_N[zone + 1]);
@@ -52,14 +53,14 @@ void draw_numbers(const Shown& shown, const Gui& gui, const Screens& screens) {
     const float column_px = 13.5f * gui.mm();
     const Contact& contact = shown.state.contact;
     ImGui::BeginGroup();
-    value_line("Force", fixed(contact.normal_N, 2) + " N", column_px);
-    if (!is_interval(screens)) value_line("Depth", fixed(1e3 * contact.depth_m, 2) + " mm", column_px);
+    value_line(words::kForce, fixed(contact.normal_N, 2) + " N", column_px);
+    if (!is_interval(screens)) value_line(words::kDepth, fixed(1e3 * contact.depth_m, 2) + " mm", column_px);
     // in a test the lag is what the eye has to judge, so no number tells it
     if (shown.trial.mode == TrialMode::practice) {
-        value_line("Lag", fixed(1e3 * shown.avatar.lag_m.norm(), 2) + " mm", column_px);
-        if (shown.scene.delay) value_line("Delay", fixed(1e3 * shown.avatar.delay_s, 0) + " ms", column_px);
+        value_line(words::kLag, fixed(1e3 * shown.avatar.lag_m.norm(), 2) + " mm", column_px);
+        if (shown.scene.delay) value_line(words::kDelay, fixed(1e3 * shown.avatar.delay_s, 0) + " ms", column_px);
     }
-    if (shown.scene.force_scale != 1.0) value_line("Phantom", fixed(shown.scene.force_scale, 2) + " x", column_px);
+    if (shown.scene.force_scale != 1.0) value_line(words::kPhantom, fixed(shown.scene.force_scale, 2) + " x", column_px);
     ImGui::EndGroup();
 }
 
@@ -67,10 +68,10 @@ void draw_numbers(const Shown& shown, const Gui& gui, const Screens& screens) {
 void draw_contact_note(const Shown& shown) {
     const Contact& contact = shown.state.contact;
     const char* note = "";
-    if (contact.saturated) note = "deeper than known";
-    else if (!contact.measured) note = "not measured here";
-    else if (mechanics::linear_range(contact.linearity) == mechanics::LinearRange::red) note = "beyond the linear range";
-    else if (mechanics::linear_range(contact.linearity) == mechanics::LinearRange::amber) note = "leaving the linear range";
+    if (contact.saturated) note = words::kDeeperThanKnown;
+    else if (!contact.measured) note = words::kNotMeasuredHere;
+    else if (mechanics::linear_range(contact.linearity) == mechanics::LinearRange::red) note = words::kBeyondLinear;
+    else if (mechanics::linear_range(contact.linearity) == mechanics::LinearRange::amber) note = words::kLeavingLinear;
     ImGui::TextColored(ImVec4(1.0f, 0.84f, 0.35f, 1.0f), "%s", note);
 }
 
@@ -78,36 +79,36 @@ void draw_contact_note(const Shown& shown) {
 void draw_study_header(const Shown& shown, const StudyRun& run) {
     const double limit_s = due_limit_s(run);
     const double left_s = limit_s > 0.0 ? std::max(0.0, std::ceil(limit_s - shown.trial_s)) : shown.trial_s;
-    const char* what = due_trial(run).practice ? "  practice" : "";
+    const char* what = due_trial(run).practice ? words::kWithNodules : "";
     ImGui::SetWindowFontScale(1.3f);
-    ImGui::Text("%s%s", clock_text(left_s).c_str(), what);
+    ImGui::Text("%s  %s", clock_text(left_s).c_str(), what);
     ImGui::SetWindowFontScale(1.0f);
     if (run.protocol.task == TaskKind::choice) {
-        ImGui::TextWrapped("%s", run.interval == 0 ? "First surface" : "Second surface");
-        paragraph("Pair " + progress_text(run));
+        ImGui::TextWrapped("%s", run.interval == 0 ? words::kFirstSurface : words::kSecondSurface);
+        paragraph(words::filled(words::kPairOf, {progress_text(run)}));
     } else {
-        paragraph("Trial " + progress_text(run));
+        paragraph(words::filled(words::kTrialOf, {progress_text(run)}));
     }
 }
 
 void draw_header(const Shown& shown, const Gui& gui, Screens& screens) {
     if (screens.study) return draw_study_header(shown, *screens.study);
     const float line_px = kTarget_mm * gui.mm();
-    if (big_button(screens.menu ? "Close" : "Menu", "F10", {26.0f * gui.mm(), kTarget_mm, true, screens.menu}, gui)) {
+    if (big_button(screens.menu ? words::kClose : words::kMenu, "F10", {26.0f * gui.mm(), kTarget_mm, true, screens.menu}, gui)) {
         screens.menu = !screens.menu;
     }
     ImGui::SameLine();
     ImGui::BeginGroup();
     ImGui::SetCursorPosY(ImGui::GetCursorPosY() + 0.5f * (line_px - ImGui::GetFontSize()));
-    const char* mode = shown.trial.mode == TrialMode::practice ? "practice" : "test";
+    const char* mode = shown.trial.mode == TrialMode::practice ? words::kWithNodules : words::kWithoutNodules;
     ImGui::Text("%s  %s", clock_text(shown.trial_s).c_str(), mode);
     ImGui::EndGroup();
 }
 
 void draw_confidence(const Shown& shown, const Gui& gui, Wishes& wishes) {
     const int said = shown.trial.marks.empty() ? 0 : shown.trial.marks.back().confidence;
-    ImGui::TextDisabled("unsure");
-    const char* sure = "sure";
+    ImGui::TextDisabled(words::kUnsure);
+    const char* sure = words::kSure;
     ImGui::SameLine();
     ImGui::SetCursorPosX(ImGui::GetCursorPosX() + ImGui::GetContentRegionAvail().x - ImGui::CalcTextSize(sure).x);
     ImGui::TextDisabled("%s", sure);
@@ -123,35 +124,34 @@ void draw_confidence(const Shown& shown, const Gui& gui, Wishes& wishes) {
 
 void draw_actions(const Shown& shown, const Gui& gui, const Screens& screens, Wishes& wishes) {
     if (is_interval(screens)) {
-        if (big_button("Felt", "F", {0.0f, kMark_mm, true, false}, gui)) wishes.action = Action::finish;
+        if (big_button(words::kFelt, "F", {0.0f, kMark_mm, true, false}, gui)) wishes.action = Action::finish;
         return;
     }
-    const std::string mark = "Mark  " + std::to_string(shown.trial.marks.size()) + "###mark";
+    const std::string mark = words::filled(words::kMark, {std::to_string(shown.trial.marks.size())}) + "###mark";
     if (big_button(mark.c_str(), "M", {0.0f, kMark_mm, shown.trial.last_px.has_value(), false}, gui)) wishes.action = Action::mark;
     draw_confidence(shown, gui, wishes);
     const float width_px = share_of_line_px(2);
-    if (big_button("Undo", "U", {width_px, kTarget_mm, !shown.trial.marks.empty(), false}, gui)) wishes.action = Action::undo;
+    if (big_button(words::kUndo, "U", {width_px, kTarget_mm, !shown.trial.marks.empty(), false}, gui)) wishes.action = Action::undo;
     ImGui::SameLine();
-    if (big_button("Finish", "F", {width_px, kTarget_mm, true, false}, gui)) wishes.action = Action::finish;
+    if (big_button(words::kFinish, "F", {width_px, kTarget_mm, true, false}, gui)) wishes.action = Action::finish;
 }
 
 void draw_messages(const Shown& shown, const Gui& gui, Screens& screens, Wishes& wishes) {
     for (const std::string& problem : screens.problems) warning_paragraph(problem);
-    if (!screens.problems.empty() && big_button("Understood", "", {}, gui)) screens.problems.clear();
+    if (!screens.problems.empty() && big_button(words::kUnderstood, "", {}, gui)) screens.problems.clear();
     if (shown.state.without_level) {
-        warning_paragraph("This device reports no " + std::string(name_of(shown.plan.profile.level)) + ", which profile " +
-                          shown.plan.profile.id + " reads.");
+        warning_paragraph(words::filled(words::kWithoutLevel, {std::string(name_of(shown.plan.profile.level)), shown.plan.profile.id}));
     }
-    if (screens.offer_hold && big_button("Press by holding", "H", {}, gui)) wishes.press_by_hold = true;
+    if (screens.offer_hold && big_button(words::kPressByHolding, "H", {}, gui)) wishes.press_by_hold = true;
     for (const std::string& note : screens.device_notes) paragraph(note);
     if (!screens.note.empty()) paragraph(screens.note);
     if (!screens.trials_note.empty()) paragraph(screens.trials_note);
     if (screens.study) return;  // what the tissue is made of, the settings tell
-    if (shown.plan.source == SourceKind::analytic) paragraph("Tissue: analytic stand-in, no recording");
-    if (shown.plan.source == SourceKind::simulated) paragraph("Tissue: simulated, no recording");
+    if (shown.plan.source == SourceKind::analytic) paragraph(words::kAnalyticTissue);
+    if (shown.plan.source == SourceKind::simulated) paragraph(words::kSimulatedTissue);
     if (std::isfinite(shown.state.view.scale) && shown.scene.mapping.kind == MappingKind::direct &&
         std::abs(shown.state.view.scale - 1.0) > 0.005) {
-        paragraph("Tissue shown at " + fixed(100.0 * shown.state.view.scale, 0) + " % of its size");
+        paragraph(words::filled(words::kShownAt, {fixed(100.0 * shown.state.view.scale, 0)}));
     }
 }
 
@@ -238,7 +238,7 @@ void draw_on_tissue(const Shown& shown, const Gui& gui) {
 
 void draw_trial_panel(const Shown& shown, const Layout& layout, Gui& gui, Screens& screens, Wishes& wishes) {
     if (!layout.controls) {
-        rimmed_text(*ImGui::GetForegroundDrawList(), ImVec2(4.0f, 4.0f), kInk, "Too small for the controls; keys work");
+        rimmed_text(*ImGui::GetForegroundDrawList(), ImVec2(4.0f, 4.0f), kInk, words::kTooSmall);
         return;
     }
     begin_panel("trial", layout.controls_px, gui);

@@ -2,6 +2,8 @@
 
 install(TARGETS palpa)
 install(DIRECTORY assets DESTINATION ${CMAKE_INSTALL_DATADIR}/palpa PATTERN desktop EXCLUDE)
+# what `palpa serve` hands to tablets; scripts/package builds it
+install(DIRECTORY build/web/site/ DESTINATION ${CMAKE_INSTALL_DATADIR}/palpa/web OPTIONAL)
 install(FILES assets/desktop/palpa.desktop DESTINATION ${CMAKE_INSTALL_DATADIR}/applications)
 install(FILES assets/desktop/palpa.svg DESTINATION ${CMAKE_INSTALL_DATADIR}/icons/hicolor/scalable/apps)
 foreach(size 32 48 64 128 256)

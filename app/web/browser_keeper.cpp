@@ -91,7 +91,7 @@ std::string rest_of(const fs::path& file, std::size_t from) {
 }  // namespace
 
 void BrowserKeeper::keep(const RunFiles& run, bool finished) {
-    keep_run(run, finished ? "finished" : "going on");
+    keep_run(run, finished ? "finished" : "going-on");
     if (!finished) return;
     empty_files(run);
     parts_.clear();
@@ -143,7 +143,7 @@ void restore_studies() {
     const std::string broken = text_of(kBroken);
     for (const std::string_view line : fields_of(broken, '\n')) {
         const fs::path run(line);
-        if (!run.empty()) keep_run({run.parent_path(), run.filename().string()}, "broken off");
+        if (!run.empty()) keep_run({run.parent_path(), run.filename().string()}, "broken-off");
     }
     palpa_studies_restore();
 }

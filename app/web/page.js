@@ -5,16 +5,18 @@ const palpaFolder = new URL('.', document.currentScript.src).href;
 
 const palpaPage = (() => {
     const at = (id) => document.getElementById(id);
+    for (const element of document.querySelectorAll('[data-word]')) element.textContent = palpaWords[element.dataset.word];
+    for (const element of document.querySelectorAll('[data-label]')) element.setAttribute('aria-label', palpaWords[element.dataset.label]);
 
     const fail = (text) => {
         at('message').hidden = false;
-        at('message-text').textContent = 'Palpa has stopped: ' + text;
+        at('message-text').textContent = palpaFilled(palpaWords.stopped, text);
     };
 
     // A study that cannot be run here, before anybody has begun with it.
     const refuse = (text) => {
         at('message').hidden = false;
-        at('message-text').textContent = 'This study cannot be run here. ' + text;
+        at('message-text').textContent = palpaFilled(palpaWords.notHere, text);
         at('leave').hidden = false;
         at('leave').focus();
     };
@@ -42,7 +44,7 @@ const palpaPage = (() => {
     };
 
     const openStudies = async () => {
-        at('studies-state').textContent = 'Looking for protocols';
+        at('studies-state').textContent = palpaWords.looking;
         at('studies-list').replaceChildren();
         at('begin-study').disabled = true;
         if (!at('studies').open) at('studies').showModal();
@@ -109,14 +111,14 @@ const palpaPage = (() => {
     at('send-now').addEventListener('click', () => palpaTrials.send());
     at('export').addEventListener('click', () => palpaTrials.exportAll());
     at('remove').addEventListener('click', () => {
-        if (confirm('Remove the exported trials from this tablet? The file that was exported is then the only copy.')) palpaTrials.removeExported();
+        if (confirm(palpaWords.removeAsk)) palpaTrials.removeExported();
     });
     at('close-trials').addEventListener('click', () => at('trials').close());
     palpaTrials.onChange(() => { if (at('trials').open) show(); });
 
     window.addEventListener('error', (event) => {
         const script = event.target && event.target.tagName === 'SCRIPT';
-        if (script) fail('the program cannot be loaded; is the desk reachable?');
+        if (script) fail(palpaWords.notLoaded);
         else if (event.message) fail(event.message);
     }, true);
     if ('serviceWorker' in navigator) {

@@ -51,7 +51,7 @@ const palpaStudies = (() => {
 
     const ask = async (address) => {
         const answer = await fetch(address, {headers: palpaTrials.credentials(), cache: 'no-cache', signal: AbortSignal.timeout(kWait_ms)});
-        if (!answer.ok) throw new Error(`the desk answered ${answer.status} to ${address}`);
+        if (!answer.ok) throw new Error(palpaFilled(palpaWords.answered, answer.status, address));
         return answer;
     };
     const askFile = async (path) => (await ask('files/' + path.split('/').map(encodeURIComponent).join('/'))).arrayBuffer();
@@ -103,16 +103,16 @@ const palpaStudies = (() => {
         const out = new Map();
         const add = (name, text, from) => out.set(name, {name, title: parse(text)?.name ?? name, from});
         for (const file of FS.readdir(`${kAssets}/protocols`)) {
-            if (file.endsWith('.json')) add(file.slice(0, -5), FS.readFile(`${kAssets}/protocols/${file}`, {encoding: 'utf8'}), 'in the app');
+            if (file.endsWith('.json')) add(file.slice(0, -5), FS.readFile(`${kAssets}/protocols/${file}`, {encoding: 'utf8'}), palpaWords.inTheApp);
         }
         const nameOf = (path) => path.slice('protocols/'.length, -5);
         const isProtocol = (path) => path.startsWith('protocols/') && path.endsWith('.json');
-        for (const {path, bytes} of kept.values()) if (isProtocol(path)) add(nameOf(path), textOf(bytes), 'of the desk, kept here');
+        for (const {path, bytes} of kept.values()) if (isProtocol(path)) add(nameOf(path), textOf(bytes), palpaWords.ofDeskKept);
         let said = '';
         try {
-            for (const path of [...await atDesk()].filter(isProtocol)) add(nameOf(path), textOf(await askFile(path)), 'of the desk');
+            for (const path of [...await atDesk()].filter(isProtocol)) add(nameOf(path), textOf(await askFile(path)), palpaWords.ofDesk);
         } catch (away) {
-            said = 'No desk is reachable, or this tablet is not paired (Menu, Trials): its protocols are missing here unless they were used before.';
+            said = palpaWords.noDesk;
         }
         return {studies: [...out.values()].sort((a, b) => a.title < b.title ? -1 : 1), said};
     };

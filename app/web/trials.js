@@ -77,11 +77,11 @@ const palpaTrials = (() => {
     };
 
     const request = (mode, work, stores = ['trials'], durability = 'strict') => new Promise((resolve, reject) => {
-        if (database === null) return reject(new Error('the browser has no storage for this page'));
+        if (database === null) return reject(new Error(palpaWords.noStorage));
         const transaction = database.transaction(stores, mode, mode === 'readwrite' ? {durability} : {});
         const asked = work(...stores.map((store) => transaction.objectStore(store)));
         transaction.oncomplete = () => resolve(asked ? asked.result : undefined);
-        transaction.onerror = transaction.onabort = () => reject(transaction.error || new Error('broken off'));
+        transaction.onerror = transaction.onabort = () => reject(transaction.error || new Error(palpaWords.interrupted));
     });
 
     const open = () => new Promise((resolve, reject) => {
@@ -93,7 +93,7 @@ const palpaTrials = (() => {
         };
         asked.onsuccess = () => resolve(asked.result);
         asked.onerror = () => reject(asked.error);
-        asked.onblocked = () => reject(new Error('another page holds it'));
+        asked.onblocked = () => reject(new Error(palpaWords.heldElsewhere));
     });
 
     const note = (trial) => trials.set(trial.name, {name: trial.name, sha256: trial.sha256, finished: trial.finished,
@@ -109,7 +109,7 @@ const palpaTrials = (() => {
             return;
         }
         const gone = names.filter((name) => !trials.has(name));
-        if (gone.length > 0) tell(`${gone.length} trial(s) that were kept here are gone: the browser has removed them (${gone.join(', ')}).`);
+        if (gone.length > 0) tell(palpaFilled(palpaWords.gone, gone.length, gone.join(', ')));
     };
 
     // Two pages would give the same names. The lock goes with the page that holds it.
@@ -123,10 +123,10 @@ const palpaTrials = (() => {
 
     const start = async (dialog) => {
         openDialog = dialog;
-        if (!await isAlone()) throw new Error('Palpa is open in another tab or window of this browser; close one of them');
+        if (!await isAlone()) throw new Error(palpaWords.secondTab);
         try {
             database = await open();
-            database.onclose = () => tell('The browser has closed its storage: trials are not kept any more. Export what is there.');
+            database.onclose = () => tell(palpaWords.storageClosed);
             for (const trial of await request('readonly', (store) => store.getAll())) note(trial);
             studyFiles = await request('readonly', (store) => store.getAll(), ['study']);
             parts = await request('readonly', (store) => store.getAll(), ['parts']);
@@ -135,7 +135,7 @@ const palpaTrials = (() => {
             noteNames();
             if (navigator.storage && navigator.storage.persist) persistent = await navigator.storage.persist();
         } catch (error) {
-            tell(`Trials cannot be kept in this browser (${error.message}): export each one after it.`);
+            tell(palpaFilled(palpaWords.cannotKeep, error.message));
         }
         await askDesk();
         await pairByAddress();
@@ -152,7 +152,7 @@ const palpaTrials = (() => {
             if (!answer.ok || !(answer.headers.get('Content-Type') || '').includes('json')) return;
             const {pairing, collects} = await answer.json();
             open_to_all = pairing === false && collects === true;
-            if (collects === false) lastWord = 'This desk takes no logs (it was started without --collect).';
+            if (collects === false) lastWord = palpaWords.takesNoLogs;
         } catch (away) {
             // no desk: trials wait here
         }
@@ -182,7 +182,7 @@ const palpaTrials = (() => {
     // `how`: finished, going on, or broken off (left by an earlier page). `paths`: of files that the study goes on from.
     const put = async (name, text, sha256, how, paths) => {
         ++writing;
-        const broken = how === 'broken off';
+        const broken = how === 'broken-off';
         const finished = how === 'finished';
         const isNew = !broken && !current.has(name);
         if (!broken) current.add(name);
@@ -195,7 +195,7 @@ const palpaTrials = (() => {
         } catch (error) {
             unsaved.set(name, {trial, files});
             const full = error && error.name === 'QuotaExceededError';
-            tell(`Trial ${name} is not kept: ${full ? 'the storage of this browser is full' : error.message}. Menu, Trials, Export saves it to a file; the next trial waits for that.`);
+            tell(palpaFilled(palpaWords.notKept, name, full ? palpaWords.storageFull : error.message));
         } finally {
             --writing;
         }
@@ -207,7 +207,7 @@ const palpaTrials = (() => {
     const putPart = (name, path, offset, text) => {
         remember('palpa-runs', String(Math.max(Number(recall('palpa-runs')) || 0, runOf(name))));
         request('readwrite', (store) => { store.put({name, path, offset, text}); }, ['parts'], 'relaxed').catch((error) => {
-            if (!partsTold) tell(`While it is going on this trial is not kept (${error.message}); it will be tried at its end.`);
+            if (!partsTold) tell(palpaFilled(palpaWords.partNotKept, error.message));
             partsTold = true;
         });
     };
@@ -245,12 +245,12 @@ const palpaTrials = (() => {
         });
         if (answer.status === 401 || answer.status === 403) {
             remember('palpa-token', null);
-            lastWord = 'The desk does not know this tablet any more: pair again.';
+            lastWord = palpaWords.pairAgain;
             return false;
         }
         const confirmed = answer.ok ? (await answer.json()).sha256 : '';
         if (confirmed !== trial.sha256) {
-            lastWord = answer.ok ? `The desk has other bytes of ${name}; it is sent again.` : `The desk answered ${answer.status} to ${name}.`;
+            lastWord = answer.ok ? palpaFilled(palpaWords.otherBytes, name) : palpaFilled(palpaWords.answered, answer.status, name);
             return false;
         }
         // the desk has it: from here on only its name is kept
@@ -273,7 +273,7 @@ const palpaTrials = (() => {
                 if (!await sendOne(name)) break;
             }
         } catch (error) {
-            lastWord = 'The desk is not reachable; trials wait here.';
+            lastWord = palpaWords.trialsWait;
         } finally {
             sending = false;
         }
@@ -285,9 +285,9 @@ const palpaTrials = (() => {
             const answer = await fetch('api/pair', {method: 'POST', headers: {'Content-Type': 'application/json'}, body: JSON.stringify({code})});
             const token = answer.ok ? (await answer.json()).token : '';
             if (token) remember('palpa-token', token);
-            lastWord = token ? 'Paired.' : `The desk does not take this code (${answer.status}).`;
+            lastWord = token ? palpaWords.paired : palpaFilled(palpaWords.wrongCode, answer.status);
         } catch (error) {
-            lastWord = 'The desk is not reachable.';
+            lastWord = palpaWords.notReachable;
         }
         changed();
         await send();
@@ -343,32 +343,36 @@ const palpaTrials = (() => {
         changed();
     };
 
-    const words = (trial) => trial.sent ? 'at the desk' : !isOver(trial) ? 'going on' : `${trial.finished ? 'waiting' : 'broken off, waiting'}${trial.exported ? ', exported' : ''}`;
+    const words = (trial) => {
+        if (trial.sent) return palpaWords.atDesk;
+        if (!isOver(trial)) return palpaWords.goingOn;
+        return (trial.finished ? palpaWords.waiting : palpaWords.brokenOff) + (trial.exported ? palpaWords.exported : '');
+    };
 
     const state = () => {
         const waiting = [...trials.values()].filter((t) => !t.sent && isOver(t)).length + unsaved.size;
         const paired = maySend();
-        const lines = [`${waiting} waiting, ${[...trials.values()].filter((t) => t.sent).length} at the desk.`];
-        lines.push(recall('palpa-token') !== '' ? 'Paired with the desk.' : open_to_all ? 'The desk takes logs without a code.' : 'Not paired with a desk.');
-        if (!persistent) lines.push('The browser may remove what is kept here when space is short: send or export, or put Palpa on the home screen.');
+        const lines = [palpaFilled(palpaWords.howMany, waiting, [...trials.values()].filter((t) => t.sent).length)];
+        lines.push(recall('palpa-token') !== '' ? palpaWords.isPaired : open_to_all ? palpaWords.openToAll : palpaWords.notPaired);
+        if (!persistent) lines.push(palpaWords.mayRemove);
         if (lastWord) lines.push(lastWord);
-        return {lines, paired, waiting, trials: [...[...trials.values()].filter((t) => !unsaved.has(t.name)), ...[...unsaved.values()].map(({trial}) => trial)].map((t) => ({...t, words: unsaved.has(t.name) ? 'NOT kept: export it' : words(t)}))};
+        return {lines, paired, waiting, trials: [...[...trials.values()].filter((t) => !unsaved.has(t.name)), ...[...unsaved.values()].map(({trial}) => trial)].map((t) => ({...t, words: unsaved.has(t.name) ? palpaWords.exportIt : words(t)}))};
     };
 
     const noteText = () => {
         const {waiting, paired} = state();
-        if (unsaved.size > 0) return `${unsaved.size} trial(s) NOT kept: Menu, Trials, Export.`;
-        return waiting === 0 ? 'All trials are at the desk or exported.' : `${waiting} trial(s) kept on this tablet${paired ? ', not yet at the desk' : ''}.`;
+        if (unsaved.size > 0) return palpaFilled(palpaWords.unsaved, unsaved.size);
+        return waiting === 0 ? palpaWords.allSafe : palpaFilled(paired ? palpaWords.keptUnsent : palpaWords.kept, waiting);
     };
 
     return {
         start, put, putPart, restore, tell, send, pair, exportAll, removeExported, state, request, credentials, protocol, setParticipant,
         ready: () => writing === 0 && unsaved.size === 0,
         nextProblem: () => problems.shift() || '',
-        note: () => trials.size + unsaved.size > 0 ? noteText() : 'Trials are kept on this tablet.',
+        note: () => trials.size + unsaved.size > 0 ? noteText() : palpaWords.keptHere,
         participant, nextRun,
         settings: () => recall('palpa-settings'),
-        keepSettings: (text) => { if (!remember('palpa-settings', text)) tell('Settings are not kept: the storage of this browser is full.'); },
+        keepSettings: (text) => { if (!remember('palpa-settings', text)) tell(palpaWords.settingsNotKept); },
         open: () => openDialog(),
         onChange: (callback) => { changed = callback; },
     };

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 using namespace palpa;
 
@@ -50,4 +51,13 @@ TEST_CASE("layout: a column beside the tissue away from the hand, a strip above 
     CHECK_FALSE(upright.column);
     CHECK(upright.tissue_px.height() >= 0.99f * upright.tissue_px.width());
     CHECK_FALSE(layout_of(200, 100, 3.78f, false).controls);
+}
+
+TEST_CASE("layout: below the tissue is room for a finger that indents what lies above it") {
+    for (const auto& [width, height] : {std::pair{1280.0f, 800.0f}, std::pair{800.0f, 1280.0f}}) {
+        const Layout under = layout_of(width, height, 3.78f, false);
+        const Layout above = layout_of(width, height, 3.78f, false, true);
+        CHECK(above.tissue_px.y1 == doctest::Approx(under.tissue_px.y1 - 15.0f * 3.78f));
+        CHECK(above.tissue_px.y0 == under.tissue_px.y0);
+    }
 }

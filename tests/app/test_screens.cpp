@@ -72,6 +72,7 @@ struct Case {
     int width_px, height_px;
     double px_per_mm;
     bool left_handed;
+    bool above_finger = false;
 };
 
 void check_case(const Session& session, Screens screens, const Case& c, const std::string& name, const TemporaryFolder& folder) {
@@ -80,10 +81,11 @@ void check_case(const Session& session, Screens screens, const Case& c, const st
     CAPTURE(c.height_px);
     Settings settings;
     settings.left_handed = c.left_handed;
+    settings.above_finger = c.above_finger;
     screens.px_per_mm = c.px_per_mm;
     State state = session.state;
     const float mm = control_scale(c.px_per_mm, static_cast<float>(c.width_px), static_cast<float>(c.height_px));
-    const Layout layout = layout_of(static_cast<float>(c.width_px), static_cast<float>(c.height_px), mm, c.left_handed);
+    const Layout layout = layout_of(static_cast<float>(c.width_px), static_cast<float>(c.height_px), mm, c.left_handed, c.above_finger);
     const PanelArea& t = layout.tissue_px;
     Sample resize;
     resize.phase = Phase::ui;
@@ -164,7 +166,7 @@ TEST_CASE("screens: every screen fits and is drawn at the sizes of desks and tab
 
     constexpr double kTablet_px_per_mm = 11.8;  // 10.1 inch with 2560 x 1600
     const Case cases[] = {{1280, 800, kMissing, false}, {800, 1280, kMissing, false}, {2560, 1600, kMissing, true},
-                          {2560, 1600, kTablet_px_per_mm, false}, {1600, 2560, kTablet_px_per_mm, false},
+                          {2560, 1600, kTablet_px_per_mm, false, true}, {1600, 2560, kTablet_px_per_mm, false},
                           {1024, 600, kMissing, true}, {200, 100, kMissing, false}};
     for (const Case& c : cases) {
         check_case(session, trial, c, "trial", folder);

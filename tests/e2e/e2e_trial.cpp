@@ -24,8 +24,8 @@ struct Point {
 };
 
 // Where the default scene draws a place.
-Point place(double x_mm, double y_mm) {
-    const PanelArea t = layout_of(1280, 800, kMm, false).tissue_px;
+Point place(double x_mm, double y_mm, bool above_finger = false) {
+    const PanelArea t = layout_of(1280, 800, kMm, false, above_finger).tissue_px;
     const ScreenArea screen{static_cast<double>(t.width()), static_cast<double>(t.height()), static_cast<double>(t.x0), 0.0};
     const View view = make_view({}, {{0.06, 0.06}, {0.12, 0.12}}, screen);
     const Eigen::Vector2d px = px_of_tissue(view, {1e-3 * x_mm, 1e-3 * y_mm});
@@ -179,4 +179,30 @@ TEST_CASE("app: whole trials by pen, by two fingers and by keyboard alone") {
     CHECK(marks.find("\t4\tA\t") != std::string::npos);
     const std::string samples = read_text(folder / "log/sub-01/beh/sub-01_task-palpation_run-03_samples.tsv");
     CHECK(samples.find("finger\tmove") != std::string::npos);
+}
+
+TEST_CASE("app: a finger that may not hide the avatar marks what lies above it") {
+    const TemporaryFolder folder;
+    std::filesystem::create_directories(folder / "config/palpa");
+    write_text_whole(folder / "config/palpa/settings.json", R"({"above_finger": true, "test_mode": true})");
+    Script script(folder / "script.tsv");
+    const Point nodule = place(35, 35, true);
+    const auto press = [&](const char* phase, double pressure) {
+        script.wait(0.02);
+        script.row("touch", 0, phase, {nodule.x_px, nodule.y_px + static_cast<double>(kFingerOffset_mm * kMm)}, pressure);
+    };
+    press("down", 0.3);
+    for (int i = 0; i < 20; ++i) press("move", 0.7 + 0.001 * i);
+    press("up", 0.0);
+    script.wait(0.2);
+    script.tap("touch", 0, kMark);
+    script.tap("touch", 0, kFinish);
+    const std::string arguments = "--quit-after-s " + std::to_string(script.close() + 4.0) + " --log " + (folder / "log").string();
+    REQUIRE(run_app(folder, arguments, [&] { CHECK(play_script(folder) == 0); }) == 0);
+    const Json trial = read_json(folder / "out.json")["trials"][0];
+    REQUIRE(trial["marks"].size() == 1);
+    CHECK(trial["tp"] == 1);
+    CHECK(trial["marks"][0]["distance_mm"].get<double>() < 0.5);
+    const Json settings = read_json(folder / "log/sub-01/beh/sub-01_task-palpation_run-01_settings.json");
+    CHECK(settings["finger_offset_mm"] == 15.0);
 }
