@@ -89,7 +89,7 @@ test('from the menu to the thanks; a reload in the middle of a trial; the desk\'
     await open(browser, desk.url);
     // the way in, by hand
     await tap(browser, 90, 45);
-    await tap(browser, 1152, 368);
+    await tap(browser, 1152, 476);
     await page.waitForFunction(() => document.querySelectorAll('#studies-list label').length === 5);
     await page.check('input[value=short]');
     await page.click('#begin-study');
