@@ -43,7 +43,9 @@ void follow_keeper(App& app) {
     if (run.unkept_answers) app.keeper->keep_answers(run.directory, run.code);
     run.unkept_answers = false;
     app.keeper->participant(run.code);
+    const bool told = run.keeping && run.keeping_began_s > 0.0 && !run.warnings.empty();
     run.keeping = !app.keeper->ready();
+    if (told && !run.keeping) app.screens.problems.clear();  // it is mended
     run.warnings = app.screens.problems;
 }
 

@@ -75,11 +75,12 @@ void draw_keeping(double now_s, Gui& gui, StudyRun& run, Wishes& wishes) {
 void draw_code(Gui& gui, StudyRun& run, Wishes& wishes) {
     title(words::kWhoIsHere);
     paragraph(words::kCodeNoName);
-    if (run.answers.empty()) run.answers = {free_code(run)};
+    const bool fresh = run.answers.empty();
+    if (fresh) run.answers = {free_code(run)};
     char text[24];
     std::snprintf(text, sizeof text, "%s", run.answers[0].c_str());
     ImGui::SetNextItemWidth(60.0f * gui.mm());
-    if (ImGui::IsWindowAppearing()) ImGui::SetKeyboardFocusHere();
+    if (fresh || ImGui::IsWindowAppearing()) ImGui::SetKeyboardFocusHere();
     const bool entered = text_field(words::kCode, text, sizeof text, ImGuiInputTextFlags_EnterReturnsTrue, gui);
     run.answers[0] = text;
     gap(gui);

@@ -9,6 +9,7 @@
 #include <exception>
 #include <filesystem>
 #include <memory>
+#include <set>
 #include <string>
 
 #include "app/live.h"
@@ -111,8 +112,10 @@ std::string study_folder(const std::string& name, const Protocol& protocol) {
 void choose_study(const std::string& name, RunOptions& options) {
     const std::filesystem::path folder = "/assets/protocols";
     const std::filesystem::path file = folder / (name + ".json");
+    std::set<std::string> names;
+    for (const auto& entry : std::filesystem::directory_iterator(folder)) names.insert(entry.path().stem().string());
     std::string known;
-    for (const auto& entry : std::filesystem::directory_iterator(folder)) known += " " + entry.path().stem().string();
+    for (const std::string& one : names) known += " " + one;
     if (name.find('/') != std::string::npos || !std::filesystem::exists(file)) {
         throw bad_input("?protocol", "", shown(name), "one of" + known + ", or of a desk that this tablet is paired with");
     }

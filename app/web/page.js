@@ -34,7 +34,7 @@ const palpaPage = (() => {
         }));
         at('pair').hidden = state.paired;
         at('send-now').disabled = !state.paired || state.waiting === 0;
-        at('export').disabled = state.trials.length === 0;
+        at('export').disabled = state.waiting === 0;
         at('remove').disabled = !state.trials.some((trial) => trial.exported);
     };
 

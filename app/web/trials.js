@@ -138,11 +138,8 @@ const palpaTrials = (() => {
             tell(palpaFilled(palpaWords.cannotKeep, error.message));
         }
         await askDesk();
-        const code = new URLSearchParams(location.hash.slice(1)).get('code'); // of the square that the desk shows
-        if (code) {
-            history.replaceState(null, '', location.pathname + location.search);
-            await pair(code);
-        }
+        await pairByAddress();
+        window.addEventListener('hashchange', pairByAddress);
         setInterval(() => { saveAgain(); send(); }, kAgain_ms);
         window.addEventListener('online', send);
         send();
@@ -294,6 +291,14 @@ const palpaTrials = (() => {
         }
         changed();
         await send();
+    };
+
+    // The square that the desk shows says #code=...
+    const pairByAddress = async () => {
+        const code = new URLSearchParams(location.hash.slice(1)).get('code');
+        if (!code) return;
+        history.replaceState(null, '', location.pathname + location.search);
+        await pair(code);
     };
 
     const download = (name, text) => {

@@ -213,6 +213,19 @@ TEST_CASE("screens: every step of a study fits, and none tells where the nodules
             screens.screen = run->step == StudyStep::trial ? Screen::trial : Screen::study;
             check_case(session, screens, c, std::string("study-") + name_of(run->step), folder);
         }
+        // on a tablet there is more to do between people, and a step may have to wait
+        run->on_tablet = true;
+        run->warnings = {"Trial sub-07_task-palpation_run-03 is not kept: the storage of this browser is full. Menu, Trials, Export saves it "
+                         "to a file; the next trial waits for that."};
+        for (const StudyStep step : {StudyStep::code, StudyStep::done, StudyStep::stopped}) {
+            run->step = step;
+            run->answers.clear();
+            check_case(session, screens, c, std::string("study-tablet-") + name_of(step), folder);
+        }
+        run->keeping = true;
+        check_case(session, screens, c, "study-tablet-keeping", folder);
+        run->keeping = run->on_tablet = false;
+        run->warnings.clear();
     }
 }
 

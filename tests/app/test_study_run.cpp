@@ -115,6 +115,32 @@ TEST_CASE("study run: from the code to the thanks, everything in the log") {
     CHECK(free_code(run) == "02");
 }
 
+TEST_CASE("study run: what a keeper has to take is told, and run numbers that are taken elsewhere stay free") {
+    const TemporaryFolder folder;
+    const auto log = folder / "log";
+    StudyRun run = open_study_run(find_protocol(folder), log, "");
+    run.first_run = 21;
+    enter_code("P7", run);
+    CHECK_FALSE(run.unkept_answers);
+    answer_questions(run);
+    CHECK(run.unkept_answers);  // the person's line, too
+    for (int i = 0; i < 2; ++i) {
+        begin_step(run);
+        CHECK(due_files(run).first_run == 21);
+        run_trial(run);
+    }
+    run.unkept_answers = false;
+    rate(run, "6");
+    CHECK(run.unkept_answers);
+    CHECK(run.unkept_runs.empty());
+    begin_step(run);
+    REQUIRE(run.step == StudyStep::typed);
+    run.typed.duration_s = 12.0;
+    submit_typed(run);
+    REQUIRE(run.unkept_runs.size() == 1);
+    CHECK(run.unkept_runs[0].stem == "sub-P7_task-palpation_run-23");
+}
+
 TEST_CASE("study run: a crash in the middle of a trial costs that trial, nothing else") {
     const TemporaryFolder folder;
     const auto log = folder / "log";

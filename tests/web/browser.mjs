@@ -61,10 +61,10 @@ export async function openDesk() {
     return desk;
 }
 
-export async function openBrowser({width = 1280, height = 800, scale = 1, touch = true} = {}) {
+export async function openBrowser({width = 1280, height = 800, scale = 1, touch = true, ignoreHTTPSErrors = false} = {}) {
     const profile = fs.mkdtempSync(path.join(os.tmpdir(), 'palpa-browser-'));
     const context = await chromium.launchPersistentContext(profile, {
-        executablePath: '/usr/bin/chromium', headless: true, timeout: 60000, acceptDownloads: true,
+        executablePath: '/usr/bin/chromium', headless: true, timeout: 60000, acceptDownloads: true, ignoreHTTPSErrors,
         viewport: {width, height}, deviceScaleFactor: scale, hasTouch: touch,
         args: ['--no-sandbox', '--disable-gpu', '--disable-quic', '--no-first-run', '--disable-background-networking',
                '--disable-component-update', '--disable-sync'],

@@ -4,7 +4,7 @@ import {spawn} from 'node:child_process';
 import fs from 'node:fs';
 import os from 'node:os';
 import path from 'node:path';
-import {frames, openBrowser, pen, report, root, site, started} from './browser.mjs';
+import {frames, pen, report, root, site} from './browser.mjs';
 
 export const until = async (what, holds, seconds = 20) => {
     for (let i = 0; i < 10 * seconds; ++i) {
@@ -23,7 +23,10 @@ export const protocol = {
     ratings: [{id: 'effort', text: 'It was tiring (1 not at all, 7 very much).', from: 1, to: 7}],
 };
 
-export function makeFolder(protocols = {short: protocol}) {
+// One trial, and nothing else.
+export const tiny = {...protocol, name: 'Tiny', practice: undefined, repeats: 1, demographics: undefined, ratings: undefined};
+
+export function makeFolder(protocols = {short: protocol, tiny}) {
     const folder = fs.mkdtempSync(path.join(os.tmpdir(), 'palpa-study-'));
     const assets = path.join(folder, 'assets');
     for (const kind of ['scenes', 'maps', 'profiles', 'phantoms', 'protocols']) {
@@ -60,13 +63,6 @@ export const at = async (page, step) => {
     await until(`step ${step}`, async () => (await report(page)).study?.step === step);
     await frames(page, 3);
 };
-export const tapPen = async (browser, x, y) => {
-    await pen(browser, 'mouseMoved', x, y, 0);
-    await pen(browser, 'mousePressed', x, y, 0.4);
-    await frames(browser.page, 3);
-    await pen(browser, 'mouseReleased', x, y, 0);
-    await frames(browser.page, 3);
-};
 export const key = async (page, name) => {
     await page.keyboard.press(name);
     await frames(page, 3);
@@ -85,7 +81,6 @@ export async function stroke(browser, x, y) {
 
 export async function open(browser, url, query = '') {
     await browser.page.goto(url + query);
-    await started(browser.page);
+    await browser.page.waitForFunction(() => document.getElementById('message').hidden || !document.getElementById('leave').hidden, null, {timeout: 60000});
     await frames(browser.page, 3);
 }
-export {openBrowser};

@@ -115,7 +115,7 @@ test('the device check tells levels, rate, size and delay, and the trial\'s log 
     await page.keyboard.press('f');
     await frames(page, 3);
     const log = await page.evaluate(() => new Promise((done) => {
-        const open = indexedDB.open('palpa', 1);
+        const open = indexedDB.open('palpa');
         open.onsuccess = () => {
             const all = open.result.transaction('trials').objectStore('trials').getAll();
             all.onsuccess = () => done(JSON.parse(all.result[0].text).files.find((f) => f.name.endsWith('performance.json')).text);

@@ -22,7 +22,7 @@ async function finishTrial(browser, x = 800) {
 }
 
 const stored = (page) => page.evaluate(() => new Promise((done) => {
-    const open = indexedDB.open('palpa', 1);
+    const open = indexedDB.open('palpa');
     open.onsuccess = () => {
         const all = open.result.transaction('trials').objectStore('trials').getAll();
         all.onsuccess = () => { open.result.close(); done(all.result); };
@@ -144,7 +144,7 @@ test('what the browser has removed is said at the next start', () => withPage({}
     await finishTrial(browser);
     await until('stored', async () => (await stored(page)).length === 1);
     await page.evaluate(() => new Promise((done) => {
-        const open = indexedDB.open('palpa', 1);
+        const open = indexedDB.open('palpa');
         open.onsuccess = () => {
             const cleared = open.result.transaction('trials', 'readwrite');
             cleared.objectStore('trials').clear();
