@@ -49,8 +49,8 @@ std::string odd_table() {
     return text;
 }
 
-// The most memory (bytes) that any process of an import held, as the system counted it.
-double memory_of_import(const TemporaryFolder& folder, const std::string& arguments) {
+// The most memory (bytes) that any process of an import held, as the system counted it. Sanitizers multiply it.
+[[maybe_unused]] double memory_of_import(const TemporaryFolder& folder, const std::string& arguments) {
     const pid_t child = ::fork();
     if (child == 0) ::_exit(import(folder, arguments).status);
     int status = 0;
