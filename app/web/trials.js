@@ -53,9 +53,9 @@ const palpaTrials = (() => {
         }
         return name;
     };
-    // Who palpates: ?participant=07 in the address, kept; else the tablet itself.
     const asked_for = (key) => new URLSearchParams(location.search).get(key);
     const protocol = () => asked_for('protocol') === null ? '' : asked_for('protocol').replace(/\.json$/, '');
+    // Who palpates: ?participant=07 in the address, kept; else the tablet itself.
     const participant = () => {
         const asked = asked_for('participant');
         if (asked_for('protocol') !== null) return asked === null ? '' : asked.slice(0, 64); // a study asks for nobody by itself
