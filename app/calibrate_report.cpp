@@ -10,7 +10,7 @@
 namespace palpa {
 namespace {
 
-Json pair(const Interval& interval) { return {interval.low, interval.high}; }
+Json pair(const CurveInterval& interval) { return {interval.low, interval.high}; }
 
 Json intervals_json(const Bootstrap& bootstrap, CurveModel model) {
     Json json{{"level", 0.95}, {"fits", bootstrap.fits}, {"drawn", bootstrap.over_repeats ? "repeats" : "points"}};
@@ -104,7 +104,7 @@ void print_calibration(const Calibration& calibration) {
         std::printf(": %zu knots\n", curve.knot_level.size());
     } else {
         const Bootstrap& boot = calibration.bootstrap;
-        const auto with = [&](double value, const Interval& interval) {
+        const auto with = [&](double value, const CurveInterval& interval) {
             return text(value) + (boot.fits > 0 ? " [" + text(interval.low) + ", " + text(interval.high) + "]" : "");
         };
         std::printf(": a %s N, b %s", with(curve.a_N, boot.a_N).c_str(), with(curve.b, boot.b).c_str());

@@ -141,7 +141,7 @@ ImportOptions options_of(const Arguments& a) {
     options.layers = a.layers;
     options.fill = !a.no_fill;
     options.tangential = choice<TangentialChoice>(a.tangential, {"measured", "energy", "none"});
-    options.contact = choice<Contact>(a.contact, {"first-row", "threshold"});
+    options.contact = choice<ContactStart>(a.contact, {"first-row", "threshold"});
     options.contact_force_N = a.contact_force_N;
     options.surface_z_m = metres(a.surface_z_mm);
     options.surface_node_m = metres(a.surface_node_mm);

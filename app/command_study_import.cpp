@@ -18,7 +18,7 @@ struct ImportOptions {
 };
 
 void import(const ImportOptions& options) {
-    const ImportReport report = import_bundles({options.bundles.begin(), options.bundles.end()}, options.output);
+    const BundleReport report = import_bundles({options.bundles.begin(), options.bundles.end()}, options.output);
     if (options.json) {
         const Json json{{"written", report.written}, {"already_there", report.already_there}, {"people_added", report.people_added},
                         {"grown", report.grown}, {"passed_over", report.passed_over}};

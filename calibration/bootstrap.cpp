@@ -43,7 +43,7 @@ void draw(const FitPoints& points, bool over_repeats, std::mt19937_64& random, E
     for (Eigen::Index i = 0; i < count.size(); ++i) count(i) = drawn(points.repeat[static_cast<std::size_t>(i)]);
 }
 
-Interval interval_of(std::vector<double>& values, double estimate, double widened) {
+CurveInterval interval_of(std::vector<double>& values, double estimate, double widened) {
     const auto at = [&](double share) {
         const auto i = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1) + 0.5);
         std::nth_element(values.begin(), values.begin() + i, values.end());
@@ -94,7 +94,7 @@ Bootstrap bootstrap(const FitPoints& points, const FitOptions& options, const Cu
     out.offset_N = interval_of(offset_N, fitted.offset_N, widened);
     out.level = level;
     for (std::size_t k = 0; k < level.size(); ++k) {
-        const Interval band = interval_of(force_N[k], value_N(fitted, level[k]), widened);
+        const CurveInterval band = interval_of(force_N[k], value_N(fitted, level[k]), widened);
         out.low_N.push_back(std::max(0.0, band.low));
         out.high_N.push_back(band.high);
     }

@@ -9,7 +9,7 @@
 
 namespace palpa {
 
-struct Interval {
+struct CurveInterval {
     double low = 0.0;
     double high = 0.0;
 };
@@ -17,7 +17,7 @@ struct Interval {
 struct Bootstrap {
     int fits = 0;               // of those asked for, how many gave a curve
     bool over_repeats = false;  // whole presses were drawn, not single points
-    Interval a_N, b, offset_N;  // 95 %; parametric models only
+    CurveInterval a_N, b, offset_N;  // 95 %; parametric models only
     std::vector<double> level;  // the curve's band, 95 % at each level
     std::vector<double> low_N;
     std::vector<double> high_N;

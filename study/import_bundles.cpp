@@ -110,7 +110,7 @@ class Plan {
         }
     }
 
-    ImportReport report;
+    BundleReport report;
     std::vector<Person> people;                                    // new ones
     std::optional<std::string> identity_text;                      // of a study.json that is not there yet
 
@@ -231,7 +231,7 @@ bool is_events(const BundleFile& file) { return file.name.find("_events.tsv") !=
 
 }  // namespace
 
-ImportReport import_bundles(const std::vector<fs::path>& bundles, const fs::path& directory) {
+BundleReport import_bundles(const std::vector<fs::path>& bundles, const fs::path& directory) {
     Plan plan(directory);
     // twice from the disk, so that only one bundle is in memory at a time
     std::vector<fs::path> taken, singles;

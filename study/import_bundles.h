@@ -7,7 +7,7 @@
 
 namespace palpa {
 
-struct ImportReport {
+struct BundleReport {
     std::vector<std::string> written;        // names within the folder
     std::vector<std::string> already_there;  // the same to the last byte, or with more answers
     std::vector<std::string> grown;          // answers that were added to those that were there
@@ -22,6 +22,6 @@ struct ImportReport {
 // its other files. Participants are added to those that are there, and answers (ratings, choices) to those of an earlier
 // bundle; of study.json only what names the study counts. Where a study is imported, bundles of single runs are passed over.
 // Throws std::runtime_error if it cannot write.
-ImportReport import_bundles(const std::vector<std::filesystem::path>& bundles, const std::filesystem::path& directory);
+BundleReport import_bundles(const std::vector<std::filesystem::path>& bundles, const std::filesystem::path& directory);
 
 }  // namespace palpa

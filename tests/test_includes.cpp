@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <fstream>
 #include <map>
+#include <regex>
 #include <set>
 #include <string>
 
@@ -74,4 +75,28 @@ TEST_CASE("includes: the table refuses what it must") {
     CHECK_FALSE(allowed("calibration", "platform/trace.h"));
     CHECK(allowed("calibration", "platform/sample.h"));
     CHECK_FALSE(allowed("mechanics", "files/text.h"));
+}
+
+// Two types of one name link without a word, and one of them gets the other's functions.
+TEST_CASE("names: no two headers define the same type") {
+    static const std::regex opens("namespace ([a-z:]+) \\{"), type("(struct|class|enum class) ([A-Z][A-Za-z0-9]+)[^;]*\\{.*");
+    std::map<std::string, std::string> defined;
+    for (const auto& [folder, may] : kMayInclude) {
+        if (!fs::exists(fs::path(PALPA_SOURCE_DIR) / folder)) continue;
+        for (const auto& entry : fs::recursive_directory_iterator(fs::path(PALPA_SOURCE_DIR) / folder)) {
+            if (entry.path().extension() != ".h" || entry.path().parent_path().filename() == "web") continue;  // those of other systems
+            std::ifstream file(entry.path());
+            std::string space;
+            std::smatch found;
+            for (std::string line; std::getline(file, line);) {
+                if (std::regex_match(line, found, opens)) space = found[1];
+                if (!std::regex_match(line, found, type)) continue;
+                const std::string name = space + "::" + found[2].str();
+                CAPTURE(name);
+                const auto [first, is_new] = defined.emplace(name, entry.path().string());
+                CHECK_MESSAGE(is_new, first->second << " and " << entry.path().string());
+            }
+        }
+    }
+    CHECK(defined.size() > 200);
 }

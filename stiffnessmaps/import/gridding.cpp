@@ -97,14 +97,14 @@ std::optional<AxisFit> fit_axis(const std::vector<double>& places_m) {
     return fit;
 }
 
-std::optional<std::size_t> index_on(const Axis& axis, double place_m) {
+std::optional<std::size_t> index_on(const GridAxis& axis, double place_m) {
     const double at = (place_m - axis.origin_m) / axis.pitch_m;
     const double i = std::round(at);
     if (!(std::abs(at - i) <= kOffGrid) || i < 0.0 || i >= static_cast<double>(axis.n)) return std::nullopt;
     return static_cast<std::size_t>(i);
 }
 
-Axis covering_axis(double lowest_m, double highest_m, double pitch_m) {
+GridAxis covering_axis(double lowest_m, double highest_m, double pitch_m) {
     const double steps = std::min(std::floor((highest_m - lowest_m) / pitch_m + 1e-6), 1e7);
     const double rest_m = (highest_m - lowest_m) - steps * pitch_m;
     return {lowest_m + 0.5 * rest_m, pitch_m, 1 + static_cast<std::size_t>(std::max(steps, 0.0))};
@@ -184,7 +184,7 @@ bool inside_region(const std::optional<std::array<double, 4>>& region_m, double 
     return x_m >= x_from && x_m <= x_to && y_m >= y_from && y_m <= y_to;
 }
 
-void check_grid(const Axis& x, const Axis& y, std::size_t n_depths, const std::string& file) {
+void check_grid(const GridAxis& x, const GridAxis& y, std::size_t n_depths, const std::string& file) {
     constexpr std::size_t kMostValues = 20'000'000;
     const double values = static_cast<double>(x.n) * static_cast<double>(y.n) * static_cast<double>(n_depths);
     if (values <= static_cast<double>(kMostValues)) return;
@@ -263,7 +263,7 @@ double layers_off(const std::vector<double>& depths_m, const LayerRange& range, 
 // Calls visit(cell, u, v) for every cell within the radius, u and v in radii from the cell to the place.
 template <class Visit>
 void visit_cells(const GridPlan& plan, double x_m, double y_m, Visit visit) {
-    const auto first = [&](const Axis& axis, double place_m) {
+    const auto first = [&](const GridAxis& axis, double place_m) {
         return static_cast<std::size_t>(
             std::max(0.0, std::ceil((place_m - plan.radius_m - axis.origin_m) / axis.pitch_m)));
     };
@@ -333,7 +333,7 @@ std::vector<float> by_medians(const Samples& samples, const GridPlan& plan) {
     };
     std::vector<Entry> entries;
     for (std::size_t s = 0; s < samples.size(); ++s) {
-        const auto nearest = [](const Axis& axis, double place_m) {
+        const auto nearest = [](const GridAxis& axis, double place_m) {
             return std::round((place_m - axis.origin_m) / axis.pitch_m);
         };
         const double i = nearest(plan.x, samples.x_m[s]);

@@ -9,7 +9,7 @@
 
 namespace palpa {
 
-struct Axis {
+struct GridAxis {
     double origin_m = 0.0;
     double pitch_m = 1e-3;
     std::size_t n = 1;
@@ -20,16 +20,16 @@ struct Axis {
 // origin and pitch then the best fit. `off` counts places farther than a tenth of the pitch from it. Empty if
 // there is none (more than 10000 positions).
 struct AxisFit {
-    Axis axis;
+    GridAxis axis;
     std::size_t off = 0;
 };
 std::optional<AxisFit> fit_axis(const std::vector<double>& places_m);
 
 // The nearest position on the axis; empty if it is farther than a tenth of the pitch, or outside.
-std::optional<std::size_t> index_on(const Axis& axis, double place_m);
+std::optional<std::size_t> index_on(const GridAxis& axis, double place_m);
 
 // An axis with this pitch, centred on what the places cover.
-Axis covering_axis(double lowest_m, double highest_m, double pitch_m);
+GridAxis covering_axis(double lowest_m, double highest_m, double pitch_m);
 
 // Median distance from a place to its nearest neighbour; 0 if there is only one.
 double neighbour_distance_m(const std::vector<double>& x_m, const std::vector<double>& y_m);
@@ -51,8 +51,8 @@ struct Samples {
 };
 
 struct GridPlan {
-    Axis x;
-    Axis y;
+    GridAxis x;
+    GridAxis y;
     std::vector<double> depths_m;
     double radius_m = 1e-3;
     Gridding method = Gridding::plane;
@@ -78,6 +78,6 @@ Gridded grid_samples(const Samples& samples, const GridPlan& plan);
 bool inside_region(const std::optional<std::array<double, 4>>& region_m, double x_m, double y_m);
 
 // Refuses a grid that no map should have.
-void check_grid(const Axis& x, const Axis& y, std::size_t n_depths, const std::string& file);
+void check_grid(const GridAxis& x, const GridAxis& y, std::size_t n_depths, const std::string& file);
 
 }  // namespace palpa

@@ -16,7 +16,7 @@ namespace palpa {
 
 enum class RecordingForm { probing, sliding, matrices };
 enum class Gridding { on_grid, plane, inverse_distance, median };
-enum class Contact { first_row, threshold };
+enum class ContactStart { first_row, threshold };
 enum class TangentialChoice { measured, energy, none };
 enum class Quantity { force, stiffness, young };  // what an array's numbers are: N, N/m at any depth, Pa
 enum class LengthUnit { mm, m, um };
@@ -50,8 +50,8 @@ struct ImportOptions {
     std::optional<TangentialChoice> tangential;
 
     // probing
-    std::optional<Contact> contact;
-    std::optional<double> contact_force_N;  // where contact begins, for Contact::threshold
+    std::optional<ContactStart> contact;
+    std::optional<double> contact_force_N;  // where contact begins, for ContactStart::threshold
 
     // sliding
     std::optional<double> surface_z_m;     // a flat surface that is known, instead of one that is estimated

@@ -185,7 +185,7 @@ std::string at_line(const ProbedPoint& p) {
     return "line " + std::to_string(p.line);
 }
 
-void refuse_off_grid(const Probing& probing, const Axis& axis, bool along_y, const std::string& file) {
+void refuse_off_grid(const Probing& probing, const GridAxis& axis, bool along_y, const std::string& file) {
     for (const ProbedPoint& p : probing.points) {
         const double place_m = along_y ? p.y_m : p.x_m;
         if (index_on(axis, place_m)) continue;

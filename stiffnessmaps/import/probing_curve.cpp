@@ -128,10 +128,10 @@ void clean_curves(Probing& probing, const ImportOptions& options, MapSource& sou
                    std::to_string(report.outliers) + " left out",
                "--outliers", options.outliers.has_value());
 
-    const Contact contact =
-        options.contact.value_or(probing.depth_from_z ? Contact::threshold : Contact::first_row);
+    const ContactStart contact =
+        options.contact.value_or(probing.depth_from_z ? ContactStart::threshold : ContactStart::first_row);
     double threshold_N = options.contact_force_N.value_or(0.0);
-    if (contact == Contact::threshold && !options.contact_force_N) {
+    if (contact == ContactStart::threshold && !options.contact_force_N) {
         std::vector<double> steps_N;  // between the first rows, which are in the air
         std::vector<double> greatest_N;
         for (const ProbedPoint& p : probing.points) {
@@ -148,16 +148,16 @@ void clean_curves(Probing& probing, const ImportOptions& options, MapSource& sou
         for (auto& lateral : p.lateral_N) {  // its zero, as the normal force's
             for (std::size_t i = lateral.size(); i-- > 0;) lateral[i] -= lateral[0];
         }
-        offsets_N.push_back(contact == Contact::first_row ? start_at_first_row(p)
+        offsets_N.push_back(contact == ContactStart::first_row ? start_at_first_row(p)
                                                           : start_at_threshold(p, threshold_N));
     }
     report.median_offset_N = median(offsets_N);
     std::erase_if(probing.points, [](const ProbedPoint& p) { return p.depth_m.size() < 2; });
-    add_choice(source, "contact", contact == Contact::first_row ? "first-row" : "threshold",
+    add_choice(source, "contact", contact == ContactStart::first_row ? "first-row" : "threshold",
                probing.depth_from_z ? "depth comes from z, the surface must be found"
                                     : "the recording has depths: its robot had found the surface",
                "--contact", options.contact.has_value());
-    if (contact == Contact::threshold) {
+    if (contact == ContactStart::threshold) {
         add_choice(source, "contact_force_N", threshold_N,
                    "4 deviations of the force in the air, or 1 % of the greatest", "--contact-force-N",
                    options.contact_force_N.has_value());

@@ -59,7 +59,7 @@ TEST_CASE("import bundles: tablets' logs become one study; a second time nothing
                                                {"participants.tsv", people(kAnna)}, {"study.json", study("aa", "tablet")}, {"protocol.json", "{}"}});
     const auto b = write_bundle(folder / "b", {{run_file("02", "_events.tsv"), "e2\n"}, {"participants.tsv", people(kBert)},
                                                {"study.json", study("aa", "another tablet")}, {"protocol.json", "{}"}});
-    const ImportReport first = import_bundles({a, b}, folder / "study");
+    const BundleReport first = import_bundles({a, b}, folder / "study");
     CHECK(first.written.size() == 5);
     CHECK(first.already_there.empty());
     CHECK(first.people_added == 2);
@@ -70,7 +70,7 @@ TEST_CASE("import bundles: tablets' logs become one study; a second time nothing
     CHECK(made.at("participants.tsv") == people(kAnna + kBert));
     CHECK(made.at("study.json") == study("aa", "tablet"));
     CHECK(made.count("task-palpation_events.json") == 1);
-    const ImportReport again = import_bundles({b, a}, folder / "study");
+    const BundleReport again = import_bundles({b, a}, folder / "study");
     CHECK(again.written.empty());
     CHECK(again.already_there.size() == 4);
     CHECK(again.people_added == 0);
@@ -151,7 +151,7 @@ TEST_CASE("import bundles: answers grow from bundle to bundle, in any order; oth
     const auto a = bundle("a", one), b = bundle("b", two), c = bundle("c", three);
     CHECK(import_bundles({b, a}, folder / "study").grown.empty());
     CHECK(read_text(folder / "study" / name) == two);
-    const ImportReport later = import_bundles({a, c, b}, folder / "study");
+    const BundleReport later = import_bundles({a, c, b}, folder / "study");
     CHECK(later.grown == std::vector<std::string>{name});
     CHECK(later.written.empty());
     CHECK(read_text(folder / "study" / name) == three);
@@ -168,7 +168,7 @@ TEST_CASE("import bundles: single runs that a tablet took beside a study are pas
     const TemporaryFolder folder;
     const auto single = write_bundle(folder / "s", {{run_file("tablet1", "_events.tsv"), "e\n"}, {run_file("tablet1", "_settings.json"), R"({"scene": "x"})"}});
     const auto of_study = write_bundle(folder / "b", {{run_file("02", "_settings.json"), R"({"study": {}})"}, {"study.json", study("aa", "x")}});
-    const ImportReport report = import_bundles({single, of_study}, folder / "study");
+    const BundleReport report = import_bundles({single, of_study}, folder / "study");
     CHECK(report.passed_over == std::vector<std::string>{single.string()});
     CHECK_FALSE(fs::exists(folder / "study" / "sub-tablet1"));
     CHECK(fs::exists(folder / "study" / "sub-02"));
