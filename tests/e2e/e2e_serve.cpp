@@ -441,6 +441,7 @@ TEST_CASE("serve: killed in the middle of uploads and started again, nothing is 
     int interrupted = 0;
     for (int i = 0; i < kKills; ++i) {
         sleep_s(random.uniform(0.3, 1.2));
+        for (int wait = 0; wait < 1000 && place.asides() == 0; ++wait) sleep_s(0.01);  // until one is under way
         desk->end(SIGKILL);
         interrupted += static_cast<int>(place.asides());
         for (const auto& [name, text] : place.uploads()) CHECK(name == sha256_hex(text) + ".upload");
