@@ -44,6 +44,9 @@ double finger_offset_mm(const App& app);              // 0, or kFingerOffset_mm
 bool close_trial(App& app);  // its files whole on the disk, and with the keeper; false: app.stopped says why not
 void act(Action action, double now_s, App& app);
 
+// live_devices.cpp
+void note_devices(const Window& window, App& app);  // into app.screens
+
 // live_study.cpp: a study's trials instead of a scene that was chosen. `app.screens.study` is there.
 void load_study(const RunOptions& options, App& app);  // throws InputError or std::runtime_error
 void follow_study(const Window& window, const Gui& gui, App& app);  // what a screen has led to, the end of a trial's time

@@ -81,6 +81,14 @@ void hold_keys(double t_host_s, Keyboard& keyboard, std::vector<Sample>& out) {
     }
 }
 
+void hold_mouse_and_keys(double t_host_s, Mouse& mouse, Keyboard& keyboard, std::vector<Sample>& out) {
+    hold_mouse(t_host_s, mouse, out);
+    if (!key_held(keyboard)) return;
+    hold_keys(t_host_s, keyboard, out);
+    // both may be held: two runs of grid points, each in order
+    std::stable_sort(out.begin(), out.end(), [](const Sample& a, const Sample& b) { return a.t_host_s < b.t_host_s; });
+}
+
 void key_down(double t_host_s, PointerKey key, Keyboard& keyboard, std::vector<Sample>& out) {
     if (!is_on(keyboard)) return;
     if (is_arrow(key)) {

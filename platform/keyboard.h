@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "platform/held_pressure.h"
+#include "platform/mouse.h"
 #include "platform/sample.h"
 
 namespace palpa {
@@ -49,6 +50,9 @@ void set_area(const KeyboardArea& area, Keyboard& keyboard);
 // or move while it presses. Call it before any other sample of that time, so that samples stay in order. No
 // sample of a keyboard has a device time.
 void hold_keys(double t_host_s, Keyboard& keyboard, std::vector<Sample>& out);
+
+// Those of a held mouse and of held keys, in order of time.
+void hold_mouse_and_keys(double t_host_s, Mouse& mouse, Keyboard& keyboard, std::vector<Sample>& out);
 
 // Keys as they go down and come up; call hold_keys with the same time first. A sample is appended where one is
 // news: a press, its end, an arrow let go (the cursor has stopped), a level changed during a press. Off, all

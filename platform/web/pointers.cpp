@@ -172,13 +172,7 @@ void release_all(double t_host_s, Pointers& pointers) {
 }
 
 void hold(double t_host_s, Pointers& pointers) {
-    hold_mouse(t_host_s, pointers.mouse, pointers.made);
-    if (key_held(pointers.keyboard)) {
-        hold_keys(t_host_s, pointers.keyboard, pointers.made);
-        // both are held: two runs of grid points, each in order
-        std::stable_sort(pointers.made.begin(), pointers.made.end(),
-                         [](const Sample& a, const Sample& b) { return a.t_host_s < b.t_host_s; });
-    }
+    hold_mouse_and_keys(t_host_s, pointers.mouse, pointers.keyboard, pointers.made);
     admit_made(PressOwner::tissue, pointers);
 }
 

@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "files/input_error.h"
+#include "tests/temporary_folder.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size);
 
@@ -81,26 +82,14 @@ class MemoryFile {
 // without a finding.
 class MemoryFolder {
  public:
-    MemoryFolder() {
-        std::string name = (std::filesystem::temp_directory_path() / "palpa-fuzz-XXXXXX").string();
-        if (::mkdtemp(name.data()) == nullptr) finding("no temporary folder");
-        path_ = name;
-    }
-    ~MemoryFolder() {
-        std::error_code ignored;
-        std::filesystem::remove_all(path_, ignored);
-    }
-    MemoryFolder(const MemoryFolder&) = delete;
-    MemoryFolder& operator=(const MemoryFolder&) = delete;
-
     void add(const std::string& name, const MemoryFile& file) const {
-        std::filesystem::create_directories((path_ / name).parent_path());
-        std::filesystem::create_symlink(file.path(), path_ / name);
+        std::filesystem::create_directories((folder_ / name).parent_path());
+        std::filesystem::create_symlink(file.path(), folder_ / name);
     }
-    const std::filesystem::path& path() const { return path_; }
+    const std::filesystem::path& path() const { return folder_.path(); }
 
  private:
-    std::filesystem::path path_;
+    test::TemporaryFolder folder_;
 };
 
 // An input of several files: `count` parts, separated by lines "====". Parts that are not there are empty.
