@@ -1,13 +1,18 @@
 #include "app/serve.h"
 
 #include <arpa/inet.h>
+#include <fcntl.h>
 #include <ifaddrs.h>
 #include <net/if.h>
+#include <poll.h>
 #include <signal.h>
 #include <unistd.h>
 
+#include <array>
+#include <cerrno>
 #include <cstdio>
-#include <ctime>
+#include <cstring>
+#include <stdexcept>
 #include <thread>
 
 #include "app/qr.h"
@@ -100,14 +105,61 @@ void print_start(const ServeOptions& options, const std::vector<std::string>& ur
     std::fflush(stdout);
 }
 
-sigset_t end_signals() {
+constexpr std::array<int, 3> kEndSignals{SIGINT, SIGTERM, SIGHUP};
+constexpr char kAsked = 'a';
+constexpr char kEnded = 'e';
+
+int notes_to_main = -1;  // the end of a pipe, for the handler
+
+extern "C" void note_end_signal(int) {
+    const int error = errno;
+    [[maybe_unused]] const ssize_t n = ::write(notes_to_main, &kAsked, 1);
+    errno = error;
+}
+
+void set_end_handler(void (*handler)(int)) {
+    struct sigaction action {};
+    action.sa_handler = handler;
+    action.sa_flags = SA_RESTART;
+    sigemptyset(&action.sa_mask);
+    for (const int signal : kEndSignals) ::sigaction(signal, &action, nullptr);
+}
+
+void mask_end_signals(int how) {
     sigset_t set;
     sigemptyset(&set);
-    sigaddset(&set, SIGINT);
-    sigaddset(&set, SIGTERM);
-    sigaddset(&set, SIGHUP);
-    return set;
+    for (const int signal : kEndSignals) sigaddset(&set, signal);
+    ::pthread_sigmask(how, &set, nullptr);
 }
+
+// What asks for the end goes through a pipe. To block the signals and to wait for them is not enough: libraries start
+// threads of their own before main(), which block nothing, and one of them would take the signal and end the program.
+class EndNotes {
+ public:
+    EndNotes() {
+        if (::pipe2(ends_.data(), O_CLOEXEC | O_NONBLOCK) != 0) throw std::runtime_error(std::string("no pipe: ") + std::strerror(errno));
+        notes_to_main = ends_[1];
+        set_end_handler(note_end_signal);
+    }
+    ~EndNotes() {
+        set_end_handler(SIG_DFL);
+        for (const int fd : ends_) ::close(fd);
+    }
+    EndNotes(const EndNotes&) = delete;
+    EndNotes& operator=(const EndNotes&) = delete;
+
+    void tell_ended() const { [[maybe_unused]] const ssize_t n = ::write(ends_[1], &kEnded, 1); }
+    // Waits for the first note: was the end asked for?
+    bool wait_for_asked() const {
+        pollfd waiting{ends_[0], POLLIN, 0};
+        char note = 0;
+        while (::read(ends_[0], &note, 1) != 1) ::poll(&waiting, 1, -1);
+        return note == kAsked;
+    }
+
+ private:
+    std::array<int, 2> ends_{};
+};
 
 }  // namespace
 
@@ -136,9 +188,7 @@ void serve(const ServeOptions& options) {
               std::nullopt, DeskEvents(options.json)};
     if (!options.collect.empty()) desk.uploads.emplace(options.collect, options.uploads, notes);
 
-    // signals come to this thread alone, so that threads of the server are never interrupted
-    const sigset_t ends = end_signals();
-    ::pthread_sigmask(SIG_BLOCK, &ends, nullptr);
+    const EndNotes notes_of_end;
     ::signal(SIGPIPE, SIG_IGN);
 
     DeskServer server(std::move(tls), options.patience, {});
@@ -148,16 +198,14 @@ void serve(const ServeOptions& options) {
     if (!trouble.empty()) desk.events.tell("note", trouble, {{"what", trouble}});
     for (const std::string& note : notes) desk.events.tell("note", note, {{"what", note}});
 
-    std::atomic<bool> ended = false;
+    mask_end_signals(SIG_BLOCK);  // threads of the server inherit it: they are never interrupted
     std::thread serving([&] {
         server.serve();
-        ended = true;
+        notes_of_end.tell_ended();
     });
-    bool asked = false;
-    while (!asked && !ended) {
-        const timespec moment{0, 200000000};
-        asked = ::sigtimedwait(&ends, nullptr, &moment) > 0;
-    }
+    mask_end_signals(SIG_UNBLOCK);
+    const bool asked = notes_of_end.wait_for_asked();
+    set_end_handler(SIG_DFL);  // who asks again does not want to wait for what is under way
     server.end();
     serving.join();
     if (!asked) throw std::runtime_error("the port cannot be listened on any longer");

@@ -1,7 +1,9 @@
 #include "app/serve_server.h"
 
 #include <arpa/inet.h>
+#include <fcntl.h>
 #include <sys/socket.h>
+#include <unistd.h>
 
 #include <cerrno>
 #include <condition_variable>
@@ -90,12 +92,22 @@ int DeskServer::bind(const std::string& address, int port) {
                                  (errno != 0 ? std::string(": ") + std::strerror(errno) : std::string()));
     }
     ::listen(svr_sock_, kBacklog);  // the library's queue has five places
+    listening_ = ::fcntl(svr_sock_, F_DUPFD_CLOEXEC, 0);
+    if (listening_ < 0) throw std::runtime_error(address + ": cannot be listened on: " + std::strerror(errno));
     return port;
 }
 
+// The library's stop() does nothing to a server that does not accept yet. A socket that was shut down accepts nothing
+// any more, whether it is waited on at the moment or only later.
 void DeskServer::end() {
     ending_ = true;
-    stop();
+    ::shutdown(listening_, SHUT_RDWR);
+    ::close(listening_);  // one descriptor is free now: without any, accept() would be tried again and again
+    listening_ = -1;
+}
+
+DeskServer::~DeskServer() {
+    if (listening_ >= 0) ::close(listening_);
 }
 
 bool DeskServer::process_and_close_socket(socket_t socket) {

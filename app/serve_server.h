@@ -22,11 +22,14 @@ struct Places {
 class DeskServer : public httplib::Server {
  public:
     DeskServer(TlsContext tls, const Patience& patience, const Places& places);
+    ~DeskServer() override;
 
     // Port 0: any that is free. Returns the port. Throws std::runtime_error with the system's reason.
     int bind(const std::string& address, int port);
-    // Serves until end() is called, by another thread; then what is under way is let come to its end, for a moment.
+    // Serves until end() is called, by another thread, before or after; then what is under way is let come to its end,
+    // for a moment.
     void serve() { listen_after_bind(); }
+    // Once, after bind().
     void end();
 
  private:
@@ -35,6 +38,7 @@ class DeskServer : public httplib::Server {
     TlsContext tls_;
     Patience patience_;
     Places places_;
+    int listening_ = -1;  // the socket a second time, so that it can be shut down whatever the library has done with its own
     std::atomic<bool> ending_ = false;
     std::mutex mutex_;
     std::map<std::string, std::size_t> connections_;  // by address

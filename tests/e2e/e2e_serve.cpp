@@ -141,6 +141,48 @@ TEST_CASE("serve: a tablet pairs, takes its files and leaves a log") {
     CHECK(desk.events().back()["event"] == "ended");
 }
 
+TEST_CASE("serve: SIGTERM ends it at whatever moment of its start") {
+    // the first line is printed just before it begins to accept: a moment after that is where it is most easily missed
+    const auto ends = [](bool from_first_line, int pause_us) {
+        int out[2];
+        REQUIRE(::pipe2(out, O_CLOEXEC) == 0);
+        const pid_t pid = ::fork();
+        if (pid == 0) {
+            ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+            ::dup2(out[1], 1);
+            ::execl(PALPA_PROGRAM, PALPA_PROGRAM, "serve", "--json", "--port", "0", nullptr);
+            ::_exit(127);
+        }
+        ::close(out[1]);
+        char byte = 0;
+        if (from_first_line) REQUIRE(::read(out[0], &byte, 1) == 1);
+        ::usleep(static_cast<useconds_t>(pause_us));
+        ::kill(pid, SIGTERM);
+        int status = 0;
+        pid_t ended = 0;
+        for (int i = 0; i < 400 && ended == 0; ++i) {
+            ended = ::waitpid(pid, &status, WNOHANG);
+            if (ended == 0) sleep_s(0.05);
+        }
+        if (ended == 0) {
+            ::kill(pid, SIGKILL);
+            ::waitpid(pid, &status, 0);
+        }
+        ::close(out[0]);
+        // before it minds signals it is ended by this one, as any program
+        const bool by_signal = WIFSIGNALED(status) && WTERMSIG(status) == SIGTERM && !from_first_line;
+        return ended == pid && (by_signal || (WIFEXITED(status) && WEXITSTATUS(status) == 0));
+    };
+    for (int i = 0; i < 60; ++i) {
+        CAPTURE(i);
+        CHECK(ends(true, i < 20 ? 0 : 20 * (i - 20)));
+    }
+    for (int i = 0; i < 20; ++i) {
+        CAPTURE(i);
+        CHECK(ends(false, 5000 * i));
+    }
+}
+
 TEST_CASE("serve: only who asks from here, as he should, changes anything") {
     const Place place;
     DeskProcess desk(place.with_tls());
