@@ -9,6 +9,7 @@ namespace palpa {
 namespace {
 
 DeviceNames read_device(JsonReader json) {
+    json.only({"pen", "tablet", "driver", "os", "date"});
     DeviceNames device;
     device.pen = json.text("pen", "n/a");
     device.tablet = json.text("tablet", "n/a");
@@ -20,6 +21,7 @@ DeviceNames read_device(JsonReader json) {
 }
 
 std::vector<CalibrationPoint> read_points(JsonReader json) {
+    json.only({"level", "force_N"});
     const auto level = json.numbers("level", 0, kAnyNumber);
     const auto force_N = json.numbers("force_N", level.size(), kAnyNumber);
     json.finish();
@@ -36,6 +38,7 @@ void must_rise(const JsonReader& json, std::string_view key, const std::vector<d
 }
 
 Curve read_cubic(JsonReader& json) {
+    json.only({"level", "force_N"});
     std::vector<double> level = json.numbers("level", 0, {0.0, 1e9});
     if (level.size() < 2) json.fail("level", "one number", "two at least");
     std::vector<double> force_N = json.numbers("force_N", level.size(), {0.0, 1e3, true});
@@ -50,10 +53,12 @@ Curve read_curve(CurveModel model, JsonReader json) {
     Curve curve;
     switch (model) {
         case CurveModel::exponential:
+            json.only({"a_N", "b"});
             curve.a_N = json.number("a_N", kUsable);
             curve.b = json.number("b", kUsable);
             break;
         case CurveModel::exponential_offset:
+            json.only({"a_N", "b", "offset_N"});
             curve.a_N = json.number("a_N", {-kGreatest, kGreatest});
             curve.b = json.number("b", {-1e3, 1e3});
             curve.offset_N = json.number("offset_N", {-kGreatest, kGreatest});
@@ -62,6 +67,7 @@ Curve read_curve(CurveModel model, JsonReader json) {
             }
             break;
         case CurveModel::power:
+            json.only({"a_N", "b"});
             curve.a_N = json.number("a_N", {0.0, 1e300, true});  // N per level^b, tiny or huge where levels are counts
             curve.b = json.number("b", {0.0, 1e2, true});
             break;
@@ -101,6 +107,7 @@ void check_values(const JsonReader& json, const Profile& profile) {
 Profile read_profile(const std::filesystem::path& path) {
     const Json root = read_json(path);
     JsonReader json(root, path.string());
+    json.only({"device", "model", "parameters", "level", "level_range", "fitted_range", "full_contact_area_px2", "quality", "points"});
     Profile profile;
     profile.id = path.stem().string();
     profile.device = read_device(json.object("device"));

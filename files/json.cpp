@@ -202,22 +202,47 @@ std::vector<JsonReader> JsonReader::objects(std::string_view key) {
 
 const Json& JsonReader::any(std::string_view key) { return need(key, "a value"); }
 
-void JsonReader::only(std::initializer_list<std::string_view> keys) const {
-    for (const auto& item : value_->items()) {
-        if (std::find(keys.begin(), keys.end(), item.key()) != keys.end()) continue;
-        std::string known = "one of";
-        for (const auto& key : keys) known.append(" ").append(key);
-        throw bad_input(file_, where_of(item.key()), "an unknown key", known);
+namespace {
+
+// Letters to be added, taken away or exchanged until one word is the other (Levenshtein's distance).
+std::size_t distance(std::string_view a, std::string_view b) {
+    std::vector<std::size_t> row(b.size() + 1);
+    for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
+    for (std::size_t i = 0; i < a.size(); ++i) {
+        std::size_t before = row[0]++;  // of the row above, one to the left
+        for (std::size_t j = 0; j < b.size(); ++j) {
+            const std::size_t exchanged = before + (a[i] == b[j] ? 0 : 1);
+            before = row[j + 1];
+            row[j + 1] = std::min({exchanged, row[j] + 1, before + 1});
+        }
+    }
+    return row.back();
+}
+
+template <class Keys>
+void refuse_unknown(const Json& object, const Keys& keys, const std::string& file, const std::string& where) {
+    for (const auto& item : object.items()) {
+        const std::string& found = item.key();
+        if (std::find(keys.begin(), keys.end(), found) != keys.end()) continue;
+        std::string expected = "one of";
+        std::string_view nearest;
+        std::size_t least = std::min<std::size_t>(found.size(), 40) / 3 + 1;  // further apart is another word
+        for (const auto& key : keys) {
+            expected.append(" ").append(key);
+            const std::size_t apart = found.size() <= 40 ? distance(found, key) : least + 1;
+            if (apart > least || (apart == least && !nearest.empty())) continue;
+            least = apart;
+            nearest = key;
+        }
+        if (!nearest.empty()) expected.append(" (is ").append(nearest).append(" meant?)");
+        throw bad_input(file, where.empty() ? found : where + "." + found, "an unknown key", expected);
     }
 }
 
-void JsonReader::finish() const {
-    for (const auto& item : value_->items()) {
-        if (std::find(asked_.begin(), asked_.end(), item.key()) != asked_.end()) continue;
-        std::string known = "one of";
-        for (const auto& key : asked_) known.append(" ").append(key);
-        throw bad_input(file_, where_of(item.key()), "an unknown key", known);
-    }
-}
+}  // namespace
+
+void JsonReader::only(std::initializer_list<std::string_view> keys) const { refuse_unknown(*value_, keys, file_, where_); }
+
+void JsonReader::finish() const { refuse_unknown(*value_, asked_, file_, where_); }
 
 }  // namespace palpa

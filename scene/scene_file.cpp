@@ -18,6 +18,7 @@ fs::path find_file(const std::string& name, const fs::path& scene_file, const fs
 }
 
 Mapping read_mapping(JsonReader json) {
+    json.only({"kind", "rotate_deg", "flip", "true_size", "tissue_mm"});
     Mapping mapping;
     mapping.kind = static_cast<MappingKind>(json.choice("kind", {"direct", "indirect"}));
     if (json.has("rotate_deg")) {
@@ -47,6 +48,8 @@ void read_law_options(JsonReader& json, PathParameters& path, TangentialOptions&
 }
 
 DisplayRatio read_display_ratio(JsonReader json, TangentialOptions& tangential) {
+    json.only({"preset", "f_0_N", "cap_mm", "release", "gate_N", "hold_s", "pause_decay_s", "s_ref_mm", "dead_band_mm", "force",
+               "smoothing_mm"});
     const bool paper = json.choice("preset", {"clear", "paper"}) == 1;
     DisplayRatio law = paper ? display_ratio_paper() : display_ratio_clear();
     law.f_0_N = json.number("f_0_N", kPositive, law.f_0_N);
@@ -64,6 +67,7 @@ DisplayRatio read_display_ratio(JsonReader json, TangentialOptions& tangential) 
 }
 
 Delay read_delay(JsonReader json, TangentialOptions& tangential) {
+    json.only({"preset", "m_ms_per_N", "cap_ms", "rise", "fall", "hold_s", "s_ref_mm", "dead_band_mm", "force", "smoothing_mm"});
     const bool paper = json.choice("preset", {"clear", "paper"}) == 1;
     Delay law = paper ? delay_paper() : delay_clear();
     law.m_s_per_N = 1e-3 * json.number("m_ms_per_N", kNotNegative, 1e3 * law.m_s_per_N);
@@ -78,6 +82,7 @@ Delay read_delay(JsonReader json, TangentialOptions& tangential) {
 }
 
 void read_tissue(JsonReader json, const fs::path& file, const fs::path& assets, Scene& scene) {
+    json.only({"map", "linear", "stiffness_scale"});
     const bool linear = json.has("linear");
     if (linear == json.has("map")) json.fail("", linear ? "two tissues" : "no tissue", "either map or linear");
     scene.stiffness_scale = json.number("stiffness_scale", {0.0, 1e3, true}, scene.stiffness_scale);
@@ -86,6 +91,7 @@ void read_tissue(JsonReader json, const fs::path& file, const fs::path& assets, 
         return json.finish();
     }
     JsonReader block = json.object("linear");
+    block.only({"phantom", "spacing_mm", "friction"});
     LinearOptions options;
     options.phantom = find_file(block.text("phantom"), file, assets / "phantoms");
     options.spacing_m = 1e-3 * block.number("spacing_mm", {0.2, 100.0}, 1e3 * options.spacing_m);
@@ -96,8 +102,10 @@ void read_tissue(JsonReader json, const fs::path& file, const fs::path& assets, 
 }
 
 SurfaceEffect read_surface(JsonReader json) {
+    json.only({"profile"});
     SurfaceEffect surface;
     JsonReader profile = json.object("profile");
+    profile.only({"thickness_mm", "indenter_radius_mm"});
     surface.thickness_m = 1e-3 * profile.number("thickness_mm", {0.0, 1e3, true}, 1e3 * surface.thickness_m);
     if (profile.has("indenter_radius_mm")) {
         surface.indenter_radius_m = 1e-3 * profile.number("indenter_radius_mm", {0.0, 1e3, true});
@@ -108,6 +116,7 @@ SurfaceEffect read_surface(JsonReader json) {
 }
 
 void read_avatar(JsonReader json, Scene& scene) {
+    json.only({"display_ratio", "delay"});
     const bool ratio = json.has("display_ratio");
     if (ratio == json.has("delay")) {
         json.fail("", ratio ? "both laws" : "no law", "display_ratio or delay (leave `avatar` out for neither)");
@@ -125,6 +134,7 @@ void read_avatar(JsonReader json, Scene& scene) {
 Scene read_scene(const fs::path& file, const fs::path& assets) {
     const Json root = read_json(file);
     JsonReader json(root, file.string());
+    json.only({"name", "tissue", "profile", "mapping", "force_scale", "avatar", "surface", "seed"});
     Scene scene;
     scene.file = file;
     scene.name = json.text("name");

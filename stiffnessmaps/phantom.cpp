@@ -15,6 +15,7 @@ Elastic read_elastic(JsonReader& json) {
 }
 
 PhantomNodule read_nodule(JsonReader json, const Phantom& phantom) {
+    json.only({"id", "centre_mm", "diameter_mm", "young_Pa", "poisson"});
     PhantomNodule nodule;
     nodule.id = json.text("id");
     const auto centre_mm = json.numbers("centre_mm", 3, {0.0, 1e4});
@@ -33,6 +34,7 @@ PhantomNodule read_nodule(JsonReader json, const Phantom& phantom) {
 }
 
 void read_grid(JsonReader json, Phantom& phantom) {
+    json.only({"origin_mm", "spacing_mm", "count"});
     const auto origin_mm = json.numbers("origin_mm", 2, {-1e4, 1e4});
     const auto spacing_mm = json.numbers("spacing_mm", 2, {0.0, 1e4, true});
     const auto count = json.numbers("count", 2, {1.0, 1e4});
@@ -67,17 +69,20 @@ std::vector<Nodule> placed_nodules(const Phantom& phantom) {
 Phantom read_phantom(const std::filesystem::path& path) {
     const Json root = read_json(path);
     JsonReader json(root, path.string());
+    json.only({"size_mm", "tissue", "nodules", "indenter", "depths_mm", "grid"});
     Phantom phantom;
     phantom.name = path.stem().string();
     const auto size_mm = json.numbers("size_mm", 3, {0.0, 1e4, true});
     for (std::size_t i = 0; i < 3; ++i) phantom.size_m[i] = 1e-3 * size_mm[i];
     JsonReader tissue = json.object("tissue");
+    tissue.only({"young_Pa", "poisson", "assumed"});
     phantom.tissue = read_elastic(tissue);
     phantom.tissue.assumed = tissue.boolean("assumed", false);
     tissue.finish();
     for (JsonReader& nodule : json.objects("nodules")) phantom.nodules.push_back(read_nodule(nodule, phantom));
 
     JsonReader indenter = json.object("indenter");
+    indenter.only({"shape", "radius_mm", "length_mm", "contact", "friction"});
     phantom.indenter = static_cast<IndenterShape>(indenter.choice("shape", {"sphere", "cylinder"}));
     phantom.indenter_radius_m = 1e-3 * indenter.number("radius_mm", {0.0, 1e3, true});
     if (phantom.indenter == IndenterShape::cylinder) {

@@ -36,6 +36,7 @@ std::vector<std::string> read_names(JsonReader& json, std::string_view key) {
 }
 
 Condition read_condition(JsonReader json, TaskKind task, std::set<std::string>& known) {
+    json.only({"id", "title", "modality", "scene", "profile", "device", "instructions", "nodules"});
     Condition condition;
     condition.id = new_id(json, known);
     condition.title = json.text("title", condition.id);
@@ -55,6 +56,7 @@ Condition read_condition(JsonReader json, TaskKind task, std::set<std::string>& 
 }
 
 Group read_group(JsonReader json, const std::vector<Condition>& conditions, std::set<std::string>& known) {
+    json.only({"id", "conditions"});
     Group group;
     group.id = new_id(json, known);
     const Json& list = json.any("conditions");
@@ -74,6 +76,7 @@ Group read_group(JsonReader json, const std::vector<Condition>& conditions, std:
 }
 
 Item read_item(JsonReader json, std::set<std::string>& known) {
+    json.only({"id", "text", "from", "to", "choices"});
     Item item;
     item.id = new_id(json, known);
     item.text = json.text("text");
@@ -102,6 +105,7 @@ std::vector<Item> read_items(JsonReader& json, std::string_view key) {
 }
 
 ChoiceTask read_choice(JsonReader json) {
+    json.only({"reference_kPa", "comparisons_kPa", "repeats", "alternate_conditions"});
     ChoiceTask task;
     task.reference_kPa = json.number("reference_kPa", {0.0, 1e6, true});
     task.comparisons_kPa = json.numbers("comparisons_kPa", 0, {0.0, 1e6, true});
@@ -115,6 +119,7 @@ ChoiceTask read_choice(JsonReader json) {
 }
 
 void read_practice(JsonReader json, Protocol& protocol) {
+    json.only({"trials", "time_limit_s"});
     protocol.practice_trials = json.integer("trials", 0, 100);
     protocol.practice_limit_s = json.number("time_limit_s", {0.0, 86400.0}, 0.0);
     json.finish();
@@ -129,6 +134,8 @@ Protocol read_protocol(const std::filesystem::path& file) {
     protocol.sha256 = sha256_hex(protocol.text);
     const Json root = parse_json(protocol.text, file.string());
     JsonReader json(root, file.string());
+    json.only({"name", "version", "seed", "choice", "conditions", "groups", "assignment", "order", "repeats", "turn_maps", "flip_maps",
+               "time_limit_s", "practice", "break_every_trials", "nodule_count_told", "instructions", "demographics", "ratings"});
     protocol.name = json.text("name");
     protocol.version = json.text("version");
     protocol.seed = static_cast<std::uint32_t>(json.integer("seed", 0, 2000000000));

@@ -88,6 +88,7 @@ std::optional<StudyIdentity> read_identity(const fs::path& directory) {
 StudyIdentity identity_in(std::string_view study_json, const std::string& file_name) {
     const Json root = parse_json(study_json, file_name);
     JsonReader json(root, file_name);
+    json.only({"protocol", "version", "sha256", "simulated", "simulation_seed", "program"});
     StudyIdentity out;
     out.name = json.text("protocol");
     out.version = json.text("version");

@@ -160,7 +160,7 @@ TEST_CASE("command line: wrong usage and bad input end with status 2 and say wha
     refused("maps info " + folder.path().string(), "map.json: cannot be read");
     refused("maps import " + (folder / "comma.csv").string() + " -o " + (folder / "n.map").string(), "line 2: found 7 fields");
     CHECK_FALSE(std::filesystem::exists(folder / "n.map"));
-    refused("maps generate " + (folder / "bad.json").string() + " -o " + (folder / "n.map").string(), "size_mm: found nothing");
+    refused("maps generate " + (folder / "bad.json").string() + " -o " + (folder / "n.map").string(), "name: found an unknown key, expected one of size_mm");
     refused("maps generate " + kAssets + "phantoms/silicone.json -o " + folder.path().string(), "nothing is overwritten");
 }
 

@@ -65,9 +65,23 @@ TEST_CASE("json: arrays, choices and whole numbers") {
 TEST_CASE("json: with only() a misspelt key is named, not the missing one") {
     const Json json = parse_json(R"({"young_kPa": 2.5, "poisson": 0.45})", "c.json");
     const JsonReader reader(json, "c.json", "gel");
-    CHECK(message_of([&] { reader.only({"young_Pa", "poisson"}); }) == "c.json: gel.young_kPa: found an unknown key, expected one of young_Pa poisson");
+    CHECK(message_of([&] { reader.only({"young_Pa", "poisson"}); }) == "c.json: gel.young_kPa: found an unknown key, expected one of young_Pa poisson (is young_Pa meant?)");
     CHECK_NOTHROW(reader.only({"young_kPa", "poisson", "law"}));
     CHECK(contains(message_of([&] { reader.fail("", "nothing", "something"); }), "c.json: gel: found nothing"));
+}
+
+TEST_CASE("json: of the keys that are known the nearest to a misspelt one is named, if any is near") {
+    const auto said = [](const char* key) {
+        const Json json{{key, 1}};
+        const JsonReader reader(json, "c.json", "tissue");
+        return message_of([&] { reader.only({"linear", "map", "stiffness_scale"}); });
+    };
+    CHECK(contains(said("mapp"), "tissue.mapp: found an unknown key, expected one of linear map stiffness_scale (is map meant?)"));
+    CHECK(contains(said("amp"), "(is map meant?)"));
+    CHECK(contains(said("Linear"), "(is linear meant?)"));
+    CHECK(contains(said("stifness_scal"), "(is stiffness_scale meant?)"));
+    CHECK_FALSE(contains(said("colour"), "meant"));
+    CHECK_FALSE(contains(said(std::string(100'000, 'm').c_str()), "meant"));
 }
 
 TEST_CASE("json: what a broken file holds does not steer the terminal that shows the message, nor flood it") {
