@@ -18,6 +18,7 @@
 #include "app/bench_mechanics.h"
 #include "app/command_line.h"
 #include "files/input_error.h"
+#include "files/regular_file.h"
 #include "files/text.h"
 
 namespace palpa {
@@ -95,7 +96,10 @@ void make_folder(const std::filesystem::path& folder) {
 }
 
 void run_accuracy(const Options& options) {
-    if (!options.folder.empty()) make_folder(options.folder);
+    if (!options.folder.empty()) {
+        check_output_folder(options.folder);
+        make_folder(options.folder);
+    }
     const Effort effort{options.quick, options.quick ? 0.05 : 0.8, options.quick ? 0.05 : 0.6};
     std::vector<Measurement> list = slab_measurements(effort);
     for (const auto& more : {contact_measurements(effort), step_measurements(effort)})

@@ -8,6 +8,7 @@
 #include "app/load.h"
 #include "app/prepare.h"
 #include "app/raster_trace.h"
+#include "files/regular_file.h"
 
 namespace palpa {
 namespace {
@@ -21,6 +22,7 @@ struct TraceOptions {
 
 void write_raster(const TraceOptions& options) {
     const Scene scene = load_scene(options.scene);
+    check_output(options.output, inputs_of(scene));
     RasterOptions raster = options.raster;
     raster.speed_m_per_s = 1e-3 * options.speed_mm_per_s;
     const Trace trace = raster_trace(scene, make_plan_here(scene), raster);

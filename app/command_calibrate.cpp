@@ -8,9 +8,11 @@
 #include "app/calibrate_report.h"
 #include "app/command_line.h"
 #include "app/gnuplot.h"
+#include "app/option_checks.h"
 #include "calibration/calibrate.h"
 #include "calibration/profile_file.h"
 #include "files/input_error.h"
+#include "files/regular_file.h"
 #include "files/text.h"
 
 namespace palpa {
@@ -80,7 +82,11 @@ void name_device(const DeviceNames& given, DeviceNames& device) {
 }
 
 void fit(const FitArguments& arguments) {
-    if (!arguments.figure.empty()) check_figure(arguments.figure);
+    check_output(arguments.output, {arguments.data});
+    if (!arguments.figure.empty()) {
+        check_figure(arguments.figure);
+        check_output(arguments.figure, {arguments.data});
+    }
     const CalibrateOptions options = fit_options(arguments);
     const CalibrationRows rows = read_points(arguments.data, {parse_where(arguments.where), arguments.any_force});
     if (options.range) {
@@ -107,12 +113,12 @@ void add_fit(CLI::App& calibrate) {
     command->add_option("DATA", arguments->data, "CSV with level (or pressure_norm), force_N or force_gf; optional time_s, repeat, phase")->required();
     command->add_option("-o,--output", arguments->output, "new PROFILE.json")->required();
     command->add_option("--model", arguments->model, "auto: what predicts left-out points best")
-        ->check(CLI::IsMember({"auto", "exponential", "exponential_offset", "power", "monotone_cubic"}))->capture_default_str();
+        ->check(one_of({"auto", "exponential", "exponential_offset", "power", "monotone_cubic"}))->capture_default_str();
     command->add_option("--error", arguments->error, "what is equally large everywhere: newton, or log (a share of the force)")
-        ->check(CLI::IsMember({"auto", "newton", "log"}))->capture_default_str();
-    command->add_option("--robust", arguments->robust, "against slips")->check(CLI::IsMember({"none", "huber", "tukey"}))->capture_default_str();
+        ->check(one_of({"auto", "newton", "log"}))->capture_default_str();
+    command->add_option("--robust", arguments->robust, "against slips")->check(one_of({"none", "huber", "tukey"}))->capture_default_str();
     command->add_option("--level", arguments->level, "which field of a sample the levels are (auto: pressure, or pressure_raw above 1)")
-        ->check(CLI::IsMember({"auto", "pressure", "pressure_raw", "contact_area"}))->capture_default_str();
+        ->check(one_of({"auto", "pressure", "pressure_raw", "contact_area"}))->capture_default_str();
     command->add_option("--level-range", arguments->range, "LOWEST HIGHEST that the device can report (default 0 1, or 0 and the next 2^n - 1)")->expected(2)
         ->check(CLI::Range(0.0, 1e9));
     command->add_option("--full-contact-area-px2", arguments->options.full_contact_area_px2, "contact_area only: the ellipse whose level is 1")

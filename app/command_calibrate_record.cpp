@@ -5,8 +5,10 @@
 #include <memory>
 
 #include "app/command_line.h"
+#include "app/option_checks.h"
 #include "app/record_calibration.h"
 #include "files/input_error.h"
+#include "files/regular_file.h"
 #include "files/text.h"
 
 namespace palpa {
@@ -21,6 +23,7 @@ struct Arguments {
 
 void record(Arguments& arguments) {
     RecordArguments& record = arguments.record;
+    check_output_folder(record.folder);
     record.level.level = arguments.level == "pressure"       ? LevelField::pressure
                          : arguments.level == "pressure_raw" ? LevelField::pressure_raw
                                                              : LevelField::contact_area;
@@ -56,11 +59,11 @@ void add_calibrate_record(CLI::App& calibrate) {
     command->add_option("--sensor", options.sensor, "netft:HOST[:PORT] (ATI Net F/T), serial:PATH (lines t_us,raw), or typed (what a scale shows)")->required();
     command->add_option("--levels", options.levels, "levels from a file or pipe, one a line as they come, - for standard input (default: a window)");
     command->add_option("--counts-per-N", options.counts_per_N, "netft: the sensor's counts per force, in newtons")->check(CLI::PositiveNumber)->capture_default_str();
-    command->add_option("--axis", options.axis, "netft: which way pressing goes")->check(CLI::IsMember({"x", "y", "z", "-x", "-y", "-z"}))->capture_default_str();
+    command->add_option("--axis", options.axis, "netft: which way pressing goes")->check(one_of({"x", "y", "z", "-x", "-y", "-z"}))->capture_default_str();
     command->add_option("--N-per-count", options.N_per_count, "serial: newtons for one count (weight on: newtons / difference of counts)");
     command->add_option("--baud", options.baud, "serial")->capture_default_str();
     command->add_flag("--newton", options.newton, "typed numbers are newtons (default: gram-force)");
-    command->add_option("--level", arguments->level, "which field of a sample")->check(CLI::IsMember({"pressure", "pressure_raw", "contact_area"}))->capture_default_str();
+    command->add_option("--level", arguments->level, "which field of a sample")->check(one_of({"pressure", "pressure_raw", "contact_area"}))->capture_default_str();
     command->add_option("--level-range", arguments->range, "LOWEST HIGHEST that the device can report (default 0 1)")->expected(2)->check(CLI::Range(0.0, 1e9));
     command->add_option("--full-contact-area-px2", options.level.full_contact_area_px2, "contact_area only: the ellipse whose level is 1")
         ->check(CLI::Range(1.0, 1e9))->capture_default_str();

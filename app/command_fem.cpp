@@ -10,6 +10,7 @@
 #include "app/command_line.h"
 #include "app/fem_solve.h"
 #include "files/input_error.h"
+#include "files/regular_file.h"
 #include "files/text.h"
 
 namespace palpa {
@@ -191,12 +192,8 @@ struct SolveOptions {
 };
 
 void solve_file(const SolveOptions& options) {
-    const auto folder = std::filesystem::path(options.output).parent_path();
-    if (!options.output.empty() && !folder.empty() && !std::filesystem::is_directory(folder)) {
-        throw bad_input("-o", "", "no folder " + folder.string(),
-                        "a folder that is there");  // before the long part
-    }
     const FemCase model = read_case(options.file);
+    if (!options.output.empty()) check_output(options.output, {options.file, model.mesh_file});  // before the long part
     const FemResult result = solve_case(model, progress_line());
     if (isatty(STDERR_FILENO) != 0) std::fprintf(stderr, "\r\033[K");
     if (!options.output.empty()) write_vtu(options.output, vtu_of(model, result));

@@ -9,6 +9,7 @@
 #include "app/command_maps.h"
 #include "app/generate_map.h"
 #include "app/map_info.h"
+#include "app/option_checks.h"
 #include "files/input_error.h"
 #include "files/text.h"
 #include "stiffnessmaps/field.h"
@@ -162,7 +163,7 @@ void add_generate(CLI::App& maps) {
     command->add_option("PHANTOM", arguments->phantom, "phantom JSON")->required();
     command->add_option("-o,--output", arguments->output, "new map folder NAME.map")->required();
     command->add_option("--method", arguments->method, "fem (finite elements), or analytic (a stand-in, at once)")
-        ->check(CLI::IsMember({"fem", "analytic"}))->capture_default_str();
+        ->check(one_of({"fem", "analytic"}))->capture_default_str();
     CLI::Option* jobs = command->add_option("-j,--jobs", arguments->jobs, "processes (default: one for each core)")
         ->check(CLI::Range(1, 1024));
     CLI::Option* part = command->add_option("--part", arguments->part,

@@ -9,6 +9,7 @@
 #include "app/gnuplot.h"
 #include "app/plot_map.h"
 #include "files/json.h"
+#include "files/regular_file.h"
 #include "files/text.h"
 #include "stiffnessmaps/map_file.h"
 
@@ -61,7 +62,10 @@ void print_difference(const MapDifference& d) {
 }
 
 void run_compare(const CompareArguments& arguments) {
-    if (!arguments.output.empty()) check_figure(arguments.output);
+    if (!arguments.output.empty()) {
+        check_figure(arguments.output);
+        check_output(arguments.output, {arguments.a, arguments.b});
+    }
     const MapDifference difference = compare_maps(read_map(arguments.a), arguments.a, read_map(arguments.b), arguments.b);
     if (arguments.json) {
         std::fputs(json_text(difference_json(difference)).c_str(), stdout);

@@ -5,6 +5,8 @@
 
 #include "app/command_maps.h"
 #include "app/export_map.h"
+#include "app/option_checks.h"
+#include "files/regular_file.h"
 #include "stiffnessmaps/map_file.h"
 
 namespace palpa {
@@ -22,8 +24,11 @@ void add_maps_export(CLI::App& maps) {
                         "FILE.npy (one array [n_depth, n_y, n_x]), FILE.csv (a row per place and depth), FILE.mat (MATLAB 5), or a new "
                         "folder of .npy")->required();
     command->add_option("--array", arguments->array, "which one goes to FILE.npy")
-        ->check(CLI::IsMember({"normal_N", "tangential_x_N", "tangential_y_N"}))->capture_default_str();
-    command->callback([arguments] { export_map(read_map(arguments->map), arguments->array, arguments->output); });
+        ->check(one_of({"normal_N", "tangential_x_N", "tangential_y_N"}))->capture_default_str();
+    command->callback([arguments] {
+        if (std::filesystem::path(arguments->output).has_extension()) check_output(arguments->output, {arguments->map});
+        export_map(read_map(arguments->map), arguments->array, arguments->output);
+    });
 }
 
 }  // namespace palpa

@@ -9,6 +9,7 @@
 
 #include "app/command_line.h"
 #include "app/map_info.h"
+#include "app/option_checks.h"
 #include "files/input_error.h"
 #include "files/text.h"
 #include "stiffnessmaps/import/recording.h"
@@ -262,21 +263,21 @@ void add_table_options(CLI::App& command, Arguments& a) {
         ->allow_extra_args(false)
         ->group("Tables");
     text("--length-unit", a.length_unit, "of x, y, z: mm, m, um (default: the name's, else mm)")
-        ->check(CLI::IsMember({"mm", "m", "um"}));
-    text("--depth-unit", a.depth_unit, "of depths: mm, m, um")->check(CLI::IsMember({"mm", "m", "um"}));
+        ->check(one_of({"mm", "m", "um"}));
+    text("--depth-unit", a.depth_unit, "of depths: mm, m, um")->check(one_of({"mm", "m", "um"}));
     text("--force-unit", a.force_unit, "N or mN (default: the name's, else N)")
-        ->check(CLI::IsMember({"N", "mN"}));
+        ->check(one_of({"N", "mN"}));
     command.add_flag("--negate-force", a.negate_force, "forces have the other sign")->group("Tables");
     text("--region-mm", a.region, "X0,X1,Y0,Y1: only what lies in it");
-    text("--tilt", a.tilt, "remove (default) or keep")->check(CLI::IsMember({"remove", "keep"}));
+    text("--tilt", a.tilt, "remove (default) or keep")->check(one_of({"remove", "keep"}));
     number("--outliers", a.outliers,
            "robust deviations beyond which a force is left out (default 20; 0: none)", 0.0, 1e6);
     text("--grid", a.grid, "on-grid, plane, inverse-distance or median")
-        ->check(CLI::IsMember({"on-grid", "plane", "inverse-distance", "median"}));
+        ->check(one_of({"on-grid", "plane", "inverse-distance", "median"}));
     number("--pitch-mm", a.pitch_mm, "of the map, where the places lie on no grid", 0.01, 1000.0);
     number("--radius-mm", a.radius_mm, "that a cell then draws from", 0.01, 1000.0);
     command.add_option("--layers", a.layers, "depths of the map")->check(CLI::Range(1, 200))->group("Tables");
-    text("--contact", a.contact, "first-row or threshold")->check(CLI::IsMember({"first-row", "threshold"}));
+    text("--contact", a.contact, "first-row or threshold")->check(one_of({"first-row", "threshold"}));
     number("--contact-force-N", a.contact_force_N, "the threshold", 0.0, 100.0);
     number("--surface-z-mm", a.surface_z_mm,
            "sliding: a flat surface at this height, instead of an estimated one", -1e5, 1e5);
@@ -291,13 +292,13 @@ void add_array_options(CLI::App& command, Arguments& a) {
     text("--spacing-mm", a.spacing, "DX,DY: distance between the numbers");
     text("--origin-mm", a.origin, "X,Y of the first number (default 0,0)");
     text("--quantity", a.quantity, "force (N, default), stiffness (N/mm) or young (kPa)")
-        ->check(CLI::IsMember({"force", "stiffness", "young"}));
+        ->check(one_of({"force", "stiffness", "young"}));
     command.add_option("--scale", a.scale, "N, N/mm or kPa for one of the file's; images must state it")
         ->group("Arrays");
     command.add_option("--offset", a.offset, "subtracted from the file's numbers before")->group("Arrays");
     command.add_option("--missing", a.missing, "the number that means not measured")->group("Arrays");
     text("--axes", a.axes, "order of three-dimensional arrays (default dyx: depth, y, x)")
-        ->check(CLI::IsMember({"dyx", "dxy", "ydx", "yxd", "xdy", "xyd"}));
+        ->check(one_of({"dyx", "dxy", "ydx", "yxd", "xdy", "xyd"}));
     text("--dataset", a.dataset, "name in a MATLAB or HDF5 file that holds several arrays");
     command
         .add_option("--tangential-x", a.tangential_x,
@@ -327,16 +328,16 @@ void add_maps_import(CLI::App& maps) {
         ->required();
     command->add_option("-o,--output", a->output, "new map folder NAME.map");
     command->add_option("--form", a->form, "probing, sliding or matrices (default: told from the file)")
-        ->check(CLI::IsMember({"probing", "sliding", "matrices"}));
+        ->check(one_of({"probing", "sliding", "matrices"}));
     command->add_option("--depths-mm", a->depths,
                         "D1,D2,...: the map's depths; of matrices, the depth of each in their order");
     command
         ->add_option("--tangential", a->tangential,
                      "measured, energy (derived from the normal force) or none")
-        ->check(CLI::IsMember({"measured", "energy", "none"}));
+        ->check(one_of({"measured", "energy", "none"}));
     command->add_flag("--no-fill", a->no_fill, "no filled_normal_N.npy beside the raw forces");
     command->add_option("--indenter", a->indenter, "sphere (default) or cylinder")
-        ->check(CLI::IsMember({"sphere", "cylinder"}));
+        ->check(one_of({"sphere", "cylinder"}));
     command
         ->add_option("--indenter-radius-mm", a->indenter_radius_mm,
                      "of the tool's tip (default 3, assumed: recordings do not say)")

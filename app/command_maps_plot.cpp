@@ -6,8 +6,10 @@
 
 #include "app/command_maps.h"
 #include "app/gnuplot.h"
+#include "app/option_checks.h"
 #include "app/plot_map.h"
 #include "files/input_error.h"
+#include "files/regular_file.h"
 #include "files/text.h"
 #include "stiffnessmaps/map_file.h"
 
@@ -34,6 +36,7 @@ Eigen::Vector2d place_of(const std::string& text) {
 
 void run_plot(const CLI::App& command, const PlotArguments& arguments) {
     check_figure(arguments.output);
+    check_output(arguments.output, {arguments.map});
     PlotOptions options;
     constexpr const char* kWhat[] = {"all", "matrices", "stiffness", "slice", "curves", "nodules"};
     for (int i = 0; i < 6; ++i) {
@@ -55,7 +58,7 @@ void add_maps_plot(CLI::App& maps) {
     command->add_option("--what", arguments->what,
                         "matrices (every depth, normal and tangential), stiffness, slice (depth at a force, section through the "
                         "stiffest place), curves, nodules (with what `maps detect` finds), or all")
-        ->check(CLI::IsMember({"all", "matrices", "stiffness", "slice", "curves", "nodules"}))->capture_default_str();
+        ->check(one_of({"all", "matrices", "stiffness", "slice", "curves", "nodules"}))->capture_default_str();
     command->add_option("--at", arguments->at, "X,Y in mm: a curve here (default: stiff places and a middling one); may be repeated")->take_all();
     command->add_option("--force-N", arguments->force_N, "of the depth slice (default: half of the middling greatest force)")
         ->check(CLI::Range(1e-6, 1e6));

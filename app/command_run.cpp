@@ -13,10 +13,12 @@
 #include "app/load.h"
 #include "app/prepare.h"
 #include "app/log.h"
+#include "app/option_checks.h"
 #include "app/replay.h"
 #include "app/frame.h"
 #include "app/session.h"
 #include "files/input_error.h"
+#include "files/regular_file.h"
 #include "files/text.h"
 
 namespace palpa {
@@ -67,6 +69,8 @@ void run_headless(const RunOptions& options) {
     if (!options.record.empty()) throw InputError("--record: found with --headless, expected a window (a replay has its trace)");
     const auto began = std::chrono::steady_clock::now();
     const Scene scene = load_scene(options.scene);
+    if (!options.screenshot.empty()) check_output(options.screenshot, inputs_of(scene, options.trace));
+    if (!options.log.empty()) check_output_folder(options.log);
     const Plan plan = make_plan_here(scene);
     const Trace trace = read_trace(options.trace);
     std::optional<RunFiles> files;
@@ -118,10 +122,11 @@ void add_run(CLI::App& app) {
     command->add_option("--height-px", options->height_px, "of the window (800)")->check(CLI::Range(100, 16384));
     command->add_flag("--practice", options->practice, "nodules shown");
     command->add_flag("--test", options->test, "nodules hidden until the trial is finished")->excludes("--practice");
-    command->add_option("--screen", options->screen, "opened first: trial, devices, scale, calibrate or maps")
-        ->transform(CLI::CheckedTransformer(std::map<std::string, Screen>{
-            {"trial", Screen::trial}, {"devices", Screen::devices}, {"scale", Screen::scale}, {"calibrate", Screen::calibrate},
-            {"maps", Screen::maps}}));
+    const std::map<std::string, Screen> screens{{"trial", Screen::trial}, {"devices", Screen::devices}, {"scale", Screen::scale},
+                                                {"calibrate", Screen::calibrate}, {"maps", Screen::maps}};
+    command->add_option_function<std::string>("--screen", [options, screens](const std::string& name) { options->screen = screens.at(name); },
+                                              "opened first")
+        ->check(one_of({"trial", "devices", "scale", "calibrate", "maps"}));
     command->add_flag("--left-handed", options->left_handed, "controls on the right");
     command->callback([options] {
         if (options->headless) return run_headless(*options);

@@ -6,6 +6,7 @@
 #include "app/assets.h"
 #include "app/command_line.h"
 #include "app/serve.h"
+#include "files/regular_file.h"
 
 namespace palpa {
 namespace {
@@ -25,6 +26,7 @@ void start(const Arguments& arguments) {
     options.sessions.lasts_s = 3600.0 * arguments.hours;
     options.uploads.upload_bytes = static_cast<std::uint64_t>(1e6 * arguments.upload_MB);
     options.uploads.total_bytes = static_cast<std::uint64_t>(1e6 * arguments.total_MB);
+    if (!options.collect.empty()) check_output_folder(options.collect);
     serve(options);
 }
 

@@ -7,6 +7,7 @@
 #include "app/command_study.h"
 #include "app/study_figures.h"
 #include "files/input_error.h"
+#include "files/regular_file.h"
 #include "files/text.h"
 #include "study/read_logs.h"
 #include "study/report.h"
@@ -36,13 +37,22 @@ void write_report(const Report& report, const fs::path& folder) {
     if (!trouble.empty()) std::fprintf(stderr, "palpa: %s\n", trouble.c_str());
 }
 
+std::vector<std::string> names_of(const Report& report) {
+    std::vector<std::string> names{"report.md", "report.json", "figures.gp", "figures.png", "figures.svg", "figures.pdf"};
+    for (const ReportTable& table : report_tables(report)) names.push_back(table.name + ".tsv");
+    return names;
+}
+
 Observations read_observations(const std::string& input) {
     if (!fs::exists(input)) throw bad_input(input, "", "nothing", "a folder of logs or a table COUNTS.tsv");
     return fs::is_directory(input) ? read_study(input) : read_counts(input);
 }
 
 void analyse(const AnalyseOptions& options) {
+    if (!options.output.empty()) check_output_folder(options.output);
     const Report report = make_report(read_observations(options.input), options.report);
+    // logs of a study have names of their own; a table of counts may have any
+    if (!options.output.empty() && !fs::is_directory(options.input)) check_output_folder(options.output, {options.input}, names_of(report));
     if (!options.output.empty()) write_report(report, options.output);
     const std::string text = options.json ? json_text(report_json(report)) : report_markdown(report);
     std::fputs(text.c_str(), stdout);

@@ -6,6 +6,7 @@
 
 #include "app/command_study.h"
 #include "files/json.h"
+#include "files/regular_file.h"
 #include "study/import_bundles.h"
 
 namespace palpa {
@@ -18,6 +19,7 @@ struct ImportOptions {
 };
 
 void import(const ImportOptions& options) {
+    check_output_folder(options.output);
     const BundleReport report = import_bundles({options.bundles.begin(), options.bundles.end()}, options.output);
     if (options.json) {
         const Json json{{"written", report.written}, {"already_there", report.already_there}, {"people_added", report.people_added},

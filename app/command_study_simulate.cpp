@@ -7,8 +7,10 @@
 #include <thread>
 
 #include "app/command_study.h"
+#include "app/option_checks.h"
 #include "app/study_simulate.h"
 #include "files/json.h"
+#include "files/regular_file.h"
 
 namespace palpa {
 namespace {
@@ -29,6 +31,7 @@ void simulate(const Arguments& arguments) {
     const auto cores = static_cast<int>(std::thread::hardware_concurrency());
     // twice the cores: a participant who waits for the disk leaves the core to another
     options.jobs = std::min(options.participants, arguments.jobs > 0 ? arguments.jobs : 2 * std::max(1, cores));
+    check_output_folder(arguments.output);
     const Protocol protocol = read_protocol(arguments.protocol);
     const SimulateResult result = simulate_study(protocol, options);
     const double MB_per_s = result.wall_s > 0.0 ? result.written_MB / result.wall_s : 0.0;
@@ -64,7 +67,7 @@ void add_study_simulate(CLI::App& study) {
     command->add_option("--seed", arguments->options.seed, "of hands and eyes (default 1)")->check(CLI::Range(0, 2000000000));
     command->add_option("-o,--output", arguments->output, "folder; goes on where an earlier call was interrupted")->required();
     command->add_option("--samples", arguments->samples, "log all samples of the pen, or none")
-        ->check(CLI::IsMember({"none", "all"}))->capture_default_str();
+        ->check(one_of({"none", "all"}))->capture_default_str();
     command->add_flag("--practice", arguments->options.practice, "practice trials too");
     command->add_option("--rate-Hz", arguments->options.rate_Hz, "of the pen (default 60)")->check(CLI::Range(10.0, 2000.0));
     command->add_option("-j,--jobs", arguments->jobs, "participants at a time (default: twice the cores)")->check(CLI::Range(1, 256));

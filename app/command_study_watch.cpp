@@ -14,6 +14,7 @@
 #include "app/command_study.h"
 #include "files/input_error.h"
 #include "files/json.h"
+#include "files/regular_file.h"
 #include "files/text.h"
 #include "study/read_logs.h"
 #include "study/study_folder.h"
@@ -60,16 +61,13 @@ Json last_events(const fs::path& file, std::vector<std::string>& notes) {
 Json last_sample(const fs::path& file) {
     constexpr std::uintmax_t kTail_bytes = 4096;
     std::error_code error;
-    const std::uintmax_t size = fs::file_size(file, error);
-    if (error || size == 0) return {};
-    std::FILE* in = std::fopen(file.c_str(), "rb");
-    if (in == nullptr) return {};
+    if (!fs::exists(file, error)) return {};
+    const InputFile in(file);
+    if (in.bytes() == 0) return {};
     std::string head(512, '\0');
-    head.resize(std::fread(head.data(), 1, head.size(), in));
+    head.resize(in.read_at(0, head.data(), head.size()));
     std::string tail(kTail_bytes, '\0');
-    std::fseek(in, static_cast<long>(size - std::min(size, kTail_bytes)), SEEK_SET);
-    tail.resize(std::fread(tail.data(), 1, tail.size(), in));
-    std::fclose(in);
+    tail.resize(in.read_at(in.bytes() - std::min(in.bytes(), kTail_bytes), tail.data(), tail.size()));
     const auto names = fields_of(std::string_view(head).substr(0, head.find('\n')), '\t');
     const auto end = tail.rfind('\n');
     if (end == std::string::npos || end == 0) return {};

@@ -250,6 +250,7 @@ FemCase parse_case(const Json& json, const std::string& file_name, const std::fi
     read_regions(reader, out.materials, mesh);
     out.problem.mesh = mesh.mesh;
     out.problem.materials = materials_of_cells(mesh.mesh.region, materials);
+    out.mesh_file = mesh.file;
     out.outer = mesh.outer;
     out.report = mesh.report;
     read_supports(reader, mesh, out);

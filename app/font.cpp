@@ -2,6 +2,8 @@
 
 #include <fontconfig/fontconfig.h>
 
+#include "files/regular_file.h"
+
 namespace palpa {
 
 std::string system_font_file() {
@@ -21,7 +23,7 @@ std::string system_font_file() {
     if (found != nullptr) FcPatternDestroy(found);
     FcPatternDestroy(wanted);
     FcConfigDestroy(config);
-    return file;
+    return irregular_kind(file).empty() ? file : std::string();
 }
 
 }  // namespace palpa

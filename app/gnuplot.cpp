@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "files/input_error.h"
+#include "files/regular_file.h"
 #include "files/text.h"
 
 namespace palpa {
@@ -37,8 +38,9 @@ std::string shell_quoted(const std::string& text) {
 
 void check_figure(const std::filesystem::path& file) { terminal(file, 1, 1); }
 
-void draw_figure(const std::string& script, const std::filesystem::path& file, int width_px, int height_px) {
-    const std::string set = "set terminal " + terminal(file, width_px, height_px) + "\n";
+void draw_figure(const std::string& script, const std::filesystem::path& name, int width_px, int height_px) {
+    const std::filesystem::path file = output_target(name);
+    const std::string set = "set terminal " + terminal(name, width_px, height_px) + "\n";
     if (std::system("command -v gnuplot >/dev/null 2>&1") != 0) {
         throw std::runtime_error(file.string() + ": not drawn: gnuplot is not installed (package gnuplot-nox)");
     }
@@ -47,7 +49,7 @@ void draw_figure(const std::string& script, const std::filesystem::path& file, i
     write_text_atomically(commands, "set encoding utf8\n" + set + "set output " + gnuplot_quoted(aside) + "\n" + script + "\nunset output\n");
     const int status = std::system(("gnuplot " + shell_quoted(commands)).c_str());
     ::unlink(commands.c_str());
-    if (status == 0 && file.extension() == ".svg") {  // else a viewer may blend cells into each other and into gaps
+    if (status == 0 && name.extension() == ".svg") {  // else a viewer may blend cells into each other and into gaps
         std::string svg = read_text(aside);
         for (std::size_t at = svg.find("<image "); at != std::string::npos; at = svg.find("<image ", at + 1)) svg.insert(at + 6, " style='image-rendering:pixelated'");
         write_text_whole(aside, svg);

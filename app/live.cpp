@@ -14,6 +14,7 @@
 #include "app/save_picture.h"
 #include "app/study_run.h"
 #include "app/words.h"
+#include "files/regular_file.h"
 #include "files/text.h"
 #include "render/gl.h"
 
@@ -579,6 +580,8 @@ Json Live::close() {
 }
 
 std::optional<Json> run_live(const RunOptions& options) {
+    if (!options.screenshot.empty()) check_output(options.screenshot, {options.scene, options.trace, options.protocol});
+    if (!options.log.empty()) check_output_folder(options.log);
     Live live(options);
     if (!live.ready()) return std::nullopt;
     while (live.turn(Live::Draw::when_due)) {

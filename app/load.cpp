@@ -56,6 +56,13 @@ Scene load_scene(const std::string& name) {
     return read_scene(name, assets);
 }
 
+std::vector<fs::path> inputs_of(const Scene& scene, const fs::path& trace) {
+    std::vector<fs::path> inputs{scene.file, scene.map, scene.profile};
+    if (scene.linear) inputs.push_back(scene.linear->phantom);
+    if (!trace.empty()) inputs.insert(inputs.end(), {trace, fs::path(trace).replace_extension(".json")});
+    return inputs;
+}
+
 std::vector<Choice> scene_choices() { return choices("scenes"); }
 std::vector<Choice> profile_choices() { return choices("profiles"); }
 

@@ -13,6 +13,9 @@ namespace palpa {
 // "" = the default scene; NAME.json = a scene; a folder = a map with default effects.
 Scene load_scene(const std::string& name);
 
+// The files and folders that the scene and the trace (with what stands beside it) are read from: no result goes there.
+std::vector<std::filesystem::path> inputs_of(const Scene& scene, const std::filesystem::path& trace = {});
+
 // What the menu offers: the shipped scenes and profiles, and those in the user's data folder
 // ($XDG_DATA_HOME/palpa/scenes and profiles). Files that cannot be read are left out.
 std::vector<Choice> scene_choices();

@@ -1,13 +1,16 @@
 // What is on the screen, as a file.
 
 #include "app/frame.h"
+#include "files/text.h"
 #include "render/gl.h"
 #include "render/png.h"
 
 namespace palpa {
 
 void save_screen(const Window& window, const std::filesystem::path& png) {
-    write_png(png, window.width_px(), window.height_px(), read_pixels(window.width_px(), window.height_px()));
+    const int width_px = window.width_px();
+    const int height_px = window.height_px();
+    write_text_whole(png, png_bytes(width_px, height_px, read_pixels(width_px, height_px)));
 }
 
 std::string draw_picture(const Scene& scene, const Plan& plan, const Trial& trial, const Settings& settings,

@@ -16,6 +16,7 @@
 
 #include "app/serve_head.h"
 #include "files/input_error.h"
+#include "files/regular_file.h"
 
 namespace palpa {
 namespace {
@@ -59,6 +60,8 @@ void address_of(int fd, AddressOf which, std::string& ip, int& port) {
 }  // namespace
 
 TlsContext make_tls(const std::string& cert_file, const std::string& key_file) {
+    check_input(cert_file);
+    check_input(key_file);
     TlsContext tls(SSL_CTX_new(TLS_server_method()));
     if (!tls) throw std::runtime_error("TLS cannot be started: " + tls_trouble());
     SSL_CTX_set_min_proto_version(tls.get(), TLS1_2_VERSION);

@@ -142,7 +142,7 @@ void Uploads::read_index(std::vector<std::string>& notes) {
 // A kill can come between a file's name and its row.
 void Uploads::adopt(const fs::path& file, std::vector<std::string>& notes) {
     Incoming::Hash hash;
-    const int fd = ::open(file.c_str(), O_RDONLY | O_NOFOLLOW | O_CLOEXEC);
+    const int fd = ::open(file.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
     std::array<char, 1 << 16> buffer;
     ssize_t n = 0;
     while (fd >= 0 && (n = ::read(fd, buffer.data(), buffer.size())) > 0) hash.add({buffer.data(), static_cast<std::size_t>(n)});

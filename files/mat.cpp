@@ -9,6 +9,7 @@
 #include <stdexcept>
 
 #include "files/input_error.h"
+#include "files/regular_file.h"
 #include "files/text.h"
 
 namespace palpa {
@@ -43,7 +44,8 @@ using Variable = std::unique_ptr<matvar_t, FreeVariable>;
 
 }  // namespace
 
-void write_mat(const std::vector<MatArray>& arrays, const std::filesystem::path& path) {
+void write_mat(const std::vector<MatArray>& arrays, const std::filesystem::path& name) {
+    const std::filesystem::path path = output_target(name);
     const std::string aside = path.string() + ".part-" + std::to_string(::getpid());
     const auto fail = [&] {
         const std::string reason = std::strerror(errno);
@@ -66,6 +68,7 @@ void write_mat(const std::vector<MatArray>& arrays, const std::filesystem::path&
 }
 
 MatArray read_mat(const std::string& name, const std::filesystem::path& path) {
+    check_input(path);
     const MatFile file(Mat_Open(path.c_str(), MAT_ACC_RDONLY));
     if (!file) throw bad_input(path.string(), "", "no MATLAB file", "one of version 5");
     const Variable variable(Mat_VarRead(file.get(), name.c_str()));

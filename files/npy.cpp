@@ -3,12 +3,11 @@
 #include <bit>
 #include <charconv>
 #include <cstring>
-#include <fstream>
 #include <limits>
 
 #include "files/input_error.h"
 #include "files/pieces.h"
-#include "files/text.h"
+#include "files/regular_file.h"
 
 namespace palpa {
 namespace {
@@ -126,24 +125,22 @@ void take_values(const Layout& layout, const char* from, std::size_t n, float* t
 }
 
 // The same as parse_npy, a part of the file at a time.
-NpyArray read_in_parts(std::ifstream& in, std::size_t file_bytes, const std::string& file) {
-    const auto read = [&](char* to, std::size_t n) {
-        in.read(to, static_cast<std::streamsize>(n));
-        if (static_cast<std::size_t>(in.gcount()) != n) throw InputError(file + ": cannot be read to its end");
+NpyArray read_in_parts(const InputFile& in, const std::string& file) {
+    const auto read = [&](std::size_t offset, char* to, std::size_t n) {
+        if (in.read_at(offset, to, n) != n) throw InputError(file + ": cannot be read to its end");
     };
-    std::string start(std::min<std::size_t>(file_bytes, 12), '\0');
-    read(start.data(), start.size());
-    const Header header = find_header(start, file_bytes, file);
+    std::string start(std::min<std::size_t>(in.bytes(), 12), '\0');
+    read(0, start.data(), start.size());
+    const Header header = find_header(start, in.bytes(), file);
     std::string text(header.length, '\0');
-    in.seekg(static_cast<std::streamoff>(header.from));
-    read(text.data(), text.size());
-    const Layout layout = layout_of(text, file_bytes - header.data_offset(), file);
+    read(header.from, text.data(), text.size());
+    const Layout layout = layout_of(text, in.bytes() - header.data_offset(), file);
     NpyArray array{layout.shape, std::vector<float>(layout.count)};
     constexpr std::size_t kPart = 1 << 16;  // numbers
     std::vector<char> part(std::min(kPart, layout.count) * layout.value_bytes());
     for (std::size_t at = 0; at < layout.count; at += kPart) {
         const std::size_t n = std::min(kPart, layout.count - at);
-        read(part.data(), n * layout.value_bytes());
+        read(header.data_offset() + at * layout.value_bytes(), part.data(), n * layout.value_bytes());
         take_values(layout, part.data(), n, &array.values[at]);
     }
     return array;
@@ -166,13 +163,7 @@ NpyArray parse_npy(std::string_view bytes, const std::string& file) {
     return array;
 }
 
-NpyArray read_npy(const std::filesystem::path& path) {
-    std::error_code error;
-    const std::uintmax_t bytes = std::filesystem::file_size(path, error);
-    std::ifstream in(path, std::ios::binary);
-    if (error || !in || !std::filesystem::is_regular_file(path)) return parse_npy(read_text(path), path.string());
-    return read_in_parts(in, static_cast<std::size_t>(bytes), path.string());
-}
+NpyArray read_npy(const std::filesystem::path& path) { return read_in_parts(InputFile(path), path.string()); }
 
 std::string npy_header(const std::vector<std::size_t>& shape) {
     std::string header = "{'descr': '<f4', 'fortran_order': False, 'shape': " + shape_text(shape) + ", }";

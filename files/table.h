@@ -12,6 +12,8 @@ namespace palpa {
 class Table {
  public:
     Table(std::string text, std::string file_name, char separator);
+    Table(const Table&) = delete;  // the fields of the row point into the text, which a short string carries within itself
+    Table& operator=(const Table&) = delete;
 
     const std::vector<std::string>& columns() const { return columns_; }
     // Throws InputError that lists what there is, if the column is missing.

@@ -1,44 +1,32 @@
 #include "files/text.h"
 
 #include <fcntl.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include <array>
 #include <cerrno>
 #include <cmath>
 #include <cstdio>
-#include <cstdint>
 #include <cstring>
-#include <fstream>
 #include <stdexcept>
 
 #include "files/input_error.h"
 #include "files/pieces.h"
+#include "files/regular_file.h"
 
 namespace palpa {
 
 std::string read_text(const std::filesystem::path& path, std::size_t limit_bytes) {
-    std::error_code error;
-    if (std::filesystem::is_directory(path, error)) {
-        throw bad_input(path.string(), "", "a folder", "a file");
-    }
-    std::FILE* file = std::fopen(path.c_str(), "rb");
-    if (file == nullptr) throw InputError(path.string() + ": cannot be read: " + std::strerror(errno));
+    const InputFile file(path);
     std::string text;
     // its size is known for most files: growing would take three times the memory for a moment
-    const std::uintmax_t size = std::filesystem::file_size(path, error);
-    if (!error && size <= limit_bytes) text.reserve(size + 1);
+    if (file.bytes() <= limit_bytes) text.reserve(file.bytes() + 1);
     std::array<char, 1 << 16> buffer;
-    while (const std::size_t n = std::fread(buffer.data(), 1, buffer.size(), file)) {
+    while (const std::size_t n = file.read_at(text.size(), buffer.data(), buffer.size())) {
         text.append(buffer.data(), n);
-        if (text.size() > limit_bytes) break;
-    }
-    const bool failed = std::ferror(file) != 0;
-    std::fclose(file);
-    if (failed) throw InputError(path.string() + ": cannot be read to its end");
-    if (text.size() > limit_bytes) {
-        throw bad_input(path.string(), "", "more than " + std::to_string(limit_bytes) + " bytes", "less");
+        if (text.size() > limit_bytes) {
+            throw bad_input(path.string(), "", "more than " + std::to_string(limit_bytes) + " bytes", "less");
+        }
     }
     return text;
 }
@@ -52,7 +40,8 @@ namespace {
 using Pieces = std::initializer_list<std::string_view>;
 
 void write_new(const std::filesystem::path& path, Pieces pieces, bool sync) {
-    const int fd = ::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
+    ::unlink(path.c_str());  // what a kill has left, or a FIFO that somebody put there
+    const int fd = ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0644);
     if (fd < 0) fail_writing(path);
     for (std::string_view text : pieces) {
         while (!text.empty()) {
@@ -70,7 +59,8 @@ void write_new(const std::filesystem::path& path, Pieces pieces, bool sync) {
     if (::close(fd) != 0 || !synced) fail_writing(path);
 }
 
-void write_and_rename(const std::filesystem::path& path, Pieces pieces, bool sync) {
+void write_and_rename(const std::filesystem::path& name, Pieces pieces, bool sync) {
+    const std::filesystem::path path = output_target(name);
     std::filesystem::path aside = path;
     aside += ".part-" + std::to_string(::getpid());
     write_new(aside, pieces, sync);

@@ -56,8 +56,8 @@ std::filesystem::path sidecar_of(const std::filesystem::path& tsv) {
 
 const std::filesystem::path& checked_name(const std::filesystem::path& tsv) {
     if (tsv.extension() != ".tsv") throw bad_input(tsv.string(), "", "another ending", "a new trace NAME.tsv");
-    if (std::filesystem::exists(sidecar_of(tsv))) {
-        throw bad_input(sidecar_of(tsv).string(), "", "something of that name", "a new name (nothing is overwritten)");
+    for (const std::filesystem::path& file : {tsv, sidecar_of(tsv)}) {
+        if (std::filesystem::exists(file)) throw bad_input(file.string(), "", "something of that name", "a new name (nothing is overwritten)");
     }
     return tsv;
 }
@@ -65,6 +65,7 @@ const std::filesystem::path& checked_name(const std::filesystem::path& tsv) {
 TraceInfo read_info(const std::filesystem::path& path) {
     const Json root = read_json(path);
     JsonReader json(root, path.string());
+    json.only({"screen_px", "screen_mm", "device"});
     constexpr Bounds kScreen{1.0, 16384.0};
     TraceInfo info;
     const auto size_px = json.numbers("screen_px", 2, kScreen);

@@ -1,11 +1,11 @@
 #pragma once
 
-#include <filesystem>
+#include <string>
 #include <vector>
 
 namespace palpa {
 
-// RGB rows from the top downwards. Throws std::runtime_error if the file cannot be written.
-void write_png(const std::filesystem::path& path, int width_px, int height_px, const std::vector<unsigned char>& rgb);
+// A PNG file of RGB rows from the top downwards. Throws std::runtime_error if libpng cannot make it.
+std::string png_bytes(int width_px, int height_px, const std::vector<unsigned char>& rgb);
 
 }  // namespace palpa

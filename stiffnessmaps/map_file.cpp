@@ -8,6 +8,7 @@
 
 #include "files/input_error.h"
 #include "files/npy.h"
+#include "files/regular_file.h"
 #include "files/text.h"
 
 namespace palpa {
@@ -30,6 +31,7 @@ std::optional<double> optional_length_m(JsonReader& json, std::string_view key) 
 }
 
 Nodule read_nodule(JsonReader json) {
+    json.only({"id", "origin", "x_mm", "y_mm", "top_depth_mm", "diameter_mm", "length_mm", "angle_deg"});
     Nodule nodule;
     nodule.id = json.text("id");
     nodule.placed = json.choice("origin", {"placed", "detected"}) == 0;
@@ -44,6 +46,7 @@ Nodule read_nodule(JsonReader json) {
 }
 
 SourceChoice read_choice(JsonReader json) {
+    json.only({"key", "value", "how", "option"});
     SourceChoice choice;
     choice.key = json.text("key");
     const Json& value = json.any("value");
@@ -61,6 +64,7 @@ SourceChoice read_choice(JsonReader json) {
 }
 
 MapSource read_source(JsonReader json) {
+    json.only({"kind", "how", "from", "licence", "choices"});
     MapSource source;
     source.kind = static_cast<SourceKind>(json.choice("kind", {"recorded", "simulated", "analytic"}));
     source.how = json.text("how", "");
@@ -134,12 +138,13 @@ void check_area(const Map& map, const std::string& file) {
 
 Map read_map(const fs::path& folder) {
     if (!fs::is_directory(folder)) {
-        const bool there = fs::exists(folder);
-        throw bad_input(folder.string(), "", there ? "a file" : "nothing", "a map folder NAME.map with a map.json");
+        const std::string_view kind = fs::exists(folder) ? irregular_kind(folder) : "nothing";
+        throw bad_input(folder.string(), "", kind.empty() ? "a file" : kind, "a map folder NAME.map with a map.json");
     }
     const fs::path file = folder / "map.json";
     const Json root = read_json(file);
     JsonReader json(root, file.string());
+    json.only({"name", "origin_mm", "spacing_mm", "count", "depths_mm", "tangential", "indenter", "nodules", "source", "noise_N"});
     Map map;
     map.name = json.text("name");
     const auto origin_mm = json.numbers("origin_mm", 2, kLength_mm);
@@ -151,6 +156,7 @@ Map read_map(const fs::path& folder) {
     read_depths(json, map);
     map.tangential = static_cast<TangentialKind>(json.choice("tangential", {"recorded", "energy", "none"}));
     JsonReader indenter = json.object("indenter");
+    indenter.only({"shape", "radius_mm"});
     map.indenter = static_cast<IndenterShape>(indenter.choice("shape", {"sphere", "cylinder"}));
     map.indenter_radius_m = 1e-3 * indenter.number("radius_mm", {0.0, 1e3, true});
     indenter.finish();

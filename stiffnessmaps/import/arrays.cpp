@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <limits>
 
 #include "files/input_error.h"
+#include "files/regular_file.h"
 #include "files/text.h"
 #include "stiffnessmaps/import/apart.h"
 #include "stiffnessmaps/import/columns.h"
@@ -16,13 +16,8 @@ namespace {
 namespace fs = std::filesystem;
 
 std::string first_bytes(const fs::path& path, std::size_t n) {
-    std::error_code error;
-    if (fs::is_directory(path, error)) throw bad_input(path.string(), "", "a folder", "a file");
-    std::ifstream file(path, std::ios::binary);
-    if (!file) throw InputError(path.string() + ": cannot be read");
     std::string bytes(n, '\0');
-    file.read(bytes.data(), static_cast<std::streamsize>(n));
-    bytes.resize(static_cast<std::size_t>(file.gcount()));
+    bytes.resize(InputFile(path).read_at(0, bytes.data(), n));
     return bytes;
 }
 

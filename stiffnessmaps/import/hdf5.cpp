@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <array>
-#include <fstream>
 #include <hdf5.h>
 
 #include "files/input_error.h"
+#include "files/regular_file.h"
 #include "stiffnessmaps/import/arrays.h"
 
 namespace palpa {
@@ -75,9 +75,8 @@ std::string choose(hid_t root, const std::string& dataset, const std::string& fi
 }
 
 bool starts_as_matlab(const std::filesystem::path& path) {
-    std::ifstream in(path, std::ios::binary);
     std::array<char, 10> bytes{};
-    in.read(bytes.data(), bytes.size());
+    InputFile(path).read_at(0, bytes.data(), bytes.size());
     return std::string_view(bytes.data(), bytes.size()) == "MATLAB 7.3";
 }
 
@@ -102,6 +101,7 @@ NpyArray with_axes_reversed(const NpyArray& from) {
 
 NpyArray read_hdf5(const std::filesystem::path& path, const std::string& dataset) {
     const std::string file = path.string();
+    check_input(path);
     H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
     const Handle root(H5Fopen(file.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
     if (!root.there()) throw bad_input(file, "", "no HDF5 file that can be opened", "a whole one");

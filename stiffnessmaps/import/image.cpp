@@ -8,6 +8,7 @@
 #include <tiffio.h>
 
 #include "files/input_error.h"
+#include "files/regular_file.h"
 #include "files/text.h"
 #include "stiffnessmaps/import/arrays.h"
 
@@ -195,6 +196,7 @@ void read_tiles(TIFF* tiff, const Format& f, std::size_t stored_bytes, std::size
 
 NpyArray read_tiff(const std::filesystem::path& path) {
     const std::string file = path.string();
+    check_input(path);
     TIFFSetErrorHandler(nullptr);
     TIFFSetWarningHandler(nullptr);
     const std::unique_ptr<TIFF, CloseTiff> tiff(TIFFOpen(file.c_str(), "rm"));

@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <fstream>
 #include <matio.h>
 #include <memory>
 
 #include "files/input_error.h"
+#include "files/regular_file.h"
 #include "stiffnessmaps/import/arrays.h"
 
 namespace palpa {
@@ -113,12 +113,11 @@ std::string choose(mat_t* mat, const std::string& dataset, const std::string& fi
 // then elements of type (4 bytes), length (4 bytes), data.
 void refuse_cut(const std::filesystem::path& path) {
     constexpr std::uint64_t kHeader = 128;
-    const std::uint64_t size = std::filesystem::file_size(path);
-    std::ifstream in(path, std::ios::binary);
+    const InputFile in(path);
+    const std::uint64_t size = in.bytes();
     const auto bytes_at = [&](std::uint64_t at, std::size_t n) {
         std::string bytes(n, '\0');
-        in.seekg(static_cast<std::streamoff>(at));
-        in.read(bytes.data(), static_cast<std::streamsize>(n));
+        in.read_at(at, bytes.data(), n);
         return bytes;
     };
     const auto cut = [&] {

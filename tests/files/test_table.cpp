@@ -3,6 +3,7 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
+#include <type_traits>
 
 #include "tests/error_message.h"
 
@@ -21,6 +22,15 @@ TEST_CASE("table: rows, missing values, CRLF, byte order mark, blank lines, no n
     REQUIRE(table.next());
     CHECK(table.number(1) == -0.4);
     CHECK_FALSE(table.next());
+}
+
+TEST_CASE("table: it stays where it is, as its fields point into its own text") {
+    static_assert(!std::is_copy_constructible_v<Table> && !std::is_move_constructible_v<Table>);
+    static_assert(!std::is_copy_assignable_v<Table> && !std::is_move_assignable_v<Table>);
+    const auto opened = [] { return Table("x,y\n1,2", "t.csv", ','); };
+    Table table = opened();  // made in its place
+    REQUIRE(table.next());
+    CHECK(table.field(1) == "2");
 }
 
 TEST_CASE("hard case 31: ragged, non-numeric and locale-comma tables are refused by line and column") {

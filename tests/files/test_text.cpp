@@ -43,7 +43,7 @@ TEST_CASE("text: what is not a number is not taken for one") {
 TEST_CASE("text: files that cannot be read are named") {
     const TemporaryFolder folder;
     CHECK(contains(message_of([&] { read_text(folder / "absent"); }), "absent: cannot be read"));
-    CHECK(contains(message_of([&] { read_text(folder.path()); }), "found a folder, expected a file"));
+    CHECK(contains(message_of([&] { read_text(folder.path()); }), "found a folder, expected a regular file"));
     write_text_atomically(folder / "a", "12345");
     CHECK(read_text(folder / "a") == "12345");
     CHECK(contains(message_of([&] { read_text(folder / "a", 4); }), "more than 4 bytes"));
