@@ -32,7 +32,9 @@ inline constexpr Bounds kNotNegative{0.0, 1e300};
 // keys that nobody asked for. All errors are InputError. A missing key without a default is an error.
 class JsonReader {
  public:
+    // The value outlives its reader.
     JsonReader(const Json& value, std::string file, std::string where = "");
+    JsonReader(const Json&& value, std::string file, std::string where = "") = delete;
 
     bool has(std::string_view key) const;
     double number(std::string_view key, Bounds bounds);

@@ -3,6 +3,7 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <type_traits>
 
 #include "tests/error_message.h"
 
@@ -68,6 +69,16 @@ TEST_CASE("json: with only() a misspelt key is named, not the missing one") {
     CHECK(message_of([&] { reader.only({"young_Pa", "poisson"}); }) == "c.json: gel.young_kPa: found an unknown key, expected one of young_Pa poisson (is young_Pa meant?)");
     CHECK_NOTHROW(reader.only({"young_kPa", "poisson", "law"}));
     CHECK(contains(message_of([&] { reader.fail("", "nothing", "something"); }), "c.json: gel: found nothing"));
+}
+
+TEST_CASE("json: an object is read where it lies, never a temporary") {
+    static_assert(std::is_constructible_v<JsonReader, const Json&, std::string>);
+    static_assert(!std::is_constructible_v<JsonReader, Json, std::string>);
+    static_assert(!std::is_constructible_v<JsonReader, const Json, std::string, std::string>);
+    static_assert(!std::is_constructible_v<JsonReader, const char*, std::string>);  // would become one
+    const auto make = [] { return parse_json(R"({"n": 3})", "c.json"); };
+    const Json kept = make();
+    CHECK(JsonReader(kept, "c.json").integer("n", 0, 9) == 3);
 }
 
 TEST_CASE("json: of the keys that are known the nearest to a misspelt one is named, if any is near") {
