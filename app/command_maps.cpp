@@ -173,7 +173,7 @@ void add_generate(CLI::App& maps) {
                       "compares the map, new or there already, with a mesh refined once at 50 points (minutes)");
     command->add_option("--coarseness", options.coarseness, "1 for maps, up to 4 for quick looks")
         ->check(CLI::Range(0.5, 4.0))->capture_default_str();
-    command->add_option("--window", arguments->window)->group("");
+    command->add_option("--window", arguments->window)->check(CLI::Range(0, 1000000))->group("");
     command->add_flag("--refined", options.refined)->group("");
     part->excludes(jobs)->excludes(merge);
     command->callback([arguments] { generate_map(generate_options(*arguments)); });

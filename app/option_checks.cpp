@@ -2,8 +2,11 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cerrno>
 #include <cmath>
+#include <cstdint>
 #include <cstdlib>
+#include <limits>
 
 #include "files/input_error.h"
 
@@ -24,7 +27,16 @@ std::string refuse_infinite(std::string& text) {
     return "found " + shown(text) + ", expected a finite number";
 }
 
-std::string refuse_empty(std::string& text) { return text.empty() ? "found an empty text, expected some" : std::string(); }
+// CLI11 takes -1 for the largest number of all, and so what is larger.
+std::string refuse_wrapped(std::string& text) {
+    errno = 0;
+    const bool negative = text.find('-') != std::string::npos;
+    std::strtoull(text.c_str(), nullptr, 0);
+    if (!negative && errno != ERANGE) return {};
+    return "found " + shown(text) + ", expected a whole number from 0 to " + std::to_string(std::numeric_limits<std::uint64_t>::max());
+}
+
+std::string refuse_empty(std::string& text) { return text.empty() ? "found nothing, expected a value" : std::string(); }
 
 }  // namespace
 
@@ -40,7 +52,8 @@ void refuse_what_is_no_value(CLI::App& command) {
     for (CLI::Option* option : command.get_options()) {
         const std::string type = option->get_type_name();
         if (type.rfind("FLOAT", 0) == 0) option->check(CLI::Validator(refuse_infinite, ""));
-        if (type.rfind("TEXT", 0) == 0) option->check(CLI::Validator(refuse_empty, ""));
+        if (type.rfind("UINT", 0) == 0) option->check(CLI::Validator(refuse_wrapped, ""));
+        if (!type.empty()) option->check(CLI::Validator(refuse_empty, ""));  // flags have none
     }
     for (CLI::App* below : command.get_subcommands({})) refuse_what_is_no_value(*below);
 }

@@ -3,6 +3,7 @@
 #include <doctest/doctest.h>
 
 #include <CLI/CLI.hpp>
+#include <cstdint>
 #include <optional>
 
 #include "tests/error_message.h"
@@ -19,6 +20,9 @@ struct Options {
     std::vector<double> several;
     std::string kind;
     std::string name;
+    std::uint64_t seed = 0;
+    int count = 0;
+    bool flag = false;
 };
 
 // What is said of these arguments; "" if they are taken.
@@ -30,6 +34,9 @@ std::string refusal(std::vector<std::string> arguments) {
     below->add_option("--free", options.free);
     below->add_option("--maybe", options.maybe);
     below->add_option("--several", options.several)->expected(2);
+    below->add_option("--seed", options.seed);
+    below->add_option("--count", options.count);
+    below->add_flag("--flag", options.flag);
     below->add_option("--name", options.name);
     below->add_option("--kind", options.kind)->check(one_of({"sphere", "cylinder", "cone"}));
     refuse_what_is_no_value(app);
@@ -61,7 +68,17 @@ TEST_CASE("option checks: words are listed as a person lists them") {
     CHECK(refusal({"cone", "--kind"}).empty());
 }
 
-TEST_CASE("option checks: an empty text is no value") {
-    CHECK(contains(refusal({"", "--name"}), "--name: found an empty text"));
+TEST_CASE("option checks: nothing is no value") {
+    CHECK(contains(refusal({"", "--name"}), "--name: found nothing, expected a value"));
     CHECK(refusal({"x", "--name"}).empty());
+    for (const char* option : {"--free", "--maybe", "--count", "--seed"}) CHECK_FALSE(refusal({"", option}).empty());
+    CHECK(refusal({"--flag"}).empty());
+}
+
+TEST_CASE("option checks: a number from 0 upwards does not begin again at its end") {
+    for (const char* value : {"-1", "99999999999999999999", "-99999999999999999999"}) {
+        CHECK(contains(refusal({value, "--seed"}), "--seed: found '" + std::string(value) + "', expected a whole number from 0"));
+    }
+    CHECK(refusal({"18446744073709551615", "--seed"}).empty());
+    CHECK(refusal({"-1", "--count"}).empty());
 }
