@@ -8,9 +8,11 @@
 #include <unistd.h>
 
 #include "app/command_line.h"
+#include "app/fem_locking.h"
 #include "app/fem_solve.h"
 #include "files/input_error.h"
 #include "files/regular_file.h"
+#include "files/printable.h"
 #include "files/text.h"
 
 namespace palpa {
@@ -53,7 +55,8 @@ double max_von_mises_Pa(const FemResult& result) {
 }
 
 std::vector<std::string> warnings_of(const FemCase& model, const FemResult& result) {
-    std::vector<std::string> out;
+    std::vector<std::string> out = model.warnings;
+    if (const std::string locking = locking_warning(model.problem); !locking.empty()) out.push_back(locking);
     if (result.linear != LinearRange::fine) {
         out.push_back("the linear range is left: " + short_number(100.0 * result.linear_ratio) +
                       " % (strain, or depth over thickness or width); amber above 10, red above 25");
@@ -67,7 +70,7 @@ std::vector<std::string> warnings_of(const FemCase& model, const FemResult& resu
         out.push_back("not converged: backward error " + short_number(result.solution.backward_error));
     if (!model.report.slivers.empty()) {
         out.push_back(std::to_string(model.report.slivers.size()) + " flat cells, the worst is cell " +
-                      std::to_string(model.report.worst_cell));
+                      std::to_string(number_of_cell(model.problem.mesh, model.report.worst_cell)));
     }
     return out;
 }
@@ -129,14 +132,14 @@ std::string three_N(const Eigen::Vector3d& f) {
 }
 
 void row(const char* what, const std::string& value) {
-    std::printf("  %-22s %s\n", what, value.c_str());
+    std::printf("  %-22s %s\n", printable(what).c_str(), value.c_str());
 }
 
 void print_table(const FemCase& model, const FemResult& result) {
     const auto mm = [](const std::optional<double>& value_m) {
         return value_m ? six_digits(1e3 * *value_m) + " mm" : std::string("-");
     };
-    std::printf("%s: %s, %td nodes, %td elements, %d equations\n", model.file.c_str(),
+    std::printf("%s: %s, %td nodes, %td elements, %d equations\n", printable(model.file).c_str(),
                 name_of(model.problem.element), model.problem.mesh.nodes_m.cols(),
                 model.problem.mesh.cells.cols(), result.equations);
     row("applied", short_number(result.applied_N) + " N");
@@ -198,12 +201,12 @@ void solve_file(const SolveOptions& options) {
     if (isatty(STDERR_FILENO) != 0) std::fprintf(stderr, "\r\033[K");
     if (!options.output.empty()) write_vtu(options.output, vtu_of(model, result));
     if (options.json) {
-        std::printf("%s\n", json_of(model, result).dump(2).c_str());
+        std::printf("%s", json_text(json_of(model, result)).c_str());
     } else {
         print_table(model, result);
     }
     for (const std::string& warning : warnings_of(model, result)) {
-        std::fprintf(stderr, "palpa: %s: %s\n", options.file.c_str(), warning.c_str());
+        std::fprintf(stderr, "palpa: %s\n", printable(options.file + ": " + warning).c_str());
     }
     if (!result.converged) throw std::runtime_error(options.file + ": not converged");
 }

@@ -25,9 +25,12 @@ Material read_material(JsonReader json) {
     Material material;
     material.young_Pa = json.number("young_Pa", {0.0, 1e15, true});
     material.poisson = json.number("poisson", kAnyNumber);
-    if (!(material.poisson > -1.0 && material.poisson < 0.5)) {
-        json.fail("poisson", short_number(material.poisson),
-                  "a number > -1 and < 0.5 (0.4999 stands for an incompressible tissue)");
+    // at 0.5 - 1e-10 a block sinks as at 0.4999999 to six digits, at 0.5 - 1e-12 only to five, and a few
+    // roundings below 0.5 the matrix can no longer be factored (2026-11)
+    constexpr double kMostPoisson = 0.5 - 1e-10;
+    if (!(material.poisson > -1.0 && material.poisson <= kMostPoisson)) {
+        json.fail("poisson", number_text(material.poisson),
+                  "a number > -1 and < 0.5 by at least 1e-10 (0.4999 stands for an incompressible tissue)");
     }
     return material;
 }
@@ -117,9 +120,12 @@ void read_regions(JsonReader& json, const std::vector<std::string>& materials, C
     }
     const auto bare = (mesh.mesh.region.array() < 0).count();
     if (bare > 0) {
+        Index first = 0;
+        while (mesh.mesh.region(first) >= 0) ++first;
         json.fail("regions",
                   std::to_string(bare) + " of " + std::to_string(mesh.mesh.region.size()) +
-                      " cells without a material",
+                      " cells without a material, the first is cell " +
+                      std::to_string(number_of_cell(mesh.mesh, first)),
                   "a region for each: begin with {\"all\": true, \"material\": ...}");
     }
 }
@@ -155,6 +161,8 @@ ParabolicPressure read_pressure(JsonReader json, const CaseMesh& mesh) {
     pressure.centre_m = {1e-3 * centre_mm[0], 1e-3 * centre_mm[1]};
     pressure.diameter_m = 1e-3 * json.number("diameter_mm", kPositive);
     pressure.force_N = json.number("force_N", kAnyNumber);
+    if (faces_on(mesh.mesh, mesh.outer, pressure.side).cell.size() == 0)
+        json.fail("face", "no face of the mesh in that side of its bounding box", "at least one");
     const PressureLoad load = parabolic_load(mesh.mesh, mesh.outer, pressure, LoadShare::consistent);
     if (pressure.force_N != 0.0 && !(load.applied_N / pressure.force_N > 1e-6)) {
         json.fail("centre_mm", "a disc beside the body", "one that at least touches the side");
@@ -177,6 +185,13 @@ CaseTraction read_traction(JsonReader& entry, const CaseMesh& mesh) {
 
 CaseIndenter read_indenter(JsonReader json, const CaseMesh& mesh) {
     json.only({"shape", "radius_mm", "length_mm", "centre_mm", "depth_mm", "force_N", "friction"});
+    if (faces_on(mesh.mesh, mesh.outer, Side::zmax).cell.size() == 0) {
+        Index highest = 0;
+        mesh.mesh.nodes_m.row(2).maxCoeff(&highest);
+        json.fail("", "a body without a face in its highest plane; its highest is " +
+                          describe_node(mesh.mesh, highest),
+                  "a flat surface at zmax for the tool to come down on");
+    }
     CaseIndenter out;
     out.indenter.shape =
         json.choice("shape", {"sphere", "cylinder"}) == 0 ? IndenterShape::sphere : IndenterShape::cylinder;
@@ -253,6 +268,7 @@ FemCase parse_case(const Json& json, const std::string& file_name, const std::fi
     out.mesh_file = mesh.file;
     out.outer = mesh.outer;
     out.report = mesh.report;
+    out.warnings = mesh.warnings;
     read_supports(reader, mesh, out);
     read_loads(reader, mesh, out);
     return out;

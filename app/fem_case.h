@@ -41,6 +41,7 @@ struct FemCase {
     mechanics::Problem problem;  // mesh.region: position in `materials`
     mechanics::Faces outer;
     mechanics::MeshReport report;
+    std::vector<std::string> warnings;  // of the mesh
     std::vector<std::string> materials;
     std::vector<CaseSupport> supports;
     std::vector<mechanics::ParabolicPressure> pressures;

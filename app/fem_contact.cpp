@@ -1,10 +1,12 @@
 #include "app/fem_contact.h"
 
 #include <algorithm>
+#include <cassert>
 #include <chrono>
 #include <cmath>
 #include <iterator>
 
+#include "app/fem_reach.h"
 #include "files/input_error.h"
 #include "files/text.h"
 #include "mechanics/compliance.h"
@@ -171,6 +173,7 @@ void set_held_aside(const FemCase& model, const Factored& factored, Rectangle& r
         return factored.reduction.equation[static_cast<std::size_t>(3 * node + axis)] == kPrescribed;
     };
     auto& touch = rectangle.request.touch_nodes;
+    assert(!touch.empty());  // read_indenter refuses a body without a face in its highest plane
     std::copy_if(touch.begin(), touch.end(), std::back_inserter(rectangle.held),
                  [&](int node) { return prescribed(node, 2); });
     std::erase_if(touch, [&](int node) { return prescribed(node, 2); });
@@ -243,6 +246,7 @@ IndenterContact press_indenter(const FemCase& model, const Factored& factored, c
         const bool inside = !at_rim(c, pressed, rectangle) && !pressed.contact.flags.over_edge;
         if (!inside && !rectangle.whole) continue;
         check_held(model, rectangle, pressed.contact.tool[0].depth_m);
+        check_reach(model, pressed.contact.tool[0].depth_m);
         if (pressed.touch.empty()) {
             throw bad_input(model.file, "loads.indenter", "a tool that touches no node at this depth",
                             "a deeper or larger tool, or a finer mesh around it");

@@ -7,6 +7,7 @@
 #include "files/input_error.h"
 #include "files/text.h"
 #include "mechanics/error.h"
+#include "mechanics/mesh_seams.h"
 
 namespace palpa {
 namespace {
@@ -47,9 +48,32 @@ Box read_box(JsonReader box) {
     return out;
 }
 
-Mesh mesh_of(const Msh& msh, Element element, const std::string& file) {
+MshKind kind_of(Element element) {
+    return element == Element::tet4 ? MshKind::tet : MshKind::hex;
+}
+
+// Nodes of none of these cells go; what stood on them keeps -1 there.
+void drop_loose_nodes(MshKind kind, Msh& msh) {
+    std::vector<int> kept_as(msh.n_nodes(), -1);
+    for (const int node : msh.of(kind).nodes) kept_as[static_cast<std::size_t>(node)] = 0;
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < kept_as.size(); ++i) {
+        if (kept_as[i] < 0) continue;
+        std::copy_n(msh.nodes.begin() + static_cast<std::ptrdiff_t>(3 * i), 3,
+                    msh.nodes.begin() + static_cast<std::ptrdiff_t>(3 * kept));
+        msh.node_number[kept] = msh.node_number[i];
+        kept_as[i] = static_cast<int>(kept++);
+    }
+    msh.nodes.resize(3 * kept);
+    msh.node_number.resize(kept);
+    for (MshCells& cells : msh.cells) {
+        for (int& node : cells.nodes) node = kept_as[static_cast<std::size_t>(node)];
+    }
+}
+
+Mesh mesh_of(Msh& msh, Element element, const std::string& file) {
     const bool tets = element == Element::tet4;
-    const MshKind wanted = tets ? MshKind::tet : MshKind::hex;
+    const MshKind wanted = kind_of(element);
     const std::size_t others = msh.count(tets ? MshKind::hex : MshKind::tet);
     const auto n = static_cast<Index>(msh.count(wanted));
     if (n == 0 || others > 0) {
@@ -59,6 +83,7 @@ Mesh mesh_of(const Msh& msh, Element element, const std::string& file) {
                 std::to_string(msh.count(MshKind::tet)) + " tetrahedra",
             tets ? "tetrahedra only (element tet4)" : "hexahedra only (element hex8-bbar or hex8)");
     }
+    drop_loose_nodes(wanted, msh);
     if (static_cast<double>(msh.n_nodes()) > kMostNodes) {
         throw bad_input(file, "", std::to_string(msh.n_nodes()) + " nodes",
                         "at most " + short_number(kMostNodes));
@@ -68,18 +93,19 @@ Mesh mesh_of(const Msh& msh, Element element, const std::string& file) {
         1e-3 * Eigen::Map<const Eigen::Matrix3Xd>(msh.nodes.data(), 3, static_cast<Index>(msh.n_nodes()));
     mesh.cells = Eigen::Map<const Eigen::MatrixXi>(msh.of(wanted).nodes.data(), tets ? 4 : 8, n);
     mesh.region = Eigen::VectorXi::Zero(n);
+    mesh.node_number = msh.node_number;
+    mesh.cell_number = msh.of(wanted).number;
     return mesh;
 }
 
-void check_cells(CaseMesh& mesh, Element element, const JsonReader& json) {
+void check_cells(CaseMesh& mesh, const JsonReader& json) {
     try {
         mesh.report = check_mesh(mesh.mesh);
     } catch (const MeshError& error) {
         if (!mesh.msh) throw bad_input(json.file(), "mesh", error.what(), "cells with a volume");
-        const auto& number = mesh.msh->of(element == Element::tet4 ? MshKind::tet : MshKind::hex).number;
         std::string found = "inverted or flat elements";
         for (std::size_t i = 0; i < std::min<std::size_t>(error.cells.size(), 8); ++i) {
-            found += " " + std::to_string(number[static_cast<std::size_t>(error.cells[i])]);
+            found += " " + std::to_string(number_of_cell(mesh.mesh, error.cells[i]));
         }
         if (error.cells.size() > 8) found += " ...";
         throw bad_input(mesh.file, "", found + " (" + std::to_string(error.cells.size()) + " in all)",
@@ -87,20 +113,73 @@ void check_cells(CaseMesh& mesh, Element element, const JsonReader& json) {
     }
 }
 
+// Across a seam the two sides move apart or into each other, and nothing in the answer would show it.
+void check_seams(CaseMesh& mesh) {
+    const Seams seams = find_seams(mesh.mesh, mesh.outer);
+    if (!seams.hanging.empty()) {
+        const Seam& seam = seams.hanging.front();
+        throw bad_input(mesh.file, "",
+                        describe_node(mesh.mesh, seam.node) + " in a face of element " +
+                            std::to_string(number_of_cell(mesh.mesh, seam.cell)) +
+                            " without being its corner (" + std::to_string(seams.hanging.size()) +
+                            " such nodes)",
+                        "elements that share whole faces where they touch, or a gap between them");
+    }
+    if (seams.doubled.empty()) return;
+    const Seam& seam = seams.doubled.front();
+    mesh.warnings.push_back(
+        mesh.file + ": " + std::to_string(seams.doubled.size()) +
+        " nodes lie where another node is, the first is " + describe_node(mesh.mesh, seam.node) +
+        " on node " + std::to_string(number_of_node(mesh.mesh, seam.other)) +
+        "; the elements are not joined there and may move through each other (Gmsh joins them with "
+        "Tools > Coherence or `Coherence Mesh;`)");
+}
+
+std::string name_of(const MshGroup& group) {
+    return group.name.empty() ? std::to_string(group.tag) : group.name;
+}
+
 const MshGroup& find_group(JsonReader& entry, const CaseMesh& mesh, int dimension) {
     const std::string name = entry.text("physical");
     if (!mesh.msh)
         entry.fail("physical", shown(name), "a mesh from a .msh file; a box has faces xmin ... zmax only");
     std::string known;
+    std::string tags;
+    const MshGroup* found = nullptr;
     for (const MshGroup& group : mesh.msh->groups) {
         if (group.dimension != dimension) continue;
-        if (group.name == name || (group.name.empty() && std::to_string(group.tag) == name)) return group;
-        known +=
-            (known.empty() ? "" : ", ") + shown(group.name.empty() ? std::to_string(group.tag) : group.name);
+        known += (known.empty() ? "" : ", ") + shown(name_of(group));
+        if (name_of(group) != name) continue;
+        tags += (found != nullptr ? ", " : "") + std::to_string(group.tag);
+        if (found != nullptr) {
+            entry.fail("physical",
+                       "several groups of dimension " + std::to_string(dimension) + " called " + shown(name) +
+                           " in " + mesh.file + " (physical tags " + tags + ")",
+                       "a name that one of them has alone");
+        }
+        found = &group;
     }
+    if (found != nullptr) return *found;
     entry.fail("physical", shown(name),
                "a physical group of dimension " + std::to_string(dimension) + " in " + mesh.file + ": " +
                    (known.empty() ? "there is none" : known));
+}
+
+std::size_t count_in(const MshGroup& group, MshKind kind) {
+    return group.cells[static_cast<std::size_t>(kind)].size();
+}
+
+// Refuses a group that would load nothing, or only in part.
+void check_faces_of(JsonReader& entry, const CaseMesh& mesh, const MshGroup& group) {
+    const bool hex = is_hex(mesh.mesh);
+    const std::size_t triangles = count_in(group, MshKind::triangle);
+    const std::size_t quads = count_in(group, MshKind::quad);
+    if ((hex ? triangles : quads) == 0 && triangles + quads > 0) return;
+    entry.fail("physical",
+               "a group " + shown(name_of(group)) + " of " + std::to_string(triangles) + " triangles and " +
+                   std::to_string(quads) + " quads in " + mesh.file,
+               hex ? "quads only, at least one: the faces of hexahedra"
+                   : "triangles only, at least one: the faces of tetrahedra");
 }
 
 std::array<int, 4> sorted_corners(const int* nodes, int corners) {
@@ -113,6 +192,7 @@ std::array<int, 4> sorted_corners(const int* nodes, int corners) {
 // The outer faces with the corners of a group's triangles or quads: oriented, and surely on the outside.
 Faces faces_of_group(JsonReader& entry, const CaseMesh& mesh) {
     const MshGroup& group = find_group(entry, mesh, 2);
+    check_faces_of(entry, mesh, group);
     std::map<std::array<int, 4>, Index> at;
     const auto corners = static_cast<int>(mesh.outer.corners.rows());
     for (Index f = 0; f < mesh.outer.cell.size(); ++f) {
@@ -154,8 +234,8 @@ void with_key(const std::string& file, const std::string& key, const std::string
               const std::function<void()>& call) {
     try {
         call();
-    } catch (const SolverError&) {
-        throw;  // the run failed, the input is not known to be wrong
+    } catch (const SolverError& error) {  // the run failed, the input is not known to be wrong
+        throw SolverError(file + ": " + error.what(), error.code);
     } catch (const MechanicsError& error) {
         throw bad_input(file, key, error.what(), expected);
     }
@@ -181,8 +261,9 @@ CaseMesh read_case_mesh(JsonReader& json, const std::filesystem::path& folder, E
         with_key(json.file(), "mesh.box", "a box that can be meshed", [&] { out.mesh = hex_box(box); });
         if (element == Element::tet4) out.mesh = split_to_tets(out.mesh);
     }
-    check_cells(out, element, json);
+    check_cells(out, json);
     out.outer = boundary_faces(out.mesh);
+    if (out.msh) check_seams(out);
     return out;
 }
 
@@ -208,18 +289,32 @@ std::vector<int> nodes_named(JsonReader& entry, const CaseMesh& mesh, std::strin
         const auto corners = static_cast<std::size_t>(kMshCorners[static_cast<std::size_t>(kind)]);
         for (const int cell : group.cells[static_cast<std::size_t>(kind)]) {
             const int* first = mesh.msh->of(kind).nodes.data() + corners * static_cast<std::size_t>(cell);
+            if (std::any_of(first, first + corners, [](int node) { return node < 0; })) {
+                entry.fail("physical",
+                           "element " +
+                               std::to_string(mesh.msh->of(kind).number[static_cast<std::size_t>(cell)]) +
+                               " of " + mesh.file + ", with a node that no cell of the body has",
+                           "faces of the body");
+            }
             nodes.insert(nodes.end(), first, first + corners);
         }
     }
     std::sort(nodes.begin(), nodes.end());
     nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
-    if (nodes.empty()) entry.fail("physical", "a group without faces", "at least one");
+    if (nodes.empty()) {
+        entry.fail("physical", "a group " + shown(name) + " without faces in " + mesh.file, "at least one");
+    }
     return nodes;
 }
 
 std::vector<int> cells_of_group(JsonReader& entry, const CaseMesh& mesh) {
     const MshKind kind = is_hex(mesh.mesh) ? MshKind::hex : MshKind::tet;
-    return find_group(entry, mesh, 3).cells[static_cast<std::size_t>(kind)];
+    const MshGroup& group = find_group(entry, mesh, 3);
+    if (count_in(group, kind) == 0) {
+        entry.fail("physical", "a group " + shown(name_of(group)) + " without elements in " + mesh.file,
+                   "at least one");
+    }
+    return group.cells[static_cast<std::size_t>(kind)];
 }
 
 }  // namespace palpa

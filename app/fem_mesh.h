@@ -19,9 +19,11 @@ struct CaseMesh {
     mechanics::MeshReport report;
     std::string file;        // of the mesh, "" for a box
     std::optional<Msh> msh;  // where physical groups are looked up; absent for a box
+    std::vector<std::string> warnings;
 };
 
-// Reads "mesh" and "element". A .msh is in mm. Refuses more nodes than a desktop can factor.
+// Reads "mesh" and "element". A .msh is in mm; its nodes in no cell are left out, so that they count for
+// nothing. Refuses cells that touch without sharing their nodes, and more nodes than a desktop can factor.
 CaseMesh read_case_mesh(JsonReader& json, const std::filesystem::path& folder, mechanics::Element& element);
 
 // What "face" (xmin ... zmax) or "physical" in an entry of the case means. `name` is filled for messages.

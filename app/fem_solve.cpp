@@ -1,7 +1,6 @@
 #include "app/fem_solve.h"
 
 #include <Eigen/Geometry>
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -10,6 +9,7 @@
 #include "app/fem_mesh.h"
 #include "files/text.h"
 #include "mechanics/error.h"
+#include "mechanics/face_point.h"
 
 namespace palpa {
 namespace {
@@ -69,40 +69,6 @@ void add_tractions(const FemCase& model, Loads& loads) {
     }
 }
 
-// Nearest point of one face to a place: its weights on the corners and how far away it is.
-struct OnFace {
-    Eigen::VectorXd weight;
-    double away_m = 0.0;
-};
-
-OnFace nearest_on_face(const Matrix3Xd& x, const Vector3d& place) {
-    const bool quad = x.cols() == 4;
-    const auto weights = [&](double r, double s) {
-        Eigen::VectorXd w(x.cols());
-        if (quad) {
-            w << (1.0 - r) * (1.0 - s), r * (1.0 - s), r * s, (1.0 - r) * s;
-        } else {
-            w << 1.0 - r - s, r, s;
-        }
-        return w;
-    };
-    double r = quad ? 0.5 : 1.0 / 3.0;
-    double s = r;
-    for (int i = 0; i < 12; ++i) {  // Gauss-Newton on |X(r, s) - place|, held inside
-        Eigen::Matrix<double, 3, 2> J;
-        J.col(0) = quad ? Vector3d((1.0 - s) * (x.col(1) - x.col(0)) + s * (x.col(2) - x.col(3)))
-                        : Vector3d(x.col(1) - x.col(0));
-        J.col(1) = quad ? Vector3d((1.0 - r) * (x.col(3) - x.col(0)) + r * (x.col(2) - x.col(1)))
-                        : Vector3d(x.col(2) - x.col(0));
-        const Eigen::Vector2d step =
-            (J.transpose() * J).inverse() * (J.transpose() * (place - x * weights(r, s)));
-        r = std::clamp(r + step(0), 0.0, 1.0);
-        s = std::clamp(s + step(1), 0.0, quad ? 1.0 : 1.0 - r);
-    }
-    const Eigen::VectorXd weight = weights(r, s);
-    return {weight, (x * weight - place).norm()};
-}
-
 Vector3d outward_normal(const Matrix3Xd& x) {
     const Vector3d area = x.cols() == 4 ? (x.col(2) - x.col(0)).cross(x.col(3) - x.col(1))
                                         : (x.col(1) - x.col(0)).cross(x.col(2) - x.col(0));
@@ -114,8 +80,7 @@ double depression_at_m(const Mesh& mesh, const LoadCentre& centre, const Matrix3
     double depression_m = 0.0;
     for (Index f = 0; f < centre.faces.cell.size(); ++f) {
         const Eigen::VectorXi corners = centre.faces.corners.col(f);
-        Matrix3Xd x(3, corners.size());
-        for (Index k = 0; k < corners.size(); ++k) x.col(k) = mesh.nodes_m.col(corners(k));
+        const Matrix3Xd x = corners_of_face_m(mesh, centre.faces, f);
         const OnFace here = nearest_on_face(x, centre.at_m);
         if (here.away_m >= nearest.away_m) continue;
         nearest = here;
@@ -189,30 +154,23 @@ void judge_linearity(const FemCase& model, const Loads& loads, FemResult& result
     result.linear = linear_range(result.linear_ratio);
 }
 
-}  // namespace
-
-FemResult solve_case(const FemCase& model, const FemProgress& progress) {
+FemResult solve_loads(const FemCase& model, const Factored& factored, const FemProgress& progress) {
     const Mesh& mesh = model.problem.mesh;
-    std::optional<Factored> factored;
-    progress("factor", 0, 0);
-    with_key(model.file, "supports", "a model that can be solved",
-             [&] { factored.emplace(factorise(model.problem, best_solver())); });
-
     FemResult result;
     Loads loads{Matrix3Xd::Zero(3, mesh.nodes_m.cols()), 0.0, false, std::nullopt};
     add_pressures(model, loads);
     add_tractions(model, loads);
     if (model.indenter) {
         // everything is linear, so the tool finds the tissue as the other loads and supports leave it
-        const Matrix3Xd before_m = solve(*factored, loads.force_N).u_m;
-        result.contact = press_indenter(model, *factored, before_m, progress);
+        const Matrix3Xd before_m = solve(factored, loads.force_N).u_m;
+        result.contact = press_indenter(model, factored, before_m, progress);
         loads.force_N += result.contact->force_N;
         loads.applied_N += result.contact->normal_N;
         loads.centre = LoadCentre{centre_on_side(mesh, Side::zmax, model.indenter->centre_m),
                                   faces_on(mesh, model.outer, Side::zmax), 0.0};
     }
     progress("solve", 0, 0);
-    result.solution = solve(*factored, loads.force_N);
+    result.solution = solve(factored, loads.force_N);
     if (!result.solution.u_m.allFinite() || !std::isfinite(result.solution.energy_J)) {
         throw std::runtime_error(model.file + ": the displacement is not finite (loads of " +
                                  short_number(loads.applied_N) + " N)");
@@ -220,7 +178,7 @@ FemResult solve_case(const FemCase& model, const FemProgress& progress) {
     result.fields = cell_fields(mesh, model.problem.materials, result.solution.u_m);
     result.von_mises_Pa = von_mises_of(result.fields);
     blank_rigid_cells(model.problem, result);
-    result.equations = factored->reduction.equations;
+    result.equations = factored.reduction.equations;
     sum_reactions(model, result);
     result.applied_N = loads.applied_N;
     result.partial = loads.partial;
@@ -229,11 +187,27 @@ FemResult solve_case(const FemCase& model, const FemProgress& progress) {
     if (loads.applied_N > 0.0) {
         result.skel_m = loads.force_N.cwiseProduct(result.solution.u_m).sum() / loads.applied_N;
     }
-    result.residual = relative_residual(*factored, loads.force_N, result.solution);
+    result.residual = relative_residual(factored, loads.force_N, result.solution);
     result.converged = result.solution.backward_error < 1e-12 && (!result.contact || result.contact->settled);
     judge_linearity(model, loads, result);
-    result.assemble_s = factored->assemble_s;
-    result.factor_s = factored->factor_s;
+    result.assemble_s = factored.assemble_s;
+    result.factor_s = factored.factor_s;
+    return result;
+}
+
+}  // namespace
+
+FemResult solve_case(const FemCase& model, const FemProgress& progress) {
+    std::optional<Factored> factored;
+    progress("factor", 0, 0);
+    // whatever else supports can have wrong was refused when the case was read
+    with_key(model.file, "supports",
+             "a rigid inclusion held completely, by fixing xyz where it meets the support, or a material at "
+             "most 1e8 times as stiff as the softest, which the program lets deform",
+             [&] { factored.emplace(factorise(model.problem, best_solver())); });
+    FemResult result;
+    with_key(model.file, "loads", "loads that can be computed with",
+             [&] { result = solve_loads(model, *factored, progress); });
     return result;
 }
 

@@ -271,7 +271,7 @@ void check(const GenerateOptions& options, const MapTask& task, const MapTask& r
                         " % of the greatest force at most, " + short_number(100.0 * differences.median) + " % in the median";
     if (is_rough(task)) found += "; tangential force " + short_number(100.0 * differences.largest_tangential) + " % of it at most";
     map.source.how = map.source.how.substr(0, map.source.how.find(kChecked)) + kChecked + " " + found + " (convergence.json).";
-    write_text_atomically(without_slash(options.output) / "map.json", map_json(map).dump(2) + "\n");
+    write_text_atomically(without_slash(options.output) / "map.json", json_text(map_json(map)));
     fs::remove_all(refined.folder);
     std::printf("%s: %s\n", options.output.c_str(), found.c_str());
 }

@@ -144,7 +144,10 @@ bool JsonReader::boolean(std::string_view key, bool otherwise) {
 std::string JsonReader::text(std::string_view key) {
     const Json& value = need(key, "a text");
     if (!value.is_string()) fail(key, described(value), "a text");
-    return value.get<std::string>();
+    const auto& text = value.get_ref<const std::string&>();
+    // as a file's name it would end there, and another file be opened than the one that stands here
+    if (text.find('\0') != std::string::npos) fail(key, described(value) + " with a zero byte (\\u0000)", "a text without it");
+    return text;
 }
 
 std::string JsonReader::text(std::string_view key, std::string otherwise) {

@@ -61,8 +61,12 @@ void read_names(Reading& r) {
         const auto first = line.find('"');
         const auto last = line.rfind('"');
         if (first == last) r.in.fail(shown(line), "a name in quotation marks");
-        group_of(static_cast<int>(dimension), static_cast<int>(tag), r).name =
-            line.substr(first + 1, last - first - 1);
+        std::string& name = group_of(static_cast<int>(dimension), static_cast<int>(tag), r).name;
+        if (!name.empty()) {
+            r.in.fail("a second name for group " + std::to_string(tag) + ", which is called " + shown(name),
+                      "one name for each group");
+        }
+        name = line.substr(first + 1, last - first - 1);
     }
 }
 
@@ -98,6 +102,7 @@ void add_node_number(std::uint64_t number, Reading& r) {
     if (!r.node_at.try_emplace(number, position).second) {
         r.in.fail("node " + std::to_string(number) + " a second time", "each node once");
     }
+    r.msh.node_number.push_back(number);
 }
 
 void read_coordinates(Reading& r) {

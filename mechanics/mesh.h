@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <cstdint>
 #include <optional>
 #include <vector>
 
@@ -14,7 +15,19 @@ struct Mesh {
     Eigen::Matrix3Xd nodes_m;
     Eigen::MatrixXi cells;
     Eigen::VectorXi region;  // one per cell: position in the list of materials
+    // As the file numbers them, for messages; empty: their positions.
+    std::vector<std::uint64_t> node_number{};
+    std::vector<std::uint64_t> cell_number{};
 };
+
+inline std::uint64_t number_of_node(const Mesh& mesh, Eigen::Index node) {
+    const auto i = static_cast<std::size_t>(node);
+    return mesh.node_number.empty() ? i : mesh.node_number[i];
+}
+inline std::uint64_t number_of_cell(const Mesh& mesh, Eigen::Index cell) {
+    const auto i = static_cast<std::size_t>(cell);
+    return mesh.cell_number.empty() ? i : mesh.cell_number[i];
+}
 
 inline bool is_hex(const Mesh& mesh) {
     return mesh.cells.rows() == 8;

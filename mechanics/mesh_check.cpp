@@ -17,10 +17,10 @@ namespace {
 using Eigen::Index;
 using Eigen::Vector3d;
 
-std::string first_few(const std::vector<int>& cells) {
+std::string first_few(const Mesh& mesh, const std::vector<int>& cells) {
     std::string out;
     for (std::size_t i = 0; i < std::min<std::size_t>(cells.size(), 8); ++i)
-        out += text(i == 0 ? "" : ", ", cells[i]);
+        out += text(i == 0 ? "" : ", ", number_of_cell(mesh, cells[i]));
     if (cells.size() > 8) out += text(", ... (", cells.size(), " in all)");
     return out;
 }
@@ -42,7 +42,7 @@ void check_numbers(const Mesh& mesh) {
     }
     if (!bad.empty()) {
         throw MeshError(
-            text("mesh: node numbers outside 0..", mesh.nodes_m.cols() - 1, " in cells ", first_few(bad)),
+            text("mesh: node numbers outside 0..", mesh.nodes_m.cols() - 1, " in cells ", first_few(mesh, bad)),
             bad);
     }
     for (Index cell = 0; cell < mesh.cells.cols(); ++cell) {
@@ -53,7 +53,7 @@ void check_numbers(const Mesh& mesh) {
         }
     }
     if (!bad.empty())
-        throw MeshError(text("mesh: coordinates that are not finite in cells ", first_few(bad)), bad);
+        throw MeshError(text("mesh: coordinates that are not finite in cells ", first_few(mesh, bad)), bad);
 }
 
 Tet tet_corners(const Mesh& mesh, Index cell) {
@@ -168,9 +168,9 @@ MeshReport check_mesh(const Mesh& mesh) {
     }
     if (!inverted.empty() || !flat.empty()) {
         std::string what = "mesh:";
-        if (!inverted.empty()) what += text(" inverted cells ", first_few(inverted), ";");
-        if (!flat.empty()) what += text(" cells without volume ", first_few(flat), ";");
-        what += text(" worst is cell ", report.worst_cell, " with relative volume ",
+        if (!inverted.empty()) what += text(" inverted cells ", first_few(mesh, inverted), ";");
+        if (!flat.empty()) what += text(" cells without volume ", first_few(mesh, flat), ";");
+        what += text(" worst is cell ", number_of_cell(mesh, report.worst_cell), " with relative volume ",
                      report.worst_relative_det, ", must be > ", kFlat);
         inverted.insert(inverted.end(), flat.begin(), flat.end());
         throw MeshError(what, inverted);
@@ -211,9 +211,16 @@ std::string describe_part(const Mesh& mesh, const Parts& parts, int part) {
             high = high.cwiseMax(mesh.nodes_m.col(mesh.cells(k, cell)));
         }
     }
-    return text("part ", part + 1, " of ", parts.count, " (", cells, " cells from cell ", first, ", x ",
-                low.x(), "..", high.x(), ", y ", low.y(), "..", high.y(), ", z ", low.z(), "..", high.z(),
-                " m)");
+    low *= 1e3;
+    high *= 1e3;
+    return text("part ", part + 1, " of ", parts.count, " (", cells, " cells from cell ",
+                number_of_cell(mesh, first), ", x ", low.x(), "..", high.x(), ", y ", low.y(), "..", high.y(),
+                ", z ", low.z(), "..", high.z(), " mm)");
+}
+
+std::string describe_node(const Mesh& mesh, Index node) {
+    const Vector3d mm = 1e3 * mesh.nodes_m.col(node);
+    return text("node ", number_of_node(mesh, node), " (", mm.x(), ", ", mm.y(), ", ", mm.z(), " mm)");
 }
 
 }  // namespace palpa::mechanics

@@ -45,7 +45,9 @@ struct Parts {
 };
 Parts parts_of(const Mesh& mesh);
 
-// "part 1 of 3 (27 cells from cell 54, x 0..0.1, y 0..0.1, z 0..0.05 m)"
+// For messages, which speak in mm and in the file's numbers:
+// "part 1 of 3 (27 cells from cell 54, x 0..100, y 0..100, z 0..50 mm)" and "node 17 (10, 20, 0 mm)".
 std::string describe_part(const Mesh& mesh, const Parts& parts, int part);
+std::string describe_node(const Mesh& mesh, Eigen::Index node);
 
 }  // namespace palpa::mechanics

@@ -101,16 +101,27 @@ std::string motion_names(const Eigen::Matrix<double, 6, 1>& motion) {
     return out;
 }
 
+// Names the rigid motions that these conditions, one a row, leave.
+std::string free_motions(const Eigen::MatrixXd& conditions) {
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(conditions.transpose() * conditions);
+    std::string names;
+    for (Index k = 0; k < 6 && eigen.eigenvalues()(k) < 1e-10 * eigen.eigenvalues()(5); ++k)
+        names += text(names.empty() ? "" : "; ", motion_names(eigen.eigenvectors().col(k)));
+    return names;
+}
+
 // All dofs of a body that a support holds must fit one rigid motion, which then holds for its other nodes
 // too.
 bool prescribe_body(const Mesh& mesh, const std::vector<int>& nodes, const Frame& frame,
                     Reduction& reduction) {
     Eigen::MatrixXd rows(0, 6);
     Eigen::VectorXd values(0);
+    int touched = -1;
     for (const int node : nodes) {
         const Rigid motions = rigid_motions(mesh.nodes_m.col(node), frame.centre, frame.length);
         for (int c = 0; c < 3; ++c) {
             if (reduction.equation[static_cast<std::size_t>(3 * node + c)] != kPrescribed) continue;
+            if (touched < 0) touched = node;
             rows.conservativeResize(rows.rows() + 1, 6);
             values.conservativeResize(values.size() + 1);
             rows.bottomRows<1>() = motions.row(c);
@@ -122,11 +133,14 @@ bool prescribe_body(const Mesh& mesh, const std::vector<int>& nodes, const Frame
     const Eigen::VectorXd q = qr.rank() == 6 ? Eigen::VectorXd(qr.solve(values)) : Eigen::VectorXd::Zero(6);
     const double misfit = (rows * q - values).cwiseAbs().maxCoeff();
     if (qr.rank() < 6 || misfit > 1e-9 * values.cwiseAbs().maxCoeff()) {
-        throw SupportError(
-            text("rigid body at ", frame.centre.transpose(), " m with ", nodes.size(),
-                 " nodes touches a support that leaves it ", 6 - qr.rank(), " free motions (misfit ", misfit,
-                 " m); it must be held completely or not at all"),
-            -1);
+        const Vector3d mm = 1e3 * frame.centre;
+        throw SupportError(text("a rigid inclusion of ", nodes.size(), " nodes around ", mm.x(), ", ", mm.y(),
+                                ", ", mm.z(), " mm that a support touches, at ",
+                                describe_node(mesh, touched), ", and ",
+                                qr.rank() < 6 ? text("leaves free to move in ", 6 - qr.rank(), " ways (",
+                                                     free_motions(rows), ")")
+                                              : text("strains by ", 1e3 * misfit, " mm")),
+                           -1);
     }
     for (const int node : nodes) {
         const Vector3d u = rigid_motions(mesh.nodes_m.col(node), frame.centre, frame.length) * q;
@@ -236,8 +250,9 @@ Reduction make_reduction(const Mesh& mesh, const Supports& supports, const std::
         const int dof = supports.dof[i];
         if (equation(dof) == kLoose) continue;
         if (equation(dof) == kPrescribed && reduction.prescribed_m(dof) != supports.value_m[i]) {
-            throw SupportError(text("node ", dof / 3, " axis ", dof % 3, " is given two displacements: ",
-                                    reduction.prescribed_m(dof), " m and ", supports.value_m[i], " m"),
+            throw SupportError(text(describe_node(mesh, dof / 3), " is given two displacements along ",
+                                    "xyz"[dof % 3], ": ", 1e3 * reduction.prescribed_m(dof), " mm and ",
+                                    1e3 * supports.value_m[i], " mm"),
                                -1);
         }
         equation(dof) = kPrescribed;

@@ -150,3 +150,20 @@ TEST_CASE("fem solve: bad input ends with status 2, a disk that takes nothing wi
     for ([[maybe_unused]] const auto& entry : std::filesystem::directory_iterator(folder.path())) ++left;
     CHECK(left == 1);
 }
+
+TEST_CASE("fem solve: warnings of the element stand in the JSON and on stderr") {
+    const TemporaryFolder folder;
+    write_text_atomically(folder / "c.json", case_text(kSlab, "tet4", kClamped, press_at(50, 50, 16), gel(2500, 0.499)));
+    const Called called = palpa_with("fem solve " + (folder / "c.json").string() + " --json");
+    CHECK(called.status == 0);
+    CHECK(contains(called.err, "c.json: tet4 locks at poisson 0.499"));
+    CHECK(contains(parse_json(called.out, "stdout")["warnings"][0].get<std::string>(), "hex8-bbar does not lock"));
+}
+
+TEST_CASE("fem solve: a case whose name is not UTF-8 is solved, and the JSON is valid") {
+    const TemporaryFolder folder;
+    write_text_atomically(folder / "c\xff.json", kIndented);
+    const Called called = palpa_with("fem solve '" + (folder / "c\xff.json").string() + "' --json");
+    CHECK_MESSAGE(called.status == 0, called.err);
+    CHECK(parse_json(called.out, "stdout")["converged"] == true);
+}

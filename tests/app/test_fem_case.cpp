@@ -390,7 +390,7 @@ TEST_CASE("hard case 14: a floating body, or a missing support, is named and nev
         said(case_text(R"({"file": "m.msh"})", "hex8", R"([{"physical": "base", "fix": "xyz"}])", "[]"),
              folder.path());
     CHECK(contains(message, "part 2 of 2"));
-    CHECK(contains(message, "x 0.05..0.06"));
+    CHECK(contains(message, "x 50..60"));
 }
 
 TEST_CASE("hard case 15: nu near 0.5 does not lock, and 0.5 is refused") {
@@ -400,7 +400,7 @@ TEST_CASE("hard case 15: nu near 0.5 does not lock, and 0.5 is refused") {
                1.0;
     };
     CHECK(std::abs(error(0.4999) - error(0.3)) < 0.01);
-    for (const double poisson : {0.5, 0.51, -1.0, 7.0}) {
+    for (const double poisson : {0.5, 0.51, -1.0, 7.0, 0.49999999999999994, -0.99999999999999999}) {
         CHECK(contains(said(case_text(kBlock, "hex8-bbar", kClamped, "[]", gel(2500, poisson))),
                        "c.json: materials.gel.poisson: found"));
     }

@@ -105,3 +105,11 @@ TEST_CASE("json: what a broken file holds does not steer the terminal that shows
     const std::string endless = "{\"a\": \"" + std::string(100'000, 'x');
     CHECK(message_of([&] { parse_json(endless, "x.json"); }).size() < 5'000);
 }
+
+TEST_CASE("json: a zero byte in a text, which would cut a file's name short, is refused with its key") {
+    const Json json = parse_json(R"({"file": "a.msh\u0000b", "good": "a.msh"})", "c.json");
+    JsonReader reader(json, "c.json");
+    const std::string message = message_of([&] { reader.text("file"); });
+    CHECK(contains(message, "c.json: file: found 'a.msh?b' with a zero byte"));
+    CHECK(reader.text("good") == "a.msh");
+}

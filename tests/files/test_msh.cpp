@@ -147,3 +147,16 @@ TEST_CASE("hard case 31: random damage to a msh file ends in a reading or a refu
         CHECK(refused > 1500);
     }
 }
+
+TEST_CASE("msh: nodes keep their numbers, and a group has one name") {
+    for (const std::string& bytes : all_encodings(row_of_cubes(1))) {
+        const Msh msh = parse_msh(bytes, "m.msh");
+        REQUIRE(msh.node_number.size() == msh.n_nodes());
+        for (std::size_t i = 0; i < msh.n_nodes(); ++i)
+            CHECK(msh.node_number[i] == static_cast<std::uint64_t>(msh_node_number(static_cast<int>(i))));
+    }
+    MshWritten twice = row_of_cubes(1);
+    twice.names.push_back({2, 1, "floor"});
+    for (const std::string& bytes : all_encodings(twice))
+        CHECK(contains(said(bytes), "found a second name for group 1, which is called 'base'"));
+}

@@ -112,6 +112,9 @@ TEST_CASE("parts: cells that share faces, loose nodes are reported") {
     const Parts parts = parts_of(mesh);
     CHECK(parts.count == 2);
     CHECK(describe_part(mesh, parts, 1).find("part 2 of 2 (1 cells from cell 1") == 0);
+    mesh.cell_number = {70, 90};
+    CHECK(describe_part(mesh, parts, 1) ==
+          "part 2 of 2 (1 cells from cell 90, x 200..300, y 0..100, z 0..100 mm)");
     mesh.cells.conservativeResize(8, 1);
     mesh.region.conservativeResize(1);
     CHECK(check_mesh(mesh).loose_nodes.size() == 8);

@@ -129,4 +129,29 @@ TEST_CASE("rigid bodies: six unknowns each, held completely or not at all") {
     Supports rollers;
     fix(nodes_of(faces_on(mesh, outer, Side::zmin)), "z", 0.0, rollers);
     CHECK_THROWS_AS(make_reduction(mesh, rollers, held), SupportError);
+    std::string message;
+    try {
+        make_reduction(mesh, rollers, held);
+    } catch (const SupportError& error) {
+        message = error.what();
+    }
+    CAPTURE(message);
+    CHECK(message.find("a rigid inclusion of 8 nodes around 15, 15, 5 mm") != std::string::npos);
+    CHECK(message.find("node 6 (10, 10, 0 mm)") != std::string::npos);
+    CHECK(message.find("free to move in 3 ways (") != std::string::npos);
+}
+
+TEST_CASE("supports: messages speak in mm and in the file's numbers") {
+    Mesh mesh = hex_box({{0.1, 0.1, 0.1}, {1, 1, 1}, std::nullopt});
+    mesh.node_number = {11, 12, 13, 14, 15, 16, 17, 18};
+    Supports supports;
+    fix({1}, "z", 0.0, supports);
+    fix({1}, "z", 0.001, supports);
+    std::string message;
+    try {
+        make_reduction(mesh, supports, {});
+    } catch (const SupportError& error) {
+        message = error.what();
+    }
+    CHECK(message == "node 12 (100, 0, 0 mm) is given two displacements along z: 0 mm and 1 mm");
 }
