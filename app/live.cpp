@@ -359,7 +359,11 @@ void note_resize(const Window& window, Gui& gui, App& app) {
 }
 
 void show(Window& window, App& app, TissueDrawer& tissue, Gui& gui, double dt_s) {
-    if (app.frames % 60 == 0) note_devices(window, app);
+    constexpr double kLook_s = 0.5;  // however slowly frames come: a pen that is gone is noticed within a second
+    if (app.frames == 0 || window.now_s() - app.looked_s > kLook_s) {
+        note_devices(window, app);
+        app.looked_s = window.now_s();
+    }
     age_note(now_of(app, window), app.screens);
     const Session& s = app.session;
     const Wishes wishes = draw_frame(s.scene, s.plan, s.trial, app.settings, now_of(app, window), dt_s, tissue, gui, app.screens,

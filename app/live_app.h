@@ -32,6 +32,7 @@ struct App {
     std::vector<double> waiting_s;  // host times of the samples that no frame has shown yet
     std::string stopped;            // why the trial cannot go on
     TrialKeeper* keeper = nullptr;  // may be null
+    double looked_s = 0.0;          // when devices were listed last
     double parted_s = 0.0;          // when the keeper last had the trial so far
     bool begin_waits = false;       // for the keeper to have the last trial
     bool quit = false;

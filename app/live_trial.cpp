@@ -15,7 +15,9 @@ void turn_tissue(App& app) {
 }
 
 void turn_if_shown(App& app) {
-    if (may_show_maps(app.session.trial)) turn_tissue(app);
+    if (!may_show_maps(app.session.trial)) return;
+    if (!close_trial(app)) app.screens.problems.push_back(app.stopped);  // its settings say how it was turned
+    turn_tissue(app);
 }
 
 void end_press(double now_s, App& app) {

@@ -233,7 +233,7 @@ TEST_CASE("left: a trial that its pen leaves is interrupted with its marks, neve
     keys.key(kEnter);  // begin
     keys.wait(5.0);    // the pen's stroke
     keys.key(kM);
-    keys.wait(8.0);    // the pen goes, and comes back
+    keys.wait(12.0);   // the pen goes, and comes back
     keys.key(kEnter);  // begin anew
     keys.wait(1.0);
     keys.key(kF);
