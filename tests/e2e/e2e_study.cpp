@@ -189,6 +189,7 @@ TEST_CASE("typed: a code that is not taken is typed again, and Enter twice begin
     script.key(k0);  // without touching the field
     script.key(k7);
     script.key(kEnter);
+    script.wait(1.0);    // a slow machine shows the instructions first
     script.key(kEnter);  // begin
     const std::string arguments = "study run " + (folder / "p.json").string() + " --log " + (folder / "log").string() +
                                   " --json --quit-after-s " + std::to_string(script.close() + 6.0) + " --screenshot " + (folder / "p.png").string();
