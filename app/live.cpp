@@ -160,14 +160,8 @@ void change_scene(Window& window, Gui& gui, const std::string& file, const std::
     });
     if (!good || !ready) return;
     if (!close_trial(app)) app.screens.problems.push_back(app.stopped);
-    const bool same_tissue = scene.file == app.session.scene.file;
-    if (same_tissue) {  // under another profile; as it is turned now
-        scene.mapping.rotate_deg = app.session.scene.mapping.rotate_deg;
-        scene.mapping.flip = app.session.scene.mapping.flip;
-    }
     app.session.scene = std::move(scene);
     app.session.plan = std::move(plan);
-    if (same_tissue && app.settings.test_mode) turn_if_shown(app);
     begin_anew(window, gui, app);
 }
 
