@@ -102,7 +102,7 @@ void check_case(const Session& session, Screens screens, const Case& c, const st
     CHECK(picture.width == c.width_px);
     constexpr std::size_t kTextHas = 40;  // colours of smoothed letters
     const bool covers_all = screens.screen == Screen::scale || screens.screen == Screen::devices || screens.screen == Screen::study ||
-                            screens.screen == Screen::maps;
+                            screens.screen == Screen::maps || screens.asked;
     const PanelArea all{0.0f, 0.0f, static_cast<float>(c.width_px), static_cast<float>(c.height_px)};
     if (layout.controls) CHECK(colours_in(picture, covers_all ? all : layout.controls_px) > kTextHas);
     CHECK(colours_in(picture, covers_all ? all : layout.tissue_px) > kTextHas);
