@@ -57,9 +57,9 @@ Json last_events(const fs::path& file, std::vector<std::string>& notes) {
     return json;
 }
 
-// The last whole row of a table, by column.
+// The last whole row with a place of a table of samples, by column; what a person asks of the program in between has none.
 Json last_sample(const fs::path& file) {
-    constexpr std::uintmax_t kTail_bytes = 4096;
+    constexpr std::uintmax_t kTail_bytes = 65536;  // some seconds
     std::error_code error;
     if (!fs::exists(file, error)) return {};
     const InputFile in(file);
@@ -69,14 +69,38 @@ Json last_sample(const fs::path& file) {
     std::string tail(kTail_bytes, '\0');
     tail.resize(in.read_at(in.bytes() - std::min(in.bytes(), kTail_bytes), tail.data(), tail.size()));
     const auto names = fields_of(std::string_view(head).substr(0, head.find('\n')), '\t');
-    const auto end = tail.rfind('\n');
-    if (end == std::string::npos || end == 0) return {};
-    const auto begin = tail.rfind('\n', end - 1);
-    const auto fields = fields_of(std::string_view(tail).substr(begin + 1, end - begin - 1), '\t');
-    if (fields.size() != names.size() || fields[0] == names[0]) return {};
-    Json json;
-    for (std::size_t i = 0; i < names.size(); ++i) json[std::string(names[i])] = std::string(fields[i]);
-    return json;
+    for (auto end = tail.rfind('\n'); end != std::string::npos && end > 0;) {
+        const auto before = tail.rfind('\n', end - 1);
+        const std::size_t begin = before == std::string::npos ? 0 : before + 1;
+        const auto fields = fields_of(std::string_view(tail).substr(begin, end - begin), '\t');
+        if (fields.size() != names.size() || fields[0] == names[0]) return {};
+        Json json;
+        for (std::size_t i = 0; i < names.size(); ++i) json[std::string(names[i])] = std::string(fields[i]);
+        if (json.value("x_mm", "") != "n/a" && json.value("y_mm", "") != "n/a") return json;
+        end = before;
+    }
+    return {};
+}
+
+// Where a person stands, as the study wrote it. Throws InputError naming the key that is not as it writes them.
+Json read_now(const fs::path& file) {
+    constexpr int kMost = 1'000'000;
+    const Json root = read_json(file);
+    JsonReader json(root, file.string());
+    json.text("step");
+    json.integer("finished", 0, kMost);
+    json.integer("of", 0, kMost);
+    json.text("stopped", "");
+    if (json.has("trial")) {
+        json.integer("trial", 1, kMost);
+        json.text("condition");
+        json.boolean("practice", false);
+    }
+    if (json.has("present_kPa")) {
+        json.numbers("present_kPa", 2, {0.0, 1e9});
+        json.integer("interval", 1, 2);
+    }
+    return root;
 }
 
 Json state_of(const fs::path& directory, const Person& person, std::vector<std::string>& notes) {
@@ -85,7 +109,7 @@ Json state_of(const fs::path& directory, const Person& person, std::vector<std::
     json["finished"] = finished_trials(directory, person.code).size();
     std::error_code error;
     if (!fs::exists(subject / "now.json", error)) return json;
-    json["now"] = read_json(subject / "now.json");
+    json["now"] = read_now(subject / "now.json");
     if (json["now"].value("step", "") != "trial") return json;
     const auto files = events_files(subject);
     if (files.empty()) return json;
@@ -147,6 +171,8 @@ void print(const Json& state) {
         const auto text = [&](const char* name) { return s.value(name, "n/a"); };
         std::printf(", %s at (%s, %s) mm, pressure %s, %s N, %s mm deep", text("tool").c_str(), text("x_mm").c_str(), text("y_mm").c_str(),
                     text("pressure").c_str(), text("force_N").c_str(), text("depth_mm").c_str());
+    } else if (state.contains("events")) {
+        std::printf(", the tissue was not touched in the last seconds");
     }
     if (state.contains("events")) std::printf("\n");
 }

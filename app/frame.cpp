@@ -31,6 +31,10 @@ Surface surface_of(const Scene& scene, const Plan& plan, const Avatar& avatar, S
 }
 
 void draw_panels(const Shown& shown, const Layout& layout, Gui& gui, Screens& screens, Wishes& wishes) {
+    if (screens.asked) {
+        draw_on_tissue(shown, gui);
+        return draw_ask(shown, gui, screens, wishes);
+    }
     take_keys(shown, gui, screens, wishes);
     if (screens.screen == Screen::devices) return draw_device_screen(shown, gui, screens, wishes);
     if (screens.screen == Screen::scale) return draw_scale_screen(shown, gui, screens, wishes);
@@ -56,8 +60,8 @@ void draw_panels(const Shown& shown, const Layout& layout, Gui& gui, Screens& sc
 Wishes draw_frame(const Scene& scene, const Plan& plan, const Trial& trial, const Settings& settings, double now_s,
                   double dt_s, TissueDrawer& tissue, Gui& gui, Screens& screens, State& state, FrameTimes& times) {
     const std::int64_t began_ns = steady_ns();
-    const bool keys_to_panels = screens.menu || (screens.screen != Screen::trial && screens.screen != Screen::devices);
-    gui.keep_enter(screens.screen == Screen::study);
+    const bool keys_to_panels = screens.menu || screens.asked || (screens.screen != Screen::trial && screens.screen != Screen::devices);
+    gui.keep_enter(screens.screen == Screen::study || screens.asked);
     gui.begin_frame(dt_s, keys_to_panels);
     const WindowSize window = gui.size_px();
     Shown shown{scene, plan, state, trial, settings, times, {}, {}, 0.0, now_s};

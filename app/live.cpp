@@ -72,6 +72,7 @@ void begin(const Window& window, const Gui& gui, App& app) {
     app.screens.maps.reset();
     app.screens.menu = false;
     app.screens.note.clear();
+    app.screens.asked.reset();
     app.stopped.clear();
     app.begin_waits = false;
     SessionFiles files{app.options.log, app.options.participant, app.options.record};
@@ -165,16 +166,6 @@ void change_scene(Window& window, Gui& gui, const std::string& file, const std::
     begin_anew(window, gui, app);
 }
 
-// The eight turns of the tissue in an order that the seed decides, so that nobody learns where its nodules are.
-void turn_tissue(App& app) {
-    Mapping& mapping = app.session.scene.mapping;
-    const int now = mapping.rotate_deg / 90 + (mapping.flip ? 4 : 0);
-    constexpr int kSteps[] = {3, 5};  // both reach all eight before any comes again
-    const int next = (now + kSteps[app.session.scene.seed % 2]) % 8;
-    mapping.rotate_deg = 90 * (next % 4);
-    mapping.flip = next >= 4;
-}
-
 void keep_settings(App& app) {
     if (app.settings_path.empty()) return;
     const std::string problem = save_settings(app.settings, app.settings_path);
@@ -201,6 +192,7 @@ void act(Action action, double now_s, App& app) {
     if (app.screens.study) return finish_study_trial(app);
     app.screens.debrief = debrief(app.session.plan, app.session.trial);
     app.screens.screen = Screen::reveal;
+    app.screens.note.clear();
     app.screens.menu = false;
     if (!close_trial(app)) app.screens.problems.push_back(app.stopped);
 }
@@ -214,23 +206,13 @@ void close_calibrate(App& app) {
     app.screens.profiles = profile_choices();
 }
 
-// A press that is going on when its screen goes ends there.
 void open_screen(Screen screen, double now_s, App& app) {
     if (screen == Screen::maps && (app.screens.study || !may_show_maps(app.session.trial))) {
         app.screens.note = words::kMapsHidden;
         app.screens.menu = false;
         return;
     }
-    const State& state = app.session.state;
-    if (app.screens.screen == Screen::trial && screen != Screen::trial && state.pointer) {
-        Sample end;
-        end.t_host_s = now_s;
-        end.pointer_id = *state.pointer;
-        end.tool = state.pointer_tool;
-        end.phase = Phase::cancel;
-        end.x_px = end.y_px = kMissing;
-        take_sample(end, app.session);
-    }
+    if (screen != Screen::trial) end_press(now_s, app);
     if (screen == Screen::devices) {
         app.screens.check = std::make_shared<DeviceCheck>();
         app.screens.dots.clear();
@@ -259,10 +241,19 @@ void change_settings(const Wishes& wishes, Window& window, Gui& gui, App& app) {
     const bool changed = wishes.left_handed || wishes.above_finger || wishes.mode || wishes.full_screen || wishes.px_per_mm || wishes.scene || wishes.profile;
     if (changed) keep_settings(app);
     // what was measured with another scale or shown another way is another trial
-    if (wishes.px_per_mm || wishes.mode || wishes.above_finger) begin_anew(window, gui, app);
+    if (!wishes.px_per_mm && !wishes.mode && !wishes.above_finger) return;
+    if (app.settings.test_mode) turn_if_shown(app);
+    begin_anew(window, gui, app);
 }
 
-void carry_out(const Wishes& wishes, Window& window, Gui& gui, App& app) {
+void carry_out(const Wishes& asked_for, Window& window, Gui& gui, App& app) {
+    Wishes wishes = asked_for;
+    if (marks_at_stake(app)) {
+        wishes = ask_first(asked_for, app.screens);
+        if (app.screens.asked) end_press(now_of(app, window), app);
+    } else {
+        app.screens.asked.reset();
+    }
     if (wishes.quit) app.quit = true;
     if (app.screens.study) follow_study(window, gui, app);
     if (wishes.action && app.screens.screen == Screen::trial && !app.trace) act(*wishes.action, now_of(app, window), app);
@@ -339,7 +330,7 @@ void place_keyboard(Window& window, const App& app) {
     constexpr double kSpeed_m_per_s = 0.03;
     const ScreenArea& a = app.session.state.screen;
     const bool elsewhere = app.screens.study && app.screens.screen != Screen::trial;
-    if (elsewhere || app.screens.menu || (app.screens.screen != Screen::trial && app.screens.screen != Screen::devices)) {
+    if (elsewhere || app.screens.menu || app.screens.asked || (app.screens.screen != Screen::trial && app.screens.screen != Screen::devices)) {
         window.set_keyboard(0.0, 0.0, 0.0, 0.0, 0.0);
     } else {
         window.set_keyboard(a.x_px, a.y_px, a.x_px + a.width_px, a.y_px + a.height_px, kSpeed_m_per_s * app.session.state.view.px_per_m);
@@ -363,7 +354,12 @@ void note_resize(const Window& window, Gui& gui, App& app) {
 }
 
 void show(Window& window, App& app, TissueDrawer& tissue, Gui& gui, double dt_s) {
-    if (app.frames % 60 == 0) note_devices(window, app);
+    constexpr double kLook_s = 0.5;  // however slowly frames come: a pen that is gone is noticed within a second
+    if (app.frames == 0 || window.now_s() - app.looked_s > kLook_s) {
+        note_devices(window, app);
+        app.looked_s = window.now_s();
+    }
+    age_note(now_of(app, window), app.screens);
     const Session& s = app.session;
     const Wishes wishes = draw_frame(s.scene, s.plan, s.trial, app.settings, now_of(app, window), dt_s, tissue, gui, app.screens,
                                      app.session.state, app.times);
@@ -480,8 +476,20 @@ struct Live::Impl {
         began_s = frame_s = window->now_s();
     }
 
-    bool over() const {
-        if (window->close_requested() || app.quit) return true;
+    // The window's own button is asked about as Ctrl+Q is; a second time it closes.
+    bool closes() {
+        if (app.quit) return true;
+        if (!window->close_requested()) return false;
+        const bool again = app.screens.asked && app.screens.asked->quit;
+        if (again || !marks_at_stake(app) || !window->stay_open()) return true;
+        Wishes wishes;
+        wishes.quit = true;
+        carry_out(wishes, *window, *gui, app);
+        return app.quit;
+    }
+
+    bool over() {
+        if (closes()) return true;
         if (app.trace && app.next_row == app.trace->samples.size()) return true;
         return app.options.quit_after_s > 0.0 && window->now_s() - began_s > app.options.quit_after_s;
     }

@@ -32,6 +32,7 @@ struct App {
     std::vector<double> waiting_s;  // host times of the samples that no frame has shown yet
     std::string stopped;            // why the trial cannot go on
     TrialKeeper* keeper = nullptr;  // may be null
+    double looked_s = 0.0;          // when devices were listed last
     double parted_s = 0.0;          // when the keeper last had the trial so far
     bool begin_waits = false;       // for the keeper to have the last trial
     bool quit = false;
@@ -43,6 +44,12 @@ double now_of(const App& app, const Window& window);  // of samples
 double finger_offset_mm(const App& app);              // 0, or kFingerOffset_mm
 bool close_trial(App& app);  // its files whole on the disk, and with the keeper; false: app.stopped says why not
 void act(Action action, double now_s, App& app);
+
+// live_trial.cpp
+void turn_tissue(App& app);    // the eight turns in an order that the seed decides, so that nobody learns where its nodules are
+void turn_if_shown(App& app);  // whoever has seen where the nodules are is tested on them somewhere else
+void end_press(double now_s, App& app);  // that goes on when something else takes the screen
+bool marks_at_stake(const App& app);     // that nobody has scored yet, in a trial that goes on
 
 // live_devices.cpp
 void note_devices(const Window& window, App& app);  // into app.screens

@@ -42,13 +42,15 @@ void note_pressure(Tool tool, App& app) {
 void note_devices(const Window& window, App& app) {
     std::vector<std::string>& notes = app.screens.device_notes;
     notes.clear();
-    if (app.screens.study) return note_changes(window.devices(), app.screens);
     if (app.trace) {
         notes.push_back(words::filled(words::kReplayOf, {app.options.trace}));
         return;
     }
-    if (window.lists_devices()) note_changes(window.devices(), app.screens);
-    app.screens.devices = window.devices();
+    app.screens.devices_listed = window.lists_devices();
+    const std::vector<PointerDevice> now = window.devices();
+    if (app.screens.devices_listed) note_changes(now, app.screens);
+    app.screens.devices = now;
+    if (app.screens.study) return;
     if (app.keeper != nullptr) app.screens.trials_note = app.keeper->note();
     if (!window.input_note().empty()) notes.push_back(window.input_note());
     app.screens.offer_hold = false;

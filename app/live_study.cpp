@@ -7,6 +7,7 @@
 #include "app/frame.h"
 #include "app/live_app.h"
 #include "app/load.h"
+#include "app/study_device.h"
 #include "app/study_run.h"
 #include "app/words.h"
 
@@ -32,6 +33,20 @@ void begin_study_trial(const Window& window, const Gui& gui, App& app) {
     } catch (const std::exception& error) {
         stop_study(error.what(), run);
     }
+}
+
+bool is_device_here(const App& app) {
+    if (!app.screens.devices_listed) return true;
+    return device_here(due_condition(*app.screens.study).modality, app.screens.devices);
+}
+
+// A trial that its device has left says nothing of the person: it is interrupted, and comes again.
+void interrupt_study_trial(double now_s, App& app) {
+    note_event("device_gone", now_s, app.session);
+    app.screens.screen = Screen::study;
+    app.screens.asked.reset();
+    if (!close_trial(app)) return stop_study(app.stopped, *app.screens.study);
+    wait_for_device(true, *app.screens.study);
 }
 
 // What was typed and answered goes to the keeper too; `keeping` until that has it.
@@ -76,8 +91,17 @@ void finish_study_trial(App& app) {
 void follow_study(const Window& window, const Gui& gui, App& app) {
     StudyRun& run = *app.screens.study;
     follow_keeper(app);
-    if (run.start_trial && !run.keeping) begin_study_trial(window, gui, app);
+    if (run.start_trial && !run.keeping) {
+        note_devices(window, app);
+        if (is_device_here(app)) {
+            begin_study_trial(window, gui, app);
+        } else {
+            wait_for_device(false, run);
+        }
+    }
+    if (run.step == StudyStep::device) run.device_here = is_device_here(app);
     if (app.screens.screen != Screen::trial) return;
+    if (!is_device_here(app)) return interrupt_study_trial(now_of(app, window), app);
     const double limit_s = due_limit_s(run);
     if (limit_s > 0.0 && now_of(app, window) - app.session.trial.began_s >= limit_s) act(Action::finish, now_of(app, window), app);
 }

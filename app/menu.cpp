@@ -165,6 +165,15 @@ void draw_cost(const Shown& shown, const Layout& layout, Gui& gui) {
     end_panel("cost", gui);
 }
 
+void age_note(double now_s, Screens& screens) {
+    constexpr double kShown_s = 8.0;  // long enough to read two lines twice
+    if (screens.note != screens.note_seen) {
+        screens.note_seen = screens.note;
+        screens.note_since_s = now_s;
+    }
+    if (now_s - screens.note_since_s > kShown_s) screens.note.clear();
+}
+
 void take_keys(const Shown& shown, const Gui& gui, Screens& screens, Wishes& wishes) {
     if (gui.pressed('q', true) && !screens.keeps_trials) wishes.quit = true;
     if (gui.pressed(key::f11)) wishes.full_screen = true;

@@ -42,6 +42,26 @@ struct CalibrateForm;  // calibrate_form.h
 struct MapBrowser;     // map_screen.h
 struct StudyRun;       // study_run.h
 
+struct Wishes {
+    std::optional<Action> action;         // mark, confidence, undo, finish
+    std::optional<std::string> scene;     // file
+    std::optional<std::string> profile;   // file; empty: the scene's own
+    std::optional<Screen> screen;
+    std::optional<TrialMode> mode;
+    std::optional<bool> left_handed;
+    std::optional<bool> above_finger;
+    std::optional<double> px_per_mm;      // of this screen, measured; NaN: forget it
+    bool again = false;                   // the same tissue once more
+    bool next = false;                    // turned another way
+    bool save_picture = false;
+    bool full_screen = false;             // the other way round
+    bool press_by_hold = false;
+    bool trials = false;                  // show what is kept
+    bool studies = false;                 // let the person choose one
+    bool quit = false;
+    bool sure = false;                    // of throwing away the marks of the trial that goes on
+};
+
 // What is open, and what a person has typed so far; means nothing to a replay.
 struct Screens {
     Screen screen = Screen::trial;
@@ -51,7 +71,10 @@ struct Screens {
     std::vector<Choice> profiles;
     std::vector<std::string> device_notes;  // about pens, fingers, pressure
     std::vector<std::string> problems;      // what went wrong, newest last, until it is dismissed
-    std::string note;                       // what went well ("saved ...")
+    std::string note;                       // what went well ("saved ..."), for a while
+    std::string note_seen;                  // the note that is shown,
+    double note_since_s = 0.0;              // and since when
+    std::optional<Wishes> asked;            // what would throw away marks: done once the person is sure
     bool offer_hold = false;                // a pen or finger without pressure: offer to press by time
     std::string screen_name;                // key of Settings::px_per_mm
     double px_per_mm = kMissing;            // of this screen; NaN: not measured
@@ -60,6 +83,7 @@ struct Screens {
     bool keeps_trials = false;              // in the browser: a screen of its own, no way to quit
     Debrief debrief;                        // of the finished trial
     std::vector<PointerDevice> devices;
+    bool devices_listed = false;            // those are all; false, in a browser: others may come with their first sample
     std::shared_ptr<DeviceCheck> check;     // what they sent while the device check was open
     std::vector<Dot> dots;                  // the last places in its test area
     std::shared_ptr<CalibrateForm> calibrate;  // while its screen is open
@@ -81,25 +105,6 @@ struct Shown {
     double now_s = 0.0;
 };
 
-struct Wishes {
-    std::optional<Action> action;         // mark, confidence, undo, finish
-    std::optional<std::string> scene;     // file
-    std::optional<std::string> profile;   // file; empty: the scene's own
-    std::optional<Screen> screen;
-    std::optional<TrialMode> mode;
-    std::optional<bool> left_handed;
-    std::optional<bool> above_finger;
-    std::optional<double> px_per_mm;      // of this screen, measured; NaN: forget it
-    bool again = false;                   // the same tissue once more
-    bool next = false;                    // turned another way
-    bool save_picture = false;
-    bool full_screen = false;             // the other way round
-    bool press_by_hold = false;
-    bool trials = false;                  // show what is kept
-    bool studies = false;                 // let the person choose one
-    bool quit = false;
-};
-
 // Marks, lag, pen and (in practice) nodules, over the tissue.
 void draw_on_tissue(const Shown& shown, const Gui& gui);
 
@@ -112,6 +117,13 @@ void draw_device_screen(const Shown& shown, Gui& gui, Screens& screens, Wishes& 
 void add_dot(const Sample& sample, Screens& screens);
 void draw_study_screen(double now_s, Gui& gui, StudyRun& run, Wishes& wishes);
 void draw_scale_screen(const Shown& shown, Gui& gui, Screens& screens, Wishes& wishes);
+
+// While marks are at stake: what would throw them away goes to screens.asked, and the rest comes back.
+Wishes ask_first(Wishes wishes, Screens& screens);
+void draw_ask(const Shown& shown, Gui& gui, Screens& screens, Wishes& wishes);
+
+// Takes the note off the screen when it has been there for a while.
+void age_note(double now_s, Screens& screens);
 
 // The keys that all of this can be done with.
 void take_keys(const Shown& shown, const Gui& gui, Screens& screens, Wishes& wishes);

@@ -1,5 +1,6 @@
 #include "app/session.h"
 
+#include <algorithm>
 #include <cmath>
 #include <ctime>
 #include <exception>
@@ -91,9 +92,13 @@ void sync_all_but_events(Session& session) {
     session.trial_log->sync_marks();
 }
 
-void write_event(const Sample& sample, Session& session) {
+void write_event(const Sample& sample, std::size_t marks_before, Session& session) {
     if (!session.trial_log || sample.phase != Phase::ui || sample.action == Action::resize) return;
     EventRow row = event_row(session, sample.action);
+    if (sample.action == Action::mark && session.trial.marks.size() > marks_before) {
+        row.x_mm = 1e3 * session.trial.marks.back().p_m.x();
+        row.y_mm = 1e3 * session.trial.marks.back().p_m.y();
+    }
     if (sample.action == Action::finish) {
         const Score score = debrief(session.plan, session.trial).score;
         write_marks(score, session);
@@ -109,6 +114,15 @@ void write_event(const Sample& sample, Session& session) {
     }
     session.trial_log->write(row);
     if (sample.action == Action::finish) session.trial_log->sync_events();
+}
+
+// What a person did in a trial that ends here, by whatever cause: its places count for nothing, and are not lost.
+void log_interruption(Session& session) {
+    if (!session.trial_log || session.trial.finished) return;
+    write_marks(debrief(session.plan, session.trial).score, session);
+    session.trial_log->sync_marks();
+    note_event("interrupted", session.trial.now_s, session);
+    session.trial_log->sync_events();
 }
 
 std::filesystem::path trace_name(const std::string& first, int trial) {
@@ -182,13 +196,14 @@ void take_sample(const Sample& sample, Session& session) {
     if (session.trial.finished) return;
     if (session.record) session.record->write(sample);
     advance(session.scene, session.plan, sample, session.state);
+    const std::size_t marks_before = session.trial.marks.size();
     observe(session.plan, sample, session.state, session.trial);
     if (session.log) {
         SampleRow row = row_of(sample, session.plan, session.state);
         if (session.label) row.trial = session.label->trial;
         session.log->write(row);
     }
-    write_event(sample, session);
+    write_event(sample, marks_before, session);
     flush_if_due(session);
     if (!session.trial.finished) return;
     session.finished.push_back(trial_json(session.plan, session.trial));
@@ -210,7 +225,16 @@ bool files_good(const Session& session) {
            !(session.trial_log && session.trial_log->failed()) && !session.failed;
 }
 
+void note_event(std::string_view trial_type, double now_s, Session& session) {
+    if (!session.trial_log) return;
+    EventRow row = event_row(session, Action::none);
+    row.trial_type = trial_type;
+    if (session.trial.began) row.onset_s = std::max(row.onset_s, now_s - session.trial.began_s);
+    session.trial_log->write(row);
+}
+
 bool close_files(const Json& performance, Session& session) {
+    log_interruption(session);
     if (session.record) session.record->sync();
     if (session.log) session.log->sync();
     bool good = files_good(session);

@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "app/trial.h"
 #include "platform/trace.h"
@@ -63,7 +64,11 @@ void take_sample(const Sample& sample, Session& session);
 // False once anything could not be written.
 bool files_good(const Session& session);
 
-// Puts everything on the disk, `performance` included, and closes the files. Returns false if some of it failed.
+// A row of the events that no sample brings, such as that a device has gone.
+void note_event(std::string_view trial_type, double now_s, Session& session);
+
+// Puts everything on the disk, `performance` included, and closes the files. A trial that is not finished is logged as
+// interrupted, with the marks that stand. Returns false if some of it failed.
 bool close_files(const Json& performance, Session& session);
 
 }  // namespace palpa

@@ -111,9 +111,9 @@ void add_person(StudyRun& run) {
     person.code = run.code;
     person.group = run.protocol.groups[run.progress.plan.group].id;
     std::vector<Rating> others;
-    for (std::size_t i = 0; i < run.answers.size(); ++i) {
+    for (std::size_t i = 0; i < run.protocol.demographics.size(); ++i) {
         const std::string& id = run.protocol.demographics[i].id;
-        const std::string value = run.answers[i].empty() ? "n/a" : run.answers[i];
+        const std::string value = i < run.answers.size() && !run.answers[i].empty() ? run.answers[i] : "n/a";
         if (id == "age") person.age = value;
         else if (id == "sex") person.sex = value;
         else if (id == "handedness") person.handedness = value;
@@ -168,7 +168,7 @@ void finish_due(StudyRun& run) {
 }  // namespace
 
 const char* name_of(StudyStep step) {
-    constexpr const char* kNames[] = {"code", "again", "questions", "instructions", "trial", "present",
+    constexpr const char* kNames[] = {"code", "again", "questions", "instructions", "trial", "device", "present",
                                       "question", "typed", "ratings", "pause", "done", "stopped"};
     return kNames[static_cast<int>(step)];
 }
@@ -206,14 +206,17 @@ void enter_code(const std::string& code, StudyRun& run) {
     run.note.clear();
     if (!plain(code)) {
         run.note = "Up to 20 letters and digits.";
+        run.focus_code = true;
         return;
     }
     if (!kept(run, [&] { run.progress = progress_of(run.directory, run.protocol, code); })) return;
     run.code = code;
     run.asked = run.rested = false;
     run.told.reset();
+    run.choices.reset();  // each person's choices go to files of their own
     if (run.progress.known && !run.progress.next && !to_rate(run)) {
         run.note = code + " has finished all trials; take a new code.";
+        run.focus_code = true;
         return;
     }
     if (run.progress.known) return enter(StudyStep::again, run);
@@ -224,6 +227,7 @@ void same_person(bool is, StudyRun& run) {
     if (is) return go_on(run);
     run.step = StudyStep::code;
     run.code.clear();
+    run.typed_code.reset();
 }
 
 void submit_answers(StudyRun& run) {
@@ -246,7 +250,18 @@ void begin_step(StudyRun& run) {
         run.rested = true;
         return go_on(run);
     }
-    begin_trial_step(run);
+    if (run.step != StudyStep::device) return begin_trial_step(run);
+    if (!run.device_here) return;
+    run.device_left = false;
+    enter(StudyStep::trial, run);  // of a choice, the same interval
+    run.start_trial = run.step == StudyStep::trial;
+}
+
+void wait_for_device(bool left, StudyRun& run) {
+    run.start_trial = false;
+    run.device_here = false;
+    run.device_left = left;
+    enter(StudyStep::device, run);
 }
 
 void trial_finished(StudyRun& run) {
@@ -357,15 +372,6 @@ std::vector<std::string> due_nodules(const StudyRun& run) {
     std::vector<std::string> names;
     for (const Nodule& nodule : scene->plan->nodules) names.push_back(nodule.id);
     return names;
-}
-
-bool tool_allowed(Modality modality, Tool tool) {
-    switch (modality) {
-        case Modality::pen: return tool == Tool::pen;
-        case Modality::finger: return tool == Tool::finger;
-        case Modality::mouse: return tool == Tool::mouse || tool == Tool::keyboard;
-        default: return true;  // a touchpad may speak as any of them
-    }
 }
 
 const std::vector<Item>& due_items(const StudyRun& run) {

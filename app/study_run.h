@@ -20,6 +20,7 @@ enum class StudyStep : std::uint8_t {
     questions,     // before the trials
     instructions,
     trial,         // on the tissue; of a choice, one of the two intervals
+    device,        // the trial is due, and what it is done with is not connected
     present,       // an interval that the experimenter presents
     question,      // which was softer
     typed,         // the experimenter types what was said
@@ -38,6 +39,8 @@ struct StudyRun {
     std::filesystem::path directory;
     StudyStep step = StudyStep::code;
     std::string code;                // of the participant
+    std::optional<std::string> typed_code;  // what stands in the field for it; nothing: the next free one is offered
+    bool focus_code = false;         // the field is to take letters again
     std::string note;                // why a code was not taken
     StudyProgress progress;
     std::size_t rated = 0;           // condition that `ratings` asks about
@@ -51,6 +54,8 @@ struct StudyRun {
     std::optional<std::size_t> told;  // condition whose instructions were read last
     bool told_practice = false;
     bool start_trial = false;        // the loop is to begin one
+    bool device_here = true;         // what the due trial is done with; the loop looks
+    bool device_left = false;        // in the middle of the due trial, which begins anew
     std::unique_ptr<ChoiceLog> choices;
     double choices_began_s = 0.0;
     double question_began_s = 0.0;
@@ -76,7 +81,8 @@ std::string free_code(const StudyRun& run);
 void enter_code(const std::string& code, StudyRun& run);
 void same_person(bool is, StudyRun& run);
 void submit_answers(StudyRun& run);                       // of questions and ratings
-void begin_step(StudyRun& run);                           // from instructions or a pause
+void begin_step(StudyRun& run);                           // from instructions, a pause, or once the device is here
+void wait_for_device(bool left, StudyRun& run);           // instead of a trial; left: in the middle of it
 void trial_finished(StudyRun& run);                       // it is on the disk
 void interval_presented(StudyRun& run);
 void choose_softer(bool first, double now_s, StudyRun& run);
@@ -92,7 +98,6 @@ const StudyScene& due_scene(const StudyRun& run);         // of shows_tissue()
 SessionFiles due_files(const StudyRun& run);
 double due_limit_s(const StudyRun& run);                  // 0: none
 std::vector<std::string> due_nodules(const StudyRun& run);  // names, for typed answers
-bool tool_allowed(Modality modality, Tool tool);
 const std::vector<Item>& due_items(const StudyRun& run);  // of questions and ratings
 
 // 3 of 8: tests and practice together.

@@ -75,16 +75,17 @@ void draw_keeping(double now_s, Gui& gui, StudyRun& run, Wishes& wishes) {
 void draw_code(Gui& gui, StudyRun& run, Wishes& wishes) {
     title(words::kWhoIsHere);
     paragraph(words::kCodeNoName);
-    const bool fresh = run.answers.empty();
-    if (fresh) run.answers = {free_code(run)};
+    const bool fresh = !run.typed_code;
+    if (fresh) run.typed_code = free_code(run);
     char text[24];
-    std::snprintf(text, sizeof text, "%s", run.answers[0].c_str());
+    std::snprintf(text, sizeof text, "%s", run.typed_code->c_str());
     ImGui::SetNextItemWidth(60.0f * gui.mm());
-    if (fresh || ImGui::IsWindowAppearing()) ImGui::SetKeyboardFocusHere();
+    if (fresh || run.focus_code || ImGui::IsWindowAppearing()) ImGui::SetKeyboardFocusHere();
+    run.focus_code = false;
     const bool entered = text_field(words::kCode, text, sizeof text, ImGuiInputTextFlags_EnterReturnsTrue, gui);
-    run.answers[0] = text;
+    run.typed_code = text;
     gap(gui);
-    if (forward(words::kGoOn, gui) || entered) enter_code(run.answers[0], run);
+    if (forward(words::kGoOn, gui) || entered) enter_code(text, run);
     if (!run.note.empty()) warning_paragraph(run.note);
     for (const std::string& warning : run.warnings) warning_paragraph(warning);
     if (!run.on_tablet) return;
@@ -178,6 +179,20 @@ void draw_instructions(Gui& gui, StudyRun& run) {
     }
     ImGui::EndChild();
     if (forward(words::kBegin, gui)) begin_step(run);
+}
+
+void draw_device(Gui& gui, StudyRun& run, Wishes& wishes) {
+    const std::string device = name_of(due_condition(run).modality);
+    title(words::filled(run.device_here ? words::kDeviceIsBack : words::kDeviceMissing, {device}));
+    if (run.device_left) paragraph(words::kTrialBrokenOff);
+    if (!run.device_here) {
+        warning_paragraph(words::filled(words::kTrialWaits, {device}));
+        paragraph(words::kCloseAndGoOn);
+    }
+    gap(gui);
+    if (forward(words::kBegin, gui, run.device_here)) return begin_step(run);
+    trials_button(gui, run, wishes);
+    leave_button(gui, run, wishes);
 }
 
 void draw_present(Gui& gui, StudyRun& run) {
@@ -320,6 +335,7 @@ void draw_study_screen(double now_s, Gui& gui, StudyRun& run, Wishes& wishes) {
         case StudyStep::ratings: draw_items(gui, run); break;
         case StudyStep::instructions: draw_instructions(gui, run); break;
         case StudyStep::trial: break;  // on the tissue
+        case StudyStep::device: draw_device(gui, run, wishes); break;
         case StudyStep::present: draw_present(gui, run); break;
         case StudyStep::question: draw_question(now_s, gui, run); break;
         case StudyStep::typed: draw_typed(now_s, gui, run); break;

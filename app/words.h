@@ -226,6 +226,13 @@ inline constexpr const char* kPreparing = "Preparing the tissue (once; later sta
 inline constexpr const char* kSaved = "Saved {}";
 inline constexpr const char* kDoneWith = "This trial is done with the {}.";
 
+// before marks are thrown away
+inline constexpr const char* kLoseMarks = "End this trial?";
+inline constexpr const char* kLoseMark = "1 mark stands on the tissue and nothing is scored yet. This trial cannot be gone on with.";
+inline constexpr const char* kLoseManyMarks = "{} marks stand on the tissue and nothing is scored yet. This trial cannot be gone on with.";
+inline constexpr const char* kGoOnWithTrial = "Go on with the trial";
+inline constexpr const char* kEndTrial = "End it";
+
 // study, between its trials
 inline constexpr const char* kTrialsOnTablet = "Trials on this tablet";
 inline constexpr const char* kLeaveStudy = "Leave the study";
@@ -240,6 +247,13 @@ inline constexpr const char* kSomebodyElse = "Somebody else";
 inline constexpr const char* kQuestionsFirst = "Some questions first";
 inline constexpr const char* kHowWasIt = "How was it?";
 inline constexpr const char* kMayLeaveOpen = "You may leave any of them open.";
+inline constexpr const char* kDeviceMissing = "The {} is not connected";
+inline constexpr const char* kDeviceIsBack = "The {} is connected";
+inline constexpr const char* kTrialWaits = "This trial is done with the {}. Connect it or switch it on: it is noticed within a second.";
+inline constexpr const char* kTrialBrokenOff =
+    "The trial that was going on was interrupted. It is logged as interrupted, counts as no answer, and begins anew.";
+inline constexpr const char* kCloseAndGoOn =
+    "Or close the study: everything that was finished is on the disk, and the same command goes on here with the same code.";
 inline constexpr const char* kFeelFirst = "Feel the first surface.";
 inline constexpr const char* kFeelSecond = "Now feel the second surface.";
 inline constexpr const char* kWhichSofter = "Which one was softer?";

@@ -64,6 +64,8 @@ class Window {
     void set_keyboard(double x0_px, double y0_px, double x1_px, double y1_px, double speed_px_per_s);
 
     bool close_requested() const;
+    // Forgets that the person asked to close it. False if the system itself ends the program: that cannot be refused.
+    bool stay_open();
     void present();            // shows what was drawn
     double now_s() const;      // steady clock; the same as t_host_s
     int width_px() const;      // drawing area

@@ -2,26 +2,16 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <map>
 #include <optional>
 
 #include "files/input_error.h"
 #include "files/table.h"
 #include "files/text.h"
+#include "study/count.h"
 
 namespace palpa {
 namespace {
-
-constexpr double kMostCounts = 1e9;
-
-std::int64_t count(const Table& table, std::size_t column) {
-    const double value = table.number(column);
-    if (!(value >= 0.0 && value <= kMostCounts) || value != std::floor(value)) {
-        table.fail(column, "a whole number from 0 to 1e9");
-    }
-    return static_cast<std::int64_t>(value);
-}
 
 std::optional<std::size_t> optional_column(const Table& table, std::string_view name) {
     if (!table.has_column(name)) return std::nullopt;

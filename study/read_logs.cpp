@@ -1,7 +1,6 @@
 #include "study/read_logs.h"
 
 #include <algorithm>
-#include <cmath>
 #include <map>
 #include <optional>
 #include <set>
@@ -10,6 +9,7 @@
 #include "files/json.h"
 #include "files/table.h"
 #include "files/text.h"
+#include "study/count.h"
 #include "study/ratings.h"
 #include "study/study_folder.h"
 
@@ -25,34 +25,36 @@ fs::path beside(const fs::path& events, std::string_view suffix) {
     return name.substr(0, name.size() - kEvents.size()) + std::string(suffix);
 }
 
-std::int64_t whole(const Table& table, std::size_t column) {
-    const double value = table.finite_number(column);
-    if (value != std::floor(value) || std::abs(value) > 1e9) table.fail(column, "a whole number");
-    return static_cast<std::int64_t>(value);
+// Seconds, millimetres or newtons: never below zero; n/a where there was nothing to measure.
+double amount(const Table& table, std::size_t column) {
+    const double value = table.number(column);
+    if (value < 0.0) table.fail(column, "a number from 0 up, or n/a");
+    return value;
 }
 
 // Columns that came later than version 0.1 may be missing.
-double number_or_missing(const Table& table, std::string_view column) {
+double amount_or_missing(const Table& table, std::string_view column) {
     if (!table.has_column(column)) return std::numeric_limits<double>::quiet_NaN();
-    return table.number(table.column(column));
+    return amount(table, table.column(column));
 }
 
 void take_finish(const Table& table, RunLog& run) {
     run.finished = true;
-    run.duration_s = table.number(table.column("duration"));
-    run.tp = whole(table, table.column("tp"));
-    run.fp = whole(table, table.column("fp"));
-    run.fn = whole(table, table.column("fn"));
-    run.path_m = 1e-3 * number_or_missing(table, "path_mm");
-    run.mean_force_N = number_or_missing(table, "mean_force_N");
-    run.max_force_N = number_or_missing(table, "max_force_N");
+    run.duration_s = amount(table, table.column("duration"));
+    run.tp = count(table, table.column("tp"));
+    run.fp = count(table, table.column("fp"));
+    run.fn = count(table, table.column("fn"));
+    if (table.has_column("n_nodules") && count(table, table.column("n_nodules")) != run.tp + run.fn) {
+        table.fail(table.column("n_nodules"), "tp + fn = " + std::to_string(run.tp + run.fn));
+    }
+    run.path_m = 1e-3 * amount_or_missing(table, "path_mm");
+    run.mean_force_N = amount_or_missing(table, "mean_force_N");
+    run.max_force_N = amount_or_missing(table, "max_force_N");
 }
 
 void take_choice(const Table& table, RunLog& run) {
-    const std::int64_t correct = whole(table, table.column("correct"));
-    if (correct != 0 && correct != 1) table.fail(table.column("correct"), "0 or 1");
-    run.choices.push_back({run.trial, run.condition, std::string(table.field(table.column("comparison_kPa"))), correct == 1,
-                           run.practice});
+    const bool correct = whole_number(table, table.column("correct"), 0, 1) == 1;
+    run.choices.push_back({run.trial, run.condition, std::string(table.field(table.column("comparison_kPa"))), correct, run.practice});
 }
 
 struct Settings {
@@ -87,7 +89,7 @@ std::set<std::string> read_hits(const fs::path& file, std::vector<std::string>& 
     Table table(std::string(whole_lines(text, file.string(), notes)), file.string(), '\t');
     const std::size_t nodule = table.column("nodule"), hit = table.column("hit");
     while (table.next()) {
-        if (whole(table, hit) == 1) hits.insert(std::string(table.field(nodule)));
+        if (whole_number(table, hit, 0, 1) == 1) hits.insert(std::string(table.field(nodule)));
     }
     return hits;
 }
@@ -221,7 +223,7 @@ RunLog read_run(const fs::path& events, std::vector<std::string>& notes) {
                             " s after " + short_number(before_s) + " s: the clock went back");
         }
         before_s = onset_s;
-        run.trial = static_cast<int>(whole(table, trial));
+        run.trial = static_cast<int>(whole_number(table, trial, 1, kMostCounts));
         run.condition = table.field(condition);
         run.practice = table.field(block) == "practice";
         if (table.field(type) == "finish") take_finish(table, run);

@@ -9,7 +9,8 @@ template <class Visit>
 void visit_fields(const EventRow& r, Visit&& visit) {
     visit("onset", r.onset_s, "s", "since the trial began");
     visit("duration", r.duration_s, "s", "of the trial, on the row finish");
-    visit("trial_type", r.trial_type, "", "start, mark, confidence, undo, finish; hidden and shown: the app was out of sight in between");
+    visit("trial_type", r.trial_type, "", "start, mark, confidence, undo, finish; hidden and shown: the app was out of sight in between; device_gone: what the trial "
+          "is done with was unplugged; interrupted: it ended without finish");
     visit("block", r.block, "", "practice (nodules shown) or test (hidden)");
     visit("trial", r.trial, "", "number of the trial");
     visit("order_id", r.order_id, "", "row of the protocol's order");
@@ -27,6 +28,8 @@ void visit_fields(const EventRow& r, Visit&& visit) {
     visit("path_mm", r.path_mm, "mm", "way of the pen while it presses");
     visit("mean_force_N", r.mean_force_N, "N", "over the time that it presses");
     visit("max_force_N", r.max_force_N, "N", "greatest force");
+    visit("x_mm", r.x_mm, "mm", "of a mark, map's frame");
+    visit("y_mm", r.y_mm, "mm", "of a mark, map's frame");
 }
 
 template <class Visit>

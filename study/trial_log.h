@@ -1,7 +1,7 @@
 #pragma once
 // What a person did in a trial, beside the samples of study/sample_log.h:
-//     ..._events.tsv   start, each mark, each judgement of how sure, each undo, finish; written as it happens
-//     ..._marks.tsv    the marks that stood at the end, with what they found
+//     ..._events.tsv   start, each mark, each judgement of how sure, each undo, finish or interrupted; written as it happens
+//     ..._marks.tsv    the marks that stood at the end, with what they found; also of a trial that was broken off
 // both with a JSON file that explains the columns. Rows are only appended, and each is on the disk before the
 // next one begins.
 
@@ -38,6 +38,8 @@ struct EventRow {
     double path_mm = kMissing;        // these three on the row finish: of the pen while it presses
     double mean_force_N = kMissing;
     double max_force_N = kMissing;
+    double x_mm = kMissing;  // of a mark, so that a trial that is broken off has its places too
+    double y_mm = kMissing;
 };
 
 struct MarkRow {

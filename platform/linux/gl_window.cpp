@@ -23,6 +23,8 @@ std::string no_gl_message(const std::string& what) {
 
 void init_video(bool visible) {
     if (visible) {
+        // a window's button asks; only signals and the end of the session quit
+        SDL_SetHint(SDL_HINT_QUIT_ON_LAST_WINDOW_CLOSE, "0");
         if (SDL_InitSubSystem(SDL_INIT_VIDEO) != 0) throw std::runtime_error(no_display_message());
         // where there is no display SDL falls back to drivers that show nothing
         const std::string driver = SDL_GetCurrentVideoDriver();

@@ -219,7 +219,7 @@ bool told_before(const SDL_Event& event, const Pointers& pointers) {
 void receive_sdl(const SDL_Event& event, bool on_panel, double t_host_s, Pointers& pointers) {
     switch (event.type) {
         case SDL_QUIT:
-            pointers.close_requested = true;
+            pointers.quit_requested = true;
             break;
         case SDL_DISPLAYEVENT:
             renew_devices(t_host_s, pointers);

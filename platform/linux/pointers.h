@@ -31,7 +31,8 @@ struct Pointers {
     double mover_device_s = kMissing;
     std::optional<bool> finger_on_panel;  // the filter's word on the touch that is about to begin
 
-    bool close_requested = false;
+    bool close_requested = false;  // by the window's button
+    bool quit_requested = false;   // by a signal, or the end of the session
     std::vector<Sample> made;     // scratch
     std::vector<Sample> pending;  // for the next poll()
 };

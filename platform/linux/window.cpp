@@ -98,7 +98,12 @@ double Window::keyboard_y_px() const {
 }
 
 bool Window::close_requested() const {
-    return impl_->pointers.close_requested;
+    return impl_->pointers.close_requested || impl_->pointers.quit_requested;
+}
+
+bool Window::stay_open() {
+    impl_->pointers.close_requested = false;
+    return !impl_->pointers.quit_requested;
 }
 
 void Window::present() {

@@ -72,6 +72,7 @@ void Window::set_keyboard(double x0_px, double y0_px, double x1_px, double y1_px
 }
 
 bool Window::close_requested() const { return false; }
+bool Window::stay_open() { return true; }
 void Window::present() {}
 double Window::now_s() const { return browser::now_s(); }
 int Window::width_px() const { return browser::canvas_width_px(); }

@@ -65,6 +65,24 @@ TEST_CASE("command study watch: who is where, what to present, the marks and the
     text(stem + "events.tsv", "onset\ttrial_type\tblock\ttrial\tcondition\n0\tstart\ttest\t1\tpen\n2\tmark\ttest\t1\tpen\n"
                               "3\tmark\ttest\t1\tpen\n4\tundo\ttest\t1\tpen\n5\tma");  // the last line is being written
     text(stem + "samples.tsv", "t_host_s\ttool\tforce_N\n1\tpen\t0.5\n1.1\tpen\t0.75\n1.2\tp");
+    text("sub-09/now.json", R"({"participant": "09", "step": "trial", "finished": 0, "of": 4, "trial": 1, "condition": "pen", "practice": false})");
+    text("sub-09/beh/sub-09_task-palpation_run-01_events.tsv", "onset\ttrial_type\tblock\ttrial\tcondition\n0\tstart\ttest\t1\tpen\n");
+    const std::filesystem::path samples = "sub-09/beh/sub-09_task-palpation_run-01_samples.tsv";
+    const std::string header = "t_host_s\ttool\tx_mm\ty_mm\tpressure\tforce_N\tdepth_mm\n";
+    const std::string asked = "3\tmouse\tn/a\tn/a\tn/a\tn/a\tn/a\n";  // a resize, a mark
+    text(samples.string(), header + asked);
+    const Called untouched = study("watch " + folder.path().string() + " --participant 09");
+    CHECK(contains(untouched.out, "0 marks, the tissue was not touched in the last seconds\n"));
+    text(samples.string(), header + "1\tpen\t30\t40\t0.5\t2\t3\n" + asked + asked);
+    const Called touched = study("watch " + folder.path().string() + " --participant 09");
+    CHECK(contains(touched.out, "pen at (30, 40) mm, pressure 0.5, 2 N, 3 mm deep\n"));
+    for (const auto& [now, said] : {std::pair{R"({"step": 3, "finished": 0, "of": 4})", "sub-09/now.json: step: found 3, expected a text"},
+                                    std::pair{R"({"step": "trial", "finished": -1, "of": 4})", "sub-09/now.json: finished: found -1"},
+                                    std::pair{R"({"step": "present", "finished": 0, "of": 4, "present_kPa": []})", "sub-09/now.json: present_kPa"}}) {
+        text("sub-09/now.json", now);
+        refused("watch " + folder.path().string(), said);
+    }
+    std::filesystem::remove_all(folder / "sub-09");
     text("sub-08/now.json", R"({"participant": "08", "step": "present", "finished": 3, "of": 4, "trial": 4, "condition": "by hand",
                                 "practice": false, "present_kPa": [1.75, 2], "interval": 1})");
     const Called called = study("watch " + folder.path().string() + " --json");

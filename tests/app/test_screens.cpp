@@ -102,7 +102,7 @@ void check_case(const Session& session, Screens screens, const Case& c, const st
     CHECK(picture.width == c.width_px);
     constexpr std::size_t kTextHas = 40;  // colours of smoothed letters
     const bool covers_all = screens.screen == Screen::scale || screens.screen == Screen::devices || screens.screen == Screen::study ||
-                            screens.screen == Screen::maps;
+                            screens.screen == Screen::maps || screens.asked;
     const PanelArea all{0.0f, 0.0f, static_cast<float>(c.width_px), static_cast<float>(c.height_px)};
     if (layout.controls) CHECK(colours_in(picture, covers_all ? all : layout.controls_px) > kTextHas);
     CHECK(colours_in(picture, covers_all ? all : layout.tissue_px) > kTextHas);
@@ -131,6 +131,8 @@ TEST_CASE("screens: every screen fits and is drawn at the sizes of desks and tab
     trial.problems = {"scene.json: tissue.map: found nothing, expected a map folder"};
     trial.offer_hold = true;
     trial.device_notes = {"This pen reports always the same pressure: it has no sensor."};
+    Screens asked = trial;
+    asked.asked.emplace().again = true;
     Screens menu = trial;
     menu.menu = true;
     Screens cost = trial;
@@ -171,6 +173,7 @@ TEST_CASE("screens: every screen fits and is drawn at the sizes of desks and tab
     for (const Case& c : cases) {
         check_case(session, trial, c, "trial", folder);
         if (c.width_px < 600) continue;  // panels need some room
+        check_case(session, asked, c, "asked", folder);
         check_case(session, menu, c, "menu", folder);
         check_case(session, cost, c, "cost", folder);
         check_case(session, scale, c, "scale", folder);
@@ -225,6 +228,12 @@ TEST_CASE("screens: every step of a study fits, and none tells where the nodules
         run->keeping = true;
         check_case(session, screens, c, "study-tablet-keeping", folder);
         run->keeping = run->on_tablet = false;
+        run->step = StudyStep::device;
+        run->device_here = false;
+        run->device_left = true;
+        check_case(session, screens, c, "study-device-gone", folder);
+        run->device_here = true;
+        run->device_left = false;
         run->warnings.clear();
     }
 }

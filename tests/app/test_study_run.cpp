@@ -219,6 +219,66 @@ TEST_CASE("study run: forced choices, both surfaces harder and softer versions o
     CHECK(std::filesystem::exists(folder / "log/sub-01/beh/sub-01_task-interval_run-08_samples.tsv"));
 }
 
+TEST_CASE("study run: a protocol without questions takes a code, whatever was typed before it") {
+    const TemporaryFolder folder;
+    StudyRun run = open_study_run(read_protocol(PALPA_SOURCE_DIR "/assets/protocols/softer.json"), folder / "log", "");
+    run.answers = {"P7", "left over", "from another step"};
+    enter_code("P7", run);
+    CHECK(run.step == StudyStep::instructions);
+    CHECK(contains(read_text(folder / "log/participants.tsv"), "\nsub-P7\tn/a\tn/a\tn/a\tn/a\tn/a\tn/a\t"));
+}
+
+TEST_CASE("study run: the field has the letters again after a code that is not taken") {
+    const TemporaryFolder folder;
+    StudyRun run = open_study_run(read_protocol(PALPA_SOURCE_DIR "/assets/protocols/softer.json"), folder / "log", "");
+    CHECK_FALSE(run.focus_code);
+    enter_code("P 7", run);
+    CHECK(run.focus_code);
+}
+
+TEST_CASE("study run: the choices of the next person go to files of their own") {
+    const TemporaryFolder folder;
+    const auto log = folder / "log";
+    StudyRun run = open_study_run(read_protocol(PALPA_SOURCE_DIR "/assets/protocols/softer.json"), log, "");
+    for (const char* code : {"01", "02"}) {
+        enter_code(code, run);
+        begin_step(run);
+        interval_presented(run);
+        interval_presented(run);
+        REQUIRE(run.step == StudyStep::question);
+        choose_softer(true, 1.0, run);
+        same_person(false, run);
+    }
+    CHECK(finished_trials(log, "01") == std::set<int>{1});
+    CHECK(finished_trials(log, "02") == std::set<int>{1});
+}
+
+TEST_CASE("study run: a trial waits for its device, and one that the device left begins anew") {
+    const TemporaryFolder folder;
+    const auto log = folder / "log";
+    StudyRun run = open_study_run(find_protocol(folder), log, "");
+    enter_code("07", run);
+    answer_questions(run);
+    begin_step(run);
+    REQUIRE(run.start_trial);
+    wait_for_device(false, run);
+    CHECK_FALSE(run.start_trial);
+    CHECK(read_json(log / "sub-07/now.json")["step"] == "device");
+    begin_step(run);  // not here yet
+    CHECK(run.step == StudyStep::device);
+    run.device_here = true;
+    begin_step(run);
+    REQUIRE(run.start_trial);
+    const int due = due_trial(run).trial;
+    wait_for_device(true, run);
+    CHECK(run.device_left);
+    run.device_here = true;
+    begin_step(run);
+    CHECK(due_trial(run).trial == due);
+    run_trial(run);
+    CHECK(run.progress.finished == std::set<int>{due});
+}
+
 TEST_CASE("study run: forced choices without a scene are presented by the experimenter, who is told what") {
     const TemporaryFolder folder;
     StudyRun run = open_study_run(read_protocol(PALPA_SOURCE_DIR "/assets/protocols/softer.json"), folder / "log", "01");

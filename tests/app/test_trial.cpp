@@ -6,6 +6,7 @@
 #include "app/session.h"
 #include "files/text.h"
 #include "scene/advance.h"
+#include "study/read_logs.h"
 #include "tests/temporary_folder.h"
 
 using namespace palpa;
@@ -136,6 +137,40 @@ TEST_CASE("trial: it replays from its trace, and its log holds what happened as 
     for (const Sample& sample : trace.samples) take_sample(sample, again);
     REQUIRE(again.finished.size() == 1);
     CHECK(again.finished[0] == live);
+}
+
+TEST_CASE("session: a trial that is broken off keeps its marks with their places, and counts as interrupted") {
+    const TemporaryFolder folder;
+    const std::string stem = (folder / "log/sub-05/beh/sub-05_task-palpation_run-01").string();
+    {
+        SessionFiles files{(folder / "log").string(), "05", ""};
+        Person person(files);
+        person.stroke(30.0, 40.0, 0.8);
+        person.act(Action::mark, 30.0, 40.0);
+        person.act(Action::confidence_3);
+        person.act(Action::mark, 60.0, 60.0);
+        const std::string events = read_text(stem + "_events.tsv");
+        const auto row = events.rfind('\n', events.find("\tmark\t")) + 1;
+        const auto fields = fields_of(std::string_view(events).substr(row, events.find('\n', row) - row), '\t');
+        REQUIRE(fields.size() == 22);  // as it happens: a kill leaves them too
+        CHECK(std::stod(std::string(fields[20])) == doctest::Approx(30.0));
+        CHECK(std::stod(std::string(fields[21])) == doctest::Approx(40.0));
+        note_event("device_gone", 1e9, person.session);
+        CHECK(close_files({}, person.session));
+    }
+    const std::string marks = read_text(stem + "_marks.tsv");
+    CHECK(std::count(marks.begin(), marks.end(), '\n') == 3);
+    const auto first = fields_of(std::string_view(marks).substr(marks.find('\n') + 1), '\t');
+    CHECK(std::stod(std::string(first[3])) == doctest::Approx(30.0));
+    CHECK(std::stod(std::string(first[4])) == doctest::Approx(40.0));
+    CHECK(first[5] == "3");
+    const std::string events = read_text(stem + "_events.tsv");
+    CHECK(events.find("\tdevice_gone\t") != std::string::npos);
+    CHECK(events.find("\tinterrupted\t") != std::string::npos);
+    CHECK(events.find("\tfinish\t") == std::string::npos);
+    const Observations seen = read_study(folder / "log");
+    CHECK(seen.interrupted_trials == 1);
+    CHECK(seen.trials.empty());
 }
 
 TEST_CASE("session: a second trial gets its own run and its own trace; a full disk is noticed and closes the files") {

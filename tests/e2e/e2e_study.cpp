@@ -3,6 +3,7 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <fstream>
 #include <string>
 
@@ -17,7 +18,7 @@ using namespace palpa::test;
 
 namespace {
 
-enum Key { kEnter = 36, kT = 28, kM = 58, kF = 41, k4 = 13, kMenuKey = 76, kC = 54 };
+enum Key { kEnter = 36, kT = 28, kM = 58, kF = 41, k4 = 13, k0 = 19, k7 = 16, kBackspace = 22, kMenuKey = 76, kC = 54 };
 
 class Script {
  public:
@@ -66,6 +67,24 @@ void write_protocol(const TemporaryFolder& folder) {
 std::string study(const TemporaryFolder& folder, const std::string& rest) {
     return "study run " + (folder / "p.json").string() + " --log " + (folder / "log").string() + " --participant 07 --json " + rest;
 }
+
+void plug(const char* way) { CHECK(shell(std::string("timeout 10 " PALPA_XORG_PEN " ") + way + " pen") == 0); }
+
+template <class Condition>
+bool wait_for(const Condition& condition) {
+    for (int i = 0; i < 400 && !condition(); ++i) sleep_s(0.05);
+    return condition();
+}
+
+std::string step_now(const TemporaryFolder& folder) {
+    const auto file = folder / "log/sub-07/now.json";
+    return std::filesystem::exists(file) ? read_json(file)["step"].get<std::string>() : "";
+}
+
+std::string text_of(const std::filesystem::path& file) { return std::filesystem::exists(file) ? read_text(file) : ""; }
+
+// One script after the other plays on devices of its own: each device takes one client.
+int play(const std::filesystem::path& script) { return shell("timeout 100 " PALPA_XORG_PEN " " + script.string()); }
 
 }  // namespace
 
@@ -157,4 +176,90 @@ TEST_CASE("killed: the interrupted trial comes again, and its samples up to the 
     const double killed_s = std::stod(at_kill.substr(at_kill.find(' ')));
     MESSAGE("last sample on the disk " << 1e3 * (killed_s - sample_s) << " ms before the kill was over");
     CHECK(killed_s > sample_s);
+}
+
+TEST_CASE("typed: a code that is not taken is typed again, and Enter twice begins the first trial") {
+    const TemporaryFolder folder;
+    write_protocol(folder);
+    Script script(folder / "script.tsv");
+    script.wait(3.0);
+    for (int i = 0; i < 3; ++i) script.key(kBackspace);  // what is offered
+    script.key(kEnter);                                  // no code
+    script.wait(0.5);
+    script.key(k0);  // without touching the field
+    script.key(k7);
+    script.key(kEnter);
+    script.wait(1.0);    // a slow machine shows the instructions first
+    script.key(kEnter);  // begin
+    const std::string arguments = "study run " + (folder / "p.json").string() + " --log " + (folder / "log").string() +
+                                  " --json --quit-after-s " + std::to_string(script.close() + 6.0) + " --screenshot " + (folder / "p.png").string();
+    REQUIRE(run_program(folder, arguments, folder / "log/study.json", [&] { CHECK(play_script(folder) == 0); }) == 0);
+    const Json result = read_json(folder / "out.json");
+    CHECK(result["participant"] == "07");
+    CHECK(result["step"] == "trial");
+    CHECK(std::filesystem::exists(folder / "log/sub-07/beh/sub-07_task-palpation_run-01_events.tsv"));
+}
+
+TEST_CASE("missing: a pen's trial does not begin before there is a pen") {
+    const TemporaryFolder folder;
+    write_protocol(folder);
+    plug("--disable");
+    Script script(folder / "script.tsv");
+    script.wait(3.0);
+    script.key(kEnter);  // begin: not without a pen
+    script.key(kEnter);
+    script.wait(8.0);    // which comes meanwhile
+    script.key(kEnter);
+    script.wait(1.0);
+    script.key(kF);
+    const std::string arguments = study(folder, "--quit-after-s " + std::to_string(script.close() + 5.0));
+    const auto first = folder / "log/sub-07/beh/sub-07_task-palpation_run-01_events.tsv";
+    std::thread hand([&] {
+        CHECK(wait_for([&] { return step_now(folder) == "device"; }));
+        sleep_s(1.0);
+        CHECK_FALSE(std::filesystem::exists(first));
+        plug("--enable");
+    });
+    CHECK(run_program(folder, arguments, folder / "log/sub-07/now.json", [&] { CHECK(play_script(folder) == 0); }) == 0);
+    hand.join();
+    CHECK(text_of(first).find("\tfinish\t") != std::string::npos);
+    CHECK(read_json(folder / "out.json")["finished"] == 1);
+}
+
+TEST_CASE("left: a trial that its pen leaves is interrupted with its marks, never a miss, and begins anew") {
+    const TemporaryFolder folder;
+    write_protocol(folder);
+    Script keys(folder / "script.tsv");
+    keys.wait(3.0);
+    keys.key(kEnter);  // begin
+    keys.wait(5.0);    // the pen's stroke
+    keys.key(kM);
+    keys.wait(12.0);   // the pen goes, and comes back
+    keys.key(kEnter);  // begin anew
+    keys.wait(1.0);
+    keys.key(kF);
+    const std::string arguments = study(folder, "--quit-after-s " + std::to_string(keys.close() + 5.0));
+    Script pen(folder / "pen.tsv");
+    pen.wait(0.2);
+    pen.stroke(0.5, true);
+    pen.close();
+    const std::string stem = (folder / "log/sub-07/beh/sub-07_task-palpation_run-01").string();
+    std::thread hand([&] {
+        CHECK(wait_for([&] { return std::filesystem::exists(stem + "_events.tsv"); }));
+        sleep_s(1.0);
+        CHECK(play(folder / "pen.tsv") == 0);
+        CHECK(wait_for([&] { return text_of(stem + "_events.tsv").find("\tmark\t") != std::string::npos; }));
+        plug("--disable");
+        CHECK(wait_for([&] { return step_now(folder) == "device"; }));
+        plug("--enable");
+    });
+    CHECK(run_program(folder, arguments, folder / "log/sub-07/now.json", [&] { CHECK(play_script(folder) == 0); }) == 0);
+    hand.join();
+    CHECK(text_of(stem + "_events.tsv").find("\tdevice_gone\t") != std::string::npos);
+    CHECK(text_of(stem + "_events.tsv").find("\tinterrupted\t") != std::string::npos);
+    const std::string marks = text_of(stem + "_marks.tsv");
+    CHECK(std::count(marks.begin(), marks.end(), '\n') == 2);
+    const Observations seen = read_study(folder / "log");
+    CHECK(seen.interrupted_trials == 1);
+    CHECK(seen.trials.size() == 1);
 }

@@ -3,6 +3,7 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <fstream>
 #include <string>
 
@@ -34,8 +35,8 @@ Point place(double x_mm, double y_mm, bool above_finger = false) {
 
 // The middle of controls, as the screenshot of this size shows them.
 constexpr Point kMenu{58, 27}, kSecondScene{360, 91}, kMark{120, 335}, kSure4{162, 405}, kSure2{72, 405}, kUndo{62, 446},
-    kFinish{176, 446}, kAgain{64, 33};
-enum Key { kF10 = 76, kEnter = 36, kSpace = 65, kLeft = 100, kRight = 102, kUp = 98, kDown = 104, kM = 58, kU = 30, kF = 41, k5 = 14, kN = 57 };
+    kFinish{176, 446}, kAgain{64, 33}, kTest{739, 51};
+enum Key { kF10 = 76, kEnter = 36, kSpace = 65, kLeft = 100, kRight = 102, kUp = 98, kDown = 104, kM = 58, kU = 30, kF = 41, k5 = 14, kN = 57, kR = 27, kEscape = 9, kControl = 37, kQ = 24 };
 
 class Script {
  public:
@@ -205,4 +206,54 @@ TEST_CASE("app: a finger that may not hide the avatar marks what lies above it")
     CHECK(trial["marks"][0]["distance_mm"].get<double>() < 0.5);
     const Json settings = read_json(folder / "log/sub-01/beh/sub-01_task-palpation_run-01_settings.json");
     CHECK(settings["finger_offset_mm"] == 15.0);
+}
+
+TEST_CASE("asked: marks are thrown away only when the person says so, and are in the log then") {
+    const TemporaryFolder folder;
+    Script script(folder / "script.tsv");
+    const auto mark = [&] {
+        script.stroke("pen", 0, 35, 35);
+        script.lift("pen", 0, 35, 35);
+        script.key(kM);
+        script.wait(0.3);
+    };
+    mark();
+    script.key(kR);  // asks,
+    script.wait(0.3);
+    script.key(kEscape);  // and the trial goes on
+    script.wait(0.3);
+    script.key(k5);
+    script.key(kR);
+    script.wait(0.3);
+    script.key(kEnter);  // run 2
+    script.wait(0.6);
+    mark();
+    script.tap("pen", 0, kMenu);
+    script.tap("pen", 0, kTest);
+    script.wait(0.3);
+    script.key(kEnter);  // run 3, a test
+    script.wait(0.6);
+    mark();
+    script.row("key", kControl, "down", {0, 0}, 0.0);
+    script.key(kQ);
+    script.row("key", kControl, "up", {0, 0}, 0.0);
+    script.wait(0.5);
+    script.key(kEnter);
+    script.close();
+    // it ends by Ctrl+Q, or never
+    REQUIRE(run_app(folder, "--practice --log " + (folder / "log").string(), [&] { CHECK(play_script(folder) == 0); }) == 0);
+    const auto beh = [&](const std::string& name) { return folder / ("log/sub-01/beh/sub-01_task-palpation_" + name); };
+    CHECK(read_text(beh("run-01_marks.tsv")).find("\t5\tA\t") != std::string::npos);
+    for (const char* run : {"run-01", "run-02", "run-03"}) {
+        CAPTURE(run);
+        const std::string marks = read_text(beh(std::string(run) + "_marks.tsv"));
+        CHECK(std::count(marks.begin(), marks.end(), '\n') == 2);
+        CHECK(read_text(beh(std::string(run) + "_events.tsv")).find("\tinterrupted\t") != std::string::npos);
+    }
+    CHECK_FALSE(std::filesystem::exists(beh("run-04_events.tsv")));
+    // the test is on another layout than the one that practice has shown
+    const Json practised = read_json(beh("run-02_settings.json"))["mapping"];
+    const Json tested = read_json(beh("run-03_settings.json"))["mapping"];
+    CHECK(read_text(beh("run-03_events.tsv")).find("\ttest\t") != std::string::npos);
+    CHECK(practised != tested);
 }

@@ -111,6 +111,21 @@ TEST_CASE("off screen: closing is reported") {
     CHECK(window.close_requested());
 }
 
+TEST_CASE("off screen: a window that was asked to close may stay, a program that was ended may not") {
+    Window window(off_screen());
+    std::vector<Sample> samples;
+    push_window(SDL_WINDOWEVENT_CLOSE, window);
+    window.poll(0.0, samples);
+    CHECK(window.stay_open());
+    CHECK_FALSE(window.close_requested());
+    SDL_Event quit{};
+    quit.type = SDL_QUIT;
+    SDL_PushEvent(&quit);
+    window.poll(0.0, samples);
+    CHECK_FALSE(window.stay_open());
+    CHECK(window.close_requested());
+}
+
 TEST_CASE("off screen: without a display a visible window says what can be done") {
     unsetenv("DISPLAY");
     unsetenv("WAYLAND_DISPLAY");

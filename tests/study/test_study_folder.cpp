@@ -2,6 +2,7 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <filesystem>
 
 #include "files/text.h"
@@ -211,6 +212,32 @@ TEST_CASE("read logs: settings that are JSON but not a log's are refused by thei
                                      std::pair{R"({"nodules": [{}]})", "nodules[0].id: found nothing, expected a text"}}) {
         write_text_atomically(settings, text);
         CHECK(contains(message_of([&] { read_study(log); }), said));
+    }
+}
+
+TEST_CASE("read logs: a count or an amount that cannot be is refused with its line, before statistics meet it") {
+    const auto refused = [](const std::string& column, const std::string& value) {
+        const TemporaryFolder folder;
+        const std::string events = write_run(folder.path(), "01", 1, "a", 1, true, "x");
+        const std::string text = read_text(events);
+        const auto names = fields_of(std::string_view(text).substr(0, text.find('\n')), '\t');
+        const auto at = static_cast<std::size_t>(std::find(names.begin(), names.end(), column) - names.begin());
+        const auto last = text.rfind('\n', text.size() - 2) + 1;
+        std::string row;
+        const auto fields = fields_of(std::string_view(text).substr(last, text.size() - 1 - last), '\t');
+        for (std::size_t i = 0; i < fields.size(); ++i) row += (i > 0 ? "\t" : "") + (i == at ? value : std::string(fields[i]));
+        write_text_atomically(events, text.substr(0, last) + row + "\n");
+        const std::string message = message_of([&] { read_study(folder.path()); });
+        CAPTURE(message);
+        CHECK(contains(message, "run-01_events.tsv: line 3, " + column + ": found '" + value + "', expected "));
+    };
+    for (const char* column : {"tp", "fp", "fn", "n_nodules"}) {
+        for (const char* value : {"-3", "1.5", "nan", "n/a", "1e9", "1e300", "x"}) refused(column, value);
+    }
+    refused("n_nodules", "3");  // one found and one missed
+    for (const char* value : {"0", "-1", "1e9", "n/a"}) refused("trial", value);
+    for (const char* column : {"duration", "path_mm", "mean_force_N", "max_force_N"}) {
+        for (const char* value : {"-5", "inf"}) refused(column, value);
     }
 }
 

@@ -1,0 +1,25 @@
+#pragma once
+// Counts in tables of logs and of results. One that cannot be is refused with its line, before statistics meet it.
+
+#include <cmath>
+#include <cstdint>
+#include <string>
+
+#include "files/table.h"
+
+namespace palpa {
+
+// More than anybody marks or answers; the exact tests go through every count up to this in less than a second.
+inline constexpr std::int64_t kMostCounts = 1'000'000;
+
+inline std::int64_t whole_number(const Table& table, std::size_t column, std::int64_t from, std::int64_t to) {
+    const double value = table.number(column);
+    if (!(value >= static_cast<double>(from) && value <= static_cast<double>(to)) || value != std::floor(value)) {
+        table.fail(column, "a whole number from " + std::to_string(from) + " to " + std::to_string(to));
+    }
+    return static_cast<std::int64_t>(value);
+}
+
+inline std::int64_t count(const Table& table, std::size_t column) { return whole_number(table, column, 0, kMostCounts); }
+
+}  // namespace palpa
