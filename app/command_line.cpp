@@ -29,7 +29,7 @@ int fail(const char* message, int status) {
 }  // namespace
 
 int run_command_line(int argc, char** argv) {
-    CLI::App app("Palpa: feel stiffness on a touch screen. `palpa` alone opens the app on the default scene.");
+    CLI::App app("Palpa: feel stiffness on a touch screen. `palpa` alone opens the app on the scene of last time.");
     app.set_version_flag("--version", "palpa " PALPA_VERSION);
     app.require_subcommand(1);
     add_run(app);
