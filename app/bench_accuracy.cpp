@@ -225,14 +225,16 @@ Json accuracy_json(const std::vector<AccuracyRow>& rows, const Machine& machine)
 
 void add_bench_accuracy(CLI::App& bench) {
     auto options = std::make_shared<Options>();
-    CLI::App* accuracy = bench.add_subcommand("accuracy", "What accuracy costs in time");
+    CLI::App* accuracy = bench.add_subcommand("accuracy", "Measure what accuracy costs in time");
     accuracy->require_subcommand(1);
     CLI::App* mechanics = accuracy->add_subcommand(
-        "mechanics", "Element, mesh, contact, friction, solver, precomputed or live: error and cost of each");
+        "mechanics",
+        "Measure error and cost of each choice: element, mesh, contact, friction, solver, precomputed or live");
     mechanics->add_option("-o,--output", options->folder,
                           "folder for mechanics.csv and its figure (default: nothing is written)");
-    mechanics->add_flag("--quick", options->quick, "small meshes only, under 20 s (all: 4 minutes)");
-    mechanics->add_flag("--json", options->json, "one JSON object on standard output");
+    mechanics->add_flag("--quick", options->quick,
+                        "use small meshes only, which takes under 20 s (all meshes: 4 minutes)");
+    mechanics->add_flag("--json", options->json, "print one JSON object on standard output");
     mechanics->callback([options] { run_accuracy(*options); });
 }
 

@@ -152,9 +152,10 @@ void bench_pens(const PensOptions& options) {
 
 void add_bench_pens(CLI::App& bench) {
     auto options = std::make_shared<PensOptions>();
-    CLI::App* command = bench.add_subcommand("pens", "Calibration curves on recordings of real pens: error on points left out");
+    CLI::App* command = bench.add_subcommand(
+        "pens", "Measure the calibration curves' error on recordings of real pens, on points left out of the fit");
     command->add_option("FILE", options->file, "CSV with inventory_id, tablet, date, pressure_norm, force_N")->required();
-    command->add_flag("--json", options->json, "one JSON object");
+    command->add_flag("--json", options->json, "print one JSON object on standard output");
     command->callback([options] { bench_pens(*options); });
 }
 

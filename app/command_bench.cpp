@@ -35,19 +35,23 @@ void write_raster(const TraceOptions& options) {
 }  // namespace
 
 void add_bench(CLI::App& app) {
-    CLI::App* bench = app.add_subcommand("bench", "What to measure with");
+    CLI::App* bench = app.add_subcommand("bench", "Measure accuracy and cost, and make traces to measure with");
     bench->require_subcommand(1);
     add_bench_accuracy(*bench);
     add_bench_pens(*bench);
     auto options = std::make_shared<TraceOptions>();
-    CLI::App* trace = bench->add_subcommand("trace", "A simulated pen sweeps the tissue: writes a trace");
+    CLI::App* trace = bench->add_subcommand("trace", "Write a trace of a simulated pen that sweeps the tissue");
     trace->add_option("SCENE", options->scene, "scene JSON or map folder (default: the default scene)");
     trace->add_option("-o,--output", options->output, "new trace TRACE.tsv")->required();
-    trace->add_option("--rate-Hz", options->raster.rate_Hz, "samples a second (default 120)")->check(CLI::Range(1.0, 1e5));
-    trace->add_option("--seconds", options->raster.seconds, "how long at least (default 40)")->check(CLI::Range(0.1, 1e5));
-    trace->add_option("--speed-mm-per-s", options->speed_mm_per_s, "of the pen (default 30)")->check(CLI::Range(0.1, 1e4));
-    trace->add_option("--force-N", options->raster.force_N, "pressed with (default 2.5)")->check(CLI::Range(0.01, 1e3));
-    trace->add_option("--seed", options->raster.seed, "of the jitter (default 1)");
+    trace->add_option("--rate-Hz", options->raster.rate_Hz, "samples per second (default 120)")
+        ->check(CLI::Range(1.0, 1e5));
+    trace->add_option("--seconds", options->raster.seconds, "least duration of the trace (default 40)")
+        ->check(CLI::Range(0.1, 1e5));
+    trace->add_option("--speed-mm-per-s", options->speed_mm_per_s, "speed of the pen (default 30)")
+        ->check(CLI::Range(0.1, 1e4));
+    trace->add_option("--force-N", options->raster.force_N, "mean force of the pen (default 2.5)")
+        ->check(CLI::Range(0.01, 1e3));
+    trace->add_option("--seed", options->raster.seed, "seed of the jitter (default 1)");
     trace->callback([options] { write_raster(*options); });
 }
 

@@ -29,7 +29,9 @@ std::vector<RowFilter> parse_where(const std::vector<std::string>& texts) {
 }
 
 void add_where(CLI::App& command, std::vector<std::string>& where) {
-    command.add_option("--where", where, "COLUMN=VALUE: only these rows; may be given several times")->take_all()->allow_extra_args(false);
+    command.add_option("--where", where, "COLUMN=VALUE: use only these rows; repeatable")
+        ->take_all()
+        ->allow_extra_args(false);
 }
 
 struct FitArguments {
@@ -109,33 +111,57 @@ void fit(const FitArguments& arguments) {
 
 void add_fit(CLI::App& calibrate) {
     auto arguments = std::make_shared<FitArguments>();
-    CLI::App* command = calibrate.add_subcommand("fit", "Measured points become a profile");
-    command->add_option("DATA", arguments->data, "CSV with level (or pressure_norm), force_N or force_gf; optional time_s, repeat, phase")->required();
+    CLI::App* command = calibrate.add_subcommand("fit", "Fit a profile to measured points");
+    command
+        ->add_option("DATA", arguments->data,
+                     "CSV with level (or pressure_norm) and force_N or force_gf; optional: time_s, repeat, phase")
+        ->required();
     command->add_option("-o,--output", arguments->output, "new PROFILE.json")->required();
-    command->add_option("--model", arguments->model, "auto: what predicts left-out points best")
-        ->check(one_of({"auto", "exponential", "exponential_offset", "power", "monotone_cubic"}))->capture_default_str();
-    command->add_option("--error", arguments->error, "what is equally large everywhere: newton, or log (a share of the force)")
-        ->check(one_of({"auto", "newton", "log"}))->capture_default_str();
-    command->add_option("--robust", arguments->robust, "against slips")->check(one_of({"none", "huber", "tukey"}))->capture_default_str();
-    command->add_option("--level", arguments->level, "which field of a sample the levels are (auto: pressure, or pressure_raw above 1)")
-        ->check(one_of({"auto", "pressure", "pressure_raw", "contact_area"}))->capture_default_str();
-    command->add_option("--level-range", arguments->range, "LOWEST HIGHEST that the device can report (default 0 1, or 0 and the next 2^n - 1)")->expected(2)
+    command
+        ->add_option("--model", arguments->model,
+                     "curve to fit; auto chooses the model that best predicts points left out of the fit")
+        ->check(one_of({"auto", "exponential", "exponential_offset", "power", "monotone_cubic"}))
+        ->capture_default_str();
+    command
+        ->add_option("--error", arguments->error,
+                     "error assumed to be equally large everywhere: newton, or log (a share of the force)")
+        ->check(one_of({"auto", "newton", "log"}))
+        ->capture_default_str();
+    command
+        ->add_option("--robust", arguments->robust, "robust weights that keep slips of the pen from pulling the curve")
+        ->check(one_of({"none", "huber", "tukey"}))
+        ->capture_default_str();
+    command
+        ->add_option("--level", arguments->level,
+                     "field of a sample that is the level (auto: pressure, or pressure_raw if levels exceed 1)")
+        ->check(one_of({"auto", "pressure", "pressure_raw", "contact_area"}))
+        ->capture_default_str();
+    command
+        ->add_option("--level-range", arguments->range,
+                     "LOWEST HIGHEST level that the device can report (default: 0 1, or 0 and the next 2^n - 1)")
+        ->expected(2)
         ->check(CLI::Range(0.0, 1e9));
-    command->add_option("--full-contact-area-px2", arguments->options.full_contact_area_px2, "contact_area only: the ellipse whose level is 1")
-        ->check(CLI::Range(1.0, 1e9))->capture_default_str();
+    command
+        ->add_option("--full-contact-area-px2", arguments->options.full_contact_area_px2,
+                     "contact_area only: area of the ellipse whose level is 1")
+        ->check(CLI::Range(1.0, 1e9))
+        ->capture_default_str();
     add_where(*command, arguments->where);
-    command->add_option("--plot", arguments->figure, "figure: .png, .svg or .pdf");
-    command->add_option("--bootstrap", arguments->options.bootstrap_fits, "resampled fits for the 95 % intervals, 0 for none")
-        ->check(CLI::Range(0, 100000))->capture_default_str();
-    command->add_option("--seed", arguments->options.seed, "of the resampling")->capture_default_str();
+    command->add_option("--plot", arguments->figure, "draw a figure: FILE.png, .svg or .pdf");
+    command
+        ->add_option("--bootstrap", arguments->options.bootstrap_fits,
+                     "number of resampled fits for the 95 % intervals; 0: no intervals")
+        ->check(CLI::Range(0, 100000))
+        ->capture_default_str();
+    command->add_option("--seed", arguments->options.seed, "seed of the resampling")->capture_default_str();
     command->add_flag("--keep-lag", arguments->keep_lag, "do not remove the pen's lag behind the sensor");
-    command->add_flag("--any-force", arguments->any_force, "accept forces that no pen or finger gives");
-    command->add_option("--pen", arguments->device.pen, "names for the profile");
-    command->add_option("--tablet", arguments->device.tablet);
-    command->add_option("--driver", arguments->device.driver);
-    command->add_option("--os", arguments->device.os);
-    command->add_option("--date", arguments->device.date);
-    command->add_flag("--json", arguments->json, "one JSON object");
+    command->add_flag("--any-force", arguments->any_force, "accept forces that no pen or finger can exert");
+    command->add_option("--pen", arguments->device.pen, "name of the pen in the profile");
+    command->add_option("--tablet", arguments->device.tablet, "name of the tablet in the profile");
+    command->add_option("--driver", arguments->device.driver, "name of the driver in the profile");
+    command->add_option("--os", arguments->device.os, "operating system in the profile");
+    command->add_option("--date", arguments->device.date, "date of the recording in the profile");
+    command->add_flag("--json", arguments->json, "print one JSON object on standard output");
     command->callback([arguments] { fit(*arguments); });
 }
 
@@ -178,11 +204,12 @@ void check(const CheckArguments& arguments) {
 
 void add_check(CLI::App& calibrate) {
     auto arguments = std::make_shared<CheckArguments>();
-    CLI::App* command = calibrate.add_subcommand("check", "A profile's error on new points");
+    CLI::App* command = calibrate.add_subcommand("check", "Show a profile's error on new points");
     command->add_option("PROFILE", arguments->profile, "profile JSON")->required();
-    command->add_option("DATA", arguments->data, "CSV as for fit")->required();
+    command->add_option("DATA", arguments->data, "CSV with the same columns as for fit")->required();
     add_where(*command, arguments->where);
-    command->add_flag("--json", arguments->json, "one JSON object; predicted_N in the order of the rows");
+    command->add_flag("--json", arguments->json,
+                      "print one JSON object on standard output, with predicted_N in the order of the rows");
     command->callback([arguments] { check(*arguments); });
 }
 
@@ -237,17 +264,18 @@ void compare(const CompareArguments& arguments) {
 
 void add_compare(CLI::App& calibrate) {
     auto arguments = std::make_shared<CompareArguments>();
-    CLI::App* command = calibrate.add_subcommand("compare", "Two profiles side by side, each over its own range of levels");
+    CLI::App* command = calibrate.add_subcommand("compare", "Compare two profiles, each over its own range of levels");
     command->add_option("A", arguments->a, "profile JSON")->required();
     command->add_option("B", arguments->b, "profile JSON")->required();
-    command->add_flag("--json", arguments->json, "one JSON object");
+    command->add_flag("--json", arguments->json, "print one JSON object on standard output");
     command->callback([arguments] { compare(*arguments); });
 }
 
 }  // namespace
 
 void add_calibrate(CLI::App& app) {
-    CLI::App* calibrate = app.add_subcommand("calibrate", "Pressure level to newtons: record, fit, check, compare");
+    CLI::App* calibrate =
+        app.add_subcommand("calibrate", "Calibrate pressure levels to newtons: record, fit, check, compare");
     calibrate->require_subcommand(1);
     add_calibrate_record(*calibrate);
     add_fit(*calibrate);

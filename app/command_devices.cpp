@@ -130,9 +130,11 @@ void list_devices(const DevicesOptions& options) {
 
 void add_devices(CLI::App& app) {
     auto options = std::make_shared<DevicesOptions>();
-    CLI::App* command = app.add_subcommand("devices", "Pens, touch screens and mice: what they have, and what they send");
-    command->add_option("--seconds", options->seconds, "watch a small window this long; press in it")->check(CLI::Range(0.0, 3600.0));
-    command->add_flag("--json", options->json, "one JSON object on standard output");
+    CLI::App* command =
+        app.add_subcommand("devices", "List pens, touch screens and mice: what they declare and what they really send");
+    command->add_option("--seconds", options->seconds, "measure the samples of presses in a small window for this long")
+        ->check(CLI::Range(0.0, 3600.0));
+    command->add_flag("--json", options->json, "print one JSON object on standard output");
     command->callback([options] { list_devices(*options); });
 }
 

@@ -73,11 +73,13 @@ void explain(const ExplainOptions& options) {
 
 void add_explain(CLI::App& app) {
     auto options = std::make_shared<ExplainOptions>();
-    CLI::App* command = app.add_subcommand("explain", "The plan of a scene: stages, fidelity, error, cost");
+    CLI::App* command =
+        app.add_subcommand("explain", "Show the plan of a scene: the stages with their fidelity, error and cost");
     command->add_option("SCENE", options->scene, "scene JSON or map folder (default: the default scene)");
-    command->add_flag("--measure", options->measure, "replay a trace and print calls, median and p99 of each stage");
-    command->add_option("--trace", options->trace, "the trace to measure with (default: the one that ships)");
-    command->add_flag("--json", options->json, "one JSON object");
+    command->add_flag("--measure", options->measure,
+                      "replay a trace and print each stage's calls, median time and p99");
+    command->add_option("--trace", options->trace, "trace to measure with (default: the shipped trace)");
+    command->add_flag("--json", options->json, "print one JSON object on standard output");
     command->callback([options] { explain(*options); });
 }
 

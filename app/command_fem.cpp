@@ -218,11 +218,11 @@ void add_fem(CLI::App& app) {
     fem->require_subcommand(1);
     auto options = std::make_shared<SolveOptions>();
     CLI::App* command =
-        fem->add_subcommand("solve", "Displacements, forces and strains of a case file (docs/fem.md)");
+        fem->add_subcommand("solve", "Compute the displacements, forces and strains of a case file (docs/fem.md)");
     command->add_option("CASE", options->file, "case JSON")->required();
     command->add_option("-o,--output", options->output,
-                        "VTU file with displacement, reaction, strain, stress");
-    command->add_flag("--json", options->json, "one JSON object");
+                        "write a VTU file with displacement, reaction, strain and stress");
+    command->add_flag("--json", options->json, "print one JSON object on standard output");
     command->callback([options] { solve_file(*options); });
 }
 

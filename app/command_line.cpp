@@ -73,7 +73,7 @@ int with_all_printed(int status) {
 int run_command_line(int argc, char** argv) {
     keep_standard_streams_apart();
     ::signal(SIGPIPE, SIG_IGN);  // a reader that went away is told as any output that cannot be written
-    CLI::App app("Palpa: feel stiffness on a touch screen. `palpa` alone opens the app on the default scene.");
+    CLI::App app("Palpa: feel stiffness on a touch screen. `palpa` alone opens the app on the scene of last time.");
     app.set_version_flag("--version", "palpa " PALPA_VERSION);
     app.require_subcommand(1);
     add_run(app);

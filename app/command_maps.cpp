@@ -58,9 +58,10 @@ struct InfoOptions {
 
 void add_info(CLI::App& maps) {
     auto options = std::make_shared<InfoOptions>();
-    CLI::App* command = maps.add_subcommand("info", "What a map holds and where it comes from");
+    CLI::App* command = maps.add_subcommand("info", "Show a map's cells, depths, forces, noise and source");
     command->add_option("MAP", options->map, "map folder")->required();
-    command->add_flag("--json", options->json, "one JSON object: map.json with shape, missing, force_range_N, ...");
+    command->add_flag("--json", options->json,
+                      "print one JSON object: map.json with shape, missing, force_range_N, ...");
     command->callback([options] {
         const Map map = read_map(options->map);
         const Json info = map_info(map, make_field(map, {}));
@@ -118,15 +119,20 @@ void sample_map(const SampleOptions& options) {
 
 void add_sample(CLI::App& maps) {
     auto options = std::make_shared<SampleOptions>();
-    CLI::App* command = maps.add_subcommand("sample", "Depth from force, or force from depth, at one place");
+    CLI::App* command =
+        maps.add_subcommand("sample", "Look up the depth for a force, or the force for a depth, at one place");
     command->add_option("MAP", options->map, "map folder")->required();
-    command->add_option("--x-mm", options->x_mm, "in the map's frame")->required()->check(CLI::Range(-1e6, 1e6));
-    command->add_option("--y-mm", options->y_mm, "in the map's frame")->required()->check(CLI::Range(-1e6, 1e6));
+    command->add_option("--x-mm", options->x_mm, "x of the place in the map's frame")
+        ->required()
+        ->check(CLI::Range(-1e6, 1e6));
+    command->add_option("--y-mm", options->y_mm, "y of the place in the map's frame")
+        ->required()
+        ->check(CLI::Range(-1e6, 1e6));
     CLI::Option_group* what = command->add_option_group("what", "one of these");
-    what->add_option("--force-N", options->force_N, "normal force")->check(CLI::Range(0.0, 1e6));
-    what->add_option("--depth-mm", options->depth_mm, "indentation")->check(CLI::Range(0.0, 1e6));
+    what->add_option("--force-N", options->force_N, "normal force to look up")->check(CLI::Range(0.0, 1e6));
+    what->add_option("--depth-mm", options->depth_mm, "indentation depth to look up")->check(CLI::Range(0.0, 1e6));
     what->require_option(1);
-    command->add_flag("--json", options->json, "one JSON object");
+    command->add_flag("--json", options->json, "print one JSON object on standard output");
     command->callback([options] { sample_map(*options); });
 }
 
@@ -159,20 +165,28 @@ GenerateOptions generate_options(const GenerateArguments& arguments) {
 void add_generate(CLI::App& maps) {
     auto arguments = std::make_shared<GenerateArguments>();
     GenerateOptions& options = arguments->options;
-    CLI::App* command = maps.add_subcommand("generate", "A phantom becomes a map, by virtual rolling indentation");
+    CLI::App* command = maps.add_subcommand("generate", "Compute a map from a phantom by virtual rolling indentation");
     command->add_option("PHANTOM", arguments->phantom, "phantom JSON")->required();
     command->add_option("-o,--output", arguments->output, "new map folder NAME.map")->required();
-    command->add_option("--method", arguments->method, "fem (finite elements), or analytic (a stand-in, at once)")
-        ->check(one_of({"fem", "analytic"}))->capture_default_str();
-    CLI::Option* jobs = command->add_option("-j,--jobs", arguments->jobs, "processes (default: one for each core)")
-        ->check(CLI::Range(1, 1024));
-    CLI::Option* part = command->add_option("--part", arguments->part,
-        "i/n: only this share of the lines, into NAME.map.lines (default on a cluster: from SLURM or OpenMPI)");
-    CLI::Option* merge = command->add_flag("--merge", options.merge, "joins the finished lines to the map");
+    command
+        ->add_option("--method", arguments->method,
+                     "fem (finite elements), or analytic (a closed-form stand-in, at once)")
+        ->check(one_of({"fem", "analytic"}))
+        ->capture_default_str();
+    CLI::Option* jobs =
+        command->add_option("-j,--jobs", arguments->jobs, "number of processes (default: one for each core)")
+            ->check(CLI::Range(1, 1024));
+    CLI::Option* part = command->add_option(
+        "--part", arguments->part,
+        "i/n: compute only this share of the lines, into NAME.map.lines (default on a cluster: from Slurm or OpenMPI)");
+    CLI::Option* merge = command->add_flag("--merge", options.merge, "join the finished lines into the map");
     command->add_flag("--check", options.check,
-                      "compares the map, new or there already, with a mesh refined once at 50 points (minutes)");
-    command->add_option("--coarseness", options.coarseness, "1 for maps, up to 4 for quick looks")
-        ->check(CLI::Range(0.5, 4.0))->capture_default_str();
+                      "compare the new or existing map with a mesh refined once, at 50 points (takes minutes)");
+    command
+        ->add_option("--coarseness", options.coarseness,
+                     "factor on the mesh spacings: 1 for maps, up to 4 for a quick look")
+        ->check(CLI::Range(0.5, 4.0))
+        ->capture_default_str();
     command->add_option("--window", arguments->window)->check(CLI::Range(0, 1000000))->group("");
     command->add_flag("--refined", options.refined)->group("");
     part->excludes(jobs)->excludes(merge);

@@ -79,11 +79,11 @@ void run_compare(const CompareArguments& arguments) {
 
 void add_maps_compare(CLI::App& maps) {
     auto arguments = std::make_shared<CompareArguments>();
-    CLI::App* command = maps.add_subcommand("compare", "The difference of two maps where both were measured");
+    CLI::App* command = maps.add_subcommand("compare", "Compute the difference of two maps where both were measured");
     command->add_option("A", arguments->a, "map folder")->required();
     command->add_option("B", arguments->b, "map folder")->required();
-    command->add_option("-o,--output", arguments->output, "also a figure: FILE.png, .svg or .pdf");
-    command->add_flag("--json", arguments->json, "one JSON object");
+    command->add_option("-o,--output", arguments->output, "also draw a figure: FILE.png, .svg or .pdf");
+    command->add_flag("--json", arguments->json, "print one JSON object on standard output");
     command->callback([arguments] { run_compare(*arguments); });
 }
 

@@ -51,23 +51,31 @@ void run_detect(const CLI::App& command, const DetectArguments& arguments) {
 
 void add_maps_detect(CLI::App& maps) {
     auto arguments = std::make_shared<DetectArguments>();
-    CLI::App* command = maps.add_subcommand("detect", "Stiff regions of a map, and whether its noise allows the claim");
+    CLI::App* command =
+        maps.add_subcommand("detect", "Find the stiff regions of a map, and whether its noise allows the claim");
     command->add_option("MAP", arguments->map, "map folder")->required();
-    command->add_option("--threshold", arguments->threshold,
-                        "stiffness / background from which a cell counts (default: 3 spreads of the background, at least 1.03)")
+    command
+        ->add_option(
+            "--threshold", arguments->threshold,
+            "stiffness / background from which a cell counts (default: 3 spreads of the excess, at least 1.03)")
         ->check(CLI::Range(1.0, 1e6));
     command->add_option("--window-mm", arguments->window_mm,
                         "radius of the background's running median; a region may take up to half of it")
         ->check(CLI::Range(1e-3, 1e6))->capture_default_str();
-    command->add_option("--smoothing-mm", arguments->smoothing_mm, "sigma of a Gaussian (default: half the indenter's radius)")
+    command
+        ->add_option("--smoothing-mm", arguments->smoothing_mm,
+                     "sigma of the Gaussian smoothing (default: half the indenter's radius)")
         ->check(CLI::Range(0.0, 1e3));
-    command->add_option("--smallest-mm", arguments->smallest_mm,
-                        "regions below the area of this disc are left out (default: the indenter's radius as diameter)")
+    command
+        ->add_option("--smallest-mm", arguments->smallest_mm,
+                     "diameter of a disc; regions of a smaller area are left out (default: the indenter's radius)")
         ->check(CLI::Range(0.0, 1e6));
-    command->add_option("--deepest-mm", arguments->deepest_mm, "leave out deeper forces (default: all)")->check(CLI::Range(0.0, 1e6));
+    command->add_option("--deepest-mm", arguments->deepest_mm, "leave out forces deeper than this (default: use all)")
+        ->check(CLI::Range(0.0, 1e6));
     command->add_flag("--write", arguments->write,
-                      "keep the sure ones in map.json as nodules of origin `detected`, in place of earlier ones; placed ones stay");
-    command->add_flag("--json", arguments->json, "one JSON object");
+                      "store the sure regions in map.json as nodules of origin `detected`; they replace earlier "
+                      "detected ones, placed ones stay");
+    command->add_flag("--json", arguments->json, "print one JSON object on standard output");
     command->callback([command, arguments] { run_detect(*command, *arguments); });
 }
 

@@ -262,26 +262,29 @@ void add_table_options(CLI::App& command, Arguments& a) {
                     "fz, n_x, n_y, n_z")
         ->allow_extra_args(false)
         ->group("Tables");
-    text("--length-unit", a.length_unit, "of x, y, z: mm, m, um (default: the name's, else mm)")
+    text("--length-unit", a.length_unit, "unit of x, y, z: mm, m or um (default: from the column's name, else mm)")
         ->check(one_of({"mm", "m", "um"}));
-    text("--depth-unit", a.depth_unit, "of depths: mm, m, um")->check(one_of({"mm", "m", "um"}));
-    text("--force-unit", a.force_unit, "N or mN (default: the name's, else N)")
+    text("--depth-unit", a.depth_unit, "unit of depths: mm, m or um")->check(one_of({"mm", "m", "um"}));
+    text("--force-unit", a.force_unit, "unit of forces: N or mN (default: from the column's name, else N)")
         ->check(one_of({"N", "mN"}));
-    command.add_flag("--negate-force", a.negate_force, "forces have the other sign")->group("Tables");
-    text("--region-mm", a.region, "X0,X1,Y0,Y1: only what lies in it");
-    text("--tilt", a.tilt, "remove (default) or keep")->check(one_of({"remove", "keep"}));
+    command.add_flag("--negate-force", a.negate_force, "reverse the sign of the forces")->group("Tables");
+    text("--region-mm", a.region, "X0,X1,Y0,Y1: import only the places in this region");
+    text("--tilt", a.tilt, "tilt of the surface: remove (default) or keep")->check(one_of({"remove", "keep"}));
     number("--outliers", a.outliers,
-           "robust deviations beyond which a force is left out (default 20; 0: none)", 0.0, 1e6);
-    text("--grid", a.grid, "on-grid, plane, inverse-distance or median")
+           "leave out forces that are off by more than this many robust standard deviations (default 20; 0: keep all)",
+           0.0, 1e6);
+    text("--grid", a.grid, "method that brings the places onto the grid: on-grid, plane, inverse-distance or median")
         ->check(one_of({"on-grid", "plane", "inverse-distance", "median"}));
-    number("--pitch-mm", a.pitch_mm, "of the map, where the places lie on no grid", 0.01, 1000.0);
-    number("--radius-mm", a.radius_mm, "that a cell then draws from", 0.01, 1000.0);
-    command.add_option("--layers", a.layers, "depths of the map")->check(CLI::Range(1, 200))->group("Tables");
-    text("--contact", a.contact, "first-row or threshold")->check(one_of({"first-row", "threshold"}));
-    number("--contact-force-N", a.contact_force_N, "the threshold", 0.0, 100.0);
-    number("--surface-z-mm", a.surface_z_mm,
-           "sliding: a flat surface at this height, instead of an estimated one", -1e5, 1e5);
-    number("--surface-node-mm", a.surface_node_mm, "sliding: nodes of the estimated surface", 0.1, 1000.0);
+    number("--pitch-mm", a.pitch_mm, "pitch of the map where the places do not lie on a grid", 0.01, 1000.0);
+    number("--radius-mm", a.radius_mm, "radius around a cell from which it then takes samples", 0.01, 1000.0);
+    command.add_option("--layers", a.layers, "number of depths of the map")->check(CLI::Range(1, 200))->group("Tables");
+    text("--contact", a.contact, "start of contact: first-row or threshold")
+        ->check(one_of({"first-row", "threshold"}));
+    number("--contact-force-N", a.contact_force_N, "threshold of the force at contact", 0.0, 100.0);
+    number("--surface-z-mm", a.surface_z_mm, "sliding: height of a flat surface, used instead of an estimated one",
+           -1e5, 1e5);
+    number("--surface-node-mm", a.surface_node_mm, "sliding: spacing of the nodes of the estimated surface", 0.1,
+           1000.0);
     text("--at-depth-mm", a.at_depths, "sliding at constant depth: the depth of each file");
 }
 
@@ -289,28 +292,32 @@ void add_array_options(CLI::App& command, Arguments& a) {
     const auto text = [&](const char* name, std::string& value, const char* help) {
         return command.add_option(name, value, help)->group("Arrays");
     };
-    text("--spacing-mm", a.spacing, "DX,DY: distance between the numbers");
-    text("--origin-mm", a.origin, "X,Y of the first number (default 0,0)");
-    text("--quantity", a.quantity, "force (N, default), stiffness (N/mm) or young (kPa)")
+    text("--spacing-mm", a.spacing, "DX,DY: distance between neighbouring numbers");
+    text("--origin-mm", a.origin, "X,Y: place of the first number (default 0,0)");
+    text("--quantity", a.quantity, "quantity of the numbers: force (N, default), stiffness (N/mm) or young (kPa)")
         ->check(one_of({"force", "stiffness", "young"}));
-    command.add_option("--scale", a.scale, "N, N/mm or kPa for one of the file's; images must state it")
+    command.add_option("--scale", a.scale, "value in N, N/mm or kPa of one unit of the file; required for images")
         ->group("Arrays");
-    command.add_option("--offset", a.offset, "subtracted from the file's numbers before")->group("Arrays");
-    command.add_option("--missing", a.missing, "the number that means not measured")->group("Arrays");
+    command.add_option("--offset", a.offset, "number that is subtracted from the file's numbers before scaling")
+        ->group("Arrays");
+    command.add_option("--missing", a.missing, "number that stands for not measured")->group("Arrays");
     text("--axes", a.axes, "order of three-dimensional arrays (default dyx: depth, y, x)")
         ->check(one_of({"dyx", "dxy", "ydx", "yxd", "xdy", "xyd"}));
-    text("--dataset", a.dataset, "name in a MATLAB or HDF5 file that holds several arrays");
+    text("--dataset", a.dataset, "name of the array in a MATLAB or HDF5 file that holds several");
     command
         .add_option("--tangential-x", a.tangential_x,
                     "files of the force that opposes motion along +x (default: by their names)")
         ->group("Arrays");
-    command.add_option("--tangential-y", a.tangential_y, "the same along +y")->group("Arrays");
-    command.add_option("--poisson", a.poisson, "of the tissue, for Young's moduli (default 0.5)")
+    command
+        .add_option("--tangential-y", a.tangential_y,
+                    "files of the force that opposes motion along +y (default: by their names)")
+        ->group("Arrays");
+    command.add_option("--poisson", a.poisson, "Poisson's ratio of the tissue, for Young's moduli (default 0.5)")
         ->check(CLI::Range(0.0, 0.5))
         ->group("Arrays");
     command
         .add_option("--cylinder-length-mm", a.cylinder_length_mm,
-                    "for Young's moduli under a cylinder (default 20)")
+                    "length of the cylinder, for Young's moduli (default 20)")
         ->check(CLI::Range(0.1, 1e4))
         ->group("Arrays");
 }
@@ -320,35 +327,37 @@ void add_array_options(CLI::App& command, Arguments& a) {
 void add_maps_import(CLI::App& maps) {
     auto a = std::make_shared<Arguments>();
     CLI::App* command = maps.add_subcommand(
-        "import", "A recording becomes a map: probing, sliding, matrices of force, slices of stiffness");
+        "import", "Turn a recording into a map: probing, sliding, matrices of force, slices of stiffness");
     command
         ->add_option(
             "FILE", a->files,
             "a table with a header line (probing, sliding), or arrays: .npy, text, MATLAB, HDF5, PNG, TIFF")
         ->required();
     command->add_option("-o,--output", a->output, "new map folder NAME.map");
-    command->add_option("--form", a->form, "probing, sliding or matrices (default: told from the file)")
+    command
+        ->add_option("--form", a->form,
+                     "form of the recording: probing, sliding or matrices (default: recognised from the file)")
         ->check(one_of({"probing", "sliding", "matrices"}));
     command->add_option("--depths-mm", a->depths,
-                        "D1,D2,...: the map's depths; of matrices, the depth of each in their order");
+                        "D1,D2,...: the map's depths; for matrices, the depth of each matrix in the files' order");
     command
         ->add_option("--tangential", a->tangential,
-                     "measured, energy (derived from the normal force) or none")
+                     "tangential force: measured, energy (derived from the normal force) or none")
         ->check(one_of({"measured", "energy", "none"}));
-    command->add_flag("--no-fill", a->no_fill, "no filled_normal_N.npy beside the raw forces");
-    command->add_option("--indenter", a->indenter, "sphere (default) or cylinder")
+    command->add_flag("--no-fill", a->no_fill, "do not write filled_normal_N.npy beside the raw forces");
+    command->add_option("--indenter", a->indenter, "shape of the tool's tip: sphere (default) or cylinder")
         ->check(one_of({"sphere", "cylinder"}));
     command
         ->add_option("--indenter-radius-mm", a->indenter_radius_mm,
-                     "of the tool's tip (default 3, assumed: recordings do not say)")
+                     "radius of the tool's tip (default 3, an assumption, since recordings do not state it)")
         ->check(CLI::Range(1e-3, 1e3));
-    command->add_option("--name", a->name, "of the map (default: the file's)");
-    command->add_option("--licence", a->licence, "of the recording, for the map's source");
+    command->add_option("--name", a->name, "name of the map (default: the file's name)");
+    command->add_option("--licence", a->licence, "licence of the recording, stored in the map's source");
     add_table_options(*command, *a);
     add_array_options(*command, *a);
-    command->add_flag("--explain", a->explain,
-                      "also prints what was chosen, why, and what chooses otherwise");
-    command->add_flag("--json", a->json, "one JSON object: as `maps info`, and how the import went");
+    command->add_flag("--explain", a->explain, "also print each choice, its reason and the option that overrides it");
+    command->add_flag("--json", a->json,
+                      "print one JSON object: the keys of `maps info`, and `import` with the import's figures");
     command->callback([a] { import_map(*a); });
 }
 

@@ -52,15 +52,25 @@ void run_plot(const CLI::App& command, const PlotArguments& arguments) {
 
 void add_maps_plot(CLI::App& maps) {
     auto arguments = std::make_shared<PlotArguments>();
-    CLI::App* command = maps.add_subcommand("plot", "Figures of a map: matrices, stiffness, depth, section, curves, nodules (gnuplot)");
+    CLI::App* command = maps.add_subcommand(
+        "plot", "Draw figures of a map: matrices, stiffness, depth, section, curves, nodules (with gnuplot)");
     command->add_option("MAP", arguments->map, "map folder")->required();
     command->add_option("-o,--output", arguments->output, "FILE.png, .svg or .pdf")->required();
-    command->add_option("--what", arguments->what,
-                        "matrices (every depth, normal and tangential), stiffness, slice (depth at a force, section through the "
-                        "stiffest place), curves, nodules (with what `maps detect` finds), or all")
-        ->check(one_of({"all", "matrices", "stiffness", "slice", "curves", "nodules"}))->capture_default_str();
-    command->add_option("--at", arguments->at, "X,Y in mm: a curve here (default: stiff places and a middling one); may be repeated")->take_all();
-    command->add_option("--force-N", arguments->force_N, "of the depth slice (default: half of the middling greatest force)")
+    command
+        ->add_option(
+            "--what", arguments->what,
+            "matrices (every depth, normal and tangential), stiffness, slice (depth at a force, section through the "
+            "stiffest place), curves, nodules (with the regions that `maps detect` finds), or all")
+        ->check(one_of({"all", "matrices", "stiffness", "slice", "curves", "nodules"}))
+        ->capture_default_str();
+    command
+        ->add_option("--at", arguments->at,
+                     "X,Y in mm: draw the curve at this place; repeatable (default: the stiff places and one of median "
+                     "stiffness)")
+        ->take_all();
+    command
+        ->add_option("--force-N", arguments->force_N,
+                     "force of the depth slice (default: half of the cells' median greatest force)")
         ->check(CLI::Range(1e-6, 1e6));
     command->callback([command, arguments] { run_plot(*command, *arguments); });
 }

@@ -108,26 +108,36 @@ void run_headless(const RunOptions& options) {
 
 void add_run(CLI::App& app) {
     auto options = std::make_shared<RunOptions>();
-    CLI::App* command = app.add_subcommand("run", "Palpate a scene or a map; replay a trace");
-    command->add_option("SCENE", options->scene, "scene JSON or map folder (default: the default scene)");
-    command->add_option("--replay", options->trace, "recorded input instead of a pen");
-    command->add_flag("--headless", options->headless, "no window: replay as fast as it goes, then exit");
-    command->add_option("--log", options->log, "folder for the log (BIDS layout; nothing is overwritten)");
-    command->add_option("--participant", options->participant, "code in the log's names (default 01)");
-    command->add_option("--screenshot", options->screenshot, "PNG of the moment of greatest lag, or force (headless), or of the last frame");
-    command->add_option("--record", options->record, "write the input as a trace TRACE.tsv");
-    command->add_flag("--json", options->json, "one JSON object on standard output");
-    command->add_option("--quit-after-s", options->quit_after_s, "close the window by itself")->check(CLI::Range(0.0, 1e6));
-    command->add_option("--width-px", options->width_px, "of the window (default: as last time, 1280 at first)")->check(CLI::Range(100, 16384));
-    command->add_option("--height-px", options->height_px, "of the window (800)")->check(CLI::Range(100, 16384));
-    command->add_flag("--practice", options->practice, "nodules shown");
-    command->add_flag("--test", options->test, "nodules hidden until the trial is finished")->excludes("--practice");
+    CLI::App* command = app.add_subcommand("run", "Open the app on a scene or a map, or replay a trace");
+    command->add_option("SCENE", options->scene,
+                        "scene JSON or map folder (default: the scene of last time; "
+                        "the default scene at first and for replays)");
+    command->add_option("--replay", options->trace, "trace to replay instead of live input");
+    command->add_flag("--headless", options->headless,
+                      "open no window: replay the trace as fast as possible, then exit");
+    command->add_option("--log", options->log,
+                        "folder for the log (BIDS layout; existing files are never overwritten)");
+    command->add_option("--participant", options->participant,
+                        "participant's code in the names of the log files (default 01)");
+    command->add_option(
+        "--screenshot", options->screenshot,
+        "write a PNG of the last frame; headless: of the moment of greatest lag, or of greatest force without a lag");
+    command->add_option("--record", options->record, "write the input to a new trace TRACE.tsv");
+    command->add_flag("--json", options->json, "print one JSON object on standard output");
+    command->add_option("--quit-after-s", options->quit_after_s, "close the window after this many seconds")
+        ->check(CLI::Range(0.0, 1e6));
+    command->add_option("--width-px", options->width_px, "width of the window (default: as last time, 1280 at first)")
+        ->check(CLI::Range(100, 16384));
+    command->add_option("--height-px", options->height_px, "height of the window (default: as last time, 800 at first)")
+        ->check(CLI::Range(100, 16384));
+    command->add_flag("--practice", options->practice, "show the nodules during the trial");
+    command->add_flag("--test", options->test, "hide the nodules until the trial is finished")->excludes("--practice");
     const std::map<std::string, Screen> screens{{"trial", Screen::trial}, {"devices", Screen::devices}, {"scale", Screen::scale},
                                                 {"calibrate", Screen::calibrate}, {"maps", Screen::maps}};
     command->add_option_function<std::string>("--screen", [options, screens](const std::string& name) { options->screen = screens.at(name); },
-                                              "opened first")
+                                              "screen to open first")
         ->check(one_of({"trial", "devices", "scale", "calibrate", "maps"}));
-    command->add_flag("--left-handed", options->left_handed, "controls on the right");
+    command->add_flag("--left-handed", options->left_handed, "put the controls on the right");
     command->callback([options] {
         if (options->headless) return run_headless(*options);
         if (const auto result = run_live(*options)) print(*result, options->json);

@@ -35,22 +35,46 @@ void start(const Arguments& arguments) {
 void add_serve(CLI::App& app) {
     auto arguments = std::make_shared<Arguments>();
     ServeOptions& options = arguments->options;
-    CLI::App* command = app.add_subcommand("serve", "Hands the web app and its files to tablets and takes their logs");
-    command->add_option("--bind", options.bind, "IP address to listen on; others than this machine's own (127.0.0.1) need TLS; 0.0.0.0 or :: for all")
+    CLI::App* command =
+        app.add_subcommand("serve", "Serve the web app and its files to tablets and collect their logs");
+    command
+        ->add_option("--bind", options.bind,
+                     "IP address to listen on; any other than the loopback address requires TLS; 0.0.0.0 or :: means "
+                     "all addresses")
         ->capture_default_str();
-    command->add_option("--port", options.port, "0 for any that is free")->check(CLI::Range(0, 65535))->capture_default_str();
-    command->add_option("--tls-cert", options.tls_cert, "certificate in PEM; with it tablets pair by a code that is shown at the start");
-    command->add_option("--tls-key", options.tls_key, "its private key in PEM");
-    command->add_option("--collect", options.collect, "folder for the logs of tablets; without it none are taken");
-    command->add_option("--web", arguments->web, "folder of the built web app (default: build/web/site beside the assets, if it is there)");
-    command->add_option("--session-h", arguments->hours, "how long a paired tablet stays paired, hours")->check(CLI::Range(0.0001, 8760.0))->capture_default_str();
-    command->add_option("--lock-s", options.tries.first_lock_s, "first lock-out after five wrong codes, seconds; doubles with each more")
-        ->check(CLI::Range(0.1, 3600.0))->capture_default_str();
-    command->add_option("--patience-s", options.patience.wait_s, "how long a silent or slow client is waited for, seconds")
-        ->check(CLI::Range(0.1, 600.0))->capture_default_str();
-    command->add_option("--upload-MB", arguments->upload_MB, "largest upload")->check(CLI::Range(0.001, 1000.0))->capture_default_str();
-    command->add_option("--total-MB", arguments->total_MB, "all uploads together")->check(CLI::Range(0.001, 1e9))->capture_default_str();
-    command->add_flag("--json", options.json, "one JSON object a line on standard output: first where and the code, then each event");
+    command->add_option("--port", options.port, "port to listen on; 0 chooses a free port")
+        ->check(CLI::Range(0, 65535))
+        ->capture_default_str();
+    command->add_option(
+        "--tls-cert", options.tls_cert,
+        "certificate in PEM; with TLS, tablets have to pair by a code that the desk prints at its start");
+    command->add_option("--tls-key", options.tls_key, "the certificate's private key in PEM");
+    command->add_option("--collect", options.collect,
+                        "folder for the logs of tablets; without this option no logs are taken");
+    command->add_option("--web", arguments->web,
+                        "folder of the built web app (default: build/web/site or web beside the assets, if it exists)");
+    command->add_option("--session-h", arguments->hours, "how long a paired tablet stays paired, in hours")
+        ->check(CLI::Range(0.0001, 8760.0))
+        ->capture_default_str();
+    command
+        ->add_option("--lock-s", options.tries.first_lock_s,
+                     "first lock-out after five wrong codes, in seconds; doubles with each further wrong code")
+        ->check(CLI::Range(0.1, 3600.0))
+        ->capture_default_str();
+    command
+        ->add_option("--patience-s", options.patience.wait_s,
+                     "how long the desk waits for a silent or slow client, in seconds")
+        ->check(CLI::Range(0.1, 600.0))
+        ->capture_default_str();
+    command->add_option("--upload-MB", arguments->upload_MB, "largest size of one upload, in MB")
+        ->check(CLI::Range(0.001, 1000.0))
+        ->capture_default_str();
+    command->add_option("--total-MB", arguments->total_MB, "largest size of all uploads together, in MB")
+        ->check(CLI::Range(0.001, 1e9))
+        ->capture_default_str();
+    command->add_flag(
+        "--json", options.json,
+        "print one JSON object per line on standard output: first the addresses and the code, then each event");
     command->callback([arguments] { start(*arguments); });
 }
 

@@ -9,7 +9,7 @@
 namespace palpa {
 
 void add_study(CLI::App& app) {
-    CLI::App* study = app.add_subcommand("study", "Studies: who gets what, simulated participants, tables and figures");
+    CLI::App* study = app.add_subcommand("study", "Studies with people: order, run, simulate, import, analyse, watch");
     study->require_subcommand(1);
     add_study_order(*study);
     add_study_run(*study);

@@ -62,18 +62,20 @@ void analyse(const AnalyseOptions& options) {
 
 void add_study_analyse(CLI::App& study) {
     auto options = std::make_shared<AnalyseOptions>();
-    CLI::App* command = study.add_subcommand("analyse", "Tables and figures from logs, or from counts");
+    CLI::App* command = study.add_subcommand("analyse", "Make tables and figures from a study's logs, or from counts");
     command->add_option("INPUT", options->input,
                         "folder of a study's logs; or a table COUNTS.tsv with the columns condition tp fn fp (also n, "
                         "nodule, participant), or condition correct n (also comparison, participant)")
         ->required();
     command->add_option("-o,--output", options->output, "folder for report.md, report.json, tables and figures");
-    command->add_option("--level", options->report.bootstrap.level, "of all intervals (default 0.95)")
+    command->add_option("--level", options->report.bootstrap.level, "confidence level of all intervals (default 0.95)")
         ->check(CLI::Range(0.5, 0.9999));
-    command->add_option("--resamples", options->report.bootstrap.resamples, "of the bootstrap over participants (default 2000)")
+    command
+        ->add_option("--resamples", options->report.bootstrap.resamples,
+                     "number of resamples of the bootstrap over participants (default 2000)")
         ->check(CLI::Range(100, 1000000));
-    command->add_option("--seed", options->report.bootstrap.seed, "of the bootstrap (default 1)");
-    command->add_flag("--json", options->json, "one JSON object on standard output");
+    command->add_option("--seed", options->report.bootstrap.seed, "seed of the bootstrap (default 1)");
+    command->add_flag("--json", options->json, "print one JSON object on standard output");
     command->callback([options] { analyse(*options); });
 }
 

@@ -38,10 +38,12 @@ void import(const ImportOptions& options) {
 
 void add_study_import(CLI::App& study) {
     auto options = std::make_shared<ImportOptions>();
-    CLI::App* command = study.add_subcommand("import", "Logs of tablets into a study's folder; nothing is overwritten");
+    CLI::App* command = study.add_subcommand(
+        "import", "Add the logs of tablets to a study's folder; existing files are never overwritten");
     command->add_option("FILE", options->bundles, "bundles, exported by a tablet or collected by palpa serve")->required();
-    command->add_option("-o,--output", options->output, "the study's folder; it is made if it is not there")->required();
-    command->add_flag("--json", options->json, "one JSON object on standard output");
+    command->add_option("-o,--output", options->output, "the study's folder; it is created if it does not exist")
+        ->required();
+    command->add_flag("--json", options->json, "print one JSON object on standard output");
     command->callback([options] { import(*options); });
 }
 

@@ -108,10 +108,13 @@ void print_order(const OrderOptions& options) {
 
 void add_study_order(CLI::App& study) {
     auto options = std::make_shared<OrderOptions>();
-    CLI::App* command = study.add_subcommand("order", "Who gets what, in which order, and how balanced it is");
+    CLI::App* command = study.add_subcommand(
+        "order", "Show each participant's conditions and their order, and how balanced the orders are");
     command->add_option("PROTOCOL", options->protocol, "protocol JSON")->required();
-    command->add_option("--participants", options->participants, "how many people")->required()->check(CLI::Range(1, 100000));
-    command->add_flag("--json", options->json, "one JSON object on standard output");
+    command->add_option("--participants", options->participants, "number of participants")
+        ->required()
+        ->check(CLI::Range(1, 100000));
+    command->add_flag("--json", options->json, "print one JSON object on standard output");
     command->callback([options] { print_order(*options); });
 }
 

@@ -30,16 +30,21 @@ void run(const RunOptions& options) {
 void add_study_run(CLI::App& study) {
     auto options = std::make_shared<RunOptions>();
     options->participant.clear();
-    CLI::App* command = study.add_subcommand("run", "A study with people: instructions, trials, breaks, answers; goes on after a crash");
+    CLI::App* command = study.add_subcommand(
+        "run", "Run a study with people: instructions, trials, breaks, answers; resumes after a crash");
     command->add_option("PROTOCOL", options->protocol, "protocol JSON")->required();
-    command->add_option("--log", options->log, "the study's folder; every participant's logs go there")->required();
-    command->add_option("--participant", options->participant, "code of letters and digits (default: asked for)");
-    command->add_option("--screenshot", options->screenshot, "PNG of the last frame");
-    command->add_option("--quit-after-s", options->quit_after_s, "close the window by itself")->check(CLI::Range(0.0, 1e6));
-    command->add_option("--width-px", options->width_px, "of the window (default 1280)")->check(CLI::Range(100, 16384));
-    command->add_option("--height-px", options->height_px, "of the window (800)")->check(CLI::Range(100, 16384));
-    command->add_flag("--left-handed", options->left_handed, "controls on the right");
-    command->add_flag("--json", options->json, "one JSON object on standard output: how far it went");
+    command->add_option("--log", options->log, "the study's folder, for the logs of all participants")->required();
+    command->add_option("--participant", options->participant,
+                        "participant's code of letters and digits (default: the app asks for it)");
+    command->add_option("--screenshot", options->screenshot, "write a PNG of the last frame");
+    command->add_option("--quit-after-s", options->quit_after_s, "close the window after this many seconds")
+        ->check(CLI::Range(0.0, 1e6));
+    command->add_option("--width-px", options->width_px, "width of the window (default: as last time, 1280 at first)")
+        ->check(CLI::Range(100, 16384));
+    command->add_option("--height-px", options->height_px, "height of the window (default: as last time, 800 at first)")
+        ->check(CLI::Range(100, 16384));
+    command->add_flag("--left-handed", options->left_handed, "put the controls on the right");
+    command->add_flag("--json", options->json, "print one JSON object on standard output: how far the study went");
     command->callback([options] { run(*options); });
 }
 

@@ -61,17 +61,25 @@ void simulate(const Arguments& arguments) {
 
 void add_study_simulate(CLI::App& study) {
     auto arguments = std::make_shared<Arguments>();
-    CLI::App* command = study.add_subcommand("simulate", "A study with simulated participants, through the real loop and logs");
+    CLI::App* command =
+        study.add_subcommand("simulate", "Run a study with simulated participants, through the real loop and logs");
     command->add_option("PROTOCOL", arguments->protocol, "protocol JSON")->required();
-    command->add_option("--participants", arguments->options.participants, "how many")->required()->check(CLI::Range(1, 9999));
-    command->add_option("--seed", arguments->options.seed, "of hands and eyes (default 1)")->check(CLI::Range(0, 2000000000));
-    command->add_option("-o,--output", arguments->output, "folder; goes on where an earlier call was interrupted")->required();
-    command->add_option("--samples", arguments->samples, "log all samples of the pen, or none")
-        ->check(one_of({"none", "all"}))->capture_default_str();
-    command->add_flag("--practice", arguments->options.practice, "practice trials too");
-    command->add_option("--rate-Hz", arguments->options.rate_Hz, "of the pen (default 60)")->check(CLI::Range(10.0, 2000.0));
-    command->add_option("-j,--jobs", arguments->jobs, "participants at a time (default: twice the cores)")->check(CLI::Range(1, 256));
-    command->add_flag("--json", arguments->json, "one JSON object on standard output");
+    command->add_option("--participants", arguments->options.participants, "number of simulated participants")
+        ->required()
+        ->check(CLI::Range(1, 9999));
+    command->add_option("--seed", arguments->options.seed, "seed of the simulated hands and eyes (default 1)")
+        ->check(CLI::Range(0, 2000000000));
+    command->add_option("-o,--output", arguments->output, "the study's folder; an interrupted call is resumed there")
+        ->required();
+    command->add_option("--samples", arguments->samples, "samples of the pen to log: all or none")
+        ->check(one_of({"none", "all"}))
+        ->capture_default_str();
+    command->add_flag("--practice", arguments->options.practice, "simulate the practice trials too");
+    command->add_option("--rate-Hz", arguments->options.rate_Hz, "sample rate of the pen (default 60)")
+        ->check(CLI::Range(10.0, 2000.0));
+    command->add_option("-j,--jobs", arguments->jobs, "number of participants at a time (default: twice the cores)")
+        ->check(CLI::Range(1, 256));
+    command->add_flag("--json", arguments->json, "print one JSON object on standard output");
     command->callback([arguments] { simulate(*arguments); });
 }
 

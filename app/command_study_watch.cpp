@@ -198,11 +198,12 @@ void watch(const Arguments& arguments) {
 
 void add_study_watch(CLI::App& study) {
     auto arguments = std::make_shared<Arguments>();
-    CLI::App* command = study.add_subcommand("watch", "The experimenter's view of a study that runs: who, where, what to present");
+    CLI::App* command = study.add_subcommand(
+        "watch", "Show the experimenter a running study: participants, their progress, what to present");
     command->add_option("DIR", arguments->directory, "the study's folder")->required();
-    command->add_option("--participant", arguments->participant, "only this one");
-    command->add_flag("--once", arguments->once, "print once (always so where the output is no terminal)");
-    command->add_flag("--json", arguments->json, "one JSON object on standard output, once");
+    command->add_option("--participant", arguments->participant, "show only this participant");
+    command->add_flag("--once", arguments->once, "print once (always so if the output is not a terminal)");
+    command->add_flag("--json", arguments->json, "print one JSON object on standard output, once");
     command->callback([arguments] { watch(*arguments); });
 }
 
