@@ -3,14 +3,13 @@
 #include <algorithm>
 #include <exception>
 #include <stdexcept>
+#include <utility>
 
 #include "app/calibrate_form.h"
 #include "app/frame.h"
 #include "app/live_app.h"
 #include "app/load.h"
 #include "app/map_screen.h"
-#include "app/prepare.h"
-#include "app/replay.h"
 #include "app/save_picture.h"
 #include "app/study_run.h"
 #include "app/words.h"
@@ -20,191 +19,12 @@
 namespace palpa {
 namespace {
 
-constexpr double kFrame_s = 1.0 / 60.0;  // of our own: software rendering has no vertical sync
-
-std::string device_names(const Window& window) {
-    std::string names;
-    for (const PointerDevice& device : window.devices()) names += (names.empty() ? "" : ", ") + device.name;
-    return names.empty() ? "mouse" : names;
-}
-
-}  // namespace
-
-TraceInfo info_of(const App& app, const Window& window) {
-    if (app.trace) return app.trace->info;
-    TraceInfo info;
-    info.screen_width_px = window.width_px();
-    info.screen_height_px = window.height_px();
-    if (std::isfinite(app.screens.px_per_mm)) {
-        info.screen_width_mm = info.screen_width_px / app.screens.px_per_mm;
-        info.screen_height_mm = info.screen_height_px / app.screens.px_per_mm;
-    }
-    info.device = device_names(window);
-    return info;
-}
-
-namespace {
-
-// Takes a problem to the screen instead of out of the program.
-template <class Work>
-bool attempt(App& app, const Work& work) {
-    try {
-        work();
-        return true;
-    } catch (const std::exception& error) {
-        app.screens.problems.push_back(error.what());
-        return false;
-    }
-}
-
-}  // namespace
-
-double finger_offset_mm(const App& app) { return app.settings.above_finger ? static_cast<double>(kFingerOffset_mm) : 0.0; }
-
-double now_of(const App& app, const Window& window) { return window.now_s() - app.trace_shift_s; }
-
-namespace {
-
-void begin(const Window& window, const Gui& gui, App& app) {
-    const TrialMode mode = app.settings.test_mode ? TrialMode::test : TrialMode::practice;
-    app.screens.screen = Screen::trial;
-    app.screens.maps.reset();
-    app.screens.menu = false;
-    app.screens.note.clear();
-    app.stopped.clear();
-    app.begin_waits = false;
-    SessionFiles files{app.options.log, app.options.participant, app.options.record};
-    files.first_run = app.options.first_run;
-    files.finger_offset_mm = finger_offset_mm(app);
-    begin_trial(files, info_of(app, window), mode, app.session);
-    if (!app.trace) take_sample(resize_sample(window, gui, app.settings, now_of(app, window)), app.session);
-}
-
-Json result_of(const App& app) {
-    const Session& s = app.session;
-    Json result = run_json(s.scene, s.plan, s.state, app.frames, app.times.latency);
-    const auto ms = [](const Meter& meter, double q) { return 1e-6 * meter.quantile_ns(q); };
-    result["frame_cpu_ms"] = {{"p50", ms(app.times.cpu, 0.5)}, {"p99", ms(app.times.cpu, 0.99)}};
-    result["frame_gl_ms"] = {{"p50", ms(app.times.gl, 0.5)}, {"p99", ms(app.times.gl, 0.99)}};
-    result["latency_besides_drawing_ms"] = {{"p50", ms(app.times.ready, 0.5)}, {"p99", ms(app.times.ready, 0.99)}};
-    result["problems"] = app.screens.problems;
-    if (app.screens.check) result["device_check"] = check_json(*app.screens.check);
-    result["trials"] = s.finished;
-    if (!s.trial.finished) result["trials"].push_back(trial_json(s.plan, s.trial));
-    return result;
-}
-
-}  // namespace
-
-bool close_trial(App& app) {
-    const std::string where = !app.options.log.empty() ? app.options.log : app.options.record;
-    const std::optional<RunFiles> files = app.session.files;
-    const bool good = close_files(result_of(app), app.session);
-    if (app.keeper != nullptr && files) app.keeper->keep(*files, true);
-    if (good) return true;
-    app.stopped = words::filled(words::kCannotBeWritten, {where});
-    return false;
-}
-
-namespace {
-
-void begin_anew(const Window& window, const Gui& gui, App& app) {
-    if (!close_trial(app)) app.screens.problems.push_back(app.stopped);
-    if (app.keeper != nullptr && !app.keeper->ready()) {
-        app.begin_waits = true;  // no trial begins before the last one is safe
-        return;
-    }
-    if (!attempt(app, [&] { begin(window, gui, app); })) app.stopped = app.screens.problems.back();
-}
-
-void begin_when_kept(const Window& window, const Gui& gui, App& app) {
-    if (app.keeper == nullptr) return;
-    for (std::string problem = app.keeper->problem(); !problem.empty(); problem = app.keeper->problem()) {
-        app.screens.problems.push_back(problem);
-    }
-    if (app.begin_waits && app.keeper->ready()) begin_anew(window, gui, app);
-}
-
-// A tissue that has to be computed is, while the window shows how far. False if the window was closed meanwhile.
-bool prepare(Window& window, Gui& gui, const Scene& scene, Plan& plan) {
-    if (!scene.linear) {
-        plan = make_plan(scene);
-        return true;
-    }
-    PlanInProgress work(scene);
-    std::vector<Sample> ignored;
-    while (!work.wait(kFrame_s)) {
-        window.poll(0.0, ignored);
-        if (window.close_requested()) return false;
-        gui.begin_frame(kFrame_s, true);
-        draw_progress(words::kPreparing, work.share());
-        gui.end_frame();
-        clear_screen(window.width_px(), window.height_px());
-        gui.draw();
-        window.present();
-    }
-    plan = work.take();
-    return true;
-}
-
-// Another scene or profile; whatever is wrong with it, the present one stays.
-void change_scene(Window& window, Gui& gui, const std::string& file, const std::string& profile, App& app) {
-    Scene scene;
-    Plan plan;
-    bool ready = false;
-    const bool good = attempt(app, [&] {
-        scene = load_scene(file);
-        if (!profile.empty()) scene.profile = profile;
-        ready = prepare(window, gui, scene, plan);
-    });
-    if (!good || !ready) return;
-    if (!close_trial(app)) app.screens.problems.push_back(app.stopped);
-    app.session.scene = std::move(scene);
-    app.session.plan = std::move(plan);
-    begin_anew(window, gui, app);
-}
-
-// The eight turns of the tissue in an order that the seed decides, so that nobody learns where its nodules are.
-void turn_tissue(App& app) {
-    Mapping& mapping = app.session.scene.mapping;
-    const int now = mapping.rotate_deg / 90 + (mapping.flip ? 4 : 0);
-    constexpr int kSteps[] = {3, 5};  // both reach all eight before any comes again
-    const int next = (now + kSteps[app.session.scene.seed % 2]) % 8;
-    mapping.rotate_deg = 90 * (next % 4);
-    mapping.flip = next >= 4;
-}
-
 void keep_settings(App& app) {
     if (app.settings_path.empty()) return;
     const std::string problem = save_settings(app.settings, app.settings_path);
     if (!problem.empty()) app.screens.problems.push_back(problem);
     if (app.keeper != nullptr) app.keeper->keep_settings(app.settings_path);
 }
-
-}  // namespace
-
-void act(Action action, double now_s, App& app) {
-    const bool choice = app.screens.study && app.screens.study->protocol.task == TaskKind::choice;
-    if (choice && action != Action::finish) return;  // there is nothing to mark
-    Sample sample;
-    sample.t_host_s = now_s;
-    sample.phase = Phase::ui;
-    sample.action = action;
-    if (action == Action::mark) {
-        if (!app.session.trial.last_px) return;
-        sample.x_px = app.session.trial.last_px->x();
-        sample.y_px = app.session.trial.last_px->y();
-    }
-    take_sample(sample, app.session);
-    if (!app.session.trial.finished) return;
-    if (app.screens.study) return finish_study_trial(app);
-    app.screens.debrief = debrief(app.session.plan, app.session.trial);
-    app.screens.screen = Screen::reveal;
-    app.screens.menu = false;
-    if (!close_trial(app)) app.screens.problems.push_back(app.stopped);
-}
-
-namespace {
 
 // What was recorded is on the disk; a profile that was kept can be chosen at once.
 void close_calibrate(App& app) {
@@ -213,23 +33,13 @@ void close_calibrate(App& app) {
     app.screens.profiles = profile_choices();
 }
 
-// A press that is going on when its screen goes ends there.
-void open_screen(Screen screen, double now_s, App& app) {
+void open_screen(Screen screen, Window& window, App& app) {
     if (screen == Screen::maps && (app.screens.study || !may_show_maps(app.session.trial))) {
         app.screens.note = words::kMapsHidden;
         app.screens.menu = false;
         return;
     }
-    const State& state = app.session.state;
-    if (app.screens.screen == Screen::trial && screen != Screen::trial && state.pointer) {
-        Sample end;
-        end.t_host_s = now_s;
-        end.pointer_id = *state.pointer;
-        end.tool = state.pointer_tool;
-        end.phase = Phase::cancel;
-        end.x_px = end.y_px = kMissing;
-        take_sample(end, app.session);
-    }
+    if (app.screens.screen != screen) end_presses(window, app);
     if (screen == Screen::devices) {
         app.screens.check = std::make_shared<DeviceCheck>();
         app.screens.dots.clear();
@@ -265,14 +75,13 @@ void carry_out(const Wishes& wishes, Window& window, Gui& gui, App& app) {
     if (wishes.quit) app.quit = true;
     if (app.screens.study) follow_study(window, gui, app);
     if (wishes.action && app.screens.screen == Screen::trial && !app.trace) act(*wishes.action, now_of(app, window), app);
-    if (wishes.screen) open_screen(*wishes.screen, now_of(app, window), app);
+    if (wishes.screen) open_screen(*wishes.screen, window, app);
     if (wishes.scene) app.settings.scene = *wishes.scene;
     if (wishes.profile) app.settings.profile = *wishes.profile;
     if (wishes.scene || wishes.profile) {
         change_scene(window, gui, wishes.scene.value_or(app.session.scene.file.string()), app.settings.profile, app);
     }
     change_settings(wishes, window, gui, app);
-    if (wishes.next) turn_tissue(app);
     if (wishes.press_by_hold && app.screens.offer_hold) {
         const auto lacks = [&](Tool tool) {
             const PressureKind kind = pressure_kind(app.pressure, tool);
@@ -283,7 +92,8 @@ void carry_out(const Wishes& wishes, Window& window, Gui& gui, App& app) {
     }
     if (wishes.trials && app.keeper != nullptr) app.keeper->open();
     if (wishes.studies && app.keeper != nullptr) app.keeper->open_studies();
-    if (wishes.again || wishes.next) begin_anew(window, gui, app);
+    if (wishes.next) turn_tissue(window, gui, app);
+    if (wishes.again) begin_anew(window, gui, app);
     if (wishes.save_picture) {
         attempt(app, [&] { app.screens.note = words::filled(words::kSaved, {save_picture(window, app.options.log).string()}); });
     }
@@ -421,11 +231,16 @@ void load(const RunOptions& options, App& app) {
         app.settings.height_px = static_cast<int>(app.trace->info.screen_height_px);
     }
     const bool own_choice = options.scene.empty() && !app.trace;  // a replay is the same for everybody
-    Scene& scene = app.session.scene;
+    Scene scene;
     if (own_choice && !app.settings.scene.empty()) attempt(app, [&] { scene = load_scene(app.settings.scene); });
     if (scene.name.empty()) scene = load_scene(options.scene);
     if (own_choice && std::filesystem::exists(app.settings.profile)) scene.profile = app.settings.profile;
-    if (!scene.linear) app.session.plan = make_plan(scene);
+    if (scene.linear) {
+        app.unprepared = std::move(scene);
+        return;
+    }
+    Plan plan = make_plan(scene);
+    change_tissue(std::move(scene), std::move(plan), {}, app.session);
 }
 
 void know_screen(const Window& window, App& app) {
@@ -443,15 +258,23 @@ void remember_window(const Window& window, App& app) {
     keep_settings(app);
 }
 
+// False if the window was closed before the tissue was ready.
+bool prepare_first(Scene scene, Window& window, Gui& gui, App& app) {
+    Plan plan;
+    if (!prepare(window, gui, scene, plan)) return false;
+    change_tissue(std::move(scene), std::move(plan), screen_of(info_of(app, window)), app.session);
+    return true;
+}
+
 // A choice of last time that can no longer be prepared must not lock the person out.
 bool prepare_chosen(Window& window, Gui& gui, App& app) {
-    Session& s = app.session;
+    if (!app.unprepared) return true;
+    const Scene scene = *std::exchange(app.unprepared, std::nullopt);
     const bool own_choice = app.options.scene.empty() && !app.trace && !app.settings.scene.empty();
-    if (!own_choice) return prepare(window, gui, s.scene, s.plan);
+    if (!own_choice) return prepare_first(scene, window, gui, app);
     bool ready = false;
-    if (attempt(app, [&] { ready = prepare(window, gui, s.scene, s.plan); })) return ready;
-    s.scene = load_scene("");
-    return prepare(window, gui, s.scene, s.plan);
+    if (attempt(app, [&] { ready = prepare_first(scene, window, gui, app); })) return ready;
+    return prepare_first(load_scene(""), window, gui, app);
 }
 
 }  // namespace
@@ -469,11 +292,11 @@ struct Live::Impl {
         know_screen(*window, app);
         gui.emplace(*window);
         gui->set_scale(scale_now(app, *window));
-        ready = !app.session.scene.linear || prepare_chosen(*window, *gui, app);
+        ready = prepare_chosen(*window, *gui, app);
         if (!ready) return;
         if (app.trace) app.trace_shift_s = window->now_s() - app.trace->samples.front().t_host_s;
         if (!app.screens.study) begin(*window, *gui, app);
-        if (options.screen != Screen::trial) open_screen(options.screen, now_of(app, *window), app);
+        if (options.screen != Screen::trial) open_screen(options.screen, *window, app);
         tissue.emplace();
         app.waiting_s.reserve(4096);
         began_s = frame_s = window->now_s();

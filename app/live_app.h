@@ -1,6 +1,7 @@
 #pragma once
-// What live.cpp and live_study.cpp share: everything that the app has open, and the steps of a trial.
+// What live.cpp and its neighbours live_*.cpp share: everything that the app has open, and the steps of a trial.
 
+#include <exception>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -22,6 +23,7 @@ struct App {
     std::filesystem::path settings_path;  // empty: this run keeps none
     Screens screens;
     Session session;
+    std::optional<Scene> unprepared;  // its tissue is computed once there is a window that can say so
     std::optional<Trace> trace;  // replayed
     std::size_t next_row = 0;
     double trace_shift_s = 0.0;  // window's clock - trace's clock
@@ -37,10 +39,37 @@ struct App {
     bool quit = false;
 };
 
-// live.cpp
+inline constexpr double kFrame_s = 1.0 / 60.0;  // of our own: software rendering has no vertical sync
+
+// Takes a problem to the screen instead of out of the program.
+template <class Work>
+bool attempt(App& app, const Work& work) {
+    try {
+        work();
+        return true;
+    } catch (const std::exception& error) {
+        app.screens.problems.push_back(error.what());
+        return false;
+    }
+}
+
+// live_trial.cpp
 TraceInfo info_of(const App& app, const Window& window);
 double now_of(const App& app, const Window& window);  // of samples
 double finger_offset_mm(const App& app);              // 0, or kFingerOffset_mm
+Json result_of(const App& app);                       // what `run --json` says so far
+// A press belongs to the trial and the screen in which it began: it ends now, and what still comes of it is dropped.
+void end_presses(Window& window, App& app);
+// Ends the presses and the trial, then puts the tissue of `scene` under the hand. A trial begins on it with begin().
+void put_scene(Scene scene, Plan plan, Window& window, App& app);
+// False if the window was closed before the plan was ready; a tissue that has to be computed is, while the window shows how far.
+bool prepare(Window& window, Gui& gui, const Scene& scene, Plan& plan);
+void begin(const Window& window, const Gui& gui, App& app);     // a trial; throws InputError or std::runtime_error
+void begin_anew(Window& window, const Gui& gui, App& app);      // ends the one that goes on; waits for a keeper that is busy
+void begin_when_kept(Window& window, const Gui& gui, App& app);  // what begin_anew() left waiting
+// Another scene or profile; whatever is wrong with it, the present one stays.
+void change_scene(Window& window, Gui& gui, const std::string& file, const std::string& profile, App& app);
+void turn_tissue(Window& window, const Gui& gui, App& app);
 bool close_trial(App& app);  // its files whole on the disk, and with the keeper; false: app.stopped says why not
 void act(Action action, double now_s, App& app);
 
@@ -49,7 +78,7 @@ void note_devices(const Window& window, App& app);  // into app.screens
 
 // live_study.cpp: a study's trials instead of a scene that was chosen. `app.screens.study` is there.
 void load_study(const RunOptions& options, App& app);  // throws InputError or std::runtime_error
-void follow_study(const Window& window, const Gui& gui, App& app);  // what a screen has led to, the end of a trial's time
+void follow_study(Window& window, const Gui& gui, App& app);  // what a screen has led to, the end of a trial's time
 void finish_study_trial(App& app);
 bool allowed(const Sample& sample, App& app);  // its condition names the device
 Json study_json(const App& app);               // how far it is

@@ -63,6 +63,10 @@ class Window {
     // 1/240 s.
     void set_keyboard(double x0_px, double y0_px, double x1_px, double y1_px, double speed_px_per_s);
 
+    // Ends all presses without a sample: what still comes of them, up to the lift, is dropped, and so is what poll()
+    // has not handed over yet.
+    void end_presses();
+
     bool close_requested() const;
     void present();            // shows what was drawn
     double now_s() const;      // steady clock; the same as t_host_s

@@ -42,6 +42,8 @@ void receive(const SDL_Event& event, double t_host_s, Pointers& pointers);
 // Lets a held mouse button or key go on until now.
 void hold(double t_host_s, Pointers& pointers);
 
+void forget_presses(Pointers& pointers);  // as Window::end_presses
+
 // As Window::set_keyboard. A press that is going on when it is turned off ends with phase cancel.
 void set_keyboard_area(double t_host_s, const KeyboardArea& area, Pointers& pointers);
 

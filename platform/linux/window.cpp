@@ -85,6 +85,10 @@ void Window::set_event_filter(EventFilter filter, void* user) {
     impl_->pointers.filter_user = user;
 }
 
+void Window::end_presses() {
+    forget_presses(impl_->pointers);
+}
+
 void Window::set_keyboard(double x0_px, double y0_px, double x1_px, double y1_px, double speed_px_per_s) {
     set_keyboard_area(steady_s(), {x0_px, y0_px, x1_px, y1_px, speed_px_per_s}, impl_->pointers);
 }

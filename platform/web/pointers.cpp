@@ -176,6 +176,12 @@ void hold(double t_host_s, Pointers& pointers) {
     admit_made(PressOwner::tissue, pointers);
 }
 
+void forget_presses(Pointers& pointers) {
+    cancel_all(0.0, pointers.presses, pointers.made);
+    pointers.made.clear();
+    pointers.pending.clear();
+}
+
 void set_keyboard_area(double t_host_s, const KeyboardArea& area, Pointers& pointers) {
     hold(t_host_s, pointers);
     set_area(area, pointers.keyboard);

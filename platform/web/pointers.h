@@ -52,6 +52,8 @@ void release_all(double t_host_s, Pointers& pointers);
 // Lets a held mouse button or key go on until now.
 void hold(double t_host_s, Pointers& pointers);
 
+void forget_presses(Pointers& pointers);  // as Window::end_presses
+
 // As Window::set_keyboard.
 void set_keyboard_area(double t_host_s, const KeyboardArea& area, Pointers& pointers);
 
