@@ -9,6 +9,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "app/content_hash.h"
 #include "app/font.h"
 
 namespace palpa {
@@ -264,6 +265,23 @@ WindowSize Gui::size_px() const { return {ImGui::GetIO().DisplaySize.x, ImGui::G
 void Gui::renew_drawing() {
     ImGui_ImplOpenGL3_Shutdown();  // its buffers' sizes are forgotten with them only here
     ImGui_ImplOpenGL3_Init("#version 300 es");
+}
+
+std::uint64_t Gui::content() const {
+    const ImDrawData* data = ImGui::GetDrawData();
+    std::uint64_t hash = hash_more(0, &data->DisplaySize, sizeof data->DisplaySize);
+    const auto take = [&](const auto& values) { hash = hash_more(hash, values.Data, static_cast<std::size_t>(values.size_in_bytes())); };
+    for (int i = 0; i < data->CmdListsCount; ++i) {
+        const ImDrawList& list = *data->CmdLists[i];
+        take(list.VtxBuffer);
+        take(list.IdxBuffer);
+        for (const ImDrawCmd& command : list.CmdBuffer) {
+            hash = hash_more(hash, &command.ClipRect, sizeof command.ClipRect);
+            hash = hash_more(hash, &command.TextureId, sizeof command.TextureId);
+            hash = hash_more(hash, &command.ElemCount, sizeof command.ElemCount);
+        }
+    }
+    return hash;
 }
 
 void Gui::draw() {

@@ -36,6 +36,7 @@ class Gui {
     bool in_use() const;
     // Enter is the screen's own key (pressed()) instead of that of the control which has the focus.
     void keep_enter(bool keep) { keep_enter_ = keep; }
+    std::uint64_t content() const;  // of the panels that were closed last; the same number: the same look
     void draw();       // hands them to GL
     void renew_drawing();  // all that GL held was lost
 

@@ -94,9 +94,7 @@ void carry_out(const Wishes& wishes, Window& window, Gui& gui, App& app) {
     if (wishes.studies && app.keeper != nullptr) app.keeper->open_studies();
     if (wishes.next) turn_tissue(window, gui, app);
     if (wishes.again) begin_anew(window, gui, app);
-    if (wishes.save_picture) {
-        attempt(app, [&] { app.screens.note = words::filled(words::kSaved, {save_picture(window, app.options.log).string()}); });
-    }
+    app.save_waits = app.save_waits || wishes.save_picture;
 }
 
 // Rows of the trace that are due, with the trace's own times.
@@ -171,22 +169,47 @@ void note_resize(const Window& window, Gui& gui, App& app) {
     if (!same) take(now, app);
 }
 
-void show(Window& window, App& app, TissueDrawer& tissue, Gui& gui, double dt_s) {
-    if (app.frames % 60 == 0) note_devices(window, app);
-    const Session& s = app.session;
-    const Wishes wishes = draw_frame(s.scene, s.plan, s.trial, app.settings, now_of(app, window), dt_s, tissue, gui, app.screens,
-                                     app.session.state, app.times);
-    window.present();
-    ++app.frames;
+// Samples that changed nothing on the screen have no frame that shows them, and no latency.
+void note_shown(const Window& window, App& app) {
     const double shown_s = now_of(app, window);
     const double ready_s = 1e-9 * static_cast<double>(app.times.built_ns) - app.trace_shift_s;
     for (const double t_s : app.waiting_s) {
         app.times.latency.add_ns(1e9 * (shown_s - t_s));
         app.times.ready.add_ns(1e9 * (ready_s - t_s));
     }
+    ++app.frames;
+    const double since_s = window.now_s() - app.drawn_s;
+    app.times.frames_per_s += 0.05 * (1.0 / std::max(since_s, 1e-3) - app.times.frames_per_s);
+    app.drawn_s = window.now_s();
+}
+
+void show(Window& window, App& app, TissueDrawer& tissue, Gui& gui, double dt_s) {
+    constexpr double kDevices_s = 1.0;
+    if (window.now_s() - app.devices_noted_s >= kDevices_s) {
+        note_devices(window, app);
+        app.devices_noted_s = window.now_s();
+    }
+    const Session& s = app.session;
+    const bool save = std::exchange(app.save_waits, false);
+    if (save) app.on_screen.content = 0;  // what the window hands out is only sure while it has just been drawn
+    const Wishes wishes = draw_frame(s.scene, s.plan, s.trial, app.settings, now_of(app, window), dt_s, tissue, gui, app.screens,
+                                     app.session.state, app.times, app.on_screen);
+    if (save) {
+        attempt(app, [&] { app.screens.note = words::filled(words::kSaved, {save_picture(window, app.options.log).string()}); });
+    }
+    if (app.on_screen.drawn) {
+        window.present();
+        note_shown(window, app);
+    }
     app.waiting_s.clear();
-    app.times.frames_per_s += 0.05 * (1.0 / std::max(dt_s, 1e-3) - app.times.frames_per_s);
     carry_out(wishes, window, gui, app);
+}
+
+// The screen changes by itself now, or a step waits for something that says nothing when it comes.
+bool in_motion(const App& app) {
+    const bool records = app.screens.screen == Screen::calibrate;
+    const bool keeps = app.begin_waits || (app.screens.study && app.screens.study->keeping);
+    return app.trace || app.session.state.pointer || !app.hold.held.empty() || records || keeps || app.save_waits;
 }
 
 // A log that can no longer be written stops the trial, in words; what came before is on the disk.
@@ -210,71 +233,12 @@ void keep_part(double now_s, App& app) {
     app.parted_s = now_s;
 }
 
-// Everything that bad input can refuse, before a window is there.
-void load(const RunOptions& options, App& app) {
-    app.options = options;
-    app.settings_path = settings_file();
-    std::string problem;
-    app.settings = load_settings(app.settings_path, problem);
-    if (!problem.empty()) app.screens.problems.push_back(problem);
-    if (options.test) app.settings.test_mode = true;
-    if (options.practice) app.settings.test_mode = false;
-    if (options.left_handed) app.settings.left_handed = true;
-    if (options.width_px > 0) app.settings.width_px = options.width_px;
-    if (options.height_px > 0) app.settings.height_px = options.height_px;
-    if (!options.protocol.empty()) return load_study(options, app);
-    app.screens.scenes = scene_choices();
-    app.screens.profiles = profile_choices();
-    if (!options.trace.empty()) {
-        app.trace = read_trace(options.trace);
-        app.settings.width_px = static_cast<int>(app.trace->info.screen_width_px);
-        app.settings.height_px = static_cast<int>(app.trace->info.screen_height_px);
-    }
-    const bool own_choice = options.scene.empty() && !app.trace;  // a replay is the same for everybody
-    Scene scene;
-    if (own_choice && !app.settings.scene.empty()) attempt(app, [&] { scene = load_scene(app.settings.scene); });
-    if (scene.name.empty()) scene = load_scene(options.scene);
-    if (own_choice && std::filesystem::exists(app.settings.profile)) scene.profile = app.settings.profile;
-    if (scene.linear) {
-        app.unprepared = std::move(scene);
-        return;
-    }
-    Plan plan = make_plan(scene);
-    change_tissue(std::move(scene), std::move(plan), {}, app.session);
-}
-
-void know_screen(const Window& window, App& app) {
-    app.screens.screen_name = window.screen_name();
-    const auto known = app.settings.px_per_mm.find(app.screens.screen_name);
-    if (std::isfinite(window.touch_px_per_mm())) app.screens.card_px_per_mm = window.touch_px_per_mm();
-    if (known != app.settings.px_per_mm.end()) app.screens.card_px_per_mm = app.screens.px_per_mm = known->second;
-}
-
 void remember_window(const Window& window, App& app) {
     if (app.trace || app.settings.full_screen || app.options.width_px > 0 || app.options.height_px > 0) return;
     if (app.settings.width_px == window.width_px() && app.settings.height_px == window.height_px()) return;
     app.settings.width_px = window.width_px();
     app.settings.height_px = window.height_px();
     keep_settings(app);
-}
-
-// False if the window was closed before the tissue was ready.
-bool prepare_first(Scene scene, Window& window, Gui& gui, App& app) {
-    Plan plan;
-    if (!prepare(window, gui, scene, plan)) return false;
-    change_tissue(std::move(scene), std::move(plan), screen_of(info_of(app, window)), app.session);
-    return true;
-}
-
-// A choice of last time that can no longer be prepared must not lock the person out.
-bool prepare_chosen(Window& window, Gui& gui, App& app) {
-    if (!app.unprepared) return true;
-    const Scene scene = *std::exchange(app.unprepared, std::nullopt);
-    const bool own_choice = app.options.scene.empty() && !app.trace && !app.settings.scene.empty();
-    if (!own_choice) return prepare_first(scene, window, gui, app);
-    bool ready = false;
-    if (attempt(app, [&] { ready = prepare_first(scene, window, gui, app); })) return ready;
-    return prepare_first(load_scene(""), window, gui, app);
 }
 
 }  // namespace
@@ -299,7 +263,7 @@ struct Live::Impl {
         if (options.screen != Screen::trial) open_screen(options.screen, *window, app);
         tissue.emplace();
         app.waiting_s.reserve(4096);
-        began_s = frame_s = window->now_s();
+        began_s = frame_s = stirred_s = app.drawn_s = window->now_s();
     }
 
     bool over() const {
@@ -311,6 +275,8 @@ struct Live::Impl {
     void take_samples(double wait_s) {
         samples.clear();
         window->poll(wait_s, samples);                 // 1. read
+        if (window->stirred() || !samples.empty()) stirred_s = window->now_s();
+        if (window->uncovered()) app.on_screen.content = 0;
         if (app.trace) {
             samples.clear();
             take_due_rows(app, now_of(app, *window), samples);
@@ -325,6 +291,15 @@ struct Live::Impl {
         keep_part(window->now_s(), app);
     }
 
+    // When the next frame is built. Nothing happening, that is seldom: often enough for clocks, notices and cursors that
+    // blink; what comes is met at once.
+    double next_frame_s() const {
+        constexpr double kIdle_s = 0.1;
+        constexpr double kSettle_s = 0.25;  // panels take some frames to settle, and the log is flushed after 80 ms
+        const bool quick = in_motion(app) || gui->in_use() || window->now_s() - stirred_s < kSettle_s;
+        return std::min(frame_s + (quick ? kFrame_s : kIdle_s), trial_ends_s(app));
+    }
+
     App app;
     std::optional<Window> window;
     std::optional<Gui> gui;
@@ -332,7 +307,8 @@ struct Live::Impl {
     bool ready = false;
     double asked_s = 1e-9 * static_cast<double>(steady_ns());
     double began_s = 0.0;
-    double frame_s = 0.0;
+    double frame_s = 0.0;    // when a frame was built last
+    double stirred_s = 0.0;  // when anything came last
     double first_frame_s = 0.0;
     std::vector<Sample> samples;
 };
@@ -345,11 +321,13 @@ bool Live::ready() const { return impl_->ready; }
 bool Live::turn(Draw draw) {
     Impl& it = *impl_;
     if (it.over()) return false;
-    const bool due = draw == Draw::when_due;
-    it.take_samples(due ? std::max(0.0, it.frame_s + kFrame_s - it.window->now_s()) : 0.0);
+    const bool waits = draw == Draw::when_due;
+    it.take_samples(waits ? std::max(0.0, it.next_frame_s() - it.window->now_s()) : 0.0);
     const double now_s = it.window->now_s();
     if (draw == Draw::nothing) return true;
-    if (due && now_s - it.frame_s < kFrame_s && it.app.frames > 0) return true;
+    // a browser that calls for each frame of its display sets the pace itself while anything moves
+    const double early_s = waits ? 0.0 : kFrame_s;
+    if (now_s + early_s < it.next_frame_s() && it.app.frames > 0) return true;
     show(*it.window, it.app, *it.tissue, *it.gui, now_s - it.frame_s);  // 4. show
     it.frame_s = now_s;
     if (it.app.frames == 1) it.first_frame_s = 1e-9 * static_cast<double>(steady_ns()) - it.asked_s;
@@ -359,7 +337,8 @@ bool Live::turn(Draw draw) {
 void Live::out_of_sight(bool hidden) {
     Impl& it = *impl_;
     it.take_samples(0.0);  // presses that end now
-    it.frame_s = it.window->now_s();
+    it.frame_s = it.stirred_s = it.window->now_s();
+    it.app.on_screen.content = 0;
     const bool between = it.app.screens.study && it.app.screens.screen != Screen::trial;
     if (it.app.trace || it.app.session.trial.finished || it.app.begin_waits || between) return;
     Sample sample;
@@ -375,6 +354,8 @@ void Live::out_of_sight(bool hidden) {
 void Live::renew_drawing() {
     impl_->gui->renew_drawing();
     impl_->tissue.emplace();
+    impl_->app.on_screen.content = 0;
+    impl_->stirred_s = impl_->window->now_s();
 }
 
 Json Live::report() const {
@@ -389,7 +370,13 @@ void Live::type_instead(const std::string& text) { impl_->gui->type_instead(text
 
 Json Live::close() {
     Impl& it = *impl_;
-    if (!it.app.options.screenshot.empty()) save_screen(*it.window, it.app.options.screenshot);
+    if (!it.app.options.screenshot.empty()) {
+        it.app.on_screen.content = 0;
+        const Session& s = it.app.session;
+        draw_frame(s.scene, s.plan, s.trial, it.app.settings, now_of(it.app, *it.window), kFrame_s, *it.tissue, *it.gui, it.app.screens,
+                   it.app.session.state, it.app.times, it.app.on_screen);
+        save_screen(*it.window, it.app.options.screenshot);
+    }
     if (it.app.screens.calibrate) stop_recording(*it.app.screens.calibrate);
     remember_window(*it.window, it.app);
     if (it.app.screens.study) return close_study(*it.gui, it.app);

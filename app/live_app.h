@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "app/frame.h"
 #include "app/live.h"
 #include "app/screens.h"
 #include "app/session.h"
@@ -28,7 +29,11 @@ struct App {
     std::size_t next_row = 0;
     double trace_shift_s = 0.0;  // window's clock - trace's clock
     FrameTimes times;
-    std::int64_t frames = 0;
+    std::int64_t frames = 0;     // drawn
+    OnScreen on_screen;
+    double drawn_s = 0.0;        // window's clock, at the last frame that was drawn
+    double devices_noted_s = -1e9;
+    bool save_waits = false;     // a picture of the next frame is wanted
     PressureWatch pressure;
     HoldPress hold;
     std::vector<double> waiting_s;  // host times of the samples that no frame has shown yet
@@ -52,6 +57,11 @@ bool attempt(App& app, const Work& work) {
         return false;
     }
 }
+
+// live_load.cpp
+void load(const RunOptions& options, App& app);  // everything that bad input can refuse, before a window is there
+void know_screen(const Window& window, App& app);  // how large the settings say that it is
+bool prepare_chosen(Window& window, Gui& gui, App& app);  // what load() left unprepared; false: the window was closed
 
 // live_trial.cpp
 TraceInfo info_of(const App& app, const Window& window);
@@ -80,6 +90,7 @@ void note_devices(const Window& window, App& app);  // into app.screens
 void load_study(const RunOptions& options, App& app);  // throws InputError or std::runtime_error
 void follow_study(Window& window, const Gui& gui, App& app);  // what a screen has led to, the end of a trial's time
 void finish_study_trial(App& app);
+double trial_ends_s(const App& app);  // at this time its limit ends the trial that goes on; infinity: never
 bool allowed(const Sample& sample, App& app);  // its condition names the device
 Json study_json(const App& app);               // how far it is
 Json close_study(const Gui& gui, App& app);    // throws std::runtime_error if the study had to stop

@@ -2,6 +2,7 @@
 // one before it is safe.
 
 #include <exception>
+#include <limits>
 #include <stdexcept>
 
 #include "app/frame.h"
@@ -73,13 +74,18 @@ void finish_study_trial(App& app) {
     follow_keeper(app);
 }
 
+double trial_ends_s(const App& app) {
+    constexpr double kNever_s = std::numeric_limits<double>::infinity();
+    if (!app.screens.study || app.screens.screen != Screen::trial) return kNever_s;
+    const double limit_s = due_limit_s(*app.screens.study);
+    return limit_s > 0.0 ? app.session.trial.began_s + limit_s : kNever_s;
+}
+
 void follow_study(Window& window, const Gui& gui, App& app) {
     StudyRun& run = *app.screens.study;
     follow_keeper(app);
     if (run.start_trial && !run.keeping) begin_study_trial(window, gui, app);
-    if (app.screens.screen != Screen::trial) return;
-    const double limit_s = due_limit_s(run);
-    if (limit_s > 0.0 && now_of(app, window) - app.session.trial.began_s >= limit_s) act(Action::finish, now_of(app, window), app);
+    if (now_of(app, window) >= trial_ends_s(app)) act(Action::finish, now_of(app, window), app);
 }
 
 bool allowed(const Sample& sample, App& app) {

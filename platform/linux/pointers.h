@@ -32,6 +32,8 @@ struct Pointers {
     std::optional<bool> finger_on_panel;  // the filter's word on the touch that is about to begin
 
     bool close_requested = false;
+    bool stirred = false;    // since the last poll(): an event of any kind,
+    bool uncovered = false;  // one after which the window has to be drawn again
     std::vector<Sample> made;     // scratch
     std::vector<Sample> pending;  // for the next poll()
 };

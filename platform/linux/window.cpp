@@ -8,6 +8,7 @@
 #include <chrono>
 #include <cmath>
 #include <string_view>
+#include <utility>
 
 #include "platform/linux/gl_window.h"
 #include "platform/linux/pointers.h"
@@ -62,6 +63,8 @@ struct Window::Impl {
 
     GlWindow gl;
     Pointers pointers;
+    bool stirred = false;  // of the last poll()
+    bool uncovered = false;
 };
 
 Window::Window(const WindowOptions& options) : impl_(std::make_unique<Impl>(options)) {}
@@ -78,6 +81,16 @@ void Window::poll(double wait_s, std::vector<Sample>& out) {
     hold(steady_s(), pointers);
     out.insert(out.end(), pointers.pending.begin(), pointers.pending.end());
     pointers.pending.clear();
+    impl_->stirred = std::exchange(pointers.stirred, false);
+    impl_->uncovered = std::exchange(pointers.uncovered, false);
+}
+
+bool Window::stirred() const {
+    return impl_->stirred;
+}
+
+bool Window::uncovered() const {
+    return impl_->uncovered;
 }
 
 void Window::set_event_filter(EventFilter filter, void* user) {

@@ -38,6 +38,7 @@ struct Pointers {
     void* filter_user = nullptr;
     std::vector<std::int64_t> touching;     // pens and fingers, by their number in samples
     std::array<bool, kToolCount> seen{};    // tools that have sent something
+    bool stirred = false;                   // something came since the last poll()
     std::vector<Sample> made;               // scratch
     std::vector<Sample> pending;            // for the next poll()
 };

@@ -66,7 +66,7 @@ struct Desk {
 
     void show_frame() {
         const Session& s = app.session;
-        draw_frame(s.scene, s.plan, s.trial, app.settings, window.now_s(), 1.0 / 60.0, tissue, gui, app.screens, app.session.state, app.times);
+        draw_frame(s.scene, s.plan, s.trial, app.settings, window.now_s(), 1.0 / 60.0, tissue, gui, app.screens, app.session.state, app.times, app.on_screen);
     }
 };
 
