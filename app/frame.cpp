@@ -1,6 +1,9 @@
 #include "app/frame.h"
 
+#include <type_traits>
+
 #include "app/calibrate_form.h"
+#include "app/content_hash.h"
 #include "app/map_screen.h"
 #include "app/picture.h"
 #include "scene/advance.h"
@@ -55,10 +58,26 @@ void draw_panels(const Shown& shown, const Layout& layout, Gui& gui, Screens& sc
     }
 }
 
+template <class Numbers>  // without gaps between them
+std::uint64_t hash_of(std::uint64_t hash, const Numbers& numbers) {
+    static_assert(std::is_trivially_copyable_v<Numbers>);
+    return hash_more(hash, &numbers, sizeof numbers);
+}
+
+std::uint64_t content_of(const TissueView& view, const Surface& surface, const Ball& ball, const Gui& gui) {
+    static_assert(sizeof(TissueView) == 14 * sizeof(float) && sizeof(Ball) == 5 * sizeof(float));
+    static_assert(sizeof(Dent) == (3 + kSinkPoints) * sizeof(float));
+    std::uint64_t hash = hash_of(hash_of(hash_of(gui.content(), view), surface.dent), ball);
+    const Relief& relief = surface.relief;
+    hash = hash_of(hash_of(hash_of(hash, relief.n_x), relief.n_y), relief.shift_m);
+    return hash_more(hash, relief.sink_m.data(), relief.sink_m.size() * sizeof(float));
+}
+
 }  // namespace
 
 Wishes draw_frame(const Scene& scene, const Plan& plan, const Trial& trial, const Settings& settings, double now_s,
-                  double dt_s, TissueDrawer& tissue, Gui& gui, Screens& screens, State& state, FrameTimes& times) {
+                  double dt_s, TissueDrawer& tissue, Gui& gui, Screens& screens, State& state, FrameTimes& times,
+                  OnScreen& on_screen) {
     const std::int64_t began_ns = steady_ns();
     const bool keys_to_panels = screens.menu || screens.asked || (screens.screen != Screen::trial && screens.screen != Screen::devices);
     gui.keep_enter(screens.screen == Screen::study || screens.asked);
@@ -75,10 +94,14 @@ Wishes draw_frame(const Scene& scene, const Plan& plan, const Trial& trial, cons
     if (trial.finished) ball.radius_m = 0.0f;
     gui.end_frame();
     const std::int64_t built_ns = steady_ns();
-    tissue.draw(shown.view, surface.dent, surface.relief, ball);
-    gui.draw();
     times.built_ns = built_ns;
     times.cpu.add_ns(static_cast<double>(built_ns - began_ns));
+    const std::uint64_t content = content_of(shown.view, surface, ball, gui);
+    on_screen.drawn = content != on_screen.content;
+    if (!on_screen.drawn) return wishes;
+    on_screen.content = content;
+    tissue.draw(shown.view, surface.dent, surface.relief, ball);
+    gui.draw();
     times.gl.add_ns(static_cast<double>(steady_ns() - built_ns));
     return wishes;
 }

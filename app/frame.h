@@ -8,9 +8,17 @@
 
 namespace palpa {
 
-// Builds and draws the frame; what the person asked for in it comes back. The surface's meter is counted in `state`.
+// What the window shows.
+struct OnScreen {
+    std::uint64_t content = 0;  // what it was drawn from (content_hash.h); 0: nobody knows, so that the next frame is drawn
+    bool drawn = false;         // by the last draw_frame()
+};
+
+// Builds the frame, and draws it unless it would look like what is on the screen; what the person asked for in it comes
+// back. The surface's meter is counted in `state`.
 Wishes draw_frame(const Scene& scene, const Plan& plan, const Trial& trial, const Settings& settings, double now_s,
-                  double dt_s, TissueDrawer& tissue, Gui& gui, Screens& screens, State& state, FrameTimes& times);
+                  double dt_s, TissueDrawer& tissue, Gui& gui, Screens& screens, State& state, FrameTimes& times,
+                  OnScreen& on_screen);
 
 // The part of the window that the tissue has, as the sample that says so.
 Sample resize_sample(const Window& window, const Gui& gui, const Settings& settings, double t_host_s);

@@ -9,6 +9,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "app/content_hash.h"
 #include "app/font.h"
 
 namespace palpa {
@@ -16,6 +17,7 @@ namespace {
 
 constexpr float kText_mm = 4.7f;  // line height, readable at arm's length
 constexpr float kNowhere_px = -1e6f;
+constexpr int kNotHeld = -1;
 
 void map_keys(ImGuiIO& io) {
     struct Pair {
@@ -66,6 +68,7 @@ Gui::Gui(Window& window) : window_(window), font_file_(system_font_file()) {
     ImGui::CreateContext();
     ImGuiIO& io = ImGui::GetIO();
     io.IniFilename = nullptr;
+    held_as_.fill(kNotHeld);
     map_keys(io);
     if (!ImGui_ImplOpenGL3_Init("#version 300 es")) throw std::runtime_error("the panels cannot be drawn: Dear ImGui found no OpenGL (libGL)");
     set_scale(control_scale(kMissing, static_cast<float>(window.width_px()), static_cast<float>(window.height_px())));
@@ -130,9 +133,12 @@ bool Gui::receive(const WindowEvent& event) {
         case Kind::finger_up: return receive_finger(event);
         case Kind::key_down:
         case Kind::key_up: return receive_key(event);
-        case Kind::text:
-            if (ImGui::GetIO().WantTextInput) ImGui::GetIO().AddInputCharactersUTF8(event.text.c_str());
+        case Kind::text: {
+            PanelInput input{PanelInput::Kind::text};
+            input.text = event.text;
+            wait_for_frame(std::move(input), waiting_);
             return false;
+        }
     }
     return false;
 }
@@ -143,7 +149,7 @@ bool Gui::receive_button(const WindowEvent& event) {
     const bool owned = owns(x, y);
     if (event.made_from_touch) return owned;
     const bool down = event.kind == WindowEvent::Kind::button_down;
-    if (down ? owned : mouse_on_panel_) clicks_.push_back({x, y, down});
+    if (down ? owned : mouse_on_panel_) wait_for_frame({PanelInput::Kind::button, down, x, y}, waiting_);
     mouse_on_panel_ = down && owned;
     return owned;
 }
@@ -154,13 +160,13 @@ bool Gui::receive_finger(const WindowEvent& event) {
     const bool owned = owns(x, y);
     if (event.kind == WindowEvent::Kind::finger_down && owned && !finger_) {
         finger_ = event.finger_id;
-        clicks_.push_back({x, y, true});
+        wait_for_frame({PanelInput::Kind::button, true, x, y}, waiting_);
     }
     if (finger_ != event.finger_id) return owned;
     pointer_x_px_ = x;
     pointer_y_px_ = y;
     if (event.kind == WindowEvent::Kind::finger_up) {
-        clicks_.push_back({x, y, false});
+        wait_for_frame({PanelInput::Kind::button, false, x, y}, waiting_);
         pointer_x_px_ = pointer_y_px_ = kNowhere_px;  // a finger that has left hovers nowhere
         finger_.reset();
     }
@@ -168,40 +174,74 @@ bool Gui::receive_finger(const WindowEvent& event) {
 }
 
 bool Gui::receive_key(const WindowEvent& event) {
-    ImGuiIO& io = ImGui::GetIO();
-    const bool down = event.kind == WindowEvent::Kind::key_down;
-    // Enter presses a button as Space does, except where a number is typed
-    const bool activates = event.key == key::enter && !io.WantTextInput && !keep_enter_;
-    const auto index = static_cast<std::size_t>(activates ? key::space : event.key);
-    if (down && keys_to_panels_) {
-        io.KeysDown[index] = true;
-        fresh_keys_.push_back(index);
-    } else if (std::find(fresh_keys_.begin(), fresh_keys_.end(), index) == fresh_keys_.end()) {
-        io.KeysDown[index] = false;
-    } else {
-        let_go_.push_back(index);  // no frame has seen it down yet
-    }
-    io.KeyCtrl = event.ctrl;
-    io.KeyShift = event.shift;
-    if (down && !event.repeat && !io.WantTextInput) keys_.push_back({event.key, event.ctrl});
+    if (event.repeat) return keys_to_panels_;  // Dear ImGui repeats a held key by itself
+    PanelInput input{PanelInput::Kind::key};
+    input.down = event.kind == WindowEvent::Kind::key_down;
+    input.key = event.key;
+    input.ctrl = event.ctrl;
+    input.shift = event.shift;
+    input.for_panels = keys_to_panels_;
+    wait_for_frame(std::move(input), waiting_);
     return keys_to_panels_;
+}
+
+void Gui::hand_over(const PanelInput& input) {
+    ImGuiIO& io = ImGui::GetIO();
+    switch (input.kind) {
+        case PanelInput::Kind::button:
+            io.MousePos = ImVec2(input.x_px, input.y_px);
+            io.MouseDown[0] = input.down;
+            return;
+        case PanelInput::Kind::key: return hand_over_key(input);
+        case PanelInput::Kind::text: return io.AddInputCharactersUTF8(input.text.c_str());
+        case PanelInput::Kind::replace: return replace_text(input.text);
+    }
+}
+
+void Gui::hand_over_key(const PanelInput& input) {
+    ImGuiIO& io = ImGui::GetIO();
+    io.KeyCtrl = input.ctrl;
+    io.KeyShift = input.shift;
+    int& held_as = held_as_[static_cast<std::size_t>(input.key)];
+    if (!input.down) {
+        if (held_as != kNotHeld) io.KeysDown[held_as] = false;
+        held_as = kNotHeld;
+        return;
+    }
+    // Enter presses a button as Space does, except where a number is typed
+    const bool activates = input.key == key::enter && !io.WantTextInput && !keep_enter_;
+    if (input.for_panels && keys_to_panels_) {
+        held_as = activates ? key::space : input.key;
+        io.KeysDown[held_as] = true;
+    }
+    if (!io.WantTextInput) keys_.push_back({input.key, input.ctrl});
+}
+
+// What was typed elsewhere replaces what stands in the field.
+void Gui::replace_text(const std::string& text) {
+    ImGuiIO& io = ImGui::GetIO();
+    ImGuiInputTextState* state = ImGui::GetInputTextState(ImGui::GetActiveID());
+    if (!io.WantTextInput || state == nullptr) return;
+    state->SelectAll();
+    if (!text.empty()) return io.AddInputCharactersUTF8(text.c_str());
+    io.KeysDown[key::backspace] = emptied_ = true;
+}
+
+void Gui::let_all_keys_go() {
+    std::fill(std::begin(ImGui::GetIO().KeysDown), std::end(ImGui::GetIO().KeysDown), false);
+    held_as_.fill(kNotHeld);
 }
 
 void Gui::begin_frame(double dt_s, bool keys_to_panels) {
     ImGuiIO& io = ImGui::GetIO();
     io.DisplaySize = ImVec2(static_cast<float>(window_.width_px()), static_cast<float>(window_.height_px()));
     io.DeltaTime = std::max(1e-4f, static_cast<float>(dt_s));
-    if (keys_to_panels != keys_to_panels_) std::fill(std::begin(io.KeysDown), std::end(io.KeysDown), false);
+    if (keys_to_panels != keys_to_panels_) let_all_keys_go();
     keys_to_panels_ = keys_to_panels;
     io.ConfigFlags = keys_to_panels ? ImGuiConfigFlags_NavEnableKeyboard : ImGuiConfigFlags_None;
-    if (clicks_.empty()) {
-        io.MousePos = ImVec2(pointer_x_px_, pointer_y_px_);
-    } else {
-        io.MousePos = ImVec2(clicks_.front().x_px, clicks_.front().y_px);
-        io.MouseDown[0] = clicks_.front().down;
-        clicks_.erase(clicks_.begin());
-    }
-    type_what_was_typed();
+    io.MousePos = ImVec2(pointer_x_px_, pointer_y_px_);
+    take_frame(waiting_, frame_);
+    for (const PanelInput& input : frame_) hand_over(input);
     ImGui_ImplOpenGL3_NewFrame();
     ImGui::NewFrame();
     areas_.clear();
@@ -211,9 +251,13 @@ void Gui::begin_frame(double dt_s, bool keys_to_panels) {
 void Gui::end_frame() {
     ImGui::Render();
     keys_.clear();
-    fresh_keys_.clear();
-    for (const std::size_t key : let_go_) ImGui::GetIO().KeysDown[key] = false;
-    let_go_.clear();
+    if (std::exchange(emptied_, false)) ImGui::GetIO().KeysDown[key::backspace] = false;
+}
+
+bool Gui::in_use() const {
+    const ImGuiIO& io = ImGui::GetIO();
+    const bool key = std::any_of(held_as_.begin(), held_as_.end(), [](int held) { return held != kNotHeld; });
+    return !waiting_.empty() || key || io.MouseDown[0];
 }
 
 WindowSize Gui::size_px() const { return {ImGui::GetIO().DisplaySize.x, ImGui::GetIO().DisplaySize.y}; }
@@ -221,6 +265,23 @@ WindowSize Gui::size_px() const { return {ImGui::GetIO().DisplaySize.x, ImGui::G
 void Gui::renew_drawing() {
     ImGui_ImplOpenGL3_Shutdown();  // its buffers' sizes are forgotten with them only here
     ImGui_ImplOpenGL3_Init("#version 300 es");
+}
+
+std::uint64_t Gui::content() const {
+    const ImDrawData* data = ImGui::GetDrawData();
+    std::uint64_t hash = hash_more(0, &data->DisplaySize, sizeof data->DisplaySize);
+    const auto take = [&](const auto& values) { hash = hash_more(hash, values.Data, static_cast<std::size_t>(values.size_in_bytes())); };
+    for (int i = 0; i < data->CmdListsCount; ++i) {
+        const ImDrawList& list = *data->CmdLists[i];
+        take(list.VtxBuffer);
+        take(list.IdxBuffer);
+        for (const ImDrawCmd& command : list.CmdBuffer) {
+            hash = hash_more(hash, &command.ClipRect, sizeof command.ClipRect);
+            hash = hash_more(hash, &command.TextureId, sizeof command.TextureId);
+            hash = hash_more(hash, &command.ElemCount, sizeof command.ElemCount);
+        }
+    }
+    return hash;
 }
 
 void Gui::draw() {
@@ -241,20 +302,10 @@ std::optional<Gui::TextField> Gui::text_field() const {
     return TextField{text, text_area_};
 }
 
-void Gui::type_instead(const std::string& text) { instead_ = text; }
-
-// What was typed elsewhere replaces what stands in the field, once a frame.
-void Gui::type_what_was_typed() {
-    if (!instead_) return;
-    const std::string text = *std::exchange(instead_, std::nullopt);
-    ImGuiIO& io = ImGui::GetIO();
-    ImGuiInputTextState* state = ImGui::GetInputTextState(ImGui::GetActiveID());
-    if (!io.WantTextInput || state == nullptr) return;
-    state->SelectAll();
-    io.ClearInputCharacters();
-    if (!text.empty()) return io.AddInputCharactersUTF8(text.c_str());
-    io.KeysDown[key::backspace] = true;
-    let_go_.push_back(key::backspace);
+void Gui::type_instead(const std::string& text) {
+    PanelInput input{PanelInput::Kind::replace};
+    input.text = text;
+    wait_for_frame(std::move(input), waiting_);
 }
 
 bool Gui::pressed(int key, bool ctrl) const {

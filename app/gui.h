@@ -1,11 +1,14 @@
 #pragma once
 // Dear ImGui on a Window: set up, fed with events, drawn. What is on it: trial_screen.h and its neighbours.
 
+#include <array>
+#include <deque>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "app/layout.h"
+#include "app/panel_input.h"
 #include "platform/window.h"
 
 namespace palpa {
@@ -29,14 +32,17 @@ class Gui {
     // keys_to_panels: arrows, Tab and Space move between the controls instead of the indenter.
     void begin_frame(double dt_s, bool keys_to_panels);
     void end_frame();  // closes the panels
+    // Something is held on the panels, or waits for the next frame: frames should come quickly.
+    bool in_use() const;
     // Enter is the screen's own key (pressed()) instead of that of the control which has the focus.
     void keep_enter(bool keep) { keep_enter_ = keep; }
+    std::uint64_t content() const;  // of the panels that were closed last; the same number: the same look
     void draw();       // hands them to GL
     void renew_drawing();  // all that GL held was lost
 
     // Presses in a claimed area reach no tissue (from the next event on, until the next frame says anew).
     void claim(const PanelArea& area) { areas_.push_back(area); }
-    // Whether a key (platform/window_event.h) went down since the last frame. Never while a number is typed.
+    // Whether a key (platform/window_event.h) goes down in this frame. Never while a number is typed.
     bool pressed(int key, bool ctrl = false) const;
     // The field that takes letters now, for a screen that brings its own keyboard; nothing if none does.
     struct TextField {
@@ -58,12 +64,11 @@ class Gui {
     bool receive_finger(const WindowEvent& event);
     bool receive_key(const WindowEvent& event);
     bool owns(float x_px, float y_px) const;
-    void type_what_was_typed();
+    void hand_over(const PanelInput& input);
+    void hand_over_key(const PanelInput& input);
+    void replace_text(const std::string& text);
+    void let_all_keys_go();
 
-    struct Click {
-        float x_px, y_px;
-        bool down;
-    };
     struct Key {
         int key;
         bool ctrl;
@@ -71,16 +76,16 @@ class Gui {
 
     Window& window_;
     std::vector<PanelArea> areas_;  // of the frame before
-    std::vector<Click> clicks_;     // one is handed over per frame, so that none is too quick to be seen
-    std::vector<Key> keys_;
-    std::vector<std::size_t> fresh_keys_;  // down since the last frame,
-    std::vector<std::size_t> let_go_;      // and up again already: up after the next one
+    std::deque<PanelInput> waiting_;
+    std::vector<PanelInput> frame_;        // what this frame gets
+    std::vector<Key> keys_;                // that go down in this frame
+    std::array<int, key::count> held_as_;  // what Dear ImGui was told that a key is, while it is held; else kNotHeld
     PanelArea text_area_{};
-    std::optional<std::string> instead_;   // type_instead(), until the next frame
     std::optional<std::int64_t> finger_;  // the one that uses the panels; others may palpate meanwhile
     bool mouse_on_panel_ = false;
     bool keys_to_panels_ = false;
     bool keep_enter_ = false;
+    bool emptied_ = false;  // a field was, by a Backspace that nobody pressed
     float pointer_x_px_ = -1e6f;
     float pointer_y_px_ = -1e6f;
     float mm_ = 0.0f;

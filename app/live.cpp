@@ -3,14 +3,13 @@
 #include <algorithm>
 #include <exception>
 #include <stdexcept>
+#include <utility>
 
 #include "app/calibrate_form.h"
 #include "app/frame.h"
 #include "app/live_app.h"
 #include "app/load.h"
 #include "app/map_screen.h"
-#include "app/prepare.h"
-#include "app/replay.h"
 #include "app/save_picture.h"
 #include "app/study_run.h"
 #include "app/words.h"
@@ -21,183 +20,12 @@
 namespace palpa {
 namespace {
 
-constexpr double kFrame_s = 1.0 / 60.0;  // of our own: software rendering has no vertical sync
-
-std::string device_names(const Window& window) {
-    std::string names;
-    for (const PointerDevice& device : window.devices()) names += (names.empty() ? "" : ", ") + device.name;
-    return names.empty() ? "mouse" : names;
-}
-
-}  // namespace
-
-TraceInfo info_of(const App& app, const Window& window) {
-    if (app.trace) return app.trace->info;
-    TraceInfo info;
-    info.screen_width_px = window.width_px();
-    info.screen_height_px = window.height_px();
-    if (std::isfinite(app.screens.px_per_mm)) {
-        info.screen_width_mm = info.screen_width_px / app.screens.px_per_mm;
-        info.screen_height_mm = info.screen_height_px / app.screens.px_per_mm;
-    }
-    info.device = device_names(window);
-    return info;
-}
-
-namespace {
-
-// Takes a problem to the screen instead of out of the program.
-template <class Work>
-bool attempt(App& app, const Work& work) {
-    try {
-        work();
-        return true;
-    } catch (const std::exception& error) {
-        app.screens.problems.push_back(error.what());
-        return false;
-    }
-}
-
-}  // namespace
-
-double finger_offset_mm(const App& app) { return app.settings.above_finger ? static_cast<double>(kFingerOffset_mm) : 0.0; }
-
-double now_of(const App& app, const Window& window) { return window.now_s() - app.trace_shift_s; }
-
-namespace {
-
-void begin(const Window& window, const Gui& gui, App& app) {
-    const TrialMode mode = app.settings.test_mode ? TrialMode::test : TrialMode::practice;
-    app.screens.screen = Screen::trial;
-    app.screens.maps.reset();
-    app.screens.menu = false;
-    app.screens.note.clear();
-    app.screens.asked.reset();
-    app.stopped.clear();
-    app.begin_waits = false;
-    SessionFiles files{app.options.log, app.options.participant, app.options.record};
-    files.first_run = app.options.first_run;
-    files.finger_offset_mm = finger_offset_mm(app);
-    begin_trial(files, info_of(app, window), mode, app.session);
-    if (!app.trace) take_sample(resize_sample(window, gui, app.settings, now_of(app, window)), app.session);
-}
-
-Json result_of(const App& app) {
-    const Session& s = app.session;
-    Json result = run_json(s.scene, s.plan, s.state, app.frames, app.times.latency);
-    const auto ms = [](const Meter& meter, double q) { return 1e-6 * meter.quantile_ns(q); };
-    result["frame_cpu_ms"] = {{"p50", ms(app.times.cpu, 0.5)}, {"p99", ms(app.times.cpu, 0.99)}};
-    result["frame_gl_ms"] = {{"p50", ms(app.times.gl, 0.5)}, {"p99", ms(app.times.gl, 0.99)}};
-    result["latency_besides_drawing_ms"] = {{"p50", ms(app.times.ready, 0.5)}, {"p99", ms(app.times.ready, 0.99)}};
-    result["problems"] = app.screens.problems;
-    if (app.screens.check) result["device_check"] = check_json(*app.screens.check);
-    result["trials"] = s.finished;
-    if (!s.trial.finished) result["trials"].push_back(trial_json(s.plan, s.trial));
-    return result;
-}
-
-}  // namespace
-
-bool close_trial(App& app) {
-    const std::string where = !app.options.log.empty() ? app.options.log : app.options.record;
-    const std::optional<RunFiles> files = app.session.files;
-    const bool good = close_files(result_of(app), app.session);
-    if (app.keeper != nullptr && files) app.keeper->keep(*files, true);
-    if (good) return true;
-    app.stopped = words::filled(words::kCannotBeWritten, {where});
-    return false;
-}
-
-namespace {
-
-void begin_anew(const Window& window, const Gui& gui, App& app) {
-    if (!close_trial(app)) app.screens.problems.push_back(app.stopped);
-    if (app.keeper != nullptr && !app.keeper->ready()) {
-        app.begin_waits = true;  // no trial begins before the last one is safe
-        return;
-    }
-    if (!attempt(app, [&] { begin(window, gui, app); })) app.stopped = app.screens.problems.back();
-}
-
-void begin_when_kept(const Window& window, const Gui& gui, App& app) {
-    if (app.keeper == nullptr) return;
-    for (std::string problem = app.keeper->problem(); !problem.empty(); problem = app.keeper->problem()) {
-        app.screens.problems.push_back(problem);
-    }
-    if (app.begin_waits && app.keeper->ready()) begin_anew(window, gui, app);
-}
-
-// A tissue that has to be computed is, while the window shows how far. False if the window was closed meanwhile.
-bool prepare(Window& window, Gui& gui, const Scene& scene, Plan& plan) {
-    if (!scene.linear) {
-        plan = make_plan(scene);
-        return true;
-    }
-    PlanInProgress work(scene);
-    std::vector<Sample> ignored;
-    while (!work.wait(kFrame_s)) {
-        window.poll(0.0, ignored);
-        if (window.close_requested()) return false;
-        gui.begin_frame(kFrame_s, true);
-        draw_progress(words::kPreparing, work.share());
-        gui.end_frame();
-        clear_screen(window.width_px(), window.height_px());
-        gui.draw();
-        window.present();
-    }
-    plan = work.take();
-    return true;
-}
-
-// Another scene or profile; whatever is wrong with it, the present one stays.
-void change_scene(Window& window, Gui& gui, const std::string& file, const std::string& profile, App& app) {
-    Scene scene;
-    Plan plan;
-    bool ready = false;
-    const bool good = attempt(app, [&] {
-        scene = load_scene(file);
-        if (!profile.empty()) scene.profile = profile;
-        ready = prepare(window, gui, scene, plan);
-    });
-    if (!good || !ready) return;
-    if (!close_trial(app)) app.screens.problems.push_back(app.stopped);
-    app.session.scene = std::move(scene);
-    app.session.plan = std::move(plan);
-    begin_anew(window, gui, app);
-}
-
 void keep_settings(App& app) {
     if (app.settings_path.empty()) return;
     const std::string problem = save_settings(app.settings, app.settings_path);
     if (!problem.empty()) app.screens.problems.push_back(problem);
     if (app.keeper != nullptr) app.keeper->keep_settings(app.settings_path);
 }
-
-}  // namespace
-
-void act(Action action, double now_s, App& app) {
-    const bool choice = app.screens.study && app.screens.study->protocol.task == TaskKind::choice;
-    if (choice && action != Action::finish) return;  // there is nothing to mark
-    Sample sample;
-    sample.t_host_s = now_s;
-    sample.phase = Phase::ui;
-    sample.action = action;
-    if (action == Action::mark) {
-        if (!app.session.trial.last_px) return;
-        sample.x_px = app.session.trial.last_px->x();
-        sample.y_px = app.session.trial.last_px->y();
-    }
-    take_sample(sample, app.session);
-    if (!app.session.trial.finished) return;
-    if (app.screens.study) return finish_study_trial(app);
-    app.screens.debrief = debrief(app.session.plan, app.session.trial);
-    app.screens.screen = Screen::reveal;
-    app.screens.note.clear();
-    app.screens.menu = false;
-    if (!close_trial(app)) app.screens.problems.push_back(app.stopped);
-}
-
-namespace {
 
 // What was recorded is on the disk; a profile that was kept can be chosen at once.
 void close_calibrate(App& app) {
@@ -206,13 +34,13 @@ void close_calibrate(App& app) {
     app.screens.profiles = profile_choices();
 }
 
-void open_screen(Screen screen, double now_s, App& app) {
+void open_screen(Screen screen, Window& window, App& app) {
     if (screen == Screen::maps && (app.screens.study || !may_show_maps(app.session.trial))) {
         app.screens.note = words::kMapsHidden;
         app.screens.menu = false;
         return;
     }
-    if (screen != Screen::trial) end_press(now_s, app);
+    if (app.screens.screen != screen) end_presses(window, app);
     if (screen == Screen::devices) {
         app.screens.check = std::make_shared<DeviceCheck>();
         app.screens.dots.clear();
@@ -242,7 +70,7 @@ void change_settings(const Wishes& wishes, Window& window, Gui& gui, App& app) {
     if (changed) keep_settings(app);
     // what was measured with another scale or shown another way is another trial
     if (!wishes.px_per_mm && !wishes.mode && !wishes.above_finger) return;
-    if (app.settings.test_mode) turn_if_shown(app);
+    if (app.settings.test_mode) turn_if_shown(window, app);
     begin_anew(window, gui, app);
 }
 
@@ -250,21 +78,20 @@ void carry_out(const Wishes& asked_for, Window& window, Gui& gui, App& app) {
     Wishes wishes = asked_for;
     if (marks_at_stake(app)) {
         wishes = ask_first(asked_for, app.screens);
-        if (app.screens.asked) end_press(now_of(app, window), app);
+        if (app.screens.asked) end_presses(window, app);
     } else {
         app.screens.asked.reset();
     }
     if (wishes.quit) app.quit = true;
     if (app.screens.study) follow_study(window, gui, app);
     if (wishes.action && app.screens.screen == Screen::trial && !app.trace) act(*wishes.action, now_of(app, window), app);
-    if (wishes.screen) open_screen(*wishes.screen, now_of(app, window), app);
+    if (wishes.screen) open_screen(*wishes.screen, window, app);
     if (wishes.scene) app.settings.scene = *wishes.scene;
     if (wishes.profile) app.settings.profile = *wishes.profile;
     if (wishes.scene || wishes.profile) {
         change_scene(window, gui, wishes.scene.value_or(app.session.scene.file.string()), app.settings.profile, app);
     }
     change_settings(wishes, window, gui, app);
-    if (wishes.next) turn_tissue(app);
     if (wishes.press_by_hold && app.screens.offer_hold) {
         const auto lacks = [&](Tool tool) {
             const PressureKind kind = pressure_kind(app.pressure, tool);
@@ -275,10 +102,9 @@ void carry_out(const Wishes& asked_for, Window& window, Gui& gui, App& app) {
     }
     if (wishes.trials && app.keeper != nullptr) app.keeper->open();
     if (wishes.studies && app.keeper != nullptr) app.keeper->open_studies();
+    if (wishes.next) turn_tissue(window, app);
     if (wishes.again || wishes.next) begin_anew(window, gui, app);
-    if (wishes.save_picture) {
-        attempt(app, [&] { app.screens.note = words::filled(words::kSaved, {save_picture(window, app.options.log).string()}); });
-    }
+    app.save_waits = app.save_waits || wishes.save_picture;
 }
 
 // Rows of the trace that are due, with the trace's own times.
@@ -353,27 +179,48 @@ void note_resize(const Window& window, Gui& gui, App& app) {
     if (!same) take(now, app);
 }
 
-void show(Window& window, App& app, TissueDrawer& tissue, Gui& gui, double dt_s) {
-    constexpr double kLook_s = 0.5;  // however slowly frames come: a pen that is gone is noticed within a second
-    if (app.frames == 0 || window.now_s() - app.looked_s > kLook_s) {
-        note_devices(window, app);
-        app.looked_s = window.now_s();
-    }
-    age_note(now_of(app, window), app.screens);
-    const Session& s = app.session;
-    const Wishes wishes = draw_frame(s.scene, s.plan, s.trial, app.settings, now_of(app, window), dt_s, tissue, gui, app.screens,
-                                     app.session.state, app.times);
-    window.present();
-    ++app.frames;
+// Samples that changed nothing on the screen have no frame that shows them, and no latency.
+void note_shown(const Window& window, App& app) {
     const double shown_s = now_of(app, window);
     const double ready_s = 1e-9 * static_cast<double>(app.times.built_ns) - app.trace_shift_s;
     for (const double t_s : app.waiting_s) {
         app.times.latency.add_ns(1e9 * (shown_s - t_s));
         app.times.ready.add_ns(1e9 * (ready_s - t_s));
     }
+    ++app.frames;
+    const double since_s = window.now_s() - app.drawn_s;
+    app.times.frames_per_s += 0.05 * (1.0 / std::max(since_s, 1e-3) - app.times.frames_per_s);
+    app.drawn_s = window.now_s();
+}
+
+void show(Window& window, App& app, TissueDrawer& tissue, Gui& gui, double dt_s) {
+    constexpr double kDevices_s = 0.5;  // however slowly frames come: a pen that is gone is noticed within a second
+    if (window.now_s() - app.devices_noted_s >= kDevices_s) {
+        note_devices(window, app);
+        app.devices_noted_s = window.now_s();
+    }
+    age_note(now_of(app, window), app.screens);
+    const Session& s = app.session;
+    const bool save = std::exchange(app.save_waits, false);
+    if (save) app.on_screen.content = 0;  // what the window hands out is only sure while it has just been drawn
+    const Wishes wishes = draw_frame(s.scene, s.plan, s.trial, app.settings, now_of(app, window), dt_s, tissue, gui, app.screens,
+                                     app.session.state, app.times, app.on_screen);
+    if (save) {
+        attempt(app, [&] { app.screens.note = words::filled(words::kSaved, {save_picture(window, app.options.log).string()}); });
+    }
+    if (app.on_screen.drawn) {
+        window.present();
+        note_shown(window, app);
+    }
     app.waiting_s.clear();
-    app.times.frames_per_s += 0.05 * (1.0 / std::max(dt_s, 1e-3) - app.times.frames_per_s);
     carry_out(wishes, window, gui, app);
+}
+
+// The screen changes by itself now, or a step waits for something that says nothing when it comes.
+bool in_motion(const App& app) {
+    const bool records = app.screens.screen == Screen::calibrate;
+    const bool keeps = app.begin_waits || (app.screens.study && app.screens.study->keeping);
+    return app.trace || app.session.state.pointer || !app.hold.held.empty() || records || keeps || app.save_waits;
 }
 
 // A log that can no longer be written stops the trial, in words; what came before is on the disk.
@@ -397,58 +244,12 @@ void keep_part(double now_s, App& app) {
     app.parted_s = now_s;
 }
 
-// Everything that bad input can refuse, before a window is there.
-void load(const RunOptions& options, App& app) {
-    app.options = options;
-    app.settings_path = settings_file();
-    std::string problem;
-    app.settings = load_settings(app.settings_path, problem);
-    if (!problem.empty()) app.screens.problems.push_back(problem);
-    if (options.test) app.settings.test_mode = true;
-    if (options.practice) app.settings.test_mode = false;
-    if (options.left_handed) app.settings.left_handed = true;
-    if (options.width_px > 0) app.settings.width_px = options.width_px;
-    if (options.height_px > 0) app.settings.height_px = options.height_px;
-    if (!options.protocol.empty()) return load_study(options, app);
-    app.screens.scenes = scene_choices();
-    app.screens.profiles = profile_choices();
-    if (!options.trace.empty()) {
-        app.trace = read_trace(options.trace);
-        app.settings.width_px = static_cast<int>(app.trace->info.screen_width_px);
-        app.settings.height_px = static_cast<int>(app.trace->info.screen_height_px);
-    }
-    const bool own_choice = options.scene.empty() && !app.trace;  // a replay is the same for everybody
-    Scene& scene = app.session.scene;
-    if (own_choice && !app.settings.scene.empty()) attempt(app, [&] { scene = load_scene(app.settings.scene); });
-    if (scene.name.empty()) scene = load_scene(options.scene);
-    if (own_choice && std::filesystem::exists(app.settings.profile)) scene.profile = app.settings.profile;
-    if (!scene.linear) app.session.plan = make_plan(scene);
-}
-
-void know_screen(const Window& window, App& app) {
-    app.screens.screen_name = window.screen_name();
-    const auto known = app.settings.px_per_mm.find(app.screens.screen_name);
-    if (std::isfinite(window.touch_px_per_mm())) app.screens.card_px_per_mm = window.touch_px_per_mm();
-    if (known != app.settings.px_per_mm.end()) app.screens.card_px_per_mm = app.screens.px_per_mm = known->second;
-}
-
 void remember_window(const Window& window, App& app) {
     if (app.trace || app.settings.full_screen || app.options.width_px > 0 || app.options.height_px > 0) return;
     if (app.settings.width_px == window.width_px() && app.settings.height_px == window.height_px()) return;
     app.settings.width_px = window.width_px();
     app.settings.height_px = window.height_px();
     keep_settings(app);
-}
-
-// A choice of last time that can no longer be prepared must not lock the person out.
-bool prepare_chosen(Window& window, Gui& gui, App& app) {
-    Session& s = app.session;
-    const bool own_choice = app.options.scene.empty() && !app.trace && !app.settings.scene.empty();
-    if (!own_choice) return prepare(window, gui, s.scene, s.plan);
-    bool ready = false;
-    if (attempt(app, [&] { ready = prepare(window, gui, s.scene, s.plan); })) return ready;
-    s.scene = load_scene("");
-    return prepare(window, gui, s.scene, s.plan);
 }
 
 }  // namespace
@@ -466,14 +267,14 @@ struct Live::Impl {
         know_screen(*window, app);
         gui.emplace(*window);
         gui->set_scale(scale_now(app, *window));
-        ready = !app.session.scene.linear || prepare_chosen(*window, *gui, app);
+        ready = prepare_chosen(*window, *gui, app);
         if (!ready) return;
         if (app.trace) app.trace_shift_s = window->now_s() - app.trace->samples.front().t_host_s;
         if (!app.screens.study) begin(*window, *gui, app);
-        if (options.screen != Screen::trial) open_screen(options.screen, now_of(app, *window), app);
+        if (options.screen != Screen::trial) open_screen(options.screen, *window, app);
         tissue.emplace();
         app.waiting_s.reserve(4096);
-        began_s = frame_s = window->now_s();
+        began_s = frame_s = stirred_s = app.drawn_s = window->now_s();
     }
 
     // The window's own button is asked about as Ctrl+Q is; a second time it closes.
@@ -497,6 +298,8 @@ struct Live::Impl {
     void take_samples(double wait_s) {
         samples.clear();
         window->poll(wait_s, samples);                 // 1. read
+        if (window->stirred() || !samples.empty()) stirred_s = window->now_s();
+        if (window->uncovered()) app.on_screen.content = 0;
         if (app.trace) {
             samples.clear();
             take_due_rows(app, now_of(app, *window), samples);
@@ -511,6 +314,15 @@ struct Live::Impl {
         keep_part(window->now_s(), app);
     }
 
+    // When the next frame is built. Nothing happening, that is seldom: often enough for clocks, notices and cursors that
+    // blink; what comes is met at once.
+    double next_frame_s() const {
+        constexpr double kIdle_s = 0.1;
+        constexpr double kSettle_s = 0.25;  // panels take some frames to settle, and the log is flushed after 80 ms
+        const bool quick = in_motion(app) || gui->in_use() || window->now_s() - stirred_s < kSettle_s;
+        return std::min(frame_s + (quick ? kFrame_s : kIdle_s), trial_ends_s(app));
+    }
+
     App app;
     std::optional<Window> window;
     std::optional<Gui> gui;
@@ -518,7 +330,8 @@ struct Live::Impl {
     bool ready = false;
     double asked_s = 1e-9 * static_cast<double>(steady_ns());
     double began_s = 0.0;
-    double frame_s = 0.0;
+    double frame_s = 0.0;    // when a frame was built last
+    double stirred_s = 0.0;  // when anything came last
     double first_frame_s = 0.0;
     std::vector<Sample> samples;
 };
@@ -531,11 +344,13 @@ bool Live::ready() const { return impl_->ready; }
 bool Live::turn(Draw draw) {
     Impl& it = *impl_;
     if (it.over()) return false;
-    const bool due = draw == Draw::when_due;
-    it.take_samples(due ? std::max(0.0, it.frame_s + kFrame_s - it.window->now_s()) : 0.0);
+    const bool waits = draw == Draw::when_due;
+    it.take_samples(waits ? std::max(0.0, it.next_frame_s() - it.window->now_s()) : 0.0);
     const double now_s = it.window->now_s();
     if (draw == Draw::nothing) return true;
-    if (due && now_s - it.frame_s < kFrame_s && it.app.frames > 0) return true;
+    // a browser that calls for each frame of its display sets the pace itself while anything moves
+    const double early_s = waits ? 0.0 : kFrame_s;
+    if (now_s + early_s < it.next_frame_s() && it.app.frames > 0) return true;
     show(*it.window, it.app, *it.tissue, *it.gui, now_s - it.frame_s);  // 4. show
     it.frame_s = now_s;
     if (it.app.frames == 1) it.first_frame_s = 1e-9 * static_cast<double>(steady_ns()) - it.asked_s;
@@ -545,7 +360,8 @@ bool Live::turn(Draw draw) {
 void Live::out_of_sight(bool hidden) {
     Impl& it = *impl_;
     it.take_samples(0.0);  // presses that end now
-    it.frame_s = it.window->now_s();
+    it.frame_s = it.stirred_s = it.window->now_s();
+    it.app.on_screen.content = 0;
     const bool between = it.app.screens.study && it.app.screens.screen != Screen::trial;
     if (it.app.trace || it.app.session.trial.finished || it.app.begin_waits || between) return;
     Sample sample;
@@ -561,6 +377,8 @@ void Live::out_of_sight(bool hidden) {
 void Live::renew_drawing() {
     impl_->gui->renew_drawing();
     impl_->tissue.emplace();
+    impl_->app.on_screen.content = 0;
+    impl_->stirred_s = impl_->window->now_s();
 }
 
 Json Live::report() const {
@@ -575,7 +393,13 @@ void Live::type_instead(const std::string& text) { impl_->gui->type_instead(text
 
 Json Live::close() {
     Impl& it = *impl_;
-    if (!it.app.options.screenshot.empty()) save_screen(*it.window, it.app.options.screenshot);
+    if (!it.app.options.screenshot.empty()) {
+        it.app.on_screen.content = 0;
+        const Session& s = it.app.session;
+        draw_frame(s.scene, s.plan, s.trial, it.app.settings, now_of(it.app, *it.window), kFrame_s, *it.tissue, *it.gui, it.app.screens,
+                   it.app.session.state, it.app.times, it.app.on_screen);
+        save_screen(*it.window, it.app.options.screenshot);
+    }
     if (it.app.screens.calibrate) stop_recording(*it.app.screens.calibrate);
     remember_window(*it.window, it.app);
     if (it.app.screens.study) return close_study(*it.gui, it.app);

@@ -2,6 +2,7 @@
 // one before it is safe.
 
 #include <exception>
+#include <limits>
 #include <stdexcept>
 
 #include "app/frame.h"
@@ -14,18 +15,17 @@
 namespace palpa {
 namespace {
 
-void begin_study_trial(const Window& window, const Gui& gui, App& app) {
+void begin_study_trial(Window& window, const Gui& gui, App& app) {
     StudyRun& run = *app.screens.study;
     run.start_trial = false;
     try {
         const StudyScene& due = due_scene(run);
         const PlannedTrial& trial = due_trial(run);
         const bool known = trial.practice && run.protocol.task == TaskKind::find;
-        app.session.scene = scene_of(due, trial);
-        app.session.plan = *due.plan;
-        app.screens.note.clear();
         SessionFiles files = due_files(run);
         files.finger_offset_mm = finger_offset_mm(app);
+        put_scene(scene_of(due, trial), *due.plan, window, app);
+        app.screens.note.clear();
         begin_trial(files, info_of(app, window), known ? TrialMode::practice : TrialMode::test, app.session);
         app.parted_s = 0.0;
         take_sample(resize_sample(window, gui, app.settings, now_of(app, window)), app.session);
@@ -76,8 +76,9 @@ void load_study(const RunOptions& options, App& app) {
     if (tablet && !options.participant.empty()) enter_code(options.participant, *run);
     app.screens.study = run;
     app.screens.screen = Screen::study;
-    app.session.scene = load_scene("");  // behind the first screens
-    app.session.plan = make_plan(app.session.scene);
+    Scene scene = load_scene("");  // behind the first screens
+    Plan plan = make_plan(scene);
+    change_tissue(std::move(scene), std::move(plan), {}, app.session);
 }
 
 // Nothing is revealed; the next step comes once the trial is on the disk.
@@ -88,7 +89,14 @@ void finish_study_trial(App& app) {
     follow_keeper(app);
 }
 
-void follow_study(const Window& window, const Gui& gui, App& app) {
+double trial_ends_s(const App& app) {
+    constexpr double kNever_s = std::numeric_limits<double>::infinity();
+    if (!app.screens.study || app.screens.screen != Screen::trial) return kNever_s;
+    const double limit_s = due_limit_s(*app.screens.study);
+    return limit_s > 0.0 ? app.session.trial.began_s + limit_s : kNever_s;
+}
+
+void follow_study(Window& window, const Gui& gui, App& app) {
     StudyRun& run = *app.screens.study;
     follow_keeper(app);
     if (run.start_trial && !run.keeping) {
@@ -102,8 +110,7 @@ void follow_study(const Window& window, const Gui& gui, App& app) {
     if (run.step == StudyStep::device) run.device_here = is_device_here(app);
     if (app.screens.screen != Screen::trial) return;
     if (!is_device_here(app)) return interrupt_study_trial(now_of(app, window), app);
-    const double limit_s = due_limit_s(run);
-    if (limit_s > 0.0 && now_of(app, window) - app.session.trial.began_s >= limit_s) act(Action::finish, now_of(app, window), app);
+    if (now_of(app, window) >= trial_ends_s(app)) act(Action::finish, now_of(app, window), app);
 }
 
 bool allowed(const Sample& sample, App& app) {

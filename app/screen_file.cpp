@@ -26,9 +26,10 @@ std::string draw_picture(const Scene& scene, const Plan& plan, const Trial& tria
     FrameTimes times;
     Screens open = screens;
     std::string overflow;
+    OnScreen on_screen;
     gui.set_scale(control_scale(screens.px_per_mm, static_cast<float>(width_px), static_cast<float>(height_px)));
     for (int i = 0; i < 3; ++i) {
-        draw_frame(scene, plan, trial, settings, state.timeline.now_s, 1.0 / 60.0, tissue, gui, open, state, times);
+        draw_frame(scene, plan, trial, settings, state.timeline.now_s, 1.0 / 60.0, tissue, gui, open, state, times, on_screen);
         overflow = gui.overflow();
     }
     save_screen(window, png);

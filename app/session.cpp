@@ -4,6 +4,7 @@
 #include <cmath>
 #include <ctime>
 #include <exception>
+#include <utility>
 
 #include "app/log.h"
 #include "files/text.h"
@@ -176,6 +177,15 @@ ScreenArea screen_of(const TraceInfo& info) {
     ScreenArea area{info.screen_width_px, info.screen_height_px};
     if (std::isfinite(info.screen_width_mm)) area.px_per_m = 1e3 * info.screen_width_px / info.screen_width_mm;
     return area;
+}
+
+void change_tissue(Scene scene, Plan plan, const ScreenArea& screen, Session& session) {
+    State state = start(scene, plan, screen);
+    Trial trial = make_trial(plan, session.trial.mode);
+    session.scene = std::move(scene);
+    session.plan = std::move(plan);
+    session.state = std::move(state);
+    session.trial = std::move(trial);
 }
 
 void begin_trial(const SessionFiles& files, const TraceInfo& info, TrialMode mode, Session& session) {

@@ -50,6 +50,11 @@ struct Session {
 // A trace's screen as the area of the tissue, until a sample of action resize says otherwise.
 ScreenArea screen_of(const TraceInfo& info);
 
+// Puts another tissue under the hand: scene, plan and a state at rest on them, all three together, since no frame and
+// no sample may meet one of them with another's. The only function that changes session.scene and session.plan. No
+// trial has begun then; the files of the last one must be closed.
+void change_tissue(Scene scene, Plan plan, const ScreenArea& screen, Session& session);
+
 // Begins a trial on session.scene and session.plan: a new state, new files. `info`: the window, as it goes into the
 // trace. Throws InputError or std::runtime_error if a file cannot be made; the session then has no files.
 void begin_trial(const SessionFiles& files, const TraceInfo& info, TrialMode mode, Session& session);

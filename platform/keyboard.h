@@ -4,7 +4,6 @@
 
 #include <array>
 #include <cstdint>
-#include <limits>
 #include <vector>
 
 #include "platform/held_pressure.h"
@@ -13,8 +12,8 @@
 
 namespace palpa {
 
-// Fingers count from 1, pens down from -1 by their device's number, which never gets near this one.
-inline constexpr std::int64_t kKeyboardPointerId = std::numeric_limits<std::int64_t>::min();
+// Pens count down from -2 (platform/mouse.h).
+inline constexpr std::int64_t kKeyboardPointerId = -1;
 inline constexpr double kSlowShare = 0.2;  // of the speed, with Shift
 
 enum class PointerKey : std::uint8_t { left, right, up, down, press, harder, softer };

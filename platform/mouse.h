@@ -9,7 +9,7 @@
 
 namespace palpa {
 
-inline constexpr std::int64_t kMousePointerId = 0;  // fingers count from 1, pens down from -1
+inline constexpr std::int64_t kMousePointerId = 0;  // fingers count from 1, pens down from -2; the keyboard is -1
 
 struct Mouse {
     HeldPressure button;

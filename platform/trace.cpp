@@ -1,6 +1,7 @@
 #include "platform/trace.h"
 
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 #include <string_view>
 
@@ -8,9 +9,13 @@
 #include "files/json.h"
 #include "files/table.h"
 #include "files/text.h"
+#include "platform/keyboard.h"
 
 namespace palpa {
 namespace {
+
+// The keyboard in older traces.
+constexpr std::int64_t kOldKeyboardId = std::numeric_limits<std::int64_t>::min();
 
 // One list of the columns writes the header and every row, and reads them back.
 template <class Visit>
@@ -41,7 +46,8 @@ void append_field(Name value, std::string& row) {
 void read_field(const Table& table, std::size_t column, double& out) { out = table.number(column); }
 void read_field(const Table& table, std::size_t column, std::int64_t& out) {
     const double value = table.finite_number(column);
-    if (value != std::floor(value) || std::abs(value) > 9e15) table.fail(column, "a whole number");
+    const bool old_keyboard = value == static_cast<double>(kOldKeyboardId);  // a power of two: no digit is lost
+    if (!old_keyboard && (value != std::floor(value) || std::abs(value) > 9e15)) table.fail(column, "a whole number");
     out = static_cast<std::int64_t>(value);
 }
 template <class Name>
@@ -94,6 +100,7 @@ Trace read_trace(const std::filesystem::path& tsv) {
         Sample sample;
         std::size_t i = 0;
         visit_fields(sample, [&](std::string_view, auto& field) { read_field(table, columns[i++], field); });
+        if (sample.pointer_id == kOldKeyboardId) sample.pointer_id = kKeyboardPointerId;
         constexpr double kLongest_s = 1e9;
         if (!(std::abs(sample.t_host_s) < kLongest_s)) table.fail(columns[0], "a time on every row, below 1e9 s");
         if (std::abs(sample.t_device_s) > kLongest_s) table.fail(columns[1], "a time below 1e9 s, or n/a");

@@ -63,6 +63,15 @@ class Window {
     // 1/240 s.
     void set_keyboard(double x0_px, double y0_px, double x1_px, double y1_px, double speed_px_per_s);
 
+    // Whether the last poll() met any event: samples, and whatever else may change the look of panels.
+    bool stirred() const;
+    // Whether it met a reason to draw again what has not changed: the window was uncovered, sized or shown.
+    bool uncovered() const;
+
+    // Ends all presses without a sample: what still comes of them, up to the lift, is dropped, and so is what poll()
+    // has not handed over yet.
+    void end_presses();
+
     bool close_requested() const;
     // Forgets that the person asked to close it. False if the system itself ends the program: that cannot be refused.
     bool stay_open();

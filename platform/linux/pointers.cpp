@@ -262,10 +262,17 @@ void receive_sdl(const SDL_Event& event, bool on_panel, double t_host_s, Pointer
     admit_made(owner_if(on_panel), pointers);
 }
 
+void note_stir(const SDL_Event& event, Pointers& pointers) {
+    if (event.type == SDL_POLLSENTINEL) return;
+    pointers.stirred = true;
+    if (event.type == SDL_WINDOWEVENT || event.type == SDL_DISPLAYEVENT) pointers.uncovered = true;
+}
+
 }  // namespace
 
 void receive(const SDL_Event& event, double t_host_s, Pointers& pointers) {
     hold(t_host_s, pointers);
+    note_stir(event, pointers);
     if (event.type == SDL_SYSWMEVENT) {
         if (pointers.xinput) receive_xinput(event, t_host_s, pointers);
         return;
@@ -278,6 +285,12 @@ void receive(const SDL_Event& event, double t_host_s, Pointers& pointers) {
 void hold(double t_host_s, Pointers& pointers) {
     hold_mouse_and_keys(t_host_s, pointers.mouse, pointers.keyboard, pointers.made);
     admit_made(PressOwner::tissue, pointers);
+}
+
+void forget_presses(Pointers& pointers) {
+    cancel_all(0.0, pointers.presses, pointers.made);
+    pointers.made.clear();
+    pointers.pending.clear();
 }
 
 void set_keyboard_area(double t_host_s, const KeyboardArea& area, Pointers& pointers) {

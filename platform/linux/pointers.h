@@ -33,6 +33,8 @@ struct Pointers {
 
     bool close_requested = false;  // by the window's button
     bool quit_requested = false;   // by a signal, or the end of the session
+    bool stirred = false;          // since the last poll(): an event of any kind,
+    bool uncovered = false;        // one after which the window has to be drawn again
     std::vector<Sample> made;     // scratch
     std::vector<Sample> pending;  // for the next poll()
 };
@@ -42,6 +44,8 @@ void receive(const SDL_Event& event, double t_host_s, Pointers& pointers);
 
 // Lets a held mouse button or key go on until now.
 void hold(double t_host_s, Pointers& pointers);
+
+void forget_presses(Pointers& pointers);  // as Window::end_presses
 
 // As Window::set_keyboard. A press that is going on when it is turned off ends with phase cancel.
 void set_keyboard_area(double t_host_s, const KeyboardArea& area, Pointers& pointers);

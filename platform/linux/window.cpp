@@ -8,6 +8,7 @@
 #include <chrono>
 #include <cmath>
 #include <string_view>
+#include <utility>
 
 #include "platform/linux/gl_window.h"
 #include "platform/linux/pointers.h"
@@ -62,6 +63,8 @@ struct Window::Impl {
 
     GlWindow gl;
     Pointers pointers;
+    bool stirred = false;  // of the last poll()
+    bool uncovered = false;
 };
 
 Window::Window(const WindowOptions& options) : impl_(std::make_unique<Impl>(options)) {}
@@ -78,11 +81,25 @@ void Window::poll(double wait_s, std::vector<Sample>& out) {
     hold(steady_s(), pointers);
     out.insert(out.end(), pointers.pending.begin(), pointers.pending.end());
     pointers.pending.clear();
+    impl_->stirred = std::exchange(pointers.stirred, false);
+    impl_->uncovered = std::exchange(pointers.uncovered, false);
+}
+
+bool Window::stirred() const {
+    return impl_->stirred;
+}
+
+bool Window::uncovered() const {
+    return impl_->uncovered;
 }
 
 void Window::set_event_filter(EventFilter filter, void* user) {
     impl_->pointers.filter = filter;
     impl_->pointers.filter_user = user;
+}
+
+void Window::end_presses() {
+    forget_presses(impl_->pointers);
 }
 
 void Window::set_keyboard(double x0_px, double y0_px, double x1_px, double y1_px, double speed_px_per_s) {

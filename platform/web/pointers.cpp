@@ -30,9 +30,9 @@ WindowEvent for_panels(WindowEvent::Kind kind, double x_px, double y_px, std::in
     return event;
 }
 
-// Fingers count from 1, pens down from -1 (platform/mouse.h).
+// Fingers count from 1, pens down from -2 (platform/mouse.h).
 std::int64_t number_of(const BrowserPointer& event) {
-    return event.tool == Tool::pen ? -1 - event.pointer_id : 1 + event.pointer_id;
+    return event.tool == Tool::pen ? -2 - event.pointer_id : 1 + event.pointer_id;
 }
 
 // A browser that knows no contact size says 1 CSS px or 0.
@@ -174,6 +174,12 @@ void release_all(double t_host_s, Pointers& pointers) {
 void hold(double t_host_s, Pointers& pointers) {
     hold_mouse_and_keys(t_host_s, pointers.mouse, pointers.keyboard, pointers.made);
     admit_made(PressOwner::tissue, pointers);
+}
+
+void forget_presses(Pointers& pointers) {
+    cancel_all(0.0, pointers.presses, pointers.made);
+    pointers.made.clear();
+    pointers.pending.clear();
 }
 
 void set_keyboard_area(double t_host_s, const KeyboardArea& area, Pointers& pointers) {

@@ -38,6 +38,7 @@ struct Pointers {
     void* filter_user = nullptr;
     std::vector<std::int64_t> touching;     // pens and fingers, by their number in samples
     std::array<bool, kToolCount> seen{};    // tools that have sent something
+    bool stirred = false;                   // something came since the last poll()
     std::vector<Sample> made;               // scratch
     std::vector<Sample> pending;            // for the next poll()
 };
@@ -51,6 +52,8 @@ void release_all(double t_host_s, Pointers& pointers);
 
 // Lets a held mouse button or key go on until now.
 void hold(double t_host_s, Pointers& pointers);
+
+void forget_presses(Pointers& pointers);  // as Window::end_presses
 
 // As Window::set_keyboard.
 void set_keyboard_area(double t_host_s, const KeyboardArea& area, Pointers& pointers);

@@ -6,6 +6,7 @@
 #include <emscripten/html5.h>
 
 #include <stdexcept>
+#include <utility>
 
 #include "platform/web/browser.h"
 #include "platform/web/pointers.h"
@@ -49,6 +50,7 @@ struct Window::Impl {
     Impl& operator=(const Impl&) = delete;
 
     Pointers pointers;
+    bool stirred = false;  // of the last poll()
 };
 
 Window::Window(const WindowOptions& options) : impl_(std::make_unique<Impl>(options)) {}
@@ -60,12 +62,18 @@ void Window::poll(double, std::vector<Sample>& out) {
     hold(browser::now_s(), pointers);
     out.insert(out.end(), pointers.pending.begin(), pointers.pending.end());
     pointers.pending.clear();
+    impl_->stirred = std::exchange(pointers.stirred, false);
 }
+
+bool Window::stirred() const { return impl_->stirred; }
+bool Window::uncovered() const { return false; }  // the browser keeps what was drawn
 
 void Window::set_event_filter(EventFilter filter, void* user) {
     impl_->pointers.filter = filter;
     impl_->pointers.filter_user = user;
 }
+
+void Window::end_presses() { forget_presses(impl_->pointers); }
 
 void Window::set_keyboard(double x0_px, double y0_px, double x1_px, double y1_px, double speed_px_per_s) {
     set_keyboard_area(browser::now_s(), {x0_px, y0_px, x1_px, y1_px, speed_px_per_s}, impl_->pointers);
@@ -130,6 +138,7 @@ EMSCRIPTEN_KEEPALIVE void palpa_pointer(int kind, double pointer_id, int tool, d
                                         double time_ms, int buttons) {
     using namespace palpa;
     if (open_pointers == nullptr) return;
+    open_pointers->stirred = true;
     const double scale = browser::px_per_css_px();
     BrowserPointer event;
     event.kind = static_cast<BrowserPointer::Kind>(kind);
@@ -149,12 +158,14 @@ EMSCRIPTEN_KEEPALIVE void palpa_pointer(int kind, double pointer_id, int tool, d
 
 EMSCRIPTEN_KEEPALIVE void palpa_wheel(double notches, double time_ms) {
     if (palpa::open_pointers == nullptr) return;
+    palpa::open_pointers->stirred = true;
     receive_wheel(notches, 1e-3 * time_ms, palpa::browser::now_s(), *palpa::open_pointers);
 }
 
 EMSCRIPTEN_KEEPALIVE void palpa_key(int down, int code, int typed, int ctrl, int shift, int repeat) {
     using namespace palpa;
     if (open_pointers == nullptr) return;
+    open_pointers->stirred = true;
     WindowEvent event;
     event.kind = down != 0 ? WindowEvent::Kind::key_down : WindowEvent::Kind::key_up;
     event.key = code;
@@ -171,7 +182,9 @@ EMSCRIPTEN_KEEPALIVE void palpa_key(int down, int code, int typed, int ctrl, int
 }
 
 EMSCRIPTEN_KEEPALIVE void palpa_focus_lost() {
-    if (palpa::open_pointers != nullptr) release_all(palpa::browser::now_s(), *palpa::open_pointers);
+    if (palpa::open_pointers == nullptr) return;
+    palpa::open_pointers->stirred = true;
+    release_all(palpa::browser::now_s(), *palpa::open_pointers);
 }
 
 }

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "files/text.h"
+#include "platform/keyboard.h"
 #include "tests/error_message.h"
 #include "tests/temporary_folder.h"
 
@@ -92,4 +93,22 @@ TEST_CASE("hard case 31: a trace with wrong names, numbers, columns or no sideca
     const TemporaryFolder folder;
     write_text_atomically(folder / "t.tsv", "t_host_s\n");
     CHECK(contains(message_of([&] { read_trace(folder / "t.tsv"); }), "t.json: cannot be read"));
+}
+
+TEST_CASE("trace: the keyboard has a small number, and that of older traces is read as it") {
+    const TemporaryFolder folder;
+    Sample pressed = full();
+    pressed.tool = Tool::keyboard;
+    pressed.pointer_id = kKeyboardPointerId;
+    {
+        TraceWriter writer(folder / "t.tsv", {1280, 800, kMissing, kMissing, "d"});
+        writer.write(pressed);
+    }
+    std::string text = read_text(folder / "t.tsv");
+    const std::string now = "\t-1\tkeyboard";
+    const auto at = text.find(now);
+    REQUIRE(at != std::string::npos);
+    CHECK(read_trace(folder / "t.tsv").samples[0].pointer_id == kKeyboardPointerId);
+    write_text_atomically(folder / "t.tsv", text.replace(at, now.size(), "\t-9223372036854775808\tkeyboard"));
+    CHECK(read_trace(folder / "t.tsv").samples[0].pointer_id == kKeyboardPointerId);
 }
