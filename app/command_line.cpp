@@ -2,11 +2,14 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
+#include <cstdlib>
 #include <exception>
+#include <new>
 #include <string>
 #include <vector>
 
 #include "files/input_error.h"
+#include "mechanics/error.h"
 
 namespace palpa {
 namespace {
@@ -24,6 +27,13 @@ std::vector<std::string> with_default_command(int argc, char** argv, CLI::App& a
 int fail(const char* message, int status) {
     std::fprintf(stderr, "palpa: %s\n", message);
     return status;
+}
+
+// Ends here and now: OpenBLAS, whose threads could not be started, waits for them for ever in its destructor.
+[[noreturn]] void end_without_memory(const char* message) {
+    fail(message, 1);
+    std::fflush(nullptr);
+    std::_Exit(1);
 }
 
 }  // namespace
@@ -45,6 +55,10 @@ int run_command_line(int argc, char** argv) {
         app.parse(with_default_command(argc, argv, app));
     } catch (const CLI::ParseError& error) {
         return app.exit(error) == 0 ? 0 : 2;
+    } catch (const std::bad_alloc&) {
+        end_without_memory("not enough memory: a smaller model, or a machine with more");
+    } catch (const mechanics::OutOfMemory& error) {
+        end_without_memory(error.what());
     } catch (const InputError& error) {
         return fail(error.what(), 2);
     } catch (const std::exception& error) {
