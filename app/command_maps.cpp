@@ -173,7 +173,8 @@ void add_generate(CLI::App& maps) {
     command->add_option("--coarseness", options.coarseness, "1 for maps, up to 4 for quick looks")
         ->check(CLI::Range(0.5, 4.0))->capture_default_str();
     command->add_option("--window", arguments->window)->group("");
-    command->add_flag("--refined", options.refined)->group("");
+    command->add_flag_callback("--refined", [&options] { options.meshes = MeshSet::refined; })->group("");
+    command->add_flag_callback("--coarser", [&options] { options.meshes = MeshSet::coarser; })->group("");
     part->excludes(jobs)->excludes(merge);
     command->callback([arguments] { generate_map(generate_options(*arguments)); });
 }
