@@ -66,7 +66,10 @@ std::vector<std::string> warnings_of(const FemCase& model, const FemResult& resu
                       " N fell on it");
     if (result.contact && result.contact->over_edge)
         out.push_back("part of the indenter is beside the tissue");
-    if (!result.converged)
+    if (result.contact) {
+        for (std::string& warning : contact_warnings(*result.contact)) out.push_back(std::move(warning));
+    }
+    if (!(result.solution.backward_error < kMostBackwardError))
         out.push_back("not converged: backward error " + short_number(result.solution.backward_error));
     if (!model.report.slivers.empty()) {
         out.push_back(std::to_string(model.report.slivers.size()) + " flat cells, the worst is cell " +
@@ -103,6 +106,7 @@ Json json_of(const FemCase& model, const FemResult& result) {
         json["contact"] = {{"force_N", {f.x(), f.y(), f.z()}},
                            {"area_mm2", 1e6 * contact.area_m2},
                            {"nodes", contact.nodes},
+                           {"cells_across_radius", contact.cells_across_radius},
                            {"depth_mm", 1e3 * contact.depth_m},
                            {"lateral_N", {contact.lateral_N[0], contact.lateral_N[1]}},
                            {"compliance_columns", contact.columns}};

@@ -7,14 +7,17 @@
 #include <CLI/CLI.hpp>
 #include <cerrno>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <exception>
 #include <iostream>
+#include <new>
 #include <string>
 #include <vector>
 
 #include "app/option_checks.h"
 #include "files/input_error.h"
+#include "mechanics/error.h"
 
 namespace palpa {
 namespace {
@@ -44,12 +47,23 @@ void keep_standard_streams_apart() {
     }
 }
 
+// Ends here and now: OpenBLAS, whose threads could not be started, waits for them for ever in its destructor.
+[[noreturn]] void end_without_memory(const char* message) {
+    fail(message, 1);
+    std::fflush(nullptr);
+    std::_Exit(1);
+}
+
 int call(int argc, char** argv, CLI::App& app) {
     try {
         app.parse(with_default_command(argc, argv, app));
         return 0;
     } catch (const CLI::ParseError& error) {
         return app.exit(error) == 0 ? 0 : 2;
+    } catch (const std::bad_alloc&) {
+        end_without_memory("not enough memory: a smaller model, or a machine with more");
+    } catch (const mechanics::OutOfMemory& error) {
+        end_without_memory(error.what());
     } catch (const InputError& error) {
         return fail(error.what(), 2);
     } catch (const std::exception& error) {

@@ -188,7 +188,8 @@ void add_generate(CLI::App& maps) {
         ->check(CLI::Range(0.5, 4.0))
         ->capture_default_str();
     command->add_option("--window", arguments->window)->check(CLI::Range(0, 1000000))->group("");
-    command->add_flag("--refined", options.refined)->group("");
+    command->add_flag_callback("--refined", [&options] { options.meshes = MeshSet::refined; })->group("");
+    command->add_flag_callback("--coarser", [&options] { options.meshes = MeshSet::coarser; })->group("");
     part->excludes(jobs)->excludes(merge);
     command->callback([arguments] { generate_map(generate_options(*arguments)); });
 }

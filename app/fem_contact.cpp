@@ -5,11 +5,13 @@
 #include <chrono>
 #include <cmath>
 #include <iterator>
+#include <numbers>
 
 #include "app/fem_reach.h"
 #include "files/input_error.h"
 #include "files/text.h"
 #include "mechanics/compliance.h"
+#include "mechanics/contact_area.h"
 #include "mechanics/error.h"
 #include "mechanics/friction.h"
 #include "mechanics/layer.h"
@@ -24,15 +26,29 @@ constexpr double kMostCompliance_bytes = 6e8;
 // 0.004 % from the force with 64 steps: assets/cases/hertz.json on 24 x 24 x 10 cells, friction 0.3, 2026-11
 constexpr int kFrictionSteps = 16;
 constexpr int kFrictionSweeps = 4000;
+constexpr double kForceTolerance = 1e-6;  // with friction; its sweeps leave 1e-7 of the largest nodal force
+constexpr int kMostPresses = 40;
+constexpr double kNarrowest = 1e-10;   // of the depth: the force jumps there
+constexpr double kFewestCells = 4.0;  // across the contact's radius: docs/fem.md
 
 struct Pressed {
     Contact contact;
     std::vector<int> touch;       // touch nodes under load
     std::vector<double> force_N;  // three per node: pressing, x, y
+    std::string unsettled;        // why; empty: it settled
 };
 
 Tool tool_at(const CaseIndenter& indenter, double depth_m) {
     return {indenter.indenter, {indenter.centre_m[0], indenter.centre_m[1], depth_m}};
+}
+
+std::string mm_text(double metres) {
+    return short_number(1e3 * metres) + " mm";
+}
+
+std::string overlap_text(const Contact& contact) {
+    return "at " + mm_text(contact.tool[0].depth_m) + " the surface still reaches " + mm_text(contact.violation_m) +
+           " into the tool";
 }
 
 Pressed press_smooth(const Compliance& c, const CaseIndenter& indenter, const FemCase& model) {
@@ -50,6 +66,13 @@ Pressed press_smooth(const Compliance& c, const CaseIndenter& indenter, const Fe
                                 short_number(1e3 * c.thickness_m) + " mm");
         }
     }
+    const ContactFlags& flags = out.contact.flags;
+    if (flags.not_settled) {
+        out.unsettled = "the nodes in contact keep changing: " + overlap_text(out.contact);
+    } else if (flags.force_missed) {
+        out.unsettled = "the force comes no nearer than " + short_number(out.contact.tool[0].normal_N) + " N to " +
+                        short_number(indenter.force_N) + " N";
+    }
     out.touch = out.contact.touch;
     for (const double p : out.contact.force_N) out.force_N.insert(out.force_N.end(), {p, 0.0, 0.0});
     return out;
@@ -64,24 +87,57 @@ Pressed press_rough_to(const Compliance& c, const CaseIndenter& indenter, double
     Pressed out;
     for (int k = 1; k <= kFrictionSteps; ++k) {
         slide_to(c, tool_at(indenter, depth_m * k / kFrictionSteps), options, work, state, out.contact);
+        if (!out.contact.flags.not_settled) continue;
+        out.unsettled = "friction: after " + std::to_string(kFrictionSweeps) + " sweeps " + overlap_text(out.contact);
+        break;
     }
     out.touch = state.touch;
     out.force_N = state.force_N;
     return out;
 }
 
-// Force rises with depth to a power near 1.5: a few steps of that rule reach it.
+// A depth on one side of the wanted force, and by how much: log(force / wanted).
+struct Bound {
+    double depth_m = 0.0;
+    double miss = 0.0;
+};
+
+// Next depth inside the bracket. Force rises with a power of the depth, so the line between the bounds is drawn
+// through logarithms; before both are known Hertz's power, 3/2, stands in.
+double next_depth_m(const Bound& low, const Bound& high) {
+    const bool open = !std::isfinite(high.miss);
+    if (!(low.depth_m > 0.0) && open) return 0.5 * high.depth_m;
+    if (!std::isfinite(low.miss)) return open ? std::min(2.0 * low.depth_m, high.depth_m) : 0.5 * (low.depth_m + high.depth_m);
+    if (open) return std::min(low.depth_m * std::exp(-low.miss / 1.5), high.depth_m);
+    if (!(low.depth_m > 0.0)) return high.depth_m * std::exp(-high.miss / 1.5);
+    const double share = low.miss / (low.miss - high.miss);
+    return low.depth_m * std::pow(high.depth_m / low.depth_m, share);
+}
+
+// The depth for a force. Nodes that join make kinks and jumps of the force, so a bracket holds the search
+// (regula falsi, the stale bound's miss halved each time: Illinois).
 Pressed press_rough(const Compliance& c, const CaseIndenter& indenter, const FemCase& model) {
     if (indenter.depth_m) return press_rough_to(c, indenter, *indenter.depth_m);
-    double depth_m = press_smooth(c, indenter, model).contact.tool[0].depth_m;
-    Pressed out;
-    for (int i = 0; i < 30; ++i) {
+    Pressed out = press_smooth(c, indenter, model);
+    if (!out.unsettled.empty()) return out;
+    double depth_m = out.contact.tool[0].depth_m;
+    constexpr double kUnknown = std::numeric_limits<double>::infinity();
+    Bound low;
+    Bound high{c.thickness_m, kUnknown};
+    int side = 0;  // of the last press
+    for (int i = 0; i < kMostPresses && high.depth_m - low.depth_m > kNarrowest * high.depth_m; ++i) {
         out = press_rough_to(c, indenter, depth_m);
-        const double ratio = indenter.force_N / out.contact.tool[0].normal_N;
-        if (std::abs(ratio - 1.0) < 1e-9) return out;
-        depth_m = std::min(depth_m * std::pow(ratio, 2.0 / 3.0), c.thickness_m);
+        if (!out.unsettled.empty()) return out;
+        const double miss = std::log(out.contact.tool[0].normal_N / indenter.force_N);  // -infinity: no contact
+        if (std::abs(miss) <= kForceTolerance) return out;
+        const int now = miss < 0.0 ? -1 : 1;
+        (now < 0 ? low : high) = {depth_m, miss};
+        if (now == side) (now < 0 ? high : low).miss *= 0.5;
+        side = now;
+        depth_m = next_depth_m(low, high);
     }
-    out.contact.flags.not_settled = true;
+    out.unsettled = "friction: the force jumps past " + short_number(indenter.force_N) + " N at " + mm_text(depth_m) +
+                    " (" + short_number(out.contact.tool[0].normal_N) + " N)";
     return out;
 }
 
@@ -200,6 +256,41 @@ void check_held(const FemCase& model, const Rectangle& rectangle, double depth_m
     }
 }
 
+double reach_m(const Indenter& tool, double depth_m) {
+    return std::sqrt(tool.radius_m * std::min(depth_m, tool.radius_m));
+}
+
+// Least distance between touch nodes, one of them in contact; across its axis under a cylinder.
+double spacing_m(const Compliance& c, const Pressed& pressed, IndenterShape shape) {
+    double least_m = std::numeric_limits<double>::infinity();
+    for (const int i : pressed.touch) {
+        for (int j = 0; j < c.n_touch; ++j) {
+            const double dx = std::abs(c.position_m(0, i) - c.position_m(0, j));
+            const double dy = c.position_m(1, i) - c.position_m(1, j);
+            const double away_m = shape == IndenterShape::cylinder ? dx : std::hypot(dx, dy);
+            if (away_m > 1e-9 * c.thickness_m) least_m = std::min(least_m, away_m);
+        }
+    }
+    return least_m;
+}
+
+// Where the mesh cannot tell how large the contact is, it is at most what the tool has below the surface.
+void set_area(const Compliance& c, const Pressed& pressed, const FemCase& model, IndenterContact& out) {
+    const Indenter& tool = model.indenter->indenter;
+    std::vector<int> nodes;
+    std::vector<double> pressing_N;
+    for (std::size_t i = 0; i < pressed.touch.size(); ++i) {
+        nodes.push_back(c.node[static_cast<std::size_t>(pressed.touch[i])]);
+        pressing_N.push_back(pressed.force_N[3 * i]);
+    }
+    const Faces top = faces_on(model.problem.mesh, model.outer, Side::zmax);
+    out.area_m2 = contact_area_m2(top, tributary_area_m2(model.problem.mesh, top), nodes, pressing_N);
+    out.cells_across_radius = reach_m(tool, out.depth_m) / spacing_m(c, pressed, tool.shape);
+    if (tool.shape == IndenterShape::cylinder || out.cells_across_radius >= kFewestCells) return;
+    const double d = std::min(out.depth_m, tool.radius_m);
+    out.area_m2 = std::min(out.area_m2, std::numbers::pi * d * (2.0 * tool.radius_m - d));
+}
+
 IndenterContact result_of(const Compliance& c, const Pressed& pressed, const FemCase& model) {
     const ToolForce& tool = pressed.contact.tool[0];
     IndenterContact out;
@@ -209,17 +300,29 @@ IndenterContact result_of(const Compliance& c, const Pressed& pressed, const Fem
         out.force_N.col(c.node[static_cast<std::size_t>(pressed.touch[i])]) << f[1], f[2], -f[0];
     }
     out.normal_N = tool.normal_N;
-    out.area_m2 = tool.area_m2;
     out.depth_m = tool.depth_m;
     out.lateral_N[0] = tool.tangential_x_N;
     out.lateral_N[1] = tool.tangential_y_N;
     out.nodes = static_cast<int>(pressed.touch.size());
-    out.settled = !pressed.contact.flags.not_settled;
+    out.settled = pressed.unsettled.empty();
+    out.why_not_settled = pressed.unsettled;
+    set_area(c, pressed, model, out);
     out.over_edge = pressed.contact.flags.over_edge;
     return out;
 }
 
 }  // namespace
+
+std::vector<std::string> contact_warnings(const IndenterContact& contact) {
+    std::vector<std::string> out;
+    if (!contact.settled) out.push_back("the contact did not settle: " + contact.why_not_settled);
+    if (contact.cells_across_radius < kFewestCells) {
+        out.push_back("the contact's radius spans " + short_number(contact.cells_across_radius) +
+                      " cells: below 4 its force can be far off, whatever the other figures say; refine the mesh around "
+                      "the tool");
+    }
+    return out;
+}
 
 IndenterContact press_indenter(const FemCase& model, const Factored& factored, const Eigen::Matrix3Xd& before_m,
                                const FemProgress& progress) {

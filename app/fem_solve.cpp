@@ -188,7 +188,7 @@ FemResult solve_loads(const FemCase& model, const Factored& factored, const FemP
         result.skel_m = loads.force_N.cwiseProduct(result.solution.u_m).sum() / loads.applied_N;
     }
     result.residual = relative_residual(factored, loads.force_N, result.solution);
-    result.converged = result.solution.backward_error < 1e-12 && (!result.contact || result.contact->settled);
+    result.converged = result.solution.backward_error < kMostBackwardError && (!result.contact || result.contact->settled);
     judge_linearity(model, loads, result);
     result.assemble_s = factored.assemble_s;
     result.factor_s = factored.factor_s;

@@ -7,6 +7,8 @@
 
 namespace palpa {
 
+inline constexpr double kMostBackwardError = 1e-12;  // of a solution that counts as converged
+
 struct FemResult {
     mechanics::Solution solution;
     mechanics::CellFields fields;

@@ -14,6 +14,7 @@
 #include "files/input_error.h"
 #include "files/json.h"
 #include "files/text.h"
+#include "mechanics/error.h"
 #include "stiffnessmaps/analytic.h"
 #include "stiffnessmaps/grid.h"
 #include "stiffnessmaps/map_file.h"
@@ -25,13 +26,20 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t kProbes = 50;
 constexpr const char* kChecked = " Checked:";  // begins what a check adds to `how`
+// Of the meshes that the error is estimated from: at order 1.7 their difference from the map is the map's own error.
+constexpr double kCoarser = 1.5;
 
 fs::path without_slash(const fs::path& path) { return path.has_filename() ? path : path.parent_path(); }
 
-fs::path pieces_folder(const fs::path& output, bool refined) {
+fs::path pieces_folder(const fs::path& output, MeshSet meshes) {
     fs::path folder = without_slash(output);
-    folder += refined ? ".check" : ".lines";
+    folder += meshes == MeshSet::refined ? ".check" : meshes == MeshSet::coarser ? ".estimate" : ".lines";
     return folder;
+}
+
+MapTask task_of(const GenerateOptions& options, MeshSet meshes) {
+    const double times = meshes == MeshSet::refined ? 0.5 : meshes == MeshSet::coarser ? kCoarser : 1.0;
+    return make_map_task(options.phantom, pieces_folder(options.output, meshes), options.coarseness * times);
 }
 
 // Done of total on one line of a terminal, with the time left; silent elsewhere.
@@ -88,12 +96,13 @@ void drop_wrong(const MapTask& task, const std::vector<std::size_t>& wrong, std:
 std::string window_of(std::size_t window) { return window_name(static_cast<int>(window)); }
 
 std::vector<Arguments> window_calls(const GenerateOptions& options, const std::vector<std::size_t>& windows,
-                                    bool refined) {
+                                    MeshSet meshes) {
     std::vector<Arguments> calls;
     for (const std::size_t window : windows) {
         calls.push_back(call_of(options));
         calls.back().insert(calls.back().end(), {"--window", std::to_string(window)});
-        if (refined) calls.back().emplace_back("--refined");
+        if (meshes == MeshSet::refined) calls.back().emplace_back("--refined");
+        if (meshes == MeshSet::coarser) calls.back().emplace_back("--coarser");
     }
     return calls;
 }
@@ -112,7 +121,7 @@ void compute_with_jobs(const GenerateOptions& options, const MapTask& task) {
         progress.show(kWindowWeight * static_cast<double>(files_there(task, n_windows, window_of)) +
                       static_cast<double>(files_there(task, n_lines, line_name)));
     };
-    run_jobs(window_calls(options, windows, false), options.jobs, show);
+    run_jobs(window_calls(options, windows, MeshSet::own), options.jobs, show);
     std::vector<Arguments> calls;
     for (int i = 1; i <= options.jobs; ++i) {
         calls.push_back(call_of(options));
@@ -187,15 +196,6 @@ Map joined(const MapTask& task) {
     return map;
 }
 
-void merge(const GenerateOptions& options, const MapTask& task) {
-    const Map map = joined(task);
-    write_map(map, options.output);
-    fs::remove_all(task.folder);
-    const ForceRange range = force_range(map);
-    std::printf("%s: %zu x %zu cells, %zu depths, %s to %s N, by finite elements\n", options.output.c_str(), map.n_x,
-                map.n_y, map.n_depths(), short_number(range.lowest_N).c_str(), short_number(range.highest_N).c_str());
-}
-
 struct Differences {
     double largest = 0.0;
     double median = 0.0;
@@ -246,6 +246,46 @@ Json convergence_json(const MapTask& task, const MapTask& refined, const Map& ma
     return report;
 }
 
+// Those of another set of meshes, all of them.
+void compute_windows(const GenerateOptions& options, const MapTask& task, MeshSet meshes, const char* what) {
+    fs::create_directories(task.folder);
+    const auto n_windows = static_cast<std::size_t>(window_count(task));
+    const auto windows = missing(task, n_windows, window_of);
+    drop_wrong(task, windows, window_of);
+    Progress progress(what, static_cast<double>(n_windows));
+    run_jobs(window_calls(options, windows, meshes), options.jobs,
+             [&] { progress.show(static_cast<double>(files_there(task, n_windows, window_of))); });
+}
+
+// What a map says of its own error when it is made.
+std::string error_estimate(const GenerateOptions& options, const MapTask& task, const Map& map) {
+    try {
+        const MapTask coarser = task_of(options, MeshSet::coarser);
+        compute_windows(options, coarser, MeshSet::coarser, "estimating");
+        Differences found;
+        convergence_json(task, coarser, map, found);
+        std::string text = " Estimated error of the meshes: " + short_number(100.0 * found.largest) +
+                           " % of the greatest force at most, " + short_number(100.0 * found.median) + " % in the median";
+        if (is_rough(task)) text += ", tangential force " + short_number(100.0 * found.largest_tangential) + " % of it at most";
+        return text + " (" + std::to_string(kProbes) + " points against meshes " + short_number(kCoarser) + " times coarser).";
+    } catch (const InputError&) {
+        return " Error of the meshes: not estimated, coarser ones cannot be made.";
+    } catch (const mechanics::SolverError&) {
+        return " Error of the meshes: not estimated, on coarser ones the contact does not settle.";
+    }
+}
+
+void merge(const GenerateOptions& options, const MapTask& task) {
+    Map map = joined(task);
+    map.source.how += error_estimate(options, task, map);
+    write_map(map, options.output);
+    fs::remove_all(task.folder);
+    fs::remove_all(pieces_folder(options.output, MeshSet::coarser));
+    const ForceRange range = force_range(map);
+    std::printf("%s: %zu x %zu cells, %zu depths, %s to %s N, by finite elements\n", options.output.c_str(), map.n_x,
+                map.n_y, map.n_depths(), short_number(range.lowest_N).c_str(), short_number(range.highest_N).c_str());
+}
+
 void check(const GenerateOptions& options, const MapTask& task, const MapTask& refined) {
     Map map = read_map(options.output);
     const Map expected = map_of_phantom(task.phantom);
@@ -255,15 +295,7 @@ void check(const GenerateOptions& options, const MapTask& task, const MapTask& r
     if (map.n_x != expected.n_x || map.n_y != expected.n_y || map_json(map)["depths_mm"] != map_json(expected)["depths_mm"]) {
         throw bad_input(options.output.string(), "", "another grid or other depths", "a map made from " + options.phantom.string());
     }
-    fs::create_directories(refined.folder);
-    const auto n_windows = static_cast<std::size_t>(window_count(refined));
-    const auto windows = missing(refined, n_windows, window_of);
-    drop_wrong(refined, windows, window_of);
-    {
-        Progress progress("checking", static_cast<double>(n_windows));
-        run_jobs(window_calls(options, windows, true), options.jobs,
-                 [&] { progress.show(static_cast<double>(files_there(refined, n_windows, window_of))); });
-    }
+    compute_windows(options, refined, MeshSet::refined, "checking");
     Differences differences;
     const Json report = convergence_json(task, refined, map, differences);
     write_text_atomically(without_slash(options.output) / "convergence.json", report.dump(1) + "\n");
@@ -335,10 +367,7 @@ void generate_map(const GenerateOptions& options) {
                     map.n_x, map.n_y, map.n_depths());
         return;
     }
-    const auto task_of = [&](bool refined) {
-        return make_map_task(options.phantom, pieces_folder(options.output, refined), options.coarseness * (refined ? 0.5 : 1.0));
-    };
-    const MapTask task = task_of(options.refined);
+    const MapTask task = task_of(options, options.meshes);
     if (options.window && !(*options.window >= 0 && *options.window < window_count(task))) {
         throw bad_input("--window", "", std::to_string(*options.window), "0 to " + std::to_string(window_count(task) - 1));
     }
@@ -350,7 +379,7 @@ void generate_map(const GenerateOptions& options) {
         if (!options.merge) compute_with_jobs(options, task);
         merge(options, task);
     }
-    if (options.check) check(options, task, task_of(true));
+    if (options.check) check(options, task, task_of(options, MeshSet::refined));
 }
 
 }  // namespace palpa

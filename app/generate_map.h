@@ -1,6 +1,6 @@
 #pragma once
 // `palpa maps generate`: a phantom becomes a map by virtual rolling indentation (mechanics/rolling.h). Jobs,
-// progress, resume, parts on a cluster, joining, and the check against another mesh.
+// progress, resume, parts on a cluster, joining, and what other meshes say of the error.
 
 #include <filesystem>
 #include <optional>
@@ -13,6 +13,9 @@ struct Part {  // share number `index` of `count`, counted from 1
     int count = 1;
 };
 
+// Which of a map's meshes: its own, those refined once that check it, coarser ones that its error is estimated from.
+enum class MeshSet { own, refined, coarser };
+
 struct GenerateOptions {
     std::filesystem::path phantom;
     std::filesystem::path output;  // NAME.map; the pieces stand in NAME.map.lines until they are joined
@@ -22,8 +25,8 @@ struct GenerateOptions {
     bool merge = false;
     bool check = false;
     double coarseness = 1.0;
-    std::optional<int> window;  // one call of run_jobs: this window only,
-    bool refined = false;       // of the mesh refined once
+    std::optional<int> window;         // one call of run_jobs: this window only,
+    MeshSet meshes = MeshSet::own;     // of these meshes
 };
 
 // Throws InputError for bad input and std::runtime_error when the run fails.

@@ -6,6 +6,7 @@
 #include <cstring>
 #include <stdexcept>
 
+#include "app/map_cost.h"
 #include "files/input_error.h"
 #include "files/text.h"
 #include "mechanics/error.h"
@@ -163,6 +164,7 @@ MapTask make_map_task(const std::filesystem::path& phantom_file, const std::file
         throw InputError(phantom_file.string() + ": " + error.what());
     }
     task.groups = mechanics::inclusion_groups(model, task.mesh);
+    check_cost(task, coarseness, phantom_file.string());
     task.fingerprint = fingerprint_of(task);
     return task;
 }
@@ -257,8 +259,13 @@ std::vector<Cell> probe_cells(const Phantom& phantom, std::size_t count) {
         }
     };
     constexpr std::size_t kNodules = 3;  // at most, so that the rest of the grid keeps its share
-    for (std::size_t k = 0; k < std::min(kNodules, phantom.nodules.size()); ++k) {
-        const PhantomNodule& nodule = phantom.nodules[k];
+    // those that ask most of the meshes: least covered for their size
+    std::vector<PhantomNodule> nodules = phantom.nodules;
+    const auto cover = [](const PhantomNodule& n) { return n.centre_m[2] / n.diameter_m; };
+    std::stable_sort(nodules.begin(), nodules.end(),
+                     [&](const PhantomNodule& a, const PhantomNodule& b) { return cover(a) < cover(b); });
+    for (std::size_t k = 0; k < std::min(kNodules, nodules.size()); ++k) {
+        const PhantomNodule& nodule = nodules[k];
         const double x = nodule.centre_m[0];
         const double y = nodule.centre_m[1];
         const double r = 0.5 * nodule.diameter_m;

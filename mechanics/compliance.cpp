@@ -25,6 +25,7 @@ Component component(int node, int c) {
 
 Compliance empty_compliance(const Mesh& mesh, const SurfaceRequest& request) {
     Compliance out;
+    out.revision = new_revision();
     out.n_touch = static_cast<int>(request.touch_nodes.size());
     out.node = request.touch_nodes;
     out.node.insert(out.node.end(), request.other_nodes.begin(), request.other_nodes.end());
@@ -113,6 +114,11 @@ struct Fnv {
 };
 
 }  // namespace
+
+std::uint64_t new_revision() {
+    static std::atomic<std::uint64_t> last{0};
+    return ++last;
+}
 
 SurfaceRequest request_rectangle(const Mesh& mesh, const Faces& outer, const std::array<double, 4>& touch_m) {
     SurfaceRequest request;

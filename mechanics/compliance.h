@@ -28,6 +28,9 @@ SurfaceRequest request_rectangle(const Mesh& mesh, const Faces& outer, const std
 
 // Plain data: may be stored and read back (under `fingerprint`).
 struct Compliance {
+    // Which content this is, from new_revision(); what is remembered of a contact belongs to one revision. 0: not
+    // told, nothing is remembered. Whoever changes the numbers gives a new one.
+    std::uint64_t revision = 0;
     int n_touch = 0;
     std::vector<int> node;        // mesh nodes, n_surface of them, the touch nodes first
     Eigen::Matrix3Xd position_m;  // at rest
@@ -45,6 +48,9 @@ struct Compliance {
     Eigen::MatrixXd full_m_per_N;
     double asymmetry = 0.0;  // max |C - C^T| / max |C| before it was made symmetric
 };
+
+// A number that no other content in this process has. May be called from any thread.
+std::uint64_t new_revision();
 
 struct Progress {
     std::function<void(int done, int total)> report;  // columns, after each block; may be empty

@@ -14,6 +14,7 @@ using Eigen::Index;
 constexpr double kGapTolerance = 1e-10;    // of the greatest penetration; round-off of C p is 1e-13 of it
 constexpr double kRegularisation = 1e-12;  // of the mean diagonal: keeps doubled nodes apart
 constexpr double kForceTolerance = 1e-9;
+constexpr double kDepthRoundOff = 1e-15;  // of the depth: a narrower bracket cannot be halved
 constexpr int kMostSearchSteps = 60;
 
 std::size_t at(int i) {
@@ -47,12 +48,12 @@ void list_active(ContactWork& w) {
     }
 }
 
-// Cholesky factor of C on the active nodes, unless it is the one at hand.
-void factor_active(const Compliance& c, ContactWork& w) {
+// Cholesky factor of C on the active nodes, unless it is the one at hand. False: not positive definite there.
+bool factor_active(const Compliance& c, ContactWork& w) {
     const bool same = w.factored.size() == w.active.size() &&
                       std::equal(w.active.begin(), w.active.end(), w.factored.begin(),
                                  [&](int i, int touch) { return w.candidate[at(i)] == touch; });
-    if (same) return;
+    if (same) return true;
     const auto n = static_cast<Index>(w.active.size());
     if (w.factor.rows() < n) {
         w.factor.resize(n + n / 2, n + n / 2);
@@ -71,12 +72,15 @@ void factor_active(const Compliance& c, ContactWork& w) {
     Eigen::Ref<Eigen::MatrixXd> block = w.factor.topLeftCorner(n, n);
     Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>> in_place(block);
     w.factored.clear();
+    // a NaN passes the factorisation without a word
+    if (in_place.info() != Eigen::Success || !block.diagonal().allFinite()) return false;
     for (const int i : w.active) w.factored.push_back(w.candidate[at(i)]);
+    return true;
 }
 
-// p on the active nodes from C_AA p = delta_A, 0 elsewhere.
-void solve_active(const Compliance& c, ContactWork& w) {
-    factor_active(c, w);
+// p on the active nodes from C_AA p = delta_A, 0 elsewhere. False: C_AA cannot be factored.
+bool solve_active(const Compliance& c, ContactWork& w) {
+    if (!factor_active(c, w)) return false;
     const auto n = static_cast<Index>(w.active.size());
     for (Index i = 0; i < n; ++i) w.rhs(i) = w.delta_m[at(w.active[static_cast<std::size_t>(i)])];
     const auto L = w.factor.topLeftCorner(n, n);
@@ -84,6 +88,7 @@ void solve_active(const Compliance& c, ContactWork& w) {
     L.triangularView<Eigen::Lower>().transpose().solveInPlace(w.rhs.head(n));
     std::fill(w.p_N.begin(), w.p_N.end(), 0.0);
     for (Index i = 0; i < n; ++i) w.p_N[at(w.active[static_cast<std::size_t>(i)])] = w.rhs(i);
+    return true;
 }
 
 // g = C p - delta at every candidate.
@@ -117,7 +122,7 @@ bool settle(const Compliance& c, int max_changes, ContactWork& w, int& changes) 
     const double tolerance_m = gap_tolerance(w);
     for (int k = 0; k < max_changes; ++k) {
         list_active(w);
-        solve_active(c, w);
+        if (!solve_active(c, w)) return false;
         compute_gaps(c, w);
         if (!change_set(tolerance_m, w)) return true;
         ++changes;
@@ -133,7 +138,9 @@ bool settle_by_sweeps(const Compliance& c, int sweeps, ContactWork& w, int& chan
     for (int i = 0; i < n; ++i) w.gap_m[at(i)] = -w.delta_m[at(i)];
     for (int sweep = 0; sweep < sweeps; ++sweep) {
         for (int i = 0; i < n; ++i) {
-            const double p = std::max(0.0, w.p_N[at(i)] - w.gap_m[at(i)] / compliance_of(c, w, i, i));
+            const double own_m_per_N = compliance_of(c, w, i, i);
+            if (!(own_m_per_N > 0.0)) continue;  // a damaged row: it stays free, and the contact is not settled
+            const double p = std::max(0.0, w.p_N[at(i)] - w.gap_m[at(i)] / own_m_per_N);
             const double dp = p - w.p_N[at(i)];
             if (dp == 0.0) continue;
             w.p_N[at(i)] = p;
@@ -184,8 +191,7 @@ void collect(const Compliance& c, std::span<const Tool> tools, const ContactWork
 // d(normal force)/d(depth) = 1^T C_AA^-1 1 while the set stays as it is.
 double stiffness_of_set(const Compliance& c, ContactWork& w) {
     const auto n = static_cast<Index>(w.active.size());
-    if (n == 0) return 0.0;
-    factor_active(c, w);
+    if (n == 0 || !factor_active(c, w)) return 0.0;
     w.rhs.head(n).setOnes();
     w.factor.topLeftCorner(n, n).triangularView<Eigen::Lower>().solveInPlace(w.rhs.head(n));
     return w.rhs.head(n).squaredNorm();
@@ -223,12 +229,8 @@ void solve_contact(const Compliance& c, const ContactOptions& options, ContactWo
 }  // namespace
 
 void prepare(const Compliance& c, ContactWork& w) {
-    const double probe = c.normal_m_per_N(0, 0) + c.normal_m_per_N(c.n_touch / 2, c.n_touch - 1);
-    if (w.matrix == c.normal_m_per_N.data() && w.probe_m_per_N == probe &&
-        w.was_in_contact.size() == at(c.n_touch))
-        return;
-    w.matrix = c.normal_m_per_N.data();
-    w.probe_m_per_N = probe;
+    if (c.revision != 0 && w.revision == c.revision) return;
+    w.revision = c.revision;
     w.was_in_contact.assign(at(c.n_touch), 0);
     w.factored.clear();
     for (auto* list : {&w.delta_m, &w.slope_x, &w.slope_y, &w.p_N, &w.swept_N, &w.gap_m})
@@ -301,6 +303,8 @@ void press_with_force(const Compliance& compliance, const Tool& tool, double for
             return;
         }
         (miss < 0.0 ? low : high) = depth;
+        contact.flags.force_missed = true;  // unless a later step meets it
+        if (high - low <= kDepthRoundOff * high) return;
         double next =
             contact.stiffness_N_per_m > 0.0 ? depth - miss / contact.stiffness_N_per_m : 2.0 * depth + 1e-6;
         // shallow starts overshoot by Newton, as F rises faster than linearly: at most four times deeper at

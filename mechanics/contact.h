@@ -66,6 +66,7 @@ struct ContactFlags {
     bool capped = false;       // depth cut to the limit, or the force not reached at the limit
     bool over_edge = false;    // the tool reaches beyond the touch nodes
     bool not_settled = false;  // Gauss-Seidel's answer, exact to `violation_m` only
+    bool force_missed = false; // press_with_force came no nearer to the force it was given than normal_N
 };
 
 struct Contact {
@@ -82,8 +83,7 @@ struct Contact {
 
 // Scratch memory; also remembers the last active set and its factor. A new one is a cold start.
 struct ContactWork {
-    const double* matrix = nullptr;  // whose compliance this is; another one starts cold
-    double probe_m_per_N = 0.0;
+    std::uint64_t revision = 0;  // of the compliance this belongs to; another one, or 0, starts cold
     std::vector<Tool> tools;              // with their depths limited
     std::array<double, 4> touch_box_m{};  // x_min, x_max, y_min, y_max of the touch nodes
     std::vector<int> candidate;           // touch nodes within reach, ascending

@@ -42,6 +42,11 @@ struct SolverError : MechanicsError {
     int code;
 };
 
+// There is not enough memory for the factorisation.
+struct OutOfMemory : SolverError {
+    using SolverError::SolverError;
+};
+
 struct Cancelled : MechanicsError {
     using MechanicsError::MechanicsError;
 };

@@ -161,6 +161,7 @@ void fill_along(const LayerKernel& kernel, RollingWork& work) {
 void fill_patch(const RollingModel& model, const RollingMesh& mesh, const RollingTables& tables, RollingWork& work) {
     const auto n = static_cast<int>(work.lattice_x.size());
     Compliance& patch = work.patch;
+    patch.revision = new_revision();  // a cold start, so that the order of places cannot matter
     patch.n_touch = n;
     patch.node.resize(at(n));
     patch.position_m.resize(3, n);
@@ -225,9 +226,6 @@ void roll_to(const RollingModel& model, const RollingMesh& mesh, const RollingTa
                              " x 0..", model.size_m[1], " m"));
     }
     fill_patch(model, mesh, tables, work);
-    // another compliance: a cold start, so that the order of places cannot matter
-    work.contact.matrix = nullptr;
-    work.slide.contact.matrix = nullptr;
     out.clear();
     for (const double depth_m : depths_m) {
         if (!(depth_m > 0.0 && depth_m < model.size_m[2])) {

@@ -36,6 +36,26 @@ Eigen::VectorXd outward_coordinates_m(double cell_m, int n, double growth, doubl
 // Depth below the surface (0, growing) to heights (ascending, surface at the top).
 Eigen::VectorXd heights_from_depths(const Eigen::VectorXd& depth_m, double thickness_m);
 
+// The lines of a table's mesh.
+struct GridLines {
+    Eigen::VectorXd x_m, y_m, z_m;
+};
+std::array<int, 2> contact_offsets(const RollingModel& model, const RollingMesh& mesh);  // of its table
+GridLines contact_lines(const RollingModel& model, const RollingMesh& mesh);
+GridLines side_lines(const RollingModel& model, const RollingMesh& mesh);        // a quarter of the block
+GridLines side_layer_lines(const RollingModel& model, const RollingMesh& mesh);  // a quarter of the layer, same cells
+GridLines inclusion_lines(const RollingModel& model, const RollingMesh& mesh, const std::vector<int>& group);
+// Positions of the lines along x (axis 0) or y at which a group's table is stored.
+std::vector<int> inclusion_samples(const RollingModel& model, const RollingMesh& mesh, const std::vector<int>& group,
+                                   std::size_t axis, const Eigen::VectorXd& lines_m);
+
+// What a group of inclusions covers along an axis.
+struct Extent {
+    double low_m = 1e300;
+    double high_m = -1e300;
+};
+Extent extent_of(const RollingModel& model, const std::vector<int>& group, std::size_t axis);
+
 // Block on a rigid base with all inclusions of the list mixed in.
 Problem block_problem(const Eigen::VectorXd& x_m, const Eigen::VectorXd& y_m, const Eigen::VectorXd& z_m,
                       const Material& tissue, std::span<const Inclusion> inclusions);

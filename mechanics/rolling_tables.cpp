@@ -12,9 +12,6 @@ namespace {
 using Eigen::Index;
 using Eigen::VectorXd;
 
-constexpr double kGrowth = 1.2;      // of cells below a load
-constexpr double kWindowGrowth = 1.3;  // of cells away from inclusions
-constexpr double kFarOut = 6.0;      // thicknesses of layer around a load: its effect has died away
 constexpr double kFadeFrom = 0.65;   // of the reach
 
 // What pressing at one surface point does at another. The lists of a table and the matrices of a compliance
@@ -27,7 +24,7 @@ std::vector<Response> responses(const RollingModel& model) {
 }
 
 template <class Table>
-std::vector<double>& list_of(Table& table, Response response) {
+auto& list_of(Table& table, Response response) {
     if (response == Response::normal) return table.value;
     return response == Response::along_x ? table.along_x : table.along_y;
 }
@@ -60,13 +57,10 @@ std::vector<int> end_plane(const Problem& problem, int axis) {
 }
 
 // The layer under a load at the corner of its quarter, where both planes of symmetry meet.
-// n: offsets along x and y. uniform: cells of the wanted spacing along them.
+// n: offsets along x and y.
 LayerKernel layer_kernel(const RollingModel& model, const std::array<double, 2>& spacing_m,
-                         const std::array<int, 2>& n, const std::array<int, 2>& uniform, const VectorXd& z_m) {
-    const double far_m =
-        kFarOut * model.size_m[2] + std::max(uniform[0], uniform[1]) * std::max(spacing_m[0], spacing_m[1]);
-    const VectorXd x_m = outward_coordinates_m(spacing_m[0], uniform[0], 1.3, far_m);
-    const VectorXd y_m = outward_coordinates_m(spacing_m[1], uniform[1], 1.3, far_m);
+                         const std::array<int, 2>& n, const GridLines& lines) {
+    const auto& [x_m, y_m, z_m] = lines;
     Problem problem = block_problem(x_m, y_m, z_m, model.tissue, {});
     for (int axis = 0; axis < 2; ++axis) {
         std::vector<int> plane;
@@ -92,11 +86,6 @@ LayerKernel layer_kernel(const RollingModel& model, const std::array<double, 2>&
         for (Index i = 0; i < moved.rows(); ++i) list_of(kernel, response).push_back(0.25 * moved(i, 0));
     }
     return kernel;
-}
-
-VectorXd side_heights(const RollingModel& model, const RollingMesh& mesh) {
-    const double first_m = 0.6 * std::min(mesh.surface_m[0], mesh.surface_m[1]);
-    return heights_from_depths(outward_coordinates_m(first_m, 1, kGrowth, model.size_m[2]), model.size_m[2]);
 }
 
 // Surface compliance of a quarter of the block between all its surface nodes; mirrored planes either
@@ -152,61 +141,18 @@ double fade(double at_m, double low_m, double high_m, double reach_m) {
     return 0.5 * (1.0 + std::cos(std::numbers::pi * s));
 }
 
-struct Extent {
-    double low_m = 1e300;
-    double high_m = -1e300;
-};
-Extent extent_of(const RollingModel& model, const std::vector<int>& group, std::size_t axis) {
-    Extent out;
-    for (const int i : group) {
-        const Sphere& sphere = model.inclusions[static_cast<std::size_t>(i)].sphere;
-        out.low_m = std::min(out.low_m, sphere.centre_m[axis] - sphere.radius_m);
-        out.high_m = std::max(out.high_m, sphere.centre_m[axis] + sphere.radius_m);
-    }
-    return out;
-}
-
-// Lines of the mesh over the window, not closer than `least_m`; counted from its middle to both sides, so that a
-// mirrored window has mirrored lines.
-std::vector<int> sample_lines(const VectorXd& lines_m, double low_m, double high_m, double least_m) {
-    int first = 0;
-    int last = static_cast<int>(lines_m.size()) - 1;
-    while (first + 1 < last && lines_m(first + 1) <= low_m) ++first;
-    while (last - 1 > first && lines_m(last - 1) >= high_m) --last;
-    Index middle = 0;
-    (lines_m.array() - 0.5 * (low_m + high_m)).abs().minCoeff(&middle);
-    std::vector<int> out{std::clamp(static_cast<int>(middle), first, last)};
-    for (int i = out.front() - 1; i >= first; --i) {
-        if (lines_m(out.front()) - lines_m(i) >= least_m || i == first) out.insert(out.begin(), i);
-    }
-    for (int i = out.back() + 1; i <= last; ++i) {
-        if (lines_m(i) - lines_m(out.back()) >= least_m || i == last) out.push_back(i);
-    }
-    return out;
-}
-
 }  // namespace
 
 LayerKernel contact_kernel(const RollingModel& model, const RollingMesh& mesh) {
     const double h = mesh.contact_m;
-    const std::array<double, 2> half_m = footprint_m(model);
-    const std::array<int, 2> n{static_cast<int>(2.0 * half_m[0] / h) + 2, static_cast<int>(2.0 * half_m[1] / h) + 2};
-    const VectorXd z_m =
-        heights_from_depths(outward_coordinates_m(0.75 * h, 1, kGrowth, model.size_m[2]), model.size_m[2]);
-    return layer_kernel(model, {h, h}, n, n, z_m);
+    return layer_kernel(model, {h, h}, contact_offsets(model, mesh), contact_lines(model, mesh));
 }
 
 PairTable side_table(const RollingModel& model, const RollingMesh& mesh) {
-    int half[2];
-    VectorXd lines_m[2];
-    for (int c = 0; c < 2; ++c) {
-        const double half_m = 0.5 * model.size_m[static_cast<std::size_t>(c)];
-        half[c] = static_cast<int>(std::lround(half_m / mesh.surface_m[static_cast<std::size_t>(c)]));
-        lines_m[c] = VectorXd::LinSpaced(half[c] + 1, 0.0, half_m);
-    }
-    const VectorXd z_m = side_heights(model, mesh);
+    const GridLines lines = side_lines(model, mesh);
+    const int half[2] = {static_cast<int>(lines.x_m.size()) - 1, static_cast<int>(lines.y_m.size()) - 1};
     const int most = std::max(half[0], half[1]);
-    LayerKernel plain = layer_kernel(model, mesh.surface_m, {most + 1, most + 1}, {most, most}, z_m);
+    const LayerKernel plain = layer_kernel(model, mesh.surface_m, {most + 1, most + 1}, side_layer_lines(model, mesh));
 
     PairTable table;
     for (int i = 0; i <= 2 * half[0]; ++i) table.x_m.push_back(mesh.surface_m[0] * i);
@@ -225,7 +171,7 @@ PairTable side_table(const RollingModel& model, const RollingMesh& mesh) {
     std::vector<double> pattern;
     for (const bool anti_x : {false, true}) {
         for (const bool anti_y : {false, true}) {
-            const Compliance quarter = quarter_compliance(model, lines_m[0], lines_m[1], z_m, {anti_x, anti_y});
+            const Compliance quarter = quarter_compliance(model, lines.x_m, lines.y_m, lines.z_m, {anti_x, anti_y});
             for (const Response response : responses(model)) {
                 const Eigen::MatrixXd& C = matrix_of(quarter, response);
                 for_each_pair(table, pattern, [&](int ix, int iy, int jx, int jy, double& value) {
@@ -247,35 +193,21 @@ PairTable side_table(const RollingModel& model, const RollingMesh& mesh) {
 PairTable inclusion_table(const RollingModel& model, const RollingMesh& mesh, const std::vector<int>& group) {
     std::vector<Inclusion> inside;
     for (const int i : group) inside.push_back(model.inclusions[static_cast<std::size_t>(i)]);
-    VectorXd lines_m[2];
+    const GridLines lines = inclusion_lines(model, mesh, group);
+    const VectorXd* lines_m[2] = {&lines.x_m, &lines.y_m};
     std::vector<int> sampled[2];
     Extent extent[2];
     for (std::size_t c = 0; c < 2; ++c) {
-        std::vector<FineZone> zones;
-        for (const Inclusion& i : inside) {
-            const Sphere& s = i.sphere;
-            zones.push_back({s.centre_m[c] - s.radius_m, s.centre_m[c] + s.radius_m, 2.0 * s.radius_m / mesh.cells_across});
-        }
         extent[c] = extent_of(model, group, c);
-        lines_m[c] = zoned_coordinates_m(model.size_m[c], zones, kWindowGrowth, 0.4 * model.size_m[2]);
-        sampled[c] = sample_lines(lines_m[c], extent[c].low_m - mesh.reach_m, extent[c].high_m + mesh.reach_m,
-                                  model.size_m[2] / 16.0);
+        sampled[c] = inclusion_samples(model, mesh, group, c, *lines_m[c]);
     }
-    std::vector<FineZone> deep;
-    for (const Inclusion& i : inside) {
-        const double middle_m = model.size_m[2] - i.sphere.centre_m[2];
-        deep.push_back({middle_m - i.sphere.radius_m, middle_m + i.sphere.radius_m,
-                        2.0 * i.sphere.radius_m / mesh.cells_across});
-    }
-    const VectorXd z_m = heights_from_depths(
-        zoned_coordinates_m(model.size_m[2], deep, kWindowGrowth, 0.2 * model.size_m[2]), model.size_m[2]);
 
     std::vector<int> nodes;
     for (const int j : sampled[1]) {
-        for (const int i : sampled[0]) nodes.push_back(surface_node(lines_m[0], lines_m[1], z_m, i, j));
+        for (const int i : sampled[0]) nodes.push_back(surface_node(lines.x_m, lines.y_m, lines.z_m, i, j));
     }
     const auto solved = [&](std::span<const Inclusion> inclusions) {
-        return compliance_of(model, block_problem(lines_m[0], lines_m[1], z_m, model.tissue, inclusions), nodes);
+        return compliance_of(model, block_problem(lines.x_m, lines.y_m, lines.z_m, model.tissue, inclusions), nodes);
     };
     const Compliance with = solved(inside);
     const Compliance without = solved({});
@@ -284,8 +216,8 @@ PairTable inclusion_table(const RollingModel& model, const RollingMesh& mesh, co
     std::vector<double> faded[2];
     for (std::size_t c = 0; c < 2; ++c) {
         for (const int i : sampled[c]) {
-            (c == 0 ? table.x_m : table.y_m).push_back(lines_m[c](i));
-            faded[c].push_back(fade(lines_m[c](i), extent[c].low_m, extent[c].high_m, mesh.reach_m));
+            (c == 0 ? table.x_m : table.y_m).push_back((*lines_m[c])(i));
+            faded[c].push_back(fade((*lines_m[c])(i), extent[c].low_m, extent[c].high_m, mesh.reach_m));
         }
     }
     const std::array<double, 2> footprint = footprint_m(model);

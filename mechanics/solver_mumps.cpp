@@ -20,6 +20,11 @@ constexpr int kFactor = 2;
 constexpr int kSolve = 3;
 constexpr int kErrorNoMemory = -9;
 
+// Its integer or real work space could not be had, or outgrew what the analysis promised.
+bool is_memory(int code) {
+    return code == -7 || code == -8 || code == kErrorNoMemory || code == -13;
+}
+
 // Orderings that give the same factor, to the last bit, at every call. Scotch, which MUMPS would choose for the larger
 // systems, depends on the race of its threads and on the calls before; PORD factors as fast at 30 000 equations and a
 // quarter slower at 70 000. It ends the process where all equations touch each other, so the small systems, where that
@@ -42,11 +47,12 @@ void check(const DMUMPS_STRUC_C& id, const char* what) {
     const int code = id.infog[0];
     if (code >= 0) return;
     const char* meaning = code == -10 || code == -40              ? "the matrix is not positive definite"
-                          : code == -13 || code == kErrorNoMemory ? "not enough memory"
-                                                                  : "see its users' guide";
-    throw SolverError(text("MUMPS: ", what, " of ", id.n, " equations failed with ", code, " (detail ",
-                           id.infog[1], "): ", meaning),
-                      code);
+                          : is_memory(code) ? "not enough memory"
+                                            : "see its users' guide";
+    const std::string message = text("MUMPS: ", what, " of ", id.n, " equations failed with ", code, " (detail ",
+                                     id.infog[1], "): ", meaning);
+    if (is_memory(code)) throw OutOfMemory(message, code);
+    throw SolverError(message, code);
 }
 
 }  // namespace

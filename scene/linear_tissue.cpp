@@ -74,6 +74,7 @@ bool restore(const std::filesystem::path& cache, std::uint64_t number, const mec
     const auto& [position, area, numbers, normal] = std::tie((*arrays)[0], (*arrays)[1], (*arrays)[2], (*arrays)[3]);
     if (position.size() != 3 * n || area.size() != n || numbers.size() != 3 || normal.size() != n * n) return false;
     const auto rows = static_cast<Eigen::Index>(n);
+    out.revision = mechanics::new_revision();
     out.n_touch = static_cast<int>(n);
     out.node = request.touch_nodes;
     out.position_m = Eigen::Map<const Eigen::Matrix3Xd>(position.data(), 3, rows);

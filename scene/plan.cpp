@@ -18,6 +18,8 @@ constexpr double kBarOfLinear_N = 5.0;  // no greatest force: as the shipped map
 constexpr const char* kLinearError =
     "1.3 % of the depth (median, worst 2.4 %) against 1.2 mm on the shipped block at 2 mm; a contact radius below two "
     "spacings is worse";
+constexpr double kFewestSpacings = 4.0;  // across the contact's radius: docs/fem.md
+constexpr double kTooFewSpacings = 2.0;
 
 constexpr const char* kFrictionError =
     "tangential force 0.2 % of mu F (median, worst 4 %) against 1.5 mm on the shipped block at 2 mm, raster trace, mu 0.3";
@@ -50,11 +52,27 @@ Stage depth_stage(const MapTissue& tissue) {
     return stage;
 }
 
+// How many spacings the contact's radius, sqrt(R d), spans at the greatest depth.
+double spacings_across(const LinearTissue& tissue) {
+    const double R = tissue.indenter.radius_m;
+    const double depth_m = std::min(tissue.phantom.depths_m.back(), R);
+    return std::sqrt(R * depth_m) / std::max(tissue.spacing_m[0], tissue.spacing_m[1]);
+}
+
+std::string linear_error(const LinearTissue& tissue) {
+    const double spacings = spacings_across(tissue);
+    if (spacings >= kFewestSpacings) return kLinearError;
+    const std::string here = "at " + mm_text(tissue.phantom.depths_m.back()) + " the contact's radius spans " + short_number(spacings) +
+                             " spacings here, fewer where it is shallower";
+    if (spacings >= kTooFewSpacings) return std::string(kLinearError) + "; " + here;
+    return "not known, the force can be several times too large: even " + here + "; four are wanted (a smaller spacing_mm)";
+}
+
 Stage depth_stage(const LinearTissue& tissue) {
     Stage stage{StageId::depth, false, "", "", 60.0};
     stage.fidelity = "linear finite elements, " + std::to_string(tissue.mesh_nodes) + " nodes, " +
                      mm_text(tissue.spacing_m[0]) + " on the surface; frictionless contact solved at every sample";
-    stage.error = kLinearError;
+    stage.error = linear_error(tissue);
     return stage;
 }
 
@@ -120,6 +138,9 @@ void add_isotonic_note(const MapTissue& tissue, Plan& plan) {
 
 void add_notes(const LinearTissue& tissue, const Scene&, Plan& plan) {
     if (!tissue.cache_warning.empty()) plan.notes.push_back(tissue.cache_warning);
+    if (spacings_across(tissue) < kTooFewSpacings) {
+        plan.notes.push_back("the surface nodes are too far apart for this indenter: " + linear_error(tissue));
+    }
     if (tissue.friction) {
         plan.notes.push_back("friction acts on the tangential force, not on the avatar's lag: under the same force it is the same "
                              "here and a reference distance before");

@@ -30,8 +30,11 @@ Called palpa_with(const std::string& arguments, const std::string& before = "") 
             read_text(folder / "err")};
 }
 
+// four cells across the contact's radius
+const std::string kFine =
+    R"({"box": {"size_mm": [100, 100, 50], "elements": [12, 12, 7], "grading": {"centre_mm": [50, 50], "finest_mm": 1}}})";
 const std::string kIndented = case_text(
-    kSlab, "hex8-bbar", kClamped,
+    kFine, "hex8-bbar", kClamped,
     R"([{"indenter": {"shape": "sphere", "radius_mm": 20, "centre_mm": [50, 50], "depth_mm": 1}}])");
 
 }  // namespace
@@ -114,6 +117,44 @@ TEST_CASE("fem solve: leaving the linear range and a load beside the body are sa
     const Json json = parse_json(called.out, "stdout");
     CHECK(json["linear_range"]["gauge"] == "red");
     CHECK(json["warnings"].size() == 2);
+}
+
+TEST_CASE("fem solve: a contact that the mesh cannot resolve is said, whatever colour the gauge has") {
+    const TemporaryFolder folder;
+    write_text_atomically(folder / "c.json", case_text(R"({"box": {"size_mm": [56, 56, 24], "elements": [14, 14, 6]}})", "hex8-bbar", kClamped,
+        R"([{"indenter": {"shape": "sphere", "radius_mm": 0.5, "centre_mm": [28, 28], "depth_mm": 0.1}}])"));
+    const Called called = palpa_with("fem solve " + (folder / "c.json").string() + " --json");
+    CHECK(called.status == 0);
+    CHECK(contains(called.err, "the contact's radius spans 0.0559 cells: below 4"));
+    const Json json = parse_json(called.out, "stdout");
+    REQUIRE(json["warnings"].size() >= 1);
+    CHECK(contains(json["warnings"].dump(), "the contact's radius spans"));
+    CHECK(json["contact"]["cells_across_radius"].get<double>() == doctest::Approx(0.0559).epsilon(0.01));
+    CHECK(json["contact"]["area_mm2"].get<double>() < 0.3);  // the node's whole share is 16
+}
+
+TEST_CASE("fem solve: a force with friction is met where nodes join at once and the force rises steeply") {
+    const TemporaryFolder folder;
+    write_text_atomically(folder / "c.json", case_text(R"({"box": {"size_mm": [60, 60, 25], "elements": [6, 6, 4]}})", "hex8-bbar", kClamped,
+        R"([{"indenter": {"shape": "sphere", "radius_mm": 20, "centre_mm": [30, 30], "friction": 0.3, "force_N": 0.05}}])"));
+    const Called met = palpa_with("fem solve " + (folder / "c.json").string() + " --json");
+    CHECK_MESSAGE(met.status == 0, met.err);
+    const Json json = parse_json(met.out, "stdout");
+    CHECK(json["converged"] == true);
+    CHECK(json["contact"]["force_N"][2].get<double>() == doctest::Approx(-0.05).epsilon(1e-4));
+    CHECK(json["contact"]["depth_mm"].get<double>() > 2.15);
+    CHECK(json["contact"]["depth_mm"].get<double>() < 3.0);
+}
+
+TEST_CASE("fem solve: without memory it ends with a message and status 1, and does not wait for ever") {
+    const std::string hertz = PALPA_SOURCE_DIR "/assets/cases/hertz.json";
+    for (const char* limit_kB : {"200000", "250000", "350000"}) {
+        CAPTURE(limit_kB);
+        const Called called = palpa_with("fem solve " + hertz, std::string("ulimit -v ") + limit_kB + ";");
+        CAPTURE(called.err);
+        CHECK(called.status == 1);
+        CHECK(contains(called.err, "not enough memory"));
+    }
 }
 
 TEST_CASE("fem solve: bad input ends with status 2, a disk that takes nothing with 1, and no file is left") {

@@ -176,7 +176,9 @@ TEST_CASE("hertz through a case: depth gives the force within 3 %, the force giv
         mechanics::hertz_force_N(mechanics::plane_strain_modulus_Pa(2500, 0.45), 0.01, 1e-4);
     CHECK(deep.contact->normal_N == doctest::Approx(hertz_N).epsilon(0.03));
     CHECK(deep.contact->area_m2 ==
-          doctest::Approx(std::numbers::pi * 1e-6).epsilon(0.4));  // steps by one node
+          doctest::Approx(std::numbers::pi * 1e-6).epsilon(0.05));
+    CHECK(deep.contact->cells_across_radius == doctest::Approx(1.0 / 0.24).epsilon(1e-6));
+    CHECK(contact_warnings(*deep.contact).empty());
     CHECK(*deep.centre_m == doctest::Approx(1e-4).epsilon(1e-9));
     CHECK(deep.reaction_N[0].z() == doctest::Approx(deep.contact->normal_N).epsilon(1e-9));
     CHECK(deep.contact->force_N.rowwise().sum().z() ==

@@ -79,6 +79,9 @@ TEST_CASE("generate: one process, two, parts that are joined, all give the same 
     CHECK(map.source.kind == SourceKind::simulated);
     CHECK(contains(map.source.how, "Young's modulus, 40000 Pa, is ASSUMED"));
     CHECK(contains(map.source.how, "red, above 25 %, from 0.75 mm"));
+    CHECK(contains(map.source.how, "Estimated error of the meshes: "));
+    CHECK(contains(map.source.how, "times coarser"));
+    CHECK_FALSE(fs::exists(bench / "one.map.estimate"));
     const auto at = [&](const std::vector<float>& array, std::size_t i) { return array[map.n_cells() + 4 * map.n_x + i]; };
     CHECK(at(map.normal_N, 10) > 1.1f * at(map.normal_N, 3));  // over the nodule
     CHECK(at(map.tangential_x_N, 8) > 0.01f);                  // before it
@@ -176,6 +179,20 @@ TEST_CASE("generate: bad input ends with status 2 and says what was expected") {
     refused("40000", "-1", "", "young_Pa");
     refused("[21, 10]", "[9, 10]", "", "p.json: nodules A: found x 20, y 18 mm, expected a place on the map");
     refused("}],", "}, {\"id\": \"B\", \"centre_mm\": [22, 18, 6], \"diameter_mm\": 6, \"young_Pa\": 2e6, \"poisson\": 0.45}],", "", "overlap");
+    // out of reach: told before a mesh is made
+    refused("[1, 2]", "[1e-6]", "", "depths_mm: found 1e-06, which needs");
+    refused("[2, 4], \"count\": [21, 10]", "[0.004, 0.003], \"count\": [10000, 10000]", "", "grid.count: found 2e+08 forces");
+    const auto out_of_reach = [&](const std::string& from, const std::string& to, const char* words) {
+        write_text_atomically(bench / "p.json", replaced(kPhantom, from, to));
+        const Called called = bench.shell("timeout 60 " PALPA_PROGRAM " maps generate " + (bench / "p.json").string() + " -o " + (bench / "n.map").string());
+        CAPTURE(called.err);
+        CHECK(called.status == 2);
+        CHECK(contains(called.err, words));
+        CHECK(contains(called.err, "expected at least 0."));
+        CHECK_FALSE(fs::exists(bench / "n.map.lines"));
+    };
+    out_of_reach("\"diameter_mm\": 6", "\"diameter_mm\": 0.01", "p.json: nodules[0].diameter_mm: found 0.01, which needs a mesh of");
+    out_of_reach("\"radius_mm\": 3", "\"radius_mm\": 0.001", "indenter.radius_mm: found 0.001, which needs");
     refused("40000", "40000", "--part 3/2", "i/n with 1 <= i <= n");
     CHECK(message_of([] { parse_part("2"); }) != "");
     CHECK(parse_part("2/8").count == 8);

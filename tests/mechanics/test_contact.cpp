@@ -340,6 +340,54 @@ TEST_CASE("contact: force input finds the depth") {
     CHECK(contact.tool[0].normal_N == 0.0);
 }
 
+TEST_CASE("contact: a force that no depth gives is said to be missed, and the search ends") {
+    // between nodes the force is a straight line from a depth on, whose last bit is worth more than this force
+    ContactWork work;
+    Contact contact;
+    press_with_force(slab(false), {kBall, {0.0506, 0.0506, 0.0}}, 1e-18, {}, work, contact);
+    CHECK(contact.flags.force_missed);
+    press_with_force(slab(false), {kBall, {0.0506, 0.0506, 0.0}}, 0.05, {}, work, contact);
+    CHECK_FALSE(contact.flags.force_missed);
+    ContactOptions rough;  // one sweep: the force jumps from depth to depth
+    rough.max_changes = 0;
+    rough.sweeps = 1;
+    press_with_force(slab(true), {kBall, {0.053, 0.049, 0.0}}, 0.1, rough, work, contact);
+    if (std::abs(contact.tool[0].normal_N - 0.1) > 1e-9) CHECK(contact.flags.force_missed);
+}
+
+TEST_CASE("contact: a compliance that cannot be factored is not taken for settled") {
+    Compliance damaged = slab(false);
+    damaged.revision = new_revision();
+    damaged.normal_m_per_N.topRows(damaged.n_touch).diagonal() *= -1.0;
+    const Contact contact = press(damaged, {kBall, {0.05, 0.05, 0.002}});
+    CHECK(contact.flags.not_settled);
+    CHECK(std::isfinite(contact.tool[0].normal_N));
+    CHECK(contact.tool[0].normal_N >= 0.0);
+}
+
+TEST_CASE("contact: another compliance at the same address is not taken for the one before") {
+    // the two differ but share what was once looked at: the address, the first entry and one more
+    Compliance c = slab(false);
+    const Tool tool{kBall, {0.05, 0.05, 0.002}};
+    ContactWork work;
+    Contact contact;
+    press_to_depth(c, {&tool, 1}, {}, work, contact);
+    const Contact fresh_before = press(c, tool);
+    CHECK(contact.force_N == fresh_before.force_N);
+    Compliance other = c;
+    const Eigen::Index middle = contact.touch[contact.touch.size() / 2];
+    other.normal_m_per_N(middle, middle) *= 1.5;
+    other.revision = new_revision();
+    const double* const address = c.normal_m_per_N.data();
+    c.normal_m_per_N = other.normal_m_per_N;
+    c.revision = other.revision;
+    REQUIRE(c.normal_m_per_N.data() == address);
+    press_to_depth(c, {&tool, 1}, {}, work, contact);
+    const Contact fresh = press(other, tool);
+    CHECK(contact.tool[0].normal_N == fresh.tool[0].normal_N);
+    CHECK(contact.tool[0].normal_N < fresh_before.tool[0].normal_N);
+}
+
 TEST_CASE("contact: a roller, and a thin incompressible layer that bulges up to the tool") {
     const Tool roller{{IndenterShape::cylinder, 0.01, 0.02}, {0.05, 0.05, 0.002}};
     const Contact rolled = press(slab(false), roller);
