@@ -235,9 +235,15 @@ void prepare(const Compliance& c, ContactWork& w) {
         list->reserve(at(c.n_touch));
     for (auto* list : {&w.candidate, &w.tool_of, &w.factored, &w.active}) list->reserve(at(c.n_touch));
     w.in_contact.reserve(at(c.n_touch));
-    const auto touched = c.position_m.leftCols(c.n_touch);
-    w.touch_box_m = {touched.row(0).minCoeff(), touched.row(0).maxCoeff(), touched.row(1).minCoeff(),
-                     touched.row(1).maxCoeff()};
+    const auto box_m = [&](int first, int n) -> std::array<double, 4> {
+        const auto touched = c.position_m.middleCols(first, n);
+        return {touched.row(0).minCoeff(), touched.row(0).maxCoeff(), touched.row(1).minCoeff(),
+                touched.row(1).maxCoeff()};
+    };
+    w.touch_box_m = box_m(0, c.n_touch);
+    w.run_box_m.clear();
+    for (int first = 0; first < c.n_touch; first += kRunLength)
+        w.run_box_m.push_back(box_m(first, std::min(kRunLength, c.n_touch - first)));
 }
 
 void hold(std::size_t n_tools, Contact& contact) {

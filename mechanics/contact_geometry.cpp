@@ -1,5 +1,6 @@
 #include "mechanics/contact_geometry.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "mechanics/error.h"
@@ -29,32 +30,67 @@ Reach reach(const Tool& tool, double x_m, double y_m) {
     return {tool.pose.depth_m - (R - height), dx / height, cylinder ? 0.0 : dy / height};
 }
 
+namespace {
+
+// Could a node in the box be one whose delta exceeds -margin times the depth? Nodes lie at the surface plane or below
+// it, so that only those under the tool's lowest (1 + margin) depth can.
+bool within_reach(const Tool& tool, double margin, const std::array<double, 4>& box_m) {
+    if (!(tool.pose.depth_m > 0.0)) return false;
+    constexpr double kRoundOff = 1e-9;  // of R^2: a node that is taken in vain costs nothing
+    const double R = tool.indenter.radius_m;
+    const double below_axis_m = std::max(0.0, R - (1.0 + margin) * tool.pose.depth_m);
+    const double radius2 = (1.0 + kRoundOff) * R * R - below_axis_m * below_axis_m;
+    const double dx = std::max({box_m[0] - tool.pose.x_m, tool.pose.x_m - box_m[1], 0.0});
+    const double dy = std::max({box_m[2] - tool.pose.y_m, tool.pose.y_m - box_m[3], 0.0});
+    const bool cylinder = tool.indenter.shape == IndenterShape::cylinder;
+    if (cylinder && dy > (0.5 + kRoundOff) * tool.indenter.length_m) return false;
+    return dx * dx + (cylinder ? 0.0 : dy * dy) <= radius2;
+}
+
+bool any_within_reach(std::span<const Tool> tools, double margin, const std::array<double, 4>& box_m) {
+    for (const Tool& tool : tools) {
+        if (within_reach(tool, margin, box_m)) return true;
+    }
+    return false;
+}
+
+// The deepest tool that reaches the node takes it.
+void add_if_near(const Compliance& compliance, std::span<const Tool> tools, double margin, int touch,
+                 ContactWork& work) {
+    const double x_m = compliance.position_m(0, touch);
+    const double y_m = compliance.position_m(1, touch);
+    const double below_m = compliance.surface_z_m - compliance.position_m(2, touch);
+    Reach deepest;
+    int which = -1;
+    for (std::size_t t = 0; t < tools.size(); ++t) {
+        const double depth = tools[t].pose.depth_m;
+        if (!(depth > 0.0)) continue;
+        Reach here = reach(tools[t], x_m, y_m);
+        here.delta_m -= below_m;
+        if (here.delta_m <= -margin * depth || here.delta_m <= deepest.delta_m) continue;
+        deepest = here;
+        which = static_cast<int>(t);
+    }
+    if (which < 0) return;
+    work.candidate.push_back(touch);
+    work.tool_of.push_back(which);
+    work.delta_m.push_back(deepest.delta_m);
+    work.slope_x.push_back(deepest.slope_x);
+    work.slope_y.push_back(deepest.slope_y);
+}
+
+}  // namespace
+
 void find_candidates(const Compliance& compliance, std::span<const Tool> tools, double margin,
                      ContactWork& work) {
     for (auto* list : {&work.delta_m, &work.slope_x, &work.slope_y}) list->clear();
     work.candidate.clear();
     work.tool_of.clear();
-    for (int touch = 0; touch < compliance.n_touch; ++touch) {
-        const double x_m = compliance.position_m(0, touch);
-        const double y_m = compliance.position_m(1, touch);
-        const double below_m = compliance.surface_z_m - compliance.position_m(2, touch);
-        Reach deepest;
-        int which = -1;
-        for (std::size_t t = 0; t < tools.size(); ++t) {
-            const double depth = tools[t].pose.depth_m;
-            if (!(depth > 0.0)) continue;
-            Reach here = reach(tools[t], x_m, y_m);
-            here.delta_m -= below_m;
-            if (here.delta_m <= -margin * depth || here.delta_m <= deepest.delta_m) continue;
-            deepest = here;
-            which = static_cast<int>(t);
-        }
-        if (which < 0) continue;
-        work.candidate.push_back(touch);
-        work.tool_of.push_back(which);
-        work.delta_m.push_back(deepest.delta_m);
-        work.slope_x.push_back(deepest.slope_x);
-        work.slope_y.push_back(deepest.slope_y);
+    for (std::size_t run = 0; run < work.run_box_m.size(); ++run) {
+        if (!any_within_reach(tools, margin, work.run_box_m[run])) continue;
+        const int first = static_cast<int>(run) * kRunLength;
+        const int end = std::min(first + kRunLength, compliance.n_touch);
+        for (int touch = first; touch < end; ++touch) add_if_near(compliance, tools, margin, touch, work);
     }
     work.p_N.assign(work.candidate.size(), 0.0);
     work.gap_m.assign(work.candidate.size(), 0.0);
