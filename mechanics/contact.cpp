@@ -24,17 +24,15 @@ double compliance_of(const Compliance& c, const ContactWork& w, int i, int j) {
     return c.normal_m_per_N(w.candidate[at(i)], w.candidate[at(j)]);
 }
 
-// Starts from the last set where at least half of it is still within reach, else from Hertz's guess: on a
-// half-space the nodes whose penetration exceeds half the depth.
+// Starts from the last set, which w.active still lists, where at least half of it is still within reach, else from
+// Hertz's guess: on a half-space the nodes whose penetration exceeds half the depth.
 void first_guess(std::span<const Tool> tools, ContactWork& w) {
     std::size_t kept = 0;
     for (std::size_t i = 0; i < w.candidate.size(); ++i) {
         w.in_contact[i] = w.was_in_contact[at(w.candidate[i])];
         kept += w.in_contact[i] ? 1u : 0u;
     }
-    const auto before =
-        static_cast<std::size_t>(std::count(w.was_in_contact.begin(), w.was_in_contact.end(), char{1}));
-    if (kept > 0 && 2 * kept >= before) return;
+    if (kept > 0 && 2 * kept >= w.active.size()) return;
     for (std::size_t i = 0; i < w.candidate.size(); ++i) {
         w.in_contact[i] = w.delta_m[i] > 0.5 * tools[at(w.tool_of[i])].pose.depth_m ? char{1} : char{0};
     }
@@ -230,6 +228,7 @@ void prepare(const Compliance& c, ContactWork& w) {
     w.matrix = c.normal_m_per_N.data();
     w.probe_m_per_N = probe;
     w.was_in_contact.assign(at(c.n_touch), 0);
+    w.active.clear();
     w.factored.clear();
     for (auto* list : {&w.delta_m, &w.slope_x, &w.slope_y, &w.p_N, &w.swept_N, &w.gap_m})
         list->reserve(at(c.n_touch));

@@ -1,7 +1,9 @@
 #include "mechanics/contact_geometry.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 
 #include "mechanics/error.h"
 #include "mechanics/text.h"
@@ -32,27 +34,29 @@ Reach reach(const Tool& tool, double x_m, double y_m) {
 
 namespace {
 
-// Could a node in the box be one whose delta exceeds -margin times the depth? Nodes lie at the surface plane or below
-// it, so that only those under the tool's lowest (1 + margin) depth can.
-bool within_reach(const Tool& tool, double margin, const std::array<double, 4>& box_m) {
-    if (!(tool.pose.depth_m > 0.0)) return false;
-    constexpr double kRoundOff = 1e-9;  // of R^2: a node that is taken in vain costs nothing
-    const double R = tool.indenter.radius_m;
-    const double below_axis_m = std::max(0.0, R - (1.0 + margin) * tool.pose.depth_m);
-    const double radius2 = (1.0 + kRoundOff) * R * R - below_axis_m * below_axis_m;
-    const double dx = std::max({box_m[0] - tool.pose.x_m, tool.pose.x_m - box_m[1], 0.0});
-    const double dy = std::max({box_m[2] - tool.pose.y_m, tool.pose.y_m - box_m[3], 0.0});
-    const bool cylinder = tool.indenter.shape == IndenterShape::cylinder;
-    if (cylinder && dy > (0.5 + kRoundOff) * tool.indenter.length_m) return false;
-    return dx * dx + (cylinder ? 0.0 : dy * dy) <= radius2;
+using Rectangle = std::array<double, 4>;  // x_min, x_max, y_min, y_max
+
+// Holds every node whose delta can exceed -margin times its tool's depth. Nodes lie at the surface plane or below it, so
+// that only those under the tool's lowest (1 + margin) depth can.
+Rectangle box_of_reach(std::span<const Tool> tools, double margin) {
+    constexpr double kRoundOff = 1.0 + 1e-9;  // a node that is looked at in vain costs nothing
+    constexpr double kFar_m = std::numeric_limits<double>::infinity();
+    Rectangle box_m{kFar_m, -kFar_m, kFar_m, -kFar_m};
+    for (const Tool& tool : tools) {
+        const Pose& pose = tool.pose;
+        if (!(pose.depth_m > 0.0)) continue;
+        const double R = tool.indenter.radius_m;
+        const double below_axis_m = std::max(0.0, R - (1.0 + margin) * pose.depth_m);
+        const double rx = std::sqrt(kRoundOff * R * R - below_axis_m * below_axis_m);
+        const bool cylinder = tool.indenter.shape == IndenterShape::cylinder;
+        const double ry = cylinder ? 0.5 * kRoundOff * tool.indenter.length_m : rx;
+        box_m = {std::min(box_m[0], pose.x_m - rx), std::max(box_m[1], pose.x_m + rx), std::min(box_m[2], pose.y_m - ry),
+                 std::max(box_m[3], pose.y_m + ry)};
+    }
+    return box_m;
 }
 
-bool any_within_reach(std::span<const Tool> tools, double margin, const std::array<double, 4>& box_m) {
-    for (const Tool& tool : tools) {
-        if (within_reach(tool, margin, box_m)) return true;
-    }
-    return false;
-}
+bool overlap(const Rectangle& a, const Rectangle& b) { return a[0] <= b[1] && a[1] >= b[0] && a[2] <= b[3] && a[3] >= b[2]; }
 
 // The deepest tool that reaches the node takes it.
 void add_if_near(const Compliance& compliance, std::span<const Tool> tools, double margin, int touch,
@@ -86,8 +90,9 @@ void find_candidates(const Compliance& compliance, std::span<const Tool> tools, 
     for (auto* list : {&work.delta_m, &work.slope_x, &work.slope_y}) list->clear();
     work.candidate.clear();
     work.tool_of.clear();
+    const Rectangle within_m = box_of_reach(tools, margin);
     for (std::size_t run = 0; run < work.run_box_m.size(); ++run) {
-        if (!any_within_reach(tools, margin, work.run_box_m[run])) continue;
+        if (!overlap(within_m, work.run_box_m[run])) continue;
         const int first = static_cast<int>(run) * kRunLength;
         const int end = std::min(first + kRunLength, compliance.n_touch);
         for (int touch = first; touch < end; ++touch) add_if_near(compliance, tools, margin, touch, work);
