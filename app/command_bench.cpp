@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <memory>
 
+#include "app/bench_speed.h"
 #include "app/command_line.h"
 #include "app/load.h"
 #include "app/prepare.h"
@@ -36,6 +37,7 @@ void add_bench(CLI::App& app) {
     CLI::App* bench = app.add_subcommand("bench", "What to measure with");
     bench->require_subcommand(1);
     add_bench_accuracy(*bench);
+    add_bench_speed(*bench);
     add_bench_pens(*bench);
     auto options = std::make_shared<TraceOptions>();
     CLI::App* trace = bench->add_subcommand("trace", "A simulated pen sweeps the tissue: writes a trace");
