@@ -253,6 +253,7 @@ void hold(std::size_t n_tools, Contact& contact) {
 ContactWork make_contact_work(const Compliance& compliance, int most_in_contact) {
     ContactWork work;
     prepare(compliance, work);
+    work.tools.reserve(1);  // more are asked for only outside the loop
     work.factor.resize(most_in_contact, most_in_contact);
     work.rhs.resize(most_in_contact);
     return work;
