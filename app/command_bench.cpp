@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <memory>
 
+#include "app/bench_speed.h"
 #include "app/command_line.h"
 #include "app/load.h"
 #include "app/prepare.h"
@@ -38,6 +39,7 @@ void add_bench(CLI::App& app) {
     CLI::App* bench = app.add_subcommand("bench", "Measure accuracy and cost, and make traces to measure with");
     bench->require_subcommand(1);
     add_bench_accuracy(*bench);
+    add_bench_speed(*bench);
     add_bench_pens(*bench);
     auto options = std::make_shared<TraceOptions>();
     CLI::App* trace = bench->add_subcommand("trace", "Write a trace of a simulated pen that sweeps the tissue");

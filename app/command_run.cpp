@@ -30,6 +30,8 @@ void print_result(const Json& result) {
                 result["dropped_steps"].dump().c_str());
     std::printf("  greatest force %.3g N, depth %.3g mm, lag %.3g mm\n", result["max_force_N"].get<double>(),
                 result["max_depth_mm"].get<double>(), result["max_lag_mm"].get<double>());
+    const auto skipped = result["skipped_stations"].get<std::int64_t>() + result["skipped_slides"].get<std::int64_t>();
+    if (skipped > 0) std::printf("  %lld steps along fast strokes skipped\n", static_cast<long long>(skipped));
     if (!result.contains("lag_over_nodules_mm")) return;
     for (const auto& nodule : result["lag_over_nodules_mm"].items()) {
         std::printf("  over nodule %s: lag %.3g mm\n", nodule.key().c_str(), nodule.value().get<double>());

@@ -102,11 +102,13 @@ void stage_rows(const Shown& shown, const std::vector<Stage>& stages) {
 
 std::string frame_text(const Shown& shown) {
     const FrameTimes& t = shown.times;
+    const Counters& counters = shown.state.counters;
     const auto ms = [](const Meter& meter, double q) { return 1e-6 * meter.quantile_ns(q); };
     return words::filled(words::kFrameTimes, {fixed(ms(t.latency, 0.5), 1), fixed(ms(t.latency, 0.99), 1), fixed(ms(t.ready, 0.5), 1),
                                               fixed(ms(t.cpu, 0.5), 2), fixed(ms(t.cpu, 0.99), 2), fixed(ms(t.gl, 0.5), 1),
-                                              fixed(t.frames_per_s, 0), std::to_string(shown.state.counters.samples),
-                                              std::to_string(shown.state.counters.dropped_steps)});
+                                              fixed(t.frames_per_s, 0), std::to_string(counters.samples),
+                                              std::to_string(counters.dropped_steps),
+                                              std::to_string(counters.skipped_stations + counters.skipped_slides)});
 }
 
 void trial_keys(const Shown& shown, const Gui& gui, Wishes& wishes) {

@@ -68,6 +68,8 @@ Json run_json(const Scene& scene, const Plan& plan, const State& state, std::int
     json["frames"] = frames;
     json["steps"] = counters.steps;
     json["dropped_steps"] = counters.dropped_steps;
+    json["skipped_stations"] = counters.skipped_stations;
+    json["skipped_slides"] = counters.skipped_slides;
     json["latency_ms"] = {{"p50", 1e-6 * latency.quantile_ns(0.5)},
                           {"p99", 1e-6 * latency.quantile_ns(0.99)}};
     json["max_force_N"] = state.extremes.force_N;

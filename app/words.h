@@ -58,7 +58,7 @@ inline constexpr const char* kMicroseconds99 = "us, 99 %";
 inline constexpr const char* kCalls = "calls";
 inline constexpr const char* kFrameTimes =
     "Sample to frame {} ms (99 %: {}), besides drawing {} ms. Frame {} ms besides drawing (99 %: {}), drawing {} ms. {} "
-    "frames/s, {} samples, {} steps dropped.";
+    "frames/s, {} samples, {} steps dropped, {} along fast strokes skipped.";
 
 // trial
 inline constexpr const char* kForce = "Force";

@@ -55,9 +55,10 @@ struct Delayed {
 Delayed delayed_at(const Delay& law, const DelayState& state, double t_s);
 
 template <class Rise>
-Delayed advance_lag(const Delay& law, const Touch& pen, const Rise& rise_N, DelayState& state) {
+Delayed advance_lag(const Delay& law, const Touch& pen, const Rise& rise_N, DelayState& state,
+                    const StationLimit& limit = {}) {
     const auto at_station = [&](const Pull& pull) { apply_pull(law, pull, state); };
-    const PathEvent event = walk_to(law.path, pen, rise_N, at_station, state.path);
+    const PathEvent event = walk_to(law.path, limit, pen, rise_N, at_station, state.path);
     if (event == PathEvent::lifted || event == PathEvent::started) {
         state.tau_s = 0.0;
         state.goal_s = 0.0;

@@ -8,6 +8,7 @@
 // paper's: stations, and the dead band ("rope") against jitter.
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -28,11 +29,27 @@ struct Touch {
     bool down = false;
 };
 
+// How many stations one sample may ask the tissue for, where asking is expensive. As many as the time since the sample
+// before allows, so that a stroke below per_s * station_m never loses one, at whatever rate it is sampled.
+struct StationLimit {
+    double per_s = std::numeric_limits<double>::infinity();
+    int least = 4;  // samples that arrive in a burst have little time between them
+    int most = std::numeric_limits<int>::max();
+};
+
+// Of `due` stations that fall into dt_s.
+inline std::int64_t allowed_stations(const StationLimit& limit, double dt_s, std::int64_t due) {
+    if (due <= limit.least) return due;
+    const double allowed = std::max(limit.per_s * dt_s, static_cast<double>(limit.least));  // 0 * infinity is not chosen
+    return std::min({due, static_cast<std::int64_t>(std::min(allowed, 1e15)), static_cast<std::int64_t>(limit.most)});
+}
+
 struct PathState {
     Touch last{-std::numeric_limits<double>::infinity(), Eigen::Vector2d::Zero(), 0.0, false};
     double carry_m = 0.0;                                // length walked since the last station
     Eigen::Vector2d rope_m = Eigen::Vector2d::Zero();    // the end that is dragged along
     std::int64_t ignored = 0;                            // samples that were not numbers, or went back in time
+    std::int64_t skipped_stations = 0;                   // beyond the limit
 };
 
 // The pull of one piece of path on the rope.
@@ -73,11 +90,12 @@ inline bool is_teleport(const Touch& from, const Touch& to) {
     return (to.p_m - from.p_m).norm() > kJump_m + kFastest_m_per_s * (to.t_s - from.t_s);
 }
 
-// Walks the path to `pen` and hands every station's Pull to `at_station`. Samples that are not finite or go
-// back in time change nothing but the counter.
+// Walks the path to `pen` and hands every station's Pull to `at_station`. Beyond the limit the stations are thinned out
+// evenly, the last one stays, and those left out are counted. Samples that are not finite or go back in time change
+// nothing but the counter.
 template <class Rise, class AtStation>
-PathEvent walk_to(const PathParameters& path, const Touch& pen, const Rise& rise_N, const AtStation& at_station,
-                  PathState& state) {
+PathEvent walk_to(const PathParameters& path, const StationLimit& limit, const Touch& pen, const Rise& rise_N,
+                  const AtStation& at_station, PathState& state) {
     if (!is_finite(pen) || pen.t_s < state.last.t_s) {
         ++state.ignored;
         return PathEvent::ignored;
@@ -91,8 +109,17 @@ PathEvent walk_to(const PathParameters& path, const Touch& pen, const Rise& rise
         return PathEvent::started;
     }
     const double length_m = (pen.p_m - from.p_m).norm();
-    double at_m = path.station_m - state.carry_m;
-    for (; at_m <= length_m; at_m += path.station_m) {
+    const double first_m = path.station_m - state.carry_m;
+    std::int64_t due = 0;
+    double at_m = first_m;
+    for (; at_m <= length_m; at_m += path.station_m) ++due;
+    const std::int64_t allowed = allowed_stations(limit, pen.t_s - from.t_s, due);
+    state.skipped_stations += due - allowed;
+    state.carry_m = length_m - (at_m - path.station_m);
+    at_m = first_m;
+    for (std::int64_t k = 1, taken = 0; k <= due; ++k, at_m += path.station_m) {
+        if (k * allowed / due == taken) continue;  // of every due / allowed the last
+        ++taken;
         const double s = at_m / length_m;
         Touch station;
         station.t_s = from.t_s + s * (pen.t_s - from.t_s);
@@ -100,7 +127,6 @@ PathEvent walk_to(const PathParameters& path, const Touch& pen, const Rise& rise
         station.force_N = from.force_N + s * (pen.force_N - from.force_N);
         at_station(pull_rope(path, station, rise_N, state.rope_m));
     }
-    state.carry_m = length_m - (at_m - path.station_m);
     return PathEvent::moved;
 }
 

@@ -25,17 +25,15 @@ double compliance_of(const Compliance& c, const ContactWork& w, int i, int j) {
     return c.normal_m_per_N(w.candidate[at(i)], w.candidate[at(j)]);
 }
 
-// Starts from the last set where at least half of it is still within reach, else from Hertz's guess: on a
-// half-space the nodes whose penetration exceeds half the depth.
+// Starts from the last set, which w.active still lists, where at least half of it is still within reach, else from
+// Hertz's guess: on a half-space the nodes whose penetration exceeds half the depth.
 void first_guess(std::span<const Tool> tools, ContactWork& w) {
     std::size_t kept = 0;
     for (std::size_t i = 0; i < w.candidate.size(); ++i) {
         w.in_contact[i] = w.was_in_contact[at(w.candidate[i])];
         kept += w.in_contact[i] ? 1u : 0u;
     }
-    const auto before =
-        static_cast<std::size_t>(std::count(w.was_in_contact.begin(), w.was_in_contact.end(), char{1}));
-    if (kept > 0 && 2 * kept >= before) return;
+    if (kept > 0 && 2 * kept >= w.active.size()) return;
     for (std::size_t i = 0; i < w.candidate.size(); ++i) {
         w.in_contact[i] = w.delta_m[i] > 0.5 * tools[at(w.tool_of[i])].pose.depth_m ? char{1} : char{0};
     }
@@ -232,14 +230,21 @@ void prepare(const Compliance& c, ContactWork& w) {
     if (c.revision != 0 && w.revision == c.revision) return;
     w.revision = c.revision;
     w.was_in_contact.assign(at(c.n_touch), 0);
+    w.active.clear();
     w.factored.clear();
     for (auto* list : {&w.delta_m, &w.slope_x, &w.slope_y, &w.p_N, &w.swept_N, &w.gap_m})
         list->reserve(at(c.n_touch));
     for (auto* list : {&w.candidate, &w.tool_of, &w.factored, &w.active}) list->reserve(at(c.n_touch));
     w.in_contact.reserve(at(c.n_touch));
-    const auto touched = c.position_m.leftCols(c.n_touch);
-    w.touch_box_m = {touched.row(0).minCoeff(), touched.row(0).maxCoeff(), touched.row(1).minCoeff(),
-                     touched.row(1).maxCoeff()};
+    const auto box_m = [&](int first, int n) -> std::array<double, 4> {
+        const auto touched = c.position_m.middleCols(first, n);
+        return {touched.row(0).minCoeff(), touched.row(0).maxCoeff(), touched.row(1).minCoeff(),
+                touched.row(1).maxCoeff()};
+    };
+    w.touch_box_m = box_m(0, c.n_touch);
+    w.run_box_m.clear();
+    for (int first = 0; first < c.n_touch; first += kRunLength)
+        w.run_box_m.push_back(box_m(first, std::min(kRunLength, c.n_touch - first)));
 }
 
 void hold(std::size_t n_tools, Contact& contact) {
@@ -250,6 +255,7 @@ void hold(std::size_t n_tools, Contact& contact) {
 ContactWork make_contact_work(const Compliance& compliance, int most_in_contact) {
     ContactWork work;
     prepare(compliance, work);
+    work.tools.reserve(1);  // more are asked for only outside the loop
     work.factor.resize(most_in_contact, most_in_contact);
     work.rhs.resize(most_in_contact);
     return work;

@@ -86,6 +86,7 @@ struct ContactWork {
     std::uint64_t revision = 0;  // of the compliance this belongs to; another one, or 0, starts cold
     std::vector<Tool> tools;              // with their depths limited
     std::array<double, 4> touch_box_m{};  // x_min, x_max, y_min, y_max of the touch nodes
+    std::vector<std::array<double, 4>> run_box_m;  // the same of each run of kRunLength touch nodes
     std::vector<int> candidate;           // touch nodes within reach, ascending
     std::vector<int> tool_of;             // per candidate
     std::vector<double> delta_m;          // per candidate

@@ -1,6 +1,9 @@
 #include "mechanics/contact_geometry.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 
 #include "mechanics/error.h"
 #include "mechanics/text.h"
@@ -29,32 +32,70 @@ Reach reach(const Tool& tool, double x_m, double y_m) {
     return {tool.pose.depth_m - (R - height), dx / height, cylinder ? 0.0 : dy / height};
 }
 
+namespace {
+
+using Rectangle = std::array<double, 4>;  // x_min, x_max, y_min, y_max
+
+// Holds every node whose delta can exceed -margin times its tool's depth. Nodes lie at the surface plane or below it, so
+// that only those under the tool's lowest (1 + margin) depth can.
+Rectangle box_of_reach(std::span<const Tool> tools, double margin) {
+    constexpr double kRoundOff = 1.0 + 1e-9;  // a node that is looked at in vain costs nothing
+    constexpr double kFar_m = std::numeric_limits<double>::infinity();
+    Rectangle box_m{kFar_m, -kFar_m, kFar_m, -kFar_m};
+    for (const Tool& tool : tools) {
+        const Pose& pose = tool.pose;
+        if (!(pose.depth_m > 0.0)) continue;
+        const double R = tool.indenter.radius_m;
+        const double below_axis_m = std::max(0.0, R - (1.0 + margin) * pose.depth_m);
+        const double rx = std::sqrt(kRoundOff * R * R - below_axis_m * below_axis_m);
+        const bool cylinder = tool.indenter.shape == IndenterShape::cylinder;
+        const double ry = cylinder ? 0.5 * kRoundOff * tool.indenter.length_m : rx;
+        box_m = {std::min(box_m[0], pose.x_m - rx), std::max(box_m[1], pose.x_m + rx), std::min(box_m[2], pose.y_m - ry),
+                 std::max(box_m[3], pose.y_m + ry)};
+    }
+    return box_m;
+}
+
+bool overlap(const Rectangle& a, const Rectangle& b) { return a[0] <= b[1] && a[1] >= b[0] && a[2] <= b[3] && a[3] >= b[2]; }
+
+// The deepest tool that reaches the node takes it.
+void add_if_near(const Compliance& compliance, std::span<const Tool> tools, double margin, int touch,
+                 ContactWork& work) {
+    const double x_m = compliance.position_m(0, touch);
+    const double y_m = compliance.position_m(1, touch);
+    const double below_m = compliance.surface_z_m - compliance.position_m(2, touch);
+    Reach deepest;
+    int which = -1;
+    for (std::size_t t = 0; t < tools.size(); ++t) {
+        const double depth = tools[t].pose.depth_m;
+        if (!(depth > 0.0)) continue;
+        Reach here = reach(tools[t], x_m, y_m);
+        here.delta_m -= below_m;
+        if (here.delta_m <= -margin * depth || here.delta_m <= deepest.delta_m) continue;
+        deepest = here;
+        which = static_cast<int>(t);
+    }
+    if (which < 0) return;
+    work.candidate.push_back(touch);
+    work.tool_of.push_back(which);
+    work.delta_m.push_back(deepest.delta_m);
+    work.slope_x.push_back(deepest.slope_x);
+    work.slope_y.push_back(deepest.slope_y);
+}
+
+}  // namespace
+
 void find_candidates(const Compliance& compliance, std::span<const Tool> tools, double margin,
                      ContactWork& work) {
     for (auto* list : {&work.delta_m, &work.slope_x, &work.slope_y}) list->clear();
     work.candidate.clear();
     work.tool_of.clear();
-    for (int touch = 0; touch < compliance.n_touch; ++touch) {
-        const double x_m = compliance.position_m(0, touch);
-        const double y_m = compliance.position_m(1, touch);
-        const double below_m = compliance.surface_z_m - compliance.position_m(2, touch);
-        Reach deepest;
-        int which = -1;
-        for (std::size_t t = 0; t < tools.size(); ++t) {
-            const double depth = tools[t].pose.depth_m;
-            if (!(depth > 0.0)) continue;
-            Reach here = reach(tools[t], x_m, y_m);
-            here.delta_m -= below_m;
-            if (here.delta_m <= -margin * depth || here.delta_m <= deepest.delta_m) continue;
-            deepest = here;
-            which = static_cast<int>(t);
-        }
-        if (which < 0) continue;
-        work.candidate.push_back(touch);
-        work.tool_of.push_back(which);
-        work.delta_m.push_back(deepest.delta_m);
-        work.slope_x.push_back(deepest.slope_x);
-        work.slope_y.push_back(deepest.slope_y);
+    const Rectangle within_m = box_of_reach(tools, margin);
+    for (std::size_t run = 0; run < work.run_box_m.size(); ++run) {
+        if (!overlap(within_m, work.run_box_m[run])) continue;
+        const int first = static_cast<int>(run) * kRunLength;
+        const int end = std::min(first + kRunLength, compliance.n_touch);
+        for (int touch = first; touch < end; ++touch) add_if_near(compliance, tools, margin, touch, work);
     }
     work.p_N.assign(work.candidate.size(), 0.0);
     work.gap_m.assign(work.candidate.size(), 0.0);

@@ -17,6 +17,9 @@ struct Reach {
 };
 Reach reach(const Tool& tool, double x_m, double y_m);
 
+// Touch nodes that follow each other lie side by side in most meshes: runs of them are passed over at once.
+inline constexpr int kRunLength = 16;
+
 // Fills the candidate lists with the touch nodes whose delta exceeds -margin times their tool's depth.
 void find_candidates(const Compliance& compliance, std::span<const Tool> tools, double margin,
                      ContactWork& work);

@@ -30,9 +30,7 @@ struct RiseOnLinear {
     const LinearTissue* tissue;
     LinearWork* work;
     double operator()(const Eigen::Vector2d& e_m, const Eigen::Vector2d& u, double force_N, double reference_m) const {
-        const double depth_m = probe_depth_m(*tissue, e_m, force_N, *work);
-        const double here_N = tangential_force_N(*tissue, e_m, u, depth_m, *work);
-        return here_N - tangential_force_N(*tissue, e_m - reference_m * u, u, depth_m, *work);
+        return tangential_rise_N(*tissue, e_m, u, force_N, reference_m, *work);
     }
 };
 
@@ -107,6 +105,7 @@ void sink(const Plan& plan, State& state) {
 void rub(const Plan& plan, State& state) {
     if (!state.touch.down) return let_go(*state.linear);
     drag(std::get<LinearTissue>(plan.tissue), state.touch.p_m, state.contact.depth_m, *state.linear);
+    state.counters.skipped_slides = state.linear->skipped_slides;
 }
 
 double tangential_N(const MapTissue& tissue, State& state) {
@@ -142,18 +141,24 @@ Touch timed(const State& state) {
 }
 
 template <class Rise>
-void lag(const Scene& scene, const Rise& rise_N, State& state) {
-    if (state.display_ratio) state.avatar.lag_m = advance_lag(*scene.display_ratio, timed(state), rise_N, *state.display_ratio);
+void lag(const Scene& scene, const Rise& rise_N, const StationLimit& limit, State& state) {
+    std::int64_t& skipped = state.counters.skipped_stations;
+    skipped = 0;
+    if (state.display_ratio) {
+        state.avatar.lag_m = advance_lag(*scene.display_ratio, timed(state), rise_N, *state.display_ratio, limit);
+        skipped += state.display_ratio->path.skipped_stations;
+    }
     if (state.delay) {
-        const Delayed delayed = advance_lag(*scene.delay, timed(state), rise_N, *state.delay);
+        const Delayed delayed = advance_lag(*scene.delay, timed(state), rise_N, *state.delay, limit);
         state.avatar.lag_m = delayed.lag_m;
         state.avatar.delay_s = delayed.tau_s;
+        skipped += state.delay->path.skipped_stations;
     }
 }
 
 void lag(const Scene& scene, const Plan& plan, State& state) {
-    if (const auto* map = std::get_if<MapTissue>(&plan.tissue)) return lag(scene, RiseOnMap{&map->field}, state);
-    lag(scene, RiseOnLinear{&std::get<LinearTissue>(plan.tissue), &*state.linear}, state);
+    if (const auto* map = std::get_if<MapTissue>(&plan.tissue)) return lag(scene, RiseOnMap{&map->field}, StationLimit{}, state);
+    lag(scene, RiseOnLinear{&std::get<LinearTissue>(plan.tissue), &*state.linear}, kStationsOnLinear, state);
 }
 
 void run_stage(StageId id, const Scene& scene, const Plan& plan, const Sample& sample, State& state) {

@@ -8,6 +8,10 @@ namespace palpa {
 
 inline constexpr double kGrid_Hz = 240.0;
 
+// A station of the path costs five contact solves on a linear tissue, and 0.1 us on a map, which has room for a few
+// thousand at most and needs no limit. 4,000 a second are a stroke of 200 mm/s.
+inline constexpr StationLimit kStationsOnLinear{4000.0, 4, 64};
+
 // `screen`: where the tissue is drawn and pressed. A sample of action `resize` changes it.
 State start(const Scene& scene, const Plan& plan, const ScreenArea& screen);
 

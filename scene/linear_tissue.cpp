@@ -95,13 +95,13 @@ void press_to(const LinearTissue& tissue, const Eigen::Vector2d& p_m, double dep
 
 // Of the frictionless contact, both signs.
 double energy_slope_N(const LinearTissue& tissue, const Eigen::Vector2d& p_m, const Eigen::Vector2d& u, double depth_m,
-                      LinearWork& work) {
+                      SlopeWork& work, mechanics::Contact& probe) {
     if (u.isZero() || !(depth_m > 0.0)) return 0.0;
     const double window_m = std::min(tissue.spacing_m[0], tissue.spacing_m[1]);
-    press_to(tissue, p_m + 0.5 * window_m * u, depth_m, work.work, work.probe);
-    const double ahead_J = work.probe.energy_J;
-    press_to(tissue, p_m - 0.5 * window_m * u, depth_m, work.work, work.probe);
-    return (ahead_J - work.probe.energy_J) / window_m;
+    press_to(tissue, p_m + 0.5 * window_m * u, depth_m, work.ahead, probe);
+    const double ahead_J = probe.energy_J;
+    press_to(tissue, p_m - 0.5 * window_m * u, depth_m, work.behind, probe);
+    return (ahead_J - probe.energy_J) / window_m;
 }
 
 }  // namespace
@@ -155,7 +155,10 @@ LinearTissue make_linear_tissue(const LinearOptions& options, const std::filesys
 
 LinearWork make_linear_work(const LinearTissue& tissue) {
     LinearWork out;
-    out.work = mechanics::make_contact_work(tissue.compliance, kMostInContact);
+    for (mechanics::ContactWork* work : {&out.work, &out.slope.ahead, &out.slope.behind, &out.station, &out.station_slope.ahead,
+                                         &out.station_slope.behind, &out.reference_slope.ahead, &out.reference_slope.behind}) {
+        *work = mechanics::make_contact_work(tissue.compliance, kMostInContact);
+    }
     if (tissue.friction) {
         out.friction_work = mechanics::make_friction_work(tissue.compliance, kMostInContact);
         out.friction.touch.reserve(kMostInContact);
@@ -187,21 +190,26 @@ LinearAnswer press(const LinearTissue& tissue, const Eigen::Vector2d& p_m, doubl
     return answer;
 }
 
-double probe_depth_m(const LinearTissue& tissue, const Eigen::Vector2d& p_m, double force_N, LinearWork& work) {
-    if (!(force_N > 0.0)) return 0.0;
-    const mechanics::Tool tool{tissue.indenter, {p_m.x(), p_m.y(), work.depth_m}};
-    mechanics::press_with_force(tissue.compliance, tool, force_N, contact_options(tissue), work.work, work.probe);
-    return work.probe.tool[0].depth_m;
-}
-
 double tangential_force_N(const LinearTissue& tissue, const Eigen::Vector2d& p_m, const Eigen::Vector2d& u,
                           double depth_m, LinearWork& work) {
-    return std::max(0.0, energy_slope_N(tissue, p_m, u, depth_m, work));
+    return std::max(0.0, energy_slope_N(tissue, p_m, u, depth_m, work.slope, work.probe));
+}
+
+double tangential_rise_N(const LinearTissue& tissue, const Eigen::Vector2d& e_m, const Eigen::Vector2d& u,
+                         double force_N, double reference_m, LinearWork& work) {
+    if (!(force_N > 0.0)) return 0.0;
+    const mechanics::Tool tool{tissue.indenter, {e_m.x(), e_m.y(), work.depth_m}};
+    mechanics::press_with_force(tissue.compliance, tool, force_N, contact_options(tissue), work.station, work.probe);
+    const double depth_m = work.probe.tool[0].depth_m;
+    const Eigen::Vector2d before_m = e_m - reference_m * u;
+    const double here_N = energy_slope_N(tissue, e_m, u, depth_m, work.station_slope, work.probe);
+    const double before_N = energy_slope_N(tissue, before_m, u, depth_m, work.reference_slope, work.probe);
+    return std::max(0.0, here_N) - std::max(0.0, before_N);
 }
 
 double rough_tangential_force_N(const LinearTissue& tissue, const Eigen::Vector2d& p_m, const Eigen::Vector2d& u,
                                 double depth_m, LinearWork& work) {
-    return std::max(0.0, energy_slope_N(tissue, p_m, u, depth_m, work) + u.dot(work.drag_N));
+    return std::max(0.0, energy_slope_N(tissue, p_m, u, depth_m, work.slope, work.probe) + u.dot(work.drag_N));
 }
 
 void let_go(LinearWork& work) {
@@ -226,6 +234,7 @@ void drag(const LinearTissue& tissue, const Eigen::Vector2d& p_m, double depth_m
     Eigen::Vector2d from_m = work.friction.touching ? Eigen::Vector2d(last.x_m, last.y_m) : p_m;
     double from_depth_m = work.friction.touching ? last.depth_m : depth_m;
     if ((p_m - from_m).norm() > kMostSlides * step_m) {
+        work.skipped_slides += static_cast<std::int64_t>((p_m - from_m).norm() / step_m) - kMostSlides;
         from_m = p_m - kMostSlides * step_m * (p_m - from_m).normalized();
         from_depth_m = depth_m;
         let_go(work);

@@ -36,17 +36,30 @@ struct LinearTissue {
     std::string cache_warning;  // why it could not be stored, for people; empty if it was
 };
 
+// Contacts half a node spacing before and behind a place. Each place asked for at every sample has a work of its own:
+// it hardly moves from one sample to the next, so its set of nodes and their factor stay.
+struct SlopeWork {
+    mechanics::ContactWork ahead;
+    mechanics::ContactWork behind;
+};
+
 // What a sample changes.
 struct LinearWork {
     mechanics::ContactWork work;
     mechanics::Contact contact;  // of the touch
     mechanics::Contact probe;    // of places beside it
     double depth_m = 0.0;        // where the search for the depth starts
+    SlopeWork slope;             // of the touch
+    // At the path's stations.
+    mechanics::ContactWork station;
+    SlopeWork station_slope;
+    SlopeWork reference_slope;
     // With friction only. What the next sample starts from is `friction`.
     mechanics::FrictionState friction;
     mechanics::FrictionWork friction_work;
     mechanics::Contact sliding;
     Eigen::Vector2d drag_N = Eigen::Vector2d::Zero();  // Coulomb force; positive opposes motion along +x (+y)
+    std::int64_t skipped_slides = 0;                   // half spacings that a leap of the pen left out
 };
 
 // Builds the mesh, factors it and computes the compliance: seconds to minutes, unless `cache` (a folder; empty: none)
@@ -65,16 +78,18 @@ struct LinearAnswer {
 };
 LinearAnswer press(const LinearTissue& tissue, const Eigen::Vector2d& p_m, double force_N, LinearWork& work);
 
-// The same depth beside the touch, which stays as it is.
-double probe_depth_m(const LinearTissue& tissue, const Eigen::Vector2d& p_m, double force_N, LinearWork& work);
-
 // Force that resists motion along u at a depth: slope of the elastic energy, averaged over one node spacing, which
 // takes out the ripple of the node-wise contact. Never negative. Two contact solves.
 double tangential_force_N(const LinearTissue& tissue, const Eigen::Vector2d& p_m, const Eigen::Vector2d& u,
                           double depth_m, LinearWork& work);
 
+// Rise of that force over reference_m along u up to e, at the depth of `force_N` at e; the touch stays as it is. Five
+// places.
+double tangential_rise_N(const LinearTissue& tissue, const Eigen::Vector2d& e_m, const Eigen::Vector2d& u,
+                         double force_N, double reference_m, LinearWork& work);
+
 // Drags the rough tool from where it was to p at a depth, in steps of at most half a node spacing (after a jump the
-// last 16 of them; what came before has worn off) and leaves the Coulomb force in work.drag_N. The contact on the way
+// last 16 of them; what came before has worn off and is counted) and leaves the Coulomb force in work.drag_N. The contact on the way
 // has friction in its pressure too, so its normal force differs a little from the one that was pressed with.
 void drag(const LinearTissue& tissue, const Eigen::Vector2d& p_m, double depth_m, LinearWork& work);
 // Lifted: forgets.

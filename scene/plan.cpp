@@ -8,6 +8,7 @@
 #include "files/cache.h"
 #include "files/input_error.h"
 #include "files/text.h"
+#include "scene/advance.h"
 #include "stiffnessmaps/map_file.h"
 #include "stiffnessmaps/noise.h"
 
@@ -263,8 +264,11 @@ void add_stages(const Scene& scene, Plan& plan) {
     std::visit([&](const auto& tissue) { plan.sample_stages.push_back(tangential_stage(tissue, scene.tangential)); },
                plan.tissue);
     const PathParameters path = path_of(scene);
-    const std::string stations =
-        "stations every " + mm_text(path.station_m) + ", difference over " + mm_text(path.reference_m);
+    std::string stations = "stations every " + mm_text(path.station_m) + ", difference over " + mm_text(path.reference_m);
+    if (scene.linear) {
+        stations += ", fewer in strokes faster than " +
+                    short_number(1e3 * kStationsOnLinear.per_s * path.station_m) + " mm/s";
+    }
     const double cost_us = scene.linear ? 250.0 : 0.15;
     if (scene.display_ratio) {
         plan.sample_stages.push_back(

@@ -34,6 +34,8 @@ struct Counters {
     std::int64_t samples = 0;
     std::int64_t steps = 0;           // of the 240 Hz grid
     std::int64_t dropped_steps = 0;
+    std::int64_t skipped_stations = 0;  // of the path, where the pen was too fast for the tissue's cost
+    std::int64_t skipped_slides = 0;    // of friction, where it leapt
     std::int64_t levels_clamped = 0;  // outside the profile's range
     std::int64_t without_level = 0;   // touching, but the device reported no level
     std::int64_t distrusted = 0;      // first samples of a press with a level that no touch begins with

@@ -46,11 +46,12 @@ Coverage make_coverage(double x_m, double y_m, double width_m, double height_m, 
 void cover(double x_m, double y_m, double radius_m, double depth_m, Coverage& c) {
     if (!(depth_m > 0.0) || !std::isfinite(x_m + y_m + radius_m + depth_m)) return;
     const CellRange range = cells_near(c, x_m, y_m, radius_m);
+    const auto depth = static_cast<float>(depth_m);
     for (int j = range.low_y; j <= range.high_y; ++j) {
         for (int i = range.low_x; i <= range.high_x; ++i) {
-            if (!holds(c, i, j, x_m, y_m, radius_m)) continue;
             float& deepest = c.depth_m[index_of(c, i, j)];
-            deepest = std::max(deepest, static_cast<float>(depth_m));
+            if (deepest >= depth || !holds(c, i, j, x_m, y_m, radius_m)) continue;  // most were as deep a sample ago
+            deepest = depth;
         }
     }
 }

@@ -37,7 +37,7 @@ Called palpa_with(const std::string& arguments, const std::string& before = "") 
 }  // namespace
 
 TEST_CASE("command line: help and version exist for every command") {
-    for (const char* command : {"", "run", "explain", "devices", "maps", "maps info", "maps sample", "maps import", "maps generate", "bench trace", "bench pens", "bench accuracy",
+    for (const char* command : {"", "run", "explain", "devices", "maps", "maps info", "maps sample", "maps import", "maps generate", "bench trace", "bench pens", "bench speed", "bench accuracy",
                                 "calibrate", "calibrate record", "calibrate fit", "calibrate check", "calibrate compare",
                                 "bench accuracy mechanics"}) {
         CAPTURE(command);
@@ -53,7 +53,7 @@ TEST_CASE("command line: headless replay reports its keys as one JSON object") {
     CHECK(run.status == 0);
     CHECK(run.err.empty());
     const Json json = parse_json(run.out, "stdout");
-    for (const char* key : {"samples", "frames", "steps", "dropped_steps", "latency_ms", "max_force_N", "max_depth_mm", "max_lag_mm", "stages"}) {
+    for (const char* key : {"samples", "frames", "steps", "dropped_steps", "skipped_stations", "skipped_slides", "latency_ms", "max_force_N", "max_depth_mm", "max_lag_mm", "stages"}) {
         CHECK(json.contains(key));
     }
     CHECK(json["latency_ms"].contains("p99"));

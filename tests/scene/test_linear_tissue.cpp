@@ -165,6 +165,59 @@ TEST_CASE("linear tissue: a compliance with friction beyond 1 GB is refused befo
     CHECK_THROWS_WITH_AS(make_linear_tissue(block.options, {}, {}), doctest::Contains("GB of compliance with friction"), InputError);
 }
 
+namespace {
+
+// Along x over the nodule and out again, 46 mm; returns the greatest number of stations skipped in one sample.
+std::int64_t stroke_over(const Scene& scene, const Plan& plan, double speed_m_per_s, double rate_Hz, State& state) {
+    std::int64_t most = 0;
+    for (int i = 0; i * speed_m_per_s / rate_Hz < 0.046; ++i) {
+        Sample sample;
+        sample.t_host_s = i / rate_Hz;
+        sample.phase = i == 0 ? Phase::down : Phase::move;
+        const Eigen::Vector2d px = px_of_tissue(state.view, {0.007 + i * speed_m_per_s / rate_Hz, 0.030});
+        sample.x_px = px.x();
+        sample.y_px = px.y();
+        sample.pressure = 0.45;
+        const std::int64_t before = state.counters.skipped_stations;
+        advance(scene, plan, sample, state);
+        most = std::max(most, state.counters.skipped_stations - before);
+    }
+    return most;
+}
+
+}  // namespace
+
+TEST_CASE("linear tissue: a fast stroke skips stations and counts them, alike in every run; a slow one skips none") {
+    std::optional<double> friction;
+    SUBCASE("frictionless") {}
+    SUBCASE("with friction") { friction = 0.3; }
+    Block block(friction);
+    Scene scene;
+    scene.linear = block.options;
+    scene.profile = PALPA_SOURCE_DIR "/assets/profiles/s-pen.json";
+    scene.display_ratio = display_ratio_clear();
+    scene.delay = delay_clear();
+    ::setenv("XDG_CACHE_HOME", block.folder.path().c_str(), 1);
+    const Plan plan = make_plan(scene);
+    for (const double rate_Hz : {60.0, 120.0}) {
+        CAPTURE(rate_Hz);
+        State slow = start(scene, plan, {600, 600});
+        stroke_over(scene, plan, 0.19, rate_Hz, slow);
+        CHECK(slow.counters.skipped_stations == 0);
+        CHECK(slow.counters.skipped_slides == 0);
+    }
+    // 20 mm a sample are 400 stations; 64 are asked for, by each of the two laws
+    State fast[2] = {start(scene, plan, {600, 600}), start(scene, plan, {600, 600})};
+    for (State& state : fast) CHECK(std::abs(stroke_over(scene, plan, 1.2, 60.0, state) - 2 * (400 - 64)) <= 2);
+    CHECK(fast[0].counters.skipped_stations == fast[1].counters.skipped_stations);
+    CHECK(fast[0].counters.skipped_slides == 0);  // 10 half spacings a sample
+    CHECK(fast[0].avatar.p_m == fast[1].avatar.p_m);
+    CHECK(fast[0].contact.tangential_N == fast[1].contact.tangential_N);
+    State leap = start(scene, plan, {600, 600});
+    stroke_over(scene, plan, 2.4, 60.0, leap);
+    CHECK((leap.counters.skipped_slides > 0) == friction.has_value());  // 20 half spacings, 16 walked
+}
+
 TEST_CASE("linear tissue: palpated live a sample allocates nothing and two runs agree to the last bit") {
     std::optional<double> friction;
     SUBCASE("frictionless") {}
