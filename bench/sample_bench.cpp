@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <string>
 
-#include "app/load.h"
-#include "app/picture.h"
-#include "app/raster_trace.h"
+#include "app/scene_choices.h"
+#include "app/screens/tissue_drawing.h"
+#include "session/raster_trace.h"
 #include "scene/advance.h"
 
 namespace {

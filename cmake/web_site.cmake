@@ -1,7 +1,7 @@
 # cmake -DPROGRAM=folder -DSOURCE=app/web -DICONS=assets/desktop -DSITE=folder -P web_site.cmake
 # The folder that a server serves: what changes with a build lies in v-HASH, so that no cache ever mixes two builds.
 
-execute_process(COMMAND python3 ${CMAKE_CURRENT_LIST_DIR}/page_words.py ${SOURCE}/../words.h
+execute_process(COMMAND python3 ${CMAKE_CURRENT_LIST_DIR}/page_words.py ${SOURCE}/../screens/words.h
                 OUTPUT_FILE ${PROGRAM}/words.js COMMAND_ERROR_IS_FATAL ANY)
 set(versioned palpa.js palpa.wasm palpa.data words.js)
 set(pages page.css page.js studies.js trials.js)

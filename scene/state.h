@@ -9,7 +9,7 @@
 #include "avatar/surface.h"
 #include "scene/meter.h"
 #include "scene/plan.h"
-#include "scene/timeline.h"
+#include "platform/timeline.h"
 
 namespace palpa {
 

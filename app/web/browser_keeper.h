@@ -3,7 +3,7 @@
 
 #include <map>
 
-#include "app/trial_keeper.h"
+#include "session/keeper.h"
 
 namespace palpa {
 

@@ -1,8 +1,8 @@
 // Pressure is calibrated on the desk, where the force sensors are; this says so.
 
-#include "app/calibrate_form.h"
-#include "app/look.h"
-#include "app/words.h"
+#include "app/screens/calibrate_form.h"
+#include "app/screens/widgets.h"
+#include "app/screens/words.h"
 
 namespace palpa {
 

@@ -1,4 +1,4 @@
-#include "app/font.h"
+#include "app/screens/font.h"
 
 namespace palpa {
 

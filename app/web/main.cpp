@@ -12,8 +12,8 @@
 #include <set>
 #include <string>
 
-#include "app/live.h"
-#include "app/settings.h"
+#include "app/live/live.h"
+#include "app/screens/settings.h"
 #include "app/web/browser_keeper.h"
 #include "files/input_error.h"
 #include "platform/web/browser.h"

@@ -7,7 +7,7 @@
 #include <fstream>
 #include <string>
 
-#include "app/layout.h"
+#include "app/screens/layout.h"
 #include "files/json.h"
 #include "files/text.h"
 #include "scene/mapping.h"

@@ -1,6 +1,6 @@
 // Cases of finite elements with a small box for a mesh.
 
-#include "app/fem_case.h"
+#include "fem/case.h"
 #include "tests/fuzz/fuzz.h"
 
 using namespace palpa;

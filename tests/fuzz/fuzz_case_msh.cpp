@@ -1,6 +1,6 @@
 // Gmsh meshes as the body of a case.
 
-#include "app/fem_case.h"
+#include "fem/case.h"
 #include "tests/fuzz/fuzz.h"
 
 using namespace palpa;

@@ -1,7 +1,7 @@
 // Heads of HTTP requests, and the file that the path in the first line names.
 
-#include "app/serve_head.h"
-#include "app/static_files.h"
+#include "desk/request_head.h"
+#include "desk/static_files.h"
 #include "tests/fuzz/fuzz.h"
 
 using namespace palpa;

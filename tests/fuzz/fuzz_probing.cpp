@@ -1,6 +1,6 @@
 // Tables of probing as a map.
 
-#include "stiffnessmaps/import/recording.h"
+#include "stiffnessmaps/import/import.h"
 #include "tests/fuzz/fuzz.h"
 
 using namespace palpa;

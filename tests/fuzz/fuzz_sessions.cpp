@@ -1,6 +1,6 @@
 // Who is paired with the desk: trouble is told, never thrown.
 
-#include "app/pairing.h"
+#include "desk/pairing.h"
 #include "tests/fuzz/fuzz.h"
 
 using namespace palpa;

@@ -1,6 +1,6 @@
 // The person's settings: trouble is told, never thrown.
 
-#include "app/settings.h"
+#include "app/screens/settings.h"
 #include "tests/fuzz/fuzz.h"
 
 using namespace palpa;

@@ -1,6 +1,6 @@
 // Tables of sliding as a map, on a coarse grid.
 
-#include "stiffnessmaps/import/recording.h"
+#include "stiffnessmaps/import/import.h"
 #include "tests/fuzz/fuzz.h"
 
 using namespace palpa;

@@ -4,7 +4,7 @@
 #include <filesystem>
 
 #include "files/text.h"
-#include "stiffnessmaps/import/recording.h"
+#include "stiffnessmaps/import/import.h"
 #include "tests/error_message.h"
 #include "tests/temporary_folder.h"
 

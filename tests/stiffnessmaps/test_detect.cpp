@@ -7,7 +7,7 @@
 #include <random>
 
 #include "stiffnessmaps/grid.h"
-#include "stiffnessmaps/import/recording.h"
+#include "stiffnessmaps/import/import.h"
 #include "stiffnessmaps/map_file.h"
 #include "tests/error_message.h"
 #include "tests/stiffnessmaps/test_maps.h"

@@ -9,9 +9,9 @@
 #include <cstdlib>
 #include <exception>
 
-#include "app/load.h"
-#include "app/log.h"
-#include "app/replay.h"
+#include "app/scene_choices.h"
+#include "session/log_rows.h"
+#include "session/replay.h"
 
 using namespace palpa;
 

@@ -1,0 +1,59 @@
+// palpa bench trace: a simulated pen's trace, to measure with.
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <memory>
+
+#include "app/commands/command_line.h"
+#include "app/scene_choices.h"
+#include "session/plan_in_progress.h"
+#include "session/raster_trace.h"
+#include "files/regular_file.h"
+
+namespace palpa {
+namespace {
+
+struct TraceOptions {
+    std::string scene;
+    std::string output;
+    RasterOptions raster;
+    double speed_mm_per_s = 30.0;
+};
+
+void write_raster(const TraceOptions& options) {
+    const Scene scene = load_scene(options.scene);
+    check_output(options.output, inputs_of(scene));
+    RasterOptions raster = options.raster;
+    raster.speed_m_per_s = 1e-3 * options.speed_mm_per_s;
+    const Trace trace = raster_trace(scene, make_plan_here(scene), raster);
+    TraceWriter writer(options.output, trace.info);
+    for (const Sample& sample : trace.samples) writer.write(sample);
+    if (!writer.sync()) throw std::runtime_error(options.output + ": cannot be written to its end");
+    std::printf("%s: %zu samples of a simulated pen\n", options.output.c_str(), trace.samples.size());
+}
+
+}  // namespace
+
+void add_bench(CLI::App& app) {
+    CLI::App* bench = app.add_subcommand("bench", "Measure accuracy and cost, and make traces to measure with");
+    bench->require_subcommand(1);
+    add_bench_accuracy(*bench);
+    add_bench_speed(*bench);
+    add_bench_pens(*bench);
+    auto options = std::make_shared<TraceOptions>();
+    CLI::App* trace = bench->add_subcommand("trace", "Write a trace of a simulated pen that sweeps the tissue");
+    trace->add_option("SCENE", options->scene, "scene JSON or map folder (default: the default scene)");
+    trace->add_option("-o,--output", options->output, "new trace TRACE.tsv")->required();
+    trace->add_option("--rate-Hz", options->raster.rate_Hz, "samples per second (default 120)")
+        ->check(CLI::Range(1.0, 1e5));
+    trace->add_option("--seconds", options->raster.seconds, "least duration of the trace (default 40)")
+        ->check(CLI::Range(0.1, 1e5));
+    trace->add_option("--speed-mm-per-s", options->speed_mm_per_s, "speed of the pen (default 30)")
+        ->check(CLI::Range(0.1, 1e4));
+    trace->add_option("--force-N", options->raster.force_N, "mean force of the pen (default 2.5)")
+        ->check(CLI::Range(0.01, 1e3));
+    trace->add_option("--seed", options->raster.seed, "seed of the jitter (default 1)");
+    trace->callback([options] { write_raster(*options); });
+}
+
+}  // namespace palpa

@@ -1,0 +1,76 @@
+// palpa bench accuracy mechanics
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+
+#include "accuracy/accuracy.h"
+#include "accuracy/mechanics.h"
+#include "app/commands/command_line.h"
+#include "files/input_error.h"
+#include "files/regular_file.h"
+#include "files/text.h"
+
+namespace palpa {
+namespace {
+
+struct Options {
+    std::string folder;
+    bool quick = false;
+    bool json = false;
+};
+
+// Before the minutes of measuring, not after them.
+void make_folder(const std::filesystem::path& folder) {
+    std::error_code error;
+    std::filesystem::create_directories(folder, error);
+    if (error || !std::filesystem::is_directory(folder))
+        throw InputError("-o " + folder.string() + ": found " + (error ? error.message() : "a file") +
+                         ", expected a folder or a name for one");
+}
+
+void run_accuracy(const Options& options) {
+    if (!options.folder.empty()) {
+        check_output_folder(options.folder);
+        make_folder(options.folder);
+    }
+    const Effort effort{options.quick, options.quick ? 0.05 : 0.8, options.quick ? 0.05 : 0.6};
+    std::vector<Measurement> list = slab_measurements(effort);
+    for (const auto& more : {contact_measurements(effort), step_measurements(effort)})
+        list.insert(list.end(), more.begin(), more.end());
+    const Machine machine = this_machine();
+    const std::vector<AccuracyRow> rows = run_measurements(list);
+    if (options.json) {
+        std::printf("%s\n", accuracy_json(rows, machine).dump(2).c_str());
+    } else {
+        std::printf("%s, %u threads, load %s, %s\n%s", machine.processor.c_str(), machine.threads,
+                    short_number(machine.load).c_str(), machine.date.c_str(), accuracy_table(rows).c_str());
+    }
+    if (options.folder.empty()) return;
+    write_text_atomically(std::filesystem::path(options.folder) / "mechanics.csv", accuracy_csv(rows));
+    const std::string trouble = plot_mechanics(options.folder, machine);
+    if (!trouble.empty())
+        std::fprintf(stderr, "palpa: %s\n", trouble.c_str());
+    else
+        std::fprintf(stderr, "%s: mechanics.csv, .gp, .png, .svg, .pdf\n", options.folder.c_str());
+}
+
+}  // namespace
+
+void add_bench_accuracy(CLI::App& bench) {
+    auto options = std::make_shared<Options>();
+    CLI::App* accuracy = bench.add_subcommand("accuracy", "Measure what accuracy costs in time");
+    accuracy->require_subcommand(1);
+    CLI::App* mechanics = accuracy->add_subcommand(
+        "mechanics",
+        "Measure error and cost of each choice: element, mesh, contact, friction, solver, precomputed or live");
+    mechanics->add_option("-o,--output", options->folder,
+                          "folder for mechanics.csv and its figure (default: nothing is written)");
+    mechanics->add_flag("--quick", options->quick,
+                        "use small meshes only, which takes under 20 s (all meshes: 4 minutes)");
+    mechanics->add_flag("--json", options->json, "print one JSON object on standard output");
+    mechanics->callback([options] { run_accuracy(*options); });
+}
+
+}  // namespace palpa

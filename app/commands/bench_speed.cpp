@@ -1,0 +1,60 @@
+// palpa bench speed: what a sample costs, beside the machine's unit.
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "accuracy/speed.h"
+#include "app/assets.h"
+#include "app/commands/command_line.h"
+#include "app/scene_choices.h"
+#include "files/text.h"
+#include "session/plan_in_progress.h"
+
+namespace palpa {
+namespace {
+
+struct Options {
+    std::vector<std::string> scenes;
+    double seconds = 10.0;
+    int repetitions = 5;
+    bool json = false;
+};
+
+void run_speed(const Options& options) {
+    std::vector<std::string> scenes = options.scenes;
+    if (scenes.empty()) {
+        for (const char* name : {"default", "delay", "off", "linear"}) {
+            scenes.push_back((assets_folder() / "scenes" / (std::string(name) + ".json")).string());
+        }
+    }
+    const SpeedRow unit = machine_unit(20);
+    std::vector<SpeedRow> rows;
+    for (const std::string& name : scenes) {
+        const Scene scene = load_scene(name);
+        rows.push_back(sample_speed(scene, make_plan_here(scene), options.seconds, options.repetitions));
+    }
+    const Machine machine = this_machine();
+    if (options.json) {
+        std::fputs(json_text(speed_json(unit, rows, machine)).c_str(), stdout);
+    } else {
+        std::printf("%s, %u threads, load %s, %s\n%s", machine.processor.c_str(), machine.threads,
+                    short_number(machine.load).c_str(), machine.date.c_str(), speed_table(unit, rows).c_str());
+    }
+}
+
+}  // namespace
+
+void add_bench_speed(CLI::App& bench) {
+    auto options = std::make_shared<Options>();
+    CLI::App* speed = bench.add_subcommand("speed", "What a sample costs, pressure to avatar, at 1,000 Hz");
+    speed->add_option("SCENES", options->scenes, "scene JSON or map folder (default: four that ship)");
+    speed->add_option("--seconds", options->seconds, "of input, in each repetition (default 10)")->check(CLI::Range(0.1, 1e4));
+    speed->add_option("--repetitions", options->repetitions, "default 5")->check(CLI::Range(1, 1000));
+    speed->add_flag("--json", options->json, "one JSON object on standard output");
+    speed->callback([options] { run_speed(*options); });
+}
+
+}  // namespace palpa

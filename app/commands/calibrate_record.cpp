@@ -1,0 +1,110 @@
+// palpa calibrate record
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <memory>
+
+#include "app/commands/command_line.h"
+#include "app/commands/option_checks.h"
+#include "app/commands/record_calibration.h"
+#include "files/input_error.h"
+#include "files/regular_file.h"
+#include "files/text.h"
+
+namespace palpa {
+namespace {
+
+struct Arguments {
+    RecordArguments record;
+    std::string level = "pressure";
+    std::vector<double> range;
+    bool json = false;
+};
+
+void record(Arguments& arguments) {
+    RecordArguments& record = arguments.record;
+    check_output_folder(record.folder);
+    record.level.level = arguments.level == "pressure"       ? LevelField::pressure
+                         : arguments.level == "pressure_raw" ? LevelField::pressure_raw
+                                                             : LevelField::contact_area;
+    if (record.level.level == LevelField::pressure_raw && arguments.range.empty()) {
+        throw bad_input("--level-range", "", "nothing", "the counts that the device can report, as 0 8191");
+    }
+    if (!arguments.range.empty()) {
+        if (!(arguments.range[0] < arguments.range[1])) {
+            throw bad_input("--level-range", "", short_number(arguments.range[0]) + " " + short_number(arguments.range[1]), "the lower level first");
+        }
+        record.options.range = {arguments.range[0], arguments.range[1]};
+    }
+    const Json result = record_calibration(record);
+    if (arguments.json) {
+        std::fputs(json_text(result).c_str(), stdout);
+        return;
+    }
+    std::printf("%s: %s points of %s presses; %s\n", result["file"].get_ref<const std::string&>().c_str(), result["points"].dump().c_str(), result["repeats"].dump().c_str(),
+                result["done"].get<bool>() ? "the curve is known everywhere" : result["missing"].get_ref<const std::string&>().c_str());
+    if (result.contains("sensor")) std::printf("  sensor      %s\n", result["sensor"]["health"].dump().c_str());
+    std::printf("  next        palpa calibrate fit %s -o PROFILE.json%s\n", result["file"].get_ref<const std::string&>().c_str(),
+                arguments.level == "pressure" ? "" : (" --level " + arguments.level).c_str());
+}
+
+}  // namespace
+
+void add_calibrate_record(CLI::App& calibrate) {
+    auto arguments = std::make_shared<Arguments>();
+    RecordArguments& options = arguments->record;
+    options.level.full_contact_area_px2 = 8000.0;
+    CLI::App* command = calibrate.add_subcommand(
+        "record",
+        "Record points with a force sensor under the tablet: hold the pen still at many levels, several times");
+    command->add_option("-o,--output", options.folder, "folder of the session, for points.csv and both raw streams")
+        ->required();
+    command
+        ->add_option("--sensor", options.sensor,
+                     "netft:HOST[:PORT] (ATI Net F/T), serial:PATH (lines t_us,raw), or typed (numbers from a scale)")
+        ->required();
+    command->add_option("--levels", options.levels,
+                        "file or pipe with one level per line, - for standard input (default: a window to press on)");
+    command
+        ->add_option("--counts-per-N", options.counts_per_N,
+                     "netft: counts per newton (the sensor's counts per force, in newtons)")
+        ->check(CLI::PositiveNumber)
+        ->capture_default_str();
+    command->add_option("--axis", options.axis, "netft: direction of pressing")
+        ->check(one_of({"x", "y", "z", "-x", "-y", "-z"}))
+        ->capture_default_str();
+    command->add_option("--N-per-count", options.N_per_count,
+                        "serial: newtons per count (put a known weight on: newtons / difference of counts)");
+    command->add_option("--baud", options.baud, "serial: baud rate")->capture_default_str();
+    command->add_flag("--newton", options.newton, "typed: the numbers are newtons (default: gram-force)");
+    command->add_option("--level", arguments->level, "field of a sample that is the level")
+        ->check(one_of({"pressure", "pressure_raw", "contact_area"}))
+        ->capture_default_str();
+    command
+        ->add_option("--level-range", arguments->range,
+                     "LOWEST HIGHEST level that the device can report (default: 0 1; required for pressure_raw)")
+        ->expected(2)
+        ->check(CLI::Range(0.0, 1e9));
+    command
+        ->add_option("--full-contact-area-px2", options.level.full_contact_area_px2,
+                     "contact_area only: area of the ellipse whose level is 1")
+        ->check(CLI::Range(1.0, 1e9))
+        ->capture_default_str();
+    command->add_option("--steady-s", options.options.steady_s, "how long both signals must hold still for a point")
+        ->check(CLI::Range(0.05, 5.0))
+        ->capture_default_str();
+    command
+        ->add_option("--goal", options.options.goal,
+                     "stop when half of the 95 % interval is within this share of the force everywhere")
+        ->check(CLI::Range(0.001, 1.0))
+        ->capture_default_str();
+    command
+        ->add_option("--seconds", options.seconds,
+                     "stop after this many seconds (default: when the goal is reached, or on Ctrl-C)")
+        ->check(CLI::Range(0.0, 1e6));
+    command->add_flag("--resume", options.resume, "continue the session in the folder");
+    command->add_flag("--json", arguments->json, "print one JSON object on standard output");
+    command->callback([arguments] { record(*arguments); });
+}
+
+}  // namespace palpa

@@ -1,0 +1,106 @@
+#include "app/commands/command_line.h"
+
+#include <fcntl.h>
+#include <signal.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <cerrno>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <exception>
+#include <iostream>
+#include <new>
+#include <string>
+#include <vector>
+
+#include "app/commands/option_checks.h"
+#include "files/input_error.h"
+#include "mechanics/error.h"
+
+namespace palpa {
+namespace {
+
+// `palpa SCENE.json` means `palpa run SCENE.json`, `palpa` alone opens the app.
+std::vector<std::string> with_default_command(int argc, char** argv, CLI::App& app) {
+    std::vector<std::string> arguments(argv + 1, argv + argc);
+    const std::string first = arguments.empty() ? "" : arguments.front();
+    bool known = first == "-h" || first == "--help" || first == "--version";
+    for (const CLI::App* command : app.get_subcommands({})) known = known || command->get_name() == first;
+    if (!known) arguments.insert(arguments.begin(), "run");
+    return {arguments.rbegin(), arguments.rend()};  // CLI11 takes them from the back
+}
+
+int fail(const char* message, int status) {
+    std::fprintf(stderr, "palpa: %s\n", message);
+    return status;
+}
+
+// A descriptor below 3 that nobody opened would be given to the next file, and what is printed would end up in it.
+// Opened the wrong way round, it fails to be read or written, as if it were still closed.
+void keep_standard_streams_apart() {
+    for (const int fd : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
+        if (::fcntl(fd, F_GETFD) >= 0) continue;
+        const int opened = ::open("/dev/null", fd == STDIN_FILENO ? O_WRONLY : O_RDONLY);
+        if (opened >= 0 && opened != fd) ::close(opened);
+    }
+}
+
+// Ends here and now: OpenBLAS, whose threads could not be started, waits for them for ever in its destructor.
+[[noreturn]] void end_without_memory(const char* message) {
+    fail(message, 1);
+    std::fflush(nullptr);
+    std::_Exit(1);
+}
+
+int call(int argc, char** argv, CLI::App& app) {
+    try {
+        app.parse(with_default_command(argc, argv, app));
+        return 0;
+    } catch (const CLI::ParseError& error) {
+        return app.exit(error) == 0 ? 0 : 2;
+    } catch (const std::bad_alloc&) {
+        end_without_memory("not enough memory: a smaller model, or a machine with more");
+    } catch (const mechanics::OutOfMemory& error) {
+        end_without_memory(error.what());
+    } catch (const InputError& error) {
+        return fail(error.what(), 2);
+    } catch (const std::exception& error) {
+        return fail(error.what(), 1);
+    }
+}
+
+// What was printed counts as done only once all of it has been taken.
+int with_all_printed(int status) {
+    errno = 0;
+    std::cout.flush();
+    const bool lost = std::fflush(stdout) != 0 || std::ferror(stdout) != 0 || !std::cout;
+    if (!lost) return status;
+    const std::string reason = errno != 0 ? std::string(": ") + std::strerror(errno) : std::string();
+    const int failed = fail(("standard output cannot be written" + reason).c_str(), 1);
+    return status != 0 ? status : failed;
+}
+
+}  // namespace
+
+int run_command_line(int argc, char** argv) {
+    keep_standard_streams_apart();
+    ::signal(SIGPIPE, SIG_IGN);  // a reader that went away is told as any output that cannot be written
+    CLI::App app("Palpa: feel stiffness on a touch screen. `palpa` alone opens the app on the scene of last time.");
+    app.set_version_flag("--version", "palpa " PALPA_VERSION);
+    app.require_subcommand(1);
+    add_run(app);
+    add_explain(app);
+    add_devices(app);
+    add_maps(app);
+    add_calibrate(app);
+    add_fem(app);
+    add_study(app);
+    add_serve(app);
+    add_bench(app);
+    refuse_what_is_no_value(app);
+    return with_all_printed(call(argc, argv, app));
+}
+
+}  // namespace palpa

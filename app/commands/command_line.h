@@ -1,0 +1,28 @@
+#pragma once
+
+namespace CLI {
+class App;
+}
+
+namespace palpa {
+
+// Exit status: 0 done, 1 the run failed, 2 wrong usage or bad input.
+int run_command_line(int argc, char** argv);
+
+// Each adds its subcommand; what it does runs as the subcommand's callback and throws to fail.
+void add_run(CLI::App& app);
+void add_explain(CLI::App& app);
+void add_devices(CLI::App& app);
+void add_maps(CLI::App& app);
+void add_maps_import(CLI::App& maps);
+void add_calibrate(CLI::App& app);
+void add_calibrate_record(CLI::App& calibrate);
+void add_fem(CLI::App& app);
+void add_serve(CLI::App& app);
+void add_study(CLI::App& app);
+void add_bench(CLI::App& app);
+void add_bench_accuracy(CLI::App& bench);
+void add_bench_pens(CLI::App& bench);
+void add_bench_speed(CLI::App& bench);
+
+}  // namespace palpa

@@ -1,0 +1,86 @@
+// palpa explain SCENE [--measure]: the plan, stage by stage, with what each costs and how wrong it is.
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <memory>
+
+#include "app/commands/command_line.h"
+#include "app/scene_choices.h"
+#include "session/plan_in_progress.h"
+#include "session/replay.h"
+
+namespace palpa {
+namespace {
+
+struct ExplainOptions {
+    std::string scene;
+    bool measure = false;
+    std::string trace;
+    bool json = false;
+};
+
+Json stage_json(const Stage& stage) {
+    return {{"name", name_of(stage.id)},
+            {"per", stage.per_frame ? "frame" : "sample"},
+            {"fidelity", stage.fidelity},
+            {"error", stage.error},
+            {"cost_us", stage.cost_us}};
+}
+
+void print_stage(const Stage& stage, const Meter* meter) {
+    std::printf("%-14s per %-6s  ", name_of(stage.id), stage.per_frame ? "frame" : "sample");
+    if (meter == nullptr) {
+        std::printf("about %g us\n", stage.cost_us);
+    } else {
+        std::printf("%lld calls, median %.3f us, p99 %.3f us\n", static_cast<long long>(meter->calls()),
+                    1e-3 * meter->quantile_ns(0.5), 1e-3 * meter->quantile_ns(0.99));
+    }
+    std::printf("    %s\n    error: %s\n", stage.fidelity.c_str(), stage.error.c_str());
+}
+
+void explain(const ExplainOptions& options) {
+    const Scene scene = load_scene(options.scene);
+    const Plan plan = make_plan_here(scene);
+    ReplayResult measured;
+    const std::filesystem::path trace_file = options.trace.empty() ? default_trace() : std::filesystem::path(options.trace);
+    if (options.measure) measured = replay(scene, plan, read_trace(trace_file), 1);
+
+    Json json{{"scene", scene.name}, {"stages", Json::array()}, {"notes", plan.notes}};
+    if (!options.json) std::printf("%s\n", scene.name.c_str());
+    for (const auto* stages : {&plan.sample_stages, &plan.frame_stages}) {
+        for (const Stage& stage : *stages) {
+            const Meter* meter = options.measure ? &measured.state.meters[static_cast<std::size_t>(stage.id)] : nullptr;
+            Json entry = stage_json(stage);
+            if (meter != nullptr) {
+                entry["calls"] = meter->calls();
+                entry["median_us"] = 1e-3 * meter->quantile_ns(0.5);
+                entry["p99_us"] = 1e-3 * meter->quantile_ns(0.99);
+                entry["worst_us"] = 1e-3 * meter->worst_ns();
+            }
+            json["stages"].push_back(entry);
+            if (!options.json) print_stage(stage, meter);
+        }
+    }
+    if (options.json) {
+        std::fputs(json_text(json).c_str(), stdout);
+        return;
+    }
+    if (options.measure) std::printf("measured on %s; each time includes reading the clock\n", trace_file.string().c_str());
+    for (const std::string& note : plan.notes) std::printf("note: %s\n", note.c_str());
+}
+
+}  // namespace
+
+void add_explain(CLI::App& app) {
+    auto options = std::make_shared<ExplainOptions>();
+    CLI::App* command =
+        app.add_subcommand("explain", "Show the plan of a scene: the stages with their fidelity, error and cost");
+    command->add_option("SCENE", options->scene, "scene JSON or map folder (default: the default scene)");
+    command->add_flag("--measure", options->measure,
+                      "replay a trace and print each stage's calls, median time and p99");
+    command->add_option("--trace", options->trace, "trace to measure with (default: the shipped trace)");
+    command->add_flag("--json", options->json, "print one JSON object on standard output");
+    command->callback([options] { explain(*options); });
+}
+
+}  // namespace palpa

@@ -1,0 +1,233 @@
+// palpa fem solve
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <memory>
+#include <unistd.h>
+
+#include "app/commands/command_line.h"
+#include "fem/locking.h"
+#include "fem/solve.h"
+#include "files/input_error.h"
+#include "files/regular_file.h"
+#include "files/printable.h"
+#include "files/text.h"
+
+namespace palpa {
+namespace {
+
+using mechanics::LinearRange;
+
+const char* name_of(LinearRange range) {
+    switch (range) {
+        case LinearRange::fine:
+            return "green";
+        case LinearRange::amber:
+            return "amber";
+        case LinearRange::red:
+            return "red";
+    }
+    return "";
+}
+
+const char* name_of(mechanics::Element element) {
+    switch (element) {
+        case mechanics::Element::hex8_bbar:
+            return "hex8-bbar";
+        case mechanics::Element::hex8:
+            return "hex8";
+        case mechanics::Element::tet4:
+            return "tet4";
+    }
+    return "";
+}
+
+Json in_mm(const std::optional<double>& value_m) {
+    return value_m ? Json(1e3 * *value_m) : Json(nullptr);
+}
+
+double max_von_mises_Pa(const FemResult& result) {
+    double largest = 0.0;
+    for (const double value : result.von_mises_Pa) largest = std::max(largest, value);  // NaN is passed over
+    return largest;
+}
+
+std::vector<std::string> warnings_of(const FemCase& model, const FemResult& result) {
+    std::vector<std::string> out = model.warnings;
+    if (const std::string locking = locking_warning(model.problem); !locking.empty()) out.push_back(locking);
+    if (result.linear != LinearRange::fine) {
+        out.push_back("the linear range is left: " + short_number(100.0 * result.linear_ratio) +
+                      " % (strain, or depth over thickness or width); amber above 10, red above 25");
+    }
+    if (result.partial)
+        out.push_back("part of the pressure is beside the body: " + short_number(result.applied_N) +
+                      " N fell on it");
+    if (result.contact && result.contact->over_edge)
+        out.push_back("part of the indenter is beside the tissue");
+    if (result.contact) {
+        for (std::string& warning : contact_warnings(*result.contact)) out.push_back(std::move(warning));
+    }
+    if (!(result.solution.backward_error < kMostBackwardError))
+        out.push_back("not converged: backward error " + short_number(result.solution.backward_error));
+    if (!model.report.slivers.empty()) {
+        out.push_back(std::to_string(model.report.slivers.size()) + " flat cells, the worst is cell " +
+                      std::to_string(number_of_cell(model.problem.mesh, model.report.worst_cell)));
+    }
+    return out;
+}
+
+Json json_of(const FemCase& model, const FemResult& result) {
+    Json json;
+    json["case"] = model.file;
+    json["element"] = name_of(model.problem.element);
+    json["nodes"] = model.problem.mesh.nodes_m.cols();
+    json["elements"] = model.problem.mesh.cells.cols();
+    json["dofs"] = result.equations;
+    json["max_displacement_mm"] = 1e3 * result.max_displacement_m;
+    json["centre_displacement_mm"] = in_mm(result.centre_m);
+    json["d_skel_mm"] = in_mm(result.skel_m);
+    json["applied_N"] = result.applied_N;
+    json["reaction_N"] = Json::array();
+    for (std::size_t i = 0; i < model.supports.size(); ++i) {
+        const Eigen::Vector3d& f = result.reaction_N[i];
+        json["reaction_N"].push_back({{"support", model.supports[i].name},
+                                      {"fix", model.supports[i].axes},
+                                      {"force_N", {f.x(), f.y(), f.z()}}});
+    }
+    if (!result.body_reaction_N.isZero(0.0)) {
+        const Eigen::Vector3d& f = result.body_reaction_N;
+        json["reaction_of_held_rigid_cells_N"] = {f.x(), f.y(), f.z()};
+    }
+    if (result.contact) {
+        const IndenterContact& contact = *result.contact;
+        const Eigen::Vector3d f = contact.force_N.rowwise().sum();
+        json["contact"] = {{"force_N", {f.x(), f.y(), f.z()}},
+                           {"area_mm2", 1e6 * contact.area_m2},
+                           {"nodes", contact.nodes},
+                           {"cells_across_radius", contact.cells_across_radius},
+                           {"depth_mm", 1e3 * contact.depth_m},
+                           {"lateral_N", {contact.lateral_N[0], contact.lateral_N[1]}},
+                           {"compliance_columns", contact.columns}};
+    }
+    json["energy_J"] = result.solution.energy_J;
+    json["max_strain"] = result.max_strain;
+    json["max_von_mises_Pa"] = max_von_mises_Pa(result);
+    json["linear_range"] = {{"gauge", name_of(result.linear)}, {"ratio", result.linear_ratio}};
+    json["residual"] = result.residual;
+    json["backward_error"] = result.solution.backward_error;
+    json["converged"] = result.converged;
+    json["time_s"] = {
+        {"assemble", result.assemble_s}, {"factor", result.factor_s}, {"solve", result.solution.solve_s}};
+    if (result.contact) json["time_s"]["contact"] = result.contact->seconds;
+    json["warnings"] = warnings_of(model, result);
+    return json;
+}
+
+std::string six_digits(double value) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.6g", value);
+    return text;
+}
+
+std::string three_N(const Eigen::Vector3d& f) {
+    return short_number(f.x()) + "  " + short_number(f.y()) + "  " + short_number(f.z()) + " N";
+}
+
+void row(const char* what, const std::string& value) {
+    std::printf("  %-22s %s\n", printable(what).c_str(), value.c_str());
+}
+
+void print_table(const FemCase& model, const FemResult& result) {
+    const auto mm = [](const std::optional<double>& value_m) {
+        return value_m ? six_digits(1e3 * *value_m) + " mm" : std::string("-");
+    };
+    std::printf("%s: %s, %td nodes, %td elements, %d equations\n", printable(model.file).c_str(),
+                name_of(model.problem.element), model.problem.mesh.nodes_m.cols(),
+                model.problem.mesh.cells.cols(), result.equations);
+    row("applied", short_number(result.applied_N) + " N");
+    row("centre displacement", mm(result.centre_m));
+    row("d_skel (mean)", mm(result.skel_m));
+    row("max displacement", mm(result.max_displacement_m));
+    for (std::size_t i = 0; i < model.supports.size(); ++i) {
+        row(("reaction " + model.supports[i].name).c_str(), three_N(result.reaction_N[i]));
+    }
+    if (!result.body_reaction_N.isZero(0.0)) row("reaction, held rigid", three_N(result.body_reaction_N));
+    if (result.contact) {
+        const IndenterContact& contact = *result.contact;
+        row("contact force", three_N(contact.force_N.rowwise().sum()));
+        row("contact area", short_number(1e6 * contact.area_m2) + " mm2 on " + std::to_string(contact.nodes) +
+                                " nodes, " + short_number(1e3 * contact.depth_m) + " mm deep");
+    }
+    row("energy", short_number(result.solution.energy_J) + " J");
+    row("largest strain", short_number(100.0 * result.max_strain) + " %, von Mises " +
+                              short_number(max_von_mises_Pa(result)) + " Pa");
+    row("linear range",
+        std::string(name_of(result.linear)) + ", " + short_number(100.0 * result.linear_ratio) + " %");
+    row("residual", short_number(result.residual) + ", backward error " +
+                        short_number(result.solution.backward_error) +
+                        (result.converged ? ", converged" : ", NOT converged"));
+    std::string times = "assemble " + short_number(result.assemble_s) + ", factor " +
+                        short_number(result.factor_s) + ", solve " + short_number(result.solution.solve_s);
+    if (result.contact) times += ", contact " + short_number(result.contact->seconds);
+    row("time", times + " s");
+}
+
+// On a terminal only: what is done of what, and the time left.
+FemProgress progress_line() {
+    if (isatty(STDERR_FILENO) == 0) return [](const char*, int, int) {};
+    const auto start = std::make_shared<std::chrono::steady_clock::time_point>();
+    return [start](const char* what, int done, int total) {
+        const auto now = std::chrono::steady_clock::now();
+        if (total == 0) {
+            std::fprintf(stderr, "\r\033[K%s ...", what);
+        } else {
+            if (start->time_since_epoch().count() == 0) *start = now;
+            const double passed_s = std::chrono::duration<double>(now - *start).count();
+            const double left_s = done > 0 ? passed_s * (total - done) / done : 0.0;
+            std::fprintf(stderr, "\r\033[K%s %d of %d, %.0f s left", what, done, total, left_s);
+        }
+        std::fflush(stderr);
+    };
+}
+
+struct SolveOptions {
+    std::string file;
+    std::string output;
+    bool json = false;
+};
+
+void solve_file(const SolveOptions& options) {
+    const FemCase model = read_case(options.file);
+    if (!options.output.empty()) check_output(options.output, {options.file, model.mesh_file});  // before the long part
+    const FemResult result = solve_case(model, progress_line());
+    if (isatty(STDERR_FILENO) != 0) std::fprintf(stderr, "\r\033[K");
+    if (!options.output.empty()) write_vtu(options.output, vtu_of(model, result));
+    if (options.json) {
+        std::printf("%s", json_text(json_of(model, result)).c_str());
+    } else {
+        print_table(model, result);
+    }
+    for (const std::string& warning : warnings_of(model, result)) {
+        std::fprintf(stderr, "palpa: %s\n", printable(options.file + ": " + warning).c_str());
+    }
+    if (!result.converged) throw std::runtime_error(options.file + ": not converged");
+}
+
+}  // namespace
+
+void add_fem(CLI::App& app) {
+    CLI::App* fem = app.add_subcommand("fem", "Finite elements: solve");
+    fem->require_subcommand(1);
+    auto options = std::make_shared<SolveOptions>();
+    CLI::App* command =
+        fem->add_subcommand("solve", "Compute the displacements, forces and strains of a case file (docs/fem.md)");
+    command->add_option("CASE", options->file, "case JSON")->required();
+    command->add_option("-o,--output", options->output,
+                        "write a VTU file with displacement, reaction, strain and stress");
+    command->add_flag("--json", options->json, "print one JSON object on standard output");
+    command->callback([options] { solve_file(*options); });
+}
+
+}  // namespace palpa

@@ -1,0 +1,123 @@
+#include <fcntl.h>
+#include <poll.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <chrono>
+#include <cmath>
+#include <cstring>
+#include <stdexcept>
+#include <thread>
+
+#include "app/screens/calibrate_screen.h"
+#include "app/commands/record_calibration.h"
+#include "calibration/record/acquisition.h"
+#include "files/input_error.h"
+#include "files/text.h"
+#include "platform/window.h"
+#include "render/gl.h"
+
+namespace palpa {
+namespace {
+
+// One number a line, as it comes; a level of 0 is a pen that does not touch.
+class LevelStream : public LevelSource {
+ public:
+    explicit LevelStream(const std::string& path) : path_(path) {
+        fd_ = path == "-" ? ::dup(0) : ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+        if (fd_ < 0) throw InputError(path + ": cannot be read: " + std::strerror(errno));
+    }
+    ~LevelStream() override { ::close(fd_); }
+
+    bool poll(double wait_s, std::vector<Sample>& out) override {
+        pollfd waiting{fd_, POLLIN, 0};
+        if (::poll(&waiting, 1, static_cast<int>(std::ceil(1e3 * wait_s))) <= 0) return true;
+        std::array<char, 4096> bytes;
+        const ssize_t n = ::read(fd_, bytes.data(), bytes.size());
+        if (n < 0 && errno == EINTR) return true;
+        if (n <= 0) return false;
+        const double now_s = steady_s();
+        for (ssize_t i = 0; i < n; ++i) {
+            if (bytes[static_cast<std::size_t>(i)] != '\n') {
+                text_.push_back(bytes[static_cast<std::size_t>(i)]);
+                continue;
+            }
+            out.push_back(sample(now_s));
+            text_.clear();
+        }
+        return true;
+    }
+
+ private:
+    Sample sample(double now_s) {
+        ++line_;
+        double level = 0.0;
+        if (!parse_number(text_, level) || !(level >= 0.0) || std::isinf(level)) {
+            throw bad_input(path_, "line " + std::to_string(line_), shown(text_), "a level >= 0, one a line");
+        }
+        Sample sample;
+        sample.t_host_s = now_s;
+        sample.tool = Tool::pen;
+        sample.phase = level > 0.0 ? Phase::move : Phase::hover;
+        sample.pressure = level;
+        sample.pressure_raw = level;
+        return sample;
+    }
+
+    std::string path_;
+    std::string text_;
+    std::size_t line_ = 0;
+    int fd_ = -1;
+};
+
+// A window to press on, with the same guide as the app's screen.
+class LevelWindow : public LevelSource {
+ public:
+    LevelWindow() : window_(options()), gui_(window_) {}
+
+    bool poll(double wait_s, std::vector<Sample>& out) override {
+        window_.poll(wait_s, out);
+        return !window_.close_requested() && !stopped_;
+    }
+
+    void show(Recording& recording) override {
+        constexpr double kFrame_s = 1.0 / 60.0;
+        const double now_s = window_.now_s();
+        if (now_s - shown_s_ < kFrame_s) return;
+        gui_.begin_frame(now_s - shown_s_, true);
+        shown_s_ = now_s;
+        refresh_fit(recording, guide_);
+        stopped_ = draw_guide(recording, gui_, guide_).stop;
+        gui_.end_frame();
+        clear_screen(window_.width_px(), window_.height_px());
+        gui_.draw();
+        window_.present();
+    }
+
+ private:
+    static WindowOptions options() {
+        WindowOptions options;
+        options.title = "Palpa calibration: press here";
+        return options;
+    }
+    Window window_;
+    Gui gui_;
+    Guide guide_;
+    double shown_s_ = 0.0;
+    bool stopped_ = false;
+};
+
+}  // namespace
+
+std::unique_ptr<LevelSource> open_level_stream(const std::string& path) { return std::make_unique<LevelStream>(path); }
+
+std::unique_ptr<LevelSource> open_level_window() {
+    try {
+        return std::make_unique<LevelWindow>();
+    } catch (const std::runtime_error& error) {
+        throw std::runtime_error(std::string(error.what()) + "\nThe pen's level comes from a window; without a display give levels as text: --levels FILE");
+    }
+}
+
+}  // namespace palpa

@@ -1,0 +1,364 @@
+// palpa maps import
+
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <memory>
+#include <unistd.h>
+
+#include "app/commands/command_line.h"
+#include "app/commands/map_info.h"
+#include "app/commands/option_checks.h"
+#include "files/input_error.h"
+#include "files/text.h"
+#include "stiffnessmaps/import/import.h"
+#include "stiffnessmaps/map_file.h"
+
+namespace palpa {
+namespace {
+
+struct Arguments {
+    std::vector<std::string> files;
+    std::string output;
+    std::string form, grid, contact, tangential, tilt, quantity, indenter, length_unit, depth_unit,
+        force_unit, axes;
+    std::string depths, at_depths, spacing, origin, region;  // lists of mm
+    std::vector<std::string> columns, tangential_x, tangential_y;
+    std::optional<double> pitch_mm, radius_mm, contact_force_N, surface_z_mm, surface_node_mm, outliers,
+        scale, missing;
+    std::optional<int> layers;
+    double indenter_radius_mm = 3.0;
+    double cylinder_length_mm = 20.0;
+    double poisson = 0.5;
+    double offset = 0.0;
+    bool negate_force = false;
+    bool no_fill = false;
+    std::string name, licence, dataset;
+    bool explain = false;
+    bool json = false;
+};
+
+// "2,3.5,5" as metres; `count` numbers, 0: any.
+std::vector<double> lengths_m(const std::string& text, const char* option, std::size_t count) {
+    std::vector<double> out;
+    std::string_view rest = text;
+    while (!text.empty()) {
+        const auto end = rest.find(',');
+        double value = 0.0;
+        if (!parse_number(rest.substr(0, end), value) || !(std::abs(value) <= 1e6)) {
+            throw bad_input(option, "", shown(text), "numbers of mm with commas between them");
+        }
+        out.push_back(1e-3 * value);
+        if (end == std::string_view::npos) break;
+        rest.remove_prefix(end + 1);
+    }
+    if (count > 0 && !out.empty() && out.size() != count) {
+        throw bad_input(option, "", std::to_string(out.size()) + " numbers", std::to_string(count));
+    }
+    return out;
+}
+
+std::vector<double> depths_m(const std::string& text, const char* option, bool ascending) {
+    std::vector<double> out = lengths_m(text, option, 0);
+    for (std::size_t i = 0; i < out.size(); ++i) {
+        if (!(out[i] > 0.0)) throw bad_input(option, "", short_number(1e3 * out[i]), "depths > 0");
+        if (ascending && i > 0 && !(out[i] > out[i - 1])) {
+            throw bad_input(option, "",
+                            short_number(1e3 * out[i]) + " after " + short_number(1e3 * out[i - 1]),
+                            "ascending depths");
+        }
+    }
+    return out;
+}
+
+// Index of `text` in `names`; empty for an empty text or "auto". CLI11 has checked that it is one of them.
+template <class Enum>
+std::optional<Enum> choice(const std::string& text, std::initializer_list<const char*> names) {
+    int i = 0;
+    for (const char* name : names) {
+        if (text == name) return static_cast<Enum>(i);
+        ++i;
+    }
+    return std::nullopt;
+}
+
+std::optional<double> metres(const std::optional<double>& mm) {
+    return mm ? std::optional<double>(1e-3 * *mm) : std::nullopt;
+}
+
+void set_array_options(const Arguments& a, ImportOptions& options) {
+    const std::vector<double> spacing = a.spacing.find(',') == std::string::npos
+                                            ? lengths_m(a.spacing, "--spacing-mm", 1)
+                                            : lengths_m(a.spacing, "--spacing-mm", 2);
+    if (!spacing.empty()) options.spacing_m = {spacing.front(), spacing.back()};
+    if (!spacing.empty() && !(spacing.front() > 0.0 && spacing.back() > 0.0))
+        throw bad_input("--spacing-mm", "", shown(a.spacing), "distances > 0");
+    const std::vector<double> origin = lengths_m(a.origin, "--origin-mm", 2);
+    if (!origin.empty()) options.origin_m = {origin[0], origin[1]};
+    options.quantity =
+        choice<Quantity>(a.quantity, {"force", "stiffness", "young"}).value_or(Quantity::force);
+    options.scale_stated = a.scale.has_value();
+    options.scale =
+        a.scale.value_or(1.0) * (options.quantity == Quantity::force ? 1.0 : 1e3);  // N/mm and kPa
+    options.offset = a.offset;
+    options.missing = a.missing;
+    options.poisson = a.poisson;
+    if (!a.axes.empty()) options.axes = a.axes;
+    options.dataset = a.dataset;
+    options.tangential_x.assign(a.tangential_x.begin(), a.tangential_x.end());
+    options.tangential_y.assign(a.tangential_y.begin(), a.tangential_y.end());
+}
+
+ImportOptions options_of(const Arguments& a) {
+    ImportOptions options;
+    options.form = choice<RecordingForm>(a.form, {"probing", "sliding", "matrices"});
+    options.name = a.name;
+    options.licence = a.licence;
+    options.indenter =
+        choice<IndenterShape>(a.indenter, {"sphere", "cylinder"}).value_or(IndenterShape::sphere);
+    options.indenter_radius_m = 1e-3 * a.indenter_radius_mm;
+    options.cylinder_length_m = 1e-3 * a.cylinder_length_mm;
+    for (const std::string& column : a.columns) {
+        const auto equals = column.find('=');
+        if (equals == std::string::npos)
+            throw bad_input("--column", "", shown(column), "ROLE=NAME, such as x=pos_x_mm");
+        if (!options.columns.emplace(column.substr(0, equals), column.substr(equals + 1)).second) {
+            throw bad_input("--column", "", shown(column.substr(0, equals)) + " twice", "it once");
+        }
+    }
+    options.length_unit = choice<LengthUnit>(a.length_unit, {"mm", "m", "um"});
+    options.depth_unit = choice<LengthUnit>(a.depth_unit, {"mm", "m", "um"});
+    options.force_unit = choice<ForceUnit>(a.force_unit, {"N", "mN"});
+    options.negate_force = a.negate_force;
+    const std::vector<double> region = lengths_m(a.region, "--region-mm", 4);
+    if (!region.empty()) options.region_m = {region[0], region[1], region[2], region[3]};
+    options.remove_tilt = a.tilt != "keep";
+    options.outliers = a.outliers;
+    options.gridding = choice<Gridding>(a.grid, {"on-grid", "plane", "inverse-distance", "median"});
+    options.pitch_m = metres(a.pitch_mm);
+    options.radius_m = metres(a.radius_mm);
+    options.at_depths_m = depths_m(a.at_depths, "--at-depth-mm", false);
+    options.layers = a.layers;
+    options.fill = !a.no_fill;
+    options.tangential = choice<TangentialChoice>(a.tangential, {"measured", "energy", "none"});
+    options.contact = choice<ContactStart>(a.contact, {"first-row", "threshold"});
+    options.contact_force_N = a.contact_force_N;
+    options.surface_z_m = metres(a.surface_z_mm);
+    options.surface_node_m = metres(a.surface_node_mm);
+    set_array_options(a, options);
+    return options;
+}
+
+// What is done and how much of it, once a second has passed; on a terminal only.
+std::function<void(const char*, double)> progress_on_terminal() {
+    if (::isatty(STDERR_FILENO) == 0) return {};
+    const auto start = std::chrono::steady_clock::now();
+    return [start](const char* what, double done) {
+        const double spent_s =
+            std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+        if (spent_s < 1.0) return;
+        std::fprintf(stderr, "\r\033[K%s", what);
+        if (done > 0.0)
+            std::fprintf(stderr, " %.0f %%, %.0f s left", 100.0 * done, spent_s * (1.0 - done) / done);
+        std::fflush(stderr);
+    };
+}
+
+std::string value_text(const SourceChoice& choice) {
+    if (const auto* text = std::get_if<std::string>(&choice.value)) return *text;
+    if (const auto* number = std::get_if<double>(&choice.value)) return short_number(*number);
+    std::string out;
+    for (const double value : std::get<std::vector<double>>(choice.value))
+        out += (out.empty() ? "" : ", ") + short_number(value);
+    return out;
+}
+
+void print_choices(const Map& map) {
+    std::printf("what was chosen, why, and what chooses otherwise:\n");
+    for (const SourceChoice& choice : map.source.choices) {
+        std::printf("  %-22s %s\n%25s%s%s%s\n", choice.key.c_str(), value_text(choice).c_str(), "",
+                    choice.how.c_str(), choice.option.empty() ? "" : "; ", choice.option.c_str());
+    }
+}
+
+Json import_json(const ImportReport& report) {
+    const ImportResidual& residual = report.residual;
+    return {{"form", name_of(report.form)},
+            {"rows", report.rows},
+            {"points", report.points},
+            {"rejected_rows", report.rejected_rows},
+            {"outliers", report.outliers},
+            {"rejected_points", report.rejected_points},
+            {"missing_cells", report.missing_cells},
+            {"median_offset_N", report.median_offset_N},
+            {"residual_points", residual.n},
+            {"median_residual_N", residual.median_N},
+            {"worst_residual_N", residual.worst_N},
+            {"greatest_force_N", residual.greatest_N},
+            {"median_residual_share", residual.median_share()},
+            {"worst_residual_share", residual.worst_share()},
+            {"worst_residual_at_mm",
+             {1e3 * residual.worst_x_m, 1e3 * residual.worst_y_m, 1e3 * residual.worst_depth_m}},
+            {"notes", report.notes}};
+}
+
+void print_report(const std::string& name, const Map& map, const ImportReport& report) {
+    const ImportResidual& residual = report.residual;
+    const char* unit = report.form == RecordingForm::probing   ? "points"
+                       : report.form == RecordingForm::sliding ? "samples"
+                                                               : "numbers";
+    std::printf("%s: %zu %s become %zu x %zu cells of %.2f x %.2f mm, %zu depths to %.2f mm\n", name.c_str(),
+                report.points, unit, map.n_x, map.n_y, 1e3 * map.spacing_m[0], 1e3 * map.spacing_m[1],
+                map.n_depths(), 1e3 * map.depths_m.back());
+    std::printf("  %zu cells missing; %zu of %zu rows and %zu points rejected (%zu outliers)",
+                report.missing_cells, report.rejected_rows, report.rows, report.rejected_points,
+                report.outliers);
+    if (report.form == RecordingForm::probing)
+        std::printf("; %.3g N at contact subtracted (median)", report.median_offset_N);
+    std::printf(
+        "\n  map against recording: %.2g N median, %.2g N worst, of %.3g N (%.2g %%, %.2g %%); noise %.2g "
+        "N\n",
+        residual.median_N, residual.worst_N, residual.greatest_N, 100.0 * residual.median_share(),
+        100.0 * residual.worst_share(), map.noise_N.value_or(0.0));
+}
+
+void import_map(const Arguments& a) {
+    ImportOptions options = options_of(a);
+    options.progress = progress_on_terminal();
+    options.depths_m = depths_m(a.depths, "--depths-mm", false);
+    if (a.output.empty() && !a.explain)
+        throw bad_input("maps import", "", "no output",
+                        "-o NAME.map (or --explain, to see what would be chosen)");
+    if (std::filesystem::exists(a.output)) {  // before a long import, not after it
+        throw bad_input(a.output, "", "something of that name", "a new name (nothing is overwritten)");
+    }
+    ImportReport report;
+    const Map map = import_recording({a.files.begin(), a.files.end()}, options, report);
+    if (options.progress) std::fprintf(stderr, "\r\033[K");
+    if (!a.output.empty()) write_map(map, a.output);
+    for (const std::string& note : report.notes) std::fprintf(stderr, "palpa: %s\n", note.c_str());
+    if (a.json) {
+        Json json = map_info(map, make_field(map, {}));
+        json["import"] = import_json(report);
+        std::fputs(json_text(json).c_str(), stdout);
+        return;
+    }
+    print_report(a.output.empty() ? map.name : a.output, map, report);
+    if (a.explain) print_choices(map);
+}
+
+void add_table_options(CLI::App& command, Arguments& a) {
+    const auto number = [&](const char* name, std::optional<double>& value, const char* help, double lowest,
+                            double highest) {
+        command.add_option(name, value, help)->check(CLI::Range(lowest, highest))->group("Tables");
+    };
+    const auto text = [&](const char* name, std::string& value, const char* help) {
+        return command.add_option(name, value, help)->group("Tables");
+    };
+    command
+        .add_option("--column", a.columns,
+                    "ROLE=NAME, as often as needed; roles: t, point, x, y, z, depth, depth_cmd, fn, fx, fy, "
+                    "fz, n_x, n_y, n_z")
+        ->allow_extra_args(false)
+        ->group("Tables");
+    text("--length-unit", a.length_unit, "unit of x, y, z: mm, m or um (default: from the column's name, else mm)")
+        ->check(one_of({"mm", "m", "um"}));
+    text("--depth-unit", a.depth_unit, "unit of depths: mm, m or um")->check(one_of({"mm", "m", "um"}));
+    text("--force-unit", a.force_unit, "unit of forces: N or mN (default: from the column's name, else N)")
+        ->check(one_of({"N", "mN"}));
+    command.add_flag("--negate-force", a.negate_force, "reverse the sign of the forces")->group("Tables");
+    text("--region-mm", a.region, "X0,X1,Y0,Y1: import only the places in this region");
+    text("--tilt", a.tilt, "tilt of the surface: remove (default) or keep")->check(one_of({"remove", "keep"}));
+    number("--outliers", a.outliers,
+           "leave out forces that are off by more than this many robust standard deviations (default 20; 0: keep all)",
+           0.0, 1e6);
+    text("--grid", a.grid, "method that brings the places onto the grid: on-grid, plane, inverse-distance or median")
+        ->check(one_of({"on-grid", "plane", "inverse-distance", "median"}));
+    number("--pitch-mm", a.pitch_mm, "pitch of the map where the places do not lie on a grid", 0.01, 1000.0);
+    number("--radius-mm", a.radius_mm, "radius around a cell from which it then takes samples", 0.01, 1000.0);
+    command.add_option("--layers", a.layers, "number of depths of the map")->check(CLI::Range(1, 200))->group("Tables");
+    text("--contact", a.contact, "start of contact: first-row or threshold")
+        ->check(one_of({"first-row", "threshold"}));
+    number("--contact-force-N", a.contact_force_N, "threshold of the force at contact", 0.0, 100.0);
+    number("--surface-z-mm", a.surface_z_mm, "sliding: height of a flat surface, used instead of an estimated one",
+           -1e5, 1e5);
+    number("--surface-node-mm", a.surface_node_mm, "sliding: spacing of the nodes of the estimated surface", 0.1,
+           1000.0);
+    text("--at-depth-mm", a.at_depths, "sliding at constant depth: the depth of each file");
+}
+
+void add_array_options(CLI::App& command, Arguments& a) {
+    const auto text = [&](const char* name, std::string& value, const char* help) {
+        return command.add_option(name, value, help)->group("Arrays");
+    };
+    text("--spacing-mm", a.spacing, "DX,DY: distance between neighbouring numbers");
+    text("--origin-mm", a.origin, "X,Y: place of the first number (default 0,0)");
+    text("--quantity", a.quantity, "quantity of the numbers: force (N, default), stiffness (N/mm) or young (kPa)")
+        ->check(one_of({"force", "stiffness", "young"}));
+    command.add_option("--scale", a.scale, "value in N, N/mm or kPa of one unit of the file; required for images")
+        ->group("Arrays");
+    command.add_option("--offset", a.offset, "number that is subtracted from the file's numbers before scaling")
+        ->group("Arrays");
+    command.add_option("--missing", a.missing, "number that stands for not measured")->group("Arrays");
+    text("--axes", a.axes, "order of three-dimensional arrays (default dyx: depth, y, x)")
+        ->check(one_of({"dyx", "dxy", "ydx", "yxd", "xdy", "xyd"}));
+    text("--dataset", a.dataset, "name of the array in a MATLAB or HDF5 file that holds several");
+    command
+        .add_option("--tangential-x", a.tangential_x,
+                    "files of the force that opposes motion along +x (default: by their names)")
+        ->group("Arrays");
+    command
+        .add_option("--tangential-y", a.tangential_y,
+                    "files of the force that opposes motion along +y (default: by their names)")
+        ->group("Arrays");
+    command.add_option("--poisson", a.poisson, "Poisson's ratio of the tissue, for Young's moduli (default 0.5)")
+        ->check(CLI::Range(0.0, 0.5))
+        ->group("Arrays");
+    command
+        .add_option("--cylinder-length-mm", a.cylinder_length_mm,
+                    "length of the cylinder, for Young's moduli (default 20)")
+        ->check(CLI::Range(0.1, 1e4))
+        ->group("Arrays");
+}
+
+}  // namespace
+
+void add_maps_import(CLI::App& maps) {
+    auto a = std::make_shared<Arguments>();
+    CLI::App* command = maps.add_subcommand(
+        "import", "Turn a recording into a map: probing, sliding, matrices of force, slices of stiffness");
+    command
+        ->add_option(
+            "FILE", a->files,
+            "a table with a header line (probing, sliding), or arrays: .npy, text, MATLAB, HDF5, PNG, TIFF")
+        ->required();
+    command->add_option("-o,--output", a->output, "new map folder NAME.map");
+    command
+        ->add_option("--form", a->form,
+                     "form of the recording: probing, sliding or matrices (default: recognised from the file)")
+        ->check(one_of({"probing", "sliding", "matrices"}));
+    command->add_option("--depths-mm", a->depths,
+                        "D1,D2,...: the map's depths; for matrices, the depth of each matrix in the files' order");
+    command
+        ->add_option("--tangential", a->tangential,
+                     "tangential force: measured, energy (derived from the normal force) or none")
+        ->check(one_of({"measured", "energy", "none"}));
+    command->add_flag("--no-fill", a->no_fill, "do not write filled_normal_N.npy beside the raw forces");
+    command->add_option("--indenter", a->indenter, "shape of the tool's tip: sphere (default) or cylinder")
+        ->check(one_of({"sphere", "cylinder"}));
+    command
+        ->add_option("--indenter-radius-mm", a->indenter_radius_mm,
+                     "radius of the tool's tip (default 3, an assumption, since recordings do not state it)")
+        ->check(CLI::Range(1e-3, 1e3));
+    command->add_option("--name", a->name, "name of the map (default: the file's name)");
+    command->add_option("--licence", a->licence, "licence of the recording, stored in the map's source");
+    add_table_options(*command, *a);
+    add_array_options(*command, *a);
+    command->add_flag("--explain", a->explain, "also print each choice, its reason and the option that overrides it");
+    command->add_flag("--json", a->json,
+                      "print one JSON object: the keys of `maps info`, and `import` with the import's figures");
+    command->callback([a] { import_map(*a); });
+}
+
+}  // namespace palpa

@@ -1,0 +1,78 @@
+// palpa maps plot
+
+#include <CLI/CLI.hpp>
+#include <cmath>
+#include <memory>
+
+#include "app/commands/maps.h"
+#include "figures/gnuplot.h"
+#include "app/commands/option_checks.h"
+#include "figures/map_figures.h"
+#include "files/input_error.h"
+#include "files/regular_file.h"
+#include "files/text.h"
+#include "stiffnessmaps/map_file.h"
+
+namespace palpa {
+namespace {
+
+struct PlotArguments {
+    std::string map;
+    std::string output;
+    std::string what = "all";
+    std::vector<std::string> at;
+    double force_N = 0.0;
+};
+
+Eigen::Vector2d place_of(const std::string& text) {
+    const auto comma = text.find(',');
+    double x_mm = 0.0;
+    double y_mm = 0.0;
+    const bool read = comma != std::string::npos && parse_number(std::string_view(text).substr(0, comma), x_mm) &&
+                      parse_number(std::string_view(text).substr(comma + 1), y_mm);
+    if (!read || !std::isfinite(x_mm + y_mm)) throw bad_input("--at", "", shown(text), "X,Y in mm, such as 35,42.5");
+    return {1e-3 * x_mm, 1e-3 * y_mm};
+}
+
+void run_plot(const CLI::App& command, const PlotArguments& arguments) {
+    check_figure(arguments.output);
+    check_output(arguments.output, {arguments.map});
+    PlotOptions options;
+    constexpr const char* kWhat[] = {"all", "matrices", "stiffness", "slice", "curves", "nodules"};
+    for (int i = 0; i < 6; ++i) {
+        if (arguments.what == kWhat[i]) options.what = static_cast<PlotWhat>(i);
+    }
+    for (const std::string& at : arguments.at) options.at_m.push_back(place_of(at));
+    if (command.count("--force-N") > 0) options.force_N = arguments.force_N;
+    const Map map = read_map(arguments.map);
+    plot_map(map, detect_regions(map, arguments.map, {}), options, arguments.output);
+}
+
+}  // namespace
+
+void add_maps_plot(CLI::App& maps) {
+    auto arguments = std::make_shared<PlotArguments>();
+    CLI::App* command = maps.add_subcommand(
+        "plot", "Draw figures of a map: matrices, stiffness, depth, section, curves, nodules (with gnuplot)");
+    command->add_option("MAP", arguments->map, "map folder")->required();
+    command->add_option("-o,--output", arguments->output, "FILE.png, .svg or .pdf")->required();
+    command
+        ->add_option(
+            "--what", arguments->what,
+            "matrices (every depth, normal and tangential), stiffness, slice (depth at a force, section through the "
+            "stiffest place), curves, nodules (with the regions that `maps detect` finds), or all")
+        ->check(one_of({"all", "matrices", "stiffness", "slice", "curves", "nodules"}))
+        ->capture_default_str();
+    command
+        ->add_option("--at", arguments->at,
+                     "X,Y in mm: draw the curve at this place; repeatable (default: the stiff places and one of median "
+                     "stiffness)")
+        ->take_all();
+    command
+        ->add_option("--force-N", arguments->force_N,
+                     "force of the depth slice (default: half of the cells' median greatest force)")
+        ->check(CLI::Range(1e-6, 1e6));
+    command->callback([command, arguments] { run_plot(*command, *arguments); });
+}
+
+}  // namespace palpa

@@ -1,0 +1,149 @@
+// palpa run: the app, or a trace without a window.
+
+#include <sys/resource.h>
+
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <cstdio>
+#include <map>
+#include <memory>
+
+#include "app/commands/command_line.h"
+#include "app/live/live.h"
+#include "app/scene_choices.h"
+#include "session/plan_in_progress.h"
+#include "session/log_rows.h"
+#include "app/commands/option_checks.h"
+#include "session/replay.h"
+#include "app/screens/frame.h"
+#include "session/session.h"
+#include "files/input_error.h"
+#include "files/regular_file.h"
+#include "files/text.h"
+
+namespace palpa {
+namespace {
+
+void print_result(const Json& result) {
+    std::printf("%s: %s samples, %s frames, %s steps, %s dropped\n", result["scene"].get<std::string>().c_str(),
+                result["samples"].dump().c_str(), result["frames"].dump().c_str(), result["steps"].dump().c_str(),
+                result["dropped_steps"].dump().c_str());
+    std::printf("  greatest force %.3g N, depth %.3g mm, lag %.3g mm\n", result["max_force_N"].get<double>(),
+                result["max_depth_mm"].get<double>(), result["max_lag_mm"].get<double>());
+    const auto skipped = result["skipped_stations"].get<std::int64_t>() + result["skipped_slides"].get<std::int64_t>();
+    if (skipped > 0) std::printf("  %lld steps along fast strokes skipped\n", static_cast<long long>(skipped));
+    if (!result.contains("lag_over_nodules_mm")) return;
+    for (const auto& nodule : result["lag_over_nodules_mm"].items()) {
+        std::printf("  over nodule %s: lag %.3g mm\n", nodule.key().c_str(), nodule.value().get<double>());
+    }
+    std::printf("  beside the nodules: lag %.3g mm\n", result["lag_beside_nodules_mm"].get<double>());
+}
+
+void print(const Json& result, bool as_json) {
+    if (as_json) {
+        std::fputs(json_text(result).c_str(), stdout);
+    } else {
+        print_result(result);
+    }
+}
+
+// A finished trial is drawn as what it revealed, another one at its moment of greatest lag or force.
+void draw(const Scene& scene, const Plan& plan, const Trace& trace, const Trial& whole, double at_s, const RunOptions& options) {
+    Trial trial = make_trial(plan, whole.mode);
+    const auto observing = [&](const Sample& sample, const State& state) { observe(plan, sample, state, trial); };
+    ReplayResult again = replay(scene, plan, trace, 0, observing, whole.finished ? 1e300 : at_s);
+    Screens screens;
+    if (trial.finished) {
+        screens.screen = Screen::reveal;
+        screens.debrief = debrief(plan, trial);
+    }
+    Settings settings;
+    settings.left_handed = options.left_handed;
+    const int width_px = options.width_px > 0 ? options.width_px : static_cast<int>(trace.info.screen_width_px);
+    const int height_px = options.height_px > 0 ? options.height_px : static_cast<int>(trace.info.screen_height_px);
+    draw_picture(scene, plan, trial, settings, screens, width_px, height_px, again.state, options.screenshot);
+}
+
+void run_headless(const RunOptions& options) {
+    if (options.trace.empty()) {
+        throw InputError("--headless: found no --replay TRACE.tsv, expected one (without a window there is no pen)");
+    }
+    if (!options.record.empty()) throw InputError("--record: found with --headless, expected a window (a replay has its trace)");
+    const auto began = std::chrono::steady_clock::now();
+    const Scene scene = load_scene(options.scene);
+    if (!options.screenshot.empty()) check_output(options.screenshot, inputs_of(scene, options.trace));
+    if (!options.log.empty()) check_output_folder(options.log);
+    const Plan plan = make_plan_here(scene);
+    const Trace trace = read_trace(options.trace);
+    std::optional<RunFiles> files;
+    std::optional<SampleLog> log;
+    if (!options.log.empty()) {
+        files = next_run(options.log, options.participant);
+        log.emplace(*files);
+    }
+    constexpr int kTimeEvery = 16;
+    Trial trial = make_trial(plan, options.test ? TrialMode::test : TrialMode::practice);
+    const ReplayResult result = replay(scene, plan, trace, kTimeEvery, [&](const Sample& sample, const State& state) {
+        if (log) log->write(row_of(sample, plan, state));
+        observe(plan, sample, state, trial);
+    });
+    Json json = result_json(scene, plan, result);
+    json["trials"] = Json::array({trial_json(plan, trial)});
+    json["wall_s"] = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    json["peak_memory_MB"] = static_cast<double>(usage.ru_maxrss) / 1024.0;
+    if (log) {
+        if (!log->sync()) throw std::runtime_error(options.log + ": the log could not be written to its end");
+        write_text_atomically(files->file("_settings.json"), json_text(settings_json(scene, plan, result.state)));
+        write_text_atomically(files->file("_performance.json"), json_text(json));
+    }
+    if (!options.screenshot.empty()) {
+        const Extremes& extremes = result.state.extremes;
+        const double at_s = extremes.lag_m > 0.0 ? extremes.lag_at_s : extremes.force_at_s;
+        draw(scene, plan, trace, trial, at_s, options);
+    }
+    print(json, options.json);
+}
+
+}  // namespace
+
+void add_run(CLI::App& app) {
+    auto options = std::make_shared<RunOptions>();
+    CLI::App* command = app.add_subcommand("run", "Open the app on a scene or a map, or replay a trace");
+    command->add_option("SCENE", options->scene,
+                        "scene JSON or map folder (default: the scene of last time; "
+                        "the default scene at first and for replays)");
+    command->add_option("--replay", options->trace, "trace to replay instead of live input");
+    command->add_flag("--headless", options->headless,
+                      "open no window: replay the trace as fast as possible, then exit");
+    command->add_option("--log", options->log,
+                        "folder for the log (BIDS layout; existing files are never overwritten)");
+    command->add_option("--participant", options->participant,
+                        "participant's code in the names of the log files (default 01)");
+    command->add_option(
+        "--screenshot", options->screenshot,
+        "write a PNG of the last frame; headless: of the moment of greatest lag, or of greatest force without a lag");
+    command->add_option("--record", options->record, "write the input to a new trace TRACE.tsv");
+    command->add_flag("--json", options->json, "print one JSON object on standard output");
+    command->add_option("--quit-after-s", options->quit_after_s, "close the window after this many seconds")
+        ->check(CLI::Range(0.0, 1e6));
+    command->add_option("--width-px", options->width_px, "width of the window (default: as last time, 1280 at first)")
+        ->check(CLI::Range(100, 16384));
+    command->add_option("--height-px", options->height_px, "height of the window (default: as last time, 800 at first)")
+        ->check(CLI::Range(100, 16384));
+    command->add_flag("--practice", options->practice, "show the nodules during the trial");
+    command->add_flag("--test", options->test, "hide the nodules until the trial is finished")->excludes("--practice");
+    const std::map<std::string, Screen> screens{{"trial", Screen::trial}, {"devices", Screen::devices}, {"scale", Screen::scale},
+                                                {"calibrate", Screen::calibrate}, {"maps", Screen::maps}};
+    command->add_option_function<std::string>("--screen", [options, screens](const std::string& name) { options->screen = screens.at(name); },
+                                              "screen to open first")
+        ->check(one_of({"trial", "devices", "scale", "calibrate", "maps"}));
+    command->add_flag("--left-handed", options->left_handed, "put the controls on the right");
+    command->callback([options] {
+        if (options->headless) return run_headless(*options);
+        if (const auto result = run_live(*options)) print(*result, options->json);
+    });
+}
+
+}  // namespace palpa

@@ -1,0 +1,22 @@
+// palpa study: protocols, simulated participants, analysis
+
+#include "app/commands/study.h"
+
+#include <CLI/CLI.hpp>
+
+#include "app/commands/command_line.h"
+
+namespace palpa {
+
+void add_study(CLI::App& app) {
+    CLI::App* study = app.add_subcommand("study", "Studies with people: order, run, simulate, import, analyse, watch");
+    study->require_subcommand(1);
+    add_study_order(*study);
+    add_study_run(*study);
+    add_study_simulate(*study);
+    add_study_import(*study);
+    add_study_analyse(*study);
+    add_study_watch(*study);
+}
+
+}  // namespace palpa

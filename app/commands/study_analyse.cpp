@@ -1,0 +1,82 @@
+// palpa study analyse DIR|COUNTS.tsv
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <memory>
+
+#include "app/commands/study.h"
+#include "figures/study_figures.h"
+#include "files/input_error.h"
+#include "files/regular_file.h"
+#include "files/text.h"
+#include "study/read_logs.h"
+#include "study/report.h"
+
+namespace palpa {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct AnalyseOptions {
+    std::string input;
+    std::string output;
+    ReportOptions report;
+    bool json = false;
+};
+
+void write_report(const Report& report, const fs::path& folder) {
+    std::error_code error;
+    fs::create_directories(folder, error);
+    if (error || !fs::is_directory(folder)) throw bad_input(folder.string(), "", "no folder", "a folder, or a name that is free");
+    for (const ReportTable& table : report_tables(report)) {
+        write_text_atomically(folder / (table.name + ".tsv"), tsv_text(table));
+    }
+    write_text_atomically(folder / "report.md", report_markdown(report));
+    write_text_atomically(folder / "report.json", json_text(report_json(report)));
+    const std::string trouble = draw_figures(report, folder);
+    if (!trouble.empty()) std::fprintf(stderr, "palpa: %s\n", trouble.c_str());
+}
+
+std::vector<std::string> names_of(const Report& report) {
+    std::vector<std::string> names{"report.md", "report.json", "figures.gp", "figures.png", "figures.svg", "figures.pdf"};
+    for (const ReportTable& table : report_tables(report)) names.push_back(table.name + ".tsv");
+    return names;
+}
+
+Observations read_observations(const std::string& input) {
+    if (!fs::exists(input)) throw bad_input(input, "", "nothing", "a folder of logs or a table COUNTS.tsv");
+    return fs::is_directory(input) ? read_study(input) : read_counts(input);
+}
+
+void analyse(const AnalyseOptions& options) {
+    if (!options.output.empty()) check_output_folder(options.output);
+    const Report report = make_report(read_observations(options.input), options.report);
+    // logs of a study have names of their own; a table of counts may have any
+    if (!options.output.empty() && !fs::is_directory(options.input)) check_output_folder(options.output, {options.input}, names_of(report));
+    if (!options.output.empty()) write_report(report, options.output);
+    const std::string text = options.json ? json_text(report_json(report)) : report_markdown(report);
+    std::fputs(text.c_str(), stdout);
+}
+
+}  // namespace
+
+void add_study_analyse(CLI::App& study) {
+    auto options = std::make_shared<AnalyseOptions>();
+    CLI::App* command = study.add_subcommand("analyse", "Make tables and figures from a study's logs, or from counts");
+    command->add_option("INPUT", options->input,
+                        "folder of a study's logs; or a table COUNTS.tsv with the columns condition tp fn fp (also n, "
+                        "nodule, participant), or condition correct n (also comparison, participant)")
+        ->required();
+    command->add_option("-o,--output", options->output, "folder for report.md, report.json, tables and figures");
+    command->add_option("--level", options->report.bootstrap.level, "confidence level of all intervals (default 0.95)")
+        ->check(CLI::Range(0.5, 0.9999));
+    command
+        ->add_option("--resamples", options->report.bootstrap.resamples,
+                     "number of resamples of the bootstrap over participants (default 2000)")
+        ->check(CLI::Range(100, 1000000));
+    command->add_option("--seed", options->report.bootstrap.seed, "seed of the bootstrap (default 1)");
+    command->add_flag("--json", options->json, "print one JSON object on standard output");
+    command->callback([options] { analyse(*options); });
+}
+
+}  // namespace palpa

@@ -1,0 +1,121 @@
+// palpa study order PROTOCOL.json --participants N
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <memory>
+
+#include "app/commands/study.h"
+#include "app/study/study_scenes.h"
+#include "files/json.h"
+#include "files/text.h"
+
+namespace palpa {
+namespace {
+
+struct OrderOptions {
+    std::string protocol;
+    int participants = 0;
+    bool json = false;
+};
+
+Json trial_json(const Protocol& protocol, const PlannedTrial& trial) {
+    Json json{{"trial", trial.trial},
+              {"block", trial.practice ? "practice" : "test"},
+              {"condition", protocol.conditions[trial.condition].id},
+              {"repeat", trial.repeat + 1}};
+    if (protocol.task == TaskKind::find) {
+        json["map_rotation_deg"] = trial.rotate_deg;
+        json["map_flip"] = trial.flip;
+    } else {
+        json["comparison_kPa"] = protocol.choice.comparisons_kPa[static_cast<std::size_t>(trial.comparison)];
+        json["reference_first"] = trial.reference_first;
+    }
+    json["seed"] = trial.seed;
+    json["break_before"] = trial.break_before;
+    return json;
+}
+
+Json order_json(const Protocol& protocol, const std::vector<PlannedParticipant>& people) {
+    Json json{{"protocol", protocol.name},
+              {"version", protocol.version},
+              {"sha256", protocol.sha256},
+              {"seed", protocol.seed},
+              {"order", name_of(protocol.order)},
+              {"task", name_of(protocol.task)}};
+    json["participants"] = Json::array();
+    for (const PlannedParticipant& who : people) {
+        Json trials = Json::array();
+        for (const PlannedTrial& trial : who.trials) trials.push_back(trial_json(protocol, trial));
+        json["participants"].push_back({{"number", who.number},
+                                        {"group", protocol.groups[who.group].id},
+                                        {"order_id", who.order_id},
+                                        {"trials", trials}});
+    }
+    json["imbalance"] = Json::array();
+    for (const Imbalance& one : imbalance_of(protocol, people)) {
+        json["imbalance"].push_back({{"group", one.group},
+                                     {"participants", one.participants},
+                                     {"position", one.position},
+                                     {"carry_over", one.carry_over},
+                                     {"turns", one.turns},
+                                     {"full_rounds_of", one.full_rounds_of}});
+    }
+    return json;
+}
+
+void print_trial(const Protocol& protocol, const PlannedTrial& trial) {
+    const std::string& condition = protocol.conditions[trial.condition].id;
+    std::printf("%s  %3d  %-8s  %-20s", trial.break_before ? "  -- break --\n" : "", trial.trial,
+                trial.practice ? "practice" : "test", condition.c_str());
+    if (protocol.task == TaskKind::choice) {
+        const double comparison_kPa = protocol.choice.comparisons_kPa[static_cast<std::size_t>(trial.comparison)];
+        std::printf("  %s kPa, reference %s\n", short_number(comparison_kPa).c_str(), trial.reference_first ? "first" : "second");
+        return;
+    }
+    std::printf("  turned %3d deg%s\n", trial.rotate_deg, trial.flip ? ", flipped" : "");
+}
+
+void print_imbalance(const Protocol& protocol, const std::vector<PlannedParticipant>& people) {
+    for (const Imbalance& one : imbalance_of(protocol, people)) {
+        std::printf("group %s, %d people: positions differ by %d, carry-over by %d, views by %d", one.group.c_str(),
+                    one.participants, one.position, one.carry_over, one.turns);
+        if (one.participants % one.full_rounds_of != 0) {
+            std::printf("; a multiple of %d people would balance the order", one.full_rounds_of);
+        }
+        std::printf("\n");
+    }
+}
+
+void print_order(const OrderOptions& options) {
+    const Protocol protocol = read_protocol(options.protocol);
+    load_study_scenes(protocol);  // a missing map is better found now
+    std::vector<PlannedParticipant> people;
+    for (int number = 1; number <= options.participants; ++number) people.push_back(plan_participant(protocol, number));
+    if (options.json) {
+        std::fputs(json_text(order_json(protocol, people)).c_str(), stdout);
+        return;
+    }
+    std::printf("%s, version %s, seed %u, order %s\n", protocol.name.c_str(), protocol.version.c_str(), protocol.seed,
+                name_of(protocol.order));
+    for (const PlannedParticipant& who : people) {
+        std::printf("participant %d, group %s, order %d\n", who.number, protocol.groups[who.group].id.c_str(), who.order_id);
+        for (const PlannedTrial& trial : who.trials) print_trial(protocol, trial);
+    }
+    print_imbalance(protocol, people);
+}
+
+}  // namespace
+
+void add_study_order(CLI::App& study) {
+    auto options = std::make_shared<OrderOptions>();
+    CLI::App* command = study.add_subcommand(
+        "order", "Show each participant's conditions and their order, and how balanced the orders are");
+    command->add_option("PROTOCOL", options->protocol, "protocol JSON")->required();
+    command->add_option("--participants", options->participants, "number of participants")
+        ->required()
+        ->check(CLI::Range(1, 100000));
+    command->add_flag("--json", options->json, "print one JSON object on standard output");
+    command->callback([options] { print_order(*options); });
+}
+
+}  // namespace palpa

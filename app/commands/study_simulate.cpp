@@ -1,0 +1,86 @@
+// palpa study simulate PROTOCOL.json --participants N --seed S -o DIR
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstdio>
+#include <memory>
+#include <thread>
+
+#include "app/commands/study.h"
+#include "app/commands/option_checks.h"
+#include "app/study/simulate.h"
+#include "files/json.h"
+#include "files/regular_file.h"
+
+namespace palpa {
+namespace {
+
+struct Arguments {
+    SimulateOptions options;
+    std::string protocol;
+    std::string output;
+    std::string samples = "all";
+    int jobs = 0;
+    bool json = false;
+};
+
+void simulate(const Arguments& arguments) {
+    SimulateOptions options = arguments.options;
+    options.output = arguments.output;
+    options.samples = arguments.samples == "all";
+    const auto cores = static_cast<int>(std::thread::hardware_concurrency());
+    // twice the cores: a participant who waits for the disk leaves the core to another
+    options.jobs = std::min(options.participants, arguments.jobs > 0 ? arguments.jobs : 2 * std::max(1, cores));
+    check_output_folder(arguments.output);
+    const Protocol protocol = read_protocol(arguments.protocol);
+    const SimulateResult result = simulate_study(protocol, options);
+    const double MB_per_s = result.wall_s > 0.0 ? result.written_MB / result.wall_s : 0.0;
+    if (arguments.json) {
+        const Json json{{"simulated", true},
+                        {"participants", options.participants},
+                        {"trials", result.trials},
+                        {"already_there", result.already_there},
+                        {"left_out", result.left_out},
+                        {"samples", result.samples},
+                        {"samples_MB", result.written_MB},
+                        {"samples_MB_per_s", MB_per_s},
+                        {"wall_s", result.wall_s}};
+        std::fputs(json_text(json).c_str(), stdout);
+        return;
+    }
+    std::printf("%s: %d SIMULATED participants, %d trials now, %d already there, %lld samples in %.1f s\n",
+                arguments.output.c_str(), options.participants, result.trials, result.already_there,
+                static_cast<long long>(result.samples), result.wall_s);
+    if (result.left_out > 0) {
+        std::printf("  %d trials left out: by hand on a real phantom, or on devices that are not simulated\n", result.left_out);
+    }
+    if (options.samples) std::printf("  %.1f MB of samples, %.1f MB/s\n", result.written_MB, MB_per_s);
+}
+
+}  // namespace
+
+void add_study_simulate(CLI::App& study) {
+    auto arguments = std::make_shared<Arguments>();
+    CLI::App* command =
+        study.add_subcommand("simulate", "Run a study with simulated participants, through the real loop and logs");
+    command->add_option("PROTOCOL", arguments->protocol, "protocol JSON")->required();
+    command->add_option("--participants", arguments->options.participants, "number of simulated participants")
+        ->required()
+        ->check(CLI::Range(1, 9999));
+    command->add_option("--seed", arguments->options.seed, "seed of the simulated hands and eyes (default 1)")
+        ->check(CLI::Range(0, 2000000000));
+    command->add_option("-o,--output", arguments->output, "the study's folder; an interrupted call is resumed there")
+        ->required();
+    command->add_option("--samples", arguments->samples, "samples of the pen to log: all or none")
+        ->check(one_of({"none", "all"}))
+        ->capture_default_str();
+    command->add_flag("--practice", arguments->options.practice, "simulate the practice trials too");
+    command->add_option("--rate-Hz", arguments->options.rate_Hz, "sample rate of the pen (default 60)")
+        ->check(CLI::Range(10.0, 2000.0));
+    command->add_option("-j,--jobs", arguments->jobs, "number of participants at a time (default: twice the cores)")
+        ->check(CLI::Range(1, 256));
+    command->add_flag("--json", arguments->json, "print one JSON object on standard output");
+    command->callback([arguments] { simulate(*arguments); });
+}
+
+}  // namespace palpa

@@ -1,0 +1,74 @@
+// What the app begins with: options, settings, and the first scene.
+
+#include <cmath>
+#include <filesystem>
+#include <utility>
+
+#include "app/live/live_app.h"
+#include "app/scene_choices.h"
+
+namespace palpa {
+
+void load(const RunOptions& options, App& app) {
+    app.options = options;
+    app.settings_path = settings_file();
+    std::string problem;
+    app.settings = load_settings(app.settings_path, problem);
+    if (!problem.empty()) app.screens.problems.push_back(problem);
+    if (options.test) app.settings.test_mode = true;
+    if (options.practice) app.settings.test_mode = false;
+    if (options.left_handed) app.settings.left_handed = true;
+    if (options.width_px > 0) app.settings.width_px = options.width_px;
+    if (options.height_px > 0) app.settings.height_px = options.height_px;
+    if (!options.protocol.empty()) return load_study(options, app);
+    app.screens.scenes = scene_choices();
+    app.screens.profiles = profile_choices();
+    if (!options.trace.empty()) {
+        app.trace = read_trace(options.trace);
+        app.settings.width_px = static_cast<int>(app.trace->info.screen_width_px);
+        app.settings.height_px = static_cast<int>(app.trace->info.screen_height_px);
+    }
+    const bool own_choice = options.scene.empty() && !app.trace;  // a replay is the same for everybody
+    Scene scene;
+    if (own_choice && !app.settings.scene.empty()) attempt(app, [&] { scene = load_scene(app.settings.scene); });
+    if (scene.name.empty()) scene = load_scene(options.scene);
+    if (own_choice && std::filesystem::exists(app.settings.profile)) scene.profile = app.settings.profile;
+    if (scene.linear) {
+        app.unprepared = std::move(scene);
+        return;
+    }
+    Plan plan = make_plan(scene);
+    change_tissue(std::move(scene), std::move(plan), {}, app.session);
+}
+
+void know_screen(const Window& window, App& app) {
+    app.screens.screen_name = window.screen_name();
+    const auto known = app.settings.px_per_mm.find(app.screens.screen_name);
+    if (std::isfinite(window.touch_px_per_mm())) app.screens.card_px_per_mm = window.touch_px_per_mm();
+    if (known != app.settings.px_per_mm.end()) app.screens.card_px_per_mm = app.screens.px_per_mm = known->second;
+}
+
+namespace {
+
+// False if the window was closed before the tissue was ready.
+bool prepare_first(Scene scene, Window& window, Gui& gui, App& app) {
+    Plan plan;
+    if (!prepare(window, gui, scene, plan)) return false;
+    change_tissue(std::move(scene), std::move(plan), screen_of(info_of(app, window)), app.session);
+    return true;
+}
+
+}  // namespace
+
+// A choice of last time that can no longer be prepared must not lock the person out.
+bool prepare_chosen(Window& window, Gui& gui, App& app) {
+    if (!app.unprepared) return true;
+    const Scene scene = *std::exchange(app.unprepared, std::nullopt);
+    const bool own_choice = app.options.scene.empty() && !app.trace && !app.settings.scene.empty();
+    if (!own_choice) return prepare_first(scene, window, gui, app);
+    bool ready = false;
+    if (attempt(app, [&] { ready = prepare_first(scene, window, gui, app); })) return ready;
+    return prepare_first(load_scene(""), window, gui, app);
+}
+
+}  // namespace palpa

@@ -1,0 +1,204 @@
+// The trials of the app: how one begins on a scene and how it ends. A study's are in study_trials.cpp.
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "app/screens/frame.h"
+#include "app/live/live_app.h"
+#include "app/scene_choices.h"
+#include "app/screens/map_screen.h"
+#include "session/plan_in_progress.h"
+#include "session/replay.h"
+#include "app/study/study_run.h"
+#include "app/screens/words.h"
+#include "render/gl.h"
+
+namespace palpa {
+namespace {
+
+std::string device_names(const Window& window) {
+    std::string names;
+    for (const PointerDevice& device : window.devices()) names += (names.empty() ? "" : ", ") + device.name;
+    return names.empty() ? "mouse" : names;
+}
+
+}  // namespace
+
+TraceInfo info_of(const App& app, const Window& window) {
+    if (app.trace) return app.trace->info;
+    TraceInfo info;
+    info.screen_width_px = window.width_px();
+    info.screen_height_px = window.height_px();
+    if (std::isfinite(app.screens.px_per_mm)) {
+        info.screen_width_mm = info.screen_width_px / app.screens.px_per_mm;
+        info.screen_height_mm = info.screen_height_px / app.screens.px_per_mm;
+    }
+    info.device = device_names(window);
+    return info;
+}
+
+double finger_offset_mm(const App& app) { return app.settings.above_finger ? static_cast<double>(kFingerOffset_mm) : 0.0; }
+
+double now_of(const App& app, const Window& window) { return window.now_s() - app.trace_shift_s; }
+
+Json result_of(const App& app) {
+    const Session& s = app.session;
+    Json result = run_json(s.scene, s.plan, s.state, app.frames, app.times.latency);
+    const auto ms = [](const Meter& meter, double q) { return 1e-6 * meter.quantile_ns(q); };
+    result["frame_cpu_ms"] = {{"p50", ms(app.times.cpu, 0.5)}, {"p99", ms(app.times.cpu, 0.99)}};
+    result["frame_gl_ms"] = {{"p50", ms(app.times.gl, 0.5)}, {"p99", ms(app.times.gl, 0.99)}};
+    result["latency_besides_drawing_ms"] = {{"p50", ms(app.times.ready, 0.5)}, {"p99", ms(app.times.ready, 0.99)}};
+    result["problems"] = app.screens.problems;
+    if (app.screens.check) result["device_check"] = check_json(*app.screens.check);
+    result["trials"] = s.finished;
+    if (!s.trial.finished) result["trials"].push_back(trial_json(s.plan, s.trial));
+    return result;
+}
+
+void end_presses(Window& window, App& app) {
+    window.end_presses();
+    app.hold.held.clear();
+    const State& state = app.session.state;
+    if (!state.pointer) return;
+    Sample end;
+    end.t_host_s = now_of(app, window);
+    end.pointer_id = *state.pointer;
+    end.tool = state.pointer_tool;
+    end.phase = Phase::cancel;
+    end.x_px = end.y_px = kMissing;  // where it was
+    take_sample(end, app.session);
+}
+
+void begin(const Window& window, const Gui& gui, App& app) {
+    const TrialMode mode = app.settings.test_mode ? TrialMode::test : TrialMode::practice;
+    app.screens.screen = Screen::trial;
+    app.screens.maps.reset();
+    app.screens.menu = false;
+    app.screens.note.clear();
+    app.screens.asked.reset();
+    app.stopped.clear();
+    app.begin_waits = false;
+    SessionFiles files{app.options.log, app.options.participant, app.options.record};
+    files.first_run = app.options.first_run;
+    files.finger_offset_mm = finger_offset_mm(app);
+    begin_trial(files, info_of(app, window), mode, app.session);
+    if (!app.trace) take_sample(resize_sample(window, gui, app.settings, now_of(app, window)), app.session);
+}
+
+bool close_trial(App& app) {
+    const std::string where = !app.options.log.empty() ? app.options.log : app.options.record;
+    const std::optional<RunFiles> files = app.session.files;
+    const bool good = close_files(result_of(app), app.session);
+    if (app.keeper != nullptr && files) app.keeper->keep(*files, true);
+    if (good) return true;
+    app.stopped = words::filled(words::kCannotBeWritten, {where});
+    return false;
+}
+
+void put_scene(Scene scene, Plan plan, Window& window, App& app) {
+    end_presses(window, app);
+    if (!close_trial(app)) app.screens.problems.push_back(app.stopped);
+    change_tissue(std::move(scene), std::move(plan), screen_of(info_of(app, window)), app.session);
+    if (app.screens.screen == Screen::reveal) app.screens.screen = Screen::trial;  // what it tells is of the tissue before
+}
+
+void begin_anew(Window& window, const Gui& gui, App& app) {
+    end_presses(window, app);
+    if (!close_trial(app)) app.screens.problems.push_back(app.stopped);
+    if (app.keeper != nullptr && !app.keeper->ready()) {
+        app.begin_waits = true;  // no trial begins before the last one is safe
+        return;
+    }
+    if (!attempt(app, [&] { begin(window, gui, app); })) app.stopped = app.screens.problems.back();
+}
+
+void begin_when_kept(Window& window, const Gui& gui, App& app) {
+    if (app.keeper == nullptr) return;
+    for (std::string problem = app.keeper->problem(); !problem.empty(); problem = app.keeper->problem()) {
+        app.screens.problems.push_back(problem);
+    }
+    if (app.begin_waits && app.keeper->ready()) begin_anew(window, gui, app);
+}
+
+bool prepare(Window& window, Gui& gui, const Scene& scene, Plan& plan) {
+    if (!scene.linear) {
+        plan = make_plan(scene);
+        return true;
+    }
+    PlanInProgress work(scene);
+    std::vector<Sample> ignored;
+    while (!work.wait(kFrame_s)) {
+        window.poll(0.0, ignored);
+        if (window.close_requested()) return false;
+        gui.begin_frame(kFrame_s, true);
+        draw_progress(words::kPreparing, work.share());
+        gui.end_frame();
+        clear_screen(window.width_px(), window.height_px());
+        gui.draw();
+        window.present();
+    }
+    plan = work.take();
+    return true;
+}
+
+void change_scene(Window& window, Gui& gui, const std::string& file, const std::string& profile, App& app) {
+    end_presses(window, app);  // what comes while the tissue is prepared reaches none
+    Scene scene;
+    Plan plan;
+    bool ready = false;
+    const bool good = attempt(app, [&] {
+        scene = load_scene(file);
+        if (!profile.empty()) scene.profile = profile;
+        ready = prepare(window, gui, scene, plan);
+    });
+    if (!good || !ready) return;
+    put_scene(std::move(scene), std::move(plan), window, app);
+    begin_anew(window, gui, app);
+}
+
+void turn_tissue(Window& window, App& app) {
+    Scene turned = app.session.scene;
+    Mapping& mapping = turned.mapping;
+    const int now = mapping.rotate_deg / 90 + (mapping.flip ? 4 : 0);
+    constexpr int kSteps[] = {3, 5};  // both reach all eight before any comes again
+    const int next = (now + kSteps[turned.seed % 2]) % 8;
+    mapping.rotate_deg = 90 * (next % 4);
+    mapping.flip = next >= 4;
+    put_scene(std::move(turned), app.session.plan, window, app);
+}
+
+void turn_if_shown(Window& window, App& app) {
+    if (may_show_maps(app.session.trial)) turn_tissue(window, app);
+}
+
+bool marks_at_stake(const App& app) {
+    const bool between = app.screens.study && app.screens.screen != Screen::trial;
+    const Trial& trial = app.session.trial;
+    return !app.trace && !between && app.stopped.empty() && !trial.finished && !trial.marks.empty();
+}
+
+void act(Action action, double now_s, App& app) {
+    const bool choice = app.screens.study && app.screens.study->protocol.task == TaskKind::choice;
+    if (choice && action != Action::finish) return;  // there is nothing to mark
+    if (app.begin_waits) return;                     // there is no trial to act on yet
+    Sample sample;
+    sample.t_host_s = now_s;
+    sample.phase = Phase::ui;
+    sample.action = action;
+    if (action == Action::mark) {
+        if (!app.session.trial.last_px) return;
+        sample.x_px = app.session.trial.last_px->x();
+        sample.y_px = app.session.trial.last_px->y();
+    }
+    take_sample(sample, app.session);
+    if (!app.session.trial.finished) return;
+    if (app.screens.study) return finish_study_trial(app);
+    app.screens.debrief = debrief(app.session.plan, app.session.trial);
+    app.screens.screen = Screen::reveal;
+    app.screens.note.clear();
+    app.screens.menu = false;
+    if (!close_trial(app)) app.screens.problems.push_back(app.stopped);
+}
+
+}  // namespace palpa

@@ -1,0 +1,85 @@
+#include "app/scene_choices.h"
+
+#include <algorithm>
+#include <cstdlib>
+#include <exception>
+
+#include "app/assets.h"
+#include "files/input_error.h"
+#include "files/json.h"
+
+namespace palpa {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string name_in(const fs::path& file) {
+    try {
+        const Json json = read_json(file);
+        if (json.contains("name") && json["name"].is_string()) return json["name"];
+    } catch (const std::exception&) {
+        return {};  // another file of the folder; choosing it would say what is wrong
+    }
+    return file.stem().string();
+}
+
+void add_choices(const fs::path& folder, std::vector<Choice>& out) {
+    std::error_code error;
+    for (const auto& entry : fs::directory_iterator(folder, error)) {
+        if (entry.path().extension() != ".json") continue;
+        const std::string name = name_in(entry.path());
+        if (!name.empty()) out.push_back({name, entry.path().string()});
+    }
+}
+
+std::vector<Choice> choices(const char* kind) {
+    std::vector<Choice> out;
+    add_choices(assets_folder() / kind, out);
+    add_choices(user_folder() / kind, out);
+    std::sort(out.begin(), out.end(), [](const Choice& a, const Choice& b) { return a.name < b.name; });
+    return out;
+}
+
+}  // namespace
+
+fs::path user_folder() {
+    if (const char* data = std::getenv("XDG_DATA_HOME"); data != nullptr && *data == '/') return fs::path(data) / "palpa";
+    if (const char* home = std::getenv("HOME"); home != nullptr && *home == '/') return fs::path(home) / ".local/share/palpa";
+    return {};
+}
+
+Scene load_scene(const std::string& name) {
+    const fs::path assets = assets_folder();
+    if (name.empty()) return read_scene(assets / "scenes" / "default.json", assets);
+    if (fs::is_directory(name)) return scene_of_map(name, assets);
+    if (!fs::exists(name)) throw bad_input(name, "", "nothing", "a scene SCENE.json or a map folder");
+    return read_scene(name, assets);
+}
+
+std::vector<fs::path> inputs_of(const Scene& scene, const fs::path& trace) {
+    std::vector<fs::path> inputs{scene.file, scene.map, scene.profile};
+    if (scene.linear) inputs.push_back(scene.linear->phantom);
+    if (!trace.empty()) inputs.insert(inputs.end(), {trace, fs::path(trace).replace_extension(".json")});
+    return inputs;
+}
+
+std::vector<Choice> scene_choices() { return choices("scenes"); }
+std::vector<Choice> profile_choices() { return choices("profiles"); }
+
+std::vector<Choice> map_choices() {
+    std::vector<Choice> out;
+    for (const fs::path& folder : {assets_folder() / "maps", user_folder() / "maps"}) {
+        std::error_code error;
+        for (const auto& entry : fs::directory_iterator(folder, error)) {
+            if (entry.path().extension() != ".map") continue;
+            const std::string name = name_in(entry.path() / "map.json");
+            if (!name.empty()) out.push_back({name, entry.path().string()});
+        }
+    }
+    std::sort(out.begin(), out.end(), [](const Choice& a, const Choice& b) { return a.name < b.name; });
+    return out;
+}
+
+fs::path default_trace() { return assets_folder() / "traces" / "raster.tsv"; }
+
+}  // namespace palpa

@@ -1,0 +1,32 @@
+#pragma once
+// What a person names on the command line, or chooses in the menu, becomes a scene.
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "scene/scene.h"
+
+namespace palpa {
+
+struct Choice {
+    std::string name;  // as shown
+    std::string file;
+};
+
+// "" = the default scene; NAME.json = a scene; a folder = a map with default effects.
+Scene load_scene(const std::string& name);
+
+// The files and folders that the scene and the trace (with what stands beside it) are read from: no result goes there.
+std::vector<std::filesystem::path> inputs_of(const Scene& scene, const std::filesystem::path& trace = {});
+
+// What the menu offers: the shipped scenes and profiles, and those in the user's data folder
+// ($XDG_DATA_HOME/palpa/scenes and profiles). Files that cannot be read are left out.
+std::vector<Choice> scene_choices();
+std::vector<Choice> profile_choices();
+std::vector<Choice> map_choices();  // folders NAME.map, of the assets and of $XDG_DATA_HOME/palpa/maps
+std::filesystem::path user_folder();  // empty if neither XDG_DATA_HOME nor HOME names one
+
+std::filesystem::path default_trace();
+
+}  // namespace palpa

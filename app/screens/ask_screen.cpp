@@ -1,0 +1,51 @@
+// Before marks are thrown away: one question for everything that would do it.
+
+#include <algorithm>
+
+#include "app/screens/widgets.h"
+#include "app/screens/screens.h"
+#include "app/screens/words.h"
+
+namespace palpa {
+namespace {
+
+bool ends_trial(const Wishes& wishes) {
+    return wishes.again || wishes.next || wishes.quit || wishes.scene || wishes.profile || wishes.mode || wishes.above_finger || wishes.px_per_mm;
+}
+
+}  // namespace
+
+Wishes ask_first(Wishes wishes, Screens& screens) {
+    if (wishes.sure || !ends_trial(wishes)) return wishes;
+    Wishes at_once;
+    at_once.action = wishes.action;  // a mark of the same frame stays
+    wishes.action.reset();
+    screens.asked = std::move(wishes);
+    return at_once;
+}
+
+void draw_ask(const Shown& shown, Gui& gui, Screens& screens, Wishes& wishes) {
+    const WindowSize window = gui.size_px();
+    gui.claim({0.0f, 0.0f, window.width, window.height});  // nothing is palpated meanwhile
+    const float width_px = std::min(window.width, 110.0f * gui.mm());
+    const float height_px = std::min(window.height, 62.0f * gui.mm());
+    const float x0 = 0.5f * (window.width - width_px);
+    const float y0 = 0.5f * (window.height - height_px);
+    begin_panel("ask", {x0, y0, x0 + width_px, y0 + height_px}, gui);
+    if (ImGui::IsWindowAppearing()) ImGui::SetWindowFocus();
+    const std::size_t marks = shown.trial.marks.size();
+    ImGui::TextUnformatted(words::kLoseMarks);
+    paragraph(marks == 1 ? words::kLoseMark : words::filled(words::kLoseManyMarks, {std::to_string(marks)}));
+    const bool stay = big_button(words::kGoOnWithTrial, words::kEscape, {0.0f, kMark_mm, true, false}, gui) || gui.pressed(key::escape);
+    const bool end = big_button(words::kEndTrial, words::kEnter, {0.0f, kTarget_mm, true, false}, gui) || gui.pressed(key::enter) ||
+                     gui.pressed(key::pad_enter);
+    end_panel("ask", gui);
+    if (!stay && !end) return;
+    if (!stay) {
+        wishes = *screens.asked;
+        wishes.sure = true;
+    }
+    screens.asked.reset();
+}
+
+}  // namespace palpa

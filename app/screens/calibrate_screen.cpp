@@ -1,0 +1,282 @@
+#include "app/screens/calibrate_screen.h"
+
+#include <algorithm>
+#include <cmath>
+#include <ctime>
+#include <exception>
+
+#include "app/scene_choices.h"
+#include "app/screens/widgets.h"
+#include "app/screens/words.h"
+#include "calibration/profile_file.h"
+#include "files/input_error.h"
+
+namespace palpa {
+namespace {
+
+std::filesystem::path session_folder(const CalibrateForm& form) {
+    const std::filesystem::path folder = user_folder();
+    if (folder.empty()) throw InputError("HOME: found nothing, expected a folder to keep the calibration in");
+    return folder / "calibrations" / form.name;
+}
+
+bool plain(const char* name) {
+    const std::string text = name;
+    return !text.empty() && std::all_of(text.begin(), text.end(), [](unsigned char c) { return std::isalnum(c) != 0 || c == '-' || c == '_'; });
+}
+
+RecordArguments arguments_of(const CalibrateForm& form) {
+    if (!plain(form.name)) throw bad_input("name", "", shown(form.name), "letters, digits, - and _");
+    RecordArguments arguments;
+    arguments.folder = session_folder(form).string();
+    arguments.resume = std::filesystem::exists(points_file(arguments));
+    arguments.sensor = form.kind == 0 ? "typed" : form.kind == 1 ? "netft:" + std::string(form.address) : "serial:" + std::string(form.port);
+    arguments.counts_per_N = form.counts_per_N;
+    arguments.N_per_count = form.N_per_count;
+    return arguments;
+}
+
+template <class Work>
+void attempt(CalibrateForm& form, const Work& work) {
+    try {
+        work();
+    } catch (const std::exception& error) {
+        form.problem = error.what();
+    }
+}
+
+// Beside what is there already: NAME, NAME-2, ...
+std::filesystem::path free_profile(const CalibrateForm& form) {
+    const std::filesystem::path folder = user_folder() / "profiles";
+    std::filesystem::create_directories(folder);
+    std::filesystem::path file = folder / (std::string(form.name) + ".json");
+    for (int i = 2; std::filesystem::exists(file); ++i) file = folder / (std::string(form.name) + "-" + std::to_string(i) + ".json");
+    return file;
+}
+
+std::string today() {
+    const std::time_t now = std::time(nullptr);
+    std::tm local{};
+    localtime_r(&now, &local);
+    char text[16];
+    std::strftime(text, sizeof text, "%Y-%m-%d", &local);
+    return text;
+}
+
+void keep_profile(CalibrateForm& form) {
+    attempt(form, [&] {
+        close_recording(*form.recording);
+        CalibrateOptions options;
+        options.range = form.recording->arguments.options.range;
+        CalibrationRows rows = read_points(points_file(form.recording->arguments), {});
+        Calibration calibration = calibrate(rows, options);
+        calibration.profile.device.pen = form.name;
+        calibration.profile.device.date = today();
+        const std::filesystem::path file = free_profile(form);
+        const Json quality{{"median_relative_error", calibration.median_relative_error}, {"n_points", calibration.n_points},
+                           {"warnings", calibration.warnings}};
+        write_profile(calibration.profile, quality, file);
+        form.guide.note = words::filled(words::kKeptAs, {file.string()});
+        for (const std::string& warning : calibration.warnings) form.guide.note += "\n! " + warning;
+        form.recording.reset();
+    });
+}
+
+struct Plot {
+    PanelArea area;
+    double most_x = 1.0;
+    double least_y = 0.0;
+    double most_y = 1.0;
+    ImVec2 at(double x, double y) const {
+        const double sx = x / most_x;
+        const double sy = std::clamp((y - least_y) / (most_y - least_y), -0.05, 1.05);
+        return {area.x0 + static_cast<float>(sx) * area.width(), area.y1 - static_cast<float>(sy) * area.height()};
+    }
+};
+
+void draw_frame_of(const Plot& plot, const char* title, const std::string& top, const std::string& bottom, ImDrawList& draw) {
+    draw.AddRect(ImVec2(plot.area.x0, plot.area.y0), ImVec2(plot.area.x1, plot.area.y1), kPale);
+    draw.AddText(ImVec2(plot.area.x0 + 4.0f, plot.area.y0 - 1.2f * ImGui::GetFontSize()), kInk, title);
+    draw.AddText(ImVec2(plot.area.x0 + 4.0f, plot.area.y0 + 2.0f), kPale, top.c_str());
+    draw.AddText(ImVec2(plot.area.x0 + 4.0f, plot.area.y1 - 1.1f * ImGui::GetFontSize()), kPale, bottom.c_str());
+}
+
+double share_of(const RecordOptions& options, double level) {
+    return (level - options.range.lowest) / (options.range.highest - options.range.lowest);
+}
+
+// Points and curve above, what is left of the points without the curve below; the band to press next is tinted.
+void draw_plots(const Recording& recording, const Guide& guide, const PanelArea& area, const Gui& gui, ImDrawList& draw) {
+    const RecordOptions& options = recording.arguments.options;
+    const RecordSession& session = recording.session;
+    const float gap_px = 3.0f * gui.mm() + 1.3f * ImGui::GetFontSize();
+    const float split = area.y0 + 0.68f * area.height();
+    Plot curve{{area.x0 + 4 * gui.mm(), area.y0 + gap_px, area.x1 - 4 * gui.mm(), split}, 1.0, 0.0, 0.5};
+    const double now_N = session.forces.empty() ? 0.0 : session.forces.back().value;
+    for (const CapturedPoint& point : session.points) curve.most_y = std::max(curve.most_y, 1.1 * point.force_N);
+    curve.most_y = std::max(curve.most_y, 1.1 * now_N);
+    const int band = target_band(options, session, recording.knowledge.band_error);
+    if (band >= 0) {
+        const ImVec2 low = curve.at(static_cast<double>(band) / options.bands, 0.0);
+        const ImVec2 high = curve.at(static_cast<double>(band + 1) / options.bands, curve.most_y);
+        draw.AddRectFilled(ImVec2(low.x, high.y), ImVec2(high.x, low.y), kForceTints[1]);
+    }
+    draw_frame_of(curve, words::kForceOverPressure, fixed(curve.most_y, 2) + " N", "0 N, 0 %", draw);
+    Plot rest{{curve.area.x0, split + gap_px, curve.area.x1, area.y1 - 2 * gui.mm()}, 1.0, -0.2, 0.2};
+    draw_frame_of(rest, words::kResiduals, "+20 %", "-20 %", draw);
+    draw.AddLine(rest.at(0.0, 0.0), rest.at(1.0, 0.0), kPale);
+    const float dot_px = 0.6f * gui.mm();
+    for (const CapturedPoint& point : session.points) {
+        const double x = share_of(options, point.level);
+        draw.AddCircleFilled(curve.at(x, point.force_N), dot_px, kInk);
+        if (!guide.fit) continue;
+        const double curve_N = value_N(guide.fit->profile.curve, point.level);
+        draw.AddCircleFilled(rest.at(x, (point.force_N - curve_N) / std::max(curve_N, 1e-6)), dot_px, kInk);
+    }
+    if (guide.fit) {
+        constexpr int kSteps = 100;
+        const auto at = [&](int i) {
+            const double level = options.range.lowest + (options.range.highest - options.range.lowest) * i / kSteps;
+            return curve.at(static_cast<double>(i) / kSteps, value_N(guide.fit->profile.curve, level));
+        };
+        for (int i = 0; i < kSteps; ++i) draw.AddLine(at(i), at(i + 1), kLag, 0.4f * gui.mm());
+    }
+    if (!session.levels.empty()) {
+        cross(draw, curve.at(share_of(options, session.levels.back().value), now_N), 1.2f * gui.mm(), kLag, 0.4f * gui.mm());
+    }
+}
+
+void draw_typed(Recording& recording, const Gui& gui, Guide& guide) {
+    paragraph(words::kHoldStill);
+    ImGui::SetNextItemWidth(share_of_line_px(2));
+    ImGui::InputDouble(words::kGramForce, &guide.shown_gf, 0.0, 0.0, "%.2f");
+    if (!big_button(words::kTake, "", {}, gui)) return;
+    const bool good = std::isfinite(guide.shown_gf) && guide.shown_gf >= 0.0 && guide.shown_gf < 1e5;
+    guide.note = good && take_typed_N(guide.shown_gf * kN_per_gf, recording) ? words::kTaken : words::kNotTaken;
+}
+
+void form_lines(Gui& gui, CalibrateForm& form) {
+    constexpr const char* kKinds[] = {words::kTypedScale, words::kNetFt, words::kLoadCell};
+    for (int i = 0; i < 3; ++i) {
+        if (big_button(kKinds[i], "", {0.0f, kTarget_mm, true, form.kind == i}, gui)) form.kind = i;
+    }
+    const float width_px = 0.6f * ImGui::GetContentRegionAvail().x;
+    const auto field = [&] { ImGui::SetNextItemWidth(width_px); };
+    if (form.kind == 1) {
+        field();
+        ImGui::InputText(words::kAddress, form.address, sizeof form.address);
+        field();
+        ImGui::InputDouble(words::kCountsPerN, &form.counts_per_N, 0.0, 0.0, "%.6g");
+    }
+    if (form.kind == 2) {
+        field();
+        ImGui::InputText(words::kPort, form.port, sizeof form.port);
+        field();
+        ImGui::InputDouble(words::kNPerCount, &form.N_per_count, 0.0, 0.0, "%.6g");
+    }
+    field();
+    ImGui::InputText(words::kName, form.name, sizeof form.name);
+}
+
+}  // namespace
+
+void refresh_fit(const Recording& recording, Guide& guide) {
+    const std::vector<CapturedPoint>& points = recording.session.points;
+    if (points.size() == guide.fitted) return;
+    guide.fitted = points.size();
+    guide.fit.reset();
+    try {
+        CalibrateOptions options;
+        options.range = recording.arguments.options.range;
+        options.bootstrap_fits = 0;
+        options.model = CurveModel::monotone_cubic;  // choosing among all takes longer than a frame
+        guide.fit = calibrate(rows_of(points), options);
+    } catch (const InputError&) {
+        // too few points for a curve as yet
+    }
+}
+
+GuideWishes draw_guide(Recording& recording, Gui& gui, Guide& guide) {
+    const WindowSize window = gui.size_px();
+    const float panel_px = std::min(0.5f * window.width, 76.0f * gui.mm());
+    GuideWishes wishes;
+    begin_panel("guide", {0.0f, 0.0f, panel_px, window.height}, gui);
+    ImGui::SetWindowFontScale(1.5f);
+    ImGui::TextWrapped("%s", advice(recording).c_str());
+    ImGui::SetWindowFontScale(1.0f);
+    const float column_px = 26.0f * gui.mm();
+    const RecordSession& session = recording.session;
+    const double level = session.levels.empty() ? 0.0 : share_of(recording.arguments.options, session.levels.back().value);
+    value_line(words::kPressure, fixed(100.0 * level, 1) + " %", column_px);
+    value_line(words::kForce, fixed(session.forces.empty() ? kMissing : session.forces.back().value, 3) + " N", column_px);
+    value_line(words::kPoints, std::to_string(session.points.size()), column_px);
+    value_line(words::kPress, std::to_string(session.repeat + 1), column_px);
+    if (!recording.sensor) draw_typed(recording, gui, guide);
+    if (big_button(words::kMakeProfile, "", {0.0f, kMark_mm, guide.fit.has_value(), false}, gui)) wishes.keep = true;
+    if (big_button(words::kStopRecording, "", {}, gui)) wishes.stop = true;
+    ImGui::BeginChild("state", ImVec2(0.0f, 0.0f), false, ImGuiWindowFlags_NavFlattened);
+    if (recording.sensor) {
+        const SensorHealth health = recording.sensor->health();
+        paragraph(words::filled(words::kSensorHealth, {recording.sensor->name(), std::to_string(health.received), std::to_string(health.lost),
+                                                       std::to_string(health.duplicate), std::to_string(health.reordered), std::to_string(health.stalls)}));
+        if (recording.silent) warning_paragraph(words::kSensorStopped);
+    }
+    if (recording.knowledge.done) ImGui::TextWrapped("%s", words::kCurveKnown);
+    if (!recording.knowledge.done && !recording.knowledge.missing.empty()) paragraph(recording.knowledge.missing);
+    if (!guide.note.empty()) paragraph(guide.note);
+    ImGui::EndChild();
+    end_panel("guide", gui);
+    ImDrawList& draw = *ImGui::GetBackgroundDrawList();
+    draw.AddRectFilled(ImVec2(panel_px, 0.0f), ImVec2(window.width, window.height), kDark);
+    draw_plots(recording, guide, {panel_px, 0.0f, window.width, window.height}, gui, draw);
+    return wishes;
+}
+
+std::shared_ptr<CalibrateForm> make_calibrate_form() { return std::make_shared<CalibrateForm>(); }
+
+void draw_calibrate_screen(const Shown& shown, Gui& gui, CalibrateForm& form, Wishes& wishes) {
+    if (form.recording) {
+        refresh_fit(*form.recording, form.guide);
+        const GuideWishes asked = draw_guide(*form.recording, gui, form.guide);
+        if (asked.keep) keep_profile(form);
+        if (asked.stop) stop_recording(form);
+        return;
+    }
+    const WindowSize window = gui.size_px();
+    ImGui::GetBackgroundDrawList()->AddRectFilled(ImVec2(0.0f, 0.0f), ImVec2(window.width, window.height), kDark);
+    begin_panel("calibrate", {0.0f, 0.0f, window.width, window.height}, gui);
+    ImGui::BeginChild("form", ImVec2(std::min(110.0f * gui.mm(), ImGui::GetContentRegionAvail().x), 0.0f), false, ImGuiWindowFlags_NavFlattened);
+    if (big_button(words::kBack, words::kEscape, {40.0f * gui.mm(), kTarget_mm, true, false}, gui)) {
+        wishes.screen = shown.trial.finished ? Screen::reveal : Screen::trial;
+    }
+    ImGui::TextWrapped("%s", words::kHowToCalibrate);
+    form_lines(gui, form);
+    if (big_button(words::kStart, "", {0.0f, kMark_mm, true, false}, gui)) {
+        form.problem.clear();
+        form.guide = {};
+        attempt(form, [&] { form.recording = open_recording(arguments_of(form)); });
+    }
+    if (!form.problem.empty()) warning_paragraph(form.problem);
+    if (!form.guide.note.empty()) ImGui::TextWrapped("%s", form.guide.note.c_str());
+    ImGui::EndChild();
+    end_panel("calibrate", gui);
+}
+
+void step_calibrate(const std::vector<Sample>& samples, CalibrateForm& form) {
+    if (!form.recording) return;
+    try {
+        step(samples, *form.recording);
+    } catch (const std::exception& error) {
+        form.problem = error.what();
+        stop_recording(form);
+    }
+}
+
+void stop_recording(CalibrateForm& form) {
+    if (!form.recording) return;
+    attempt(form, [&] { close_recording(*form.recording); });
+    form.guide.note = words::filled(words::kPointsIn, {std::to_string(form.recording->session.points.size()), form.recording->arguments.folder});
+    form.recording.reset();
+}
+
+}  // namespace palpa

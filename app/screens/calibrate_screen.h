@@ -1,0 +1,47 @@
+#pragma once
+// The guided calibration: a form to connect a sensor, then what to press next, what was captured so far and how well a
+// curve goes through it; at the end a profile among the user's own.
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "app/screens/calibrate_form.h"
+#include "app/screens/gui.h"
+#include "calibration/record/acquisition.h"
+#include "app/screens/screens.h"
+#include "calibration/calibrate.h"
+
+namespace palpa {
+
+// What the guide has worked out for a recording, and the number that is typed for a scale.
+struct Guide {
+    std::optional<Calibration> fit;  // through the points so far, without intervals
+    std::size_t fitted = 0;          // points that it was made from
+    double shown_gf = 0.0;           // what the scale shows
+    std::string note;
+};
+
+struct GuideWishes {
+    bool stop = false;
+    bool keep = false;  // make a profile of it
+};
+
+// Fits again when points have come.
+void refresh_fit(const Recording& recording, Guide& guide);
+
+GuideWishes draw_guide(Recording& recording, Gui& gui, Guide& guide);
+
+struct CalibrateForm {
+    int kind = 0;                     // 0 a scale, typed; 1 Net F/T; 2 load cell on a serial port
+    char address[128] = "192.168.1.1";
+    char port[128] = "/dev/ttyUSB0";
+    double counts_per_N = 1e6;
+    double N_per_count = 1e-5;
+    char name[64] = "my-pen";         // of the profile
+    std::unique_ptr<Recording> recording;
+    Guide guide;
+    std::string problem;
+};
+
+}  // namespace palpa

@@ -1,0 +1,167 @@
+#include "app/screens/device_check.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace palpa {
+namespace {
+
+constexpr double kShortestClock_s = 4.0;
+
+void widen(double value, Range& range) {
+    if (!std::isfinite(value)) return;
+    range.lowest = std::fmin(range.lowest, value);  // fmin, fmax: NaN gives way
+    range.highest = std::fmax(range.highest, value);
+}
+
+// Counts are told apart as they are; a pressure without counts in 65535 steps.
+void note_pressure(const Sample& sample, ToolCheck& tool) {
+    widen(sample.pressure, tool.pressure);
+    widen(sample.pressure_raw, tool.pressure_raw);
+    constexpr double kLast = ToolCheck::kMostValues - 1.0;
+    const double raw = sample.pressure_raw;
+    const double step = raw >= 0.0 && raw <= kLast ? raw : kLast * sample.pressure;
+    if (std::isfinite(step)) tool.values.set(static_cast<std::size_t>(std::clamp(std::round(step), 0.0, kLast)));
+}
+
+void fit(const Sample& sample, ClockFit& clock) {
+    if (std::isnan(sample.t_device_s)) return;
+    if (clock.count == 0) {
+        clock.first_host_s = sample.t_host_s;
+        clock.first_device_s = sample.t_device_s;
+    }
+    const double host_s = sample.t_host_s - clock.first_host_s;
+    const double ahead_s = (sample.t_device_s - clock.first_device_s) - host_s;
+    const double n = static_cast<double>(++clock.count);
+    const double host_off_s = host_s - clock.mean_host_s;
+    const double ahead_off_s = ahead_s - clock.mean_ahead_s;
+    clock.mean_host_s += host_off_s / n;
+    clock.mean_ahead_s += ahead_off_s / n;
+    clock.sum_host_host += host_off_s * (host_s - clock.mean_host_s);
+    clock.sum_host_ahead += host_off_s * (ahead_s - clock.mean_ahead_s);
+    clock.sum_ahead_ahead += ahead_off_s * (ahead_s - clock.mean_ahead_s);
+}
+
+// The pointer's place in the table; when that is full, the one that was quiet for longest.
+PointerTime& slot_of(std::int64_t pointer_id, DeviceCheck& check) {
+    PointerTime* quiet = check.pointers.data();
+    for (PointerTime& pointer : check.pointers) {
+        if (pointer.used && pointer.pointer_id == pointer_id) return pointer;
+        const bool quieter = quiet->used && (!pointer.used || pointer.t_host_s < quiet->t_host_s);
+        if (quieter) quiet = &pointer;
+    }
+    *quiet = PointerTime{};
+    return *quiet;
+}
+
+void note_gap(const Sample& sample, PointerTime& pointer, ToolCheck& tool) {
+    if (!pointer.used || pointer.t_host_s != sample.t_host_s) ++tool.deliveries;
+    const double delay_s = sample.t_host_s - sample.t_device_s;
+    constexpr double kSameClock_s = 5.0;  // clocks that differ by more have another beginning
+    if (delay_s >= 0.0 && delay_s < kSameClock_s) tool.delays.add_ns(1e9 * delay_s);
+    if (pointer.used) {
+        const double by_device_s = sample.t_device_s - pointer.t_device_s;
+        const double gap_s = std::isnan(by_device_s) ? sample.t_host_s - pointer.t_host_s : by_device_s;
+        if (gap_s >= 0.0 && gap_s <= kRest_s) {
+            tool.gaps.add_ns(1e9 * gap_s);
+            tool.gaps_s += gap_s;
+            ++tool.gap_count;
+        }
+    }
+    pointer = {true, sample.pointer_id, sample.t_host_s, sample.t_device_s};
+}
+
+// n/a of traces is null here
+Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+Json range_json(const Range& range) { return {number(range.lowest), number(range.highest)}; }
+
+Json seen_json(Tool which, const DeviceCheck& check) {
+    const ToolCheck& tool = of_tool(which, check);
+    const ClockDrift drift = clock_drift(tool);
+    Json json{{"samples", tool.samples}, {"touching", tool.touching}, {"rate_Hz", rate_Hz(tool)}};
+    json["gap_ms"] = {{"median", 1e3 * median_gap_s(tool)}, {"worst", 1e3 * worst_gap_s(tool)}};
+    json["pressure"] = name_of(pressure_kind(check.pressure, which));
+    json["pressure_range"] = range_json(tool.pressure);
+    json["pressure_raw_range"] = range_json(tool.pressure_raw);
+    json["distinct_pressures"] = distinct_pressures(tool);
+    json["tilt"] = tool.tilt;
+    json["contact_size"] = tool.contact_size;
+    json["clock_drift_ppm"] = number(drift.ppm);
+    json["clock_drift_standard_error_ppm"] = number(drift.standard_error_ppm);
+    json["samples_per_delivery"] = number(samples_per_delivery(tool));
+    json["delay_ms"] = number(1e3 * median_delay_s(tool));
+    json["x_px"] = range_json(tool.x_px);
+    json["y_px"] = range_json(tool.y_px);
+    return json;
+}
+
+}  // namespace
+
+void observe(const Sample& sample, DeviceCheck& check) {
+    if (sample.phase == Phase::ui) return;
+    watch(sample, check.pressure);
+    ToolCheck& tool = check.tools[static_cast<std::size_t>(sample.tool)];
+    ++tool.samples;
+    widen(sample.x_px, tool.x_px);
+    widen(sample.y_px, tool.y_px);
+    tool.tilt = tool.tilt || std::isfinite(sample.tilt_x_deg);
+    tool.contact_size = tool.contact_size || std::isfinite(sample.width_px);
+    fit(sample, tool.clock);
+    if (sample.phase == Phase::down || sample.phase == Phase::move) {
+        ++tool.touching;
+        note_pressure(sample, tool);
+    }
+    PointerTime& pointer = slot_of(sample.pointer_id, check);
+    note_gap(sample, pointer, tool);
+    const bool finger_gone = sample.tool == Tool::finger && (sample.phase == Phase::up || sample.phase == Phase::cancel);
+    if (finger_gone) pointer.used = false;  // another touch gets another number
+}
+
+const ToolCheck& of_tool(Tool tool, const DeviceCheck& check) { return check.tools[static_cast<std::size_t>(tool)]; }
+
+double rate_Hz(const ToolCheck& tool) {
+    return tool.gaps_s > 0.0 ? static_cast<double>(tool.gap_count) / tool.gaps_s : 0.0;
+}
+
+double median_gap_s(const ToolCheck& tool) { return 1e-9 * tool.gaps.quantile_ns(0.5); }
+
+double worst_gap_s(const ToolCheck& tool) { return 1e-9 * tool.gaps.worst_ns(); }
+
+std::int64_t distinct_pressures(const ToolCheck& tool) { return static_cast<std::int64_t>(tool.values.count()); }
+
+// slope = S_ha / S_hh,  its variance = (S_aa - slope S_ha) / ((n - 2) S_hh)
+ClockDrift clock_drift(const ToolCheck& tool) {
+    const ClockFit& clock = tool.clock;
+    const double n = static_cast<double>(clock.count);
+    // n samples evenly over T have a variance of T^2 / 12; a delay that changes by 1 ms in 1 s looks like 1000 ppm
+    if (clock.count < 30 || clock.sum_host_host < n * kShortestClock_s * kShortestClock_s / 12.0) return {};
+    const double slope = clock.sum_host_ahead / clock.sum_host_host;
+    const double left = std::max(0.0, clock.sum_ahead_ahead - slope * clock.sum_host_ahead);
+    return {1e6 * slope, 1e6 * std::sqrt(left / ((n - 2.0) * clock.sum_host_host))};
+}
+
+double samples_per_delivery(const ToolCheck& tool) {
+    return tool.deliveries > 0 ? static_cast<double>(tool.samples) / static_cast<double>(tool.deliveries) : kMissing;
+}
+
+double median_delay_s(const ToolCheck& tool) { return tool.delays.timed() > 0 ? 1e-9 * tool.delays.quantile_ns(0.5) : kMissing; }
+
+Json check_json(const DeviceCheck& check) {
+    Json json = Json::object();
+    for (const Tool tool : {Tool::pen, Tool::finger, Tool::mouse, Tool::keyboard}) {
+        if (of_tool(tool, check).samples > 0) json[std::string(name_of(tool))] = seen_json(tool, check);
+    }
+    return json;
+}
+
+const char* name_of(PressureKind kind) {
+    switch (kind) {
+        case PressureKind::unknown: return "unknown";
+        case PressureKind::varies: return "varies";
+        case PressureKind::constant: return "constant";
+        case PressureKind::missing: return "missing";
+    }
+    return "unknown";
+}
+
+}  // namespace palpa

@@ -1,0 +1,107 @@
+// What each pointing device says it has, and what it really sends while it is tried in the test area.
+
+#include <algorithm>
+#include <cmath>
+
+#include "app/screens/widgets.h"
+#include "app/screens/screens.h"
+#include "app/screens/words.h"
+
+namespace palpa {
+namespace {
+
+std::string range_text(const Range& range, int digits) {
+    return std::isfinite(range.lowest) ? fixed(range.lowest, digits) + " ... " + fixed(range.highest, digits) : "-";
+}
+
+void said_lines(const Screens& screens) {
+    ImGui::TextDisabled(words::kSaysItHas);
+    for (const PointerDevice& device : screens.devices) {
+        std::string text = device.name + " (" + std::string(name_of(device.tool)) + "): ";
+        text += device.has_pressure ? words::filled(words::kPressureRange, {fixed(device.pressure_min, 0), fixed(device.pressure_max, 0)})
+                                    : words::kNoPressure;
+        if (device.levels > 0) text += words::filled(words::kLevels, {std::to_string(device.levels)});
+        if (device.has_tilt) text += std::string(", ") + words::kTilt;
+        if (device.has_contact_size) text += std::string(", ") + words::kContactSize;
+        ImGui::TextWrapped("%s", text.c_str());
+    }
+    if (screens.devices.empty()) paragraph(words::kNoDevice);
+}
+
+std::string verdict(Tool which, const DeviceCheck& check) {
+    if (which == Tool::mouse || which == Tool::keyboard) return words::kByTimeHeld;
+    switch (pressure_kind(check.pressure, which)) {
+        case PressureKind::varies: return words::kVaries;
+        case PressureKind::constant: return words::filled(words::kAlways, {fixed(constant_pressure(check.pressure, which), 2)});
+        case PressureKind::missing: return words::kNone;
+        case PressureKind::unknown: break;
+    }
+    return words::kVaryIt;
+}
+
+void seen_lines(Tool which, const DeviceCheck& check, const Gui& gui) {
+    const ToolCheck& tool = of_tool(which, check);
+    if (tool.samples == 0) return;
+    const float column_px = 34.0f * gui.mm();
+    ImGui::Separator();
+    ImGui::Text("%s", std::string(name_of(which)).c_str());
+    value_line(words::kPressure, verdict(which, check), column_px);
+    value_line("", words::filled(words::kValues, {range_text(tool.pressure, 3), std::to_string(distinct_pressures(tool))}), column_px);
+    value_line(words::kCounts, range_text(tool.pressure_raw, 0), column_px);
+    value_line(words::kRate, words::filled(words::kRateAndGap, {fixed(rate_Hz(tool), 0), fixed(1e3 * worst_gap_s(tool), 0)}), column_px);
+    const ClockDrift drift = clock_drift(tool);
+    const std::string clock = std::isfinite(drift.ppm) ? fixed(drift.ppm, 0) + " +- " + fixed(drift.standard_error_ppm, 0) + " ppm" : "-";
+    value_line(words::kClockDrift, clock, column_px);
+    const std::string delivery = words::filled(words::kAtATime, {fixed(samples_per_delivery(tool), 1), fixed(1e3 * median_delay_s(tool), 0)});
+    if (which != Tool::keyboard) value_line(words::kDelivered, delivery, column_px);
+    value_line(words::kTiltAndSize, std::string(tool.tilt ? words::kTilt : "-") + ", " + (tool.contact_size ? words::kContactSize : "-"), column_px);
+    value_line(words::kSamples, std::to_string(tool.samples), column_px);
+}
+
+void draw_test_area(const PanelArea& area, const Gui& gui, const Screens& screens) {
+    ImDrawList& draw = *ImGui::GetBackgroundDrawList();
+    draw.AddRectFilled(ImVec2(area.x0, area.y0), ImVec2(area.x1, area.y1), IM_COL32(40, 44, 48, 255));
+    draw.AddRect(ImVec2(area.x0, area.y0), ImVec2(area.x1, area.y1), kPale);
+    draw.AddText(ImVec2(area.x0 + 2.0f * gui.mm(), area.y0 + 2.0f * gui.mm()), kInk, words::kTryHere);
+    for (const Dot& dot : screens.dots) {
+        const float level = std::isfinite(dot.pressure) ? std::clamp(dot.pressure, 0.0f, 1.0f) : 0.0f;
+        draw.AddCircle(ImVec2(dot.x_px, dot.y_px), (0.4f + 5.0f * level) * gui.mm(), dot.touching ? kLag : kPale, 16, 0.2f * gui.mm());
+    }
+}
+
+}  // namespace
+
+void add_dot(const Sample& sample, Screens& screens) {
+    constexpr std::size_t kDots = 400;
+    const bool touching = sample.phase == Phase::down || sample.phase == Phase::move;
+    if (sample.phase == Phase::ui || !std::isfinite(sample.x_px + sample.y_px)) return;
+    if (screens.dots.size() >= kDots) screens.dots.erase(screens.dots.begin(), screens.dots.begin() + kDots / 4);
+    screens.dots.push_back({static_cast<float>(sample.x_px), static_cast<float>(sample.y_px),
+                            static_cast<float>(sample.pressure), touching});
+}
+
+void draw_device_screen(const Shown& shown, Gui& gui, Screens& screens, Wishes& wishes) {
+    const WindowSize window = gui.size_px();
+    const bool wide = window.width >= window.height;
+    const float share = 0.45f;
+    const PanelArea panel = wide ? PanelArea{0.0f, 0.0f, share * window.width, window.height}
+                                 : PanelArea{0.0f, 0.0f, window.width, share * window.height};
+    const PanelArea test = wide ? PanelArea{panel.x1, 0.0f, window.width, window.height}
+                                : PanelArea{0.0f, panel.y1, window.width, window.height};
+    ImGui::GetBackgroundDrawList()->AddRectFilled(ImVec2(0.0f, 0.0f), ImVec2(window.width, window.height), kDark);
+    draw_test_area(test, gui, screens);
+    begin_panel("devices", panel, gui);
+    if (big_button(words::kBack, words::kEscape, {40.0f * gui.mm(), kTarget_mm, true, false}, gui)) {
+        wishes.screen = shown.trial.finished ? Screen::reveal : Screen::trial;
+    }
+    ImGui::BeginChild("list");  // as many devices as there are: this part may scroll
+    said_lines(screens);
+    for (const std::string& note : screens.device_notes) warning_paragraph(note);
+    if (screens.check != nullptr) {
+        for (const Tool tool : {Tool::pen, Tool::finger, Tool::mouse, Tool::keyboard}) seen_lines(tool, *screens.check, gui);
+    }
+    ImGui::EndChild();
+    end_panel("devices", gui);
+}
+
+}  // namespace palpa

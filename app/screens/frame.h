@@ -1,0 +1,35 @@
+#pragma once
+// One frame: the tissue, what stands on it, and the panels of the screen that is open.
+
+#include <filesystem>
+
+#include "app/screens/screens.h"
+#include "session/session.h"
+
+namespace palpa {
+
+// What the window shows.
+struct OnScreen {
+    std::uint64_t content = 0;  // what it was drawn from (content_hash.h); 0: nobody knows, so that the next frame is drawn
+    bool drawn = false;         // by the last draw_frame()
+};
+
+// Builds the frame, and draws it unless it would look like what is on the screen; what the person asked for in it comes
+// back. The surface's meter is counted in `state`.
+Wishes draw_frame(const Scene& scene, const Plan& plan, const Trial& trial, const Settings& settings, double now_s,
+                  double dt_s, TissueDrawer& tissue, Gui& gui, Screens& screens, State& state, FrameTimes& times,
+                  OnScreen& on_screen);
+
+// The part of the window that the tissue has, as the sample that says so.
+Sample resize_sample(const Window& window, const Gui& gui, const Settings& settings, double t_host_s);
+
+// What the window shows, as a PNG. Throws std::runtime_error if it cannot be written.
+void save_screen(const Window& window, const std::filesystem::path& png);
+
+// The same without a display: draws a few frames (panels find their size in the first) and saves the last.
+// Returns which panel did not fit, or nothing.
+std::string draw_picture(const Scene& scene, const Plan& plan, const Trial& trial, const Settings& settings,
+                         const Screens& screens, int width_px, int height_px, State& state,
+                         const std::filesystem::path& png);
+
+}  // namespace palpa

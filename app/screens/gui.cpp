@@ -1,0 +1,315 @@
+#include "app/screens/gui.h"
+
+#include <GLES3/gl3.h>
+#include <backends/imgui_impl_opengl3.h>
+#include <imgui.h>
+#include <imgui_internal.h>
+
+#include <algorithm>
+#include <stdexcept>
+#include <utility>
+
+#include "app/screens/content_hash.h"
+#include "app/screens/font.h"
+
+namespace palpa {
+namespace {
+
+constexpr float kText_mm = 4.7f;  // line height, readable at arm's length
+constexpr float kNowhere_px = -1e6f;
+constexpr int kNotHeld = -1;
+
+void map_keys(ImGuiIO& io) {
+    struct Pair {
+        ImGuiKey_ gui;
+        int key;
+    };
+    constexpr Pair kPairs[] = {
+        {ImGuiKey_Tab, key::tab},           {ImGuiKey_LeftArrow, key::left},  {ImGuiKey_RightArrow, key::right},
+        {ImGuiKey_UpArrow, key::up},        {ImGuiKey_DownArrow, key::down},  {ImGuiKey_PageUp, key::page_up},
+        {ImGuiKey_PageDown, key::page_down}, {ImGuiKey_Home, key::home},      {ImGuiKey_End, key::end},
+        {ImGuiKey_Delete, key::del},        {ImGuiKey_Backspace, key::backspace}, {ImGuiKey_Space, key::space},
+        {ImGuiKey_Enter, key::enter},       {ImGuiKey_Escape, key::escape},   {ImGuiKey_KeyPadEnter, key::pad_enter},
+        {ImGuiKey_A, 'a'}};
+    static_assert(key::count <= IM_ARRAYSIZE(ImGuiIO::KeysDown));
+    for (const Pair& pair : kPairs) io.KeyMap[pair.gui] = pair.key;
+}
+
+ImVec4 colour(int r, int g, int b, float alpha = 1.0f) {
+    return {static_cast<float>(r) / 255.0f, static_cast<float>(g) / 255.0f, static_cast<float>(b) / 255.0f, alpha};
+}
+
+// Quiet greys, so that only tissue and force have a hue.
+void set_colours(ImGuiStyle& style) {
+    ImGui::StyleColorsDark(&style);
+    ImVec4* c = style.Colors;
+    c[ImGuiCol_Text] = colour(236, 239, 241);
+    c[ImGuiCol_TextDisabled] = colour(168, 176, 182);
+    c[ImGuiCol_WindowBg] = colour(28, 31, 34);
+    c[ImGuiCol_Button] = colour(62, 69, 75);
+    c[ImGuiCol_ButtonHovered] = colour(80, 89, 97);
+    c[ImGuiCol_ButtonActive] = colour(104, 116, 126);
+    c[ImGuiCol_FrameBg] = colour(48, 53, 58);
+    c[ImGuiCol_FrameBgHovered] = colour(62, 69, 75);
+    c[ImGuiCol_FrameBgActive] = colour(80, 89, 97);
+    c[ImGuiCol_Header] = colour(62, 69, 75);
+    c[ImGuiCol_HeaderHovered] = colour(80, 89, 97);
+    c[ImGuiCol_HeaderActive] = colour(104, 116, 126);
+    c[ImGuiCol_CheckMark] = colour(130, 200, 240);
+    c[ImGuiCol_SliderGrab] = colour(130, 200, 240);
+    c[ImGuiCol_NavHighlight] = colour(255, 214, 90);
+    c[ImGuiCol_Separator] = colour(70, 76, 82);
+    c[ImGuiCol_PlotHistogram] = colour(130, 200, 240);
+}
+
+}  // namespace
+
+Gui::Gui(Window& window) : window_(window), font_file_(system_font_file()) {
+    ImGui::CreateContext();
+    ImGuiIO& io = ImGui::GetIO();
+    io.IniFilename = nullptr;
+    held_as_.fill(kNotHeld);
+    map_keys(io);
+    if (!ImGui_ImplOpenGL3_Init("#version 300 es")) throw std::runtime_error("the panels cannot be drawn: Dear ImGui found no OpenGL (libGL)");
+    set_scale(control_scale(kMissing, static_cast<float>(window.width_px()), static_cast<float>(window.height_px())));
+    window.set_event_filter(&Gui::filter, this);
+}
+
+Gui::~Gui() {
+    window_.set_event_filter(nullptr, nullptr);
+    ImGui_ImplOpenGL3_Shutdown();
+    ImGui::DestroyContext();
+}
+
+void Gui::set_scale(float px_per_mm) {
+    if (px_per_mm == mm_) return;
+    mm_ = px_per_mm;
+    ImFontAtlas& fonts = *ImGui::GetIO().Fonts;
+    fonts.Clear();
+    const float text_px = std::clamp(kText_mm * mm_, 11.0f, 120.0f);
+    if (font_file_.empty()) {
+        ImFontConfig embedded;
+        embedded.SizePixels = text_px;
+        fonts.AddFontDefault(&embedded);
+    } else {
+        fonts.AddFontFromFileTTF(font_file_.c_str(), text_px);
+    }
+    ImGui_ImplOpenGL3_DestroyFontsTexture();
+    ImGui_ImplOpenGL3_CreateFontsTexture();
+    ImGuiStyle style;
+    style.ScaleAllSizes(mm_ / 3.78f);
+    style.WindowRounding = 0.0f;
+    style.FrameRounding = 1.2f * mm_;
+    style.ScrollbarSize = 5.0f * mm_;
+    style.ItemSpacing = ImVec2(1.8f * mm_, 1.8f * mm_);
+    style.WindowPadding = ImVec2(2.6f * mm_, 2.6f * mm_);
+    style.WindowBorderSize = 0.0f;
+    set_colours(style);
+    ImGui::GetStyle() = style;
+}
+
+bool Gui::owns(float x_px, float y_px) const {
+    return std::any_of(areas_.begin(), areas_.end(), [&](const PanelArea& area) { return area.holds(x_px, y_px); });
+}
+
+bool Gui::filter(const WindowEvent& event, void* self) { return static_cast<Gui*>(self)->receive(event); }
+
+bool Gui::receive(const WindowEvent& event) {
+    using Kind = WindowEvent::Kind;
+    switch (event.kind) {
+        case Kind::pointer_move:
+            if (event.made_from_touch) return false;
+            pointer_x_px_ = static_cast<float>(event.x_px);
+            pointer_y_px_ = static_cast<float>(event.y_px);
+            return false;
+        case Kind::button_down:
+        case Kind::button_up: return receive_button(event);
+        case Kind::wheel:
+            if (!owns(pointer_x_px_, pointer_y_px_)) return false;
+            ImGui::GetIO().MouseWheel += static_cast<float>(event.notches);
+            return true;
+        case Kind::finger_down:
+        case Kind::finger_move:
+        case Kind::finger_up: return receive_finger(event);
+        case Kind::key_down:
+        case Kind::key_up: return receive_key(event);
+        case Kind::text: {
+            PanelInput input{PanelInput::Kind::text};
+            input.text = event.text;
+            wait_for_frame(std::move(input), waiting_);
+            return false;
+        }
+    }
+    return false;
+}
+
+bool Gui::receive_button(const WindowEvent& event) {
+    const auto x = static_cast<float>(event.x_px);
+    const auto y = static_cast<float>(event.y_px);
+    const bool owned = owns(x, y);
+    if (event.made_from_touch) return owned;
+    const bool down = event.kind == WindowEvent::Kind::button_down;
+    if (down ? owned : mouse_on_panel_) wait_for_frame({PanelInput::Kind::button, down, x, y}, waiting_);
+    mouse_on_panel_ = down && owned;
+    return owned;
+}
+
+bool Gui::receive_finger(const WindowEvent& event) {
+    const auto x = static_cast<float>(event.x_px);
+    const auto y = static_cast<float>(event.y_px);
+    const bool owned = owns(x, y);
+    if (event.kind == WindowEvent::Kind::finger_down && owned && !finger_) {
+        finger_ = event.finger_id;
+        wait_for_frame({PanelInput::Kind::button, true, x, y}, waiting_);
+    }
+    if (finger_ != event.finger_id) return owned;
+    pointer_x_px_ = x;
+    pointer_y_px_ = y;
+    if (event.kind == WindowEvent::Kind::finger_up) {
+        wait_for_frame({PanelInput::Kind::button, false, x, y}, waiting_);
+        pointer_x_px_ = pointer_y_px_ = kNowhere_px;  // a finger that has left hovers nowhere
+        finger_.reset();
+    }
+    return owned;
+}
+
+bool Gui::receive_key(const WindowEvent& event) {
+    if (event.repeat) return keys_to_panels_;  // Dear ImGui repeats a held key by itself
+    PanelInput input{PanelInput::Kind::key};
+    input.down = event.kind == WindowEvent::Kind::key_down;
+    input.key = event.key;
+    input.ctrl = event.ctrl;
+    input.shift = event.shift;
+    input.for_panels = keys_to_panels_;
+    wait_for_frame(std::move(input), waiting_);
+    return keys_to_panels_;
+}
+
+void Gui::hand_over(const PanelInput& input) {
+    ImGuiIO& io = ImGui::GetIO();
+    switch (input.kind) {
+        case PanelInput::Kind::button:
+            io.MousePos = ImVec2(input.x_px, input.y_px);
+            io.MouseDown[0] = input.down;
+            return;
+        case PanelInput::Kind::key: return hand_over_key(input);
+        case PanelInput::Kind::text: return io.AddInputCharactersUTF8(input.text.c_str());
+        case PanelInput::Kind::replace: return replace_text(input.text);
+    }
+}
+
+void Gui::hand_over_key(const PanelInput& input) {
+    ImGuiIO& io = ImGui::GetIO();
+    io.KeyCtrl = input.ctrl;
+    io.KeyShift = input.shift;
+    int& held_as = held_as_[static_cast<std::size_t>(input.key)];
+    if (!input.down) {
+        if (held_as != kNotHeld) io.KeysDown[held_as] = false;
+        held_as = kNotHeld;
+        return;
+    }
+    // Enter presses a button as Space does, except where a number is typed
+    const bool activates = input.key == key::enter && !io.WantTextInput && !keep_enter_;
+    if (input.for_panels && keys_to_panels_) {
+        held_as = activates ? key::space : input.key;
+        io.KeysDown[held_as] = true;
+    }
+    if (!io.WantTextInput) keys_.push_back({input.key, input.ctrl});
+}
+
+// What was typed elsewhere replaces what stands in the field.
+void Gui::replace_text(const std::string& text) {
+    ImGuiIO& io = ImGui::GetIO();
+    ImGuiInputTextState* state = ImGui::GetInputTextState(ImGui::GetActiveID());
+    if (!io.WantTextInput || state == nullptr) return;
+    state->SelectAll();
+    if (!text.empty()) return io.AddInputCharactersUTF8(text.c_str());
+    io.KeysDown[key::backspace] = emptied_ = true;
+}
+
+void Gui::let_all_keys_go() {
+    std::fill(std::begin(ImGui::GetIO().KeysDown), std::end(ImGui::GetIO().KeysDown), false);
+    held_as_.fill(kNotHeld);
+}
+
+void Gui::begin_frame(double dt_s, bool keys_to_panels) {
+    ImGuiIO& io = ImGui::GetIO();
+    io.DisplaySize = ImVec2(static_cast<float>(window_.width_px()), static_cast<float>(window_.height_px()));
+    io.DeltaTime = std::max(1e-4f, static_cast<float>(dt_s));
+    if (keys_to_panels != keys_to_panels_) let_all_keys_go();
+    keys_to_panels_ = keys_to_panels;
+    io.ConfigFlags = keys_to_panels ? ImGuiConfigFlags_NavEnableKeyboard : ImGuiConfigFlags_None;
+    io.MousePos = ImVec2(pointer_x_px_, pointer_y_px_);
+    take_frame(waiting_, frame_);
+    for (const PanelInput& input : frame_) hand_over(input);
+    ImGui_ImplOpenGL3_NewFrame();
+    ImGui::NewFrame();
+    areas_.clear();
+    overflow_.clear();
+}
+
+void Gui::end_frame() {
+    ImGui::Render();
+    keys_.clear();
+    if (std::exchange(emptied_, false)) ImGui::GetIO().KeysDown[key::backspace] = false;
+}
+
+bool Gui::in_use() const {
+    const ImGuiIO& io = ImGui::GetIO();
+    const bool key = std::any_of(held_as_.begin(), held_as_.end(), [](int held) { return held != kNotHeld; });
+    return !waiting_.empty() || key || io.MouseDown[0];
+}
+
+WindowSize Gui::size_px() const { return {ImGui::GetIO().DisplaySize.x, ImGui::GetIO().DisplaySize.y}; }
+
+void Gui::renew_drawing() {
+    ImGui_ImplOpenGL3_Shutdown();  // its buffers' sizes are forgotten with them only here
+    ImGui_ImplOpenGL3_Init("#version 300 es");
+}
+
+std::uint64_t Gui::content() const {
+    const ImDrawData* data = ImGui::GetDrawData();
+    std::uint64_t hash = hash_more(0, &data->DisplaySize, sizeof data->DisplaySize);
+    const auto take = [&](const auto& values) { hash = hash_more(hash, values.Data, static_cast<std::size_t>(values.size_in_bytes())); };
+    for (int i = 0; i < data->CmdListsCount; ++i) {
+        const ImDrawList& list = *data->CmdLists[i];
+        take(list.VtxBuffer);
+        take(list.IdxBuffer);
+        for (const ImDrawCmd& command : list.CmdBuffer) {
+            hash = hash_more(hash, &command.ClipRect, sizeof command.ClipRect);
+            hash = hash_more(hash, &command.TextureId, sizeof command.TextureId);
+            hash = hash_more(hash, &command.ElemCount, sizeof command.ElemCount);
+        }
+    }
+    return hash;
+}
+
+void Gui::draw() {
+    ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
+    while (glGetError() != GL_NO_ERROR) {
+        // the packaged backend asks desktop GL questions that OpenGL ES answers with an error
+    }
+}
+
+std::optional<Gui::TextField> Gui::text_field() const {
+    if (!ImGui::GetIO().WantTextInput) return std::nullopt;
+    const ImGuiInputTextState* state = ImGui::GetInputTextState(ImGui::GetActiveID());
+    if (state == nullptr) return std::nullopt;
+    std::string text(4 * static_cast<std::size_t>(state->CurLenW) + 1, '\0');
+    const ImWchar* letters = state->TextW.Data;
+    const int size = ImTextStrToUtf8(text.data(), static_cast<int>(text.size()), letters, letters + state->CurLenW);
+    text.resize(static_cast<std::size_t>(size));
+    return TextField{text, text_area_};
+}
+
+void Gui::type_instead(const std::string& text) {
+    PanelInput input{PanelInput::Kind::replace};
+    input.text = text;
+    wait_for_frame(std::move(input), waiting_);
+}
+
+bool Gui::pressed(int key, bool ctrl) const {
+    return std::any_of(keys_.begin(), keys_.end(), [&](const Key& k) { return k.key == key && k.ctrl == ctrl; });
+}
+
+}  // namespace palpa

@@ -1,0 +1,96 @@
+#pragma once
+// Dear ImGui on a Window: set up, fed with events, drawn. What is on it: trial_screen.h and its neighbours.
+
+#include <array>
+#include <deque>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/screens/layout.h"
+#include "app/screens/panel_input.h"
+#include "platform/window.h"
+
+namespace palpa {
+
+struct WindowSize {
+    float width = 0.0f;  // px
+    float height = 0.0f;
+};
+
+class Gui {
+ public:
+    explicit Gui(Window& window);  // also becomes the window's event filter
+    ~Gui();
+    Gui(const Gui&) = delete;
+    Gui& operator=(const Gui&) = delete;
+
+    void set_scale(float px_per_mm);  // of what is touched and read; takes effect at once, outside of a frame
+    float mm() const { return mm_; }
+    WindowSize size_px() const;  // of the frame
+
+    // keys_to_panels: arrows, Tab and Space move between the controls instead of the indenter.
+    void begin_frame(double dt_s, bool keys_to_panels);
+    void end_frame();  // closes the panels
+    // Something is held on the panels, or waits for the next frame: frames should come quickly.
+    bool in_use() const;
+    // Enter is the screen's own key (pressed()) instead of that of the control which has the focus.
+    void keep_enter(bool keep) { keep_enter_ = keep; }
+    std::uint64_t content() const;  // of the panels that were closed last; the same number: the same look
+    void draw();       // hands them to GL
+    void renew_drawing();  // all that GL held was lost
+
+    // Presses in a claimed area reach no tissue (from the next event on, until the next frame says anew).
+    void claim(const PanelArea& area) { areas_.push_back(area); }
+    // Whether a key (platform/window_event.h) goes down in this frame. Never while a number is typed.
+    bool pressed(int key, bool ctrl = false) const;
+    // The field that takes letters now, for a screen that brings its own keyboard; nothing if none does.
+    struct TextField {
+        std::string text;
+        PanelArea area;
+    };
+    std::optional<TextField> text_field() const;
+    void note_text_area(const PanelArea& area) { text_area_ = area; }  // of the one that is drawn and takes letters
+    void type_instead(const std::string& text);                        // of what stands there
+
+    // A panel that does not fit into its place says so; for tests, and for `run --json`.
+    void note_overflow(const std::string& panel) { overflow_ = panel; }
+    const std::string& overflow() const { return overflow_; }
+
+ private:
+    static bool filter(const WindowEvent& event, void* self);
+    bool receive(const WindowEvent& event);
+    bool receive_button(const WindowEvent& event);
+    bool receive_finger(const WindowEvent& event);
+    bool receive_key(const WindowEvent& event);
+    bool owns(float x_px, float y_px) const;
+    void hand_over(const PanelInput& input);
+    void hand_over_key(const PanelInput& input);
+    void replace_text(const std::string& text);
+    void let_all_keys_go();
+
+    struct Key {
+        int key;
+        bool ctrl;
+    };
+
+    Window& window_;
+    std::vector<PanelArea> areas_;  // of the frame before
+    std::deque<PanelInput> waiting_;
+    std::vector<PanelInput> frame_;        // what this frame gets
+    std::vector<Key> keys_;                // that go down in this frame
+    std::array<int, key::count> held_as_;  // what Dear ImGui was told that a key is, while it is held; else kNotHeld
+    PanelArea text_area_{};
+    std::optional<std::int64_t> finger_;  // the one that uses the panels; others may palpate meanwhile
+    bool mouse_on_panel_ = false;
+    bool keys_to_panels_ = false;
+    bool keep_enter_ = false;
+    bool emptied_ = false;  // a field was, by a Backspace that nobody pressed
+    float pointer_x_px_ = -1e6f;
+    float pointer_y_px_ = -1e6f;
+    float mm_ = 0.0f;
+    std::string font_file_;
+    std::string overflow_;
+};
+
+}  // namespace palpa

@@ -1,0 +1,53 @@
+#include "app/screens/layout.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace palpa {
+namespace {
+
+constexpr float kColumn_mm = 64.0f;  // five targets of 9 mm side by side, and margins
+constexpr float kStrip_mm = 66.0f;
+constexpr float kLeastColumnHeight_mm = 92.0f;
+constexpr float kLeastStripWidth_mm = 84.0f;
+constexpr float kLeastTissue_mm = 30.0f;
+
+}  // namespace
+
+Layout layout_of(float width_px, float height_px, float mm, bool left_handed, bool above_finger) {
+    Layout out;
+    const float column_px = kColumn_mm * mm;
+    const float strip_px = std::max(kStrip_mm * mm, std::min(height_px - width_px, 1.3f * kStrip_mm * mm));
+    const float beside_px = std::min(width_px - column_px, height_px);
+    const float below_px = std::min(width_px, height_px - strip_px);
+    const bool column_fits = height_px >= kLeastColumnHeight_mm * mm && beside_px >= kLeastTissue_mm * mm;
+    const bool strip_fits = width_px >= kLeastStripWidth_mm * mm && below_px >= kLeastTissue_mm * mm;
+    out.controls = column_fits || strip_fits;
+    out.column = column_fits && (!strip_fits || beside_px >= below_px);
+    out.tissue_px = {0.0f, 0.0f, width_px, height_px - (above_finger ? kFingerOffset_mm * mm : 0.0f)};
+    if (!out.controls) return out;
+    if (!out.column) {
+        out.controls_px = {0.0f, 0.0f, width_px, strip_px};
+        out.tissue_px.y0 = strip_px;
+    } else if (left_handed) {  // the hand comes from the left, the controls stand on the right
+        out.controls_px = {width_px - column_px, 0.0f, width_px, height_px};
+        out.tissue_px.x1 = width_px - column_px;
+    } else {
+        out.controls_px = {0.0f, 0.0f, column_px, height_px};
+        out.tissue_px.x0 = column_px;
+    }
+    return out;
+}
+
+float control_scale(double px_per_mm, float width_px, float height_px, double touch_px_per_mm) {
+    if (std::isfinite(px_per_mm)) return static_cast<float>(px_per_mm);
+    if (std::isfinite(touch_px_per_mm)) {
+        auto scale = static_cast<float>(touch_px_per_mm);
+        for (int i = 0; i < 10 && !layout_of(width_px, height_px, scale, false).controls; ++i) scale *= 0.93f;
+        return scale;
+    }
+    constexpr float kDesk_px_per_mm = 96.0f / 25.4f;
+    return kDesk_px_per_mm * std::clamp(std::min(width_px, height_px) / 800.0f, 1.0f, 2.0f);
+}
+
+}  // namespace palpa

@@ -1,0 +1,250 @@
+#include "app/screens/map_screen.h"
+
+#include <algorithm>
+#include <cmath>
+#include <exception>
+
+#include "app/screens/widgets.h"
+#include "app/screens/words.h"
+#include "files/text.h"
+#include "stiffnessmaps/map_file.h"
+#include "stiffnessmaps/noise.h"
+#include "stiffnessmaps/stiffness.h"
+
+namespace palpa {
+namespace {
+
+std::string mm(double metres) { return short_number(1e3 * metres); }
+
+std::vector<std::string> facts_of(const Map& map, const Field& field) {
+    const ForceRange range = force_range(map);
+    std::vector<std::string> out;
+    out.push_back(words::filled(words::kCellsOf, {std::to_string(map.n_x), std::to_string(map.n_y), mm(map.spacing_m[0]), mm(map.spacing_m[1])}));
+    out.push_back(words::filled(words::kDepthsFromTo, {std::to_string(map.n_depths()), mm(map.depths_m.front()), mm(map.depths_m.back())}));
+    out.push_back(words::filled(words::kForceFromTo, {short_number(range.lowest_N), short_number(range.highest_N)}));
+    const double missing = 100.0 * static_cast<double>(missing_count(map)) / static_cast<double>(map.normal_N.size());
+    out.push_back(missing > 0.0 ? words::filled(words::kShareMissing, {short_number(missing)}) : words::kMeasuredEverywhere);
+    out.push_back(words::filled(words::kNoise, {short_number(1e3 * normal_noise_N(map)), std::to_string(field.isotonic_changed)}));
+    out.push_back(words::filled(words::kTangential, {name_of(map.tangential)}));
+    out.push_back(words::filled(words::kIndenter, {name_of(map.indenter), mm(map.indenter_radius_m)}));
+    for (const Nodule& nodule : map.nodules) {
+        std::string text = words::filled(nodule.placed ? words::kPlacedNodule : words::kDetectedNodule, {nodule.id, mm(nodule.x_m), mm(nodule.y_m)});
+        if (nodule.length_m) text += words::filled(words::kMmLong, {mm(*nodule.length_m)});
+        else if (nodule.diameter_m) text += words::filled(words::kMmWide, {mm(*nodule.diameter_m)});
+        out.push_back(text);
+    }
+    out.push_back(std::string(name_of(map.source.kind)) + ": " + map.source.how);
+    return out;
+}
+
+bool same_file(const std::string& a, const std::string& b) {
+    std::error_code error;
+    return a == b || std::filesystem::equivalent(a, b, error);
+}
+
+void quantity_buttons(const Gui& gui, MapBrowser& browser) {
+    constexpr const char* kNames[] = {words::kNormal, words::kSidewaysX, words::kSidewaysY, words::kStiffness};
+    constexpr const char* kKeys[] = {"1", "2", "3", "4"};
+    const float width_px = share_of_line_px(2);
+    for (int i = 0; i < 4; ++i) {
+        const auto quantity = static_cast<MapQuantity>(i);
+        if (i % 2 == 1) ImGui::SameLine();
+        if (big_button(kNames[i], kKeys[i], {width_px, kTarget_mm, has_quantity(browser.map, quantity), browser.quantity == quantity}, gui)) {
+            browser.quantity = quantity;
+        }
+    }
+}
+
+void depth_controls(const Gui& gui, MapBrowser& browser) {
+    const int last = static_cast<int>(browser.map.n_depths()) - 1;
+    const bool matters = browser.quantity != MapQuantity::stiffness && last > 0;
+    const float button_px = kTarget_mm * gui.mm();
+    const float slider_px = ImGui::GetContentRegionAvail().x - 2.0f * (button_px + ImGui::GetStyle().ItemSpacing.x);
+    if (big_button("-", "", {button_px, kTarget_mm, matters && browser.depth > 0, false}, gui)) --browser.depth;
+    ImGui::SameLine();
+    ImGui::BeginDisabled(!matters);
+    ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, ImVec2(gui.mm(), 0.5f * (kTarget_mm * gui.mm() - ImGui::GetFontSize())));
+    ImGui::PushStyleVar(ImGuiStyleVar_GrabMinSize, 5.0f * gui.mm());
+    ImGui::SetNextItemWidth(slider_px);
+    const std::string text = words::filled(words::kMmDeep, {mm(browser.map.depths_m[static_cast<std::size_t>(browser.depth)])});
+    std::string format;
+    for (const char c : text) format += c == '%' ? std::string("%%") : std::string(1, c);
+    ImGui::SliderInt("##depth", &browser.depth, 0, std::max(last, 1), format.c_str(), ImGuiSliderFlags_NoInput);
+    ImGui::PopStyleVar(2);
+    ImGui::EndDisabled();
+    ImGui::SameLine();
+    if (big_button("+", "", {button_px, kTarget_mm, matters && browser.depth < last, false}, gui)) ++browser.depth;
+    browser.depth = std::clamp(browser.depth, 0, last);
+}
+
+void map_list(float height_px, const Gui& gui, MapBrowser& browser) {
+    ImGui::TextDisabled(words::kMap);
+    ImGui::BeginChild("maps", ImVec2(0.0f, height_px), false, ImGuiWindowFlags_NavFlattened);
+    std::string wanted;
+    for (const Choice& choice : browser.maps) {
+        ImGui::PushID(choice.file.c_str());
+        ImGui::PushStyleVar(ImGuiStyleVar_ButtonTextAlign, ImVec2(0.0f, 0.5f));
+        ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, ImVec2(1.5f * gui.mm(), 0.0f));
+        if (big_button(choice.name.c_str(), "", {0.0f, kTarget_mm, true, choice.file == browser.file}, gui)) wanted = choice.file;
+        ImGui::PopStyleVar(2);
+        ImGui::PopID();
+    }
+    ImGui::EndChild();
+    if (!wanted.empty()) choose_map(wanted, browser);
+}
+
+// Everything that can be done with keys alone: kind, depth, a point moved by a fortieth of the map, pins.
+void take_map_keys(const Gui& gui, MapBrowser& browser) {
+    for (int i = 0; i < 4; ++i) {
+        const auto quantity = static_cast<MapQuantity>(i);
+        if ((gui.pressed('1' + i) || gui.pressed(key::pad_0 + 1 + i)) && has_quantity(browser.map, quantity)) browser.quantity = quantity;
+    }
+    const Map& map = browser.map;
+    if (gui.pressed(key::page_down)) browser.depth = std::min(browser.depth + 1, static_cast<int>(map.n_depths()) - 1);
+    if (gui.pressed(key::page_up)) browser.depth = std::max(browser.depth - 1, 0);
+    const double width_m = map.x_of(map.n_x - 1) - map.x_of(0);
+    const double height_m = map.y_of(map.n_y - 1) - map.y_of(0);
+    const double step_m = std::max(width_m, height_m) / 40.0;
+    const double right = (gui.pressed('l') ? 1.0 : 0.0) - (gui.pressed('j') ? 1.0 : 0.0);
+    const double up = (gui.pressed('i') ? 1.0 : 0.0) - (gui.pressed('k') ? 1.0 : 0.0);
+    if (right != 0.0 || up != 0.0) {
+        const Eigen::Vector2d middle(map.x_of(0) + 0.5 * width_m, map.y_of(0) + 0.5 * height_m);
+        const Eigen::Vector2d p = browser.pointed_m.value_or(middle) + step_m * Eigen::Vector2d(right, up);
+        browser.pointed_m = Eigen::Vector2d(std::clamp(p.x(), map.x_of(0), map.x_of(map.n_x - 1)), std::clamp(p.y(), map.y_of(0), map.y_of(map.n_y - 1)));
+    }
+    if (gui.pressed('o') && browser.pointed_m) add_pin(*browser.pointed_m, browser);
+}
+
+struct Areas {
+    PanelArea controls, matrix, curves, facts;
+};
+
+Areas areas_of(float width, float height, float mm_px) {
+    Areas out;
+    if (width >= height) {
+        const float column = std::min(64.0f * mm_px, 0.3f * width);
+        const float split = column + std::min(0.6f * (width - column), height);
+        const float half = 0.5f * height;
+        out.controls = {0.0f, 0.0f, column, height};
+        out.matrix = {column, 0.0f, split, height};
+        out.curves = {split, 0.0f, width, half};
+        out.facts = {split, half, width, height};
+    } else {
+        const float strip = std::min(66.0f * mm_px, 0.34f * height);
+        const float below = std::min(height - strip - 0.26f * height, width * 0.95f);
+        out.controls = {0.0f, 0.0f, width, strip};
+        out.matrix = {0.0f, strip, width, strip + below};
+        out.curves = {0.0f, strip + below, 0.55f * width, height};
+        out.facts = {0.55f * width, strip + below, width, height};
+    }
+    return out;
+}
+
+void back_button(const Shown& shown, const Gui& gui, Wishes& wishes) {
+    if (big_button(words::kBack, words::kEscape, {40.0f * gui.mm(), kTarget_mm, true, false}, gui)) wishes.screen = shown.trial.finished ? Screen::reveal : Screen::trial;
+}
+
+void draw_controls(const Shown& shown, const Areas& areas, Gui& gui, MapBrowser& browser, Wishes& wishes) {
+    begin_panel("map controls", areas.controls, gui);
+    const bool wide = areas.controls.width() < areas.controls.height();
+    back_button(shown, gui, wishes);
+    const float line_px = kTarget_mm * gui.mm() + ImGui::GetStyle().ItemSpacing.y;
+    if (wide) {
+        if (!browser.problem.empty()) warning_paragraph(browser.problem);
+        if (browser.map.n_cells() > 0) {
+            quantity_buttons(gui, browser);
+            depth_controls(gui, browser);
+        }
+        map_list(ImGui::GetContentRegionAvail().y - ImGui::GetFontSize() - 3.0f * ImGui::GetStyle().ItemSpacing.y, gui, browser);
+    } else {
+        const float half_px = share_of_line_px(2);
+        ImGui::BeginChild("left", ImVec2(half_px, 0.0f), false, ImGuiWindowFlags_NavFlattened);
+        if (browser.map.n_cells() > 0) {
+            quantity_buttons(gui, browser);
+            depth_controls(gui, browser);
+        }
+        if (!browser.problem.empty()) warning_paragraph(browser.problem);
+        ImGui::EndChild();
+        ImGui::SameLine();
+        ImGui::BeginChild("right", ImVec2(0.0f, 0.0f), false, ImGuiWindowFlags_NavFlattened);
+        map_list(std::max(line_px, ImGui::GetContentRegionAvail().y - ImGui::GetFontSize() - 3.0f * ImGui::GetStyle().ItemSpacing.y), gui, browser);
+        ImGui::EndChild();
+    }
+    end_panel("map controls", gui);
+}
+
+}  // namespace
+
+bool may_show_maps(const Trial& trial) { return trial.mode == TrialMode::practice || trial.finished; }
+
+void choose_map(const std::string& file, MapBrowser& browser) {
+    try {
+        Map map = read_map(file);
+        browser.field = make_field(map, {});
+        browser.stiffness_N_per_m = stiffness_N_per_m(map);
+        browser.facts = facts_of(map, browser.field);
+        browser.map = std::move(map);
+        browser.file = file;
+        browser.problem.clear();
+        browser.pins_m.clear();
+        browser.pointed_m.reset();
+        browser.depth = static_cast<int>(browser.map.n_depths()) - 1;
+        if (!has_quantity(browser.map, browser.quantity)) browser.quantity = MapQuantity::stiffness;
+    } catch (const std::exception& error) {
+        browser.problem = error.what();
+    }
+}
+
+std::shared_ptr<MapBrowser> make_map_browser(const Scene& scene, std::vector<Choice> maps) {
+    auto browser = std::make_shared<MapBrowser>();
+    browser->maps = std::move(maps);
+    std::string first = scene.map.string();
+    if (first.empty() && !browser->maps.empty()) first = browser->maps.front().file;
+    const auto listed = std::find_if(browser->maps.begin(), browser->maps.end(), [&](const Choice& c) { return same_file(c.file, first); });
+    if (listed != browser->maps.end()) {
+        first = listed->file;
+    } else if (!first.empty()) {
+        browser->maps.insert(browser->maps.begin(), {scene.map.stem().string(), first});
+    }
+    if (first.empty()) browser->problem = words::kNoMap;
+    else choose_map(first, *browser);
+    return browser;
+}
+
+void add_pin(const Eigen::Vector2d& p_m, MapBrowser& browser) {
+    if (browser.pins_m.size() == kPins) browser.pins_m.erase(browser.pins_m.begin());
+    browser.pins_m.push_back(p_m);
+}
+
+void draw_map_screen(const Shown& shown, Gui& gui, MapBrowser& browser, Wishes& wishes) {
+    const WindowSize window = gui.size_px();
+    ImGui::GetBackgroundDrawList()->AddRectFilled(ImVec2(0.0f, 0.0f), ImVec2(window.width, window.height), kDark);
+    if (!may_show_maps(shown.trial)) {
+        begin_panel("map hidden", {0.0f, 0.0f, window.width, window.height}, gui);
+        back_button(shown, gui, wishes);
+        ImGui::TextWrapped("%s", words::kMapsHidden);
+        end_panel("map hidden", gui);
+        return;
+    }
+    const Areas areas = areas_of(window.width, window.height, gui.mm());
+    if (browser.map.n_cells() > 0) take_map_keys(gui, browser);
+    draw_controls(shown, areas, gui, browser, wishes);
+    std::optional<Eigen::Vector2d> pointed_m;
+    bool pressed = false;
+    begin_panel("map matrix", areas.matrix, gui);
+    if (browser.map.n_cells() > 0) pointed_m = draw_map_matrix(browser, ImGui::GetContentRegionAvail(), gui, pressed);
+    end_panel("map matrix", gui);
+    if (pressed && pointed_m) add_pin(*pointed_m, browser);
+    if (pointed_m) browser.pointed_m.reset();  // the pointer has taken over from the keys
+    begin_panel("map curves", areas.curves, gui);
+    if (browser.map.n_cells() > 0) draw_map_curves(browser, pointed_m ? pointed_m : browser.pointed_m, ImGui::GetContentRegionAvail(), gui);
+    end_panel("map curves", gui);
+    begin_panel("map facts", areas.facts, gui);
+    ImGui::BeginChild("facts", ImVec2(0.0f, 0.0f), false, ImGuiWindowFlags_NavFlattened);
+    if (browser.map.n_cells() > 0) ImGui::TextWrapped("%s", browser.map.name.c_str());
+    for (const std::string& fact : browser.facts) paragraph(fact);
+    ImGui::EndChild();
+    end_panel("map facts", gui);
+}
+
+}  // namespace palpa

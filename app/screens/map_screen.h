@@ -1,0 +1,51 @@
+#pragma once
+// The map browser: a matrix of a map in colour, its nodules, force over depth where one points, and what the map is.
+// While a test trial goes on it shows nothing: the tissue under test, turned or not, may be among the maps.
+
+#include <imgui.h>
+
+#include <Eigen/Core>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/screens/gui.h"
+#include "app/screens/screens.h"
+#include "stiffnessmaps/field.h"
+
+namespace palpa {
+
+enum class MapQuantity : std::uint8_t { normal, tangential_x, tangential_y, stiffness };
+
+struct MapBrowser {
+    std::vector<Choice> maps;
+    std::string file;                // of the map that is shown
+    std::string problem;             // why another could not be
+    Map map;                         // without cells: none is shown
+    Field field;
+    std::vector<double> stiffness_N_per_m;
+    std::vector<std::string> facts;
+    MapQuantity quantity = MapQuantity::stiffness;
+    int depth = 0;                   // index of the matrix
+    std::vector<Eigen::Vector2d> pins_m;        // curves that stay, the newest last
+    std::optional<Eigen::Vector2d> pointed_m;   // by the keys
+};
+inline constexpr std::size_t kPins = 4;
+
+// Nodules stay hidden until a test is finished; in practice they are shown anyway.
+bool may_show_maps(const Trial& trial);
+
+// Opens on the scene's own map, or the first of the list. What goes wrong is told in the browser.
+std::shared_ptr<MapBrowser> make_map_browser(const Scene& scene, std::vector<Choice> maps);
+void choose_map(const std::string& file, MapBrowser& browser);
+
+void draw_map_screen(const Shown& shown, Gui& gui, MapBrowser& browser, Wishes& wishes);
+
+// The parts of it, drawn by map_drawing.cpp.
+bool has_quantity(const Map& map, MapQuantity quantity);
+void add_pin(const Eigen::Vector2d& p_m, MapBrowser& browser);  // the oldest goes if there are too many
+// Returns the place under the pointer; a press there is told in `pressed`.
+std::optional<Eigen::Vector2d> draw_map_matrix(const MapBrowser& browser, ImVec2 size_px, const Gui& gui, bool& pressed);
+void draw_map_curves(const MapBrowser& browser, const std::optional<Eigen::Vector2d>& pointed_m, ImVec2 size_px, const Gui& gui);
+
+}  // namespace palpa

@@ -1,0 +1,184 @@
+// After a trial: what was there, what was found, where the pen was and how deep.
+
+#include <algorithm>
+#include <cmath>
+
+#include "app/screens/widgets.h"
+#include "app/screens/screens.h"
+#include "app/screens/words.h"
+
+namespace palpa {
+namespace {
+
+// One run of cells of a row that reached the same level.
+void draw_run(const Shown& shown, const Coverage& c, int row, int first, int last, PalpationLevel level, float mm,
+              ImDrawList& draw) {
+    const double x0 = c.x_m + first * c.cell_m;
+    const double x1 = c.x_m + (last + 1) * c.cell_m;
+    const double y0 = c.y_m + row * c.cell_m;
+    const double y1 = y0 + c.cell_m;
+    if (level == PalpationLevel::none) {  // hatching, so that "never touched" is not one more colour
+        for (int i = first; i <= last; ++i) {
+            if ((i + c.n_y - row) % 4 != 0) continue;  // diagonals from cell to cell
+            const double x_m = c.x_m + i * c.cell_m;
+            draw.AddLine(on_screen(shown.view, x_m, y0), on_screen(shown.view, x_m + c.cell_m, y1), IM_COL32(20, 22, 24, 70), 0.2f * mm);
+        }
+        return;
+    }
+    const ImU32 colour = kAreaTints[static_cast<int>(level) - 1];
+    draw.AddQuadFilled(on_screen(shown.view, x0, y0), on_screen(shown.view, x1, y0), on_screen(shown.view, x1, y1),
+                       on_screen(shown.view, x0, y1), colour);
+}
+
+void draw_coverage(const Shown& shown, float mm, ImDrawList& draw) {
+    const Coverage& c = shown.trial.coverage;
+    const auto level_at = [&](int i, int j) {
+        return level_of(c, static_cast<double>(c.depth_m[static_cast<std::size_t>(j * c.n_x + i)]));
+    };
+    const ImDrawListFlags flags = draw.Flags;
+    draw.Flags &= ~ImDrawListFlags_AntiAliasedFill;  // neighbours would show seams
+    for (int j = 0; j < c.n_y; ++j) {
+        for (int i = 0; i < c.n_x;) {
+            const PalpationLevel level = level_at(i, j);
+            int last = i;
+            while (last + 1 < c.n_x && level_at(last + 1, j) == level) ++last;
+            draw_run(shown, c, j, i, last, level, mm, draw);
+            i = last + 1;
+        }
+    }
+    draw.Flags = flags;
+}
+
+void draw_path(const Shown& shown, float mm, ImDrawList& draw) {
+    const std::vector<PathPoint>& path = shown.trial.path;
+    for (std::size_t i = 1; i < path.size(); ++i) {
+        if (path[i].begins) continue;
+        draw.AddLine(on_screen(shown.view, path[i - 1].p_m.x(), path[i - 1].p_m.y()),
+                     on_screen(shown.view, path[i].p_m.x(), path[i].p_m.y()), IM_COL32(20, 22, 24, 200), 0.3f * mm);
+    }
+}
+
+void draw_nodules(const Shown& shown, const Debrief& debrief, float mm, ImDrawList& draw) {
+    for (std::size_t i = 0; i < shown.plan.nodules.size(); ++i) {
+        const Nodule& nodule = shown.plan.nodules[i];
+        const ImVec2 at = on_screen(shown.view, nodule.x_m, nodule.y_m);
+        const auto radius_px = static_cast<float>(0.5 * nodule.diameter_m.value_or(4e-3)) * shown.view.px_per_m;
+        const bool found = debrief.findings[i] == Finding::found;
+        if (found) {
+            draw.AddCircle(at, radius_px, kDark, 48, 1.3f * mm);
+            draw.AddCircle(at, radius_px, kInk, 48, 0.8f * mm);
+        } else {
+            draw.AddCircle(at, radius_px, kDark, 48, 1.3f * mm);
+            dashed_circle(draw, at, radius_px, kInk, 0.8f * mm);
+        }
+        const std::string text = words::filled(found ? words::kFoundNodule : words::kMissedNodule, {nodule.id});  // why: in the panel
+        const float width_px = ImGui::CalcTextSize(text.c_str()).x;
+        const bool fits = at.x + radius_px + mm + width_px < ImGui::GetIO().DisplaySize.x;
+        rimmed_text(draw, ImVec2(fits ? at.x + radius_px + mm : at.x - radius_px - mm - width_px, at.y + 0.3f * ImGui::GetFontSize()),
+                    kInk, text);
+    }
+}
+
+void draw_marks(const Shown& shown, const Score& score, float mm, ImDrawList& draw) {
+    for (std::size_t i = 0; i < shown.trial.marks.size(); ++i) {
+        const Mark& mark = shown.trial.marks[i];
+        const ImVec2 at = on_screen(shown.view, mark.p_m.x(), mark.p_m.y());
+        const MarkKind kind = score.marks[i].kind;
+        if (kind == MarkKind::false_mark) {
+            cross(draw, at, 1.7f * mm, kDark, 1.3f * mm);
+            cross(draw, at, 1.7f * mm, kInk, 0.7f * mm);
+        } else {
+            draw.AddCircleFilled(at, 1.7f * mm, kDark);
+            if (kind == MarkKind::hit) draw.AddCircleFilled(at, 1.3f * mm, kInk);
+        }
+        const char* pattern = kind == MarkKind::hit ? "{}" : kind == MarkKind::again ? words::kMarkAgain : words::kMarkFalse;
+        const std::string word = words::filled(pattern, {std::to_string(i + 1)});
+        rimmed_text(draw, ImVec2(at.x - 1.5f * mm - ImGui::CalcTextSize(std::to_string(i + 1).c_str()).x,
+                                 at.y - 1.2f * ImGui::GetFontSize()),
+                    kInk, word);
+    }
+}
+
+std::string percent(double share) { return std::isfinite(share) ? fixed(100.0 * share, 0) + " %" : "-"; }
+
+void result_lines(const Shown& shown, const Debrief& debrief, const Gui& gui) {
+    const Score& s = debrief.score;
+    const float column_px = 34.0f * gui.mm();
+    const std::string found = words::filled(words::kFoundOf, {std::to_string(s.true_positives), std::to_string(s.true_positives + s.false_negatives)});
+    ImGui::TextUnformatted(found.c_str());
+    value_line(words::kSensitivity, percent(s.sensitivity), column_px);
+    value_line(words::kPpv, percent(s.ppv), column_px);
+    value_line(words::kFalseMarks, std::to_string(s.false_positives), column_px);
+    value_line(words::kTime, clock_text(shown.trial_s), column_px);
+    for (std::size_t i = 0; i < shown.plan.nodules.size(); ++i) {
+        std::string text = shown.plan.nodules[i].id + ": " + name_of(debrief.findings[i]);
+        if (debrief.depth_m[i] > 0.0) text += words::filled(words::kDownTo, {fixed(1e3 * debrief.depth_m[i], 1)});
+        ImGui::TextWrapped("%s", text.c_str());
+    }
+}
+
+void legend(const Debrief& debrief, const Gui& gui) {
+    ImGui::TextDisabled(words::kAreaExamined);
+    constexpr const char* kNames[kPalpationLevels] = {words::kNotTouched, words::kLightOrDeeper, words::kMediumOrDeeper, words::kDeep};
+    ImDrawList& draw = *ImGui::GetWindowDrawList();
+    for (int level = kPalpationLevels - 1; level >= 0; --level) {
+        const ImVec2 at = ImGui::GetCursorScreenPos();
+        const float side_px = ImGui::GetFontSize();
+        const ImVec2 end(at.x + side_px, at.y + side_px);
+        if (level > 0) draw.AddRectFilled(at, end, kAreaTints[level - 1] | IM_COL32(0, 0, 0, 255));
+        for (float s = 0.0f; level == 0 && s < 0.99f; s += 0.25f) {  // hatched
+            draw.AddLine(ImVec2(at.x + s * side_px, end.y), ImVec2(end.x, at.y + s * side_px), kPale);
+            draw.AddLine(ImVec2(at.x, end.y - s * side_px), ImVec2(end.x - s * side_px, at.y), kPale);
+        }
+        ImGui::Dummy(ImVec2(side_px, side_px));
+        ImGui::SameLine();
+        value_line(kNames[level], percent(debrief.area.at_least[level]), 38.0f * gui.mm());
+    }
+}
+
+void buttons(const Gui& gui, Screens& screens, Wishes& wishes) {
+    const float width_px = share_of_line_px(2);
+    if (big_button(words::kAgain, "R", {width_px, kMark_mm, true, false}, gui)) wishes.again = true;
+    ImGui::SameLine();
+    if (big_button(words::kNext, "N", {width_px, kMark_mm, true, false}, gui)) wishes.next = true;
+    if (big_button(words::kSavePicture, "S", {width_px, kTarget_mm, true, false}, gui)) wishes.save_picture = true;
+    ImGui::SameLine();
+    if (big_button(screens.menu ? words::kClose : words::kMenu, "F10", {width_px, kTarget_mm, true, screens.menu}, gui)) {
+        screens.menu = !screens.menu;
+    }
+}
+
+}  // namespace
+
+void draw_reveal_on_tissue(const Shown& shown, const Gui& gui, const Debrief& debrief) {
+    ImDrawList& draw = *ImGui::GetBackgroundDrawList();
+    draw_coverage(shown, gui.mm(), draw);
+    draw_path(shown, gui.mm(), draw);
+    draw_nodules(shown, debrief, gui.mm(), draw);
+    draw_marks(shown, debrief.score, gui.mm(), draw);
+}
+
+void draw_reveal_panel(const Shown& shown, const Layout& layout, Gui& gui, Screens& screens, Wishes& wishes) {
+    if (!layout.controls) return;
+    begin_panel("reveal", layout.controls_px, gui);
+    const float half_px = layout.column ? 0.0f : share_of_line_px(2);
+    ImGui::BeginGroup();
+    if (!layout.column) ImGui::BeginChild("results", ImVec2(half_px, 0.0f), false, ImGuiWindowFlags_NavFlattened);
+    if (layout.column) buttons(gui, screens, wishes);
+    result_lines(shown, screens.debrief, gui);
+    if (!layout.column) ImGui::EndChild();
+    ImGui::EndGroup();
+    if (!layout.column) {
+        ImGui::SameLine();
+        ImGui::BeginChild("legend", ImVec2(0.0f, 0.0f), false, ImGuiWindowFlags_NavFlattened);
+        buttons(gui, screens, wishes);
+    }
+    legend(screens.debrief, gui);
+    for (const std::string& problem : screens.problems) warning_paragraph(problem);
+    if (!screens.note.empty()) paragraph(screens.note);
+    if (!screens.trials_note.empty()) paragraph(screens.trials_note);
+    if (!layout.column) ImGui::EndChild();
+    end_panel("reveal", gui);
+}
+
+}  // namespace palpa

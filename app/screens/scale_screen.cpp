@@ -1,0 +1,78 @@
+// How large a millimetre is on this screen: a bank card held against it, or a number.
+
+#include <algorithm>
+#include <cmath>
+
+#include "app/screens/widgets.h"
+#include "app/screens/screens.h"
+#include "app/screens/words.h"
+
+namespace palpa {
+namespace {
+
+constexpr float kCardWidth_mm = 85.60f;  // ISO/IEC 7810 ID-1
+constexpr float kCardHeight_mm = 53.98f;
+constexpr double kLeast_px_per_mm = 1.0;
+constexpr double kMost_px_per_mm = 60.0;
+
+void draw_card(const PanelArea& area, float px_per_mm) {
+    const float width_px = kCardWidth_mm * px_per_mm;
+    const float height_px = kCardHeight_mm * px_per_mm;
+    const ImVec2 low(0.5f * (area.x0 + area.x1 - width_px), 0.5f * (area.y0 + area.y1 - height_px));
+    const ImVec2 high(low.x + width_px, low.y + height_px);
+    ImDrawList& draw = *ImGui::GetWindowDrawList();
+    draw.AddRectFilled(low, high, IM_COL32(62, 69, 75, 255), 3.18f * px_per_mm);
+    draw.AddRect(low, high, kLag, 3.18f * px_per_mm, 0, 2.0f);
+    for (int mm = 0; mm <= 80; ++mm) {  // a ruler, for those without a card
+        const float x = low.x + static_cast<float>(mm) * px_per_mm;
+        const float length_px = (mm % 10 == 0 ? 5.0f : mm % 5 == 0 ? 3.5f : 2.0f) * px_per_mm;
+        draw.AddLine(ImVec2(x, high.y - length_px), ImVec2(x, high.y), kPale);
+        if (mm % 10 == 0 && mm > 0) draw.AddText(ImVec2(x, high.y - 6.0f * px_per_mm - ImGui::GetFontSize()), kPale, std::to_string(mm).c_str());
+    }
+    const char* text = words::kCardSize;
+    draw.AddText(ImVec2(low.x + 4.0f * px_per_mm, low.y + 4.0f * px_per_mm), kInk, text);
+}
+
+void step_buttons(const Gui& gui, double& px_per_mm) {
+    constexpr double kSteps[] = {0.98, 0.998, 1.002, 1.02};
+    constexpr const char* kLabels[] = {"- -", "-", "+", "+ +"};
+    const float width_px = std::min(share_of_line_px(4), 22.0f * gui.mm());
+    for (int i = 0; i < 4; ++i) {
+        if (i > 0) ImGui::SameLine();
+        if (big_button(kLabels[i], "", {width_px, kTarget_mm, true, false}, gui)) px_per_mm *= kSteps[i];
+    }
+}
+
+}  // namespace
+
+void draw_scale_screen(const Shown& shown, Gui& gui, Screens& screens, Wishes& wishes) {
+    const ImVec2 screen = ImGui::GetIO().DisplaySize;
+    begin_panel("scale", {0.0f, 0.0f, screen.x, screen.y}, gui);
+    ImGui::TextWrapped("%s", words::kHoldCard);
+    step_buttons(gui, screens.card_px_per_mm);
+    if (!ImGui::GetIO().WantTextInput) {
+        if (gui.pressed('+') || gui.pressed('=') || gui.pressed(key::pad_plus)) screens.card_px_per_mm *= 1.002;
+        if (gui.pressed('-') || gui.pressed(key::pad_minus)) screens.card_px_per_mm /= 1.002;
+    }
+    ImGui::SetNextItemWidth(40.0f * gui.mm());
+    ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, ImVec2(2.0f * gui.mm(), 0.5f * (kTarget_mm * gui.mm() - ImGui::GetFontSize())));
+    ImGui::InputDouble(words::kPxPerMm, &screens.card_px_per_mm, 0.0, 0.0, "%.3f");
+    ImGui::PopStyleVar();
+    if (!std::isfinite(screens.card_px_per_mm)) screens.card_px_per_mm = kLeast_px_per_mm;
+    screens.card_px_per_mm = std::clamp(screens.card_px_per_mm, kLeast_px_per_mm, kMost_px_per_mm);
+    const float width_px = std::min(share_of_line_px(3), 42.0f * gui.mm());
+    if (big_button(words::kKeep, "", {width_px, kMark_mm, true, false}, gui)) wishes.px_per_mm = screens.card_px_per_mm;
+    ImGui::SameLine();
+    if (big_button(words::kForget, "", {width_px, kMark_mm, std::isfinite(screens.px_per_mm), false}, gui)) wishes.px_per_mm = kMissing;
+    ImGui::SameLine();
+    if (big_button(words::kBack, words::kEscape, {width_px, kMark_mm, true, false}, gui)) {
+        wishes.screen = shown.trial.finished ? Screen::reveal : Screen::trial;
+    }
+    const std::string kept = std::isfinite(screens.px_per_mm) ? fixed(screens.px_per_mm, 3) + " " + words::kPxPerMm : words::kNotMeasured;
+    paragraph(words::filled(words::kThisScreen, {screens.screen_name, kept}));
+    const float top_px = ImGui::GetCursorScreenPos().y;
+    draw_card({0.0f, top_px, screen.x, screen.y}, static_cast<float>(screens.card_px_per_mm));
+    end_panel("scale", gui);
+}
+
+}  // namespace palpa

@@ -1,0 +1,91 @@
+#include "app/screens/settings.h"
+
+#include <cstdlib>
+#include <exception>
+
+#include "files/input_error.h"
+#include "files/json.h"
+#include "files/text.h"
+
+namespace palpa {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr Bounds kScale_px_per_mm{0.5, 200.0};
+
+Settings parse(const fs::path& file) {
+    const Json root = read_json(file);
+    JsonReader json(root, file.string());
+    Settings s;
+    s.scene = json.text("scene", s.scene);
+    s.profile = json.text("profile", s.profile);
+    s.left_handed = json.boolean("left_handed", s.left_handed);
+    s.above_finger = json.boolean("above_finger", s.above_finger);
+    s.test_mode = json.boolean("test_mode", s.test_mode);
+    s.full_screen = json.boolean("full_screen", s.full_screen);
+    s.width_px = json.integer("width_px", 100, 16384, s.width_px);
+    s.height_px = json.integer("height_px", 100, 16384, s.height_px);
+    for (JsonReader& screen : json.objects("screens")) {
+        const std::string name = screen.text("name");
+        s.px_per_mm[name] = screen.number("px_per_mm", kScale_px_per_mm);
+        screen.finish();
+    }
+    json.finish();
+    return s;
+}
+
+Json json_of(const Settings& s) {
+    Json json{{"scene", s.scene},         {"profile", s.profile},         {"left_handed", s.left_handed}, {"above_finger", s.above_finger},
+              {"test_mode", s.test_mode}, {"full_screen", s.full_screen}, {"width_px", s.width_px},       {"height_px", s.height_px},
+              {"screens", Json::array()}};
+    for (const auto& [name, px_per_mm] : s.px_per_mm) json["screens"].push_back({{"name", name}, {"px_per_mm", px_per_mm}});
+    return json;
+}
+
+// What somebody wrote by hand is kept.
+void move_broken_aside(const fs::path& file) {
+    if (!fs::exists(file)) return;
+    std::string problem;
+    load_settings(file, problem);
+    if (problem.empty()) return;
+    fs::path aside = file;
+    for (int i = 1; fs::exists(aside += ".broken-" + std::to_string(i)); ++i) aside = file;
+    fs::rename(file, aside);
+}
+
+}  // namespace
+
+fs::path settings_file() {
+    if (const char* config = std::getenv("XDG_CONFIG_HOME"); config != nullptr && *config == '/') {
+        return fs::path(config) / "palpa" / "settings.json";
+    }
+    if (const char* home = std::getenv("HOME"); home != nullptr && *home == '/') {
+        return fs::path(home) / ".config" / "palpa" / "settings.json";
+    }
+    return {};
+}
+
+Settings load_settings(const fs::path& file, std::string& problem) {
+    problem.clear();
+    try {
+        if (!file.empty() && fs::exists(file)) return parse(file);
+    } catch (const std::exception& error) {
+        problem = std::string(error.what()) + " (settings as if there were none)";
+    }
+    return {};
+}
+
+std::string save_settings(const Settings& settings, const fs::path& file) {
+    if (file.empty()) return "settings are not kept: neither XDG_CONFIG_HOME nor HOME names a folder";
+    try {
+        fs::create_directories(file.parent_path());
+        move_broken_aside(file);
+        write_text_atomically(file, json_text(json_of(settings)));
+    } catch (const std::exception& error) {
+        return std::string("settings are not kept: ") + error.what();
+    }
+    return {};
+}
+
+}  // namespace palpa

@@ -1,0 +1,349 @@
+// What a participant sees between the trials of a study, and where the experimenter types. It tells nothing of what was
+// found or is to be found.
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "app/screens/widgets.h"
+#include "app/screens/screens.h"
+#include "app/study/study_run.h"
+#include "app/screens/words.h"
+
+namespace palpa {
+namespace {
+
+bool enter_pressed(const Gui& gui) { return gui.pressed(key::enter) || gui.pressed(key::pad_enter); }
+
+// The one way on; Enter does it too.
+bool forward(const char* label, const Gui& gui, bool enabled = true) {
+    const float width_px = std::min(70.0f * gui.mm(), ImGui::GetContentRegionAvail().x);
+    const bool asked = big_button(label, words::kEnter, {width_px, kMark_mm, enabled, false}, gui);
+    return asked || (enabled && enter_pressed(gui));
+}
+
+void title(const std::string& text) {
+    ImGui::SetWindowFontScale(1.4f);
+    ImGui::TextWrapped("%s", text.c_str());
+    ImGui::SetWindowFontScale(1.0f);
+}
+
+// Beside a button, at the height of its word.
+void beside(const std::string& text, const Gui& gui) {
+    ImGui::SetCursorPosY(ImGui::GetCursorPosY() + 0.5f * (kTarget_mm * gui.mm() - ImGui::GetFontSize()));
+    ImGui::TextUnformatted(text.c_str());
+}
+
+// As high as what is touched.
+bool text_field(const char* label, char* text, std::size_t size, ImGuiInputTextFlags flags, Gui& gui) {
+    ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, ImVec2(2.0f * gui.mm(), 0.5f * (kTarget_mm * gui.mm() - ImGui::GetFontSize())));
+    const ImVec2 low = ImGui::GetCursorScreenPos();
+    const float width_px = ImGui::CalcItemWidth();
+    const bool done = ImGui::InputText(label, text, size, flags);
+    if (ImGui::IsItemActive()) gui.note_text_area({low.x, low.y, low.x + width_px, low.y + kTarget_mm * gui.mm()});
+    ImGui::PopStyleVar();
+    return done;
+}
+
+void gap(const Gui& gui) { ImGui::Dummy(ImVec2(0.0f, 2.0f * gui.mm())); }
+
+// For the experimenter: pairing, sending, exporting.
+void trials_button(const Gui& gui, const StudyRun& run, Wishes& wishes) {
+    if (!run.on_tablet) return;
+    if (big_button(words::kTrialsOnTablet, "", {std::min(70.0f * gui.mm(), share_of_line_px(1)), kTarget_mm, true, false}, gui)) wishes.trials = true;
+}
+
+// Leaves the study; where there is no window to close, the way to the rest of the app.
+void leave_button(const Gui& gui, const StudyRun& run, Wishes& wishes) {
+    const char* label = run.on_tablet ? words::kLeaveStudy : words::kClose;
+    const char* key = run.on_tablet ? "" : words::kCtrlQ;
+    if (big_button(label, key, {std::min(70.0f * gui.mm(), share_of_line_px(1)), kTarget_mm, true, false}, gui)) wishes.quit = true;
+}
+
+// Where what was done goes: usually for less than a frame.
+void draw_keeping(double now_s, Gui& gui, StudyRun& run, Wishes& wishes) {
+    constexpr double kSoon_s = 0.5;
+    if (run.keeping_began_s == 0.0) run.keeping_began_s = now_s;
+    if (now_s - run.keeping_began_s < kSoon_s && run.warnings.empty()) return;
+    title(words::kOneMoment);
+    paragraph(words::kBeingKept);
+    for (const std::string& warning : run.warnings) warning_paragraph(warning);
+    gap(gui);
+    if (!run.warnings.empty()) trials_button(gui, run, wishes);
+}
+
+void draw_code(Gui& gui, StudyRun& run, Wishes& wishes) {
+    title(words::kWhoIsHere);
+    paragraph(words::kCodeNoName);
+    const bool fresh = !run.typed_code;
+    if (fresh) run.typed_code = free_code(run);
+    char text[24];
+    std::snprintf(text, sizeof text, "%s", run.typed_code->c_str());
+    ImGui::SetNextItemWidth(60.0f * gui.mm());
+    if (fresh || run.focus_code || ImGui::IsWindowAppearing()) ImGui::SetKeyboardFocusHere();
+    run.focus_code = false;
+    const bool entered = text_field(words::kCode, text, sizeof text, ImGuiInputTextFlags_EnterReturnsTrue, gui);
+    run.typed_code = text;
+    gap(gui);
+    if (forward(words::kGoOn, gui) || entered) enter_code(text, run);
+    if (!run.note.empty()) warning_paragraph(run.note);
+    for (const std::string& warning : run.warnings) warning_paragraph(warning);
+    if (!run.on_tablet) return;
+    gap(gui);
+    trials_button(gui, run, wishes);
+    leave_button(gui, run, wishes);
+}
+
+void draw_again(Gui& gui, StudyRun& run) {
+    title(words::filled(words::kHasBeenHere, {run.code}));
+    paragraph(words::filled(words::kTrialsDone, {std::to_string(run.progress.finished.size()), std::to_string(run.progress.plan.trials.size())}));
+    gap(gui);
+    if (forward(words::kGoOnWithStudy, gui)) return same_person(true, run);
+    if (big_button(words::kSomebodyElse, "", {70.0f * gui.mm(), kTarget_mm, true, false}, gui)) same_person(false, run);
+}
+
+void draw_choices(const std::vector<std::string>& choices, float least_px, const Gui& gui, std::string& answer) {
+    const float gap_px = ImGui::GetStyle().ItemSpacing.x;
+    const float right_px = ImGui::GetCursorPosX() + ImGui::GetContentRegionAvail().x;
+    for (std::size_t i = 0; i < choices.size(); ++i) {
+        const float margin_px = (least_px > 0.0f ? 2.0f : 6.0f) * gui.mm();
+        const float width_px = std::max(least_px, ImGui::CalcTextSize(choices[i].c_str()).x + margin_px);
+        if (i > 0) {
+            ImGui::SameLine();
+            if (ImGui::GetCursorPosX() + width_px > right_px + 0.5f * gap_px) ImGui::NewLine();
+        }
+        ImGui::PushID(static_cast<int>(i));
+        const bool chosen = answer == choices[i];
+        if (big_button(choices[i].c_str(), "", {width_px, kTarget_mm, true, chosen}, gui)) answer = chosen ? "" : choices[i];
+        ImGui::PopID();
+    }
+}
+
+void draw_item(const Item& item, Gui& gui, std::string& answer) {
+    ImGui::TextWrapped("%s", item.text.c_str());
+    if (!item.choices.empty()) return draw_choices(item.choices, 0.0f, gui, answer);
+    constexpr int kMostButtons = 11;
+    if (item.from && *item.to - *item.from < kMostButtons) {
+        std::vector<std::string> steps;
+        for (int i = *item.from; i <= *item.to; ++i) steps.push_back(std::to_string(i));
+        // on one line, if that makes no button too small
+        const float share_px = share_of_line_px(static_cast<int>(steps.size()));
+        return draw_choices(steps, share_px > 8.0f * gui.mm() ? std::min(11.0f * gui.mm(), share_px) : 11.0f * gui.mm(), gui, answer);
+    }
+    ImGui::SetNextItemWidth(40.0f * gui.mm());
+    char text[120];
+    std::snprintf(text, sizeof text, "%s", answer.c_str());
+    const ImGuiInputTextFlags flags = item.from ? ImGuiInputTextFlags_CharsDecimal : ImGuiInputTextFlags_None;
+    if (text_field("##text", text, sizeof text, flags, gui)) answer = text;
+}
+
+// A number out of its range is no answer.
+bool acceptable(const Item& item, const std::string& answer) {
+    if (answer.empty() || !item.from) return true;
+    double value = 0.0;
+    return std::sscanf(answer.c_str(), "%lf", &value) == 1 && value >= *item.from && value <= *item.to;
+}
+
+void draw_items(Gui& gui, StudyRun& run) {
+    const std::vector<Item>& items = due_items(run);
+    run.answers.resize(items.size());
+    title(run.step == StudyStep::questions ? words::kQuestionsFirst : words::kHowWasIt);
+    if (run.step == StudyStep::ratings) paragraph(run.protocol.conditions[run.rated].title);
+    paragraph(words::kMayLeaveOpen);
+    const float below_px = (kMark_mm + 4.0f) * gui.mm();
+    ImGui::BeginChild("items", ImVec2(0.0f, ImGui::GetContentRegionAvail().y - below_px), false, ImGuiWindowFlags_NavFlattened);
+    bool good = true;
+    for (std::size_t i = 0; i < items.size(); ++i) {
+        ImGui::PushID(static_cast<int>(i));
+        draw_item(items[i], gui, run.answers[i]);
+        if (!acceptable(items[i], run.answers[i])) {
+            good = false;
+            warning_paragraph(words::filled(words::kNumberFromTo, {std::to_string(*items[i].from), std::to_string(*items[i].to)}));
+        }
+        ImGui::PopID();
+        gap(gui);
+    }
+    ImGui::EndChild();
+    if (forward(words::kGoOn, gui, good)) submit_answers(run);
+}
+
+void draw_instructions(Gui& gui, StudyRun& run) {
+    const PlannedTrial& trial = due_trial(run);
+    title(words::filled(trial.practice ? words::kPracticeOf : words::kTrialOf, {progress_text(run)}));
+    const float below_px = (kMark_mm + 4.0f) * gui.mm();
+    ImGui::BeginChild("text", ImVec2(0.0f, ImGui::GetContentRegionAvail().y - below_px), false, ImGuiWindowFlags_NavFlattened);
+    ImGui::TextWrapped("%s", instructions_for(run.protocol, trial).c_str());
+    if (run.protocol.count_told && run.protocol.task == TaskKind::find) {
+        gap(gui);
+        ImGui::TextWrapped("%s", words::filled(words::kThereAre, {std::to_string(due_nodules(run).size())}).c_str());
+    }
+    ImGui::EndChild();
+    if (forward(words::kBegin, gui)) begin_step(run);
+}
+
+void draw_device(Gui& gui, StudyRun& run, Wishes& wishes) {
+    const std::string device = name_of(due_condition(run).modality);
+    title(words::filled(run.device_here ? words::kDeviceIsBack : words::kDeviceMissing, {device}));
+    if (run.device_left) paragraph(words::kTrialBrokenOff);
+    if (!run.device_here) {
+        warning_paragraph(words::filled(words::kTrialWaits, {device}));
+        paragraph(words::kCloseAndGoOn);
+    }
+    gap(gui);
+    if (forward(words::kBegin, gui, run.device_here)) return begin_step(run);
+    trials_button(gui, run, wishes);
+    leave_button(gui, run, wishes);
+}
+
+void draw_present(Gui& gui, StudyRun& run) {
+    title(words::filled(words::kPairOf, {progress_text(run)}));
+    ImGui::TextWrapped("%s", run.interval == 0 ? words::kFeelFirst : words::kFeelSecond);
+    gap(gui);
+    if (forward(words::kFelt, gui)) interval_presented(run);
+}
+
+void draw_question(double now_s, Gui& gui, StudyRun& run) {
+    title(words::kWhichSofter);
+    gap(gui);
+    const float width_px = std::min(60.0f * gui.mm(), share_of_line_px(2));
+    const bool first = big_button(words::kTheFirst, "1", {width_px, 2.0f * kMark_mm, true, false}, gui) || gui.pressed('1') || gui.pressed(key::pad_0 + 1);
+    ImGui::SameLine();
+    const bool second = big_button(words::kTheSecond, "2", {width_px, 2.0f * kMark_mm, true, false}, gui) || gui.pressed('2') || gui.pressed(key::pad_0 + 2);
+    gap(gui);
+    paragraph(words::filled(words::kPairOf, {progress_text(run)}));
+    if (first || second) choose_softer(first, now_s, run);
+}
+
+void stepper(const char* name, const Gui& gui, int& value) {
+    ImGui::PushID(name);
+    if (big_button("-", "", {12.0f * gui.mm(), kTarget_mm, value > 0, false}, gui)) --value;
+    ImGui::SameLine();
+    ImGui::BeginGroup();
+    beside(std::to_string(value), gui);
+    ImGui::EndGroup();
+    ImGui::SameLine();
+    if (big_button("+", "", {12.0f * gui.mm(), kTarget_mm, value < 1000, false}, gui)) ++value;
+    ImGui::SameLine();
+    ImGui::BeginGroup();
+    beside(name, gui);
+    ImGui::EndGroup();
+    ImGui::PopID();
+}
+
+void draw_nodule_line(const std::string& name, const Gui& gui, int& said) {
+    ImGui::PushID(name.c_str());
+    ImGui::BeginGroup();
+    beside(name, gui);
+    ImGui::EndGroup();
+    ImGui::SameLine(22.0f * gui.mm());
+    if (big_button(words::kMissed, "", {24.0f * gui.mm(), kTarget_mm, true, said == kMissed}, gui)) said = kMissed;
+    ImGui::SameLine();
+    if (big_button(words::kFound, "", {24.0f * gui.mm(), kTarget_mm, true, said == 0}, gui)) said = 0;
+    constexpr const char* kDigits[5] = {"1", "2", "3", "4", "5"};
+    for (int i = 1; i <= 5; ++i) {
+        ImGui::SameLine();
+        if (big_button(kDigits[i - 1], "", {10.0f * gui.mm(), kTarget_mm, true, said == i}, gui)) said = i;
+    }
+    ImGui::PopID();
+}
+
+void draw_typed_clock(double now_s, const Gui& gui, StudyRun& run) {
+    TypedAnswers& typed = run.typed;
+    const bool runs = run.typed_began_s > 0.0;
+    if (runs) typed.duration_s = now_s - run.typed_began_s;
+    const char* label = runs ? words::kStopClock : typed.duration_s > 0.0 ? words::kStartClockAnew : words::kStartClock;
+    if (big_button(label, "T", {60.0f * gui.mm(), kTarget_mm, true, runs}, gui) || gui.pressed('t')) run.typed_began_s = runs ? 0.0 : now_s;
+    ImGui::SameLine();
+    const double limit_s = due_limit_s(run);
+    std::string text = clock_text(typed.duration_s);
+    if (limit_s > 0.0) text = words::filled(typed.duration_s < limit_s ? words::kTimeOf : words::kTimeOver, {text, clock_text(limit_s)});
+    ImGui::BeginGroup();
+    beside(text, gui);
+    ImGui::EndGroup();
+}
+
+void draw_typed(double now_s, Gui& gui, StudyRun& run) {
+    const Condition& condition = due_condition(run);
+    title(words::filled(words::kExperimenter, {progress_text(run), condition.title}));
+    paragraph(condition.modality == Modality::hand ? words::kTypeWhatWasSaid
+                                                   : words::kNotDriven);
+    draw_typed_clock(now_s, gui, run);
+    const float below_px = (kMark_mm + 4.0f) * gui.mm();
+    ImGui::BeginChild("answers", ImVec2(0.0f, ImGui::GetContentRegionAvail().y - below_px), false, ImGuiWindowFlags_NavFlattened);
+    const std::vector<std::string> names = due_nodules(run);
+    if (names.empty()) {
+        stepper(words::kNodulesFound, gui, run.typed.found);
+        stepper(words::kNodulesMissed, gui, run.typed.missed);
+    } else {
+        paragraph(words::kFoundAndSure);
+        for (std::size_t i = 0; i < names.size(); ++i) draw_nodule_line(names[i], gui, run.typed.nodules[i]);
+    }
+    stepper(words::kFalseMarkCount, gui, run.typed.false_marks);
+    ImGui::EndChild();
+    const bool timed = run.typed.duration_s > 0.0 && run.typed_began_s == 0.0;
+    if (forward(words::kKeep, gui, timed)) submit_typed(run);
+}
+
+void draw_done(Gui& gui, StudyRun& run, Wishes& wishes) {
+    title(words::kThatWasAll);
+    paragraph(words::filled(run.on_tablet ? words::kAllOnTablet : words::kAllOnDisk, {run.code, std::to_string(run.progress.finished.size())}));
+    gap(gui);
+    if (forward(words::kNextParticipant, gui)) same_person(false, run);
+    trials_button(gui, run, wishes);
+    leave_button(gui, run, wishes);
+}
+
+void draw_stopped(Gui& gui, const StudyRun& run, Wishes& wishes) {
+    title(words::kStudyStops);
+    warning_paragraph(run.stopped);
+    paragraph(run.on_tablet ? words::kRestKept : words::kRestOnDisk);
+    gap(gui);
+    trials_button(gui, run, wishes);
+    leave_button(gui, run, wishes);
+}
+
+void draw_pause(double now_s, Gui& gui, StudyRun& run) {
+    title(words::kBreak);
+    paragraph(words::filled(words::kComesNext, {progress_text(run)}));
+    gap(gui);
+    ImGui::Text("%s", clock_text(now_s - run.step_began_s).c_str());
+    gap(gui);
+    if (forward(words::kGoOn, gui)) begin_step(run);
+}
+
+}  // namespace
+
+void draw_study_screen(double now_s, Gui& gui, StudyRun& run, Wishes& wishes) {
+    if (run.step_began_s == 0.0) run.step_began_s = now_s;
+    const WindowSize window = gui.size_px();
+    ImGui::GetBackgroundDrawList()->AddRectFilled(ImVec2(0.0f, 0.0f), ImVec2(window.width, window.height), kDark);
+    // lines of text that can be read, in the middle of a large window
+    const float width_px = std::min(window.width, 170.0f * gui.mm());
+    const float height_px = std::min(window.height, 190.0f * gui.mm());
+    const float x0 = 0.5f * (window.width - width_px);
+    const float y0 = 0.5f * (window.height - height_px);
+    begin_panel("study", {x0, y0, x0 + width_px, y0 + height_px}, gui);
+    if (run.keeping) {
+        draw_keeping(now_s, gui, run, wishes);
+        return end_panel("study", gui);
+    }
+    run.keeping_began_s = 0.0;
+    switch (run.step) {
+        case StudyStep::code: draw_code(gui, run, wishes); break;
+        case StudyStep::again: draw_again(gui, run); break;
+        case StudyStep::questions:
+        case StudyStep::ratings: draw_items(gui, run); break;
+        case StudyStep::instructions: draw_instructions(gui, run); break;
+        case StudyStep::trial: break;  // on the tissue
+        case StudyStep::device: draw_device(gui, run, wishes); break;
+        case StudyStep::present: draw_present(gui, run); break;
+        case StudyStep::question: draw_question(now_s, gui, run); break;
+        case StudyStep::typed: draw_typed(now_s, gui, run); break;
+        case StudyStep::pause: draw_pause(now_s, gui, run); break;
+        case StudyStep::done: draw_done(gui, run, wishes); break;
+        case StudyStep::stopped: draw_stopped(gui, run, wishes); break;
+    }
+    end_panel("study", gui);
+}
+
+}  // namespace palpa

@@ -1,0 +1,263 @@
+// The screen on which a person palpates: force bar, numbers, mark and confidence, time.
+
+#include <algorithm>
+#include <cmath>
+
+#include "app/screens/widgets.h"
+#include "app/screens/screens.h"
+#include "app/study/study_run.h"
+#include "app/screens/words.h"
+#include "mechanics/linear_range.h"
+
+namespace palpa {
+namespace {
+
+// Bullet graph: one bar before three tints of one hue, light, medium and deep, named beside it.
+void draw_force_bar(const Shown& shown, float height_px, const Gui& gui) {
+    const double full_N = std::max(0.1, shown.plan.greatest_force_N);
+    const float mm = gui.mm();
+    const ImVec2 at = ImGui::GetCursorScreenPos();
+    const float width_px = 8.0f * mm;
+    const auto y_of = [&](double force_N) {
+        return at.y + height_px * (1.0f - static_cast<float>(std::clamp(force_N / full_N, 0.0, 1.0)));
+    };
+    ImDrawList& draw = *ImGui::GetWindowDrawList();
+    const double bounds_N[4] = {0.0, shown.plan.zone_N[0], shown.plan.zone_N[1], full_N};
+    constexpr const char* kZones[3] = {words::kLight, words::kMedium, words::kDeep};
+    const float text_px = ImGui::GetFontSize();
+    for (std::size_t zone = 0; zone < 3; ++zone) {
+        const float top = y_of(bounds_N[zone + 1]);
+        const float bottom = y_of(bounds_N[zone]);
+        draw.AddRectFilled(ImVec2(at.x, top), ImVec2(at.x + width_px, bottom), kForceTints[zone]);
+        if (bottom - top < 1.1f * text_px) continue;
+        const bool room = width_px + 1.5f * mm + ImGui::CalcTextSize(kZones[zone]).x <= ImGui::GetContentRegionAvail().x;
+        const float name_px = room ? text_px : 0.75f * text_px;
+        draw.AddText(ImGui::GetFont(), name_px, ImVec2(at.x + width_px + 1.5f * mm, 0.5f * (top + bottom - name_px)), kPale, kZones[zone]);
+        if (bottom - top < 2.0f * text_px) continue;
+        const std::string bound = fixed(bounds_N[zone + 1], 1) + (zone == 2 ? " N" : "");
+        draw.AddText(ImGui::GetFont(), 0.7f * text_px, ImVec2(at.x + width_px + 1.5f * mm, top), kPale, bound.c_str());
+        draw.AddLine(ImVec2(at.x + width_px, top), ImVec2(at.x + width_px + mm, top), kPale);
+    }
+    const float top = y_of(shown.state.contact.normal_N);
+    draw.AddRectFilled(ImVec2(at.x + 0.3f * width_px, top), ImVec2(at.x + 0.7f * width_px, at.y + height_px), kInk);
+    if (shown.state.contact.saturated) {  // a cap on top, not only a colour
+        draw.AddRectFilled(ImVec2(at.x - 0.5f * mm, top - 0.8f * mm), ImVec2(at.x + width_px + 0.5f * mm, top), kLag);
+    }
+    ImGui::Dummy(ImVec2(width_px, height_px));
+}
+
+// Of a forced choice: there is nothing to mark, and no number may tell how soft it is.
+bool is_interval(const Screens& screens) { return screens.study && screens.study->protocol.task == TaskKind::choice; }
+
+void draw_numbers(const Shown& shown, const Gui& gui, const Screens& screens) {
+    const float column_px = 13.5f * gui.mm();
+    const Contact& contact = shown.state.contact;
+    ImGui::BeginGroup();
+    value_line(words::kForce, fixed(contact.normal_N, 2) + " N", column_px);
+    if (!is_interval(screens)) value_line(words::kDepth, fixed(1e3 * contact.depth_m, 2) + " mm", column_px);
+    // in a test the lag is what the eye has to judge, so no number tells it
+    if (shown.trial.mode == TrialMode::practice) {
+        value_line(words::kLag, fixed(1e3 * shown.avatar.lag_m.norm(), 2) + " mm", column_px);
+        if (shown.scene.delay) value_line(words::kDelay, fixed(1e3 * shown.avatar.delay_s, 0) + " ms", column_px);
+    }
+    if (shown.scene.force_scale != 1.0) value_line(words::kPhantom, fixed(shown.scene.force_scale, 2) + " x", column_px);
+    ImGui::EndGroup();
+}
+
+// One line that is always there, so that nothing moves when it fills.
+void draw_contact_note(const Shown& shown) {
+    const Contact& contact = shown.state.contact;
+    const char* note = "";
+    if (contact.saturated) note = words::kDeeperThanKnown;
+    else if (!contact.measured) note = words::kNotMeasuredHere;
+    else if (mechanics::linear_range(contact.linearity) == mechanics::LinearRange::red) note = words::kBeyondLinear;
+    else if (mechanics::linear_range(contact.linearity) == mechanics::LinearRange::amber) note = words::kLeavingLinear;
+    ImGui::TextColored(ImVec4(1.0f, 0.84f, 0.35f, 1.0f), "%s", note);
+}
+
+// A participant has no menu, and sees which trial this is and the time that is left.
+void draw_study_header(const Shown& shown, const StudyRun& run) {
+    const double limit_s = due_limit_s(run);
+    const double left_s = limit_s > 0.0 ? std::max(0.0, std::ceil(limit_s - shown.trial_s)) : shown.trial_s;
+    const char* what = due_trial(run).practice ? words::kWithNodules : "";
+    ImGui::SetWindowFontScale(1.3f);
+    ImGui::Text("%s  %s", clock_text(left_s).c_str(), what);
+    ImGui::SetWindowFontScale(1.0f);
+    if (run.protocol.task == TaskKind::choice) {
+        ImGui::TextWrapped("%s", run.interval == 0 ? words::kFirstSurface : words::kSecondSurface);
+        paragraph(words::filled(words::kPairOf, {progress_text(run)}));
+    } else {
+        paragraph(words::filled(words::kTrialOf, {progress_text(run)}));
+    }
+}
+
+void draw_header(const Shown& shown, const Gui& gui, Screens& screens) {
+    if (screens.study) return draw_study_header(shown, *screens.study);
+    const float line_px = kTarget_mm * gui.mm();
+    if (big_button(screens.menu ? words::kClose : words::kMenu, "F10", {26.0f * gui.mm(), kTarget_mm, true, screens.menu}, gui)) {
+        screens.menu = !screens.menu;
+    }
+    ImGui::SameLine();
+    ImGui::BeginGroup();
+    ImGui::SetCursorPosY(ImGui::GetCursorPosY() + 0.5f * (line_px - ImGui::GetFontSize()));
+    const char* mode = shown.trial.mode == TrialMode::practice ? words::kWithNodules : words::kWithoutNodules;
+    ImGui::Text("%s  %s", clock_text(shown.trial_s).c_str(), mode);
+    ImGui::EndGroup();
+}
+
+void draw_confidence(const Shown& shown, const Gui& gui, Wishes& wishes) {
+    const int said = shown.trial.marks.empty() ? 0 : shown.trial.marks.back().confidence;
+    ImGui::TextDisabled(words::kUnsure);
+    const char* sure = words::kSure;
+    ImGui::SameLine();
+    ImGui::SetCursorPosX(ImGui::GetCursorPosX() + ImGui::GetContentRegionAvail().x - ImGui::CalcTextSize(sure).x);
+    ImGui::TextDisabled("%s", sure);
+    const float width_px = share_of_line_px(5);
+    constexpr const char* kDigits[5] = {"1", "2", "3", "4", "5"};
+    for (int i = 0; i < 5; ++i) {
+        if (i > 0) ImGui::SameLine();
+        if (big_button(kDigits[i], "", {width_px, kTarget_mm, !shown.trial.marks.empty(), said == i + 1}, gui)) {
+            wishes.action = static_cast<Action>(static_cast<int>(Action::confidence_1) + i);
+        }
+    }
+}
+
+void draw_actions(const Shown& shown, const Gui& gui, const Screens& screens, Wishes& wishes) {
+    if (is_interval(screens)) {
+        if (big_button(words::kFelt, "F", {0.0f, kMark_mm, true, false}, gui)) wishes.action = Action::finish;
+        return;
+    }
+    const std::string mark = words::filled(words::kMark, {std::to_string(shown.trial.marks.size())}) + "###mark";
+    if (big_button(mark.c_str(), "M", {0.0f, kMark_mm, shown.trial.last_px.has_value(), false}, gui)) wishes.action = Action::mark;
+    draw_confidence(shown, gui, wishes);
+    const float width_px = share_of_line_px(2);
+    if (big_button(words::kUndo, "U", {width_px, kTarget_mm, !shown.trial.marks.empty(), false}, gui)) wishes.action = Action::undo;
+    ImGui::SameLine();
+    if (big_button(words::kFinish, "F", {width_px, kTarget_mm, true, false}, gui)) wishes.action = Action::finish;
+}
+
+void draw_messages(const Shown& shown, const Gui& gui, Screens& screens, Wishes& wishes) {
+    for (const std::string& problem : screens.problems) warning_paragraph(problem);
+    if (!screens.problems.empty() && big_button(words::kUnderstood, "", {}, gui)) screens.problems.clear();
+    if (shown.state.without_level) {
+        warning_paragraph(words::filled(words::kWithoutLevel, {std::string(name_of(shown.plan.profile.level)), shown.plan.profile.id}));
+    }
+    if (screens.offer_hold && big_button(words::kPressByHolding, "H", {}, gui)) wishes.press_by_hold = true;
+    for (const std::string& note : screens.device_notes) paragraph(note);
+    if (!screens.note.empty()) paragraph(screens.note);
+    if (!screens.trials_note.empty()) paragraph(screens.trials_note);
+    if (screens.study) return;  // what the tissue is made of, the settings tell
+    if (shown.plan.source == SourceKind::analytic) paragraph(words::kAnalyticTissue);
+    if (shown.plan.source == SourceKind::simulated) paragraph(words::kSimulatedTissue);
+    if (std::isfinite(shown.state.view.scale) && shown.scene.mapping.kind == MappingKind::direct &&
+        std::abs(shown.state.view.scale - 1.0) > 0.005) {
+        paragraph(words::filled(words::kShownAt, {fixed(100.0 * shown.state.view.scale, 0)}));
+    }
+}
+
+void column_panel(const Shown& shown, Gui& gui, Screens& screens, Wishes& wishes) {
+    draw_header(shown, gui, screens);
+    if (!screens.study) one_line(shown.scene.name);
+    // what is left after the rest, within reason
+    const float rest_px = 62.0f * gui.mm() + 3.0f * ImGui::GetFontSize();
+    const float bar_px = std::clamp(ImGui::GetContentRegionAvail().y - rest_px, 16.0f * gui.mm(), 55.0f * gui.mm());
+    const float left_px = ImGui::GetCursorPosX();
+    draw_force_bar(shown, bar_px, gui);
+    ImGui::SameLine();
+    ImGui::SetCursorPosX(left_px + 26.0f * gui.mm());
+    draw_numbers(shown, gui, screens);
+    if (!is_interval(screens)) draw_contact_note(shown);
+    draw_actions(shown, gui, screens, wishes);
+    ImGui::BeginChild("messages", ImVec2(0.0f, 0.0f), false, ImGuiWindowFlags_NavFlattened);  // long ones scroll in what is left
+    draw_messages(shown, gui, screens, wishes);
+    ImGui::EndChild();
+}
+
+void strip_panel(const Shown& shown, Gui& gui, Screens& screens, Wishes& wishes) {
+    const float mm = gui.mm();
+    const float right_px = 58.0f * mm;
+    const float wide_px = ImGui::GetContentRegionAvail().x;
+    const float height_px = ImGui::GetContentRegionAvail().y;
+    const float left_px = ImGui::GetCursorPosX();
+    const float top_px = ImGui::GetCursorPosY();
+    const float gap_px = ImGui::GetStyle().ItemSpacing.x;
+    ImGui::BeginChild("left", ImVec2(wide_px - right_px - gap_px, height_px), false, ImGuiWindowFlags_NoNav);
+    const float rest_px = (screens.problems.empty() ? 12.0f : 30.0f) * mm;
+    draw_force_bar(shown, std::max(16.0f * mm, height_px - rest_px - 12.0f * mm), gui);
+    ImGui::SameLine();
+    ImGui::SetCursorPosX(26.0f * mm);
+    draw_numbers(shown, gui, screens);
+    if (!is_interval(screens)) draw_contact_note(shown);
+    draw_messages(shown, gui, screens, wishes);
+    ImGui::EndChild();
+    ImGui::SetCursorPos(ImVec2(left_px + wide_px - right_px, top_px));
+    ImGui::BeginChild("right", ImVec2(right_px, height_px), false, ImGuiWindowFlags_NavFlattened);
+    draw_header(shown, gui, screens);
+    draw_actions(shown, gui, screens, wishes);
+    if (ImGui::GetScrollMaxY() > 1.0f) gui.note_overflow("actions");
+    ImGui::EndChild();
+}
+
+void draw_pen(const Shown& shown, const Gui& gui, ImDrawList& draw) {
+    if (!shown.state.touch.down) {  // where a mark would go
+        if (!shown.trial.last_px) return;
+        const Eigen::Vector2d p_m = tissue_of_px(shown.state.view, *shown.trial.last_px);
+        const ImVec2 at = on_screen(shown.view, p_m.x(), p_m.y());
+        dashed_circle(draw, at, 2.2f * gui.mm(), kInk, 0.3f * gui.mm());
+        return;
+    }
+    const Eigen::Vector2d& pen_m = shown.state.touch.p_m;
+    const ImVec2 pen = on_screen(shown.view, pen_m.x(), pen_m.y());
+    draw.AddLine(on_screen(shown.view, shown.avatar.p_m.x(), shown.avatar.p_m.y()), pen, kLag, 0.8f * gui.mm());
+    draw.AddCircle(pen, 1.6f * gui.mm(), kLag, 24, 0.6f * gui.mm());
+}
+
+}  // namespace
+
+void draw_on_tissue(const Shown& shown, const Gui& gui) {
+    ImDrawList& draw = *ImGui::GetBackgroundDrawList();
+    if (shown.trial.mode == TrialMode::practice) {
+        for (const Nodule& nodule : shown.plan.nodules) {
+            const ImVec2 at = on_screen(shown.view, nodule.x_m, nodule.y_m);
+            const auto radius_px = static_cast<float>(0.5 * nodule.diameter_m.value_or(4e-3)) * shown.view.px_per_m;
+            draw.AddCircle(at, radius_px, kInk, 48, 0.5f * gui.mm());
+            rimmed_text(draw, ImVec2(at.x + radius_px + gui.mm(), at.y), kInk, nodule.id);
+        }
+    }
+    for (std::size_t i = 0; i < shown.trial.marks.size(); ++i) {
+        const Mark& mark = shown.trial.marks[i];
+        const ImVec2 at = on_screen(shown.view, mark.p_m.x(), mark.p_m.y());
+        cross(draw, at, 1.6f * gui.mm(), kDark, 1.2f * gui.mm());
+        cross(draw, at, 1.6f * gui.mm(), kInk, 0.6f * gui.mm());
+        const std::string sure = mark.confidence > 0 ? " (" + std::to_string(mark.confidence) + ")" : "";
+        rimmed_text(draw, ImVec2(at.x + 2.0f * gui.mm(), at.y - 1.6f * gui.mm() - 0.5f * ImGui::GetFontSize()), kInk,
+                    std::to_string(i + 1) + sure);
+    }
+    draw_pen(shown, gui, draw);
+}
+
+void draw_trial_panel(const Shown& shown, const Layout& layout, Gui& gui, Screens& screens, Wishes& wishes) {
+    if (!layout.controls) {
+        rimmed_text(*ImGui::GetForegroundDrawList(), ImVec2(4.0f, 4.0f), kInk, words::kTooSmall);
+        return;
+    }
+    begin_panel("trial", layout.controls_px, gui);
+    if (layout.column) {
+        column_panel(shown, gui, screens, wishes);
+    } else {
+        strip_panel(shown, gui, screens, wishes);
+    }
+    end_panel("trial", gui);
+}
+
+void draw_progress(const std::string& what, double share) {
+    const ImVec2 screen = ImGui::GetIO().DisplaySize;
+    ImGui::SetNextWindowPos(ImVec2(0.5f * screen.x, 0.5f * screen.y), ImGuiCond_Always, ImVec2(0.5f, 0.5f));
+    ImGui::SetNextWindowSize(ImVec2(std::min(0.8f * screen.x, 30.0f * ImGui::GetFontSize()), 0.0f));
+    ImGui::Begin("progress", nullptr, ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoSavedSettings);
+    paragraph(what);
+    ImGui::ProgressBar(static_cast<float>(share), ImVec2(-1.0f, 0.0f));
+    ImGui::End();
+}
+
+}  // namespace palpa

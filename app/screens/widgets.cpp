@@ -1,0 +1,128 @@
+#include "app/screens/widgets.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <numbers>
+
+namespace palpa {
+
+void begin_panel(const char* name, const PanelArea& area, Gui& gui, float opacity) {
+    gui.claim(area);
+    ImGui::SetNextWindowPos(ImVec2(area.x0, area.y0));
+    ImGui::SetNextWindowSize(ImVec2(area.width(), area.height()));
+    ImGui::SetNextWindowBgAlpha(opacity);
+    constexpr ImGuiWindowFlags kFixed = ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoCollapse |
+                                        ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings;
+    ImGui::Begin(name, nullptr, kFixed);
+}
+
+void end_panel(const char* name, Gui& gui) {
+    if (ImGui::GetScrollMaxY() > 1.0f || ImGui::GetScrollMaxX() > 1.0f) gui.note_overflow(name);
+    ImGui::End();
+}
+
+float share_of_line_px(int count) {
+    const float gap_px = ImGui::GetStyle().ItemSpacing.x;
+    return std::floor((ImGui::GetContentRegionAvail().x - gap_px * static_cast<float>(count - 1)) / static_cast<float>(count));
+}
+
+bool big_button(const char* label, const char* key, const ButtonLook& look, const Gui& gui) {
+    const ImVec2 size(look.width_px > 0.0f ? look.width_px : ImGui::GetContentRegionAvail().x, look.height_mm * gui.mm());
+    ImGui::BeginDisabled(!look.enabled);
+    if (look.chosen) {
+        ImGui::PushStyleColor(ImGuiCol_Button, ImVec4(0.78f, 0.88f, 0.95f, 1.0f));
+        ImGui::PushStyleColor(ImGuiCol_ButtonHovered, ImVec4(0.85f, 0.92f, 0.97f, 1.0f));
+        ImGui::PushStyleColor(ImGuiCol_ButtonActive, ImVec4(0.90f, 0.95f, 1.0f, 1.0f));
+        ImGui::PushStyleColor(ImGuiCol_Text, ImVec4(0.07f, 0.08f, 0.09f, 1.0f));
+    }
+    const bool pressed = ImGui::Button(label, size);
+    if (look.chosen) ImGui::PopStyleColor(4);
+    ImGui::EndDisabled();
+    const ImVec2 low = ImGui::GetItemRectMin();
+    const ImVec2 high = ImGui::GetItemRectMax();
+    const float small_px = 0.62f * ImGui::GetFontSize();
+    const ImVec2 label_size = ImGui::CalcTextSize(label, nullptr, true);
+    const float key_px = ImGui::CalcTextSize(key).x * 0.62f;
+    if (*key != '\0' && label_size.x + 2.0f * key_px + 3.0f * gui.mm() < size.x) {
+        const ImU32 colour = look.chosen ? IM_COL32(60, 66, 70, 255) : kPale;
+        ImGui::GetWindowDrawList()->AddText(ImGui::GetFont(), small_px,
+                                            ImVec2(high.x - key_px - 1.2f * gui.mm(), low.y + 0.8f * gui.mm()), colour, key);
+    }
+    return pressed;
+}
+
+void paragraph(const std::string& text) {
+    ImGui::PushTextWrapPos(0.0f);
+    ImGui::TextDisabled("%s", text.c_str());
+    ImGui::PopTextWrapPos();
+}
+
+void one_line(std::string text) {
+    const float width_px = ImGui::GetContentRegionAvail().x;
+    if (ImGui::CalcTextSize(text.c_str()).x > width_px) {
+        while (!text.empty() && ImGui::CalcTextSize((text + "...").c_str()).x > width_px) {
+            while (!text.empty() && (text.back() & 0xC0) == 0x80) text.pop_back();  // a whole character of UTF-8
+            if (!text.empty()) text.pop_back();
+        }
+        text += "...";
+    }
+    ImGui::TextDisabled("%s", text.c_str());
+}
+
+void warning_paragraph(const std::string& text) {
+    ImGui::PushTextWrapPos(0.0f);
+    ImGui::TextColored(ImVec4(1.0f, 0.84f, 0.35f, 1.0f), "! %s", text.c_str());
+    ImGui::PopTextWrapPos();
+}
+
+void value_line(const char* name, const std::string& value, float column_px) {
+    const float left_px = ImGui::GetCursorPosX();
+    ImGui::TextDisabled("%s", name);
+    ImGui::SameLine();
+    ImGui::SetCursorPosX(left_px + column_px);
+    ImGui::TextUnformatted(value.c_str());
+}
+
+std::string clock_text(double seconds) {
+    const int whole_s = static_cast<int>(std::clamp(seconds, 0.0, 1e6));
+    char text[32];
+    std::snprintf(text, sizeof text, "%d:%02d", whole_s / 60, whole_s % 60);
+    return text;
+}
+
+std::string fixed(double value, int digits) {
+    if (!std::isfinite(value)) return "-";
+    char text[64];
+    std::snprintf(text, sizeof text, "%.*f", digits, std::clamp(value, -1e12, 1e12));
+    return text;
+}
+
+ImVec2 on_screen(const TissueView& view, double x_m, double y_m) {
+    const glm::vec2 px = project_px(view, glm::vec3(x_m, y_m, 0.0));
+    return {px.x, px.y};
+}
+
+void cross(ImDrawList& draw, ImVec2 at, float r, ImU32 colour, float width_px) {
+    draw.AddLine(ImVec2(at.x - r, at.y - r), ImVec2(at.x + r, at.y + r), colour, width_px);
+    draw.AddLine(ImVec2(at.x - r, at.y + r), ImVec2(at.x + r, at.y - r), colour, width_px);
+}
+
+void dashed_circle(ImDrawList& draw, ImVec2 at, float radius_px, ImU32 colour, float width_px) {
+    constexpr int kDashes = 16;
+    for (int i = 0; i < kDashes; ++i) {
+        const float from = 2.0f * std::numbers::pi_v<float> * static_cast<float>(i) / kDashes;
+        draw.PathArcTo(at, radius_px, from, from + std::numbers::pi_v<float> / kDashes, 4);
+        draw.PathStroke(colour, 0, width_px);
+    }
+}
+
+void rimmed_text(ImDrawList& draw, ImVec2 at, ImU32 colour, const std::string& text) {
+    const float rim_px = std::max(1.0f, ImGui::GetFontSize() / 16.0f);
+    for (const float dx : {-rim_px, rim_px}) {
+        for (const float dy : {-rim_px, rim_px}) draw.AddText(ImVec2(at.x + dx, at.y + dy), kDark, text.c_str());
+    }
+    draw.AddText(at, colour, text.c_str());
+}
+
+}  // namespace palpa

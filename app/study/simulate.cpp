@@ -1,0 +1,293 @@
+#include "app/study/simulate.h"
+
+#include <unistd.h>
+
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <exception>
+#include <mutex>
+#include <numbers>
+#include <stdexcept>
+#include <thread>
+
+#include "app/assets.h"
+#include "session/session.h"
+#include "files/text.h"
+#include "scene/mapping.h"
+#include "study/simulated_person.h"
+#include "study/study_folder.h"
+
+namespace palpa {
+namespace {
+
+enum Purpose : std::uint64_t { kTraits = 11, kTrials = 12, kAnswers = 13 };
+
+constexpr double kScreenWidth_px = 1280.0;
+constexpr double kScreenHeight_px = 800.0;
+constexpr double kNoLimit_s = 60.0;     // how long a simulated person searches where the protocol sets no limit
+constexpr double kSoftnessWeber = 0.2;  // of a simulated answer to "which is softer"; ours, no measurement
+
+struct Shared {
+    const Protocol& protocol;
+    const SimulateOptions& options;
+    const StudyScenes& scenes;
+    std::vector<Json> identities;  // by condition: hashes of map and profile
+    std::atomic<int> next_participant{1};
+    std::atomic<int> done{0};
+    std::atomic<bool> stop{false};
+    std::mutex mutex;
+    SimulateResult result;
+    std::exception_ptr error;
+};
+
+std::string code_of(int number) {
+    char code[24];
+    std::snprintf(code, sizeof code, "sim%04d", number);
+    return code;
+}
+
+// Sample of a hand that presses so hard at a place of the screen: the inverse of calibration and mapping.
+class Hand {
+ public:
+    Hand(const Condition& condition, const Session& session)
+        : profile_(session.plan.profile), view_(session.state.view), force_scale_(session.scene.force_scale),
+          tool_(condition.modality == Modality::finger ? Tool::finger : Tool::pen) {}
+
+    Sample sample(double t_s, const ScreenPlace& at, double force_N, Phase phase) const {
+        Sample out;
+        out.t_host_s = out.t_device_s = t_s;
+        out.pointer_id = 1;
+        out.tool = tool_;
+        out.phase = phase;
+        place(at, view_.input_px_per_m, out);
+        const double level = level_at_force(profile_, force_N / force_scale_);
+        const double share = (level - profile_.level_lowest) / (profile_.level_highest - profile_.level_lowest);
+        out.pressure = share;
+        if (profile_.level == LevelField::pressure_raw) out.pressure_raw = std::round(level);
+        if (profile_.level == LevelField::contact_area) {
+            out.width_px = out.height_px = std::sqrt(4.0 / std::numbers::pi * level * profile_.full_contact_area_px2);
+        }
+        return out;
+    }
+    Sample act(double t_s, const ScreenPlace& at, Action action) const {
+        Sample out;
+        out.t_host_s = out.t_device_s = t_s;
+        out.tool = tool_;
+        out.phase = Phase::ui;
+        place(at, view_.input_px_per_m, out);
+        out.action = action;
+        return out;
+    }
+
+ private:
+    // the person's y points up, the screen's down
+    void place(const ScreenPlace& at, const Eigen::Vector2d& px_per_m, Sample& out) const {
+        out.x_px = view_.centre_px.x() + at.x_m * px_per_m.x();
+        out.y_px = view_.centre_px.y() - at.y_m * px_per_m.y();
+    }
+
+    const Profile& profile_;
+    View view_;
+    double force_scale_;
+    Tool tool_;
+};
+
+double greatest_force_N(const Session& session) {
+    std::int64_t clamped = 0;
+    return session.scene.force_scale * force_N(session.plan.profile, session.plan.profile.level_highest, clamped);
+}
+
+SessionFiles files_of(const Shared& shared, const PlannedParticipant& who, const PlannedTrial& trial) {
+    SessionFiles files;
+    files.log = shared.options.output.string();
+    files.participant = code_of(who.number);
+    files.samples = shared.options.samples;
+    files.sync_rows = false;  // nobody waits; the trial is on the disk before the next begins
+    files.label = label_of(shared.protocol, who, trial, shared.identities[trial.condition]);
+    files.label->study["simulated"] = true;
+    files.label->study["simulation_seed"] = shared.options.seed;
+    return files;
+}
+
+// What a person sees of the present state.
+Sight sight_of(const Session& session) {
+    return {session.state.avatar.lag_m.norm(), session.state.contact.depth_m, session.scene.surface.has_value()};
+}
+
+void palpate(SimulatedPerson& person, const Hand& hand, double rate_Hz, Session& session) {
+    const double dt_s = 1.0 / rate_Hz;
+    for (std::int64_t i = 0; !session.trial.finished; ++i) {
+        const double t_s = static_cast<double>(i) * dt_s;
+        const Move made = move(dt_s, person);
+        take_sample(hand.sample(t_s, made.at, made.force_N, made.began ? Phase::down : Phase::move), session);
+        see(sight_of(session), dt_s, person);
+        if (made.deed == Deed::none) continue;
+        if (made.deed == Deed::mark) {
+            take_sample(hand.act(t_s, made.mark, Action::mark), session);
+            const int first = static_cast<int>(Action::confidence_1) - 1;
+            take_sample(hand.act(t_s, made.mark, static_cast<Action>(first + made.confidence)), session);
+        } else {
+            take_sample(hand.sample(t_s, made.at, 0.0, Phase::up), session);
+            take_sample(hand.act(t_s, made.at, Action::finish), session);
+        }
+    }
+}
+
+void run_trial(Shared& shared, const PlannedParticipant& who, const PlannedTrial& trial, Session& session) {
+    const auto began = std::chrono::steady_clock::now();
+    const Protocol& protocol = shared.protocol;
+    session.scene = scene_of(*shared.scenes[trial.condition], trial);
+    const TraceInfo info{kScreenWidth_px, kScreenHeight_px, kMissing, kMissing, "simulated participant"};
+    begin_trial(files_of(shared, who, trial), info, trial.practice ? TrialMode::practice : TrialMode::test, session);
+    session.state.time_every = 0;
+    // the same hand and eye in all trials of a person, noise of its own in each
+    Random of_person(derived_seed(shared.options.seed, kTraits, static_cast<std::uint64_t>(who.number)));
+    const PersonTraits traits = draw_person(session.plan.zone_N[1], greatest_force_N(session), of_person);
+    const double asked_s = trial.practice ? protocol.practice_limit_s : protocol.time_limit_s;
+    const bool on_side = trial.rotate_deg % 180 != 0;
+    const Eigen::Vector2d& size_m = session.plan.area.size_m;
+    const std::uint64_t trials = derived_seed(shared.options.seed, kTrials, static_cast<std::uint64_t>(who.number));
+    SimulatedPerson person = make_person(traits, on_side ? size_m.y() : size_m.x(), on_side ? size_m.x() : size_m.y(),
+                                         asked_s > 0.0 ? asked_s : kNoLimit_s,
+                                         derived_seed(trials, kTrials, static_cast<std::uint64_t>(trial.trial)));
+    palpate(person, Hand(protocol.conditions[trial.condition], session), shared.options.rate_Hz, session);
+    const std::int64_t samples = session.state.counters.samples;
+    double written_MB = 0.0;
+    if (session.files && shared.options.samples) {
+        written_MB = 1e-6 * static_cast<double>(std::filesystem::file_size(session.files->file("_samples.tsv")));
+    }
+    const double wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
+    const std::string stem = session.files->stem;
+    session.finished.clear();
+    if (!close_files({{"wall_s", wall_s}, {"samples", samples}}, session)) {
+        throw std::runtime_error(stem + ": the trial could not be written to its end (is the disk full?); the study stops here");
+    }
+    const std::lock_guard lock(shared.mutex);
+    ++shared.result.trials;
+    shared.result.samples += samples;
+    shared.result.written_MB += written_MB;
+}
+
+// Forced choices need no loop: the answer is drawn from two stiffnesses with noise.
+void run_choices(Shared& shared, const PlannedParticipant& who, const std::set<int>& finished) {
+    const Protocol& protocol = shared.protocol;
+    if (!next_trial(who, finished)) return;
+    ChoiceLog log(next_run(shared.options.output, code_of(who.number), "softer"));
+    const std::uint64_t of_person = derived_seed(shared.options.seed, kAnswers, static_cast<std::uint64_t>(who.number));
+    int done = 0;
+    for (const PlannedTrial& trial : who.trials) {
+        if (finished.count(trial.trial) > 0) continue;
+        Random random(derived_seed(of_person, kAnswers, static_cast<std::uint64_t>(trial.trial)));
+        const Condition& condition = protocol.conditions[trial.condition];
+        ChoiceRow row;
+        row.duration_s = 2.0 + random.uniform();
+        row.onset_s = 3.0 * (trial.trial - 1);
+        row.trial = trial.trial;
+        row.order_id = who.order_id;
+        row.condition = condition.id;
+        row.device_id = condition.device;
+        row.seed = trial.seed;
+        row.reference_kPa = protocol.choice.reference_kPa;
+        row.comparison_kPa = protocol.choice.comparisons_kPa[static_cast<std::size_t>(trial.comparison)];
+        row.first = trial.reference_first ? "reference" : "comparison";
+        const bool right = answers_right(row.reference_kPa, row.comparison_kPa, kSoftnessWeber, random);
+        const bool reference_softer = row.reference_kPa < row.comparison_kPa;
+        row.answer = right == reference_softer ? "reference" : "comparison";
+        row.correct = right ? 1 : 0;
+        if (!log.write(row)) throw std::runtime_error(code_of(who.number) + ": a choice could not be written; the study stops here");
+        ++done;
+    }
+    const std::lock_guard lock(shared.mutex);
+    shared.result.trials += done;
+}
+
+void run_participant(Shared& shared, int number, std::vector<std::optional<Session>>& sessions) {
+    const PlannedParticipant who = plan_participant(shared.protocol, number);
+    const std::set<int> finished = finished_trials(shared.options.output, code_of(number));
+    {
+        const std::lock_guard lock(shared.mutex);
+        shared.result.already_there += static_cast<int>(finished.size());
+    }
+    if (shared.protocol.task == TaskKind::choice) return run_choices(shared, who, finished);
+    for (const PlannedTrial& trial : who.trials) {
+        if (shared.stop) return;
+        const bool simulated = shared.scenes[trial.condition].has_value() && (!trial.practice || shared.options.practice);
+        if (!simulated && !trial.practice) {
+            const std::lock_guard lock(shared.mutex);
+            ++shared.result.left_out;
+        }
+        if (!simulated || finished.count(trial.trial) > 0) continue;
+        std::optional<Session>& session = sessions[trial.condition];
+        if (!session) {
+            session.emplace();
+            session->plan = *shared.scenes[trial.condition]->plan;
+        }
+        run_trial(shared, who, trial, *session);
+    }
+}
+
+void work(Shared& shared) {
+    std::vector<std::optional<Session>> sessions(shared.protocol.conditions.size());
+    try {
+        while (!shared.stop) {
+            const int number = shared.next_participant++;
+            if (number > shared.options.participants) return;
+            run_participant(shared, number, sessions);
+            ++shared.done;
+        }
+    } catch (...) {
+        const std::lock_guard lock(shared.mutex);
+        if (!shared.error) shared.error = std::current_exception();
+        shared.stop = true;
+    }
+}
+
+void add_everybody(const Protocol& protocol, const SimulateOptions& options) {
+    std::vector<Person> people;
+    for (int number = 1; number <= options.participants; ++number) {
+        Person person;
+        person.code = code_of(number);
+        person.group = protocol.groups[plan_participant(protocol, number).group].id;
+        people.push_back(person);
+    }
+    add_people(options.output, people);
+}
+
+void tell(const Shared& shared, double wall_s, bool last) {
+    if (isatty(STDERR_FILENO) == 0) return;
+    const int done = shared.done;
+    const double left_s = done > 0 ? wall_s * (shared.options.participants - done) / done : 0.0;
+    std::fprintf(stderr, "\r%d of %d participants, %.0f s left ", done, shared.options.participants, left_s);
+    if (last) std::fputc('\n', stderr);
+}
+
+}  // namespace
+
+SimulateResult simulate_study(const Protocol& protocol, const SimulateOptions& options) {
+    const auto began = std::chrono::steady_clock::now();
+    const auto wall_s = [&] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count(); };
+    const StudyScenes scenes = load_study_scenes(protocol);
+    Shared shared{protocol, options, scenes, {}, {}, {}, {}, {}, {}, {}};
+    shared.next_participant = 1;
+    for (const auto& scene : scenes) shared.identities.push_back(identity_of(scene));
+    open_study(options.output, protocol, {true, options.seed, "palpa " PALPA_VERSION});
+    add_everybody(protocol, options);
+    std::vector<std::thread> workers;
+    for (int i = 0; i < options.jobs; ++i) workers.emplace_back([&] { work(shared); });
+    std::thread teller([&] {
+        for (int i = 0; !shared.stop && shared.done < options.participants; ++i) {
+            std::this_thread::sleep_for(std::chrono::milliseconds(50));
+            if (i % 20 == 19) tell(shared, wall_s(), false);
+        }
+        tell(shared, wall_s(), true);
+    });
+    for (std::thread& worker : workers) worker.join();
+    teller.join();
+    if (shared.error) std::rethrow_exception(shared.error);
+    shared.result.wall_s = wall_s();
+    return shared.result;
+}
+
+}  // namespace palpa

@@ -1,0 +1,92 @@
+#include "app/study/study_scenes.h"
+
+#include "app/assets.h"
+#include "session/plan_in_progress.h"
+#include "files/input_error.h"
+#include "files/sha256.h"
+#include "files/text.h"
+
+namespace palpa {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Beside the protocol, else among the assets.
+fs::path find_beside(const Protocol& protocol, const std::string& name, const char* kind) {
+    const fs::path given(name);
+    if (given.is_absolute()) return given;
+    const fs::path beside = (protocol.file.parent_path() / given).lexically_normal();
+    if (fs::exists(beside) || given.has_parent_path()) return beside;
+    return assets_folder() / kind / given;
+}
+
+std::string hash_of_file(const fs::path& file) {
+    std::error_code error;
+    return fs::is_regular_file(file, error) ? sha256_hex(read_text(file)) : "n/a";
+}
+
+StudyScene load(const Protocol& protocol, const Condition& condition) {
+    StudyScene out;
+    const fs::path file = find_beside(protocol, condition.scene, "scenes");
+    out.scene = read_scene(file, assets_folder());
+    if (!condition.profile.empty()) out.scene.profile = find_beside(protocol, condition.profile, "profiles");
+    out.plan = std::make_shared<const Plan>(make_plan_here(out.scene));
+    return out;
+}
+
+}  // namespace
+
+StudyScenes load_study_scenes(const Protocol& protocol) {
+    StudyScenes scenes;
+    for (std::size_t i = 0; i < protocol.conditions.size(); ++i) {
+        const Condition& condition = protocol.conditions[i];
+        scenes.emplace_back();
+        if (condition.scene.empty()) continue;
+        try {
+            scenes.back() = load(protocol, condition);
+        } catch (const InputError& error) {
+            throw InputError(protocol.file.string() + ": conditions[" + std::to_string(i) + "] " +
+                             shown(condition.id) + ": " + error.what());
+        }
+    }
+    return scenes;
+}
+
+Json identity_of(const std::optional<StudyScene>& scene) {
+    Json json = Json::object();
+    if (!scene) return json;
+    json["profile_sha256"] = hash_of_file(scene->scene.profile);
+    if (scene->scene.linear) {
+        json["phantom_sha256"] = hash_of_file(scene->scene.linear->phantom);
+        return json;
+    }
+    for (const char* name : {"map.json", "normal_N.npy", "tangential_x_N.npy", "tangential_y_N.npy"}) {
+        const std::string hash = hash_of_file(scene->scene.map / name);
+        if (hash != "n/a") json["map_sha256"][name] = hash;
+    }
+    return json;
+}
+
+TrialLabel label_of(const Protocol& protocol, const PlannedParticipant& who, const PlannedTrial& trial, const Json& identity) {
+    const Condition& condition = protocol.conditions[trial.condition];
+    Json study{{"protocol", protocol.name},
+               {"version", protocol.version},
+               {"sha256", protocol.sha256},
+               {"seed", protocol.seed},
+               {"participant_number", who.number},
+               {"group", protocol.groups[who.group].id},
+               {"modality", name_of(condition.modality)},
+               {"trial_seed", trial.seed}};
+    study.update(identity);
+    return {condition.id, condition.device, trial.trial, who.order_id, study};
+}
+
+Scene scene_of(const StudyScene& scene, const PlannedTrial& trial) {
+    Scene out = scene.scene;
+    out.mapping.rotate_deg = trial.rotate_deg;
+    out.mapping.flip = trial.flip;
+    out.seed = trial.seed;
+    return out;
+}
+
+}  // namespace palpa

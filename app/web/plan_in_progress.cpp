@@ -1,0 +1,26 @@
+// The browser's app has one thread, and a linear tissue takes it for minutes.
+
+#include "session/plan_in_progress.h"
+
+#include "files/input_error.h"
+
+namespace palpa {
+
+struct PlanInProgress::Work {};
+
+PlanInProgress::PlanInProgress(const Scene& scene) {
+    throw InputError("\"" + scene.name + "\" is a linear tissue, which is computed on the desk: found a browser, expected a scene with a map");
+}
+PlanInProgress::~PlanInProgress() = default;
+
+double PlanInProgress::share() const { return 0.0; }
+bool PlanInProgress::wait(double) { return true; }
+void PlanInProgress::cancel() {}
+Plan PlanInProgress::take() { return {}; }
+
+Plan make_plan_here(const Scene& scene) {
+    if (scene.linear) return PlanInProgress(scene).take();
+    return make_plan(scene);
+}
+
+}  // namespace palpa

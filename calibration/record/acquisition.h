@@ -1,0 +1,85 @@
+#pragma once
+// A calibration that is being recorded: pen and force sensor in, points and both raw streams on disk. No window and no
+// terminal, so that the command line and the app's screen drive the same session.
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "calibration/profile.h"
+#include "calibration/record_session.h"
+#include "devices/sensor_reader.h"
+#include "files/append_file.h"
+#include "files/json.h"
+#include "platform/sample.h"
+#include "platform/timeline.h"
+
+namespace palpa {
+
+inline constexpr double kN_per_gf = 9.80665e-3;
+
+struct RecordArguments {
+    std::string folder;
+    std::string sensor;            // netft:HOST[:PORT], serial:PATH, typed
+    std::string levels;            // a file or pipe with one level a line, "-" for standard input; empty: a window
+    double counts_per_N = 1e6;     // netft
+    std::string axis = "-z";       // netft
+    double N_per_count = 0.0;      // serial
+    int baud = 115200;
+    double seconds = 0.0;          // 0: until it is known, or ended
+    bool resume = false;
+    bool newton = false;           // typed numbers are newtons, not gram-force
+    Profile level;                 // which field of a sample is the level, and its range
+    RecordOptions options;
+};
+
+// Both streams as they came, on disk once a second. A run never touches the files of another.
+struct RawFiles {
+    AppendFile levels;
+    AppendFile forces;
+    std::string row;
+
+    explicit RawFiles(const std::filesystem::path& folder);
+    void write(const Sample& sample, double level);
+    void write(const ForceReading& reading);
+    void sync();  // throws std::runtime_error if something could not be written
+};
+
+struct Recording {
+    RecordArguments arguments;
+    std::unique_ptr<SensorReader> sensor;  // none: typed
+    std::optional<RawFiles> raw;
+    RecordSession session;
+    Knowledge knowledge;
+    Timeline timeline;          // when samples really came: a slow frame holds them up, but not their device's clock
+    double began_s = 0.0;
+    double synced_s = 0.0;
+    double touched_s = -1.0;    // ended last
+    std::int64_t samples = 0;
+    std::int64_t readings = 0;
+    std::size_t resumed = 0;    // points of earlier runs
+    int known_repeats = -1;     // the press whose end has been judged
+    bool judged = false;        // a press ended in the last step
+    bool silent = false;        // the sensor has stopped; nothing is captured until it is back
+};
+
+// Opens sensor, folder and files. Throws InputError for what cannot be, std::runtime_error for what cannot be opened.
+std::unique_ptr<Recording> open_recording(const RecordArguments& arguments);
+
+// One turn: samples in, readings in, points captured and saved. False once the curve is known everywhere or
+// arguments.seconds are over. Throws std::runtime_error when the disk is full or the sensor has never said anything.
+bool step(const std::vector<Sample>& samples, Recording& recording);
+
+// What a scale shows now, while the pen is held still at a level. False: nothing was taken, since it is not.
+bool take_typed_N(double force_N, Recording& recording);
+
+// The band to press next, in words.
+std::string advice(const Recording& recording);
+
+std::filesystem::path points_file(const RecordArguments& arguments);
+
+// All that is left goes to the disk. What came of it, as `calibrate record --json` prints it.
+Json close_recording(Recording& recording);
+
+}  // namespace palpa

@@ -1,0 +1,63 @@
+#include "figures/gnuplot.h"
+
+#include <unistd.h>
+
+#include <cstdlib>
+#include <stdexcept>
+
+#include "files/input_error.h"
+#include "files/regular_file.h"
+#include "files/text.h"
+
+namespace palpa {
+namespace {
+
+std::string terminal(const std::filesystem::path& file, int width_px, int height_px) {
+    const std::string kind = file.extension().string();
+    const std::string px = std::to_string(width_px) + "," + std::to_string(height_px);
+    if (kind == ".png") return "pngcairo size " + px + " font 'DejaVu Sans,11'";
+    if (kind == ".svg") return "svg size " + px + " font 'DejaVu Sans,13'";
+    if (kind == ".pdf") return "pdfcairo size " + short_number(width_px / 100.0) + "in," + short_number(height_px / 100.0) + "in font 'DejaVu Sans,11'";
+    throw bad_input(file.string(), "", "a file name that ends in " + shown(kind), ".png, .svg or .pdf");
+}
+
+// gnuplot takes '' for ' inside '...'.
+std::string gnuplot_quoted(const std::string& text) {
+    std::string out = "'";
+    for (const char c : text) out += c == '\'' ? std::string("''") : std::string(1, c);
+    return out + "'";
+}
+
+}  // namespace
+
+std::string shell_quoted(const std::string& text) {
+    std::string out = "'";
+    for (const char c : text) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
+    return out + "'";
+}
+
+void check_figure(const std::filesystem::path& file) { terminal(file, 1, 1); }
+
+void draw_figure(const std::string& script, const std::filesystem::path& name, int width_px, int height_px) {
+    const std::filesystem::path file = output_target(name);
+    const std::string set = "set terminal " + terminal(name, width_px, height_px) + "\n";
+    if (std::system("command -v gnuplot >/dev/null 2>&1") != 0) {
+        throw std::runtime_error(file.string() + ": not drawn: gnuplot is not installed (package gnuplot-nox)");
+    }
+    const std::string aside = file.string() + ".part-" + std::to_string(::getpid());
+    const std::string commands = aside + ".gp";
+    write_text_atomically(commands, "set encoding utf8\n" + set + "set output " + gnuplot_quoted(aside) + "\n" + script + "\nunset output\n");
+    const int status = std::system(("gnuplot " + shell_quoted(commands)).c_str());
+    ::unlink(commands.c_str());
+    if (status == 0 && name.extension() == ".svg") {  // else a viewer may blend cells into each other and into gaps
+        std::string svg = read_text(aside);
+        for (std::size_t at = svg.find("<image "); at != std::string::npos; at = svg.find("<image ", at + 1)) svg.insert(at + 6, " style='image-rendering:pixelated'");
+        write_text_whole(aside, svg);
+    }
+    if (status != 0 || ::rename(aside.c_str(), file.c_str()) != 0) {
+        ::unlink(aside.c_str());
+        throw std::runtime_error(file.string() + ": gnuplot could not draw it");
+    }
+}
+
+}  // namespace palpa

@@ -1,0 +1,124 @@
+#include "figures/study_figures.h"
+
+#include <cstdlib>
+
+#include "files/text.h"
+
+namespace palpa {
+namespace {
+
+// Colours by Okabe and Ito, which colour-blind people can tell apart; hatching says the same again.
+constexpr const char* kScript =
+    R"gp(# gnuplot figures.gp draws sensitivity.tsv, nodules.tsv and ppv.tsv; gnuplot -e "kind='svg'" figures.gp: or svg, pdf
+if (!exists("kind")) kind = "png"
+set datafile separator tab
+set datafile missing "n/a"
+set datafile columnheaders
+if (kind eq "png") set terminal pngcairo size 1100,700 font "DejaVu Sans,14"
+if (kind eq "svg") set terminal svg size 1100,700 font "DejaVu Sans,16" background rgb "white"
+if (kind eq "pdf") set terminal pdfcairo size 11in,7in font "DejaVu Sans,16"
+set border 3
+set tics nomirror
+set style fill pattern 1 border lc rgb "#000000"
+set yrange [0:105]
+set ytics 20
+set grid ytics lc rgb "#BBBBBB" dt 3
+set bmargin 5
+percent(column_name) = 100 * column(column_name)
+
+unset key
+set ylabel "Sensitivity (%)"
+set title "Sensitivity by condition, with Wilson intervals at " . level . subtitle
+set output "sensitivity." . kind
+set style fill solid 0.45 border lc rgb "#000000"
+set boxwidth 0.6
+plot "sensitivity.tsv" using 0:(percent("share")):xtic(1) with boxes lc rgb "#0072B2", \
+     "" using 0:(percent("share")):(percent("wilson_low")):(percent("wilson_high")) with yerrorbars lc rgb "#000000" lw 2 pt 7 ps 0.5
+
+set ylabel "Positive predictive value (%)"
+set title "Positive predictive value by condition, with Wilson intervals at " . level . subtitle
+set output "ppv." . kind
+plot "ppv.tsv" using 0:(percent("share")):xtic(1) with boxes lc rgb "#009E73", \
+     "" using 0:(percent("share")):(percent("wilson_low")):(percent("wilson_high")) with yerrorbars lc rgb "#000000" lw 2 pt 7 ps 0.5
+)gp";
+
+// One cluster of bars for each condition that names nodules, one bar for each nodule in it.
+constexpr const char* kNodules =
+    R"gp(
+set ylabel "Sensitivity (%)"
+set title "Sensitivity by nodule, with Wilson intervals at " . level . subtitle
+set output "nodules." . kind
+set key outside right top title "nodule"
+set style fill pattern border lc rgb "#000000"
+set xrange [-0.5:words(conditions) - 0.5]
+set boxwidth 0.8 / words(nodules)
+word_at(list, name) = sum [i = 1:words(list)] (word(list, i) eq name ? i : 0)
+place(condition, nodule) = word_at(conditions, condition) - 1 + 0.8 * (word_at(nodules, nodule) - 0.5 * (words(nodules) + 1)) / words(nodules)
+mine(i) = strcol("nodule") eq word(nodules, i) ? place(strcol("condition"), strcol("nodule")) : NaN
+colours = "#0072B2 #E69F00 #009E73 #CC79A7 #D55E00 #56B4E9"
+colour(i) = word(colours, (i - 1) % words(colours) + 1)
+unset xtics
+set xtics nomirror
+do for [i = 1:words(conditions)] { set xtics add (word(conditions, i) i - 1) }
+plot for [i = 1:words(nodules)] "nodules.tsv" using (mine(i)):(percent("share")) with boxes fs pattern i + 2 lc rgb colour(i) title word(nodules, i), \
+     "" using (place(strcol("condition"), strcol("nodule"))):(percent("share")):(percent("wilson_low")):(percent("wilson_high")) with yerrorbars lc rgb "#000000" lw 2 pt 7 ps 0.5 notitle
+)gp";
+
+std::string shell_quoted(const std::string& text) {
+    std::string out = "'";
+    for (const char c : text) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
+    return out + "'";
+}
+
+// Inside a double-quoted string of gnuplot.
+std::string gnuplot_quoted(const std::string& text) {
+    std::string out;
+    for (const char c : text) {
+        if (c == '"' || c == '\\') out.push_back('\\');
+        if (c == '`' || c == '\n') continue;  // would run a command
+        out.push_back(c);
+    }
+    return out;
+}
+
+// gnuplot's word() keeps "two words" together if they stand in quotes.
+void add_word(const std::string& word, std::string& list) {
+    std::string plain;
+    for (const char c : word) plain += c == '"' || c == '\'' || c == '\\' || c == '`' ? '_' : c;
+    const std::string entry = "'" + plain + "'";
+    if (list.find(entry) == std::string::npos) list += (list.empty() ? "" : " ") + entry;
+}
+
+std::string script_of(const Report& report) {
+    std::string conditions, nodules;
+    for (const ConditionResult& condition : report.conditions) {
+        if (!condition.nodules.empty()) add_word(condition.name, conditions);
+        for (const NoduleResult& nodule : condition.nodules) add_word(nodule.nodule, nodules);
+    }
+    std::string out = "level = \"" + short_number(100.0 * report.options.bootstrap.level) + " %\"\n";
+    const std::string who = report.simulated ? "SIMULATED participants" : "";
+    out += "subtitle = \"" + (who.empty() ? who : "\\n{/*0.8 " + gnuplot_quoted(who) + "}") + "\"\n";
+    out += kScript;
+    if (!nodules.empty()) out += "\nconditions = \"" + conditions + "\"\nnodules = \"" + nodules + "\"" + kNodules;
+    return out;
+}
+
+}  // namespace
+
+std::string draw_figures(const Report& report, const std::filesystem::path& folder) {
+    if (report.conditions.empty()) return "";
+    write_text_atomically(folder / "figures.gp", script_of(report));
+    if (std::system("command -v gnuplot >/dev/null 2>&1") != 0) {
+        return "gnuplot is not installed (package gnuplot-nox), so there are no figures; the tables are kept: run "
+               "`gnuplot figures.gp` where it is";
+    }
+    for (const std::string kind : {"png", "svg", "pdf"}) {
+        const std::string command = "cd " + shell_quoted(folder.string()) + " && gnuplot -e \"kind='" + kind + "'\" figures.gp";
+        if (std::system(command.c_str()) != 0) {
+            return "gnuplot could not draw " + (folder / "figures.gp").string() + "; the tables are kept";
+        }
+    }
+    return "";
+}
+
+}  // namespace palpa

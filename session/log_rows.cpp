@@ -1,0 +1,72 @@
+#include "session/log_rows.h"
+
+#include <cmath>
+
+#include "calibration/profile_file.h"
+#include "files/text.h"
+
+namespace palpa {
+
+const char* tangential_source(const Plan& plan) {
+    const auto* tissue = std::get_if<MapTissue>(&plan.tissue);
+    const bool recorded = tissue != nullptr && tissue->map.tangential == TangentialKind::recorded;
+    return recorded ? "recorded" : "energy";  // on a recording the laws use both (stiffnessmaps/field.h)
+}
+
+SampleRow row_of(const Sample& sample, const Plan& plan, const State& state) {
+    SampleRow row;
+    row.t_host_s = sample.t_host_s;
+    row.t_device_s = sample.t_device_s;
+    row.pointer_id = sample.pointer_id;
+    row.tool = name_of(sample.tool);
+    row.phase = name_of(sample.phase);
+    row.pressure = sample.pressure;
+    if (!state.answered) return row;
+    row.x_mm = 1e3 * state.touch.p_m.x();
+    row.y_mm = 1e3 * state.touch.p_m.y();
+    row.force_N = state.contact.normal_N;
+    row.depth_mm = 1e3 * state.contact.depth_m;
+    row.tangential_N = state.contact.tangential_N;
+    row.avatar_x_mm = 1e3 * state.avatar.p_m.x();
+    row.avatar_y_mm = 1e3 * state.avatar.p_m.y();
+    row.lag_mm = 1e3 * state.avatar.lag_m.norm();
+    row.delay_ms = 1e3 * state.avatar.delay_s;
+    row.saturated = state.contact.saturated;
+    row.ft_source = state.contact.measured ? tangential_source(plan) : "none";
+    return row;
+}
+
+Json settings_json(const Scene& scene, const Plan& plan, const State& state) {
+    Json json;
+    json["program"] = "palpa " PALPA_VERSION;
+    json["scene"]["name"] = scene.name;
+    if (!scene.file.empty()) json["scene"]["file"] = read_json(scene.file);
+    json["scene"]["force_scale"] = scene.force_scale;
+    json["scene"]["stiffness_scale"] = scene.stiffness_scale;
+    json["scene"]["seed"] = scene.seed;
+    json["tissue"] = {{"name", plan.tissue_name}, {"source", name_of(plan.source)}};
+    if (const auto* tissue = std::get_if<MapTissue>(&plan.tissue)) {
+        json["tissue"]["count"] = {tissue->map.n_x, tissue->map.n_y};
+        json["tissue"]["smoothing_mm"] = 1e3 * tissue->smoothing_m;
+    }
+    json["profile"] = {{"id", plan.profile.id}, {"model", name_of(plan.profile.curve.model)}};
+    json["profile"].update(parameters_json(plan.profile.curve));
+    json["tissue_area_px"] = {state.screen.x_px, state.screen.y_px, state.screen.width_px, state.screen.height_px};
+    if (std::isfinite(state.screen.px_per_m)) json["screen_px_per_mm"] = 1e-3 * state.screen.px_per_m;
+    json["mapping"] = {{"rotate_deg", scene.mapping.rotate_deg}, {"flip", scene.mapping.flip}};
+    json["stages"] = Json::array();
+    for (const auto* stages : {&plan.sample_stages, &plan.frame_stages}) {
+        for (const Stage& stage : *stages) {
+            json["stages"].push_back({{"name", name_of(stage.id)}, {"fidelity", stage.fidelity}});
+        }
+    }
+    json["nodules"] = Json::array();
+    for (const Nodule& nodule : plan.nodules) {
+        json["nodules"].push_back({{"id", nodule.id}, {"x_mm", 1e3 * nodule.x_m}, {"y_mm", 1e3 * nodule.y_m}});
+        if (nodule.diameter_m) json["nodules"].back()["diameter_mm"] = 1e3 * *nodule.diameter_m;
+    }
+    json["notes"] = plan.notes;
+    return json;
+}
+
+}  // namespace palpa

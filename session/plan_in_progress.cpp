@@ -1,0 +1,63 @@
+#include "session/plan_in_progress.h"
+
+#include <unistd.h>
+
+#include <atomic>
+#include <chrono>
+#include <cstdio>
+#include <future>
+
+namespace palpa {
+
+struct PlanInProgress::Work {
+    std::atomic<int> done{0};
+    std::atomic<int> total{0};
+    std::atomic<bool> cancel{false};
+    std::future<Plan> result;
+};
+
+PlanInProgress::PlanInProgress(const Scene& scene) : work_(std::make_unique<Work>()) {
+    work_->result = std::async(std::launch::async, [&work = *work_, scene] {
+        mechanics::Progress progress;
+        progress.cancel = &work.cancel;
+        progress.report = [&work](int done, int total) {
+            work.done = done;
+            work.total = total;
+        };
+        return make_plan(scene, progress);
+    });
+}
+
+PlanInProgress::~PlanInProgress() {
+    work_->cancel = true;
+    if (work_->result.valid()) work_->result.wait();
+}
+
+double PlanInProgress::share() const {
+    const int total = work_->total;
+    return total > 0 ? static_cast<double>(work_->done) / total : 0.0;
+}
+
+bool PlanInProgress::wait(double seconds) {
+    return work_->result.wait_for(std::chrono::duration<double>(seconds)) == std::future_status::ready;
+}
+
+void PlanInProgress::cancel() { work_->cancel = true; }
+
+Plan PlanInProgress::take() { return work_->result.get(); }
+
+Plan make_plan_here(const Scene& scene) {
+    if (!scene.linear || !isatty(STDERR_FILENO)) return make_plan(scene);
+    PlanInProgress work(scene);
+    const auto began = std::chrono::steady_clock::now();
+    while (!work.wait(0.25)) {
+        const double share = work.share();
+        const double passed_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
+        const double left_s = share > 0.0 ? passed_s / share - passed_s : 0.0;
+        std::fprintf(stderr, "\rpreparing the tissue: %3.0f %%, %.0f s left ", 100.0 * share, left_s);
+    }
+    std::fprintf(stderr, "\r%50s\r", "");
+    return work.take();
+}
+
+}  // namespace palpa

@@ -1,0 +1,267 @@
+#include "session/session.h"
+
+#include <algorithm>
+#include <cmath>
+#include <ctime>
+#include <exception>
+#include <utility>
+
+#include "session/log_rows.h"
+#include "files/text.h"
+#include "scene/advance.h"
+
+namespace palpa {
+namespace {
+
+const char* condition_of(const Scene& scene) {
+    if (scene.display_ratio) return "display_ratio";
+    return scene.delay ? "delay" : "none";
+}
+
+const char* event_name(Action action) {
+    switch (action) {
+        case Action::none: return "start";
+        case Action::mark: return "mark";
+        case Action::undo: return "undo";
+        case Action::finish: return "finish";
+        case Action::resize: return "resize";
+        case Action::hidden: return "hidden";
+        case Action::shown: return "shown";
+        default: return "confidence";
+    }
+}
+
+std::string utc_now() {
+    const std::time_t now = std::time(nullptr);
+    std::tm utc{};
+    gmtime_r(&now, &utc);
+    char text[32];
+    std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &utc);
+    return text;
+}
+
+EventRow event_row(const Session& session, Action action) {
+    const Scene& scene = session.scene;
+    EventRow row;
+    row.onset_s = session.trial.now_s - session.trial.began_s;
+    row.trial_type = event_name(action);
+    row.block = name_of(session.trial.mode);
+    row.condition = session.label ? std::string_view(session.label->condition) : condition_of(scene);
+    row.device_id = session.label ? std::string_view(session.label->device) : std::string_view(session.device);
+    if (session.label) {
+        row.trial = session.label->trial;
+        row.order_id = session.label->order_id;
+    }
+    row.calibration_id = session.plan.profile.id;
+    row.map_id = session.plan.tissue_name;
+    row.map_rotation_deg = scene.mapping.rotate_deg;
+    row.map_flip = scene.mapping.flip ? 1 : 0;
+    row.seed = scene.seed;
+    row.n_nodules = static_cast<std::int64_t>(session.plan.nodules.size());
+    return row;
+}
+
+void write_marks(const Score& score, Session& session) {
+    for (std::size_t i = 0; i < session.trial.marks.size(); ++i) {
+        const Mark& mark = session.trial.marks[i];
+        const MarkScore& found = score.marks[i];
+        MarkRow row;
+        if (session.label) row.trial = session.label->trial;
+        row.onset_s = mark.onset_s;
+        row.mark = static_cast<std::int64_t>(i) + 1;
+        row.x_mm = 1e3 * mark.p_m.x();
+        row.y_mm = 1e3 * mark.p_m.y();
+        if (mark.confidence > 0) row.confidence = mark.confidence;
+        if (found.target >= 0) {
+            row.nodule = session.plan.nodules[static_cast<std::size_t>(found.target)].id;
+            row.distance_mm = 1e3 * found.distance_m;
+        }
+        row.hit = found.kind == MarkKind::hit ? 1 : 0;
+        session.trial_log->write(row);
+    }
+}
+
+void sync_all_but_events(Session& session) {
+    if (session.label) {
+        try {
+            sync_file(session.files->file("_settings.json"));
+        } catch (const std::exception&) {
+            session.failed = true;
+        }
+    }
+    if (session.log) session.log->sync();
+    session.trial_log->sync_marks();
+}
+
+void write_event(const Sample& sample, std::size_t marks_before, Session& session) {
+    if (!session.trial_log || sample.phase != Phase::ui || sample.action == Action::resize) return;
+    EventRow row = event_row(session, sample.action);
+    if (sample.action == Action::mark && session.trial.marks.size() > marks_before) {
+        row.x_mm = 1e3 * session.trial.marks.back().p_m.x();
+        row.y_mm = 1e3 * session.trial.marks.back().p_m.y();
+    }
+    if (sample.action == Action::finish) {
+        const Score score = debrief(session.plan, session.trial).score;
+        write_marks(score, session);
+        sync_all_but_events(session);  // first the rest, then the row that says that it is complete
+        if (!files_good(session)) return;
+        row.duration_s = row.onset_s;
+        row.true_positives = score.true_positives;
+        row.false_positives = score.false_positives;
+        row.false_negatives = score.false_negatives;
+        row.path_mm = 1e3 * session.trial.pressed_m;
+        row.mean_force_N = mean_force_N(session.trial);
+        row.max_force_N = session.trial.max_force_N;
+    }
+    session.trial_log->write(row);
+    if (sample.action == Action::finish) session.trial_log->sync_events();
+}
+
+// What a person did in a trial that ends here, by whatever cause: its places count for nothing, and are not lost.
+void log_interruption(Session& session) {
+    if (!session.trial_log || session.trial.finished) return;
+    write_marks(debrief(session.plan, session.trial).score, session);
+    session.trial_log->sync_marks();
+    note_event("interrupted", session.trial.now_s, session);
+    session.trial_log->sync_events();
+}
+
+std::filesystem::path trace_name(const std::string& first, int trial) {
+    std::filesystem::path path = first;
+    if (trial > 1) path.replace_filename(path.stem().string() + "-" + std::to_string(trial) + path.extension().string());
+    return path;
+}
+
+Json settings_of(const Session& session) {
+    Json settings = settings_json(session.scene, session.plan, session.state);
+    if (session.finger_offset_mm != 0.0) settings["finger_offset_mm"] = session.finger_offset_mm;
+    return settings;
+}
+
+void write_settled(const std::filesystem::path& file, const Json& json, const Session& session) {
+    if (session.sync_rows) return write_text_atomically(file, json_text(json));
+    write_text_whole(file, json_text(json));
+}
+
+void drop_files(Session& session) {
+    session.record.reset();
+    session.trial_log.reset();
+    session.log.reset();
+    session.failed = false;
+    session.files.reset();
+}
+
+void open_files(const SessionFiles& files, const TraceInfo& info, Session& session) {
+    drop_files(session);
+    try {
+        if (!files.record.empty()) session.record.emplace(trace_name(files.record, session.trials), info);
+        if (files.log.empty()) return;
+        session.files = next_run(files.log, files.participant, files.task, files.first_run);
+        const bool alone = !files.label;  // a study explains its columns once, at the top
+        if (files.label) {
+            Json settings = settings_of(session);
+            settings["study"] = files.label->study;
+            write_settled(session.files->file("_settings.json"), settings, session);  // before the first sample
+        }
+        if (files.samples) session.log.emplace(*session.files, alone);
+        session.trial_log.emplace(*session.files, LogOptions{files.sync_rows, alone});
+    } catch (...) {
+        drop_files(session);
+        throw;
+    }
+}
+
+}  // namespace
+
+ScreenArea screen_of(const TraceInfo& info) {
+    ScreenArea area{info.screen_width_px, info.screen_height_px};
+    if (std::isfinite(info.screen_width_mm)) area.px_per_m = 1e3 * info.screen_width_px / info.screen_width_mm;
+    return area;
+}
+
+void change_tissue(Scene scene, Plan plan, const ScreenArea& screen, Session& session) {
+    State state = start(scene, plan, screen);
+    Trial trial = make_trial(plan, session.trial.mode);
+    session.scene = std::move(scene);
+    session.plan = std::move(plan);
+    session.state = std::move(state);
+    session.trial = std::move(trial);
+}
+
+void begin_trial(const SessionFiles& files, const TraceInfo& info, TrialMode mode, Session& session) {
+    ++session.trials;
+    session.state = start(session.scene, session.plan, screen_of(info));
+    session.state.time_every = 16;
+    session.trial = make_trial(session.plan, mode);
+    session.device = info.device;
+    session.label = files.label;
+    session.sync_rows = files.sync_rows;
+    session.finger_offset_mm = files.finger_offset_mm;
+    session.began_utc = utc_now();
+    open_files(files, info, session);
+    if (session.trial_log) session.trial_log->write(event_row(session, Action::none));
+}
+
+void take_sample(const Sample& sample, Session& session) {
+    if (session.trial.finished) return;
+    if (session.record) session.record->write(sample);
+    advance(session.scene, session.plan, sample, session.state);
+    const std::size_t marks_before = session.trial.marks.size();
+    observe(session.plan, sample, session.state, session.trial);
+    if (session.log) {
+        SampleRow row = row_of(sample, session.plan, session.state);
+        if (session.label) row.trial = session.label->trial;
+        session.log->write(row);
+    }
+    write_event(sample, marks_before, session);
+    flush_if_due(session);
+    if (!session.trial.finished) return;
+    session.finished.push_back(trial_json(session.plan, session.trial));
+    if (session.record) session.record->sync();
+    if (session.log) session.log->sync();
+}
+
+void flush_if_due(Session& session) {
+    constexpr std::int64_t kEvery_ns = 80'000'000;
+    if (!session.log) return;
+    const std::int64_t now_ns = steady_ns();
+    if (now_ns - session.flushed_ns < kEvery_ns) return;
+    session.log->flush();
+    session.flushed_ns = now_ns;
+}
+
+bool files_good(const Session& session) {
+    return !(session.record && session.record->failed()) && !(session.log && session.log->failed()) &&
+           !(session.trial_log && session.trial_log->failed()) && !session.failed;
+}
+
+void note_event(std::string_view trial_type, double now_s, Session& session) {
+    if (!session.trial_log) return;
+    EventRow row = event_row(session, Action::none);
+    row.trial_type = trial_type;
+    if (session.trial.began) row.onset_s = std::max(row.onset_s, now_s - session.trial.began_s);
+    session.trial_log->write(row);
+}
+
+bool close_files(const Json& performance, Session& session) {
+    log_interruption(session);
+    if (session.record) session.record->sync();
+    if (session.log) session.log->sync();
+    bool good = files_good(session);
+    if (session.files && good) {
+        try {
+            if (!session.label) {
+                write_text_atomically(session.files->file("_settings.json"), json_text(settings_of(session)));
+            }
+            Json with_clock = performance;
+            with_clock["began_utc"] = session.began_utc;
+            write_settled(session.files->file("_performance.json"), with_clock, session);
+        } catch (const std::exception&) {
+            good = false;
+        }
+    }
+    drop_files(session);
+    return good;
+}
+
+}  // namespace palpa

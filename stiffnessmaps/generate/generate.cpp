@@ -1,0 +1,385 @@
+#include "stiffnessmaps/generate/generate.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <stdexcept>
+
+#include "stiffnessmaps/generate/worker_processes.h"
+#include "stiffnessmaps/generate/pieces.h"
+#include "stiffnessmaps/generate/provenance.h"
+#include "files/input_error.h"
+#include "files/json.h"
+#include "files/text.h"
+#include "mechanics/error.h"
+#include "stiffnessmaps/analytic.h"
+#include "stiffnessmaps/grid.h"
+#include "stiffnessmaps/map_file.h"
+
+namespace palpa {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t kProbes = 50;
+constexpr const char* kChecked = " Checked:";  // begins what a check adds to `how`
+// Of the meshes that the error is estimated from: at order 1.7 their difference from the map is the map's own error.
+constexpr double kCoarser = 1.5;
+
+fs::path without_slash(const fs::path& path) { return path.has_filename() ? path : path.parent_path(); }
+
+fs::path pieces_folder(const fs::path& output, MeshSet meshes) {
+    fs::path folder = without_slash(output);
+    folder += meshes == MeshSet::refined ? ".check" : meshes == MeshSet::coarser ? ".estimate" : ".lines";
+    return folder;
+}
+
+MapTask task_of(const GenerateOptions& options, MeshSet meshes) {
+    const double times = meshes == MeshSet::refined ? 0.5 : meshes == MeshSet::coarser ? kCoarser : 1.0;
+    return make_map_task(options.phantom, pieces_folder(options.output, meshes), options.coarseness * times);
+}
+
+// Done of total on one line of a terminal, with the time left; silent elsewhere.
+class Progress {
+ public:
+    Progress(const char* what, double total) : what_(what), total_(total), shown_(::isatty(STDERR_FILENO) == 1) {}
+    ~Progress() {
+        if (shown_) std::fprintf(stderr, "\r\033[K");
+    }
+    void show(double done) {
+        if (!shown_) return;
+        if (first_ < 0.0) first_ = done;
+        const double spent_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+        const int bars = static_cast<int>(30.0 * done / total_);
+        std::fprintf(stderr, "\r\033[K%s [%.*s%*s] %.0f %%", what_, bars, "##############################", 30 - bars, "",
+                     100.0 * done / total_);
+        if (done > first_) std::fprintf(stderr, ", %.0f s left", spent_s * (total_ - done) / (done - first_));
+        std::fflush(stderr);
+    }
+
+ private:
+    const char* what_;
+    double total_;
+    bool shown_;
+    double first_ = -1.0;
+    std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+Arguments call_of(const GenerateOptions& options) {
+    Arguments out{"maps", "generate", options.phantom.string(), "-o", options.output.string(), "--coarseness",
+                  number_text(options.coarseness)};
+    return out;
+}
+
+std::vector<std::size_t> missing(const MapTask& task, std::size_t count, std::string (*name)(std::size_t)) {
+    std::vector<std::size_t> out;
+    for (std::size_t i = 0; i < count; ++i) {
+        if (!read_piece(task, name(i))) out.push_back(i);
+    }
+    return out;
+}
+
+std::size_t files_there(const MapTask& task, std::size_t count, std::string (*name)(std::size_t)) {
+    std::size_t there = 0;
+    for (std::size_t i = 0; i < count; ++i) there += fs::exists(task.folder / name(i)) ? 1u : 0u;
+    return there;
+}
+
+// Pieces that are wrong are taken away, so that counting files is counting pieces.
+void drop_wrong(const MapTask& task, const std::vector<std::size_t>& wrong, std::string (*name)(std::size_t)) {
+    for (const std::size_t i : wrong) fs::remove(task.folder / name(i));
+}
+
+std::string window_of(std::size_t window) { return window_name(static_cast<int>(window)); }
+
+std::vector<Arguments> window_calls(const GenerateOptions& options, const std::vector<std::size_t>& windows,
+                                    MeshSet meshes) {
+    std::vector<Arguments> calls;
+    for (const std::size_t window : windows) {
+        calls.push_back(call_of(options));
+        calls.back().insert(calls.back().end(), {"--window", std::to_string(window)});
+        if (meshes == MeshSet::refined) calls.back().emplace_back("--refined");
+        if (meshes == MeshSet::coarser) calls.back().emplace_back("--coarser");
+    }
+    return calls;
+}
+
+void compute_with_jobs(const GenerateOptions& options, const MapTask& task) {
+    constexpr double kWindowWeight = 30.0;  // of one window in lines
+    const auto n_windows = static_cast<std::size_t>(window_count(task));
+    const std::size_t n_lines = task.phantom.n_y;
+    const auto windows = missing(task, n_windows, window_of);
+    const auto lines = missing(task, n_lines, line_name);
+    drop_wrong(task, windows, window_of);
+    drop_wrong(task, lines, line_name);
+    if (lines.empty()) return;
+    Progress progress("generating", kWindowWeight * static_cast<double>(n_windows) + static_cast<double>(n_lines));
+    const auto show = [&] {
+        progress.show(kWindowWeight * static_cast<double>(files_there(task, n_windows, window_of)) +
+                      static_cast<double>(files_there(task, n_lines, line_name)));
+    };
+    run_jobs(window_calls(options, windows, MeshSet::own), options.jobs, show);
+    std::vector<Arguments> calls;
+    for (int i = 1; i <= options.jobs; ++i) {
+        calls.push_back(call_of(options));
+        calls.back().insert(calls.back().end(), {"--part", std::to_string(i) + "/" + std::to_string(options.jobs)});
+    }
+    run_jobs(calls, options.jobs, show);
+}
+
+// One share of the lines; windows that nobody has made yet are made on the way, whoever comes first.
+void compute_part(const MapTask& task, const Part& part) {
+    const auto n_windows = static_cast<std::size_t>(window_count(task));
+    for (const bool wait : {false, true}) {
+        for (std::size_t k = 0; k < n_windows; ++k) {
+            const std::size_t window = (k + static_cast<std::size_t>(part.index) - 1) % n_windows;
+            if (read_piece(task, window_of(window))) continue;
+            const FolderLock lock(task.folder / (window_of(window) + ".lock"), wait);
+            if (lock.held() && !read_piece(task, window_of(window))) compute_window(task, static_cast<int>(window));
+        }
+    }
+    const mechanics::RollingTables tables = read_windows(task);
+    const auto step = static_cast<std::size_t>(part.count);
+    for (std::size_t j = static_cast<std::size_t>(part.index) - 1; j < task.phantom.n_y; j += step) {
+        if (!read_piece(task, line_name(j))) compute_line(task, tables, j);
+    }
+}
+
+// Joins the finished lines; throws std::runtime_error when some are missing.
+Map joined(const MapTask& task) {
+    const Phantom& p = task.phantom;
+    Map map = map_of_phantom(p);
+    const std::size_t n_depths = p.depths_m.size();
+    const std::size_t n_cells = p.n_x * p.n_y;
+    map.normal_N.resize(n_depths * n_cells);
+    const auto gaps = missing(task, p.n_y, line_name);
+    if (!gaps.empty()) {
+        throw std::runtime_error(task.folder.string() + ": " + std::to_string(gaps.size()) + " of " + std::to_string(p.n_y) +
+                                 " lines are not there yet (first: line " + std::to_string(gaps.front()) + ")");
+    }
+    const bool rough = is_rough(task);
+    std::vector<std::vector<double>> energy_J(rough ? 0 : n_depths, std::vector<double>(n_cells));
+    if (rough) {
+        map.tangential = TangentialKind::recorded;  // as a recording of a sliding tool: friction is in the arrays
+        map.tangential_x_N.resize(n_depths * n_cells);
+        map.tangential_y_N.resize(n_depths * n_cells);
+    }
+    const std::size_t per_cell = n_depths * (rough ? 3 : 2);
+    for (std::size_t j = 0; j < p.n_y; ++j) {
+        const Numbers numbers = *read_piece(task, line_name(j));
+        for (std::size_t i = 0; i < p.n_x; ++i) {
+            const double* at = &numbers[per_cell * i];
+            for (std::size_t k = 0; k < n_depths; ++k) {
+                const std::size_t cell = j * p.n_x + i;
+                map.normal_N[k * n_cells + cell] = static_cast<float>(at[k]);
+                if (rough) {
+                    map.tangential_x_N[k * n_cells + cell] = static_cast<float>(at[n_depths + k]);
+                    map.tangential_y_N[k * n_cells + cell] = static_cast<float>(at[2 * n_depths + k]);
+                } else {
+                    energy_J[k][cell] = at[n_depths + k];
+                }
+            }
+        }
+    }
+    for (const std::vector<double>& layer : energy_J) {
+        const Gradient slope = gradient(layer, {p.n_x, p.n_y, p.spacing_m[0], p.spacing_m[1]});
+        for (const double f : slope.x) map.tangential_x_N.push_back(static_cast<float>(f));
+        for (const double f : slope.y) map.tangential_y_N.push_back(static_cast<float>(f));
+    }
+    map.source.kind = SourceKind::simulated;
+    map.source.how = how_made(task);
+    map.source.from = p.name + ".json";
+    map.source.licence = "made by Palpa";
+    return map;
+}
+
+struct Differences {
+    double largest = 0.0;
+    double median = 0.0;
+    double largest_tangential = 0.0;  // with friction: either array
+};
+
+Json convergence_json(const MapTask& task, const MapTask& refined, const Map& map, Differences& found) {
+    const double greatest_N = force_range(map).highest_N;
+    const mechanics::RollingTables tables = read_windows(refined);
+    std::vector<double> differences;
+    Json points = Json::array();
+    for (const Cell& cell : probe_cells(task.phantom, kProbes)) {
+        const std::vector<mechanics::RollingForce> reference = press_cell(refined, tables, cell);
+        Json in_map = Json::array();
+        Json refined_N = Json::array();
+        for (std::size_t d = 0; d < map.n_depths(); ++d) {
+            const std::size_t at = d * map.n_cells() + cell.j * map.n_x + cell.i;
+            const auto force = static_cast<double>(map.normal_N[at]);
+            in_map.push_back(force);
+            refined_N.push_back(reference[d].normal_N);
+            differences.push_back(std::abs(force - reference[d].normal_N) / greatest_N);
+            if (!is_rough(task)) continue;
+            const double off_x_N = std::abs(static_cast<double>(map.tangential_x_N[at]) - reference[d].tangential_x_N);
+            const double off_y_N = std::abs(static_cast<double>(map.tangential_y_N[at]) - reference[d].tangential_y_N);
+            found.largest_tangential = std::max({found.largest_tangential, off_x_N / greatest_N, off_y_N / greatest_N});
+        }
+        points.push_back({{"x_mm", 1e3 * map.x_of(cell.i)}, {"y_mm", 1e3 * map.y_of(cell.j)}, {"map_N", in_map},
+                          {"refined_N", refined_N}});
+    }
+    std::sort(differences.begin(), differences.end());
+    found.largest = differences.back();
+    found.median = differences[differences.size() / 2];
+    const auto mesh_json = [](const MapTask& t) {
+        return Json{{"contact_spacing_mm", 1e3 * t.mesh.contact_m},
+                    {"side_spacing_mm", {1e3 * t.mesh.surface_m[0], 1e3 * t.mesh.surface_m[1]}},
+                    {"cells_across_nodule", t.mesh.cells_across}};
+    };
+    Json report{{"what", "normal force of the map against all its meshes refined once, at stated points"},
+            {"mesh", mesh_json(task)},
+            {"refined_mesh", mesh_json(refined)},
+            {"greatest_force_N", greatest_N},
+            {"max_difference", found.largest},
+            {"median_difference", found.median},
+            {"differences_are", "shares of the greatest force"},
+            {"depths_mm", map_json(map)["depths_mm"]},
+            {"points", points}};
+    if (is_rough(task)) report["max_tangential_difference"] = found.largest_tangential;
+    return report;
+}
+
+// Those of another set of meshes, all of them.
+void compute_windows(const GenerateOptions& options, const MapTask& task, MeshSet meshes, const char* what) {
+    fs::create_directories(task.folder);
+    const auto n_windows = static_cast<std::size_t>(window_count(task));
+    const auto windows = missing(task, n_windows, window_of);
+    drop_wrong(task, windows, window_of);
+    Progress progress(what, static_cast<double>(n_windows));
+    run_jobs(window_calls(options, windows, meshes), options.jobs,
+             [&] { progress.show(static_cast<double>(files_there(task, n_windows, window_of))); });
+}
+
+// What a map says of its own error when it is made.
+std::string error_estimate(const GenerateOptions& options, const MapTask& task, const Map& map) {
+    try {
+        const MapTask coarser = task_of(options, MeshSet::coarser);
+        compute_windows(options, coarser, MeshSet::coarser, "estimating");
+        Differences found;
+        convergence_json(task, coarser, map, found);
+        std::string text = " Estimated error of the meshes: " + short_number(100.0 * found.largest) +
+                           " % of the greatest force at most, " + short_number(100.0 * found.median) + " % in the median";
+        if (is_rough(task)) text += ", tangential force " + short_number(100.0 * found.largest_tangential) + " % of it at most";
+        return text + " (" + std::to_string(kProbes) + " points against meshes " + short_number(kCoarser) + " times coarser).";
+    } catch (const InputError&) {
+        return " Error of the meshes: not estimated, coarser ones cannot be made.";
+    } catch (const mechanics::SolverError&) {
+        return " Error of the meshes: not estimated, on coarser ones the contact does not settle.";
+    }
+}
+
+void merge(const GenerateOptions& options, const MapTask& task) {
+    Map map = joined(task);
+    map.source.how += error_estimate(options, task, map);
+    write_map(map, options.output);
+    fs::remove_all(task.folder);
+    fs::remove_all(pieces_folder(options.output, MeshSet::coarser));
+    const ForceRange range = force_range(map);
+    std::printf("%s: %zu x %zu cells, %zu depths, %s to %s N, by finite elements\n", options.output.c_str(), map.n_x,
+                map.n_y, map.n_depths(), short_number(range.lowest_N).c_str(), short_number(range.highest_N).c_str());
+}
+
+void check(const GenerateOptions& options, const MapTask& task, const MapTask& refined) {
+    Map map = read_map(options.output);
+    const Map expected = map_of_phantom(task.phantom);
+    if (is_rough(task) && (map.tangential_x_N.empty() || map.tangential_y_N.empty())) {
+        throw bad_input(options.output.string(), "", "no tangential arrays", "a map made from " + options.phantom.string());
+    }
+    if (map.n_x != expected.n_x || map.n_y != expected.n_y || map_json(map)["depths_mm"] != map_json(expected)["depths_mm"]) {
+        throw bad_input(options.output.string(), "", "another grid or other depths", "a map made from " + options.phantom.string());
+    }
+    compute_windows(options, refined, MeshSet::refined, "checking");
+    Differences differences;
+    const Json report = convergence_json(task, refined, map, differences);
+    write_text_atomically(without_slash(options.output) / "convergence.json", report.dump(1) + "\n");
+    std::string found = std::to_string(kProbes) + " points against meshes refined once: " + short_number(100.0 * differences.largest) +
+                        " % of the greatest force at most, " + short_number(100.0 * differences.median) + " % in the median";
+    if (is_rough(task)) found += "; tangential force " + short_number(100.0 * differences.largest_tangential) + " % of it at most";
+    map.source.how = map.source.how.substr(0, map.source.how.find(kChecked)) + kChecked + " " + found + " (convergence.json).";
+    write_text_atomically(without_slash(options.output) / "map.json", json_text(map_json(map)));
+    fs::remove_all(refined.folder);
+    std::printf("%s: %s\n", options.output.c_str(), found.c_str());
+}
+
+void refuse_existing(const fs::path& output) {
+    if (fs::exists(output)) throw bad_input(output.string(), "", "something of that name", "a new name (nothing is overwritten)");
+}
+
+int number_from_environment(const char* name) {
+    const char* text = std::getenv(name);
+    double value = 0.0;
+    if (text == nullptr || !parse_number(text, value) || value < 0.0 || value > 1e6 || value != std::floor(value)) {
+        throw bad_input(name, "", text == nullptr ? "nothing" : shown(text), "a whole number (or give --part i/n)");
+    }
+    return static_cast<int>(value);
+}
+
+void refuse_beyond_analytic(const Phantom& phantom, const fs::path& file) {
+    if (phantom.indenter != IndenterShape::sphere) {
+        throw bad_input(file.string(), "indenter.shape", "cylinder", "sphere with --method analytic");
+    }
+    if (!phantom.rolling && phantom.friction > 0.0) {
+        throw bad_input(file.string(), "indenter.friction", short_number(phantom.friction), "0 with --method analytic");
+    }
+}
+
+}  // namespace
+
+Part parse_part(const std::string& text) {
+    const std::size_t slash = text.find('/');
+    double index = 0.0;
+    double count = 0.0;
+    const bool good = slash != std::string::npos && parse_number(std::string_view(text).substr(0, slash), index) &&
+                      parse_number(std::string_view(text).substr(slash + 1), count) && index == std::floor(index) &&
+                      count == std::floor(count) && index >= 1.0 && index <= count && count <= 1e6;
+    if (!good) throw bad_input("--part", "", shown(text), "i/n with 1 <= i <= n, such as 2/8");
+    return {static_cast<int>(index), static_cast<int>(count)};
+}
+
+std::optional<Part> part_from_environment() {
+    Part part;
+    if (std::getenv("SLURM_ARRAY_TASK_ID") != nullptr) {
+        part.index = number_from_environment("SLURM_ARRAY_TASK_ID") - number_from_environment("SLURM_ARRAY_TASK_MIN") + 1;
+        part.count = number_from_environment("SLURM_ARRAY_TASK_COUNT");
+    } else if (std::getenv("OMPI_COMM_WORLD_RANK") != nullptr) {
+        part.index = number_from_environment("OMPI_COMM_WORLD_RANK") + 1;
+        part.count = number_from_environment("OMPI_COMM_WORLD_SIZE");
+    } else {
+        return std::nullopt;
+    }
+    return parse_part(std::to_string(part.index) + "/" + std::to_string(part.count));
+}
+
+void generate_map(const GenerateOptions& options) {
+    if (options.analytic) {
+        const Phantom phantom = read_phantom(options.phantom);
+        refuse_beyond_analytic(phantom, options.phantom);
+        const Map map = analytic_map(phantom);
+        write_map(map, options.output);
+        std::printf("%s: %zu x %zu cells, %zu depths; analytic stand-in, not a simulation\n", options.output.c_str(),
+                    map.n_x, map.n_y, map.n_depths());
+        return;
+    }
+    const MapTask task = task_of(options, options.meshes);
+    if (options.window && !(*options.window >= 0 && *options.window < window_count(task))) {
+        throw bad_input("--window", "", std::to_string(*options.window), "0 to " + std::to_string(window_count(task) - 1));
+    }
+    if (options.window) return compute_window(task, *options.window);
+    if (!options.check || !fs::exists(options.output)) {
+        refuse_existing(options.output);
+        fs::create_directories(task.folder);
+        if (options.part) return compute_part(task, *options.part);
+        if (!options.merge) compute_with_jobs(options, task);
+        merge(options, task);
+    }
+    if (options.check) check(options, task, task_of(options, MeshSet::refined));
+}
+
+}  // namespace palpa

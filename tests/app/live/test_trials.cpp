@@ -1,0 +1,168 @@
+// Trials begin and end with a press held and a keeper that is busy; the window is off screen.
+
+#include "app/live/live_app.h"
+
+#include <SDL.h>
+#include <doctest/doctest.h>
+
+#include "app/screens/frame.h"
+#include "app/scene_choices.h"
+#include "scene/advance.h"
+
+using namespace palpa;
+
+namespace {
+
+class BusyKeeper : public TrialKeeper {
+ public:
+    bool busy = true;
+    void keep(const RunFiles&, bool) override {}
+    void keep_part(const RunFiles&) override {}
+    void keep_answers(const std::filesystem::path&, const std::string&) override {}
+    void participant(const std::string&) override {}
+    bool ready() const override { return !busy; }
+    std::string problem() override { return {}; }
+    std::string note() const override { return {}; }
+    void keep_settings(const std::filesystem::path&) override {}
+    void open() override {}
+    void open_studies() override {}
+};
+
+WindowOptions off_screen() {
+    WindowOptions options;
+    options.visible = false;
+    options.width_px = 640;
+    options.height_px = 400;
+    return options;
+}
+
+struct Desk {
+    BusyKeeper keeper;
+    Window window{off_screen()};
+    Gui gui{window};
+    TissueDrawer tissue;
+    App app;
+
+    explicit Desk(const std::string& scene) {
+        app.keeper = &keeper;
+        Scene first = load_scene(scene);
+        Plan plan = make_plan(first);
+        put_scene(std::move(first), std::move(plan), window, app);
+        begin(window, gui, app);
+    }
+
+    void sample(Phase phase) {
+        Sample sample;
+        sample.t_host_s = window.now_s();
+        sample.pointer_id = 4;
+        sample.tool = Tool::pen;
+        sample.phase = phase;
+        const ScreenArea& area = app.session.state.screen;
+        sample.x_px = area.x_px + 0.5 * area.width_px;
+        sample.y_px = area.y_px + 0.5 * area.height_px;
+        sample.pressure = 0.5;
+        take_sample(sample, app.session);
+    }
+
+    void show_frame() {
+        const Session& s = app.session;
+        draw_frame(s.scene, s.plan, s.trial, app.settings, window.now_s(), 1.0 / 60.0, tissue, gui, app.screens, app.session.state, app.times, app.on_screen);
+    }
+};
+
+// What a frame reads together belongs together.
+void check_whole(const Session& session) {
+    const Session& s = session;
+    CHECK(s.state.display_ratio.has_value() == s.scene.display_ratio.has_value());
+    CHECK(s.state.delay.has_value() == s.scene.delay.has_value());
+    CHECK(s.state.linear.has_value() == std::holds_alternative<LinearTissue>(s.plan.tissue));
+    CHECK(s.state.view.area.centre_m == s.plan.area.centre_m);
+    CHECK_FALSE(s.state.pointer.has_value());
+    CHECK_FALSE(s.state.touch.down);
+    CHECK(avatar_at(s.scene, s.state, 1e3).p_m.allFinite());
+}
+
+}  // namespace
+
+TEST_CASE("live: a scene is changed under a press while the keeper is busy") {
+    Desk desk("");
+    REQUIRE(desk.app.session.scene.display_ratio);
+    desk.sample(Phase::down);
+    desk.sample(Phase::move);
+    REQUIRE(desk.app.session.state.touch.down);
+
+    change_scene(desk.window, desk.gui, PALPA_SOURCE_DIR "/assets/scenes/delay.json", "", desk.app);
+    CHECK(desk.app.begin_waits);
+    CHECK(desk.app.session.scene.delay.has_value());
+    check_whole(desk.app.session);
+    desk.show_frame();
+    act(Action::finish, desk.window.now_s(), desk.app);  // there is no trial yet that could be finished
+    CHECK_FALSE(desk.app.session.trial.finished);
+
+    desk.keeper.busy = false;
+    begin_when_kept(desk.window, desk.gui, desk.app);
+    CHECK_FALSE(desk.app.begin_waits);
+    check_whole(desk.app.session);
+    desk.show_frame();
+}
+
+TEST_CASE("live: the tissue of a finished trial is changed while the keeper is busy") {
+    Desk desk("");
+    act(Action::finish, desk.window.now_s(), desk.app);
+    REQUIRE(desk.app.screens.screen == Screen::reveal);
+
+    SUBCASE("for another one") { change_scene(desk.window, desk.gui, PALPA_SOURCE_DIR "/assets/scenes/delay.json", "", desk.app); }
+    SUBCASE("turned") {
+        const Mapping before = desk.app.session.scene.mapping;
+        turn_tissue(desk.window, desk.gui, desk.app);
+        const Mapping& now = desk.app.session.scene.mapping;
+        CHECK((now.rotate_deg != before.rotate_deg || now.flip != before.flip));
+        const View view = make_view(now, desk.app.session.plan.area, desk.app.session.state.screen);
+        CHECK(desk.app.session.state.view.axes == view.axes);
+    }
+    CHECK(desk.app.screens.screen == Screen::trial);  // the verdict was on the tissue before
+    check_whole(desk.app.session);
+    desk.show_frame();
+}
+
+TEST_CASE("live: the press that a trial ends with does not begin the next one") {
+    Desk desk("");
+    desk.keeper.busy = false;
+    SDL_Event event{};
+    const auto push = [&](Uint32 type) {
+        event.type = type;
+        event.button.windowID = SDL_GetWindowID(desk.window.sdl());
+        event.button.button = SDL_BUTTON_LEFT;
+        event.button.state = type == SDL_MOUSEBUTTONDOWN ? SDL_PRESSED : SDL_RELEASED;
+        event.button.x = 400;
+        event.button.y = 200;
+        SDL_PushEvent(&event);
+    };
+    std::vector<Sample> samples;
+    const auto poll = [&] {
+        samples.clear();
+        desk.window.poll(0.02, samples);
+        for (const Sample& sample : samples) take_sample(sample, desk.app.session);
+    };
+    push(SDL_MOUSEBUTTONDOWN);
+    poll();
+    REQUIRE(desk.app.session.state.pointer.has_value());
+
+    begin_anew(desk.window, desk.gui, desk.app);
+    for (int i = 0; i < 3; ++i) poll();  // the button is still held
+    CHECK_FALSE(desk.app.session.state.pointer.has_value());
+    push(SDL_MOUSEBUTTONUP);
+    poll();
+    push(SDL_MOUSEBUTTONDOWN);
+    poll();
+    CHECK(desk.app.session.state.pointer.has_value());
+}
+
+TEST_CASE("live: a scene that cannot be read leaves the present one") {
+    Desk desk("");
+    const std::string name = desk.app.session.scene.name;
+    change_scene(desk.window, desk.gui, "no_such_scene.json", "", desk.app);
+    CHECK(desk.app.session.scene.name == name);
+    CHECK(desk.app.screens.problems.size() == 1);
+    check_whole(desk.app.session);
+}

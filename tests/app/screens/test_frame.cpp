@@ -1,0 +1,105 @@
+// A frame that would look like what is on the screen is not drawn again; whatever changes is. Off screen.
+
+#include "app/screens/frame.h"
+
+#include <doctest/doctest.h>
+
+#include "app/scene_choices.h"
+#include "scene/advance.h"
+
+using namespace palpa;
+
+namespace {
+
+WindowOptions off_screen() {
+    WindowOptions options;
+    options.visible = false;
+    options.width_px = 640;
+    options.height_px = 400;
+    return options;
+}
+
+struct Screening {
+    Window window{off_screen()};
+    Gui gui{window};
+    TissueDrawer tissue;
+    Session session;
+    Settings settings;
+    Screens screens;
+    FrameTimes times;
+    OnScreen on_screen;
+    double now_s = 1.0;  // of a clock of the test's own
+
+    explicit Screening(const std::string& scene) {
+        Scene first = load_scene(scene);
+        Plan plan = make_plan(first);
+        change_tissue(std::move(first), std::move(plan), {}, session);
+        begin_trial({}, {640, 400, kMissing, kMissing, "test"}, TrialMode::practice, session);
+        take_sample(resize_sample(window, gui, settings, now_s), session);
+        for (int i = 0; i < 5; ++i) drawn();  // panels find their size
+    }
+
+    bool drawn() {
+        draw_frame(session.scene, session.plan, session.trial, settings, now_s, 1.0 / 60.0, tissue, gui, screens, session.state, times, on_screen);
+        return on_screen.drawn;
+    }
+
+    void press(Phase phase, double share, double pressure) {
+        const ScreenArea& area = session.state.screen;
+        press_px(phase, {area.x_px + share * area.width_px, area.y_px + 0.5 * area.height_px}, pressure);
+    }
+
+    void press_px(Phase phase, const Eigen::Vector2d& at_px, double pressure) {
+        Sample sample;
+        sample.t_host_s = now_s;
+        sample.pointer_id = 4;
+        sample.tool = Tool::pen;
+        sample.phase = phase;
+        sample.x_px = at_px.x();
+        sample.y_px = at_px.y();
+        sample.pressure = pressure;
+        take_sample(sample, session);
+    }
+};
+
+}  // namespace
+
+TEST_CASE("frame: nothing is drawn while nothing changes, and everything that does is") {
+    Screening s("");
+    CHECK_FALSE(s.drawn());
+    s.now_s += 0.01;
+    CHECK_FALSE(s.drawn());
+    s.press(Phase::down, 0.5, 0.3);
+    CHECK(s.drawn());
+    CHECK_FALSE(s.drawn());
+    s.now_s += 0.01;
+    s.press(Phase::move, 0.5, 0.4);  // the force bar, the dent
+    CHECK(s.drawn());
+    s.screens.note = "saved";
+    CHECK(s.drawn());
+    s.now_s += 2.0;  // the trial's clock
+    CHECK(s.drawn());
+    s.on_screen.content = 0;  // the window was uncovered
+    CHECK(s.drawn());
+    CHECK_FALSE(s.drawn());
+}
+
+TEST_CASE("frame: an avatar that catches up while the pen rests is drawn") {
+    Screening s(PALPA_SOURCE_DIR "/assets/scenes/delay.json");
+    // over the first nodule, until the avatar moves without the pen
+    const Nodule& nodule = s.session.plan.nodules.front();
+    int caught_up = 0;
+    for (int i = 0; i < 100; ++i) {
+        s.now_s += 0.005;
+        const double x_m = nodule.x_m + 1e-3 * (0.3 * i - 15.0);
+        s.press_px(i == 0 ? Phase::down : Phase::move, px_of_tissue(s.session.state.view, {x_m, nodule.y_m}), 0.8);
+        const Avatar then = avatar_at(s.session.scene, s.session.state, s.now_s);
+        const Avatar later = avatar_at(s.session.scene, s.session.state, s.now_s + 0.02);
+        if ((later.p_m - then.p_m).norm() < 1e-4) continue;
+        ++caught_up;
+        s.drawn();
+        s.now_s += 0.02;
+        CHECK(s.drawn());  // no sample came
+    }
+    CHECK(caught_up > 0);
+}

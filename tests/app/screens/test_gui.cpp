@@ -1,0 +1,167 @@
+// Keys, letters and clicks that come quicker than frames reach the controls, each in its turn. Off screen.
+
+#include "app/screens/gui.h"
+
+#include <SDL.h>
+#include <doctest/doctest.h>
+#include <imgui.h>
+
+#include <cstring>
+
+using namespace palpa;
+
+namespace {
+
+WindowOptions off_screen() {
+    WindowOptions options;
+    options.visible = false;
+    options.width_px = 640;
+    options.height_px = 400;
+    return options;
+}
+
+// A field for letters and a button, as screens have them.
+struct Form {
+    Window window{off_screen()};
+    Gui gui{window};
+    char text[64] = "";
+    int entered = 0;
+    int clicks = 0;
+    std::string shortcuts;
+    ImVec2 button{};
+    bool focus = true;
+
+    void frame() {
+        std::vector<Sample> samples;
+        window.poll(0.0, samples);
+        gui.begin_frame(1.0 / 60.0, true);
+        for (const int letter : {'c', 'd'}) {
+            if (gui.pressed(letter)) shortcuts += static_cast<char>(letter);
+        }
+        ImGui::SetNextWindowPos(ImVec2(0.0f, 0.0f));
+        ImGui::SetNextWindowSize(ImVec2(640.0f, 400.0f));
+        ImGui::Begin("form");
+        gui.claim({0.0f, 0.0f, 640.0f, 400.0f});
+        if (focus) ImGui::SetKeyboardFocusHere();
+        focus = false;
+        entered += ImGui::InputText("code", text, sizeof text, ImGuiInputTextFlags_EnterReturnsTrue);
+        clicks += ImGui::Button("press", ImVec2(100.0f, 50.0f));
+        const ImVec2 at = ImGui::GetItemRectMin();
+        button = ImVec2(at.x + 20.0f, at.y + 20.0f);
+        ImGui::End();
+        gui.end_frame();
+    }
+    void frames(int count) {
+        for (int i = 0; i < count; ++i) frame();
+    }
+
+    void send_key(Uint32 type, SDL_Keycode code) const {
+        SDL_Event event{};
+        event.type = type;
+        event.key.windowID = SDL_GetWindowID(window.sdl());
+        event.key.state = type == SDL_KEYDOWN ? SDL_PRESSED : SDL_RELEASED;
+        event.key.keysym.sym = code;
+        SDL_PushEvent(&event);
+    }
+    void tap(SDL_Keycode code) const {
+        send_key(SDL_KEYDOWN, code);
+        send_key(SDL_KEYUP, code);
+    }
+    void type(char letter) const {
+        send_key(SDL_KEYDOWN, letter);
+        SDL_Event event{};
+        event.type = SDL_TEXTINPUT;
+        event.text.windowID = SDL_GetWindowID(window.sdl());
+        event.text.text[0] = letter;
+        SDL_PushEvent(&event);
+        send_key(SDL_KEYUP, letter);
+    }
+    void click() const {
+        for (const Uint32 type : {SDL_MOUSEBUTTONDOWN, SDL_MOUSEBUTTONUP}) {
+            SDL_Event event{};
+            event.type = type;
+            event.button.windowID = SDL_GetWindowID(window.sdl());
+            event.button.button = SDL_BUTTON_LEFT;
+            event.button.state = type == SDL_MOUSEBUTTONDOWN ? SDL_PRESSED : SDL_RELEASED;
+            event.button.x = static_cast<int>(button.x);
+            event.button.y = static_cast<int>(button.y);
+            SDL_PushEvent(&event);
+        }
+    }
+};
+
+}  // namespace
+
+TEST_CASE("gui: Backspaces between two frames each take a letter") {
+    Form form;
+    std::strcpy(form.text, "abcdefgh");
+    form.frames(4);
+    form.tap(SDLK_END);
+    for (int i = 0; i < 5; ++i) form.tap(SDLK_BACKSPACE);
+    form.frames(20);
+    CHECK(std::string(form.text) == "abc");
+}
+
+TEST_CASE("gui: letters, Backspace and Enter between two frames are taken in their order") {
+    Form form;
+    form.frames(4);
+    for (const char letter : {'1', '2', '3'}) form.type(letter);
+    form.tap(SDLK_BACKSPACE);
+    form.type('4');
+    form.tap(SDLK_BACKSPACE);
+    form.tap(SDLK_BACKSPACE);
+    form.type('5');
+    form.tap(SDLK_RETURN);
+    form.frames(40);
+    CHECK(std::string(form.text) == "15");
+    CHECK(form.entered == 1);
+}
+
+TEST_CASE("gui: Enter works again after it has ended the typing") {
+    Form form;
+    form.frames(4);
+    form.send_key(SDL_KEYDOWN, SDLK_RETURN);
+    form.frames(4);
+    form.send_key(SDL_KEYUP, SDLK_RETURN);  // no field takes letters any more
+    form.frames(2);
+    CHECK(form.entered == 1);
+    form.focus = true;
+    form.frames(4);
+    form.tap(SDLK_RETURN);
+    form.frames(4);
+    CHECK(form.entered == 2);
+}
+
+TEST_CASE("gui: quick clicks are all counted, and shortcuts come one by one") {
+    Form form;
+    form.frames(4);
+    form.tap(SDLK_RETURN);  // leave the field
+    form.frames(4);
+    for (int i = 0; i < 3; ++i) form.click();
+    form.tap('c');
+    form.tap('d');
+    form.tap('c');
+    form.frames(20);
+    CHECK(form.clicks == 3);
+    CHECK(form.shortcuts == "cdc");
+    CHECK_FALSE(form.gui.in_use());
+}
+
+TEST_CASE("gui: a text from elsewhere replaces the field's, and Enter comes after it") {
+    Form form;
+    std::strcpy(form.text, "old");
+    form.frames(4);
+    form.gui.type_instead("n");
+    form.gui.type_instead("new");
+    form.tap(SDLK_RETURN);
+    form.frames(6);
+    CHECK(std::string(form.text) == "new");
+    CHECK(form.entered == 1);
+    form.focus = true;
+    form.frames(4);
+    form.gui.type_instead("");
+    form.tap(SDLK_RETURN);
+    form.frames(6);
+    CHECK(std::string(form.text).empty());
+    CHECK(form.entered == 2);
+}

@@ -1,0 +1,63 @@
+#include "app/screens/layout.h"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+using namespace palpa;
+
+TEST_CASE("layout: controls and tissue share the window without overlapping, whatever its size") {
+    for (const bool left_handed : {false, true}) {
+        for (float width = 60.0f; width < 4000.0f; width *= 1.3f) {
+            for (float height = 60.0f; height < 4000.0f; height *= 1.3f) {
+                CAPTURE(width);
+                CAPTURE(height);
+                const float mm = control_scale(std::numeric_limits<double>::quiet_NaN(), width, height);
+                const Layout l = layout_of(width, height, mm, left_handed);
+                CHECK(l.tissue_px.width() > 0.0f);
+                CHECK(l.tissue_px.height() > 0.0f);
+                CHECK(l.tissue_px.x1 <= width);
+                CHECK(l.tissue_px.y1 <= height);
+                if (!l.controls) continue;
+                const bool apart = l.controls_px.x1 <= l.tissue_px.x0 || l.controls_px.x0 >= l.tissue_px.x1 ||
+                                   l.controls_px.y1 <= l.tissue_px.y0;
+                CHECK(apart);
+                CHECK(std::min(l.tissue_px.width(), l.tissue_px.height()) >= 30.0f * mm - 0.01f);
+                CHECK(l.controls_px.width() >= 5.0f * 9.0f * mm);  // five targets of 9 mm side by side
+            }
+        }
+    }
+}
+
+TEST_CASE("layout: a touched screen's own scale is used as far as the controls fit, a measured one always") {
+    const double unknown = std::numeric_limits<double>::quiet_NaN();
+    CHECK(control_scale(unknown, 2560.0f, 1600.0f, 12.6) == doctest::Approx(12.6));
+    CHECK(control_scale(unknown, 1600.0f, 2560.0f, 12.6) == doctest::Approx(12.6));
+    const float small = control_scale(unknown, 1170.0f, 2532.0f, 18.9);  // a telephone
+    CHECK(small < 18.0f);
+    CHECK(layout_of(1170.0f, 2532.0f, small, false).controls);
+    CHECK(control_scale(18.0, 1170.0f, 2532.0f, 18.9) == doctest::Approx(18.0));
+}
+
+TEST_CASE("layout: a column beside the tissue away from the hand, a strip above it on an upright window") {
+    const Layout right = layout_of(1280, 800, 3.78f, false);
+    CHECK(right.column);
+    CHECK(right.controls_px.x0 == 0.0f);
+    CHECK(layout_of(1280, 800, 3.78f, true).controls_px.x1 == 1280.0f);
+    const Layout upright = layout_of(800, 1280, 3.78f, false);
+    CHECK_FALSE(upright.column);
+    CHECK(upright.tissue_px.height() >= 0.99f * upright.tissue_px.width());
+    CHECK_FALSE(layout_of(200, 100, 3.78f, false).controls);
+}
+
+TEST_CASE("layout: below the tissue is room for a finger that indents what lies above it") {
+    for (const auto& [width, height] : {std::pair{1280.0f, 800.0f}, std::pair{800.0f, 1280.0f}}) {
+        const Layout under = layout_of(width, height, 3.78f, false);
+        const Layout above = layout_of(width, height, 3.78f, false, true);
+        CHECK(above.tissue_px.y1 == doctest::Approx(under.tissue_px.y1 - 15.0f * 3.78f));
+        CHECK(above.tissue_px.y0 == under.tissue_px.y0);
+    }
+}

@@ -1,0 +1,315 @@
+// Every screen at the sizes of desks and tablets: nothing blank, nothing that does not fit. Drawn without a display.
+
+#include <doctest/doctest.h>
+#include <png.h>
+#include <stdlib.h>
+
+#include <algorithm>
+#include <limits>
+#include <set>
+
+#include "app/screens/frame.h"
+#include "app/scene_choices.h"
+#include "app/screens/map_screen.h"
+#include "app/study/study_run.h"
+#include "scene/advance.h"
+#include "tests/temporary_folder.h"
+
+using namespace palpa;
+using namespace palpa::test;
+
+namespace {
+
+struct Picture {
+    int width = 0;
+    int height = 0;
+    std::vector<unsigned char> rgb;
+};
+
+Picture read_png(const std::filesystem::path& path) {
+    png_image image{};
+    image.version = PNG_IMAGE_VERSION;
+    REQUIRE(png_image_begin_read_from_file(&image, path.c_str()));
+    image.format = PNG_FORMAT_RGB;
+    Picture out{static_cast<int>(image.width), static_cast<int>(image.height), {}};
+    out.rgb.resize(PNG_IMAGE_SIZE(image));
+    REQUIRE(png_image_finish_read(&image, nullptr, out.rgb.data(), 0, nullptr));
+    return out;
+}
+
+std::size_t colours_in(const Picture& picture, const PanelArea& area) {
+    std::set<int> colours;
+    for (int y = static_cast<int>(area.y0); y < static_cast<int>(area.y1); ++y) {
+        for (int x = static_cast<int>(area.x0); x < static_cast<int>(area.x1); ++x) {
+            const unsigned char* p = &picture.rgb[3 * static_cast<std::size_t>(y * picture.width + x)];
+            colours.insert((p[0] << 16) | (p[1] << 8) | p[2]);
+        }
+    }
+    return colours.size();
+}
+
+// The default trace, finished, with a hit and a false mark.
+Trace finished_trace(const Plan& plan, const State& state) {
+    Trace trace = read_trace(default_trace());
+    const auto act = [&](Action action, double x_m, double y_m) {
+        Sample sample;
+        sample.t_host_s = trace.samples.back().t_host_s + 0.1;
+        sample.phase = Phase::ui;
+        sample.action = action;
+        const Eigen::Vector2d px = px_of_tissue(state.view, {x_m, y_m});
+        sample.x_px = px.x();
+        sample.y_px = px.y();
+        trace.samples.push_back(sample);
+    };
+    act(Action::mark, plan.nodules[0].x_m, plan.nodules[0].y_m);
+    act(Action::confidence_5, 0.0, 0.0);
+    act(Action::mark, 0.1, 0.1);
+    act(Action::finish, 0.0, 0.0);
+    return trace;
+}
+
+struct Case {
+    int width_px, height_px;
+    double px_per_mm;
+    bool left_handed;
+    bool above_finger = false;
+};
+
+void check_case(const Session& session, Screens screens, const Case& c, const std::string& name, const TemporaryFolder& folder) {
+    CAPTURE(name);
+    CAPTURE(c.width_px);
+    CAPTURE(c.height_px);
+    Settings settings;
+    settings.left_handed = c.left_handed;
+    settings.above_finger = c.above_finger;
+    screens.px_per_mm = c.px_per_mm;
+    State state = session.state;
+    const float mm = control_scale(c.px_per_mm, static_cast<float>(c.width_px), static_cast<float>(c.height_px));
+    const Layout layout = layout_of(static_cast<float>(c.width_px), static_cast<float>(c.height_px), mm, c.left_handed, c.above_finger);
+    const PanelArea& t = layout.tissue_px;
+    Sample resize;
+    resize.phase = Phase::ui;
+    resize.action = Action::resize;
+    resize.x_px = static_cast<double>(t.x0);
+    resize.y_px = static_cast<double>(t.y0);
+    resize.width_px = static_cast<double>(t.width());
+    resize.height_px = static_cast<double>(t.height());
+    advance(session.scene, session.plan, resize, state);
+    const auto file = folder / "p.png";
+    const std::string overflow = draw_picture(session.scene, session.plan, session.trial, settings, screens, c.width_px, c.height_px, state, file);
+    CHECK(overflow == "");
+    const Picture picture = read_png(file);
+    CHECK(picture.width == c.width_px);
+    constexpr std::size_t kTextHas = 40;  // colours of smoothed letters
+    const bool covers_all = screens.screen == Screen::scale || screens.screen == Screen::devices || screens.screen == Screen::study ||
+                            screens.screen == Screen::maps || screens.asked;
+    const PanelArea all{0.0f, 0.0f, static_cast<float>(c.width_px), static_cast<float>(c.height_px)};
+    if (layout.controls) CHECK(colours_in(picture, covers_all ? all : layout.controls_px) > kTextHas);
+    CHECK(colours_in(picture, covers_all ? all : layout.tissue_px) > kTextHas);
+    if (const char* keep = ::getenv("PALPA_KEEP_PICTURES")) {
+        const std::string size = std::to_string(c.width_px) + "x" + std::to_string(c.height_px);
+        std::filesystem::copy_file(file, std::filesystem::path(keep) / (name + "-" + size + (c.left_handed ? "-left" : "") + ".png"),
+                                   std::filesystem::copy_options::overwrite_existing);
+    }
+}
+
+}  // namespace
+
+TEST_CASE("screens: every screen fits and is drawn at the sizes of desks and tablets") {
+    const TemporaryFolder folder;
+    Session session;
+    session.scene = load_scene("");
+    session.plan = make_plan(session.scene);
+    const Trace whole = read_trace(default_trace());
+    begin_trial({}, whole.info, TrialMode::practice, session);
+    for (std::size_t i = 0; i < 400; ++i) take_sample(whole.samples[i], session);  // in the middle of a stroke
+
+    Screens trial;
+    trial.scenes = scene_choices();
+    trial.profiles = profile_choices();
+    trial.screen_name = "DUMMY0, 1280 x 800";
+    trial.problems = {"scene.json: tissue.map: found nothing, expected a map folder"};
+    trial.offer_hold = true;
+    trial.device_notes = {"This pen reports always the same pressure: it has no sensor."};
+    Screens asked = trial;
+    asked.asked.emplace().again = true;
+    Screens menu = trial;
+    menu.menu = true;
+    Screens cost = trial;
+    cost.cost = true;
+    Screens scale = trial;
+    scale.screen = Screen::scale;
+    Screens devices = trial;
+    devices.screen = Screen::devices;
+    devices.check = std::make_shared<DeviceCheck>();
+    devices.devices = {{1, "A pen with a long name", Tool::pen, true, 0.0, 8191.0, 8192, true, false, {}}};
+    for (std::size_t i = 0; i < 400; ++i) observe(whole.samples[i], *devices.check);
+    for (std::size_t i = 0; i < 400; ++i) add_dot(whole.samples[i], devices);
+
+    Session done;
+    done.scene = session.scene;
+    done.plan = session.plan;
+    begin_trial({}, whole.info, TrialMode::test, done);
+    for (const Sample& sample : finished_trace(done.plan, done.state).samples) take_sample(sample, done);
+    REQUIRE(done.trial.finished);
+    Screens reveal = trial;
+    reveal.screen = Screen::reveal;
+    reveal.problems.clear();
+    reveal.debrief = debrief(done.plan, done.trial);
+
+    Screens maps = trial;
+    maps.screen = Screen::maps;
+    maps.maps = make_map_browser(session.scene, map_choices());
+    REQUIRE(maps.maps->problem == "");
+    add_pin({0.035, 0.035}, *maps.maps);
+    add_pin({0.100, 0.100}, *maps.maps);
+    maps.maps->pointed_m = Eigen::Vector2d(0.060, 0.088);
+    maps.maps->quantity = MapQuantity::normal;
+
+    constexpr double kTablet_px_per_mm = 11.8;  // 10.1 inch with 2560 x 1600
+    const Case cases[] = {{1280, 800, kMissing, false}, {800, 1280, kMissing, false}, {2560, 1600, kMissing, true},
+                          {2560, 1600, kTablet_px_per_mm, false, true}, {1600, 2560, kTablet_px_per_mm, false},
+                          {1024, 600, kMissing, true}, {200, 100, kMissing, false}};
+    for (const Case& c : cases) {
+        check_case(session, trial, c, "trial", folder);
+        if (c.width_px < 600) continue;  // panels need some room
+        check_case(session, asked, c, "asked", folder);
+        check_case(session, menu, c, "menu", folder);
+        check_case(session, cost, c, "cost", folder);
+        check_case(session, scale, c, "scale", folder);
+        check_case(session, devices, c, "devices", folder);
+        check_case(session, maps, c, "maps", folder);
+        check_case(done, reveal, c, "reveal", folder);
+    }
+}
+
+TEST_CASE("screens: every step of a study fits, and none tells where the nodules are") {
+    const TemporaryFolder folder;
+    Session session;
+    session.scene = load_scene("");
+    session.plan = make_plan(session.scene);
+    const Trace whole = read_trace(default_trace());
+    begin_trial({}, whole.info, TrialMode::test, session);
+    for (std::size_t i = 0; i < 400; ++i) take_sample(whole.samples[i], session);
+    const auto run = std::make_shared<StudyRun>();
+    run->protocol = read_protocol(PALPA_SOURCE_DIR "/assets/protocols/paper.json");
+    run->scenes = load_study_scenes(run->protocol);
+    run->directory = folder / "log";
+    std::filesystem::create_directories(run->directory);
+    run->code = "07";
+    run->progress = progress_of(run->directory, run->protocol, run->code);
+    run->progress.next = run->progress.plan.trials.front();
+    run->stopped = "log: found 12 MB free, expected 64 MB for a trial; the study stops here";
+    Screens screens;
+    screens.study = run;
+    const Case cases[] = {{1280, 800, kMissing, false}, {800, 1280, kMissing, false}, {2560, 1600, 11.8, false}, {1024, 600, kMissing, true}};
+    for (const Case& c : cases) {
+        for (int step = 0; step <= static_cast<int>(StudyStep::stopped); ++step) {
+            run->step = static_cast<StudyStep>(step);
+            const bool by_hand = run->step == StudyStep::typed;
+            for (const PlannedTrial& trial : run->progress.plan.trials) {
+                const Modality modality = run->protocol.conditions[trial.condition].modality;
+                if (!trial.practice && (modality == Modality::hand) == by_hand) run->progress.next = trial;
+            }
+            run->answers.clear();
+            run->typed.nodules = {4, kMissed, 0};
+            screens.screen = run->step == StudyStep::trial ? Screen::trial : Screen::study;
+            check_case(session, screens, c, std::string("study-") + name_of(run->step), folder);
+        }
+        // on a tablet there is more to do between people, and a step may have to wait
+        run->on_tablet = true;
+        run->warnings = {"Trial sub-07_task-palpation_run-03 is not kept: the storage of this browser is full. Menu, Trials, Export saves it "
+                         "to a file; the next trial waits for that."};
+        for (const StudyStep step : {StudyStep::code, StudyStep::done, StudyStep::stopped}) {
+            run->step = step;
+            run->answers.clear();
+            check_case(session, screens, c, std::string("study-tablet-") + name_of(step), folder);
+        }
+        run->keeping = true;
+        check_case(session, screens, c, "study-tablet-keeping", folder);
+        run->keeping = run->on_tablet = false;
+        run->step = StudyStep::device;
+        run->device_here = false;
+        run->device_left = true;
+        check_case(session, screens, c, "study-device-gone", folder);
+        run->device_here = true;
+        run->device_left = false;
+        run->warnings.clear();
+    }
+}
+
+TEST_CASE("screens: the map browser shows every kind of matrix, cells that were not measured, placed and detected nodules") {
+    const TemporaryFolder folder;
+    Session session;
+    session.scene = load_scene("");
+    session.plan = make_plan(session.scene);
+    begin_trial({}, read_trace(default_trace()).info, TrialMode::practice, session);
+    Screens screens;
+    screens.screen = Screen::maps;
+    screens.maps = make_map_browser(session.scene, map_choices());
+    Map& map = screens.maps->map;
+    for (std::size_t cell = 0; cell < map.n_cells(); ++cell) {
+        if (cell % map.n_x < 20 && cell / map.n_x < 12) screens.maps->stiffness_N_per_m[cell] = std::numeric_limits<double>::quiet_NaN();
+    }
+    for (std::size_t k = 0; k < map.n_depths(); ++k) map.normal_N[k * map.n_cells() + 700] = std::numeric_limits<float>::quiet_NaN();
+    Nodule found;
+    found.id = "D1";
+    found.placed = false;
+    found.x_m = 0.03;
+    found.y_m = 0.095;
+    found.diameter_m = 8e-3;
+    found.length_m = 30e-3;
+    found.angle_deg = 25.0;
+    map.nodules.push_back(found);
+    constexpr const char* kNames[] = {"maps-normal", "maps-sideways-x", "maps-sideways-y", "maps-stiffness"};
+    for (int i = 0; i < 4; ++i) {
+        screens.maps->quantity = static_cast<MapQuantity>(i);
+        check_case(session, screens, {1280, 800, kMissing, false}, kNames[i], folder);
+    }
+}
+
+TEST_CASE("screens: during a test the map browser shows nothing of any map") {
+    const TemporaryFolder folder;
+    Session session;
+    session.scene = load_scene("");
+    session.plan = make_plan(session.scene);
+    const Trace whole = read_trace(default_trace());
+    begin_trial({}, whole.info, TrialMode::test, session);
+    for (std::size_t i = 0; i < 400; ++i) take_sample(whole.samples[i], session);
+    REQUIRE_FALSE(may_show_maps(session.trial));
+    Screens screens;
+    screens.screen = Screen::maps;
+    screens.maps = make_map_browser(session.scene, map_choices());
+    const auto coloured = [&](const Session& of) {
+        const auto file = folder / "p.png";
+        State state = of.state;
+        draw_picture(of.scene, of.plan, of.trial, {}, screens, 1280, 800, state, file);
+        const Picture picture = read_png(file);
+        int count = 0;
+        for (std::size_t at = 0; at < picture.rgb.size(); at += 3) {
+            const int high = std::max({picture.rgb[at], picture.rgb[at + 1], picture.rgb[at + 2]});
+            const int low = std::min({picture.rgb[at], picture.rgb[at + 1], picture.rgb[at + 2]});
+            count += high - low > 60;
+        }
+        return count;
+    };
+    CHECK(coloured(session) < 2000);  // the panels are grey
+    for (const Sample& sample : finished_trace(session.plan, session.state).samples) take_sample(sample, session);
+    REQUIRE(session.trial.finished);
+    CHECK(may_show_maps(session.trial));
+    CHECK(coloured(session) > 100000);
+}
+
+TEST_CASE("screens: a map that cannot be read leaves the one that is shown, and says why") {
+    Session session;
+    session.scene = load_scene("");
+    const auto browser = make_map_browser(session.scene, map_choices());
+    REQUIRE(browser->map.n_cells() > 0);
+    const std::string name = browser->map.name;
+    choose_map("/no/such.map", *browser);
+    CHECK(browser->problem.find("/no/such.map") != std::string::npos);
+    CHECK(browser->map.name == name);
+    for (int i = 0; i < 6; ++i) add_pin({0.01 * i, 0.05}, *browser);
+    CHECK(browser->pins_m.size() == kPins);
+    CHECK(browser->pins_m.back().x() == doctest::Approx(0.05));
+}

@@ -1,0 +1,51 @@
+#include "app/screens/settings.h"
+
+#include <doctest/doctest.h>
+
+#include "files/text.h"
+#include "tests/error_message.h"
+#include "tests/temporary_folder.h"
+
+using namespace palpa;
+using namespace palpa::test;
+
+TEST_CASE("settings: what is saved is read back") {
+    const TemporaryFolder folder;
+    const auto file = folder / "palpa/settings.json";
+    Settings s;
+    s.scene = "/somewhere/scene.json";
+    s.left_handed = true;
+    s.test_mode = true;
+    s.width_px = 1920;
+    s.px_per_mm["eDP-1, 2560 x 1600"] = 11.8125;
+    REQUIRE(save_settings(s, file).empty());
+    std::string problem;
+    const Settings again = load_settings(file, problem);
+    CHECK(problem.empty());
+    CHECK(again.scene == s.scene);
+    CHECK(again.left_handed);
+    CHECK(again.test_mode);
+    CHECK_FALSE(again.full_screen);
+    CHECK(again.width_px == 1920);
+    CHECK(again.px_per_mm == s.px_per_mm);
+}
+
+TEST_CASE("settings: none are the defaults; broken ones are named, and kept aside when others are saved") {
+    const TemporaryFolder folder;
+    const auto file = folder / "settings.json";
+    std::string problem;
+    CHECK(load_settings(file, problem).width_px == 1280);
+    CHECK(problem.empty());
+    write_text_atomically(file, "{\"width_px\": \"wide\"}");
+    CHECK(load_settings(file, problem).width_px == 1280);
+    CHECK(contains(problem, "settings.json: width_px: found 'wide'"));
+    CHECK(save_settings({}, file).empty());
+    CHECK(read_text(folder / "settings.json.broken-1") == "{\"width_px\": \"wide\"}");
+    CHECK(load_settings(file, problem).width_px == 1280);
+    CHECK(problem.empty());
+}
+
+TEST_CASE("settings: a place that cannot be written is said in words") {
+    CHECK(contains(save_settings({}, "/dev/null/palpa/settings.json"), "settings are not kept"));
+    CHECK(contains(save_settings({}, {}), "XDG_CONFIG_HOME"));
+}

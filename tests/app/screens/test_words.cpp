@@ -1,0 +1,103 @@
+// app/screens/words.h has all words that screens show, and none that nothing shows.
+
+#include "app/screens/words.h"
+
+#include <doctest/doctest.h>
+
+#include <cctype>
+#include <filesystem>
+#include <regex>
+#include <string>
+#include <vector>
+
+#include "files/text.h"
+
+using namespace palpa;
+
+namespace {
+
+namespace fs = std::filesystem;
+
+const fs::path kApp = fs::path(PALPA_SOURCE_DIR) / "app";
+
+bool ends_with(const std::string& text, const std::string& end) {
+    return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
+}
+
+std::vector<fs::path> sources_of_screens() {
+    std::vector<fs::path> out;
+    for (const auto& entry : fs::directory_iterator(kApp)) {
+        const std::string name = entry.path().filename().string();
+        const bool screen = ends_with(name, "_screen.cpp") || name.rfind("live", 0) == 0 || name == "menu.cpp" || name == "map_drawing.cpp" || name == "look.cpp";
+        if (screen && ends_with(name, ".cpp")) out.push_back(entry.path());
+    }
+    for (const auto& entry : fs::directory_iterator(kApp / "web")) {
+        const std::string name = entry.path().filename().string();
+        if (ends_with(name, "_screen.cpp") || ends_with(name, ".js")) out.push_back(entry.path());
+    }
+    return out;
+}
+
+// What a person would read: a capital and small letters in front, or two words in a row.
+bool is_prose(const std::string& literal) {
+    static const std::regex prose("^[A-Z][a-z]+|[a-z]{2,},? [a-z]{2,}");
+    return std::regex_search(literal, prose);
+}
+
+// Names of panels, and messages about files, which are with what reports them.
+bool is_other(const std::string& line) {
+    static const std::regex other("_panel\\(|BeginChild\\(|throw |bad_input|catch|console\\.|getElementById|addEventListener|'use strict'|headers|Authorization|\\.key |\\.name ===|json\\[|result\\[");
+    return std::regex_search(line, other);
+}
+
+}  // namespace
+
+TEST_CASE("words: no screen has words of its own") {
+    static const std::regex literals("\"((?:[^\"\\\\]|\\\\.)*)\"|'((?:[^'\\\\]|\\\\.)*)'|`((?:[^`\\\\]|\\\\.)*)`");
+    static const std::regex comment("(^|[^:])//.*$");
+    const std::vector<fs::path> sources = sources_of_screens();
+    REQUIRE(sources.size() > 10);
+    for (const fs::path& source : sources) {
+        CAPTURE(source.filename().string());
+        int number = 0;
+        const std::string text = read_text(source);
+        for (const std::string_view whole : fields_of(text, '\n')) {
+            ++number;
+            const std::string line = std::regex_replace(std::string(whole), comment, "$1");
+            if (line.rfind("#include", 0) == 0 || is_other(line)) continue;
+            for (std::sregex_iterator it(line.begin(), line.end(), literals), end; it != end; ++it) {
+                const std::string literal = (*it)[1].str() + (*it)[2].str() + (*it)[3].str();
+                CAPTURE(number);
+                CAPTURE(literal);
+                CHECK_FALSE(is_prose(literal));
+            }
+        }
+    }
+}
+
+TEST_CASE("words: every word is shown somewhere") {
+    std::string all;
+    for (const auto& entry : fs::recursive_directory_iterator(kApp)) {
+        const std::string name = entry.path().filename().string();
+        if (ends_with(name, ".cpp") || ends_with(name, ".js") || ends_with(name, ".html")) all += read_text(entry.path());
+    }
+    const std::string words = read_text(kApp / "words.h");
+    static const std::regex constant("const char\\* (k|page)([A-Za-z0-9]+) =");
+    int found = 0;
+    for (std::sregex_iterator it(words.begin(), words.end(), constant), end; it != end; ++it, ++found) {
+        std::string name = (*it)[2].str();
+        const bool page = (*it)[1] == "page";
+        if (page) name[0] = static_cast<char>(std::tolower(name[0]));
+        const std::string use = page ? "(palpaWords\\.|data-word=\"|data-label=\")" + name : "words::k" + name;
+        CAPTURE(use);
+        CHECK(std::regex_search(all, std::regex(use + "\\b")));
+    }
+    CHECK(found > 150);
+}
+
+TEST_CASE("words: patterns are filled in order, each gap once") {
+    CHECK(words::filled("{} of {}", {"3", "8"}) == "3 of 8");
+    CHECK(words::filled("{}", {"{}"}) == "{}");
+    CHECK(words::filled("nothing", {}) == "nothing");
+    CHECK(words::filled("", {}).empty());
+}

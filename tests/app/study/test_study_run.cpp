@@ -1,0 +1,307 @@
+// The steps of a study with people, without a screen.
+
+#include "app/study/study_run.h"
+
+#include <doctest/doctest.h>
+
+#include <filesystem>
+
+#include "files/input_error.h"
+#include "files/text.h"
+#include "study/ratings.h"
+#include "study/read_logs.h"
+#include "tests/error_message.h"
+#include "tests/temporary_folder.h"
+
+using namespace palpa;
+using namespace palpa::test;
+
+namespace {
+
+const std::string kScene = PALPA_SOURCE_DIR "/assets/scenes/default.json";
+
+Protocol find_protocol(const TemporaryFolder& folder) {
+    write_text_atomically(folder / "p.json", R"({"name": "n", "version": "1", "seed": 1, "order": "fixed", "time_limit_s": 60,
+        "practice": {"trials": 1}, "break_every_trials": 1, "instructions": "Find them.",
+        "conditions": [{"id": "pen", "modality": "pen", "scene": ")" + kScene + R"("},
+                       {"id": "hand", "modality": "hand", "nodules": ["A", "B"]}],
+        "demographics": [{"id": "age", "text": "Age", "from": 0, "to": 100}, {"id": "shoes", "text": "Shoes", "choices": ["a", "b"]}],
+        "ratings": [{"id": "effort", "text": "It was tiring.", "from": 1, "to": 7}]})");
+    return read_protocol(folder / "p.json");
+}
+
+// The trial on the tissue as the loop runs it: a mark on nodule A, then the end.
+void run_trial(StudyRun& run) {
+    REQUIRE(run.start_trial);
+    run.start_trial = false;
+    Session session;
+    session.scene = scene_of(due_scene(run), due_trial(run));
+    session.plan = *due_scene(run).plan;
+    const TrialMode mode = due_trial(run).practice ? TrialMode::practice : TrialMode::test;
+    begin_trial(due_files(run), {1280.0, 800.0, kMissing, kMissing, "pen"}, mode, session);
+    Sample sample;
+    sample.phase = Phase::ui;
+    sample.action = Action::mark;
+    const Nodule& nodule = session.plan.nodules[0];
+    const Eigen::Vector2d px = px_of_tissue(session.state.view, {nodule.x_m, nodule.y_m});
+    sample.x_px = px.x();
+    sample.y_px = px.y();
+    take_sample(sample, session);
+    sample.t_host_s = 30.0;
+    sample.action = Action::finish;
+    take_sample(sample, session);
+    REQUIRE(session.trial.finished);
+    REQUIRE(close_files({}, session));
+    trial_finished(run);
+}
+
+void answer_questions(StudyRun& run) {
+    REQUIRE(run.step == StudyStep::questions);
+    run.answers = {"33", "b"};
+    submit_answers(run);
+}
+
+void rate(StudyRun& run, const std::string& effort) {
+    REQUIRE(run.step == StudyStep::ratings);
+    run.answers = {effort};
+    submit_answers(run);
+}
+
+}  // namespace
+
+TEST_CASE("study run: from the code to the thanks, everything in the log") {
+    const TemporaryFolder folder;
+    const auto log = folder / "log";
+    StudyRun run = open_study_run(find_protocol(folder), log, "");
+    CHECK(run.step == StudyStep::code);
+    CHECK(free_code(run) == "01");
+    enter_code("P 7", run);
+    CHECK(run.step == StudyStep::code);
+    CHECK(run.note == "Up to 20 letters and digits.");
+    enter_code("P7", run);
+    answer_questions(run);
+    REQUIRE(run.progress.plan.trials.size() == 4);  // practice and test under each condition
+    std::string steps;
+    for (int i = 0; run.step != StudyStep::done && i < 30; ++i) {
+        steps += name_of(run.step) + std::string(" ");
+        if (run.step == StudyStep::instructions || run.step == StudyStep::pause) {
+            begin_step(run);
+        } else if (run.step == StudyStep::trial) {
+            run_trial(run);
+        } else if (run.step == StudyStep::typed) {
+            run.typed.nodules = {4, kMissed};
+            run.typed.duration_s = 12.0;
+            submit_typed(run);
+        } else {
+            rate(run, "6");
+        }
+    }
+    CHECK(steps == "instructions trial instructions trial ratings instructions typed pause instructions typed ratings ");
+    CHECK(read_text(log / "participants.tsv").find("sub-P7\t33\tn/a\tn/a\tn/a\tn/a\tn/a\tall\n") != std::string::npos);
+    const Observations seen = read_study(log);
+    CHECK(seen.notes.empty());
+    CHECK(seen.trials.size() == 2);
+    CHECK(seen.practice_trials == 2);
+    REQUIRE(seen.answers.size() == 3);
+    CHECK(seen.answers[0].item == "shoes");
+    CHECK(seen.answers[2].condition == "hand");
+    const Json settings = read_json(log / "sub-P7/beh/sub-P7_task-palpation_run-02_settings.json");
+    CHECK(settings["study"]["map_sha256"].contains("normal_N.npy"));
+    CHECK(settings["study"].contains("simulated") == false);
+    CHECK(read_json(log / "sub-P7/now.json")["step"] == "done");
+    CHECK(contains(message_of([&] { open_study_run(find_protocol(folder), log, "P7"); }), "found 'P7', who has finished all trials"));
+    enter_code("P7", run);
+    CHECK(contains(run.note, "take a new code"));
+    CHECK(free_code(run) == "02");
+}
+
+TEST_CASE("study run: what a keeper has to take is told, and run numbers that are taken elsewhere stay free") {
+    const TemporaryFolder folder;
+    const auto log = folder / "log";
+    StudyRun run = open_study_run(find_protocol(folder), log, "");
+    run.first_run = 21;
+    enter_code("P7", run);
+    CHECK_FALSE(run.unkept_answers);
+    answer_questions(run);
+    CHECK(run.unkept_answers);  // the person's line, too
+    for (int i = 0; i < 2; ++i) {
+        begin_step(run);
+        CHECK(due_files(run).first_run == 21);
+        run_trial(run);
+    }
+    run.unkept_answers = false;
+    rate(run, "6");
+    CHECK(run.unkept_answers);
+    CHECK(run.unkept_runs.empty());
+    begin_step(run);
+    REQUIRE(run.step == StudyStep::typed);
+    run.typed.duration_s = 12.0;
+    submit_typed(run);
+    REQUIRE(run.unkept_runs.size() == 1);
+    CHECK(run.unkept_runs[0].stem == "sub-P7_task-palpation_run-23");
+}
+
+TEST_CASE("study run: a crash in the middle of a trial costs that trial, nothing else") {
+    const TemporaryFolder folder;
+    const auto log = folder / "log";
+    {
+        StudyRun run = open_study_run(find_protocol(folder), log, "07");
+        answer_questions(run);
+        begin_step(run);
+        run_trial(run);
+        begin_step(run);
+        REQUIRE(run.step == StudyStep::trial);
+        Session session;  // begun, never finished
+        session.scene = scene_of(due_scene(run), due_trial(run));
+        session.plan = *due_scene(run).plan;
+        begin_trial(due_files(run), {1280.0, 800.0, kMissing, kMissing, "pen"}, TrialMode::test, session);
+    }
+    StudyRun again = open_study_run(find_protocol(folder), log, "07");
+    CHECK(again.step == StudyStep::again);
+    CHECK(again.progress.finished == std::set<int>{1});
+    same_person(true, again);
+    CHECK(again.step == StudyStep::instructions);
+    CHECK(due_trial(again).trial == 2);
+    begin_step(again);
+    run_trial(again);
+    CHECK(again.step == StudyStep::ratings);  // asked once the condition is done
+    const Observations seen = read_study(log);
+    CHECK(seen.interrupted_trials == 1);
+    CHECK(seen.trials.size() == 1);
+
+    StudyRun before_rating = open_study_run(find_protocol(folder), log, "07");
+    same_person(true, before_rating);
+    CHECK(before_rating.step == StudyStep::ratings);
+}
+
+TEST_CASE("study run: forced choices, both surfaces harder and softer versions of one tissue") {
+    const TemporaryFolder folder;
+    write_text_atomically(folder / "p.json", R"({"name": "n", "version": "1", "seed": 4, "order": "fixed",
+        "conditions": [{"id": "pen", "modality": "pen", "scene": ")" + kScene + R"("}],
+        "choice": {"reference_kPa": 10, "comparisons_kPa": [5, 20], "repeats": 2}})");
+    const Protocol protocol = read_protocol(folder / "p.json");
+    StudyRun run = open_study_run(protocol, folder / "log", "01");
+    REQUIRE(run.stimuli[0].size() == 3);
+    const auto depth_m = [&](std::size_t i) {
+        const Field& field = std::get<MapTissue>(run.stimuli[0][i].plan->tissue).field;
+        return depth_at(field, place_at(field, {0.06, 0.06}), 0.5).depth_m;
+    };
+    CHECK(depth_m(1) > 1.2 * depth_m(0));  // half the modulus
+    CHECK(depth_m(2) < depth_m(0) / 1.2);
+    // half the force on half the modulus: the same depth
+    const Field& soft = std::get<MapTissue>(run.stimuli[0][1].plan->tissue).field;
+    CHECK(depth_at(soft, place_at(soft, {0.06, 0.06}), 0.25).depth_m == doctest::Approx(depth_m(0)).epsilon(1e-5));
+    CHECK(run.stimuli[0][1].plan->zone_N == run.stimuli[0][0].plan->zone_N);  // the force bar tells nothing
+    CHECK(run.stimuli[0][1].plan->greatest_force_N == run.stimuli[0][0].plan->greatest_force_N);
+
+    REQUIRE(run.step == StudyStep::instructions);
+    begin_step(run);
+    int pairs = 0;
+    for (; run.step != StudyStep::done && pairs < 10; ++pairs) {
+        REQUIRE(run.step == StudyStep::trial);
+        const PlannedTrial trial = due_trial(run);
+        const bool reference_first = &due_scene(run) == &run.stimuli[0][0];
+        CHECK(reference_first == trial.reference_first);
+        run_trial(run);
+        CHECK(run.interval == 1);
+        CHECK((&due_scene(run) == &run.stimuli[0][0]) != reference_first);
+        run_trial(run);
+        REQUIRE(run.step == StudyStep::question);
+        run.step_began_s = 5.0;
+        const bool comparison_softer = trial.comparison == 0;
+        choose_softer(comparison_softer != reference_first, 7.5 + pairs, run);  // always right
+    }
+    CHECK(pairs == 4);
+    const Observations seen = read_study(folder / "log");
+    CHECK(seen.interrupted_trials == 0);
+    REQUIRE(seen.choices.size() == 4);
+    for (const Choices& choice : seen.choices) CHECK(choice.correct == 1);
+    CHECK(std::filesystem::exists(folder / "log/sub-01/beh/sub-01_task-interval_run-08_samples.tsv"));
+}
+
+TEST_CASE("study run: a protocol without questions takes a code, whatever was typed before it") {
+    const TemporaryFolder folder;
+    StudyRun run = open_study_run(read_protocol(PALPA_SOURCE_DIR "/assets/protocols/softer.json"), folder / "log", "");
+    run.answers = {"P7", "left over", "from another step"};
+    enter_code("P7", run);
+    CHECK(run.step == StudyStep::instructions);
+    CHECK(contains(read_text(folder / "log/participants.tsv"), "\nsub-P7\tn/a\tn/a\tn/a\tn/a\tn/a\tn/a\t"));
+}
+
+TEST_CASE("study run: the field has the letters again after a code that is not taken") {
+    const TemporaryFolder folder;
+    StudyRun run = open_study_run(read_protocol(PALPA_SOURCE_DIR "/assets/protocols/softer.json"), folder / "log", "");
+    CHECK_FALSE(run.focus_code);
+    enter_code("P 7", run);
+    CHECK(run.focus_code);
+}
+
+TEST_CASE("study run: the choices of the next person go to files of their own") {
+    const TemporaryFolder folder;
+    const auto log = folder / "log";
+    StudyRun run = open_study_run(read_protocol(PALPA_SOURCE_DIR "/assets/protocols/softer.json"), log, "");
+    for (const char* code : {"01", "02"}) {
+        enter_code(code, run);
+        begin_step(run);
+        interval_presented(run);
+        interval_presented(run);
+        REQUIRE(run.step == StudyStep::question);
+        choose_softer(true, 1.0, run);
+        same_person(false, run);
+    }
+    CHECK(finished_trials(log, "01") == std::set<int>{1});
+    CHECK(finished_trials(log, "02") == std::set<int>{1});
+}
+
+TEST_CASE("study run: a trial waits for its device, and one that the device left begins anew") {
+    const TemporaryFolder folder;
+    const auto log = folder / "log";
+    StudyRun run = open_study_run(find_protocol(folder), log, "");
+    enter_code("07", run);
+    answer_questions(run);
+    begin_step(run);
+    REQUIRE(run.start_trial);
+    wait_for_device(false, run);
+    CHECK_FALSE(run.start_trial);
+    CHECK(read_json(log / "sub-07/now.json")["step"] == "device");
+    begin_step(run);  // not here yet
+    CHECK(run.step == StudyStep::device);
+    run.device_here = true;
+    begin_step(run);
+    REQUIRE(run.start_trial);
+    const int due = due_trial(run).trial;
+    wait_for_device(true, run);
+    CHECK(run.device_left);
+    run.device_here = true;
+    begin_step(run);
+    CHECK(due_trial(run).trial == due);
+    run_trial(run);
+    CHECK(run.progress.finished == std::set<int>{due});
+}
+
+TEST_CASE("study run: forced choices without a scene are presented by the experimenter, who is told what") {
+    const TemporaryFolder folder;
+    StudyRun run = open_study_run(read_protocol(PALPA_SOURCE_DIR "/assets/protocols/softer.json"), folder / "log", "01");
+    begin_step(run);
+    REQUIRE(run.step == StudyStep::present);
+    const Json now = read_json(folder / "log/sub-01/now.json");
+    const PlannedTrial trial = due_trial(run);
+    CHECK(now["present_kPa"][trial.reference_first ? 0 : 1] == 1.75);
+    interval_presented(run);
+    CHECK(run.step == StudyStep::present);
+    interval_presented(run);
+    CHECK(run.step == StudyStep::question);
+    choose_softer(true, 1.0, run);
+    CHECK(run.progress.finished.size() == 1);
+}
+
+TEST_CASE("study run: a folder that cannot be written stops the study in words, before a trial is lost") {
+    const TemporaryFolder folder;
+    const auto log = folder / "log";
+    StudyRun run = open_study_run(find_protocol(folder), log, "");
+    write_text_atomically(log / "sub-09", "a file where the folder would be");
+    enter_code("09", run);
+    CHECK(run.step == StudyStep::stopped);
+    CHECK_FALSE(run.stopped.empty());
+    CHECK(contains(message_of([&] { open_study_run(find_protocol(folder), log, "a b"); }), "--participant: found 'a b'"));
+}

@@ -1,0 +1,189 @@
+#include "session/trial.h"
+
+#include <doctest/doctest.h>
+
+#include "app/scene_choices.h"
+#include "session/session.h"
+#include "files/text.h"
+#include "scene/advance.h"
+#include "study/read_logs.h"
+#include "tests/temporary_folder.h"
+
+using namespace palpa;
+using namespace palpa::test;
+
+namespace {
+
+// A person at the default scene who presses and marks; everything goes the way of the app.
+struct Person {
+    Session session;
+    TraceInfo info{1280, 800, kMissing, kMissing, "test"};
+    double t_s = 1.0;
+
+    explicit Person(const SessionFiles& files = {}) {
+        session.scene = load_scene("");
+        session.plan = make_plan(session.scene);
+        begin_trial(files, info, TrialMode::test, session);
+    }
+    Eigen::Vector2d px(double x_mm, double y_mm) const { return px_of_tissue(session.state.view, {1e-3 * x_mm, 1e-3 * y_mm}); }
+    void sample(Phase phase, double x_mm, double y_mm, double pressure, Action action = Action::none) {
+        Sample s;
+        s.t_host_s = t_s += 0.01;
+        s.tool = Tool::pen;
+        s.pointer_id = -1;
+        s.phase = phase;
+        s.x_px = px(x_mm, y_mm).x();
+        s.y_px = px(x_mm, y_mm).y();
+        s.pressure = pressure;
+        s.action = action;
+        take_sample(s, session);
+    }
+    // Strokes 8 mm along x.
+    void stroke(double x_mm, double y_mm, double pressure) {
+        sample(Phase::down, x_mm - 4.0, y_mm, 0.1);
+        for (int i = -8; i <= 8; ++i) sample(Phase::move, x_mm + 0.5 * i, y_mm, pressure);
+        sample(Phase::up, x_mm + 4.0, y_mm, 0.0);
+    }
+    void act(Action action, double x_mm = 0.0, double y_mm = 0.0) { sample(Phase::ui, x_mm, y_mm, kMissing, action); }
+};
+
+}  // namespace
+
+TEST_CASE("trial: found, pressed too lightly, never touched; marks with confidence, undone and false") {
+    Person person;
+    const std::vector<Nodule>& nodules = person.session.plan.nodules;
+    REQUIRE(nodules.size() == 3);
+    const auto at = [&](std::size_t i) { return Eigen::Vector2d(1e3 * nodules[i].x_m, 1e3 * nodules[i].y_m); };
+    person.stroke(at(0).x(), at(0).y(), 0.85);
+    person.act(Action::mark, at(0).x() + 2.0, at(0).y());
+    person.act(Action::confidence_4);
+    person.stroke(at(1).x(), at(1).y(), 0.05);
+    person.act(Action::mark, 5.0, 110.0);
+    person.act(Action::undo);
+    person.act(Action::mark, 110.0, 110.0);
+    person.act(Action::mark, -50.0, 10.0);  // beside the tissue: none
+    person.act(Action::finish);
+    person.act(Action::mark, 20.0, 20.0);   // after the end: none
+
+    const Trial& trial = person.session.trial;
+    CHECK(trial.finished);
+    REQUIRE(trial.marks.size() == 2);
+    CHECK(trial.marks[0].confidence == 4);
+    CHECK(trial.marks[1].confidence == 0);
+    const Debrief result = debrief(person.session.plan, trial);
+    CHECK(result.findings[0] == Finding::found);
+    CHECK(result.findings[1] == Finding::too_light);
+    CHECK(result.findings[2] == Finding::not_touched);
+    CHECK(result.score.false_positives == 1);
+    CHECK(result.score.sensitivity == doctest::Approx(1.0 / 3.0));
+    CHECK(result.score.ppv == doctest::Approx(0.5));
+    CHECK(result.area.at_least[1] > 0.0);
+    CHECK(result.area.at_least[1] < 0.05);
+    REQUIRE(person.session.finished.size() == 1);
+    CHECK(person.session.finished[0]["tp"] == 1);
+    CHECK(person.session.finished[0]["nodules"][1]["finding"] == "pressed too lightly");
+}
+
+TEST_CASE("trial: pressed well but not marked is told apart from pressed too lightly") {
+    Person person;
+    const Nodule& nodule = person.session.plan.nodules[1];
+    person.stroke(1e3 * nodule.x_m, 1e3 * nodule.y_m, 0.85);
+    CHECK(debrief(person.session.plan, person.session.trial).findings[1] == Finding::not_marked);
+}
+
+TEST_CASE("trial: a very long path is thinned, not cut") {
+    Person person;
+    for (int i = 0; i < 400; ++i) {
+        person.sample(Phase::down, 5.0, 1.0 + 0.29 * i, 0.5);
+        for (int k = 1; k <= 180; ++k) person.sample(Phase::move, 5.0 + 0.6 * k, 1.0 + 0.29 * i, 0.5);
+        person.sample(Phase::up, 113.0, 1.0 + 0.29 * i, 0.0);
+    }
+    const Trial& trial = person.session.trial;
+    CHECK(trial.path.size() <= kPathPoints);
+    CHECK(trial.path.capacity() == kPathPoints);
+    CHECK(trial.path.front().p_m.y() < 0.0011);
+    CHECK(trial.path.back().p_m.y() > 0.115);
+    CHECK(trial.path_step_m > 0.5e-3);
+}
+
+TEST_CASE("trial: it replays from its trace, and its log holds what happened as it happened") {
+    const TemporaryFolder folder;
+    Json live;
+    {
+        SessionFiles files{(folder / "log").string(), "03", (folder / "t.tsv").string()};
+        Person person(files);
+        const Nodule& nodule = person.session.plan.nodules[0];
+        person.stroke(1e3 * nodule.x_m, 1e3 * nodule.y_m, 0.8);
+        person.act(Action::mark, 1e3 * nodule.x_m, 1e3 * nodule.y_m);
+        person.act(Action::confidence_5);
+        const std::string events = read_text(folder / "log/sub-03/beh/sub-03_task-palpation_run-01_events.tsv");
+        CHECK(std::count(events.begin(), events.end(), '\n') == 4);  // header, start, mark, confidence: on the disk already
+        person.act(Action::finish);
+        live = person.session.finished[0];
+        CHECK(close_files({{"any", 1}}, person.session));
+    }
+    const std::string stem = "log/sub-03/beh/sub-03_task-palpation_run-01";
+    CHECK(read_text(folder / (stem + "_events.tsv")).find("\tfinish\ttest\t1\t") != std::string::npos);
+    const std::string marks = read_text(folder / (stem + "_marks.tsv"));
+    CHECK(std::count(marks.begin(), marks.end(), '\n') == 2);
+    CHECK(marks.find("\t5\tA\t") != std::string::npos);
+    CHECK(std::filesystem::exists(folder / (stem + "_settings.json")));
+
+    const Trace trace = read_trace(folder / "t.tsv");
+    Session again;
+    again.scene = load_scene("");
+    again.plan = make_plan(again.scene);
+    begin_trial({}, trace.info, TrialMode::test, again);
+    for (const Sample& sample : trace.samples) take_sample(sample, again);
+    REQUIRE(again.finished.size() == 1);
+    CHECK(again.finished[0] == live);
+}
+
+TEST_CASE("session: a trial that is broken off keeps its marks with their places, and counts as interrupted") {
+    const TemporaryFolder folder;
+    const std::string stem = (folder / "log/sub-05/beh/sub-05_task-palpation_run-01").string();
+    {
+        SessionFiles files{(folder / "log").string(), "05", ""};
+        Person person(files);
+        person.stroke(30.0, 40.0, 0.8);
+        person.act(Action::mark, 30.0, 40.0);
+        person.act(Action::confidence_3);
+        person.act(Action::mark, 60.0, 60.0);
+        const std::string events = read_text(stem + "_events.tsv");
+        const auto row = events.rfind('\n', events.find("\tmark\t")) + 1;
+        const auto fields = fields_of(std::string_view(events).substr(row, events.find('\n', row) - row), '\t');
+        REQUIRE(fields.size() == 22);  // as it happens: a kill leaves them too
+        CHECK(std::stod(std::string(fields[20])) == doctest::Approx(30.0));
+        CHECK(std::stod(std::string(fields[21])) == doctest::Approx(40.0));
+        note_event("device_gone", 1e9, person.session);
+        CHECK(close_files({}, person.session));
+    }
+    const std::string marks = read_text(stem + "_marks.tsv");
+    CHECK(std::count(marks.begin(), marks.end(), '\n') == 3);
+    const auto first = fields_of(std::string_view(marks).substr(marks.find('\n') + 1), '\t');
+    CHECK(std::stod(std::string(first[3])) == doctest::Approx(30.0));
+    CHECK(std::stod(std::string(first[4])) == doctest::Approx(40.0));
+    CHECK(first[5] == "3");
+    const std::string events = read_text(stem + "_events.tsv");
+    CHECK(events.find("\tdevice_gone\t") != std::string::npos);
+    CHECK(events.find("\tinterrupted\t") != std::string::npos);
+    CHECK(events.find("\tfinish\t") == std::string::npos);
+    const Observations seen = read_study(folder / "log");
+    CHECK(seen.interrupted_trials == 1);
+    CHECK(seen.trials.empty());
+}
+
+TEST_CASE("session: a second trial gets its own run and its own trace; a full disk is noticed and closes the files") {
+    const TemporaryFolder folder;
+    SessionFiles files{(folder / "log").string(), "01", (folder / "t.tsv").string()};
+    Person person(files);
+    CHECK(close_files({}, person.session));
+    begin_trial(files, person.info, TrialMode::practice, person.session);
+    CHECK(std::filesystem::exists(folder / "t-2.tsv"));
+    CHECK(std::filesystem::exists(folder / "log/sub-01/beh/sub-01_task-palpation_run-02_events.tsv"));
+    person.session.trials = 0;  // the first name once more: refused, and nothing stays half open
+    CHECK_THROWS(begin_trial(files, person.info, TrialMode::practice, person.session));
+    CHECK_FALSE(person.session.log);
+    CHECK(files_good(person.session));
+    CHECK(person.session.trial.began == false);
+}
