@@ -19,7 +19,7 @@
 #include "files/regular_file.h"
 #include "files/text.h"
 
-namespace palpa {
+namespace palpa::accuracy {
 namespace {
 
 // One line on a terminal, rewritten; nothing elsewhere.
@@ -50,7 +50,7 @@ class ProgressLine {
 };
 
 std::string csv_cell(double value) {
-    return number_text(value);
+    return files::number_text(value);
 }
 std::string csv_cell(int value) {
     return std::to_string(value);
@@ -165,19 +165,19 @@ Machine this_machine() {
     return machine;
 }
 
-Json accuracy_json(const std::vector<AccuracyRow>& rows, const Machine& machine) {
-    Json out{{"machine",
+files::Json accuracy_json(const std::vector<AccuracyRow>& rows, const Machine& machine) {
+    files::Json out{{"machine",
               {{"processor", machine.processor},
                {"threads", machine.threads},
                {"load", machine.load},
                {"date", machine.date}}},
-             {"rows", Json::array()}};
+             {"rows", files::Json::array()}};
     for (const AccuracyRow& row : rows) {
-        Json entry = Json::object();
+        files::Json entry = files::Json::object();
         visit_fields(row, [&](const char* name, const auto& value) { entry[name] = value; });
         out["rows"].push_back(entry);
     }
     return out;
 }
 
-}  // namespace palpa
+}  // namespace palpa::accuracy

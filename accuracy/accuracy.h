@@ -9,7 +9,7 @@
 
 #include "files/json.h"
 
-namespace palpa {
+namespace palpa::accuracy {
 
 inline constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
@@ -82,10 +82,10 @@ struct Machine {
 };
 Machine this_machine();
 
-Json accuracy_json(const std::vector<AccuracyRow>& rows, const Machine& machine);
+files::Json accuracy_json(const std::vector<AccuracyRow>& rows, const Machine& machine);
 
 // Writes mechanics.gp beside mechanics.csv in `folder` and runs gnuplot on it: mechanics.png, .svg, .pdf.
 // Returns what went wrong, in words; empty when the figures are there.
 std::string plot_mechanics(const std::filesystem::path& folder, const Machine& machine);
 
-}  // namespace palpa
+}  // namespace palpa::accuracy

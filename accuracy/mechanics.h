@@ -8,7 +8,7 @@
 #include "accuracy/accuracy.h"
 #include "mechanics/statics.h"
 
-namespace palpa {
+namespace palpa::accuracy {
 
 // The paper's slab, 100 x 100 x 50 mm, E = 2.5 kPa, bottom clamped, under 25 mN spread as a parabola of
 // 16 mm. Its answer is the mean depression, weighted by the pressure: the work of the load.
@@ -30,4 +30,4 @@ std::vector<Measurement> slab_measurements(const Effort& effort);
 std::vector<Measurement> contact_measurements(const Effort& effort);
 std::vector<Measurement> step_measurements(const Effort& effort);
 
-}  // namespace palpa
+}  // namespace palpa::accuracy

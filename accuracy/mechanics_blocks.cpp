@@ -5,7 +5,7 @@
 #include <malloc.h>
 #endif
 
-namespace palpa {
+namespace palpa::accuracy {
 
 using namespace mechanics;
 
@@ -93,4 +93,4 @@ void set_error(const ErrorSum& sum, AccuracyRow& row) {
     row.worst_error_percent = 100.0 * sum.worst;
 }
 
-}  // namespace palpa
+}  // namespace palpa::accuracy

@@ -7,7 +7,7 @@
 #include "accuracy/timing.h"
 #include "mechanics/contact.h"
 
-namespace palpa {
+namespace palpa::accuracy {
 
 inline constexpr mechanics::Material kBenchTissue{2500.0, 0.45};
 inline constexpr mechanics::Indenter kBenchBall{mechanics::IndenterShape::sphere, 0.008};
@@ -49,4 +49,4 @@ inline double compliance_MB(const mechanics::Compliance& c) {
     return 8e-6 * static_cast<double>(c.normal_m_per_N.size() + c.full_m_per_N.size());
 }
 
-}  // namespace palpa
+}  // namespace palpa::accuracy

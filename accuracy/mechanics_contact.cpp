@@ -9,7 +9,7 @@
 #include "files/text.h"
 #include "mechanics/layer.h"
 
-namespace palpa {
+namespace palpa::accuracy {
 
 using namespace mechanics;
 
@@ -102,10 +102,10 @@ AccuracyRow contact_row(const ContactMesh& mesh, const ContactReference& referen
     const Problem problem = block(graded_slab(mesh.cells, mesh.finest_m), mesh.element, kBenchTissue);
     AccuracyRow row{.group = "contact mesh", .series = name_of(mesh.element)};
     const double spacings = hertz_contact_radius_m(kBenchBall.radius_m, 0.002) / mesh.finest_m;
-    row.choice = std::string(name_of(mesh.element)) + " spacing " + short_number(1e3 * mesh.finest_m) + " mm";
+    row.choice = std::string(name_of(mesh.element)) + " spacing " + files::short_number(1e3 * mesh.finest_m) + " mm";
     row.reference = "normal force on the finest mesh (B-bar quarter)";
     row.reference_error_percent = reference.uncertainty_percent;
-    row.note = "contact radius / spacing " + short_number(spacings);
+    row.note = "contact radius / spacing " + files::short_number(spacings);
     const Compliance c = prepare(problem, {0.0415, 0.0585, 0.0415, 0.0585}, effort, row);
     ErrorSum sum;
     for (int k = 0; k < kDepths; ++k) {
@@ -129,13 +129,13 @@ AccuracyRow hertz_row(double fine_m, int n, const Effort& effort) {
     constexpr double kDepth_m = 0.001;
     const double spacings = hertz_contact_radius_m(kBenchBall.radius_m, kDepth_m) / fine_m;
     AccuracyRow row{.group = "contact Hertz", .series = "hex8-bbar against Hertz"};
-    row.choice = "hex8-bbar spacing " + short_number(1e3 * fine_m) + " mm";
+    row.choice = "hex8-bbar spacing " + files::short_number(1e3 * fine_m) + " mm";
     row.reference = "Hertz on a half-space";
     const double layer_N = dimitriadis_force_N(1.0, kBenchBall.radius_m, kDepth_m, kHertzBlock_m);
     row.reference_error_percent =
         100.0 *
         (layer_N / hertz_force_N(plane_strain_modulus_Pa(1.0, 0.5), kBenchBall.radius_m, kDepth_m) - 1.0);
-    row.note = "block 250 mm deep; a quarter by symmetry; contact radius / spacing " + short_number(spacings);
+    row.note = "block 250 mm deep; a quarter by symmetry; contact radius / spacing " + files::short_number(spacings);
     const Compliance c = prepare(problem, {0.0, 0.008, 0.0, 0.008}, effort, row);
     ErrorSum sum;
     for (int k = 0; k < kDepths; ++k) {
@@ -175,14 +175,14 @@ std::vector<Measurement> contact_measurements(const Effort& effort) {
     for (const ContactMesh& mesh : meshes) {
         const double nodes = (mesh.cells[0] + 1.0) * (mesh.cells[1] + 1.0) * (mesh.cells[2] + 1.0);
         list.push_back(
-            {std::string("contact, ") + name_of(mesh.element) + ", " + short_number(nodes) + " nodes",
+            {std::string("contact, ") + name_of(mesh.element) + ", " + files::short_number(nodes) + " nodes",
              0.4 + 5e-6 * std::pow(nodes, 1.4),
              [=](std::vector<AccuracyRow>& rows) { rows.push_back(contact_row(mesh, *reference, effort)); }});
     }
     std::vector<std::pair<double, int>> spacings{{1.4e-3, 12}, {0.9e-3, 15}};
     if (!quick) spacings.insert(spacings.end(), {{0.55e-3, 20}, {0.35e-3, 24}});
     for (const auto& [fine_m, n] : spacings) {
-        list.push_back({"contact against Hertz, spacing " + short_number(1e3 * fine_m) + " mm",
+        list.push_back({"contact against Hertz, spacing " + files::short_number(1e3 * fine_m) + " mm",
                         quick ? 0.5 : 3.0,
                         [fine = fine_m, cells = n, effort](std::vector<AccuracyRow>& rows) {
                             rows.push_back(hertz_row(fine, cells, effort));
@@ -191,4 +191,4 @@ std::vector<Measurement> contact_measurements(const Effort& effort) {
     return list;
 }
 
-}  // namespace palpa
+}  // namespace palpa::accuracy

@@ -12,7 +12,7 @@
 #include "mechanics/layer.h"
 #include "mechanics/loads.h"
 
-namespace palpa {
+namespace palpa::accuracy {
 
 using namespace mechanics;
 
@@ -68,7 +68,7 @@ void time_solves(const Factored& factored, const PressureLoad& load, const Effor
 }
 
 std::string slab_series(Element element, double poisson) {
-    return std::string(name_of(element)) + " nu " + short_number(poisson);
+    return std::string(name_of(element)) + " nu " + files::short_number(poisson);
 }
 
 // A quarter of a slab 400 mm wide, by symmetry the whole one.
@@ -126,7 +126,7 @@ AccuracyRow slab_row(Element element, const std::array<int, 3>& cells, bool grad
     const Problem problem = block(hexes, element, tissue(poisson));
     AccuracyRow row{.group = "slab",
                     .series = std::string(name_of(element)) + (graded ? "" : " uniform") + " nu " +
-                              short_number(poisson)};
+                              files::short_number(poisson)};
     row.choice = row.series;
     row.reference = "mean depression; Richardson limit of the B-bar series";
     row.reference_error_percent = reference.uncertainty_percent;
@@ -146,7 +146,7 @@ std::vector<Measurement> slab_measurements(const Effort& effort) {
     const auto references = std::make_shared<std::map<double, SlabReference>>();
     std::vector<Measurement> list;
     for (const double poisson : kPoissons) {
-        list.push_back({"reference of the slab, nu " + short_number(poisson), effort.quick ? 0.6 : 4.5,
+        list.push_back({"reference of the slab, nu " + files::short_number(poisson), effort.quick ? 0.6 : 4.5,
                         [=](auto&) { (*references)[poisson] = slab_reference(poisson, finest); }});
         for (const Element element : kElements) {
             for (const auto& cells : meshes) {
@@ -161,7 +161,7 @@ std::vector<Measurement> slab_measurements(const Effort& effort) {
         }
     }
     for (const double poisson : kPoissons) {
-        list.push_back({"slab not graded, nu " + short_number(poisson), expected_s(2890, effort),
+        list.push_back({"slab not graded, nu " + files::short_number(poisson), expected_s(2890, effort),
                         [=](std::vector<AccuracyRow>& rows) {
                             rows.push_back(slab_row(Element::hex8_bbar, {16, 16, 9}, false, poisson,
                                                     references->at(poisson), effort));
@@ -178,4 +178,4 @@ std::vector<Measurement> slab_measurements(const Effort& effort) {
     return list;
 }
 
-}  // namespace palpa
+}  // namespace palpa::accuracy

@@ -10,7 +10,7 @@
 #include "files/text.h"
 #include "mechanics/friction.h"
 
-namespace palpa {
+namespace palpa::accuracy {
 
 using namespace mechanics;
 
@@ -93,7 +93,7 @@ AccuracyRow contact_choice_row(const Bench& bench, const ContactChoice& choice, 
     }
     set_error(sum, row);
     set_steps(timing, row);
-    row.note = "not settled in " + short_number(100.0 * unsettled / steps) + " % of the steps";
+    row.note = "not settled in " + files::short_number(100.0 * unsettled / steps) + " % of the steps";
     if (sweeps) row.note += "; where settled, a direct solve on the nodes left pressing ends the sweeps";
     return row;
 }
@@ -152,7 +152,7 @@ void friction_rows(const Bench& bench, const Effort& effort, std::vector<Accurac
     off.note = "the difference of the models: what is lost by leaving friction out";
     rows.push_back(off);
     for (const double tolerance : {1e-2, 1e-3, 1e-5, 1e-7}) {
-        AccuracyRow row = bench_row(bench, "friction", "0.3 to " + short_number(tolerance));
+        AccuracyRow row = bench_row(bench, "friction", "0.3 to " + files::short_number(tolerance));
         Timing timing;
         int late = 0;
         compare_forces(slide(bench, {0.3, 400, tolerance}, steps, timing, late), exact, row);
@@ -160,7 +160,7 @@ void friction_rows(const Bench& bench, const Effort& effort, std::vector<Accurac
         row.reference = off.reference;
         row.reference_error_percent = 1e-9;
         row.memory_MB = compliance_MB(bench.compliance);
-        row.note = "not settled in " + short_number(100.0 * late / steps) + " % of the steps";
+        row.note = "not settled in " + files::short_number(100.0 * late / steps) + " % of the steps";
         rows.push_back(row);
     }
     AccuracyRow zero = bench_row(bench, "friction", "0 by the friction solver");
@@ -357,4 +357,4 @@ std::vector<Measurement> step_measurements(const Effort& effort) {
     return list;
 }
 
-}  // namespace palpa
+}  // namespace palpa::accuracy

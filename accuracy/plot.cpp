@@ -6,7 +6,7 @@
 #include "figures/gnuplot.h"
 #include "files/text.h"
 
-namespace palpa {
+namespace palpa::accuracy {
 namespace {
 
 // Colours by Okabe and Ito, which colour-blind people can tell apart; the marker says the same again.
@@ -106,19 +106,19 @@ unset multiplot
 
 std::string plot_mechanics(const std::filesystem::path& folder, const Machine& machine) {
     const std::string label = machine.processor + ", " + std::to_string(machine.threads) + " threads, load " +
-                              short_number(machine.load) + ", " + machine.date;
-    write_text_atomically(folder / "mechanics.gp", "machine = \"" + label + "\"\n" + kScript);
+                              files::short_number(machine.load) + ", " + machine.date;
+    files::write_text_atomically(folder / "mechanics.gp", "machine = \"" + label + "\"\n" + kScript);
     if (std::system("command -v gnuplot >/dev/null 2>&1") != 0)
         return "gnuplot is not installed (package gnuplot-nox), so there is no figure; mechanics.csv and "
                "mechanics.gp "
                "are kept: run `gnuplot mechanics.gp` where it is";
     for (const std::string kind : {"png", "svg", "pdf"}) {
         const std::string command =
-            "cd " + shell_quoted(folder.string()) + " && gnuplot -e \"kind='" + kind + "'\" mechanics.gp";
+            "cd " + figures::shell_quoted(folder.string()) + " && gnuplot -e \"kind='" + kind + "'\" mechanics.gp";
         if (std::system(command.c_str()) != 0)
             return "gnuplot could not draw " + (folder / "mechanics.gp").string() + "; mechanics.csv is kept";
     }
     return "";
 }
 
-}  // namespace palpa
+}  // namespace palpa::accuracy

@@ -11,7 +11,7 @@
 #include "files/text.h"
 #include "scene/advance.h"
 
-namespace palpa {
+namespace palpa::accuracy {
 namespace {
 
 Eigen::SparseMatrix<double> laplacian(int n) {
@@ -31,18 +31,18 @@ Eigen::SparseMatrix<double> laplacian(int n) {
 }
 
 // All samples in one go: mean per sample, without the clock's own cost.
-double mean_us(const Scene& scene, const Plan& plan, const Trace& trace, State& state) {
+double mean_us(const scene::Scene& scene, const scene::Plan& plan, const platform::Trace& trace, scene::State& state) {
     Timing timing;
     time_call(timing, [&] {
-        for (const Sample& sample : trace.samples) advance(scene, plan, sample, state);
+        for (const platform::Sample& sample : trace.samples) scene::advance(scene, plan, sample, state);
     });
     return timing.us[0] / static_cast<double>(trace.samples.size());
 }
 
-double single_p99_us(const Scene& scene, const Plan& plan, const Trace& trace, State& state) {
+double single_p99_us(const scene::Scene& scene, const scene::Plan& plan, const platform::Trace& trace, scene::State& state) {
     Timing timing;
     timing.us.reserve(trace.samples.size());
-    for (const Sample& sample : trace.samples) time_call(timing, [&] { advance(scene, plan, sample, state); });
+    for (const platform::Sample& sample : trace.samples) time_call(timing, [&] { scene::advance(scene, plan, sample, state); });
     return quantile_us(timing, 0.99);
 }
 
@@ -61,17 +61,17 @@ SpeedRow machine_unit(int repetitions) {
     return row_of("unit: SimplicialLDLT of the Laplacian on 16^3 points", timing);
 }
 
-SpeedRow sample_speed(const Scene& scene, const Plan& plan, double seconds, int repetitions) {
-    RasterOptions raster;
+SpeedRow sample_speed(const scene::Scene& scene, const scene::Plan& plan, double seconds, int repetitions) {
+    session::RasterOptions raster;
     raster.rate_Hz = 1000.0;
     raster.seconds = seconds;
-    const Trace trace = raster_trace(scene, plan, raster);
+    const platform::Trace trace = session::raster_trace(scene, plan, raster);
     Timing timing;
     double p99_us = std::numeric_limits<double>::infinity();
     for (int i = 0; i < repetitions; ++i) {
-        State state = start(scene, plan, screen_of(trace.info));
+        scene::State state = scene::start(scene, plan, session::screen_of(trace.info));
         timing.us.push_back(mean_us(scene, plan, trace, state));
-        state = start(scene, plan, screen_of(trace.info));
+        state = scene::start(scene, plan, session::screen_of(trace.info));
         p99_us = std::min(p99_us, single_p99_us(scene, plan, trace, state));
     }
     SpeedRow row = row_of(scene.name, timing);
@@ -79,11 +79,11 @@ SpeedRow sample_speed(const Scene& scene, const Plan& plan, double seconds, int 
     return row;
 }
 
-Json speed_json(const SpeedRow& unit, const std::vector<SpeedRow>& rows, const Machine& machine) {
-    Json out{{"machine",
+files::Json speed_json(const SpeedRow& unit, const std::vector<SpeedRow>& rows, const Machine& machine) {
+    files::Json out{{"machine",
               {{"processor", machine.processor}, {"threads", machine.threads}, {"load", machine.load}, {"date", machine.date}}},
              {"unit_us", {{"what", unit.what}, {"least", unit.least_us}, {"median", unit.median_us}}},
-             {"rows", Json::array()}};
+             {"rows", files::Json::array()}};
     for (const SpeedRow& row : rows) {
         out["rows"].push_back({{"what", row.what},
                                {"least_us", row.least_us},
@@ -97,13 +97,13 @@ Json speed_json(const SpeedRow& unit, const std::vector<SpeedRow>& rows, const M
 }
 
 std::string speed_table(const SpeedRow& unit, const std::vector<SpeedRow>& rows) {
-    std::string out = unit.what + ": least " + short_number(unit.least_us) + " us, median " + short_number(unit.median_us) + " us\n";
+    std::string out = unit.what + ": least " + files::short_number(unit.least_us) + " us, median " + files::short_number(unit.median_us) + " us\n";
     for (const SpeedRow& row : rows) {
-        out += row.what + ": a sample least " + short_number(row.least_us) + " us (" +
-               short_number(row.least_us / unit.least_us) + " units), median " + short_number(row.median_us) + " us, p99 " +
-               short_number(row.p99_us) + " us (" + short_number(row.p99_us / unit.least_us) + " units)\n";
+        out += row.what + ": a sample least " + files::short_number(row.least_us) + " us (" +
+               files::short_number(row.least_us / unit.least_us) + " units), median " + files::short_number(row.median_us) + " us, p99 " +
+               files::short_number(row.p99_us) + " us (" + files::short_number(row.p99_us / unit.least_us) + " units)\n";
     }
     return out;
 }
 
-}  // namespace palpa
+}  // namespace palpa::accuracy

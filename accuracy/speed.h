@@ -8,7 +8,7 @@
 #include "accuracy/accuracy.h"
 #include "scene/plan.h"
 
-namespace palpa {
+namespace palpa::accuracy {
 
 // Of several repetitions in one run; the least is what a busy machine disturbs least.
 struct SpeedRow {
@@ -24,9 +24,9 @@ struct SpeedRow {
 SpeedRow machine_unit(int repetitions);
 
 // A simulated pen at 1,000 Hz over the scene for `seconds`, each repetition from a fresh start. Times are per sample.
-SpeedRow sample_speed(const Scene& scene, const Plan& plan, double seconds, int repetitions);
+SpeedRow sample_speed(const scene::Scene& scene, const scene::Plan& plan, double seconds, int repetitions);
 
-Json speed_json(const SpeedRow& unit, const std::vector<SpeedRow>& rows, const Machine& machine);
+files::Json speed_json(const SpeedRow& unit, const std::vector<SpeedRow>& rows, const Machine& machine);
 std::string speed_table(const SpeedRow& unit, const std::vector<SpeedRow>& rows);
 
-}  // namespace palpa
+}  // namespace palpa::accuracy

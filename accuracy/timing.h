@@ -7,7 +7,7 @@
 #include <cstddef>
 #include <vector>
 
-namespace palpa {
+namespace palpa::accuracy {
 
 struct Timing {
     std::vector<double> us;  // of each call
@@ -44,4 +44,4 @@ Timing time_calls(int least, int most, double budget_s, Call&& call) {
 // Bytes of the heap in use, in MB; NaN where the allocator does not tell (sanitizers, other C libraries).
 double heap_MB();
 
-}  // namespace palpa
+}  // namespace palpa::accuracy

@@ -5,7 +5,7 @@
 
 #include "files/input_error.h"
 
-namespace palpa {
+namespace palpa::app {
 namespace {
 
 namespace fs = std::filesystem;
@@ -26,15 +26,15 @@ fs::path assets_beside(const fs::path& program) {
         }
         if (folder == folder.parent_path()) break;
     }
-    throw InputError("assets: found no folder with scenes in " + tried + "; set PALPA_ASSETS to where they are");
+    throw files::InputError("assets: found no folder with scenes in " + tried + "; set PALPA_ASSETS to where they are");
 }
 
 fs::path assets_folder() {
     if (const char* chosen = std::getenv("PALPA_ASSETS")) {
         if (holds_scenes(chosen)) return chosen;
-        throw bad_input("PALPA_ASSETS", "", shown(chosen), "a folder with scenes, maps, profiles");
+        throw files::bad_input("PALPA_ASSETS", "", files::shown(chosen), "a folder with scenes, maps, profiles");
     }
     return assets_beside(fs::read_symlink("/proc/self/exe"));
 }
 
-}  // namespace palpa
+}  // namespace palpa::app

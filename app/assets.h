@@ -2,7 +2,7 @@
 
 #include <filesystem>
 
-namespace palpa {
+namespace palpa::app {
 
 // The folder with scenes, maps, profiles and traces: $PALPA_ASSETS, else the one that belongs to the running
 // program. Throws InputError that names the places if there is none.
@@ -13,4 +13,4 @@ std::filesystem::path assets_folder();
 // be moved.
 std::filesystem::path assets_beside(const std::filesystem::path& program);
 
-}  // namespace palpa
+}  // namespace palpa::app

@@ -8,14 +8,14 @@
 #include "files/input_error.h"
 #include "files/json.h"
 
-namespace palpa {
+namespace palpa::app {
 namespace {
 
 namespace fs = std::filesystem;
 
 std::string name_in(const fs::path& file) {
     try {
-        const Json json = read_json(file);
+        const files::Json json = files::read_json(file);
         if (json.contains("name") && json["name"].is_string()) return json["name"];
     } catch (const std::exception&) {
         return {};  // another file of the folder; choosing it would say what is wrong
@@ -48,15 +48,15 @@ fs::path user_folder() {
     return {};
 }
 
-Scene load_scene(const std::string& name) {
+scene::Scene load_scene(const std::string& name) {
     const fs::path assets = assets_folder();
-    if (name.empty()) return read_scene(assets / "scenes" / "default.json", assets);
-    if (fs::is_directory(name)) return scene_of_map(name, assets);
-    if (!fs::exists(name)) throw bad_input(name, "", "nothing", "a scene SCENE.json or a map folder");
-    return read_scene(name, assets);
+    if (name.empty()) return scene::read_scene(assets / "scenes" / "default.json", assets);
+    if (fs::is_directory(name)) return scene::scene_of_map(name, assets);
+    if (!fs::exists(name)) throw files::bad_input(name, "", "nothing", "a scene SCENE.json or a map folder");
+    return scene::read_scene(name, assets);
 }
 
-std::vector<fs::path> inputs_of(const Scene& scene, const fs::path& trace) {
+std::vector<fs::path> inputs_of(const scene::Scene& scene, const fs::path& trace) {
     std::vector<fs::path> inputs{scene.file, scene.map, scene.profile};
     if (scene.linear) inputs.push_back(scene.linear->phantom);
     if (!trace.empty()) inputs.insert(inputs.end(), {trace, fs::path(trace).replace_extension(".json")});
@@ -82,4 +82,4 @@ std::vector<Choice> map_choices() {
 
 fs::path default_trace() { return assets_folder() / "traces" / "raster.tsv"; }
 
-}  // namespace palpa
+}  // namespace palpa::app

@@ -7,7 +7,7 @@
 
 #include "scene/scene.h"
 
-namespace palpa {
+namespace palpa::app {
 
 struct Choice {
     std::string name;  // as shown
@@ -15,10 +15,10 @@ struct Choice {
 };
 
 // "" = the default scene; NAME.json = a scene; a folder = a map with default effects.
-Scene load_scene(const std::string& name);
+scene::Scene load_scene(const std::string& name);
 
 // The files and folders that the scene and the trace (with what stands beside it) are read from: no result goes there.
-std::vector<std::filesystem::path> inputs_of(const Scene& scene, const std::filesystem::path& trace = {});
+std::vector<std::filesystem::path> inputs_of(const scene::Scene& scene, const std::filesystem::path& trace = {});
 
 // What the menu offers: the shipped scenes and profiles, and those in the user's data folder
 // ($XDG_DATA_HOME/palpa/scenes and profiles). Files that cannot be read are left out.
@@ -29,4 +29,4 @@ std::filesystem::path user_folder();  // empty if neither XDG_DATA_HOME nor HOME
 
 std::filesystem::path default_trace();
 
-}  // namespace palpa
+}  // namespace palpa::app

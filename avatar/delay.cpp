@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace palpa {
+namespace palpa::avatar {
 namespace {
 
 // tau after dt with a constant goal: exact, whatever dt is.
@@ -60,4 +60,4 @@ Delayed delayed_at(const Delay& law, const DelayState& state, double t_s) {
     return out;
 }
 
-}  // namespace palpa
+}  // namespace palpa::avatar

@@ -13,7 +13,7 @@
 
 #include "avatar/path.h"
 
-namespace palpa {
+namespace palpa::avatar {
 
 struct Delay {
     double m_s_per_N = 3.0;
@@ -69,4 +69,4 @@ Delayed advance_lag(const Delay& law, const Touch& pen, const Rise& rise_N, Dela
     return delayed_at(law, state, state.path.last.t_s);
 }
 
-}  // namespace palpa
+}  // namespace palpa::avatar

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace palpa {
+namespace palpa::avatar {
 namespace {
 
 double resistance(const DisplayRatio& law, double df_N) {
@@ -61,4 +61,4 @@ double pause_factor(const DisplayRatio& law, const DisplayRatioState& state, dou
     return before > 0.0 ? std::min(1.0, left_after(law, to_s - state.moved_s) / before) : 0.0;
 }
 
-}  // namespace palpa
+}  // namespace palpa::avatar

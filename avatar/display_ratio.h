@@ -11,7 +11,7 @@
 
 #include "avatar/path.h"
 
-namespace palpa {
+namespace palpa::avatar {
 
 struct DisplayRatio {
     double f_0_N = 0.02;
@@ -62,4 +62,4 @@ Eigen::Vector2d advance_lag(const DisplayRatio& law, const Touch& pen, const Ris
     return lag_at(law, state, partial, last.t_s);
 }
 
-}  // namespace palpa
+}  // namespace palpa::avatar

@@ -13,7 +13,7 @@
 #include <cstdint>
 #include <limits>
 
-namespace palpa {
+namespace palpa::avatar {
 
 struct PathParameters {
     double station_m = 5e-5;    // converged: 0.05 mm against 0.01 mm changes the lag by less than 2e-4 mm
@@ -130,4 +130,4 @@ PathEvent walk_to(const PathParameters& path, const StationLimit& limit, const T
     return PathEvent::moved;
 }
 
-}  // namespace palpa
+}  // namespace palpa::avatar

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace palpa {
+namespace palpa::avatar {
 namespace {
 
 double punch_term(double t_m, double radius_m) {
@@ -73,4 +73,4 @@ double sink_at_m(const SurfaceCurve& curve, double r_m) {
     return (1.0 - s) * curve.sink_m[below] + s * next;
 }
 
-}  // namespace palpa
+}  // namespace palpa::avatar

@@ -14,7 +14,7 @@
 
 #include <array>
 
-namespace palpa {
+namespace palpa::avatar {
 
 inline constexpr int kSurfacePoints = 64;
 inline constexpr double kLayerReach = 1.5;  // thicknesses; between 1 and 2 the error changes by 0.2 % of the depth, 2026-11
@@ -36,4 +36,4 @@ SurfaceCurve surface_curve(double depth_m, double radius_m, double thickness_m);
 
 double sink_at_m(const SurfaceCurve& curve, double r_m);  // linear between the points
 
-}  // namespace palpa
+}  // namespace palpa::avatar

@@ -14,6 +14,12 @@
 namespace {
 
 using namespace palpa;
+using namespace palpa::platform;
+using namespace palpa::stiffnessmaps;
+using namespace palpa::avatar;
+using namespace palpa::scene;
+using namespace palpa::session;
+using namespace palpa::app;
 
 struct Loaded {
     Scene scene;

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <random>
 
-namespace palpa {
+namespace palpa::calibration {
 namespace {
 
 // 97.5 % quantiles of Student's t for 1 ... 30 degrees of freedom.
@@ -101,4 +101,4 @@ Bootstrap bootstrap(const FitPoints& points, const FitOptions& options, const Cu
     return out;
 }
 
-}  // namespace palpa
+}  // namespace palpa::calibration

@@ -7,7 +7,7 @@
 
 #include "calibration/fit.h"
 
-namespace palpa {
+namespace palpa::calibration {
 
 struct CurveInterval {
     double low = 0.0;
@@ -29,4 +29,4 @@ struct Bootstrap {
 Bootstrap bootstrap(const FitPoints& points, const FitOptions& options, const Curve& fitted, const std::vector<double>& level, int fits,
                     std::uint64_t seed);
 
-}  // namespace palpa
+}  // namespace palpa::calibration

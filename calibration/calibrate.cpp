@@ -7,7 +7,7 @@
 #include "files/input_error.h"
 #include "files/text.h"
 
-namespace palpa {
+namespace palpa::calibration {
 namespace {
 
 // Spearman's rank correlation of level and force.
@@ -31,10 +31,10 @@ double rank_correlation(const FitPoints& points) {
 FitPoints rising_points(const CalibrationRows& rows, LevelRange range, const Ends& ends) {
     FitPoints points = fit_points(rows, range, ends);
     if (distinct_levels(points) < 3) {
-        throw bad_input(rows.file, "level", std::to_string(distinct_levels(points)) + " distinct levels below saturation", "3 at least");
+        throw files::bad_input(rows.file, "level", std::to_string(distinct_levels(points)) + " distinct levels below saturation", "3 at least");
     }
     if (rank_correlation(points) < 0.3) {
-        throw bad_input(rows.file, "force_N", "forces that do not rise with the level (rank correlation " + short_number(rank_correlation(points)) + ")",
+        throw files::bad_input(rows.file, "force_N", "forces that do not rise with the level (rank correlation " + files::short_number(rank_correlation(points)) + ")",
                         "a force that rises (columns exchanged, or sensor and pen not pressed together?)");
     }
     return points;
@@ -83,7 +83,7 @@ Curve fitted_curve(const FitPoints& points, const CalibrateOptions& options, Lev
     const bool usable = curve && value_N(*curve, range.highest) > std::max(0.0, value_N(*curve, range.lowest)) && value_N(*curve, range.highest) < 1000.0;
     if (usable) return *curve;
     const std::string model = options.model ? std::string(name_of(*options.model)) : "auto";
-    throw bad_input(file, "--model " + model, "no rising curve below 1000 N through " + std::to_string(points.level.size()) + " points",
+    throw files::bad_input(file, "--model " + model, "no rising curve below 1000 N through " + std::to_string(points.level.size()) + " points",
                     "points that determine it (more levels, or another model)");
 }
 
@@ -132,4 +132,4 @@ Calibration calibrate(const CalibrationRows& measured, const CalibrateOptions& o
     return out;
 }
 
-}  // namespace palpa
+}  // namespace palpa::calibration

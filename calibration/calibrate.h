@@ -12,7 +12,7 @@
 #include "calibration/profile.h"
 #include "calibration/quality.h"
 
-namespace palpa {
+namespace palpa::calibration {
 
 struct CalibrateOptions {
     std::optional<CurveModel> model;   // none: chosen by cross-validation
@@ -28,9 +28,9 @@ struct CalibrateOptions {
 
 struct LevelsDelivered {
     std::size_t distinct = 0;
-    double smallest_step = kMissing;
-    double widest_gap = kMissing;      // between neighbours, inside the measured range
-    double gap_from = kMissing;
+    double smallest_step = platform::kMissing;
+    double widest_gap = platform::kMissing;      // between neighbours, inside the measured range
+    double gap_from = platform::kMissing;
 };
 
 struct Calibration {
@@ -42,7 +42,7 @@ struct Calibration {
     Ends ends;
     FitQuality quality;
     std::vector<ErrorBand> bands;      // on points left out
-    double median_relative_error = kMissing;  // on points left out
+    double median_relative_error = platform::kMissing;  // on points left out
     double force_at_full_N = 0.0;
     bool by_repeats = false;           // how points were left out
     Bootstrap bootstrap;
@@ -60,4 +60,4 @@ Calibration calibrate(const CalibrationRows& rows, const CalibrateOptions& optio
 // What a person must know before trusting it.
 std::vector<std::string> warnings_of(const Calibration& calibration, const std::vector<std::string>& notes);
 
-}  // namespace palpa
+}  // namespace palpa::calibration

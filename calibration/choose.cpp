@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-namespace palpa {
+namespace palpa::calibration {
 namespace {
 
 FitPoints part(const FitPoints& points, const std::vector<int>& fold, int left_out) {
@@ -123,4 +123,4 @@ Candidate choose(const FitPoints& points, const std::vector<FitOptions>& options
     return best;
 }
 
-}  // namespace palpa
+}  // namespace palpa::calibration

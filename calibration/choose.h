@@ -5,7 +5,7 @@
 
 #include "calibration/fit.h"
 
-namespace palpa {
+namespace palpa::calibration {
 
 struct Candidate {
     FitOptions options;
@@ -35,4 +35,4 @@ void cross_validate(const FitPoints& points, const std::vector<int>& fold, std::
 // each level is taken.
 Candidate choose(const FitPoints& points, const std::vector<FitOptions>& options, std::optional<ErrorModel> error);
 
-}  // namespace palpa
+}  // namespace palpa::calibration

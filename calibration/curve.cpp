@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-namespace palpa {
+namespace palpa::calibration {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -156,4 +156,4 @@ std::string_view name_of(CurveModel model) {
     return "exponential";
 }
 
-}  // namespace palpa
+}  // namespace palpa::calibration

@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-namespace palpa {
+namespace palpa::calibration {
 
 enum class CurveModel : std::uint8_t { exponential, exponential_offset, power, monotone_cubic };
 
@@ -41,4 +41,4 @@ double level_at(const Curve& curve, double force_N);
 
 std::string_view name_of(CurveModel model);
 
-}  // namespace palpa
+}  // namespace palpa::calibration

@@ -7,7 +7,7 @@
 #include "calibration/fit.h"
 #include "calibration/quality.h"
 
-namespace palpa {
+namespace palpa::calibration {
 namespace {
 
 // Rows [from, to) sampled without a gap.
@@ -42,7 +42,7 @@ std::vector<Run> runs_of(const CalibrationRows& rows, double step_s) {
 double force_at(const CalibrationRows& rows, const Run& run, double t_s, std::size_t& at, const std::vector<double>& value) {
     while (at > run.from && rows.time_s[at] > t_s) --at;
     while (at + 2 < run.to && rows.time_s[at + 1] < t_s) ++at;
-    if (t_s < rows.time_s[at] || t_s > rows.time_s[at + 1]) return kMissing;
+    if (t_s < rows.time_s[at] || t_s > rows.time_s[at + 1]) return platform::kMissing;
     const double share = (t_s - rows.time_s[at]) / (rows.time_s[at + 1] - rows.time_s[at]);
     return value[at] + share * (value[at + 1] - value[at]);
 }
@@ -64,9 +64,9 @@ double correlation(const CalibrationRows& rows, const std::vector<Run>& runs, co
             xy += rows.level[i] * other;
         }
     }
-    if (n < 20.0) return kMissing;
+    if (n < 20.0) return platform::kMissing;
     const double spread = (xx - x * x / n) * (yy - y * y / n);
-    return spread > 0.0 ? (xy - x * y / n) / std::sqrt(spread) : kMissing;
+    return spread > 0.0 ? (xy - x * y / n) / std::sqrt(spread) : platform::kMissing;
 }
 
 // +1 pressing, -1 releasing, 0 neither: the force half a hundredth of its range up or down within `reach` samples.
@@ -202,4 +202,4 @@ std::optional<Drift> drift_of(const FitPoints& points, const Curve& curve) {
     return drift;
 }
 
-}  // namespace palpa
+}  // namespace palpa::calibration

@@ -8,7 +8,7 @@
 #include "calibration/curve.h"
 #include "calibration/points.h"
 
-namespace palpa {
+namespace palpa::calibration {
 
 // The pen's level behind the sensor's force, seconds: level(t) = g(F(t - lag)). Found where the correlation between
 // the level and the level that `curve` gives for the force, shifted by the lag, is highest:
@@ -39,4 +39,4 @@ struct Drift {
 };
 std::optional<Drift> drift_of(const FitPoints& points, const Curve& curve);
 
-}  // namespace palpa
+}  // namespace palpa::calibration

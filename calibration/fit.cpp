@@ -1,6 +1,6 @@
 #include "calibration/fit.h"
 
-namespace palpa {
+namespace palpa::calibration {
 
 std::optional<Curve> fit_curve(const FitPoints& points, const FitOptions& options) {
     if (options.model == CurveModel::monotone_cubic) return fit_cubic(points, cubic_bins(points, options.knots));
@@ -20,4 +20,4 @@ int distinct_levels(const FitPoints& points) {
     return n;
 }
 
-}  // namespace palpa
+}  // namespace palpa::calibration

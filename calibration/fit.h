@@ -8,7 +8,7 @@
 
 #include "calibration/curve.h"
 
-namespace palpa {
+namespace palpa::calibration {
 
 // What is taken to be equally large over the whole range: the error in newtons, or in per cent of the force.
 enum class ErrorModel : std::uint8_t { newton, log };
@@ -69,4 +69,4 @@ std::string_view name_of(ErrorModel error);
 int parameter_count(CurveModel model);
 int distinct_levels(const FitPoints& points);
 
-}  // namespace palpa
+}  // namespace palpa::calibration

@@ -4,7 +4,7 @@
 
 #include "calibration/fit.h"
 
-namespace palpa {
+namespace palpa::calibration {
 namespace {
 
 struct Knot {
@@ -92,4 +92,4 @@ std::optional<Curve> fit_cubic(const FitPoints& points, const CubicBins& bins, c
     return monotone_cubic(std::move(level), std::move(force_N));
 }
 
-}  // namespace palpa
+}  // namespace palpa::calibration

@@ -15,7 +15,7 @@
 
 #include "calibration/fit.h"
 
-namespace palpa {
+namespace palpa::calibration {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -344,4 +344,4 @@ std::optional<Curve> refit(const FitPoints& points, const FitOptions& options, c
     return curve_of(options, here.p);
 }
 
-}  // namespace palpa
+}  // namespace palpa::calibration

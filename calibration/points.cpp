@@ -9,7 +9,7 @@
 #include "files/input_error.h"
 #include "files/text.h"
 
-namespace palpa {
+namespace palpa::calibration {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -34,12 +34,12 @@ double median_of(std::vector<double> values) {
 void check_enough(const CalibrationRows& rows) {
     const std::set<double> levels(rows.level.begin(), rows.level.end());
     if (levels.size() < 3) {
-        throw bad_input(rows.file, "level", std::to_string(levels.size()) + " distinct levels in " + std::to_string(rows.level.size()) + " rows",
+        throw files::bad_input(rows.file, "level", std::to_string(levels.size()) + " distinct levels in " + std::to_string(rows.level.size()) + " rows",
                         "3 at least");
     }
     const auto [lowest, highest] = std::minmax_element(rows.force_N.begin(), rows.force_N.end());
     if (*lowest == *highest) {
-        throw bad_input(rows.file, "force_N", "the same force, " + short_number(*lowest) + " N, in every row",
+        throw files::bad_input(rows.file, "force_N", "the same force, " + files::short_number(*lowest) + " N, in every row",
                         "forces that rise with the level (is the sensor connected?)");
     }
 }
@@ -48,11 +48,11 @@ void check_enough(const CalibrationRows& rows) {
 void check_unit(const CalibrationRows& rows) {
     const double highest_N = *std::max_element(rows.force_N.begin(), rows.force_N.end());
     if (highest_N > 60.0) {
-        throw bad_input(rows.file, "force_N", "forces up to " + short_number(highest_N) + " N",
+        throw files::bad_input(rows.file, "force_N", "forces up to " + files::short_number(highest_N) + " N",
                         "less than 60 N under a pen or finger (gram-force? name the column force_gf; --any-force if it is right)");
     }
     if (highest_N < 0.15) {
-        throw bad_input(rows.file, "force_gf", "no force above " + short_number(highest_N) + " N (" + short_number(highest_N / 9.80665e-3) + " gf)",
+        throw files::bad_input(rows.file, "force_gf", "no force above " + files::short_number(highest_N) + " N (" + files::short_number(highest_N / 9.80665e-3) + " gf)",
                         "more than 0.15 N at the highest level (newtons? name the column force_N; --any-force if it is right)");
     }
     // rows in another unit than their neighbours in level are off by 102
@@ -67,8 +67,8 @@ void check_unit(const CalibrationRows& rows) {
         const bool gf_here = factor > 50.0 && factor < 200.0;
         const bool N_here = factor < 1.0 / 50.0 && factor > 1.0 / 200.0;
         if (rows.level[order[i]] > 0.0 && (gf_here || N_here)) {
-            throw bad_input(rows.file, line_of(rows, order[i]) + ", force", short_number(rows.force_N[order[i]]) + " N",
-                            "about " + short_number(median_of(near)) + " N as at levels beside it (gram-force and newtons mixed up?)");
+            throw files::bad_input(rows.file, line_of(rows, order[i]) + ", force", files::short_number(rows.force_N[order[i]]) + " N",
+                            "about " + files::short_number(median_of(near)) + " N as at levels beside it (gram-force and newtons mixed up?)");
         }
     }
 }
@@ -77,7 +77,7 @@ void check_times(const CalibrationRows& rows) {
     for (std::size_t i = 1; i < rows.time_s.size(); ++i) {
         if (rows.time_s[i] > rows.time_s[i - 1]) continue;
         if (!rows.repeat.empty() && rows.repeat[i] != rows.repeat[i - 1]) continue;  // each repeat may have its own zero
-        throw bad_input(rows.file, line_of(rows, i) + ", time_s", number_text(rows.time_s[i]) + " after " + number_text(rows.time_s[i - 1]),
+        throw files::bad_input(rows.file, line_of(rows, i) + ", time_s", files::number_text(rows.time_s[i]) + " after " + files::number_text(rows.time_s[i - 1]),
                         "times that rise (sorted, none twice)");
     }
 }
@@ -97,8 +97,8 @@ void check_running(const CalibrationRows& rows) {
             high = std::max(high, rows.level[to]);
         }
         if (to - from + 1 >= kLong && high - low > 0.2 * (*highest - *lowest)) {
-            throw bad_input(rows.file, "lines " + std::to_string(rows.line[from]) + " to " + std::to_string(rows.line[to]) + ", force",
-                            short_number(rows.force_N[from]) + " N all the time while the level goes from " + short_number(low) + " to " + short_number(high),
+            throw files::bad_input(rows.file, "lines " + std::to_string(rows.line[from]) + " to " + std::to_string(rows.line[to]) + ", force",
+                            files::short_number(rows.force_N[from]) + " N all the time while the level goes from " + files::short_number(low) + " to " + files::short_number(high),
                             "a force that follows (the sensor stopped?)");
         }
         from = to + 1;
@@ -218,4 +218,4 @@ FitPoints fit_points(const CalibrationRows& rows, LevelRange range, const Ends& 
     return points;
 }
 
-}  // namespace palpa
+}  // namespace palpa::calibration

@@ -9,7 +9,7 @@
 #include "calibration/fit.h"
 #include "calibration/profile.h"
 
-namespace palpa {
+namespace palpa::calibration {
 
 enum class PressPhase : std::uint8_t { press, release };
 
@@ -56,10 +56,10 @@ LevelRange level_range_of(const std::vector<double>& level);
 
 // What the two ends of the range do to the points.
 struct Ends {
-    double activation_N = kMissing;   // lowest force with a level above 0 (median over repeats)
-    double saturation_N = kMissing;   // lowest force at which the level rises no more; NaN: it rises to the end
-    double saturation_level = kMissing;
-    double above_saturation_N = kMissing;  // the greatest force measured there
+    double activation_N = platform::kMissing;   // lowest force with a level above 0 (median over repeats)
+    double saturation_N = platform::kMissing;   // lowest force at which the level rises no more; NaN: it rises to the end
+    double saturation_level = platform::kMissing;
+    double above_saturation_N = platform::kMissing;  // the greatest force measured there
     std::size_t silent = 0;           // rows at level 0 pressed with less than the greatest force there
     std::size_t saturated = 0;        // rows beyond saturation
 };
@@ -69,4 +69,4 @@ Ends ends_of(const CalibrationRows& rows, LevelRange range);
 // every force above: of these rows only those within the noise of that force are taken.
 FitPoints fit_points(const CalibrationRows& rows, LevelRange range, const Ends& ends);
 
-}  // namespace palpa
+}  // namespace palpa::calibration

@@ -8,7 +8,7 @@
 #include "files/table.h"
 #include "files/text.h"
 
-namespace palpa {
+namespace palpa::calibration {
 namespace {
 
 constexpr double kN_per_gf = 9.80665e-3;
@@ -21,7 +21,7 @@ struct Columns {
     std::optional<std::size_t> pen, tablet, driver, os, date;
 };
 
-Columns find_columns(const Table& table, const ReadOptions& options) {
+Columns find_columns(const files::Table& table, const ReadOptions& options) {
     const auto optional = [&](const char* name) {
         return table.has_column(name) ? std::optional(table.column(name)) : std::nullopt;
     };
@@ -45,7 +45,7 @@ Columns find_columns(const Table& table, const ReadOptions& options) {
     return columns;
 }
 
-double force_of(const Table& table, const Columns& columns) {
+double force_of(const files::Table& table, const Columns& columns) {
     const std::size_t column = columns.force_N ? *columns.force_N : *columns.force_gf;
     const double given = table.finite_number(column);
     if (given < 0.0) table.fail(column, "a force >= 0 (was the sensor zeroed?)");
@@ -54,13 +54,13 @@ double force_of(const Table& table, const Columns& columns) {
         const double gf = table.finite_number(*columns.force_gf);
         // 1 % and half a unit of the last digit that scales show
         if (std::abs(gf * kN_per_gf - given) > 0.01 * given + 0.5 * kN_per_gf) {
-            table.fail(*columns.force_gf, short_number(given / kN_per_gf) + " gf, as force_N in this line says");
+            table.fail(*columns.force_gf, files::short_number(given / kN_per_gf) + " gf, as force_N in this line says");
         }
     }
     return given;
 }
 
-PressPhase phase_of(const Table& table, std::size_t column) {
+PressPhase phase_of(const files::Table& table, std::size_t column) {
     const auto text = table.field(column);
     if (text == "press" || text == "loading") return PressPhase::press;
     if (text != "release" && text != "unloading") table.fail(column, "press or release");
@@ -68,7 +68,7 @@ PressPhase phase_of(const Table& table, std::size_t column) {
 }
 
 // The field of all rows if they agree, else "several".
-void agree(const Table& table, std::optional<std::size_t> column, std::string& name) {
+void agree(const files::Table& table, std::optional<std::size_t> column, std::string& name) {
     if (!column) return;
     const auto text = table.field(*column);
     if (name.empty()) name = text;
@@ -82,7 +82,7 @@ int index_of(std::map<std::string, int>& names, std::string name) {
 }  // namespace
 
 CalibrationRows read_points(const std::filesystem::path& file, const ReadOptions& options) {
-    Table table = read_csv(file);
+    files::Table table = files::read_csv(file);
     const Columns columns = find_columns(table, options);
     CalibrationRows rows;
     rows.file = file.string();
@@ -113,16 +113,16 @@ CalibrationRows read_points(const std::filesystem::path& file, const ReadOptions
     if (rows.level.empty() && !options.where.empty()) {
         std::string asked;
         for (const RowFilter& filter : options.where) asked += (asked.empty() ? "" : ", ") + filter.column + "=" + filter.value;
-        throw bad_input(rows.file, "--where", "no row with " + asked, "a value that occurs in that column");
+        throw files::bad_input(rows.file, "--where", "no row with " + asked, "a value that occurs in that column");
     }
     if (sessions.size() > 1) {
         rows.notes.push_back(std::to_string(sessions.size()) + " sessions (pen, tablet, date) are taken together, as repeats: "
                              "choose one with --where, pens differ by half within one model");
         if (rows.repeat.empty()) rows.repeat = session;
     }
-    if (rows.level.empty()) throw bad_input(rows.file, "", "no rows", "measured points");
+    if (rows.level.empty()) throw files::bad_input(rows.file, "", "no rows", "measured points");
     if (options.for_fit) check_rows(rows, options.any_force);
     return rows;
 }
 
-}  // namespace palpa
+}  // namespace palpa::calibration

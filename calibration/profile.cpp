@@ -3,16 +3,16 @@
 #include <algorithm>
 #include <numbers>
 
-namespace palpa {
+namespace palpa::calibration {
 
-double level_of(const Profile& profile, const Sample& sample) {
+double level_of(const Profile& profile, const platform::Sample& sample) {
     switch (profile.level) {
         case LevelField::pressure: return sample.pressure;
         case LevelField::pressure_raw: return sample.pressure_raw;
         case LevelField::contact_area:
             return 0.25 * std::numbers::pi * sample.width_px * sample.height_px / profile.full_contact_area_px2;
     }
-    return kMissing;
+    return platform::kMissing;
 }
 
 double force_N(const Profile& profile, double level, std::int64_t& clamped) {
@@ -35,4 +35,4 @@ const char* name_of(LevelField level) {
     return "pressure";
 }
 
-}  // namespace palpa
+}  // namespace palpa::calibration

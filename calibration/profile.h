@@ -8,7 +8,7 @@
 #include "calibration/curve.h"
 #include "platform/sample.h"
 
-namespace palpa {
+namespace palpa::calibration {
 
 enum class LevelField { pressure, pressure_raw, contact_area };
 
@@ -32,16 +32,16 @@ struct Profile {
     LevelField level = LevelField::pressure;
     double level_lowest = 0.0;   // what the device can report; levels are clamped to this range
     double level_highest = 1.0;
-    double fitted_lowest = kMissing;   // the part of it that the points cover; beyond, the curve is extrapolated
-    double fitted_highest = kMissing;
-    double median_relative_error = kMissing;  // on points left out of the fit, where known
+    double fitted_lowest = platform::kMissing;   // the part of it that the points cover; beyond, the curve is extrapolated
+    double fitted_highest = platform::kMissing;
+    double median_relative_error = platform::kMissing;  // on points left out of the fit, where known
     double full_contact_area_px2 = 0.0;  // contact_area only: the ellipse whose level is 1
     std::vector<CalibrationPoint> points;  // what the curve was fitted to, where known
 };
 
 // The field of the sample that the profile reads; NaN if the device did not report it.
 // contact_area: pi/4 width height / full_contact_area_px2.
-double level_of(const Profile& profile, const Sample& sample);
+double level_of(const Profile& profile, const platform::Sample& sample);
 
 // Force at a level. Levels outside the range are clamped, and `clamped` is counted up. No curve reaches down to the
 // force zero of a pen that does not touch: that is known by the sample's phase. Never below zero.
@@ -52,4 +52,4 @@ double level_at_force(const Profile& profile, double force_N);
 
 const char* name_of(LevelField level);
 
-}  // namespace palpa
+}  // namespace palpa::calibration

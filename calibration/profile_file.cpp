@@ -5,10 +5,10 @@
 #include "files/input_error.h"
 #include "files/text.h"
 
-namespace palpa {
+namespace palpa::calibration {
 namespace {
 
-DeviceNames read_device(JsonReader json) {
+DeviceNames read_device(files::JsonReader json) {
     json.only({"pen", "tablet", "driver", "os", "date"});
     DeviceNames device;
     device.pen = json.text("pen", "n/a");
@@ -20,24 +20,24 @@ DeviceNames read_device(JsonReader json) {
     return device;
 }
 
-std::vector<CalibrationPoint> read_points(JsonReader json) {
+std::vector<CalibrationPoint> read_points(files::JsonReader json) {
     json.only({"level", "force_N"});
-    const auto level = json.numbers("level", 0, kAnyNumber);
-    const auto force_N = json.numbers("force_N", level.size(), kAnyNumber);
+    const auto level = json.numbers("level", 0, files::kAnyNumber);
+    const auto force_N = json.numbers("force_N", level.size(), files::kAnyNumber);
     json.finish();
     std::vector<CalibrationPoint> points;
     for (std::size_t i = 0; i < level.size(); ++i) points.push_back({level[i], force_N[i]});
     return points;
 }
 
-void must_rise(const JsonReader& json, std::string_view key, const std::vector<double>& values) {
+void must_rise(const files::JsonReader& json, std::string_view key, const std::vector<double>& values) {
     for (std::size_t i = 1; i < values.size(); ++i) {
         if (values[i] > values[i - 1]) continue;
-        json.fail(key, short_number(values[i]) + " after " + short_number(values[i - 1]), "numbers that rise");
+        json.fail(key, files::short_number(values[i]) + " after " + files::short_number(values[i - 1]), "numbers that rise");
     }
 }
 
-Curve read_cubic(JsonReader& json) {
+Curve read_cubic(files::JsonReader& json) {
     json.only({"level", "force_N"});
     std::vector<double> level = json.numbers("level", 0, {0.0, 1e9});
     if (level.size() < 2) json.fail("level", "one number", "two at least");
@@ -47,8 +47,8 @@ Curve read_cubic(JsonReader& json) {
     return monotone_cubic(std::move(level), std::move(force_N));
 }
 
-Curve read_curve(CurveModel model, JsonReader json) {
-    constexpr Bounds kUsable{0.0, 1e3, true};
+Curve read_curve(CurveModel model, files::JsonReader json) {
+    constexpr files::Bounds kUsable{0.0, 1e3, true};
     constexpr double kGreatest = 1e6;  // a nearly straight exponential_offset has a large a_N and offset_N
     Curve curve;
     switch (model) {
@@ -63,7 +63,7 @@ Curve read_curve(CurveModel model, JsonReader json) {
             curve.b = json.number("b", {-1e3, 1e3});
             curve.offset_N = json.number("offset_N", {-kGreatest, kGreatest});
             if (!(curve.a_N * curve.b > 0.0)) {
-                json.fail("b", short_number(curve.b), "not 0, and the sign of a_N (" + short_number(curve.a_N) + "): the curve must rise");
+                json.fail("b", files::short_number(curve.b), "not 0, and the sign of a_N (" + files::short_number(curve.a_N) + "): the curve must rise");
             }
             break;
         case CurveModel::power:
@@ -78,26 +78,26 @@ Curve read_curve(CurveModel model, JsonReader json) {
     return curve;
 }
 
-void read_range(JsonReader& json, std::string_view key, double& lowest, double& highest) {
+void read_range(files::JsonReader& json, std::string_view key, double& lowest, double& highest) {
     const auto range = json.numbers(key, 2, {0.0, 1e9});
     if (!(range[0] < range[1])) {
-        json.fail(key, "[" + short_number(range[0]) + ", " + short_number(range[1]) + "]", "the lower level first");
+        json.fail(key, "[" + files::short_number(range[0]) + ", " + files::short_number(range[1]) + "]", "the lower level first");
     }
     lowest = range[0];
     highest = range[1];
 }
 
 // "1000 N" would be a mistake of units, and a curve without a slope has no inverse.
-void check_values(const JsonReader& json, const Profile& profile) {
+void check_values(const files::JsonReader& json, const Profile& profile) {
     constexpr double kAbsurd_N = 1000.0;
     const double lowest_N = value_N(profile.curve, profile.level_lowest);
     const double highest_N = value_N(profile.curve, profile.level_highest);
     if (!(highest_N < kAbsurd_N)) {
-        json.fail("parameters", short_number(highest_N) + " N at the highest level",
+        json.fail("parameters", files::short_number(highest_N) + " N at the highest level",
                   "less than 1000 N (is b per count where level_range is 0 ... 1, or the other way round?)");
     }
     if (!(highest_N > std::max(lowest_N, 0.0))) {
-        json.fail("parameters", short_number(lowest_N) + " N at the lowest and " + short_number(highest_N) + " N at the highest level",
+        json.fail("parameters", files::short_number(lowest_N) + " N at the lowest and " + files::short_number(highest_N) + " N at the highest level",
                   "a force that rises above 0");
     }
 }
@@ -105,8 +105,8 @@ void check_values(const JsonReader& json, const Profile& profile) {
 }  // namespace
 
 Profile read_profile(const std::filesystem::path& path) {
-    const Json root = read_json(path);
-    JsonReader json(root, path.string());
+    const files::Json root = files::read_json(path);
+    files::JsonReader json(root, path.string());
     json.only({"device", "model", "parameters", "level", "level_range", "fitted_range", "full_contact_area_px2", "quality", "points"});
     Profile profile;
     profile.id = path.stem().string();
@@ -120,7 +120,7 @@ Profile read_profile(const std::filesystem::path& path) {
         profile.full_contact_area_px2 = json.number("full_contact_area_px2", {0.0, 1e9, true});
     }
     if (json.has("quality")) {
-        const Json& quality = json.any("quality");
+        const files::Json& quality = json.any("quality");
         if (quality.is_object() && quality.contains("median_relative_error") && quality["median_relative_error"].is_number()) {
             profile.median_relative_error = quality["median_relative_error"].get<double>();
         }
@@ -131,7 +131,7 @@ Profile read_profile(const std::filesystem::path& path) {
     return profile;
 }
 
-Json parameters_json(const Curve& curve) {
+files::Json parameters_json(const Curve& curve) {
     switch (curve.model) {
         case CurveModel::exponential:
         case CurveModel::power: return {{"a_N", curve.a_N}, {"b", curve.b}};
@@ -141,9 +141,9 @@ Json parameters_json(const Curve& curve) {
     return {};
 }
 
-Json profile_json(const Profile& profile, const Json& quality) {
+files::Json profile_json(const Profile& profile, const files::Json& quality) {
     const DeviceNames& device = profile.device;
-    Json json;
+    files::Json json;
     json["device"] = {{"pen", device.pen}, {"tablet", device.tablet}, {"driver", device.driver}, {"os", device.os}, {"date", device.date}};
     json["model"] = name_of(profile.curve.model);
     json["parameters"] = parameters_json(profile.curve);
@@ -153,8 +153,8 @@ Json profile_json(const Profile& profile, const Json& quality) {
     if (!std::isnan(profile.fitted_lowest)) json["fitted_range"] = {profile.fitted_lowest, profile.fitted_highest};
     json["quality"] = quality;
     if (!profile.points.empty()) {
-        Json level = Json::array();
-        Json force_N = Json::array();
+        files::Json level = files::Json::array();
+        files::Json force_N = files::Json::array();
         for (const CalibrationPoint& point : profile.points) {
             level.push_back(point.level);
             force_N.push_back(point.force_N);
@@ -164,8 +164,8 @@ Json profile_json(const Profile& profile, const Json& quality) {
     return json;
 }
 
-void write_profile(const Profile& profile, const Json& quality, const std::filesystem::path& path) {
-    write_text_atomically(path, json_text(profile_json(profile, quality)));
+void write_profile(const Profile& profile, const files::Json& quality, const std::filesystem::path& path) {
+    files::write_text_atomically(path, files::json_text(profile_json(profile, quality)));
 }
 
-}  // namespace palpa
+}  // namespace palpa::calibration

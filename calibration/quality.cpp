@@ -4,13 +4,13 @@
 #include <cmath>
 #include <limits>
 
-namespace palpa {
+namespace palpa::calibration {
 namespace {
 
 double r2(const Eigen::ArrayXd& measured, const Eigen::ArrayXd& predicted) {
-    if (measured.size() < 2) return kMissing;
+    if (measured.size() < 2) return platform::kMissing;
     const double scatter = (measured - measured.mean()).square().sum();
-    return scatter > 0.0 ? 1.0 - (measured - predicted).square().sum() / scatter : kMissing;
+    return scatter > 0.0 ? 1.0 - (measured - predicted).square().sum() / scatter : platform::kMissing;
 }
 
 std::vector<double> relative_errors(const Eigen::ArrayXd& level, const Eigen::ArrayXd& measured_N, const Eigen::ArrayXd& predicted_N, double lowest,
@@ -26,7 +26,7 @@ std::vector<double> relative_errors(const Eigen::ArrayXd& level, const Eigen::Ar
 }  // namespace
 
 double quantile(std::vector<double>& values, double share) {
-    if (values.empty()) return kMissing;
+    if (values.empty()) return platform::kMissing;
     std::sort(values.begin(), values.end());
     const double at = share * static_cast<double>(values.size() - 1);
     const auto i = static_cast<std::size_t>(at);
@@ -72,4 +72,4 @@ double median_relative_error(const Eigen::ArrayXd& level, const Eigen::ArrayXd& 
     return quantile(errors, 0.5);
 }
 
-}  // namespace palpa
+}  // namespace palpa::calibration

@@ -6,21 +6,21 @@
 #include "calibration/curve.h"
 #include "calibration/points.h"
 
-namespace palpa {
+namespace palpa::calibration {
 
 // Errors relative to the measured force, of the points with a level inside [from, to).
 struct ErrorBand {
     double from = 0.0;
     double to = 0.0;
     std::size_t n = 0;
-    double median = kMissing;
-    double p90 = kMissing;
+    double median = platform::kMissing;
+    double p90 = platform::kMissing;
 };
 
 struct FitQuality {
-    double r2_newton = kMissing;
-    double r2_log = kMissing;  // of log F, points with a force above 0
-    double rmse_N = kMissing;
+    double r2_newton = platform::kMissing;
+    double r2_log = platform::kMissing;  // of log F, points with a force above 0
+    double rmse_N = platform::kMissing;
 };
 
 // `predicted_N[i]` belongs to `measured_N[i]`.
@@ -34,4 +34,4 @@ double median_relative_error(const Eigen::ArrayXd& level, const Eigen::ArrayXd& 
 // Linear between the order statistics; NaN for no values. Changes the order of `values`.
 double quantile(std::vector<double>& values, double share);
 
-}  // namespace palpa
+}  // namespace palpa::calibration

@@ -8,7 +8,7 @@
 #include "files/table.h"
 #include "files/text.h"
 
-namespace palpa {
+namespace palpa::calibration {
 namespace {
 
 double width(const RecordOptions& options) { return options.range.highest - options.range.lowest; }
@@ -51,7 +51,7 @@ bool force_in(const std::deque<RecordSession::Timed>& forces, double from_s, dou
 
 std::string percent(double share) {
     if (share > 1.0) return "over 100 %";
-    return short_number(std::round(100.0 * share)) + " %";
+    return files::short_number(std::round(100.0 * share)) + " %";
 }
 
 }  // namespace
@@ -80,7 +80,7 @@ void take_level(const RecordOptions& options, double t_s, double level, bool tou
         if (session.captured_in_repeat && t_s - session.lifted_s > kLifted_s) {
             ++session.repeat;
             session.captured_in_repeat = false;
-            session.last_level = kMissing;
+            session.last_level = platform::kMissing;
             session.last_force_N = 0.0;
         }
     }
@@ -145,14 +145,14 @@ int target_band(const RecordOptions& options, const RecordSession& session, cons
 
 Knowledge knowledge_of(const RecordOptions& options, const std::vector<CapturedPoint>& points) {
     Knowledge out;
-    out.band_error.assign(static_cast<std::size_t>(options.bands), kMissing);
+    out.band_error.assign(static_cast<std::size_t>(options.bands), platform::kMissing);
     for (const CapturedPoint& point : points) out.repeats = std::max(out.repeats, point.repeat + 1);
     CalibrateOptions how;
     how.range = options.range;
     how.bootstrap_fits = 200;
     try {
         const CalibrationRows rows = rows_of(points);
-        if (rows.level.empty()) throw InputError("no point yet");
+        if (rows.level.empty()) throw files::InputError("no point yet");
         check_rows(rows, true);
         const Calibration calibration = calibrate(rows, how);
         const Bootstrap& boot = calibration.bootstrap;
@@ -168,7 +168,7 @@ Knowledge knowledge_of(const RecordOptions& options, const std::vector<CapturedP
                 out.band_error[static_cast<std::size_t>(band)] = 0.5 * (boot.high_N[at] - boot.low_N[at]) / force_N;
             }
         }
-    } catch (const InputError& error) {
+    } catch (const files::InputError& error) {
         out.missing = error.what();
         return out;
     }
@@ -188,18 +188,18 @@ Knowledge knowledge_of(const RecordOptions& options, const std::vector<CapturedP
 std::string points_csv(const std::vector<CapturedPoint>& points) {
     std::string text = "time_s,level,force_N,repeat,phase\n";
     for (const CapturedPoint& point : points) {
-        append_number(point.time_s, text);
+        files::append_number(point.time_s, text);
         text += ',';
-        append_number(point.level, text);
+        files::append_number(point.level, text);
         text += ',';
-        append_number(point.force_N, text);
+        files::append_number(point.force_N, text);
         text += ',' + std::to_string(point.repeat) + (point.phase == PressPhase::press ? ",press\n" : ",release\n");
     }
     return text;
 }
 
 std::vector<CapturedPoint> read_session(const std::filesystem::path& file) {
-    Table table = read_csv(file);
+    files::Table table = files::read_csv(file);
     const std::size_t time_s = table.column("time_s"), level = table.column("level"), force_N = table.column("force_N"), repeat = table.column("repeat"),
                       phase = table.column("phase");
     std::vector<CapturedPoint> points;
@@ -212,4 +212,4 @@ std::vector<CapturedPoint> read_session(const std::filesystem::path& file) {
     return points;
 }
 
-}  // namespace palpa
+}  // namespace palpa::calibration

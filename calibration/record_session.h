@@ -8,7 +8,7 @@
 
 #include "calibration/points.h"
 
-namespace palpa {
+namespace palpa::calibration {
 
 struct RecordOptions {
     LevelRange range;
@@ -37,12 +37,12 @@ struct RecordSession {
     std::deque<Timed> levels;   // the last second or so, and one before the still moment
     std::deque<Timed> forces;
     std::deque<Timed> rest;     // what the sensor shows while nothing touches
-    double zero_N = kMissing;   // to be subtracted from what it shows
+    double zero_N = platform::kMissing;   // to be subtracted from what it shows
     bool touching = false;
     double lifted_s = 0.0;      // since when not
     int repeat = 0;             // 0, 1, ...; one press and release is one
     bool captured_in_repeat = false;
-    double last_level = kMissing;  // captured last in this repeat
+    double last_level = platform::kMissing;  // captured last in this repeat
     double last_force_N = 0.0;
     double clock_shift_s = 0.0;    // so that times rise when the computer was started anew in between
     std::vector<CapturedPoint> points;
@@ -82,4 +82,4 @@ CalibrationRows rows_of(const std::vector<CapturedPoint>& points);
 std::string points_csv(const std::vector<CapturedPoint>& points);
 std::vector<CapturedPoint> read_session(const std::filesystem::path& file);
 
-}  // namespace palpa
+}  // namespace palpa::calibration

@@ -3,10 +3,10 @@
 #include "calibration/calibrate.h"
 #include "files/text.h"
 
-namespace palpa {
+namespace palpa::calibration {
 namespace {
 
-std::string percent(double share) { return short_number(std::round(1000.0 * share) / 10.0) + " %"; }
+std::string percent(double share) { return files::short_number(std::round(1000.0 * share) / 10.0) + " %"; }
 
 struct Words {
     std::string device;     // this pen, this touch surface
@@ -20,19 +20,19 @@ void about_ends(const Calibration& calibration, const Words& words, std::vector<
     const Ends& ends = calibration.ends;
     const Profile& profile = calibration.profile;
     if (!std::isnan(ends.saturation_N)) {
-        const std::string above = "above " + short_number(ends.saturation_N) + " N " + words.device;
-        std::string text = profile.level == LevelField::contact_area ? "above " + short_number(ends.saturation_N) + " N the contact area grows no more"
+        const std::string above = "above " + files::short_number(ends.saturation_N) + " N " + words.device;
+        std::string text = profile.level == LevelField::contact_area ? "above " + files::short_number(ends.saturation_N) + " N the contact area grows no more"
                            : ends.saturation_level < profile.level_highest
                                ? above + " reports no more than " + words.at(profile.fitted_highest) + " " + words.level
                                : above + " reports full " + words.level;
         out.push_back(text + ": greater forces cannot be told from it");
     } else if (profile.fitted_highest < words.lowest + 0.97 * words.width) {
         out.push_back("the points end at " + words.at(profile.fitted_highest) + " " + words.level + ": forces above " +
-                      short_number(value_N(profile.curve, profile.fitted_highest)) + " N are extrapolated");
+                      files::short_number(value_N(profile.curve, profile.fitted_highest)) + " N are extrapolated");
     }
     if (profile.fitted_lowest > words.lowest + 0.05 * words.width) {
         out.push_back("the points begin at " + words.at(profile.fitted_lowest) + " " + words.level + ": light touch below " +
-                      short_number(value_N(profile.curve, profile.fitted_lowest)) + " N is extrapolated");
+                      files::short_number(value_N(profile.curve, profile.fitted_lowest)) + " N is extrapolated");
     }
     if (!(value_N(profile.curve, profile.level_lowest) >= 0.0)) {
         out.push_back("the curve falls below 0 N at the lightest touch, which is taken as 0 N: another model would do better");
@@ -88,4 +88,4 @@ std::vector<std::string> warnings_of(const Calibration& calibration, const std::
     return out;
 }
 
-}  // namespace palpa
+}  // namespace palpa::calibration

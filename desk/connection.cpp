@@ -18,7 +18,7 @@
 #include "files/input_error.h"
 #include "files/regular_file.h"
 
-namespace palpa {
+namespace palpa::desk {
 namespace {
 
 constexpr double kSlice_s = 0.2;   // how often a waiting connection looks whether the desk is being ended
@@ -60,8 +60,8 @@ void address_of(int fd, AddressOf which, std::string& ip, int& port) {
 }  // namespace
 
 TlsContext make_tls(const std::string& cert_file, const std::string& key_file) {
-    check_input(cert_file);
-    check_input(key_file);
+    files::check_input(cert_file);
+    files::check_input(key_file);
     TlsContext tls(SSL_CTX_new(TLS_server_method()));
     if (!tls) throw std::runtime_error("TLS cannot be started: " + tls_trouble());
     SSL_CTX_set_min_proto_version(tls.get(), TLS1_2_VERSION);
@@ -69,10 +69,10 @@ TlsContext make_tls(const std::string& cert_file, const std::string& key_file) {
     SSL_CTX_set_mode(tls.get(), SSL_MODE_ENABLE_PARTIAL_WRITE | SSL_MODE_ACCEPT_MOVING_WRITE_BUFFER | SSL_MODE_RELEASE_BUFFERS);
     SSL_CTX_set_session_cache_mode(tls.get(), SSL_SESS_CACHE_OFF);
     if (SSL_CTX_use_certificate_chain_file(tls.get(), cert_file.c_str()) != 1) {
-        throw bad_input(cert_file, "", tls_trouble(), "a certificate in PEM");
+        throw files::bad_input(cert_file, "", tls_trouble(), "a certificate in PEM");
     }
     if (SSL_CTX_use_PrivateKey_file(tls.get(), key_file.c_str(), SSL_FILETYPE_PEM) != 1 || SSL_CTX_check_private_key(tls.get()) != 1) {
-        throw bad_input(key_file, "", tls_trouble(), "the private key in PEM that belongs to " + cert_file);
+        throw files::bad_input(key_file, "", tls_trouble(), "the private key in PEM that belongs to " + cert_file);
     }
     return tls;
 }
@@ -273,4 +273,4 @@ void Connection::linger() {
 void Connection::get_remote_ip_and_port(std::string& ip, int& port) const { address_of(fd_, ::getpeername, ip, port); }
 void Connection::get_local_ip_and_port(std::string& ip, int& port) const { address_of(fd_, ::getsockname, ip, port); }
 
-}  // namespace palpa
+}  // namespace palpa::desk

@@ -11,7 +11,7 @@
 
 #include "desk/time_limits.h"
 
-namespace palpa {
+namespace palpa::desk {
 
 struct FreeTls {
     void operator()(SSL_CTX* context) const { SSL_CTX_free(context); }
@@ -83,4 +83,4 @@ class Connection : public httplib::Stream {
 // The client's address as text; IPv4 in IPv6 as IPv4.
 std::string peer_address(int fd);
 
-}  // namespace palpa
+}  // namespace palpa::desk

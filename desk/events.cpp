@@ -4,18 +4,18 @@
 #include <cstdio>
 #include <ctime>
 
-namespace palpa {
+namespace palpa::desk {
 namespace {
 
 constexpr int kMostRefusals = 60;
 
 }  // namespace
 
-void DeskEvents::print(const std::string& event, const std::string& line, Json fields) {
+void DeskEvents::print(const std::string& event, const std::string& line, files::Json fields) {
     if (json_) {
-        Json json{{"event", event}};
+        files::Json json{{"event", event}};
         json.update(fields);
-        std::printf("%s\n", json.dump(-1, ' ', false, Json::error_handler_t::replace).c_str());
+        std::printf("%s\n", json.dump(-1, ' ', false, files::Json::error_handler_t::replace).c_str());
     } else {
         const std::time_t now = std::time(nullptr);
         std::tm local{};
@@ -27,12 +27,12 @@ void DeskEvents::print(const std::string& event, const std::string& line, Json f
     std::fflush(stdout);
 }
 
-void DeskEvents::tell(const std::string& event, const std::string& line, Json fields) {
+void DeskEvents::tell(const std::string& event, const std::string& line, files::Json fields) {
     const std::lock_guard lock(mutex_);
     print(event, line, std::move(fields));
 }
 
-void DeskEvents::tell_refused(const std::string& line, Json fields) {
+void DeskEvents::tell_refused(const std::string& line, files::Json fields) {
     const std::lock_guard lock(mutex_);
     const std::int64_t minute = std::time(nullptr) / 60;
     if (minute != minute_) {
@@ -44,4 +44,4 @@ void DeskEvents::tell_refused(const std::string& line, Json fields) {
     if (++refused_ <= kMostRefusals) print("refused", line, std::move(fields));
 }
 
-}  // namespace palpa
+}  // namespace palpa::desk

@@ -7,7 +7,7 @@
 
 #include "files/json.h"
 
-namespace palpa {
+namespace palpa::desk {
 
 // May be called by many threads. Refusals over 60 in a minute are counted, not printed: nobody fills the terminal.
 class DeskEvents {
@@ -15,11 +15,11 @@ class DeskEvents {
     explicit DeskEvents(bool json) : json_(json) {}
 
     // "15:40:02 paired: tablet 1 at 192.168.1.7", or one JSON object {"event": "paired", ...} in a line.
-    void tell(const std::string& event, const std::string& line, Json fields = Json::object());
-    void tell_refused(const std::string& line, Json fields);
+    void tell(const std::string& event, const std::string& line, files::Json fields = files::Json::object());
+    void tell_refused(const std::string& line, files::Json fields);
 
  private:
-    void print(const std::string& event, const std::string& line, Json fields);
+    void print(const std::string& event, const std::string& line, files::Json fields);
 
     bool json_;
     std::mutex mutex_;
@@ -27,4 +27,4 @@ class DeskEvents {
     int refused_ = 0;  // in this minute
 };
 
-}  // namespace palpa
+}  // namespace palpa::desk

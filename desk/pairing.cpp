@@ -14,7 +14,7 @@
 #include "files/sha256.h"
 #include "files/text.h"
 
-namespace palpa {
+namespace palpa::desk {
 namespace {
 
 constexpr unsigned kCodes = 1000000;
@@ -114,29 +114,29 @@ Sessions::Sessions(const std::filesystem::path& file, const SessionLimits& limit
 
 void Sessions::read(std::string& trouble) {
     try {
-        const Json root = read_json(file_);
-        JsonReader json(root, file_.string());
+        const files::Json root = files::read_json(file_);
+        files::JsonReader json(root, file_.string());
         std::vector<Session> sessions;
         const int last_device = json.integer("last_device", 0, 1000000000);
-        for (JsonReader& one : json.objects("sessions")) {
-            sessions.push_back({one.text("token_sha256"), one.integer("device", 1, 1000000000), one.number("ends_unix_s", kNotNegative)});
+        for (files::JsonReader& one : json.objects("sessions")) {
+            sessions.push_back({one.text("token_sha256"), one.integer("device", 1, 1000000000), one.number("ends_unix_s", files::kNotNegative)});
             one.finish();
         }
         json.finish();
         sessions_ = std::move(sessions);
         last_device_ = last_device;
-    } catch (const InputError& error) {
+    } catch (const files::InputError& error) {
         trouble = std::string(error.what()) + "; tablets must pair again";
     }
 }
 
 void Sessions::write() const {
     if (file_.empty()) return;
-    Json json{{"last_device", last_device_}, {"sessions", Json::array()}};
+    files::Json json{{"last_device", last_device_}, {"sessions", files::Json::array()}};
     for (const Session& one : sessions_) {
         json["sessions"].push_back({{"token_sha256", one.token_sha256}, {"device", one.device}, {"ends_unix_s", one.ends_unix_s}});
     }
-    write_text_atomically(file_, json_text(json));
+    files::write_text_atomically(file_, files::json_text(json));
 }
 
 Sessions::Opened Sessions::open(double unix_s) {
@@ -153,13 +153,13 @@ Sessions::Opened Sessions::open(double unix_s) {
                                          [](const Session& a, const Session& b) { return a.ends_unix_s < b.ends_unix_s; }));
     }
     opened.device = ++last_device_;
-    sessions_.push_back({sha256_hex(opened.token), opened.device, unix_s + limits_.lasts_s});
+    sessions_.push_back({files::sha256_hex(opened.token), opened.device, unix_s + limits_.lasts_s});
     write();
     return opened;
 }
 
 std::optional<int> Sessions::device_of(std::string_view token, double unix_s) const {
-    const std::string hash = sha256_hex(token);
+    const std::string hash = files::sha256_hex(token);
     const std::lock_guard lock(mutex_);
     std::optional<int> device;
     for (const Session& one : sessions_) {
@@ -168,4 +168,4 @@ std::optional<int> Sessions::device_of(std::string_view token, double unix_s) co
     return device;
 }
 
-}  // namespace palpa
+}  // namespace palpa::desk

@@ -11,7 +11,7 @@
 #include <string_view>
 #include <vector>
 
-namespace palpa {
+namespace palpa::desk {
 
 // Six digits, each code as likely as any other. Throws std::runtime_error if the system has no random numbers.
 std::string random_code();
@@ -103,4 +103,4 @@ class Sessions {
     int last_device_ = 0;
 };
 
-}  // namespace palpa
+}  // namespace palpa::desk

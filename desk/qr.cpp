@@ -7,7 +7,7 @@
 #include <memory>
 #include <stdexcept>
 
-namespace palpa {
+namespace palpa::desk {
 namespace {
 
 constexpr int kQuiet = 4;
@@ -33,4 +33,4 @@ std::string qr_text(const std::string& text, bool coloured) {
     return out;
 }
 
-}  // namespace palpa
+}  // namespace palpa::desk

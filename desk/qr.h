@@ -2,7 +2,7 @@
 
 #include <string>
 
-namespace palpa {
+namespace palpa::desk {
 
 // A QR code of the text as lines of block characters (UTF-8), two modules high each, with the quiet zone of four
 // modules that readers need. Filled blocks are the light modules: right where letters are lighter than their ground, as
@@ -10,4 +10,4 @@ namespace palpa {
 // std::runtime_error for what does not fit (about 2,900 bytes).
 std::string qr_text(const std::string& text, bool coloured);
 
-}  // namespace palpa
+}  // namespace palpa::desk

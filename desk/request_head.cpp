@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <charconv>
 
-namespace palpa {
+namespace palpa::desk {
 namespace {
 
 constexpr std::size_t kLongestTarget = 1024;
@@ -82,4 +82,4 @@ CheckedHead check_head(std::string_view head) {
     return out;
 }
 
-}  // namespace palpa
+}  // namespace palpa::desk

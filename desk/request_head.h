@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-namespace palpa {
+namespace palpa::desk {
 
 inline constexpr std::size_t kLongestHead_bytes = 16 * 1024;
 
@@ -22,4 +22,4 @@ struct CheckedHead {
 // and chunked bodies (411), encoded and multipart bodies (415). Lines that ask for ranges and compression are left out.
 CheckedHead check_head(std::string_view head);
 
-}  // namespace palpa
+}  // namespace palpa::desk

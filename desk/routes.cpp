@@ -11,7 +11,7 @@
 #include "desk/static_files.h"
 #include "files/input_error.h"
 
-namespace palpa {
+namespace palpa::desk {
 namespace {
 
 namespace fs = std::filesystem;
@@ -25,9 +25,9 @@ constexpr std::array<const char*, 5> kAssetFolders{"scenes", "maps", "profiles",
 double steady_s() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 double unix_s() { return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count(); }
 
-std::string dumped(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n"; }
+std::string dumped(const files::Json& json) { return json.dump(-1, ' ', false, files::Json::error_handler_t::replace) + "\n"; }
 
-void answer(int status, const Json& json, Response& res) {
+void answer(int status, const files::Json& json, Response& res) {
     res.status = status;
     res.set_content(dumped(json), "application/json");
 }
@@ -101,12 +101,12 @@ bool upload_refused(const Request& req, Desk& desk, Response& res) {
 // The code in {"code": "123456"}; nothing if it is something else.
 std::optional<std::string> code_in(const std::string& body) {
     try {
-        const Json root = parse_json(body, "pair");
-        JsonReader json(root, "pair");
+        const files::Json root = files::parse_json(body, "pair");
+        files::JsonReader json(root, "pair");
         std::string code = json.text("code");
         json.finish();
         return code;
-    } catch (const InputError&) {
+    } catch (const files::InputError&) {
         return std::nullopt;
     }
 }
@@ -145,7 +145,7 @@ void pair(const Request& req, const std::string& body, Desk& desk, Response& res
 void take_upload(const Request& req, const httplib::ContentReader& read_content, Desk& desk, Response& res) {
     const std::uint64_t bytes = announced_bytes(req);
     const Sender sender{sane_label(req.path.substr(std::string_view("/api/logs/").size())), device_of(req, desk).value_or(0), req.remote_addr};
-    Json fields{{"label", sender.label}, {"device", sender.device}, {"address", sender.address}, {"bytes", bytes}};
+    files::Json fields{{"label", sender.label}, {"device", sender.device}, {"address", sender.address}, {"bytes", bytes}};
     const std::string who = sender.label + " (" + std::to_string(bytes) + " bytes) from tablet " + std::to_string(sender.device) + " at " + sender.address;
     std::optional<UploadRefused> refused;
     try {
@@ -241,7 +241,7 @@ bool own_host(std::string_view host, X509* certificate) {
     return !name.empty() && certificate != nullptr && X509_check_host(certificate, name.data(), name.size(), 0, nullptr) == 1;
 }
 
-Json files_json(const fs::path& assets) {
+files::Json files_json(const fs::path& assets) {
     const auto plain = [](const fs::directory_entry& entry) { return !entry.is_symlink() && entry.path().filename().string().front() != '.'; };
     const auto listed = [&](const fs::path& folder) {
         std::vector<fs::path> paths;
@@ -253,15 +253,15 @@ Json files_json(const fs::path& assets) {
         return paths;
     };
     const auto file_json = [&](const fs::path& path) {
-        return Json{{"path", "/files/" + fs::relative(path, assets).generic_string()}, {"bytes", fs::file_size(path)}};
+        return files::Json{{"path", "/files/" + fs::relative(path, assets).generic_string()}, {"bytes", fs::file_size(path)}};
     };
-    Json json;
+    files::Json json;
     for (const std::string kind : kAssetFolders) {
-        json[kind] = Json::array();
+        json[kind] = files::Json::array();
         for (const fs::path& path : listed(assets / kind)) {
             if (fs::is_regular_file(path)) json[kind].push_back(file_json(path));
             if (!fs::is_directory(path)) continue;
-            Json files = Json::array();
+            files::Json files = files::Json::array();
             for (const fs::path& part : listed(path)) {
                 if (fs::is_regular_file(part)) files.push_back(file_json(part));
             }
@@ -320,4 +320,4 @@ void set_routes(Desk& desk, DeskServer& server) {
     });
 }
 
-}  // namespace palpa
+}  // namespace palpa::desk

@@ -12,7 +12,7 @@
 #include "desk/server.h"
 #include "desk/uploads.h"
 
-namespace palpa {
+namespace palpa::desk {
 
 struct Desk {
     const ServeOptions& options;
@@ -33,6 +33,6 @@ bool own_host(std::string_view host, X509* certificate);
 
 // {"scenes": [{"path": "/files/scenes/default.json", "bytes": 1}], "maps": [{"name": "silicone.map", "files": [...]}],
 // "profiles": ..., "phantoms": ..., "protocols": ...}; links and hidden files are left out.
-Json files_json(const std::filesystem::path& assets);
+files::Json files_json(const std::filesystem::path& assets);
 
-}  // namespace palpa
+}  // namespace palpa::desk

@@ -19,7 +19,7 @@
 #include "desk/routes.h"
 #include "files/input_error.h"
 
-namespace palpa {
+namespace palpa::desk {
 namespace {
 
 namespace fs = std::filesystem;
@@ -40,18 +40,18 @@ Binding binding_of(const std::string& address) {
     if (::inet_pton(AF_INET6, address.c_str(), &six) == 1) {
         return {true, IN6_IS_ADDR_LOOPBACK(&six) != 0, IN6_IS_ADDR_UNSPECIFIED(&six) != 0};
     }
-    throw bad_input("--bind", "", shown(address), "an IP address, such as 127.0.0.1 (this machine alone) or 0.0.0.0 (all)");
+    throw files::bad_input("--bind", "", files::shown(address), "an IP address, such as 127.0.0.1 (this machine alone) or 0.0.0.0 (all)");
 }
 
 void check_options(const ServeOptions& options, const Binding& binding) {
     const bool tls = !options.tls_cert.empty();
-    if (tls != !options.tls_key.empty()) throw bad_input("--tls-cert, --tls-key", "", "one of them", "both or none");
+    if (tls != !options.tls_key.empty()) throw files::bad_input("--tls-cert, --tls-key", "", "one of them", "both or none");
     if (!tls && !binding.loopback) {
-        throw bad_input("--bind", "", shown(options.bind) + " without --tls-cert and --tls-key",
+        throw files::bad_input("--bind", "", files::shown(options.bind) + " without --tls-cert and --tls-key",
                         "both, as others can be on that network: scripts/run --tablet makes them");
     }
     if (!options.web.empty() && !fs::is_regular_file(options.web / "index.html")) {
-        throw bad_input("--web", "", shown(options.web.string()), "a folder with index.html");
+        throw files::bad_input("--web", "", files::shown(options.web.string()), "a folder with index.html");
     }
 }
 
@@ -88,7 +88,7 @@ std::vector<std::string> urls_of(const ServeOptions& options, const Binding& bin
 
 void print_start(const ServeOptions& options, const std::vector<std::string>& urls, const std::string& code, const std::string& print, int port) {
     if (options.json) {
-        Json json{{"event", "listening"}, {"port", port}, {"urls", urls}, {"pairing", !code.empty()}};
+        files::Json json{{"event", "listening"}, {"port", port}, {"urls", urls}, {"pairing", !code.empty()}};
         if (!code.empty()) json["code"] = code;
         if (!print.empty()) json["certificate_sha256"] = print;
         std::printf("%s\n", json.dump().c_str());
@@ -212,4 +212,4 @@ void serve(const ServeOptions& options) {
     desk.events.tell("ended", "uploads under way have come to their end or are sent again");
 }
 
-}  // namespace palpa
+}  // namespace palpa::desk

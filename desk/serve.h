@@ -9,7 +9,7 @@
 #include "desk/time_limits.h"
 #include "desk/uploads.h"
 
-namespace palpa {
+namespace palpa::desk {
 
 struct ServeOptions {
     std::string bind = "127.0.0.1";
@@ -32,4 +32,4 @@ std::filesystem::path web_folder_beside(const std::filesystem::path& assets);
 // Serves until SIGINT or SIGTERM. Throws InputError for options that cannot be, std::runtime_error if it cannot listen.
 void serve(const ServeOptions& options);
 
-}  // namespace palpa
+}  // namespace palpa::desk

@@ -16,7 +16,7 @@
 
 #include "desk/pairing.h"
 
-namespace palpa {
+namespace palpa::desk {
 namespace {
 
 constexpr int kBacklog = 128;
@@ -140,4 +140,4 @@ bool DeskServer::process_and_close_socket(socket_t socket) {
     return true;
 }
 
-}  // namespace palpa
+}  // namespace palpa::desk

@@ -11,7 +11,7 @@
 
 #include "desk/connection.h"
 
-namespace palpa {
+namespace palpa::desk {
 
 struct Places {
     std::size_t in_all = 128;        // connections served at a time, a thread each; as many again may wait
@@ -44,4 +44,4 @@ class DeskServer : public httplib::Server {
     std::map<std::string, std::size_t> connections_;  // by address
 };
 
-}  // namespace palpa
+}  // namespace palpa::desk

@@ -8,7 +8,7 @@
 #include <cerrno>
 #include <utility>
 
-namespace palpa {
+namespace palpa::desk {
 namespace {
 
 constexpr std::size_t kLongestTarget = 1024;
@@ -140,4 +140,4 @@ std::string mime_type(std::string_view name) {
     return "application/octet-stream";
 }
 
-}  // namespace palpa
+}  // namespace palpa::desk

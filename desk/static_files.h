@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-namespace palpa {
+namespace palpa::desk {
 
 // The names in the path of a request ("/a/b%20c?x" gives a, "b c"); what ends with '/' gets index.html. Nothing for
 // a path that is not plain: not from '/', bad or forbidden escapes (NUL, other control characters, '/', '\'), empty
@@ -43,4 +43,4 @@ StaticFile open_static(const std::filesystem::path& folder, const std::vector<st
 // By the name's ending: "application/wasm"; "application/octet-stream" for unknown ones.
 std::string mime_type(std::string_view name);
 
-}  // namespace palpa
+}  // namespace palpa::desk

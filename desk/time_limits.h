@@ -1,6 +1,6 @@
 #pragma once
 
-namespace palpa {
+namespace palpa::desk {
 
 // How long the desk waits for a client.
 struct Patience {
@@ -10,4 +10,4 @@ struct Patience {
     double end_s = 3.0;               // for what is under way when the desk is ended
 };
 
-}  // namespace palpa
+}  // namespace palpa::desk

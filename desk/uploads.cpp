@@ -17,7 +17,7 @@
 #include "files/text.h"
 #include "study/read_logs.h"
 
-namespace palpa {
+namespace palpa::desk {
 namespace {
 
 namespace fs = std::filesystem;
@@ -97,7 +97,7 @@ Uploads::Uploads(const fs::path& folder, const UploadLimits& limits, std::vector
         notes.push_back(entry.path().string() + ": an upload that did not come to its end, removed");
         fs::remove(entry.path());
     }
-    if (!fs::exists(folder_ / "index.tsv") || fs::file_size(folder_ / "index.tsv") == 0) append_synced(folder_ / "index.tsv", kHeader);
+    if (!fs::exists(folder_ / "index.tsv") || fs::file_size(folder_ / "index.tsv") == 0) files::append_synced(folder_ / "index.tsv", kHeader);
     read_index(notes);
     used_ += fs::file_size(folder_ / "index.tsv");
     for (const auto& entry : fs::directory_iterator(folder_)) {
@@ -117,21 +117,21 @@ void Uploads::lock_folder() {
     if (::flock(lock_fd_, LOCK_EX | LOCK_NB) == 0) return;
     const bool taken = errno == EWOULDBLOCK;
     ::close(lock_fd_);
-    if (taken) throw bad_input(folder_.string(), "", "another palpa serve that collects here", "a folder of its own for each");
+    if (taken) throw files::bad_input(folder_.string(), "", "another palpa serve that collects here", "a folder of its own for each");
     throw std::runtime_error(folder_.string() + ": cannot be locked: " + std::strerror(errno));
 }
 
 void Uploads::read_index(std::vector<std::string>& notes) {
     const fs::path file = folder_ / "index.tsv";
-    const std::string text = read_text(file);
-    std::string_view rest = whole_lines(text, file.string(), notes);
+    const std::string text = files::read_text(file);
+    std::string_view rest = study::whole_lines(text, file.string(), notes);
     for (int line = 1; !rest.empty(); ++line) {
         const std::string_view row = rest.substr(0, rest.find('\n'));
         rest.remove_prefix(row.size() + 1);
         if (line == 1 || row.empty()) continue;
-        const auto fields = fields_of(row, '\t');
+        const auto fields = files::fields_of(row, '\t');
         if (fields.size() != 7 || !is_hash(fields[1])) {
-            notes.push_back(file.string() + ": line " + std::to_string(line) + " is left out: " + shown(row) + " is not an upload with 7 fields");
+            notes.push_back(file.string() + ": line " + std::to_string(line) + " is left out: " + files::shown(row) + " is not an upload with 7 fields");
             continue;
         }
         indexed_.emplace(fields[1]);
@@ -161,7 +161,7 @@ void Uploads::append_row(const std::string& sha256, std::uint64_t bytes, const S
     if (rows_.count(key) != 0) return;
     const std::string row = utc_now() + "\t" + sha256 + "\t" + std::to_string(bytes) + "\t" + sha256 + std::string(kEnding) + "\t" +
                             sender.label + "\t" + device + "\t" + sender.address + "\n";
-    append_synced(folder_ / "index.tsv", row);
+    files::append_synced(folder_ / "index.tsv", row);
     used_ += row.size();
     rows_.insert(key);
     indexed_.insert(sha256);
@@ -221,15 +221,15 @@ Uploads::Incoming::Stored Uploads::Incoming::finish(std::string_view expected_sh
     stored.name = stored.sha256 + std::string(kEnding);
     if (::fsync(fd_) != 0) throw UploadRefused(507, std::string("the desk's disk takes no more: ") + std::strerror(errno));
     const fs::path target = uploads_.folder_ / stored.name;
-    stored.fresh = rename_to_new(aside_, target);
+    stored.fresh = files::rename_to_new(aside_, target);
     if (stored.fresh) announced_ = 0;  // counted for good
     if (!stored.fresh && fs::file_size(target) != received_) {
         throw std::runtime_error(target.string() + ": is there with another content than its name says");
     }
-    sync_folder(uploads_.folder_);
+    files::sync_folder(uploads_.folder_);
     const std::lock_guard lock(uploads_.mutex_);
     uploads_.append_row(stored.sha256, received_, sender);
     return stored;
 }
 
-}  // namespace palpa
+}  // namespace palpa::desk

@@ -17,7 +17,7 @@
 #include <string_view>
 #include <vector>
 
-namespace palpa {
+namespace palpa::desk {
 
 struct UploadLimits {
     std::uint64_t upload_bytes = std::uint64_t{64} << 20;
@@ -99,4 +99,4 @@ class Uploads {
     std::atomic<std::uint64_t> used_ = 0;  // stored and announced bytes, the index too
 };
 
-}  // namespace palpa
+}  // namespace palpa::desk

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace palpa {
+namespace palpa::devices {
 
 struct ForceReading {
     double t_host_s = 0.0;    // steady clock, stamped on arrival
@@ -42,4 +42,4 @@ class ForceSensor {
 // Seconds on the clock of the samples' t_host_s.
 double steady_s();
 
-}  // namespace palpa
+}  // namespace palpa::devices

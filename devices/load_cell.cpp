@@ -10,7 +10,7 @@
 
 #include "platform/serial_port.h"
 
-namespace palpa {
+namespace palpa::devices {
 namespace {
 
 bool parse(const std::string& line, LoadCellLine& out) {
@@ -24,7 +24,7 @@ bool parse(const std::string& line, LoadCellLine& out) {
 
 class LoadCell : public ForceSensor {
  public:
-    explicit LoadCell(const LoadCellOptions& options) : options_(options), port_(std::make_unique<SerialPort>(options.path, options.baud)) {}
+    explicit LoadCell(const LoadCellOptions& options) : options_(options), port_(std::make_unique<platform::SerialPort>(options.path, options.baud)) {}
 
     void read(double wait_s, std::vector<ForceReading>& out) override {
         std::array<std::uint8_t, 4096> bytes;
@@ -57,7 +57,7 @@ class LoadCell : public ForceSensor {
         if (due_s > wait_s) return 0;
         tried_s_ = steady_s();
         try {
-            port_ = std::make_unique<SerialPort>(options_.path, options_.baud);
+            port_ = std::make_unique<platform::SerialPort>(options_.path, options_.baud);
             clock_ = {};
             ++health_.reconnects;
         } catch (const std::exception&) {
@@ -80,7 +80,7 @@ class LoadCell : public ForceSensor {
     }
 
     LoadCellOptions options_;
-    std::unique_ptr<SerialPort> port_;
+    std::unique_ptr<platform::SerialPort> port_;
     LineParser parser_;
     LoadCellClock clock_;
     SensorHealth health_;
@@ -146,4 +146,4 @@ bool take_time(std::uint32_t t_us, LoadCellClock& clock, SensorHealth& health) {
 
 std::unique_ptr<ForceSensor> open_load_cell(const LoadCellOptions& options) { return std::make_unique<LoadCell>(options); }
 
-}  // namespace palpa
+}  // namespace palpa::devices

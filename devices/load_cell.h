@@ -12,7 +12,7 @@
 
 #include "devices/force_sensor.h"
 
-namespace palpa {
+namespace palpa::devices {
 
 struct LoadCellLine {
     std::uint32_t t_us = 0;
@@ -45,4 +45,4 @@ struct LoadCellOptions {
 };
 std::unique_ptr<ForceSensor> open_load_cell(const LoadCellOptions& options);
 
-}  // namespace palpa
+}  // namespace palpa::devices

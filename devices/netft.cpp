@@ -3,7 +3,7 @@
 #include "devices/sequence.h"
 #include "platform/udp_port.h"
 
-namespace palpa {
+namespace palpa::devices {
 namespace {
 
 void put(std::uint32_t value, int bytes, std::uint8_t* out) {
@@ -81,7 +81,7 @@ class NetFt : public ForceSensor {
     }
 
     NetFtOptions options_;
-    UdpPort port_;
+    platform::UdpPort port_;
     SensorHealth health_;
     Sequence sequence_;
     Sequence samples_;
@@ -126,4 +126,4 @@ bool decode_rdt_record(const std::uint8_t* bytes, std::size_t count, RdtRecord& 
 
 std::unique_ptr<ForceSensor> open_netft(const NetFtOptions& options) { return std::make_unique<NetFt>(options); }
 
-}  // namespace palpa
+}  // namespace palpa::devices

@@ -17,7 +17,7 @@
 
 #include "devices/force_sensor.h"
 
-namespace palpa {
+namespace palpa::devices {
 
 inline constexpr int kRdtPort = 49152;
 inline constexpr std::size_t kRdtRequest_bytes = 8;
@@ -48,4 +48,4 @@ struct NetFtOptions {
 };
 std::unique_ptr<ForceSensor> open_netft(const NetFtOptions& options);
 
-}  // namespace palpa
+}  // namespace palpa::devices

@@ -2,7 +2,7 @@
 
 #include <time.h>
 
-namespace palpa {
+namespace palpa::devices {
 
 double steady_s() {
     timespec now{};
@@ -41,4 +41,4 @@ SensorHealth SensorReader::health() const {
     return health_;
 }
 
-}  // namespace palpa
+}  // namespace palpa::devices

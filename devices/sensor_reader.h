@@ -10,7 +10,7 @@
 #include "devices/force_sensor.h"
 #include "devices/spsc_ring.h"
 
-namespace palpa {
+namespace palpa::devices {
 
 class SensorReader {
  public:
@@ -36,4 +36,4 @@ class SensorReader {
     std::thread thread_;
 };
 
-}  // namespace palpa
+}  // namespace palpa::devices

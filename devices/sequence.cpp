@@ -1,6 +1,6 @@
 #include "devices/sequence.h"
 
-namespace palpa {
+namespace palpa::devices {
 
 Arrival track(std::uint32_t number, Sequence& sequence, SensorHealth& health) {
     const auto ahead = static_cast<std::int32_t>(number - sequence.last);  // across the wrap-around
@@ -35,4 +35,4 @@ Arrival track(std::uint32_t number, Sequence& sequence, SensorHealth& health) {
     return Arrival::duplicate;
 }
 
-}  // namespace palpa
+}  // namespace palpa::devices

@@ -5,7 +5,7 @@
 
 #include "devices/force_sensor.h"
 
-namespace palpa {
+namespace palpa::devices {
 
 enum class Arrival : std::uint8_t { next, duplicate, late, restart };
 
@@ -22,4 +22,4 @@ struct Sequence {
 // A jump of over 2^20 either way is no gap but a sensor that started anew.
 Arrival track(std::uint32_t number, Sequence& sequence, SensorHealth& health);
 
-}  // namespace palpa
+}  // namespace palpa::devices

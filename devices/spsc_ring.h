@@ -5,7 +5,7 @@
 #include <atomic>
 #include <cstddef>
 
-namespace palpa {
+namespace palpa::devices {
 
 // One thread pushes, one pops. N must be a power of two; N values fit.
 template <class T, std::size_t N>
@@ -36,4 +36,4 @@ class SpscRing {
     alignas(64) std::atomic<std::size_t> tail_{0};
 };
 
-}  // namespace palpa
+}  // namespace palpa::devices

@@ -6,45 +6,45 @@
 #include "files/input_error.h"
 #include "files/text.h"
 
-namespace palpa {
+namespace palpa::fem {
 namespace {
 
 using namespace mechanics;
 using Eigen::Index;
 
-Material read_material(JsonReader json) {
+Material read_material(files::JsonReader json) {
     if (json.has("law")) {
         constexpr std::array kLaws{"linear", "neo-hookean", "stable-neo-hookean", "corotational"};
         const auto law = json.choice("law", {"linear", "neo-hookean", "stable-neo-hookean", "corotational"});
         if (law != 0) {
-            json.fail("law", shown(kLaws[law]),
+            json.fail("law", files::shown(kLaws[law]),
                       "linear (young_Pa and poisson): `fem solve` does not have the nonlinear laws yet");
         }
     }
     json.only({"law", "young_Pa", "poisson"});
     Material material;
     material.young_Pa = json.number("young_Pa", {0.0, 1e15, true});
-    material.poisson = json.number("poisson", kAnyNumber);
+    material.poisson = json.number("poisson", files::kAnyNumber);
     // at 0.5 - 1e-10 a block sinks as at 0.4999999 to six digits, at 0.5 - 1e-12 only to five, and a few
     // roundings below 0.5 the matrix can no longer be factored (2026-11)
     constexpr double kMostPoisson = 0.5 - 1e-10;
     if (!(material.poisson > -1.0 && material.poisson <= kMostPoisson)) {
-        json.fail("poisson", number_text(material.poisson),
+        json.fail("poisson", files::number_text(material.poisson),
                   "a number > -1 and < 0.5 by at least 1e-10 (0.4999 stands for an incompressible tissue)");
     }
     return material;
 }
 
-std::vector<Material> read_materials(JsonReader& json, std::vector<std::string>& names) {
-    const Json& list = json.any("materials");
+std::vector<Material> read_materials(files::JsonReader& json, std::vector<std::string>& names) {
+    const files::Json& list = json.any("materials");
     if (!list.is_object() || list.empty()) {
-        json.fail("materials", described(list),
+        json.fail("materials", files::described(list),
                   "an object with at least one material: {\"gel\": {\"young_Pa\": 2500, \"poisson\": 0.45}}");
     }
     std::vector<Material> materials;
     for (const auto& item : list.items()) {
         names.push_back(item.key());
-        materials.push_back(read_material(JsonReader(item.value(), json.file(), "materials." + item.key())));
+        materials.push_back(read_material(files::JsonReader(item.value(), json.file(), "materials." + item.key())));
     }
     return materials;
 }
@@ -64,7 +64,7 @@ Eigen::Vector3d vector_of(const std::vector<double>& v) {
 }
 
 // Cells that one region takes: those whose centre is inside.
-std::vector<int> cells_of_region(JsonReader& entry, const CaseMesh& mesh, const Eigen::Matrix3Xd& centre_m) {
+std::vector<int> cells_of_region(files::JsonReader& entry, const CaseMesh& mesh, const Eigen::Matrix3Xd& centre_m) {
     if (entry.has("physical")) return cells_of_group(entry, mesh);
     std::vector<int> cells;
     const auto take_if = [&](auto&& inside) {
@@ -76,16 +76,16 @@ std::vector<int> cells_of_region(JsonReader& entry, const CaseMesh& mesh, const 
         if (!entry.boolean("all", true)) entry.fail("all", "false", "true");
         take_if([](const Eigen::Vector3d&) { return true; });
     } else if (entry.has("sphere")) {
-        JsonReader sphere = entry.object("sphere");
+        files::JsonReader sphere = entry.object("sphere");
         sphere.only({"centre_mm", "radius_mm"});
-        const Eigen::Vector3d middle = 1e-3 * vector_of(sphere.numbers("centre_mm", 3, kAnyNumber));
-        const double radius_m = 1e-3 * sphere.number("radius_mm", kPositive);
+        const Eigen::Vector3d middle = 1e-3 * vector_of(sphere.numbers("centre_mm", 3, files::kAnyNumber));
+        const double radius_m = 1e-3 * sphere.number("radius_mm", files::kPositive);
         take_if([&](const Eigen::Vector3d& x) { return (x - middle).norm() <= radius_m; });
     } else {
-        JsonReader box = entry.object("box");
+        files::JsonReader box = entry.object("box");
         box.only({"min_mm", "max_mm"});
-        const Eigen::Vector3d low = 1e-3 * vector_of(box.numbers("min_mm", 3, kAnyNumber));
-        const Eigen::Vector3d high = 1e-3 * vector_of(box.numbers("max_mm", 3, kAnyNumber));
+        const Eigen::Vector3d low = 1e-3 * vector_of(box.numbers("min_mm", 3, files::kAnyNumber));
+        const Eigen::Vector3d high = 1e-3 * vector_of(box.numbers("max_mm", 3, files::kAnyNumber));
         if (!(low.array() < high.array()).all())
             box.fail("max_mm", "a corner that is not above min_mm", "max_mm > min_mm in x, y and z");
         take_if([&](const Eigen::Vector3d& x) {
@@ -95,12 +95,12 @@ std::vector<int> cells_of_region(JsonReader& entry, const CaseMesh& mesh, const 
     return cells;
 }
 
-void read_regions(JsonReader& json, const std::vector<std::string>& materials, CaseMesh& mesh) {
+void read_regions(files::JsonReader& json, const std::vector<std::string>& materials, CaseMesh& mesh) {
     auto entries = json.objects("regions");
     if (entries.empty() && materials.size() == 1) return;  // one material: it is everywhere
     mesh.mesh.region.setConstant(-1);
     const Eigen::Matrix3Xd centre_m = centroids_m(mesh.mesh);
-    for (JsonReader& entry : entries) {
+    for (files::JsonReader& entry : entries) {
         entry.only({"all", "box", "sphere", "physical", "material"});
         const int kinds = int{entry.has("all")} + int{entry.has("box")} + int{entry.has("sphere")} +
                           int{entry.has("physical")};
@@ -111,7 +111,7 @@ void read_regions(JsonReader& json, const std::vector<std::string>& materials, C
         if (it == materials.end()) {
             std::string known;
             for (const auto& material : materials) known += (known.empty() ? "" : ", ") + material;
-            entry.fail("material", shown(name), "one of the materials: " + known);
+            entry.fail("material", files::shown(name), "one of the materials: " + known);
         }
         const std::vector<int> cells = cells_of_region(entry, mesh, centre_m);
         if (cells.empty())
@@ -130,8 +130,8 @@ void read_regions(JsonReader& json, const std::vector<std::string>& materials, C
     }
 }
 
-void read_supports(JsonReader& json, const CaseMesh& mesh, FemCase& out) {
-    for (JsonReader& entry : json.objects("supports")) {
+void read_supports(files::JsonReader& json, const CaseMesh& mesh, FemCase& out) {
+    for (files::JsonReader& entry : json.objects("supports")) {
         entry.only({"face", "physical", "fix", "value_mm"});
         CaseSupport support;
         support.nodes = nodes_named(entry, mesh, support.name);
@@ -140,9 +140,9 @@ void read_supports(JsonReader& json, const CaseMesh& mesh, FemCase& out) {
         std::sort(sorted.begin(), sorted.end());
         const bool once = std::adjacent_find(sorted.begin(), sorted.end()) == sorted.end();
         if (sorted.empty() || !once || sorted.find_first_not_of("xyz") != std::string::npos) {
-            entry.fail("fix", shown(support.axes), "some of x, y and z, each once: \"xyz\", \"z\"");
+            entry.fail("fix", files::shown(support.axes), "some of x, y and z, each once: \"xyz\", \"z\"");
         }
-        support.value_m = 1e-3 * entry.number("value_mm", kAnyNumber, 0.0);
+        support.value_m = 1e-3 * entry.number("value_mm", files::kAnyNumber, 0.0);
         fix(support.nodes, support.axes, support.value_m, out.problem.supports);
         out.supports.push_back(std::move(support));
     }
@@ -153,14 +153,14 @@ void read_supports(JsonReader& json, const CaseMesh& mesh, FemCase& out) {
     });
 }
 
-ParabolicPressure read_pressure(JsonReader json, const CaseMesh& mesh) {
+ParabolicPressure read_pressure(files::JsonReader json, const CaseMesh& mesh) {
     json.only({"face", "centre_mm", "diameter_mm", "force_N"});
     ParabolicPressure pressure;
     pressure.side = json.has("face") ? read_side(json) : Side::zmax;
-    const auto centre_mm = json.numbers("centre_mm", 2, kAnyNumber);
+    const auto centre_mm = json.numbers("centre_mm", 2, files::kAnyNumber);
     pressure.centre_m = {1e-3 * centre_mm[0], 1e-3 * centre_mm[1]};
-    pressure.diameter_m = 1e-3 * json.number("diameter_mm", kPositive);
-    pressure.force_N = json.number("force_N", kAnyNumber);
+    pressure.diameter_m = 1e-3 * json.number("diameter_mm", files::kPositive);
+    pressure.force_N = json.number("force_N", files::kAnyNumber);
     if (faces_on(mesh.mesh, mesh.outer, pressure.side).cell.size() == 0)
         json.fail("face", "no face of the mesh in that side of its bounding box", "at least one");
     const PressureLoad load = parabolic_load(mesh.mesh, mesh.outer, pressure, LoadShare::consistent);
@@ -170,20 +170,20 @@ ParabolicPressure read_pressure(JsonReader json, const CaseMesh& mesh) {
     return pressure;
 }
 
-CaseTraction read_traction(JsonReader& entry, const CaseMesh& mesh) {
+CaseTraction read_traction(files::JsonReader& entry, const CaseMesh& mesh) {
     CaseTraction traction;
     std::string name;
     traction.faces = faces_named(entry, mesh, name);
     if (entry.any("traction_Pa").is_array()) {
-        const auto vector = entry.numbers("traction_Pa", 3, kAnyNumber);
+        const auto vector = entry.numbers("traction_Pa", 3, files::kAnyNumber);
         traction.vector_Pa = {vector[0], vector[1], vector[2]};
     } else {
-        traction.pressure_Pa = entry.number("traction_Pa", kAnyNumber);
+        traction.pressure_Pa = entry.number("traction_Pa", files::kAnyNumber);
     }
     return traction;
 }
 
-CaseIndenter read_indenter(JsonReader json, const CaseMesh& mesh) {
+CaseIndenter read_indenter(files::JsonReader json, const CaseMesh& mesh) {
     json.only({"shape", "radius_mm", "length_mm", "centre_mm", "depth_mm", "force_N", "friction"});
     if (faces_on(mesh.mesh, mesh.outer, Side::zmax).cell.size() == 0) {
         Index highest = 0;
@@ -195,20 +195,20 @@ CaseIndenter read_indenter(JsonReader json, const CaseMesh& mesh) {
     CaseIndenter out;
     out.indenter.shape =
         json.choice("shape", {"sphere", "cylinder"}) == 0 ? IndenterShape::sphere : IndenterShape::cylinder;
-    out.indenter.radius_m = 1e-3 * json.number("radius_mm", kPositive);
+    out.indenter.radius_m = 1e-3 * json.number("radius_mm", files::kPositive);
     if (json.has("length_mm")) {
         if (out.indenter.shape == IndenterShape::sphere)
             json.fail("length_mm", "a length of a sphere", "it for a cylinder only");
-        out.indenter.length_m = 1e-3 * json.number("length_mm", kPositive);
+        out.indenter.length_m = 1e-3 * json.number("length_mm", files::kPositive);
     }
     const Eigen::Vector3d low = 1e3 * mesh.mesh.nodes_m.rowwise().minCoeff();
     const Eigen::Vector3d high = 1e3 * mesh.mesh.nodes_m.rowwise().maxCoeff();
-    const auto centre_mm = json.numbers("centre_mm", 2, kAnyNumber);
+    const auto centre_mm = json.numbers("centre_mm", 2, files::kAnyNumber);
     for (int axis = 0; axis < 2; ++axis) {
         const double at = centre_mm[static_cast<std::size_t>(axis)];
         if (at >= low(axis) && at <= high(axis)) continue;
-        json.fail("centre_mm", short_number(at) + (axis == 0 ? " in x" : " in y"),
-                  "a place on the tissue, " + short_number(low(axis)) + " to " + short_number(high(axis)));
+        json.fail("centre_mm", files::short_number(at) + (axis == 0 ? " in x" : " in y"),
+                  "a place on the tissue, " + files::short_number(low(axis)) + " to " + files::short_number(high(axis)));
     }
     out.centre_m = {1e-3 * centre_mm[0], 1e-3 * centre_mm[1]};
     if (json.has("depth_mm") == json.has("force_N")) {
@@ -217,21 +217,21 @@ CaseIndenter read_indenter(JsonReader json, const CaseMesh& mesh) {
     }
     if (json.has("depth_mm")) {
         const double thickness_mm = high(2) - low(2);
-        const double depth_mm = json.number("depth_mm", kPositive);
+        const double depth_mm = json.number("depth_mm", files::kPositive);
         if (depth_mm >= thickness_mm) {
-            json.fail("depth_mm", short_number(depth_mm),
-                      "less than the tissue is thick, " + short_number(thickness_mm));
+            json.fail("depth_mm", files::short_number(depth_mm),
+                      "less than the tissue is thick, " + files::short_number(thickness_mm));
         }
         out.depth_m = 1e-3 * depth_mm;
     } else {
-        out.force_N = json.number("force_N", kPositive);
+        out.force_N = json.number("force_N", files::kPositive);
     }
     out.friction = json.number("friction", {0.0, 10.0}, 0.0);
     return out;
 }
 
-void read_loads(JsonReader& json, const CaseMesh& mesh, FemCase& out) {
-    for (JsonReader& entry : json.objects("loads")) {
+void read_loads(files::JsonReader& json, const CaseMesh& mesh, FemCase& out) {
+    for (files::JsonReader& entry : json.objects("loads")) {
         entry.only({"parabolic_pressure", "traction_Pa", "indenter", "face", "physical"});
         const int kinds =
             int{entry.has("parabolic_pressure")} + int{entry.has("traction_Pa")} + int{entry.has("indenter")};
@@ -254,8 +254,8 @@ void read_loads(JsonReader& json, const CaseMesh& mesh, FemCase& out) {
 
 }  // namespace
 
-FemCase parse_case(const Json& json, const std::string& file_name, const std::filesystem::path& folder) {
-    JsonReader reader(json, file_name);
+FemCase parse_case(const files::Json& json, const std::string& file_name, const std::filesystem::path& folder) {
+    files::JsonReader reader(json, file_name);
     reader.only({"name", "mesh", "element", "materials", "regions", "supports", "loads"});
     reader.text("name", "");
     FemCase out;
@@ -275,7 +275,7 @@ FemCase parse_case(const Json& json, const std::string& file_name, const std::fi
 }
 
 FemCase read_case(const std::filesystem::path& path) {
-    return parse_case(read_json(path), path.string(), path.parent_path());
+    return parse_case(files::read_json(path), path.string(), path.parent_path());
 }
 
-}  // namespace palpa
+}  // namespace palpa::fem

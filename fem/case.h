@@ -10,7 +10,7 @@
 #include "mechanics/contact.h"
 #include "mechanics/loads.h"
 
-namespace palpa {
+namespace palpa::fem {
 
 struct CaseSupport {
     std::string name;        // "zmin", or the name of a physical group
@@ -52,6 +52,6 @@ struct FemCase {
 // Everything that is wrong is an InputError with file, key, what was found and what was expected.
 FemCase read_case(const std::filesystem::path& path);
 // `folder`: where relative names of meshes start.
-FemCase parse_case(const Json& json, const std::string& file_name, const std::filesystem::path& folder);
+FemCase parse_case(const files::Json& json, const std::string& file_name, const std::filesystem::path& folder);
 
-}  // namespace palpa
+}  // namespace palpa::fem

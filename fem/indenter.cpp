@@ -16,7 +16,7 @@
 #include "mechanics/friction.h"
 #include "mechanics/layer.h"
 
-namespace palpa {
+namespace palpa::fem {
 namespace {
 
 using namespace mechanics;
@@ -43,7 +43,7 @@ Tool tool_at(const CaseIndenter& indenter, double depth_m) {
 }
 
 std::string mm_text(double metres) {
-    return short_number(1e3 * metres) + " mm";
+    return files::short_number(1e3 * metres) + " mm";
 }
 
 std::string overlap_text(const Contact& contact) {
@@ -60,18 +60,18 @@ Pressed press_smooth(const Compliance& c, const CaseIndenter& indenter, const Fe
     } else {
         press_with_force(c, tool_at(indenter, 0.0), indenter.force_N, {}, work, out.contact);
         if (out.contact.flags.capped) {
-            throw bad_input(model.file, "loads.indenter.force_N", short_number(indenter.force_N),
-                            "at most " + short_number(out.contact.tool[0].normal_N) +
+            throw files::bad_input(model.file, "loads.indenter.force_N", files::short_number(indenter.force_N),
+                            "at most " + files::short_number(out.contact.tool[0].normal_N) +
                                 ", which presses the tool through the whole tissue, " +
-                                short_number(1e3 * c.thickness_m) + " mm");
+                                files::short_number(1e3 * c.thickness_m) + " mm");
         }
     }
     const ContactFlags& flags = out.contact.flags;
     if (flags.not_settled) {
         out.unsettled = "the nodes in contact keep changing: " + overlap_text(out.contact);
     } else if (flags.force_missed) {
-        out.unsettled = "the force comes no nearer than " + short_number(out.contact.tool[0].normal_N) + " N to " +
-                        short_number(indenter.force_N) + " N";
+        out.unsettled = "the force comes no nearer than " + files::short_number(out.contact.tool[0].normal_N) + " N to " +
+                        files::short_number(indenter.force_N) + " N";
     }
     out.touch = out.contact.touch;
     for (const double p : out.contact.force_N) out.force_N.insert(out.force_N.end(), {p, 0.0, 0.0});
@@ -136,8 +136,8 @@ Pressed press_rough(const Compliance& c, const CaseIndenter& indenter, const Fem
         side = now;
         depth_m = next_depth_m(low, high);
     }
-    out.unsettled = "friction: the force jumps past " + short_number(indenter.force_N) + " N at " + mm_text(depth_m) +
-                    " (" + short_number(out.contact.tool[0].normal_N) + " N)";
+    out.unsettled = "friction: the force jumps past " + files::short_number(indenter.force_N) + " N at " + mm_text(depth_m) +
+                    " (" + files::short_number(out.contact.tool[0].normal_N) + " N)";
     return out;
 }
 
@@ -203,11 +203,11 @@ void check_size(const Rectangle& rectangle, const FemCase& model) {
     const double rows = static_cast<double>(rectangle.request.touch_nodes.size()) *
                         (rectangle.request.tangential ? 3.0 : 1.0);
     if (8.0 * rows * rows <= kMostCompliance_bytes) return;
-    throw bad_input(
+    throw files::bad_input(
         model.file, "loads.indenter",
         "a tool over " + std::to_string(rectangle.request.touch_nodes.size()) + " nodes of the surface",
         "at most " +
-            short_number(std::sqrt(kMostCompliance_bytes / 8.0) /
+            files::short_number(std::sqrt(kMostCompliance_bytes / 8.0) /
                          (rectangle.request.tangential ? 3.0 : 1.0)) +
             " (a smaller radius or depth, or a coarser mesh)");
 }
@@ -217,9 +217,9 @@ double at_mm(const FemCase& model, int node, Index axis) {
 }
 
 [[noreturn]] void refuse_support(const FemCase& model, int node, const std::string& expected) {
-    throw bad_input(model.file, "loads.indenter.centre_mm",
-                    "a support under the tool, at x " + short_number(at_mm(model, node, 0)) + ", y " +
-                        short_number(at_mm(model, node, 1)) + " mm",
+    throw files::bad_input(model.file, "loads.indenter.centre_mm",
+                    "a support under the tool, at x " + files::short_number(at_mm(model, node, 0)) + ", y " +
+                        files::short_number(at_mm(model, node, 1)) + " mm",
                     expected);
 }
 
@@ -317,7 +317,7 @@ std::vector<std::string> contact_warnings(const IndenterContact& contact) {
     std::vector<std::string> out;
     if (!contact.settled) out.push_back("the contact did not settle: " + contact.why_not_settled);
     if (contact.cells_across_radius < kFewestCells) {
-        out.push_back("the contact's radius spans " + short_number(contact.cells_across_radius) +
+        out.push_back("the contact's radius spans " + files::short_number(contact.cells_across_radius) +
                       " cells: below 4 its force can be far off, whatever the other figures say; refine the mesh around "
                       "the tool");
     }
@@ -351,7 +351,7 @@ IndenterContact press_indenter(const FemCase& model, const Factored& factored, c
         check_held(model, rectangle, pressed.contact.tool[0].depth_m);
         check_reach(model, pressed.contact.tool[0].depth_m);
         if (pressed.touch.empty()) {
-            throw bad_input(model.file, "loads.indenter", "a tool that touches no node at this depth",
+            throw files::bad_input(model.file, "loads.indenter", "a tool that touches no node at this depth",
                             "a deeper or larger tool, or a finer mesh around it");
         }
         IndenterContact out = result_of(c, pressed, model);
@@ -361,4 +361,4 @@ IndenterContact press_indenter(const FemCase& model, const Factored& factored, c
     }
 }
 
-}  // namespace palpa
+}  // namespace palpa::fem

@@ -6,7 +6,7 @@
 #include "fem/case.h"
 #include "mechanics/statics.h"
 
-namespace palpa {
+namespace palpa::fem {
 
 // What is being done, and how much of how much (total 0: not known).
 using FemProgress = std::function<void(const char* what, int done, int total)>;
@@ -36,4 +36,4 @@ IndenterContact press_indenter(const FemCase& model, const mechanics::Factored& 
 // What a person must know of it: a contact that the mesh cannot resolve, one that did not settle.
 std::vector<std::string> contact_warnings(const IndenterContact& contact);
 
-}  // namespace palpa
+}  // namespace palpa::fem

@@ -5,7 +5,7 @@
 
 #include "files/text.h"
 
-namespace palpa {
+namespace palpa::fem {
 namespace {
 
 using namespace mechanics;
@@ -38,10 +38,10 @@ std::string locking_warning(const Problem& problem) {
         if (next.poisson <= poisson) row = &next;
     }
     const bool tets = problem.element == Element::tet4;
-    return std::string(tets ? "tet4" : "hex8") + " locks at poisson " + number_text(poisson) +
-           ": on the slab of docs/fem.md it is " + short_number(tets ? row->tet4 : row->hex8) +
-           " times too stiff at " + short_number(row->poisson) + "; hex8-bbar does not lock" +
+    return std::string(tets ? "tet4" : "hex8") + " locks at poisson " + files::number_text(poisson) +
+           ": on the slab of docs/fem.md it is " + files::short_number(tets ? row->tet4 : row->hex8) +
+           " times too stiff at " + files::short_number(row->poisson) + "; hex8-bbar does not lock" +
            (tets ? " (it needs hexahedra)" : "");
 }
 
-}  // namespace palpa
+}  // namespace palpa::fem

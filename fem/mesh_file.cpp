@@ -9,7 +9,7 @@
 #include "mechanics/error.h"
 #include "mechanics/mesh_seams.h"
 
-namespace palpa {
+namespace palpa::fem {
 namespace {
 
 using namespace mechanics;
@@ -17,7 +17,7 @@ using Eigen::Index;
 
 constexpr double kMostNodes = 400'000;  // 161,000 take 4.9 GB to factor (numerics.md, issue 8)
 
-Box read_box(JsonReader box) {
+Box read_box(files::JsonReader box) {
     box.only({"size_mm", "elements", "grading"});
     const auto size_mm = box.numbers("size_mm", 3, {0.0, 1e6, true});
     const auto elements = box.numbers("elements", 3, {1.0, 2000.0});
@@ -25,35 +25,35 @@ Box read_box(JsonReader box) {
     double nodes = 1.0;
     for (std::size_t axis = 0; axis < 3; ++axis) {
         if (elements[axis] != std::floor(elements[axis])) {
-            box.fail("elements", short_number(elements[axis]), "whole numbers from 1 to 2000");
+            box.fail("elements", files::short_number(elements[axis]), "whole numbers from 1 to 2000");
         }
         out.size_m[axis] = 1e-3 * size_mm[axis];
         out.cells[axis] = static_cast<int>(elements[axis]);
         nodes *= elements[axis] + 1.0;
     }
     if (nodes > kMostNodes) {
-        box.fail("elements", short_number(nodes) + " nodes", "at most " + short_number(kMostNodes));
+        box.fail("elements", files::short_number(nodes) + " nodes", "at most " + files::short_number(kMostNodes));
     }
     if (auto grading = box.optional_object("grading")) {
         grading->only({"centre_mm", "finest_mm"});
-        const auto centre_mm = grading->numbers("centre_mm", 2, kNotNegative);
+        const auto centre_mm = grading->numbers("centre_mm", 2, files::kNotNegative);
         for (std::size_t axis = 0; axis < 2; ++axis) {
             if (centre_mm[axis] <= size_mm[axis]) continue;
-            grading->fail("centre_mm", short_number(centre_mm[axis]),
-                          "a place in the box, 0 to " + short_number(size_mm[axis]));
+            grading->fail("centre_mm", files::short_number(centre_mm[axis]),
+                          "a place in the box, 0 to " + files::short_number(size_mm[axis]));
         }
         out.grading = Grading{{1e-3 * centre_mm[0], 1e-3 * centre_mm[1]},
-                              1e-3 * grading->number("finest_mm", kPositive)};
+                              1e-3 * grading->number("finest_mm", files::kPositive)};
     }
     return out;
 }
 
-MshKind kind_of(Element element) {
-    return element == Element::tet4 ? MshKind::tet : MshKind::hex;
+files::MshKind kind_of(Element element) {
+    return element == Element::tet4 ? files::MshKind::tet : files::MshKind::hex;
 }
 
 // Nodes of none of these cells go; what stood on them keeps -1 there.
-void drop_loose_nodes(MshKind kind, Msh& msh) {
+void drop_loose_nodes(files::MshKind kind, files::Msh& msh) {
     std::vector<int> kept_as(msh.n_nodes(), -1);
     for (const int node : msh.of(kind).nodes) kept_as[static_cast<std::size_t>(node)] = 0;
     std::size_t kept = 0;
@@ -66,27 +66,27 @@ void drop_loose_nodes(MshKind kind, Msh& msh) {
     }
     msh.nodes.resize(3 * kept);
     msh.node_number.resize(kept);
-    for (MshCells& cells : msh.cells) {
+    for (files::MshCells& cells : msh.cells) {
         for (int& node : cells.nodes) node = kept_as[static_cast<std::size_t>(node)];
     }
 }
 
-Mesh mesh_of(Msh& msh, Element element, const std::string& file) {
+Mesh mesh_of(files::Msh& msh, Element element, const std::string& file) {
     const bool tets = element == Element::tet4;
-    const MshKind wanted = kind_of(element);
-    const std::size_t others = msh.count(tets ? MshKind::hex : MshKind::tet);
+    const files::MshKind wanted = kind_of(element);
+    const std::size_t others = msh.count(tets ? files::MshKind::hex : files::MshKind::tet);
     const auto n = static_cast<Index>(msh.count(wanted));
     if (n == 0 || others > 0) {
-        throw bad_input(
+        throw files::bad_input(
             file, "",
-            std::to_string(msh.count(MshKind::hex)) + " hexahedra and " +
-                std::to_string(msh.count(MshKind::tet)) + " tetrahedra",
+            std::to_string(msh.count(files::MshKind::hex)) + " hexahedra and " +
+                std::to_string(msh.count(files::MshKind::tet)) + " tetrahedra",
             tets ? "tetrahedra only (element tet4)" : "hexahedra only (element hex8-bbar or hex8)");
     }
     drop_loose_nodes(wanted, msh);
     if (static_cast<double>(msh.n_nodes()) > kMostNodes) {
-        throw bad_input(file, "", std::to_string(msh.n_nodes()) + " nodes",
-                        "at most " + short_number(kMostNodes));
+        throw files::bad_input(file, "", std::to_string(msh.n_nodes()) + " nodes",
+                        "at most " + files::short_number(kMostNodes));
     }
     Mesh mesh;
     mesh.nodes_m =
@@ -98,17 +98,17 @@ Mesh mesh_of(Msh& msh, Element element, const std::string& file) {
     return mesh;
 }
 
-void check_cells(CaseMesh& mesh, const JsonReader& json) {
+void check_cells(CaseMesh& mesh, const files::JsonReader& json) {
     try {
         mesh.report = check_mesh(mesh.mesh);
     } catch (const MeshError& error) {
-        if (!mesh.msh) throw bad_input(json.file(), "mesh", error.what(), "cells with a volume");
+        if (!mesh.msh) throw files::bad_input(json.file(), "mesh", error.what(), "cells with a volume");
         std::string found = "inverted or flat elements";
         for (std::size_t i = 0; i < std::min<std::size_t>(error.cells.size(), 8); ++i) {
             found += " " + std::to_string(number_of_cell(mesh.mesh, error.cells[i]));
         }
         if (error.cells.size() > 8) found += " ...";
-        throw bad_input(mesh.file, "", found + " (" + std::to_string(error.cells.size()) + " in all)",
+        throw files::bad_input(mesh.file, "", found + " (" + std::to_string(error.cells.size()) + " in all)",
                         "elements with a positive volume");
     }
 }
@@ -118,7 +118,7 @@ void check_seams(CaseMesh& mesh) {
     const Seams seams = find_seams(mesh.mesh, mesh.outer);
     if (!seams.hanging.empty()) {
         const Seam& seam = seams.hanging.front();
-        throw bad_input(mesh.file, "",
+        throw files::bad_input(mesh.file, "",
                         describe_node(mesh.mesh, seam.node) + " in a face of element " +
                             std::to_string(number_of_cell(mesh.mesh, seam.cell)) +
                             " without being its corner (" + std::to_string(seams.hanging.size()) +
@@ -135,48 +135,48 @@ void check_seams(CaseMesh& mesh) {
         "Tools > Coherence or `Coherence Mesh;`)");
 }
 
-std::string name_of(const MshGroup& group) {
+std::string name_of(const files::MshGroup& group) {
     return group.name.empty() ? std::to_string(group.tag) : group.name;
 }
 
-const MshGroup& find_group(JsonReader& entry, const CaseMesh& mesh, int dimension) {
+const files::MshGroup& find_group(files::JsonReader& entry, const CaseMesh& mesh, int dimension) {
     const std::string name = entry.text("physical");
     if (!mesh.msh)
-        entry.fail("physical", shown(name), "a mesh from a .msh file; a box has faces xmin ... zmax only");
+        entry.fail("physical", files::shown(name), "a mesh from a .msh file; a box has faces xmin ... zmax only");
     std::string known;
     std::string tags;
-    const MshGroup* found = nullptr;
-    for (const MshGroup& group : mesh.msh->groups) {
+    const files::MshGroup* found = nullptr;
+    for (const files::MshGroup& group : mesh.msh->groups) {
         if (group.dimension != dimension) continue;
-        known += (known.empty() ? "" : ", ") + shown(name_of(group));
+        known += (known.empty() ? "" : ", ") + files::shown(name_of(group));
         if (name_of(group) != name) continue;
         tags += (found != nullptr ? ", " : "") + std::to_string(group.tag);
         if (found != nullptr) {
             entry.fail("physical",
-                       "several groups of dimension " + std::to_string(dimension) + " called " + shown(name) +
+                       "several groups of dimension " + std::to_string(dimension) + " called " + files::shown(name) +
                            " in " + mesh.file + " (physical tags " + tags + ")",
                        "a name that one of them has alone");
         }
         found = &group;
     }
     if (found != nullptr) return *found;
-    entry.fail("physical", shown(name),
+    entry.fail("physical", files::shown(name),
                "a physical group of dimension " + std::to_string(dimension) + " in " + mesh.file + ": " +
                    (known.empty() ? "there is none" : known));
 }
 
-std::size_t count_in(const MshGroup& group, MshKind kind) {
+std::size_t count_in(const files::MshGroup& group, files::MshKind kind) {
     return group.cells[static_cast<std::size_t>(kind)].size();
 }
 
 // Refuses a group that would load nothing, or only in part.
-void check_faces_of(JsonReader& entry, const CaseMesh& mesh, const MshGroup& group) {
+void check_faces_of(files::JsonReader& entry, const CaseMesh& mesh, const files::MshGroup& group) {
     const bool hex = is_hex(mesh.mesh);
-    const std::size_t triangles = count_in(group, MshKind::triangle);
-    const std::size_t quads = count_in(group, MshKind::quad);
+    const std::size_t triangles = count_in(group, files::MshKind::triangle);
+    const std::size_t quads = count_in(group, files::MshKind::quad);
     if ((hex ? triangles : quads) == 0 && triangles + quads > 0) return;
     entry.fail("physical",
-               "a group " + shown(name_of(group)) + " of " + std::to_string(triangles) + " triangles and " +
+               "a group " + files::shown(name_of(group)) + " of " + std::to_string(triangles) + " triangles and " +
                    std::to_string(quads) + " quads in " + mesh.file,
                hex ? "quads only, at least one: the faces of hexahedra"
                    : "triangles only, at least one: the faces of tetrahedra");
@@ -190,15 +190,15 @@ std::array<int, 4> sorted_corners(const int* nodes, int corners) {
 }
 
 // The outer faces with the corners of a group's triangles or quads: oriented, and surely on the outside.
-Faces faces_of_group(JsonReader& entry, const CaseMesh& mesh) {
-    const MshGroup& group = find_group(entry, mesh, 2);
+Faces faces_of_group(files::JsonReader& entry, const CaseMesh& mesh) {
+    const files::MshGroup& group = find_group(entry, mesh, 2);
     check_faces_of(entry, mesh, group);
     std::map<std::array<int, 4>, Index> at;
     const auto corners = static_cast<int>(mesh.outer.corners.rows());
     for (Index f = 0; f < mesh.outer.cell.size(); ++f) {
         at[sorted_corners(mesh.outer.corners.col(f).data(), corners)] = f;
     }
-    const MshKind kind = corners == 3 ? MshKind::triangle : MshKind::quad;
+    const files::MshKind kind = corners == 3 ? files::MshKind::triangle : files::MshKind::quad;
     std::vector<Index> found;
     for (const int cell : group.cells[static_cast<std::size_t>(kind)]) {
         const auto it = at.find(sorted_corners(mesh.msh->of(kind).nodes.data() + corners * cell, corners));
@@ -221,7 +221,7 @@ Faces faces_of_group(JsonReader& entry, const CaseMesh& mesh) {
     return out;
 }
 
-Faces faces_of_side(JsonReader& entry, const CaseMesh& mesh) {
+Faces faces_of_side(files::JsonReader& entry, const CaseMesh& mesh) {
     Faces faces = faces_on(mesh.mesh, mesh.outer, read_side(entry));
     if (faces.cell.size() == 0)
         entry.fail("face", "no face of the mesh in that side of its bounding box", "at least one");
@@ -237,14 +237,14 @@ void with_key(const std::string& file, const std::string& key, const std::string
     } catch (const SolverError& error) {  // the run failed, the input is not known to be wrong
         throw SolverError(file + ": " + error.what(), error.code);
     } catch (const MechanicsError& error) {
-        throw bad_input(file, key, error.what(), expected);
+        throw files::bad_input(file, key, error.what(), expected);
     }
 }
 
-CaseMesh read_case_mesh(JsonReader& json, const std::filesystem::path& folder, Element& element) {
+CaseMesh read_case_mesh(files::JsonReader& json, const std::filesystem::path& folder, Element& element) {
     constexpr std::array<Element, 3> kElements{Element::hex8_bbar, Element::hex8, Element::tet4};
     element = kElements[json.has("element") ? json.choice("element", {"hex8-bbar", "hex8", "tet4"}) : 0];
-    JsonReader mesh_json = json.object("mesh");
+    files::JsonReader mesh_json = json.object("mesh");
     mesh_json.only({"box", "file"});
     if (mesh_json.has("box") == mesh_json.has("file")) {
         json.fail("mesh", mesh_json.has("box") ? "box and file" : "neither box nor file",
@@ -254,7 +254,7 @@ CaseMesh read_case_mesh(JsonReader& json, const std::filesystem::path& folder, E
     if (mesh_json.has("file")) {
         const std::filesystem::path path = folder / mesh_json.text("file");
         out.file = path.string();
-        out.msh = read_msh(path);
+        out.msh = files::read_msh(path);
         out.mesh = mesh_of(*out.msh, element, out.file);
     } else {
         const Box box = read_box(mesh_json.object("box"));
@@ -267,11 +267,11 @@ CaseMesh read_case_mesh(JsonReader& json, const std::filesystem::path& folder, E
     return out;
 }
 
-Side read_side(JsonReader& entry) {
+Side read_side(files::JsonReader& entry) {
     return static_cast<Side>(entry.choice("face", {"xmin", "xmax", "ymin", "ymax", "zmin", "zmax"}));
 }
 
-Faces faces_named(JsonReader& entry, const CaseMesh& mesh, std::string& name) {
+Faces faces_named(files::JsonReader& entry, const CaseMesh& mesh, std::string& name) {
     if (entry.has("face") == entry.has("physical")) {
         entry.fail("face", entry.has("face") ? "face and physical" : "nothing",
                    "one of face (xmin ... zmax) and physical");
@@ -280,13 +280,13 @@ Faces faces_named(JsonReader& entry, const CaseMesh& mesh, std::string& name) {
     return entry.has("face") ? faces_of_side(entry, mesh) : faces_of_group(entry, mesh);
 }
 
-std::vector<int> nodes_named(JsonReader& entry, const CaseMesh& mesh, std::string& name) {
+std::vector<int> nodes_named(files::JsonReader& entry, const CaseMesh& mesh, std::string& name) {
     if (entry.has("face") || !entry.has("physical")) return nodes_of(faces_named(entry, mesh, name));
-    const MshGroup& group = find_group(entry, mesh, 2);  // may lie inside the body as well
+    const files::MshGroup& group = find_group(entry, mesh, 2);  // may lie inside the body as well
     name = entry.text("physical");
     std::vector<int> nodes;
-    for (const MshKind kind : {MshKind::triangle, MshKind::quad}) {
-        const auto corners = static_cast<std::size_t>(kMshCorners[static_cast<std::size_t>(kind)]);
+    for (const files::MshKind kind : {files::MshKind::triangle, files::MshKind::quad}) {
+        const auto corners = static_cast<std::size_t>(files::kMshCorners[static_cast<std::size_t>(kind)]);
         for (const int cell : group.cells[static_cast<std::size_t>(kind)]) {
             const int* first = mesh.msh->of(kind).nodes.data() + corners * static_cast<std::size_t>(cell);
             if (std::any_of(first, first + corners, [](int node) { return node < 0; })) {
@@ -302,19 +302,19 @@ std::vector<int> nodes_named(JsonReader& entry, const CaseMesh& mesh, std::strin
     std::sort(nodes.begin(), nodes.end());
     nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
     if (nodes.empty()) {
-        entry.fail("physical", "a group " + shown(name) + " without faces in " + mesh.file, "at least one");
+        entry.fail("physical", "a group " + files::shown(name) + " without faces in " + mesh.file, "at least one");
     }
     return nodes;
 }
 
-std::vector<int> cells_of_group(JsonReader& entry, const CaseMesh& mesh) {
-    const MshKind kind = is_hex(mesh.mesh) ? MshKind::hex : MshKind::tet;
-    const MshGroup& group = find_group(entry, mesh, 3);
+std::vector<int> cells_of_group(files::JsonReader& entry, const CaseMesh& mesh) {
+    const files::MshKind kind = is_hex(mesh.mesh) ? files::MshKind::hex : files::MshKind::tet;
+    const files::MshGroup& group = find_group(entry, mesh, 3);
     if (count_in(group, kind) == 0) {
-        entry.fail("physical", "a group " + shown(name_of(group)) + " without elements in " + mesh.file,
+        entry.fail("physical", "a group " + files::shown(name_of(group)) + " without elements in " + mesh.file,
                    "at least one");
     }
     return group.cells[static_cast<std::size_t>(kind)];
 }
 
-}  // namespace palpa
+}  // namespace palpa::fem

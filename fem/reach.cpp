@@ -8,7 +8,7 @@
 #include "files/text.h"
 #include "mechanics/face_point.h"
 
-namespace palpa {
+namespace palpa::fem {
 namespace {
 
 using namespace mechanics;
@@ -49,16 +49,16 @@ void check_reach(const FemCase& model, double depth_m) {
             const Vector3d at = places.col(k);
             if (at.z() > top_m - tolerance_m) continue;
             if (at.z() <= tool_m(*model.indenter, top_m - depth_m, at.x(), at.y())) continue;
-            throw bad_input(model.file, "loads.indenter",
-                            "a tool, " + short_number(1e3 * depth_m) +
+            throw files::bad_input(model.file, "loads.indenter",
+                            "a tool, " + files::short_number(1e3 * depth_m) +
                                 " mm deep, that reaches a lower part of the surface at " +
-                                short_number(1e3 * at.x()) + ", " + short_number(1e3 * at.y()) + ", " +
-                                short_number(1e3 * at.z()) + " mm (element " +
+                                files::short_number(1e3 * at.x()) + ", " + files::short_number(1e3 * at.y()) + ", " +
+                                files::short_number(1e3 * at.z()) + " mm (element " +
                                 std::to_string(number_of_cell(mesh, model.outer.cell(f))) + ")",
-                            "a flat surface at zmax, " + short_number(1e3 * top_m) +
+                            "a flat surface at zmax, " + files::short_number(1e3 * top_m) +
                                 " mm, wherever the tool reaches");
         }
     }
 }
 
-}  // namespace palpa
+}  // namespace palpa::fem

@@ -3,10 +3,10 @@
 
 #include "fem/case.h"
 
-namespace palpa {
+namespace palpa::fem {
 
 // Throws InputError where the tool at this depth is inside a part of the surface that looks upwards and is
 // lower than zmax: a step, or the slope around a flat top.
 void check_reach(const FemCase& model, double depth_m);
 
-}  // namespace palpa
+}  // namespace palpa::fem

@@ -11,7 +11,7 @@
 #include "mechanics/error.h"
 #include "mechanics/face_point.h"
 
-namespace palpa {
+namespace palpa::fem {
 namespace {
 
 using namespace mechanics;
@@ -173,7 +173,7 @@ FemResult solve_loads(const FemCase& model, const Factored& factored, const FemP
     result.solution = solve(factored, loads.force_N);
     if (!result.solution.u_m.allFinite() || !std::isfinite(result.solution.energy_J)) {
         throw std::runtime_error(model.file + ": the displacement is not finite (loads of " +
-                                 short_number(loads.applied_N) + " N)");
+                                 files::short_number(loads.applied_N) + " N)");
     }
     result.fields = cell_fields(mesh, model.problem.materials, result.solution.u_m);
     result.von_mises_Pa = von_mises_of(result.fields);
@@ -211,14 +211,14 @@ FemResult solve_case(const FemCase& model, const FemProgress& progress) {
     return result;
 }
 
-VtuGrid vtu_of(const FemCase& model, const FemResult& result) {
+files::VtuGrid vtu_of(const FemCase& model, const FemResult& result) {
     const auto list = [](const auto& matrix, double scale) {
         std::vector<double> out(static_cast<std::size_t>(matrix.size()));
         for (std::size_t i = 0; i < out.size(); ++i) out[i] = scale * static_cast<double>(matrix.data()[i]);
         return out;
     };
     const Mesh& mesh = model.problem.mesh;
-    VtuGrid grid;
+    files::VtuGrid grid;
     grid.points = list(mesh.nodes_m, 1e3);
     grid.corners = static_cast<int>(mesh.cells.rows());
     grid.cells.assign(mesh.cells.data(), mesh.cells.data() + mesh.cells.size());
@@ -233,4 +233,4 @@ VtuGrid vtu_of(const FemCase& model, const FemResult& result) {
     return grid;
 }
 
-}  // namespace palpa
+}  // namespace palpa::fem

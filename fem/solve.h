@@ -5,7 +5,7 @@
 #include "files/vtu.h"
 #include "mechanics/linear_range.h"
 
-namespace palpa {
+namespace palpa::fem {
 
 inline constexpr double kMostBackwardError = 1e-12;  // of a solution that counts as converged
 
@@ -44,6 +44,6 @@ FemResult solve_case(const FemCase& model, const FemProgress& progress);
 
 // In mm: displacement_mm and reaction_N on points; strain (tensor components), stress_Pa, von_mises_Pa and
 // material (position in FemCase::materials) in cells.
-VtuGrid vtu_of(const FemCase& model, const FemResult& result);
+files::VtuGrid vtu_of(const FemCase& model, const FemResult& result);
 
-}  // namespace palpa
+}  // namespace palpa::fem

@@ -7,19 +7,19 @@
 #include "calibration/profile_file.h"
 #include "files/text.h"
 
-namespace palpa {
+namespace palpa::figures {
 namespace {
 
-Json pair(const CurveInterval& interval) { return {interval.low, interval.high}; }
+files::Json pair(const calibration::CurveInterval& interval) { return {interval.low, interval.high}; }
 
-Json intervals_json(const Bootstrap& bootstrap, CurveModel model) {
-    Json json{{"level", 0.95}, {"fits", bootstrap.fits}, {"drawn", bootstrap.over_repeats ? "repeats" : "points"}};
-    if (model != CurveModel::monotone_cubic) {
+files::Json intervals_json(const calibration::Bootstrap& bootstrap, calibration::CurveModel model) {
+    files::Json json{{"level", 0.95}, {"fits", bootstrap.fits}, {"drawn", bootstrap.over_repeats ? "repeats" : "points"}};
+    if (model != calibration::CurveModel::monotone_cubic) {
         json["a_N"] = pair(bootstrap.a_N);
         json["b"] = pair(bootstrap.b);
     }
-    if (model == CurveModel::exponential_offset) json["offset_N"] = pair(bootstrap.offset_N);
-    Json curve{{"level", Json::array()}, {"low_N", Json::array()}, {"high_N", Json::array()}};
+    if (model == calibration::CurveModel::exponential_offset) json["offset_N"] = pair(bootstrap.offset_N);
+    files::Json curve{{"level", files::Json::array()}, {"low_N", files::Json::array()}, {"high_N", files::Json::array()}};
     for (std::size_t i = 0; i < bootstrap.level.size(); i += 5) {
         curve["level"].push_back(bootstrap.level[i]);
         curve["low_N"].push_back(bootstrap.low_N[i]);
@@ -29,21 +29,21 @@ Json intervals_json(const Bootstrap& bootstrap, CurveModel model) {
     return json;
 }
 
-std::string percent(double share) { return std::isnan(share) ? "-" : short_number(100.0 * share) + " %"; }
+std::string percent(double share) { return std::isnan(share) ? "-" : files::short_number(100.0 * share) + " %"; }
 
 }  // namespace
 
-Json bands_json(const std::vector<ErrorBand>& bands) {
-    Json json = Json::array();
-    for (const ErrorBand& band : bands) {
+files::Json bands_json(const std::vector<calibration::ErrorBand>& bands) {
+    files::Json json = files::Json::array();
+    for (const calibration::ErrorBand& band : bands) {
         json.push_back({{"from", band.from}, {"to", band.to}, {"n", band.n}, {"median", band.median}, {"p90", band.p90}});
     }
     return json;
 }
 
-Json quality_json(const Calibration& calibration) {
-    const Ends& ends = calibration.ends;
-    Json json;
+files::Json quality_json(const calibration::Calibration& calibration) {
+    const calibration::Ends& ends = calibration.ends;
+    files::Json json;
     json["r2_newton"] = calibration.quality.r2_newton;
     json["r2_log"] = calibration.quality.r2_log;
     json["rmse_N"] = calibration.quality.rmse_N;
@@ -76,10 +76,10 @@ Json quality_json(const Calibration& calibration) {
     return json;
 }
 
-Json calibration_json(const Calibration& calibration) {
-    Json json;
+files::Json calibration_json(const calibration::Calibration& calibration) {
+    files::Json json;
     json["model"] = name_of(calibration.profile.curve.model);
-    json["parameters"] = parameters_json(calibration.profile.curve);
+    json["parameters"] = calibration::parameters_json(calibration.profile.curve);
     json["level"] = name_of(calibration.profile.level);
     json["level_range"] = {calibration.profile.level_lowest, calibration.profile.level_highest};
     json["fitted_range"] = {calibration.profile.fitted_lowest, calibration.profile.fitted_highest};
@@ -87,28 +87,28 @@ Json calibration_json(const Calibration& calibration) {
     return json;
 }
 
-void print_bands(const std::vector<ErrorBand>& bands, const char* of_what) {
+void print_bands(const std::vector<calibration::ErrorBand>& bands, const char* of_what) {
     std::printf("  error       of %s\n", of_what);
     std::printf("              %-18s %6s %10s %10s\n", "level", "points", "median", "p90");
-    for (const ErrorBand& band : bands) {
-        const std::string range = short_number(band.from) + " - " + short_number(band.to);
+    for (const calibration::ErrorBand& band : bands) {
+        const std::string range = files::short_number(band.from) + " - " + files::short_number(band.to);
         std::printf("              %-18s %6zu %10s %10s\n", range.c_str(), band.n, percent(band.median).c_str(), percent(band.p90).c_str());
     }
 }
 
-void print_calibration(const Calibration& calibration) {
-    const Curve& curve = calibration.profile.curve;
-    const auto text = [](double value) { return short_number(value); };
+void print_calibration(const calibration::Calibration& calibration) {
+    const calibration::Curve& curve = calibration.profile.curve;
+    const auto text = [](double value) { return files::short_number(value); };
     std::printf("%s, %s error", std::string(name_of(curve.model)).c_str(), std::string(name_of(calibration.chosen.error)).c_str());
-    if (curve.model == CurveModel::monotone_cubic) {
+    if (curve.model == calibration::CurveModel::monotone_cubic) {
         std::printf(": %zu knots\n", curve.knot_level.size());
     } else {
-        const Bootstrap& boot = calibration.bootstrap;
-        const auto with = [&](double value, const CurveInterval& interval) {
+        const calibration::Bootstrap& boot = calibration.bootstrap;
+        const auto with = [&](double value, const calibration::CurveInterval& interval) {
             return text(value) + (boot.fits > 0 ? " [" + text(interval.low) + ", " + text(interval.high) + "]" : "");
         };
         std::printf(": a %s N, b %s", with(curve.a_N, boot.a_N).c_str(), with(curve.b, boot.b).c_str());
-        if (curve.model == CurveModel::exponential_offset) std::printf(", offset %s N", with(curve.offset_N, boot.offset_N).c_str());
+        if (curve.model == calibration::CurveModel::exponential_offset) std::printf(", offset %s N", with(curve.offset_N, boot.offset_N).c_str());
         std::printf("\n");
     }
     std::printf("  points      %zu read, %lld fitted, %zu distinct levels\n", calibration.n_points, static_cast<long long>(calibration.points.level.size()),
@@ -133,7 +133,7 @@ void print_calibration(const Calibration& calibration) {
 
 namespace {
 
-std::string title_of(const Calibration& calibration) {
+std::string title_of(const calibration::Calibration& calibration) {
     std::string pen = calibration.profile.device.pen;
     for (char& c : pen) {
         if (c == '"' || c == '\\' || static_cast<unsigned char>(c) < 0x20) c = ' ';
@@ -144,26 +144,26 @@ std::string title_of(const Calibration& calibration) {
 void append_row(std::initializer_list<double> values, std::string& out) {
     for (const double value : values) {
         if (std::isnan(value)) out += "NaN ";
-        else append_number(value, out), out += ' ';
+        else files::append_number(value, out), out += ' ';
     }
     out += '\n';
 }
 
 }  // namespace
 
-void plot_calibration(const Calibration& calibration, const std::filesystem::path& file) {
-    const Profile& profile = calibration.profile;
+void plot_calibration(const calibration::Calibration& calibration, const std::filesystem::path& file) {
+    const calibration::Profile& profile = calibration.profile;
     std::string script = "$points << EOD\n";
     for (Eigen::Index i = 0; i < calibration.points.level.size(); ++i) {
         const double measured_N = calibration.points.force_N(i);
-        const double off = measured_N > 0.0 ? 100.0 * (measured_N - calibration.chosen.predicted_N(i)) / measured_N : kMissing;
+        const double off = measured_N > 0.0 ? 100.0 * (measured_N - calibration.chosen.predicted_N(i)) / measured_N : platform::kMissing;
         append_row({calibration.points.level(i), measured_N, off}, script);
     }
     script += "EOD\n$curve << EOD\n";
     constexpr int kPlaces = 300;
     for (int i = 0; i <= kPlaces; ++i) {
         const double level = profile.level_lowest + (profile.level_highest - profile.level_lowest) * i / kPlaces;
-        append_row({level, value_N(profile.curve, level)}, script);
+        append_row({level, calibration::value_N(profile.curve, level)}, script);
     }
     script += "EOD\n$band << EOD\n";
     for (std::size_t i = 0; i < calibration.bootstrap.level.size(); ++i) {
@@ -171,7 +171,7 @@ void plot_calibration(const Calibration& calibration, const std::filesystem::pat
     }
     script += "EOD\n";
     const bool band = calibration.bootstrap.fits > 0;
-    const std::string range = "set xrange [" + number_text(profile.level_lowest) + ":" + number_text(profile.level_highest) + "]\n";
+    const std::string range = "set xrange [" + files::number_text(profile.level_lowest) + ":" + files::number_text(profile.level_highest) + "]\n";
     const std::string shade = band ? "$band using 1:2:3 with filledcurves lc rgb '#56B4E9' fs transparent solid 0.35 noborder title '95 % band', " : "";
     const std::string three = shade + "$points using 1:2 with points pt 7 ps 0.5 lc rgb '#000000' title 'measured', "
                                       "$curve using 1:2 with lines lw 2 lc rgb '#D55E00' title 'curve'\n";
@@ -183,4 +183,4 @@ void plot_calibration(const Calibration& calibration, const std::filesystem::pat
     draw_figure(script, file, 800, 1000);
 }
 
-}  // namespace palpa
+}  // namespace palpa::figures

@@ -6,17 +6,17 @@
 #include "calibration/calibrate.h"
 #include "files/json.h"
 
-namespace palpa {
+namespace palpa::figures {
 
 // What is kept in the profile as `quality`; with the model and its parameters, what `calibrate fit --json` prints.
-Json quality_json(const Calibration& calibration);
-Json calibration_json(const Calibration& calibration);
-Json bands_json(const std::vector<ErrorBand>& bands);
+files::Json quality_json(const calibration::Calibration& calibration);
+files::Json calibration_json(const calibration::Calibration& calibration);
+files::Json bands_json(const std::vector<calibration::ErrorBand>& bands);
 
-void print_calibration(const Calibration& calibration);
-void print_bands(const std::vector<ErrorBand>& bands, const char* of_what);
+void print_calibration(const calibration::Calibration& calibration);
+void print_bands(const std::vector<calibration::ErrorBand>& bands, const char* of_what);
 
 // Points, curve, its 95 % band, and the relative residuals of points left out of the fit. .png, .svg or .pdf.
-void plot_calibration(const Calibration& calibration, const std::filesystem::path& file);
+void plot_calibration(const calibration::Calibration& calibration, const std::filesystem::path& file);
 
-}  // namespace palpa
+}  // namespace palpa::figures

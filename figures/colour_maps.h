@@ -6,7 +6,7 @@
 
 #include <algorithm>
 
-namespace palpa {
+namespace palpa::figures {
 
 struct ColourScale {
     float stops[10][3];
@@ -24,4 +24,4 @@ inline ImU32 colour_at(const ColourScale& scale, float share) {
     return IM_COL32(mix(0), mix(1), mix(2), 255);
 }
 
-}  // namespace palpa
+}  // namespace palpa::figures

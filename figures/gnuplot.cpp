@@ -9,7 +9,7 @@
 #include "files/regular_file.h"
 #include "files/text.h"
 
-namespace palpa {
+namespace palpa::figures {
 namespace {
 
 std::string terminal(const std::filesystem::path& file, int width_px, int height_px) {
@@ -17,8 +17,8 @@ std::string terminal(const std::filesystem::path& file, int width_px, int height
     const std::string px = std::to_string(width_px) + "," + std::to_string(height_px);
     if (kind == ".png") return "pngcairo size " + px + " font 'DejaVu Sans,11'";
     if (kind == ".svg") return "svg size " + px + " font 'DejaVu Sans,13'";
-    if (kind == ".pdf") return "pdfcairo size " + short_number(width_px / 100.0) + "in," + short_number(height_px / 100.0) + "in font 'DejaVu Sans,11'";
-    throw bad_input(file.string(), "", "a file name that ends in " + shown(kind), ".png, .svg or .pdf");
+    if (kind == ".pdf") return "pdfcairo size " + files::short_number(width_px / 100.0) + "in," + files::short_number(height_px / 100.0) + "in font 'DejaVu Sans,11'";
+    throw files::bad_input(file.string(), "", "a file name that ends in " + files::shown(kind), ".png, .svg or .pdf");
 }
 
 // gnuplot takes '' for ' inside '...'.
@@ -39,20 +39,20 @@ std::string shell_quoted(const std::string& text) {
 void check_figure(const std::filesystem::path& file) { terminal(file, 1, 1); }
 
 void draw_figure(const std::string& script, const std::filesystem::path& name, int width_px, int height_px) {
-    const std::filesystem::path file = output_target(name);
+    const std::filesystem::path file = files::output_target(name);
     const std::string set = "set terminal " + terminal(name, width_px, height_px) + "\n";
     if (std::system("command -v gnuplot >/dev/null 2>&1") != 0) {
         throw std::runtime_error(file.string() + ": not drawn: gnuplot is not installed (package gnuplot-nox)");
     }
     const std::string aside = file.string() + ".part-" + std::to_string(::getpid());
     const std::string commands = aside + ".gp";
-    write_text_atomically(commands, "set encoding utf8\n" + set + "set output " + gnuplot_quoted(aside) + "\n" + script + "\nunset output\n");
+    files::write_text_atomically(commands, "set encoding utf8\n" + set + "set output " + gnuplot_quoted(aside) + "\n" + script + "\nunset output\n");
     const int status = std::system(("gnuplot " + shell_quoted(commands)).c_str());
     ::unlink(commands.c_str());
     if (status == 0 && name.extension() == ".svg") {  // else a viewer may blend cells into each other and into gaps
-        std::string svg = read_text(aside);
+        std::string svg = files::read_text(aside);
         for (std::size_t at = svg.find("<image "); at != std::string::npos; at = svg.find("<image ", at + 1)) svg.insert(at + 6, " style='image-rendering:pixelated'");
-        write_text_whole(aside, svg);
+        files::write_text_whole(aside, svg);
     }
     if (status != 0 || ::rename(aside.c_str(), file.c_str()) != 0) {
         ::unlink(aside.c_str());
@@ -60,4 +60,4 @@ void draw_figure(const std::string& script, const std::filesystem::path& name, i
     }
 }
 
-}  // namespace palpa
+}  // namespace palpa::figures

@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <string>
 
-namespace palpa {
+namespace palpa::figures {
 
 // One argument of a shell command, whatever it holds.
 std::string shell_quoted(const std::string& text);
@@ -16,4 +16,4 @@ void draw_figure(const std::string& script, const std::filesystem::path& file, i
 // What draw_figure would refuse, before anything is computed.
 void check_figure(const std::filesystem::path& file);
 
-}  // namespace palpa
+}  // namespace palpa::figures

@@ -11,7 +11,7 @@
 #include "stiffnessmaps/field.h"
 #include "stiffnessmaps/stiffness.h"
 
-namespace palpa {
+namespace palpa::figures {
 namespace {
 
 // Ten steps of viridis (Smith and van der Walt, BIDS 2015); a diverging scale around white; colours by Okabe and Ito.
@@ -30,7 +30,7 @@ set style line 6 lc rgb "#000000" lw 2 pt 4 ps 0.9
 constexpr int kLineStyles = 6;
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
-std::string text_of(double value) { return std::isfinite(value) ? number_text(value) : "NaN"; }
+std::string text_of(double value) { return std::isfinite(value) ? files::number_text(value) : "NaN"; }
 
 // In single quotes, nothing of it taken as markup.
 std::string quoted(const std::string& text) {
@@ -155,7 +155,7 @@ class Script {
     int blocks_ = 0;
 };
 
-Image image_of(const Map& map) {
+Image image_of(const stiffnessmaps::Map& map) {
     Image im;
     im.x0 = 1e3 * map.x_of(0);
     im.dx = 1e3 * map.spacing_m[0];
@@ -167,7 +167,7 @@ Image image_of(const Map& map) {
 }
 
 // Borders of a set of cells as line pieces, mm.
-std::string outline_rows(const Map& map, const std::vector<std::size_t>& cells) {
+std::string outline_rows(const stiffnessmaps::Map& map, const std::vector<std::size_t>& cells) {
     std::vector<bool> in(map.n_cells(), false);
     for (const std::size_t cell : cells) in[cell] = true;
     std::string rows;
@@ -189,7 +189,7 @@ std::string outline_rows(const Map& map, const std::vector<std::size_t>& cells) 
 }
 
 // A placed or kept nodule as it stands in the map: a disc, or a capsule along its angle.
-std::string nodule_rows(const Nodule& nodule) {
+std::string nodule_rows(const stiffnessmaps::Nodule& nodule) {
     const double radius_m = 0.5 * nodule.diameter_m.value_or(4e-3);
     const double half_m = std::max(0.0, 0.5 * nodule.length_m.value_or(0.0) - radius_m);
     const double turn = nodule.angle_deg.value_or(0.0) * std::numbers::pi / 180.0;
@@ -214,13 +214,13 @@ std::string label(const std::string& text, double x_mm, double y_mm) {
 }
 
 // Nodules of the map: placed ones dashed. Found regions: solid if sure, dotted if not.
-void outline(const Map& map, const Detection& detection, Script& script, Image& im) {
+void outline(const stiffnessmaps::Map& map, const stiffnessmaps::Detection& detection, Script& script, Image& im) {
     std::string placed, sure, unsure;
-    for (const Nodule& nodule : map.nodules) {
+    for (const stiffnessmaps::Nodule& nodule : map.nodules) {
         if (nodule.placed) placed += nodule_rows(nodule);
         if (nodule.placed) im.before += label(nodule.id, 1e3 * nodule.x_m, 1e3 * nodule.y_m);
     }
-    for (const StiffRegion& region : detection.regions) {
+    for (const stiffnessmaps::StiffRegion& region : detection.regions) {
         (region.sure ? sure : unsure) += outline_rows(map, region.cells);
         const double up_m = 0.5 * region.width_m + 0.03 * map.spacing_m[1] * static_cast<double>(map.n_y);
         const bool fits = region.y_m + up_m < map.y_of(map.n_y - 1);
@@ -239,23 +239,23 @@ void outline(const Map& map, const Detection& detection, Script& script, Image& 
     im.title_left = true;
 }
 
-Image stiffness_image(const Map& map) {
+Image stiffness_image(const stiffnessmaps::Map& map) {
     Image im = image_of(map);
     im.title = "Stiffness";
     im.unit = "N/mm";
-    for (const double k : stiffness_N_per_m(map)) im.values.push_back(1e-3 * k);
+    for (const double k : stiffnessmaps::stiffness_N_per_m(map)) im.values.push_back(1e-3 * k);
     im.span = span_of(im.values);
     return im;
 }
 
-Image nodules_image(const Map& map, const Detection& detection, Script& script) {
+Image nodules_image(const stiffnessmaps::Map& map, const stiffnessmaps::Detection& detection, Script& script) {
     Image im = stiffness_image(map);
     im.title = "Stiffness";
     outline(map, detection, script, im);
     return im;
 }
 
-double slice_force_N(const Map& map, const PlotOptions& options) {
+double slice_force_N(const stiffnessmaps::Map& map, const PlotOptions& options) {
     if (options.force_N) return *options.force_N;
     std::vector<double> deepest;
     for (std::size_t cell = 0; cell < map.n_cells(); ++cell) {
@@ -266,15 +266,15 @@ double slice_force_N(const Map& map, const PlotOptions& options) {
             break;
         }
     }
-    return std::max(1e-3, std::round(50.0 * median_of(deepest)) / 100.0);
+    return std::max(1e-3, std::round(50.0 * stiffnessmaps::median_of(deepest)) / 100.0);
 }
 
-Image depth_image(const Map& map, const Field& field, double force_N) {
+Image depth_image(const stiffnessmaps::Map& map, const stiffnessmaps::Field& field, double force_N) {
     Image im = image_of(map);
-    im.title = "Depth at " + short_number(force_N) + " N";
+    im.title = "Depth at " + files::short_number(force_N) + " N";
     im.unit = "mm";
     for (std::size_t cell = 0; cell < map.n_cells(); ++cell) {
-        const DepthAnswer answer = depth_at(field, place_at(field, {map.x_of(cell % map.n_x), map.y_of(cell / map.n_x)}), force_N);
+        const stiffnessmaps::DepthAnswer answer = stiffnessmaps::depth_at(field, stiffnessmaps::place_at(field, {map.x_of(cell % map.n_x), map.y_of(cell / map.n_x)}), force_N);
         // deeper than was measured: not known
         im.values.push_back(field.measured[cell] > 0.0 && !answer.saturated ? 1e3 * answer.depth_m : kNaN);
     }
@@ -283,10 +283,10 @@ Image depth_image(const Map& map, const Field& field, double force_N) {
 }
 
 // Along x through a row of cells, down to the deepest matrix.
-Image section_image(const Map& map, const Field& field, std::size_t row) {
+Image section_image(const stiffnessmaps::Map& map, const stiffnessmaps::Field& field, std::size_t row) {
     Image im = image_of(map);
     constexpr std::size_t kSteps = 60;
-    im.title = "Normal force along x at y = " + short_number(1e3 * map.y_of(row)) + " mm";
+    im.title = "Normal force along x at y = " + files::short_number(1e3 * map.y_of(row)) + " mm";
     im.y_label = "depth (mm)";
     im.unit = "N";
     im.down = true;
@@ -295,18 +295,18 @@ Image section_image(const Map& map, const Field& field, std::size_t row) {
     im.y0 = 0.5 * im.dy;
     for (std::size_t k = 0; k < kSteps; ++k) {
         for (std::size_t i = 0; i < map.n_x; ++i) {
-            const Place place = place_at(field, {map.x_of(i), map.y_of(row)});
+            const stiffnessmaps::Place place = stiffnessmaps::place_at(field, {map.x_of(i), map.y_of(row)});
             const double depth_m = 1e-3 * (im.y0 + im.dy * static_cast<double>(k));
-            const bool known = place.measured && depth_m <= greatest_depth_m(field, place);
-            im.values.push_back(known ? normal_force_N(field, place, depth_m) : kNaN);
+            const bool known = place.measured && depth_m <= stiffnessmaps::greatest_depth_m(field, place);
+            im.values.push_back(known ? stiffnessmaps::normal_force_N(field, place, depth_m) : kNaN);
         }
     }
     im.span = span_of(im.values);
     return im;
 }
 
-std::size_t stiffest_cell(const Map& map) {
-    const std::vector<double> k = stiffness_N_per_m(map);
+std::size_t stiffest_cell(const stiffnessmaps::Map& map) {
+    const std::vector<double> k = stiffnessmaps::stiffness_N_per_m(map);
     std::size_t best = 0;
     for (std::size_t cell = 0; cell < k.size(); ++cell) {
         if (std::isfinite(k[cell]) && !(k[best] >= k[cell])) best = cell;
@@ -315,16 +315,16 @@ std::size_t stiffest_cell(const Map& map) {
 }
 
 // Where curves are drawn if nobody says where.
-std::vector<Eigen::Vector2d> curve_places(const Map& map, const Detection& detection, const PlotOptions& options) {
+std::vector<Eigen::Vector2d> curve_places(const stiffnessmaps::Map& map, const stiffnessmaps::Detection& detection, const PlotOptions& options) {
     if (!options.at_m.empty()) return options.at_m;
     std::vector<Eigen::Vector2d> out;
-    for (const StiffRegion& region : detection.regions) {
+    for (const stiffnessmaps::StiffRegion& region : detection.regions) {
         if (out.size() < 3) out.emplace_back(region.peak_x_m, region.peak_y_m);
     }
     const auto place_of = [&](std::size_t cell) { return Eigen::Vector2d(map.x_of(cell % map.n_x), map.y_of(cell / map.n_x)); };
     if (out.empty()) out.push_back(place_of(stiffest_cell(map)));
-    const std::vector<double> k = stiffness_N_per_m(map);
-    const double middle = median_of(k);
+    const std::vector<double> k = stiffnessmaps::stiffness_N_per_m(map);
+    const double middle = stiffnessmaps::median_of(k);
     std::size_t best = 0;
     double off = INFINITY;
     for (std::size_t cell = 0; cell < k.size(); ++cell) {
@@ -336,17 +336,17 @@ std::vector<Eigen::Vector2d> curve_places(const Map& map, const Detection& detec
     return out;
 }
 
-void curves(const Map& map, const Field& field, const std::vector<Eigen::Vector2d>& places, const Box& box, Script& script) {
+void curves(const stiffnessmaps::Map& map, const stiffnessmaps::Field& field, const std::vector<Eigen::Vector2d>& places, const Box& box, Script& script) {
     std::string plot;
     int style = 0;
     for (const Eigen::Vector2d& p_m : places) {
-        const Place place = place_at(field, p_m);
+        const stiffnessmaps::Place place = stiffnessmaps::place_at(field, p_m);
         std::string rows;
         for (const double depth_m : field.depths_m) {
             if (depth_m > greatest_depth_m(field, place) * (1.0 + 1e-9)) break;
-            rows += text_of(1e3 * depth_m) + " " + text_of(normal_force_N(field, place, depth_m)) + "\n";
+            rows += text_of(1e3 * depth_m) + " " + text_of(stiffnessmaps::normal_force_N(field, place, depth_m)) + "\n";
         }
-        const std::string name = "(" + short_number(1e3 * p_m.x()) + ", " + short_number(1e3 * p_m.y()) + ") mm" + (place.measured ? "" : ", not measured");
+        const std::string name = "(" + files::short_number(1e3 * p_m.x()) + ", " + files::short_number(1e3 * p_m.y()) + ") mm" + (place.measured ? "" : ", not measured");
         plot += (plot.empty() ? "plot " : ", ") + script.block(rows) + " using 1:2 with linespoints ls " + std::to_string(style++ % kLineStyles + 1) +
                 " title " + quoted(name);
     }
@@ -361,7 +361,7 @@ struct Kind {
     const std::vector<float>& forces;
 };
 
-std::vector<Kind> kinds_of(const Map& map) {
+std::vector<Kind> kinds_of(const stiffnessmaps::Map& map) {
     std::vector<Kind> kinds{{"Normal force", map.normal_N}};
     if (!map.tangential_x_N.empty()) kinds.push_back({"Tangential force against +x", map.tangential_x_N});
     if (!map.tangential_y_N.empty()) kinds.push_back({"Tangential force against +y", map.tangential_y_N});
@@ -369,12 +369,12 @@ std::vector<Kind> kinds_of(const Map& map) {
 }
 
 // Of small multiples.
-std::size_t columns_of(const Map& map) { return map.n_depths() <= 6 ? map.n_depths() : 5; }
+std::size_t columns_of(const stiffnessmaps::Map& map) { return map.n_depths() <= 6 ? map.n_depths() : 5; }
 
-std::size_t matrix_rows(const Map& map) { return kinds_of(map).size() * ((map.n_depths() + columns_of(map) - 1) / columns_of(map)); }
+std::size_t matrix_rows(const stiffnessmaps::Map& map) { return kinds_of(map).size() * ((map.n_depths() + columns_of(map) - 1) / columns_of(map)); }
 
 // Small multiples in the strip from y0 to y1 of the figure; one scale for each kind of force.
-void matrices(const Map& map, double y0, double y1, double height_px, Script& script) {
+void matrices(const stiffnessmaps::Map& map, double y0, double y1, double height_px, Script& script) {
     const std::size_t columns = columns_of(map);
     const std::size_t rows_of_kind = (map.n_depths() + columns - 1) / columns;
     const auto kinds = kinds_of(map);
@@ -393,7 +393,7 @@ void matrices(const Map& map, double y0, double y1, double height_px, Script& sc
             im.span = span;
             im.apart = which > 0;
             im.unit = "N";
-            im.title = (k == 0 ? std::string(kinds[which].name) + ", " : "") + short_number(1e3 * map.depths_m[k]) + " mm";
+            im.title = (k == 0 ? std::string(kinds[which].name) + ", " : "") + files::short_number(1e3 * map.depths_m[k]) + " mm";
             im.bar = column + 1 == columns || k + 1 == map.n_depths();
             im.small = true;
             if (column > 0) im.y_label = "";
@@ -406,7 +406,7 @@ void matrices(const Map& map, double y0, double y1, double height_px, Script& sc
     }
 }
 
-double aspect_of(const Map& map) {  // height / width
+double aspect_of(const stiffnessmaps::Map& map) {  // height / width
     return map.spacing_m[1] * static_cast<double>(map.n_y) / (map.spacing_m[0] * static_cast<double>(map.n_x));
 }
 
@@ -414,14 +414,14 @@ int clamped(double px) { return static_cast<int>(std::clamp(px, 300.0, 4000.0));
 
 }  // namespace
 
-void plot_map(const Map& map, const Detection& detection, const PlotOptions& options, const std::filesystem::path& file) {
+void plot_map(const stiffnessmaps::Map& map, const stiffnessmaps::Detection& detection, const PlotOptions& options, const std::filesystem::path& file) {
     check_figure(file);
-    const Field field = make_field(map, {});
+    const stiffnessmaps::Field field = stiffnessmaps::make_field(map, {});
     for (const Eigen::Vector2d& p_m : options.at_m) {
-        if (place_at(field, p_m).inside) continue;
-        throw bad_input(map.name, "--at", short_number(1e3 * p_m.x()) + "," + short_number(1e3 * p_m.y()),
-                        "a place on the map: x " + short_number(1e3 * map.x_of(0)) + " to " + short_number(1e3 * map.x_of(map.n_x - 1)) + ", y " +
-                            short_number(1e3 * map.y_of(0)) + " to " + short_number(1e3 * map.y_of(map.n_y - 1)) + " mm");
+        if (stiffnessmaps::place_at(field, p_m).inside) continue;
+        throw files::bad_input(map.name, "--at", files::short_number(1e3 * p_m.x()) + "," + files::short_number(1e3 * p_m.y()),
+                        "a place on the map: x " + files::short_number(1e3 * map.x_of(0)) + " to " + files::short_number(1e3 * map.x_of(map.n_x - 1)) + ", y " +
+                            files::short_number(1e3 * map.y_of(0)) + " to " + files::short_number(1e3 * map.y_of(map.n_y - 1)) + " mm");
     }
     const double aspect = std::clamp(aspect_of(map), 0.25, 3.0);
     const std::size_t row = stiffest_cell(map) / map.n_x;
@@ -487,11 +487,11 @@ void plot_map(const Map& map, const Detection& detection, const PlotOptions& opt
     }
 }
 
-void plot_difference(const MapDifference& d, const std::filesystem::path& file) {
+void plot_difference(const stiffnessmaps::MapDifference& d, const std::filesystem::path& file) {
     check_figure(file);
     const std::size_t k = d.a.n_depths() - 1;
     const std::size_t cells = d.a.n_cells();
-    const std::string depth = " at " + short_number(1e3 * d.a.depths_m[k]) + " mm";
+    const std::string depth = " at " + files::short_number(1e3 * d.a.depths_m[k]) + " mm";
     Image a = image_of(d.a);
     a.unit = "N";
     Image b = a;
@@ -523,4 +523,4 @@ void plot_difference(const MapDifference& d, const std::filesystem::path& file) 
     draw_figure(script.whole(), file, width, height);
 }
 
-}  // namespace palpa
+}  // namespace palpa::figures

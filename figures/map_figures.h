@@ -10,7 +10,7 @@
 #include "stiffnessmaps/compare.h"
 #include "stiffnessmaps/import/detect.h"
 
-namespace palpa {
+namespace palpa::figures {
 
 enum class PlotWhat { all, matrices, stiffness, slice, curves, nodules };
 
@@ -22,9 +22,9 @@ struct PlotOptions {
 
 // Throws InputError for another ending than .png, .svg, .pdf and for a place beside the map; std::runtime_error if gnuplot
 // is missing or cannot write.
-void plot_map(const Map& map, const Detection& detection, const PlotOptions& options, const std::filesystem::path& file);
+void plot_map(const stiffnessmaps::Map& map, const stiffnessmaps::Detection& detection, const PlotOptions& options, const std::filesystem::path& file);
 
 // Both maps at the deepest common depth, and their difference.
-void plot_difference(const MapDifference& difference, const std::filesystem::path& file);
+void plot_difference(const stiffnessmaps::MapDifference& difference, const std::filesystem::path& file);
 
-}  // namespace palpa
+}  // namespace palpa::figures

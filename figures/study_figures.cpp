@@ -4,7 +4,7 @@
 
 #include "files/text.h"
 
-namespace palpa {
+namespace palpa::figures {
 namespace {
 
 // Colours by Okabe and Ito, which colour-blind people can tell apart; hatching says the same again.
@@ -89,13 +89,13 @@ void add_word(const std::string& word, std::string& list) {
     if (list.find(entry) == std::string::npos) list += (list.empty() ? "" : " ") + entry;
 }
 
-std::string script_of(const Report& report) {
+std::string script_of(const study::Report& report) {
     std::string conditions, nodules;
-    for (const ConditionResult& condition : report.conditions) {
+    for (const study::ConditionResult& condition : report.conditions) {
         if (!condition.nodules.empty()) add_word(condition.name, conditions);
-        for (const NoduleResult& nodule : condition.nodules) add_word(nodule.nodule, nodules);
+        for (const study::NoduleResult& nodule : condition.nodules) add_word(nodule.nodule, nodules);
     }
-    std::string out = "level = \"" + short_number(100.0 * report.options.bootstrap.level) + " %\"\n";
+    std::string out = "level = \"" + files::short_number(100.0 * report.options.bootstrap.level) + " %\"\n";
     const std::string who = report.simulated ? "SIMULATED participants" : "";
     out += "subtitle = \"" + (who.empty() ? who : "\\n{/*0.8 " + gnuplot_quoted(who) + "}") + "\"\n";
     out += kScript;
@@ -105,9 +105,9 @@ std::string script_of(const Report& report) {
 
 }  // namespace
 
-std::string draw_figures(const Report& report, const std::filesystem::path& folder) {
+std::string draw_figures(const study::Report& report, const std::filesystem::path& folder) {
     if (report.conditions.empty()) return "";
-    write_text_atomically(folder / "figures.gp", script_of(report));
+    files::write_text_atomically(folder / "figures.gp", script_of(report));
     if (std::system("command -v gnuplot >/dev/null 2>&1") != 0) {
         return "gnuplot is not installed (package gnuplot-nox), so there are no figures; the tables are kept: run "
                "`gnuplot figures.gp` where it is";
@@ -121,4 +121,4 @@ std::string draw_figures(const Report& report, const std::filesystem::path& fold
     return "";
 }
 
-}  // namespace palpa
+}  // namespace palpa::figures

@@ -7,10 +7,10 @@
 
 #include "study/report.h"
 
-namespace palpa {
+namespace palpa::figures {
 
 // Writes figures.gp beside the report's .tsv tables, which must be in `folder` already, and draws sensitivity, nodules
 // and ppv as .svg, .pdf and .png. Returns what went wrong, or "".
-std::string draw_figures(const Report& report, const std::filesystem::path& folder);
+std::string draw_figures(const study::Report& report, const std::filesystem::path& folder);
 
-}  // namespace palpa
+}  // namespace palpa::figures

@@ -7,7 +7,7 @@
 #include <cstring>
 #include <stdexcept>
 
-namespace palpa {
+namespace palpa::files {
 namespace {
 
 constexpr std::size_t kBuffer_bytes = 64 * 1024;
@@ -78,4 +78,4 @@ void append_synced(const std::filesystem::path& path, std::string_view text) {
     if (!good || !sync_folder_of(path)) fail();
 }
 
-}  // namespace palpa
+}  // namespace palpa::files

@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-namespace palpa {
+namespace palpa::files {
 
 class AppendFile {
  public:
@@ -39,4 +39,4 @@ class AppendFile {
 // disk when it returns. Throws std::runtime_error.
 void append_synced(const std::filesystem::path& path, std::string_view text);
 
-}  // namespace palpa
+}  // namespace palpa::files

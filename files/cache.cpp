@@ -8,7 +8,7 @@
 
 #include "files/text.h"
 
-namespace palpa {
+namespace palpa::files {
 namespace {
 
 static_assert(std::endian::native == std::endian::little, "words are read as they lie in the file");
@@ -114,4 +114,4 @@ std::string write_cache(const std::filesystem::path& folder, std::uint64_t finge
     return "";
 }
 
-}  // namespace palpa
+}  // namespace palpa::files

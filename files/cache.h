@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-namespace palpa {
+namespace palpa::files {
 
 using CachedArrays = std::vector<std::vector<double>>;
 
@@ -31,4 +31,4 @@ std::optional<CachedArrays> read_cache(const std::filesystem::path& folder, std:
 std::string write_cache(const std::filesystem::path& folder, std::uint64_t fingerprint,
                         const CachedArrays& arrays);
 
-}  // namespace palpa
+}  // namespace palpa::files

@@ -11,7 +11,7 @@
 
 #include "files/text.h"
 
-namespace palpa {
+namespace palpa::files {
 namespace {
 
 [[noreturn]] void fail_writing(const std::filesystem::path& path) {
@@ -54,4 +54,4 @@ bool write_new_text(const std::filesystem::path& path, std::string_view text) {
     return false;
 }
 
-}  // namespace palpa
+}  // namespace palpa::files

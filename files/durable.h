@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <string_view>
 
-namespace palpa {
+namespace palpa::files {
 
 // Waits until a folder's entries are on the disk. Throws std::runtime_error.
 void sync_folder(const std::filesystem::path& folder);
@@ -16,4 +16,4 @@ bool rename_to_new(const std::filesystem::path& from, const std::filesystem::pat
 // then false. Its folder is not synced. Throws std::runtime_error.
 bool write_new_text(const std::filesystem::path& path, std::string_view text);
 
-}  // namespace palpa
+}  // namespace palpa::files

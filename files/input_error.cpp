@@ -2,7 +2,7 @@
 
 #include "files/printable.h"
 
-namespace palpa {
+namespace palpa::files {
 
 InputError bad_input(std::string_view file, std::string_view where, std::string_view found,
                      std::string_view expected) {
@@ -23,4 +23,4 @@ std::string shown(std::string_view text) {
     return out + "'";
 }
 
-}  // namespace palpa
+}  // namespace palpa::files

@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-namespace palpa {
+namespace palpa::files {
 
 class InputError : public std::runtime_error {
  public:
@@ -19,4 +19,4 @@ InputError bad_input(std::string_view file, std::string_view where, std::string_
 // Text from a file as it may stand in a message: cut at 40 characters, without control characters, quoted.
 std::string shown(std::string_view text);
 
-}  // namespace palpa
+}  // namespace palpa::files

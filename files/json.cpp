@@ -8,7 +8,7 @@
 #include "files/printable.h"
 #include "files/text.h"
 
-namespace palpa {
+namespace palpa::files {
 namespace {
 
 std::string place_in(std::string_view text, std::size_t byte) {
@@ -248,4 +248,4 @@ void JsonReader::only(std::initializer_list<std::string_view> keys) const { refu
 
 void JsonReader::finish() const { refuse_unknown(*value_, asked_, file_, where_); }
 
-}  // namespace palpa
+}  // namespace palpa::files

@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-namespace palpa {
+namespace palpa::files {
 
 using Json = nlohmann::ordered_json;
 
@@ -77,4 +77,4 @@ std::string json_text(const Json& value);
 // How a value is told in a message: "3.5", "'left'", "an array", "nothing".
 std::string described(const Json& value);
 
-}  // namespace palpa
+}  // namespace palpa::files

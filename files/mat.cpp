@@ -12,7 +12,7 @@
 #include "files/regular_file.h"
 #include "files/text.h"
 
-namespace palpa {
+namespace palpa::files {
 namespace {
 
 // Index in the file (first index fastest) of each value in C order.
@@ -84,4 +84,4 @@ MatArray read_mat(const std::string& name, const std::filesystem::path& path) {
     return out;
 }
 
-}  // namespace palpa
+}  // namespace palpa::files

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace palpa {
+namespace palpa::files {
 
 struct MatArray {
     std::string name;                 // a name of MATLAB: letters, digits, underscores
@@ -19,4 +19,4 @@ void write_mat(const std::vector<MatArray>& arrays, const std::filesystem::path&
 // Throws InputError if the file is none, or has no array of single numbers of that name.
 MatArray read_mat(const std::string& name, const std::filesystem::path& path);
 
-}  // namespace palpa
+}  // namespace palpa::files

@@ -9,7 +9,7 @@
 #include "files/msh_cursor.h"
 #include "files/text.h"
 
-namespace palpa {
+namespace palpa::files {
 namespace {
 
 struct Reading {
@@ -380,4 +380,4 @@ Msh read_msh(const std::filesystem::path& path) {
     return parse_msh(read_text(path), path.string());
 }
 
-}  // namespace palpa
+}  // namespace palpa::files

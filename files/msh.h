@@ -12,7 +12,7 @@
 #include <string_view>
 #include <vector>
 
-namespace palpa {
+namespace palpa::files {
 
 enum class MshKind { triangle, quad, tet, hex };
 inline constexpr std::size_t kMshKinds = 4;
@@ -49,4 +49,4 @@ struct Msh {
 Msh read_msh(const std::filesystem::path& path);
 Msh parse_msh(std::string_view bytes, const std::string& file_name);
 
-}  // namespace palpa
+}  // namespace palpa::files

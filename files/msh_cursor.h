@@ -13,7 +13,7 @@
 #include "files/input_error.h"
 #include "files/text.h"
 
-namespace palpa {
+namespace palpa::files {
 
 static_assert(std::endian::native == std::endian::little, "numbers are read as they lie in the file");
 
@@ -115,4 +115,4 @@ class MshCursor {
     std::string_view last_;
 };
 
-}  // namespace palpa
+}  // namespace palpa::files

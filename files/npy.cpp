@@ -9,7 +9,7 @@
 #include "files/pieces.h"
 #include "files/regular_file.h"
 
-namespace palpa {
+namespace palpa::files {
 namespace {
 
 static_assert(std::endian::native == std::endian::little, "arrays are read as they lie in the file");
@@ -191,4 +191,4 @@ void write_npy(const std::filesystem::path& path, const std::vector<std::size_t>
     write_pieces_atomically(path, {npy_header(shape), bytes_of(values)});
 }
 
-}  // namespace palpa
+}  // namespace palpa::files

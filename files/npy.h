@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace palpa {
+namespace palpa::files {
 
 struct NpyArray {
     std::vector<std::size_t> shape;
@@ -27,4 +27,4 @@ void write_npy(const std::filesystem::path& path, const std::vector<std::size_t>
 
 std::string shape_text(const std::vector<std::size_t>& shape);  // "(6, 59, 159)"
 
-}  // namespace palpa
+}  // namespace palpa::files

@@ -6,7 +6,7 @@
 
 #include "files/text.h"
 
-namespace palpa {
+namespace palpa::files {
 
 bool parse_number(std::string_view text, double& out) {
     if (!text.empty() && text.front() == '+') text.remove_prefix(1);
@@ -26,4 +26,4 @@ void append_number(double value, std::string& out) {
     out.append(buffer.data(), end);
 }
 
-}  // namespace palpa
+}  // namespace palpa::files

@@ -5,9 +5,9 @@
 #include <initializer_list>
 #include <string_view>
 
-namespace palpa {
+namespace palpa::files {
 
 // One piece after the other, as write_text_atomically of files/text.h does it with one.
 void write_pieces_atomically(const std::filesystem::path& path, std::initializer_list<std::string_view> pieces);
 
-}  // namespace palpa
+}  // namespace palpa::files

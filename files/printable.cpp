@@ -1,6 +1,6 @@
 #include "files/printable.h"
 
-namespace palpa {
+namespace palpa::files {
 
 std::string printable(std::string_view message) {
     constexpr std::size_t kLongest = 4000;
@@ -16,4 +16,4 @@ std::string printable(std::string_view message) {
     return message.size() > kLongest ? out + "..." : out;
 }
 
-}  // namespace palpa
+}  // namespace palpa::files

@@ -10,7 +10,7 @@
 
 #include "files/input_error.h"
 
-namespace palpa {
+namespace palpa::files {
 namespace {
 
 namespace fs = std::filesystem;
@@ -129,4 +129,4 @@ void check_output_folder(const fs::path& folder, const std::vector<fs::path>& in
     for (const std::string& name : names) check_output(folder / name, inputs);
 }
 
-}  // namespace palpa
+}  // namespace palpa::files

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-namespace palpa {
+namespace palpa::files {
 
 // "a folder", "a FIFO", "a character device"; empty for a regular file and for a name that is free. Follows links.
 std::string_view irregular_kind(const std::filesystem::path& path);
@@ -47,4 +47,4 @@ void check_output(const std::filesystem::path& path, const std::vector<std::file
 void check_output_folder(const std::filesystem::path& folder, const std::vector<std::filesystem::path>& inputs = {},
                          const std::vector<std::string>& names = {});
 
-}  // namespace palpa
+}  // namespace palpa::files

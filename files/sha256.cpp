@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstdint>
 
-namespace palpa {
+namespace palpa::files {
 namespace {
 
 using Words8 = std::array<std::uint32_t, 8>;
@@ -80,4 +80,4 @@ std::string sha256_hex(std::string_view bytes) {
     return hex;
 }
 
-}  // namespace palpa
+}  // namespace palpa::files

@@ -4,8 +4,8 @@
 #include <string>
 #include <string_view>
 
-namespace palpa {
+namespace palpa::files {
 
 std::string sha256_hex(std::string_view bytes);
 
-}  // namespace palpa
+}  // namespace palpa::files

@@ -7,7 +7,7 @@
 #include "files/input_error.h"
 #include "files/text.h"
 
-namespace palpa {
+namespace palpa::files {
 
 Table::Table(std::string text, std::string file_name, char separator)
     : text_(std::move(text)), file_(std::move(file_name)), separator_(separator) {
@@ -100,4 +100,4 @@ double Table::finite_number(std::size_t column) const {
 Table read_tsv(const std::filesystem::path& path) { return Table(read_text(path), path.string(), '\t'); }
 Table read_csv(const std::filesystem::path& path) { return Table(read_text(path), path.string(), ','); }
 
-}  // namespace palpa
+}  // namespace palpa::files

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-namespace palpa {
+namespace palpa::files {
 
 class Table {
  public:
@@ -49,4 +49,4 @@ class Table {
 Table read_tsv(const std::filesystem::path& path);
 Table read_csv(const std::filesystem::path& path);
 
-}  // namespace palpa
+}  // namespace palpa::files

@@ -14,7 +14,7 @@
 #include "files/pieces.h"
 #include "files/regular_file.h"
 
-namespace palpa {
+namespace palpa::files {
 
 std::string read_text(const std::filesystem::path& path, std::size_t limit_bytes) {
     const InputFile file(path);
@@ -112,4 +112,4 @@ std::string short_number(double value) {
     return buffer.data();
 }
 
-}  // namespace palpa
+}  // namespace palpa::files

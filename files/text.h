@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-namespace palpa {
+namespace palpa::files {
 
 // Throws InputError if the file cannot be read, is a folder, or is larger than `limit_bytes`.
 std::string read_text(const std::filesystem::path& path, std::size_t limit_bytes = std::size_t{1} << 31);
@@ -35,4 +35,4 @@ std::string number_text(double value);
 // Four significant digits, for messages and tables.
 std::string short_number(double value);
 
-}  // namespace palpa
+}  // namespace palpa::files

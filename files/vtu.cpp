@@ -7,7 +7,7 @@
 
 #include "files/text.h"
 
-namespace palpa {
+namespace palpa::files {
 namespace {
 
 static_assert(std::endian::native == std::endian::little, "the file says LittleEndian");
@@ -96,4 +96,4 @@ void write_vtu(const std::filesystem::path& path, const VtuGrid& grid) {
     write_text_atomically(path, vtu_text(grid));
 }
 
-}  // namespace palpa
+}  // namespace palpa::files

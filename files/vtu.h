@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-namespace palpa {
+namespace palpa::files {
 
 struct VtuField {
     std::string name;
@@ -30,4 +30,4 @@ std::string vtu_text(const VtuGrid& grid);
 // Whole or not at all. Throws std::runtime_error with the system's reason.
 void write_vtu(const std::filesystem::path& path, const VtuGrid& grid);
 
-}  // namespace palpa
+}  // namespace palpa::files

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace palpa {
+namespace palpa::platform {
 
 double held_share(double held_s, double hold_s) {
     return hold_s <= 0.0 ? 1.0 : std::clamp(held_s / hold_s, 0.0, 1.0);
@@ -32,4 +32,4 @@ std::int64_t first_grid_point(std::int64_t done, std::int64_t now) {
     return std::max(done, now - kMost) + 1;
 }
 
-}  // namespace palpa
+}  // namespace palpa::platform

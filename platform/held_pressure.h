@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-namespace palpa {
+namespace palpa::platform {
 
 inline constexpr double kHoldGrid_Hz = 240.0;  // samples of what is held still
 inline constexpr double kLevelStep = 0.05;     // pressure per notch
@@ -35,4 +35,4 @@ double grid_time_s(std::int64_t point);
 // or more without a call (the computer slept) only the last minute is made up.
 std::int64_t first_grid_point(std::int64_t done, std::int64_t now);
 
-}  // namespace palpa
+}  // namespace palpa::platform

@@ -4,7 +4,7 @@
 
 #include "platform/held_pressure.h"
 
-namespace palpa {
+namespace palpa::platform {
 namespace {
 
 bool chosen(const HoldPress& hold, Tool tool) {
@@ -62,4 +62,4 @@ void press_by_hold(double now_s, HoldPress& hold, std::vector<Sample>& samples) 
     samples.swap(hold.merged);
 }
 
-}  // namespace palpa
+}  // namespace palpa::platform

@@ -6,7 +6,7 @@
 
 #include "platform/sample.h"
 
-namespace palpa {
+namespace palpa::platform {
 
 // A pen or a finger that is touching.
 struct HeldPointer {
@@ -31,4 +31,4 @@ struct HoldPress {
 // time, none after `now_s`; they stay in order, and how often it is called makes no difference.
 void press_by_hold(double now_s, HoldPress& hold, std::vector<Sample>& samples);
 
-}  // namespace palpa
+}  // namespace palpa::platform

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace palpa {
+namespace palpa::platform {
 namespace {
 
 Sample keyboard_sample(const Keyboard& keyboard, double t_host_s, Phase phase) {
@@ -132,4 +132,4 @@ void release_keys(Keyboard& keyboard) {
     keyboard.button.down = false;
 }
 
-}  // namespace palpa
+}  // namespace palpa::platform

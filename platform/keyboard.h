@@ -10,7 +10,7 @@
 #include "platform/mouse.h"
 #include "platform/sample.h"
 
-namespace palpa {
+namespace palpa::platform {
 
 // Pens count down from -2 (platform/mouse.h).
 inline constexpr std::int64_t kKeyboardPointerId = -1;
@@ -64,4 +64,4 @@ void set_slow(double t_host_s, bool slow, Keyboard& keyboard);  // Shift
 // Lets all keys go without a word; the caller cancels the press.
 void release_keys(Keyboard& keyboard);
 
-}  // namespace palpa
+}  // namespace palpa::platform

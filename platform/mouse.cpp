@@ -1,6 +1,6 @@
 #include "platform/mouse.h"
 
-namespace palpa {
+namespace palpa::platform {
 namespace {
 
 Sample mouse_sample(const Mouse& mouse, double t_host_s, double t_device_s, Phase phase) {
@@ -53,4 +53,4 @@ void turn_wheel(double t_host_s, double t_device_s, double notches, Mouse& mouse
     if (mouse.button.down) out.push_back(mouse_sample(mouse, t_host_s, t_device_s, Phase::move));
 }
 
-}  // namespace palpa
+}  // namespace palpa::platform

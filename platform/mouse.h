@@ -7,7 +7,7 @@
 #include "platform/held_pressure.h"
 #include "platform/sample.h"
 
-namespace palpa {
+namespace palpa::platform {
 
 inline constexpr std::int64_t kMousePointerId = 0;  // fingers count from 1, pens down from -2; the keyboard is -1
 
@@ -32,4 +32,4 @@ void release_mouse(double t_host_s, double t_device_s, Mouse& mouse, std::vector
 // Notches away from the person press harder. Appends a sample if the button is down.
 void turn_wheel(double t_host_s, double t_device_s, double notches, Mouse& mouse, std::vector<Sample>& out);
 
-}  // namespace palpa
+}  // namespace palpa::platform

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace palpa {
+namespace palpa::platform {
 namespace {
 
 auto find(Presses& presses, std::int64_t pointer_id) {
@@ -67,4 +67,4 @@ bool presses_tissue(const Presses& presses, std::int64_t pointer_id) {
     });
 }
 
-}  // namespace palpa
+}  // namespace palpa::platform

@@ -7,7 +7,7 @@
 
 #include "platform/sample.h"
 
-namespace palpa {
+namespace palpa::platform {
 
 enum class PressOwner : std::uint8_t { tissue, panel, nobody };
 
@@ -33,4 +33,4 @@ void cancel_gone(double t_host_s, std::int64_t pointer_id, Presses& presses, std
 
 bool presses_tissue(const Presses& presses, std::int64_t pointer_id);
 
-}  // namespace palpa
+}  // namespace palpa::platform

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace palpa {
+namespace palpa::platform {
 namespace {
 
 constexpr double kLongEnough_s = 0.5;
@@ -45,4 +45,4 @@ double constant_pressure(const PressureWatch& watch, Tool tool) {
     return pressure_kind(watch, tool) == PressureKind::constant ? of(watch, tool).first : kMissing;
 }
 
-}  // namespace palpa
+}  // namespace palpa::platform

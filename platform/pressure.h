@@ -7,7 +7,7 @@
 
 #include "platform/sample.h"
 
-namespace palpa {
+namespace palpa::platform {
 
 enum class PressureKind : std::uint8_t {
     unknown,   // not enough of it yet
@@ -40,4 +40,4 @@ PressureKind pressure_kind(const PressureWatch& watch, Tool tool);
 // The value that never changed, NaN unless the kind is constant.
 double constant_pressure(const PressureWatch& watch, Tool tool);
 
-}  // namespace palpa
+}  // namespace palpa::platform

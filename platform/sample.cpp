@@ -2,7 +2,7 @@
 
 #include <array>
 
-namespace palpa {
+namespace palpa::platform {
 namespace {
 
 constexpr std::array<std::string_view, kToolCount> kTools{"pen", "finger", "mouse", "keyboard"};
@@ -31,4 +31,4 @@ bool parse_name(std::string_view name, Tool& out) { return parse(name, kTools, o
 bool parse_name(std::string_view name, Phase& out) { return parse(name, kPhases, out); }
 bool parse_name(std::string_view name, Action& out) { return parse(name, kActions, out); }
 
-}  // namespace palpa
+}  // namespace palpa::platform

@@ -6,7 +6,7 @@
 #include <limits>
 #include <string_view>
 
-namespace palpa {
+namespace palpa::platform {
 
 // A number that the device did not report. Written as "n/a" in files.
 inline constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
@@ -48,4 +48,4 @@ bool parse_name(std::string_view name, Tool& out);
 bool parse_name(std::string_view name, Phase& out);
 bool parse_name(std::string_view name, Action& out);
 
-}  // namespace palpa
+}  // namespace palpa::platform

@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-namespace palpa {
+namespace palpa::platform {
 
 struct UnwrapState {
     bool started = false;
@@ -28,4 +28,4 @@ inline double unwrap_ms(std::uint32_t now_ms, UnwrapState& state) {
     return static_cast<double>(state.total_ms);
 }
 
-}  // namespace palpa
+}  // namespace palpa::platform

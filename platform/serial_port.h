@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <string>
 
-namespace palpa {
+namespace palpa::platform {
 
 // A serial port, raw 8N1. Blocks for no longer than it is told to; meant for a thread of its own.
 class SerialPort {
@@ -24,4 +24,4 @@ class SerialPort {
     int fd_ = -1;
 };
 
-}  // namespace palpa
+}  // namespace palpa::platform

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace palpa {
+namespace palpa::platform {
 namespace {
 
 constexpr double kClockJump_s = 1.0;
@@ -45,4 +45,4 @@ bool move_to(const Sample& sample, Timeline& timeline) {
     return true;
 }
 
-}  // namespace palpa
+}  // namespace palpa::platform

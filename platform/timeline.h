@@ -6,7 +6,7 @@
 
 #include "platform/sample.h"
 
-namespace palpa {
+namespace palpa::platform {
 
 struct Timeline {
     double now_s = 0.0;           // never goes back
@@ -25,4 +25,4 @@ struct Timeline {
 // rises by at most 200 ppm, so that order is kept.
 bool move_to(const Sample& sample, Timeline& timeline);
 
-}  // namespace palpa
+}  // namespace palpa::platform

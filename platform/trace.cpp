@@ -11,7 +11,7 @@
 #include "files/text.h"
 #include "platform/keyboard.h"
 
-namespace palpa {
+namespace palpa::platform {
 namespace {
 
 // The keyboard in older traces.
@@ -36,22 +36,22 @@ void visit_fields(Sample& s, Visit&& visit) {
     visit("action", s.action);
 }
 
-void append_field(double value, std::string& row) { append_number(value, row); }
+void append_field(double value, std::string& row) { files::append_number(value, row); }
 void append_field(std::int64_t value, std::string& row) { row.append(std::to_string(value)); }
 template <class Name>
 void append_field(Name value, std::string& row) {
     row.append(name_of(value));
 }
 
-void read_field(const Table& table, std::size_t column, double& out) { out = table.number(column); }
-void read_field(const Table& table, std::size_t column, std::int64_t& out) {
+void read_field(const files::Table& table, std::size_t column, double& out) { out = table.number(column); }
+void read_field(const files::Table& table, std::size_t column, std::int64_t& out) {
     const double value = table.finite_number(column);
     const bool old_keyboard = value == static_cast<double>(kOldKeyboardId);  // a power of two: no digit is lost
     if (!old_keyboard && (value != std::floor(value) || std::abs(value) > 9e15)) table.fail(column, "a whole number");
     out = static_cast<std::int64_t>(value);
 }
 template <class Name>
-void read_field(const Table& table, std::size_t column, Name& out) {
+void read_field(const files::Table& table, std::size_t column, Name& out) {
     if (!parse_name(table.field(column), out)) table.fail(column, "one of the names in docs/formats.md");
 }
 
@@ -61,18 +61,18 @@ std::filesystem::path sidecar_of(const std::filesystem::path& tsv) {
 }
 
 const std::filesystem::path& checked_name(const std::filesystem::path& tsv) {
-    if (tsv.extension() != ".tsv") throw bad_input(tsv.string(), "", "another ending", "a new trace NAME.tsv");
+    if (tsv.extension() != ".tsv") throw files::bad_input(tsv.string(), "", "another ending", "a new trace NAME.tsv");
     for (const std::filesystem::path& file : {tsv, sidecar_of(tsv)}) {
-        if (std::filesystem::exists(file)) throw bad_input(file.string(), "", "something of that name", "a new name (nothing is overwritten)");
+        if (std::filesystem::exists(file)) throw files::bad_input(file.string(), "", "something of that name", "a new name (nothing is overwritten)");
     }
     return tsv;
 }
 
 TraceInfo read_info(const std::filesystem::path& path) {
-    const Json root = read_json(path);
-    JsonReader json(root, path.string());
+    const files::Json root = files::read_json(path);
+    files::JsonReader json(root, path.string());
     json.only({"screen_px", "screen_mm", "device"});
-    constexpr Bounds kScreen{1.0, 16384.0};
+    constexpr files::Bounds kScreen{1.0, 16384.0};
     TraceInfo info;
     const auto size_px = json.numbers("screen_px", 2, kScreen);
     info.screen_width_px = size_px[0];
@@ -91,7 +91,7 @@ TraceInfo read_info(const std::filesystem::path& path) {
 
 Trace read_trace(const std::filesystem::path& tsv) {
     Trace trace;
-    Table table = read_tsv(tsv);
+    files::Table table = files::read_tsv(tsv);
     trace.info = read_info(sidecar_of(tsv));
     Sample order;
     std::vector<std::size_t> columns;
@@ -106,17 +106,17 @@ Trace read_trace(const std::filesystem::path& tsv) {
         if (std::abs(sample.t_device_s) > kLongest_s) table.fail(columns[1], "a time below 1e9 s, or n/a");
         trace.samples.push_back(sample);
     }
-    if (trace.samples.empty()) throw bad_input(tsv.string(), "", "no rows", "at least one sample");
+    if (trace.samples.empty()) throw files::bad_input(tsv.string(), "", "no rows", "at least one sample");
     return trace;
 }
 
 TraceWriter::TraceWriter(const std::filesystem::path& tsv, const TraceInfo& info) : file_(checked_name(tsv)) {
-    Json json;
+    files::Json json;
     json["screen_px"] = {info.screen_width_px, info.screen_height_px};
     if (!std::isnan(info.screen_width_mm)) json["screen_mm"] = {info.screen_width_mm, info.screen_height_mm};
     json["device"] = info.device;
-    AppendFile sidecar(sidecar_of(tsv));  // never over something that is there
-    sidecar.append(json_text(json));
+    files::AppendFile sidecar(sidecar_of(tsv));  // never over something that is there
+    sidecar.append(files::json_text(json));
     if (!sidecar.sync()) throw std::runtime_error(sidecar.path().string() + ": cannot be written to its end");
     Sample any;
     visit_fields(any, [&](std::string_view name, auto&) { row_.append(row_.empty() ? "" : "\t").append(name); });
@@ -133,4 +133,4 @@ void TraceWriter::write(const Sample& sample) {
     file_.append(row_.append("\n"));
 }
 
-}  // namespace palpa
+}  // namespace palpa::platform

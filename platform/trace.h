@@ -10,7 +10,7 @@
 #include "files/append_file.h"
 #include "platform/sample.h"
 
-namespace palpa {
+namespace palpa::platform {
 
 struct TraceInfo {
     double screen_width_px = 0.0;
@@ -38,8 +38,8 @@ class TraceWriter {
     bool failed() const { return file_.failed(); }
 
  private:
-    AppendFile file_;
+    files::AppendFile file_;
     std::string row_;
 };
 
-}  // namespace palpa
+}  // namespace palpa::platform

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <string>
 
-namespace palpa {
+namespace palpa::platform {
 
 // Datagrams to and from one address. Meant for a thread of its own.
 class UdpPort {
@@ -23,4 +23,4 @@ class UdpPort {
     int fd_ = -1;
 };
 
-}  // namespace palpa
+}  // namespace palpa::platform

@@ -11,7 +11,7 @@
 
 struct SDL_Window;
 
-namespace palpa {
+namespace palpa::platform {
 
 struct WindowOptions {
     std::string title = "Palpa";
@@ -98,4 +98,4 @@ class Window {
     std::unique_ptr<Impl> impl_;
 };
 
-}  // namespace palpa
+}  // namespace palpa::platform

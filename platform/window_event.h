@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <string>
 
-namespace palpa {
+namespace palpa::platform {
 
 // A key: the ASCII code of what it types, small letters, or one of these.
 namespace key {
@@ -37,4 +37,4 @@ struct WindowEvent {
 // Returns true to keep a press for panels (set_event_filter of window.h).
 using EventFilter = bool (*)(const WindowEvent& event, void* user);
 
-}  // namespace palpa
+}  // namespace palpa::platform

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <stdexcept>
 
-namespace palpa {
+namespace palpa::render {
 namespace {
 
 GLuint compile(GLenum kind, const char* source) {
@@ -97,4 +97,4 @@ std::vector<unsigned char> read_pixels(int width_px, int height_px) {
     return rgb;
 }
 
-}  // namespace palpa
+}  // namespace palpa::render

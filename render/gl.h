@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace palpa {
+namespace palpa::render {
 
 class Program {
  public:
@@ -45,4 +45,4 @@ void clear_screen(int width_px, int height_px);
 // RGB rows from the top downwards, of what was drawn last.
 std::vector<unsigned char> read_pixels(int width_px, int height_px);
 
-}  // namespace palpa
+}  // namespace palpa::render

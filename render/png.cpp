@@ -4,7 +4,7 @@
 
 #include <stdexcept>
 
-namespace palpa {
+namespace palpa::render {
 
 std::string png_bytes(int width_px, int height_px, const std::vector<unsigned char>& rgb) {
     png_image image{};
@@ -20,4 +20,4 @@ std::string png_bytes(int width_px, int height_px, const std::vector<unsigned ch
     return bytes;
 }
 
-}  // namespace palpa
+}  // namespace palpa::render

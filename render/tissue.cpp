@@ -6,7 +6,7 @@
 
 #include "render/gl.h"
 
-namespace palpa {
+namespace palpa::render {
 namespace {
 
 constexpr int kCells = 160;  // 0.75 mm on the 120 mm phantom
@@ -255,4 +255,4 @@ glm::vec2 project_px(const TissueView& view, const glm::vec3& p_m) {
     return view.centre_px + glm::vec2(q.x, y);
 }
 
-}  // namespace palpa
+}  // namespace palpa::render

@@ -8,7 +8,7 @@
 #include <memory>
 #include <vector>
 
-namespace palpa {
+namespace palpa::render {
 
 inline constexpr int kSinkPoints = 64;
 
@@ -69,4 +69,4 @@ void refine(const Relief& relief, const glm::vec2& size_m, int cells, std::vecto
 // Where a point lands on the screen, the same as in the shader; for marks drawn on top.
 glm::vec2 project_px(const TissueView& view, const glm::vec3& p_m);
 
-}  // namespace palpa
+}  // namespace palpa::render

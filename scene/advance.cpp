@@ -7,7 +7,7 @@
 
 #include "mechanics/linear_range.h"
 
-namespace palpa {
+namespace palpa::scene {
 namespace {
 
 constexpr double kLongestGap_s = 60.0;
@@ -16,12 +16,12 @@ constexpr double kUnknownThickness_m = std::numeric_limits<double>::infinity();
 // Rise of the resisting tangential force over the reference distance, as the laws ask for it; the same depth in
 // both look-ups.
 struct RiseOnMap {
-    const Field* field;
+    const stiffnessmaps::Field* field;
     double operator()(const Eigen::Vector2d& e_m, const Eigen::Vector2d& u, double force_N, double reference_m) const {
-        const Place here = place_at(*field, e_m);
-        const Place before = place_at(*field, e_m - reference_m * u);
+        const stiffnessmaps::Place here = stiffnessmaps::place_at(*field, e_m);
+        const stiffnessmaps::Place before = stiffnessmaps::place_at(*field, e_m - reference_m * u);
         if (!here.measured || !before.measured || !here.inside || !before.inside) return 0.0;
-        const double depth_m = depth_at(*field, here, force_N).depth_m;
+        const double depth_m = stiffnessmaps::depth_at(*field, here, force_N).depth_m;
         return tangential_rise_N(*field, here, before, u, depth_m);
     }
 };
@@ -36,14 +36,14 @@ struct RiseOnLinear {
 
 constexpr double kUnbelievable = 0.9;  // share of the profile's range; no hand begins a touch there within one sample
 
-bool has_sensor(Tool tool) { return tool == Tool::pen || tool == Tool::finger; }
+bool has_sensor(platform::Tool tool) { return tool == platform::Tool::pen || tool == platform::Tool::finger; }
 
-bool is_touching(Phase phase) { return phase == Phase::down || phase == Phase::move; }
+bool is_touching(platform::Phase phase) { return phase == platform::Phase::down || phase == platform::Phase::move; }
 
-void calibrate(const Scene& scene, const Plan& plan, const Sample& sample, State& state) {
+void calibrate(const Scene& scene, const Plan& plan, const platform::Sample& sample, State& state) {
     state.touch.force_N = 0.0;
     if (!is_touching(sample.phase)) return;
-    double level = level_of(plan.profile, sample);
+    double level = calibration::level_of(plan.profile, sample);
     if (std::isnan(level) && !has_sensor(sample.tool)) {
         // the made-up 0 ... 1 is a share of the profile's range
         level = plan.profile.level_lowest + sample.pressure * (plan.profile.level_highest - plan.profile.level_lowest);
@@ -55,14 +55,14 @@ void calibrate(const Scene& scene, const Plan& plan, const Sample& sample, State
     }
     // Some pens report full pressure in their first sample, whatever the force.
     const double believable = plan.profile.level_lowest + kUnbelievable * (plan.profile.level_highest - plan.profile.level_lowest);
-    if (sample.phase == Phase::down && has_sensor(sample.tool) && level > believable) {
+    if (sample.phase == platform::Phase::down && has_sensor(sample.tool) && level > believable) {
         ++state.counters.distrusted;
         return;
     }
     state.touch.force_N = scene.force_scale * force_N(plan.profile, level, state.counters.levels_clamped);
 }
 
-void place(const Sample& sample, State& state) {
+void place(const platform::Sample& sample, State& state) {
     if (std::isfinite(sample.x_px) && std::isfinite(sample.y_px)) {
         state.touch.p_m = tissue_of_px(state.view, {sample.x_px, sample.y_px});
     }
@@ -74,12 +74,12 @@ void place(const Sample& sample, State& state) {
 }
 
 void sink(const MapTissue& tissue, State& state) {
-    const Place& at = state.place = place_at(tissue.field, state.touch.p_m);
-    const DepthAnswer answer = depth_at(tissue.field, at, state.touch.force_N);
+    const stiffnessmaps::Place& at = state.place = stiffnessmaps::place_at(tissue.field, state.touch.p_m);
+    const stiffnessmaps::DepthAnswer answer = stiffnessmaps::depth_at(tissue.field, at, state.touch.force_N);
     state.contact.depth_m = answer.depth_m;
     state.contact.saturated = answer.saturated;
     state.contact.measured = at.measured && at.inside;
-    if (tissue.map.source.kind == SourceKind::simulated) {
+    if (tissue.map.source.kind == stiffnessmaps::SourceKind::simulated) {
         // the simulation was linear: how far this depth is from where that holds
         const double a_m = std::sqrt(tissue.map.indenter_radius_m * std::min(answer.depth_m, tissue.map.indenter_radius_m));
         state.contact.linearity = mechanics::linearity_ratio(answer.depth_m, kUnknownThickness_m, 2.0 * a_m);
@@ -134,22 +134,22 @@ void resist(const Scene& scene, const Plan& plan, State& state) {
     state.contact.tangential_N = std::visit([&](const auto& tissue) { return tangential_N(tissue, state); }, plan.tissue);
 }
 
-Touch timed(const State& state) {
-    Touch touch = state.touch;
+avatar::Touch timed(const State& state) {
+    avatar::Touch touch = state.touch;
     touch.t_s = state.timeline.now_s;
     return touch;
 }
 
 template <class Rise>
-void lag(const Scene& scene, const Rise& rise_N, const StationLimit& limit, State& state) {
+void lag(const Scene& scene, const Rise& rise_N, const avatar::StationLimit& limit, State& state) {
     std::int64_t& skipped = state.counters.skipped_stations;
     skipped = 0;
     if (state.display_ratio) {
-        state.avatar.lag_m = advance_lag(*scene.display_ratio, timed(state), rise_N, *state.display_ratio, limit);
+        state.avatar.lag_m = avatar::advance_lag(*scene.display_ratio, timed(state), rise_N, *state.display_ratio, limit);
         skipped += state.display_ratio->path.skipped_stations;
     }
     if (state.delay) {
-        const Delayed delayed = advance_lag(*scene.delay, timed(state), rise_N, *state.delay, limit);
+        const avatar::Delayed delayed = avatar::advance_lag(*scene.delay, timed(state), rise_N, *state.delay, limit);
         state.avatar.lag_m = delayed.lag_m;
         state.avatar.delay_s = delayed.tau_s;
         skipped += state.delay->path.skipped_stations;
@@ -157,11 +157,11 @@ void lag(const Scene& scene, const Rise& rise_N, const StationLimit& limit, Stat
 }
 
 void lag(const Scene& scene, const Plan& plan, State& state) {
-    if (const auto* map = std::get_if<MapTissue>(&plan.tissue)) return lag(scene, RiseOnMap{&map->field}, StationLimit{}, state);
+    if (const auto* map = std::get_if<MapTissue>(&plan.tissue)) return lag(scene, RiseOnMap{&map->field}, avatar::StationLimit{}, state);
     lag(scene, RiseOnLinear{&std::get<LinearTissue>(plan.tissue), &*state.linear}, kStationsOnLinear, state);
 }
 
-void run_stage(StageId id, const Scene& scene, const Plan& plan, const Sample& sample, State& state) {
+void run_stage(StageId id, const Scene& scene, const Plan& plan, const platform::Sample& sample, State& state) {
     switch (id) {
         case StageId::calibration: return calibrate(scene, plan, sample, state);
         case StageId::position: return place(sample, state);
@@ -203,7 +203,7 @@ void walk_grid(const Scene& scene, double to_s, State& state) {
     }
 }
 
-void run_stages(const Scene& scene, const Plan& plan, const Sample& sample, State& state) {
+void run_stages(const Scene& scene, const Plan& plan, const platform::Sample& sample, State& state) {
     const bool time = state.time_every > 0 && state.counters.samples % state.time_every == 0;
     if (!time) {
         for (const Stage& stage : plan.sample_stages) {
@@ -230,22 +230,22 @@ void note_palm(std::int64_t pointer_id, Palms& palms) {
 }
 
 // Is the pointer one of them? With its lift it is for the last time; one that comes down anew is not.
-bool is_palm(const Sample& sample, Palms& palms) {
+bool is_palm(const platform::Sample& sample, Palms& palms) {
     for (std::size_t i = 0; i < palms.count; ++i) {
         if (palms.pointers[i] != sample.pointer_id) continue;
-        if (sample.phase != Phase::move) palms.pointers[i] = palms.pointers[--palms.count];
-        return sample.phase != Phase::down;
+        if (sample.phase != platform::Phase::move) palms.pointers[i] = palms.pointers[--palms.count];
+        return sample.phase != platform::Phase::down;
     }
     return false;
 }
 
 // A pen takes over from a finger, which may be the hand that holds it; the finger's touch ends here.
 void take_over(const Scene& scene, const Plan& plan, State& state) {
-    Sample end;
+    platform::Sample end;
     end.pointer_id = *state.pointer;
-    end.tool = Tool::finger;
-    end.phase = Phase::cancel;
-    end.x_px = end.y_px = kMissing;  // where it was
+    end.tool = platform::Tool::finger;
+    end.phase = platform::Phase::cancel;
+    end.x_px = end.y_px = platform::kMissing;  // where it was
     run_stages(scene, plan, end, state);
     note_palm(*state.pointer, state.palms);
     ++state.counters.palms;
@@ -253,14 +253,14 @@ void take_over(const Scene& scene, const Plan& plan, State& state) {
 }
 
 // Whose sample is it? Sets state.answered.
-void follow_pointer(const Scene& scene, const Plan& plan, const Sample& sample, State& state) {
+void follow_pointer(const Scene& scene, const Plan& plan, const platform::Sample& sample, State& state) {
     const bool touching = is_touching(sample.phase);
-    const bool finger_presses = state.pointer && state.pointer_tool == Tool::finger;
-    const bool pen_presses = state.pointer && state.pointer_tool == Tool::pen;
-    if (touching && sample.tool == Tool::pen && finger_presses) take_over(scene, plan, state);
+    const bool finger_presses = state.pointer && state.pointer_tool == platform::Tool::finger;
+    const bool pen_presses = state.pointer && state.pointer_tool == platform::Tool::pen;
+    if (touching && sample.tool == platform::Tool::pen && finger_presses) take_over(scene, plan, state);
     state.answered = false;
     if (is_palm(sample, state.palms)) return;
-    if (touching && sample.tool == Tool::finger && pen_presses) note_palm(sample.pointer_id, state.palms);
+    if (touching && sample.tool == platform::Tool::finger && pen_presses) note_palm(sample.pointer_id, state.palms);
     if (touching && !state.pointer) {
         state.pointer = sample.pointer_id;
         state.pointer_tool = sample.tool;
@@ -280,7 +280,7 @@ void resize(const Scene& scene, const Plan& plan, const ScreenArea& screen, Stat
     state.view = make_view(scene.mapping, plan.area, screen);
 }
 
-ScreenArea area_of(const Sample& resize, const State& state) {
+ScreenArea area_of(const platform::Sample& resize, const State& state) {
     return {resize.width_px, resize.height_px, resize.x_px, resize.y_px, state.screen.px_per_m};
 }
 
@@ -295,18 +295,18 @@ State start(const Scene& scene, const Plan& plan, const ScreenArea& screen) {
     return state;
 }
 
-void advance(const Scene& scene, const Plan& plan, const Sample& sample, State& state) {
+void advance(const Scene& scene, const Plan& plan, const platform::Sample& sample, State& state) {
     ++state.counters.samples;
     state.answered = false;
-    if (sample.phase == Phase::ui) {
-        if (sample.action == Action::resize) resize(scene, plan, area_of(sample, state), state);
+    if (sample.phase == platform::Phase::ui) {
+        if (sample.action == platform::Action::resize) resize(scene, plan, area_of(sample, state), state);
         return;
     }
     if (!std::isfinite(sample.x_px) || !std::isfinite(sample.y_px)) {
         ++state.counters.not_numbers;
         if (is_touching(sample.phase)) return;  // a lift is a lift wherever it is
     }
-    const bool in_order = move_to(sample, state.timeline);
+    const bool in_order = platform::move_to(sample, state.timeline);
     // a lift from the past is still a lift, now
     if (!in_order && is_touching(sample.phase)) return;
     const bool was_touching = state.pointer.has_value();
@@ -322,10 +322,10 @@ Avatar avatar_at(const Scene& scene, const State& state, double t_s) {
     Avatar avatar = state.avatar;
     if (!state.touch.down) return avatar;
     if (state.display_ratio) {
-        avatar.lag_m *= pause_factor(*scene.display_ratio, *state.display_ratio, state.timeline.now_s, t_s);
+        avatar.lag_m *= avatar::pause_factor(*scene.display_ratio, *state.display_ratio, state.timeline.now_s, t_s);
     }
     if (state.delay) {
-        const Delayed delayed = delayed_at(*scene.delay, *state.delay, t_s);
+        const avatar::Delayed delayed = avatar::delayed_at(*scene.delay, *state.delay, t_s);
         avatar.lag_m = delayed.lag_m;
         avatar.delay_s = delayed.tau_s;
     }
@@ -346,11 +346,11 @@ void metered(StageId id, const Call& call, State& state) {
 
 }  // namespace
 
-SurfaceCurve surface_now(const Scene& scene, const Plan& plan, State& state) {
+avatar::SurfaceCurve surface_now(const Scene& scene, const Plan& plan, State& state) {
     assert(scene.surface);
-    SurfaceCurve curve;
+    avatar::SurfaceCurve curve;
     const auto find = [&] {
-        curve = surface_curve(state.contact.depth_m, plan.indenter_radius_m, scene.surface->thickness_m);
+        curve = avatar::surface_curve(state.contact.depth_m, plan.indenter_radius_m, scene.surface->thickness_m);
     };
     metered(StageId::surface, find, state);
     return curve;
@@ -361,4 +361,4 @@ void surface_now(const LinearTissue& tissue, State& state, Eigen::VectorXd& sink
     if (!state.touch.down) sink_m.setZero();
 }
 
-}  // namespace palpa
+}  // namespace palpa::scene

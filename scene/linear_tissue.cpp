@@ -12,7 +12,7 @@
 #include "mechanics/material.h"
 #include "mechanics/statics.h"
 
-namespace palpa {
+namespace palpa::scene {
 namespace {
 
 constexpr int kLayers = 9;              // over the thickness, finer towards the surface
@@ -22,9 +22,9 @@ constexpr int kMostSlides = 16;         // half spacings a sample: more than two
 constexpr double kFrictionTolerance = 1e-5;  // of the largest force: 2e-6 from the converged one (docs/performance.md)
 constexpr int kMostInContact = 256;     // nodes; more would be a tool of 16 spacings
 
-mechanics::Material material_of(const Elastic& elastic) { return {elastic.young_Pa, elastic.poisson}; }
+mechanics::Material material_of(const stiffnessmaps::Elastic& elastic) { return {elastic.young_Pa, elastic.poisson}; }
 
-mechanics::Problem problem_of(const Phantom& phantom, std::size_t n_x, std::size_t n_y) {
+mechanics::Problem problem_of(const stiffnessmaps::Phantom& phantom, std::size_t n_x, std::size_t n_y) {
     using namespace mechanics;
     const auto even = [](double length_m, std::size_t n) {
         return Eigen::VectorXd(Eigen::VectorXd::LinSpaced(static_cast<Eigen::Index>(n), 0.0, length_m));
@@ -36,7 +36,7 @@ mechanics::Problem problem_of(const Phantom& phantom, std::size_t n_x, std::size
                            graded_coordinates_m(thickness_m, kLayers, thickness_m, finest_m));
     problem.materials.assign(static_cast<std::size_t>(problem.mesh.cells.cols()), material_of(phantom.tissue));
     constexpr int kSubdivisions = 4;
-    for (const PhantomNodule& nodule : phantom.nodules) {
+    for (const stiffnessmaps::PhantomNodule& nodule : phantom.nodules) {
         const Sphere sphere{{nodule.centre_m[0], nodule.centre_m[1], thickness_m - nodule.centre_m[2]},
                             0.5 * nodule.diameter_m};
         mix_in(sphere_share(problem.mesh, sphere, kSubdivisions), material_of(nodule.material), Mixing::between,
@@ -57,8 +57,8 @@ std::vector<double> plain(const Eigen::Ref<const Eigen::MatrixXd>& values) {
     return {values.data(), values.data() + values.size()};
 }
 
-CachedArrays arrays_of(const mechanics::Compliance& c) {
-    CachedArrays out{plain(c.position_m), plain(c.area_m2), {c.surface_z_m, c.thickness_m, c.asymmetry}, plain(c.normal_m_per_N)};
+files::CachedArrays arrays_of(const mechanics::Compliance& c) {
+    files::CachedArrays out{plain(c.position_m), plain(c.area_m2), {c.surface_z_m, c.thickness_m, c.asymmetry}, plain(c.normal_m_per_N)};
     if (c.full_m_per_N.size() > 0) out.push_back(plain(c.full_m_per_N));
     return out;
 }
@@ -67,7 +67,7 @@ CachedArrays arrays_of(const mechanics::Compliance& c) {
 bool restore(const std::filesystem::path& cache, std::uint64_t number, const mechanics::SurfaceRequest& request,
              mechanics::Compliance& out) {
     if (cache.empty()) return false;
-    const auto arrays = read_cache(cache, number);
+    const auto arrays = files::read_cache(cache, number);
     const auto n = request.touch_nodes.size();
     if (!arrays || arrays->size() != (request.tangential ? 5u : 4u)) return false;
     if (request.tangential && arrays->back().size() != 9 * n * n) return false;
@@ -109,8 +109,8 @@ double energy_slope_N(const LinearTissue& tissue, const Eigen::Vector2d& p_m, co
 LinearTissue make_linear_tissue(const LinearOptions& options, const std::filesystem::path& cache,
                                 const mechanics::Progress& progress) {
     LinearTissue tissue;
-    tissue.phantom = read_phantom(options.phantom);
-    tissue.indenter.shape = tissue.phantom.indenter == IndenterShape::sphere ? mechanics::IndenterShape::sphere
+    tissue.phantom = stiffnessmaps::read_phantom(options.phantom);
+    tissue.indenter.shape = tissue.phantom.indenter == stiffnessmaps::IndenterShape::sphere ? mechanics::IndenterShape::sphere
                                                                              : mechanics::IndenterShape::cylinder;
     tissue.indenter.radius_m = tissue.phantom.indenter_radius_m;
     if (tissue.indenter.shape == mechanics::IndenterShape::cylinder) tissue.indenter.length_m = tissue.phantom.indenter_length_m;
@@ -122,15 +122,15 @@ LinearTissue make_linear_tissue(const LinearOptions& options, const std::filesys
     tissue.n_y = nodes_along(tissue.phantom.size_m[1]);
     constexpr std::size_t kMostNodes = 20000;  // 3.2 GB of compliance
     if (tissue.n_x * tissue.n_y > kMostNodes) {
-        throw bad_input(options.phantom.string(), "", std::to_string(tissue.n_x * tissue.n_y) + " surface nodes at " +
-                                                          short_number(1e3 * options.spacing_m) + " mm",
+        throw files::bad_input(options.phantom.string(), "", std::to_string(tissue.n_x * tissue.n_y) + " surface nodes at " +
+                                                          files::short_number(1e3 * options.spacing_m) + " mm",
                         "at most 20000 (a larger spacing_mm)");
     }
     const double full_GB = 8e-9 * 10.0 * std::pow(static_cast<double>(tissue.n_x * tissue.n_y), 2.0);
     if (options.friction && full_GB > kMostCompliance_GB) {
-        throw bad_input(options.phantom.string(), "", short_number(full_GB) + " GB of compliance with friction, at " +
-                                                          short_number(1e3 * options.spacing_m) + " mm",
-                        "at most " + short_number(kMostCompliance_GB) + " GB (a larger spacing_mm, or no friction)");
+        throw files::bad_input(options.phantom.string(), "", files::short_number(full_GB) + " GB of compliance with friction, at " +
+                                                          files::short_number(1e3 * options.spacing_m) + " mm",
+                        "at most " + files::short_number(kMostCompliance_GB) + " GB (a larger spacing_mm, or no friction)");
     }
     tissue.spacing_m[0] = tissue.phantom.size_m[0] / static_cast<double>(tissue.n_x - 1);
     tissue.spacing_m[1] = tissue.phantom.size_m[1] / static_cast<double>(tissue.n_y - 1);
@@ -149,7 +149,7 @@ LinearTissue make_linear_tissue(const LinearOptions& options, const std::filesys
         const mechanics::Factored factored = mechanics::factorise(problem, mechanics::best_solver());
         tissue.compliance = mechanics::surface_compliance(problem.mesh, factored, request, progress);
     }
-    if (!cache.empty()) tissue.cache_warning = write_cache(cache, number, arrays_of(tissue.compliance));
+    if (!cache.empty()) tissue.cache_warning = files::write_cache(cache, number, arrays_of(tissue.compliance));
     return tissue;
 }
 
@@ -255,4 +255,4 @@ void surface_sink_m(const LinearTissue& tissue, const LinearWork& work, Eigen::V
     mechanics::surface_depression_m(tissue.compliance, work.contact, out_m);
 }
 
-}  // namespace palpa
+}  // namespace palpa::scene

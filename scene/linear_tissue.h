@@ -14,7 +14,7 @@
 #include "mechanics/friction.h"
 #include "stiffnessmaps/phantom.h"
 
-namespace palpa {
+namespace palpa::scene {
 
 struct LinearOptions {
     std::filesystem::path phantom;
@@ -24,7 +24,7 @@ struct LinearOptions {
 
 // Plain data, constant while it runs. Positions are the phantom's: its corner at the origin.
 struct LinearTissue {
-    Phantom phantom;
+    stiffnessmaps::Phantom phantom;
     mechanics::Compliance compliance;
     mechanics::Indenter indenter;
     std::size_t n_x = 0;  // surface nodes, x fastest; height field of the picture
@@ -101,4 +101,4 @@ double rough_tangential_force_N(const LinearTissue& tissue, const Eigen::Vector2
 // Sink of the surface nodes under the contact last pressed, n_x * n_y, metres downwards.
 void surface_sink_m(const LinearTissue& tissue, const LinearWork& work, Eigen::VectorXd& out_m);
 
-}  // namespace palpa
+}  // namespace palpa::scene

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace palpa {
+namespace palpa::scene {
 namespace {
 
 constexpr double kShareOfScreen = 0.94;  // the tissue's longer side against the screen's shorter one
@@ -55,4 +55,4 @@ bool on_tissue(const View& view, const Eigen::Vector2d& p_m) {
     return off.x() <= 0.5 * view.area.size_m.x() && off.y() <= 0.5 * view.area.size_m.y();
 }
 
-}  // namespace palpa
+}  // namespace palpa::scene

@@ -9,7 +9,7 @@
 #include <limits>
 #include <optional>
 
-namespace palpa {
+namespace palpa::scene {
 
 enum class MappingKind { direct, indirect };
 
@@ -53,4 +53,4 @@ Eigen::Vector2d tissue_of_px(const View& view, const Eigen::Vector2d& px);  // i
 Eigen::Vector2d px_of_tissue(const View& view, const Eigen::Vector2d& p_m);  // drawing
 bool on_tissue(const View& view, const Eigen::Vector2d& p_m);
 
-}  // namespace palpa
+}  // namespace palpa::scene

@@ -4,7 +4,7 @@
 #include <chrono>
 #include <cmath>
 
-namespace palpa {
+namespace palpa::scene {
 
 void Meter::add_ns(double ns) {
     ++timed_;
@@ -30,4 +30,4 @@ std::int64_t steady_ns() {
         .count();
 }
 
-}  // namespace palpa
+}  // namespace palpa::scene

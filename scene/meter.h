@@ -5,7 +5,7 @@
 #include <array>
 #include <cstdint>
 
-namespace palpa {
+namespace palpa::scene {
 
 class Meter {
  public:
@@ -27,4 +27,4 @@ class Meter {
 
 std::int64_t steady_ns();
 
-}  // namespace palpa
+}  // namespace palpa::scene

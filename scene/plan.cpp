@@ -12,7 +12,7 @@
 #include "stiffnessmaps/map_file.h"
 #include "stiffnessmaps/noise.h"
 
-namespace palpa {
+namespace palpa::scene {
 namespace {
 
 constexpr double kBarOfLinear_N = 5.0;  // no greatest force: as the shipped maps
@@ -26,13 +26,13 @@ constexpr const char* kFrictionError =
     "tangential force 0.2 % of mu F (median, worst 4 %) against 1.5 mm on the shipped block at 2 mm, raster trace, mu 0.3";
 constexpr double kFriction_us = 75.0;  // p99 145
 
-std::string mm_text(double metres) { return short_number(1e3 * metres) + " mm"; }
+std::string mm_text(double metres) { return files::short_number(1e3 * metres) + " mm"; }
 
 Stage calibration_stage(const Plan& plan) {
     Stage stage{StageId::calibration, false, "", "", 0.03};
     stage.fidelity = std::string(name_of(plan.profile.curve.model)) + " curve " + plan.profile.id + " from " + name_of(plan.profile.level);
     if (!std::isnan(plan.profile.median_relative_error)) {
-        stage.error = short_number(100.0 * plan.profile.median_relative_error) + " % of the force (median over points left out of the fit)";
+        stage.error = files::short_number(100.0 * plan.profile.median_relative_error) + " % of the force (median over points left out of the fit)";
     } else {
         stage.error = plan.profile.points.empty() ? "not known: the profile brings no points"
                                                   : std::to_string(plan.profile.points.size()) + " points in the profile";
@@ -43,11 +43,11 @@ Stage calibration_stage(const Plan& plan) {
 Stage depth_stage(const MapTissue& tissue) {
     Stage stage{StageId::depth, false, "", "", 0.03};
     stage.fidelity = "map " + tissue.map.name + ", isotonic over depth, bilinear in x and y";
-    const double greatest_N = force_range(tissue.map).highest_N;
-    if (tissue.map.source.kind == SourceKind::recorded) {
-        stage.error = short_number(1e3 * tissue.noise_N) + " mN of noise in the recording";
+    const double greatest_N = stiffnessmaps::force_range(tissue.map).highest_N;
+    if (tissue.map.source.kind == stiffnessmaps::SourceKind::recorded) {
+        stage.error = files::short_number(1e3 * tissue.noise_N) + " mN of noise in the recording";
     } else {
-        stage.error = short_number(25.0 * coarse_grid_error_N(tissue.map) / std::max(greatest_N, 1e-9)) +
+        stage.error = files::short_number(25.0 * stiffnessmaps::coarse_grid_error_N(tissue.map) / std::max(greatest_N, 1e-9)) +
                       " % of the greatest force (95th percentile, from twice the pitch)";
     }
     return stage;
@@ -63,7 +63,7 @@ double spacings_across(const LinearTissue& tissue) {
 std::string linear_error(const LinearTissue& tissue) {
     const double spacings = spacings_across(tissue);
     if (spacings >= kFewestSpacings) return kLinearError;
-    const std::string here = "at " + mm_text(tissue.phantom.depths_m.back()) + " the contact's radius spans " + short_number(spacings) +
+    const std::string here = "at " + mm_text(tissue.phantom.depths_m.back()) + " the contact's radius spans " + files::short_number(spacings) +
                              " spacings here, fewer where it is shallower";
     if (spacings >= kTooFewSpacings) return std::string(kLinearError) + "; " + here;
     return "not known, the force can be several times too large: even " + here + "; four are wanted (a smaller spacing_mm)";
@@ -79,13 +79,13 @@ Stage depth_stage(const LinearTissue& tissue) {
 
 Stage tangential_stage(const MapTissue& tissue, const TangentialOptions& options) {
     Stage stage{StageId::tangential, false, "", "", 0.03};
-    if (options.force == TangentialForce::recorded) {
+    if (options.force == stiffnessmaps::TangentialForce::recorded) {
         stage.fidelity = "matrices as recorded along +x";
         stage.error = "wrong in any other direction than +x";
         return stage;
     }
-    const bool recorded = tissue.map.tangential == TangentialKind::recorded;
-    const bool slid = recorded && tissue.map.source.kind == SourceKind::simulated;
+    const bool recorded = tissue.map.tangential == stiffnessmaps::TangentialKind::recorded;
+    const bool slid = recorded && tissue.map.source.kind == stiffnessmaps::SourceKind::simulated;
     stage.fidelity = slid ? "energy gradient + friction of the simulated slide along +x"
                           : (recorded ? "energy gradient + recorded resistance" : "energy gradient");
     stage.error = "derived from the normal force (work argument), not measured";
@@ -98,7 +98,7 @@ Stage tangential_stage(const MapTissue& tissue, const TangentialOptions& options
 
 Stage friction_stage(const LinearTissue& tissue) {
     return {StageId::friction, false,
-            "Coulomb friction " + short_number(*tissue.friction) + ", stick and slip of every node, in steps of at most " +
+            "Coulomb friction " + files::short_number(*tissue.friction) + ", stick and slip of every node, in steps of at most " +
                 mm_text(0.5 * tissue.spacing_m[0]),
             kFrictionError, kFriction_us};
 }
@@ -111,20 +111,20 @@ Stage tangential_stage(const LinearTissue& tissue, const TangentialOptions&) {
 }
 
 void add_notes(const MapTissue& tissue, const Scene& scene, Plan& plan) {
-    if (tissue.map.source.kind == SourceKind::analytic) {
+    if (tissue.map.source.kind == stiffnessmaps::SourceKind::analytic) {
         plan.notes.push_back("the tissue is a closed-form stand-in (analytic), neither recorded nor simulated");
     }
-    if (tissue.map.source.kind == SourceKind::simulated) {
+    if (tissue.map.source.kind == stiffnessmaps::SourceKind::simulated) {
         plan.notes.push_back("the tissue is simulated, not recorded: " + tissue.map.source.how);
     }
     if (plan.nodules.size() < tissue.map.nodules.size()) {
         plan.notes.push_back("detected nodules of the map are not asked for: where nodules were placed, those alone count");
     }
-    if (scene.tangential.force == TangentialForce::recorded) {
+    if (scene.tangential.force == stiffnessmaps::TangentialForce::recorded) {
         plan.notes.push_back("tangential force as recorded: right for motion along +x only");
         return;
     }
-    const bool recorded = tissue.map.tangential == TangentialKind::recorded;
+    const bool recorded = tissue.map.tangential == stiffnessmaps::TangentialKind::recorded;
     plan.notes.push_back(std::string("tangential force ") + (recorded ? "off the scan direction" : "in every direction") +
                          ": derived from the normal force (work argument), not measured");
 }
@@ -152,24 +152,24 @@ void add_notes(const LinearTissue& tissue, const Scene&, Plan& plan) {
 
 MapTissue load_map(const Scene& scene) {
     MapTissue tissue;
-    tissue.map = read_map(scene.map);
-    if (scene.tangential.force == TangentialForce::recorded && tissue.map.tangential != TangentialKind::recorded) {
-        throw bad_input(scene.file.string(), "avatar force", "recorded",
+    tissue.map = stiffnessmaps::read_map(scene.map);
+    if (scene.tangential.force == stiffnessmaps::TangentialForce::recorded && tissue.map.tangential != stiffnessmaps::TangentialKind::recorded) {
+        throw files::bad_input(scene.file.string(), "avatar force", "recorded",
                         "energy: the map " + tissue.map.name + " holds no recorded tangential force");
     }
     for (std::vector<float>* forces_N : {&tissue.map.normal_N, &tissue.map.tangential_x_N, &tissue.map.tangential_y_N}) {
         for (float& force_N : *forces_N) force_N *= static_cast<float>(scene.stiffness_scale);
     }
-    tissue.noise_N = normal_noise_N(tissue.map);
-    const double gate_N = scene.display_ratio.value_or(DisplayRatio{}).gate_N;
+    tissue.noise_N = stiffnessmaps::normal_noise_N(tissue.map);
+    const double gate_N = scene.display_ratio.value_or(avatar::DisplayRatio{}).gate_N;
     tissue.smoothing_m = scene.tangential.smoothing_m.value_or(
-        default_smoothing_m(tissue.map, tissue.noise_N, path_of(scene).reference_m, gate_N));
-    tissue.field = make_field(tissue.map, {scene.tangential.force, tissue.smoothing_m});
+        stiffnessmaps::default_smoothing_m(tissue.map, tissue.noise_N, path_of(scene).reference_m, gate_N));
+    tissue.field = stiffnessmaps::make_field(tissue.map, {scene.tangential.force, tissue.smoothing_m});
     return tissue;
 }
 
 LinearTissue load_linear(const Scene& scene, const mechanics::Progress& progress) {
-    LinearTissue tissue = make_linear_tissue(*scene.linear, cache_folder(), progress);
+    LinearTissue tissue = make_linear_tissue(*scene.linear, files::cache_folder(), progress);
     mechanics::Compliance& c = tissue.compliance;
     for (Eigen::MatrixXd* m_per_N : {&c.normal_m_per_N, &c.along_x_m_per_N, &c.along_y_m_per_N, &c.full_m_per_N}) {
         *m_per_N /= scene.stiffness_scale;
@@ -179,7 +179,7 @@ LinearTissue load_linear(const Scene& scene, const mechanics::Progress& progress
 
 // What reaches a depth at the median place, so that few nodules do not count.
 double median_force_N(const MapTissue& tissue, double depth_m) {
-    const Map& map = tissue.map;
+    const stiffnessmaps::Map& map = tissue.map;
     const auto above = std::upper_bound(map.depths_m.begin(), map.depths_m.end(), depth_m) - map.depths_m.begin();
     const auto high = std::min<std::size_t>(static_cast<std::size_t>(above), map.n_depths() - 1);
     const std::size_t low = high > 0 ? high - 1 : 0;
@@ -220,18 +220,18 @@ std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 // What a person is to find: the placed nodules, which are the truth; the detected ones where none was placed. A placed
 // nodule that was detected too must not count twice.
-std::vector<Nodule> nodules_to_find(const Map& map) {
-    std::vector<Nodule> placed;
-    std::copy_if(map.nodules.begin(), map.nodules.end(), std::back_inserter(placed), [](const Nodule& n) { return n.placed; });
+std::vector<stiffnessmaps::Nodule> nodules_to_find(const stiffnessmaps::Map& map) {
+    std::vector<stiffnessmaps::Nodule> placed;
+    std::copy_if(map.nodules.begin(), map.nodules.end(), std::back_inserter(placed), [](const stiffnessmaps::Nodule& n) { return n.placed; });
     return placed.empty() ? map.nodules : placed;
 }
 
 void describe(const MapTissue& tissue, Plan& plan) {
-    const Map& map = tissue.map;
+    const stiffnessmaps::Map& map = tissue.map;
     plan.tissue_name = map.name;
     plan.source = map.source.kind;
     plan.nodules = nodules_to_find(map);
-    plan.greatest_force_N = force_range(map).highest_N;
+    plan.greatest_force_N = stiffnessmaps::force_range(map).highest_N;
     plan.greatest_depth_m = map.depths_m.back();
     for (const int third : {1, 2}) plan.zone_N[at(third - 1)] = median_force_N(tissue, third * plan.greatest_depth_m / 3.0);
     plan.indenter_radius_m = map.indenter_radius_m;
@@ -242,10 +242,10 @@ void describe(const MapTissue& tissue, Plan& plan) {
 }
 
 void describe(const LinearTissue& tissue, Plan& plan) {
-    const Phantom& phantom = tissue.phantom;
+    const stiffnessmaps::Phantom& phantom = tissue.phantom;
     plan.tissue_name = phantom.name;
-    plan.source = SourceKind::simulated;
-    plan.nodules = placed_nodules(phantom);
+    plan.source = stiffnessmaps::SourceKind::simulated;
+    plan.nodules = stiffnessmaps::placed_nodules(phantom);
     plan.greatest_force_N = kBarOfLinear_N;
     plan.greatest_depth_m = phantom.depths_m.back();
     for (const int third : {1, 2}) plan.zone_N[at(third - 1)] = median_force_N(tissue, third * plan.greatest_depth_m / 3.0);
@@ -263,11 +263,11 @@ void add_stages(const Scene& scene, Plan& plan) {
     if (linear != nullptr && linear->friction) plan.sample_stages.push_back(friction_stage(*linear));
     std::visit([&](const auto& tissue) { plan.sample_stages.push_back(tangential_stage(tissue, scene.tangential)); },
                plan.tissue);
-    const PathParameters path = path_of(scene);
+    const avatar::PathParameters path = path_of(scene);
     std::string stations = "stations every " + mm_text(path.station_m) + ", difference over " + mm_text(path.reference_m);
     if (scene.linear) {
         stations += ", fewer in strokes faster than " +
-                    short_number(1e3 * kStationsOnLinear.per_s * path.station_m) + " mm/s";
+                    files::short_number(1e3 * kStationsOnLinear.per_s * path.station_m) + " mm/s";
     }
     const double cost_us = scene.linear ? 250.0 : 0.15;
     if (scene.display_ratio) {
@@ -305,7 +305,7 @@ const char* name_of(StageId id) {
 
 Plan make_plan(const Scene& scene, const mechanics::Progress& progress) {
     Plan plan;
-    plan.profile = read_profile(scene.profile);
+    plan.profile = calibration::read_profile(scene.profile);
     if (scene.linear) {
         plan.tissue = load_linear(scene, progress);
     } else {
@@ -313,7 +313,7 @@ Plan make_plan(const Scene& scene, const mechanics::Progress& progress) {
     }
     std::visit([&](const auto& tissue) { describe(tissue, plan); }, plan.tissue);
     if (scene.mapping.tissue_m && scene.linear) {
-        throw bad_input(scene.file.string(), "mapping.tissue_mm", "a size", "none: a linear block has its own");
+        throw files::bad_input(scene.file.string(), "mapping.tissue_mm", "a size", "none: a linear block has its own");
     }
     if (scene.mapping.tissue_m) plan.area.size_m = *scene.mapping.tissue_m;
     if (scene.surface) plan.indenter_radius_m = scene.surface->indenter_radius_m.value_or(plan.indenter_radius_m);
@@ -321,12 +321,12 @@ Plan make_plan(const Scene& scene, const mechanics::Progress& progress) {
     std::visit([&](const auto& tissue) { add_notes(tissue, scene, plan); }, plan.tissue);
     if (const auto* tissue = std::get_if<MapTissue>(&plan.tissue)) add_isotonic_note(*tissue, plan);
     if (scene.stiffness_scale != 1.0) {
-        plan.notes.push_back("the tissue's forces are multiplied by " + short_number(scene.stiffness_scale));
+        plan.notes.push_back("the tissue's forces are multiplied by " + files::short_number(scene.stiffness_scale));
     }
     if (scene.force_scale != 1.0) {
-        plan.notes.push_back("phantom force: the pen's newtons are multiplied by " + short_number(scene.force_scale));
+        plan.notes.push_back("phantom force: the pen's newtons are multiplied by " + files::short_number(scene.force_scale));
     }
     return plan;
 }
 
-}  // namespace palpa
+}  // namespace palpa::scene

@@ -13,7 +13,7 @@
 #include "stiffnessmaps/field.h"
 #include "stiffnessmaps/map.h"
 
-namespace palpa {
+namespace palpa::scene {
 
 enum class StageId : std::size_t { calibration, position, depth, friction, tangential, display_ratio, delay, surface };
 inline constexpr std::size_t kStageCount = 8;
@@ -28,8 +28,8 @@ struct Stage {
 
 // A recorded or generated map, prepared for look-up.
 struct MapTissue {
-    Map map;
-    Field field;
+    stiffnessmaps::Map map;
+    stiffnessmaps::Field field;
     double noise_N = 0.0;      // of the map
     double smoothing_m = 0.0;  // of the tangential force
 };
@@ -38,11 +38,11 @@ struct Plan {
     std::vector<Stage> sample_stages;
     std::vector<Stage> frame_stages;
     std::vector<std::string> notes;  // what a person should know about this scene
-    Profile profile;
+    calibration::Profile profile;
     std::variant<MapTissue, LinearTissue> tissue;
     std::string tissue_name;
-    SourceKind source = SourceKind::recorded;
-    std::vector<Nodule> nodules;
+    stiffnessmaps::SourceKind source = stiffnessmaps::SourceKind::recorded;
+    std::vector<stiffnessmaps::Nodule> nodules;
     double greatest_force_N = 1.0;  // of the force bar
     double greatest_depth_m = 0.0;  // that the tissue is known for
     // Forces that reach a third and two thirds of it on plain tissue: light, medium and deep palpation.
@@ -57,4 +57,4 @@ Plan make_plan(const Scene& scene, const mechanics::Progress& progress = {});
 
 const char* name_of(StageId id);
 
-}  // namespace palpa
+}  // namespace palpa::scene

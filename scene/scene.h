@@ -13,11 +13,11 @@
 #include "scene/mapping.h"
 #include "stiffnessmaps/field.h"
 
-namespace palpa {
+namespace palpa::scene {
 
 // How the avatar's laws read the map.
 struct TangentialOptions {
-    TangentialForce force = TangentialForce::energy;
+    stiffnessmaps::TangentialForce force = stiffnessmaps::TangentialForce::energy;
     std::optional<double> smoothing_m;  // absent: from the map's own noise (stiffnessmaps/noise.h)
 };
 
@@ -36,14 +36,14 @@ struct Scene {
     Mapping mapping;
     double force_scale = 1.0;       // phantom force: multiplies the pen's newtons
     TangentialOptions tangential;
-    std::optional<DisplayRatio> display_ratio;  // at most one of the two laws
-    std::optional<Delay> delay;
+    std::optional<avatar::DisplayRatio> display_ratio;  // at most one of the two laws
+    std::optional<avatar::Delay> delay;
     std::optional<SurfaceEffect> surface;
     std::int64_t seed = 1;
 };
 
 // The path parameters of the law in force, or the defaults.
-PathParameters path_of(const Scene& scene);
+avatar::PathParameters path_of(const Scene& scene);
 
 // Throws InputError. Paths inside are relative to the scene's file; a name without a folder is also looked
 // for among the assets (maps/, profiles/).
@@ -52,4 +52,4 @@ Scene read_scene(const std::filesystem::path& file, const std::filesystem::path&
 // A map with the defaults: display ratio `clear`, surface, direct mapping.
 Scene scene_of_map(const std::filesystem::path& map, const std::filesystem::path& assets);
 
-}  // namespace palpa
+}  // namespace palpa::scene

@@ -2,7 +2,7 @@
 #include "files/json.h"
 #include "scene/scene.h"
 
-namespace palpa {
+namespace palpa::scene {
 namespace {
 
 namespace fs = std::filesystem;
@@ -17,7 +17,7 @@ fs::path find_file(const std::string& name, const fs::path& scene_file, const fs
     return assets_folder / given;
 }
 
-Mapping read_mapping(JsonReader json) {
+Mapping read_mapping(files::JsonReader json) {
     json.only({"kind", "rotate_deg", "flip", "true_size", "tissue_mm"});
     Mapping mapping;
     mapping.kind = static_cast<MappingKind>(json.choice("kind", {"direct", "indirect"}));
@@ -37,51 +37,51 @@ Mapping read_mapping(JsonReader json) {
     return mapping;
 }
 
-void read_law_options(JsonReader& json, PathParameters& path, TangentialOptions& tangential) {
-    constexpr Bounds kLength_mm{0.0, 100.0, true};
+void read_law_options(files::JsonReader& json, avatar::PathParameters& path, TangentialOptions& tangential) {
+    constexpr files::Bounds kLength_mm{0.0, 100.0, true};
     path.reference_m = 1e-3 * json.number("s_ref_mm", kLength_mm, 1e3 * path.reference_m);
     path.dead_band_m = 1e-3 * json.number("dead_band_mm", {0.0, 10.0}, 1e3 * path.dead_band_m);
     if (json.has("force")) {
-        tangential.force = static_cast<TangentialForce>(json.choice("force", {"energy", "recorded"}));
+        tangential.force = static_cast<stiffnessmaps::TangentialForce>(json.choice("force", {"energy", "recorded"}));
     }
     if (json.has("smoothing_mm")) tangential.smoothing_m = 1e-3 * json.number("smoothing_mm", {0.0, 100.0});
 }
 
-DisplayRatio read_display_ratio(JsonReader json, TangentialOptions& tangential) {
+avatar::DisplayRatio read_display_ratio(files::JsonReader json, TangentialOptions& tangential) {
     json.only({"preset", "f_0_N", "cap_mm", "release", "gate_N", "hold_s", "pause_decay_s", "s_ref_mm", "dead_band_mm", "force",
                "smoothing_mm"});
     const bool paper = json.choice("preset", {"clear", "paper"}) == 1;
-    DisplayRatio law = paper ? display_ratio_paper() : display_ratio_clear();
-    law.f_0_N = json.number("f_0_N", kPositive, law.f_0_N);
+    avatar::DisplayRatio law = paper ? avatar::display_ratio_paper() : avatar::display_ratio_clear();
+    law.f_0_N = json.number("f_0_N", files::kPositive, law.f_0_N);
     if (json.has("cap_mm")) {
         const bool none = json.any("cap_mm").is_null();
         law.cap_m = none ? std::nullopt : std::optional(1e-3 * json.number("cap_mm", {0.0, 1e3, true}));
     }
-    law.release = json.number("release", kPositive, law.release);
-    law.gate_N = json.number("gate_N", kPositive, law.gate_N);
-    law.hold_s = json.number("hold_s", kNotNegative, law.hold_s);
-    law.pause_decay_s = json.number("pause_decay_s", kPositive, law.pause_decay_s);
+    law.release = json.number("release", files::kPositive, law.release);
+    law.gate_N = json.number("gate_N", files::kPositive, law.gate_N);
+    law.hold_s = json.number("hold_s", files::kNotNegative, law.hold_s);
+    law.pause_decay_s = json.number("pause_decay_s", files::kPositive, law.pause_decay_s);
     read_law_options(json, law.path, tangential);
     json.finish();
     return law;
 }
 
-Delay read_delay(JsonReader json, TangentialOptions& tangential) {
+avatar::Delay read_delay(files::JsonReader json, TangentialOptions& tangential) {
     json.only({"preset", "m_ms_per_N", "cap_ms", "rise", "fall", "hold_s", "s_ref_mm", "dead_band_mm", "force", "smoothing_mm"});
     const bool paper = json.choice("preset", {"clear", "paper"}) == 1;
-    Delay law = paper ? delay_paper() : delay_clear();
-    law.m_s_per_N = 1e-3 * json.number("m_ms_per_N", kNotNegative, 1e3 * law.m_s_per_N);
+    avatar::Delay law = paper ? avatar::delay_paper() : avatar::delay_clear();
+    law.m_s_per_N = 1e-3 * json.number("m_ms_per_N", files::kNotNegative, 1e3 * law.m_s_per_N);
     // the ring of remembered samples covers half a second at 2,000 Hz
     law.cap_s = 1e-3 * json.number("cap_ms", {0.0, 500.0}, 1e3 * law.cap_s);
     law.rise = json.number("rise", {0.0, 0.999, true}, law.rise);
     law.fall = json.number("fall", {0.0, 100.0, true}, law.fall);
-    law.hold_s = json.number("hold_s", kNotNegative, law.hold_s);
+    law.hold_s = json.number("hold_s", files::kNotNegative, law.hold_s);
     read_law_options(json, law.path, tangential);
     json.finish();
     return law;
 }
 
-void read_tissue(JsonReader json, const fs::path& file, const fs::path& assets, Scene& scene) {
+void read_tissue(files::JsonReader json, const fs::path& file, const fs::path& assets, Scene& scene) {
     json.only({"map", "linear", "stiffness_scale"});
     const bool linear = json.has("linear");
     if (linear == json.has("map")) json.fail("", linear ? "two tissues" : "no tissue", "either map or linear");
@@ -90,7 +90,7 @@ void read_tissue(JsonReader json, const fs::path& file, const fs::path& assets, 
         scene.map = find_file(json.text("map"), file, assets / "maps");
         return json.finish();
     }
-    JsonReader block = json.object("linear");
+    files::JsonReader block = json.object("linear");
     block.only({"phantom", "spacing_mm", "friction"});
     LinearOptions options;
     options.phantom = find_file(block.text("phantom"), file, assets / "phantoms");
@@ -101,10 +101,10 @@ void read_tissue(JsonReader json, const fs::path& file, const fs::path& assets, 
     json.finish();
 }
 
-SurfaceEffect read_surface(JsonReader json) {
+SurfaceEffect read_surface(files::JsonReader json) {
     json.only({"profile"});
     SurfaceEffect surface;
-    JsonReader profile = json.object("profile");
+    files::JsonReader profile = json.object("profile");
     profile.only({"thickness_mm", "indenter_radius_mm"});
     surface.thickness_m = 1e-3 * profile.number("thickness_mm", {0.0, 1e3, true}, 1e3 * surface.thickness_m);
     if (profile.has("indenter_radius_mm")) {
@@ -115,7 +115,7 @@ SurfaceEffect read_surface(JsonReader json) {
     return surface;
 }
 
-void read_avatar(JsonReader json, Scene& scene) {
+void read_avatar(files::JsonReader json, Scene& scene) {
     json.only({"display_ratio", "delay"});
     const bool ratio = json.has("display_ratio");
     if (ratio == json.has("delay")) {
@@ -132,13 +132,13 @@ void read_avatar(JsonReader json, Scene& scene) {
 }  // namespace
 
 Scene read_scene(const fs::path& file, const fs::path& assets) {
-    const Json root = read_json(file);
-    JsonReader json(root, file.string());
+    const files::Json root = files::read_json(file);
+    files::JsonReader json(root, file.string());
     json.only({"name", "tissue", "profile", "mapping", "force_scale", "avatar", "surface", "seed"});
     Scene scene;
     scene.file = file;
     scene.name = json.text("name");
-    JsonReader tissue = json.object("tissue");
+    files::JsonReader tissue = json.object("tissue");
     read_tissue(std::move(tissue), file, assets, scene);
     scene.profile = find_file(json.text("profile", kDefaultProfile), file, assets / "profiles");
     if (auto mapping = json.optional_object("mapping")) scene.mapping = read_mapping(*mapping);
@@ -150,9 +150,9 @@ Scene read_scene(const fs::path& file, const fs::path& assets) {
     return scene;
 }
 
-PathParameters path_of(const Scene& scene) {
+avatar::PathParameters path_of(const Scene& scene) {
     if (scene.delay) return scene.delay->path;
-    return scene.display_ratio ? scene.display_ratio->path : PathParameters{};
+    return scene.display_ratio ? scene.display_ratio->path : avatar::PathParameters{};
 }
 
 Scene scene_of_map(const fs::path& map, const fs::path& assets) {
@@ -162,9 +162,9 @@ Scene scene_of_map(const fs::path& map, const fs::path& assets) {
     scene.name = folder.stem().string();
     scene.map = map;
     scene.profile = assets / "profiles" / kDefaultProfile;
-    scene.display_ratio = display_ratio_clear();
+    scene.display_ratio = avatar::display_ratio_clear();
     scene.surface = SurfaceEffect{};
     return scene;
 }
 
-}  // namespace palpa
+}  // namespace palpa::scene

@@ -11,7 +11,7 @@
 #include "scene/plan.h"
 #include "platform/timeline.h"
 
-namespace palpa {
+namespace palpa::scene {
 
 // The tissue's answer to a touch.
 struct Contact {
@@ -61,23 +61,23 @@ struct Palms {
 };
 
 struct State {
-    Timeline timeline;
+    platform::Timeline timeline;
     View view;
     ScreenArea screen;
     std::optional<std::int64_t> pointer;  // the one that touches; others are logged, and press nothing
-    Tool pointer_tool = Tool::mouse;
+    platform::Tool pointer_tool = platform::Tool::mouse;
     Palms palms;
     bool without_level = false;           // the device of this touch does not report what the profile reads
     bool answered = false;                // the last sample belonged to it (or nothing touches)
-    Touch touch;
-    Place place;  // of the touch in the map; between the stages of one sample
+    avatar::Touch touch;
+    stiffnessmaps::Place place;  // of the touch in the map; between the stages of one sample
     std::optional<LinearWork> linear;     // of a linear tissue
     Contact contact;
     Avatar avatar;
     Eigen::Vector2d heading = Eigen::Vector2d::Zero();  // direction of motion, length 1 once moving
     Eigen::Vector2d heading_rope_m = Eigen::Vector2d::Zero();
-    std::optional<DisplayRatioState> display_ratio;
-    std::optional<DelayState> delay;
+    std::optional<avatar::DisplayRatioState> display_ratio;
+    std::optional<avatar::DelayState> delay;
     std::int64_t grid_step = 0;  // index of the last grid point of this touch
     double touch_began_s = 0.0;
     Counters counters;
@@ -87,4 +87,4 @@ struct State {
     std::array<Meter, kStageCount> meters;
 };
 
-}  // namespace palpa
+}  // namespace palpa::scene

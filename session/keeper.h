@@ -6,16 +6,16 @@
 
 #include "study/sample_log.h"
 
-namespace palpa {
+namespace palpa::session {
 
 class TrialKeeper {
  public:
     virtual ~TrialKeeper() = default;
 
     // Copies the files of a run as they are now. finished: no more will be written to them.
-    virtual void keep(const RunFiles& files, bool finished) = 0;
+    virtual void keep(const study::RunFiles& files, bool finished) = 0;
     // The same for a trial that is going on; only what is new since the last call is copied. Cheap: for every second.
-    virtual void keep_part(const RunFiles& files) = 0;
+    virtual void keep_part(const study::RunFiles& files) = 0;
     // Of a study in `directory`: who takes part, and what they have answered so far.
     virtual void keep_answers(const std::filesystem::path& directory, const std::string& code) = 0;
     virtual void participant(const std::string& code) = 0;  // who is here now; "": nobody
@@ -27,4 +27,4 @@ class TrialKeeper {
     virtual void open_studies() = 0;        // lets the person choose one
 };
 
-}  // namespace palpa
+}  // namespace palpa::session

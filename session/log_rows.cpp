@@ -5,16 +5,16 @@
 #include "calibration/profile_file.h"
 #include "files/text.h"
 
-namespace palpa {
+namespace palpa::session {
 
-const char* tangential_source(const Plan& plan) {
-    const auto* tissue = std::get_if<MapTissue>(&plan.tissue);
-    const bool recorded = tissue != nullptr && tissue->map.tangential == TangentialKind::recorded;
+const char* tangential_source(const scene::Plan& plan) {
+    const auto* tissue = std::get_if<scene::MapTissue>(&plan.tissue);
+    const bool recorded = tissue != nullptr && tissue->map.tangential == stiffnessmaps::TangentialKind::recorded;
     return recorded ? "recorded" : "energy";  // on a recording the laws use both (stiffnessmaps/field.h)
 }
 
-SampleRow row_of(const Sample& sample, const Plan& plan, const State& state) {
-    SampleRow row;
+study::SampleRow row_of(const platform::Sample& sample, const scene::Plan& plan, const scene::State& state) {
+    study::SampleRow row;
     row.t_host_s = sample.t_host_s;
     row.t_device_s = sample.t_device_s;
     row.pointer_id = sample.pointer_id;
@@ -36,32 +36,32 @@ SampleRow row_of(const Sample& sample, const Plan& plan, const State& state) {
     return row;
 }
 
-Json settings_json(const Scene& scene, const Plan& plan, const State& state) {
-    Json json;
+files::Json settings_json(const scene::Scene& scene, const scene::Plan& plan, const scene::State& state) {
+    files::Json json;
     json["program"] = "palpa " PALPA_VERSION;
     json["scene"]["name"] = scene.name;
-    if (!scene.file.empty()) json["scene"]["file"] = read_json(scene.file);
+    if (!scene.file.empty()) json["scene"]["file"] = files::read_json(scene.file);
     json["scene"]["force_scale"] = scene.force_scale;
     json["scene"]["stiffness_scale"] = scene.stiffness_scale;
     json["scene"]["seed"] = scene.seed;
     json["tissue"] = {{"name", plan.tissue_name}, {"source", name_of(plan.source)}};
-    if (const auto* tissue = std::get_if<MapTissue>(&plan.tissue)) {
+    if (const auto* tissue = std::get_if<scene::MapTissue>(&plan.tissue)) {
         json["tissue"]["count"] = {tissue->map.n_x, tissue->map.n_y};
         json["tissue"]["smoothing_mm"] = 1e3 * tissue->smoothing_m;
     }
     json["profile"] = {{"id", plan.profile.id}, {"model", name_of(plan.profile.curve.model)}};
-    json["profile"].update(parameters_json(plan.profile.curve));
+    json["profile"].update(calibration::parameters_json(plan.profile.curve));
     json["tissue_area_px"] = {state.screen.x_px, state.screen.y_px, state.screen.width_px, state.screen.height_px};
     if (std::isfinite(state.screen.px_per_m)) json["screen_px_per_mm"] = 1e-3 * state.screen.px_per_m;
     json["mapping"] = {{"rotate_deg", scene.mapping.rotate_deg}, {"flip", scene.mapping.flip}};
-    json["stages"] = Json::array();
+    json["stages"] = files::Json::array();
     for (const auto* stages : {&plan.sample_stages, &plan.frame_stages}) {
-        for (const Stage& stage : *stages) {
+        for (const scene::Stage& stage : *stages) {
             json["stages"].push_back({{"name", name_of(stage.id)}, {"fidelity", stage.fidelity}});
         }
     }
-    json["nodules"] = Json::array();
-    for (const Nodule& nodule : plan.nodules) {
+    json["nodules"] = files::Json::array();
+    for (const stiffnessmaps::Nodule& nodule : plan.nodules) {
         json["nodules"].push_back({{"id", nodule.id}, {"x_mm", 1e3 * nodule.x_m}, {"y_mm", 1e3 * nodule.y_m}});
         if (nodule.diameter_m) json["nodules"].back()["diameter_mm"] = 1e3 * *nodule.diameter_m;
     }
@@ -69,4 +69,4 @@ Json settings_json(const Scene& scene, const Plan& plan, const State& state) {
     return json;
 }
 
-}  // namespace palpa
+}  // namespace palpa::session

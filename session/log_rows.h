@@ -10,13 +10,13 @@
 #include "scene/state.h"
 #include "study/sample_log.h"
 
-namespace palpa {
+namespace palpa::session {
 
-SampleRow row_of(const Sample& sample, const Plan& plan, const State& state);
+study::SampleRow row_of(const platform::Sample& sample, const scene::Plan& plan, const scene::State& state);
 
 // What a replay needs to know and a reader wants to: scene, map, profile, screen. The same for every replay.
-Json settings_json(const Scene& scene, const Plan& plan, const State& state);
+files::Json settings_json(const scene::Scene& scene, const scene::Plan& plan, const scene::State& state);
 
-const char* tangential_source(const Plan& plan);  // recorded | energy | none
+const char* tangential_source(const scene::Plan& plan);  // recorded | energy | none
 
-}  // namespace palpa
+}  // namespace palpa::session

@@ -7,16 +7,16 @@
 #include <cstdio>
 #include <future>
 
-namespace palpa {
+namespace palpa::session {
 
 struct PlanInProgress::Work {
     std::atomic<int> done{0};
     std::atomic<int> total{0};
     std::atomic<bool> cancel{false};
-    std::future<Plan> result;
+    std::future<scene::Plan> result;
 };
 
-PlanInProgress::PlanInProgress(const Scene& scene) : work_(std::make_unique<Work>()) {
+PlanInProgress::PlanInProgress(const scene::Scene& scene) : work_(std::make_unique<Work>()) {
     work_->result = std::async(std::launch::async, [&work = *work_, scene] {
         mechanics::Progress progress;
         progress.cancel = &work.cancel;
@@ -24,7 +24,7 @@ PlanInProgress::PlanInProgress(const Scene& scene) : work_(std::make_unique<Work
             work.done = done;
             work.total = total;
         };
-        return make_plan(scene, progress);
+        return scene::make_plan(scene, progress);
     });
 }
 
@@ -44,10 +44,10 @@ bool PlanInProgress::wait(double seconds) {
 
 void PlanInProgress::cancel() { work_->cancel = true; }
 
-Plan PlanInProgress::take() { return work_->result.get(); }
+scene::Plan PlanInProgress::take() { return work_->result.get(); }
 
-Plan make_plan_here(const Scene& scene) {
-    if (!scene.linear || !isatty(STDERR_FILENO)) return make_plan(scene);
+scene::Plan make_plan_here(const scene::Scene& scene) {
+    if (!scene.linear || !isatty(STDERR_FILENO)) return scene::make_plan(scene);
     PlanInProgress work(scene);
     const auto began = std::chrono::steady_clock::now();
     while (!work.wait(0.25)) {
@@ -60,4 +60,4 @@ Plan make_plan_here(const Scene& scene) {
     return work.take();
 }
 
-}  // namespace palpa
+}  // namespace palpa::session

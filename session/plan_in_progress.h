@@ -5,11 +5,11 @@
 
 #include "scene/plan.h"
 
-namespace palpa {
+namespace palpa::session {
 
 class PlanInProgress {
  public:
-    explicit PlanInProgress(const Scene& scene);
+    explicit PlanInProgress(const scene::Scene& scene);
     ~PlanInProgress();  // stops the work and waits for it
     PlanInProgress(const PlanInProgress&) = delete;
     PlanInProgress& operator=(const PlanInProgress&) = delete;
@@ -17,7 +17,7 @@ class PlanInProgress {
     double share() const;         // done, 0 ... 1
     bool wait(double seconds);    // true once it is ready
     void cancel();
-    Plan take();                  // once; throws what make_plan threw
+    scene::Plan take();                  // once; throws what make_plan threw
 
  private:
     struct Work;
@@ -25,6 +25,6 @@ class PlanInProgress {
 };
 
 // make_plan on the command line: what is done of what, on a terminal.
-Plan make_plan_here(const Scene& scene);
+scene::Plan make_plan_here(const scene::Scene& scene);
 
-}  // namespace palpa
+}  // namespace palpa::session

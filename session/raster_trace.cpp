@@ -4,7 +4,7 @@
 #include <numbers>
 #include <random>
 
-namespace palpa {
+namespace palpa::session {
 namespace {
 
 struct Line {
@@ -12,12 +12,12 @@ struct Line {
     Eigen::Vector2d to_m;
 };
 
-std::vector<Line> lines_over(const Plan& plan) {
+std::vector<Line> lines_over(const scene::Plan& plan) {
     const Eigen::Vector2d low = plan.area.centre_m - 0.45 * plan.area.size_m;
     const Eigen::Vector2d high = plan.area.centre_m + 0.45 * plan.area.size_m;
     std::vector<double> ys{plan.area.centre_m.y()};
     std::vector<double> xs;
-    for (const Nodule& nodule : plan.nodules) {
+    for (const stiffnessmaps::Nodule& nodule : plan.nodules) {
         ys.push_back(nodule.y_m);
         xs.push_back(nodule.x_m);
     }
@@ -34,9 +34,9 @@ double rounded(double value, double step) { return std::round(value / step) * st
 
 class Pen {
  public:
-    Pen(const Scene& scene, const Plan& plan, const RasterOptions& options)
+    Pen(const scene::Scene& scene, const scene::Plan& plan, const RasterOptions& options)
         : plan_(plan), options_(options), random_(options.seed), force_scale_(scene.force_scale) {
-        view_ = make_view(scene.mapping, plan.area, {options.screen_width_px, options.screen_height_px});
+        view_ = scene::make_view(scene.mapping, plan.area, {options.screen_width_px, options.screen_height_px});
         trace_.info.screen_width_px = options.screen_width_px;
         trace_.info.screen_height_px = options.screen_height_px;
         trace_.info.device = "simulated pen, raster";
@@ -45,45 +45,45 @@ class Pen {
     void draw(const Line& line) {
         const double length_m = (line.to_m - line.from_m).norm();
         const int n = static_cast<int>(length_m / options_.speed_m_per_s * options_.rate_Hz);
-        add(Phase::hover, line.from_m, 0.0);
+        add(platform::Phase::hover, line.from_m, 0.0);
         for (int i = 0; i <= n; ++i) {
             const double s = static_cast<double>(i) / n;
             const Eigen::Vector2d jitter_m(2e-5 * normal_(random_), 2e-5 * normal_(random_));
             const double force_N = options_.force_N * (1.0 + 0.1 * std::sin(2.0 * std::numbers::pi * 0.7 * t_s_));
-            add(i == 0 ? Phase::down : Phase::move, line.from_m + s * (line.to_m - line.from_m) + jitter_m, force_N);
+            add(i == 0 ? platform::Phase::down : platform::Phase::move, line.from_m + s * (line.to_m - line.from_m) + jitter_m, force_N);
         }
-        add(Phase::up, line.to_m, 0.0);
+        add(platform::Phase::up, line.to_m, 0.0);
         t_s_ += 0.3;
     }
 
     double t_s() const { return t_s_; }
-    Trace take() { return std::move(trace_); }
+    platform::Trace take() { return std::move(trace_); }
 
  private:
-    void add(Phase phase, const Eigen::Vector2d& p_m, double force_N) {
-        Sample sample;
+    void add(platform::Phase phase, const Eigen::Vector2d& p_m, double force_N) {
+        platform::Sample sample;
         sample.t_host_s = rounded(t_s_, 1e-6);
         sample.t_device_s = rounded(t_s_, 1e-6);
         sample.pointer_id = 1;
-        sample.tool = Tool::pen;
+        sample.tool = platform::Tool::pen;
         sample.phase = phase;
         const Eigen::Vector2d screen_m = view_.axes * (p_m - view_.area.centre_m);
         const Eigen::Vector2d px = view_.centre_px + screen_m.cwiseProduct(view_.input_px_per_m);
         sample.x_px = rounded(px.x(), 1e-2);
         sample.y_px = rounded(px.y(), 1e-2);
-        const double level = force_N > 0.0 ? level_at_force(plan_.profile, force_N / force_scale_) : 0.0;
+        const double level = force_N > 0.0 ? calibration::level_at_force(plan_.profile, force_N / force_scale_) : 0.0;
         const double share = level / plan_.profile.level_highest;
         constexpr double kLevels = 4096.0;
-        sample.pressure_raw = plan_.profile.level == LevelField::pressure_raw ? std::round(level) : std::round(share * kLevels);
+        sample.pressure_raw = plan_.profile.level == calibration::LevelField::pressure_raw ? std::round(level) : std::round(share * kLevels);
         sample.pressure = rounded(share, 1.0 / kLevels);
         trace_.samples.push_back(sample);
         t_s_ += 1.0 / options_.rate_Hz;
     }
 
-    const Plan& plan_;
+    const scene::Plan& plan_;
     RasterOptions options_;
-    View view_;
-    Trace trace_;
+    scene::View view_;
+    platform::Trace trace_;
     double t_s_ = 0.0;
     std::mt19937 random_;
     std::normal_distribution<double> normal_;
@@ -92,11 +92,11 @@ class Pen {
 
 }  // namespace
 
-Trace raster_trace(const Scene& scene, const Plan& plan, const RasterOptions& options) {
+platform::Trace raster_trace(const scene::Scene& scene, const scene::Plan& plan, const RasterOptions& options) {
     Pen pen(scene, plan, options);
     const std::vector<Line> lines = lines_over(plan);
     for (std::size_t i = 0; pen.t_s() < options.seconds; ++i) pen.draw(lines[i % lines.size()]);
     return pen.take();
 }
 
-}  // namespace palpa
+}  // namespace palpa::session

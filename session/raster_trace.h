@@ -6,7 +6,7 @@
 #include "platform/trace.h"
 #include "scene/plan.h"
 
-namespace palpa {
+namespace palpa::session {
 
 struct RasterOptions {
     double rate_Hz = 120.0;
@@ -19,6 +19,6 @@ struct RasterOptions {
 };
 
 // Lines through each placed nodule along x and along y, and lines beside them, in turn from both sides.
-Trace raster_trace(const Scene& scene, const Plan& plan, const RasterOptions& options);
+platform::Trace raster_trace(const scene::Scene& scene, const scene::Plan& plan, const RasterOptions& options);
 
-}  // namespace palpa
+}  // namespace palpa::session

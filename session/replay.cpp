@@ -5,16 +5,16 @@
 #include <algorithm>
 #include <cmath>
 
-namespace palpa {
+namespace palpa::session {
 namespace {
 
-void note_nodules(const Plan& plan, ReplayResult& result) {
-    const State& state = result.state;
+void note_nodules(const scene::Plan& plan, ReplayResult& result) {
+    const scene::State& state = result.state;
     if (!state.answered || !state.touch.down) return;
     const double lag_m = state.avatar.lag_m.norm();
     bool beside = true;
     for (std::size_t i = 0; i < plan.nodules.size(); ++i) {
-        const Nodule& nodule = plan.nodules[i];
+        const stiffnessmaps::Nodule& nodule = plan.nodules[i];
         const double radius_m = 0.5 * nodule.diameter_m.value_or(0.0);
         const double distance_m = (state.touch.p_m - Eigen::Vector2d(nodule.x_m, nodule.y_m)).norm();
         if (distance_m <= radius_m + plan.indenter_radius_m) {
@@ -27,18 +27,18 @@ void note_nodules(const Plan& plan, ReplayResult& result) {
 
 }  // namespace
 
-ReplayResult replay(const Scene& scene, const Plan& plan, const Trace& trace, int time_every,
+ReplayResult replay(const scene::Scene& scene, const scene::Plan& plan, const platform::Trace& trace, int time_every,
                     const AfterSample& after_sample, double until_s) {
     ReplayResult result;
-    for (const Nodule& nodule : plan.nodules) result.over.push_back({nodule.id, 0.0});
-    State& state = result.state;
-    state = start(scene, plan, screen_of(trace.info));
+    for (const stiffnessmaps::Nodule& nodule : plan.nodules) result.over.push_back({nodule.id, 0.0});
+    scene::State& state = result.state;
+    state = scene::start(scene, plan, screen_of(trace.info));
     state.time_every = time_every;
     Eigen::VectorXd sink_m;
     bool first = true;
     double shown_s = 0.0;  // time of the next virtual frame
-    for (const Sample& sample : trace.samples) {
-        advance(scene, plan, sample, state);
+    for (const platform::Sample& sample : trace.samples) {
+        scene::advance(scene, plan, sample, state);
         if (after_sample) after_sample(sample, state);
         note_nodules(plan, result);
         const double now_s = state.timeline.now_s;
@@ -50,8 +50,8 @@ ReplayResult replay(const Scene& scene, const Plan& plan, const Trace& trace, in
             const double behind = std::min(1.0 + std::floor((now_s - shown_s) * kVirtualDisplay_Hz), 1e9);
             result.frames += static_cast<std::int64_t>(behind);
             shown_s += behind / kVirtualDisplay_Hz;
-            if (scene.surface && scene.linear) surface_now(std::get<LinearTissue>(plan.tissue), state, sink_m);
-            if (scene.surface && !scene.linear) surface_now(scene, plan, state);
+            if (scene.surface && scene.linear) scene::surface_now(std::get<scene::LinearTissue>(plan.tissue), state, sink_m);
+            if (scene.surface && !scene.linear) scene::surface_now(scene, plan, state);
         }
         result.latency.count();
         result.latency.add_ns(1e9 * (shown_s - now_s));
@@ -60,9 +60,9 @@ ReplayResult replay(const Scene& scene, const Plan& plan, const Trace& trace, in
     return result;
 }
 
-Json run_json(const Scene& scene, const Plan& plan, const State& state, std::int64_t frames, const Meter& latency) {
-    const Counters& counters = state.counters;
-    Json json;
+files::Json run_json(const scene::Scene& scene, const scene::Plan& plan, const scene::State& state, std::int64_t frames, const scene::Meter& latency) {
+    const scene::Counters& counters = state.counters;
+    files::Json json;
     json["scene"] = scene.name;
     json["samples"] = counters.samples;
     json["frames"] = frames;
@@ -75,10 +75,10 @@ Json run_json(const Scene& scene, const Plan& plan, const State& state, std::int
     json["max_force_N"] = state.extremes.force_N;
     json["max_depth_mm"] = 1e3 * state.extremes.depth_m;
     json["max_lag_mm"] = 1e3 * state.extremes.lag_m;
-    json["stages"] = Json::array();
+    json["stages"] = files::Json::array();
     for (const auto* stages : {&plan.sample_stages, &plan.frame_stages}) {
-        for (const Stage& stage : *stages) {
-            const Meter& meter = state.meters[static_cast<std::size_t>(stage.id)];
+        for (const scene::Stage& stage : *stages) {
+            const scene::Meter& meter = state.meters[static_cast<std::size_t>(stage.id)];
             json["stages"].push_back({{"name", name_of(stage.id)},
                                       {"fidelity", stage.fidelity},
                                       {"calls", meter.calls()},
@@ -102,12 +102,12 @@ Json run_json(const Scene& scene, const Plan& plan, const State& state, std::int
     return json;
 }
 
-Json result_json(const Scene& scene, const Plan& plan, const ReplayResult& result) {
-    Json json = run_json(scene, plan, result.state, result.frames, result.latency);
-    json["lag_over_nodules_mm"] = Json::object();
+files::Json result_json(const scene::Scene& scene, const scene::Plan& plan, const ReplayResult& result) {
+    files::Json json = run_json(scene, plan, result.state, result.frames, result.latency);
+    json["lag_over_nodules_mm"] = files::Json::object();
     for (const NodulePass& pass : result.over) json["lag_over_nodules_mm"][pass.id] = 1e3 * pass.lag_m;
     json["lag_beside_nodules_mm"] = 1e3 * result.lag_beside_m;
     return json;
 }
 
-}  // namespace palpa
+}  // namespace palpa::session

@@ -9,7 +9,7 @@
 #include "scene/advance.h"
 #include "study/sample_log.h"
 
-namespace palpa {
+namespace palpa::session {
 
 inline constexpr double kVirtualDisplay_Hz = 60.0;
 
@@ -20,24 +20,24 @@ struct NodulePass {
 };
 
 struct ReplayResult {
-    State state;
+    scene::State state;
     std::int64_t frames = 0;  // of a virtual display that shows every 1/60 s of the trace's time
-    Meter latency;            // from a sample's time to the virtual frame that shows it, ns
+    scene::Meter latency;            // from a sample's time to the virtual frame that shows it, ns
     std::vector<NodulePass> over;
     double lag_beside_m = 0.0;  // greatest lag farther than radius + 4 indenter radii from every nodule
 };
 
 // Called after every sample.
-using AfterSample = std::function<void(const Sample& sample, const State& state)>;
+using AfterSample = std::function<void(const platform::Sample& sample, const scene::State& state)>;
 
 // `time_every`: see State. Stops after the first sample at or after `until_s` (time of the state's timeline).
-ReplayResult replay(const Scene& scene, const Plan& plan, const Trace& trace, int time_every,
+ReplayResult replay(const scene::Scene& scene, const scene::Plan& plan, const platform::Trace& trace, int time_every,
                     const AfterSample& after_sample = {}, double until_s = 1e300);
 
 // The keys that every run reports (docs/formats.md).
-Json run_json(const Scene& scene, const Plan& plan, const State& state, std::int64_t frames, const Meter& latency);
+files::Json run_json(const scene::Scene& scene, const scene::Plan& plan, const scene::State& state, std::int64_t frames, const scene::Meter& latency);
 
 // The same for a replay, with the lag over and beside the nodules.
-Json result_json(const Scene& scene, const Plan& plan, const ReplayResult& result);
+files::Json result_json(const scene::Scene& scene, const scene::Plan& plan, const ReplayResult& result);
 
-}  // namespace palpa
+}  // namespace palpa::session

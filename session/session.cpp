@@ -10,23 +10,23 @@
 #include "files/text.h"
 #include "scene/advance.h"
 
-namespace palpa {
+namespace palpa::session {
 namespace {
 
-const char* condition_of(const Scene& scene) {
+const char* condition_of(const scene::Scene& scene) {
     if (scene.display_ratio) return "display_ratio";
     return scene.delay ? "delay" : "none";
 }
 
-const char* event_name(Action action) {
+const char* event_name(platform::Action action) {
     switch (action) {
-        case Action::none: return "start";
-        case Action::mark: return "mark";
-        case Action::undo: return "undo";
-        case Action::finish: return "finish";
-        case Action::resize: return "resize";
-        case Action::hidden: return "hidden";
-        case Action::shown: return "shown";
+        case platform::Action::none: return "start";
+        case platform::Action::mark: return "mark";
+        case platform::Action::undo: return "undo";
+        case platform::Action::finish: return "finish";
+        case platform::Action::resize: return "resize";
+        case platform::Action::hidden: return "hidden";
+        case platform::Action::shown: return "shown";
         default: return "confidence";
     }
 }
@@ -40,9 +40,9 @@ std::string utc_now() {
     return text;
 }
 
-EventRow event_row(const Session& session, Action action) {
-    const Scene& scene = session.scene;
-    EventRow row;
+study::EventRow event_row(const Session& session, platform::Action action) {
+    const scene::Scene& scene = session.scene;
+    study::EventRow row;
     row.onset_s = session.trial.now_s - session.trial.began_s;
     row.trial_type = event_name(action);
     row.block = name_of(session.trial.mode);
@@ -61,11 +61,11 @@ EventRow event_row(const Session& session, Action action) {
     return row;
 }
 
-void write_marks(const Score& score, Session& session) {
+void write_marks(const study::Score& score, Session& session) {
     for (std::size_t i = 0; i < session.trial.marks.size(); ++i) {
         const Mark& mark = session.trial.marks[i];
-        const MarkScore& found = score.marks[i];
-        MarkRow row;
+        const study::MarkScore& found = score.marks[i];
+        study::MarkRow row;
         if (session.label) row.trial = session.label->trial;
         row.onset_s = mark.onset_s;
         row.mark = static_cast<std::int64_t>(i) + 1;
@@ -76,7 +76,7 @@ void write_marks(const Score& score, Session& session) {
             row.nodule = session.plan.nodules[static_cast<std::size_t>(found.target)].id;
             row.distance_mm = 1e3 * found.distance_m;
         }
-        row.hit = found.kind == MarkKind::hit ? 1 : 0;
+        row.hit = found.kind == study::MarkKind::hit ? 1 : 0;
         session.trial_log->write(row);
     }
 }
@@ -84,7 +84,7 @@ void write_marks(const Score& score, Session& session) {
 void sync_all_but_events(Session& session) {
     if (session.label) {
         try {
-            sync_file(session.files->file("_settings.json"));
+            files::sync_file(session.files->file("_settings.json"));
         } catch (const std::exception&) {
             session.failed = true;
         }
@@ -93,15 +93,15 @@ void sync_all_but_events(Session& session) {
     session.trial_log->sync_marks();
 }
 
-void write_event(const Sample& sample, std::size_t marks_before, Session& session) {
-    if (!session.trial_log || sample.phase != Phase::ui || sample.action == Action::resize) return;
-    EventRow row = event_row(session, sample.action);
-    if (sample.action == Action::mark && session.trial.marks.size() > marks_before) {
+void write_event(const platform::Sample& sample, std::size_t marks_before, Session& session) {
+    if (!session.trial_log || sample.phase != platform::Phase::ui || sample.action == platform::Action::resize) return;
+    study::EventRow row = event_row(session, sample.action);
+    if (sample.action == platform::Action::mark && session.trial.marks.size() > marks_before) {
         row.x_mm = 1e3 * session.trial.marks.back().p_m.x();
         row.y_mm = 1e3 * session.trial.marks.back().p_m.y();
     }
-    if (sample.action == Action::finish) {
-        const Score score = debrief(session.plan, session.trial).score;
+    if (sample.action == platform::Action::finish) {
+        const study::Score score = debrief(session.plan, session.trial).score;
         write_marks(score, session);
         sync_all_but_events(session);  // first the rest, then the row that says that it is complete
         if (!files_good(session)) return;
@@ -114,7 +114,7 @@ void write_event(const Sample& sample, std::size_t marks_before, Session& sessio
         row.max_force_N = session.trial.max_force_N;
     }
     session.trial_log->write(row);
-    if (sample.action == Action::finish) session.trial_log->sync_events();
+    if (sample.action == platform::Action::finish) session.trial_log->sync_events();
 }
 
 // What a person did in a trial that ends here, by whatever cause: its places count for nothing, and are not lost.
@@ -132,15 +132,15 @@ std::filesystem::path trace_name(const std::string& first, int trial) {
     return path;
 }
 
-Json settings_of(const Session& session) {
-    Json settings = settings_json(session.scene, session.plan, session.state);
+files::Json settings_of(const Session& session) {
+    files::Json settings = settings_json(session.scene, session.plan, session.state);
     if (session.finger_offset_mm != 0.0) settings["finger_offset_mm"] = session.finger_offset_mm;
     return settings;
 }
 
-void write_settled(const std::filesystem::path& file, const Json& json, const Session& session) {
-    if (session.sync_rows) return write_text_atomically(file, json_text(json));
-    write_text_whole(file, json_text(json));
+void write_settled(const std::filesystem::path& file, const files::Json& json, const Session& session) {
+    if (session.sync_rows) return files::write_text_atomically(file, files::json_text(json));
+    files::write_text_whole(file, files::json_text(json));
 }
 
 void drop_files(Session& session) {
@@ -151,20 +151,20 @@ void drop_files(Session& session) {
     session.files.reset();
 }
 
-void open_files(const SessionFiles& files, const TraceInfo& info, Session& session) {
+void open_files(const SessionFiles& files, const platform::TraceInfo& info, Session& session) {
     drop_files(session);
     try {
         if (!files.record.empty()) session.record.emplace(trace_name(files.record, session.trials), info);
         if (files.log.empty()) return;
-        session.files = next_run(files.log, files.participant, files.task, files.first_run);
+        session.files = study::next_run(files.log, files.participant, files.task, files.first_run);
         const bool alone = !files.label;  // a study explains its columns once, at the top
         if (files.label) {
-            Json settings = settings_of(session);
+            files::Json settings = settings_of(session);
             settings["study"] = files.label->study;
             write_settled(session.files->file("_settings.json"), settings, session);  // before the first sample
         }
         if (files.samples) session.log.emplace(*session.files, alone);
-        session.trial_log.emplace(*session.files, LogOptions{files.sync_rows, alone});
+        session.trial_log.emplace(*session.files, study::LogOptions{files.sync_rows, alone});
     } catch (...) {
         drop_files(session);
         throw;
@@ -173,14 +173,14 @@ void open_files(const SessionFiles& files, const TraceInfo& info, Session& sessi
 
 }  // namespace
 
-ScreenArea screen_of(const TraceInfo& info) {
-    ScreenArea area{info.screen_width_px, info.screen_height_px};
+scene::ScreenArea screen_of(const platform::TraceInfo& info) {
+    scene::ScreenArea area{info.screen_width_px, info.screen_height_px};
     if (std::isfinite(info.screen_width_mm)) area.px_per_m = 1e3 * info.screen_width_px / info.screen_width_mm;
     return area;
 }
 
-void change_tissue(Scene scene, Plan plan, const ScreenArea& screen, Session& session) {
-    State state = start(scene, plan, screen);
+void change_tissue(scene::Scene scene, scene::Plan plan, const scene::ScreenArea& screen, Session& session) {
+    scene::State state = scene::start(scene, plan, screen);
     Trial trial = make_trial(plan, session.trial.mode);
     session.scene = std::move(scene);
     session.plan = std::move(plan);
@@ -188,9 +188,9 @@ void change_tissue(Scene scene, Plan plan, const ScreenArea& screen, Session& se
     session.trial = std::move(trial);
 }
 
-void begin_trial(const SessionFiles& files, const TraceInfo& info, TrialMode mode, Session& session) {
+void begin_trial(const SessionFiles& files, const platform::TraceInfo& info, TrialMode mode, Session& session) {
     ++session.trials;
-    session.state = start(session.scene, session.plan, screen_of(info));
+    session.state = scene::start(session.scene, session.plan, screen_of(info));
     session.state.time_every = 16;
     session.trial = make_trial(session.plan, mode);
     session.device = info.device;
@@ -199,17 +199,17 @@ void begin_trial(const SessionFiles& files, const TraceInfo& info, TrialMode mod
     session.finger_offset_mm = files.finger_offset_mm;
     session.began_utc = utc_now();
     open_files(files, info, session);
-    if (session.trial_log) session.trial_log->write(event_row(session, Action::none));
+    if (session.trial_log) session.trial_log->write(event_row(session, platform::Action::none));
 }
 
-void take_sample(const Sample& sample, Session& session) {
+void take_sample(const platform::Sample& sample, Session& session) {
     if (session.trial.finished) return;
     if (session.record) session.record->write(sample);
-    advance(session.scene, session.plan, sample, session.state);
+    scene::advance(session.scene, session.plan, sample, session.state);
     const std::size_t marks_before = session.trial.marks.size();
     observe(session.plan, sample, session.state, session.trial);
     if (session.log) {
-        SampleRow row = row_of(sample, session.plan, session.state);
+        study::SampleRow row = row_of(sample, session.plan, session.state);
         if (session.label) row.trial = session.label->trial;
         session.log->write(row);
     }
@@ -224,7 +224,7 @@ void take_sample(const Sample& sample, Session& session) {
 void flush_if_due(Session& session) {
     constexpr std::int64_t kEvery_ns = 80'000'000;
     if (!session.log) return;
-    const std::int64_t now_ns = steady_ns();
+    const std::int64_t now_ns = scene::steady_ns();
     if (now_ns - session.flushed_ns < kEvery_ns) return;
     session.log->flush();
     session.flushed_ns = now_ns;
@@ -237,13 +237,13 @@ bool files_good(const Session& session) {
 
 void note_event(std::string_view trial_type, double now_s, Session& session) {
     if (!session.trial_log) return;
-    EventRow row = event_row(session, Action::none);
+    study::EventRow row = event_row(session, platform::Action::none);
     row.trial_type = trial_type;
     if (session.trial.began) row.onset_s = std::max(row.onset_s, now_s - session.trial.began_s);
     session.trial_log->write(row);
 }
 
-bool close_files(const Json& performance, Session& session) {
+bool close_files(const files::Json& performance, Session& session) {
     log_interruption(session);
     if (session.record) session.record->sync();
     if (session.log) session.log->sync();
@@ -251,9 +251,9 @@ bool close_files(const Json& performance, Session& session) {
     if (session.files && good) {
         try {
             if (!session.label) {
-                write_text_atomically(session.files->file("_settings.json"), json_text(settings_of(session)));
+                files::write_text_atomically(session.files->file("_settings.json"), files::json_text(settings_of(session)));
             }
-            Json with_clock = performance;
+            files::Json with_clock = performance;
             with_clock["began_utc"] = session.began_utc;
             write_settled(session.files->file("_performance.json"), with_clock, session);
         } catch (const std::exception&) {
@@ -264,4 +264,4 @@ bool close_files(const Json& performance, Session& session) {
     return good;
 }
 
-}  // namespace palpa
+}  // namespace palpa::session

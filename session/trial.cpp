@@ -5,19 +5,19 @@
 
 #include "scene/mapping.h"
 
-namespace palpa {
+namespace palpa::session {
 namespace {
 
-std::vector<Target> targets_of(const Plan& plan) {
-    std::vector<Target> targets;
-    for (const Nodule& n : plan.nodules) {
+std::vector<study::Target> targets_of(const scene::Plan& plan) {
+    std::vector<study::Target> targets;
+    for (const stiffnessmaps::Nodule& n : plan.nodules) {
         const double angle_rad = n.angle_deg.value_or(0.0) * std::numbers::pi / 180.0;
         targets.push_back({n.id, n.x_m, n.y_m, n.diameter_m.value_or(0.0), n.length_m.value_or(0.0), angle_rad});
     }
     return targets;
 }
 
-void add_to_path(const State& state, Trial& trial) {
+void add_to_path(const scene::State& state, Trial& trial) {
     const bool begins = !trial.pressing;
     const Eigen::Vector2d& p_m = state.touch.p_m;
     if (!begins && (p_m - trial.path.back().p_m).norm() < trial.path_step_m) {
@@ -36,7 +36,7 @@ void add_to_path(const State& state, Trial& trial) {
 }
 
 // Way and force while pressing. A jitter below the dead band is no way, so the sampling rate does not matter.
-void measure_press(const State& state, double now_s, Trial& trial) {
+void measure_press(const scene::State& state, double now_s, Trial& trial) {
     constexpr double kDeadBand_m = 0.5e-3;
     if (!trial.pressing) {
         trial.rope_m = state.touch.p_m;
@@ -55,7 +55,7 @@ void measure_press(const State& state, double now_s, Trial& trial) {
     trial.pressed_N = state.touch.force_N;
 }
 
-void observe_press(const Plan& plan, const Sample& sample, const State& state, Trial& trial) {
+void observe_press(const scene::Plan& plan, const platform::Sample& sample, const scene::State& state, Trial& trial) {
     if (!state.answered) return;  // another finger's, or from the past
     const bool pressing = state.touch.down && state.touch.force_N > 0.0;
     if (!state.touch.down) {
@@ -66,43 +66,43 @@ void observe_press(const Plan& plan, const Sample& sample, const State& state, T
     if (!pressing) return;
     const double R_m = plan.indenter_radius_m;
     const double footprint_m = std::sqrt(R_m * std::min(state.contact.depth_m, R_m));  // Hertz
-    cover(state.touch.p_m.x(), state.touch.p_m.y(), footprint_m, state.contact.depth_m, trial.coverage);
+    study::cover(state.touch.p_m.x(), state.touch.p_m.y(), footprint_m, state.contact.depth_m, trial.coverage);
     measure_press(state, trial.now_s, trial);
     add_to_path(state, trial);
     trial.pressing = true;
 }
 
-void act(const Sample& sample, const State& state, Trial& trial) {
-    const auto first = static_cast<int>(Action::confidence_1);
+void act(const platform::Sample& sample, const scene::State& state, Trial& trial) {
+    const auto first = static_cast<int>(platform::Action::confidence_1);
     const int confidence = static_cast<int>(sample.action) - first + 1;
     if (confidence >= 1 && confidence <= 5 && !trial.marks.empty()) trial.marks.back().confidence = confidence;
-    if (sample.action == Action::undo && !trial.marks.empty()) trial.marks.pop_back();
-    if (sample.action == Action::finish) trial.finished = true;
-    if (sample.action != Action::mark || !std::isfinite(sample.x_px + sample.y_px)) return;
-    const Eigen::Vector2d p_m = tissue_of_px(state.view, {sample.x_px, sample.y_px});
-    if (on_tissue(state.view, p_m)) trial.marks.push_back({p_m, 0, trial.now_s - trial.began_s});
+    if (sample.action == platform::Action::undo && !trial.marks.empty()) trial.marks.pop_back();
+    if (sample.action == platform::Action::finish) trial.finished = true;
+    if (sample.action != platform::Action::mark || !std::isfinite(sample.x_px + sample.y_px)) return;
+    const Eigen::Vector2d p_m = scene::tissue_of_px(state.view, {sample.x_px, sample.y_px});
+    if (scene::on_tissue(state.view, p_m)) trial.marks.push_back({p_m, 0, trial.now_s - trial.began_s});
 }
 
-Finding finding_of(const Coverage& coverage, bool found, double deepest_m) {
+Finding finding_of(const study::Coverage& coverage, bool found, double deepest_m) {
     if (found) return Finding::found;
     switch (level_of(coverage, deepest_m)) {
-        case PalpationLevel::none: return Finding::not_touched;
-        case PalpationLevel::light: return Finding::too_light;
-        case PalpationLevel::medium:
-        case PalpationLevel::deep: break;
+        case study::PalpationLevel::none: return Finding::not_touched;
+        case study::PalpationLevel::light: return Finding::too_light;
+        case study::PalpationLevel::medium:
+        case study::PalpationLevel::deep: break;
     }
     return Finding::not_marked;
 }
 
-Json number_or_null(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+files::Json number_or_null(double value) { return std::isfinite(value) ? files::Json(value) : files::Json(nullptr); }
 
 }  // namespace
 
-Trial make_trial(const Plan& plan, TrialMode mode) {
+Trial make_trial(const scene::Plan& plan, TrialMode mode) {
     Trial trial;
     trial.mode = mode;
     const Eigen::Vector2d corner_m = plan.area.centre_m - 0.5 * plan.area.size_m;
-    trial.coverage = make_coverage(corner_m.x(), corner_m.y(), plan.area.size_m.x(), plan.area.size_m.y(),
+    trial.coverage = study::make_coverage(corner_m.x(), corner_m.y(), plan.area.size_m.x(), plan.area.size_m.y(),
                                    plan.greatest_depth_m);
     trial.path.reserve(kPathPoints);
     constexpr std::size_t kMarksWithoutAllocation = 256;
@@ -110,35 +110,35 @@ Trial make_trial(const Plan& plan, TrialMode mode) {
     return trial;
 }
 
-void observe(const Plan& plan, const Sample& sample, const State& state, Trial& trial) {
+void observe(const scene::Plan& plan, const platform::Sample& sample, const scene::State& state, Trial& trial) {
     if (trial.finished) return;
     if (!trial.began) trial.began_s = trial.now_s = sample.t_host_s;
     trial.began = true;
     trial.now_s = std::max(trial.now_s, sample.t_host_s);
-    if (sample.phase == Phase::ui) return act(sample, state, trial);
+    if (sample.phase == platform::Phase::ui) return act(sample, state, trial);
     observe_press(plan, sample, state, trial);
 }
 
 double mean_force_N(const Trial& trial) { return trial.impulse_Ns / trial.pressed_s; }
 
-Debrief debrief(const Plan& plan, const Trial& trial) {
+Debrief debrief(const scene::Plan& plan, const Trial& trial) {
     Debrief out;
-    const std::vector<Target> targets = targets_of(plan);
-    std::vector<MarkedPlace> places;
+    const std::vector<study::Target> targets = targets_of(plan);
+    std::vector<study::MarkedPlace> places;
     for (const Mark& mark : trial.marks) places.push_back({mark.p_m.x(), mark.p_m.y()});
-    out.score = score_marks(targets, places);
+    out.score = study::score_marks(targets, places);
     for (std::size_t i = 0; i < targets.size(); ++i) {
         const double near_m = 0.5 * std::max(targets[i].diameter_m, targets[i].length_m);
-        out.depth_m.push_back(deepest_near(trial.coverage, targets[i].x_m, targets[i].y_m, near_m));
+        out.depth_m.push_back(study::deepest_near(trial.coverage, targets[i].x_m, targets[i].y_m, near_m));
         out.findings.push_back(finding_of(trial.coverage, out.score.found_by[i] >= 0, out.depth_m.back()));
     }
-    out.area = shares_of(trial.coverage);
+    out.area = study::shares_of(trial.coverage);
     return out;
 }
 
-Json trial_json(const Plan& plan, const Trial& trial) {
+files::Json trial_json(const scene::Plan& plan, const Trial& trial) {
     const Debrief result = debrief(plan, trial);
-    Json json;
+    files::Json json;
     json["mode"] = name_of(trial.mode);
     json["finished"] = trial.finished;
     json["duration_s"] = trial.now_s - trial.began_s;
@@ -149,25 +149,25 @@ Json trial_json(const Plan& plan, const Trial& trial) {
     json["ppv"] = number_or_null(result.score.ppv);
     json["path_mm"] = 1e3 * trial.pressed_m;
     json["mean_force_N"] = number_or_null(mean_force_N(trial));
-    json["marks"] = Json::array();
+    json["marks"] = files::Json::array();
     for (std::size_t i = 0; i < trial.marks.size(); ++i) {
         const Mark& mark = trial.marks[i];
-        const MarkScore& score = result.score.marks[i];
+        const study::MarkScore& score = result.score.marks[i];
         constexpr const char* kKinds[] = {"hit", "again", "false"};
         json["marks"].push_back({{"x_mm", 1e3 * mark.p_m.x()},
                                  {"y_mm", 1e3 * mark.p_m.y()},
-                                 {"confidence", mark.confidence > 0 ? Json(mark.confidence) : Json(nullptr)},
+                                 {"confidence", mark.confidence > 0 ? files::Json(mark.confidence) : files::Json(nullptr)},
                                  {"onset_s", mark.onset_s},
                                  {"kind", kKinds[static_cast<int>(score.kind)]},
-                                 {"distance_mm", score.target < 0 ? Json(nullptr) : Json(1e3 * score.distance_m)}});
+                                 {"distance_mm", score.target < 0 ? files::Json(nullptr) : files::Json(1e3 * score.distance_m)}});
     }
-    json["nodules"] = Json::array();
+    json["nodules"] = files::Json::array();
     for (std::size_t i = 0; i < plan.nodules.size(); ++i) {
         json["nodules"].push_back({{"id", plan.nodules[i].id},
                                    {"finding", name_of(result.findings[i])},
                                    {"deepest_mm", 1e3 * result.depth_m[i]}});
     }
-    for (const PalpationLevel level : {PalpationLevel::light, PalpationLevel::medium, PalpationLevel::deep}) {
+    for (const study::PalpationLevel level : {study::PalpationLevel::light, study::PalpationLevel::medium, study::PalpationLevel::deep}) {
         json["area_at_least"][name_of(level)] = result.area.at_least[static_cast<int>(level)];
     }
     return json;
@@ -185,4 +185,4 @@ const char* name_of(Finding finding) {
     return "";
 }
 
-}  // namespace palpa
+}  // namespace palpa::session

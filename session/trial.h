@@ -11,7 +11,7 @@
 #include "study/coverage.h"
 #include "study/score.h"
 
-namespace palpa {
+namespace palpa::session {
 
 enum class TrialMode : std::uint8_t { practice, test };  // nodules shown, or hidden until the end
 
@@ -34,7 +34,7 @@ struct Trial {
     double began_s = 0.0;  // host time of the first sample
     double now_s = 0.0;    // host time of the last sample; stands still once finished
     std::vector<Mark> marks;
-    Coverage coverage;
+    study::Coverage coverage;
     std::vector<PathPoint> path;  // at most kPathPoints; thinned by half when full
     double path_step_m = 0.5e-3;
     bool pressing = false;
@@ -49,10 +49,10 @@ struct Trial {
 };
 inline constexpr std::size_t kPathPoints = 20000;
 
-Trial make_trial(const Plan& plan, TrialMode mode);
+Trial make_trial(const scene::Plan& plan, TrialMode mode);
 
 // Call it after advance() with the same sample.
-void observe(const Plan& plan, const Sample& sample, const State& state, Trial& trial);
+void observe(const scene::Plan& plan, const platform::Sample& sample, const scene::State& state, Trial& trial);
 
 // Over the time that the pen presses; NaN if it never did.
 double mean_force_N(const Trial& trial);
@@ -61,17 +61,17 @@ double mean_force_N(const Trial& trial);
 enum class Finding : std::uint8_t { found, not_touched, too_light, not_marked };
 
 struct Debrief {
-    Score score;
+    study::Score score;
     std::vector<Finding> findings;  // by nodule
     std::vector<double> depth_m;    // deepest press over each nodule
-    CoverageShares area;
+    study::CoverageShares area;
 };
-Debrief debrief(const Plan& plan, const Trial& trial);
+Debrief debrief(const scene::Plan& plan, const Trial& trial);
 
 // What `run --json` reports of a trial.
-Json trial_json(const Plan& plan, const Trial& trial);
+files::Json trial_json(const scene::Plan& plan, const Trial& trial);
 
 const char* name_of(TrialMode mode);
 const char* name_of(Finding finding);
 
-}  // namespace palpa
+}  // namespace palpa::session

@@ -5,7 +5,7 @@
 
 #include "stiffnessmaps/field.h"
 
-namespace palpa {
+namespace palpa::stiffnessmaps {
 
 double layer_force_N(const Elastic& tissue, double radius_m, double depth_m, double thickness_m) {
     if (depth_m <= 0.0) return 0.0;
@@ -65,4 +65,4 @@ Map analytic_map(const Phantom& phantom) {
     return map;
 }
 
-}  // namespace palpa
+}  // namespace palpa::stiffnessmaps

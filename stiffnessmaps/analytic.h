@@ -4,7 +4,7 @@
 
 #include "stiffnessmaps/phantom.h"
 
-namespace palpa {
+namespace palpa::stiffnessmaps {
 
 // Force on a rigid sphere pressed into an elastic layer that is bonded to its base, N.
 //   F = 4 E/(3 (1 - nu^2)) sqrt(R) d^1.5 [1 - 2 a c/pi + 4 a^2 c^2/pi^2 - 8 (a^3 + 4 pi^2 b/15) c^3/pi^3
@@ -23,4 +23,4 @@ double phantom_force_N(const Phantom& phantom, double x_m, double y_m, double de
 // The map of all grid points and depths, with tangential forces by the work argument (field.h).
 Map analytic_map(const Phantom& phantom);
 
-}  // namespace palpa
+}  // namespace palpa::stiffnessmaps

@@ -9,11 +9,11 @@
 #include "stiffnessmaps/field.h"
 #include "stiffnessmaps/stiffness.h"
 
-namespace palpa {
+namespace palpa::stiffnessmaps {
 namespace {
 
 std::string span_text(const Map& map) {
-    const auto mm = [](double m) { return short_number(1e3 * m); };
+    const auto mm = [](double m) { return files::short_number(1e3 * m); };
     return "x " + mm(map.x_of(0)) + " to " + mm(map.x_of(map.n_x - 1)) + ", y " + mm(map.y_of(0)) + " to " + mm(map.y_of(map.n_y - 1)) + " mm";
 }
 
@@ -98,7 +98,7 @@ MapDifference compare_maps(const Map& a, const std::string& name_a, const Map& b
     const Range x = shared(grid, other, 0);
     const Range y = shared(grid, other, 1);
     if (x.count == 0 || y.count == 0) {
-        throw bad_input(name_b, "", "a map of " + span_text(b), "one that overlaps " + name_a + ", " + span_text(a));
+        throw files::bad_input(name_b, "", "a map of " + span_text(b), "one that overlaps " + name_a + ", " + span_text(a));
     }
     const double deepest_m = std::min(a.depths_m.back(), b.depths_m.back()) * (1.0 + 1e-9);
     const auto depths_of = [&](const Map& map) {
@@ -136,7 +136,7 @@ MapDifference compare_maps(const Map& a, const std::string& name_a, const Map& b
         }
     }
     if (missing_count(d.a) == d.a.normal_N.size()) {
-        throw bad_input(name_b, "", "no place and depth where both maps were measured", "one that overlaps " + name_a);
+        throw files::bad_input(name_b, "", "no place and depth where both maps were measured", "one that overlaps " + name_a);
     }
     for (std::size_t k = 0; k < depths_m.size(); ++k) {
         DepthDifference at = difference(d, k, k + 1);
@@ -148,4 +148,4 @@ MapDifference compare_maps(const Map& a, const std::string& name_a, const Map& b
     return d;
 }
 
-}  // namespace palpa
+}  // namespace palpa::stiffnessmaps

@@ -6,7 +6,7 @@
 
 #include "stiffnessmaps/map.h"
 
-namespace palpa {
+namespace palpa::stiffnessmaps {
 
 struct DepthDifference {
     double depth_m = 0.0;
@@ -36,4 +36,4 @@ struct MapDifference {
 // Throws InputError if they share no place or no depth; the names are for the message.
 MapDifference compare_maps(const Map& a, const std::string& name_a, const Map& b, const std::string& name_b);
 
-}  // namespace palpa
+}  // namespace palpa::stiffnessmaps

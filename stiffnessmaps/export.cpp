@@ -10,7 +10,7 @@
 #include "files/npy.h"
 #include "files/text.h"
 
-namespace palpa {
+namespace palpa::stiffnessmaps {
 namespace {
 
 namespace fs = std::filesystem;
@@ -30,9 +30,9 @@ std::vector<float> depths_mm(const Map& map) {
 }
 
 // Everything, by name.
-std::vector<MatArray> arrays_of(const Map& map) {
+std::vector<files::MatArray> arrays_of(const Map& map) {
     const std::vector<std::size_t> shape{map.n_depths(), map.n_y, map.n_x};
-    std::vector<MatArray> out{{"normal_N", shape, map.normal_N}};
+    std::vector<files::MatArray> out{{"normal_N", shape, map.normal_N}};
     if (!map.tangential_x_N.empty()) out.push_back({"tangential_x_N", shape, map.tangential_x_N});
     if (!map.tangential_y_N.empty()) out.push_back({"tangential_y_N", shape, map.tangential_y_N});
     out.push_back({"x_mm", {1, map.n_x}, places_mm(map, 0)});
@@ -54,7 +54,7 @@ void append_force(const std::vector<float>& forces, std::size_t at, std::string&
 
 std::string csv_of(const Map& map) {
     std::string out = "x_mm,y_mm,depth_mm,normal_N,tangential_x_N,tangential_y_N\n";
-    const auto mm = [](double m) { return number_text(std::round(1e9 * m) / 1e6); };  // to the nanometre
+    const auto mm = [](double m) { return files::number_text(std::round(1e9 * m) / 1e6); };  // to the nanometre
     for (std::size_t at = 0; at < map.normal_N.size(); ++at) {
         const std::size_t cell = at % map.n_cells();
         out += mm(map.x_of(cell % map.n_x)) + "," + mm(map.y_of(cell / map.n_x)) + "," + mm(map.depths_m[at / map.n_cells()]);
@@ -68,15 +68,15 @@ std::string csv_of(const Map& map) {
 
 void write_folder(const Map& map, fs::path folder) {
     if (!folder.has_filename()) folder = folder.parent_path();
-    if (fs::exists(folder)) throw bad_input(folder.string(), "", "something of that name", "a new name (nothing is overwritten)");
+    if (fs::exists(folder)) throw files::bad_input(folder.string(), "", "something of that name", "a new name (nothing is overwritten)");
     fs::path aside = folder;
     aside += ".part-" + std::to_string(::getpid());
     try {
         fs::create_directory(aside);
-        for (MatArray& array : arrays_of(map)) {
+        for (files::MatArray& array : arrays_of(map)) {
             std::vector<std::size_t> shape = array.shape;
             if (shape.size() == 2) shape.erase(shape.begin());  // a row for MATLAB, a vector for NumPy
-            write_npy(aside / (array.name + ".npy"), shape, array.values);
+            files::write_npy(aside / (array.name + ".npy"), shape, array.values);
         }
         fs::rename(aside, folder);
     } catch (const fs::filesystem_error& error) {
@@ -92,12 +92,12 @@ void write_folder(const Map& map, fs::path folder) {
 
 void write_array(const Map& map, const std::string& name, const fs::path& file) {
     std::string there;
-    for (MatArray& array : arrays_of(map)) {
+    for (files::MatArray& array : arrays_of(map)) {
         if (array.shape.size() != 3) continue;
-        if (array.name == name) return write_npy(file, array.shape, array.values);
+        if (array.name == name) return files::write_npy(file, array.shape, array.values);
         there += (there.empty() ? "" : ", ") + array.name;
     }
-    throw bad_input(map.name, "", "no array " + shown(name), "one of " + there);
+    throw files::bad_input(map.name, "", "no array " + files::shown(name), "one of " + there);
 }
 
 }  // namespace
@@ -105,10 +105,10 @@ void write_array(const Map& map, const std::string& name, const fs::path& file) 
 void export_map(const Map& map, const std::string& array, const fs::path& file) {
     const std::string kind = file.extension().string();
     if (kind == ".npy") return write_array(map, array, file);
-    if (kind == ".csv") return write_text_atomically(file, csv_of(map));
-    if (kind == ".mat") return write_mat(arrays_of(map), file);
+    if (kind == ".csv") return files::write_text_atomically(file, csv_of(map));
+    if (kind == ".mat") return files::write_mat(arrays_of(map), file);
     if (kind.empty() && !file.empty()) return write_folder(map, file);
-    throw bad_input(file.string(), "", "a name that ends in " + shown(kind), ".npy, .csv, .mat, or no ending for a folder of arrays");
+    throw files::bad_input(file.string(), "", "a name that ends in " + files::shown(kind), ".npy, .csv, .mat, or no ending for a folder of arrays");
 }
 
-}  // namespace palpa
+}  // namespace palpa::stiffnessmaps

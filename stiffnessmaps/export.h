@@ -6,7 +6,7 @@
 
 #include "stiffnessmaps/map.h"
 
-namespace palpa {
+namespace palpa::stiffnessmaps {
 
 // By the ending of `file`:
 //   .npy   one array, shape [n_depth, n_y, n_x], float32: normal_N, or what `array` names
@@ -17,4 +17,4 @@ namespace palpa {
 // there, and for an array that the map does not have; std::runtime_error if it cannot be written.
 void export_map(const Map& map, const std::string& array, const std::filesystem::path& file);
 
-}  // namespace palpa
+}  // namespace palpa::stiffnessmaps

@@ -6,7 +6,7 @@
 
 #include "stiffnessmaps/grid.h"
 
-namespace palpa {
+namespace palpa::stiffnessmaps {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
@@ -314,4 +314,4 @@ TangentialAgreement tangential_agreement(const Map& map, const Field& field) {
     return out;
 }
 
-}  // namespace palpa
+}  // namespace palpa::stiffnessmaps

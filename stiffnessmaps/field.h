@@ -18,7 +18,7 @@
 
 #include "stiffnessmaps/map.h"
 
-namespace palpa {
+namespace palpa::stiffnessmaps {
 
 enum class TangentialForce { energy, recorded };  // recorded: the matrices as they stand, as in the paper
 
@@ -92,4 +92,4 @@ struct TangentialAgreement {
 };
 TangentialAgreement tangential_agreement(const Map& map, const Field& field);
 
-}  // namespace palpa
+}  // namespace palpa::stiffnessmaps

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-namespace palpa {
+namespace palpa::stiffnessmaps {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
@@ -137,4 +137,4 @@ void make_isotonic(std::vector<double>& values) {
     }
 }
 
-}  // namespace palpa
+}  // namespace palpa::stiffnessmaps

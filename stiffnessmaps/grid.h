@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-namespace palpa {
+namespace palpa::stiffnessmaps {
 
 struct GridShape {
     std::size_t n_x = 0;
@@ -31,4 +31,4 @@ Gradient gradient(const std::vector<double>& values, const GridShape& shape);
 // Least-squares non-decreasing sequence (pool adjacent violators; Barlow et al. 1972). In place.
 void make_isotonic(std::vector<double>& values);
 
-}  // namespace palpa
+}  // namespace palpa::stiffnessmaps

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-namespace palpa {
+namespace palpa::stiffnessmaps {
 
 std::size_t missing_count(const Map& map) {
     const auto missing = [](float force) { return std::isnan(force); };
@@ -43,4 +43,4 @@ const char* name_of(SourceKind kind) {
     return "recorded";
 }
 
-}  // namespace palpa
+}  // namespace palpa::stiffnessmaps

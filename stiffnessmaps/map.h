@@ -7,7 +7,7 @@
 #include <variant>
 #include <vector>
 
-namespace palpa {
+namespace palpa::stiffnessmaps {
 
 enum class IndenterShape { sphere, cylinder };
 enum class TangentialKind { recorded, energy, none };  // where the tangential arrays come from
@@ -79,4 +79,4 @@ const char* name_of(IndenterShape shape);
 const char* name_of(TangentialKind kind);
 const char* name_of(SourceKind kind);
 
-}  // namespace palpa
+}  // namespace palpa::stiffnessmaps

@@ -7,7 +7,7 @@
 #include "files/json.h"
 #include "stiffnessmaps/map.h"
 
-namespace palpa {
+namespace palpa::stiffnessmaps {
 
 // Throws InputError for anything that is not a whole, consistent map.
 Map read_map(const std::filesystem::path& folder);
@@ -22,6 +22,6 @@ void write_map(const Map& map, const std::filesystem::path& folder);
 // std::runtime_error if it cannot be written.
 void replace_map_json(const Map& map, const std::filesystem::path& folder);
 
-Json map_json(const Map& map);  // the contents of map.json
+files::Json map_json(const Map& map);  // the contents of map.json
 
-}  // namespace palpa
+}  // namespace palpa::stiffnessmaps

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace palpa {
+namespace palpa::stiffnessmaps {
 namespace {
 
 void second_differences(const Map& map, std::size_t along, std::size_t n, std::size_t stride,
@@ -65,4 +65,4 @@ double smoothing_sigma_m(const Map& map, double noise_N, double reference_m, dou
     return std::cbrt(cube);
 }
 
-}  // namespace palpa
+}  // namespace palpa::stiffnessmaps

@@ -3,7 +3,7 @@
 
 #include "stiffnessmaps/map.h"
 
-namespace palpa {
+namespace palpa::stiffnessmaps {
 
 // Standard deviation of white noise in the normal force (N): what the map says of itself, or else the estimate.
 double normal_noise_N(const Map& map);
@@ -26,4 +26,4 @@ double default_smoothing_m(const Map& map, double noise_N, double reference_m, d
 // times better.
 double coarse_grid_error_N(const Map& map);
 
-}  // namespace palpa
+}  // namespace palpa::stiffnessmaps

@@ -4,17 +4,17 @@
 #include "files/json.h"
 #include "files/text.h"
 
-namespace palpa {
+namespace palpa::stiffnessmaps {
 namespace {
 
-Elastic read_elastic(JsonReader& json) {
+Elastic read_elastic(files::JsonReader& json) {
     Elastic out;
     out.young_Pa = json.number("young_Pa", {0.0, 1e12, true});
     out.poisson = json.number("poisson", {0.0, 0.4999});
     return out;
 }
 
-PhantomNodule read_nodule(JsonReader json, const Phantom& phantom) {
+PhantomNodule read_nodule(files::JsonReader json, const Phantom& phantom) {
     json.only({"id", "centre_mm", "diameter_mm", "young_Pa", "poisson"});
     PhantomNodule nodule;
     nodule.id = json.text("id");
@@ -25,15 +25,15 @@ PhantomNodule read_nodule(JsonReader json, const Phantom& phantom) {
         nodule.centre_m[i] = 1e-3 * centre_mm[i];
         const double radius_m = 0.5 * nodule.diameter_m;
         if (nodule.centre_m[i] < radius_m || nodule.centre_m[i] > phantom.size_m[i] - radius_m) {
-            json.fail("centre_mm", short_number(centre_mm[i]) + " with a radius of " + short_number(1e3 * radius_m),
-                      "a sphere inside the block of " + short_number(1e3 * phantom.size_m[i]) + " mm");
+            json.fail("centre_mm", files::short_number(centre_mm[i]) + " with a radius of " + files::short_number(1e3 * radius_m),
+                      "a sphere inside the block of " + files::short_number(1e3 * phantom.size_m[i]) + " mm");
         }
     }
     json.finish();
     return nodule;
 }
 
-void read_grid(JsonReader json, Phantom& phantom) {
+void read_grid(files::JsonReader json, Phantom& phantom) {
     json.only({"origin_mm", "spacing_mm", "count"});
     const auto origin_mm = json.numbers("origin_mm", 2, {-1e4, 1e4});
     const auto spacing_mm = json.numbers("spacing_mm", 2, {0.0, 1e4, true});
@@ -42,7 +42,7 @@ void read_grid(JsonReader json, Phantom& phantom) {
         phantom.origin_m[i] = 1e-3 * origin_mm[i];
         phantom.spacing_m[i] = 1e-3 * spacing_mm[i];
         if (count[i] != static_cast<double>(static_cast<std::size_t>(count[i]))) {
-            json.fail("count", short_number(count[i]), "whole numbers");
+            json.fail("count", files::short_number(count[i]), "whole numbers");
         }
     }
     phantom.n_x = static_cast<std::size_t>(count[0]);
@@ -67,28 +67,28 @@ std::vector<Nodule> placed_nodules(const Phantom& phantom) {
 }
 
 Phantom read_phantom(const std::filesystem::path& path) {
-    const Json root = read_json(path);
-    JsonReader json(root, path.string());
+    const files::Json root = files::read_json(path);
+    files::JsonReader json(root, path.string());
     json.only({"size_mm", "tissue", "nodules", "indenter", "depths_mm", "grid"});
     Phantom phantom;
     phantom.name = path.stem().string();
     const auto size_mm = json.numbers("size_mm", 3, {0.0, 1e4, true});
     for (std::size_t i = 0; i < 3; ++i) phantom.size_m[i] = 1e-3 * size_mm[i];
-    JsonReader tissue = json.object("tissue");
+    files::JsonReader tissue = json.object("tissue");
     tissue.only({"young_Pa", "poisson", "assumed"});
     phantom.tissue = read_elastic(tissue);
     phantom.tissue.assumed = tissue.boolean("assumed", false);
     tissue.finish();
-    for (JsonReader& nodule : json.objects("nodules")) phantom.nodules.push_back(read_nodule(nodule, phantom));
+    for (files::JsonReader& nodule : json.objects("nodules")) phantom.nodules.push_back(read_nodule(nodule, phantom));
 
-    JsonReader indenter = json.object("indenter");
+    files::JsonReader indenter = json.object("indenter");
     indenter.only({"shape", "radius_mm", "length_mm", "contact", "friction"});
     phantom.indenter = static_cast<IndenterShape>(indenter.choice("shape", {"sphere", "cylinder"}));
     phantom.indenter_radius_m = 1e-3 * indenter.number("radius_mm", {0.0, 1e3, true});
     if (phantom.indenter == IndenterShape::cylinder) {
         phantom.indenter_length_m = 1e-3 * indenter.number("length_mm", {0.0, 1e4, true});
     } else if (indenter.has("length_mm")) {
-        indenter.fail("length_mm", short_number(indenter.number("length_mm", {-1e9, 1e9})), "none: a sphere has no length");
+        indenter.fail("length_mm", files::short_number(indenter.number("length_mm", {-1e9, 1e9})), "none: a sphere has no length");
     }
     phantom.rolling = indenter.choice("contact", {"rolling", "sliding"}) == 0;
     phantom.friction = indenter.number("friction", {0.0, 10.0}, 0.0);
@@ -96,7 +96,7 @@ Phantom read_phantom(const std::filesystem::path& path) {
 
     for (const double depth_mm : json.numbers("depths_mm", 0, {0.0, size_mm[2], true})) {
         if (!phantom.depths_m.empty() && 1e-3 * depth_mm <= phantom.depths_m.back()) {
-            json.fail("depths_mm", short_number(depth_mm), "ascending depths");
+            json.fail("depths_mm", files::short_number(depth_mm), "ascending depths");
         }
         phantom.depths_m.push_back(1e-3 * depth_mm);
     }
@@ -122,4 +122,4 @@ Map map_of_phantom(const Phantom& phantom) {
     return map;
 }
 
-}  // namespace palpa
+}  // namespace palpa::stiffnessmaps

@@ -5,7 +5,7 @@
 
 #include "stiffnessmaps/map.h"
 
-namespace palpa {
+namespace palpa::stiffnessmaps {
 
 struct Elastic {
     double young_Pa = 0.0;
@@ -46,4 +46,4 @@ Phantom read_phantom(const std::filesystem::path& path);
 // Grid, depths, indenter and nodules of the phantom's map; no forces yet.
 Map map_of_phantom(const Phantom& phantom);
 
-}  // namespace palpa
+}  // namespace palpa::stiffnessmaps

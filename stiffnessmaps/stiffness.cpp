@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace palpa {
+namespace palpa::stiffnessmaps {
 
 std::vector<double> stiffness_N_per_m(const Map& map, double deepest_m) {
     std::vector<double> out(map.n_cells(), std::numeric_limits<double>::quiet_NaN());
@@ -30,4 +30,4 @@ double median_of(std::vector<double> values) {
     return *middle;
 }
 
-}  // namespace palpa
+}  // namespace palpa::stiffnessmaps

@@ -6,7 +6,7 @@
 
 #include "stiffnessmaps/map.h"
 
-namespace palpa {
+namespace palpa::stiffnessmaps {
 
 // Stiffness of every cell, N/m, [n_y][n_x]: the least-squares line through contact,
 //   k = sum_i F_i d_i / sum_i d_i^2     over the measured depths d_i <= deepest_m,
@@ -17,4 +17,4 @@ std::vector<double> stiffness_N_per_m(const Map& map, double deepest_m = std::nu
 // Middle value of what is finite; NaN if nothing is.
 double median_of(std::vector<double> values);
 
-}  // namespace palpa
+}  // namespace palpa::stiffnessmaps

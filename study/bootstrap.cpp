@@ -8,7 +8,7 @@
 
 #include "study/random.h"
 
-namespace palpa {
+namespace palpa::study {
 namespace {
 
 constexpr Interval kUnknown{std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::quiet_NaN()};
@@ -72,4 +72,4 @@ Interval bootstrap_difference(std::span<const Contribution> a, std::span<const C
     return percentiles(values, options.level);
 }
 
-}  // namespace palpa
+}  // namespace palpa::study

@@ -7,7 +7,7 @@
 
 #include "study/statistics.h"
 
-namespace palpa {
+namespace palpa::study {
 
 struct BootstrapOptions {
     int resamples = 2000;
@@ -30,4 +30,4 @@ Interval bootstrap_share(std::span<const Contribution> people, const BootstrapOp
 Interval bootstrap_difference(std::span<const Contribution> a, std::span<const Contribution> b,
                               const BootstrapOptions& options);
 
-}  // namespace palpa
+}  // namespace palpa::study

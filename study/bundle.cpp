@@ -8,7 +8,7 @@
 #include "files/json.h"
 #include "files/sha256.h"
 
-namespace palpa {
+namespace palpa::study {
 namespace {
 
 constexpr std::size_t kLongestLabel = 64;
@@ -59,37 +59,37 @@ std::string one_line(std::string_view text) {
     return text.size() > kLongestMessage ? out.substr(0, kLongestMessage - 3) + "..." : out;
 }
 
-BundleFile read_file(JsonReader& json) {
+BundleFile read_file(files::JsonReader& json) {
     json.only({"name", "sha256", "text"});
     BundleFile file;
     file.name = json.text("name");
     const auto kind = kind_of_log_file(file.name);
-    if (!kind) json.fail("name", shown(file.name), "a file of a study's log, such as sub-01/beh/sub-01_task-palpation_run-01_events.tsv");
+    if (!kind) json.fail("name", files::shown(file.name), "a file of a study's log, such as sub-01/beh/sub-01_task-palpation_run-01_events.tsv");
     file.kind = *kind;
     file.sha256 = json.text("sha256");
     file.text = json.text("text");
-    const std::string is = sha256_hex(file.text);
-    if (file.sha256 != is) json.fail("sha256", shown(file.sha256), is + ", the text's own: it was changed on its way");
+    const std::string is = files::sha256_hex(file.text);
+    if (file.sha256 != is) json.fail("sha256", files::shown(file.sha256), is + ", the text's own: it was changed on its way");
     return file;
 }
 
 Bundle read_checked(std::string_view bytes, const std::string& file_name) {
-    const Json root = parse_json(bytes, file_name);
-    JsonReader json(root, file_name);
+    const files::Json root = files::parse_json(bytes, file_name);
+    files::JsonReader json(root, file_name);
     json.only({"palpa_bundle", "files"});
     json.integer("palpa_bundle", 1, 1);
     if (!json.has("files")) json.fail("files", "nothing", "an array of files");
-    std::vector<JsonReader> files = json.objects("files");
+    std::vector<files::JsonReader> files = json.objects("files");
     if (files.empty() || files.size() > kMostFiles) json.fail("files", std::to_string(files.size()) + " files", "1 to " + std::to_string(kMostFiles));
     Bundle bundle;
     std::map<std::string, std::string> hashes;
-    for (JsonReader& json_file : files) {
+    for (files::JsonReader& json_file : files) {
         BundleFile file = read_file(json_file);
         const auto [it, fresh] = hashes.emplace(file.name, file.sha256);
         // people are added up, and answers grow: whoever imports them compares their lines
         const bool again = !fresh && it->second != file.sha256;
         if (again && file.kind != LogFileKind::people && !grows(file.name)) {
-            json_file.fail("name", shown(file.name) + " again with other content", "each file once");
+            json_file.fail("name", files::shown(file.name) + " again with other content", "each file once");
         }
         if (fresh || again) bundle.files.push_back(std::move(file));
     }
@@ -114,9 +114,9 @@ bool grows(std::string_view name) {
 Bundle read_bundle(std::string_view bytes, const std::string& file_name) {
     try {
         return read_checked(bytes, file_name);
-    } catch (const InputError& error) {
-        throw InputError(one_line(error.what()));
+    } catch (const files::InputError& error) {
+        throw files::InputError(one_line(error.what()));
     }
 }
 
-}  // namespace palpa
+}  // namespace palpa::study

@@ -11,7 +11,7 @@
 #include <string_view>
 #include <vector>
 
-namespace palpa {
+namespace palpa::study {
 
 // What a name in a folder of logs can be.
 enum class LogFileKind {
@@ -46,4 +46,4 @@ struct Bundle {
 // 400 characters at most, without control characters.
 Bundle read_bundle(std::string_view bytes, const std::string& file_name);
 
-}  // namespace palpa
+}  // namespace palpa::study

@@ -7,13 +7,13 @@
 #include "files/text.h"
 #include "study/bundle.h"
 
-namespace palpa {
+namespace palpa::study {
 namespace {
 
 namespace fs = std::filesystem;
 
-void add(const std::string& name, const std::string& text, Json& files) {
-    files.push_back({{"name", name}, {"sha256", sha256_hex(text)}, {"text", text}});
+void add(const std::string& name, const std::string& text, files::Json& files) {
+    files.push_back({{"name", name}, {"sha256", files::sha256_hex(text)}, {"text", text}});
 }
 
 // Others on this tablet are in bundles of their own.
@@ -25,10 +25,10 @@ std::string line_of_person(const std::string& people, const std::string& code) {
     return out;
 }
 
-void add_study_files(const fs::path& directory, const std::string& code, Json& files) {
+void add_study_files(const fs::path& directory, const std::string& code, files::Json& files) {
     for (const fs::path& file : study_files(directory, code)) {
         const std::string name = fs::relative(file, directory).generic_string();
-        const std::string text = read_text(file);
+        const std::string text = files::read_text(file);
         add(name, name == "participants.tsv" ? line_of_person(text, code) : text, files);
     }
 }
@@ -66,19 +66,19 @@ std::vector<fs::path> study_files(const fs::path& directory, const std::string& 
 
 std::string bundle_text(const RunFiles& run) {
     const std::string code = code_of(run);
-    Json files = Json::array();
+    files::Json files = files::Json::array();
     for (const fs::path& file : sorted_files(run.folder)) {
         const std::string name = file.filename().string();
-        if (name.rfind(run.stem + "_", 0) == 0) add("sub-" + code + "/beh/" + name, read_text(file), files);
+        if (name.rfind(run.stem + "_", 0) == 0) add("sub-" + code + "/beh/" + name, files::read_text(file), files);
     }
     if (const fs::path directory = study_of(run); !directory.empty()) add_study_files(directory, code, files);
-    return json_text({{"palpa_bundle", 1}, {"files", files}});
+    return files::json_text({{"palpa_bundle", 1}, {"files", files}});
 }
 
 std::string bundle_of_answers(const fs::path& directory, const std::string& code) {
-    Json files = Json::array();
+    files::Json files = files::Json::array();
     add_study_files(directory, code, files);
-    return json_text({{"palpa_bundle", 1}, {"files", files}});
+    return files::json_text({{"palpa_bundle", 1}, {"files", files}});
 }
 
-}  // namespace palpa
+}  // namespace palpa::study

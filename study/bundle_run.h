@@ -10,7 +10,7 @@
 
 #include "study/sample_log.h"
 
-namespace palpa {
+namespace palpa::study {
 
 // The files of one run, as they are on the disk now. Throws InputError for a file that cannot be read.
 std::string bundle_text(const RunFiles& run);
@@ -27,4 +27,4 @@ std::vector<std::filesystem::path> study_files(const std::filesystem::path& dire
 // The participant of a run's name.
 std::string code_of(const RunFiles& run);
 
-}  // namespace palpa
+}  // namespace palpa::study

@@ -7,12 +7,12 @@
 
 #include "files/table.h"
 
-namespace palpa {
+namespace palpa::study {
 
 // More than anybody marks or answers; the exact tests go through every count up to this in less than a second.
 inline constexpr std::int64_t kMostCounts = 1'000'000;
 
-inline std::int64_t whole_number(const Table& table, std::size_t column, std::int64_t from, std::int64_t to) {
+inline std::int64_t whole_number(const files::Table& table, std::size_t column, std::int64_t from, std::int64_t to) {
     const double value = table.number(column);
     if (!(value >= static_cast<double>(from) && value <= static_cast<double>(to)) || value != std::floor(value)) {
         table.fail(column, "a whole number from " + std::to_string(from) + " to " + std::to_string(to));
@@ -20,6 +20,6 @@ inline std::int64_t whole_number(const Table& table, std::size_t column, std::in
     return static_cast<std::int64_t>(value);
 }
 
-inline std::int64_t count(const Table& table, std::size_t column) { return whole_number(table, column, 0, kMostCounts); }
+inline std::int64_t count(const files::Table& table, std::size_t column) { return whole_number(table, column, 0, kMostCounts); }
 
-}  // namespace palpa
+}  // namespace palpa::study

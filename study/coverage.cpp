@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace palpa {
+namespace palpa::study {
 namespace {
 
 struct CellRange {
@@ -89,4 +89,4 @@ const char* name_of(PalpationLevel level) {
     return kNames[static_cast<int>(level)];
 }
 
-}  // namespace palpa
+}  // namespace palpa::study

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-namespace palpa {
+namespace palpa::study {
 
 // Thirds of the depth that the tissue is known for: light, medium and deep palpation.
 enum class PalpationLevel { none, light, medium, deep };
@@ -39,4 +39,4 @@ double deepest_near(const Coverage& coverage, double x_m, double y_m, double rad
 
 const char* name_of(PalpationLevel level);
 
-}  // namespace palpa
+}  // namespace palpa::study

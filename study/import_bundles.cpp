@@ -16,14 +16,14 @@
 #include "study/study_folder.h"
 #include "study/trial_log.h"
 
-namespace palpa {
+namespace palpa::study {
 namespace {
 
 namespace fs = std::filesystem;
 
 constexpr std::size_t kLargestBundle_bytes = std::size_t{1} << 30;
 
-Bundle read_whole(const fs::path& file) { return read_bundle(read_text(file, kLargestBundle_bytes), file.string()); }
+Bundle read_whole(const fs::path& file) { return read_bundle(files::read_text(file, kLargestBundle_bytes), file.string()); }
 
 // What somebody tried on a tablet before the study: settings that name no protocol.
 bool is_single_run(const Bundle& bundle) {
@@ -31,7 +31,7 @@ bool is_single_run(const Bundle& bundle) {
     for (const BundleFile& file : bundle.files) {
         if (file.kind == LogFileKind::identity) return false;
         const bool settings = file.name.find("_settings.json") != std::string::npos;
-        if (settings && Json::accept(file.text)) single = single || !Json::parse(file.text).contains("study");
+        if (settings && files::Json::accept(file.text)) single = single || !files::Json::parse(file.text).contains("study");
     }
     return single;
 }
@@ -57,7 +57,7 @@ class Plan {
  public:
     explicit Plan(const fs::path& directory) : directory_(directory) {
         if (!fs::exists(directory)) return;
-        if (!fs::is_directory(directory)) throw bad_input(directory.string(), "", "a file", "a study's folder, or a name that is free");
+        if (!fs::is_directory(directory)) throw files::bad_input(directory.string(), "", "a file", "a study's folder, or a name that is free");
         std::vector<std::string> notes;
         for (Person& one : read_people(directory, notes)) known_.emplace(one.code, one);
         identity_ = read_identity(directory);
@@ -70,7 +70,7 @@ class Plan {
         if (grows(file.name)) return add_answers(file, from);
         const auto [it, fresh] = first_.emplace(file.name, std::pair(file.sha256, from));
         if (!fresh && it->second.first != file.sha256) {
-            throw bad_input(from, file.name, "other content than in " + it->second.second, "the same, or another name");
+            throw files::bad_input(from, file.name, "other content than in " + it->second.second, "the same, or another name");
         }
         if (fresh && !is_there(file, from)) new_.insert(file.name);
         if (fresh && new_.count(file.name) == 0) report.already_there.push_back(file.name);
@@ -79,7 +79,7 @@ class Plan {
     bool is_new(const BundleFile& file, const std::string& from) const {
         const auto it = first_.find(file.name);
         if (new_.count(file.name) == 0) return false;
-        if (it->second.first != file.sha256) throw bad_input(from, file.name, "content that changed while it was read", "the file left alone");
+        if (it->second.first != file.sha256) throw files::bad_input(from, file.name, "content that changed while it was read", "the file left alone");
         return true;
     }
 
@@ -100,9 +100,9 @@ class Plan {
             Answers& most = it->second;
             const fs::path path = directory_ / name;
             most.there = is_taken(name, most.from);
-            const std::string there = most.there ? read_text(path) : "";
+            const std::string there = most.there ? files::read_text(path) : "";
             if (!begins_with(most.text, there) && !begins_with(there, most.text)) {
-                throw bad_input(most.from, name, "other answers than in " + path.string(), "the same ones, or more of them: nothing is overwritten");
+                throw files::bad_input(most.from, name, "other answers than in " + path.string(), "the same ones, or more of them: nothing is overwritten");
             }
             const bool more = !most.there || most.text.size() > there.size();
             if (!more) report.already_there.push_back(name);
@@ -120,7 +120,7 @@ class Plan {
         Answers& most = it->second;
         if (fresh || begins_with(most.text, file.text)) return;
         if (!begins_with(file.text, most.text)) {
-            throw bad_input(from, file.name, "other answers than in " + most.from, "the same ones, or more of them");
+            throw files::bad_input(from, file.name, "other answers than in " + most.from, "the same ones, or more of them");
         }
         most = {file.text, from, false};
     }
@@ -131,11 +131,11 @@ class Plan {
         for (const fs::path& part : fs::path(name)) {
             path /= part;
             const auto status = fs::symlink_status(path);
-            if (fs::is_symlink(status)) throw bad_input(from, name, "a link in the way: " + path.string(), "folders and files");
+            if (fs::is_symlink(status)) throw files::bad_input(from, name, "a link in the way: " + path.string(), "folders and files");
             if (!fs::exists(status)) return false;
             const bool last = path == directory_ / name;
             if (last ? !fs::is_regular_file(status) : !fs::is_directory(status)) {
-                throw bad_input(from, name, path.string() + " in the way", last ? "a file, or nothing" : "a folder, or nothing");
+                throw files::bad_input(from, name, path.string() + " in the way", last ? "a file, or nothing" : "a folder, or nothing");
             }
         }
         return true;
@@ -144,8 +144,8 @@ class Plan {
     bool is_there(const BundleFile& file, const std::string& from) const {
         if (!is_taken(file.name, from)) return false;
         const fs::path path = directory_ / file.name;
-        if (sha256_hex(read_text(path)) == file.sha256) return true;
-        throw bad_input(from, file.name, "other content than in " + path.string(), "the same, or a name that is free: nothing is overwritten");
+        if (files::sha256_hex(files::read_text(path)) == file.sha256) return true;
+        throw files::bad_input(from, file.name, "other content than in " + path.string(), "the same, or a name that is free: nothing is overwritten");
     }
 
     void add_people_of(const BundleFile& file, const std::string& from) {
@@ -153,28 +153,28 @@ class Plan {
         std::vector<std::string> notes;
         for (const Person& one : people_in(file.text, from + ": " + file.name, notes)) {
             if (one.code.empty() || !std::all_of(one.code.begin(), one.code.end(), [](unsigned char c) { return c < 128 && std::isalnum(c) != 0; })) {
-                throw bad_input(from, file.name, shown("sub-" + one.code), "a code of letters and digits");
+                throw files::bad_input(from, file.name, files::shown("sub-" + one.code), "a code of letters and digits");
             }
             const auto [it, fresh] = known_.emplace(one.code, one);
             if (fresh) {
                 people.push_back(one);
             } else if (!(it->second == one)) {
-                throw bad_input(from, file.name, "sub-" + one.code + " described otherwise than in the study", "the same participant, or another code");
+                throw files::bad_input(from, file.name, "sub-" + one.code + " described otherwise than in the study", "the same participant, or another code");
             }
         }
-        if (!notes.empty()) throw bad_input(from, file.name, "a line that is no participant", "lines with 8 fields: " + notes.front());
+        if (!notes.empty()) throw files::bad_input(from, file.name, "a line that is no participant", "lines with 8 fields: " + notes.front());
     }
 
     void add_identity(const BundleFile& file, const std::string& from) {
         refuse_link(file, from);
         const StudyIdentity its = identity_in(file.text, from + ": " + file.name);
         if (logs_without_identity_) {
-            throw bad_input(from, file.name, "a study", "logs of single runs, as in " + directory_.string() + ", which has no study.json");
+            throw files::bad_input(from, file.name, "a study", "logs of single runs, as in " + directory_.string() + ", which has no study.json");
         }
         if (identity_ && !same_study(*identity_, its)) {
-            throw bad_input(from, file.name, shown(its.name) + " version " + shown(its.version) + ", sha256 " + shown(its.sha256.substr(0, 12)),
-                            shown(identity_->name) + " version " + shown(identity_->version) + ", sha256 " +
-                                shown(identity_->sha256.substr(0, 12)) + ": two studies never share a folder");
+            throw files::bad_input(from, file.name, files::shown(its.name) + " version " + files::shown(its.version) + ", sha256 " + files::shown(its.sha256.substr(0, 12)),
+                            files::shown(identity_->name) + " version " + files::shown(identity_->version) + ", sha256 " +
+                                files::shown(identity_->sha256.substr(0, 12)) + ": two studies never share a folder");
         }
         if (identity_) return;
         identity_ = its;
@@ -183,7 +183,7 @@ class Plan {
 
     void refuse_link(const BundleFile& file, const std::string& from) const {
         if (fs::is_symlink(fs::symlink_status(directory_ / file.name))) {
-            throw bad_input(from, file.name, "a link in the way", "a file");
+            throw files::bad_input(from, file.name, "a link in the way", "a file");
         }
     }
 
@@ -209,7 +209,7 @@ class NewFiles {
     void write(const std::string& name, const std::string& text) {
         const fs::path path = directory_ / name;
         fs::create_directories(path.parent_path());
-        if (!write_new_text(path, text)) throw bad_input(path.string(), "", "a file that was not there before", "the folder left alone meanwhile");
+        if (!files::write_new_text(path, text)) throw files::bad_input(path.string(), "", "a file that was not there before", "the folder left alone meanwhile");
         paths_.push_back(path);
         folders_.insert(path.parent_path());
         folders_.insert(path.parent_path().parent_path());
@@ -217,7 +217,7 @@ class NewFiles {
     }
 
     void keep() {
-        for (const fs::path& folder : folders_) sync_folder(folder.empty() ? fs::path(".") : folder);
+        for (const fs::path& folder : folders_) files::sync_folder(folder.empty() ? fs::path(".") : folder);
         paths_.clear();
     }
 
@@ -280,7 +280,7 @@ BundleReport import_bundles(const std::vector<fs::path>& bundles, const fs::path
     prepare_log_folder(directory);
     for (const auto& [name, most] : plan.answers) {
         if (!most.there) continue;
-        write_text_atomically(directory / name, most.text);  // begins with what was there
+        files::write_text_atomically(directory / name, most.text);  // begins with what was there
         plan.report.grown.push_back(name);
     }
     add_people(directory, plan.people);
@@ -288,4 +288,4 @@ BundleReport import_bundles(const std::vector<fs::path>& bundles, const fs::path
     return plan.report;
 }
 
-}  // namespace palpa
+}  // namespace palpa::study

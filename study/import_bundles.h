@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace palpa {
+namespace palpa::study {
 
 struct BundleReport {
     std::vector<std::string> written;        // names within the folder
@@ -24,4 +24,4 @@ struct BundleReport {
 // Throws std::runtime_error if it cannot write.
 BundleReport import_bundles(const std::vector<std::filesystem::path>& bundles, const std::filesystem::path& directory);
 
-}  // namespace palpa
+}  // namespace palpa::study

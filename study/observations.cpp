@@ -10,20 +10,20 @@
 #include "files/text.h"
 #include "study/count.h"
 
-namespace palpa {
+namespace palpa::study {
 namespace {
 
-std::optional<std::size_t> optional_column(const Table& table, std::string_view name) {
+std::optional<std::size_t> optional_column(const files::Table& table, std::string_view name) {
     if (!table.has_column(name)) return std::nullopt;
     return table.column(name);
 }
 
-int name_index(const Table& table, std::optional<std::size_t> column, std::vector<std::string>& names) {
+int name_index(const files::Table& table, std::optional<std::size_t> column, std::vector<std::string>& names) {
     if (!column || table.field(*column) == "n/a" || table.field(*column).empty()) return -1;
     return index_of(table.field(*column), names);
 }
 
-int condition_index(const Table& table, std::size_t column, Observations& out) {
+int condition_index(const files::Table& table, std::size_t column, Observations& out) {
     const int index = name_index(table, column, out.conditions);
     if (index < 0) table.fail(column, "a name");
     return index;
@@ -32,7 +32,7 @@ int condition_index(const Table& table, std::size_t column, Observations& out) {
 // The same people, condition and item in two rows would be counted twice.
 class Unique {
  public:
-    void add(const Table& table, std::size_t column, const std::array<int, 3>& key) {
+    void add(const files::Table& table, std::size_t column, const std::array<int, 3>& key) {
         const auto [it, fresh] = first_line_.emplace(key, table.line());
         if (!fresh) {
             table.fail(column, "it once: line " + std::to_string(it->second) +
@@ -44,7 +44,7 @@ class Unique {
     std::map<std::array<int, 3>, std::size_t> first_line_;
 };
 
-void read_marks(Table& table, Observations& out) {
+void read_marks(files::Table& table, Observations& out) {
     const std::size_t condition = table.column("condition");
     const std::size_t tp = table.column("tp"), fn = table.column("fn"), fp = table.column("fp");
     const auto n = optional_column(table, "n");
@@ -69,7 +69,7 @@ void read_marks(Table& table, Observations& out) {
     }
 }
 
-void read_choices(Table& table, Observations& out) {
+void read_choices(files::Table& table, Observations& out) {
     const std::size_t condition = table.column("condition");
     const std::size_t correct = table.column("correct"), n = table.column("n");
     const auto comparison = optional_column(table, "comparison");
@@ -97,12 +97,12 @@ int index_of(std::string_view name, std::vector<std::string>& names) {
 }
 
 Observations read_counts(const std::filesystem::path& tsv) {
-    Table table = read_tsv(tsv);
+    files::Table table = files::read_tsv(tsv);
     Observations out;
     for (const std::string& column : table.columns()) {
         constexpr std::array<std::string_view, 8> kKnown{"condition", "tp", "fn", "fp", "n", "nodule", "participant", "correct"};
         if (column != "comparison" && std::find(kKnown.begin(), kKnown.end(), column) == kKnown.end()) {
-            throw bad_input(tsv.string(), "line 1", "the column " + shown(column),
+            throw files::bad_input(tsv.string(), "line 1", "the column " + files::shown(column),
                             "condition tp fn fp [n] [nodule] [participant], or condition correct n [comparison] [participant]");
         }
     }
@@ -111,8 +111,8 @@ Observations read_counts(const std::filesystem::path& tsv) {
     } else {
         read_marks(table, out);
     }
-    if (out.conditions.empty()) throw bad_input(tsv.string(), "", "no rows", "one row of counts at least");
+    if (out.conditions.empty()) throw files::bad_input(tsv.string(), "", "no rows", "one row of counts at least");
     return out;
 }
 
-}  // namespace palpa
+}  // namespace palpa::study

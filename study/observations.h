@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-namespace palpa {
+namespace palpa::study {
 
 // Hits and misses of one nodule in one trial, or the sums of many. False marks belong to no nodule.
 struct Observation {
@@ -71,4 +71,4 @@ int index_of(std::string_view name, std::vector<std::string>& names);
 // correct > n, the same condition, nodule and participant twice.
 Observations read_counts(const std::filesystem::path& tsv);
 
-}  // namespace palpa
+}  // namespace palpa::study

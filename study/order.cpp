@@ -6,7 +6,7 @@
 
 #include "study/random.h"
 
-namespace palpa {
+namespace palpa::study {
 namespace {
 
 enum Purpose : std::uint64_t { kGroups = 1, kOrder = 2, kTurns = 3, kTrial = 4, kChoices = 5 };
@@ -241,4 +241,4 @@ std::vector<Imbalance> imbalance_of(const Protocol& protocol, const std::vector<
     return out;
 }
 
-}  // namespace palpa
+}  // namespace palpa::study

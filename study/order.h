@@ -8,7 +8,7 @@
 
 #include "study/protocol.h"
 
-namespace palpa {
+namespace palpa::study {
 
 struct PlannedTrial {
     int trial = 1;             // number within the participant, practice included
@@ -51,4 +51,4 @@ struct Imbalance {
 };
 std::vector<Imbalance> imbalance_of(const Protocol& protocol, const std::vector<PlannedParticipant>& people);
 
-}  // namespace palpa
+}  // namespace palpa::study

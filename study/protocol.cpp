@@ -9,33 +9,33 @@
 #include "files/sha256.h"
 #include "files/text.h"
 
-namespace palpa {
+namespace palpa::study {
 namespace {
 
 constexpr const char* kModalities[] = {"touchpad", "pen", "finger", "mouse", "tangible", "shape-display", "hand"};
 constexpr const char* kOrders[] = {"fixed", "random", "latin", "williams"};
 
-std::string new_id(JsonReader& json, std::set<std::string>& known) {
+std::string new_id(files::JsonReader& json, std::set<std::string>& known) {
     const std::string id = json.text("id");
-    if (id.empty() || id.find_first_of("\t\n\r") != std::string::npos) json.fail("id", shown(id), "a name without tabs");
-    if (!known.insert(id).second) json.fail("id", shown(id) + " a second time", "each name once");
+    if (id.empty() || id.find_first_of("\t\n\r") != std::string::npos) json.fail("id", files::shown(id), "a name without tabs");
+    if (!known.insert(id).second) json.fail("id", files::shown(id) + " a second time", "each name once");
     return id;
 }
 
-std::vector<std::string> read_names(JsonReader& json, std::string_view key) {
+std::vector<std::string> read_names(files::JsonReader& json, std::string_view key) {
     std::vector<std::string> names;
-    const Json& list = json.any(key);
-    if (!list.is_array() || list.empty()) json.fail(key, described(list), "an array of names");
-    for (const Json& entry : list) {
+    const files::Json& list = json.any(key);
+    if (!list.is_array() || list.empty()) json.fail(key, files::described(list), "an array of names");
+    for (const files::Json& entry : list) {
         const std::string name = entry.is_string() ? entry.get<std::string>() : "";
-        if (name.empty() || name.find_first_of("\t\n\r") != std::string::npos) json.fail(key, described(entry), "a name without tabs");
-        if (std::count(names.begin(), names.end(), name) > 0) json.fail(key, shown(name) + " a second time", "each name once");
+        if (name.empty() || name.find_first_of("\t\n\r") != std::string::npos) json.fail(key, files::described(entry), "a name without tabs");
+        if (std::count(names.begin(), names.end(), name) > 0) json.fail(key, files::shown(name) + " a second time", "each name once");
         names.push_back(name);
     }
     return names;
 }
 
-Condition read_condition(JsonReader json, TaskKind task, std::set<std::string>& known) {
+Condition read_condition(files::JsonReader json, TaskKind task, std::set<std::string>& known) {
     json.only({"id", "title", "modality", "scene", "profile", "device", "instructions", "nodules"});
     Condition condition;
     condition.id = new_id(json, known);
@@ -48,26 +48,26 @@ Condition read_condition(JsonReader json, TaskKind task, std::set<std::string>& 
     condition.instructions = json.text("instructions", "");
     if (json.has("nodules")) condition.nodules = read_names(json, "nodules");
     const bool by_hand = condition.modality == Modality::hand;
-    if (by_hand && !condition.scene.empty()) json.fail("scene", shown(condition.scene), "none: a real phantom has no scene");
+    if (by_hand && !condition.scene.empty()) json.fail("scene", files::shown(condition.scene), "none: a real phantom has no scene");
     if (!by_hand && condition.scene.empty() && task == TaskKind::find) json.fail("scene", "nothing", "a scene file");
     if (!by_hand && !condition.nodules.empty()) json.fail("nodules", "names", "none: a scene knows its nodules");
     json.finish();
     return condition;
 }
 
-Group read_group(JsonReader json, const std::vector<Condition>& conditions, std::set<std::string>& known) {
+Group read_group(files::JsonReader json, const std::vector<Condition>& conditions, std::set<std::string>& known) {
     json.only({"id", "conditions"});
     Group group;
     group.id = new_id(json, known);
-    const Json& list = json.any("conditions");
-    if (!list.is_array() || list.empty()) json.fail("conditions", described(list), "an array of conditions' ids");
-    for (const Json& entry : list) {
+    const files::Json& list = json.any("conditions");
+    if (!list.is_array() || list.empty()) json.fail("conditions", files::described(list), "an array of conditions' ids");
+    for (const files::Json& entry : list) {
         const auto same = [&](const Condition& one) { return entry.is_string() && one.id == entry.get_ref<const std::string&>(); };
         const auto it = std::find_if(conditions.begin(), conditions.end(), same);
-        if (it == conditions.end()) json.fail("conditions", described(entry), "the id of a condition of this protocol");
+        if (it == conditions.end()) json.fail("conditions", files::described(entry), "the id of a condition of this protocol");
         const auto index = static_cast<std::size_t>(it - conditions.begin());
         if (std::count(group.conditions.begin(), group.conditions.end(), index) > 0) {
-            json.fail("conditions", described(entry) + " a second time", "each condition once (use repeats)");
+            json.fail("conditions", files::described(entry) + " a second time", "each condition once (use repeats)");
         }
         group.conditions.push_back(index);
     }
@@ -75,7 +75,7 @@ Group read_group(JsonReader json, const std::vector<Condition>& conditions, std:
     return group;
 }
 
-Item read_item(JsonReader json, std::set<std::string>& known) {
+Item read_item(files::JsonReader json, std::set<std::string>& known) {
     json.only({"id", "text", "from", "to", "choices"});
     Item item;
     item.id = new_id(json, known);
@@ -86,10 +86,10 @@ Item read_item(JsonReader json, std::set<std::string>& known) {
     }
     if (json.has("choices")) {
         if (item.from) json.fail("choices", "a scale too", "either choices or from and to");
-        const Json& list = json.any("choices");
-        if (!list.is_array() || list.size() < 2) json.fail("choices", described(list), "two texts or more");
-        for (const Json& entry : list) {
-            if (!entry.is_string()) json.fail("choices", described(entry), "a text");
+        const files::Json& list = json.any("choices");
+        if (!list.is_array() || list.size() < 2) json.fail("choices", files::described(list), "two texts or more");
+        for (const files::Json& entry : list) {
+            if (!entry.is_string()) json.fail("choices", files::described(entry), "a text");
             item.choices.push_back(entry.get<std::string>());
         }
     }
@@ -97,20 +97,20 @@ Item read_item(JsonReader json, std::set<std::string>& known) {
     return item;
 }
 
-std::vector<Item> read_items(JsonReader& json, std::string_view key) {
+std::vector<Item> read_items(files::JsonReader& json, std::string_view key) {
     std::vector<Item> items;
     std::set<std::string> known;
-    for (JsonReader& item : json.objects(key)) items.push_back(read_item(item, known));
+    for (files::JsonReader& item : json.objects(key)) items.push_back(read_item(item, known));
     return items;
 }
 
-ChoiceTask read_choice(JsonReader json) {
+ChoiceTask read_choice(files::JsonReader json) {
     json.only({"reference_kPa", "comparisons_kPa", "repeats", "alternate_conditions"});
     ChoiceTask task;
     task.reference_kPa = json.number("reference_kPa", {0.0, 1e6, true});
     task.comparisons_kPa = json.numbers("comparisons_kPa", 0, {0.0, 1e6, true});
     for (const double comparison : task.comparisons_kPa) {
-        if (comparison == task.reference_kPa) json.fail("comparisons_kPa", short_number(comparison), "values unlike the reference");
+        if (comparison == task.reference_kPa) json.fail("comparisons_kPa", files::short_number(comparison), "values unlike the reference");
     }
     task.repeats = json.integer("repeats", 1, 1000, task.repeats);
     task.alternate_conditions = json.boolean("alternate_conditions", false);
@@ -118,7 +118,7 @@ ChoiceTask read_choice(JsonReader json) {
     return task;
 }
 
-void read_practice(JsonReader json, Protocol& protocol) {
+void read_practice(files::JsonReader json, Protocol& protocol) {
     json.only({"trials", "time_limit_s"});
     protocol.practice_trials = json.integer("trials", 0, 100);
     protocol.practice_limit_s = json.number("time_limit_s", {0.0, 86400.0}, 0.0);
@@ -130,10 +130,10 @@ void read_practice(JsonReader json, Protocol& protocol) {
 Protocol read_protocol(const std::filesystem::path& file) {
     Protocol protocol;
     protocol.file = file;
-    protocol.text = read_text(file, 1 << 24);
-    protocol.sha256 = sha256_hex(protocol.text);
-    const Json root = parse_json(protocol.text, file.string());
-    JsonReader json(root, file.string());
+    protocol.text = files::read_text(file, 1 << 24);
+    protocol.sha256 = files::sha256_hex(protocol.text);
+    const files::Json root = files::parse_json(protocol.text, file.string());
+    files::JsonReader json(root, file.string());
     json.only({"name", "version", "seed", "choice", "conditions", "groups", "assignment", "order", "repeats", "turn_maps", "flip_maps",
                "time_limit_s", "practice", "break_every_trials", "nodule_count_told", "instructions", "demographics", "ratings"});
     protocol.name = json.text("name");
@@ -144,11 +144,11 @@ Protocol read_protocol(const std::filesystem::path& file) {
         protocol.choice = read_choice(*choice);
     }
     std::set<std::string> conditions, groups;
-    for (JsonReader& entry : json.objects("conditions")) {
+    for (files::JsonReader& entry : json.objects("conditions")) {
         protocol.conditions.push_back(read_condition(entry, protocol.task, conditions));
     }
     if (protocol.conditions.empty()) json.fail("conditions", "nothing", "one condition at least");
-    for (JsonReader& entry : json.objects("groups")) protocol.groups.push_back(read_group(entry, protocol.conditions, groups));
+    for (files::JsonReader& entry : json.objects("groups")) protocol.groups.push_back(read_group(entry, protocol.conditions, groups));
     if (protocol.groups.empty()) {
         protocol.groups.push_back({"all", {}});
         for (std::size_t i = 0; i < protocol.conditions.size(); ++i) protocol.groups[0].conditions.push_back(i);
@@ -173,4 +173,4 @@ const char* name_of(Modality modality) { return kModalities[static_cast<int>(mod
 const char* name_of(OrderKind order) { return kOrders[static_cast<int>(order)]; }
 const char* name_of(TaskKind task) { return task == TaskKind::find ? "find" : "choice"; }
 
-}  // namespace palpa
+}  // namespace palpa::study

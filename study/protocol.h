@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace palpa {
+namespace palpa::study {
 
 enum class Modality { touchpad, pen, finger, mouse, tangible, shape_display, hand };
 enum class OrderKind { fixed, random, latin, williams };
@@ -79,4 +79,4 @@ const char* name_of(Modality modality);
 const char* name_of(OrderKind order);
 const char* name_of(TaskKind task);
 
-}  // namespace palpa
+}  // namespace palpa::study

@@ -8,7 +8,7 @@
 #include <numbers>
 #include <vector>
 
-namespace palpa {
+namespace palpa::study {
 
 // SplitMix64 (Steele, Lea & Flood, OOPSLA 2014): one word of state; passes BigCrush.
 class Random {
@@ -47,4 +47,4 @@ inline std::uint64_t derived_seed(std::uint64_t seed, std::uint64_t purpose, std
     return again.bits();
 }
 
-}  // namespace palpa
+}  // namespace palpa::study

@@ -9,7 +9,7 @@
 #include "files/text.h"
 #include "study/read_logs.h"
 
-namespace palpa {
+namespace palpa::study {
 namespace {
 
 namespace fs = std::filesystem;
@@ -34,23 +34,23 @@ void add_ratings(const fs::path& directory, const std::string& code, const std::
     std::string lines;
     if (!fs::exists(file) || fs::file_size(file) == 0) lines = "condition\titem\tvalue\n";
     for (const Rating& r : ratings) lines += one_field(r.condition) + "\t" + one_field(r.item) + "\t" + one_field(r.value) + "\n";
-    append_synced(file, lines);
+    files::append_synced(file, lines);
 }
 
 std::vector<Rating> read_ratings(const fs::path& directory, const std::string& code, std::vector<std::string>& notes) {
     std::vector<Rating> out;
     const fs::path file = file_of(directory, code);
     if (!fs::exists(file)) return out;
-    const std::string text = read_text(file);
+    const std::string text = files::read_text(file);
     const std::string_view whole = whole_lines(text, file.string(), notes);
     if (whole.empty()) return out;
     int line = 0;
-    for (const std::string_view row : fields_of(whole.substr(0, whole.size() - 1), '\n')) {
+    for (const std::string_view row : files::fields_of(whole.substr(0, whole.size() - 1), '\n')) {
         ++line;
-        const auto fields = fields_of(row, '\t');
+        const auto fields = files::fields_of(row, '\t');
         if (line == 1 || row.empty()) continue;
         if (fields.size() != 3) {  // cut off, and gone on after
-            notes.push_back(file.string() + ": line " + std::to_string(line) + " is left out: " + shown(row) + " is not an answer with 3 fields");
+            notes.push_back(file.string() + ": line " + std::to_string(line) + " is left out: " + files::shown(row) + " is not an answer with 3 fields");
             continue;
         }
         out.push_back({std::string(fields[0]), std::string(fields[1]), std::string(fields[2])});
@@ -61,9 +61,9 @@ std::vector<Rating> read_ratings(const fs::path& directory, const std::string& c
 void explain_ratings_once(const fs::path& directory) {
     const fs::path file = directory / "task-ratings_beh.json";
     if (fs::exists(file)) return;
-    write_text_atomically(file, json_text({{"condition", {{"Description", "of the protocol, after whose trials it was asked; n/a: before all trials"}}},
+    files::write_text_atomically(file, files::json_text({{"condition", {{"Description", "of the protocol, after whose trials it was asked; n/a: before all trials"}}},
                                            {"item", {{"Description", "id of the question in protocol.json"}}},
                                            {"value", {{"Description", "the answer, as it was chosen or typed; n/a: none"}}}}));
 }
 
-}  // namespace palpa
+}  // namespace palpa::study

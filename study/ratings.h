@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace palpa {
+namespace palpa::study {
 
 struct Rating {
     std::string condition = "n/a";  // n/a: asked before the trials
@@ -24,4 +24,4 @@ std::vector<Rating> read_ratings(const std::filesystem::path& directory, const s
 // The file's columns in words, once for the whole dataset.
 void explain_ratings_once(const std::filesystem::path& directory);
 
-}  // namespace palpa
+}  // namespace palpa::study

@@ -13,7 +13,7 @@
 #include "study/ratings.h"
 #include "study/study_folder.h"
 
-namespace palpa {
+namespace palpa::study {
 namespace {
 
 namespace fs = std::filesystem;
@@ -26,19 +26,19 @@ fs::path beside(const fs::path& events, std::string_view suffix) {
 }
 
 // Seconds, millimetres or newtons: never below zero; n/a where there was nothing to measure.
-double amount(const Table& table, std::size_t column) {
+double amount(const files::Table& table, std::size_t column) {
     const double value = table.number(column);
     if (value < 0.0) table.fail(column, "a number from 0 up, or n/a");
     return value;
 }
 
 // Columns that came later than version 0.1 may be missing.
-double amount_or_missing(const Table& table, std::string_view column) {
+double amount_or_missing(const files::Table& table, std::string_view column) {
     if (!table.has_column(column)) return std::numeric_limits<double>::quiet_NaN();
     return amount(table, table.column(column));
 }
 
-void take_finish(const Table& table, RunLog& run) {
+void take_finish(const files::Table& table, RunLog& run) {
     run.finished = true;
     run.duration_s = amount(table, table.column("duration"));
     run.tp = count(table, table.column("tp"));
@@ -52,7 +52,7 @@ void take_finish(const Table& table, RunLog& run) {
     run.max_force_N = amount_or_missing(table, "max_force_N");
 }
 
-void take_choice(const Table& table, RunLog& run) {
+void take_choice(const files::Table& table, RunLog& run) {
     const bool correct = whole_number(table, table.column("correct"), 0, 1) == 1;
     run.choices.push_back({run.trial, run.condition, std::string(table.field(table.column("comparison_kPa"))), correct, run.practice});
 }
@@ -69,13 +69,13 @@ Settings read_settings(const fs::path& file, std::vector<std::string>& notes) {
         notes.push_back(file.string() + ": is not there; nodules that were missed cannot be told apart");
         return out;
     }
-    const Json root = read_json(file);
-    JsonReader json(root, file.string());
+    const files::Json root = files::read_json(file);
+    files::JsonReader json(root, file.string());
     if (auto study = json.optional_object("study")) {
         out.sha256 = study->text("sha256", "");
         out.simulated = study->boolean("simulated", false);
     }
-    for (JsonReader& nodule : json.objects("nodules")) out.nodules.push_back(nodule.text("id"));
+    for (files::JsonReader& nodule : json.objects("nodules")) out.nodules.push_back(nodule.text("id"));
     return out;
 }
 
@@ -85,8 +85,8 @@ std::set<std::string> read_hits(const fs::path& file, std::vector<std::string>& 
         notes.push_back(file.string() + ": is not there");
         return hits;
     }
-    const std::string text = read_text(file);
-    Table table(std::string(whole_lines(text, file.string(), notes)), file.string(), '\t');
+    const std::string text = files::read_text(file);
+    files::Table table(std::string(whole_lines(text, file.string(), notes)), file.string(), '\t');
     const std::size_t nodule = table.column("nodule"), hit = table.column("hit");
     while (table.next()) {
         if (whole_number(table, hit, 0, 1) == 1) hits.insert(std::string(table.field(nodule)));
@@ -96,7 +96,7 @@ std::set<std::string> read_hits(const fs::path& file, std::vector<std::string>& 
 
 std::string began_utc(const fs::path& file) {
     if (!fs::exists(file)) return "";  // written last: an interrupted trial has none
-    const Json json = read_json(file);
+    const files::Json json = files::read_json(file);
     return json.contains("began_utc") && json["began_utc"].is_string() ? json["began_utc"].get<std::string>() : "";
 }
 
@@ -116,7 +116,7 @@ void add_find(const RunLog& run, int participant, const Settings& settings, std:
         out.rows.push_back({condition, participant, -1, repeat, run.tp, run.fn, run.fp});
     } else {
         if (found != run.tp || n != run.tp + run.fn) {
-            throw bad_input(run.events.string(), "finish", std::to_string(run.tp) + " found and " + std::to_string(run.fn) + " missed",
+            throw files::bad_input(run.events.string(), "finish", std::to_string(run.tp) + " found and " + std::to_string(run.fn) + " missed",
                             std::to_string(found) + " of " + std::to_string(n) + " as the marks and the settings beside it say");
         }
         out.rows.push_back({condition, participant, -1, repeat, 0, 0, run.fp});
@@ -163,7 +163,7 @@ class Subject {
         }
         const auto [it, fresh] = finished_.emplace(run.trial, events.string());
         if (identity && !fresh) {
-            throw bad_input(events.string(), "trial", std::to_string(run.trial) + " finished a second time",
+            throw files::bad_input(events.string(), "trial", std::to_string(run.trial) + " finished a second time",
                             "once: it is in " + it->second + " too");
         }
         add_find(run, index_, settings, repeats_, out);
@@ -172,8 +172,8 @@ class Subject {
  private:
     static void check_version(const fs::path& events, const Settings& settings, const std::optional<StudyIdentity>& identity) {
         if (!identity || settings.sha256.empty() || settings.sha256 == identity->sha256) return;
-        throw bad_input(beside(events, "_settings.json").string(), "study.sha256", shown(settings.sha256.substr(0, 12)),
-                        shown(identity->sha256.substr(0, 12)) + " as in study.json: two versions of a protocol in one folder");
+        throw files::bad_input(beside(events, "_settings.json").string(), "study.sha256", files::shown(settings.sha256.substr(0, 12)),
+                        files::shown(identity->sha256.substr(0, 12)) + " as in study.json: two versions of a protocol in one folder");
     }
 
     // UTC in ISO 8601 sorts as text.
@@ -209,18 +209,18 @@ std::string_view whole_lines(std::string_view text, const std::string& file, std
 RunLog read_run(const fs::path& events, std::vector<std::string>& notes) {
     RunLog run;
     run.events = events;
-    const std::string text = read_text(events);
+    const std::string text = files::read_text(events);
     const std::string_view whole_text = whole_lines(text, events.string(), notes);
     if (whole_text.empty()) return run;  // killed before the first line
-    Table table(std::string(whole_text), events.string(), '\t');
+    files::Table table(std::string(whole_text), events.string(), '\t');
     const std::size_t type = table.column("trial_type"), trial = table.column("trial");
     const std::size_t condition = table.column("condition"), block = table.column("block"), onset = table.column("onset");
     double before_s = 0.0;
     while (table.next()) {
         const double onset_s = table.finite_number(onset);
         if (onset_s < before_s) {
-            notes.push_back(events.string() + ": line " + std::to_string(table.line()) + ": found the time " + short_number(onset_s) +
-                            " s after " + short_number(before_s) + " s: the clock went back");
+            notes.push_back(events.string() + ": line " + std::to_string(table.line()) + ": found the time " + files::short_number(onset_s) +
+                            " s after " + files::short_number(before_s) + " s: the clock went back");
         }
         before_s = onset_s;
         run.trial = static_cast<int>(whole_number(table, trial, 1, kMostCounts));
@@ -266,9 +266,9 @@ Observations read_study(const fs::path& directory) {
         for (const Rating& r : read_ratings(directory, out.participants.back(), out.notes)) out.answers.push_back({r.condition, r.item, r.value});
     }
     if (out.rows.empty() && out.choices.empty() && out.interrupted_trials == 0) {
-        throw bad_input(directory.string(), "", "no trial", "sub-XX/beh/..._events.tsv of one trial at least");
+        throw files::bad_input(directory.string(), "", "no trial", "sub-XX/beh/..._events.tsv of one trial at least");
     }
     return out;
 }
 
-}  // namespace palpa
+}  // namespace palpa::study

@@ -10,7 +10,7 @@
 
 #include "study/observations.h"
 
-namespace palpa {
+namespace palpa::study {
 
 // `text` up to its last newline; what is behind it was cut off and is noted.
 std::string_view whole_lines(std::string_view text, const std::string& file, std::vector<std::string>& notes);
@@ -47,4 +47,4 @@ std::vector<std::filesystem::path> events_files(const std::filesystem::path& sub
 // two versions of a protocol, a participant who stands twice in participants.tsv, and files that are no logs.
 Observations read_study(const std::filesystem::path& directory);
 
-}  // namespace palpa
+}  // namespace palpa::study

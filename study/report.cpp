@@ -10,7 +10,7 @@
 
 #include "files/text.h"
 
-namespace palpa {
+namespace palpa::study {
 namespace {
 
 using People = std::vector<Contribution>;  // by participant
@@ -205,7 +205,7 @@ void add_ratings(const Answer& like, const std::vector<Answer>& answers, Report&
     for (const Answer& one : answers) {
         if (one.condition != like.condition || one.item != like.item || one.value == "n/a") continue;
         double number = 0.0;
-        if (parse_number(one.value, number) && std::isfinite(number)) numbers.push_back(number);
+        if (files::parse_number(one.value, number) && std::isfinite(number)) numbers.push_back(number);
         ++texts[one.value];
     }
     int n = 0;
@@ -263,4 +263,4 @@ Report make_report(const Observations& seen, const ReportOptions& options) {
     return report;
 }
 
-}  // namespace palpa
+}  // namespace palpa::study

@@ -11,7 +11,7 @@
 #include "study/observations.h"
 #include "study/statistics.h"
 
-namespace palpa {
+namespace palpa::study {
 
 // A proportion with its intervals.
 struct Share {
@@ -105,7 +105,7 @@ Report make_report(const Observations& seen, const ReportOptions& options);
 
 Spread spread_of(std::vector<double> values);
 
-Json report_json(const Report& report);
+files::Json report_json(const Report& report);
 
 // One table of the report, for a .tsv and for Markdown.
 struct ReportTable {
@@ -118,4 +118,4 @@ std::vector<ReportTable> report_tables(const Report& report);
 std::string tsv_text(const ReportTable& table);
 std::string report_markdown(const Report& report);  // all tables, with methods and notes
 
-}  // namespace palpa
+}  // namespace palpa::study

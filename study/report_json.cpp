@@ -2,21 +2,21 @@
 
 #include "study/report.h"
 
-namespace palpa {
+namespace palpa::study {
 namespace {
 
-Json interval(const Interval& ci) { return {ci.low, ci.high}; }
+files::Json interval(const Interval& ci) { return {ci.low, ci.high}; }
 
-Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+files::Json number(double value) { return std::isfinite(value) ? files::Json(value) : files::Json(nullptr); }
 
-void add_share(const std::string& key, const std::optional<Share>& share, Json& json) {
-    json[key] = share ? Json(share->x.p()) : Json(nullptr);
-    json[key + "_ci"] = share ? interval(share->wilson) : Json(nullptr);
+void add_share(const std::string& key, const std::optional<Share>& share, files::Json& json) {
+    json[key] = share ? files::Json(share->x.p()) : files::Json(nullptr);
+    json[key + "_ci"] = share ? interval(share->wilson) : files::Json(nullptr);
     if (share) json[key + "_n"] = share->x.n;
     if (share && share->bootstrap) json[key + "_bootstrap_ci"] = interval(*share->bootstrap);
 }
 
-void add_spread(const char* key, double scale, const std::optional<Spread>& spread, Json& json) {
+void add_spread(const char* key, double scale, const std::optional<Spread>& spread, files::Json& json) {
     if (!spread) return;
     json[key] = {{"n", spread->n},
                  {"mean", scale * spread->mean},
@@ -24,13 +24,13 @@ void add_spread(const char* key, double scale, const std::optional<Spread>& spre
                  {"quartiles", {scale * spread->lower_quartile, scale * spread->median, scale * spread->upper_quartile}}};
 }
 
-Json condition_json(const ConditionResult& condition) {
-    Json json{{"tp", condition.tp}, {"fn", condition.fn}, {"fp", condition.fp}};
+files::Json condition_json(const ConditionResult& condition) {
+    files::Json json{{"tp", condition.tp}, {"fn", condition.fn}, {"fp", condition.fp}};
     add_share("se", condition.se, json);
     add_share("ppv", condition.ppv, json);
     if (condition.participants > 0) json["participants"] = condition.participants;
     for (const NoduleResult& nodule : condition.nodules) {
-        Json& entry = json["nodules"][nodule.nodule];
+        files::Json& entry = json["nodules"][nodule.nodule];
         entry = {{"tp", nodule.se.x.k}, {"fn", nodule.se.x.n - nodule.se.x.k}};
         add_share("se", nodule.se, entry);
     }
@@ -41,11 +41,11 @@ Json condition_json(const ConditionResult& condition) {
     return json;
 }
 
-Json pair_json(const PairResult& pair) {
-    Json json{{"a", pair.a},
+files::Json pair_json(const PairResult& pair) {
+    files::Json json{{"a", pair.a},
               {"b", pair.b},
               {"delta", pair.delta},
-              {"higher", pair.higher.empty() ? Json(nullptr) : Json(pair.higher)},
+              {"higher", pair.higher.empty() ? files::Json(nullptr) : files::Json(pair.higher)},
               {"combined_interval", pair.combined_interval},
               {"significant", pair.significant},
               {"newcombe_ci", interval(pair.newcombe)},
@@ -65,12 +65,12 @@ Json pair_json(const PairResult& pair) {
     return json;
 }
 
-Json t_json(const TTest& test) {
+files::Json t_json(const TTest& test) {
     return {{"mean", test.mean}, {"t", number(test.t)}, {"df", test.df}, {"p", test.p}, {"ci", interval(test.ci)}};
 }
 
-Json choice_json(const ChoiceResult& choice) {
-    Json json{{"condition", choice.condition}, {"comparison", choice.comparison.empty() ? Json(nullptr) : Json(choice.comparison)}};
+files::Json choice_json(const ChoiceResult& choice) {
+    files::Json json{{"condition", choice.condition}, {"comparison", choice.comparison.empty() ? files::Json(nullptr) : files::Json(choice.comparison)}};
     json["correct"] = choice.correct.x.k;
     json["n"] = choice.correct.x.n;
     add_share("share", choice.correct, json);
@@ -81,8 +81,8 @@ Json choice_json(const ChoiceResult& choice) {
     return json;
 }
 
-Json rating_json(const RatingResult& rating) {
-    Json json{{"condition", rating.condition}, {"item", rating.item}, {"n", rating.n}};
+files::Json rating_json(const RatingResult& rating) {
+    files::Json json{{"condition", rating.condition}, {"item", rating.item}, {"n", rating.n}};
     if (rating.spread) {
         json["mean"] = rating.spread->mean;
         json["sd"] = number(rating.spread->sd);
@@ -96,8 +96,8 @@ Json rating_json(const RatingResult& rating) {
 
 }  // namespace
 
-Json report_json(const Report& report) {
-    Json json;
+files::Json report_json(const Report& report) {
+    files::Json json;
     json["simulated"] = report.simulated;
     json["level"] = report.options.bootstrap.level;
     json["z"] = z_of_level(report.options.bootstrap.level);
@@ -112,17 +112,17 @@ Json report_json(const Report& report) {
     json["trials"] = report.trials;
     json["practice_trials"] = report.practice_trials;
     json["interrupted_trials"] = report.interrupted_trials;
-    json["conditions"] = Json::object();
+    json["conditions"] = files::Json::object();
     for (const ConditionResult& condition : report.conditions) json["conditions"][condition.name] = condition_json(condition);
-    json["pairs"] = Json::array();
+    json["pairs"] = files::Json::array();
     for (const PairResult& pair : report.pairs) json["pairs"].push_back(pair_json(pair));
-    json["ppv_pairs"] = Json::array();
+    json["ppv_pairs"] = files::Json::array();
     for (const PairResult& pair : report.ppv_pairs) json["ppv_pairs"].push_back(pair_json(pair));
-    if (!report.choices.empty()) json["choices"] = Json::array();
+    if (!report.choices.empty()) json["choices"] = files::Json::array();
     for (const ChoiceResult& choice : report.choices) json["choices"].push_back(choice_json(choice));
     for (const RatingResult& rating : report.ratings) json["ratings"].push_back(rating_json(rating));
     json["notes"] = report.notes;
     return json;
 }
 
-}  // namespace palpa
+}  // namespace palpa::study

@@ -4,7 +4,7 @@
 #include "files/text.h"
 #include "study/report.h"
 
-namespace palpa {
+namespace palpa::study {
 namespace {
 
 using Row = std::vector<std::string>;
@@ -184,7 +184,7 @@ std::string tsv_text(const ReportTable& table) {
 
 std::string report_markdown(const Report& report) {
     std::string out = report.simulated ? "# Report on SIMULATED participants\n" : "# Report\n";
-    const std::string level = short_number(100.0 * report.options.bootstrap.level) + " %";
+    const std::string level = files::short_number(100.0 * report.options.bootstrap.level) + " %";
     if (report.simulated) out += "\nNo person took part: hands and eyes were simulated by `palpa study simulate`.\n";
     if (report.trials > 0) {
         out += "\n" + whole(report.participants) + " participants, " + whole(report.trials) + " finished tests, " +
@@ -213,4 +213,4 @@ std::string report_markdown(const Report& report) {
     return out;
 }
 
-}  // namespace palpa
+}  // namespace palpa::study

@@ -12,9 +12,9 @@
 #include "files/json.h"
 #include "files/text.h"
 
-namespace palpa {
+namespace palpa::study {
 
-inline void append_field(double value, std::string& row) { append_number(value, row); }
+inline void append_field(double value, std::string& row) { files::append_number(value, row); }
 inline void append_field(std::string_view value, std::string& row) { row.append(value); }
 inline void append_field(std::int64_t value, std::string& row) {
     char digits[24];
@@ -43,13 +43,13 @@ void line_of(const Row& row, std::string& line) {
 
 template <class Row>
 std::string explanation_of() {
-    Json json;
+    files::Json json;
     visit_fields(Row{}, [&](std::string_view name, const auto&, std::string_view unit, std::string_view text) {
-        Json& column = json[std::string(name)];
+        files::Json& column = json[std::string(name)];
         column["Description"] = text;
         if (!unit.empty()) column["Units"] = unit;
     });
-    return json_text(json);
+    return files::json_text(json);
 }
 
-}  // namespace palpa
+}  // namespace palpa::study

@@ -9,7 +9,7 @@
 #include "files/text.h"
 #include "study/rows.h"
 
-namespace palpa {
+namespace palpa::study {
 
 // One list writes header, explanation and every row.
 template <class Visit>
@@ -37,14 +37,14 @@ void visit_fields(const SampleRow& r, Visit&& visit) {
 namespace {
 
 void write_if_absent(const std::filesystem::path& path, const std::string& text) {
-    if (!std::filesystem::exists(path)) write_text_atomically(path, text);
+    if (!std::filesystem::exists(path)) files::write_text_atomically(path, text);
 }
 
 }  // namespace
 
 void prepare_dataset(const std::filesystem::path& directory) {
     write_if_absent(directory / ".bidsignore", "*_samples.tsv\n*_samples.json\n*_marks.tsv\n*_marks.json\n*_settings.json\n*_performance.json\nstudy.json\nprotocol.json\nsub-*/now.json\n");
-    write_if_absent(directory / "dataset_description.json", json_text({{"Name", "Palpa"}, {"BIDSVersion", "1.8.0"}}));
+    write_if_absent(directory / "dataset_description.json", files::json_text({{"Name", "Palpa"}, {"BIDSVersion", "1.8.0"}}));
 }
 
 void explain_samples_once(const std::filesystem::path& json) { write_if_absent(json, explanation_of<SampleRow>()); }
@@ -53,7 +53,7 @@ RunFiles next_run(const std::filesystem::path& directory, std::string_view parti
     const bool plain = !participant.empty() && std::all_of(participant.begin(), participant.end(), [](char c) {
         return (c >= '0' && c <= '9') || (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z');
     });
-    if (!plain) throw bad_input("--participant", "", shown(participant), "letters and digits");
+    if (!plain) throw files::bad_input("--participant", "", files::shown(participant), "letters and digits");
     RunFiles files;
     const std::string subject = "sub-" + std::string(participant);
     files.folder = directory / subject / "beh";
@@ -72,7 +72,7 @@ RunFiles next_run(const std::filesystem::path& directory, std::string_view parti
 }
 
 SampleLog::SampleLog(const RunFiles& files, bool sidecar) : file_(files.file("_samples.tsv")) {
-    if (sidecar) write_text_atomically(files.file("_samples.json"), explanation_of<SampleRow>());
+    if (sidecar) files::write_text_atomically(files.file("_samples.json"), explanation_of<SampleRow>());
     file_.append(header_of<SampleRow>());
     constexpr std::size_t kLongestRow = 1024;
     row_.reserve(kLongestRow);
@@ -83,4 +83,4 @@ void SampleLog::write(const SampleRow& row) {
     file_.append(row_);
 }
 
-}  // namespace palpa
+}  // namespace palpa::study

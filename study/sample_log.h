@@ -12,7 +12,7 @@
 
 #include "files/append_file.h"
 
-namespace palpa {
+namespace palpa::study {
 
 struct SampleRow {
     static constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();  // written as n/a
@@ -61,8 +61,8 @@ class SampleLog {
     bool failed() const { return file_.failed(); }
 
  private:
-    AppendFile file_;
+    files::AppendFile file_;
     std::string row_;
 };
 
-}  // namespace palpa
+}  // namespace palpa::study

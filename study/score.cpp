@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-namespace palpa {
+namespace palpa::study {
 namespace {
 
 constexpr double kNoMark_m = 1e6;  // the price of a missed target: above any sum of distances
@@ -117,4 +117,4 @@ Score score_marks(std::span<const Target> targets, std::span<const MarkedPlace> 
     return score;
 }
 
-}  // namespace palpa
+}  // namespace palpa::study

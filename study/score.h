@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace palpa {
+namespace palpa::study {
 
 // One place to find: a disc, or with a length a rod with round ends.
 struct Target {
@@ -51,4 +51,4 @@ double distance_m(const Target& target, const MarkedPlace& mark);
 // found and, among those ways, the sum of the distances is least.
 Score score_marks(std::span<const Target> targets, std::span<const MarkedPlace> marks);
 
-}  // namespace palpa
+}  // namespace palpa::study

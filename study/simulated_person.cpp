@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace palpa {
+namespace palpa::study {
 namespace {
 
 constexpr double kMargin = 0.92;          // share of the surface that the search covers
@@ -240,4 +240,4 @@ bool answers_right(double reference_kPa, double comparison_kPa, double weber, Ra
     return (seen > 0.0) == (comparison_kPa > reference_kPa);
 }
 
-}  // namespace palpa
+}  // namespace palpa::study

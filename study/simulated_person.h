@@ -11,7 +11,7 @@
 
 #include "study/random.h"
 
-namespace palpa {
+namespace palpa::study {
 
 struct ScreenPlace {
     double x_m = 0.0;
@@ -109,4 +109,4 @@ void see(const Sight& sight, double dt_s, SimulatedPerson& person);
 // Is the answer right? Two stiffnesses, each seen with `weber` of noise (share, standard deviation of the logarithm).
 bool answers_right(double reference_kPa, double comparison_kPa, double weber, Random& random);
 
-}  // namespace palpa
+}  // namespace palpa::study

@@ -7,7 +7,7 @@
 #include <numbers>
 #include <numeric>
 
-namespace palpa {
+namespace palpa::study {
 namespace {
 
 double square(double x) { return x * x; }
@@ -202,4 +202,4 @@ std::vector<double> holm(std::span<const double> p) {
     return adjusted;
 }
 
-}  // namespace palpa
+}  // namespace palpa::study

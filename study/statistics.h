@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-namespace palpa {
+namespace palpa::study {
 
 // `k` of `n`. All functions need 0 <= k <= n and n >= 1.
 struct Proportion {
@@ -90,4 +90,4 @@ double quantile(std::span<const double> sorted, double q);
 // Holm's step-down correction (Scand. J. Statist. 6 (1979) 65): adjusted p values in the order given.
 std::vector<double> holm(std::span<const double> p);
 
-}  // namespace palpa
+}  // namespace palpa::study

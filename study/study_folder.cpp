@@ -12,7 +12,7 @@
 #include "study/sample_log.h"
 #include "study/trial_log.h"
 
-namespace palpa {
+namespace palpa::study {
 namespace {
 
 namespace fs = std::filesystem;
@@ -30,7 +30,7 @@ std::string line_of(const Person& p) {
 }
 
 std::string version_text(const std::string& version, const std::string& sha256) {
-    return "version " + shown(version) + " (sha256 " + sha256.substr(0, 12) + "...)";
+    return "version " + files::shown(version) + " (sha256 " + sha256.substr(0, 12) + "...)";
 }
 
 bool has_logs(const fs::path& directory) {
@@ -42,16 +42,16 @@ bool has_logs(const fs::path& directory) {
 
 void check_same(const fs::path& file, const StudyIdentity& found, const Protocol& protocol, const StudyKind& kind) {
     if (found.sha256 != protocol.sha256) {
-        throw bad_input(file.string(), "sha256",
-                        shown(found.name) + " " + version_text(found.version, found.sha256),
-                        shown(protocol.name) + " " + version_text(protocol.version, protocol.sha256) +
+        throw files::bad_input(file.string(), "sha256",
+                        files::shown(found.name) + " " + version_text(found.version, found.sha256),
+                        files::shown(protocol.name) + " " + version_text(protocol.version, protocol.sha256) +
                             ": two versions of a protocol never share a folder");
     }
     const auto told = [](const StudyKind& k) {
         return k.simulated ? "simulated participants of seed " + std::to_string(k.seed) : std::string("people");
     };
     if (found.kind.simulated != kind.simulated || found.kind.seed != kind.seed) {
-        throw bad_input(file.string(), "simulated", told(found.kind), told(kind) + ": they never share a folder");
+        throw files::bad_input(file.string(), "simulated", told(found.kind), told(kind) + ": they never share a folder");
     }
 }
 
@@ -66,28 +66,28 @@ void open_study(const fs::path& directory, const Protocol& protocol, const Study
     const fs::path file = directory / "study.json";
     if (const auto found = read_identity(directory)) return check_same(file, *found, protocol, kind);
     if (has_logs(directory)) {
-        throw bad_input(directory.string(), "", "logs (sub-...) but no study.json", "an empty folder, or one of this protocol");
+        throw files::bad_input(directory.string(), "", "logs (sub-...) but no study.json", "an empty folder, or one of this protocol");
     }
     prepare_log_folder(directory);
-    write_text_atomically(directory / "protocol.json", protocol.text);
-    Json json{{"protocol", protocol.name},
+    files::write_text_atomically(directory / "protocol.json", protocol.text);
+    files::Json json{{"protocol", protocol.name},
               {"version", protocol.version},
               {"sha256", protocol.sha256},
               {"simulated", kind.simulated},
               {"simulation_seed", kind.seed},
               {"program", kind.program}};
-    write_text_atomically(file, json_text(json));  // last: from here on the folder is a study
+    files::write_text_atomically(file, files::json_text(json));  // last: from here on the folder is a study
 }
 
 std::optional<StudyIdentity> read_identity(const fs::path& directory) {
     const fs::path file = directory / "study.json";
     if (!fs::exists(file)) return std::nullopt;
-    return identity_in(read_text(file), file.string());
+    return identity_in(files::read_text(file), file.string());
 }
 
 StudyIdentity identity_in(std::string_view study_json, const std::string& file_name) {
-    const Json root = parse_json(study_json, file_name);
-    JsonReader json(root, file_name);
+    const files::Json root = files::parse_json(study_json, file_name);
+    files::JsonReader json(root, file_name);
     json.only({"protocol", "version", "sha256", "simulated", "simulation_seed", "program"});
     StudyIdentity out;
     out.name = json.text("protocol");
@@ -103,7 +103,7 @@ StudyIdentity identity_in(std::string_view study_json, const std::string& file_n
 std::vector<Person> read_people(const fs::path& directory, std::vector<std::string>& notes) {
     const fs::path file = directory / "participants.tsv";
     if (!fs::exists(file)) return {};
-    return people_in(read_text(file), file.string(), notes);
+    return people_in(files::read_text(file), file.string(), notes);
 }
 
 std::vector<Person> people_in(std::string_view participants_tsv, const std::string& file_name, std::vector<std::string>& notes) {
@@ -116,9 +116,9 @@ std::vector<Person> people_in(std::string_view participants_tsv, const std::stri
         rest.remove_prefix(end + 1);
         if (!row.empty() && row.back() == '\r') row.remove_suffix(1);
         if (line == 1 || row.empty()) continue;
-        const auto fields = fields_of(row, '\t');
+        const auto fields = files::fields_of(row, '\t');
         if (fields.size() != 8 || fields[0].substr(0, 4) != "sub-") {
-            notes.push_back(file_name + ": line " + std::to_string(line) + " is left out: " + shown(row) +
+            notes.push_back(file_name + ": line " + std::to_string(line) + " is left out: " + files::shown(row) +
                             " is not a participant with 8 fields");
             continue;
         }
@@ -126,7 +126,7 @@ std::vector<Person> people_in(std::string_view participants_tsv, const std::stri
         people.push_back({field(0).substr(4), field(1), field(2), field(3), field(4), field(5), field(6), field(7)});
         const auto [it, fresh] = first_line.emplace(people.back().code, line);
         if (!fresh) {
-            throw bad_input(file_name, "line " + std::to_string(line) + ", participant_id", shown(fields[0]),
+            throw files::bad_input(file_name, "line " + std::to_string(line) + ", participant_id", files::shown(fields[0]),
                             "it once: line " + std::to_string(it->second) + " has the same code");
         }
     }
@@ -143,7 +143,7 @@ void add_people(const fs::path& directory, const std::vector<Person>& people) {
     for (const Person& one : people) {
         if (known.insert(one.code).second) lines += line_of(one);
     }
-    if (!lines.empty()) append_synced(file, lines);
+    if (!lines.empty()) files::append_synced(file, lines);
 }
 
 std::set<int> finished_trials(const fs::path& directory, const std::string& code) {
@@ -182,8 +182,8 @@ std::string instructions_for(const Protocol& protocol, const PlannedTrial& trial
     if (!condition.instructions.empty()) text += (text.empty() ? "" : "\n\n") + condition.instructions;
     if (trial.practice) text += "\n\nThis is practice: you see where the harder places are.";
     const double limit_s = trial.practice ? protocol.practice_limit_s : protocol.time_limit_s;
-    if (limit_s > 0.0) text += "\n\nYou have " + short_number(limit_s) + " seconds.";
+    if (limit_s > 0.0) text += "\n\nYou have " + files::short_number(limit_s) + " seconds.";
     return text;
 }
 
-}  // namespace palpa
+}  // namespace palpa::study

@@ -10,7 +10,7 @@
 
 #include "study/order.h"
 
-namespace palpa {
+namespace palpa::study {
 
 struct StudyKind {
     bool simulated = false;
@@ -66,4 +66,4 @@ StudyProgress progress_of(const std::filesystem::path& directory, const Protocol
 // What the participant reads before this trial.
 std::string instructions_for(const Protocol& protocol, const PlannedTrial& trial);
 
-}  // namespace palpa
+}  // namespace palpa::study

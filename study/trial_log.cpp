@@ -3,7 +3,7 @@
 #include "study/ratings.h"
 #include "study/rows.h"
 
-namespace palpa {
+namespace palpa::study {
 
 template <class Visit>
 void visit_fields(const EventRow& r, Visit&& visit) {
@@ -66,14 +66,14 @@ void visit_fields(const ChoiceRow& r, Visit&& visit) {
 namespace {
 
 template <class Row>
-void begin(const std::filesystem::path& sidecar, const LogOptions& options, AppendFile& file) {
-    if (options.sidecars) write_text_atomically(sidecar, explanation_of<Row>());
+void begin(const std::filesystem::path& sidecar, const LogOptions& options, files::AppendFile& file) {
+    if (options.sidecars) files::write_text_atomically(sidecar, explanation_of<Row>());
     file.append(header_of<Row>());
     if (options.sync_rows) file.sync();
 }
 
 template <class Row>
-bool add(const Row& row, bool sync, std::string& line, AppendFile& file) {
+bool add(const Row& row, bool sync, std::string& line, files::AppendFile& file) {
     line_of(row, line);
     file.append(line);
     return sync ? file.sync() : !file.failed();
@@ -81,7 +81,7 @@ bool add(const Row& row, bool sync, std::string& line, AppendFile& file) {
 
 template <class Row>
 void explain_once(const std::filesystem::path& file) {
-    if (!std::filesystem::exists(file)) write_text_atomically(file, explanation_of<Row>());
+    if (!std::filesystem::exists(file)) files::write_text_atomically(file, explanation_of<Row>());
 }
 
 }  // namespace
@@ -110,4 +110,4 @@ void prepare_log_folder(const std::filesystem::path& directory) {
     explain_ratings_once(directory);
 }
 
-}  // namespace palpa
+}  // namespace palpa::study

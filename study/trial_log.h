@@ -14,7 +14,7 @@
 #include "files/json.h"
 #include "study/sample_log.h"
 
-namespace palpa {
+namespace palpa::study {
 
 struct EventRow {
     static constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
@@ -61,7 +61,7 @@ struct TrialLabel {
     std::string device;
     int trial = 1;
     int order_id = 0;
-    Json study;  // for the settings: protocol, version, hash, participant, what is simulated
+    files::Json study;  // for the settings: protocol, version, hash, participant, what is simulated
 };
 
 // One choice between two stimuli; ..._task-softer_..._events.tsv, a row each.
@@ -99,8 +99,8 @@ class TrialLog {
     bool failed() const { return events_.failed() || marks_.failed(); }
 
  private:
-    AppendFile events_;
-    AppendFile marks_;
+    files::AppendFile events_;
+    files::AppendFile marks_;
     std::string line_;
     bool sync_rows_;
 };
@@ -112,7 +112,7 @@ class ChoiceLog {
     bool write(const ChoiceRow& row);
 
  private:
-    AppendFile file_;
+    files::AppendFile file_;
     std::string line_;
 };
 
@@ -120,4 +120,4 @@ class ChoiceLog {
 // inherited). Leaves alone what is there.
 void prepare_log_folder(const std::filesystem::path& directory);
 
-}  // namespace palpa
+}  // namespace palpa::study

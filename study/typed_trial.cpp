@@ -5,11 +5,11 @@
 
 #include "files/text.h"
 
-namespace palpa {
+namespace palpa::study {
 namespace {
 
-Json settings_of(const TrialLabel& label, const std::vector<std::string>& nodules) {
-    Json json{{"study", label.study}, {"answers", "typed in by the experimenter"}, {"nodules", Json::array()}};
+files::Json settings_of(const TrialLabel& label, const std::vector<std::string>& nodules) {
+    files::Json json{{"study", label.study}, {"answers", "typed in by the experimenter"}, {"nodules", files::Json::array()}};
     for (const std::string& id : nodules) json["nodules"].push_back({{"id", id}});
     return json;
 }
@@ -52,7 +52,7 @@ int missed_of(const TypedAnswers& answers) {
 
 void write_typed_trial(const RunFiles& files, const TrialLabel& label, bool practice, std::int64_t seed,
                        const std::vector<std::string>& nodules, const TypedAnswers& answers) {
-    write_text_atomically(files.file("_settings.json"), json_text(settings_of(label, nodules)));
+    files::write_text_atomically(files.file("_settings.json"), files::json_text(settings_of(label, nodules)));
     TrialLog log(files, {true, false});
     EventRow row;
     row.trial_type = "start";
@@ -74,4 +74,4 @@ void write_typed_trial(const RunFiles& files, const TrialLabel& label, bool prac
     if (!good) throw std::runtime_error(files.stem + ": the typed answers could not be written (is the disk full?)");
 }
 
-}  // namespace palpa
+}  // namespace palpa::study

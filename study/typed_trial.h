@@ -8,7 +8,7 @@
 #include "study/sample_log.h"
 #include "study/trial_log.h"
 
-namespace palpa {
+namespace palpa::study {
 
 inline constexpr int kMissed = -1;  // of TypedAnswers::nodules
 
@@ -28,4 +28,4 @@ int missed_of(const TypedAnswers& answers);
 void write_typed_trial(const RunFiles& files, const TrialLabel& label, bool practice, std::int64_t seed,
                        const std::vector<std::string>& nodules, const TypedAnswers& answers);
 
-}  // namespace palpa
+}  // namespace palpa::study

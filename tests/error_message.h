@@ -12,7 +12,7 @@ template <class Call>
 std::string message_of(Call&& call) {
     try {
         call();
-    } catch (const InputError& error) {
+    } catch (const files::InputError& error) {
         return error.what();
     }
     return "";

@@ -10,24 +10,24 @@
 #include "session/raster_trace.h"
 #include "files/regular_file.h"
 
-namespace palpa {
+namespace palpa::app {
 namespace {
 
 struct TraceOptions {
     std::string scene;
     std::string output;
-    RasterOptions raster;
+    session::RasterOptions raster;
     double speed_mm_per_s = 30.0;
 };
 
 void write_raster(const TraceOptions& options) {
-    const Scene scene = load_scene(options.scene);
-    check_output(options.output, inputs_of(scene));
-    RasterOptions raster = options.raster;
+    const scene::Scene scene = load_scene(options.scene);
+    files::check_output(options.output, inputs_of(scene));
+    session::RasterOptions raster = options.raster;
     raster.speed_m_per_s = 1e-3 * options.speed_mm_per_s;
-    const Trace trace = raster_trace(scene, make_plan_here(scene), raster);
-    TraceWriter writer(options.output, trace.info);
-    for (const Sample& sample : trace.samples) writer.write(sample);
+    const platform::Trace trace = session::raster_trace(scene, session::make_plan_here(scene), raster);
+    platform::TraceWriter writer(options.output, trace.info);
+    for (const platform::Sample& sample : trace.samples) writer.write(sample);
     if (!writer.sync()) throw std::runtime_error(options.output + ": cannot be written to its end");
     std::printf("%s: %zu samples of a simulated pen\n", options.output.c_str(), trace.samples.size());
 }
@@ -56,4 +56,4 @@ void add_bench(CLI::App& app) {
     trace->callback([options] { write_raster(*options); });
 }
 
-}  // namespace palpa
+}  // namespace palpa::app

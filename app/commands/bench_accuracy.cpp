@@ -12,7 +12,7 @@
 #include "files/regular_file.h"
 #include "files/text.h"
 
-namespace palpa {
+namespace palpa::app {
 namespace {
 
 struct Options {
@@ -26,30 +26,30 @@ void make_folder(const std::filesystem::path& folder) {
     std::error_code error;
     std::filesystem::create_directories(folder, error);
     if (error || !std::filesystem::is_directory(folder))
-        throw InputError("-o " + folder.string() + ": found " + (error ? error.message() : "a file") +
+        throw files::InputError("-o " + folder.string() + ": found " + (error ? error.message() : "a file") +
                          ", expected a folder or a name for one");
 }
 
 void run_accuracy(const Options& options) {
     if (!options.folder.empty()) {
-        check_output_folder(options.folder);
+        files::check_output_folder(options.folder);
         make_folder(options.folder);
     }
-    const Effort effort{options.quick, options.quick ? 0.05 : 0.8, options.quick ? 0.05 : 0.6};
-    std::vector<Measurement> list = slab_measurements(effort);
-    for (const auto& more : {contact_measurements(effort), step_measurements(effort)})
+    const accuracy::Effort effort{options.quick, options.quick ? 0.05 : 0.8, options.quick ? 0.05 : 0.6};
+    std::vector<accuracy::Measurement> list = accuracy::slab_measurements(effort);
+    for (const auto& more : {accuracy::contact_measurements(effort), accuracy::step_measurements(effort)})
         list.insert(list.end(), more.begin(), more.end());
-    const Machine machine = this_machine();
-    const std::vector<AccuracyRow> rows = run_measurements(list);
+    const accuracy::Machine machine = accuracy::this_machine();
+    const std::vector<accuracy::AccuracyRow> rows = accuracy::run_measurements(list);
     if (options.json) {
-        std::printf("%s\n", accuracy_json(rows, machine).dump(2).c_str());
+        std::printf("%s\n", accuracy::accuracy_json(rows, machine).dump(2).c_str());
     } else {
         std::printf("%s, %u threads, load %s, %s\n%s", machine.processor.c_str(), machine.threads,
-                    short_number(machine.load).c_str(), machine.date.c_str(), accuracy_table(rows).c_str());
+                    files::short_number(machine.load).c_str(), machine.date.c_str(), accuracy::accuracy_table(rows).c_str());
     }
     if (options.folder.empty()) return;
-    write_text_atomically(std::filesystem::path(options.folder) / "mechanics.csv", accuracy_csv(rows));
-    const std::string trouble = plot_mechanics(options.folder, machine);
+    files::write_text_atomically(std::filesystem::path(options.folder) / "mechanics.csv", accuracy::accuracy_csv(rows));
+    const std::string trouble = accuracy::plot_mechanics(options.folder, machine);
     if (!trouble.empty())
         std::fprintf(stderr, "palpa: %s\n", trouble.c_str());
     else
@@ -73,4 +73,4 @@ void add_bench_accuracy(CLI::App& bench) {
     mechanics->callback([options] { run_accuracy(*options); });
 }
 
-}  // namespace palpa
+}  // namespace palpa::app

@@ -14,7 +14,7 @@
 #include "files/table.h"
 #include "files/text.h"
 
-namespace palpa {
+namespace palpa::app {
 namespace {
 
 // One pen on one tablet on one day, rows as recorded.
@@ -25,7 +25,7 @@ struct Session {
 };
 
 std::map<std::string, Session> read_sessions(const std::string& file) {
-    Table table = read_csv(file);
+    files::Table table = files::read_csv(file);
     const std::size_t level = table.column("pressure_norm");
     const std::size_t force_N = table.column("force_N");
     std::vector<std::size_t> names;
@@ -44,19 +44,19 @@ std::map<std::string, Session> read_sessions(const std::string& file) {
 
 struct Contestant {
     const char* name;
-    std::optional<CurveModel> model;
-    std::optional<ErrorModel> error;
-    Robust robust = Robust::huber;
+    std::optional<calibration::CurveModel> model;
+    std::optional<calibration::ErrorModel> error;
+    calibration::Robust robust = calibration::Robust::huber;
     bool all_rows = false;   // nothing is left out at the ends, and a cubic has a knot for each level
 };
 
 const Contestant kContestants[] = {
-    {"exponential, newton, plain (as printed)", CurveModel::exponential, ErrorModel::newton, Robust::none, true},
-    {"exponential, log", CurveModel::exponential, ErrorModel::log},
-    {"exponential_offset, newton", CurveModel::exponential_offset, ErrorModel::newton},
-    {"exponential_offset, log", CurveModel::exponential_offset, ErrorModel::log},
-    {"power, log", CurveModel::power, ErrorModel::log},
-    {"monotone_cubic, a knot for each level", CurveModel::monotone_cubic, ErrorModel::log, Robust::huber, true},
+    {"exponential, newton, plain (as printed)", calibration::CurveModel::exponential, calibration::ErrorModel::newton, calibration::Robust::none, true},
+    {"exponential, log", calibration::CurveModel::exponential, calibration::ErrorModel::log},
+    {"exponential_offset, newton", calibration::CurveModel::exponential_offset, calibration::ErrorModel::newton},
+    {"exponential_offset, log", calibration::CurveModel::exponential_offset, calibration::ErrorModel::log},
+    {"power, log", calibration::CurveModel::power, calibration::ErrorModel::log},
+    {"monotone_cubic, a knot for each level", calibration::CurveModel::monotone_cubic, calibration::ErrorModel::log, calibration::Robust::huber, true},
     {"auto", std::nullopt, std::nullopt},
 };
 
@@ -66,45 +66,45 @@ struct Errors {
     int failed = 0;
 };
 
-constexpr LevelRange kRange{0.0, 1.0};
+constexpr calibration::LevelRange kRange{0.0, 1.0};
 
-std::optional<Curve> fitted(const Contestant& contestant, const CalibrationRows& rows) {
-    const FitPoints points = contestant.all_rows ? fit_points(rows, {-1.0, 1.0}, {}) : fit_points(rows, kRange, ends_of(rows, kRange));
-    if (contestant.all_rows && contestant.model == CurveModel::monotone_cubic) return fit_cubic(points, cubic_bins(points, 0));
-    const Candidate best = choose(points, candidates(points, contestant.model, contestant.error, contestant.robust, kRange.highest), contestant.error);
+std::optional<calibration::Curve> fitted(const Contestant& contestant, const calibration::CalibrationRows& rows) {
+    const calibration::FitPoints points = contestant.all_rows ? calibration::fit_points(rows, {-1.0, 1.0}, {}) : calibration::fit_points(rows, kRange, calibration::ends_of(rows, kRange));
+    if (contestant.all_rows && contestant.model == calibration::CurveModel::monotone_cubic) return calibration::fit_cubic(points, calibration::cubic_bins(points, 0));
+    const calibration::Candidate best = calibration::choose(points, calibration::candidates(points, contestant.model, contestant.error, contestant.robust, kRange.highest), contestant.error);
     if (best.predicted_N.size() == 0) return std::nullopt;
-    return fit_curve(points, best.options);
+    return calibration::fit_curve(points, best.options);
 }
 
 // Fits to the rows 2, 4, ... of a session (or 1, 3, ...), and judges on the others.
 void judge(const Contestant& contestant, const Session& session, std::size_t first_fitted, bool silent_too, Errors& errors) {
-    CalibrationRows rows;
+    calibration::CalibrationRows rows;
     for (std::size_t i = first_fitted; i < session.level.size(); i += 2) {
         rows.level.push_back(session.level[i]);
         rows.force_N.push_back(session.force_N[i]);
         rows.line.push_back(session.line[i]);
     }
-    const std::optional<Curve> curve = fitted(contestant, rows);
+    const std::optional<calibration::Curve> curve = fitted(contestant, rows);
     if (!curve) {
         ++errors.failed;
         return;
     }
     for (std::size_t i = 1 - first_fitted; i < session.level.size(); i += 2) {
         if (session.level[i] <= 0.0 && !silent_too) continue;
-        const double predicted_N = std::max(0.0, value_N(*curve, session.level[i]));
+        const double predicted_N = std::max(0.0, calibration::value_N(*curve, session.level[i]));
         const double off = std::abs(predicted_N - session.force_N[i]) / session.force_N[i];
         (session.level[i] < 0.2 ? errors.light : errors.firm).push_back(off);
     }
 }
 
-Json row_json(const char* name, Errors& errors) {
+files::Json row_json(const char* name, Errors& errors) {
     return {{"curve", name},
-            {"n_light", errors.light.size()}, {"median_light", quantile(errors.light, 0.5)}, {"p90_light", quantile(errors.light, 0.9)},
-            {"n_firm", errors.firm.size()}, {"median_firm", quantile(errors.firm, 0.5)}, {"p90_firm", quantile(errors.firm, 0.9)},
+            {"n_light", errors.light.size()}, {"median_light", calibration::quantile(errors.light, 0.5)}, {"p90_light", calibration::quantile(errors.light, 0.9)},
+            {"n_firm", errors.firm.size()}, {"median_firm", calibration::quantile(errors.firm, 0.5)}, {"p90_firm", calibration::quantile(errors.firm, 0.9)},
             {"failed", errors.failed}};
 }
 
-void print_row(const Json& row) {
+void print_row(const files::Json& row) {
     const auto percent = [&](const char* key) { return 100.0 * row[key].get<double>(); };
     std::printf("  %-42s %7.2f %7.1f    %7.2f %7.2f %8d\n", row["curve"].get_ref<const std::string&>().c_str(), percent("median_light"), percent("p90_light"),
                 percent("median_firm"), percent("p90_firm"), row["failed"].get<int>());
@@ -122,13 +122,13 @@ void bench_pens(const PensOptions& options) {
     for (const auto& [name, session] : all) {
         if (session.level.size() >= kEnough) sessions.push_back(&session);
     }
-    if (sessions.empty()) throw bad_input(options.file, "", "no session of 12 points or more", "one at least");
+    if (sessions.empty()) throw files::bad_input(options.file, "", "no session of 12 points or more", "one at least");
     struct Split {
         const char* name;
         std::size_t first_fitted;
         bool silent_too;
     };
-    Json json{{"sessions", sessions.size()}, {"splits", Json::array()}};
+    files::Json json{{"sessions", sessions.size()}, {"splits", files::Json::array()}};
     for (const Split& split : {Split{"fitted to rows 2, 4, ..., judged on rows 1, 3, ... with a level above 0", 1, false},
                                Split{"the same, rows with level 0 judged too", 1, true},
                                Split{"fitted to rows 1, 3, ..., judged on rows 2, 4, ... with a level above 0", 0, false}}) {
@@ -136,7 +136,7 @@ void bench_pens(const PensOptions& options) {
             std::printf("%zu sessions, %s\n  %-42s %15s    %15s\n  %-42s %7s %7s    %7s %7s %8s\n", sessions.size(), split.name, "relative error (%)",
                         "below 20 %", "above 20 %", "", "median", "p90", "median", "p90", "failed");
         }
-        Json rows = Json::array();
+        files::Json rows = files::Json::array();
         for (const Contestant& contestant : kContestants) {
             Errors errors;
             for (const Session* session : sessions) judge(contestant, *session, split.first_fitted, split.silent_too, errors);
@@ -145,7 +145,7 @@ void bench_pens(const PensOptions& options) {
         }
         json["splits"].push_back({{"split", split.name}, {"curves", rows}});
     }
-    if (options.json) std::fputs(json_text(json).c_str(), stdout);
+    if (options.json) std::fputs(files::json_text(json).c_str(), stdout);
 }
 
 }  // namespace
@@ -159,4 +159,4 @@ void add_bench_pens(CLI::App& bench) {
     command->callback([options] { bench_pens(*options); });
 }
 
-}  // namespace palpa
+}  // namespace palpa::app

@@ -13,7 +13,7 @@
 #include "files/text.h"
 #include "session/plan_in_progress.h"
 
-namespace palpa {
+namespace palpa::app {
 namespace {
 
 struct Options {
@@ -30,18 +30,18 @@ void run_speed(const Options& options) {
             scenes.push_back((assets_folder() / "scenes" / (std::string(name) + ".json")).string());
         }
     }
-    const SpeedRow unit = machine_unit(20);
-    std::vector<SpeedRow> rows;
+    const accuracy::SpeedRow unit = accuracy::machine_unit(20);
+    std::vector<accuracy::SpeedRow> rows;
     for (const std::string& name : scenes) {
-        const Scene scene = load_scene(name);
-        rows.push_back(sample_speed(scene, make_plan_here(scene), options.seconds, options.repetitions));
+        const scene::Scene scene = load_scene(name);
+        rows.push_back(accuracy::sample_speed(scene, session::make_plan_here(scene), options.seconds, options.repetitions));
     }
-    const Machine machine = this_machine();
+    const accuracy::Machine machine = accuracy::this_machine();
     if (options.json) {
-        std::fputs(json_text(speed_json(unit, rows, machine)).c_str(), stdout);
+        std::fputs(files::json_text(accuracy::speed_json(unit, rows, machine)).c_str(), stdout);
     } else {
         std::printf("%s, %u threads, load %s, %s\n%s", machine.processor.c_str(), machine.threads,
-                    short_number(machine.load).c_str(), machine.date.c_str(), speed_table(unit, rows).c_str());
+                    files::short_number(machine.load).c_str(), machine.date.c_str(), accuracy::speed_table(unit, rows).c_str());
     }
 }
 
@@ -57,4 +57,4 @@ void add_bench_speed(CLI::App& bench) {
     speed->callback([options] { run_speed(*options); });
 }
 
-}  // namespace palpa
+}  // namespace palpa::app

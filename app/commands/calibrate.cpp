@@ -15,14 +15,14 @@
 #include "files/regular_file.h"
 #include "files/text.h"
 
-namespace palpa {
+namespace palpa::app {
 namespace {
 
-std::vector<RowFilter> parse_where(const std::vector<std::string>& texts) {
-    std::vector<RowFilter> where;
+std::vector<calibration::RowFilter> parse_where(const std::vector<std::string>& texts) {
+    std::vector<calibration::RowFilter> where;
     for (const std::string& text : texts) {
         const auto equals = text.find('=');
-        if (equals == std::string::npos || equals == 0) throw bad_input("--where", "", shown(text), "COLUMN=VALUE");
+        if (equals == std::string::npos || equals == 0) throw files::bad_input("--where", "", files::shown(text), "COLUMN=VALUE");
         where.push_back({text.substr(0, equals), text.substr(equals + 1)});
     }
     return where;
@@ -44,8 +44,8 @@ struct FitArguments {
     std::string level = "auto";
     std::vector<double> range;
     std::vector<std::string> where;
-    CalibrateOptions options;
-    DeviceNames device;
+    calibration::CalibrateOptions options;
+    calibration::DeviceNames device;
     bool keep_lag = false;
     bool any_force = false;
     bool json = false;
@@ -59,54 +59,54 @@ std::optional<Enum> parsed(const std::string& name, std::initializer_list<Enum> 
     return std::nullopt;  // auto
 }
 
-CalibrateOptions fit_options(const FitArguments& arguments) {
-    CalibrateOptions options = arguments.options;
-    options.model = parsed(arguments.model, {CurveModel::exponential, CurveModel::exponential_offset, CurveModel::power, CurveModel::monotone_cubic});
-    options.error = parsed(arguments.error, {ErrorModel::newton, ErrorModel::log});
-    options.robust = arguments.robust == "none" ? Robust::none : arguments.robust == "huber" ? Robust::huber : Robust::tukey;
-    options.level = parsed(arguments.level, {LevelField::pressure, LevelField::pressure_raw, LevelField::contact_area});
+calibration::CalibrateOptions fit_options(const FitArguments& arguments) {
+    calibration::CalibrateOptions options = arguments.options;
+    options.model = parsed(arguments.model, {calibration::CurveModel::exponential, calibration::CurveModel::exponential_offset, calibration::CurveModel::power, calibration::CurveModel::monotone_cubic});
+    options.error = parsed(arguments.error, {calibration::ErrorModel::newton, calibration::ErrorModel::log});
+    options.robust = arguments.robust == "none" ? calibration::Robust::none : arguments.robust == "huber" ? calibration::Robust::huber : calibration::Robust::tukey;
+    options.level = parsed(arguments.level, {calibration::LevelField::pressure, calibration::LevelField::pressure_raw, calibration::LevelField::contact_area});
     options.remove_lag = !arguments.keep_lag;
     if (!arguments.range.empty()) {
         if (!(arguments.range[0] < arguments.range[1])) {
-            throw bad_input("--level-range", "", short_number(arguments.range[0]) + " " + short_number(arguments.range[1]), "the lower level first");
+            throw files::bad_input("--level-range", "", files::short_number(arguments.range[0]) + " " + files::short_number(arguments.range[1]), "the lower level first");
         }
-        options.range = LevelRange{arguments.range[0], arguments.range[1]};
+        options.range = calibration::LevelRange{arguments.range[0], arguments.range[1]};
     }
     return options;
 }
 
 // What the person says about the device wins over the columns of the file.
-void name_device(const DeviceNames& given, DeviceNames& device) {
-    for (const auto field : {&DeviceNames::pen, &DeviceNames::tablet, &DeviceNames::driver, &DeviceNames::os, &DeviceNames::date}) {
+void name_device(const calibration::DeviceNames& given, calibration::DeviceNames& device) {
+    for (const auto field : {&calibration::DeviceNames::pen, &calibration::DeviceNames::tablet, &calibration::DeviceNames::driver, &calibration::DeviceNames::os, &calibration::DeviceNames::date}) {
         if (!(given.*field).empty()) device.*field = given.*field;
         if ((device.*field).empty()) device.*field = "n/a";
     }
 }
 
 void fit(const FitArguments& arguments) {
-    check_output(arguments.output, {arguments.data});
+    files::check_output(arguments.output, {arguments.data});
     if (!arguments.figure.empty()) {
-        check_figure(arguments.figure);
-        check_output(arguments.figure, {arguments.data});
+        figures::check_figure(arguments.figure);
+        files::check_output(arguments.figure, {arguments.data});
     }
-    const CalibrateOptions options = fit_options(arguments);
-    const CalibrationRows rows = read_points(arguments.data, {parse_where(arguments.where), arguments.any_force});
+    const calibration::CalibrateOptions options = fit_options(arguments);
+    const calibration::CalibrationRows rows = calibration::read_points(arguments.data, {parse_where(arguments.where), arguments.any_force});
     if (options.range) {
         const double highest = *std::max_element(rows.level.begin(), rows.level.end());
         if (highest > options.range->highest) {
-            throw bad_input(rows.file, "level", "levels up to " + short_number(highest), "at most " + short_number(options.range->highest) + " as --level-range says");
+            throw files::bad_input(rows.file, "level", "levels up to " + files::short_number(highest), "at most " + files::short_number(options.range->highest) + " as --level-range says");
         }
     }
-    Calibration calibration = calibrate(rows, options);
+    calibration::Calibration calibration = calibration::calibrate(rows, options);
     name_device(arguments.device, calibration.profile.device);
-    write_profile(calibration.profile, quality_json(calibration), arguments.output);
+    calibration::write_profile(calibration.profile, figures::quality_json(calibration), arguments.output);
     if (arguments.json) {
-        std::fputs(json_text(calibration_json(calibration)).c_str(), stdout);
+        std::fputs(files::json_text(figures::calibration_json(calibration)).c_str(), stdout);
     } else {
-        print_calibration(calibration);
+        figures::print_calibration(calibration);
         std::printf("  profile     %s\n", arguments.output.c_str());
     }
-    if (!arguments.figure.empty()) plot_calibration(calibration, arguments.figure);
+    if (!arguments.figure.empty()) figures::plot_calibration(calibration, arguments.figure);
 }
 
 void add_fit(CLI::App& calibrate) {
@@ -173,32 +173,32 @@ struct CheckArguments {
 };
 
 void check(const CheckArguments& arguments) {
-    const Profile profile = read_profile(arguments.profile);
-    ReadOptions options{parse_where(arguments.where), false};
+    const calibration::Profile profile = calibration::read_profile(arguments.profile);
+    calibration::ReadOptions options{parse_where(arguments.where), false};
     options.for_fit = false;
-    const CalibrationRows rows = read_points(arguments.data, options);
-    const LevelRange range{profile.level_lowest, profile.level_highest};
+    const calibration::CalibrationRows rows = calibration::read_points(arguments.data, options);
+    const calibration::LevelRange range{profile.level_lowest, profile.level_highest};
     const auto n = static_cast<Eigen::Index>(rows.level.size());
     const Eigen::Map<const Eigen::ArrayXd> level(rows.level.data(), n);
     const Eigen::Map<const Eigen::ArrayXd> measured_N(rows.force_N.data(), n);
     std::int64_t clamped = 0;
-    const Eigen::ArrayXd predicted_N = Eigen::ArrayXd::NullaryExpr(n, [&](Eigen::Index i) { return force_N(profile, level(i), clamped); });
-    const auto bands = error_bands(level, measured_N, predicted_N, range);
-    const double median = median_relative_error(level, measured_N, predicted_N, range);
-    const FitQuality quality = fit_quality(measured_N, predicted_N);
+    const Eigen::ArrayXd predicted_N = Eigen::ArrayXd::NullaryExpr(n, [&](Eigen::Index i) { return calibration::force_N(profile, level(i), clamped); });
+    const auto bands = calibration::error_bands(level, measured_N, predicted_N, range);
+    const double median = calibration::median_relative_error(level, measured_N, predicted_N, range);
+    const calibration::FitQuality quality = calibration::fit_quality(measured_N, predicted_N);
     std::vector<std::string> warnings = rows.notes;
     if (clamped > 0) warnings.push_back(std::to_string(clamped) + " of " + std::to_string(n) + " levels are outside the profile's range and taken at its end");
-    if (median > 0.1) warnings.push_back("the profile is off by " + short_number(100.0 * median) + " % of the force (median): calibrate this device anew");
+    if (median > 0.1) warnings.push_back("the profile is off by " + files::short_number(100.0 * median) + " % of the force (median): calibrate this device anew");
     if (arguments.json) {
-        const Json json{{"profile", profile.id}, {"n_points", n}, {"median_relative_error", median}, {"relative_error_bands", bands_json(bands)},
+        const files::Json json{{"profile", profile.id}, {"n_points", n}, {"median_relative_error", median}, {"relative_error_bands", figures::bands_json(bands)},
                         {"r2_newton", quality.r2_newton}, {"r2_log", quality.r2_log}, {"rmse_N", quality.rmse_N},
                         {"predicted_N", std::vector<double>(predicted_N.begin(), predicted_N.end())}, {"warnings", warnings}};
-        std::fputs(json_text(json).c_str(), stdout);
+        std::fputs(files::json_text(json).c_str(), stdout);
         return;
     }
     std::printf("%s on %lld points: off by %s %% of the force (median), RMSE %s N\n", profile.id.c_str(), static_cast<long long>(n),
-                short_number(100.0 * median).c_str(), short_number(quality.rmse_N).c_str());
-    print_bands(bands, "these points");
+                files::short_number(100.0 * median).c_str(), files::short_number(quality.rmse_N).c_str());
+    figures::print_bands(bands, "these points");
     for (const std::string& warning : warnings) std::fprintf(stderr, "palpa: warning: %s\n", warning.c_str());
 }
 
@@ -220,10 +220,10 @@ struct CompareArguments {
 };
 
 void compare(const CompareArguments& arguments) {
-    const Profile a = read_profile(arguments.a);
-    const Profile b = read_profile(arguments.b);
+    const calibration::Profile a = calibration::read_profile(arguments.a);
+    const calibration::Profile b = calibration::read_profile(arguments.b);
     constexpr int kPlaces = 20;
-    Json share = Json::array(), a_N = Json::array(), b_N = Json::array();
+    files::Json share = files::Json::array(), a_N = files::Json::array(), b_N = files::Json::array();
     std::vector<double> apart;
     double greatest = 0.0;
     double at = 0.0;
@@ -231,8 +231,8 @@ void compare(const CompareArguments& arguments) {
     for (int i = 0; i <= kPlaces; ++i) {
         // each over its own range, so that counts and 0 ... 1 can be compared
         const double s = static_cast<double>(i) / kPlaces;
-        const double F_a = force_N(a, a.level_lowest + s * (a.level_highest - a.level_lowest), ignored);
-        const double F_b = force_N(b, b.level_lowest + s * (b.level_highest - b.level_lowest), ignored);
+        const double F_a = calibration::force_N(a, a.level_lowest + s * (a.level_highest - a.level_lowest), ignored);
+        const double F_b = calibration::force_N(b, b.level_lowest + s * (b.level_highest - b.level_lowest), ignored);
         share.push_back(s);
         a_N.push_back(F_a);
         b_N.push_back(F_b);
@@ -243,22 +243,22 @@ void compare(const CompareArguments& arguments) {
         greatest = apart.back();
         at = s;
     }
-    const double median = quantile(apart, 0.5);
+    const double median = calibration::quantile(apart, 0.5);
     if (arguments.json) {
-        const Json json{{"a", a.id}, {"b", b.id}, {"same_level", a.level == b.level}, {"level_share", share}, {"a_N", a_N}, {"b_N", b_N},
+        const files::Json json{{"a", a.id}, {"b", b.id}, {"same_level", a.level == b.level}, {"level_share", share}, {"a_N", a_N}, {"b_N", b_N},
                         {"median_relative_difference", median}, {"greatest_relative_difference", greatest}, {"greatest_at", at}};
-        std::fputs(json_text(json).c_str(), stdout);
+        std::fputs(files::json_text(json).c_str(), stdout);
         return;
     }
     std::printf("%-8s %12s %12s %10s\n", "level", a.id.substr(0, 12).c_str(), b.id.substr(0, 12).c_str(), "apart");
     for (std::size_t i = 0; i < share.size(); i += 2) {
         const double F_a = a_N[i].get<double>();
         const double F_b = b_N[i].get<double>();
-        std::printf("%5.0f %%  %10s N %10s N %8s %%\n", 100.0 * share[i].get<double>(), short_number(F_a).c_str(), short_number(F_b).c_str(),
-                    short_number(200.0 * (F_b - F_a) / (F_a + F_b)).c_str());
+        std::printf("%5.0f %%  %10s N %10s N %8s %%\n", 100.0 * share[i].get<double>(), files::short_number(F_a).c_str(), files::short_number(F_b).c_str(),
+                    files::short_number(200.0 * (F_b - F_a) / (F_a + F_b)).c_str());
     }
-    std::printf("apart by %s %% (median), at most %s %% at %s %% of the range\n", short_number(100.0 * median).c_str(), short_number(100.0 * greatest).c_str(),
-                short_number(100.0 * at).c_str());
+    std::printf("apart by %s %% (median), at most %s %% at %s %% of the range\n", files::short_number(100.0 * median).c_str(), files::short_number(100.0 * greatest).c_str(),
+                files::short_number(100.0 * at).c_str());
     if (a.level != b.level) std::fprintf(stderr, "palpa: warning: the profiles read different fields: %s and %s\n", name_of(a.level), name_of(b.level));
 }
 
@@ -283,4 +283,4 @@ void add_calibrate(CLI::App& app) {
     add_compare(*calibrate);
 }
 
-}  // namespace palpa
+}  // namespace palpa::app

@@ -11,34 +11,34 @@
 #include "files/regular_file.h"
 #include "files/text.h"
 
-namespace palpa {
+namespace palpa::app {
 namespace {
 
 struct Arguments {
-    RecordArguments record;
+    calibration::RecordArguments record;
     std::string level = "pressure";
     std::vector<double> range;
     bool json = false;
 };
 
 void record(Arguments& arguments) {
-    RecordArguments& record = arguments.record;
-    check_output_folder(record.folder);
-    record.level.level = arguments.level == "pressure"       ? LevelField::pressure
-                         : arguments.level == "pressure_raw" ? LevelField::pressure_raw
-                                                             : LevelField::contact_area;
-    if (record.level.level == LevelField::pressure_raw && arguments.range.empty()) {
-        throw bad_input("--level-range", "", "nothing", "the counts that the device can report, as 0 8191");
+    calibration::RecordArguments& record = arguments.record;
+    files::check_output_folder(record.folder);
+    record.level.level = arguments.level == "pressure"       ? calibration::LevelField::pressure
+                         : arguments.level == "pressure_raw" ? calibration::LevelField::pressure_raw
+                                                             : calibration::LevelField::contact_area;
+    if (record.level.level == calibration::LevelField::pressure_raw && arguments.range.empty()) {
+        throw files::bad_input("--level-range", "", "nothing", "the counts that the device can report, as 0 8191");
     }
     if (!arguments.range.empty()) {
         if (!(arguments.range[0] < arguments.range[1])) {
-            throw bad_input("--level-range", "", short_number(arguments.range[0]) + " " + short_number(arguments.range[1]), "the lower level first");
+            throw files::bad_input("--level-range", "", files::short_number(arguments.range[0]) + " " + files::short_number(arguments.range[1]), "the lower level first");
         }
         record.options.range = {arguments.range[0], arguments.range[1]};
     }
-    const Json result = record_calibration(record);
+    const files::Json result = record_calibration(record);
     if (arguments.json) {
-        std::fputs(json_text(result).c_str(), stdout);
+        std::fputs(files::json_text(result).c_str(), stdout);
         return;
     }
     std::printf("%s: %s points of %s presses; %s\n", result["file"].get_ref<const std::string&>().c_str(), result["points"].dump().c_str(), result["repeats"].dump().c_str(),
@@ -52,7 +52,7 @@ void record(Arguments& arguments) {
 
 void add_calibrate_record(CLI::App& calibrate) {
     auto arguments = std::make_shared<Arguments>();
-    RecordArguments& options = arguments->record;
+    calibration::RecordArguments& options = arguments->record;
     options.level.full_contact_area_px2 = 8000.0;
     CLI::App* command = calibrate.add_subcommand(
         "record",
@@ -107,4 +107,4 @@ void add_calibrate_record(CLI::App& calibrate) {
     command->callback([arguments] { record(*arguments); });
 }
 
-}  // namespace palpa
+}  // namespace palpa::app

@@ -19,7 +19,7 @@
 #include "files/input_error.h"
 #include "mechanics/error.h"
 
-namespace palpa {
+namespace palpa::app {
 namespace {
 
 // `palpa SCENE.json` means `palpa run SCENE.json`, `palpa` alone opens the app.
@@ -64,7 +64,7 @@ int call(int argc, char** argv, CLI::App& app) {
         end_without_memory("not enough memory: a smaller model, or a machine with more");
     } catch (const mechanics::OutOfMemory& error) {
         end_without_memory(error.what());
-    } catch (const InputError& error) {
+    } catch (const files::InputError& error) {
         return fail(error.what(), 2);
     } catch (const std::exception& error) {
         return fail(error.what(), 1);
@@ -103,4 +103,4 @@ int run_command_line(int argc, char** argv) {
     return with_all_printed(call(argc, argv, app));
 }
 
-}  // namespace palpa
+}  // namespace palpa::app

@@ -4,7 +4,7 @@ namespace CLI {
 class App;
 }
 
-namespace palpa {
+namespace palpa::app {
 
 // Exit status: 0 done, 1 the run failed, 2 wrong usage or bad input.
 int run_command_line(int argc, char** argv);
@@ -25,4 +25,4 @@ void add_bench_accuracy(CLI::App& bench);
 void add_bench_pens(CLI::App& bench);
 void add_bench_speed(CLI::App& bench);
 
-}  // namespace palpa
+}  // namespace palpa::app

@@ -4,10 +4,10 @@
 #include "files/json.h"
 #include "stiffnessmaps/import/detect.h"
 
-namespace palpa {
+namespace palpa::app {
 
-Json detection_json(const Map& map, const Detection& detection);
-std::string detection_text(const Map& map, const Detection& detection);
-std::vector<std::string> detection_warnings(const Detection& detection);  // of the map, and of the regions by their names
+files::Json detection_json(const stiffnessmaps::Map& map, const stiffnessmaps::Detection& detection);
+std::string detection_text(const stiffnessmaps::Map& map, const stiffnessmaps::Detection& detection);
+std::vector<std::string> detection_warnings(const stiffnessmaps::Detection& detection);  // of the map, and of the regions by their names
 
-}  // namespace palpa
+}  // namespace palpa::app

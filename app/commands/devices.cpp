@@ -13,7 +13,7 @@
 #include "platform/window.h"
 #include "render/gl.h"
 
-namespace palpa {
+namespace palpa::app {
 namespace {
 
 struct DevicesOptions {
@@ -23,20 +23,20 @@ struct DevicesOptions {
 
 constexpr double kFrame_s = 1.0 / 60.0;
 
-void show(Window& window) {
-    clear_screen(window.width_px(), window.height_px());
+void show(platform::Window& window) {
+    render::clear_screen(window.width_px(), window.height_px());
     window.present();
 }
 
-void tell_time_left(double left_s, Window& window) {
+void tell_time_left(double left_s, platform::Window& window) {
     const std::string left = std::to_string(static_cast<int>(std::ceil(left_s)));
     window.set_title("Palpa: press here with pen and fingers, " + left + " s left");
     if (isatty(STDERR_FILENO) != 0) std::fprintf(stderr, "\rpress in the window with pen and fingers: %s s left ", left.c_str());
 }
 
 // `check` is large, so it lives with the caller.
-void watch_devices(double seconds, Window& window, DeviceCheck& check) {
-    std::vector<Sample> samples;
+void watch_devices(double seconds, platform::Window& window, DeviceCheck& check) {
+    std::vector<platform::Sample> samples;
     window.set_keyboard(0.0, 0.0, window.width_px(), window.height_px(), 200.0);
     const double began_s = window.now_s();
     double told_s = seconds + 2.0;
@@ -47,7 +47,7 @@ void watch_devices(double seconds, Window& window, DeviceCheck& check) {
         if (told_s - left_s >= 1.0) tell_time_left(told_s = std::ceil(left_s), window);
         samples.clear();
         window.poll(std::min(left_s, std::max(0.0, frame_s + kFrame_s - now_s)), samples);
-        for (const Sample& sample : samples) observe(sample, check);
+        for (const platform::Sample& sample : samples) observe(sample, check);
         if (window.now_s() - frame_s < kFrame_s) continue;
         frame_s = window.now_s();
         show(window);
@@ -55,9 +55,9 @@ void watch_devices(double seconds, Window& window, DeviceCheck& check) {
     if (isatty(STDERR_FILENO) != 0) std::fputc('\n', stderr);
 }
 
-Json device_json(const PointerDevice& device) {
-    Json json{{"name", device.name}, {"tool", name_of(device.tool)}, {"has_pressure", device.has_pressure}};
-    json["pressure_range"] = device.has_pressure ? Json{device.pressure_min, device.pressure_max} : Json(nullptr);
+files::Json device_json(const platform::PointerDevice& device) {
+    files::Json json{{"name", device.name}, {"tool", name_of(device.tool)}, {"has_pressure", device.has_pressure}};
+    json["pressure_range"] = device.has_pressure ? files::Json{device.pressure_min, device.pressure_max} : files::Json(nullptr);
     json["levels"] = device.levels;
     json["has_tilt"] = device.has_tilt;
     json["has_contact_size"] = device.has_contact_size;
@@ -65,7 +65,7 @@ Json device_json(const PointerDevice& device) {
     return json;
 }
 
-void print_device(const PointerDevice& device) {
+void print_device(const platform::PointerDevice& device) {
     std::printf("%s: %s", std::string(name_of(device.tool)).c_str(), device.name.c_str());
     if (device.has_pressure) {
         std::printf(", pressure %g to %g (%lld levels)", device.pressure_min, device.pressure_max, static_cast<long long>(device.levels));
@@ -75,19 +75,19 @@ void print_device(const PointerDevice& device) {
     std::printf("%s%s\n", device.has_tilt ? ", tilt" : "", device.has_contact_size ? ", contact size" : "");
 }
 
-void print_seen(Tool which, const DeviceCheck& check) {
+void print_seen(platform::Tool which, const DeviceCheck& check) {
     const ToolCheck& tool = of_tool(which, check);
     std::printf("%s: %lld samples, %lld of them touching\n", std::string(name_of(which)).c_str(),
                 static_cast<long long>(tool.samples), static_cast<long long>(tool.touching));
     if (tool.gap_count > 0) std::printf("  %.4g a second while it moves; from one to the next %.3g ms (median), %.3g ms (worst; rests over %g s left out)\n",
                 rate_Hz(tool), 1e3 * median_gap_s(tool), 1e3 * worst_gap_s(tool), kRest_s);
-    switch (pressure_kind(check.pressure, which)) {
-        case PressureKind::constant:
-            std::printf("  pressure is always %g: this is no sensor\n", constant_pressure(check.pressure, which));
+    switch (platform::pressure_kind(check.pressure, which)) {
+        case platform::PressureKind::constant:
+            std::printf("  pressure is always %g: this is no sensor\n", platform::constant_pressure(check.pressure, which));
             break;
-        case PressureKind::missing: std::printf("  no pressure\n"); break;
-        case PressureKind::unknown: std::printf("  too few touches to judge the pressure\n"); break;
-        case PressureKind::varies:
+        case platform::PressureKind::missing: std::printf("  no pressure\n"); break;
+        case platform::PressureKind::unknown: std::printf("  too few touches to judge the pressure\n"); break;
+        case platform::PressureKind::varies:
             std::printf("  pressure %.3g to %.3g, %lld different values\n", tool.pressure.lowest, tool.pressure.highest,
                         static_cast<long long>(distinct_pressures(tool)));
     }
@@ -98,17 +98,17 @@ void print_seen(Tool which, const DeviceCheck& check) {
 }
 
 void list_devices(const DevicesOptions& options) {
-    WindowOptions window_options;
+    platform::WindowOptions window_options;
     window_options.title = "Palpa: devices";
     window_options.width_px = 640;
     window_options.height_px = 400;
-    Window window(window_options);
+    platform::Window window(window_options);
     show(window);
     auto check = std::make_unique<DeviceCheck>();
     if (options.seconds > 0.0) watch_devices(options.seconds, window, *check);
 
-    Json json{{"devices", Json::array()}, {"note", window.input_note()}};
-    for (const PointerDevice& device : window.devices()) {
+    files::Json json{{"devices", files::Json::array()}, {"note", window.input_note()}};
+    for (const platform::PointerDevice& device : window.devices()) {
         json["devices"].push_back(device_json(device));
         if (!options.json) print_device(device);
     }
@@ -117,13 +117,13 @@ void list_devices(const DevicesOptions& options) {
         json["seconds"] = options.seconds;
         json["seen"] = check_json(*check);
         if (!options.json) std::printf("\nin %g s came:\n", options.seconds);
-        for (const Tool tool : {Tool::pen, Tool::finger, Tool::mouse, Tool::keyboard}) {
+        for (const platform::Tool tool : {platform::Tool::pen, platform::Tool::finger, platform::Tool::mouse, platform::Tool::keyboard}) {
             if (of_tool(tool, *check).samples == 0) continue;
             if (!options.json) print_seen(tool, *check);
         }
         if (!options.json && json["seen"].empty()) std::printf("nothing\n");
     }
-    if (options.json) std::fputs(json_text(json).c_str(), stdout);
+    if (options.json) std::fputs(files::json_text(json).c_str(), stdout);
 }
 
 }  // namespace
@@ -138,4 +138,4 @@ void add_devices(CLI::App& app) {
     command->callback([options] { list_devices(*options); });
 }
 
-}  // namespace palpa
+}  // namespace palpa::app

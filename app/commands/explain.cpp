@@ -9,7 +9,7 @@
 #include "session/plan_in_progress.h"
 #include "session/replay.h"
 
-namespace palpa {
+namespace palpa::app {
 namespace {
 
 struct ExplainOptions {
@@ -19,7 +19,7 @@ struct ExplainOptions {
     bool json = false;
 };
 
-Json stage_json(const Stage& stage) {
+files::Json stage_json(const scene::Stage& stage) {
     return {{"name", name_of(stage.id)},
             {"per", stage.per_frame ? "frame" : "sample"},
             {"fidelity", stage.fidelity},
@@ -27,7 +27,7 @@ Json stage_json(const Stage& stage) {
             {"cost_us", stage.cost_us}};
 }
 
-void print_stage(const Stage& stage, const Meter* meter) {
+void print_stage(const scene::Stage& stage, const scene::Meter* meter) {
     std::printf("%-14s per %-6s  ", name_of(stage.id), stage.per_frame ? "frame" : "sample");
     if (meter == nullptr) {
         std::printf("about %g us\n", stage.cost_us);
@@ -39,18 +39,18 @@ void print_stage(const Stage& stage, const Meter* meter) {
 }
 
 void explain(const ExplainOptions& options) {
-    const Scene scene = load_scene(options.scene);
-    const Plan plan = make_plan_here(scene);
-    ReplayResult measured;
+    const scene::Scene scene = load_scene(options.scene);
+    const scene::Plan plan = session::make_plan_here(scene);
+    session::ReplayResult measured;
     const std::filesystem::path trace_file = options.trace.empty() ? default_trace() : std::filesystem::path(options.trace);
-    if (options.measure) measured = replay(scene, plan, read_trace(trace_file), 1);
+    if (options.measure) measured = session::replay(scene, plan, platform::read_trace(trace_file), 1);
 
-    Json json{{"scene", scene.name}, {"stages", Json::array()}, {"notes", plan.notes}};
+    files::Json json{{"scene", scene.name}, {"stages", files::Json::array()}, {"notes", plan.notes}};
     if (!options.json) std::printf("%s\n", scene.name.c_str());
     for (const auto* stages : {&plan.sample_stages, &plan.frame_stages}) {
-        for (const Stage& stage : *stages) {
-            const Meter* meter = options.measure ? &measured.state.meters[static_cast<std::size_t>(stage.id)] : nullptr;
-            Json entry = stage_json(stage);
+        for (const scene::Stage& stage : *stages) {
+            const scene::Meter* meter = options.measure ? &measured.state.meters[static_cast<std::size_t>(stage.id)] : nullptr;
+            files::Json entry = stage_json(stage);
             if (meter != nullptr) {
                 entry["calls"] = meter->calls();
                 entry["median_us"] = 1e-3 * meter->quantile_ns(0.5);
@@ -62,7 +62,7 @@ void explain(const ExplainOptions& options) {
         }
     }
     if (options.json) {
-        std::fputs(json_text(json).c_str(), stdout);
+        std::fputs(files::json_text(json).c_str(), stdout);
         return;
     }
     if (options.measure) std::printf("measured on %s; each time includes reading the clock\n", trace_file.string().c_str());
@@ -83,4 +83,4 @@ void add_explain(CLI::App& app) {
     command->callback([options] { explain(*options); });
 }
 
-}  // namespace palpa
+}  // namespace palpa::app

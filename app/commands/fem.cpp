@@ -15,7 +15,7 @@
 #include "files/printable.h"
 #include "files/text.h"
 
-namespace palpa {
+namespace palpa::app {
 namespace {
 
 using mechanics::LinearRange;
@@ -44,33 +44,33 @@ const char* name_of(mechanics::Element element) {
     return "";
 }
 
-Json in_mm(const std::optional<double>& value_m) {
-    return value_m ? Json(1e3 * *value_m) : Json(nullptr);
+files::Json in_mm(const std::optional<double>& value_m) {
+    return value_m ? files::Json(1e3 * *value_m) : files::Json(nullptr);
 }
 
-double max_von_mises_Pa(const FemResult& result) {
+double max_von_mises_Pa(const fem::FemResult& result) {
     double largest = 0.0;
     for (const double value : result.von_mises_Pa) largest = std::max(largest, value);  // NaN is passed over
     return largest;
 }
 
-std::vector<std::string> warnings_of(const FemCase& model, const FemResult& result) {
+std::vector<std::string> warnings_of(const fem::FemCase& model, const fem::FemResult& result) {
     std::vector<std::string> out = model.warnings;
-    if (const std::string locking = locking_warning(model.problem); !locking.empty()) out.push_back(locking);
+    if (const std::string locking = fem::locking_warning(model.problem); !locking.empty()) out.push_back(locking);
     if (result.linear != LinearRange::fine) {
-        out.push_back("the linear range is left: " + short_number(100.0 * result.linear_ratio) +
+        out.push_back("the linear range is left: " + files::short_number(100.0 * result.linear_ratio) +
                       " % (strain, or depth over thickness or width); amber above 10, red above 25");
     }
     if (result.partial)
-        out.push_back("part of the pressure is beside the body: " + short_number(result.applied_N) +
+        out.push_back("part of the pressure is beside the body: " + files::short_number(result.applied_N) +
                       " N fell on it");
     if (result.contact && result.contact->over_edge)
         out.push_back("part of the indenter is beside the tissue");
     if (result.contact) {
-        for (std::string& warning : contact_warnings(*result.contact)) out.push_back(std::move(warning));
+        for (std::string& warning : fem::contact_warnings(*result.contact)) out.push_back(std::move(warning));
     }
-    if (!(result.solution.backward_error < kMostBackwardError))
-        out.push_back("not converged: backward error " + short_number(result.solution.backward_error));
+    if (!(result.solution.backward_error < fem::kMostBackwardError))
+        out.push_back("not converged: backward error " + files::short_number(result.solution.backward_error));
     if (!model.report.slivers.empty()) {
         out.push_back(std::to_string(model.report.slivers.size()) + " flat cells, the worst is cell " +
                       std::to_string(number_of_cell(model.problem.mesh, model.report.worst_cell)));
@@ -78,8 +78,8 @@ std::vector<std::string> warnings_of(const FemCase& model, const FemResult& resu
     return out;
 }
 
-Json json_of(const FemCase& model, const FemResult& result) {
-    Json json;
+files::Json json_of(const fem::FemCase& model, const fem::FemResult& result) {
+    files::Json json;
     json["case"] = model.file;
     json["element"] = name_of(model.problem.element);
     json["nodes"] = model.problem.mesh.nodes_m.cols();
@@ -89,7 +89,7 @@ Json json_of(const FemCase& model, const FemResult& result) {
     json["centre_displacement_mm"] = in_mm(result.centre_m);
     json["d_skel_mm"] = in_mm(result.skel_m);
     json["applied_N"] = result.applied_N;
-    json["reaction_N"] = Json::array();
+    json["reaction_N"] = files::Json::array();
     for (std::size_t i = 0; i < model.supports.size(); ++i) {
         const Eigen::Vector3d& f = result.reaction_N[i];
         json["reaction_N"].push_back({{"support", model.supports[i].name},
@@ -101,7 +101,7 @@ Json json_of(const FemCase& model, const FemResult& result) {
         json["reaction_of_held_rigid_cells_N"] = {f.x(), f.y(), f.z()};
     }
     if (result.contact) {
-        const IndenterContact& contact = *result.contact;
+        const fem::IndenterContact& contact = *result.contact;
         const Eigen::Vector3d f = contact.force_N.rowwise().sum();
         json["contact"] = {{"force_N", {f.x(), f.y(), f.z()}},
                            {"area_mm2", 1e6 * contact.area_m2},
@@ -132,21 +132,21 @@ std::string six_digits(double value) {
 }
 
 std::string three_N(const Eigen::Vector3d& f) {
-    return short_number(f.x()) + "  " + short_number(f.y()) + "  " + short_number(f.z()) + " N";
+    return files::short_number(f.x()) + "  " + files::short_number(f.y()) + "  " + files::short_number(f.z()) + " N";
 }
 
 void row(const char* what, const std::string& value) {
-    std::printf("  %-22s %s\n", printable(what).c_str(), value.c_str());
+    std::printf("  %-22s %s\n", files::printable(what).c_str(), value.c_str());
 }
 
-void print_table(const FemCase& model, const FemResult& result) {
+void print_table(const fem::FemCase& model, const fem::FemResult& result) {
     const auto mm = [](const std::optional<double>& value_m) {
         return value_m ? six_digits(1e3 * *value_m) + " mm" : std::string("-");
     };
-    std::printf("%s: %s, %td nodes, %td elements, %d equations\n", printable(model.file).c_str(),
+    std::printf("%s: %s, %td nodes, %td elements, %d equations\n", files::printable(model.file).c_str(),
                 name_of(model.problem.element), model.problem.mesh.nodes_m.cols(),
                 model.problem.mesh.cells.cols(), result.equations);
-    row("applied", short_number(result.applied_N) + " N");
+    row("applied", files::short_number(result.applied_N) + " N");
     row("centre displacement", mm(result.centre_m));
     row("d_skel (mean)", mm(result.skel_m));
     row("max displacement", mm(result.max_displacement_m));
@@ -155,27 +155,27 @@ void print_table(const FemCase& model, const FemResult& result) {
     }
     if (!result.body_reaction_N.isZero(0.0)) row("reaction, held rigid", three_N(result.body_reaction_N));
     if (result.contact) {
-        const IndenterContact& contact = *result.contact;
+        const fem::IndenterContact& contact = *result.contact;
         row("contact force", three_N(contact.force_N.rowwise().sum()));
-        row("contact area", short_number(1e6 * contact.area_m2) + " mm2 on " + std::to_string(contact.nodes) +
-                                " nodes, " + short_number(1e3 * contact.depth_m) + " mm deep");
+        row("contact area", files::short_number(1e6 * contact.area_m2) + " mm2 on " + std::to_string(contact.nodes) +
+                                " nodes, " + files::short_number(1e3 * contact.depth_m) + " mm deep");
     }
-    row("energy", short_number(result.solution.energy_J) + " J");
-    row("largest strain", short_number(100.0 * result.max_strain) + " %, von Mises " +
-                              short_number(max_von_mises_Pa(result)) + " Pa");
+    row("energy", files::short_number(result.solution.energy_J) + " J");
+    row("largest strain", files::short_number(100.0 * result.max_strain) + " %, von Mises " +
+                              files::short_number(max_von_mises_Pa(result)) + " Pa");
     row("linear range",
-        std::string(name_of(result.linear)) + ", " + short_number(100.0 * result.linear_ratio) + " %");
-    row("residual", short_number(result.residual) + ", backward error " +
-                        short_number(result.solution.backward_error) +
+        std::string(name_of(result.linear)) + ", " + files::short_number(100.0 * result.linear_ratio) + " %");
+    row("residual", files::short_number(result.residual) + ", backward error " +
+                        files::short_number(result.solution.backward_error) +
                         (result.converged ? ", converged" : ", NOT converged"));
-    std::string times = "assemble " + short_number(result.assemble_s) + ", factor " +
-                        short_number(result.factor_s) + ", solve " + short_number(result.solution.solve_s);
-    if (result.contact) times += ", contact " + short_number(result.contact->seconds);
+    std::string times = "assemble " + files::short_number(result.assemble_s) + ", factor " +
+                        files::short_number(result.factor_s) + ", solve " + files::short_number(result.solution.solve_s);
+    if (result.contact) times += ", contact " + files::short_number(result.contact->seconds);
     row("time", times + " s");
 }
 
 // On a terminal only: what is done of what, and the time left.
-FemProgress progress_line() {
+fem::FemProgress progress_line() {
     if (isatty(STDERR_FILENO) == 0) return [](const char*, int, int) {};
     const auto start = std::make_shared<std::chrono::steady_clock::time_point>();
     return [start](const char* what, int done, int total) {
@@ -199,18 +199,18 @@ struct SolveOptions {
 };
 
 void solve_file(const SolveOptions& options) {
-    const FemCase model = read_case(options.file);
-    if (!options.output.empty()) check_output(options.output, {options.file, model.mesh_file});  // before the long part
-    const FemResult result = solve_case(model, progress_line());
+    const fem::FemCase model = fem::read_case(options.file);
+    if (!options.output.empty()) files::check_output(options.output, {options.file, model.mesh_file});  // before the long part
+    const fem::FemResult result = fem::solve_case(model, progress_line());
     if (isatty(STDERR_FILENO) != 0) std::fprintf(stderr, "\r\033[K");
-    if (!options.output.empty()) write_vtu(options.output, vtu_of(model, result));
+    if (!options.output.empty()) files::write_vtu(options.output, fem::vtu_of(model, result));
     if (options.json) {
-        std::printf("%s", json_text(json_of(model, result)).c_str());
+        std::printf("%s", files::json_text(json_of(model, result)).c_str());
     } else {
         print_table(model, result);
     }
     for (const std::string& warning : warnings_of(model, result)) {
-        std::fprintf(stderr, "palpa: %s\n", printable(options.file + ": " + warning).c_str());
+        std::fprintf(stderr, "palpa: %s\n", files::printable(options.file + ": " + warning).c_str());
     }
     if (!result.converged) throw std::runtime_error(options.file + ": not converged");
 }
@@ -230,4 +230,4 @@ void add_fem(CLI::App& app) {
     command->callback([options] { solve_file(*options); });
 }
 
-}  // namespace palpa
+}  // namespace palpa::app

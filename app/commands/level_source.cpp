@@ -18,7 +18,7 @@
 #include "platform/window.h"
 #include "render/gl.h"
 
-namespace palpa {
+namespace palpa::app {
 namespace {
 
 // One number a line, as it comes; a level of 0 is a pen that does not touch.
@@ -26,18 +26,18 @@ class LevelStream : public LevelSource {
  public:
     explicit LevelStream(const std::string& path) : path_(path) {
         fd_ = path == "-" ? ::dup(0) : ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
-        if (fd_ < 0) throw InputError(path + ": cannot be read: " + std::strerror(errno));
+        if (fd_ < 0) throw files::InputError(path + ": cannot be read: " + std::strerror(errno));
     }
     ~LevelStream() override { ::close(fd_); }
 
-    bool poll(double wait_s, std::vector<Sample>& out) override {
+    bool poll(double wait_s, std::vector<platform::Sample>& out) override {
         pollfd waiting{fd_, POLLIN, 0};
         if (::poll(&waiting, 1, static_cast<int>(std::ceil(1e3 * wait_s))) <= 0) return true;
         std::array<char, 4096> bytes;
         const ssize_t n = ::read(fd_, bytes.data(), bytes.size());
         if (n < 0 && errno == EINTR) return true;
         if (n <= 0) return false;
-        const double now_s = steady_s();
+        const double now_s = devices::steady_s();
         for (ssize_t i = 0; i < n; ++i) {
             if (bytes[static_cast<std::size_t>(i)] != '\n') {
                 text_.push_back(bytes[static_cast<std::size_t>(i)]);
@@ -50,16 +50,16 @@ class LevelStream : public LevelSource {
     }
 
  private:
-    Sample sample(double now_s) {
+    platform::Sample sample(double now_s) {
         ++line_;
         double level = 0.0;
-        if (!parse_number(text_, level) || !(level >= 0.0) || std::isinf(level)) {
-            throw bad_input(path_, "line " + std::to_string(line_), shown(text_), "a level >= 0, one a line");
+        if (!files::parse_number(text_, level) || !(level >= 0.0) || std::isinf(level)) {
+            throw files::bad_input(path_, "line " + std::to_string(line_), files::shown(text_), "a level >= 0, one a line");
         }
-        Sample sample;
+        platform::Sample sample;
         sample.t_host_s = now_s;
-        sample.tool = Tool::pen;
-        sample.phase = level > 0.0 ? Phase::move : Phase::hover;
+        sample.tool = platform::Tool::pen;
+        sample.phase = level > 0.0 ? platform::Phase::move : platform::Phase::hover;
         sample.pressure = level;
         sample.pressure_raw = level;
         return sample;
@@ -76,12 +76,12 @@ class LevelWindow : public LevelSource {
  public:
     LevelWindow() : window_(options()), gui_(window_) {}
 
-    bool poll(double wait_s, std::vector<Sample>& out) override {
+    bool poll(double wait_s, std::vector<platform::Sample>& out) override {
         window_.poll(wait_s, out);
         return !window_.close_requested() && !stopped_;
     }
 
-    void show(Recording& recording) override {
+    void show(calibration::Recording& recording) override {
         constexpr double kFrame_s = 1.0 / 60.0;
         const double now_s = window_.now_s();
         if (now_s - shown_s_ < kFrame_s) return;
@@ -90,18 +90,18 @@ class LevelWindow : public LevelSource {
         refresh_fit(recording, guide_);
         stopped_ = draw_guide(recording, gui_, guide_).stop;
         gui_.end_frame();
-        clear_screen(window_.width_px(), window_.height_px());
+        render::clear_screen(window_.width_px(), window_.height_px());
         gui_.draw();
         window_.present();
     }
 
  private:
-    static WindowOptions options() {
-        WindowOptions options;
+    static platform::WindowOptions options() {
+        platform::WindowOptions options;
         options.title = "Palpa calibration: press here";
         return options;
     }
-    Window window_;
+    platform::Window window_;
     Gui gui_;
     Guide guide_;
     double shown_s_ = 0.0;
@@ -120,4 +120,4 @@ std::unique_ptr<LevelSource> open_level_window() {
     }
 }
 
-}  // namespace palpa
+}  // namespace palpa::app

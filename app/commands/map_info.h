@@ -4,9 +4,9 @@
 #include "files/json.h"
 #include "stiffnessmaps/field.h"
 
-namespace palpa {
+namespace palpa::app {
 
 // map.json with shape, missing, force_range_N, noise and smoothing added.
-Json map_info(const Map& map, const Field& field);
+files::Json map_info(const stiffnessmaps::Map& map, const stiffnessmaps::Field& field);
 
-}  // namespace palpa
+}  // namespace palpa::app

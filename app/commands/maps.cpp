@@ -15,38 +15,38 @@
 #include "stiffnessmaps/field.h"
 #include "stiffnessmaps/map_file.h"
 
-namespace palpa {
+namespace palpa::app {
 namespace {
 
-void print_info(const Map& map, const Json& info) {
-    const ForceRange range = force_range(map);
+void print_info(const stiffnessmaps::Map& map, const files::Json& info) {
+    const stiffnessmaps::ForceRange range = stiffnessmaps::force_range(map);
     std::printf("%s: %zu x %zu cells, %zu depths to %s mm\n", map.name.c_str(), map.n_x, map.n_y, map.n_depths(),
-                short_number(1e3 * map.depths_m.back()).c_str());
-    std::printf("  cells       %s x %s mm from x %s, y %s mm\n", short_number(1e3 * map.spacing_m[0]).c_str(),
-                short_number(1e3 * map.spacing_m[1]).c_str(), short_number(1e3 * map.origin_m[0]).c_str(),
-                short_number(1e3 * map.origin_m[1]).c_str());
-    std::printf("  force       %s to %s N, %zu of %zu not measured\n", short_number(range.lowest_N).c_str(),
-                short_number(range.highest_N).c_str(), missing_count(map), map.normal_N.size());
+                files::short_number(1e3 * map.depths_m.back()).c_str());
+    std::printf("  cells       %s x %s mm from x %s, y %s mm\n", files::short_number(1e3 * map.spacing_m[0]).c_str(),
+                files::short_number(1e3 * map.spacing_m[1]).c_str(), files::short_number(1e3 * map.origin_m[0]).c_str(),
+                files::short_number(1e3 * map.origin_m[1]).c_str());
+    std::printf("  force       %s to %s N, %zu of %zu not measured\n", files::short_number(range.lowest_N).c_str(),
+                files::short_number(range.highest_N).c_str(), stiffnessmaps::missing_count(map), map.normal_N.size());
     std::printf("  not rising  %s forces below a shallower one (isotonic regression at look-up, raw values kept)\n",
                 info["not_rising_with_depth"].dump().c_str());
     std::printf("  noise       %s mN; the avatar's laws then smooth by %s mm\n",
-                short_number(1e3 * info["noise_N"].get<double>()).c_str(),
-                short_number(info["smoothing_mm"].get<double>()).c_str());
+                files::short_number(1e3 * info["noise_N"].get<double>()).c_str(),
+                files::short_number(info["smoothing_mm"].get<double>()).c_str());
     std::printf("  tangential  %s\n", name_of(map.tangential));
     if (info.contains("tangential_against_energy")) {
-        const Json& agreement = info["tangential_against_energy"];
+        const files::Json& agreement = info["tangential_against_energy"];
         const double r = agreement["correlation"].get<double>();
         const double slope = agreement["slope"].get<double>();
         std::printf("  recorded tangential force against the energy's slope: correlation %.2f, slope %.2f\n", r, slope);
         // a simulated slide differs from the slope by its friction, which is no mistake of a recording
-        if (map.source.kind == SourceKind::recorded && (r < 0.5 || slope < 0.5 || slope > 2.0)) {
+        if (map.source.kind == stiffnessmaps::SourceKind::recorded && (r < 0.5 || slope < 0.5 || slope > 2.0)) {
             std::fprintf(stderr, "palpa: warning: recorded tangential force and the work argument disagree\n");
         }
     }
-    std::printf("  indenter    %s, radius %s mm\n", name_of(map.indenter), short_number(1e3 * map.indenter_radius_m).c_str());
-    for (const Nodule& nodule : map.nodules) {
-        std::printf("  nodule %-4s (%s, %s) mm, %s\n", nodule.id.c_str(), short_number(1e3 * nodule.x_m).c_str(),
-                    short_number(1e3 * nodule.y_m).c_str(), nodule.placed ? "placed" : "detected");
+    std::printf("  indenter    %s, radius %s mm\n", name_of(map.indenter), files::short_number(1e3 * map.indenter_radius_m).c_str());
+    for (const stiffnessmaps::Nodule& nodule : map.nodules) {
+        std::printf("  nodule %-4s (%s, %s) mm, %s\n", nodule.id.c_str(), files::short_number(1e3 * nodule.x_m).c_str(),
+                    files::short_number(1e3 * nodule.y_m).c_str(), nodule.placed ? "placed" : "detected");
     }
     std::printf("  source      %s: %s\n", name_of(map.source.kind), map.source.how.c_str());
 }
@@ -63,10 +63,10 @@ void add_info(CLI::App& maps) {
     command->add_flag("--json", options->json,
                       "print one JSON object: map.json with shape, missing, force_range_N, ...");
     command->callback([options] {
-        const Map map = read_map(options->map);
-        const Json info = map_info(map, make_field(map, {}));
+        const stiffnessmaps::Map map = stiffnessmaps::read_map(options->map);
+        const files::Json info = map_info(map, stiffnessmaps::make_field(map, {}));
         if (options->json) {
-            std::fputs(json_text(info).c_str(), stdout);
+            std::fputs(files::json_text(info).c_str(), stdout);
         } else {
             print_info(map, info);
         }
@@ -83,21 +83,21 @@ struct SampleOptions {
 };
 
 void sample_map(const SampleOptions& options) {
-    const Field field = make_field(read_map(options.map), {});
-    const Place place = place_at(field, {1e-3 * options.x_mm, 1e-3 * options.y_mm});
-    DepthAnswer answer;
+    const stiffnessmaps::Field field = stiffnessmaps::make_field(stiffnessmaps::read_map(options.map), {});
+    const stiffnessmaps::Place place = stiffnessmaps::place_at(field, {1e-3 * options.x_mm, 1e-3 * options.y_mm});
+    stiffnessmaps::DepthAnswer answer;
     if (options.force_N) {
-        answer = depth_at(field, place, *options.force_N);
+        answer = stiffnessmaps::depth_at(field, place, *options.force_N);
     } else {
-        const double greatest_m = greatest_depth_m(field, place);
+        const double greatest_m = stiffnessmaps::greatest_depth_m(field, place);
         answer.saturated = 1e-3 * *options.depth_mm > greatest_m;
         answer.depth_m = std::min(1e-3 * *options.depth_mm, greatest_m);
     }
-    const double force_N = options.force_N.value_or(normal_force_N(field, place, answer.depth_m));
-    const double along_x_N = tangential_force_N(field, place, {1.0, 0.0}, answer.depth_m);
-    const double along_y_N = tangential_force_N(field, place, {0.0, 1.0}, answer.depth_m);
+    const double force_N = options.force_N.value_or(stiffnessmaps::normal_force_N(field, place, answer.depth_m));
+    const double along_x_N = stiffnessmaps::tangential_force_N(field, place, {1.0, 0.0}, answer.depth_m);
+    const double along_y_N = stiffnessmaps::tangential_force_N(field, place, {0.0, 1.0}, answer.depth_m);
     if (options.json) {
-        const Json json{{"x_mm", options.x_mm},
+        const files::Json json{{"x_mm", options.x_mm},
                         {"y_mm", options.y_mm},
                         {"force_N", force_N},
                         {"depth_mm", 1e3 * answer.depth_m},
@@ -106,7 +106,7 @@ void sample_map(const SampleOptions& options) {
                         {"saturated", answer.saturated},
                         {"inside", place.inside},
                         {"measured", place.measured}};
-        std::fputs(json_text(json).c_str(), stdout);
+        std::fputs(files::json_text(json).c_str(), stdout);
     } else {
         std::printf("force %.6g N, depth %.6g mm, resists +x with %.4g N, +y with %.4g N\n", force_N,
                     1e3 * answer.depth_m, along_x_N, along_y_N);
@@ -137,7 +137,7 @@ void add_sample(CLI::App& maps) {
 }
 
 struct GenerateArguments {
-    GenerateOptions options;
+    stiffnessmaps::GenerateOptions options;
     std::string phantom;
     std::string output;
     std::string method = "fem";
@@ -146,16 +146,16 @@ struct GenerateArguments {
     int window = -1;
 };
 
-GenerateOptions generate_options(const GenerateArguments& arguments) {
-    GenerateOptions options = arguments.options;
+stiffnessmaps::GenerateOptions generate_options(const GenerateArguments& arguments) {
+    stiffnessmaps::GenerateOptions options = arguments.options;
     options.phantom = arguments.phantom;
     options.output = arguments.output;
     options.analytic = arguments.method == "analytic";
     if (arguments.window >= 0) options.window = arguments.window;
     if (!arguments.part.empty()) {
-        options.part = parse_part(arguments.part);
+        options.part = stiffnessmaps::parse_part(arguments.part);
     } else if (arguments.jobs == 0 && !options.merge && !options.check && !options.window) {
-        options.part = part_from_environment();
+        options.part = stiffnessmaps::part_from_environment();
     }
     const auto cores = static_cast<int>(std::thread::hardware_concurrency());
     options.jobs = arguments.jobs > 0 ? arguments.jobs : std::max(1, cores);
@@ -164,7 +164,7 @@ GenerateOptions generate_options(const GenerateArguments& arguments) {
 
 void add_generate(CLI::App& maps) {
     auto arguments = std::make_shared<GenerateArguments>();
-    GenerateOptions& options = arguments->options;
+    stiffnessmaps::GenerateOptions& options = arguments->options;
     CLI::App* command = maps.add_subcommand("generate", "Compute a map from a phantom by virtual rolling indentation");
     command->add_option("PHANTOM", arguments->phantom, "phantom JSON")->required();
     command->add_option("-o,--output", arguments->output, "new map folder NAME.map")->required();
@@ -188,10 +188,10 @@ void add_generate(CLI::App& maps) {
         ->check(CLI::Range(0.5, 4.0))
         ->capture_default_str();
     command->add_option("--window", arguments->window)->check(CLI::Range(0, 1000000))->group("");
-    command->add_flag_callback("--refined", [&options] { options.meshes = MeshSet::refined; })->group("");
-    command->add_flag_callback("--coarser", [&options] { options.meshes = MeshSet::coarser; })->group("");
+    command->add_flag_callback("--refined", [&options] { options.meshes = stiffnessmaps::MeshSet::refined; })->group("");
+    command->add_flag_callback("--coarser", [&options] { options.meshes = stiffnessmaps::MeshSet::coarser; })->group("");
     part->excludes(jobs)->excludes(merge);
-    command->callback([arguments] { generate_map(generate_options(*arguments)); });
+    command->callback([arguments] { stiffnessmaps::generate_map(generate_options(*arguments)); });
 }
 
 }  // namespace
@@ -209,4 +209,4 @@ void add_maps(CLI::App& app) {
     add_maps_compare(*maps);
 }
 
-}  // namespace palpa
+}  // namespace palpa::app

@@ -4,7 +4,7 @@ namespace CLI {
 class App;
 }
 
-namespace palpa {
+namespace palpa::app {
 
 // Subcommands of `palpa maps` that have files of their own.
 void add_maps_detect(CLI::App& maps);
@@ -12,4 +12,4 @@ void add_maps_plot(CLI::App& maps);
 void add_maps_export(CLI::App& maps);
 void add_maps_compare(CLI::App& maps);
 
-}  // namespace palpa
+}  // namespace palpa::app

@@ -13,7 +13,7 @@
 #include "files/text.h"
 #include "stiffnessmaps/map_file.h"
 
-namespace palpa {
+namespace palpa::app {
 namespace {
 
 struct CompareArguments {
@@ -23,30 +23,30 @@ struct CompareArguments {
     bool json = false;
 };
 
-Json number_or_null(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+files::Json number_or_null(double value) { return std::isfinite(value) ? files::Json(value) : files::Json(nullptr); }
 
-Json depth_json(const DepthDifference& d) {
+files::Json depth_json(const stiffnessmaps::DepthDifference& d) {
     if (d.n == 0) return {{"depth_mm", 1e3 * d.depth_m}, {"n", 0}};
     return {{"depth_mm", 1e3 * d.depth_m}, {"n", d.n},           {"mean_a_N", d.mean_a_N},
             {"bias_N", d.bias_N},          {"median_N", d.median_N}, {"rms_N", d.rms_N},
             {"greatest_N", d.greatest_N},  {"at_mm", {1e3 * d.at_x_m, 1e3 * d.at_y_m}}};
 }
 
-Json difference_json(const MapDifference& d) {
-    Json json{{"a", d.a.name}, {"b", d.b.name}, {"grid_of", d.grid_of}, {"depths_of", d.depths_of}};
+files::Json difference_json(const stiffnessmaps::MapDifference& d) {
+    files::Json json{{"a", d.a.name}, {"b", d.b.name}, {"grid_of", d.grid_of}, {"depths_of", d.depths_of}};
     json["shape"] = {d.a.n_depths(), d.a.n_y, d.a.n_x};
     json["origin_mm"] = {1e3 * d.a.origin_m[0], 1e3 * d.a.origin_m[1]};
     json["spacing_mm"] = {1e3 * d.a.spacing_m[0], 1e3 * d.a.spacing_m[1]};
     json["all"] = depth_json(d.all);
     json["relative"] = number_or_null(d.relative);
     json["correlation"] = number_or_null(d.correlation);
-    json["depths"] = Json::array();
-    for (const DepthDifference& depth : d.depths) json["depths"].push_back(depth_json(depth));
+    json["depths"] = files::Json::array();
+    for (const stiffnessmaps::DepthDifference& depth : d.depths) json["depths"].push_back(depth_json(depth));
     return json;
 }
 
-void print_difference(const MapDifference& d) {
-    const auto text = [](double v) { return short_number(v); };
+void print_difference(const stiffnessmaps::MapDifference& d) {
+    const auto text = [](double v) { return files::short_number(v); };
     std::printf("B (%s) - A (%s), normal force: %zu x %zu places of map %s (%s x %s mm), %zu depths of map %s\n", d.b.name.c_str(),
                 d.a.name.c_str(), d.a.n_x, d.a.n_y, d.grid_of == "a" ? "A" : "B", text(1e3 * d.a.spacing_m[0]).c_str(),
                 text(1e3 * d.a.spacing_m[1]).c_str(), d.a.n_depths(), d.depths_of == "a" ? "A" : "B");
@@ -55,7 +55,7 @@ void print_difference(const MapDifference& d) {
     std::printf("  greatest %s N at (%s, %s) mm, %s mm deep\n", text(d.all.greatest_N).c_str(), text(1e3 * d.all.at_x_m).c_str(),
                 text(1e3 * d.all.at_y_m).c_str(), text(1e3 * d.all.depth_m).c_str());
     std::printf("  depth mm   places   mean of A N      bias N    median N       RMS N  greatest N\n");
-    for (const DepthDifference& depth : d.depths) {
+    for (const stiffnessmaps::DepthDifference& depth : d.depths) {
         std::printf("  %8s %8zu %13s %11s %11s %11s %11s\n", text(1e3 * depth.depth_m).c_str(), depth.n, text(depth.mean_a_N).c_str(),
                     text(depth.bias_N).c_str(), text(depth.median_N).c_str(), text(depth.rms_N).c_str(), text(depth.greatest_N).c_str());
     }
@@ -63,16 +63,16 @@ void print_difference(const MapDifference& d) {
 
 void run_compare(const CompareArguments& arguments) {
     if (!arguments.output.empty()) {
-        check_figure(arguments.output);
-        check_output(arguments.output, {arguments.a, arguments.b});
+        figures::check_figure(arguments.output);
+        files::check_output(arguments.output, {arguments.a, arguments.b});
     }
-    const MapDifference difference = compare_maps(read_map(arguments.a), arguments.a, read_map(arguments.b), arguments.b);
+    const stiffnessmaps::MapDifference difference = stiffnessmaps::compare_maps(stiffnessmaps::read_map(arguments.a), arguments.a, stiffnessmaps::read_map(arguments.b), arguments.b);
     if (arguments.json) {
-        std::fputs(json_text(difference_json(difference)).c_str(), stdout);
+        std::fputs(files::json_text(difference_json(difference)).c_str(), stdout);
     } else {
         print_difference(difference);
     }
-    if (!arguments.output.empty()) plot_difference(difference, arguments.output);
+    if (!arguments.output.empty()) figures::plot_difference(difference, arguments.output);
 }
 
 }  // namespace
@@ -87,4 +87,4 @@ void add_maps_compare(CLI::App& maps) {
     command->callback([arguments] { run_compare(*arguments); });
 }
 
-}  // namespace palpa
+}  // namespace palpa::app

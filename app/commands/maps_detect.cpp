@@ -9,7 +9,7 @@
 #include "files/text.h"
 #include "stiffnessmaps/map_file.h"
 
-namespace palpa {
+namespace palpa::app {
 namespace {
 
 struct DetectArguments {
@@ -24,20 +24,20 @@ struct DetectArguments {
 };
 
 void run_detect(const CLI::App& command, const DetectArguments& arguments) {
-    Map map = read_map(arguments.map);
-    DetectOptions options;
+    stiffnessmaps::Map map = stiffnessmaps::read_map(arguments.map);
+    stiffnessmaps::DetectOptions options;
     options.window_m = 1e-3 * arguments.window_mm;
     if (command.count("--threshold") > 0) options.threshold = arguments.threshold;
     if (command.count("--smoothing-mm") > 0) options.smoothing_m = 1e-3 * arguments.smoothing_mm;
     if (command.count("--smallest-mm") > 0) options.smallest_m = 1e-3 * arguments.smallest_mm;
     if (command.count("--deepest-mm") > 0) options.deepest_m = 1e-3 * arguments.deepest_mm;
-    const Detection detection = detect_regions(map, arguments.map, options);
+    const stiffnessmaps::Detection detection = stiffnessmaps::detect_regions(map, arguments.map, options);
     if (arguments.write) {
-        keep_regions(detection, map);
-        replace_map_json(map, arguments.map);
+        stiffnessmaps::keep_regions(detection, map);
+        stiffnessmaps::replace_map_json(map, arguments.map);
     }
     if (arguments.json) {
-        std::fputs(json_text(detection_json(map, detection)).c_str(), stdout);
+        std::fputs(files::json_text(detection_json(map, detection)).c_str(), stdout);
     } else {
         std::fputs(detection_text(map, detection).c_str(), stdout);
         if (arguments.write) std::printf("%s: map.json now holds %zu detected\n", arguments.map.c_str(), detection.sure());
@@ -79,4 +79,4 @@ void add_maps_detect(CLI::App& maps) {
     command->callback([command, arguments] { run_detect(*command, *arguments); });
 }
 
-}  // namespace palpa
+}  // namespace palpa::app

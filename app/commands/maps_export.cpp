@@ -9,7 +9,7 @@
 #include "files/regular_file.h"
 #include "stiffnessmaps/map_file.h"
 
-namespace palpa {
+namespace palpa::app {
 
 void add_maps_export(CLI::App& maps) {
     struct Arguments {
@@ -27,9 +27,9 @@ void add_maps_export(CLI::App& maps) {
         ->check(one_of({"normal_N", "tangential_x_N", "tangential_y_N"}))
         ->capture_default_str();
     command->callback([arguments] {
-        if (std::filesystem::path(arguments->output).has_extension()) check_output(arguments->output, {arguments->map});
-        export_map(read_map(arguments->map), arguments->array, arguments->output);
+        if (std::filesystem::path(arguments->output).has_extension()) files::check_output(arguments->output, {arguments->map});
+        stiffnessmaps::export_map(stiffnessmaps::read_map(arguments->map), arguments->array, arguments->output);
     });
 }
 
-}  // namespace palpa
+}  // namespace palpa::app

@@ -15,7 +15,7 @@
 #include "stiffnessmaps/import/import.h"
 #include "stiffnessmaps/map_file.h"
 
-namespace palpa {
+namespace palpa::app {
 namespace {
 
 struct Arguments {
@@ -46,15 +46,15 @@ std::vector<double> lengths_m(const std::string& text, const char* option, std::
     while (!text.empty()) {
         const auto end = rest.find(',');
         double value = 0.0;
-        if (!parse_number(rest.substr(0, end), value) || !(std::abs(value) <= 1e6)) {
-            throw bad_input(option, "", shown(text), "numbers of mm with commas between them");
+        if (!files::parse_number(rest.substr(0, end), value) || !(std::abs(value) <= 1e6)) {
+            throw files::bad_input(option, "", files::shown(text), "numbers of mm with commas between them");
         }
         out.push_back(1e-3 * value);
         if (end == std::string_view::npos) break;
         rest.remove_prefix(end + 1);
     }
     if (count > 0 && !out.empty() && out.size() != count) {
-        throw bad_input(option, "", std::to_string(out.size()) + " numbers", std::to_string(count));
+        throw files::bad_input(option, "", std::to_string(out.size()) + " numbers", std::to_string(count));
     }
     return out;
 }
@@ -62,10 +62,10 @@ std::vector<double> lengths_m(const std::string& text, const char* option, std::
 std::vector<double> depths_m(const std::string& text, const char* option, bool ascending) {
     std::vector<double> out = lengths_m(text, option, 0);
     for (std::size_t i = 0; i < out.size(); ++i) {
-        if (!(out[i] > 0.0)) throw bad_input(option, "", short_number(1e3 * out[i]), "depths > 0");
+        if (!(out[i] > 0.0)) throw files::bad_input(option, "", files::short_number(1e3 * out[i]), "depths > 0");
         if (ascending && i > 0 && !(out[i] > out[i - 1])) {
-            throw bad_input(option, "",
-                            short_number(1e3 * out[i]) + " after " + short_number(1e3 * out[i - 1]),
+            throw files::bad_input(option, "",
+                            files::short_number(1e3 * out[i]) + " after " + files::short_number(1e3 * out[i - 1]),
                             "ascending depths");
         }
     }
@@ -87,20 +87,20 @@ std::optional<double> metres(const std::optional<double>& mm) {
     return mm ? std::optional<double>(1e-3 * *mm) : std::nullopt;
 }
 
-void set_array_options(const Arguments& a, ImportOptions& options) {
+void set_array_options(const Arguments& a, stiffnessmaps::ImportOptions& options) {
     const std::vector<double> spacing = a.spacing.find(',') == std::string::npos
                                             ? lengths_m(a.spacing, "--spacing-mm", 1)
                                             : lengths_m(a.spacing, "--spacing-mm", 2);
     if (!spacing.empty()) options.spacing_m = {spacing.front(), spacing.back()};
     if (!spacing.empty() && !(spacing.front() > 0.0 && spacing.back() > 0.0))
-        throw bad_input("--spacing-mm", "", shown(a.spacing), "distances > 0");
+        throw files::bad_input("--spacing-mm", "", files::shown(a.spacing), "distances > 0");
     const std::vector<double> origin = lengths_m(a.origin, "--origin-mm", 2);
     if (!origin.empty()) options.origin_m = {origin[0], origin[1]};
     options.quantity =
-        choice<Quantity>(a.quantity, {"force", "stiffness", "young"}).value_or(Quantity::force);
+        choice<stiffnessmaps::Quantity>(a.quantity, {"force", "stiffness", "young"}).value_or(stiffnessmaps::Quantity::force);
     options.scale_stated = a.scale.has_value();
     options.scale =
-        a.scale.value_or(1.0) * (options.quantity == Quantity::force ? 1.0 : 1e3);  // N/mm and kPa
+        a.scale.value_or(1.0) * (options.quantity == stiffnessmaps::Quantity::force ? 1.0 : 1e3);  // N/mm and kPa
     options.offset = a.offset;
     options.missing = a.missing;
     options.poisson = a.poisson;
@@ -110,39 +110,39 @@ void set_array_options(const Arguments& a, ImportOptions& options) {
     options.tangential_y.assign(a.tangential_y.begin(), a.tangential_y.end());
 }
 
-ImportOptions options_of(const Arguments& a) {
-    ImportOptions options;
-    options.form = choice<RecordingForm>(a.form, {"probing", "sliding", "matrices"});
+stiffnessmaps::ImportOptions options_of(const Arguments& a) {
+    stiffnessmaps::ImportOptions options;
+    options.form = choice<stiffnessmaps::RecordingForm>(a.form, {"probing", "sliding", "matrices"});
     options.name = a.name;
     options.licence = a.licence;
     options.indenter =
-        choice<IndenterShape>(a.indenter, {"sphere", "cylinder"}).value_or(IndenterShape::sphere);
+        choice<stiffnessmaps::IndenterShape>(a.indenter, {"sphere", "cylinder"}).value_or(stiffnessmaps::IndenterShape::sphere);
     options.indenter_radius_m = 1e-3 * a.indenter_radius_mm;
     options.cylinder_length_m = 1e-3 * a.cylinder_length_mm;
     for (const std::string& column : a.columns) {
         const auto equals = column.find('=');
         if (equals == std::string::npos)
-            throw bad_input("--column", "", shown(column), "ROLE=NAME, such as x=pos_x_mm");
+            throw files::bad_input("--column", "", files::shown(column), "ROLE=NAME, such as x=pos_x_mm");
         if (!options.columns.emplace(column.substr(0, equals), column.substr(equals + 1)).second) {
-            throw bad_input("--column", "", shown(column.substr(0, equals)) + " twice", "it once");
+            throw files::bad_input("--column", "", files::shown(column.substr(0, equals)) + " twice", "it once");
         }
     }
-    options.length_unit = choice<LengthUnit>(a.length_unit, {"mm", "m", "um"});
-    options.depth_unit = choice<LengthUnit>(a.depth_unit, {"mm", "m", "um"});
-    options.force_unit = choice<ForceUnit>(a.force_unit, {"N", "mN"});
+    options.length_unit = choice<stiffnessmaps::LengthUnit>(a.length_unit, {"mm", "m", "um"});
+    options.depth_unit = choice<stiffnessmaps::LengthUnit>(a.depth_unit, {"mm", "m", "um"});
+    options.force_unit = choice<stiffnessmaps::ForceUnit>(a.force_unit, {"N", "mN"});
     options.negate_force = a.negate_force;
     const std::vector<double> region = lengths_m(a.region, "--region-mm", 4);
     if (!region.empty()) options.region_m = {region[0], region[1], region[2], region[3]};
     options.remove_tilt = a.tilt != "keep";
     options.outliers = a.outliers;
-    options.gridding = choice<Gridding>(a.grid, {"on-grid", "plane", "inverse-distance", "median"});
+    options.gridding = choice<stiffnessmaps::Gridding>(a.grid, {"on-grid", "plane", "inverse-distance", "median"});
     options.pitch_m = metres(a.pitch_mm);
     options.radius_m = metres(a.radius_mm);
     options.at_depths_m = depths_m(a.at_depths, "--at-depth-mm", false);
     options.layers = a.layers;
     options.fill = !a.no_fill;
-    options.tangential = choice<TangentialChoice>(a.tangential, {"measured", "energy", "none"});
-    options.contact = choice<ContactStart>(a.contact, {"first-row", "threshold"});
+    options.tangential = choice<stiffnessmaps::TangentialChoice>(a.tangential, {"measured", "energy", "none"});
+    options.contact = choice<stiffnessmaps::ContactStart>(a.contact, {"first-row", "threshold"});
     options.contact_force_N = a.contact_force_N;
     options.surface_z_m = metres(a.surface_z_mm);
     options.surface_node_m = metres(a.surface_node_mm);
@@ -165,25 +165,25 @@ std::function<void(const char*, double)> progress_on_terminal() {
     };
 }
 
-std::string value_text(const SourceChoice& choice) {
+std::string value_text(const stiffnessmaps::SourceChoice& choice) {
     if (const auto* text = std::get_if<std::string>(&choice.value)) return *text;
-    if (const auto* number = std::get_if<double>(&choice.value)) return short_number(*number);
+    if (const auto* number = std::get_if<double>(&choice.value)) return files::short_number(*number);
     std::string out;
     for (const double value : std::get<std::vector<double>>(choice.value))
-        out += (out.empty() ? "" : ", ") + short_number(value);
+        out += (out.empty() ? "" : ", ") + files::short_number(value);
     return out;
 }
 
-void print_choices(const Map& map) {
+void print_choices(const stiffnessmaps::Map& map) {
     std::printf("what was chosen, why, and what chooses otherwise:\n");
-    for (const SourceChoice& choice : map.source.choices) {
+    for (const stiffnessmaps::SourceChoice& choice : map.source.choices) {
         std::printf("  %-22s %s\n%25s%s%s%s\n", choice.key.c_str(), value_text(choice).c_str(), "",
                     choice.how.c_str(), choice.option.empty() ? "" : "; ", choice.option.c_str());
     }
 }
 
-Json import_json(const ImportReport& report) {
-    const ImportResidual& residual = report.residual;
+files::Json import_json(const stiffnessmaps::ImportReport& report) {
+    const stiffnessmaps::ImportResidual& residual = report.residual;
     return {{"form", name_of(report.form)},
             {"rows", report.rows},
             {"points", report.points},
@@ -203,10 +203,10 @@ Json import_json(const ImportReport& report) {
             {"notes", report.notes}};
 }
 
-void print_report(const std::string& name, const Map& map, const ImportReport& report) {
-    const ImportResidual& residual = report.residual;
-    const char* unit = report.form == RecordingForm::probing   ? "points"
-                       : report.form == RecordingForm::sliding ? "samples"
+void print_report(const std::string& name, const stiffnessmaps::Map& map, const stiffnessmaps::ImportReport& report) {
+    const stiffnessmaps::ImportResidual& residual = report.residual;
+    const char* unit = report.form == stiffnessmaps::RecordingForm::probing   ? "points"
+                       : report.form == stiffnessmaps::RecordingForm::sliding ? "samples"
                                                                : "numbers";
     std::printf("%s: %zu %s become %zu x %zu cells of %.2f x %.2f mm, %zu depths to %.2f mm\n", name.c_str(),
                 report.points, unit, map.n_x, map.n_y, 1e3 * map.spacing_m[0], 1e3 * map.spacing_m[1],
@@ -214,7 +214,7 @@ void print_report(const std::string& name, const Map& map, const ImportReport& r
     std::printf("  %zu cells missing; %zu of %zu rows and %zu points rejected (%zu outliers)",
                 report.missing_cells, report.rejected_rows, report.rows, report.rejected_points,
                 report.outliers);
-    if (report.form == RecordingForm::probing)
+    if (report.form == stiffnessmaps::RecordingForm::probing)
         std::printf("; %.3g N at contact subtracted (median)", report.median_offset_N);
     std::printf(
         "\n  map against recording: %.2g N median, %.2g N worst, of %.3g N (%.2g %%, %.2g %%); noise %.2g "
@@ -224,24 +224,24 @@ void print_report(const std::string& name, const Map& map, const ImportReport& r
 }
 
 void import_map(const Arguments& a) {
-    ImportOptions options = options_of(a);
+    stiffnessmaps::ImportOptions options = options_of(a);
     options.progress = progress_on_terminal();
     options.depths_m = depths_m(a.depths, "--depths-mm", false);
     if (a.output.empty() && !a.explain)
-        throw bad_input("maps import", "", "no output",
+        throw files::bad_input("maps import", "", "no output",
                         "-o NAME.map (or --explain, to see what would be chosen)");
     if (std::filesystem::exists(a.output)) {  // before a long import, not after it
-        throw bad_input(a.output, "", "something of that name", "a new name (nothing is overwritten)");
+        throw files::bad_input(a.output, "", "something of that name", "a new name (nothing is overwritten)");
     }
-    ImportReport report;
-    const Map map = import_recording({a.files.begin(), a.files.end()}, options, report);
+    stiffnessmaps::ImportReport report;
+    const stiffnessmaps::Map map = stiffnessmaps::import_recording({a.files.begin(), a.files.end()}, options, report);
     if (options.progress) std::fprintf(stderr, "\r\033[K");
-    if (!a.output.empty()) write_map(map, a.output);
+    if (!a.output.empty()) stiffnessmaps::write_map(map, a.output);
     for (const std::string& note : report.notes) std::fprintf(stderr, "palpa: %s\n", note.c_str());
     if (a.json) {
-        Json json = map_info(map, make_field(map, {}));
+        files::Json json = map_info(map, stiffnessmaps::make_field(map, {}));
         json["import"] = import_json(report);
-        std::fputs(json_text(json).c_str(), stdout);
+        std::fputs(files::json_text(json).c_str(), stdout);
         return;
     }
     print_report(a.output.empty() ? map.name : a.output, map, report);
@@ -361,4 +361,4 @@ void add_maps_import(CLI::App& maps) {
     command->callback([a] { import_map(*a); });
 }
 
-}  // namespace palpa
+}  // namespace palpa::app

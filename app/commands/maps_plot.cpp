@@ -13,7 +13,7 @@
 #include "files/text.h"
 #include "stiffnessmaps/map_file.h"
 
-namespace palpa {
+namespace palpa::app {
 namespace {
 
 struct PlotArguments {
@@ -28,24 +28,24 @@ Eigen::Vector2d place_of(const std::string& text) {
     const auto comma = text.find(',');
     double x_mm = 0.0;
     double y_mm = 0.0;
-    const bool read = comma != std::string::npos && parse_number(std::string_view(text).substr(0, comma), x_mm) &&
-                      parse_number(std::string_view(text).substr(comma + 1), y_mm);
-    if (!read || !std::isfinite(x_mm + y_mm)) throw bad_input("--at", "", shown(text), "X,Y in mm, such as 35,42.5");
+    const bool read = comma != std::string::npos && files::parse_number(std::string_view(text).substr(0, comma), x_mm) &&
+                      files::parse_number(std::string_view(text).substr(comma + 1), y_mm);
+    if (!read || !std::isfinite(x_mm + y_mm)) throw files::bad_input("--at", "", files::shown(text), "X,Y in mm, such as 35,42.5");
     return {1e-3 * x_mm, 1e-3 * y_mm};
 }
 
 void run_plot(const CLI::App& command, const PlotArguments& arguments) {
-    check_figure(arguments.output);
-    check_output(arguments.output, {arguments.map});
-    PlotOptions options;
+    figures::check_figure(arguments.output);
+    files::check_output(arguments.output, {arguments.map});
+    figures::PlotOptions options;
     constexpr const char* kWhat[] = {"all", "matrices", "stiffness", "slice", "curves", "nodules"};
     for (int i = 0; i < 6; ++i) {
-        if (arguments.what == kWhat[i]) options.what = static_cast<PlotWhat>(i);
+        if (arguments.what == kWhat[i]) options.what = static_cast<figures::PlotWhat>(i);
     }
     for (const std::string& at : arguments.at) options.at_m.push_back(place_of(at));
     if (command.count("--force-N") > 0) options.force_N = arguments.force_N;
-    const Map map = read_map(arguments.map);
-    plot_map(map, detect_regions(map, arguments.map, {}), options, arguments.output);
+    const stiffnessmaps::Map map = stiffnessmaps::read_map(arguments.map);
+    figures::plot_map(map, stiffnessmaps::detect_regions(map, arguments.map, {}), options, arguments.output);
 }
 
 }  // namespace
@@ -75,4 +75,4 @@ void add_maps_plot(CLI::App& maps) {
     command->callback([command, arguments] { run_plot(*command, *arguments); });
 }
 
-}  // namespace palpa
+}  // namespace palpa::app

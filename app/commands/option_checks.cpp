@@ -10,7 +10,7 @@
 
 #include "files/input_error.h"
 
-namespace palpa {
+namespace palpa::app {
 namespace {
 
 std::string listed(const std::vector<std::string>& words) {
@@ -24,7 +24,7 @@ std::string listed(const std::vector<std::string>& words) {
 std::string refuse_infinite(std::string& text) {
     // what is no number at all, the option itself tells
     if (std::isfinite(std::strtod(text.c_str(), nullptr))) return {};
-    return "found " + shown(text) + ", expected a finite number";
+    return "found " + files::shown(text) + ", expected a finite number";
 }
 
 // CLI11 takes -1 for the largest number of all, and so what is larger.
@@ -33,7 +33,7 @@ std::string refuse_wrapped(std::string& text) {
     const bool negative = text.find('-') != std::string::npos;
     std::strtoull(text.c_str(), nullptr, 0);
     if (!negative && errno != ERANGE) return {};
-    return "found " + shown(text) + ", expected a whole number from 0 to " + std::to_string(std::numeric_limits<std::uint64_t>::max());
+    return "found " + files::shown(text) + ", expected a whole number from 0 to " + std::to_string(std::numeric_limits<std::uint64_t>::max());
 }
 
 std::string refuse_empty(std::string& text) { return text.empty() ? "found nothing, expected a value" : std::string(); }
@@ -43,7 +43,7 @@ std::string refuse_empty(std::string& text) { return text.empty() ? "found nothi
 CLI::Validator one_of(const std::vector<std::string>& words) {
     const auto check = [words](std::string& text) {
         if (std::find(words.begin(), words.end(), text) != words.end()) return std::string();
-        return "found " + shown(text) + ", expected " + listed(words);
+        return "found " + files::shown(text) + ", expected " + listed(words);
     };
     return CLI::Validator(check, listed(words));
 }
@@ -58,4 +58,4 @@ void refuse_what_is_no_value(CLI::App& command) {
     for (CLI::App* below : command.get_subcommands({})) refuse_what_is_no_value(*below);
 }
 
-}  // namespace palpa
+}  // namespace palpa::app

@@ -9,7 +9,7 @@ class App;
 class Validator;
 }  // namespace CLI
 
-namespace palpa {
+namespace palpa::app {
 
 // One of these words: the help and the message list them as "a, b or c".
 CLI::Validator one_of(const std::vector<std::string>& words);
@@ -20,4 +20,4 @@ CLI::Validator one_of(const std::vector<std::string>& words);
 // neither as 0 nor as an option that was left out.
 void refuse_what_is_no_value(CLI::App& command);
 
-}  // namespace palpa
+}  // namespace palpa::app

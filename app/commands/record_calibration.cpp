@@ -12,13 +12,13 @@
 #include "files/input_error.h"
 #include "files/text.h"
 
-namespace palpa {
+namespace palpa::app {
 namespace {
 
 volatile std::sig_atomic_t interrupted = 0;
 
 // A number on standard input and Enter: what the scale shows now, while the pen is held still. False at its end.
-bool take_typed(std::string& typed, Recording& recording) {
+bool take_typed(std::string& typed, calibration::Recording& recording) {
     pollfd waiting{0, POLLIN, 0};
     if (::poll(&waiting, 1, 0) <= 0) return true;
     char c = 0;
@@ -28,35 +28,35 @@ bool take_typed(std::string& typed, Recording& recording) {
         return true;
     }
     double shows = 0.0;
-    const bool good = parse_number(typed, shows) && shows >= 0.0 && shows < 1e5;
+    const bool good = files::parse_number(typed, shows) && shows >= 0.0 && shows < 1e5;
     const std::string line = std::exchange(typed, "");
     if (!good) {
-        std::fprintf(stderr, "palpa: found %s, expected what the scale shows, a number >= 0\n", shown(line).c_str());
+        std::fprintf(stderr, "palpa: found %s, expected what the scale shows, a number >= 0\n", files::shown(line).c_str());
         return true;
     }
-    const double force_N = recording.arguments.newton ? shows : shows * kN_per_gf;
-    if (!take_typed_N(force_N, recording)) std::fprintf(stderr, "palpa: not taken: hold the pen still at another level while you type\n");
+    const double force_N = recording.arguments.newton ? shows : shows * calibration::kN_per_gf;
+    if (!calibration::take_typed_N(force_N, recording)) std::fprintf(stderr, "palpa: not taken: hold the pen still at another level while you type\n");
     return true;
 }
 
-void tell(const Recording& recording) {
+void tell(const calibration::Recording& recording) {
     if (::isatty(2) == 0) return;
-    const RecordSession& session = recording.session;
-    const RecordOptions& options = recording.arguments.options;
-    const double level = session.levels.empty() ? kMissing : session.levels.back().value;
-    const double force_N = session.forces.empty() ? kMissing : session.forces.back().value;
+    const calibration::RecordSession& session = recording.session;
+    const calibration::RecordOptions& options = recording.arguments.options;
+    const double level = session.levels.empty() ? platform::kMissing : session.levels.back().value;
+    const double force_N = session.forces.empty() ? platform::kMissing : session.forces.back().value;
     std::string health;
     if (recording.sensor) {
-        const SensorHealth now = recording.sensor->health();
+        const devices::SensorHealth now = recording.sensor->health();
         health = (now.alive ? "" : "  SENSOR SILENT") + std::string("  lost ") + std::to_string(now.lost) + " twice " + std::to_string(now.duplicate) + " late " +
                  std::to_string(now.reordered) + " bad " + std::to_string(now.malformed) + " stalls " + std::to_string(now.stalls);
     }
-    std::fprintf(stderr, "\r%-22s level %5.1f %%  force %6.3f N  points %zu  press %d%s\033[K", advice(recording).c_str(),
+    std::fprintf(stderr, "\r%-22s level %5.1f %%  force %6.3f N  points %zu  press %d%s\033[K", calibration::advice(recording).c_str(),
                  100.0 * (level - options.range.lowest) / (options.range.highest - options.range.lowest), force_N, session.points.size(),
                  session.repeat + 1, health.c_str());
 }
 
-void tell_news(bool was_silent, const Recording& recording) {
+void tell_news(bool was_silent, const calibration::Recording& recording) {
     if (recording.silent && !was_silent) {
         std::fprintf(stderr, "\npalpa: warning: %s has stopped; nothing is captured until it is back\n", recording.sensor->name().c_str());
     }
@@ -68,35 +68,35 @@ void tell_news(bool was_silent, const Recording& recording) {
 
 }  // namespace
 
-Json record_calibration(const RecordArguments& arguments) {
+files::Json record_calibration(const calibration::RecordArguments& arguments) {
     if (arguments.sensor == "typed" && arguments.levels == "-") {
-        throw bad_input("--levels", "", "-", "a file or pipe: standard input is for the typed numbers");
+        throw files::bad_input("--levels", "", "-", "a file or pipe: standard input is for the typed numbers");
     }
     const std::unique_ptr<LevelSource> source = arguments.levels.empty() ? open_level_window() : open_level_stream(arguments.levels);
-    const std::unique_ptr<Recording> recording = open_recording(arguments);
+    const std::unique_ptr<calibration::Recording> recording = calibration::open_recording(arguments);
     interrupted = 0;
     const auto before = std::signal(SIGINT, [](int) { interrupted = 1; });
     const auto before_term = std::signal(SIGTERM, [](int) { interrupted = 1; });
     std::string typed;
     double told_s = 0.0;
-    std::vector<Sample> samples;
+    std::vector<platform::Sample> samples;
     for (bool going = true; going && interrupted == 0;) {
         samples.clear();
         const bool more = source->poll(0.005, samples);
         const bool was_silent = recording->silent;
-        going = step(samples, *recording) && more;
+        going = calibration::step(samples, *recording) && more;
         if (!recording->sensor) going = take_typed(typed, *recording) && going;
         tell_news(was_silent, *recording);
         source->show(*recording);
-        if (steady_s() - told_s > 0.1) {
+        if (devices::steady_s() - told_s > 0.1) {
             tell(*recording);
-            told_s = steady_s();
+            told_s = devices::steady_s();
         }
     }
-    Json result = close_recording(*recording);
+    files::Json result = calibration::close_recording(*recording);
     std::signal(SIGINT, before);
     std::signal(SIGTERM, before_term);
     return result;
 }
 
-}  // namespace palpa
+}  // namespace palpa::app

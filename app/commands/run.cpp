@@ -21,10 +21,10 @@
 #include "files/regular_file.h"
 #include "files/text.h"
 
-namespace palpa {
+namespace palpa::app {
 namespace {
 
-void print_result(const Json& result) {
+void print_result(const files::Json& result) {
     std::printf("%s: %s samples, %s frames, %s steps, %s dropped\n", result["scene"].get<std::string>().c_str(),
                 result["samples"].dump().c_str(), result["frames"].dump().c_str(), result["steps"].dump().c_str(),
                 result["dropped_steps"].dump().c_str());
@@ -39,23 +39,23 @@ void print_result(const Json& result) {
     std::printf("  beside the nodules: lag %.3g mm\n", result["lag_beside_nodules_mm"].get<double>());
 }
 
-void print(const Json& result, bool as_json) {
+void print(const files::Json& result, bool as_json) {
     if (as_json) {
-        std::fputs(json_text(result).c_str(), stdout);
+        std::fputs(files::json_text(result).c_str(), stdout);
     } else {
         print_result(result);
     }
 }
 
 // A finished trial is drawn as what it revealed, another one at its moment of greatest lag or force.
-void draw(const Scene& scene, const Plan& plan, const Trace& trace, const Trial& whole, double at_s, const RunOptions& options) {
-    Trial trial = make_trial(plan, whole.mode);
-    const auto observing = [&](const Sample& sample, const State& state) { observe(plan, sample, state, trial); };
-    ReplayResult again = replay(scene, plan, trace, 0, observing, whole.finished ? 1e300 : at_s);
+void draw(const scene::Scene& scene, const scene::Plan& plan, const platform::Trace& trace, const session::Trial& whole, double at_s, const RunOptions& options) {
+    session::Trial trial = session::make_trial(plan, whole.mode);
+    const auto observing = [&](const platform::Sample& sample, const scene::State& state) { observe(plan, sample, state, trial); };
+    session::ReplayResult again = session::replay(scene, plan, trace, 0, observing, whole.finished ? 1e300 : at_s);
     Screens screens;
     if (trial.finished) {
         screens.screen = Screen::reveal;
-        screens.debrief = debrief(plan, trial);
+        screens.debrief = session::debrief(plan, trial);
     }
     Settings settings;
     settings.left_handed = options.left_handed;
@@ -66,40 +66,40 @@ void draw(const Scene& scene, const Plan& plan, const Trace& trace, const Trial&
 
 void run_headless(const RunOptions& options) {
     if (options.trace.empty()) {
-        throw InputError("--headless: found no --replay TRACE.tsv, expected one (without a window there is no pen)");
+        throw files::InputError("--headless: found no --replay TRACE.tsv, expected one (without a window there is no pen)");
     }
-    if (!options.record.empty()) throw InputError("--record: found with --headless, expected a window (a replay has its trace)");
+    if (!options.record.empty()) throw files::InputError("--record: found with --headless, expected a window (a replay has its trace)");
     const auto began = std::chrono::steady_clock::now();
-    const Scene scene = load_scene(options.scene);
-    if (!options.screenshot.empty()) check_output(options.screenshot, inputs_of(scene, options.trace));
-    if (!options.log.empty()) check_output_folder(options.log);
-    const Plan plan = make_plan_here(scene);
-    const Trace trace = read_trace(options.trace);
-    std::optional<RunFiles> files;
-    std::optional<SampleLog> log;
+    const scene::Scene scene = load_scene(options.scene);
+    if (!options.screenshot.empty()) files::check_output(options.screenshot, inputs_of(scene, options.trace));
+    if (!options.log.empty()) files::check_output_folder(options.log);
+    const scene::Plan plan = session::make_plan_here(scene);
+    const platform::Trace trace = platform::read_trace(options.trace);
+    std::optional<study::RunFiles> files;
+    std::optional<study::SampleLog> log;
     if (!options.log.empty()) {
-        files = next_run(options.log, options.participant);
+        files = study::next_run(options.log, options.participant);
         log.emplace(*files);
     }
     constexpr int kTimeEvery = 16;
-    Trial trial = make_trial(plan, options.test ? TrialMode::test : TrialMode::practice);
-    const ReplayResult result = replay(scene, plan, trace, kTimeEvery, [&](const Sample& sample, const State& state) {
-        if (log) log->write(row_of(sample, plan, state));
+    session::Trial trial = session::make_trial(plan, options.test ? session::TrialMode::test : session::TrialMode::practice);
+    const session::ReplayResult result = session::replay(scene, plan, trace, kTimeEvery, [&](const platform::Sample& sample, const scene::State& state) {
+        if (log) log->write(session::row_of(sample, plan, state));
         observe(plan, sample, state, trial);
     });
-    Json json = result_json(scene, plan, result);
-    json["trials"] = Json::array({trial_json(plan, trial)});
+    files::Json json = session::result_json(scene, plan, result);
+    json["trials"] = files::Json::array({session::trial_json(plan, trial)});
     json["wall_s"] = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
     rusage usage{};
     getrusage(RUSAGE_SELF, &usage);
     json["peak_memory_MB"] = static_cast<double>(usage.ru_maxrss) / 1024.0;
     if (log) {
         if (!log->sync()) throw std::runtime_error(options.log + ": the log could not be written to its end");
-        write_text_atomically(files->file("_settings.json"), json_text(settings_json(scene, plan, result.state)));
-        write_text_atomically(files->file("_performance.json"), json_text(json));
+        files::write_text_atomically(files->file("_settings.json"), files::json_text(session::settings_json(scene, plan, result.state)));
+        files::write_text_atomically(files->file("_performance.json"), files::json_text(json));
     }
     if (!options.screenshot.empty()) {
-        const Extremes& extremes = result.state.extremes;
+        const scene::Extremes& extremes = result.state.extremes;
         const double at_s = extremes.lag_m > 0.0 ? extremes.lag_at_s : extremes.force_at_s;
         draw(scene, plan, trace, trial, at_s, options);
     }
@@ -146,4 +146,4 @@ void add_run(CLI::App& app) {
     });
 }
 
-}  // namespace palpa
+}  // namespace palpa::app

@@ -8,11 +8,11 @@
 #include "desk/serve.h"
 #include "files/regular_file.h"
 
-namespace palpa {
+namespace palpa::app {
 namespace {
 
 struct Arguments {
-    ServeOptions options;
+    desk::ServeOptions options;
     std::string web;
     double hours = 12.0;
     double upload_MB = 64.0;
@@ -20,21 +20,21 @@ struct Arguments {
 };
 
 void start(const Arguments& arguments) {
-    ServeOptions options = arguments.options;
+    desk::ServeOptions options = arguments.options;
     options.assets = assets_folder();
-    options.web = arguments.web.empty() ? web_folder_beside(options.assets) : std::filesystem::path(arguments.web);
+    options.web = arguments.web.empty() ? desk::web_folder_beside(options.assets) : std::filesystem::path(arguments.web);
     options.sessions.lasts_s = 3600.0 * arguments.hours;
     options.uploads.upload_bytes = static_cast<std::uint64_t>(1e6 * arguments.upload_MB);
     options.uploads.total_bytes = static_cast<std::uint64_t>(1e6 * arguments.total_MB);
-    if (!options.collect.empty()) check_output_folder(options.collect);
-    serve(options);
+    if (!options.collect.empty()) files::check_output_folder(options.collect);
+    desk::serve(options);
 }
 
 }  // namespace
 
 void add_serve(CLI::App& app) {
     auto arguments = std::make_shared<Arguments>();
-    ServeOptions& options = arguments->options;
+    desk::ServeOptions& options = arguments->options;
     CLI::App* command =
         app.add_subcommand("serve", "Serve the web app and its files to tablets and collect their logs");
     command
@@ -78,4 +78,4 @@ void add_serve(CLI::App& app) {
     command->callback([arguments] { start(*arguments); });
 }
 
-}  // namespace palpa
+}  // namespace palpa::app

@@ -6,7 +6,7 @@
 
 #include "app/commands/command_line.h"
 
-namespace palpa {
+namespace palpa::app {
 
 void add_study(CLI::App& app) {
     CLI::App* study = app.add_subcommand("study", "Studies with people: order, run, simulate, import, analyse, watch");
@@ -19,4 +19,4 @@ void add_study(CLI::App& app) {
     add_study_watch(*study);
 }
 
-}  // namespace palpa
+}  // namespace palpa::app

@@ -4,7 +4,7 @@ namespace CLI {
 class App;
 }
 
-namespace palpa {
+namespace palpa::app {
 
 // The subcommands of `palpa study`, each in its own file.
 void add_study_analyse(CLI::App& study);
@@ -14,4 +14,4 @@ void add_study_run(CLI::App& study);
 void add_study_simulate(CLI::App& study);
 void add_study_watch(CLI::App& study);
 
-}  // namespace palpa
+}  // namespace palpa::app

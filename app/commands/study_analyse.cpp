@@ -12,7 +12,7 @@
 #include "study/read_logs.h"
 #include "study/report.h"
 
-namespace palpa {
+namespace palpa::app {
 namespace {
 
 namespace fs = std::filesystem;
@@ -20,41 +20,41 @@ namespace fs = std::filesystem;
 struct AnalyseOptions {
     std::string input;
     std::string output;
-    ReportOptions report;
+    study::ReportOptions report;
     bool json = false;
 };
 
-void write_report(const Report& report, const fs::path& folder) {
+void write_report(const study::Report& report, const fs::path& folder) {
     std::error_code error;
     fs::create_directories(folder, error);
-    if (error || !fs::is_directory(folder)) throw bad_input(folder.string(), "", "no folder", "a folder, or a name that is free");
-    for (const ReportTable& table : report_tables(report)) {
-        write_text_atomically(folder / (table.name + ".tsv"), tsv_text(table));
+    if (error || !fs::is_directory(folder)) throw files::bad_input(folder.string(), "", "no folder", "a folder, or a name that is free");
+    for (const study::ReportTable& table : study::report_tables(report)) {
+        files::write_text_atomically(folder / (table.name + ".tsv"), study::tsv_text(table));
     }
-    write_text_atomically(folder / "report.md", report_markdown(report));
-    write_text_atomically(folder / "report.json", json_text(report_json(report)));
-    const std::string trouble = draw_figures(report, folder);
+    files::write_text_atomically(folder / "report.md", study::report_markdown(report));
+    files::write_text_atomically(folder / "report.json", files::json_text(study::report_json(report)));
+    const std::string trouble = figures::draw_figures(report, folder);
     if (!trouble.empty()) std::fprintf(stderr, "palpa: %s\n", trouble.c_str());
 }
 
-std::vector<std::string> names_of(const Report& report) {
+std::vector<std::string> names_of(const study::Report& report) {
     std::vector<std::string> names{"report.md", "report.json", "figures.gp", "figures.png", "figures.svg", "figures.pdf"};
-    for (const ReportTable& table : report_tables(report)) names.push_back(table.name + ".tsv");
+    for (const study::ReportTable& table : study::report_tables(report)) names.push_back(table.name + ".tsv");
     return names;
 }
 
-Observations read_observations(const std::string& input) {
-    if (!fs::exists(input)) throw bad_input(input, "", "nothing", "a folder of logs or a table COUNTS.tsv");
-    return fs::is_directory(input) ? read_study(input) : read_counts(input);
+study::Observations read_observations(const std::string& input) {
+    if (!fs::exists(input)) throw files::bad_input(input, "", "nothing", "a folder of logs or a table COUNTS.tsv");
+    return fs::is_directory(input) ? study::read_study(input) : study::read_counts(input);
 }
 
 void analyse(const AnalyseOptions& options) {
-    if (!options.output.empty()) check_output_folder(options.output);
-    const Report report = make_report(read_observations(options.input), options.report);
+    if (!options.output.empty()) files::check_output_folder(options.output);
+    const study::Report report = study::make_report(read_observations(options.input), options.report);
     // logs of a study have names of their own; a table of counts may have any
-    if (!options.output.empty() && !fs::is_directory(options.input)) check_output_folder(options.output, {options.input}, names_of(report));
+    if (!options.output.empty() && !fs::is_directory(options.input)) files::check_output_folder(options.output, {options.input}, names_of(report));
     if (!options.output.empty()) write_report(report, options.output);
-    const std::string text = options.json ? json_text(report_json(report)) : report_markdown(report);
+    const std::string text = options.json ? files::json_text(study::report_json(report)) : study::report_markdown(report);
     std::fputs(text.c_str(), stdout);
 }
 
@@ -79,4 +79,4 @@ void add_study_analyse(CLI::App& study) {
     command->callback([options] { analyse(*options); });
 }
 
-}  // namespace palpa
+}  // namespace palpa::app

@@ -9,7 +9,7 @@
 #include "files/regular_file.h"
 #include "study/import_bundles.h"
 
-namespace palpa {
+namespace palpa::app {
 namespace {
 
 struct ImportOptions {
@@ -19,12 +19,12 @@ struct ImportOptions {
 };
 
 void import(const ImportOptions& options) {
-    check_output_folder(options.output);
-    const BundleReport report = import_bundles({options.bundles.begin(), options.bundles.end()}, options.output);
+    files::check_output_folder(options.output);
+    const study::BundleReport report = study::import_bundles({options.bundles.begin(), options.bundles.end()}, options.output);
     if (options.json) {
-        const Json json{{"written", report.written}, {"already_there", report.already_there}, {"people_added", report.people_added},
+        const files::Json json{{"written", report.written}, {"already_there", report.already_there}, {"people_added", report.people_added},
                         {"grown", report.grown}, {"passed_over", report.passed_over}};
-        std::fputs(json_text(json).c_str(), stdout);
+        std::fputs(files::json_text(json).c_str(), stdout);
         return;
     }
     for (const std::string& name : report.already_there) std::printf("%s: there already, the same\n", name.c_str());
@@ -47,4 +47,4 @@ void add_study_import(CLI::App& study) {
     command->callback([options] { import(*options); });
 }
 
-}  // namespace palpa
+}  // namespace palpa::app

@@ -9,7 +9,7 @@
 #include "files/json.h"
 #include "files/text.h"
 
-namespace palpa {
+namespace palpa::app {
 namespace {
 
 struct OrderOptions {
@@ -18,12 +18,12 @@ struct OrderOptions {
     bool json = false;
 };
 
-Json trial_json(const Protocol& protocol, const PlannedTrial& trial) {
-    Json json{{"trial", trial.trial},
+files::Json trial_json(const study::Protocol& protocol, const study::PlannedTrial& trial) {
+    files::Json json{{"trial", trial.trial},
               {"block", trial.practice ? "practice" : "test"},
               {"condition", protocol.conditions[trial.condition].id},
               {"repeat", trial.repeat + 1}};
-    if (protocol.task == TaskKind::find) {
+    if (protocol.task == study::TaskKind::find) {
         json["map_rotation_deg"] = trial.rotate_deg;
         json["map_flip"] = trial.flip;
     } else {
@@ -35,24 +35,24 @@ Json trial_json(const Protocol& protocol, const PlannedTrial& trial) {
     return json;
 }
 
-Json order_json(const Protocol& protocol, const std::vector<PlannedParticipant>& people) {
-    Json json{{"protocol", protocol.name},
+files::Json order_json(const study::Protocol& protocol, const std::vector<study::PlannedParticipant>& people) {
+    files::Json json{{"protocol", protocol.name},
               {"version", protocol.version},
               {"sha256", protocol.sha256},
               {"seed", protocol.seed},
               {"order", name_of(protocol.order)},
               {"task", name_of(protocol.task)}};
-    json["participants"] = Json::array();
-    for (const PlannedParticipant& who : people) {
-        Json trials = Json::array();
-        for (const PlannedTrial& trial : who.trials) trials.push_back(trial_json(protocol, trial));
+    json["participants"] = files::Json::array();
+    for (const study::PlannedParticipant& who : people) {
+        files::Json trials = files::Json::array();
+        for (const study::PlannedTrial& trial : who.trials) trials.push_back(trial_json(protocol, trial));
         json["participants"].push_back({{"number", who.number},
                                         {"group", protocol.groups[who.group].id},
                                         {"order_id", who.order_id},
                                         {"trials", trials}});
     }
-    json["imbalance"] = Json::array();
-    for (const Imbalance& one : imbalance_of(protocol, people)) {
+    json["imbalance"] = files::Json::array();
+    for (const study::Imbalance& one : study::imbalance_of(protocol, people)) {
         json["imbalance"].push_back({{"group", one.group},
                                      {"participants", one.participants},
                                      {"position", one.position},
@@ -63,20 +63,20 @@ Json order_json(const Protocol& protocol, const std::vector<PlannedParticipant>&
     return json;
 }
 
-void print_trial(const Protocol& protocol, const PlannedTrial& trial) {
+void print_trial(const study::Protocol& protocol, const study::PlannedTrial& trial) {
     const std::string& condition = protocol.conditions[trial.condition].id;
     std::printf("%s  %3d  %-8s  %-20s", trial.break_before ? "  -- break --\n" : "", trial.trial,
                 trial.practice ? "practice" : "test", condition.c_str());
-    if (protocol.task == TaskKind::choice) {
+    if (protocol.task == study::TaskKind::choice) {
         const double comparison_kPa = protocol.choice.comparisons_kPa[static_cast<std::size_t>(trial.comparison)];
-        std::printf("  %s kPa, reference %s\n", short_number(comparison_kPa).c_str(), trial.reference_first ? "first" : "second");
+        std::printf("  %s kPa, reference %s\n", files::short_number(comparison_kPa).c_str(), trial.reference_first ? "first" : "second");
         return;
     }
     std::printf("  turned %3d deg%s\n", trial.rotate_deg, trial.flip ? ", flipped" : "");
 }
 
-void print_imbalance(const Protocol& protocol, const std::vector<PlannedParticipant>& people) {
-    for (const Imbalance& one : imbalance_of(protocol, people)) {
+void print_imbalance(const study::Protocol& protocol, const std::vector<study::PlannedParticipant>& people) {
+    for (const study::Imbalance& one : study::imbalance_of(protocol, people)) {
         std::printf("group %s, %d people: positions differ by %d, carry-over by %d, views by %d", one.group.c_str(),
                     one.participants, one.position, one.carry_over, one.turns);
         if (one.participants % one.full_rounds_of != 0) {
@@ -87,19 +87,19 @@ void print_imbalance(const Protocol& protocol, const std::vector<PlannedParticip
 }
 
 void print_order(const OrderOptions& options) {
-    const Protocol protocol = read_protocol(options.protocol);
+    const study::Protocol protocol = study::read_protocol(options.protocol);
     load_study_scenes(protocol);  // a missing map is better found now
-    std::vector<PlannedParticipant> people;
-    for (int number = 1; number <= options.participants; ++number) people.push_back(plan_participant(protocol, number));
+    std::vector<study::PlannedParticipant> people;
+    for (int number = 1; number <= options.participants; ++number) people.push_back(study::plan_participant(protocol, number));
     if (options.json) {
-        std::fputs(json_text(order_json(protocol, people)).c_str(), stdout);
+        std::fputs(files::json_text(order_json(protocol, people)).c_str(), stdout);
         return;
     }
     std::printf("%s, version %s, seed %u, order %s\n", protocol.name.c_str(), protocol.version.c_str(), protocol.seed,
                 name_of(protocol.order));
-    for (const PlannedParticipant& who : people) {
+    for (const study::PlannedParticipant& who : people) {
         std::printf("participant %d, group %s, order %d\n", who.number, protocol.groups[who.group].id.c_str(), who.order_id);
-        for (const PlannedTrial& trial : who.trials) print_trial(protocol, trial);
+        for (const study::PlannedTrial& trial : who.trials) print_trial(protocol, trial);
     }
     print_imbalance(protocol, people);
 }
@@ -118,4 +118,4 @@ void add_study_order(CLI::App& study) {
     command->callback([options] { print_order(*options); });
 }
 
-}  // namespace palpa
+}  // namespace palpa::app

@@ -8,15 +8,15 @@
 #include "app/live/live.h"
 #include "files/json.h"
 
-namespace palpa {
+namespace palpa::app {
 namespace {
 
 void run(const RunOptions& options) {
     const auto result = run_live(options);
     if (!result) return;
-    const Json& json = *result;
+    const files::Json& json = *result;
     if (options.json) {
-        std::fputs(json_text(json).c_str(), stdout);
+        std::fputs(files::json_text(json).c_str(), stdout);
         return;
     }
     if (json["of"] == 0) return;
@@ -48,4 +48,4 @@ void add_study_run(CLI::App& study) {
     command->callback([options] { run(*options); });
 }
 
-}  // namespace palpa
+}  // namespace palpa::app

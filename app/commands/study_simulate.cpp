@@ -12,7 +12,7 @@
 #include "files/json.h"
 #include "files/regular_file.h"
 
-namespace palpa {
+namespace palpa::app {
 namespace {
 
 struct Arguments {
@@ -31,12 +31,12 @@ void simulate(const Arguments& arguments) {
     const auto cores = static_cast<int>(std::thread::hardware_concurrency());
     // twice the cores: a participant who waits for the disk leaves the core to another
     options.jobs = std::min(options.participants, arguments.jobs > 0 ? arguments.jobs : 2 * std::max(1, cores));
-    check_output_folder(arguments.output);
-    const Protocol protocol = read_protocol(arguments.protocol);
+    files::check_output_folder(arguments.output);
+    const study::Protocol protocol = study::read_protocol(arguments.protocol);
     const SimulateResult result = simulate_study(protocol, options);
     const double MB_per_s = result.wall_s > 0.0 ? result.written_MB / result.wall_s : 0.0;
     if (arguments.json) {
-        const Json json{{"simulated", true},
+        const files::Json json{{"simulated", true},
                         {"participants", options.participants},
                         {"trials", result.trials},
                         {"already_there", result.already_there},
@@ -45,7 +45,7 @@ void simulate(const Arguments& arguments) {
                         {"samples_MB", result.written_MB},
                         {"samples_MB_per_s", MB_per_s},
                         {"wall_s", result.wall_s}};
-        std::fputs(json_text(json).c_str(), stdout);
+        std::fputs(files::json_text(json).c_str(), stdout);
         return;
     }
     std::printf("%s: %d SIMULATED participants, %d trials now, %d already there, %lld samples in %.1f s\n",
@@ -83,4 +83,4 @@ void add_study_simulate(CLI::App& study) {
     command->callback([arguments] { simulate(*arguments); });
 }
 
-}  // namespace palpa
+}  // namespace palpa::app

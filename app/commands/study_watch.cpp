@@ -19,7 +19,7 @@
 #include "study/read_logs.h"
 #include "study/study_folder.h"
 
-namespace palpa {
+namespace palpa::app {
 namespace {
 
 namespace fs = std::filesystem;
@@ -32,15 +32,15 @@ struct Arguments {
 };
 
 // What a person did last in a file of events: seconds since the trial began, marks that stand, tp once it is finished.
-Json last_events(const fs::path& file, std::vector<std::string>& notes) {
-    const std::string text = read_text(file);
-    const std::string_view whole = whole_lines(text, file.string(), notes);
-    Json json{{"file", file.filename().string()}, {"marks", 0}};
+files::Json last_events(const fs::path& file, std::vector<std::string>& notes) {
+    const std::string text = files::read_text(file);
+    const std::string_view whole = study::whole_lines(text, file.string(), notes);
+    files::Json json{{"file", file.filename().string()}, {"marks", 0}};
     if (whole.empty()) return json;
-    const auto lines = fields_of(whole.substr(0, whole.size() - 1), '\n');
-    const auto names = fields_of(lines.front(), '\t');
+    const auto lines = files::fields_of(whole.substr(0, whole.size() - 1), '\n');
+    const auto names = files::fields_of(lines.front(), '\t');
     const auto field = [&](std::string_view line, std::string_view name) {
-        const auto fields = fields_of(line, '\t');
+        const auto fields = files::fields_of(line, '\t');
         const auto i = static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
         return i < fields.size() ? std::string(fields[i]) : std::string("n/a");
     };
@@ -58,23 +58,23 @@ Json last_events(const fs::path& file, std::vector<std::string>& notes) {
 }
 
 // The last whole row with a place of a table of samples, by column; what a person asks of the program in between has none.
-Json last_sample(const fs::path& file) {
+files::Json last_sample(const fs::path& file) {
     constexpr std::uintmax_t kTail_bytes = 65536;  // some seconds
     std::error_code error;
     if (!fs::exists(file, error)) return {};
-    const InputFile in(file);
+    const files::InputFile in(file);
     if (in.bytes() == 0) return {};
     std::string head(512, '\0');
     head.resize(in.read_at(0, head.data(), head.size()));
     std::string tail(kTail_bytes, '\0');
     tail.resize(in.read_at(in.bytes() - std::min(in.bytes(), kTail_bytes), tail.data(), tail.size()));
-    const auto names = fields_of(std::string_view(head).substr(0, head.find('\n')), '\t');
+    const auto names = files::fields_of(std::string_view(head).substr(0, head.find('\n')), '\t');
     for (auto end = tail.rfind('\n'); end != std::string::npos && end > 0;) {
         const auto before = tail.rfind('\n', end - 1);
         const std::size_t begin = before == std::string::npos ? 0 : before + 1;
-        const auto fields = fields_of(std::string_view(tail).substr(begin, end - begin), '\t');
+        const auto fields = files::fields_of(std::string_view(tail).substr(begin, end - begin), '\t');
         if (fields.size() != names.size() || fields[0] == names[0]) return {};
-        Json json;
+        files::Json json;
         for (std::size_t i = 0; i < names.size(); ++i) json[std::string(names[i])] = std::string(fields[i]);
         if (json.value("x_mm", "") != "n/a" && json.value("y_mm", "") != "n/a") return json;
         end = before;
@@ -83,10 +83,10 @@ Json last_sample(const fs::path& file) {
 }
 
 // Where a person stands, as the study wrote it. Throws InputError naming the key that is not as it writes them.
-Json read_now(const fs::path& file) {
+files::Json read_now(const fs::path& file) {
     constexpr int kMost = 1'000'000;
-    const Json root = read_json(file);
-    JsonReader json(root, file.string());
+    const files::Json root = files::read_json(file);
+    files::JsonReader json(root, file.string());
     json.text("step");
     json.integer("finished", 0, kMost);
     json.integer("of", 0, kMost);
@@ -103,57 +103,57 @@ Json read_now(const fs::path& file) {
     return root;
 }
 
-Json state_of(const fs::path& directory, const Person& person, std::vector<std::string>& notes) {
+files::Json state_of(const fs::path& directory, const study::Person& person, std::vector<std::string>& notes) {
     const fs::path subject = directory / ("sub-" + person.code);
-    Json json{{"participant", person.code}, {"group", person.group}};
-    json["finished"] = finished_trials(directory, person.code).size();
+    files::Json json{{"participant", person.code}, {"group", person.group}};
+    json["finished"] = study::finished_trials(directory, person.code).size();
     std::error_code error;
     if (!fs::exists(subject / "now.json", error)) return json;
     json["now"] = read_now(subject / "now.json");
     if (json["now"].value("step", "") != "trial") return json;
-    const auto files = events_files(subject);
+    const auto files = study::events_files(subject);
     if (files.empty()) return json;
     json["events"] = last_events(files.back(), notes);
     std::string samples = files.back().string();
     samples.replace(samples.size() - std::string_view("_events.tsv").size(), std::string::npos, "_samples.tsv");
-    const Json last = last_sample(samples);
+    const files::Json last = last_sample(samples);
     if (!last.is_null()) json["sample"] = last;
     return json;
 }
 
-Json look(const Arguments& arguments) {
-    if (!read_identity(arguments.directory)) {
-        throw bad_input(arguments.directory, "", "no study.json", "the folder of a study (--log of palpa study run)");
+files::Json look(const Arguments& arguments) {
+    if (!study::read_identity(arguments.directory)) {
+        throw files::bad_input(arguments.directory, "", "no study.json", "the folder of a study (--log of palpa study run)");
     }
     std::vector<std::string> notes;
-    Json json{{"people", Json::array()}};
+    files::Json json{{"people", files::Json::array()}};
     // a person who is answering the questions is not in participants.tsv yet
-    std::vector<Person> people = read_people(arguments.directory, notes);
+    std::vector<study::Person> people = study::read_people(arguments.directory, notes);
     for (const auto& entry : fs::directory_iterator(arguments.directory)) {
         const std::string name = entry.path().filename().string();
         if (name.rfind("sub-", 0) != 0) continue;
-        const auto same = [&](const Person& p) { return "sub-" + p.code == name; };
+        const auto same = [&](const study::Person& p) { return "sub-" + p.code == name; };
         if (std::none_of(people.begin(), people.end(), same)) people.push_back({name.substr(4)});
     }
-    for (const Person& person : people) {
+    for (const study::Person& person : people) {
         if (!arguments.participant.empty() && person.code != arguments.participant) continue;
         json["people"].push_back(state_of(arguments.directory, person, notes));
     }
     if (!arguments.participant.empty() && json["people"].empty()) {
-        throw bad_input("--participant", "", shown(arguments.participant), "a code that is in " + arguments.directory);
+        throw files::bad_input("--participant", "", files::shown(arguments.participant), "a code that is in " + arguments.directory);
     }
     json["notes"] = notes;
     return json;
 }
 
-void print(const Json& state) {
+void print(const files::Json& state) {
     const std::string code = state["participant"].get<std::string>();
     std::printf("%-10s %-10s ", code.c_str(), state["group"].get<std::string>().c_str());
     if (!state.contains("now")) {
         std::printf("%s trials\n", state["finished"].dump().c_str());
         return;
     }
-    const Json& now = state["now"];
+    const files::Json& now = state["now"];
     std::printf("%s of %s  %s", now["finished"].dump().c_str(), now["of"].dump().c_str(), now["step"].get<std::string>().c_str());
     if (now.contains("trial")) {
         std::printf(", trial %s%s, %s", now["trial"].dump().c_str(), now["practice"] == true ? " (practice)" : "",
@@ -167,7 +167,7 @@ void print(const Json& state) {
     if (now.contains("stopped")) std::printf("    ! %s\n", now["stopped"].get<std::string>().c_str());
     if (state.contains("events")) std::printf("    %s marks", state["events"]["marks"].dump().c_str());
     if (state.contains("sample")) {
-        const Json& s = state["sample"];
+        const files::Json& s = state["sample"];
         const auto text = [&](const char* name) { return s.value(name, "n/a"); };
         std::printf(", %s at (%s, %s) mm, pressure %s, %s N, %s mm deep", text("tool").c_str(), text("x_mm").c_str(), text("y_mm").c_str(),
                     text("pressure").c_str(), text("force_N").c_str(), text("depth_mm").c_str());
@@ -180,14 +180,14 @@ void print(const Json& state) {
 void watch(const Arguments& arguments) {
     const bool again = !arguments.once && !arguments.json && isatty(STDOUT_FILENO) != 0;
     while (true) {
-        const Json json = look(arguments);
+        const files::Json json = look(arguments);
         if (arguments.json) {
-            std::fputs(json_text(json).c_str(), stdout);
+            std::fputs(files::json_text(json).c_str(), stdout);
             return;
         }
         if (again) std::fputs("\033[H\033[J", stdout);  // from the top of the screen
-        for (const Json& state : json["people"]) print(state);
-        for (const Json& note : json["notes"]) std::printf("  %s\n", note.get<std::string>().c_str());
+        for (const files::Json& state : json["people"]) print(state);
+        for (const files::Json& note : json["notes"]) std::printf("  %s\n", note.get<std::string>().c_str());
         std::fflush(stdout);
         if (!again) return;
         std::this_thread::sleep_for(std::chrono::seconds(1));
@@ -207,4 +207,4 @@ void add_study_watch(CLI::App& study) {
     command->callback([arguments] { watch(*arguments); });
 }
 
-}  // namespace palpa
+}  // namespace palpa::app

@@ -7,39 +7,39 @@
 #include "app/live/live_app.h"
 #include "app/screens/words.h"
 
-namespace palpa {
+namespace palpa::app {
 namespace {
 
-bool named(const std::vector<PointerDevice>& devices, const std::string& name) {
-    return std::any_of(devices.begin(), devices.end(), [&](const PointerDevice& d) { return d.name == name; });
+bool named(const std::vector<platform::PointerDevice>& devices, const std::string& name) {
+    return std::any_of(devices.begin(), devices.end(), [&](const platform::PointerDevice& d) { return d.name == name; });
 }
 
 // Plugged in or out while the app runs.
-void note_changes(const std::vector<PointerDevice>& now, Screens& screens) {
-    for (const PointerDevice& device : screens.devices) {
+void note_changes(const std::vector<platform::PointerDevice>& now, Screens& screens) {
+    for (const platform::PointerDevice& device : screens.devices) {
         if (!named(now, device.name)) screens.note = words::filled(words::kIsGone, {device.name});
     }
-    for (const PointerDevice& device : now) {
+    for (const platform::PointerDevice& device : now) {
         if (!screens.devices.empty() && !named(screens.devices, device.name)) screens.note = words::filled(words::kIsHere, {device.name});
     }
 }
 
 // A pen or finger that touches without a true pressure, and what to do about it.
-void note_pressure(Tool tool, App& app) {
-    const PressureKind kind = pressure_kind(app.pressure, tool);
-    const bool held = tool == Tool::pen ? app.hold.pen : app.hold.finger;
+void note_pressure(platform::Tool tool, App& app) {
+    const platform::PressureKind kind = platform::pressure_kind(app.pressure, tool);
+    const bool held = tool == platform::Tool::pen ? app.hold.pen : app.hold.finger;
     const std::string name(name_of(tool));
     if (held) app.screens.device_notes.push_back(words::filled(words::kHeldPress, {name}));
-    if (held || (kind != PressureKind::constant && kind != PressureKind::missing)) return;
-    const char* found = kind == PressureKind::missing ? words::kReportsNone : words::kReportsConstant;
+    if (held || (kind != platform::PressureKind::constant && kind != platform::PressureKind::missing)) return;
+    const char* found = kind == platform::PressureKind::missing ? words::kReportsNone : words::kReportsConstant;
     app.screens.device_notes.push_back(words::filled(found, {name}));
     // a profile of counts or contact areas reads what holding does not make
-    app.screens.offer_hold = app.session.plan.profile.level == LevelField::pressure;
+    app.screens.offer_hold = app.session.plan.profile.level == calibration::LevelField::pressure;
 }
 
 }  // namespace
 
-void note_devices(const Window& window, App& app) {
+void note_devices(const platform::Window& window, App& app) {
     std::vector<std::string>& notes = app.screens.device_notes;
     notes.clear();
     if (app.trace) {
@@ -47,18 +47,18 @@ void note_devices(const Window& window, App& app) {
         return;
     }
     app.screens.devices_listed = window.lists_devices();
-    const std::vector<PointerDevice> now = window.devices();
+    const std::vector<platform::PointerDevice> now = window.devices();
     if (app.screens.devices_listed) note_changes(now, app.screens);
     app.screens.devices = now;
     if (app.screens.study) return;
     if (app.keeper != nullptr) app.screens.trials_note = app.keeper->note();
     if (!window.input_note().empty()) notes.push_back(window.input_note());
     app.screens.offer_hold = false;
-    for (const Tool tool : {Tool::pen, Tool::finger}) note_pressure(tool, app);
+    for (const platform::Tool tool : {platform::Tool::pen, platform::Tool::finger}) note_pressure(tool, app);
     const auto& devices = app.screens.devices;
-    const bool pressure = std::any_of(devices.begin(), devices.end(), [](const PointerDevice& d) { return d.has_pressure; });
+    const bool pressure = std::any_of(devices.begin(), devices.end(), [](const platform::PointerDevice& d) { return d.has_pressure; });
     if (!pressure) notes.push_back(words::kNoSensorHere);
     if (!pressure || app.screens.offer_hold) notes.push_back(words::kOtherWays);
 }
 
-}  // namespace palpa
+}  // namespace palpa::app

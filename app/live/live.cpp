@@ -17,7 +17,7 @@
 #include "files/text.h"
 #include "render/gl.h"
 
-namespace palpa {
+namespace palpa::app {
 namespace {
 
 void keep_settings(App& app) {
@@ -34,7 +34,7 @@ void close_calibrate(App& app) {
     app.screens.profiles = profile_choices();
 }
 
-void open_screen(Screen screen, Window& window, App& app) {
+void open_screen(Screen screen, platform::Window& window, App& app) {
     if (screen == Screen::maps && (app.screens.study || !may_show_maps(app.session.trial))) {
         app.screens.note = words::kMapsHidden;
         app.screens.menu = false;
@@ -53,10 +53,10 @@ void open_screen(Screen screen, Window& window, App& app) {
     app.screens.menu = false;
 }
 
-void change_settings(const Wishes& wishes, Window& window, Gui& gui, App& app) {
+void change_settings(const Wishes& wishes, platform::Window& window, Gui& gui, App& app) {
     if (wishes.left_handed) app.settings.left_handed = *wishes.left_handed;
     if (wishes.above_finger) app.settings.above_finger = *wishes.above_finger;
-    if (wishes.mode) app.settings.test_mode = *wishes.mode == TrialMode::test;
+    if (wishes.mode) app.settings.test_mode = *wishes.mode == session::TrialMode::test;
     if (wishes.full_screen) {
         app.settings.full_screen = !window.full_screen();
         window.set_full_screen(app.settings.full_screen);
@@ -74,7 +74,7 @@ void change_settings(const Wishes& wishes, Window& window, Gui& gui, App& app) {
     begin_anew(window, gui, app);
 }
 
-void carry_out(const Wishes& asked_for, Window& window, Gui& gui, App& app) {
+void carry_out(const Wishes& asked_for, platform::Window& window, Gui& gui, App& app) {
     Wishes wishes = asked_for;
     if (marks_at_stake(app)) {
         wishes = ask_first(asked_for, app.screens);
@@ -93,12 +93,12 @@ void carry_out(const Wishes& asked_for, Window& window, Gui& gui, App& app) {
     }
     change_settings(wishes, window, gui, app);
     if (wishes.press_by_hold && app.screens.offer_hold) {
-        const auto lacks = [&](Tool tool) {
-            const PressureKind kind = pressure_kind(app.pressure, tool);
-            return kind == PressureKind::constant || kind == PressureKind::missing;
+        const auto lacks = [&](platform::Tool tool) {
+            const platform::PressureKind kind = platform::pressure_kind(app.pressure, tool);
+            return kind == platform::PressureKind::constant || kind == platform::PressureKind::missing;
         };
-        app.hold.pen = app.hold.pen || lacks(Tool::pen);
-        app.hold.finger = app.hold.finger || lacks(Tool::finger);
+        app.hold.pen = app.hold.pen || lacks(platform::Tool::pen);
+        app.hold.finger = app.hold.finger || lacks(platform::Tool::finger);
     }
     if (wishes.trials && app.keeper != nullptr) app.keeper->open();
     if (wishes.studies && app.keeper != nullptr) app.keeper->open_studies();
@@ -108,53 +108,53 @@ void carry_out(const Wishes& asked_for, Window& window, Gui& gui, App& app) {
 }
 
 // Rows of the trace that are due, with the trace's own times.
-void take_due_rows(App& app, double now_s, std::vector<Sample>& out) {
+void take_due_rows(App& app, double now_s, std::vector<platform::Sample>& out) {
     const auto& rows = app.trace->samples;
     while (app.next_row < rows.size() && rows[app.next_row].t_host_s <= now_s) out.push_back(rows[app.next_row++]);
 }
 
-void take(const Sample& sample, App& app) {
-    take_sample(sample, app.session);
+void take(const platform::Sample& sample, App& app) {
+    session::take_sample(sample, app.session);
     if (app.waiting_s.size() < app.waiting_s.capacity()) app.waiting_s.push_back(sample.t_host_s);
     if (!app.session.trial.finished || app.screens.screen != Screen::trial) return;
-    app.screens.debrief = debrief(app.session.plan, app.session.trial);  // a trace that finishes its trial
+    app.screens.debrief = session::debrief(app.session.plan, app.session.trial);  // a trace that finishes its trial
     app.screens.screen = Screen::reveal;
 }
 
 // A finger that may not hide the avatar indents what lies above it; log and trace hold that place.
-void lift_fingers(float mm, std::vector<Sample>& samples, const App& app) {
+void lift_fingers(float mm, std::vector<platform::Sample>& samples, const App& app) {
     if (!app.settings.above_finger || app.trace || app.screens.screen != Screen::trial) return;
-    for (Sample& sample : samples) {
-        if (sample.tool == Tool::finger) sample.y_px -= static_cast<double>(kFingerOffset_mm * mm);
+    for (platform::Sample& sample : samples) {
+        if (sample.tool == platform::Tool::finger) sample.y_px -= static_cast<double>(kFingerOffset_mm * mm);
     }
 }
 
 // Where the samples of one turn of the loop go: to the tissue, or to the device check.
-void take_all(double now_s, std::vector<Sample>& samples, App& app) {
+void take_all(double now_s, std::vector<platform::Sample>& samples, App& app) {
     if (app.trace) {
-        for (const Sample& sample : samples) take(sample, app);
+        for (const platform::Sample& sample : samples) take(sample, app);
         return;
     }
-    for (const Sample& sample : samples) watch(sample, app.pressure);
+    for (const platform::Sample& sample : samples) platform::watch(sample, app.pressure);
     if (app.screens.screen == Screen::devices) {
-        for (const Sample& sample : samples) {
+        for (const platform::Sample& sample : samples) {
             observe(sample, *app.screens.check);
             add_dot(sample, app.screens);
         }
         return;
     }
     if (app.screens.screen == Screen::calibrate) return step_calibrate(samples, *app.screens.calibrate);
-    if (app.hold.pen || app.hold.finger) press_by_hold(now_s, app.hold, samples);
+    if (app.hold.pen || app.hold.finger) platform::press_by_hold(now_s, app.hold, samples);
     if (app.screens.screen != Screen::trial || !app.stopped.empty() || app.begin_waits) return;
-    for (const Sample& sample : samples) {
+    for (const platform::Sample& sample : samples) {
         if (!app.screens.study || allowed(sample, app)) take(sample, app);
     }
 }
 
 // The keys move the indenter over the tissue, 30 mm/s, as long as no panel wants them.
-void place_keyboard(Window& window, const App& app) {
+void place_keyboard(platform::Window& window, const App& app) {
     constexpr double kSpeed_m_per_s = 0.03;
-    const ScreenArea& a = app.session.state.screen;
+    const scene::ScreenArea& a = app.session.state.screen;
     const bool elsewhere = app.screens.study && app.screens.screen != Screen::trial;
     if (elsewhere || app.screens.menu || app.screens.asked || (app.screens.screen != Screen::trial && app.screens.screen != Screen::devices)) {
         window.set_keyboard(0.0, 0.0, 0.0, 0.0, 0.0);
@@ -163,24 +163,24 @@ void place_keyboard(Window& window, const App& app) {
     }
 }
 
-float scale_now(const App& app, const Window& window) {
+float scale_now(const App& app, const platform::Window& window) {
     return control_scale(app.screens.px_per_mm, static_cast<float>(window.width_px()), static_cast<float>(window.height_px()),
                          window.touch_px_per_mm());
 }
 
 // A window that changed its size, or a hand that changed sides, is input too: a replay must map positions alike.
-void note_resize(const Window& window, Gui& gui, App& app) {
+void note_resize(const platform::Window& window, Gui& gui, App& app) {
     gui.set_scale(scale_now(app, window));
     const bool none = app.screens.study && app.screens.screen != Screen::trial;
     if (app.trace || none || app.session.trial.finished) return;
-    const Sample now = resize_sample(window, gui, app.settings, now_of(app, window));
-    const ScreenArea& area = app.session.state.screen;
+    const platform::Sample now = resize_sample(window, gui, app.settings, now_of(app, window));
+    const scene::ScreenArea& area = app.session.state.screen;
     const bool same = now.x_px == area.x_px && now.y_px == area.y_px && now.width_px == area.width_px && now.height_px == area.height_px;
     if (!same) take(now, app);
 }
 
 // Samples that changed nothing on the screen have no frame that shows them, and no latency.
-void note_shown(const Window& window, App& app) {
+void note_shown(const platform::Window& window, App& app) {
     const double shown_s = now_of(app, window);
     const double ready_s = 1e-9 * static_cast<double>(app.times.built_ns) - app.trace_shift_s;
     for (const double t_s : app.waiting_s) {
@@ -193,14 +193,14 @@ void note_shown(const Window& window, App& app) {
     app.drawn_s = window.now_s();
 }
 
-void show(Window& window, App& app, TissueDrawer& tissue, Gui& gui, double dt_s) {
+void show(platform::Window& window, App& app, render::TissueDrawer& tissue, Gui& gui, double dt_s) {
     constexpr double kDevices_s = 0.5;  // however slowly frames come: a pen that is gone is noticed within a second
     if (window.now_s() - app.devices_noted_s >= kDevices_s) {
         note_devices(window, app);
         app.devices_noted_s = window.now_s();
     }
     age_note(now_of(app, window), app.screens);
-    const Session& s = app.session;
+    const session::Session& s = app.session;
     const bool save = std::exchange(app.save_waits, false);
     if (save) app.on_screen.content = 0;  // what the window hands out is only sure while it has just been drawn
     const Wishes wishes = draw_frame(s.scene, s.plan, s.trial, app.settings, now_of(app, window), dt_s, tissue, gui, app.screens,
@@ -225,7 +225,7 @@ bool in_motion(const App& app) {
 
 // A log that can no longer be written stops the trial, in words; what came before is on the disk.
 void watch_files(App& app) {
-    if (!app.stopped.empty() || files_good(app.session)) return;
+    if (!app.stopped.empty() || session::files_good(app.session)) return;
     close_trial(app);
     if (app.screens.study) {
         app.screens.screen = Screen::study;
@@ -244,7 +244,7 @@ void keep_part(double now_s, App& app) {
     app.parted_s = now_s;
 }
 
-void remember_window(const Window& window, App& app) {
+void remember_window(const platform::Window& window, App& app) {
     if (app.trace || app.settings.full_screen || app.options.width_px > 0 || app.options.height_px > 0) return;
     if (app.settings.width_px == window.width_px() && app.settings.height_px == window.height_px()) return;
     app.settings.width_px = window.width_px();
@@ -255,11 +255,11 @@ void remember_window(const Window& window, App& app) {
 }  // namespace
 
 struct Live::Impl {
-    explicit Impl(const RunOptions& options, TrialKeeper* keeper) {
+    explicit Impl(const RunOptions& options, session::TrialKeeper* keeper) {
         app.keeper = keeper;
         app.screens.keeps_trials = keeper != nullptr;
         load(options, app);
-        WindowOptions window_options;
+        platform::WindowOptions window_options;
         window_options.width_px = app.settings.width_px;
         window_options.height_px = app.settings.height_px;
         window.emplace(window_options);
@@ -310,7 +310,7 @@ struct Live::Impl {
         lift_fingers(gui->mm(), samples, app);
         take_all(window->now_s(), samples, app);       // 2. simulate, 3. log
         watch_files(app);
-        flush_if_due(app.session);  // also while nothing moves, and nothing is drawn
+        session::flush_if_due(app.session);  // also while nothing moves, and nothing is drawn
         keep_part(window->now_s(), app);
     }
 
@@ -324,19 +324,19 @@ struct Live::Impl {
     }
 
     App app;
-    std::optional<Window> window;
+    std::optional<platform::Window> window;
     std::optional<Gui> gui;
-    std::optional<TissueDrawer> tissue;  // goes before the window
+    std::optional<render::TissueDrawer> tissue;  // goes before the window
     bool ready = false;
-    double asked_s = 1e-9 * static_cast<double>(steady_ns());
+    double asked_s = 1e-9 * static_cast<double>(scene::steady_ns());
     double began_s = 0.0;
     double frame_s = 0.0;    // when a frame was built last
     double stirred_s = 0.0;  // when anything came last
     double first_frame_s = 0.0;
-    std::vector<Sample> samples;
+    std::vector<platform::Sample> samples;
 };
 
-Live::Live(const RunOptions& options, TrialKeeper* keeper) : impl_(std::make_unique<Impl>(options, keeper)) {}
+Live::Live(const RunOptions& options, session::TrialKeeper* keeper) : impl_(std::make_unique<Impl>(options, keeper)) {}
 Live::~Live() = default;
 
 bool Live::ready() const { return impl_->ready; }
@@ -353,7 +353,7 @@ bool Live::turn(Draw draw) {
     if (now_s + early_s < it.next_frame_s() && it.app.frames > 0) return true;
     show(*it.window, it.app, *it.tissue, *it.gui, now_s - it.frame_s);  // 4. show
     it.frame_s = now_s;
-    if (it.app.frames == 1) it.first_frame_s = 1e-9 * static_cast<double>(steady_ns()) - it.asked_s;
+    if (it.app.frames == 1) it.first_frame_s = 1e-9 * static_cast<double>(scene::steady_ns()) - it.asked_s;
     return true;
 }
 
@@ -364,10 +364,10 @@ void Live::out_of_sight(bool hidden) {
     it.app.on_screen.content = 0;
     const bool between = it.app.screens.study && it.app.screens.screen != Screen::trial;
     if (it.app.trace || it.app.session.trial.finished || it.app.begin_waits || between) return;
-    Sample sample;
+    platform::Sample sample;
     sample.t_host_s = now_of(it.app, *it.window);
-    sample.phase = Phase::ui;
-    sample.action = hidden ? Action::hidden : Action::shown;
+    sample.phase = platform::Phase::ui;
+    sample.action = hidden ? platform::Action::hidden : platform::Action::shown;
     take(sample, it.app);
     if (!hidden || it.app.keeper == nullptr || !it.app.session.files) return;
     if (it.app.session.log) it.app.session.log->flush();
@@ -381,8 +381,8 @@ void Live::renew_drawing() {
     impl_->stirred_s = impl_->window->now_s();
 }
 
-Json Live::report() const {
-    Json result = result_of(impl_->app);
+files::Json Live::report() const {
+    files::Json result = result_of(impl_->app);
     result["overflow"] = impl_->gui->overflow();
     if (impl_->app.screens.study) result["study"] = study_json(impl_->app);
     return result;
@@ -391,11 +391,11 @@ Json Live::report() const {
 std::optional<Gui::TextField> Live::text_field() const { return impl_->gui->text_field(); }
 void Live::type_instead(const std::string& text) { impl_->gui->type_instead(text); }
 
-Json Live::close() {
+files::Json Live::close() {
     Impl& it = *impl_;
     if (!it.app.options.screenshot.empty()) {
         it.app.on_screen.content = 0;
-        const Session& s = it.app.session;
+        const session::Session& s = it.app.session;
         draw_frame(s.scene, s.plan, s.trial, it.app.settings, now_of(it.app, *it.window), kFrame_s, *it.tissue, *it.gui, it.app.screens,
                    it.app.session.state, it.app.times, it.app.on_screen);
         save_screen(*it.window, it.app.options.screenshot);
@@ -403,7 +403,7 @@ Json Live::close() {
     if (it.app.screens.calibrate) stop_recording(*it.app.screens.calibrate);
     remember_window(*it.window, it.app);
     if (it.app.screens.study) return close_study(*it.gui, it.app);
-    Json result = result_of(it.app);
+    files::Json result = result_of(it.app);
     result["start_to_first_frame_s"] = it.first_frame_s;
     result["overflow"] = it.gui->overflow();
     const bool good = close_trial(it.app);
@@ -411,9 +411,9 @@ Json Live::close() {
     return result;
 }
 
-std::optional<Json> run_live(const RunOptions& options) {
-    if (!options.screenshot.empty()) check_output(options.screenshot, {options.scene, options.trace, options.protocol});
-    if (!options.log.empty()) check_output_folder(options.log);
+std::optional<files::Json> run_live(const RunOptions& options) {
+    if (!options.screenshot.empty()) files::check_output(options.screenshot, {options.scene, options.trace, options.protocol});
+    if (!options.log.empty()) files::check_output_folder(options.log);
     Live live(options);
     if (!live.ready()) return std::nullopt;
     while (live.turn(Live::Draw::when_due)) {
@@ -421,4 +421,4 @@ std::optional<Json> run_live(const RunOptions& options) {
     return live.close();
 }
 
-}  // namespace palpa
+}  // namespace palpa::app

@@ -10,7 +10,7 @@
 #include "session/keeper.h"
 #include "files/json.h"
 
-namespace palpa {
+namespace palpa::app {
 
 // `palpa run`, as typed.
 struct RunOptions {
@@ -37,7 +37,7 @@ struct RunOptions {
 class Live {
  public:
     // Throws InputError or std::runtime_error before there is anything to see. `keeper` outlives it, or is null.
-    explicit Live(const RunOptions& options, TrialKeeper* keeper = nullptr);
+    explicit Live(const RunOptions& options, session::TrialKeeper* keeper = nullptr);
     ~Live();
     Live(const Live&) = delete;
     Live& operator=(const Live&) = delete;
@@ -57,14 +57,14 @@ class Live {
     void type_instead(const std::string& text);
 
     void renew_drawing();  // the GL context was lost, and is back
-    Json report() const;   // as `run --json` so far
-    Json close();          // throws std::runtime_error if a file could not be written
+    files::Json report() const;   // as `run --json` so far
+    files::Json close();          // throws std::runtime_error if a file could not be written
  private:
     struct Impl;
     std::unique_ptr<Impl> impl_;
 };
 
 // Returns what `run --json` prints, or nothing if the window was closed before the tissue was ready. Throws InputError or std::runtime_error before the loop or after it.
-std::optional<Json> run_live(const RunOptions& options);
+std::optional<files::Json> run_live(const RunOptions& options);
 
-}  // namespace palpa
+}  // namespace palpa::app

@@ -15,7 +15,7 @@
 #include "platform/pressure.h"
 #include "platform/trace.h"
 
-namespace palpa {
+namespace palpa::app {
 
 // Everything that the app has open while its window is.
 struct App {
@@ -23,9 +23,9 @@ struct App {
     Settings settings;
     std::filesystem::path settings_path;  // empty: this run keeps none
     Screens screens;
-    Session session;
-    std::optional<Scene> unprepared;  // its tissue is computed once there is a window that can say so
-    std::optional<Trace> trace;  // replayed
+    session::Session session;
+    std::optional<scene::Scene> unprepared;  // its tissue is computed once there is a window that can say so
+    std::optional<platform::Trace> trace;  // replayed
     std::size_t next_row = 0;
     double trace_shift_s = 0.0;  // window's clock - trace's clock
     FrameTimes times;
@@ -34,11 +34,11 @@ struct App {
     double drawn_s = 0.0;        // window's clock, at the last frame that was drawn
     double devices_noted_s = -1e9;  // when devices were listed last
     bool save_waits = false;     // a picture of the next frame is wanted
-    PressureWatch pressure;
-    HoldPress hold;
+    platform::PressureWatch pressure;
+    platform::HoldPress hold;
     std::vector<double> waiting_s;  // host times of the samples that no frame has shown yet
     std::string stopped;            // why the trial cannot go on
-    TrialKeeper* keeper = nullptr;  // may be null
+    session::TrialKeeper* keeper = nullptr;  // may be null
     double parted_s = 0.0;          // when the keeper last had the trial so far
     bool begin_waits = false;       // for the keeper to have the last trial
     bool quit = false;
@@ -60,42 +60,42 @@ bool attempt(App& app, const Work& work) {
 
 // prepare_run.cpp
 void load(const RunOptions& options, App& app);  // everything that bad input can refuse, before a window is there
-void know_screen(const Window& window, App& app);  // how large the settings say that it is
-bool prepare_chosen(Window& window, Gui& gui, App& app);  // what load() left unprepared; false: the window was closed
+void know_screen(const platform::Window& window, App& app);  // how large the settings say that it is
+bool prepare_chosen(platform::Window& window, Gui& gui, App& app);  // what load() left unprepared; false: the window was closed
 
 // trials.cpp
-TraceInfo info_of(const App& app, const Window& window);
-double now_of(const App& app, const Window& window);  // of samples
+platform::TraceInfo info_of(const App& app, const platform::Window& window);
+double now_of(const App& app, const platform::Window& window);  // of samples
 double finger_offset_mm(const App& app);              // 0, or kFingerOffset_mm
-Json result_of(const App& app);                       // what `run --json` says so far
+files::Json result_of(const App& app);                       // what `run --json` says so far
 // A press belongs to the trial and the screen in which it began: it ends now, and what still comes of it is dropped.
-void end_presses(Window& window, App& app);
+void end_presses(platform::Window& window, App& app);
 // Ends the presses and the trial, then puts the tissue of `scene` under the hand. A trial begins on it with begin().
-void put_scene(Scene scene, Plan plan, Window& window, App& app);
+void put_scene(scene::Scene scene, scene::Plan plan, platform::Window& window, App& app);
 // False if the window was closed before the plan was ready; a tissue that has to be computed is, while the window shows how far.
-bool prepare(Window& window, Gui& gui, const Scene& scene, Plan& plan);
-void begin(const Window& window, const Gui& gui, App& app);     // a trial; throws InputError or std::runtime_error
-void begin_anew(Window& window, const Gui& gui, App& app);      // ends the one that goes on; waits for a keeper that is busy
-void begin_when_kept(Window& window, const Gui& gui, App& app);  // what begin_anew() left waiting
+bool prepare(platform::Window& window, Gui& gui, const scene::Scene& scene, scene::Plan& plan);
+void begin(const platform::Window& window, const Gui& gui, App& app);     // a trial; throws InputError or std::runtime_error
+void begin_anew(platform::Window& window, const Gui& gui, App& app);      // ends the one that goes on; waits for a keeper that is busy
+void begin_when_kept(platform::Window& window, const Gui& gui, App& app);  // what begin_anew() left waiting
 // Another scene or profile; whatever is wrong with it, the present one stays.
-void change_scene(Window& window, Gui& gui, const std::string& file, const std::string& profile, App& app);
+void change_scene(platform::Window& window, Gui& gui, const std::string& file, const std::string& profile, App& app);
 // The eight turns in an order that the seed decides, so that nobody learns where its nodules are. Begin a trial after it.
-void turn_tissue(Window& window, App& app);
-void turn_if_shown(Window& window, App& app);  // whoever has seen where the nodules are is tested on them somewhere else
+void turn_tissue(platform::Window& window, App& app);
+void turn_if_shown(platform::Window& window, App& app);  // whoever has seen where the nodules are is tested on them somewhere else
 bool marks_at_stake(const App& app);           // that nobody has scored yet, in a trial that goes on
 bool close_trial(App& app);  // its files whole on the disk, and with the keeper; false: app.stopped says why not
-void act(Action action, double now_s, App& app);
+void act(platform::Action action, double now_s, App& app);
 
 // device_notes.cpp
-void note_devices(const Window& window, App& app);  // into app.screens
+void note_devices(const platform::Window& window, App& app);  // into app.screens
 
 // study_trials.cpp: a study's trials instead of a scene that was chosen. `app.screens.study` is there.
 void load_study(const RunOptions& options, App& app);  // throws InputError or std::runtime_error
-void follow_study(Window& window, const Gui& gui, App& app);  // what a screen has led to, the end of a trial's time
+void follow_study(platform::Window& window, const Gui& gui, App& app);  // what a screen has led to, the end of a trial's time
 void finish_study_trial(App& app);
 double trial_ends_s(const App& app);  // at this time its limit ends the trial that goes on; infinity: never
-bool allowed(const Sample& sample, App& app);  // its condition names the device
-Json study_json(const App& app);               // how far it is
-Json close_study(const Gui& gui, App& app);    // throws std::runtime_error if the study had to stop
+bool allowed(const platform::Sample& sample, App& app);  // its condition names the device
+files::Json study_json(const App& app);               // how far it is
+files::Json close_study(const Gui& gui, App& app);    // throws std::runtime_error if the study had to stop
 
-}  // namespace palpa
+}  // namespace palpa::app

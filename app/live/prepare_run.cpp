@@ -7,7 +7,7 @@
 #include "app/live/live_app.h"
 #include "app/scene_choices.h"
 
-namespace palpa {
+namespace palpa::app {
 
 void load(const RunOptions& options, App& app) {
     app.options = options;
@@ -24,12 +24,12 @@ void load(const RunOptions& options, App& app) {
     app.screens.scenes = scene_choices();
     app.screens.profiles = profile_choices();
     if (!options.trace.empty()) {
-        app.trace = read_trace(options.trace);
+        app.trace = platform::read_trace(options.trace);
         app.settings.width_px = static_cast<int>(app.trace->info.screen_width_px);
         app.settings.height_px = static_cast<int>(app.trace->info.screen_height_px);
     }
     const bool own_choice = options.scene.empty() && !app.trace;  // a replay is the same for everybody
-    Scene scene;
+    scene::Scene scene;
     if (own_choice && !app.settings.scene.empty()) attempt(app, [&] { scene = load_scene(app.settings.scene); });
     if (scene.name.empty()) scene = load_scene(options.scene);
     if (own_choice && std::filesystem::exists(app.settings.profile)) scene.profile = app.settings.profile;
@@ -37,11 +37,11 @@ void load(const RunOptions& options, App& app) {
         app.unprepared = std::move(scene);
         return;
     }
-    Plan plan = make_plan(scene);
-    change_tissue(std::move(scene), std::move(plan), {}, app.session);
+    scene::Plan plan = scene::make_plan(scene);
+    session::change_tissue(std::move(scene), std::move(plan), {}, app.session);
 }
 
-void know_screen(const Window& window, App& app) {
+void know_screen(const platform::Window& window, App& app) {
     app.screens.screen_name = window.screen_name();
     const auto known = app.settings.px_per_mm.find(app.screens.screen_name);
     if (std::isfinite(window.touch_px_per_mm())) app.screens.card_px_per_mm = window.touch_px_per_mm();
@@ -51,19 +51,19 @@ void know_screen(const Window& window, App& app) {
 namespace {
 
 // False if the window was closed before the tissue was ready.
-bool prepare_first(Scene scene, Window& window, Gui& gui, App& app) {
-    Plan plan;
+bool prepare_first(scene::Scene scene, platform::Window& window, Gui& gui, App& app) {
+    scene::Plan plan;
     if (!prepare(window, gui, scene, plan)) return false;
-    change_tissue(std::move(scene), std::move(plan), screen_of(info_of(app, window)), app.session);
+    session::change_tissue(std::move(scene), std::move(plan), session::screen_of(info_of(app, window)), app.session);
     return true;
 }
 
 }  // namespace
 
 // A choice of last time that can no longer be prepared must not lock the person out.
-bool prepare_chosen(Window& window, Gui& gui, App& app) {
+bool prepare_chosen(platform::Window& window, Gui& gui, App& app) {
     if (!app.unprepared) return true;
-    const Scene scene = *std::exchange(app.unprepared, std::nullopt);
+    const scene::Scene scene = *std::exchange(app.unprepared, std::nullopt);
     const bool own_choice = app.options.scene.empty() && !app.trace && !app.settings.scene.empty();
     if (!own_choice) return prepare_first(scene, window, gui, app);
     bool ready = false;
@@ -71,4 +71,4 @@ bool prepare_chosen(Window& window, Gui& gui, App& app) {
     return prepare_first(load_scene(""), window, gui, app);
 }
 
-}  // namespace palpa
+}  // namespace palpa::app

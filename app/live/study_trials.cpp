@@ -12,23 +12,23 @@
 #include "app/study/study_run.h"
 #include "app/screens/words.h"
 
-namespace palpa {
+namespace palpa::app {
 namespace {
 
-void begin_study_trial(Window& window, const Gui& gui, App& app) {
+void begin_study_trial(platform::Window& window, const Gui& gui, App& app) {
     StudyRun& run = *app.screens.study;
     run.start_trial = false;
     try {
         const StudyScene& due = due_scene(run);
-        const PlannedTrial& trial = due_trial(run);
-        const bool known = trial.practice && run.protocol.task == TaskKind::find;
-        SessionFiles files = due_files(run);
+        const study::PlannedTrial& trial = due_trial(run);
+        const bool known = trial.practice && run.protocol.task == study::TaskKind::find;
+        session::SessionFiles files = due_files(run);
         files.finger_offset_mm = finger_offset_mm(app);
         put_scene(scene_of(due, trial), *due.plan, window, app);
         app.screens.note.clear();
-        begin_trial(files, info_of(app, window), known ? TrialMode::practice : TrialMode::test, app.session);
+        session::begin_trial(files, info_of(app, window), known ? session::TrialMode::practice : session::TrialMode::test, app.session);
         app.parted_s = 0.0;
-        take_sample(resize_sample(window, gui, app.settings, now_of(app, window)), app.session);
+        session::take_sample(resize_sample(window, gui, app.settings, now_of(app, window)), app.session);
         app.screens.screen = Screen::trial;
     } catch (const std::exception& error) {
         stop_study(error.what(), run);
@@ -42,7 +42,7 @@ bool is_device_here(const App& app) {
 
 // A trial that its device has left says nothing of the person: it is interrupted, and comes again.
 void interrupt_study_trial(double now_s, App& app) {
-    note_event("device_gone", now_s, app.session);
+    session::note_event("device_gone", now_s, app.session);
     app.screens.screen = Screen::study;
     app.screens.asked.reset();
     if (!close_trial(app)) return stop_study(app.stopped, *app.screens.study);
@@ -53,7 +53,7 @@ void interrupt_study_trial(double now_s, App& app) {
 void follow_keeper(App& app) {
     if (app.keeper == nullptr) return;
     StudyRun& run = *app.screens.study;
-    for (const RunFiles& typed : run.unkept_runs) app.keeper->keep(typed, true);
+    for (const study::RunFiles& typed : run.unkept_runs) app.keeper->keep(typed, true);
     run.unkept_runs.clear();
     if (run.unkept_answers) app.keeper->keep_answers(run.directory, run.code);
     run.unkept_answers = false;
@@ -70,15 +70,15 @@ void load_study(const RunOptions& options, App& app) {
     app.settings_path.clear();  // what a study fixes is nobody's choice to keep
     const bool tablet = app.keeper != nullptr;
     // on a tablet a code that has finished is refused on the screen: there is no command line to give another one
-    const auto run = std::make_shared<StudyRun>(open_study_run(read_protocol(options.protocol), options.log, tablet ? "" : options.participant));
+    const auto run = std::make_shared<StudyRun>(open_study_run(study::read_protocol(options.protocol), options.log, tablet ? "" : options.participant));
     run->on_tablet = tablet;
     run->first_run = options.first_run;
     if (tablet && !options.participant.empty()) enter_code(options.participant, *run);
     app.screens.study = run;
     app.screens.screen = Screen::study;
-    Scene scene = load_scene("");  // behind the first screens
-    Plan plan = make_plan(scene);
-    change_tissue(std::move(scene), std::move(plan), {}, app.session);
+    scene::Scene scene = load_scene("");  // behind the first screens
+    scene::Plan plan = scene::make_plan(scene);
+    session::change_tissue(std::move(scene), std::move(plan), {}, app.session);
 }
 
 // Nothing is revealed; the next step comes once the trial is on the disk.
@@ -96,7 +96,7 @@ double trial_ends_s(const App& app) {
     return limit_s > 0.0 ? app.session.trial.began_s + limit_s : kNever_s;
 }
 
-void follow_study(Window& window, const Gui& gui, App& app) {
+void follow_study(platform::Window& window, const Gui& gui, App& app) {
     StudyRun& run = *app.screens.study;
     follow_keeper(app);
     if (run.start_trial && !run.keeping) {
@@ -110,30 +110,30 @@ void follow_study(Window& window, const Gui& gui, App& app) {
     if (run.step == StudyStep::device) run.device_here = is_device_here(app);
     if (app.screens.screen != Screen::trial) return;
     if (!is_device_here(app)) return interrupt_study_trial(now_of(app, window), app);
-    if (now_of(app, window) >= trial_ends_s(app)) act(Action::finish, now_of(app, window), app);
+    if (now_of(app, window) >= trial_ends_s(app)) act(platform::Action::finish, now_of(app, window), app);
 }
 
-bool allowed(const Sample& sample, App& app) {
-    const Modality modality = due_condition(*app.screens.study).modality;
-    if (sample.phase == Phase::ui || tool_allowed(modality, sample.tool)) return true;
-    if (sample.phase == Phase::down) app.screens.note = words::filled(words::kDoneWith, {name_of(modality)});
+bool allowed(const platform::Sample& sample, App& app) {
+    const study::Modality modality = due_condition(*app.screens.study).modality;
+    if (sample.phase == platform::Phase::ui || tool_allowed(modality, sample.tool)) return true;
+    if (sample.phase == platform::Phase::down) app.screens.note = words::filled(words::kDoneWith, {name_of(modality)});
     return false;
 }
 
-Json study_json(const App& app) {
+files::Json study_json(const App& app) {
     const StudyRun& run = *app.screens.study;
-    return Json{{"participant", run.code}, {"step", name_of(run.step)}, {"finished", run.progress.finished.size()},
+    return files::Json{{"participant", run.code}, {"step", name_of(run.step)}, {"finished", run.progress.finished.size()},
                 {"of", run.progress.plan.trials.size()}};
 }
 
 // A trial that goes on is an interrupted one.
-Json close_study(const Gui& gui, App& app) {
+files::Json close_study(const Gui& gui, App& app) {
     const StudyRun& run = *app.screens.study;
     if (app.screens.screen == Screen::trial && !close_trial(app)) throw std::runtime_error(app.stopped);
     if (!run.stopped.empty()) throw std::runtime_error(run.stopped);
-    Json json = study_json(app);
+    files::Json json = study_json(app);
     json["overflow"] = gui.overflow();
     return json;
 }
 
-}  // namespace palpa
+}  // namespace palpa::app

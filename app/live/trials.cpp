@@ -14,20 +14,20 @@
 #include "app/screens/words.h"
 #include "render/gl.h"
 
-namespace palpa {
+namespace palpa::app {
 namespace {
 
-std::string device_names(const Window& window) {
+std::string device_names(const platform::Window& window) {
     std::string names;
-    for (const PointerDevice& device : window.devices()) names += (names.empty() ? "" : ", ") + device.name;
+    for (const platform::PointerDevice& device : window.devices()) names += (names.empty() ? "" : ", ") + device.name;
     return names.empty() ? "mouse" : names;
 }
 
 }  // namespace
 
-TraceInfo info_of(const App& app, const Window& window) {
+platform::TraceInfo info_of(const App& app, const platform::Window& window) {
     if (app.trace) return app.trace->info;
-    TraceInfo info;
+    platform::TraceInfo info;
     info.screen_width_px = window.width_px();
     info.screen_height_px = window.height_px();
     if (std::isfinite(app.screens.px_per_mm)) {
@@ -40,38 +40,38 @@ TraceInfo info_of(const App& app, const Window& window) {
 
 double finger_offset_mm(const App& app) { return app.settings.above_finger ? static_cast<double>(kFingerOffset_mm) : 0.0; }
 
-double now_of(const App& app, const Window& window) { return window.now_s() - app.trace_shift_s; }
+double now_of(const App& app, const platform::Window& window) { return window.now_s() - app.trace_shift_s; }
 
-Json result_of(const App& app) {
-    const Session& s = app.session;
-    Json result = run_json(s.scene, s.plan, s.state, app.frames, app.times.latency);
-    const auto ms = [](const Meter& meter, double q) { return 1e-6 * meter.quantile_ns(q); };
+files::Json result_of(const App& app) {
+    const session::Session& s = app.session;
+    files::Json result = session::run_json(s.scene, s.plan, s.state, app.frames, app.times.latency);
+    const auto ms = [](const scene::Meter& meter, double q) { return 1e-6 * meter.quantile_ns(q); };
     result["frame_cpu_ms"] = {{"p50", ms(app.times.cpu, 0.5)}, {"p99", ms(app.times.cpu, 0.99)}};
     result["frame_gl_ms"] = {{"p50", ms(app.times.gl, 0.5)}, {"p99", ms(app.times.gl, 0.99)}};
     result["latency_besides_drawing_ms"] = {{"p50", ms(app.times.ready, 0.5)}, {"p99", ms(app.times.ready, 0.99)}};
     result["problems"] = app.screens.problems;
     if (app.screens.check) result["device_check"] = check_json(*app.screens.check);
     result["trials"] = s.finished;
-    if (!s.trial.finished) result["trials"].push_back(trial_json(s.plan, s.trial));
+    if (!s.trial.finished) result["trials"].push_back(session::trial_json(s.plan, s.trial));
     return result;
 }
 
-void end_presses(Window& window, App& app) {
+void end_presses(platform::Window& window, App& app) {
     window.end_presses();
     app.hold.held.clear();
-    const State& state = app.session.state;
+    const scene::State& state = app.session.state;
     if (!state.pointer) return;
-    Sample end;
+    platform::Sample end;
     end.t_host_s = now_of(app, window);
     end.pointer_id = *state.pointer;
     end.tool = state.pointer_tool;
-    end.phase = Phase::cancel;
-    end.x_px = end.y_px = kMissing;  // where it was
-    take_sample(end, app.session);
+    end.phase = platform::Phase::cancel;
+    end.x_px = end.y_px = platform::kMissing;  // where it was
+    session::take_sample(end, app.session);
 }
 
-void begin(const Window& window, const Gui& gui, App& app) {
-    const TrialMode mode = app.settings.test_mode ? TrialMode::test : TrialMode::practice;
+void begin(const platform::Window& window, const Gui& gui, App& app) {
+    const session::TrialMode mode = app.settings.test_mode ? session::TrialMode::test : session::TrialMode::practice;
     app.screens.screen = Screen::trial;
     app.screens.maps.reset();
     app.screens.menu = false;
@@ -79,31 +79,31 @@ void begin(const Window& window, const Gui& gui, App& app) {
     app.screens.asked.reset();
     app.stopped.clear();
     app.begin_waits = false;
-    SessionFiles files{app.options.log, app.options.participant, app.options.record};
+    session::SessionFiles files{app.options.log, app.options.participant, app.options.record};
     files.first_run = app.options.first_run;
     files.finger_offset_mm = finger_offset_mm(app);
-    begin_trial(files, info_of(app, window), mode, app.session);
-    if (!app.trace) take_sample(resize_sample(window, gui, app.settings, now_of(app, window)), app.session);
+    session::begin_trial(files, info_of(app, window), mode, app.session);
+    if (!app.trace) session::take_sample(resize_sample(window, gui, app.settings, now_of(app, window)), app.session);
 }
 
 bool close_trial(App& app) {
     const std::string where = !app.options.log.empty() ? app.options.log : app.options.record;
-    const std::optional<RunFiles> files = app.session.files;
-    const bool good = close_files(result_of(app), app.session);
+    const std::optional<study::RunFiles> files = app.session.files;
+    const bool good = session::close_files(result_of(app), app.session);
     if (app.keeper != nullptr && files) app.keeper->keep(*files, true);
     if (good) return true;
     app.stopped = words::filled(words::kCannotBeWritten, {where});
     return false;
 }
 
-void put_scene(Scene scene, Plan plan, Window& window, App& app) {
+void put_scene(scene::Scene scene, scene::Plan plan, platform::Window& window, App& app) {
     end_presses(window, app);
     if (!close_trial(app)) app.screens.problems.push_back(app.stopped);
-    change_tissue(std::move(scene), std::move(plan), screen_of(info_of(app, window)), app.session);
+    session::change_tissue(std::move(scene), std::move(plan), session::screen_of(info_of(app, window)), app.session);
     if (app.screens.screen == Screen::reveal) app.screens.screen = Screen::trial;  // what it tells is of the tissue before
 }
 
-void begin_anew(Window& window, const Gui& gui, App& app) {
+void begin_anew(platform::Window& window, const Gui& gui, App& app) {
     end_presses(window, app);
     if (!close_trial(app)) app.screens.problems.push_back(app.stopped);
     if (app.keeper != nullptr && !app.keeper->ready()) {
@@ -113,7 +113,7 @@ void begin_anew(Window& window, const Gui& gui, App& app) {
     if (!attempt(app, [&] { begin(window, gui, app); })) app.stopped = app.screens.problems.back();
 }
 
-void begin_when_kept(Window& window, const Gui& gui, App& app) {
+void begin_when_kept(platform::Window& window, const Gui& gui, App& app) {
     if (app.keeper == nullptr) return;
     for (std::string problem = app.keeper->problem(); !problem.empty(); problem = app.keeper->problem()) {
         app.screens.problems.push_back(problem);
@@ -121,20 +121,20 @@ void begin_when_kept(Window& window, const Gui& gui, App& app) {
     if (app.begin_waits && app.keeper->ready()) begin_anew(window, gui, app);
 }
 
-bool prepare(Window& window, Gui& gui, const Scene& scene, Plan& plan) {
+bool prepare(platform::Window& window, Gui& gui, const scene::Scene& scene, scene::Plan& plan) {
     if (!scene.linear) {
-        plan = make_plan(scene);
+        plan = scene::make_plan(scene);
         return true;
     }
-    PlanInProgress work(scene);
-    std::vector<Sample> ignored;
+    session::PlanInProgress work(scene);
+    std::vector<platform::Sample> ignored;
     while (!work.wait(kFrame_s)) {
         window.poll(0.0, ignored);
         if (window.close_requested()) return false;
         gui.begin_frame(kFrame_s, true);
         draw_progress(words::kPreparing, work.share());
         gui.end_frame();
-        clear_screen(window.width_px(), window.height_px());
+        render::clear_screen(window.width_px(), window.height_px());
         gui.draw();
         window.present();
     }
@@ -142,10 +142,10 @@ bool prepare(Window& window, Gui& gui, const Scene& scene, Plan& plan) {
     return true;
 }
 
-void change_scene(Window& window, Gui& gui, const std::string& file, const std::string& profile, App& app) {
+void change_scene(platform::Window& window, Gui& gui, const std::string& file, const std::string& profile, App& app) {
     end_presses(window, app);  // what comes while the tissue is prepared reaches none
-    Scene scene;
-    Plan plan;
+    scene::Scene scene;
+    scene::Plan plan;
     bool ready = false;
     const bool good = attempt(app, [&] {
         scene = load_scene(file);
@@ -157,9 +157,9 @@ void change_scene(Window& window, Gui& gui, const std::string& file, const std::
     begin_anew(window, gui, app);
 }
 
-void turn_tissue(Window& window, App& app) {
-    Scene turned = app.session.scene;
-    Mapping& mapping = turned.mapping;
+void turn_tissue(platform::Window& window, App& app) {
+    scene::Scene turned = app.session.scene;
+    scene::Mapping& mapping = turned.mapping;
     const int now = mapping.rotate_deg / 90 + (mapping.flip ? 4 : 0);
     constexpr int kSteps[] = {3, 5};  // both reach all eight before any comes again
     const int next = (now + kSteps[turned.seed % 2]) % 8;
@@ -168,37 +168,37 @@ void turn_tissue(Window& window, App& app) {
     put_scene(std::move(turned), app.session.plan, window, app);
 }
 
-void turn_if_shown(Window& window, App& app) {
+void turn_if_shown(platform::Window& window, App& app) {
     if (may_show_maps(app.session.trial)) turn_tissue(window, app);
 }
 
 bool marks_at_stake(const App& app) {
     const bool between = app.screens.study && app.screens.screen != Screen::trial;
-    const Trial& trial = app.session.trial;
+    const session::Trial& trial = app.session.trial;
     return !app.trace && !between && app.stopped.empty() && !trial.finished && !trial.marks.empty();
 }
 
-void act(Action action, double now_s, App& app) {
-    const bool choice = app.screens.study && app.screens.study->protocol.task == TaskKind::choice;
-    if (choice && action != Action::finish) return;  // there is nothing to mark
+void act(platform::Action action, double now_s, App& app) {
+    const bool choice = app.screens.study && app.screens.study->protocol.task == study::TaskKind::choice;
+    if (choice && action != platform::Action::finish) return;  // there is nothing to mark
     if (app.begin_waits) return;                     // there is no trial to act on yet
-    Sample sample;
+    platform::Sample sample;
     sample.t_host_s = now_s;
-    sample.phase = Phase::ui;
+    sample.phase = platform::Phase::ui;
     sample.action = action;
-    if (action == Action::mark) {
+    if (action == platform::Action::mark) {
         if (!app.session.trial.last_px) return;
         sample.x_px = app.session.trial.last_px->x();
         sample.y_px = app.session.trial.last_px->y();
     }
-    take_sample(sample, app.session);
+    session::take_sample(sample, app.session);
     if (!app.session.trial.finished) return;
     if (app.screens.study) return finish_study_trial(app);
-    app.screens.debrief = debrief(app.session.plan, app.session.trial);
+    app.screens.debrief = session::debrief(app.session.plan, app.session.trial);
     app.screens.screen = Screen::reveal;
     app.screens.note.clear();
     app.screens.menu = false;
     if (!close_trial(app)) app.screens.problems.push_back(app.stopped);
 }
 
-}  // namespace palpa
+}  // namespace palpa::app

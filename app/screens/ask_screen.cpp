@@ -6,7 +6,7 @@
 #include "app/screens/screens.h"
 #include "app/screens/words.h"
 
-namespace palpa {
+namespace palpa::app {
 namespace {
 
 bool ends_trial(const Wishes& wishes) {
@@ -36,9 +36,9 @@ void draw_ask(const Shown& shown, Gui& gui, Screens& screens, Wishes& wishes) {
     const std::size_t marks = shown.trial.marks.size();
     ImGui::TextUnformatted(words::kLoseMarks);
     paragraph(marks == 1 ? words::kLoseMark : words::filled(words::kLoseManyMarks, {std::to_string(marks)}));
-    const bool stay = big_button(words::kGoOnWithTrial, words::kEscape, {0.0f, kMark_mm, true, false}, gui) || gui.pressed(key::escape);
-    const bool end = big_button(words::kEndTrial, words::kEnter, {0.0f, kTarget_mm, true, false}, gui) || gui.pressed(key::enter) ||
-                     gui.pressed(key::pad_enter);
+    const bool stay = big_button(words::kGoOnWithTrial, words::kEscape, {0.0f, kMark_mm, true, false}, gui) || gui.pressed(platform::key::escape);
+    const bool end = big_button(words::kEndTrial, words::kEnter, {0.0f, kTarget_mm, true, false}, gui) || gui.pressed(platform::key::enter) ||
+                     gui.pressed(platform::key::pad_enter);
     end_panel("ask", gui);
     if (!stay && !end) return;
     if (!stay) {
@@ -48,4 +48,4 @@ void draw_ask(const Shown& shown, Gui& gui, Screens& screens, Wishes& wishes) {
     screens.asked.reset();
 }
 
-}  // namespace palpa
+}  // namespace palpa::app

@@ -11,12 +11,12 @@
 #include "calibration/profile_file.h"
 #include "files/input_error.h"
 
-namespace palpa {
+namespace palpa::app {
 namespace {
 
 std::filesystem::path session_folder(const CalibrateForm& form) {
     const std::filesystem::path folder = user_folder();
-    if (folder.empty()) throw InputError("HOME: found nothing, expected a folder to keep the calibration in");
+    if (folder.empty()) throw files::InputError("HOME: found nothing, expected a folder to keep the calibration in");
     return folder / "calibrations" / form.name;
 }
 
@@ -25,11 +25,11 @@ bool plain(const char* name) {
     return !text.empty() && std::all_of(text.begin(), text.end(), [](unsigned char c) { return std::isalnum(c) != 0 || c == '-' || c == '_'; });
 }
 
-RecordArguments arguments_of(const CalibrateForm& form) {
-    if (!plain(form.name)) throw bad_input("name", "", shown(form.name), "letters, digits, - and _");
-    RecordArguments arguments;
+calibration::RecordArguments arguments_of(const CalibrateForm& form) {
+    if (!plain(form.name)) throw files::bad_input("name", "", files::shown(form.name), "letters, digits, - and _");
+    calibration::RecordArguments arguments;
     arguments.folder = session_folder(form).string();
-    arguments.resume = std::filesystem::exists(points_file(arguments));
+    arguments.resume = std::filesystem::exists(calibration::points_file(arguments));
     arguments.sensor = form.kind == 0 ? "typed" : form.kind == 1 ? "netft:" + std::string(form.address) : "serial:" + std::string(form.port);
     arguments.counts_per_N = form.counts_per_N;
     arguments.N_per_count = form.N_per_count;
@@ -65,17 +65,17 @@ std::string today() {
 
 void keep_profile(CalibrateForm& form) {
     attempt(form, [&] {
-        close_recording(*form.recording);
-        CalibrateOptions options;
+        calibration::close_recording(*form.recording);
+        calibration::CalibrateOptions options;
         options.range = form.recording->arguments.options.range;
-        CalibrationRows rows = read_points(points_file(form.recording->arguments), {});
-        Calibration calibration = calibrate(rows, options);
+        calibration::CalibrationRows rows = calibration::read_points(calibration::points_file(form.recording->arguments), {});
+        calibration::Calibration calibration = calibration::calibrate(rows, options);
         calibration.profile.device.pen = form.name;
         calibration.profile.device.date = today();
         const std::filesystem::path file = free_profile(form);
-        const Json quality{{"median_relative_error", calibration.median_relative_error}, {"n_points", calibration.n_points},
+        const files::Json quality{{"median_relative_error", calibration.median_relative_error}, {"n_points", calibration.n_points},
                            {"warnings", calibration.warnings}};
-        write_profile(calibration.profile, quality, file);
+        calibration::write_profile(calibration.profile, quality, file);
         form.guide.note = words::filled(words::kKeptAs, {file.string()});
         for (const std::string& warning : calibration.warnings) form.guide.note += "\n! " + warning;
         form.recording.reset();
@@ -101,21 +101,21 @@ void draw_frame_of(const Plot& plot, const char* title, const std::string& top, 
     draw.AddText(ImVec2(plot.area.x0 + 4.0f, plot.area.y1 - 1.1f * ImGui::GetFontSize()), kPale, bottom.c_str());
 }
 
-double share_of(const RecordOptions& options, double level) {
+double share_of(const calibration::RecordOptions& options, double level) {
     return (level - options.range.lowest) / (options.range.highest - options.range.lowest);
 }
 
 // Points and curve above, what is left of the points without the curve below; the band to press next is tinted.
-void draw_plots(const Recording& recording, const Guide& guide, const PanelArea& area, const Gui& gui, ImDrawList& draw) {
-    const RecordOptions& options = recording.arguments.options;
-    const RecordSession& session = recording.session;
+void draw_plots(const calibration::Recording& recording, const Guide& guide, const PanelArea& area, const Gui& gui, ImDrawList& draw) {
+    const calibration::RecordOptions& options = recording.arguments.options;
+    const calibration::RecordSession& session = recording.session;
     const float gap_px = 3.0f * gui.mm() + 1.3f * ImGui::GetFontSize();
     const float split = area.y0 + 0.68f * area.height();
     Plot curve{{area.x0 + 4 * gui.mm(), area.y0 + gap_px, area.x1 - 4 * gui.mm(), split}, 1.0, 0.0, 0.5};
     const double now_N = session.forces.empty() ? 0.0 : session.forces.back().value;
-    for (const CapturedPoint& point : session.points) curve.most_y = std::max(curve.most_y, 1.1 * point.force_N);
+    for (const calibration::CapturedPoint& point : session.points) curve.most_y = std::max(curve.most_y, 1.1 * point.force_N);
     curve.most_y = std::max(curve.most_y, 1.1 * now_N);
-    const int band = target_band(options, session, recording.knowledge.band_error);
+    const int band = calibration::target_band(options, session, recording.knowledge.band_error);
     if (band >= 0) {
         const ImVec2 low = curve.at(static_cast<double>(band) / options.bands, 0.0);
         const ImVec2 high = curve.at(static_cast<double>(band + 1) / options.bands, curve.most_y);
@@ -126,18 +126,18 @@ void draw_plots(const Recording& recording, const Guide& guide, const PanelArea&
     draw_frame_of(rest, words::kResiduals, "+20 %", "-20 %", draw);
     draw.AddLine(rest.at(0.0, 0.0), rest.at(1.0, 0.0), kPale);
     const float dot_px = 0.6f * gui.mm();
-    for (const CapturedPoint& point : session.points) {
+    for (const calibration::CapturedPoint& point : session.points) {
         const double x = share_of(options, point.level);
         draw.AddCircleFilled(curve.at(x, point.force_N), dot_px, kInk);
         if (!guide.fit) continue;
-        const double curve_N = value_N(guide.fit->profile.curve, point.level);
+        const double curve_N = calibration::value_N(guide.fit->profile.curve, point.level);
         draw.AddCircleFilled(rest.at(x, (point.force_N - curve_N) / std::max(curve_N, 1e-6)), dot_px, kInk);
     }
     if (guide.fit) {
         constexpr int kSteps = 100;
         const auto at = [&](int i) {
             const double level = options.range.lowest + (options.range.highest - options.range.lowest) * i / kSteps;
-            return curve.at(static_cast<double>(i) / kSteps, value_N(guide.fit->profile.curve, level));
+            return curve.at(static_cast<double>(i) / kSteps, calibration::value_N(guide.fit->profile.curve, level));
         };
         for (int i = 0; i < kSteps; ++i) draw.AddLine(at(i), at(i + 1), kLag, 0.4f * gui.mm());
     }
@@ -146,13 +146,13 @@ void draw_plots(const Recording& recording, const Guide& guide, const PanelArea&
     }
 }
 
-void draw_typed(Recording& recording, const Gui& gui, Guide& guide) {
+void draw_typed(calibration::Recording& recording, const Gui& gui, Guide& guide) {
     paragraph(words::kHoldStill);
     ImGui::SetNextItemWidth(share_of_line_px(2));
     ImGui::InputDouble(words::kGramForce, &guide.shown_gf, 0.0, 0.0, "%.2f");
     if (!big_button(words::kTake, "", {}, gui)) return;
     const bool good = std::isfinite(guide.shown_gf) && guide.shown_gf >= 0.0 && guide.shown_gf < 1e5;
-    guide.note = good && take_typed_N(guide.shown_gf * kN_per_gf, recording) ? words::kTaken : words::kNotTaken;
+    guide.note = good && calibration::take_typed_N(guide.shown_gf * calibration::kN_per_gf, recording) ? words::kTaken : words::kNotTaken;
 }
 
 void form_lines(Gui& gui, CalibrateForm& form) {
@@ -180,35 +180,35 @@ void form_lines(Gui& gui, CalibrateForm& form) {
 
 }  // namespace
 
-void refresh_fit(const Recording& recording, Guide& guide) {
-    const std::vector<CapturedPoint>& points = recording.session.points;
+void refresh_fit(const calibration::Recording& recording, Guide& guide) {
+    const std::vector<calibration::CapturedPoint>& points = recording.session.points;
     if (points.size() == guide.fitted) return;
     guide.fitted = points.size();
     guide.fit.reset();
     try {
-        CalibrateOptions options;
+        calibration::CalibrateOptions options;
         options.range = recording.arguments.options.range;
         options.bootstrap_fits = 0;
-        options.model = CurveModel::monotone_cubic;  // choosing among all takes longer than a frame
-        guide.fit = calibrate(rows_of(points), options);
-    } catch (const InputError&) {
+        options.model = calibration::CurveModel::monotone_cubic;  // choosing among all takes longer than a frame
+        guide.fit = calibration::calibrate(calibration::rows_of(points), options);
+    } catch (const files::InputError&) {
         // too few points for a curve as yet
     }
 }
 
-GuideWishes draw_guide(Recording& recording, Gui& gui, Guide& guide) {
+GuideWishes draw_guide(calibration::Recording& recording, Gui& gui, Guide& guide) {
     const WindowSize window = gui.size_px();
     const float panel_px = std::min(0.5f * window.width, 76.0f * gui.mm());
     GuideWishes wishes;
     begin_panel("guide", {0.0f, 0.0f, panel_px, window.height}, gui);
     ImGui::SetWindowFontScale(1.5f);
-    ImGui::TextWrapped("%s", advice(recording).c_str());
+    ImGui::TextWrapped("%s", calibration::advice(recording).c_str());
     ImGui::SetWindowFontScale(1.0f);
     const float column_px = 26.0f * gui.mm();
-    const RecordSession& session = recording.session;
+    const calibration::RecordSession& session = recording.session;
     const double level = session.levels.empty() ? 0.0 : share_of(recording.arguments.options, session.levels.back().value);
     value_line(words::kPressure, fixed(100.0 * level, 1) + " %", column_px);
-    value_line(words::kForce, fixed(session.forces.empty() ? kMissing : session.forces.back().value, 3) + " N", column_px);
+    value_line(words::kForce, fixed(session.forces.empty() ? platform::kMissing : session.forces.back().value, 3) + " N", column_px);
     value_line(words::kPoints, std::to_string(session.points.size()), column_px);
     value_line(words::kPress, std::to_string(session.repeat + 1), column_px);
     if (!recording.sensor) draw_typed(recording, gui, guide);
@@ -216,7 +216,7 @@ GuideWishes draw_guide(Recording& recording, Gui& gui, Guide& guide) {
     if (big_button(words::kStopRecording, "", {}, gui)) wishes.stop = true;
     ImGui::BeginChild("state", ImVec2(0.0f, 0.0f), false, ImGuiWindowFlags_NavFlattened);
     if (recording.sensor) {
-        const SensorHealth health = recording.sensor->health();
+        const devices::SensorHealth health = recording.sensor->health();
         paragraph(words::filled(words::kSensorHealth, {recording.sensor->name(), std::to_string(health.received), std::to_string(health.lost),
                                                        std::to_string(health.duplicate), std::to_string(health.reordered), std::to_string(health.stalls)}));
         if (recording.silent) warning_paragraph(words::kSensorStopped);
@@ -254,7 +254,7 @@ void draw_calibrate_screen(const Shown& shown, Gui& gui, CalibrateForm& form, Wi
     if (big_button(words::kStart, "", {0.0f, kMark_mm, true, false}, gui)) {
         form.problem.clear();
         form.guide = {};
-        attempt(form, [&] { form.recording = open_recording(arguments_of(form)); });
+        attempt(form, [&] { form.recording = calibration::open_recording(arguments_of(form)); });
     }
     if (!form.problem.empty()) warning_paragraph(form.problem);
     if (!form.guide.note.empty()) ImGui::TextWrapped("%s", form.guide.note.c_str());
@@ -262,10 +262,10 @@ void draw_calibrate_screen(const Shown& shown, Gui& gui, CalibrateForm& form, Wi
     end_panel("calibrate", gui);
 }
 
-void step_calibrate(const std::vector<Sample>& samples, CalibrateForm& form) {
+void step_calibrate(const std::vector<platform::Sample>& samples, CalibrateForm& form) {
     if (!form.recording) return;
     try {
-        step(samples, *form.recording);
+        calibration::step(samples, *form.recording);
     } catch (const std::exception& error) {
         form.problem = error.what();
         stop_recording(form);
@@ -274,9 +274,9 @@ void step_calibrate(const std::vector<Sample>& samples, CalibrateForm& form) {
 
 void stop_recording(CalibrateForm& form) {
     if (!form.recording) return;
-    attempt(form, [&] { close_recording(*form.recording); });
+    attempt(form, [&] { calibration::close_recording(*form.recording); });
     form.guide.note = words::filled(words::kPointsIn, {std::to_string(form.recording->session.points.size()), form.recording->arguments.folder});
     form.recording.reset();
 }
 
-}  // namespace palpa
+}  // namespace palpa::app

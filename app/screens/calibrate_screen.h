@@ -12,11 +12,11 @@
 #include "app/screens/screens.h"
 #include "calibration/calibrate.h"
 
-namespace palpa {
+namespace palpa::app {
 
 // What the guide has worked out for a recording, and the number that is typed for a scale.
 struct Guide {
-    std::optional<Calibration> fit;  // through the points so far, without intervals
+    std::optional<calibration::Calibration> fit;  // through the points so far, without intervals
     std::size_t fitted = 0;          // points that it was made from
     double shown_gf = 0.0;           // what the scale shows
     std::string note;
@@ -28,9 +28,9 @@ struct GuideWishes {
 };
 
 // Fits again when points have come.
-void refresh_fit(const Recording& recording, Guide& guide);
+void refresh_fit(const calibration::Recording& recording, Guide& guide);
 
-GuideWishes draw_guide(Recording& recording, Gui& gui, Guide& guide);
+GuideWishes draw_guide(calibration::Recording& recording, Gui& gui, Guide& guide);
 
 struct CalibrateForm {
     int kind = 0;                     // 0 a scale, typed; 1 Net F/T; 2 load cell on a serial port
@@ -39,9 +39,9 @@ struct CalibrateForm {
     double counts_per_N = 1e6;
     double N_per_count = 1e-5;
     char name[64] = "my-pen";         // of the profile
-    std::unique_ptr<Recording> recording;
+    std::unique_ptr<calibration::Recording> recording;
     Guide guide;
     std::string problem;
 };
 
-}  // namespace palpa
+}  // namespace palpa::app

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <cstring>
 
-namespace palpa {
+namespace palpa::app {
 
 // Takes `size` bytes more into `hash`, eight at a time: 100 KB of triangles a frame cost tens of microseconds.
 inline std::uint64_t hash_more(std::uint64_t hash, const void* data, std::size_t size) {
@@ -18,4 +18,4 @@ inline std::uint64_t hash_more(std::uint64_t hash, const void* data, std::size_t
     return hash;
 }
 
-}  // namespace palpa
+}  // namespace palpa::app

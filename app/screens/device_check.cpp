@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace palpa {
+namespace palpa::app {
 namespace {
 
 constexpr double kShortestClock_s = 4.0;
@@ -15,7 +15,7 @@ void widen(double value, Range& range) {
 }
 
 // Counts are told apart as they are; a pressure without counts in 65535 steps.
-void note_pressure(const Sample& sample, ToolCheck& tool) {
+void note_pressure(const platform::Sample& sample, ToolCheck& tool) {
     widen(sample.pressure, tool.pressure);
     widen(sample.pressure_raw, tool.pressure_raw);
     constexpr double kLast = ToolCheck::kMostValues - 1.0;
@@ -24,7 +24,7 @@ void note_pressure(const Sample& sample, ToolCheck& tool) {
     if (std::isfinite(step)) tool.values.set(static_cast<std::size_t>(std::clamp(std::round(step), 0.0, kLast)));
 }
 
-void fit(const Sample& sample, ClockFit& clock) {
+void fit(const platform::Sample& sample, ClockFit& clock) {
     if (std::isnan(sample.t_device_s)) return;
     if (clock.count == 0) {
         clock.first_host_s = sample.t_host_s;
@@ -54,7 +54,7 @@ PointerTime& slot_of(std::int64_t pointer_id, DeviceCheck& check) {
     return *quiet;
 }
 
-void note_gap(const Sample& sample, PointerTime& pointer, ToolCheck& tool) {
+void note_gap(const platform::Sample& sample, PointerTime& pointer, ToolCheck& tool) {
     if (!pointer.used || pointer.t_host_s != sample.t_host_s) ++tool.deliveries;
     const double delay_s = sample.t_host_s - sample.t_device_s;
     constexpr double kSameClock_s = 5.0;  // clocks that differ by more have another beginning
@@ -72,15 +72,15 @@ void note_gap(const Sample& sample, PointerTime& pointer, ToolCheck& tool) {
 }
 
 // n/a of traces is null here
-Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
-Json range_json(const Range& range) { return {number(range.lowest), number(range.highest)}; }
+files::Json number(double value) { return std::isfinite(value) ? files::Json(value) : files::Json(nullptr); }
+files::Json range_json(const Range& range) { return {number(range.lowest), number(range.highest)}; }
 
-Json seen_json(Tool which, const DeviceCheck& check) {
+files::Json seen_json(platform::Tool which, const DeviceCheck& check) {
     const ToolCheck& tool = of_tool(which, check);
     const ClockDrift drift = clock_drift(tool);
-    Json json{{"samples", tool.samples}, {"touching", tool.touching}, {"rate_Hz", rate_Hz(tool)}};
+    files::Json json{{"samples", tool.samples}, {"touching", tool.touching}, {"rate_Hz", rate_Hz(tool)}};
     json["gap_ms"] = {{"median", 1e3 * median_gap_s(tool)}, {"worst", 1e3 * worst_gap_s(tool)}};
-    json["pressure"] = name_of(pressure_kind(check.pressure, which));
+    json["pressure"] = name_of(platform::pressure_kind(check.pressure, which));
     json["pressure_range"] = range_json(tool.pressure);
     json["pressure_raw_range"] = range_json(tool.pressure_raw);
     json["distinct_pressures"] = distinct_pressures(tool);
@@ -97,9 +97,9 @@ Json seen_json(Tool which, const DeviceCheck& check) {
 
 }  // namespace
 
-void observe(const Sample& sample, DeviceCheck& check) {
-    if (sample.phase == Phase::ui) return;
-    watch(sample, check.pressure);
+void observe(const platform::Sample& sample, DeviceCheck& check) {
+    if (sample.phase == platform::Phase::ui) return;
+    platform::watch(sample, check.pressure);
     ToolCheck& tool = check.tools[static_cast<std::size_t>(sample.tool)];
     ++tool.samples;
     widen(sample.x_px, tool.x_px);
@@ -107,17 +107,17 @@ void observe(const Sample& sample, DeviceCheck& check) {
     tool.tilt = tool.tilt || std::isfinite(sample.tilt_x_deg);
     tool.contact_size = tool.contact_size || std::isfinite(sample.width_px);
     fit(sample, tool.clock);
-    if (sample.phase == Phase::down || sample.phase == Phase::move) {
+    if (sample.phase == platform::Phase::down || sample.phase == platform::Phase::move) {
         ++tool.touching;
         note_pressure(sample, tool);
     }
     PointerTime& pointer = slot_of(sample.pointer_id, check);
     note_gap(sample, pointer, tool);
-    const bool finger_gone = sample.tool == Tool::finger && (sample.phase == Phase::up || sample.phase == Phase::cancel);
+    const bool finger_gone = sample.tool == platform::Tool::finger && (sample.phase == platform::Phase::up || sample.phase == platform::Phase::cancel);
     if (finger_gone) pointer.used = false;  // another touch gets another number
 }
 
-const ToolCheck& of_tool(Tool tool, const DeviceCheck& check) { return check.tools[static_cast<std::size_t>(tool)]; }
+const ToolCheck& of_tool(platform::Tool tool, const DeviceCheck& check) { return check.tools[static_cast<std::size_t>(tool)]; }
 
 double rate_Hz(const ToolCheck& tool) {
     return tool.gaps_s > 0.0 ? static_cast<double>(tool.gap_count) / tool.gaps_s : 0.0;
@@ -141,27 +141,27 @@ ClockDrift clock_drift(const ToolCheck& tool) {
 }
 
 double samples_per_delivery(const ToolCheck& tool) {
-    return tool.deliveries > 0 ? static_cast<double>(tool.samples) / static_cast<double>(tool.deliveries) : kMissing;
+    return tool.deliveries > 0 ? static_cast<double>(tool.samples) / static_cast<double>(tool.deliveries) : platform::kMissing;
 }
 
-double median_delay_s(const ToolCheck& tool) { return tool.delays.timed() > 0 ? 1e-9 * tool.delays.quantile_ns(0.5) : kMissing; }
+double median_delay_s(const ToolCheck& tool) { return tool.delays.timed() > 0 ? 1e-9 * tool.delays.quantile_ns(0.5) : platform::kMissing; }
 
-Json check_json(const DeviceCheck& check) {
-    Json json = Json::object();
-    for (const Tool tool : {Tool::pen, Tool::finger, Tool::mouse, Tool::keyboard}) {
+files::Json check_json(const DeviceCheck& check) {
+    files::Json json = files::Json::object();
+    for (const platform::Tool tool : {platform::Tool::pen, platform::Tool::finger, platform::Tool::mouse, platform::Tool::keyboard}) {
         if (of_tool(tool, check).samples > 0) json[std::string(name_of(tool))] = seen_json(tool, check);
     }
     return json;
 }
 
-const char* name_of(PressureKind kind) {
+const char* name_of(platform::PressureKind kind) {
     switch (kind) {
-        case PressureKind::unknown: return "unknown";
-        case PressureKind::varies: return "varies";
-        case PressureKind::constant: return "constant";
-        case PressureKind::missing: return "missing";
+        case platform::PressureKind::unknown: return "unknown";
+        case platform::PressureKind::varies: return "varies";
+        case platform::PressureKind::constant: return "constant";
+        case platform::PressureKind::missing: return "missing";
     }
     return "unknown";
 }
 
-}  // namespace palpa
+}  // namespace palpa::app

@@ -11,7 +11,7 @@
 #include "platform/sample.h"
 #include "scene/meter.h"
 
-namespace palpa {
+namespace palpa::app {
 
 // Straight line of (device - host) over host time, by least squares with running sums.
 struct ClockFit {
@@ -26,13 +26,13 @@ struct ClockFit {
 };
 
 struct ClockDrift {
-    double ppm = kMissing;  // positive: the device's clock is fast; NaN before 30 samples over some 4 s
-    double standard_error_ppm = kMissing;  // if delays come by chance; a computer that gets busy meanwhile adds to it
+    double ppm = platform::kMissing;  // positive: the device's clock is fast; NaN before 30 samples over some 4 s
+    double standard_error_ppm = platform::kMissing;  // if delays come by chance; a computer that gets busy meanwhile adds to it
 };
 
 struct Range {
-    double lowest = kMissing;
-    double highest = kMissing;
+    double lowest = platform::kMissing;
+    double highest = platform::kMissing;
 };
 
 // All pointers of one tool together.
@@ -46,12 +46,12 @@ struct ToolCheck {
     std::bitset<kMostValues> values;  // of the pressure, each count (or 1/65535) that came
     bool tilt = false;
     bool contact_size = false;
-    Meter gaps;              // between samples of one pointer
+    scene::Meter gaps;              // between samples of one pointer
     std::int64_t gap_count = 0;
     double gaps_s = 0.0;     // their sum
     ClockFit clock;
     std::int64_t deliveries = 0;  // of samples of one pointer at one moment: fewer than samples where the system collects them
-    Meter delays;                 // from the device's clock to the host's, where both count from the same moment
+    scene::Meter delays;                 // from the device's clock to the host's, where both count from the same moment
 };
 
 // A pointer that is being followed from sample to sample.
@@ -59,12 +59,12 @@ struct PointerTime {
     bool used = false;
     std::int64_t pointer_id = 0;
     double t_host_s = 0.0;
-    double t_device_s = kMissing;
+    double t_device_s = platform::kMissing;
 };
 
 struct DeviceCheck {
-    std::array<ToolCheck, kToolCount> tools;
-    PressureWatch pressure;
+    std::array<ToolCheck, platform::kToolCount> tools;
+    platform::PressureWatch pressure;
     std::array<PointerTime, 32> pointers;
 };
 
@@ -72,9 +72,9 @@ struct DeviceCheck {
 inline constexpr double kRest_s = 0.25;
 
 // Call it with every sample as the device sent it. Rows of phase ui are not looked at.
-void observe(const Sample& sample, DeviceCheck& check);
+void observe(const platform::Sample& sample, DeviceCheck& check);
 
-const ToolCheck& of_tool(Tool tool, const DeviceCheck& check);
+const ToolCheck& of_tool(platform::Tool tool, const DeviceCheck& check);
 
 // 0 before there are two samples. Gaps by the device's own clock where it has one.
 double rate_Hz(const ToolCheck& tool);
@@ -88,9 +88,9 @@ ClockDrift clock_drift(const ToolCheck& tool);
 double samples_per_delivery(const ToolCheck& tool);
 double median_delay_s(const ToolCheck& tool);  // NaN if the clocks cannot be compared
 
-const char* name_of(PressureKind kind);
+const char* name_of(platform::PressureKind kind);
 
 // What each tool sent, by its name, for files and programs. NaN is null.
-Json check_json(const DeviceCheck& check);
+files::Json check_json(const DeviceCheck& check);
 
-}  // namespace palpa
+}  // namespace palpa::app

@@ -7,7 +7,7 @@
 #include "app/screens/screens.h"
 #include "app/screens/words.h"
 
-namespace palpa {
+namespace palpa::app {
 namespace {
 
 std::string range_text(const Range& range, int digits) {
@@ -16,7 +16,7 @@ std::string range_text(const Range& range, int digits) {
 
 void said_lines(const Screens& screens) {
     ImGui::TextDisabled(words::kSaysItHas);
-    for (const PointerDevice& device : screens.devices) {
+    for (const platform::PointerDevice& device : screens.devices) {
         std::string text = device.name + " (" + std::string(name_of(device.tool)) + "): ";
         text += device.has_pressure ? words::filled(words::kPressureRange, {fixed(device.pressure_min, 0), fixed(device.pressure_max, 0)})
                                     : words::kNoPressure;
@@ -28,18 +28,18 @@ void said_lines(const Screens& screens) {
     if (screens.devices.empty()) paragraph(words::kNoDevice);
 }
 
-std::string verdict(Tool which, const DeviceCheck& check) {
-    if (which == Tool::mouse || which == Tool::keyboard) return words::kByTimeHeld;
-    switch (pressure_kind(check.pressure, which)) {
-        case PressureKind::varies: return words::kVaries;
-        case PressureKind::constant: return words::filled(words::kAlways, {fixed(constant_pressure(check.pressure, which), 2)});
-        case PressureKind::missing: return words::kNone;
-        case PressureKind::unknown: break;
+std::string verdict(platform::Tool which, const DeviceCheck& check) {
+    if (which == platform::Tool::mouse || which == platform::Tool::keyboard) return words::kByTimeHeld;
+    switch (platform::pressure_kind(check.pressure, which)) {
+        case platform::PressureKind::varies: return words::kVaries;
+        case platform::PressureKind::constant: return words::filled(words::kAlways, {fixed(platform::constant_pressure(check.pressure, which), 2)});
+        case platform::PressureKind::missing: return words::kNone;
+        case platform::PressureKind::unknown: break;
     }
     return words::kVaryIt;
 }
 
-void seen_lines(Tool which, const DeviceCheck& check, const Gui& gui) {
+void seen_lines(platform::Tool which, const DeviceCheck& check, const Gui& gui) {
     const ToolCheck& tool = of_tool(which, check);
     if (tool.samples == 0) return;
     const float column_px = 34.0f * gui.mm();
@@ -53,7 +53,7 @@ void seen_lines(Tool which, const DeviceCheck& check, const Gui& gui) {
     const std::string clock = std::isfinite(drift.ppm) ? fixed(drift.ppm, 0) + " +- " + fixed(drift.standard_error_ppm, 0) + " ppm" : "-";
     value_line(words::kClockDrift, clock, column_px);
     const std::string delivery = words::filled(words::kAtATime, {fixed(samples_per_delivery(tool), 1), fixed(1e3 * median_delay_s(tool), 0)});
-    if (which != Tool::keyboard) value_line(words::kDelivered, delivery, column_px);
+    if (which != platform::Tool::keyboard) value_line(words::kDelivered, delivery, column_px);
     value_line(words::kTiltAndSize, std::string(tool.tilt ? words::kTilt : "-") + ", " + (tool.contact_size ? words::kContactSize : "-"), column_px);
     value_line(words::kSamples, std::to_string(tool.samples), column_px);
 }
@@ -71,10 +71,10 @@ void draw_test_area(const PanelArea& area, const Gui& gui, const Screens& screen
 
 }  // namespace
 
-void add_dot(const Sample& sample, Screens& screens) {
+void add_dot(const platform::Sample& sample, Screens& screens) {
     constexpr std::size_t kDots = 400;
-    const bool touching = sample.phase == Phase::down || sample.phase == Phase::move;
-    if (sample.phase == Phase::ui || !std::isfinite(sample.x_px + sample.y_px)) return;
+    const bool touching = sample.phase == platform::Phase::down || sample.phase == platform::Phase::move;
+    if (sample.phase == platform::Phase::ui || !std::isfinite(sample.x_px + sample.y_px)) return;
     if (screens.dots.size() >= kDots) screens.dots.erase(screens.dots.begin(), screens.dots.begin() + kDots / 4);
     screens.dots.push_back({static_cast<float>(sample.x_px), static_cast<float>(sample.y_px),
                             static_cast<float>(sample.pressure), touching});
@@ -98,10 +98,10 @@ void draw_device_screen(const Shown& shown, Gui& gui, Screens& screens, Wishes& 
     said_lines(screens);
     for (const std::string& note : screens.device_notes) warning_paragraph(note);
     if (screens.check != nullptr) {
-        for (const Tool tool : {Tool::pen, Tool::finger, Tool::mouse, Tool::keyboard}) seen_lines(tool, *screens.check, gui);
+        for (const platform::Tool tool : {platform::Tool::pen, platform::Tool::finger, platform::Tool::mouse, platform::Tool::keyboard}) seen_lines(tool, *screens.check, gui);
     }
     ImGui::EndChild();
     end_panel("devices", gui);
 }
 
-}  // namespace palpa
+}  // namespace palpa::app

@@ -4,7 +4,7 @@
 
 #include "files/regular_file.h"
 
-namespace palpa {
+namespace palpa::app {
 
 std::string system_font_file() {
     FcConfig* config = FcInitLoadConfigAndFonts();
@@ -23,7 +23,7 @@ std::string system_font_file() {
     if (found != nullptr) FcPatternDestroy(found);
     FcPatternDestroy(wanted);
     FcConfigDestroy(config);
-    return irregular_kind(file).empty() ? file : std::string();
+    return files::irregular_kind(file).empty() ? file : std::string();
 }
 
-}  // namespace palpa
+}  // namespace palpa::app

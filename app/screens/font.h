@@ -2,9 +2,9 @@
 
 #include <string>
 
-namespace palpa {
+namespace palpa::app {
 
 // A readable font file of this system (a TrueType sans-serif), or empty: then the one inside Dear ImGui is used.
 std::string system_font_file();
 
-}  // namespace palpa
+}  // namespace palpa::app

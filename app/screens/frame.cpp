@@ -8,7 +8,7 @@
 #include "app/screens/tissue_drawing.h"
 #include "scene/advance.h"
 
-namespace palpa {
+namespace palpa::app {
 namespace {
 
 Layout layout_now(const Gui& gui, float width_px, float height_px, const Settings& settings) {
@@ -16,19 +16,19 @@ Layout layout_now(const Gui& gui, float width_px, float height_px, const Setting
 }
 
 struct Surface {
-    Dent dent;
-    Relief relief;
+    render::Dent dent;
+    render::Relief relief;
 };
 
-Surface surface_of(const Scene& scene, const Plan& plan, const Avatar& avatar, State& state) {
+Surface surface_of(const scene::Scene& scene, const scene::Plan& plan, const scene::Avatar& avatar, scene::State& state) {
     Surface surface;
     if (!scene.surface) return surface;
-    if (const auto* linear = std::get_if<LinearTissue>(&plan.tissue)) {
+    if (const auto* linear = std::get_if<scene::LinearTissue>(&plan.tissue)) {
         Eigen::VectorXd sink_m;
-        surface_now(*linear, state, sink_m);
+        scene::surface_now(*linear, state, sink_m);
         surface.relief = relief_of(*linear, sink_m, avatar);
     } else {
-        surface.dent = dent_of(surface_now(scene, plan, state), avatar);
+        surface.dent = dent_of(scene::surface_now(scene, plan, state), avatar);
     }
     return surface;
 }
@@ -64,36 +64,36 @@ std::uint64_t hash_of(std::uint64_t hash, const Numbers& numbers) {
     return hash_more(hash, &numbers, sizeof numbers);
 }
 
-std::uint64_t content_of(const TissueView& view, const Surface& surface, const Ball& ball, const Gui& gui) {
-    static_assert(sizeof(TissueView) == 14 * sizeof(float) && sizeof(Ball) == 5 * sizeof(float));
-    static_assert(sizeof(Dent) == (3 + kSinkPoints) * sizeof(float));
+std::uint64_t content_of(const render::TissueView& view, const Surface& surface, const render::Ball& ball, const Gui& gui) {
+    static_assert(sizeof(render::TissueView) == 14 * sizeof(float) && sizeof(render::Ball) == 5 * sizeof(float));
+    static_assert(sizeof(render::Dent) == (3 + render::kSinkPoints) * sizeof(float));
     std::uint64_t hash = hash_of(hash_of(hash_of(gui.content(), view), surface.dent), ball);
-    const Relief& relief = surface.relief;
+    const render::Relief& relief = surface.relief;
     hash = hash_of(hash_of(hash_of(hash, relief.n_x), relief.n_y), relief.shift_m);
     return hash_more(hash, relief.sink_m.data(), relief.sink_m.size() * sizeof(float));
 }
 
 }  // namespace
 
-Wishes draw_frame(const Scene& scene, const Plan& plan, const Trial& trial, const Settings& settings, double now_s,
-                  double dt_s, TissueDrawer& tissue, Gui& gui, Screens& screens, State& state, FrameTimes& times,
+Wishes draw_frame(const scene::Scene& scene, const scene::Plan& plan, const session::Trial& trial, const Settings& settings, double now_s,
+                  double dt_s, render::TissueDrawer& tissue, Gui& gui, Screens& screens, scene::State& state, FrameTimes& times,
                   OnScreen& on_screen) {
-    const std::int64_t began_ns = steady_ns();
+    const std::int64_t began_ns = scene::steady_ns();
     const bool keys_to_panels = screens.menu || screens.asked || (screens.screen != Screen::trial && screens.screen != Screen::devices);
     gui.keep_enter(screens.screen == Screen::study || screens.asked);
     gui.begin_frame(dt_s, keys_to_panels);
     const WindowSize window = gui.size_px();
     Shown shown{scene, plan, state, trial, settings, times, {}, {}, 0.0, now_s};
-    shown.avatar = trial.finished ? Avatar{} : avatar_at(scene, state, now_s);
+    shown.avatar = trial.finished ? scene::Avatar{} : scene::avatar_at(scene, state, now_s);
     shown.view = tissue_view(scene, state, window.width, window.height);
     shown.trial_s = trial.finished ? trial.now_s - trial.began_s : std::max(0.0, now_s - trial.began_s);
     Wishes wishes;
     draw_panels(shown, layout_now(gui, window.width, window.height, settings), gui, screens, wishes);
     const Surface surface = trial.finished ? Surface{} : surface_of(scene, plan, shown.avatar, state);
-    Ball ball = ball_of(plan, state, shown.avatar);
+    render::Ball ball = ball_of(plan, state, shown.avatar);
     if (trial.finished) ball.radius_m = 0.0f;
     gui.end_frame();
-    const std::int64_t built_ns = steady_ns();
+    const std::int64_t built_ns = scene::steady_ns();
     times.built_ns = built_ns;
     times.cpu.add_ns(static_cast<double>(built_ns - began_ns));
     const std::uint64_t content = content_of(shown.view, surface, ball, gui);
@@ -102,16 +102,16 @@ Wishes draw_frame(const Scene& scene, const Plan& plan, const Trial& trial, cons
     on_screen.content = content;
     tissue.draw(shown.view, surface.dent, surface.relief, ball);
     gui.draw();
-    times.gl.add_ns(static_cast<double>(steady_ns() - built_ns));
+    times.gl.add_ns(static_cast<double>(scene::steady_ns() - built_ns));
     return wishes;
 }
 
-Sample resize_sample(const Window& window, const Gui& gui, const Settings& settings, double t_host_s) {
+platform::Sample resize_sample(const platform::Window& window, const Gui& gui, const Settings& settings, double t_host_s) {
     const Layout layout = layout_now(gui, static_cast<float>(window.width_px()), static_cast<float>(window.height_px()), settings);
-    Sample sample;
+    platform::Sample sample;
     sample.t_host_s = t_host_s;
-    sample.phase = Phase::ui;
-    sample.action = Action::resize;
+    sample.phase = platform::Phase::ui;
+    sample.action = platform::Action::resize;
     sample.x_px = static_cast<double>(layout.tissue_px.x0);
     sample.y_px = static_cast<double>(layout.tissue_px.y0);
     sample.width_px = static_cast<double>(layout.tissue_px.width());
@@ -119,4 +119,4 @@ Sample resize_sample(const Window& window, const Gui& gui, const Settings& setti
     return sample;
 }
 
-}  // namespace palpa
+}  // namespace palpa::app

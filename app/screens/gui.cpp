@@ -12,7 +12,7 @@
 #include "app/screens/content_hash.h"
 #include "app/screens/font.h"
 
-namespace palpa {
+namespace palpa::app {
 namespace {
 
 constexpr float kText_mm = 4.7f;  // line height, readable at arm's length
@@ -25,13 +25,13 @@ void map_keys(ImGuiIO& io) {
         int key;
     };
     constexpr Pair kPairs[] = {
-        {ImGuiKey_Tab, key::tab},           {ImGuiKey_LeftArrow, key::left},  {ImGuiKey_RightArrow, key::right},
-        {ImGuiKey_UpArrow, key::up},        {ImGuiKey_DownArrow, key::down},  {ImGuiKey_PageUp, key::page_up},
-        {ImGuiKey_PageDown, key::page_down}, {ImGuiKey_Home, key::home},      {ImGuiKey_End, key::end},
-        {ImGuiKey_Delete, key::del},        {ImGuiKey_Backspace, key::backspace}, {ImGuiKey_Space, key::space},
-        {ImGuiKey_Enter, key::enter},       {ImGuiKey_Escape, key::escape},   {ImGuiKey_KeyPadEnter, key::pad_enter},
+        {ImGuiKey_Tab, platform::key::tab},           {ImGuiKey_LeftArrow, platform::key::left},  {ImGuiKey_RightArrow, platform::key::right},
+        {ImGuiKey_UpArrow, platform::key::up},        {ImGuiKey_DownArrow, platform::key::down},  {ImGuiKey_PageUp, platform::key::page_up},
+        {ImGuiKey_PageDown, platform::key::page_down}, {ImGuiKey_Home, platform::key::home},      {ImGuiKey_End, platform::key::end},
+        {ImGuiKey_Delete, platform::key::del},        {ImGuiKey_Backspace, platform::key::backspace}, {ImGuiKey_Space, platform::key::space},
+        {ImGuiKey_Enter, platform::key::enter},       {ImGuiKey_Escape, platform::key::escape},   {ImGuiKey_KeyPadEnter, platform::key::pad_enter},
         {ImGuiKey_A, 'a'}};
-    static_assert(key::count <= IM_ARRAYSIZE(ImGuiIO::KeysDown));
+    static_assert(platform::key::count <= IM_ARRAYSIZE(ImGuiIO::KeysDown));
     for (const Pair& pair : kPairs) io.KeyMap[pair.gui] = pair.key;
 }
 
@@ -64,14 +64,14 @@ void set_colours(ImGuiStyle& style) {
 
 }  // namespace
 
-Gui::Gui(Window& window) : window_(window), font_file_(system_font_file()) {
+Gui::Gui(platform::Window& window) : window_(window), font_file_(system_font_file()) {
     ImGui::CreateContext();
     ImGuiIO& io = ImGui::GetIO();
     io.IniFilename = nullptr;
     held_as_.fill(kNotHeld);
     map_keys(io);
     if (!ImGui_ImplOpenGL3_Init("#version 300 es")) throw std::runtime_error("the panels cannot be drawn: Dear ImGui found no OpenGL (libGL)");
-    set_scale(control_scale(kMissing, static_cast<float>(window.width_px()), static_cast<float>(window.height_px())));
+    set_scale(control_scale(platform::kMissing, static_cast<float>(window.width_px()), static_cast<float>(window.height_px())));
     window.set_event_filter(&Gui::filter, this);
 }
 
@@ -112,10 +112,10 @@ bool Gui::owns(float x_px, float y_px) const {
     return std::any_of(areas_.begin(), areas_.end(), [&](const PanelArea& area) { return area.holds(x_px, y_px); });
 }
 
-bool Gui::filter(const WindowEvent& event, void* self) { return static_cast<Gui*>(self)->receive(event); }
+bool Gui::filter(const platform::WindowEvent& event, void* self) { return static_cast<Gui*>(self)->receive(event); }
 
-bool Gui::receive(const WindowEvent& event) {
-    using Kind = WindowEvent::Kind;
+bool Gui::receive(const platform::WindowEvent& event) {
+    using Kind = platform::WindowEvent::Kind;
     switch (event.kind) {
         case Kind::pointer_move:
             if (event.made_from_touch) return false;
@@ -143,29 +143,29 @@ bool Gui::receive(const WindowEvent& event) {
     return false;
 }
 
-bool Gui::receive_button(const WindowEvent& event) {
+bool Gui::receive_button(const platform::WindowEvent& event) {
     const auto x = static_cast<float>(event.x_px);
     const auto y = static_cast<float>(event.y_px);
     const bool owned = owns(x, y);
     if (event.made_from_touch) return owned;
-    const bool down = event.kind == WindowEvent::Kind::button_down;
+    const bool down = event.kind == platform::WindowEvent::Kind::button_down;
     if (down ? owned : mouse_on_panel_) wait_for_frame({PanelInput::Kind::button, down, x, y}, waiting_);
     mouse_on_panel_ = down && owned;
     return owned;
 }
 
-bool Gui::receive_finger(const WindowEvent& event) {
+bool Gui::receive_finger(const platform::WindowEvent& event) {
     const auto x = static_cast<float>(event.x_px);
     const auto y = static_cast<float>(event.y_px);
     const bool owned = owns(x, y);
-    if (event.kind == WindowEvent::Kind::finger_down && owned && !finger_) {
+    if (event.kind == platform::WindowEvent::Kind::finger_down && owned && !finger_) {
         finger_ = event.finger_id;
         wait_for_frame({PanelInput::Kind::button, true, x, y}, waiting_);
     }
     if (finger_ != event.finger_id) return owned;
     pointer_x_px_ = x;
     pointer_y_px_ = y;
-    if (event.kind == WindowEvent::Kind::finger_up) {
+    if (event.kind == platform::WindowEvent::Kind::finger_up) {
         wait_for_frame({PanelInput::Kind::button, false, x, y}, waiting_);
         pointer_x_px_ = pointer_y_px_ = kNowhere_px;  // a finger that has left hovers nowhere
         finger_.reset();
@@ -173,10 +173,10 @@ bool Gui::receive_finger(const WindowEvent& event) {
     return owned;
 }
 
-bool Gui::receive_key(const WindowEvent& event) {
+bool Gui::receive_key(const platform::WindowEvent& event) {
     if (event.repeat) return keys_to_panels_;  // Dear ImGui repeats a held key by itself
     PanelInput input{PanelInput::Kind::key};
-    input.down = event.kind == WindowEvent::Kind::key_down;
+    input.down = event.kind == platform::WindowEvent::Kind::key_down;
     input.key = event.key;
     input.ctrl = event.ctrl;
     input.shift = event.shift;
@@ -209,9 +209,9 @@ void Gui::hand_over_key(const PanelInput& input) {
         return;
     }
     // Enter presses a button as Space does, except where a number is typed
-    const bool activates = input.key == key::enter && !io.WantTextInput && !keep_enter_;
+    const bool activates = input.key == platform::key::enter && !io.WantTextInput && !keep_enter_;
     if (input.for_panels && keys_to_panels_) {
-        held_as = activates ? key::space : input.key;
+        held_as = activates ? platform::key::space : input.key;
         io.KeysDown[held_as] = true;
     }
     if (!io.WantTextInput) keys_.push_back({input.key, input.ctrl});
@@ -224,7 +224,7 @@ void Gui::replace_text(const std::string& text) {
     if (!io.WantTextInput || state == nullptr) return;
     state->SelectAll();
     if (!text.empty()) return io.AddInputCharactersUTF8(text.c_str());
-    io.KeysDown[key::backspace] = emptied_ = true;
+    io.KeysDown[platform::key::backspace] = emptied_ = true;
 }
 
 void Gui::let_all_keys_go() {
@@ -251,7 +251,7 @@ void Gui::begin_frame(double dt_s, bool keys_to_panels) {
 void Gui::end_frame() {
     ImGui::Render();
     keys_.clear();
-    if (std::exchange(emptied_, false)) ImGui::GetIO().KeysDown[key::backspace] = false;
+    if (std::exchange(emptied_, false)) ImGui::GetIO().KeysDown[platform::key::backspace] = false;
 }
 
 bool Gui::in_use() const {
@@ -312,4 +312,4 @@ bool Gui::pressed(int key, bool ctrl) const {
     return std::any_of(keys_.begin(), keys_.end(), [&](const Key& k) { return k.key == key && k.ctrl == ctrl; });
 }
 
-}  // namespace palpa
+}  // namespace palpa::app

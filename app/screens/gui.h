@@ -11,7 +11,7 @@
 #include "app/screens/panel_input.h"
 #include "platform/window.h"
 
-namespace palpa {
+namespace palpa::app {
 
 struct WindowSize {
     float width = 0.0f;  // px
@@ -20,7 +20,7 @@ struct WindowSize {
 
 class Gui {
  public:
-    explicit Gui(Window& window);  // also becomes the window's event filter
+    explicit Gui(platform::Window& window);  // also becomes the window's event filter
     ~Gui();
     Gui(const Gui&) = delete;
     Gui& operator=(const Gui&) = delete;
@@ -58,11 +58,11 @@ class Gui {
     const std::string& overflow() const { return overflow_; }
 
  private:
-    static bool filter(const WindowEvent& event, void* self);
-    bool receive(const WindowEvent& event);
-    bool receive_button(const WindowEvent& event);
-    bool receive_finger(const WindowEvent& event);
-    bool receive_key(const WindowEvent& event);
+    static bool filter(const platform::WindowEvent& event, void* self);
+    bool receive(const platform::WindowEvent& event);
+    bool receive_button(const platform::WindowEvent& event);
+    bool receive_finger(const platform::WindowEvent& event);
+    bool receive_key(const platform::WindowEvent& event);
     bool owns(float x_px, float y_px) const;
     void hand_over(const PanelInput& input);
     void hand_over_key(const PanelInput& input);
@@ -74,12 +74,12 @@ class Gui {
         bool ctrl;
     };
 
-    Window& window_;
+    platform::Window& window_;
     std::vector<PanelArea> areas_;  // of the frame before
     std::deque<PanelInput> waiting_;
     std::vector<PanelInput> frame_;        // what this frame gets
     std::vector<Key> keys_;                // that go down in this frame
-    std::array<int, key::count> held_as_;  // what Dear ImGui was told that a key is, while it is held; else kNotHeld
+    std::array<int, platform::key::count> held_as_;  // what Dear ImGui was told that a key is, while it is held; else kNotHeld
     PanelArea text_area_{};
     std::optional<std::int64_t> finger_;  // the one that uses the panels; others may palpate meanwhile
     bool mouse_on_panel_ = false;
@@ -93,4 +93,4 @@ class Gui {
     std::string overflow_;
 };
 
-}  // namespace palpa
+}  // namespace palpa::app

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace palpa {
+namespace palpa::app {
 namespace {
 
 constexpr float kColumn_mm = 64.0f;  // five targets of 9 mm side by side, and margins
@@ -50,4 +50,4 @@ float control_scale(double px_per_mm, float width_px, float height_px, double to
     return kDesk_px_per_mm * std::clamp(std::min(width_px, height_px) / 800.0f, 1.0f, 2.0f);
 }
 
-}  // namespace palpa
+}  // namespace palpa::app

@@ -4,7 +4,7 @@
 
 #include <limits>
 
-namespace palpa {
+namespace palpa::app {
 
 // A rectangle of the window, px.
 struct PanelArea {
@@ -34,4 +34,4 @@ Layout layout_of(float width_px, float height_px, float mm, bool left_handed, bo
 float control_scale(double px_per_mm, float width_px, float height_px,
                     double touch_px_per_mm = std::numeric_limits<double>::quiet_NaN());
 
-}  // namespace palpa
+}  // namespace palpa::app

@@ -11,7 +11,7 @@
 #include "app/screens/words.h"
 #include "files/text.h"
 
-namespace palpa {
+namespace palpa::app {
 namespace {
 
 // Okabe and Ito, which colour-blind people can tell apart; numbers say the same again.
@@ -28,10 +28,10 @@ double tic_step(double range, double about) {
     return 10.0 * power;
 }
 
-std::string tic_text(double value) { return short_number(std::abs(value) < 1e-12 ? 0.0 : value); }
+std::string tic_text(double value) { return files::short_number(std::abs(value) < 1e-12 ? 0.0 : value); }
 
 struct Values {
-    const Map& map;
+    const stiffnessmaps::Map& map;
     const MapBrowser& browser;
     double low = 0.0;
     double high = 1.0;
@@ -50,7 +50,7 @@ struct Values {
     }
     ImU32 colour(double value) const {
         const double share = high > low ? (value - low) / (high - low) : 0.5;
-        return colour_at(apart ? kApart : kViridis, static_cast<float>(share));
+        return figures::colour_at(apart ? figures::kApart : figures::kViridis, static_cast<float>(share));
     }
 };
 
@@ -76,7 +76,7 @@ Values values_of(const MapBrowser& browser) {
 
 struct Frame {
     ImVec2 low, high;  // of the cells, px
-    const Map* map;
+    const stiffnessmaps::Map* map;
     float px_per_m;
 
     ImVec2 px(double x_m, double y_m) const {
@@ -90,7 +90,7 @@ struct Frame {
 };
 
 // As large as it fits, true to shape.
-Frame frame_of(const Map& map, ImVec2 low, ImVec2 high) {
+Frame frame_of(const stiffnessmaps::Map& map, ImVec2 low, ImVec2 high) {
     const auto width_m = static_cast<float>(map.spacing_m[0] * static_cast<double>(map.n_x));
     const auto height_m = static_cast<float>(map.spacing_m[1] * static_cast<double>(map.n_y));
     Frame f;
@@ -110,7 +110,7 @@ void hatch(ImDrawList& draw, ImVec2 low, ImVec2 high, float step_px) {
 }
 
 void draw_cells(const Values& values, const Frame& f, float mm, ImDrawList& draw) {
-    const Map& map = values.map;
+    const stiffnessmaps::Map& map = values.map;
     constexpr std::size_t kMostCells = 12000;  // four corners each, and a list takes 65,536; larger maps are thinned
     std::size_t stride = 1;
     while (((map.n_x + stride - 1) / stride) * ((map.n_y + stride - 1) / stride) > kMostCells) ++stride;
@@ -131,7 +131,7 @@ void draw_cells(const Values& values, const Frame& f, float mm, ImDrawList& draw
     draw.Flags = flags;
 }
 
-void draw_axes(const Map& map, const Frame& f, float mm, ImDrawList& draw) {
+void draw_axes(const stiffnessmaps::Map& map, const Frame& f, float mm, ImDrawList& draw) {
     const float text_px = 0.8f * ImGui::GetFontSize();
     const auto small = [&](ImVec2 at, const std::string& text, float anchor_x) {
         const float width = 0.8f * ImGui::CalcTextSize(text.c_str()).x;
@@ -180,7 +180,7 @@ void draw_bar(const Values& values, const Frame& f, ImVec2 low, float width_px, 
 }
 
 // A disc, or a capsule along its angle; detected ones dashed.
-void draw_nodule(const Nodule& nodule, const Frame& f, float mm, ImDrawList& draw) {
+void draw_nodule(const stiffnessmaps::Nodule& nodule, const Frame& f, float mm, ImDrawList& draw) {
     const double radius_m = 0.5 * nodule.diameter_m.value_or(4e-3);
     const double half_m = std::max(0.0, 0.5 * nodule.length_m.value_or(0.0) - radius_m);
     const double turn = nodule.angle_deg.value_or(0.0) * std::numbers::pi / 180.0;
@@ -220,7 +220,7 @@ void draw_pin(ImVec2 at, std::size_t number, float mm, ImDrawList& draw) {
 }
 
 std::string title_of(const MapBrowser& browser) {
-    const std::string depth = ", " + words::filled(words::kMmDeep, {short_number(1e3 * browser.map.depths_m[static_cast<std::size_t>(browser.depth)])});
+    const std::string depth = ", " + words::filled(words::kMmDeep, {files::short_number(1e3 * browser.map.depths_m[static_cast<std::size_t>(browser.depth)])});
     switch (browser.quantity) {
         case MapQuantity::normal: return words::kNormalForce + depth;
         case MapQuantity::tangential_x: return words::kForceAgainstX + depth;
@@ -232,7 +232,7 @@ std::string title_of(const MapBrowser& browser) {
 
 }  // namespace
 
-bool has_quantity(const Map& map, MapQuantity quantity) {
+bool has_quantity(const stiffnessmaps::Map& map, MapQuantity quantity) {
     if (quantity == MapQuantity::tangential_x) return !map.tangential_x_N.empty();
     if (quantity == MapQuantity::tangential_y) return !map.tangential_y_N.empty();
     return true;
@@ -240,7 +240,7 @@ bool has_quantity(const Map& map, MapQuantity quantity) {
 
 std::optional<Eigen::Vector2d> draw_map_matrix(const MapBrowser& browser, ImVec2 size_px, const Gui& gui, bool& pressed) {
     const float mm = gui.mm();
-    const Map& map = browser.map;
+    const stiffnessmaps::Map& map = browser.map;
     const float text_px = ImGui::GetFontSize();
     const ImVec2 corner = ImGui::GetCursorScreenPos();
     const float bar_px = 4.0f * mm;
@@ -252,7 +252,7 @@ std::optional<Eigen::Vector2d> draw_map_matrix(const MapBrowser& browser, ImVec2
     draw_cells(values, f, mm, draw);
     draw_axes(map, f, mm, draw);
     draw_bar(values, f, ImVec2(f.high.x + 3.0f * mm, f.low.y), bar_px, mm, draw);
-    for (const Nodule& nodule : map.nodules) draw_nodule(nodule, f, mm, draw);
+    for (const stiffnessmaps::Nodule& nodule : map.nodules) draw_nodule(nodule, f, mm, draw);
     for (std::size_t k = 0; k < browser.pins_m.size(); ++k) draw_pin(f.px(browser.pins_m[k].x(), browser.pins_m[k].y()), k, mm, draw);
     if (browser.pointed_m) {
         const ImVec2 at = f.px(browser.pointed_m->x(), browser.pointed_m->y());
@@ -277,7 +277,7 @@ struct DepthCurve {
 };
 
 DepthCurve curve_at(const MapBrowser& browser, const Eigen::Vector2d& p_m, ImU32 colour, const std::string& name) {
-    const Place place = place_at(browser.field, p_m);
+    const stiffnessmaps::Place place = stiffnessmaps::place_at(browser.field, p_m);
     DepthCurve out{{}, name, words::filled(words::kAtPlace, {fixed(1e3 * p_m.x(), 1), fixed(1e3 * p_m.y(), 1)}), colour};
     if (!place.measured) {
         out.name += words::kNotMeasured;
@@ -285,11 +285,11 @@ DepthCurve curve_at(const MapBrowser& browser, const Eigen::Vector2d& p_m, ImU32
     }
     for (const double depth_m : browser.field.depths_m) {
         if (depth_m > greatest_depth_m(browser.field, place) * (1.0 + 1e-9)) break;
-        out.points.emplace_back(static_cast<float>(1e3 * depth_m), static_cast<float>(normal_force_N(browser.field, place, depth_m)));
+        out.points.emplace_back(static_cast<float>(1e3 * depth_m), static_cast<float>(stiffnessmaps::normal_force_N(browser.field, place, depth_m)));
     }
     const double shown_m = browser.map.depths_m[static_cast<std::size_t>(browser.depth)];
-    const bool known = shown_m <= greatest_depth_m(browser.field, place) * (1.0 + 1e-9);
-    out.name += known ? fixed(normal_force_N(browser.field, place, shown_m), 2) + " N" : "-";
+    const bool known = shown_m <= stiffnessmaps::greatest_depth_m(browser.field, place) * (1.0 + 1e-9);
+    out.name += known ? fixed(stiffnessmaps::normal_force_N(browser.field, place, shown_m), 2) + " N" : "-";
     return out;
 }
 
@@ -306,7 +306,7 @@ void draw_map_curves(const MapBrowser& browser, const std::optional<Eigen::Vecto
     for (const DepthCurve& curve : curves) {
         for (const ImVec2& p : curve.points) most_N = std::max(most_N, p.y);
     }
-    if (curves.empty()) most_N = static_cast<float>(std::max(1e-3, force_range(browser.map).highest_N));
+    if (curves.empty()) most_N = static_cast<float>(std::max(1e-3, stiffnessmaps::force_range(browser.map).highest_N));
     ImDrawList& draw = *ImGui::GetWindowDrawList();
     const ImVec2 corner = ImGui::GetCursorScreenPos();
     const float text_px = ImGui::GetFontSize();
@@ -357,4 +357,4 @@ void draw_map_curves(const MapBrowser& browser, const std::optional<Eigen::Vecto
     ImGui::Dummy(size_px);
 }
 
-}  // namespace palpa
+}  // namespace palpa::app

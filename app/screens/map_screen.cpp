@@ -11,23 +11,23 @@
 #include "stiffnessmaps/noise.h"
 #include "stiffnessmaps/stiffness.h"
 
-namespace palpa {
+namespace palpa::app {
 namespace {
 
-std::string mm(double metres) { return short_number(1e3 * metres); }
+std::string mm(double metres) { return files::short_number(1e3 * metres); }
 
-std::vector<std::string> facts_of(const Map& map, const Field& field) {
-    const ForceRange range = force_range(map);
+std::vector<std::string> facts_of(const stiffnessmaps::Map& map, const stiffnessmaps::Field& field) {
+    const stiffnessmaps::ForceRange range = stiffnessmaps::force_range(map);
     std::vector<std::string> out;
     out.push_back(words::filled(words::kCellsOf, {std::to_string(map.n_x), std::to_string(map.n_y), mm(map.spacing_m[0]), mm(map.spacing_m[1])}));
     out.push_back(words::filled(words::kDepthsFromTo, {std::to_string(map.n_depths()), mm(map.depths_m.front()), mm(map.depths_m.back())}));
-    out.push_back(words::filled(words::kForceFromTo, {short_number(range.lowest_N), short_number(range.highest_N)}));
-    const double missing = 100.0 * static_cast<double>(missing_count(map)) / static_cast<double>(map.normal_N.size());
-    out.push_back(missing > 0.0 ? words::filled(words::kShareMissing, {short_number(missing)}) : words::kMeasuredEverywhere);
-    out.push_back(words::filled(words::kNoise, {short_number(1e3 * normal_noise_N(map)), std::to_string(field.isotonic_changed)}));
+    out.push_back(words::filled(words::kForceFromTo, {files::short_number(range.lowest_N), files::short_number(range.highest_N)}));
+    const double missing = 100.0 * static_cast<double>(stiffnessmaps::missing_count(map)) / static_cast<double>(map.normal_N.size());
+    out.push_back(missing > 0.0 ? words::filled(words::kShareMissing, {files::short_number(missing)}) : words::kMeasuredEverywhere);
+    out.push_back(words::filled(words::kNoise, {files::short_number(1e3 * normal_noise_N(map)), std::to_string(field.isotonic_changed)}));
     out.push_back(words::filled(words::kTangential, {name_of(map.tangential)}));
     out.push_back(words::filled(words::kIndenter, {name_of(map.indenter), mm(map.indenter_radius_m)}));
-    for (const Nodule& nodule : map.nodules) {
+    for (const stiffnessmaps::Nodule& nodule : map.nodules) {
         std::string text = words::filled(nodule.placed ? words::kPlacedNodule : words::kDetectedNodule, {nodule.id, mm(nodule.x_m), mm(nodule.y_m)});
         if (nodule.length_m) text += words::filled(words::kMmLong, {mm(*nodule.length_m)});
         else if (nodule.diameter_m) text += words::filled(words::kMmWide, {mm(*nodule.diameter_m)});
@@ -97,11 +97,11 @@ void map_list(float height_px, const Gui& gui, MapBrowser& browser) {
 void take_map_keys(const Gui& gui, MapBrowser& browser) {
     for (int i = 0; i < 4; ++i) {
         const auto quantity = static_cast<MapQuantity>(i);
-        if ((gui.pressed('1' + i) || gui.pressed(key::pad_0 + 1 + i)) && has_quantity(browser.map, quantity)) browser.quantity = quantity;
+        if ((gui.pressed('1' + i) || gui.pressed(platform::key::pad_0 + 1 + i)) && has_quantity(browser.map, quantity)) browser.quantity = quantity;
     }
-    const Map& map = browser.map;
-    if (gui.pressed(key::page_down)) browser.depth = std::min(browser.depth + 1, static_cast<int>(map.n_depths()) - 1);
-    if (gui.pressed(key::page_up)) browser.depth = std::max(browser.depth - 1, 0);
+    const stiffnessmaps::Map& map = browser.map;
+    if (gui.pressed(platform::key::page_down)) browser.depth = std::min(browser.depth + 1, static_cast<int>(map.n_depths()) - 1);
+    if (gui.pressed(platform::key::page_up)) browser.depth = std::max(browser.depth - 1, 0);
     const double width_m = map.x_of(map.n_x - 1) - map.x_of(0);
     const double height_m = map.y_of(map.n_y - 1) - map.y_of(0);
     const double step_m = std::max(width_m, height_m) / 40.0;
@@ -175,13 +175,13 @@ void draw_controls(const Shown& shown, const Areas& areas, Gui& gui, MapBrowser&
 
 }  // namespace
 
-bool may_show_maps(const Trial& trial) { return trial.mode == TrialMode::practice || trial.finished; }
+bool may_show_maps(const session::Trial& trial) { return trial.mode == session::TrialMode::practice || trial.finished; }
 
 void choose_map(const std::string& file, MapBrowser& browser) {
     try {
-        Map map = read_map(file);
-        browser.field = make_field(map, {});
-        browser.stiffness_N_per_m = stiffness_N_per_m(map);
+        stiffnessmaps::Map map = stiffnessmaps::read_map(file);
+        browser.field = stiffnessmaps::make_field(map, {});
+        browser.stiffness_N_per_m = stiffnessmaps::stiffness_N_per_m(map);
         browser.facts = facts_of(map, browser.field);
         browser.map = std::move(map);
         browser.file = file;
@@ -195,7 +195,7 @@ void choose_map(const std::string& file, MapBrowser& browser) {
     }
 }
 
-std::shared_ptr<MapBrowser> make_map_browser(const Scene& scene, std::vector<Choice> maps) {
+std::shared_ptr<MapBrowser> make_map_browser(const scene::Scene& scene, std::vector<Choice> maps) {
     auto browser = std::make_shared<MapBrowser>();
     browser->maps = std::move(maps);
     std::string first = scene.map.string();
@@ -247,4 +247,4 @@ void draw_map_screen(const Shown& shown, Gui& gui, MapBrowser& browser, Wishes& 
     end_panel("map facts", gui);
 }
 
-}  // namespace palpa
+}  // namespace palpa::app

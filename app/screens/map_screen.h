@@ -13,7 +13,7 @@
 #include "app/screens/screens.h"
 #include "stiffnessmaps/field.h"
 
-namespace palpa {
+namespace palpa::app {
 
 enum class MapQuantity : std::uint8_t { normal, tangential_x, tangential_y, stiffness };
 
@@ -21,8 +21,8 @@ struct MapBrowser {
     std::vector<Choice> maps;
     std::string file;                // of the map that is shown
     std::string problem;             // why another could not be
-    Map map;                         // without cells: none is shown
-    Field field;
+    stiffnessmaps::Map map;                         // without cells: none is shown
+    stiffnessmaps::Field field;
     std::vector<double> stiffness_N_per_m;
     std::vector<std::string> facts;
     MapQuantity quantity = MapQuantity::stiffness;
@@ -33,19 +33,19 @@ struct MapBrowser {
 inline constexpr std::size_t kPins = 4;
 
 // Nodules stay hidden until a test is finished; in practice they are shown anyway.
-bool may_show_maps(const Trial& trial);
+bool may_show_maps(const session::Trial& trial);
 
 // Opens on the scene's own map, or the first of the list. What goes wrong is told in the browser.
-std::shared_ptr<MapBrowser> make_map_browser(const Scene& scene, std::vector<Choice> maps);
+std::shared_ptr<MapBrowser> make_map_browser(const scene::Scene& scene, std::vector<Choice> maps);
 void choose_map(const std::string& file, MapBrowser& browser);
 
 void draw_map_screen(const Shown& shown, Gui& gui, MapBrowser& browser, Wishes& wishes);
 
 // The parts of it, drawn by map_drawing.cpp.
-bool has_quantity(const Map& map, MapQuantity quantity);
+bool has_quantity(const stiffnessmaps::Map& map, MapQuantity quantity);
 void add_pin(const Eigen::Vector2d& p_m, MapBrowser& browser);  // the oldest goes if there are too many
 // Returns the place under the pointer; a press there is told in `pressed`.
 std::optional<Eigen::Vector2d> draw_map_matrix(const MapBrowser& browser, ImVec2 size_px, const Gui& gui, bool& pressed);
 void draw_map_curves(const MapBrowser& browser, const std::optional<Eigen::Vector2d>& pointed_m, ImVec2 size_px, const Gui& gui);
 
-}  // namespace palpa
+}  // namespace palpa::app

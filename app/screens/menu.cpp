@@ -7,7 +7,7 @@
 #include "app/screens/screens.h"
 #include "app/screens/words.h"
 
-namespace palpa {
+namespace palpa::app {
 namespace {
 
 PanelArea menu_area(const Layout& layout, float mm) {
@@ -52,9 +52,9 @@ void right_side(const Shown& shown, const Gui& gui, Screens& screens, Wishes& wi
     bool left = false;
     bool right = false;
     ImGui::TextDisabled(words::kTrial);
-    pair(words::kPractice, words::kTest, shown.trial.mode == TrialMode::test, gui, left, right);
-    if (left) wishes.mode = TrialMode::practice;
-    if (right) wishes.mode = TrialMode::test;
+    pair(words::kPractice, words::kTest, shown.trial.mode == session::TrialMode::test, gui, left, right);
+    if (left) wishes.mode = session::TrialMode::practice;
+    if (right) wishes.mode = session::TrialMode::test;
     if (big_button(words::kBeginAnew, "R", {}, gui)) wishes.again = true;
     ImGui::TextDisabled(words::kDrawingHand);
     pair(words::kLeft, words::kRight, !shown.settings.left_handed, gui, left, right);
@@ -81,9 +81,9 @@ void right_side(const Shown& shown, const Gui& gui, Screens& screens, Wishes& wi
     if (!screens.keeps_trials && big_button(words::kQuit, words::kCtrlQ, {}, gui)) wishes.quit = true;
 }
 
-void stage_rows(const Shown& shown, const std::vector<Stage>& stages) {
-    for (const Stage& stage : stages) {
-        const Meter& meter = shown.state.meters[static_cast<std::size_t>(stage.id)];
+void stage_rows(const Shown& shown, const std::vector<scene::Stage>& stages) {
+    for (const scene::Stage& stage : stages) {
+        const scene::Meter& meter = shown.state.meters[static_cast<std::size_t>(stage.id)];
         ImGui::TableNextRow();
         ImGui::TableNextColumn();
         ImGui::TextUnformatted(name_of(stage.id));
@@ -102,8 +102,8 @@ void stage_rows(const Shown& shown, const std::vector<Stage>& stages) {
 
 std::string frame_text(const Shown& shown) {
     const FrameTimes& t = shown.times;
-    const Counters& counters = shown.state.counters;
-    const auto ms = [](const Meter& meter, double q) { return 1e-6 * meter.quantile_ns(q); };
+    const scene::Counters& counters = shown.state.counters;
+    const auto ms = [](const scene::Meter& meter, double q) { return 1e-6 * meter.quantile_ns(q); };
     return words::filled(words::kFrameTimes, {fixed(ms(t.latency, 0.5), 1), fixed(ms(t.latency, 0.99), 1), fixed(ms(t.ready, 0.5), 1),
                                               fixed(ms(t.cpu, 0.5), 2), fixed(ms(t.cpu, 0.99), 2), fixed(ms(t.gl, 0.5), 1),
                                               fixed(t.frames_per_s, 0), std::to_string(counters.samples),
@@ -112,13 +112,13 @@ std::string frame_text(const Shown& shown) {
 }
 
 void trial_keys(const Shown& shown, const Gui& gui, Wishes& wishes) {
-    if (gui.pressed('m') && shown.trial.last_px) wishes.action = Action::mark;
-    if (gui.pressed('u') || gui.pressed('z', true) || gui.pressed(key::backspace)) wishes.action = Action::undo;
-    if (gui.pressed('f')) wishes.action = Action::finish;
+    if (gui.pressed('m') && shown.trial.last_px) wishes.action = platform::Action::mark;
+    if (gui.pressed('u') || gui.pressed('z', true) || gui.pressed(platform::key::backspace)) wishes.action = platform::Action::undo;
+    if (gui.pressed('f')) wishes.action = platform::Action::finish;
     if (gui.pressed('h')) wishes.press_by_hold = true;
     for (int i = 0; i < 5; ++i) {
-        if (gui.pressed('1' + i) || gui.pressed(key::pad_0 + 1 + i)) {
-            wishes.action = static_cast<Action>(static_cast<int>(Action::confidence_1) + i);
+        if (gui.pressed('1' + i) || gui.pressed(platform::key::pad_0 + 1 + i)) {
+            wishes.action = static_cast<platform::Action>(static_cast<int>(platform::Action::confidence_1) + i);
         }
     }
 }
@@ -178,18 +178,18 @@ void age_note(double now_s, Screens& screens) {
 
 void take_keys(const Shown& shown, const Gui& gui, Screens& screens, Wishes& wishes) {
     if (gui.pressed('q', true) && !screens.keeps_trials) wishes.quit = true;
-    if (gui.pressed(key::f11)) wishes.full_screen = true;
+    if (gui.pressed(platform::key::f11)) wishes.full_screen = true;
     if (screens.study) {  // the rest would change what the protocol says, or tell what it hides
-        if (gui.pressed(key::escape)) screens.problems.clear();
+        if (gui.pressed(platform::key::escape)) screens.problems.clear();
         if (screens.screen == Screen::trial) trial_keys(shown, gui, wishes);
         return;
     }
     if (gui.pressed('t')) wishes.trials = true;
     if (gui.pressed('y')) wishes.studies = true;
-    if (gui.pressed(key::f10) || (gui.pressed(key::tab) && !screens.menu && screens.screen == Screen::trial)) {
+    if (gui.pressed(platform::key::f10) || (gui.pressed(platform::key::tab) && !screens.menu && screens.screen == Screen::trial)) {
         screens.menu = !screens.menu;
     }
-    if (gui.pressed(key::escape)) {
+    if (gui.pressed(platform::key::escape)) {
         screens.problems.clear();
         if (screens.screen != Screen::trial && screens.screen != Screen::reveal) {
             wishes.screen = shown.trial.finished ? Screen::reveal : Screen::trial;
@@ -209,4 +209,4 @@ void take_keys(const Shown& shown, const Gui& gui, Screens& screens, Wishes& wis
     if (screens.screen == Screen::reveal && gui.pressed('s')) wishes.save_picture = true;
 }
 
-}  // namespace palpa
+}  // namespace palpa::app

@@ -5,24 +5,24 @@
 #include "render/gl.h"
 #include "render/png.h"
 
-namespace palpa {
+namespace palpa::app {
 
-void save_screen(const Window& window, const std::filesystem::path& png) {
+void save_screen(const platform::Window& window, const std::filesystem::path& png) {
     const int width_px = window.width_px();
     const int height_px = window.height_px();
-    write_text_whole(png, png_bytes(width_px, height_px, read_pixels(width_px, height_px)));
+    files::write_text_whole(png, render::png_bytes(width_px, height_px, render::read_pixels(width_px, height_px)));
 }
 
-std::string draw_picture(const Scene& scene, const Plan& plan, const Trial& trial, const Settings& settings,
-                         const Screens& screens, int width_px, int height_px, State& state,
+std::string draw_picture(const scene::Scene& scene, const scene::Plan& plan, const session::Trial& trial, const Settings& settings,
+                         const Screens& screens, int width_px, int height_px, scene::State& state,
                          const std::filesystem::path& png) {
-    WindowOptions options;
+    platform::WindowOptions options;
     options.visible = false;
     options.width_px = width_px;
     options.height_px = height_px;
-    Window window(options);
+    platform::Window window(options);
     Gui gui(window);
-    TissueDrawer tissue;
+    render::TissueDrawer tissue;
     FrameTimes times;
     Screens open = screens;
     std::string overflow;
@@ -36,4 +36,4 @@ std::string draw_picture(const Scene& scene, const Plan& plan, const Trial& tria
     return overflow;
 }
 
-}  // namespace palpa
+}  // namespace palpa::app

@@ -5,14 +5,14 @@
 
 #include "platform/window_event.h"
 
-namespace palpa {
+namespace palpa::app {
 namespace {
 
 using Kind = PanelInput::Kind;
 
-bool types_letter(int key) { return (key >= key::space && key < key::del) || key >= key::pad_plus; }
+bool types_letter(int key) { return (key >= platform::key::space && key < platform::key::del) || key >= platform::key::pad_plus; }
 
-bool is_press(const PanelInput& input) { return input.kind == Kind::key && input.down && input.key != key::other; }
+bool is_press(const PanelInput& input) { return input.kind == Kind::key && input.down && input.key != platform::key::other; }
 
 // An emptied field is Dear ImGui's Backspace on a selection: as good as a key that goes down.
 bool ends_letters(const PanelInput& input) {
@@ -46,4 +46,4 @@ void take_frame(std::deque<PanelInput>& waiting, std::vector<PanelInput>& out) {
     }
 }
 
-}  // namespace palpa
+}  // namespace palpa::app

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace palpa {
+namespace palpa::app {
 
 struct PanelInput {
     enum class Kind : std::uint8_t { button, key, text, replace };
@@ -30,4 +30,4 @@ void wait_for_frame(PanelInput input, std::deque<PanelInput>& waiting);
 // frame goes down in the next one at the earliest.
 void take_frame(std::deque<PanelInput>& waiting, std::vector<PanelInput>& out);
 
-}  // namespace palpa
+}  // namespace palpa::app

@@ -7,17 +7,17 @@
 #include "app/screens/screens.h"
 #include "app/screens/words.h"
 
-namespace palpa {
+namespace palpa::app {
 namespace {
 
 // One run of cells of a row that reached the same level.
-void draw_run(const Shown& shown, const Coverage& c, int row, int first, int last, PalpationLevel level, float mm,
+void draw_run(const Shown& shown, const study::Coverage& c, int row, int first, int last, study::PalpationLevel level, float mm,
               ImDrawList& draw) {
     const double x0 = c.x_m + first * c.cell_m;
     const double x1 = c.x_m + (last + 1) * c.cell_m;
     const double y0 = c.y_m + row * c.cell_m;
     const double y1 = y0 + c.cell_m;
-    if (level == PalpationLevel::none) {  // hatching, so that "never touched" is not one more colour
+    if (level == study::PalpationLevel::none) {  // hatching, so that "never touched" is not one more colour
         for (int i = first; i <= last; ++i) {
             if ((i + c.n_y - row) % 4 != 0) continue;  // diagonals from cell to cell
             const double x_m = c.x_m + i * c.cell_m;
@@ -31,7 +31,7 @@ void draw_run(const Shown& shown, const Coverage& c, int row, int first, int las
 }
 
 void draw_coverage(const Shown& shown, float mm, ImDrawList& draw) {
-    const Coverage& c = shown.trial.coverage;
+    const study::Coverage& c = shown.trial.coverage;
     const auto level_at = [&](int i, int j) {
         return level_of(c, static_cast<double>(c.depth_m[static_cast<std::size_t>(j * c.n_x + i)]));
     };
@@ -39,7 +39,7 @@ void draw_coverage(const Shown& shown, float mm, ImDrawList& draw) {
     draw.Flags &= ~ImDrawListFlags_AntiAliasedFill;  // neighbours would show seams
     for (int j = 0; j < c.n_y; ++j) {
         for (int i = 0; i < c.n_x;) {
-            const PalpationLevel level = level_at(i, j);
+            const study::PalpationLevel level = level_at(i, j);
             int last = i;
             while (last + 1 < c.n_x && level_at(last + 1, j) == level) ++last;
             draw_run(shown, c, j, i, last, level, mm, draw);
@@ -50,7 +50,7 @@ void draw_coverage(const Shown& shown, float mm, ImDrawList& draw) {
 }
 
 void draw_path(const Shown& shown, float mm, ImDrawList& draw) {
-    const std::vector<PathPoint>& path = shown.trial.path;
+    const std::vector<session::PathPoint>& path = shown.trial.path;
     for (std::size_t i = 1; i < path.size(); ++i) {
         if (path[i].begins) continue;
         draw.AddLine(on_screen(shown.view, path[i - 1].p_m.x(), path[i - 1].p_m.y()),
@@ -58,12 +58,12 @@ void draw_path(const Shown& shown, float mm, ImDrawList& draw) {
     }
 }
 
-void draw_nodules(const Shown& shown, const Debrief& debrief, float mm, ImDrawList& draw) {
+void draw_nodules(const Shown& shown, const session::Debrief& debrief, float mm, ImDrawList& draw) {
     for (std::size_t i = 0; i < shown.plan.nodules.size(); ++i) {
-        const Nodule& nodule = shown.plan.nodules[i];
+        const stiffnessmaps::Nodule& nodule = shown.plan.nodules[i];
         const ImVec2 at = on_screen(shown.view, nodule.x_m, nodule.y_m);
         const auto radius_px = static_cast<float>(0.5 * nodule.diameter_m.value_or(4e-3)) * shown.view.px_per_m;
-        const bool found = debrief.findings[i] == Finding::found;
+        const bool found = debrief.findings[i] == session::Finding::found;
         if (found) {
             draw.AddCircle(at, radius_px, kDark, 48, 1.3f * mm);
             draw.AddCircle(at, radius_px, kInk, 48, 0.8f * mm);
@@ -79,19 +79,19 @@ void draw_nodules(const Shown& shown, const Debrief& debrief, float mm, ImDrawLi
     }
 }
 
-void draw_marks(const Shown& shown, const Score& score, float mm, ImDrawList& draw) {
+void draw_marks(const Shown& shown, const study::Score& score, float mm, ImDrawList& draw) {
     for (std::size_t i = 0; i < shown.trial.marks.size(); ++i) {
-        const Mark& mark = shown.trial.marks[i];
+        const session::Mark& mark = shown.trial.marks[i];
         const ImVec2 at = on_screen(shown.view, mark.p_m.x(), mark.p_m.y());
-        const MarkKind kind = score.marks[i].kind;
-        if (kind == MarkKind::false_mark) {
+        const study::MarkKind kind = score.marks[i].kind;
+        if (kind == study::MarkKind::false_mark) {
             cross(draw, at, 1.7f * mm, kDark, 1.3f * mm);
             cross(draw, at, 1.7f * mm, kInk, 0.7f * mm);
         } else {
             draw.AddCircleFilled(at, 1.7f * mm, kDark);
-            if (kind == MarkKind::hit) draw.AddCircleFilled(at, 1.3f * mm, kInk);
+            if (kind == study::MarkKind::hit) draw.AddCircleFilled(at, 1.3f * mm, kInk);
         }
-        const char* pattern = kind == MarkKind::hit ? "{}" : kind == MarkKind::again ? words::kMarkAgain : words::kMarkFalse;
+        const char* pattern = kind == study::MarkKind::hit ? "{}" : kind == study::MarkKind::again ? words::kMarkAgain : words::kMarkFalse;
         const std::string word = words::filled(pattern, {std::to_string(i + 1)});
         rimmed_text(draw, ImVec2(at.x - 1.5f * mm - ImGui::CalcTextSize(std::to_string(i + 1).c_str()).x,
                                  at.y - 1.2f * ImGui::GetFontSize()),
@@ -101,8 +101,8 @@ void draw_marks(const Shown& shown, const Score& score, float mm, ImDrawList& dr
 
 std::string percent(double share) { return std::isfinite(share) ? fixed(100.0 * share, 0) + " %" : "-"; }
 
-void result_lines(const Shown& shown, const Debrief& debrief, const Gui& gui) {
-    const Score& s = debrief.score;
+void result_lines(const Shown& shown, const session::Debrief& debrief, const Gui& gui) {
+    const study::Score& s = debrief.score;
     const float column_px = 34.0f * gui.mm();
     const std::string found = words::filled(words::kFoundOf, {std::to_string(s.true_positives), std::to_string(s.true_positives + s.false_negatives)});
     ImGui::TextUnformatted(found.c_str());
@@ -117,11 +117,11 @@ void result_lines(const Shown& shown, const Debrief& debrief, const Gui& gui) {
     }
 }
 
-void legend(const Debrief& debrief, const Gui& gui) {
+void legend(const session::Debrief& debrief, const Gui& gui) {
     ImGui::TextDisabled(words::kAreaExamined);
-    constexpr const char* kNames[kPalpationLevels] = {words::kNotTouched, words::kLightOrDeeper, words::kMediumOrDeeper, words::kDeep};
+    constexpr const char* kNames[study::kPalpationLevels] = {words::kNotTouched, words::kLightOrDeeper, words::kMediumOrDeeper, words::kDeep};
     ImDrawList& draw = *ImGui::GetWindowDrawList();
-    for (int level = kPalpationLevels - 1; level >= 0; --level) {
+    for (int level = study::kPalpationLevels - 1; level >= 0; --level) {
         const ImVec2 at = ImGui::GetCursorScreenPos();
         const float side_px = ImGui::GetFontSize();
         const ImVec2 end(at.x + side_px, at.y + side_px);
@@ -150,7 +150,7 @@ void buttons(const Gui& gui, Screens& screens, Wishes& wishes) {
 
 }  // namespace
 
-void draw_reveal_on_tissue(const Shown& shown, const Gui& gui, const Debrief& debrief) {
+void draw_reveal_on_tissue(const Shown& shown, const Gui& gui, const session::Debrief& debrief) {
     ImDrawList& draw = *ImGui::GetBackgroundDrawList();
     draw_coverage(shown, gui.mm(), draw);
     draw_path(shown, gui.mm(), draw);
@@ -181,4 +181,4 @@ void draw_reveal_panel(const Shown& shown, const Layout& layout, Gui& gui, Scree
     end_panel("reveal", gui);
 }
 
-}  // namespace palpa
+}  // namespace palpa::app

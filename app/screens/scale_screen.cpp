@@ -7,7 +7,7 @@
 #include "app/screens/screens.h"
 #include "app/screens/words.h"
 
-namespace palpa {
+namespace palpa::app {
 namespace {
 
 constexpr float kCardWidth_mm = 85.60f;  // ISO/IEC 7810 ID-1
@@ -51,8 +51,8 @@ void draw_scale_screen(const Shown& shown, Gui& gui, Screens& screens, Wishes& w
     ImGui::TextWrapped("%s", words::kHoldCard);
     step_buttons(gui, screens.card_px_per_mm);
     if (!ImGui::GetIO().WantTextInput) {
-        if (gui.pressed('+') || gui.pressed('=') || gui.pressed(key::pad_plus)) screens.card_px_per_mm *= 1.002;
-        if (gui.pressed('-') || gui.pressed(key::pad_minus)) screens.card_px_per_mm /= 1.002;
+        if (gui.pressed('+') || gui.pressed('=') || gui.pressed(platform::key::pad_plus)) screens.card_px_per_mm *= 1.002;
+        if (gui.pressed('-') || gui.pressed(platform::key::pad_minus)) screens.card_px_per_mm /= 1.002;
     }
     ImGui::SetNextItemWidth(40.0f * gui.mm());
     ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, ImVec2(2.0f * gui.mm(), 0.5f * (kTarget_mm * gui.mm() - ImGui::GetFontSize())));
@@ -63,7 +63,7 @@ void draw_scale_screen(const Shown& shown, Gui& gui, Screens& screens, Wishes& w
     const float width_px = std::min(share_of_line_px(3), 42.0f * gui.mm());
     if (big_button(words::kKeep, "", {width_px, kMark_mm, true, false}, gui)) wishes.px_per_mm = screens.card_px_per_mm;
     ImGui::SameLine();
-    if (big_button(words::kForget, "", {width_px, kMark_mm, std::isfinite(screens.px_per_mm), false}, gui)) wishes.px_per_mm = kMissing;
+    if (big_button(words::kForget, "", {width_px, kMark_mm, std::isfinite(screens.px_per_mm), false}, gui)) wishes.px_per_mm = platform::kMissing;
     ImGui::SameLine();
     if (big_button(words::kBack, words::kEscape, {width_px, kMark_mm, true, false}, gui)) {
         wishes.screen = shown.trial.finished ? Screen::reveal : Screen::trial;
@@ -75,4 +75,4 @@ void draw_scale_screen(const Shown& shown, Gui& gui, Screens& screens, Wishes& w
     end_panel("scale", gui);
 }
 
-}  // namespace palpa
+}  // namespace palpa::app

@@ -15,17 +15,17 @@
 #include "render/tissue.h"
 #include "scene/scene.h"
 
-namespace palpa {
+namespace palpa::app {
 
 enum class Screen : std::uint8_t { trial, reveal, devices, scale, calibrate, study, maps };
 
 // Times of the frame loop.
 struct FrameTimes {
-    Meter latency;  // sample to the end of the frame that shows it
-    Meter ready;    // sample to the moment when that frame is ready to be drawn: without the rasteriser
+    scene::Meter latency;  // sample to the end of the frame that shows it
+    scene::Meter ready;    // sample to the moment when that frame is ready to be drawn: without the rasteriser
     std::int64_t built_ns = 0;  // that moment, steady clock
-    Meter cpu;      // a frame up to the calls of GL
-    Meter gl;       // the calls of GL; with software rendering that is where the drawing is done
+    scene::Meter cpu;      // a frame up to the calls of GL
+    scene::Meter gl;       // the calls of GL; with software rendering that is where the drawing is done
     double frames_per_s = 0.0;
 };
 
@@ -39,11 +39,11 @@ struct MapBrowser;     // map_screen.h
 struct StudyRun;       // study_run.h
 
 struct Wishes {
-    std::optional<Action> action;         // mark, confidence, undo, finish
+    std::optional<platform::Action> action;         // mark, confidence, undo, finish
     std::optional<std::string> scene;     // file
     std::optional<std::string> profile;   // file; empty: the scene's own
     std::optional<Screen> screen;
-    std::optional<TrialMode> mode;
+    std::optional<session::TrialMode> mode;
     std::optional<bool> left_handed;
     std::optional<bool> above_finger;
     std::optional<double> px_per_mm;      // of this screen, measured; NaN: forget it
@@ -73,12 +73,12 @@ struct Screens {
     std::optional<Wishes> asked;            // what would throw away marks: done once the person is sure
     bool offer_hold = false;                // a pen or finger without pressure: offer to press by time
     std::string screen_name;                // key of Settings::px_per_mm
-    double px_per_mm = kMissing;            // of this screen; NaN: not measured
+    double px_per_mm = platform::kMissing;            // of this screen; NaN: not measured
     double card_px_per_mm = 3.78;           // while it is being measured
     std::string trials_note;                // what is kept, and what the desk has
     bool keeps_trials = false;              // in the browser: a screen of its own, no way to quit
-    Debrief debrief;                        // of the finished trial
-    std::vector<PointerDevice> devices;
+    session::Debrief debrief;                        // of the finished trial
+    std::vector<platform::PointerDevice> devices;
     bool devices_listed = false;            // those are all; false, in a browser: others may come with their first sample
     std::shared_ptr<DeviceCheck> check;     // what they sent while the device check was open
     std::vector<Dot> dots;                  // the last places in its test area
@@ -89,14 +89,14 @@ struct Screens {
 
 // All that a screen is drawn from.
 struct Shown {
-    const Scene& scene;
-    const Plan& plan;
-    const State& state;
-    const Trial& trial;
+    const scene::Scene& scene;
+    const scene::Plan& plan;
+    const scene::State& state;
+    const session::Trial& trial;
     const Settings& settings;
     const FrameTimes& times;
-    Avatar avatar;
-    TissueView view;
+    scene::Avatar avatar;
+    render::TissueView view;
     double trial_s = 0.0;
     double now_s = 0.0;
 };
@@ -107,10 +107,10 @@ void draw_on_tissue(const Shown& shown, const Gui& gui);
 void draw_trial_panel(const Shown& shown, const Layout& layout, Gui& gui, Screens& screens, Wishes& wishes);
 void draw_menu(const Shown& shown, const Layout& layout, Gui& gui, Screens& screens, Wishes& wishes);
 void draw_cost(const Shown& shown, const Layout& layout, Gui& gui);
-void draw_reveal_on_tissue(const Shown& shown, const Gui& gui, const Debrief& debrief);
+void draw_reveal_on_tissue(const Shown& shown, const Gui& gui, const session::Debrief& debrief);
 void draw_reveal_panel(const Shown& shown, const Layout& layout, Gui& gui, Screens& screens, Wishes& wishes);
 void draw_device_screen(const Shown& shown, Gui& gui, Screens& screens, Wishes& wishes);
-void add_dot(const Sample& sample, Screens& screens);
+void add_dot(const platform::Sample& sample, Screens& screens);
 void draw_study_screen(double now_s, Gui& gui, StudyRun& run, Wishes& wishes);
 void draw_scale_screen(const Shown& shown, Gui& gui, Screens& screens, Wishes& wishes);
 
@@ -127,4 +127,4 @@ void take_keys(const Shown& shown, const Gui& gui, Screens& screens, Wishes& wis
 // A bar in the middle of the screen, while nothing else can be shown.
 void draw_progress(const std::string& what, double share);
 
-}  // namespace palpa
+}  // namespace palpa::app

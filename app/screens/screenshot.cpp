@@ -8,7 +8,7 @@
 #include "app/screens/frame.h"
 #include "files/text.h"
 
-namespace palpa {
+namespace palpa::app {
 namespace {
 
 namespace fs = std::filesystem;
@@ -25,7 +25,7 @@ fs::path pictures_folder() {
     const std::string config = variable("XDG_CONFIG_HOME").empty() ? home + "/.config" : variable("XDG_CONFIG_HOME");
     const fs::path dirs = fs::path(config) / "user-dirs.dirs";
     if (fs::exists(dirs)) {
-        const std::string text = read_text(dirs);
+        const std::string text = files::read_text(dirs);
         const std::string key = "XDG_PICTURES_DIR=\"$HOME/";
         const auto at = text.find(key);
         const auto end = at == std::string::npos ? at : text.find('"', at + key.size());
@@ -46,7 +46,7 @@ std::string stamp() {
 
 }  // namespace
 
-fs::path save_picture(const Window& window, const std::string& log_folder) {
+fs::path save_picture(const platform::Window& window, const std::string& log_folder) {
     const fs::path folder = log_folder.empty() ? pictures_folder() : fs::path(log_folder);
     const std::string name = stamp();
     fs::path file = folder / (name + ".png");
@@ -55,4 +55,4 @@ fs::path save_picture(const Window& window, const std::string& log_folder) {
     return file;
 }
 
-}  // namespace palpa
+}  // namespace palpa::app

@@ -5,10 +5,10 @@
 
 #include "platform/window.h"
 
-namespace palpa {
+namespace palpa::app {
 
 // Saves what the window shows under a new name with the date: in the log's folder if there is one, else among the
 // person's pictures (xdg-user-dirs), else in the home folder. Throws std::runtime_error.
-std::filesystem::path save_picture(const Window& window, const std::string& log_folder);
+std::filesystem::path save_picture(const platform::Window& window, const std::string& log_folder);
 
-}  // namespace palpa
+}  // namespace palpa::app

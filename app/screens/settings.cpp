@@ -7,16 +7,16 @@
 #include "files/json.h"
 #include "files/text.h"
 
-namespace palpa {
+namespace palpa::app {
 namespace {
 
 namespace fs = std::filesystem;
 
-constexpr Bounds kScale_px_per_mm{0.5, 200.0};
+constexpr files::Bounds kScale_px_per_mm{0.5, 200.0};
 
 Settings parse(const fs::path& file) {
-    const Json root = read_json(file);
-    JsonReader json(root, file.string());
+    const files::Json root = files::read_json(file);
+    files::JsonReader json(root, file.string());
     Settings s;
     s.scene = json.text("scene", s.scene);
     s.profile = json.text("profile", s.profile);
@@ -26,7 +26,7 @@ Settings parse(const fs::path& file) {
     s.full_screen = json.boolean("full_screen", s.full_screen);
     s.width_px = json.integer("width_px", 100, 16384, s.width_px);
     s.height_px = json.integer("height_px", 100, 16384, s.height_px);
-    for (JsonReader& screen : json.objects("screens")) {
+    for (files::JsonReader& screen : json.objects("screens")) {
         const std::string name = screen.text("name");
         s.px_per_mm[name] = screen.number("px_per_mm", kScale_px_per_mm);
         screen.finish();
@@ -35,10 +35,10 @@ Settings parse(const fs::path& file) {
     return s;
 }
 
-Json json_of(const Settings& s) {
-    Json json{{"scene", s.scene},         {"profile", s.profile},         {"left_handed", s.left_handed}, {"above_finger", s.above_finger},
+files::Json json_of(const Settings& s) {
+    files::Json json{{"scene", s.scene},         {"profile", s.profile},         {"left_handed", s.left_handed}, {"above_finger", s.above_finger},
               {"test_mode", s.test_mode}, {"full_screen", s.full_screen}, {"width_px", s.width_px},       {"height_px", s.height_px},
-              {"screens", Json::array()}};
+              {"screens", files::Json::array()}};
     for (const auto& [name, px_per_mm] : s.px_per_mm) json["screens"].push_back({{"name", name}, {"px_per_mm", px_per_mm}});
     return json;
 }
@@ -81,11 +81,11 @@ std::string save_settings(const Settings& settings, const fs::path& file) {
     try {
         fs::create_directories(file.parent_path());
         move_broken_aside(file);
-        write_text_atomically(file, json_text(json_of(settings)));
+        files::write_text_atomically(file, files::json_text(json_of(settings)));
     } catch (const std::exception& error) {
         return std::string("settings are not kept: ") + error.what();
     }
     return {};
 }
 
-}  // namespace palpa
+}  // namespace palpa::app

@@ -5,7 +5,7 @@
 #include <map>
 #include <string>
 
-namespace palpa {
+namespace palpa::app {
 
 struct Settings {
     std::string scene;    // empty: the default one
@@ -29,4 +29,4 @@ Settings load_settings(const std::filesystem::path& file, std::string& problem);
 // Returns why it could not be saved, in words, or nothing.
 std::string save_settings(const Settings& settings, const std::filesystem::path& file);
 
-}  // namespace palpa
+}  // namespace palpa::app

@@ -10,10 +10,10 @@
 #include "app/study/study_run.h"
 #include "app/screens/words.h"
 
-namespace palpa {
+namespace palpa::app {
 namespace {
 
-bool enter_pressed(const Gui& gui) { return gui.pressed(key::enter) || gui.pressed(key::pad_enter); }
+bool enter_pressed(const Gui& gui) { return gui.pressed(platform::key::enter) || gui.pressed(platform::key::pad_enter); }
 
 // The one way on; Enter does it too.
 bool forward(const char* label, const Gui& gui, bool enabled = true) {
@@ -119,7 +119,7 @@ void draw_choices(const std::vector<std::string>& choices, float least_px, const
     }
 }
 
-void draw_item(const Item& item, Gui& gui, std::string& answer) {
+void draw_item(const study::Item& item, Gui& gui, std::string& answer) {
     ImGui::TextWrapped("%s", item.text.c_str());
     if (!item.choices.empty()) return draw_choices(item.choices, 0.0f, gui, answer);
     constexpr int kMostButtons = 11;
@@ -138,14 +138,14 @@ void draw_item(const Item& item, Gui& gui, std::string& answer) {
 }
 
 // A number out of its range is no answer.
-bool acceptable(const Item& item, const std::string& answer) {
+bool acceptable(const study::Item& item, const std::string& answer) {
     if (answer.empty() || !item.from) return true;
     double value = 0.0;
     return std::sscanf(answer.c_str(), "%lf", &value) == 1 && value >= *item.from && value <= *item.to;
 }
 
 void draw_items(Gui& gui, StudyRun& run) {
-    const std::vector<Item>& items = due_items(run);
+    const std::vector<study::Item>& items = due_items(run);
     run.answers.resize(items.size());
     title(run.step == StudyStep::questions ? words::kQuestionsFirst : words::kHowWasIt);
     if (run.step == StudyStep::ratings) paragraph(run.protocol.conditions[run.rated].title);
@@ -168,12 +168,12 @@ void draw_items(Gui& gui, StudyRun& run) {
 }
 
 void draw_instructions(Gui& gui, StudyRun& run) {
-    const PlannedTrial& trial = due_trial(run);
+    const study::PlannedTrial& trial = due_trial(run);
     title(words::filled(trial.practice ? words::kPracticeOf : words::kTrialOf, {progress_text(run)}));
     const float below_px = (kMark_mm + 4.0f) * gui.mm();
     ImGui::BeginChild("text", ImVec2(0.0f, ImGui::GetContentRegionAvail().y - below_px), false, ImGuiWindowFlags_NavFlattened);
-    ImGui::TextWrapped("%s", instructions_for(run.protocol, trial).c_str());
-    if (run.protocol.count_told && run.protocol.task == TaskKind::find) {
+    ImGui::TextWrapped("%s", study::instructions_for(run.protocol, trial).c_str());
+    if (run.protocol.count_told && run.protocol.task == study::TaskKind::find) {
         gap(gui);
         ImGui::TextWrapped("%s", words::filled(words::kThereAre, {std::to_string(due_nodules(run).size())}).c_str());
     }
@@ -206,9 +206,9 @@ void draw_question(double now_s, Gui& gui, StudyRun& run) {
     title(words::kWhichSofter);
     gap(gui);
     const float width_px = std::min(60.0f * gui.mm(), share_of_line_px(2));
-    const bool first = big_button(words::kTheFirst, "1", {width_px, 2.0f * kMark_mm, true, false}, gui) || gui.pressed('1') || gui.pressed(key::pad_0 + 1);
+    const bool first = big_button(words::kTheFirst, "1", {width_px, 2.0f * kMark_mm, true, false}, gui) || gui.pressed('1') || gui.pressed(platform::key::pad_0 + 1);
     ImGui::SameLine();
-    const bool second = big_button(words::kTheSecond, "2", {width_px, 2.0f * kMark_mm, true, false}, gui) || gui.pressed('2') || gui.pressed(key::pad_0 + 2);
+    const bool second = big_button(words::kTheSecond, "2", {width_px, 2.0f * kMark_mm, true, false}, gui) || gui.pressed('2') || gui.pressed(platform::key::pad_0 + 2);
     gap(gui);
     paragraph(words::filled(words::kPairOf, {progress_text(run)}));
     if (first || second) choose_softer(first, now_s, run);
@@ -236,7 +236,7 @@ void draw_nodule_line(const std::string& name, const Gui& gui, int& said) {
     beside(name, gui);
     ImGui::EndGroup();
     ImGui::SameLine(22.0f * gui.mm());
-    if (big_button(words::kMissed, "", {24.0f * gui.mm(), kTarget_mm, true, said == kMissed}, gui)) said = kMissed;
+    if (big_button(words::kMissed, "", {24.0f * gui.mm(), kTarget_mm, true, said == study::kMissed}, gui)) said = study::kMissed;
     ImGui::SameLine();
     if (big_button(words::kFound, "", {24.0f * gui.mm(), kTarget_mm, true, said == 0}, gui)) said = 0;
     constexpr const char* kDigits[5] = {"1", "2", "3", "4", "5"};
@@ -248,7 +248,7 @@ void draw_nodule_line(const std::string& name, const Gui& gui, int& said) {
 }
 
 void draw_typed_clock(double now_s, const Gui& gui, StudyRun& run) {
-    TypedAnswers& typed = run.typed;
+    study::TypedAnswers& typed = run.typed;
     const bool runs = run.typed_began_s > 0.0;
     if (runs) typed.duration_s = now_s - run.typed_began_s;
     const char* label = runs ? words::kStopClock : typed.duration_s > 0.0 ? words::kStartClockAnew : words::kStartClock;
@@ -263,9 +263,9 @@ void draw_typed_clock(double now_s, const Gui& gui, StudyRun& run) {
 }
 
 void draw_typed(double now_s, Gui& gui, StudyRun& run) {
-    const Condition& condition = due_condition(run);
+    const study::Condition& condition = due_condition(run);
     title(words::filled(words::kExperimenter, {progress_text(run), condition.title}));
-    paragraph(condition.modality == Modality::hand ? words::kTypeWhatWasSaid
+    paragraph(condition.modality == study::Modality::hand ? words::kTypeWhatWasSaid
                                                    : words::kNotDriven);
     draw_typed_clock(now_s, gui, run);
     const float below_px = (kMark_mm + 4.0f) * gui.mm();
@@ -346,4 +346,4 @@ void draw_study_screen(double now_s, Gui& gui, StudyRun& run, Wishes& wishes) {
     end_panel("study", gui);
 }
 
-}  // namespace palpa
+}  // namespace palpa::app

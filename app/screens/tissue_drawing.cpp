@@ -2,16 +2,16 @@
 
 #include <algorithm>
 
-namespace palpa {
+namespace palpa::app {
 namespace {
 
 glm::vec2 to_gl(const Eigen::Vector2d& v) { return {v.x(), v.y()}; }
 
 }  // namespace
 
-TissueView tissue_view(const Scene& scene, const State& state, float window_width_px, float window_height_px) {
-    const View& view = state.view;
-    TissueView out;
+render::TissueView tissue_view(const scene::Scene& scene, const scene::State& state, float window_width_px, float window_height_px) {
+    const scene::View& view = state.view;
+    render::TissueView out;
     out.area_px = {window_width_px, window_height_px};
     out.centre_px = to_gl(view.centre_px);
     out.centre_m = to_gl(view.area.centre_m);
@@ -19,13 +19,13 @@ TissueView tissue_view(const Scene& scene, const State& state, float window_widt
     out.axes = glm::mat2(to_gl(view.axes.col(0)), to_gl(view.axes.col(1)));
     out.px_per_m = static_cast<float>(view.px_per_m);
     constexpr float kTilt_rad = 0.7f;  // 40 degrees
-    out.tilt_rad = scene.mapping.kind == MappingKind::indirect ? kTilt_rad : 0.0f;
+    out.tilt_rad = scene.mapping.kind == scene::MappingKind::indirect ? kTilt_rad : 0.0f;
     return out;
 }
 
-Dent dent_of(const SurfaceCurve& curve, const Avatar& avatar) {
-    static_assert(kSinkPoints == kSurfacePoints, "the curve goes to the shader as it is");
-    Dent dent;
+render::Dent dent_of(const avatar::SurfaceCurve& curve, const scene::Avatar& avatar) {
+    static_assert(render::kSinkPoints == avatar::kSurfacePoints, "the curve goes to the shader as it is");
+    render::Dent dent;
     dent.centre_m = to_gl(avatar.p_m);
     dent.reach_m = static_cast<float>(curve.reach_m);
     std::transform(curve.sink_m.begin(), curve.sink_m.end(), dent.sink_m.begin(),
@@ -33,8 +33,8 @@ Dent dent_of(const SurfaceCurve& curve, const Avatar& avatar) {
     return dent;
 }
 
-Relief relief_of(const LinearTissue& tissue, const Eigen::VectorXd& sink_m, const Avatar& avatar) {
-    Relief relief;
+render::Relief relief_of(const scene::LinearTissue& tissue, const Eigen::VectorXd& sink_m, const scene::Avatar& avatar) {
+    render::Relief relief;
     relief.n_x = static_cast<int>(tissue.n_x);
     relief.n_y = static_cast<int>(tissue.n_y);
     const auto at = [&](int i, int j) {
@@ -53,11 +53,11 @@ Relief relief_of(const LinearTissue& tissue, const Eigen::VectorXd& sink_m, cons
     return relief;
 }
 
-Ball ball_of(const Plan& plan, const State& state, const Avatar& avatar) {
-    Ball ball;
+render::Ball ball_of(const scene::Plan& plan, const scene::State& state, const scene::Avatar& avatar) {
+    render::Ball ball;
     ball.centre_m = to_gl(avatar.p_m);
     ball.height_m = static_cast<float>(plan.indenter_radius_m - state.contact.depth_m);
-    if (on_tissue(state.view, state.touch.p_m) && state.timeline.started) {
+    if (scene::on_tissue(state.view, state.touch.p_m) && state.timeline.started) {
         ball.radius_m = static_cast<float>(plan.indenter_radius_m);
     }
     constexpr float kHovering = 0.35f;
@@ -65,4 +65,4 @@ Ball ball_of(const Plan& plan, const State& state, const Avatar& avatar) {
     return ball;
 }
 
-}  // namespace palpa
+}  // namespace palpa::app

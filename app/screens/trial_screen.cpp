@@ -9,7 +9,7 @@
 #include "app/screens/words.h"
 #include "mechanics/linear_range.h"
 
-namespace palpa {
+namespace palpa::app {
 namespace {
 
 // Bullet graph: one bar before three tints of one hue, light, medium and deep, named beside it.
@@ -47,16 +47,16 @@ void draw_force_bar(const Shown& shown, float height_px, const Gui& gui) {
 }
 
 // Of a forced choice: there is nothing to mark, and no number may tell how soft it is.
-bool is_interval(const Screens& screens) { return screens.study && screens.study->protocol.task == TaskKind::choice; }
+bool is_interval(const Screens& screens) { return screens.study && screens.study->protocol.task == study::TaskKind::choice; }
 
 void draw_numbers(const Shown& shown, const Gui& gui, const Screens& screens) {
     const float column_px = 13.5f * gui.mm();
-    const Contact& contact = shown.state.contact;
+    const scene::Contact& contact = shown.state.contact;
     ImGui::BeginGroup();
     value_line(words::kForce, fixed(contact.normal_N, 2) + " N", column_px);
     if (!is_interval(screens)) value_line(words::kDepth, fixed(1e3 * contact.depth_m, 2) + " mm", column_px);
     // in a test the lag is what the eye has to judge, so no number tells it
-    if (shown.trial.mode == TrialMode::practice) {
+    if (shown.trial.mode == session::TrialMode::practice) {
         value_line(words::kLag, fixed(1e3 * shown.avatar.lag_m.norm(), 2) + " mm", column_px);
         if (shown.scene.delay) value_line(words::kDelay, fixed(1e3 * shown.avatar.delay_s, 0) + " ms", column_px);
     }
@@ -66,7 +66,7 @@ void draw_numbers(const Shown& shown, const Gui& gui, const Screens& screens) {
 
 // One line that is always there, so that nothing moves when it fills.
 void draw_contact_note(const Shown& shown) {
-    const Contact& contact = shown.state.contact;
+    const scene::Contact& contact = shown.state.contact;
     const char* note = "";
     if (contact.saturated) note = words::kDeeperThanKnown;
     else if (!contact.measured) note = words::kNotMeasuredHere;
@@ -83,7 +83,7 @@ void draw_study_header(const Shown& shown, const StudyRun& run) {
     ImGui::SetWindowFontScale(1.3f);
     ImGui::Text("%s  %s", clock_text(left_s).c_str(), what);
     ImGui::SetWindowFontScale(1.0f);
-    if (run.protocol.task == TaskKind::choice) {
+    if (run.protocol.task == study::TaskKind::choice) {
         ImGui::TextWrapped("%s", run.interval == 0 ? words::kFirstSurface : words::kSecondSurface);
         paragraph(words::filled(words::kPairOf, {progress_text(run)}));
     } else {
@@ -100,7 +100,7 @@ void draw_header(const Shown& shown, const Gui& gui, Screens& screens) {
     ImGui::SameLine();
     ImGui::BeginGroup();
     ImGui::SetCursorPosY(ImGui::GetCursorPosY() + 0.5f * (line_px - ImGui::GetFontSize()));
-    const char* mode = shown.trial.mode == TrialMode::practice ? words::kWithNodules : words::kWithoutNodules;
+    const char* mode = shown.trial.mode == session::TrialMode::practice ? words::kWithNodules : words::kWithoutNodules;
     ImGui::Text("%s  %s", clock_text(shown.trial_s).c_str(), mode);
     ImGui::EndGroup();
 }
@@ -117,23 +117,23 @@ void draw_confidence(const Shown& shown, const Gui& gui, Wishes& wishes) {
     for (int i = 0; i < 5; ++i) {
         if (i > 0) ImGui::SameLine();
         if (big_button(kDigits[i], "", {width_px, kTarget_mm, !shown.trial.marks.empty(), said == i + 1}, gui)) {
-            wishes.action = static_cast<Action>(static_cast<int>(Action::confidence_1) + i);
+            wishes.action = static_cast<platform::Action>(static_cast<int>(platform::Action::confidence_1) + i);
         }
     }
 }
 
 void draw_actions(const Shown& shown, const Gui& gui, const Screens& screens, Wishes& wishes) {
     if (is_interval(screens)) {
-        if (big_button(words::kFelt, "F", {0.0f, kMark_mm, true, false}, gui)) wishes.action = Action::finish;
+        if (big_button(words::kFelt, "F", {0.0f, kMark_mm, true, false}, gui)) wishes.action = platform::Action::finish;
         return;
     }
     const std::string mark = words::filled(words::kMark, {std::to_string(shown.trial.marks.size())}) + "###mark";
-    if (big_button(mark.c_str(), "M", {0.0f, kMark_mm, shown.trial.last_px.has_value(), false}, gui)) wishes.action = Action::mark;
+    if (big_button(mark.c_str(), "M", {0.0f, kMark_mm, shown.trial.last_px.has_value(), false}, gui)) wishes.action = platform::Action::mark;
     draw_confidence(shown, gui, wishes);
     const float width_px = share_of_line_px(2);
-    if (big_button(words::kUndo, "U", {width_px, kTarget_mm, !shown.trial.marks.empty(), false}, gui)) wishes.action = Action::undo;
+    if (big_button(words::kUndo, "U", {width_px, kTarget_mm, !shown.trial.marks.empty(), false}, gui)) wishes.action = platform::Action::undo;
     ImGui::SameLine();
-    if (big_button(words::kFinish, "F", {width_px, kTarget_mm, true, false}, gui)) wishes.action = Action::finish;
+    if (big_button(words::kFinish, "F", {width_px, kTarget_mm, true, false}, gui)) wishes.action = platform::Action::finish;
 }
 
 void draw_messages(const Shown& shown, const Gui& gui, Screens& screens, Wishes& wishes) {
@@ -147,9 +147,9 @@ void draw_messages(const Shown& shown, const Gui& gui, Screens& screens, Wishes&
     if (!screens.note.empty()) paragraph(screens.note);
     if (!screens.trials_note.empty()) paragraph(screens.trials_note);
     if (screens.study) return;  // what the tissue is made of, the settings tell
-    if (shown.plan.source == SourceKind::analytic) paragraph(words::kAnalyticTissue);
-    if (shown.plan.source == SourceKind::simulated) paragraph(words::kSimulatedTissue);
-    if (std::isfinite(shown.state.view.scale) && shown.scene.mapping.kind == MappingKind::direct &&
+    if (shown.plan.source == stiffnessmaps::SourceKind::analytic) paragraph(words::kAnalyticTissue);
+    if (shown.plan.source == stiffnessmaps::SourceKind::simulated) paragraph(words::kSimulatedTissue);
+    if (std::isfinite(shown.state.view.scale) && shown.scene.mapping.kind == scene::MappingKind::direct &&
         std::abs(shown.state.view.scale - 1.0) > 0.005) {
         paragraph(words::filled(words::kShownAt, {fixed(100.0 * shown.state.view.scale, 0)}));
     }
@@ -201,7 +201,7 @@ void strip_panel(const Shown& shown, Gui& gui, Screens& screens, Wishes& wishes)
 void draw_pen(const Shown& shown, const Gui& gui, ImDrawList& draw) {
     if (!shown.state.touch.down) {  // where a mark would go
         if (!shown.trial.last_px) return;
-        const Eigen::Vector2d p_m = tissue_of_px(shown.state.view, *shown.trial.last_px);
+        const Eigen::Vector2d p_m = scene::tissue_of_px(shown.state.view, *shown.trial.last_px);
         const ImVec2 at = on_screen(shown.view, p_m.x(), p_m.y());
         dashed_circle(draw, at, 2.2f * gui.mm(), kInk, 0.3f * gui.mm());
         return;
@@ -216,8 +216,8 @@ void draw_pen(const Shown& shown, const Gui& gui, ImDrawList& draw) {
 
 void draw_on_tissue(const Shown& shown, const Gui& gui) {
     ImDrawList& draw = *ImGui::GetBackgroundDrawList();
-    if (shown.trial.mode == TrialMode::practice) {
-        for (const Nodule& nodule : shown.plan.nodules) {
+    if (shown.trial.mode == session::TrialMode::practice) {
+        for (const stiffnessmaps::Nodule& nodule : shown.plan.nodules) {
             const ImVec2 at = on_screen(shown.view, nodule.x_m, nodule.y_m);
             const auto radius_px = static_cast<float>(0.5 * nodule.diameter_m.value_or(4e-3)) * shown.view.px_per_m;
             draw.AddCircle(at, radius_px, kInk, 48, 0.5f * gui.mm());
@@ -225,7 +225,7 @@ void draw_on_tissue(const Shown& shown, const Gui& gui) {
         }
     }
     for (std::size_t i = 0; i < shown.trial.marks.size(); ++i) {
-        const Mark& mark = shown.trial.marks[i];
+        const session::Mark& mark = shown.trial.marks[i];
         const ImVec2 at = on_screen(shown.view, mark.p_m.x(), mark.p_m.y());
         cross(draw, at, 1.6f * gui.mm(), kDark, 1.2f * gui.mm());
         cross(draw, at, 1.6f * gui.mm(), kInk, 0.6f * gui.mm());
@@ -260,4 +260,4 @@ void draw_progress(const std::string& what, double share) {
     ImGui::End();
 }
 
-}  // namespace palpa
+}  // namespace palpa::app

@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <numbers>
 
-namespace palpa {
+namespace palpa::app {
 
 void begin_panel(const char* name, const PanelArea& area, Gui& gui, float opacity) {
     gui.claim(area);
@@ -98,8 +98,8 @@ std::string fixed(double value, int digits) {
     return text;
 }
 
-ImVec2 on_screen(const TissueView& view, double x_m, double y_m) {
-    const glm::vec2 px = project_px(view, glm::vec3(x_m, y_m, 0.0));
+ImVec2 on_screen(const render::TissueView& view, double x_m, double y_m) {
+    const glm::vec2 px = render::project_px(view, glm::vec3(x_m, y_m, 0.0));
     return {px.x, px.y};
 }
 
@@ -125,4 +125,4 @@ void rimmed_text(ImDrawList& draw, ImVec2 at, ImU32 colour, const std::string& t
     draw.AddText(at, colour, text.c_str());
 }
 
-}  // namespace palpa
+}  // namespace palpa::app

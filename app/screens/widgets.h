@@ -8,7 +8,7 @@
 #include "app/screens/gui.h"
 #include "render/tissue.h"
 
-namespace palpa {
+namespace palpa::app {
 
 inline constexpr ImU32 kInk = IM_COL32(236, 239, 241, 255);
 inline constexpr ImU32 kPale = IM_COL32(168, 176, 182, 255);
@@ -49,11 +49,11 @@ std::string clock_text(double seconds);  // 1:07
 std::string fixed(double value, int digits);
 
 // Where a place on the tissue is drawn.
-ImVec2 on_screen(const TissueView& view, double x_m, double y_m);
+ImVec2 on_screen(const render::TissueView& view, double x_m, double y_m);
 
 void cross(ImDrawList& draw, ImVec2 at, float radius_px, ImU32 colour, float width_px);
 void dashed_circle(ImDrawList& draw, ImVec2 at, float radius_px, ImU32 colour, float width_px);
 // With a dark rim, so that it can be read on any tissue.
 void rimmed_text(ImDrawList& draw, ImVec2 at, ImU32 colour, const std::string& text);
 
-}  // namespace palpa
+}  // namespace palpa::app

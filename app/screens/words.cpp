@@ -2,7 +2,7 @@
 
 #include <cassert>
 
-namespace palpa::words {
+namespace palpa::app::words {
 
 std::string filled(std::string_view pattern, std::initializer_list<std::string_view> values) {
     std::string out;
@@ -19,4 +19,4 @@ std::string filled(std::string_view pattern, std::initializer_list<std::string_v
     return out;
 }
 
-}  // namespace palpa::words
+}  // namespace palpa::app::words

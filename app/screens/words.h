@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-namespace palpa::words {
+namespace palpa::app::words {
 
 // Each {} of the pattern in turn replaced by a value. One value per {}.
 std::string filled(std::string_view pattern, std::initializer_list<std::string_view> values);
@@ -354,4 +354,4 @@ inline constexpr const char* pageSettingsNotKept = "Settings are not kept: the s
 inline constexpr const char* pageUnsaved = "{} trial(s) NOT kept: Menu, Trials, Export.";
 inline constexpr const char* pageCanvas = "Tissue to press on, and its controls";
 
-}  // namespace palpa::words
+}  // namespace palpa::app::words

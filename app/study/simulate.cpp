@@ -19,7 +19,7 @@
 #include "study/simulated_person.h"
 #include "study/study_folder.h"
 
-namespace palpa {
+namespace palpa::app {
 namespace {
 
 enum Purpose : std::uint64_t { kTraits = 11, kTrials = 12, kAnswers = 13 };
@@ -30,10 +30,10 @@ constexpr double kNoLimit_s = 60.0;     // how long a simulated person searches 
 constexpr double kSoftnessWeber = 0.2;  // of a simulated answer to "which is softer"; ours, no measurement
 
 struct Shared {
-    const Protocol& protocol;
+    const study::Protocol& protocol;
     const SimulateOptions& options;
     const StudyScenes& scenes;
-    std::vector<Json> identities;  // by condition: hashes of map and profile
+    std::vector<files::Json> identities;  // by condition: hashes of map and profile
     std::atomic<int> next_participant{1};
     std::atomic<int> done{0};
     std::atomic<bool> stop{false};
@@ -51,31 +51,31 @@ std::string code_of(int number) {
 // Sample of a hand that presses so hard at a place of the screen: the inverse of calibration and mapping.
 class Hand {
  public:
-    Hand(const Condition& condition, const Session& session)
+    Hand(const study::Condition& condition, const session::Session& session)
         : profile_(session.plan.profile), view_(session.state.view), force_scale_(session.scene.force_scale),
-          tool_(condition.modality == Modality::finger ? Tool::finger : Tool::pen) {}
+          tool_(condition.modality == study::Modality::finger ? platform::Tool::finger : platform::Tool::pen) {}
 
-    Sample sample(double t_s, const ScreenPlace& at, double force_N, Phase phase) const {
-        Sample out;
+    platform::Sample sample(double t_s, const study::ScreenPlace& at, double force_N, platform::Phase phase) const {
+        platform::Sample out;
         out.t_host_s = out.t_device_s = t_s;
         out.pointer_id = 1;
         out.tool = tool_;
         out.phase = phase;
         place(at, view_.input_px_per_m, out);
-        const double level = level_at_force(profile_, force_N / force_scale_);
+        const double level = calibration::level_at_force(profile_, force_N / force_scale_);
         const double share = (level - profile_.level_lowest) / (profile_.level_highest - profile_.level_lowest);
         out.pressure = share;
-        if (profile_.level == LevelField::pressure_raw) out.pressure_raw = std::round(level);
-        if (profile_.level == LevelField::contact_area) {
+        if (profile_.level == calibration::LevelField::pressure_raw) out.pressure_raw = std::round(level);
+        if (profile_.level == calibration::LevelField::contact_area) {
             out.width_px = out.height_px = std::sqrt(4.0 / std::numbers::pi * level * profile_.full_contact_area_px2);
         }
         return out;
     }
-    Sample act(double t_s, const ScreenPlace& at, Action action) const {
-        Sample out;
+    platform::Sample act(double t_s, const study::ScreenPlace& at, platform::Action action) const {
+        platform::Sample out;
         out.t_host_s = out.t_device_s = t_s;
         out.tool = tool_;
-        out.phase = Phase::ui;
+        out.phase = platform::Phase::ui;
         place(at, view_.input_px_per_m, out);
         out.action = action;
         return out;
@@ -83,24 +83,24 @@ class Hand {
 
  private:
     // the person's y points up, the screen's down
-    void place(const ScreenPlace& at, const Eigen::Vector2d& px_per_m, Sample& out) const {
+    void place(const study::ScreenPlace& at, const Eigen::Vector2d& px_per_m, platform::Sample& out) const {
         out.x_px = view_.centre_px.x() + at.x_m * px_per_m.x();
         out.y_px = view_.centre_px.y() - at.y_m * px_per_m.y();
     }
 
-    const Profile& profile_;
-    View view_;
+    const calibration::Profile& profile_;
+    scene::View view_;
     double force_scale_;
-    Tool tool_;
+    platform::Tool tool_;
 };
 
-double greatest_force_N(const Session& session) {
+double greatest_force_N(const session::Session& session) {
     std::int64_t clamped = 0;
     return session.scene.force_scale * force_N(session.plan.profile, session.plan.profile.level_highest, clamped);
 }
 
-SessionFiles files_of(const Shared& shared, const PlannedParticipant& who, const PlannedTrial& trial) {
-    SessionFiles files;
+session::SessionFiles files_of(const Shared& shared, const study::PlannedParticipant& who, const study::PlannedTrial& trial) {
+    session::SessionFiles files;
     files.log = shared.options.output.string();
     files.participant = code_of(who.number);
     files.samples = shared.options.samples;
@@ -112,46 +112,46 @@ SessionFiles files_of(const Shared& shared, const PlannedParticipant& who, const
 }
 
 // What a person sees of the present state.
-Sight sight_of(const Session& session) {
+study::Sight sight_of(const session::Session& session) {
     return {session.state.avatar.lag_m.norm(), session.state.contact.depth_m, session.scene.surface.has_value()};
 }
 
-void palpate(SimulatedPerson& person, const Hand& hand, double rate_Hz, Session& session) {
+void palpate(study::SimulatedPerson& person, const Hand& hand, double rate_Hz, session::Session& session) {
     const double dt_s = 1.0 / rate_Hz;
     for (std::int64_t i = 0; !session.trial.finished; ++i) {
         const double t_s = static_cast<double>(i) * dt_s;
-        const Move made = move(dt_s, person);
-        take_sample(hand.sample(t_s, made.at, made.force_N, made.began ? Phase::down : Phase::move), session);
-        see(sight_of(session), dt_s, person);
-        if (made.deed == Deed::none) continue;
-        if (made.deed == Deed::mark) {
-            take_sample(hand.act(t_s, made.mark, Action::mark), session);
-            const int first = static_cast<int>(Action::confidence_1) - 1;
-            take_sample(hand.act(t_s, made.mark, static_cast<Action>(first + made.confidence)), session);
+        const study::Move made = study::move(dt_s, person);
+        session::take_sample(hand.sample(t_s, made.at, made.force_N, made.began ? platform::Phase::down : platform::Phase::move), session);
+        study::see(sight_of(session), dt_s, person);
+        if (made.deed == study::Deed::none) continue;
+        if (made.deed == study::Deed::mark) {
+            session::take_sample(hand.act(t_s, made.mark, platform::Action::mark), session);
+            const int first = static_cast<int>(platform::Action::confidence_1) - 1;
+            session::take_sample(hand.act(t_s, made.mark, static_cast<platform::Action>(first + made.confidence)), session);
         } else {
-            take_sample(hand.sample(t_s, made.at, 0.0, Phase::up), session);
-            take_sample(hand.act(t_s, made.at, Action::finish), session);
+            session::take_sample(hand.sample(t_s, made.at, 0.0, platform::Phase::up), session);
+            session::take_sample(hand.act(t_s, made.at, platform::Action::finish), session);
         }
     }
 }
 
-void run_trial(Shared& shared, const PlannedParticipant& who, const PlannedTrial& trial, Session& session) {
+void run_trial(Shared& shared, const study::PlannedParticipant& who, const study::PlannedTrial& trial, session::Session& session) {
     const auto began = std::chrono::steady_clock::now();
-    const Protocol& protocol = shared.protocol;
+    const study::Protocol& protocol = shared.protocol;
     session.scene = scene_of(*shared.scenes[trial.condition], trial);
-    const TraceInfo info{kScreenWidth_px, kScreenHeight_px, kMissing, kMissing, "simulated participant"};
-    begin_trial(files_of(shared, who, trial), info, trial.practice ? TrialMode::practice : TrialMode::test, session);
+    const platform::TraceInfo info{kScreenWidth_px, kScreenHeight_px, platform::kMissing, platform::kMissing, "simulated participant"};
+    session::begin_trial(files_of(shared, who, trial), info, trial.practice ? session::TrialMode::practice : session::TrialMode::test, session);
     session.state.time_every = 0;
     // the same hand and eye in all trials of a person, noise of its own in each
-    Random of_person(derived_seed(shared.options.seed, kTraits, static_cast<std::uint64_t>(who.number)));
-    const PersonTraits traits = draw_person(session.plan.zone_N[1], greatest_force_N(session), of_person);
+    study::Random of_person(study::derived_seed(shared.options.seed, kTraits, static_cast<std::uint64_t>(who.number)));
+    const study::PersonTraits traits = study::draw_person(session.plan.zone_N[1], greatest_force_N(session), of_person);
     const double asked_s = trial.practice ? protocol.practice_limit_s : protocol.time_limit_s;
     const bool on_side = trial.rotate_deg % 180 != 0;
     const Eigen::Vector2d& size_m = session.plan.area.size_m;
-    const std::uint64_t trials = derived_seed(shared.options.seed, kTrials, static_cast<std::uint64_t>(who.number));
-    SimulatedPerson person = make_person(traits, on_side ? size_m.y() : size_m.x(), on_side ? size_m.x() : size_m.y(),
+    const std::uint64_t trials = study::derived_seed(shared.options.seed, kTrials, static_cast<std::uint64_t>(who.number));
+    study::SimulatedPerson person = study::make_person(traits, on_side ? size_m.y() : size_m.x(), on_side ? size_m.x() : size_m.y(),
                                          asked_s > 0.0 ? asked_s : kNoLimit_s,
-                                         derived_seed(trials, kTrials, static_cast<std::uint64_t>(trial.trial)));
+                                         study::derived_seed(trials, kTrials, static_cast<std::uint64_t>(trial.trial)));
     palpate(person, Hand(protocol.conditions[trial.condition], session), shared.options.rate_Hz, session);
     const std::int64_t samples = session.state.counters.samples;
     double written_MB = 0.0;
@@ -161,7 +161,7 @@ void run_trial(Shared& shared, const PlannedParticipant& who, const PlannedTrial
     const double wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
     const std::string stem = session.files->stem;
     session.finished.clear();
-    if (!close_files({{"wall_s", wall_s}, {"samples", samples}}, session)) {
+    if (!session::close_files({{"wall_s", wall_s}, {"samples", samples}}, session)) {
         throw std::runtime_error(stem + ": the trial could not be written to its end (is the disk full?); the study stops here");
     }
     const std::lock_guard lock(shared.mutex);
@@ -171,17 +171,17 @@ void run_trial(Shared& shared, const PlannedParticipant& who, const PlannedTrial
 }
 
 // Forced choices need no loop: the answer is drawn from two stiffnesses with noise.
-void run_choices(Shared& shared, const PlannedParticipant& who, const std::set<int>& finished) {
-    const Protocol& protocol = shared.protocol;
-    if (!next_trial(who, finished)) return;
-    ChoiceLog log(next_run(shared.options.output, code_of(who.number), "softer"));
-    const std::uint64_t of_person = derived_seed(shared.options.seed, kAnswers, static_cast<std::uint64_t>(who.number));
+void run_choices(Shared& shared, const study::PlannedParticipant& who, const std::set<int>& finished) {
+    const study::Protocol& protocol = shared.protocol;
+    if (!study::next_trial(who, finished)) return;
+    study::ChoiceLog log(study::next_run(shared.options.output, code_of(who.number), "softer"));
+    const std::uint64_t of_person = study::derived_seed(shared.options.seed, kAnswers, static_cast<std::uint64_t>(who.number));
     int done = 0;
-    for (const PlannedTrial& trial : who.trials) {
+    for (const study::PlannedTrial& trial : who.trials) {
         if (finished.count(trial.trial) > 0) continue;
-        Random random(derived_seed(of_person, kAnswers, static_cast<std::uint64_t>(trial.trial)));
-        const Condition& condition = protocol.conditions[trial.condition];
-        ChoiceRow row;
+        study::Random random(study::derived_seed(of_person, kAnswers, static_cast<std::uint64_t>(trial.trial)));
+        const study::Condition& condition = protocol.conditions[trial.condition];
+        study::ChoiceRow row;
         row.duration_s = 2.0 + random.uniform();
         row.onset_s = 3.0 * (trial.trial - 1);
         row.trial = trial.trial;
@@ -192,7 +192,7 @@ void run_choices(Shared& shared, const PlannedParticipant& who, const std::set<i
         row.reference_kPa = protocol.choice.reference_kPa;
         row.comparison_kPa = protocol.choice.comparisons_kPa[static_cast<std::size_t>(trial.comparison)];
         row.first = trial.reference_first ? "reference" : "comparison";
-        const bool right = answers_right(row.reference_kPa, row.comparison_kPa, kSoftnessWeber, random);
+        const bool right = study::answers_right(row.reference_kPa, row.comparison_kPa, kSoftnessWeber, random);
         const bool reference_softer = row.reference_kPa < row.comparison_kPa;
         row.answer = right == reference_softer ? "reference" : "comparison";
         row.correct = right ? 1 : 0;
@@ -203,15 +203,15 @@ void run_choices(Shared& shared, const PlannedParticipant& who, const std::set<i
     shared.result.trials += done;
 }
 
-void run_participant(Shared& shared, int number, std::vector<std::optional<Session>>& sessions) {
-    const PlannedParticipant who = plan_participant(shared.protocol, number);
-    const std::set<int> finished = finished_trials(shared.options.output, code_of(number));
+void run_participant(Shared& shared, int number, std::vector<std::optional<session::Session>>& sessions) {
+    const study::PlannedParticipant who = study::plan_participant(shared.protocol, number);
+    const std::set<int> finished = study::finished_trials(shared.options.output, code_of(number));
     {
         const std::lock_guard lock(shared.mutex);
         shared.result.already_there += static_cast<int>(finished.size());
     }
-    if (shared.protocol.task == TaskKind::choice) return run_choices(shared, who, finished);
-    for (const PlannedTrial& trial : who.trials) {
+    if (shared.protocol.task == study::TaskKind::choice) return run_choices(shared, who, finished);
+    for (const study::PlannedTrial& trial : who.trials) {
         if (shared.stop) return;
         const bool simulated = shared.scenes[trial.condition].has_value() && (!trial.practice || shared.options.practice);
         if (!simulated && !trial.practice) {
@@ -219,7 +219,7 @@ void run_participant(Shared& shared, int number, std::vector<std::optional<Sessi
             ++shared.result.left_out;
         }
         if (!simulated || finished.count(trial.trial) > 0) continue;
-        std::optional<Session>& session = sessions[trial.condition];
+        std::optional<session::Session>& session = sessions[trial.condition];
         if (!session) {
             session.emplace();
             session->plan = *shared.scenes[trial.condition]->plan;
@@ -229,7 +229,7 @@ void run_participant(Shared& shared, int number, std::vector<std::optional<Sessi
 }
 
 void work(Shared& shared) {
-    std::vector<std::optional<Session>> sessions(shared.protocol.conditions.size());
+    std::vector<std::optional<session::Session>> sessions(shared.protocol.conditions.size());
     try {
         while (!shared.stop) {
             const int number = shared.next_participant++;
@@ -244,15 +244,15 @@ void work(Shared& shared) {
     }
 }
 
-void add_everybody(const Protocol& protocol, const SimulateOptions& options) {
-    std::vector<Person> people;
+void add_everybody(const study::Protocol& protocol, const SimulateOptions& options) {
+    std::vector<study::Person> people;
     for (int number = 1; number <= options.participants; ++number) {
-        Person person;
+        study::Person person;
         person.code = code_of(number);
-        person.group = protocol.groups[plan_participant(protocol, number).group].id;
+        person.group = protocol.groups[study::plan_participant(protocol, number).group].id;
         people.push_back(person);
     }
-    add_people(options.output, people);
+    study::add_people(options.output, people);
 }
 
 void tell(const Shared& shared, double wall_s, bool last) {
@@ -265,14 +265,14 @@ void tell(const Shared& shared, double wall_s, bool last) {
 
 }  // namespace
 
-SimulateResult simulate_study(const Protocol& protocol, const SimulateOptions& options) {
+SimulateResult simulate_study(const study::Protocol& protocol, const SimulateOptions& options) {
     const auto began = std::chrono::steady_clock::now();
     const auto wall_s = [&] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count(); };
     const StudyScenes scenes = load_study_scenes(protocol);
     Shared shared{protocol, options, scenes, {}, {}, {}, {}, {}, {}, {}};
     shared.next_participant = 1;
     for (const auto& scene : scenes) shared.identities.push_back(identity_of(scene));
-    open_study(options.output, protocol, {true, options.seed, "palpa " PALPA_VERSION});
+    study::open_study(options.output, protocol, {true, options.seed, "palpa " PALPA_VERSION});
     add_everybody(protocol, options);
     std::vector<std::thread> workers;
     for (int i = 0; i < options.jobs; ++i) workers.emplace_back([&] { work(shared); });
@@ -290,4 +290,4 @@ SimulateResult simulate_study(const Protocol& protocol, const SimulateOptions& o
     return shared.result;
 }
 
-}  // namespace palpa
+}  // namespace palpa::app

@@ -7,7 +7,7 @@
 #include "app/study/study_scenes.h"
 #include "study/protocol.h"
 
-namespace palpa {
+namespace palpa::app {
 
 struct SimulateOptions {
     int participants = 1;
@@ -30,6 +30,6 @@ struct SimulateResult {
 
 // Goes on where an earlier call of the same protocol and seed was interrupted. Throws InputError, or
 // std::runtime_error when a trial cannot be written: the study stops there, and what is finished is on the disk.
-SimulateResult simulate_study(const Protocol& protocol, const SimulateOptions& options);
+SimulateResult simulate_study(const study::Protocol& protocol, const SimulateOptions& options);
 
-}  // namespace palpa
+}  // namespace palpa::app

@@ -2,23 +2,23 @@
 
 #include <algorithm>
 
-namespace palpa {
+namespace palpa::app {
 
-bool tool_allowed(Modality modality, Tool tool) {
+bool tool_allowed(study::Modality modality, platform::Tool tool) {
     switch (modality) {
-        case Modality::pen: return tool == Tool::pen;
-        case Modality::finger: return tool == Tool::finger;
-        case Modality::mouse: return tool == Tool::mouse || tool == Tool::keyboard;
+        case study::Modality::pen: return tool == platform::Tool::pen;
+        case study::Modality::finger: return tool == platform::Tool::finger;
+        case study::Modality::mouse: return tool == platform::Tool::mouse || tool == platform::Tool::keyboard;
         default: return true;  // a touchpad may speak as any of them
     }
 }
 
-bool device_here(Modality modality, const std::vector<PointerDevice>& devices) {
-    const auto any = [&](Tool tool) {
-        return std::any_of(devices.begin(), devices.end(), [&](const PointerDevice& d) { return d.tool == tool; });
+bool device_here(study::Modality modality, const std::vector<platform::PointerDevice>& devices) {
+    const auto any = [&](platform::Tool tool) {
+        return std::any_of(devices.begin(), devices.end(), [&](const platform::PointerDevice& d) { return d.tool == tool; });
     };
-    if (modality == Modality::pen) return any(Tool::pen);
-    return modality != Modality::finger || any(Tool::finger);
+    if (modality == study::Modality::pen) return any(platform::Tool::pen);
+    return modality != study::Modality::finger || any(platform::Tool::finger);
 }
 
-}  // namespace palpa
+}  // namespace palpa::app

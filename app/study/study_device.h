@@ -6,11 +6,11 @@
 #include "platform/window.h"
 #include "study/protocol.h"
 
-namespace palpa {
+namespace palpa::app {
 
-bool tool_allowed(Modality modality, Tool tool);
+bool tool_allowed(study::Modality modality, platform::Tool tool);
 
 // Whether one of these devices is what such a trial is done with. A mouse is always there, and other modalities name no tool.
-bool device_here(Modality modality, const std::vector<PointerDevice>& devices);
+bool device_here(study::Modality modality, const std::vector<platform::PointerDevice>& devices);
 
-}  // namespace palpa
+}  // namespace palpa::app

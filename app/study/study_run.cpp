@@ -10,7 +10,7 @@
 #include "files/text.h"
 #include "study/ratings.h"
 
-namespace palpa {
+namespace palpa::app {
 namespace {
 
 namespace fs = std::filesystem;
@@ -19,16 +19,16 @@ constexpr double kRoom_MB = 64.0;  // for one trial: ten minutes at 1,000 Hz
 
 // The same tissue, harder or softer: forces of linear elastic tissue are proportional to its modulus. All look alike
 // to the person: the force bar is the reference's.
-std::vector<StudyScene> stimuli_of(const StudyScene& scene, const ChoiceTask& task) {
+std::vector<StudyScene> stimuli_of(const StudyScene& scene, const study::ChoiceTask& task) {
     std::vector<StudyScene> out{scene};
     for (const double comparison_kPa : task.comparisons_kPa) {
         StudyScene other = scene;
         other.scene.stiffness_scale *= comparison_kPa / task.reference_kPa;
-        Plan plan = make_plan_here(other.scene);
+        scene::Plan plan = session::make_plan_here(other.scene);
         plan.greatest_force_N = scene.plan->greatest_force_N;
         plan.greatest_depth_m = scene.plan->greatest_depth_m;
         plan.zone_N = scene.plan->zone_N;
-        other.plan = std::make_shared<const Plan>(std::move(plan));
+        other.plan = std::make_shared<const scene::Plan>(std::move(plan));
         out.push_back(std::move(other));
     }
     return out;
@@ -41,17 +41,17 @@ bool plain(const std::string& code) {
 }
 
 // What the experimenter sees from elsewhere (palpa study watch).
-Json now_json(const StudyRun& run) {
-    Json json{{"participant", run.code}, {"step", name_of(run.step)}, {"finished", run.progress.finished.size()},
+files::Json now_json(const StudyRun& run) {
+    files::Json json{{"participant", run.code}, {"step", name_of(run.step)}, {"finished", run.progress.finished.size()},
               {"of", run.progress.plan.trials.size()}};
     if (!run.stopped.empty()) json["stopped"] = run.stopped;
     if (!run.progress.next) return json;
-    const PlannedTrial& trial = *run.progress.next;
+    const study::PlannedTrial& trial = *run.progress.next;
     json["trial"] = trial.trial;
     json["condition"] = run.protocol.conditions[trial.condition].id;
     json["practice"] = trial.practice;
     if (trial.comparison < 0) return json;
-    const ChoiceTask& task = run.protocol.choice;
+    const study::ChoiceTask& task = run.protocol.choice;
     const double comparison_kPa = task.comparisons_kPa[static_cast<std::size_t>(trial.comparison)];
     json["present_kPa"] = {trial.reference_first ? task.reference_kPa : comparison_kPa,
                            trial.reference_first ? comparison_kPa : task.reference_kPa};
@@ -74,7 +74,7 @@ bool kept(StudyRun& run, const Work& work) {
 void write_now(const StudyRun& run) {
     const fs::path subject = run.directory / ("sub-" + run.code);
     fs::create_directories(subject);
-    write_text_atomically(subject / "now.json", json_text(now_json(run)));
+    files::write_text_atomically(subject / "now.json", files::json_text(now_json(run)));
 }
 
 void enter(StudyStep step, StudyRun& run) {
@@ -87,30 +87,30 @@ void enter(StudyStep step, StudyRun& run) {
 void check_room(const StudyRun& run) {
     const double free_MB = 1e-6 * static_cast<double>(fs::space(run.directory).available);
     if (free_MB >= kRoom_MB) return;
-    throw std::runtime_error(run.directory.string() + ": found " + short_number(free_MB) + " MB free, expected " +
-                             short_number(kRoom_MB) + " MB for a trial; the study stops here");
+    throw std::runtime_error(run.directory.string() + ": found " + files::short_number(free_MB) + " MB free, expected " +
+                             files::short_number(kRoom_MB) + " MB for a trial; the study stops here");
 }
 
 // The first condition whose trials are all done and that was not rated.
 std::optional<std::size_t> to_rate(const StudyRun& run) {
     if (run.protocol.ratings.empty()) return std::nullopt;
     std::vector<std::string> notes;
-    const std::vector<Rating> known = read_ratings(run.directory, run.code, notes);
-    for (const PlannedTrial& trial : run.progress.plan.trials) {
-        const auto open = [&](const PlannedTrial& t) { return t.condition == trial.condition && run.progress.finished.count(t.trial) == 0; };
+    const std::vector<study::Rating> known = study::read_ratings(run.directory, run.code, notes);
+    for (const study::PlannedTrial& trial : run.progress.plan.trials) {
+        const auto open = [&](const study::PlannedTrial& t) { return t.condition == trial.condition && run.progress.finished.count(t.trial) == 0; };
         if (std::any_of(run.progress.plan.trials.begin(), run.progress.plan.trials.end(), open)) continue;
         const std::string& id = run.protocol.conditions[trial.condition].id;
-        const auto same = [&](const Rating& r) { return r.condition == id; };
+        const auto same = [&](const study::Rating& r) { return r.condition == id; };
         if (std::none_of(known.begin(), known.end(), same)) return trial.condition;
     }
     return std::nullopt;
 }
 
 void add_person(StudyRun& run) {
-    Person person;
+    study::Person person;
     person.code = run.code;
     person.group = run.protocol.groups[run.progress.plan.group].id;
-    std::vector<Rating> others;
+    std::vector<study::Rating> others;
     for (std::size_t i = 0; i < run.protocol.demographics.size(); ++i) {
         const std::string& id = run.protocol.demographics[i].id;
         const std::string value = i < run.answers.size() && !run.answers[i].empty() ? run.answers[i] : "n/a";
@@ -122,22 +122,22 @@ void add_person(StudyRun& run) {
         else if (id == "vr_experience") person.vr_experience = value;
         else others.push_back({"n/a", id, value});
     }
-    add_ratings(run.directory, run.code, others);
-    add_people(run.directory, {person});
+    study::add_ratings(run.directory, run.code, others);
+    study::add_people(run.directory, {person});
     run.unkept_answers = true;
-    run.progress = progress_of(run.directory, run.protocol, run.code);
+    run.progress = study::progress_of(run.directory, run.protocol, run.code);
 }
 
 void begin_trial_step(StudyRun& run) {
-    const PlannedTrial& trial = due_trial(run);
+    const study::PlannedTrial& trial = due_trial(run);
     run.told = trial.condition;
     run.told_practice = trial.practice;
     run.interval = 0;
     run.typed = {};
-    run.typed.nodules.assign(due_nodules(run).size(), kMissed);
+    run.typed.nodules.assign(due_nodules(run).size(), study::kMissed);
     run.typed_began_s = 0.0;
     if (!kept(run, [&] { check_room(run); })) return;
-    const bool choice = run.protocol.task == TaskKind::choice;
+    const bool choice = run.protocol.task == study::TaskKind::choice;
     if (!shows_tissue(run)) return enter(choice ? StudyStep::present : StudyStep::typed, run);
     enter(StudyStep::trial, run);
     run.start_trial = run.step == StudyStep::trial;
@@ -151,16 +151,16 @@ void go_on(StudyRun& run) {
         return enter(StudyStep::ratings, run);
     }
     if (!run.progress.next) return enter(StudyStep::done, run);
-    const PlannedTrial& trial = *run.progress.next;
+    const study::PlannedTrial& trial = *run.progress.next;
     if (trial.break_before && !run.rested) return enter(StudyStep::pause, run);
     const bool told = run.told == trial.condition && run.told_practice == trial.practice;
-    if (run.protocol.task == TaskKind::choice && told) return begin_trial_step(run);
+    if (run.protocol.task == study::TaskKind::choice && told) return begin_trial_step(run);
     enter(StudyStep::instructions, run);
 }
 
 void finish_due(StudyRun& run) {
     run.progress.finished.insert(due_trial(run).trial);
-    run.progress.next = next_trial(run.progress.plan, run.progress.finished);
+    run.progress.next = study::next_trial(run.progress.plan, run.progress.finished);
     run.rested = false;
     go_on(run);
 }
@@ -173,7 +173,7 @@ const char* name_of(StudyStep step) {
     return kNames[static_cast<int>(step)];
 }
 
-StudyRun open_study_run(const Protocol& protocol, const fs::path& directory, const std::string& code) {
+StudyRun open_study_run(const study::Protocol& protocol, const fs::path& directory, const std::string& code) {
     StudyRun run;
     run.protocol = protocol;
     run.directory = directory;
@@ -181,24 +181,24 @@ StudyRun open_study_run(const Protocol& protocol, const fs::path& directory, con
     for (const auto& scene : run.scenes) {
         run.identities.push_back(identity_of(scene));
         run.stimuli.emplace_back();
-        if (protocol.task == TaskKind::choice && scene) run.stimuli.back() = stimuli_of(*scene, protocol.choice);
+        if (protocol.task == study::TaskKind::choice && scene) run.stimuli.back() = stimuli_of(*scene, protocol.choice);
     }
-    open_study(directory, protocol, {false, 0, "palpa " PALPA_VERSION});
+    study::open_study(directory, protocol, {false, 0, "palpa " PALPA_VERSION});
     if (code.empty()) return run;
-    if (!plain(code)) throw bad_input("--participant", "", shown(code), "up to 20 letters and digits");
+    if (!plain(code)) throw files::bad_input("--participant", "", files::shown(code), "up to 20 letters and digits");
     enter_code(code, run);
-    if (!run.note.empty()) throw bad_input("--participant", "", shown(code) + ", who has finished all trials", "a new code");
+    if (!run.note.empty()) throw files::bad_input("--participant", "", files::shown(code) + ", who has finished all trials", "a new code");
     if (run.step == StudyStep::stopped) throw std::runtime_error(run.stopped);
     return run;
 }
 
 std::string free_code(const StudyRun& run) {
     std::vector<std::string> notes;
-    const std::vector<Person> people = read_people(run.directory, notes);
+    const std::vector<study::Person> people = study::read_people(run.directory, notes);
     for (std::size_t number = people.size() + 1;; ++number) {
         char code[24];
         std::snprintf(code, sizeof code, "%02zu", number);
-        if (std::none_of(people.begin(), people.end(), [&](const Person& p) { return p.code == code; })) return code;
+        if (std::none_of(people.begin(), people.end(), [&](const study::Person& p) { return p.code == code; })) return code;
     }
 }
 
@@ -209,7 +209,7 @@ void enter_code(const std::string& code, StudyRun& run) {
         run.focus_code = true;
         return;
     }
-    if (!kept(run, [&] { run.progress = progress_of(run.directory, run.protocol, code); })) return;
+    if (!kept(run, [&] { run.progress = study::progress_of(run.directory, run.protocol, code); })) return;
     run.code = code;
     run.asked = run.rested = false;
     run.told.reset();
@@ -236,13 +236,13 @@ void submit_answers(StudyRun& run) {
         if (kept(run, [&] { add_person(run); })) go_on(run);
         return;
     }
-    std::vector<Rating> ratings;
+    std::vector<study::Rating> ratings;
     for (std::size_t i = 0; i < run.protocol.ratings.size(); ++i) {
         const bool answered = i < run.answers.size() && !run.answers[i].empty();
         ratings.push_back({run.protocol.conditions[run.rated].id, run.protocol.ratings[i].id, answered ? run.answers[i] : "n/a"});
     }
     run.unkept_answers = true;
-    if (kept(run, [&] { add_ratings(run.directory, run.code, ratings); })) go_on(run);
+    if (kept(run, [&] { study::add_ratings(run.directory, run.code, ratings); })) go_on(run);
 }
 
 void begin_step(StudyRun& run) {
@@ -265,7 +265,7 @@ void wait_for_device(bool left, StudyRun& run) {
 }
 
 void trial_finished(StudyRun& run) {
-    if (run.protocol.task == TaskKind::find) return finish_due(run);
+    if (run.protocol.task == study::TaskKind::find) return finish_due(run);
     interval_presented(run);
     run.start_trial = run.step == StudyStep::trial;
 }
@@ -278,11 +278,11 @@ void interval_presented(StudyRun& run) {
 }
 
 void choose_softer(bool first, double now_s, StudyRun& run) {
-    const PlannedTrial& trial = due_trial(run);
-    const ChoiceTask& task = run.protocol.choice;
-    const Condition& condition = due_condition(run);
+    const study::PlannedTrial& trial = due_trial(run);
+    const study::ChoiceTask& task = run.protocol.choice;
+    const study::Condition& condition = due_condition(run);
     const bool reference = first == trial.reference_first;
-    ChoiceRow row;
+    study::ChoiceRow row;
     const std::string block = trial.practice ? "practice" : "test";
     row.block = block;
     row.duration_s = now_s - run.step_began_s;
@@ -298,7 +298,7 @@ void choose_softer(bool first, double now_s, StudyRun& run) {
     row.correct = reference == (row.reference_kPa < row.comparison_kPa) ? 1 : 0;
     const bool good = kept(run, [&] {
         if (!run.choices) {
-            run.choices = std::make_unique<ChoiceLog>(next_run(run.directory, run.code, "softer", run.first_run));
+            run.choices = std::make_unique<study::ChoiceLog>(study::next_run(run.directory, run.code, "softer", run.first_run));
             run.choices_began_s = now_s;
         }
         row.onset_s = now_s - run.choices_began_s;
@@ -309,12 +309,12 @@ void choose_softer(bool first, double now_s, StudyRun& run) {
 }
 
 void submit_typed(StudyRun& run) {
-    const PlannedTrial& trial = due_trial(run);
+    const study::PlannedTrial& trial = due_trial(run);
     const bool good = kept(run, [&] {
-        TrialLabel label = label_of(run.protocol, run.progress.plan, trial, run.identities[trial.condition]);
-        const RunFiles files = next_run(run.directory, run.code, "palpation", run.first_run);
+        study::TrialLabel label = label_of(run.protocol, run.progress.plan, trial, run.identities[trial.condition]);
+        const study::RunFiles files = study::next_run(run.directory, run.code, "palpation", run.first_run);
         run.unkept_runs.push_back(files);
-        write_typed_trial(files, label, trial.practice, trial.seed, due_nodules(run), run.typed);
+        study::write_typed_trial(files, label, trial.practice, trial.seed, due_nodules(run), run.typed);
     });
     if (good) finish_due(run);
 }
@@ -331,31 +331,31 @@ void stop_study(const std::string& why, StudyRun& run) {
     }
 }
 
-const PlannedTrial& due_trial(const StudyRun& run) { return *run.progress.next; }
-const Condition& due_condition(const StudyRun& run) { return run.protocol.conditions[due_trial(run).condition]; }
+const study::PlannedTrial& due_trial(const StudyRun& run) { return *run.progress.next; }
+const study::Condition& due_condition(const StudyRun& run) { return run.protocol.conditions[due_trial(run).condition]; }
 
-bool typed_in(const Condition& condition) {
-    return condition.modality == Modality::hand || condition.modality == Modality::tangible ||
-           condition.modality == Modality::shape_display;
+bool typed_in(const study::Condition& condition) {
+    return condition.modality == study::Modality::hand || condition.modality == study::Modality::tangible ||
+           condition.modality == study::Modality::shape_display;
 }
 
 bool shows_tissue(const StudyRun& run) { return !typed_in(due_condition(run)) && run.scenes[due_trial(run).condition].has_value(); }
 
 const StudyScene& due_scene(const StudyRun& run) {
-    const PlannedTrial& trial = due_trial(run);
-    if (run.protocol.task == TaskKind::find) return *run.scenes[trial.condition];
+    const study::PlannedTrial& trial = due_trial(run);
+    if (run.protocol.task == study::TaskKind::find) return *run.scenes[trial.condition];
     const bool reference = (run.interval == 0) == trial.reference_first;
     return run.stimuli[trial.condition][reference ? 0 : 1 + static_cast<std::size_t>(trial.comparison)];
 }
 
-SessionFiles due_files(const StudyRun& run) {
-    const PlannedTrial& trial = due_trial(run);
-    SessionFiles files;
+session::SessionFiles due_files(const StudyRun& run) {
+    const study::PlannedTrial& trial = due_trial(run);
+    session::SessionFiles files;
     files.log = run.directory.string();
     files.participant = run.code;
     files.first_run = run.first_run;
     files.label = label_of(run.protocol, run.progress.plan, trial, run.identities[trial.condition]);
-    if (run.protocol.task == TaskKind::choice) {
+    if (run.protocol.task == study::TaskKind::choice) {
         files.task = "interval";
         files.label->study["interval"] = run.interval + 1;
     }
@@ -370,11 +370,11 @@ std::vector<std::string> due_nodules(const StudyRun& run) {
     const auto& scene = run.scenes[due_trial(run).condition];
     if (!scene) return due_condition(run).nodules;
     std::vector<std::string> names;
-    for (const Nodule& nodule : scene->plan->nodules) names.push_back(nodule.id);
+    for (const stiffnessmaps::Nodule& nodule : scene->plan->nodules) names.push_back(nodule.id);
     return names;
 }
 
-const std::vector<Item>& due_items(const StudyRun& run) {
+const std::vector<study::Item>& due_items(const StudyRun& run) {
     return run.step == StudyStep::questions ? run.protocol.demographics : run.protocol.ratings;
 }
 
@@ -383,4 +383,4 @@ std::string progress_text(const StudyRun& run) {
     return std::to_string(std::min(of, run.progress.finished.size() + 1)) + " of " + std::to_string(of);
 }
 
-}  // namespace palpa
+}  // namespace palpa::app

@@ -12,7 +12,7 @@
 #include "study/study_folder.h"
 #include "study/typed_trial.h"
 
-namespace palpa {
+namespace palpa::app {
 
 enum class StudyStep : std::uint8_t {
     code,          // who is here
@@ -32,9 +32,9 @@ enum class StudyStep : std::uint8_t {
 const char* name_of(StudyStep step);
 
 struct StudyRun {
-    Protocol protocol;
+    study::Protocol protocol;
     StudyScenes scenes;                            // by condition
-    std::vector<Json> identities;                  // by condition
+    std::vector<files::Json> identities;                  // by condition
     std::vector<std::vector<StudyScene>> stimuli;  // forced choices, by condition: the reference, then each comparison
     std::filesystem::path directory;
     StudyStep step = StudyStep::code;
@@ -42,10 +42,10 @@ struct StudyRun {
     std::optional<std::string> typed_code;  // what stands in the field for it; nothing: the next free one is offered
     bool focus_code = false;         // the field is to take letters again
     std::string note;                // why a code was not taken
-    StudyProgress progress;
+    study::StudyProgress progress;
     std::size_t rated = 0;           // condition that `ratings` asks about
     std::vector<std::string> answers;  // to the items of this step, "" = not answered
-    TypedAnswers typed;
+    study::TypedAnswers typed;
     double step_began_s = 0.0;       // window's clock; the screen sets it when it first draws the step
     double typed_began_s = 0.0;      // 0: the clock stands
     int interval = 0;                // of a choice: 0 or 1
@@ -56,14 +56,14 @@ struct StudyRun {
     bool start_trial = false;        // the loop is to begin one
     bool device_here = true;         // what the due trial is done with; the loop looks
     bool device_left = false;        // in the middle of the due trial, which begins anew
-    std::unique_ptr<ChoiceLog> choices;
+    std::unique_ptr<study::ChoiceLog> choices;
     double choices_began_s = 0.0;
     double question_began_s = 0.0;
     std::string stopped;
     // For a keeper (trial_keeper.h): what it has not been given yet, and what it says.
     bool on_tablet = false;
     int first_run = 1;                   // of the log: those before are known to be taken
-    std::vector<RunFiles> unkept_runs;   // typed trials
+    std::vector<study::RunFiles> unkept_runs;   // typed trials
     bool unkept_answers = false;
     bool keeping = false;                // the next step waits
     double keeping_began_s = 0.0;
@@ -72,7 +72,7 @@ struct StudyRun {
 
 // Loads what the protocol names and opens the folder. Throws InputError (also for a code that has finished), or
 // std::runtime_error if the folder cannot be written. `code` may be empty: then it is asked for.
-StudyRun open_study_run(const Protocol& protocol, const std::filesystem::path& directory, const std::string& code);
+StudyRun open_study_run(const study::Protocol& protocol, const std::filesystem::path& directory, const std::string& code);
 
 // The next code that is free: 01, 02, ...
 std::string free_code(const StudyRun& run);
@@ -90,17 +90,17 @@ void submit_typed(StudyRun& run);
 void stop_study(const std::string& why, StudyRun& run);
 
 // The trial that is due. Only while there is one (instructions to typed).
-const PlannedTrial& due_trial(const StudyRun& run);
-const Condition& due_condition(const StudyRun& run);
-bool typed_in(const Condition& condition);                // this program does not drive it
+const study::PlannedTrial& due_trial(const StudyRun& run);
+const study::Condition& due_condition(const StudyRun& run);
+bool typed_in(const study::Condition& condition);                // this program does not drive it
 bool shows_tissue(const StudyRun& run);                   // the due trial has a scene on this screen
 const StudyScene& due_scene(const StudyRun& run);         // of shows_tissue()
-SessionFiles due_files(const StudyRun& run);
+session::SessionFiles due_files(const StudyRun& run);
 double due_limit_s(const StudyRun& run);                  // 0: none
 std::vector<std::string> due_nodules(const StudyRun& run);  // names, for typed answers
-const std::vector<Item>& due_items(const StudyRun& run);  // of questions and ratings
+const std::vector<study::Item>& due_items(const StudyRun& run);  // of questions and ratings
 
 // 3 of 8: tests and practice together.
 std::string progress_text(const StudyRun& run);
 
-}  // namespace palpa
+}  // namespace palpa::app

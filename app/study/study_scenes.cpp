@@ -6,13 +6,13 @@
 #include "files/sha256.h"
 #include "files/text.h"
 
-namespace palpa {
+namespace palpa::app {
 namespace {
 
 namespace fs = std::filesystem;
 
 // Beside the protocol, else among the assets.
-fs::path find_beside(const Protocol& protocol, const std::string& name, const char* kind) {
+fs::path find_beside(const study::Protocol& protocol, const std::string& name, const char* kind) {
     const fs::path given(name);
     if (given.is_absolute()) return given;
     const fs::path beside = (protocol.file.parent_path() / given).lexically_normal();
@@ -22,38 +22,38 @@ fs::path find_beside(const Protocol& protocol, const std::string& name, const ch
 
 std::string hash_of_file(const fs::path& file) {
     std::error_code error;
-    return fs::is_regular_file(file, error) ? sha256_hex(read_text(file)) : "n/a";
+    return fs::is_regular_file(file, error) ? files::sha256_hex(files::read_text(file)) : "n/a";
 }
 
-StudyScene load(const Protocol& protocol, const Condition& condition) {
+StudyScene load(const study::Protocol& protocol, const study::Condition& condition) {
     StudyScene out;
     const fs::path file = find_beside(protocol, condition.scene, "scenes");
-    out.scene = read_scene(file, assets_folder());
+    out.scene = scene::read_scene(file, assets_folder());
     if (!condition.profile.empty()) out.scene.profile = find_beside(protocol, condition.profile, "profiles");
-    out.plan = std::make_shared<const Plan>(make_plan_here(out.scene));
+    out.plan = std::make_shared<const scene::Plan>(session::make_plan_here(out.scene));
     return out;
 }
 
 }  // namespace
 
-StudyScenes load_study_scenes(const Protocol& protocol) {
+StudyScenes load_study_scenes(const study::Protocol& protocol) {
     StudyScenes scenes;
     for (std::size_t i = 0; i < protocol.conditions.size(); ++i) {
-        const Condition& condition = protocol.conditions[i];
+        const study::Condition& condition = protocol.conditions[i];
         scenes.emplace_back();
         if (condition.scene.empty()) continue;
         try {
             scenes.back() = load(protocol, condition);
-        } catch (const InputError& error) {
-            throw InputError(protocol.file.string() + ": conditions[" + std::to_string(i) + "] " +
-                             shown(condition.id) + ": " + error.what());
+        } catch (const files::InputError& error) {
+            throw files::InputError(protocol.file.string() + ": conditions[" + std::to_string(i) + "] " +
+                             files::shown(condition.id) + ": " + error.what());
         }
     }
     return scenes;
 }
 
-Json identity_of(const std::optional<StudyScene>& scene) {
-    Json json = Json::object();
+files::Json identity_of(const std::optional<StudyScene>& scene) {
+    files::Json json = files::Json::object();
     if (!scene) return json;
     json["profile_sha256"] = hash_of_file(scene->scene.profile);
     if (scene->scene.linear) {
@@ -67,9 +67,9 @@ Json identity_of(const std::optional<StudyScene>& scene) {
     return json;
 }
 
-TrialLabel label_of(const Protocol& protocol, const PlannedParticipant& who, const PlannedTrial& trial, const Json& identity) {
-    const Condition& condition = protocol.conditions[trial.condition];
-    Json study{{"protocol", protocol.name},
+study::TrialLabel label_of(const study::Protocol& protocol, const study::PlannedParticipant& who, const study::PlannedTrial& trial, const files::Json& identity) {
+    const study::Condition& condition = protocol.conditions[trial.condition];
+    files::Json study{{"protocol", protocol.name},
                {"version", protocol.version},
                {"sha256", protocol.sha256},
                {"seed", protocol.seed},
@@ -81,12 +81,12 @@ TrialLabel label_of(const Protocol& protocol, const PlannedParticipant& who, con
     return {condition.id, condition.device, trial.trial, who.order_id, study};
 }
 
-Scene scene_of(const StudyScene& scene, const PlannedTrial& trial) {
-    Scene out = scene.scene;
+scene::Scene scene_of(const StudyScene& scene, const study::PlannedTrial& trial) {
+    scene::Scene out = scene.scene;
     out.mapping.rotate_deg = trial.rotate_deg;
     out.mapping.flip = trial.flip;
     out.seed = trial.seed;
     return out;
 }
 
-}  // namespace palpa
+}  // namespace palpa::app

@@ -8,25 +8,25 @@
 #include "study/order.h"
 #include "study/trial_log.h"
 
-namespace palpa {
+namespace palpa::app {
 
 // By condition of the protocol. Empty where there is no scene (by hand, forced choices without one).
 struct StudyScene {
-    Scene scene;
-    std::shared_ptr<const Plan> plan;  // turning and flipping do not change it
+    scene::Scene scene;
+    std::shared_ptr<const scene::Plan> plan;  // turning and flipping do not change it
 };
 using StudyScenes = std::vector<std::optional<StudyScene>>;
 
 // Throws InputError that names the protocol, the condition and what is wrong with its scene, map or profile.
-StudyScenes load_study_scenes(const Protocol& protocol);
+StudyScenes load_study_scenes(const study::Protocol& protocol);
 
 // Hashes of what a trial is made from: profile, and map or phantom.
-Json identity_of(const std::optional<StudyScene>& scene);
+files::Json identity_of(const std::optional<StudyScene>& scene);
 
 // Of this trial, for its events and its settings.
-TrialLabel label_of(const Protocol& protocol, const PlannedParticipant& who, const PlannedTrial& trial, const Json& identity);
+study::TrialLabel label_of(const study::Protocol& protocol, const study::PlannedParticipant& who, const study::PlannedTrial& trial, const files::Json& identity);
 
 // The scene as this trial shows it.
-Scene scene_of(const StudyScene& scene, const PlannedTrial& trial);
+scene::Scene scene_of(const StudyScene& scene, const study::PlannedTrial& trial);
 
-}  // namespace palpa
+}  // namespace palpa::app

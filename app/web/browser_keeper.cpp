@@ -39,7 +39,7 @@ EM_JS(void, palpa_studies_open, (), { palpaPage.openStudies(); });
 EM_JS(void, palpa_studies_restore, (), { palpaStudies.restore(); });
 // clang-format on
 
-namespace palpa {
+namespace palpa::app {
 namespace {
 
 namespace fs = std::filesystem;
@@ -53,8 +53,8 @@ std::string text_of(Text which) {
 
 // What the browser's storage has is not needed in memory too; the empty file keeps the number of the run, and a study's
 // events tell which trials are done.
-void empty_files(const RunFiles& run) {
-    const bool study = !study_of(run).empty();
+void empty_files(const study::RunFiles& run) {
+    const bool study = !study::study_of(run).empty();
     for (const auto& entry : fs::directory_iterator(run.folder)) {
         if (entry.path().filename().string().rfind(run.stem + "_", 0) != 0) continue;
         if (study && entry.path() == run.file("_events.tsv")) continue;
@@ -65,17 +65,17 @@ void empty_files(const RunFiles& run) {
 void put(const std::string& name, const std::string& bundle, const char* how, const std::vector<fs::path>& study) {
     std::string paths;
     for (const fs::path& path : study) paths += path.string() + "\n";
-    palpa_trials_put(name.c_str(), bundle.c_str(), sha256_hex(bundle).c_str(), how, paths.c_str());
+    palpa_trials_put(name.c_str(), bundle.c_str(), files::sha256_hex(bundle).c_str(), how, paths.c_str());
 }
 
-void keep_run(const RunFiles& run, const char* how) {
+void keep_run(const study::RunFiles& run, const char* how) {
     try {
         std::vector<fs::path> study;
-        if (const fs::path directory = study_of(run); !directory.empty()) {
-            study = study_files(directory, code_of(run));
+        if (const fs::path directory = study::study_of(run); !directory.empty()) {
+            study = study::study_files(directory, study::code_of(run));
             if (fs::exists(run.file("_events.tsv"))) study.push_back(run.file("_events.tsv"));
         }
-        put(run.stem, bundle_text(run), how, study);
+        put(run.stem, study::bundle_text(run), how, study);
     } catch (const std::exception& error) {
         palpa_trials_failed(error.what());
     }
@@ -90,14 +90,14 @@ std::string rest_of(const fs::path& file, std::size_t from) {
 
 }  // namespace
 
-void BrowserKeeper::keep(const RunFiles& run, bool finished) {
+void BrowserKeeper::keep(const study::RunFiles& run, bool finished) {
     keep_run(run, finished ? "finished" : "going-on");
     if (!finished) return;
     empty_files(run);
     parts_.clear();
 }
 
-void BrowserKeeper::keep_part(const RunFiles& run) {
+void BrowserKeeper::keep_part(const study::RunFiles& run) {
     for (const auto& entry : fs::directory_iterator(run.folder)) {
         if (entry.path().filename().string().rfind(run.stem + "_", 0) != 0) continue;
         std::size_t& kept = parts_[entry.path().string()];
@@ -112,7 +112,7 @@ void BrowserKeeper::keep_answers(const fs::path& directory, const std::string& c
     try {
         char run[16];
         std::snprintf(run, sizeof run, "%02d", palpa_trials_next_run());
-        put("sub-" + code + "_task-answers_run-" + run, bundle_of_answers(directory, code), "finished", study_files(directory, code));
+        put("sub-" + code + "_task-answers_run-" + run, study::bundle_of_answers(directory, code), "finished", study::study_files(directory, code));
     } catch (const std::exception& error) {
         palpa_trials_failed(error.what());
     }
@@ -130,7 +130,7 @@ std::string BrowserKeeper::note() const { return text_of(kNote); }
 
 void BrowserKeeper::keep_settings(const std::filesystem::path& file) {
     try {
-        palpa_trials_keep_settings(read_text(file).c_str());
+        palpa_trials_keep_settings(files::read_text(file).c_str());
     } catch (const std::exception& error) {
         palpa_trials_failed(error.what());
     }
@@ -141,7 +141,7 @@ void BrowserKeeper::open_studies() { palpa_studies_open(); }
 
 void restore_studies() {
     const std::string broken = text_of(kBroken);
-    for (const std::string_view line : fields_of(broken, '\n')) {
+    for (const std::string_view line : files::fields_of(broken, '\n')) {
         const fs::path run(line);
         if (!run.empty()) keep_run({run.parent_path(), run.filename().string()}, "broken-off");
     }
@@ -152,7 +152,7 @@ void restore_settings(const std::filesystem::path& file) {
     const std::string text = text_of(kSettings);
     if (text.empty()) return;
     std::filesystem::create_directories(file.parent_path());
-    write_text_whole(file, text);
+    files::write_text_whole(file, text);
 }
 
-}  // namespace palpa
+}  // namespace palpa::app

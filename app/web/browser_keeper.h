@@ -5,12 +5,12 @@
 
 #include "session/keeper.h"
 
-namespace palpa {
+namespace palpa::app {
 
-class BrowserKeeper : public TrialKeeper {
+class BrowserKeeper : public session::TrialKeeper {
  public:
-    void keep(const RunFiles& run, bool finished) override;
-    void keep_part(const RunFiles& run) override;
+    void keep(const study::RunFiles& run, bool finished) override;
+    void keep_part(const study::RunFiles& run) override;
     void keep_answers(const std::filesystem::path& directory, const std::string& code) override;
     void participant(const std::string& code) override;
     bool ready() const override;
@@ -37,4 +37,4 @@ void restore_studies();
 // Puts the settings of last time where the app looks for them.
 void restore_settings(const std::filesystem::path& file);
 
-}  // namespace palpa
+}  // namespace palpa::app

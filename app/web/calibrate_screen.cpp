@@ -4,7 +4,7 @@
 #include "app/screens/widgets.h"
 #include "app/screens/words.h"
 
-namespace palpa {
+namespace palpa::app {
 
 struct CalibrateForm {};
 
@@ -22,7 +22,7 @@ void draw_calibrate_screen(const Shown& shown, Gui& gui, CalibrateForm&, Wishes&
     end_panel("calibrate", gui);
 }
 
-void step_calibrate(const std::vector<Sample>&, CalibrateForm&) {}
+void step_calibrate(const std::vector<platform::Sample>&, CalibrateForm&) {}
 void stop_recording(CalibrateForm&) {}
 
-}  // namespace palpa
+}  // namespace palpa::app

@@ -1,8 +1,8 @@
 #include "app/screens/font.h"
 
-namespace palpa {
+namespace palpa::app {
 
 // DejaVu Sans, packed beside the program.
 std::string system_font_file() { return "/font.ttf"; }
 
-}  // namespace palpa
+}  // namespace palpa::app

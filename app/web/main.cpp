@@ -33,6 +33,7 @@ EM_JS(void, palpa_page_started, (), { palpaPage.started(); });
 namespace {
 
 using namespace palpa;
+using namespace palpa::app;
 
 struct Page {
     BrowserKeeper keeper;
@@ -102,7 +103,7 @@ EM_BOOL gl_restored(int, const void*, void*) {
 }
 
 // One folder for one version of one protocol; whoever was here before goes on in it.
-std::string study_folder(const std::string& name, const Protocol& protocol) {
+std::string study_folder(const std::string& name, const study::Protocol& protocol) {
     std::string folder = name + "-" + protocol.version;
     std::replace_if(folder.begin(), folder.end(), [](unsigned char c) { return c >= 128 || std::isalnum(c) == 0; }, '-');
     return "/studies/" + folder;
@@ -117,10 +118,10 @@ void choose_study(const std::string& name, RunOptions& options) {
     std::string known;
     for (const std::string& one : names) known += " " + one;
     if (name.find('/') != std::string::npos || !std::filesystem::exists(file)) {
-        throw bad_input("?protocol", "", shown(name), "one of" + known + ", or of a desk that this tablet is paired with");
+        throw files::bad_input("?protocol", "", files::shown(name), "one of" + known + ", or of a desk that this tablet is paired with");
     }
     options.protocol = file.string();
-    options.log = study_folder(name, read_protocol(file));
+    options.log = study_folder(name, study::read_protocol(file));
 }
 
 }  // namespace
@@ -134,7 +135,7 @@ EMSCRIPTEN_KEEPALIVE void palpa_type(const char* text) {
 
 // What `palpa run --json` would print now; for tests and for the curious.
 EMSCRIPTEN_KEEPALIVE const char* palpa_report() {
-    page.report = page.live ? json_text(page.live->report()) : "{}";
+    page.report = page.live ? files::json_text(page.live->report()) : "{}";
     return page.report.c_str();
 }
 
@@ -158,7 +159,7 @@ int main() {
         emscripten_set_webglcontextlost_callback("#canvas", nullptr, false, gl_lost);
         emscripten_set_webglcontextrestored_callback("#canvas", nullptr, false, gl_restored);
         emscripten_set_main_loop(frame, 0, false);
-    } catch (const InputError& error) {
+    } catch (const files::InputError& error) {
         protocol.empty() ? palpa_page_fail(error.what()) : palpa_page_refuse(error.what());
         return 1;
     } catch (const std::exception& error) {

@@ -4,23 +4,23 @@
 
 #include "files/input_error.h"
 
-namespace palpa {
+namespace palpa::app {
 
 struct PlanInProgress::Work {};
 
-PlanInProgress::PlanInProgress(const Scene& scene) {
-    throw InputError("\"" + scene.name + "\" is a linear tissue, which is computed on the desk: found a browser, expected a scene with a map");
+PlanInProgress::PlanInProgress(const scene::Scene& scene) {
+    throw files::InputError("\"" + scene.name + "\" is a linear tissue, which is computed on the desk: found a browser, expected a scene with a map");
 }
 PlanInProgress::~PlanInProgress() = default;
 
 double PlanInProgress::share() const { return 0.0; }
 bool PlanInProgress::wait(double) { return true; }
 void PlanInProgress::cancel() {}
-Plan PlanInProgress::take() { return {}; }
+scene::Plan PlanInProgress::take() { return {}; }
 
-Plan make_plan_here(const Scene& scene) {
+scene::Plan make_plan_here(const scene::Scene& scene) {
     if (scene.linear) return PlanInProgress(scene).take();
-    return make_plan(scene);
+    return scene::make_plan(scene);
 }
 
-}  // namespace palpa
+}  // namespace palpa::app

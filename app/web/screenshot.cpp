@@ -22,11 +22,11 @@ EM_JS(void, palpa_download_canvas, (const char* name), {
 });
 // clang-format on
 
-namespace palpa {
+namespace palpa::app {
 
-void save_screen(const Window&, const std::filesystem::path& png) { palpa_download_canvas(png.filename().c_str()); }
+void save_screen(const platform::Window&, const std::filesystem::path& png) { palpa_download_canvas(png.filename().c_str()); }
 
-std::filesystem::path save_picture(const Window& window, const std::string&) {
+std::filesystem::path save_picture(const platform::Window& window, const std::string&) {
     const std::time_t now = std::time(nullptr);
     std::tm local{};
     localtime_r(&now, &local);
@@ -36,4 +36,4 @@ std::filesystem::path save_picture(const Window& window, const std::string&) {
     return text;
 }
 
-}  // namespace palpa
+}  // namespace palpa::app

@@ -9,18 +9,18 @@
 #include "files/input_error.h"
 #include "files/text.h"
 
-namespace palpa {
+namespace palpa::calibration {
 namespace {
 
-std::unique_ptr<ForceSensor> open_sensor(const RecordArguments& arguments) {
+std::unique_ptr<devices::ForceSensor> open_sensor(const RecordArguments& arguments) {
     const std::string& sensor = arguments.sensor;
     if (sensor.rfind("netft:", 0) == 0) {
-        NetFtOptions options;
+        devices::NetFtOptions options;
         options.host = sensor.substr(6);
         if (const auto colon = options.host.find(':'); colon != std::string::npos) {
             double port = 0.0;
-            if (!parse_number(options.host.substr(colon + 1), port) || !(port >= 1.0 && port <= 65535.0)) {
-                throw bad_input("--sensor", "", shown(sensor), "netft:HOST or netft:HOST:PORT");
+            if (!files::parse_number(options.host.substr(colon + 1), port) || !(port >= 1.0 && port <= 65535.0)) {
+                throw files::bad_input("--sensor", "", files::shown(sensor), "netft:HOST or netft:HOST:PORT");
             }
             options.port = static_cast<int>(port);
             options.host.resize(colon);
@@ -28,13 +28,13 @@ std::unique_ptr<ForceSensor> open_sensor(const RecordArguments& arguments) {
         options.counts_per_N = arguments.counts_per_N;
         options.sign = arguments.axis.front() == '-' ? -1.0 : 1.0;
         options.axis = arguments.axis.back() - 'x';
-        return open_netft(options);
+        return devices::open_netft(options);
     }
     if (sensor.rfind("serial:", 0) == 0) {
-        if (arguments.N_per_count == 0.0) throw bad_input("--N-per-count", "", "nothing", "newtons for one count of the load cell (may be negative)");
-        return open_load_cell({sensor.substr(7), arguments.baud, arguments.N_per_count});
+        if (arguments.N_per_count == 0.0) throw files::bad_input("--N-per-count", "", "nothing", "newtons for one count of the load cell (may be negative)");
+        return devices::open_load_cell({sensor.substr(7), arguments.baud, arguments.N_per_count});
     }
-    if (sensor != "typed") throw bad_input("--sensor", "", shown(sensor), "netft:HOST[:PORT], serial:PATH or typed");
+    if (sensor != "typed") throw files::bad_input("--sensor", "", files::shown(sensor), "netft:HOST[:PORT], serial:PATH or typed");
     return nullptr;
 }
 
@@ -45,21 +45,21 @@ std::filesystem::path free_name(const std::filesystem::path& folder, const char*
     }
 }
 void save_points(const Recording& recording) {
-    write_text_atomically(points_file(recording.arguments), points_csv(recording.session.points));
+    files::write_text_atomically(points_file(recording.arguments), points_csv(recording.session.points));
 }
 
-bool touches(const Sample& sample, double level) { return (sample.phase == Phase::down || sample.phase == Phase::move) && level > 0.0; }
+bool touches(const platform::Sample& sample, double level) { return (sample.phase == platform::Phase::down || sample.phase == platform::Phase::move) && level > 0.0; }
 
-void take_levels(const std::vector<Sample>& samples, Recording& recording) {
+void take_levels(const std::vector<platform::Sample>& samples, Recording& recording) {
     const Profile& profile = recording.arguments.level;
-    for (const Sample& sample : samples) {
-        if (sample.phase == Phase::ui || sample.tool == Tool::mouse) continue;  // a mouse has no sensor
+    for (const platform::Sample& sample : samples) {
+        if (sample.phase == platform::Phase::ui || sample.tool == platform::Tool::mouse) continue;  // a mouse has no sensor
         const double level = level_of(profile, sample);
-        if (sample.phase != Phase::up && sample.phase != Phase::hover && sample.phase != Phase::cancel && std::isnan(level)) continue;
+        if (sample.phase != platform::Phase::up && sample.phase != platform::Phase::hover && sample.phase != platform::Phase::cancel && std::isnan(level)) continue;
         ++recording.samples;
         recording.raw->write(sample, level);
         const bool touching = touches(sample, level);
-        move_to(sample, recording.timeline);
+        platform::move_to(sample, recording.timeline);
         const double t_s = recording.timeline.now_s;
         if (touching || recording.session.touching) recording.touched_s = t_s;
         take_level(recording.arguments.options, t_s, touching ? level : 0.0, touching, recording.session);
@@ -68,12 +68,12 @@ void take_levels(const std::vector<Sample>& samples, Recording& recording) {
 
 // The zero is taken while nothing touches, and fixed by the first point of the run.
 void take_forces(Recording& recording) {
-    std::vector<ForceReading> readings;
+    std::vector<devices::ForceReading> readings;
     recording.sensor->poll(readings);
     RecordSession& session = recording.session;
     const RecordOptions& options = recording.arguments.options;
     const bool knows_touch = recording.samples > 0 || recording.arguments.levels.empty();  // a stream may begin amid a press
-    for (const ForceReading& reading : readings) {
+    for (const devices::ForceReading& reading : readings) {
         ++recording.readings;
         recording.raw->write(reading);
         constexpr double kLift_s = 0.1;
@@ -87,10 +87,10 @@ void take_forces(Recording& recording) {
 // A sensor that never says anything is a mistake in the set-up; one that falls silent later is waited for.
 void watch_sensor(double now_s, Recording& recording) {
     if (!recording.sensor) return;
-    const SensorHealth health = recording.sensor->health();
+    const devices::SensorHealth health = recording.sensor->health();
     constexpr double kPatience_s = 5.0;
     if (health.received == 0 && now_s - recording.began_s > kPatience_s) {
-        throw std::runtime_error(recording.sensor->name() + ": no reading in " + short_number(kPatience_s) + " s (connected, powered, right address?)");
+        throw std::runtime_error(recording.sensor->name() + ": no reading in " + files::short_number(kPatience_s) + " s (connected, powered, right address?)");
     }
     recording.silent = health.received > 0 && !health.alive;
 }
@@ -105,15 +105,15 @@ bool enough(Recording& recording) {
     return recording.knowledge.done;
 }
 
-Json health_json(const SensorHealth& health) {
+files::Json health_json(const devices::SensorHealth& health) {
     return {{"received", health.received}, {"lost", health.lost}, {"duplicate", health.duplicate}, {"reordered", health.reordered},
             {"malformed", health.malformed}, {"overflowed", health.overflowed}, {"stalls", health.stalls}, {"reconnects", health.reconnects},
             {"faults", health.faults}};
 }
 
-Json result_of(const Recording& recording) {
+files::Json result_of(const Recording& recording) {
     const Knowledge knowledge = knowledge_of(recording.arguments.options, recording.session.points);
-    Json json{{"points", recording.session.points.size()}, {"repeats", knowledge.repeats}, {"done", knowledge.done}, {"missing", knowledge.missing},
+    files::Json json{{"points", recording.session.points.size()}, {"repeats", knowledge.repeats}, {"done", knowledge.done}, {"missing", knowledge.missing},
               {"relative_half_interval", knowledge.band_error}, {"samples", recording.samples}, {"file", points_file(recording.arguments).string()}};
     if (recording.sensor) {
         json["sensor"] = {{"name", recording.sensor->name()}, {"readings", recording.readings}, {"health", health_json(recording.sensor->health())}};
@@ -126,13 +126,13 @@ Json result_of(const Recording& recording) {
 void open_session(const RecordArguments& arguments, RecordSession& session) {
     const auto file = points_file(arguments);
     if (std::filesystem::exists(file)) {
-        if (!arguments.resume) throw bad_input(file.string(), "", "a session", "a new folder, or --resume to go on with it");
+        if (!arguments.resume) throw files::bad_input(file.string(), "", "a session", "a new folder, or --resume to go on with it");
         session.points = read_session(file);
         for (const CapturedPoint& point : session.points) session.repeat = std::max(session.repeat, point.repeat + 1);
-        if (!session.points.empty()) session.clock_shift_s = std::max(0.0, session.points.back().time_s + 1.0 - steady_s());
+        if (!session.points.empty()) session.clock_shift_s = std::max(0.0, session.points.back().time_s + 1.0 - devices::steady_s());
         return;
     }
-    if (arguments.resume) throw bad_input(file.string(), "", "nothing", "the session to resume");
+    if (arguments.resume) throw files::bad_input(file.string(), "", "nothing", "the session to resume");
 }
 
 }  // namespace
@@ -141,24 +141,24 @@ RawFiles::RawFiles(const std::filesystem::path& folder) : levels(free_name(folde
     levels.append("t_host_s\tt_device_s\tphase\tlevel\n");
     forces.append("t_host_s\tt_device_s\tforce_N\traw\n");
 }
-void RawFiles::write(const Sample& sample, double level) {
+void RawFiles::write(const platform::Sample& sample, double level) {
     row.clear();
-    append_number(sample.t_host_s, row);
+    files::append_number(sample.t_host_s, row);
     row += '\t';
-    append_number(sample.t_device_s, row);
+    files::append_number(sample.t_device_s, row);
     row += '\t';
     row += name_of(sample.phase);
     row += '\t';
-    append_number(level, row);
+    files::append_number(level, row);
     row += '\n';
     levels.append(row);
 }
-void RawFiles::write(const ForceReading& reading) {
+void RawFiles::write(const devices::ForceReading& reading) {
     row.clear();
-    append_number(reading.t_host_s, row);
+    files::append_number(reading.t_host_s, row);
     for (const double value : {reading.t_device_s, reading.force_N, reading.raw}) {
         row += '\t';
-        append_number(value, row);
+        files::append_number(value, row);
     }
     row += '\n';
     forces.append(row);
@@ -170,7 +170,7 @@ void RawFiles::sync() {
 std::filesystem::path points_file(const RecordArguments& arguments) { return std::filesystem::path(arguments.folder) / "points.csv"; }
 
 std::unique_ptr<Recording> open_recording(const RecordArguments& arguments) {
-    std::unique_ptr<ForceSensor> device = open_sensor(arguments);
+    std::unique_ptr<devices::ForceSensor> device = open_sensor(arguments);
     auto recording = std::make_unique<Recording>();
     recording->arguments = arguments;
     open_session(arguments, recording->session);
@@ -178,15 +178,15 @@ std::unique_ptr<Recording> open_recording(const RecordArguments& arguments) {
     recording->knowledge = knowledge_of(arguments.options, recording->session.points);
     std::filesystem::create_directories(arguments.folder);
     recording->raw.emplace(arguments.folder);
-    if (device) recording->sensor = std::make_unique<SensorReader>(std::move(device));
-    recording->began_s = recording->synced_s = steady_s();
+    if (device) recording->sensor = std::make_unique<devices::SensorReader>(std::move(device));
+    recording->began_s = recording->synced_s = devices::steady_s();
     return recording;
 }
 
-bool step(const std::vector<Sample>& samples, Recording& recording) {
+bool step(const std::vector<platform::Sample>& samples, Recording& recording) {
     take_levels(samples, recording);
     const std::size_t had = recording.session.points.size();
-    const double now_s = steady_s();
+    const double now_s = devices::steady_s();
     if (recording.sensor) {
         take_forces(recording);
         capture(recording.arguments.options, now_s, recording.session);
@@ -203,7 +203,7 @@ bool step(const std::vector<Sample>& samples, Recording& recording) {
 
 bool take_typed_N(double force_N, Recording& recording) {
     const RecordOptions& options = recording.arguments.options;
-    const double now_s = steady_s();
+    const double now_s = devices::steady_s();
     for (const double ago : {0.95, 0.7, 0.45, 0.2}) take_force(options, now_s - ago * options.steady_s, force_N, recording.session);
     if (!capture(options, now_s, recording.session)) return false;
     save_points(recording);
@@ -216,14 +216,14 @@ std::string advice(const Recording& recording) {
     if (recording.sensor && std::isnan(recording.session.zero_N)) return "do not touch (zero)";
     const int band = target_band(options, recording.session, recording.knowledge.band_error);
     if (band < 0) return "lift the pen";
-    return "press to " + short_number(100.0 * band / options.bands) + " - " + short_number(100.0 * (band + 1) / options.bands) + " %";
+    return "press to " + files::short_number(100.0 * band / options.bands) + " - " + files::short_number(100.0 * (band + 1) / options.bands) + " %";
 }
 
-Json close_recording(Recording& recording) {
+files::Json close_recording(Recording& recording) {
     if (recording.sensor) take_forces(recording);
     recording.raw->sync();
     save_points(recording);
     return result_of(recording);
 }
 
-}  // namespace palpa
+}  // namespace palpa::calibration

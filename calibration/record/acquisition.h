@@ -15,7 +15,7 @@
 #include "platform/sample.h"
 #include "platform/timeline.h"
 
-namespace palpa {
+namespace palpa::calibration {
 
 inline constexpr double kN_per_gf = 9.80665e-3;
 
@@ -36,23 +36,23 @@ struct RecordArguments {
 
 // Both streams as they came, on disk once a second. A run never touches the files of another.
 struct RawFiles {
-    AppendFile levels;
-    AppendFile forces;
+    files::AppendFile levels;
+    files::AppendFile forces;
     std::string row;
 
     explicit RawFiles(const std::filesystem::path& folder);
-    void write(const Sample& sample, double level);
-    void write(const ForceReading& reading);
+    void write(const platform::Sample& sample, double level);
+    void write(const devices::ForceReading& reading);
     void sync();  // throws std::runtime_error if something could not be written
 };
 
 struct Recording {
     RecordArguments arguments;
-    std::unique_ptr<SensorReader> sensor;  // none: typed
+    std::unique_ptr<devices::SensorReader> sensor;  // none: typed
     std::optional<RawFiles> raw;
     RecordSession session;
     Knowledge knowledge;
-    Timeline timeline;          // when samples really came: a slow frame holds them up, but not their device's clock
+    platform::Timeline timeline;          // when samples really came: a slow frame holds them up, but not their device's clock
     double began_s = 0.0;
     double synced_s = 0.0;
     double touched_s = -1.0;    // ended last
@@ -69,7 +69,7 @@ std::unique_ptr<Recording> open_recording(const RecordArguments& arguments);
 
 // One turn: samples in, readings in, points captured and saved. False once the curve is known everywhere or
 // arguments.seconds are over. Throws std::runtime_error when the disk is full or the sensor has never said anything.
-bool step(const std::vector<Sample>& samples, Recording& recording);
+bool step(const std::vector<platform::Sample>& samples, Recording& recording);
 
 // What a scale shows now, while the pen is held still at a level. False: nothing was taken, since it is not.
 bool take_typed_N(double force_N, Recording& recording);
@@ -80,6 +80,6 @@ std::string advice(const Recording& recording);
 std::filesystem::path points_file(const RecordArguments& arguments);
 
 // All that is left goes to the disk. What came of it, as `calibrate record --json` prints it.
-Json close_recording(Recording& recording);
+files::Json close_recording(Recording& recording);
 
-}  // namespace palpa
+}  // namespace palpa::calibration

@@ -6,7 +6,8 @@
 #include "devices/simulators/stream.h"
 
 using namespace palpa;
-using namespace palpa::simulators;
+using namespace palpa::devices;
+using namespace palpa::devices::simulators;
 
 int main(int argc, char** argv) {
     StreamOptions options;

@@ -13,7 +13,7 @@
 
 #include "devices/force_sensor.h"
 
-namespace palpa::simulators {
+namespace palpa::devices::simulators {
 
 struct StreamOptions {
     double rate_Hz = 80.0;
@@ -117,4 +117,4 @@ inline void print_sent(const Sent& sent) {
     std::fflush(stdout);
 }
 
-}  // namespace palpa::simulators
+}  // namespace palpa::devices::simulators

@@ -8,7 +8,7 @@
 
 #include "files/text.h"
 
-namespace palpa {
+namespace palpa::files {
 
 bool parse_number(std::string_view text, double& out) {
     if (!text.empty() && text.front() == '+') text.remove_prefix(1);
@@ -40,4 +40,4 @@ void append_number(double value, std::string& out) {
     out.append(text);
 }
 
-}  // namespace palpa
+}  // namespace palpa::files

@@ -4,7 +4,7 @@
 #include <cstdlib>
 #include <stdexcept>
 
-namespace palpa {
+namespace palpa::platform {
 namespace {
 
 std::string no_display_message() {
@@ -83,4 +83,4 @@ void GlWindow::destroy() {
     SDL_QuitSubSystem(SDL_INIT_VIDEO);
 }
 
-}  // namespace palpa
+}  // namespace palpa::platform

@@ -3,7 +3,7 @@
 
 #include "platform/window.h"
 
-namespace palpa {
+namespace palpa::platform {
 
 // Owns SDL's video part, the window and the context. Throws std::runtime_error with a message for people.
 class GlWindow {
@@ -23,4 +23,4 @@ class GlWindow {
     void* context_ = nullptr;
 };
 
-}  // namespace palpa
+}  // namespace palpa::platform

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <utility>
 
-namespace palpa {
+namespace palpa::platform {
 namespace {
 
 bool ask_filter(const WindowEvent& event, const Pointers& pointers) {
@@ -301,4 +301,4 @@ void set_keyboard_area(double t_host_s, const KeyboardArea& area, Pointers& poin
     }
 }
 
-}  // namespace palpa
+}  // namespace palpa::platform

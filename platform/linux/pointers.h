@@ -14,7 +14,7 @@
 union SDL_Event;
 struct SDL_Window;
 
-namespace palpa {
+namespace palpa::platform {
 
 struct Pointers {
     SDL_Window* window = nullptr;
@@ -50,4 +50,4 @@ void forget_presses(Pointers& pointers);  // as Window::end_presses
 // As Window::set_keyboard. A press that is going on when it is turned off ends with phase cancel.
 void set_keyboard_area(double t_host_s, const KeyboardArea& area, Pointers& pointers);
 
-}  // namespace palpa
+}  // namespace palpa::platform

@@ -10,7 +10,7 @@
 #include <cstring>
 #include <stdexcept>
 
-namespace palpa {
+namespace palpa::platform {
 
 UdpPort::UdpPort(const std::string& host, int port) {
     addrinfo wanted{};
@@ -47,4 +47,4 @@ int UdpPort::receive(double wait_s, std::uint8_t* bytes, std::size_t room) {
     return n > 0 ? static_cast<int>(n) : 0;
 }
 
-}  // namespace palpa
+}  // namespace palpa::platform

@@ -13,7 +13,7 @@
 #include "platform/linux/gl_window.h"
 #include "platform/linux/pointers.h"
 
-namespace palpa {
+namespace palpa::platform {
 namespace {
 
 double steady_s() {
@@ -204,4 +204,4 @@ SDL_Window* Window::sdl() const {
     return impl_->gl.sdl();
 }
 
-}  // namespace palpa
+}  // namespace palpa::platform

@@ -2,7 +2,7 @@
 
 #include <SDL.h>
 
-namespace palpa {
+namespace palpa::platform {
 namespace {
 
 int key_of(SDL_Keycode code) {
@@ -97,4 +97,4 @@ std::optional<WindowEvent> window_event(const SDL_Event& event, SDL_Window* wind
     }
 }
 
-}  // namespace palpa
+}  // namespace palpa::platform

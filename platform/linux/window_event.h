@@ -8,7 +8,7 @@
 union SDL_Event;
 struct SDL_Window;
 
-namespace palpa {
+namespace palpa::platform {
 
 struct Scale {
     double x = 1.0;
@@ -21,4 +21,4 @@ Scale px_per_unit(SDL_Window* window);
 // Nothing for what no panel is interested in.
 std::optional<WindowEvent> window_event(const SDL_Event& event, SDL_Window* window);
 
-}  // namespace palpa
+}  // namespace palpa::platform

@@ -11,7 +11,7 @@
 #include <string_view>
 #include <utility>
 
-namespace palpa {
+namespace palpa::platform {
 namespace {
 
 using EventMask = std::array<unsigned char, XIMaskLen(XI_LASTEVENT)>;
@@ -207,4 +207,4 @@ std::vector<std::int64_t> rescan(XInput& xinput) {
     return gone;
 }
 
-}  // namespace palpa
+}  // namespace palpa::platform

@@ -15,7 +15,7 @@ struct _XDisplay;
 struct SDL_Window;
 union SDL_Event;
 
-namespace palpa {
+namespace palpa::platform {
 
 struct XInput {
     _XDisplay* display = nullptr;  // SDL's
@@ -42,4 +42,4 @@ void wait_for_server(const XInput& xinput, double wait_s);
 // Returns the pointers that are gone.
 std::vector<std::int64_t> rescan(XInput& xinput);
 
-}  // namespace palpa
+}  // namespace palpa::platform

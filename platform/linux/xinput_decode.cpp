@@ -4,7 +4,7 @@
 #include <numbers>
 #include <utility>
 
-namespace palpa {
+namespace palpa::platform {
 namespace {
 
 bool bit_set(std::span<const unsigned char> mask, int bit) {
@@ -170,4 +170,4 @@ std::vector<std::int64_t> replace_devices(std::vector<XiDevice> devices, XiState
     return gone;
 }
 
-}  // namespace palpa
+}  // namespace palpa::platform

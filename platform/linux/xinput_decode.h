@@ -11,7 +11,7 @@
 #include "platform/sample.h"
 #include "platform/sample_clock.h"
 
-namespace palpa {
+namespace palpa::platform {
 
 // One axis ("valuator") of a device. number -1: the device has no such axis.
 struct Axis {
@@ -82,4 +82,4 @@ std::optional<Sample> decode(const XiEvent& event, double t_host_s, XiState& sta
 // Replaces the device list. Returns the pointer ids of pens and touches that went with their device.
 std::vector<std::int64_t> replace_devices(std::vector<XiDevice> devices, XiState& state);
 
-}  // namespace palpa
+}  // namespace palpa::platform

@@ -94,7 +94,7 @@ EM_JS(void, palpa_listen, (), {
 });
 // clang-format on
 
-namespace palpa::browser {
+namespace palpa::platform::browser {
 
 void fit_canvas() { palpa_fit_canvas(); }
 int canvas_width_px() { return palpa_canvas_width(); }
@@ -110,4 +110,4 @@ void set_full_screen(bool full) { palpa_set_full_screen(full ? 1 : 0); }
 void set_title(const char* title) { palpa_set_title(title); }
 void listen() { palpa_listen(); }
 
-}  // namespace palpa::browser
+}  // namespace palpa::platform::browser

@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-namespace palpa::browser {
+namespace palpa::platform::browser {
 
 // The canvas is given as many px as its place on the screen has. Call it once a frame.
 void fit_canvas();
@@ -23,4 +23,4 @@ void set_title(const char* title);
 // Pointers, keys, wheel and loss of the focus are sent to the exported functions of window.cpp from now on.
 void listen();
 
-}  // namespace palpa::browser
+}  // namespace palpa::platform::browser

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <optional>
 
-namespace palpa {
+namespace palpa::platform {
 namespace {
 
 constexpr double kNowhere_px = -1e6;
@@ -188,4 +188,4 @@ void set_keyboard_area(double t_host_s, const KeyboardArea& area, Pointers& poin
     if (!is_on(pointers.keyboard)) cancel_gone(t_host_s, kKeyboardPointerId, pointers.presses, pointers.pending);
 }
 
-}  // namespace palpa
+}  // namespace palpa::platform

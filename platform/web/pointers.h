@@ -11,7 +11,7 @@
 #include "platform/sample.h"
 #include "platform/window_event.h"
 
-namespace palpa {
+namespace palpa::platform {
 
 // One event as the browser tells it; each one of a coalesced list by itself.
 struct BrowserPointer {
@@ -58,4 +58,4 @@ void forget_presses(Pointers& pointers);  // as Window::end_presses
 // As Window::set_keyboard.
 void set_keyboard_area(double t_host_s, const KeyboardArea& area, Pointers& pointers);
 
-}  // namespace palpa
+}  // namespace palpa::platform

@@ -11,7 +11,7 @@
 #include "platform/web/browser.h"
 #include "platform/web/pointers.h"
 
-namespace palpa {
+namespace palpa::platform {
 namespace {
 
 // CSS px per millimetre of glass that is touched: 160 per inch. Tablets have 120 to 160, so that targets come out
@@ -128,7 +128,7 @@ double Window::touch_px_per_mm() const {
     return browser::has_touch_screen() ? kTouch_css_px_per_mm * browser::px_per_css_px() : kMissing;
 }
 
-}  // namespace palpa
+}  // namespace palpa::platform
 
 // What the page sends (platform/web/browser.cpp).
 extern "C" {
@@ -157,9 +157,9 @@ EMSCRIPTEN_KEEPALIVE void palpa_pointer(int kind, double pointer_id, int tool, d
 }
 
 EMSCRIPTEN_KEEPALIVE void palpa_wheel(double notches, double time_ms) {
-    if (palpa::open_pointers == nullptr) return;
-    palpa::open_pointers->stirred = true;
-    receive_wheel(notches, 1e-3 * time_ms, palpa::browser::now_s(), *palpa::open_pointers);
+    if (palpa::platform::open_pointers == nullptr) return;
+    palpa::platform::open_pointers->stirred = true;
+    receive_wheel(notches, 1e-3 * time_ms, palpa::platform::browser::now_s(), *palpa::platform::open_pointers);
 }
 
 EMSCRIPTEN_KEEPALIVE void palpa_key(int down, int code, int typed, int ctrl, int shift, int repeat) {
@@ -182,9 +182,9 @@ EMSCRIPTEN_KEEPALIVE void palpa_key(int down, int code, int typed, int ctrl, int
 }
 
 EMSCRIPTEN_KEEPALIVE void palpa_focus_lost() {
-    if (palpa::open_pointers == nullptr) return;
-    palpa::open_pointers->stirred = true;
-    release_all(palpa::browser::now_s(), *palpa::open_pointers);
+    if (palpa::platform::open_pointers == nullptr) return;
+    palpa::platform::open_pointers->stirred = true;
+    release_all(palpa::platform::browser::now_s(), *palpa::platform::open_pointers);
 }
 
 }

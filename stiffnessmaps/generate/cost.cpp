@@ -10,7 +10,7 @@
 #include "mechanics/error.h"
 #include "mechanics/rolling_cost.h"
 
-namespace palpa {
+namespace palpa::stiffnessmaps {
 namespace {
 
 using mechanics::RollingCost;
@@ -21,13 +21,13 @@ constexpr double kMostForces = 1e8;  // of a map: 1.2 GB of arrays
 
 std::string cost_text(const RollingCost& cost) {
     if (!std::isfinite(cost.unknowns)) return "a mesh of more than 10 000 million unknowns";
-    return "a mesh of " + short_number(cost.unknowns) + " unknowns, about " +
-           short_number(1e-9 * cost.memory_bytes) + " GB and " + short_number(cost.time_s / 3600.0) + " h";
+    return "a mesh of " + files::short_number(cost.unknowns) + " unknowns, about " +
+           files::short_number(1e-9 * cost.memory_bytes) + " GB and " + files::short_number(cost.time_s / 3600.0) + " h";
 }
 
 std::string limit_text() {
-    return " (at most " + short_number(1e-9 * mechanics::kMostTableMemory_bytes) + " GB and " +
-           short_number(mechanics::kMostTableTime_s / 3600.0) + " h for one mesh; a larger --coarseness makes coarser ones)";
+    return " (at most " + files::short_number(1e-9 * mechanics::kMostTableMemory_bytes) + " GB and " +
+           files::short_number(mechanics::kMostTableTime_s / 3600.0) + " h for one mesh; a larger --coarseness makes coarser ones)";
 }
 
 // A model that cannot be computed at all is not a way out.
@@ -57,7 +57,7 @@ double smallest(double from, double most, const std::function<bool(double)>& aff
 }
 
 std::string at_least_mm(double size_m) {
-    return "at least " + short_number(1e3 * size_m) + " mm" + limit_text();
+    return "at least " + files::short_number(1e3 * size_m) + " mm" + limit_text();
 }
 
 [[noreturn]] void refuse_tool(const MapTask& task, double coarseness, const std::string& file, const RollingCost& cost) {
@@ -74,12 +74,12 @@ std::string at_least_mm(double size_m) {
     const double least_depth_m = smallest(task.model.least_depth_m, std::min(task.model.radius_m, 0.9 * task.model.size_m[2]),
                                           [&](double value) { return affordable_with(depth, value); });
     if (std::isfinite(least_depth_m)) {
-        throw bad_input(file, "depths_mm", short_number(1e3 * task.model.least_depth_m) + ", which needs " + cost_text(cost),
+        throw files::bad_input(file, "depths_mm", files::short_number(1e3 * task.model.least_depth_m) + ", which needs " + cost_text(cost),
                         at_least_mm(least_depth_m));
     }
     const double least_radius_m = smallest(task.model.radius_m, task.model.size_m[2],
                                            [&](double value) { return affordable_with(radius, value); });
-    throw bad_input(file, "indenter.radius_mm", short_number(1e3 * task.model.radius_m) + ", which needs " + cost_text(cost),
+    throw files::bad_input(file, "indenter.radius_mm", files::short_number(1e3 * task.model.radius_m) + ", which needs " + cost_text(cost),
                     std::isfinite(least_radius_m) ? at_least_mm(least_radius_m)
                                                   : "a larger tool and deeper depths" + limit_text());
 }
@@ -96,9 +96,9 @@ std::string at_least_mm(double size_m) {
         model.inclusions[index].sphere.radius_m = 0.5 * diameter_m;
         return possible([&] { return mechanics::inclusion_cost(model, task.mesh, group); });
     });
-    std::string found = short_number(2e3 * radius_of(thinnest)) + ", which needs " + cost_text(cost);
+    std::string found = files::short_number(2e3 * radius_of(thinnest)) + ", which needs " + cost_text(cost);
     if (group.size() > 1) found += " together with the nodules near it, " + std::to_string(group.size()) + " in all";
-    throw bad_input(file, key, found,
+    throw files::bad_input(file, key, found,
                     std::isfinite(least_m) ? at_least_mm(least_m) : "fewer or larger nodules near each other" + limit_text());
 }
 
@@ -108,14 +108,14 @@ void check_cost(const MapTask& task, double coarseness, const std::string& file)
     const Phantom& p = task.phantom;
     const double forces = static_cast<double>(p.n_x) * static_cast<double>(p.n_y) * static_cast<double>(p.depths_m.size());
     if (forces > kMostForces) {
-        throw bad_input(file, "grid.count", short_number(forces) + " forces, those of all depths together",
-                        "at most " + short_number(kMostForces));
+        throw files::bad_input(file, "grid.count", files::short_number(forces) + " forces, those of all depths together",
+                        "at most " + files::short_number(kMostForces));
     }
     const RollingCost tool = mechanics::contact_cost(task.model, task.mesh);
     if (!mechanics::affordable(tool)) refuse_tool(task, coarseness, file, tool);
     const RollingCost sides = mechanics::side_cost(task.model, task.mesh);
     if (!mechanics::affordable(sides)) {
-        throw bad_input(file, "size_mm", "a block whose sides need " + cost_text(sides),
+        throw files::bad_input(file, "size_mm", "a block whose sides need " + cost_text(sides),
                         "a block less wide, or a tool less large, against its thickness" + limit_text());
     }
     for (const std::vector<int>& group : task.groups) {
@@ -124,4 +124,4 @@ void check_cost(const MapTask& task, double coarseness, const std::string& file)
     }
 }
 
-}  // namespace palpa
+}  // namespace palpa::stiffnessmaps

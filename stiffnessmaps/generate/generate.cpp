@@ -19,7 +19,7 @@
 #include "stiffnessmaps/grid.h"
 #include "stiffnessmaps/map_file.h"
 
-namespace palpa {
+namespace palpa::stiffnessmaps {
 namespace {
 
 namespace fs = std::filesystem;
@@ -70,7 +70,7 @@ class Progress {
 
 Arguments call_of(const GenerateOptions& options) {
     Arguments out{"maps", "generate", options.phantom.string(), "-o", options.output.string(), "--coarseness",
-                  number_text(options.coarseness)};
+                  files::number_text(options.coarseness)};
     return out;
 }
 
@@ -202,15 +202,15 @@ struct Differences {
     double largest_tangential = 0.0;  // with friction: either array
 };
 
-Json convergence_json(const MapTask& task, const MapTask& refined, const Map& map, Differences& found) {
+files::Json convergence_json(const MapTask& task, const MapTask& refined, const Map& map, Differences& found) {
     const double greatest_N = force_range(map).highest_N;
     const mechanics::RollingTables tables = read_windows(refined);
     std::vector<double> differences;
-    Json points = Json::array();
+    files::Json points = files::Json::array();
     for (const Cell& cell : probe_cells(task.phantom, kProbes)) {
         const std::vector<mechanics::RollingForce> reference = press_cell(refined, tables, cell);
-        Json in_map = Json::array();
-        Json refined_N = Json::array();
+        files::Json in_map = files::Json::array();
+        files::Json refined_N = files::Json::array();
         for (std::size_t d = 0; d < map.n_depths(); ++d) {
             const std::size_t at = d * map.n_cells() + cell.j * map.n_x + cell.i;
             const auto force = static_cast<double>(map.normal_N[at]);
@@ -229,11 +229,11 @@ Json convergence_json(const MapTask& task, const MapTask& refined, const Map& ma
     found.largest = differences.back();
     found.median = differences[differences.size() / 2];
     const auto mesh_json = [](const MapTask& t) {
-        return Json{{"contact_spacing_mm", 1e3 * t.mesh.contact_m},
+        return files::Json{{"contact_spacing_mm", 1e3 * t.mesh.contact_m},
                     {"side_spacing_mm", {1e3 * t.mesh.surface_m[0], 1e3 * t.mesh.surface_m[1]}},
                     {"cells_across_nodule", t.mesh.cells_across}};
     };
-    Json report{{"what", "normal force of the map against all its meshes refined once, at stated points"},
+    files::Json report{{"what", "normal force of the map against all its meshes refined once, at stated points"},
             {"mesh", mesh_json(task)},
             {"refined_mesh", mesh_json(refined)},
             {"greatest_force_N", greatest_N},
@@ -264,11 +264,11 @@ std::string error_estimate(const GenerateOptions& options, const MapTask& task, 
         compute_windows(options, coarser, MeshSet::coarser, "estimating");
         Differences found;
         convergence_json(task, coarser, map, found);
-        std::string text = " Estimated error of the meshes: " + short_number(100.0 * found.largest) +
-                           " % of the greatest force at most, " + short_number(100.0 * found.median) + " % in the median";
-        if (is_rough(task)) text += ", tangential force " + short_number(100.0 * found.largest_tangential) + " % of it at most";
-        return text + " (" + std::to_string(kProbes) + " points against meshes " + short_number(kCoarser) + " times coarser).";
-    } catch (const InputError&) {
+        std::string text = " Estimated error of the meshes: " + files::short_number(100.0 * found.largest) +
+                           " % of the greatest force at most, " + files::short_number(100.0 * found.median) + " % in the median";
+        if (is_rough(task)) text += ", tangential force " + files::short_number(100.0 * found.largest_tangential) + " % of it at most";
+        return text + " (" + std::to_string(kProbes) + " points against meshes " + files::short_number(kCoarser) + " times coarser).";
+    } catch (const files::InputError&) {
         return " Error of the meshes: not estimated, coarser ones cannot be made.";
     } catch (const mechanics::SolverError&) {
         return " Error of the meshes: not estimated, on coarser ones the contact does not settle.";
@@ -283,50 +283,50 @@ void merge(const GenerateOptions& options, const MapTask& task) {
     fs::remove_all(pieces_folder(options.output, MeshSet::coarser));
     const ForceRange range = force_range(map);
     std::printf("%s: %zu x %zu cells, %zu depths, %s to %s N, by finite elements\n", options.output.c_str(), map.n_x,
-                map.n_y, map.n_depths(), short_number(range.lowest_N).c_str(), short_number(range.highest_N).c_str());
+                map.n_y, map.n_depths(), files::short_number(range.lowest_N).c_str(), files::short_number(range.highest_N).c_str());
 }
 
 void check(const GenerateOptions& options, const MapTask& task, const MapTask& refined) {
     Map map = read_map(options.output);
     const Map expected = map_of_phantom(task.phantom);
     if (is_rough(task) && (map.tangential_x_N.empty() || map.tangential_y_N.empty())) {
-        throw bad_input(options.output.string(), "", "no tangential arrays", "a map made from " + options.phantom.string());
+        throw files::bad_input(options.output.string(), "", "no tangential arrays", "a map made from " + options.phantom.string());
     }
     if (map.n_x != expected.n_x || map.n_y != expected.n_y || map_json(map)["depths_mm"] != map_json(expected)["depths_mm"]) {
-        throw bad_input(options.output.string(), "", "another grid or other depths", "a map made from " + options.phantom.string());
+        throw files::bad_input(options.output.string(), "", "another grid or other depths", "a map made from " + options.phantom.string());
     }
     compute_windows(options, refined, MeshSet::refined, "checking");
     Differences differences;
-    const Json report = convergence_json(task, refined, map, differences);
-    write_text_atomically(without_slash(options.output) / "convergence.json", report.dump(1) + "\n");
-    std::string found = std::to_string(kProbes) + " points against meshes refined once: " + short_number(100.0 * differences.largest) +
-                        " % of the greatest force at most, " + short_number(100.0 * differences.median) + " % in the median";
-    if (is_rough(task)) found += "; tangential force " + short_number(100.0 * differences.largest_tangential) + " % of it at most";
+    const files::Json report = convergence_json(task, refined, map, differences);
+    files::write_text_atomically(without_slash(options.output) / "convergence.json", report.dump(1) + "\n");
+    std::string found = std::to_string(kProbes) + " points against meshes refined once: " + files::short_number(100.0 * differences.largest) +
+                        " % of the greatest force at most, " + files::short_number(100.0 * differences.median) + " % in the median";
+    if (is_rough(task)) found += "; tangential force " + files::short_number(100.0 * differences.largest_tangential) + " % of it at most";
     map.source.how = map.source.how.substr(0, map.source.how.find(kChecked)) + kChecked + " " + found + " (convergence.json).";
-    write_text_atomically(without_slash(options.output) / "map.json", json_text(map_json(map)));
+    files::write_text_atomically(without_slash(options.output) / "map.json", files::json_text(map_json(map)));
     fs::remove_all(refined.folder);
     std::printf("%s: %s\n", options.output.c_str(), found.c_str());
 }
 
 void refuse_existing(const fs::path& output) {
-    if (fs::exists(output)) throw bad_input(output.string(), "", "something of that name", "a new name (nothing is overwritten)");
+    if (fs::exists(output)) throw files::bad_input(output.string(), "", "something of that name", "a new name (nothing is overwritten)");
 }
 
 int number_from_environment(const char* name) {
     const char* text = std::getenv(name);
     double value = 0.0;
-    if (text == nullptr || !parse_number(text, value) || value < 0.0 || value > 1e6 || value != std::floor(value)) {
-        throw bad_input(name, "", text == nullptr ? "nothing" : shown(text), "a whole number (or give --part i/n)");
+    if (text == nullptr || !files::parse_number(text, value) || value < 0.0 || value > 1e6 || value != std::floor(value)) {
+        throw files::bad_input(name, "", text == nullptr ? "nothing" : files::shown(text), "a whole number (or give --part i/n)");
     }
     return static_cast<int>(value);
 }
 
 void refuse_beyond_analytic(const Phantom& phantom, const fs::path& file) {
     if (phantom.indenter != IndenterShape::sphere) {
-        throw bad_input(file.string(), "indenter.shape", "cylinder", "sphere with --method analytic");
+        throw files::bad_input(file.string(), "indenter.shape", "cylinder", "sphere with --method analytic");
     }
     if (!phantom.rolling && phantom.friction > 0.0) {
-        throw bad_input(file.string(), "indenter.friction", short_number(phantom.friction), "0 with --method analytic");
+        throw files::bad_input(file.string(), "indenter.friction", files::short_number(phantom.friction), "0 with --method analytic");
     }
 }
 
@@ -336,10 +336,10 @@ Part parse_part(const std::string& text) {
     const std::size_t slash = text.find('/');
     double index = 0.0;
     double count = 0.0;
-    const bool good = slash != std::string::npos && parse_number(std::string_view(text).substr(0, slash), index) &&
-                      parse_number(std::string_view(text).substr(slash + 1), count) && index == std::floor(index) &&
+    const bool good = slash != std::string::npos && files::parse_number(std::string_view(text).substr(0, slash), index) &&
+                      files::parse_number(std::string_view(text).substr(slash + 1), count) && index == std::floor(index) &&
                       count == std::floor(count) && index >= 1.0 && index <= count && count <= 1e6;
-    if (!good) throw bad_input("--part", "", shown(text), "i/n with 1 <= i <= n, such as 2/8");
+    if (!good) throw files::bad_input("--part", "", files::shown(text), "i/n with 1 <= i <= n, such as 2/8");
     return {static_cast<int>(index), static_cast<int>(count)};
 }
 
@@ -369,7 +369,7 @@ void generate_map(const GenerateOptions& options) {
     }
     const MapTask task = task_of(options, options.meshes);
     if (options.window && !(*options.window >= 0 && *options.window < window_count(task))) {
-        throw bad_input("--window", "", std::to_string(*options.window), "0 to " + std::to_string(window_count(task) - 1));
+        throw files::bad_input("--window", "", std::to_string(*options.window), "0 to " + std::to_string(window_count(task) - 1));
     }
     if (options.window) return compute_window(task, *options.window);
     if (!options.check || !fs::exists(options.output)) {
@@ -382,4 +382,4 @@ void generate_map(const GenerateOptions& options) {
     if (options.check) check(options, task, task_of(options, MeshSet::refined));
 }
 
-}  // namespace palpa
+}  // namespace palpa::stiffnessmaps

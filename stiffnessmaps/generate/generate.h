@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-namespace palpa {
+namespace palpa::stiffnessmaps {
 
 struct Part {  // share number `index` of `count`, counted from 1
     int index = 1;
@@ -38,4 +38,4 @@ Part parse_part(const std::string& text);
 // OMPI_COMM_WORLD_RANK with .._SIZE. Nothing when neither is set.
 std::optional<Part> part_from_environment();
 
-}  // namespace palpa
+}  // namespace palpa::stiffnessmaps

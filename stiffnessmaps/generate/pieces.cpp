@@ -12,7 +12,7 @@
 #include "mechanics/error.h"
 #include "stiffnessmaps/map_file.h"
 
-namespace palpa {
+namespace palpa::stiffnessmaps {
 namespace {
 
 constexpr std::uint64_t kVersion = 3;  // of the files and of the numbers in them
@@ -60,19 +60,19 @@ void write_piece(const MapTask& task, const std::string& name, const Numbers& nu
     fnv.add(name.data(), name.size());
     fnv.add(bytes.data(), bytes.size());
     append(&fnv.hash, sizeof fnv.hash);
-    write_text_atomically(task.folder / name, bytes);
+    files::write_text_atomically(task.folder / name, bytes);
 }
 
 [[noreturn]] void refuse(const std::filesystem::path& file, const std::string& key, const std::string& found,
                          const std::string& expected) {
-    throw bad_input(file.string(), key, found, expected);
+    throw files::bad_input(file.string(), key, found, expected);
 }
 
 void check_phantom(const Phantom& phantom, const std::filesystem::path& file) {
     check_map(map_of_phantom(phantom), file.string());  // what could not be written after all the computing
     if (phantom.depths_m.back() >= phantom.size_m[2]) {
-        refuse(file, "depths_mm", short_number(1e3 * phantom.depths_m.back()),
-               "depths less than the thickness, " + short_number(1e3 * phantom.size_m[2]) + " mm");
+        refuse(file, "depths_mm", files::short_number(1e3 * phantom.depths_m.back()),
+               "depths less than the thickness, " + files::short_number(1e3 * phantom.size_m[2]) + " mm");
     }
     for (int c = 0; c < 2; ++c) {
         const auto n = c == 0 ? phantom.n_x : phantom.n_y;
@@ -80,8 +80,8 @@ void check_phantom(const Phantom& phantom, const std::filesystem::path& file) {
         const double last_m = first_m + phantom.spacing_m[c] * static_cast<double>(n - 1);
         const double slack_m = 0.5 * phantom.indenter_radius_m;  // how far the indenter may hang over a side
         if (first_m >= -slack_m && last_m <= phantom.size_m[c] + slack_m) continue;
-        refuse(file, "grid", std::string(c == 0 ? "x " : "y ") + short_number(1e3 * first_m) + " to " + short_number(1e3 * last_m) + " mm",
-               "an indenter on the tissue, 0 to " + short_number(1e3 * phantom.size_m[c]) + " mm");
+        refuse(file, "grid", std::string(c == 0 ? "x " : "y ") + files::short_number(1e3 * first_m) + " to " + files::short_number(1e3 * last_m) + " mm",
+               "an indenter on the tissue, 0 to " + files::short_number(1e3 * phantom.size_m[c]) + " mm");
     }
 }
 
@@ -161,7 +161,7 @@ MapTask make_map_task(const std::filesystem::path& phantom_file, const std::file
     try {
         task.mesh = mechanics::choose_rolling_mesh(model, coarseness);
     } catch (const mechanics::MechanicsError& error) {
-        throw InputError(phantom_file.string() + ": " + error.what());
+        throw files::InputError(phantom_file.string() + ": " + error.what());
     }
     task.groups = mechanics::inclusion_groups(model, task.mesh);
     check_cost(task, coarseness, phantom_file.string());
@@ -175,7 +175,7 @@ std::string line_name(std::size_t line) { return "line-" + std::to_string(line);
 std::optional<Numbers> read_piece(const MapTask& task, const std::string& name) {
     const std::filesystem::path file = task.folder / name;
     if (!std::filesystem::exists(file)) return std::nullopt;
-    const std::string bytes = read_text(file);
+    const std::string bytes = files::read_text(file);
     constexpr std::size_t kHead = sizeof kMagic + 2 * sizeof(std::uint64_t);
     std::uint64_t fingerprint = 0;
     std::uint64_t count = 0;
@@ -298,4 +298,4 @@ std::vector<mechanics::RollingForce> press_cell(const MapTask& task, const mecha
     return forces;
 }
 
-}  // namespace palpa
+}  // namespace palpa::stiffnessmaps

@@ -10,7 +10,7 @@
 #include "mechanics/rolling.h"
 #include "stiffnessmaps/phantom.h"
 
-namespace palpa {
+namespace palpa::stiffnessmaps {
 
 struct MapTask {
     Phantom phantom;
@@ -52,4 +52,4 @@ inline bool is_rough(const MapTask& task) { return task.model.friction > 0.0; }
 // Forces at each depth over a cell.
 std::vector<mechanics::RollingForce> press_cell(const MapTask& task, const mechanics::RollingTables& tables, const Cell& cell);
 
-}  // namespace palpa
+}  // namespace palpa::stiffnessmaps

@@ -6,7 +6,7 @@
 #include "files/text.h"
 #include "mechanics/linear_range.h"
 
-namespace palpa {
+namespace palpa::stiffnessmaps {
 namespace {
 
 // Smallest depth at which the gauge exceeds a limit, the width of the contact by Hertz.
@@ -21,7 +21,7 @@ double depth_at_ratio_m(const Phantom& p, double limit) {
     return high;
 }
 
-std::string mm(double metres) { return short_number(1e3 * metres) + " mm"; }
+std::string mm(double metres) { return files::short_number(1e3 * metres) + " mm"; }
 
 std::string tool_text(const MapTask& task) {
     const Phantom& p = task.phantom;
@@ -29,7 +29,7 @@ std::string tool_text(const MapTask& task) {
                                   ? "sphere"
                                   : "cylinder " + mm(p.indenter_length_m) + " long with its axis along y";
     if (!is_rough(task)) return "a frictionless " + shape + " rolled";
-    return "a " + shape + " that slides steadily with a friction coefficient of " + number_text(task.model.friction) +
+    return "a " + shape + " that slides steadily with a friction coefficient of " + files::number_text(task.model.friction) +
            ", slipping all over its contact,";
 }
 
@@ -46,10 +46,10 @@ std::string how_made(const MapTask& task) {
     const double contact_radius_m = std::sqrt(p.indenter_radius_m * std::min(p.depths_m.front(), p.indenter_radius_m));
     std::string how = "Linear finite elements (B-bar hexahedra), " + tool_text(task) + " over the phantom: " +
                       mm(task.mesh.contact_m) + " between nodes under the tool (contact radius / spacing " +
-                      short_number(contact_radius_m / task.mesh.contact_m) + " at " + mm(p.depths_m.front()) +
-                      "), nodules " + short_number(task.mesh.cells_across) + " cells across, the block's sides every " +
+                      files::short_number(contact_radius_m / task.mesh.contact_m) + " at " + mm(p.depths_m.front()) +
+                      "), nodules " + files::short_number(task.mesh.cells_across) + " cells across, the block's sides every " +
                       mm(task.mesh.surface_m[0]) + ". " + tangential_text(task);
-    how += " The tissue's Young's modulus, " + number_text(p.tissue.young_Pa) + " Pa, is " +
+    how += " The tissue's Young's modulus, " + files::number_text(p.tissue.young_Pa) + " Pa, is " +
            (p.tissue.assumed ? "ASSUMED." : "the phantom's.");
     const double amber_m = depth_at_ratio_m(p, mechanics::kAmber);
     const double red_m = depth_at_ratio_m(p, mechanics::kRed);
@@ -60,4 +60,4 @@ std::string how_made(const MapTask& task) {
     return how;
 }
 
-}  // namespace palpa
+}  // namespace palpa::stiffnessmaps

@@ -5,9 +5,9 @@
 
 #include "stiffnessmaps/generate/pieces.h"
 
-namespace palpa {
+namespace palpa::stiffnessmaps {
 
 // `source.how`: method, meshes, what is assumed, from which depth the linear range is left.
 std::string how_made(const MapTask& task);
 
-}  // namespace palpa
+}  // namespace palpa::stiffnessmaps

@@ -13,7 +13,7 @@
 #include <stdexcept>
 #include <thread>
 
-namespace palpa {
+namespace palpa::stiffnessmaps {
 namespace {
 
 pid_t start(const Arguments& arguments) {
@@ -69,4 +69,4 @@ FolderLock::~FolderLock() {
     if (fd_ >= 0) ::close(fd_);
 }
 
-}  // namespace palpa
+}  // namespace palpa::stiffnessmaps

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace palpa {
+namespace palpa::stiffnessmaps {
 
 using Arguments = std::vector<std::string>;
 
@@ -30,4 +30,4 @@ class FolderLock {
     bool held_ = true;
 };
 
-}  // namespace palpa
+}  // namespace palpa::stiffnessmaps

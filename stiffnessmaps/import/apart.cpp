@@ -12,7 +12,7 @@
 #include "files/input_error.h"
 #include "stiffnessmaps/import/arrays.h"
 
-namespace palpa {
+namespace palpa::stiffnessmaps {
 namespace {
 
 constexpr rlim_t kMost_s = 60;
@@ -52,7 +52,7 @@ std::string_view bytes_of(const std::vector<Value>& values) {
     return {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(Value)};
 }
 
-void say_array(int fd, const NpyArray& array) {
+void say_array(int fd, const files::NpyArray& array) {
     std::vector<std::uint64_t> axes{array.shape.size()};
     axes.insert(axes.end(), array.shape.begin(), array.shape.end());
     say(fd, std::string(1, kArray));
@@ -60,16 +60,16 @@ void say_array(int fd, const NpyArray& array) {
     say(fd, bytes_of(array.values));
 }
 
-[[noreturn]] void run_child(int fd, const std::function<NpyArray()>& read) {
+[[noreturn]] void run_child(int fd, const std::function<files::NpyArray()>& read) {
     for (const int signal : {SIGSEGV, SIGBUS, SIGABRT, SIGFPE, SIGILL, SIGPIPE}) ::signal(signal, SIG_DFL);
     limit(RLIMIT_CORE, 0);
     limit(RLIMIT_CPU, kMost_s);
     if (!kReservesTerabytes) limit(RLIMIT_AS, kMost_bytes);
     std::string said;
     try {
-        const NpyArray array = read();  // what the library held is given back by now
+        const files::NpyArray array = read();  // what the library held is given back by now
         say_array(fd, array);
-    } catch (const InputError& error) {
+    } catch (const files::InputError& error) {
         said = kRefused + std::string(error.what());
     } catch (const std::bad_alloc&) {
         said.clear();
@@ -93,7 +93,7 @@ std::size_t hear(int fd, char* to, std::size_t n) {
 }
 
 // Whether a whole array came. Nothing is allocated beyond what any array may hold.
-bool hear_array(int fd, NpyArray& array) {
+bool hear_array(int fd, files::NpyArray& array) {
     const auto hear_all = [&](auto* to, std::size_t n) {
         return hear(fd, reinterpret_cast<char*>(to), n * sizeof(*to)) == n * sizeof(*to);
     };
@@ -118,7 +118,7 @@ std::string hear_message(int fd) {
 
 }  // namespace
 
-NpyArray read_apart(const std::string& file, const char* library, const std::function<NpyArray()>& read) {
+files::NpyArray read_apart(const std::string& file, const char* library, const std::function<files::NpyArray()>& read) {
     std::array<int, 2> ends{};
     if (::pipe(ends.data()) != 0) throw std::runtime_error(std::string("no pipe: ") + std::strerror(errno));
     const pid_t child = ::fork();
@@ -133,7 +133,7 @@ NpyArray read_apart(const std::string& file, const char* library, const std::fun
     }
     ::close(ends[1]);
     char kind = '\0';
-    NpyArray array;
+    files::NpyArray array;
     std::string refused;
     bool whole = hear(ends[0], &kind, 1) == 1;
     if (kind == kArray) whole = hear_array(ends[0], array);
@@ -144,13 +144,13 @@ NpyArray read_apart(const std::string& file, const char* library, const std::fun
     }
     if (!WIFEXITED(status) || WEXITSTATUS(status) != 0 || !whole) {
         const bool slow = WIFSIGNALED(status) && WTERMSIG(status) == SIGXCPU;
-        throw bad_input(file, "",
+        throw files::bad_input(file, "",
                         slow ? "over a minute of work for " + std::string(library)
                              : "what " + std::string(library) + " cannot read without failing",
                         "a whole file of moderate size");
     }
-    if (kind == kRefused) throw InputError(refused);
+    if (kind == kRefused) throw files::InputError(refused);
     return array;
 }
 
-}  // namespace palpa
+}  // namespace palpa::stiffnessmaps

@@ -7,11 +7,11 @@
 
 #include "files/npy.h"
 
-namespace palpa {
+namespace palpa::stiffnessmaps {
 
 // What `read` returns, or throws as InputError. Throws InputError that names `file` and `library` where the
 // process crashes, takes more than a minute of the processor or some gigabytes of memory. Only for callers
 // with one thread.
-NpyArray read_apart(const std::string& file, const char* library, const std::function<NpyArray()>& read);
+files::NpyArray read_apart(const std::string& file, const char* library, const std::function<files::NpyArray()>& read);
 
-}  // namespace palpa
+}  // namespace palpa::stiffnessmaps

@@ -10,14 +10,14 @@
 #include "stiffnessmaps/import/apart.h"
 #include "stiffnessmaps/import/columns.h"
 
-namespace palpa {
+namespace palpa::stiffnessmaps {
 namespace {
 
 namespace fs = std::filesystem;
 
 std::string first_bytes(const fs::path& path, std::size_t n) {
     std::string bytes(n, '\0');
-    bytes.resize(InputFile(path).read_at(0, bytes.data(), n));
+    bytes.resize(files::InputFile(path).read_at(0, bytes.data(), n));
     return bytes;
 }
 
@@ -50,7 +50,7 @@ bool visit_fields(std::string_view line, char separator, Visit visit) {
 
 bool parse_cell(std::string_view text, float& out) {
     double value = std::numeric_limits<double>::quiet_NaN();
-    if (!text.empty() && text != "n/a" && !parse_number(text, value)) return false;
+    if (!text.empty() && text != "n/a" && !files::parse_number(text, value)) return false;
     if (std::isinf(value)) return false;
     out = static_cast<float>(value);
     return true;
@@ -72,17 +72,17 @@ bool is_number_line(std::string_view line) {
 std::size_t check_shape(const std::vector<std::size_t>& shape, std::size_t value_bytes,
                         std::size_t stored_bytes, bool packed, const std::string& file) {
     if (shape.size() < 2 || shape.size() > 3)
-        throw bad_input(file, "shape", shape_text(shape), "two or three dimensions");
+        throw files::bad_input(file, "shape", files::shape_text(shape), "two or three dimensions");
     constexpr double kMostPacked = 1032.0;
     double n = 1.0;
     for (const std::size_t d : shape) n *= static_cast<double>(d);
-    if (n == 0.0) throw bad_input(file, "shape", shape_text(shape), "at least one number");
+    if (n == 0.0) throw files::bad_input(file, "shape", files::shape_text(shape), "at least one number");
     if (n > static_cast<double>(kMostNumbers))
-        throw bad_input(file, "shape", shape_text(shape), "at most 20 million numbers");
+        throw files::bad_input(file, "shape", files::shape_text(shape), "at most 20 million numbers");
     const double can = static_cast<double>(stored_bytes) * (packed ? kMostPacked : 1.0);
     if (n * static_cast<double>(value_bytes) > can) {
-        throw bad_input(
-            file, "shape", shape_text(shape),
+        throw files::bad_input(
+            file, "shape", files::shape_text(shape),
             "numbers that fit into its " + std::to_string(stored_bytes) + " bytes (is the file whole?)");
     }
     return static_cast<std::size_t>(n);
@@ -114,10 +114,10 @@ std::optional<ArrayKind> array_kind(const fs::path& path) {
     return std::nullopt;
 }
 
-NpyArray parse_number_matrix(std::string_view text, const std::string& file) {
+files::NpyArray parse_number_matrix(std::string_view text, const std::string& file) {
     if (text.substr(0, 3) == "\xef\xbb\xbf") text.remove_prefix(3);
     const char separator = matrix_separator(text.substr(0, text.find('\n')));
-    NpyArray array;
+    files::NpyArray array;
     std::size_t columns = 0;
     std::size_t rows = 0;
     std::size_t line_number = 0;
@@ -131,9 +131,9 @@ NpyArray parse_number_matrix(std::string_view text, const std::string& file) {
         visit_fields(line, separator, [&](std::string_view field) {
             float value = 0.0f;
             if (!parse_cell(field, value)) {
-                throw bad_input(file,
+                throw files::bad_input(file,
                                 "line " + std::to_string(line_number) + ", number " + std::to_string(n + 1),
-                                shown(field), "a finite number or n/a");
+                                files::shown(field), "a finite number or n/a");
             }
             array.values.push_back(value);
             ++n;
@@ -141,7 +141,7 @@ NpyArray parse_number_matrix(std::string_view text, const std::string& file) {
         });
         if (rows == 0) columns = n;
         if (n != columns) {
-            throw bad_input(file, "line " + std::to_string(line_number), std::to_string(n) + " numbers",
+            throw files::bad_input(file, "line " + std::to_string(line_number), std::to_string(n) + " numbers",
                             std::to_string(columns) + " as in the first line");
         }
         ++rows;
@@ -151,19 +151,19 @@ NpyArray parse_number_matrix(std::string_view text, const std::string& file) {
     return array;
 }
 
-NpyArray read_array(const fs::path& path, const std::string& dataset) {
+files::NpyArray read_array(const fs::path& path, const std::string& dataset) {
     const std::string file = path.string();
     const auto kind = array_kind(path);
     if (!kind)
-        throw bad_input(file, "", "another kind of file",
+        throw files::bad_input(file, "", "another kind of file",
                         "an array: .npy, rows of numbers, MATLAB, HDF5, PNG or TIFF");
-    NpyArray array;
+    files::NpyArray array;
     switch (*kind) {
         case ArrayKind::npy:
-            array = read_npy(path);
+            array = files::read_npy(path);
             break;
         case ArrayKind::text:
-            array = parse_number_matrix(read_text(path), file);
+            array = parse_number_matrix(files::read_text(path), file);
             break;
         case ArrayKind::matlab:
             array = read_apart(file, "the MATLAB reader", [&] { return read_matlab(path, dataset); });
@@ -182,4 +182,4 @@ NpyArray read_array(const fs::path& path, const std::string& dataset) {
     return array;
 }
 
-}  // namespace palpa
+}  // namespace palpa::stiffnessmaps

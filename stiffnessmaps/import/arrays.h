@@ -9,7 +9,7 @@
 
 #include "files/npy.h"
 
-namespace palpa {
+namespace palpa::stiffnessmaps {
 
 enum class ArrayKind { npy, text, matlab, hdf5, png, tiff };
 
@@ -27,16 +27,16 @@ inline constexpr std::size_t kMostNumbers = 20'000'000;  // in an array, and in 
 
 // Two or three dimensions. MATLAB and HDF5 files may hold several arrays: `dataset` names one, and may be
 // empty if there is only one. The index order is the file's own (MATLAB's, too: A(i, j, k) is [i][j][k]).
-NpyArray read_array(const std::filesystem::path& path, const std::string& dataset);
+files::NpyArray read_array(const std::filesystem::path& path, const std::string& dataset);
 
-NpyArray parse_number_matrix(std::string_view text,
+files::NpyArray parse_number_matrix(std::string_view text,
                              const std::string& file);  // rows of numbers, NaN for n/a or nothing
 // The libraries behind these are not safe against every file (HDF5 1.10 reads and writes beyond its memory on
 // some): read_array runs them in a process of their own, and nothing else should call them on strangers' files.
-NpyArray read_matlab(const std::filesystem::path& path, const std::string& dataset);
-NpyArray read_hdf5(const std::filesystem::path& path, const std::string& dataset);
-NpyArray read_png(const std::filesystem::path& path);  // grey, 8 or 16 bits
-NpyArray read_tiff(
+files::NpyArray read_matlab(const std::filesystem::path& path, const std::string& dataset);
+files::NpyArray read_hdf5(const std::filesystem::path& path, const std::string& dataset);
+files::NpyArray read_png(const std::filesystem::path& path);  // grey, 8 or 16 bits
+files::NpyArray read_tiff(
     const std::filesystem::path& path);  // grey, 8, 16 or 32 bits or float; pages become the first dimension
 
 // Refuses a shape that is no grid, is too large, or cannot come out of `stored_bytes` with `value_bytes` a
@@ -46,4 +46,4 @@ NpyArray read_tiff(
 std::size_t check_shape(const std::vector<std::size_t>& shape, std::size_t value_bytes,
                         std::size_t stored_bytes, bool packed, const std::string& file);
 
-}  // namespace palpa
+}  // namespace palpa::stiffnessmaps

@@ -5,7 +5,7 @@
 
 #include "stiffnessmaps/map.h"
 
-namespace palpa {
+namespace palpa::stiffnessmaps {
 
 using ChoiceValue = std::variant<double, std::string, std::vector<double>>;
 
@@ -20,4 +20,4 @@ inline void add_choice(MapSource& source, std::string key, ChoiceValue value, st
 double choice_mm(double metres);
 std::vector<double> choice_mm(const std::vector<double>& metres);
 
-}  // namespace palpa
+}  // namespace palpa::stiffnessmaps

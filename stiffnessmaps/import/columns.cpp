@@ -8,7 +8,7 @@
 #include "files/input_error.h"
 #include "files/text.h"
 
-namespace palpa {
+namespace palpa::stiffnessmaps {
 namespace {
 
 using Names = std::vector<std::string_view>;
@@ -116,7 +116,7 @@ double unit_of(Role role, const SplitName& name, const ImportOptions& options, c
     if (is_position(role) && options.length_unit) return metres_of(*options.length_unit);
     if (name.unit != nullptr) {
         if (name.unit->of != kind) {
-            throw bad_input(file, "line 1", "the column " + shown(column) + " as " + name_of(role),
+            throw files::bad_input(file, "line 1", "the column " + files::shown(column) + " as " + name_of(role),
                             kind == 'f'   ? "a force (N, mN)"
                             : kind == 'l' ? "a length (mm, m, um)"
                             : kind == 't' ? "a time (s, ms)"
@@ -156,11 +156,11 @@ const char* name_of(Role role) {
     return known_roles()[static_cast<std::size_t>(role)].name;
 }
 
-Columns find_columns(const Table& table, const ImportOptions& options) {
+Columns find_columns(const files::Table& table, const ImportOptions& options) {
     for (const auto& [role, name] : options.columns) {
         const auto& known = known_roles();
         const bool is_known = std::any_of(known.begin(), known.end(), [&asked = role](const KnownRole& k) { return asked == k.name; });
-        if (!is_known) throw bad_input("--column", "", shown(role), "one of " + all_roles());
+        if (!is_known) throw files::bad_input("--column", "", files::shown(role), "one of " + all_roles());
         table.column(name);
     }
     std::vector<SplitName> names;
@@ -178,29 +178,29 @@ Columns find_columns(const Table& table, const ImportOptions& options) {
     return columns;
 }
 
-void need(const Columns& columns, const Table& table, std::initializer_list<Role> roles) {
+void need(const Columns& columns, const files::Table& table, std::initializer_list<Role> roles) {
     for (const Role role : roles) {
         if (columns.has(role)) continue;
         const KnownRole& known = known_roles()[static_cast<std::size_t>(role)];
         std::string found = "the columns";
-        for (const std::string& column : table.columns()) found += " " + shown(column);
+        for (const std::string& column : table.columns()) found += " " + files::shown(column);
         std::string expected = "a column for " + std::string(known.name) + " (";
         for (const std::string_view usual : known.usual)
             expected += (expected.back() == '(' ? "" : ", ") + std::string(usual);
-        throw bad_input(table.file(), "line 1", found,
+        throw files::bad_input(table.file(), "line 1", found,
                         expected + ", with or without a unit; or name it: --column " + known.name + "=NAME)");
     }
 }
 
-RecordingForm form_of(const Columns& columns, const Table& table) {
+RecordingForm form_of(const Columns& columns, const files::Table& table) {
     const bool forces = columns.has(Role::force_z) || columns.has(Role::normal_force);
     if (columns.has(Role::time) && columns.has(Role::z) && forces && !columns.has(Role::point))
         return RecordingForm::sliding;
     if (columns.has(Role::point) || columns.has(Role::depth)) return RecordingForm::probing;
     if (columns.has(Role::z) && forces) return RecordingForm::probing;
     std::string found = "the columns";
-    for (const std::string& column : table.columns()) found += " " + shown(column);
-    throw bad_input(table.file(), "line 1", found,
+    for (const std::string& column : table.columns()) found += " " + files::shown(column);
+    throw files::bad_input(table.file(), "line 1", found,
                     "probing (x, y, depth or z, fn or fz, ...) or sliding (t, x, y, z, fx, fy, fz); name "
                     "them with --column");
 }
@@ -212,23 +212,23 @@ void check_force_size(double greatest_N, const Columns& columns, const ImportOpt
     constexpr double kMost_N = 200.0;
     if (greatest_N >= kLeast_N && greatest_N <= kMost_N) return;
     const Role role = columns.has(Role::normal_force) ? Role::normal_force : Role::force_z;
-    throw bad_input(
+    throw files::bad_input(
         file, columns.has(role) ? columns[role].name : "",
-        "a greatest force of " + short_number(greatest_N) + " N",
+        "a greatest force of " + files::short_number(greatest_N) + " N",
         "from 0.01 to 200 N on soft tissue: state the column's unit by --force-unit mN, or N if it is right");
 }
 
 void check_length_size(double extent_m, const ImportOptions& options, const std::string& file) {
     constexpr double kAbsurd_m = 100.0;
     if (!(extent_m <= kAbsurd_m)) {
-        throw bad_input(file, "", "places that extend over " + short_number(extent_m) + " m", "at most 100 m");
+        throw files::bad_input(file, "", "places that extend over " + files::short_number(extent_m) + " m", "at most 100 m");
     }
     if (options.length_unit || extent_m == 0.0) return;
     constexpr double kLeast_m = 1e-3;
     constexpr double kMost_m = 1.0;
     if (extent_m >= kLeast_m && extent_m <= kMost_m) return;
-    throw bad_input(
-        file, "", "places that extend over " + short_number(1e3 * extent_m) + " mm",
+    throw files::bad_input(
+        file, "", "places that extend over " + files::short_number(1e3 * extent_m) + " mm",
         "from 1 to 1000 mm: state the unit of the positions by --length-unit m, um, or mm if it is right");
 }
 
@@ -237,8 +237,8 @@ void check_depth_size(double greatest_m, const ImportOptions& options, const std
     constexpr double kLeast_m = 0.05e-3;
     constexpr double kMost_m = 0.1;
     if (greatest_m >= kLeast_m && greatest_m <= kMost_m) return;
-    throw bad_input(
-        file, "", "a greatest depth of " + short_number(1e3 * greatest_m) + " mm",
+    throw files::bad_input(
+        file, "", "a greatest depth of " + files::short_number(1e3 * greatest_m) + " mm",
         "from 0.05 to 100 mm: state the unit of the depths by --depth-unit m, um, or mm if it is right");
 }
 
@@ -255,4 +255,4 @@ char separator_of(std::string_view first_line) {
     return best;
 }
 
-}  // namespace palpa
+}  // namespace palpa::stiffnessmaps

@@ -10,7 +10,7 @@
 #include "files/table.h"
 #include "stiffnessmaps/import/options.h"
 
-namespace palpa {
+namespace palpa::stiffnessmaps {
 
 enum class Role {
     time,
@@ -44,15 +44,15 @@ struct Columns {
 };
 
 // Throws InputError for a role or a column that does not exist, and for units that contradict each other.
-Columns find_columns(const Table& table, const ImportOptions& options);
+Columns find_columns(const files::Table& table, const ImportOptions& options);
 
 // Throws InputError that lists what there is, if the column is missing.
-void need(const Columns& columns, const Table& table, std::initializer_list<Role> roles);
+void need(const Columns& columns, const files::Table& table, std::initializer_list<Role> roles);
 
 // The form that these columns are of; throws InputError if they are of none.
-RecordingForm form_of(const Columns& columns, const Table& table);
+RecordingForm form_of(const Columns& columns, const files::Table& table);
 
-inline double value_of(const Table& table, const Columns& columns, Role role) {
+inline double value_of(const files::Table& table, const Columns& columns, Role role) {
     const Column& column = columns[role];
     return column.to_SI * table.number(column.index);
 }
@@ -66,4 +66,4 @@ void check_depth_size(double greatest_m, const ImportOptions& options, const std
 // The separator of a table: tab, semicolon or comma, whichever stands most often in its first line.
 char separator_of(std::string_view first_line);
 
-}  // namespace palpa
+}  // namespace palpa::stiffnessmaps

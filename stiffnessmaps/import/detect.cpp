@@ -11,7 +11,7 @@
 #include "stiffnessmaps/import/detect_ground.h"
 #include "stiffnessmaps/stiffness.h"
 
-namespace palpa {
+namespace palpa::stiffnessmaps {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
@@ -281,11 +281,11 @@ void judge(const StiffnessGrid& grid, const cv::Mat1b& mask, const cv::Mat1b& re
     region.areas = plain_m2 / std::max(alike_m2(grid, kClip * grid.spread_N_per_m), region.area_m2);
     region.needed = needed_contrast(region.areas);
     if (!(region.areas >= kLeastAreas) || std::isnan(region.noise_N_per_m)) {
-        region.warnings.push_back("the map holds only " + short_number(region.areas) +
-                                  " independent areas to tell how much the background varies (" + short_number(kLeastAreas) + " are needed)");
+        region.warnings.push_back("the map holds only " + files::short_number(region.areas) +
+                                  " independent areas to tell how much the background varies (" + files::short_number(kLeastAreas) + " are needed)");
     } else if (region.noise_N_per_m > 0.0 && region.contrast_to_noise < region.needed) {
-        region.warnings.push_back("stands out by only " + short_number(region.contrast_to_noise) + " times what areas of its size vary by " + (region.against_edge ? "at the map's edge" : "elsewhere") + " (" +
-                                  short_number(region.needed) + " are needed in this map)");
+        region.warnings.push_back("stands out by only " + files::short_number(region.contrast_to_noise) + " times what areas of its size vary by " + (region.against_edge ? "at the map's edge" : "elsewhere") + " (" +
+                                  files::short_number(region.needed) + " are needed in this map)");
     }
     region.sure = region.warnings.empty();
 }
@@ -371,7 +371,7 @@ void note_ground(const StiffnessGrid& grid, Detection& d) {
 
 void check_options(const DetectOptions& o) {
     const auto refuse = [](const char* name, double value, const char* expected) {
-        throw bad_input("detect", name, short_number(value), expected);
+        throw files::bad_input("detect", name, files::short_number(value), expected);
     };
     if (o.threshold && !(*o.threshold > 1.0 && *o.threshold <= 1e6)) refuse("threshold", *o.threshold, "a ratio above 1");
     if (!(o.window_m > 0.0 && o.window_m <= 1e3)) refuse("window", o.window_m, "a radius above 0");
@@ -395,7 +395,7 @@ Detection detect_regions(const Map& map, const std::string& file, const DetectOp
     const std::vector<double> raw = stiffness_N_per_m(map, *d.options.deepest_m);
     const auto measured = std::count_if(raw.begin(), raw.end(), [](double k) { return !std::isnan(k); });
     if (measured == 0) {
-        throw bad_input(file, "", "no cell with a force down to " + short_number(1e3 * *d.options.deepest_m) + " mm", "at least one");
+        throw files::bad_input(file, "", "no cell with a force down to " + files::short_number(1e3 * *d.options.deepest_m) + " mm", "at least one");
     }
     StiffnessGrid grid = make_grid(map, raw, d.options);
     if (measured < kFewCells) {
@@ -440,4 +440,4 @@ void keep_regions(const Detection& detection, Map& map) {
     }
 }
 
-}  // namespace palpa
+}  // namespace palpa::stiffnessmaps

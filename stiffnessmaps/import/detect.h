@@ -36,7 +36,7 @@
 
 #include "stiffnessmaps/map.h"
 
-namespace palpa {
+namespace palpa::stiffnessmaps {
 
 struct DetectOptions {
     std::optional<double> threshold;    // stiffness / background from which a cell counts, > 1; empty: by the rule above
@@ -92,4 +92,4 @@ Detection detect_regions(const Map& map, const std::string& file, const DetectOp
 // alone where there are any (scene/plan.cpp).
 void keep_regions(const Detection& detection, Map& map);
 
-}  // namespace palpa
+}  // namespace palpa::stiffnessmaps

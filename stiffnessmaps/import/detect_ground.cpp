@@ -7,7 +7,7 @@
 
 #include "stiffnessmaps/stiffness.h"
 
-namespace palpa {
+namespace palpa::stiffnessmaps {
 
 double part_of(std::vector<double>& values, double q) {
     const auto at = static_cast<std::ptrdiff_t>(q * static_cast<double>(values.size() - 1));
@@ -171,4 +171,4 @@ void take_background(const DetectOptions& options, StiffnessGrid& grid) {
     grid.spread_N_per_m = spread();
 }
 
-}  // namespace palpa
+}  // namespace palpa::stiffnessmaps

@@ -7,7 +7,7 @@
 
 #include "stiffnessmaps/import/detect.h"
 
-namespace palpa {
+namespace palpa::stiffnessmaps {
 
 inline constexpr double kOfNormal = 0.6745;  // upper quartile of a standard normal
 inline constexpr double kSpreads = 3.0;      // from which a cell stands out
@@ -45,4 +45,4 @@ std::vector<double> values_in(const cv::Mat1d& values, const cv::Mat1b& mask);
 cv::Mat1b both(const cv::Mat1b& a, const cv::Mat1b& b);
 cv::Mat1b without(const cv::Mat1b& mask, const cv::Mat1b& left_out);
 
-}  // namespace palpa
+}  // namespace palpa::stiffnessmaps

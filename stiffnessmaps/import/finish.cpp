@@ -13,7 +13,7 @@
 #include "stiffnessmaps/map_file.h"
 #include "stiffnessmaps/noise.h"
 
-namespace palpa {
+namespace palpa::stiffnessmaps {
 namespace {
 
 constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
@@ -36,13 +36,13 @@ void refuse_no_forces(const Map& map, const std::string& file) {
     std::vector<double> deepest_N = deepest_forces(map, 1 + map.n_cells() / 1'000'000);
     if (deepest_N.empty()) deepest_N = deepest_forces(map, 1);
     if (deepest_N.empty()) {
-        throw bad_input(
+        throw files::bad_input(
             file, "", "no force that was measured: all " + std::to_string(map.n_cells()) + " cells are empty",
             "forces at the map's depths (is the pitch too fine, are the depths too great?)");
     }
     const double typical_N = median(std::move(deepest_N));
     if (typical_N > 0.0) return;
-    throw bad_input(file, "", short_number(typical_N) + " N at the greatest depths (median)",
+    throw files::bad_input(file, "", files::short_number(typical_N) + " N at the greatest depths (median)",
                     "forces that rise with depth (is the sign the other way round? --negate-force)");
 }
 
@@ -91,7 +91,7 @@ void choose_tangential(Map& map, bool measured, const ImportOptions& options, co
     const TangentialChoice choice =
         options.tangential.value_or(measured ? TangentialChoice::measured : TangentialChoice::none);
     if (choice == TangentialChoice::measured && !measured) {
-        throw bad_input(file, "", "no force that resists motion along +x or +y",
+        throw files::bad_input(file, "", "no force that resists motion along +x or +y",
                         "a recording of a sliding tool, or matrices of it; else --tangential energy or none");
     }
     if (choice != TangentialChoice::measured) {
@@ -122,9 +122,9 @@ void check_enough_samples(const GridPlan& plan, std::size_t n_samples, const std
     constexpr double kSpare = 10'000.0;
     const double cells = static_cast<double>(plan.x.n) * static_cast<double>(plan.y.n);
     if (cells <= static_cast<double>(n_samples) + kSpare) return;
-    throw bad_input(
+    throw files::bad_input(
         file, "",
-        short_number(cells) + " cells of " + short_number(1e3 * plan.x.pitch_m) + " mm for " +
+        files::short_number(cells) + " cells of " + files::short_number(1e3 * plan.x.pitch_m) + " mm for " +
             std::to_string(n_samples) + " samples",
         "fewer cells than samples: a greater --pitch-mm, or is a place far off the others (--region-mm)?");
 }
@@ -236,4 +236,4 @@ void finish_map(Map& map, const RecordedPoints& recorded, bool measured_tangenti
     report.residual = recorded.x_m.empty() ? residual_of_numbers(map) : residual_of(map, recorded);
 }
 
-}  // namespace palpa
+}  // namespace palpa::stiffnessmaps

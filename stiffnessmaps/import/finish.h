@@ -6,7 +6,7 @@
 
 #include "stiffnessmaps/import/gridding.h"
 
-namespace palpa {
+namespace palpa::stiffnessmaps {
 
 // What was recorded, to hold against the map.
 struct RecordedPoints {
@@ -51,4 +51,4 @@ ImportResidual residual_of(const Map& map, const RecordedPoints& recorded);
 // The same where the recorded points are the map's own numbers: what making them rise with depth changes.
 ImportResidual residual_of_numbers(const Map& map);
 
-}  // namespace palpa
+}  // namespace palpa::stiffnessmaps

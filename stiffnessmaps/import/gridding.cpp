@@ -13,7 +13,7 @@
 #include "files/text.h"
 #include "stiffnessmaps/import/robust.h"
 
-namespace palpa {
+namespace palpa::stiffnessmaps {
 namespace {
 
 constexpr double kOffGrid = 0.1;  // of the pitch
@@ -188,9 +188,9 @@ void check_grid(const GridAxis& x, const GridAxis& y, std::size_t n_depths, cons
     constexpr std::size_t kMostValues = 20'000'000;
     const double values = static_cast<double>(x.n) * static_cast<double>(y.n) * static_cast<double>(n_depths);
     if (values <= static_cast<double>(kMostValues)) return;
-    throw bad_input(file, "",
+    throw files::bad_input(file, "",
                     std::to_string(x.n) + " x " + std::to_string(y.n) + " cells of " +
-                        short_number(1e3 * x.pitch_m) + " x " + short_number(1e3 * y.pitch_m) + " mm and " +
+                        files::short_number(1e3 * x.pitch_m) + " x " + files::short_number(1e3 * y.pitch_m) + " mm and " +
                         std::to_string(n_depths) + " depths",
                     "a grid of at most 20 million forces (is a position far off the others? else --pitch-mm, "
                     "--region-mm)");
@@ -372,4 +372,4 @@ Gridded grid_samples(const Samples& samples, const GridPlan& plan) {
     return out;
 }
 
-}  // namespace palpa
+}  // namespace palpa::stiffnessmaps

@@ -7,7 +7,7 @@
 
 #include "stiffnessmaps/import/options.h"
 
-namespace palpa {
+namespace palpa::stiffnessmaps {
 
 struct GridAxis {
     double origin_m = 0.0;
@@ -80,4 +80,4 @@ bool inside_region(const std::optional<std::array<double, 4>>& region_m, double 
 // Refuses a grid that no map should have.
 void check_grid(const GridAxis& x, const GridAxis& y, std::size_t n_depths, const std::string& file);
 
-}  // namespace palpa
+}  // namespace palpa::stiffnessmaps

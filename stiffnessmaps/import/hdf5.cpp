@@ -8,7 +8,7 @@
 #include "files/regular_file.h"
 #include "stiffnessmaps/import/arrays.h"
 
-namespace palpa {
+namespace palpa::stiffnessmaps {
 namespace {
 
 // An identifier of the library, given back when it is no longer needed.
@@ -67,22 +67,22 @@ std::string choose(hid_t root, const std::string& dataset, const std::string& fi
         const auto shape = grid_shape(candidate.id());
         if (shape.empty()) continue;
         grids.push_back(name);
-        shapes += " " + shown(name) + " " + shape_text(shape);
+        shapes += " " + files::shown(name) + " " + files::shape_text(shape);
     }
-    if (grids.empty()) throw bad_input(file, "", "no array of numbers with two or three dimensions", "one");
-    if (grids.size() > 1) throw bad_input(file, "", "the arrays" + shapes, "one of them named by --dataset");
+    if (grids.empty()) throw files::bad_input(file, "", "no array of numbers with two or three dimensions", "one");
+    if (grids.size() > 1) throw files::bad_input(file, "", "the arrays" + shapes, "one of them named by --dataset");
     return grids.front();
 }
 
 bool starts_as_matlab(const std::filesystem::path& path) {
     std::array<char, 10> bytes{};
-    InputFile(path).read_at(0, bytes.data(), bytes.size());
+    files::InputFile(path).read_at(0, bytes.data(), bytes.size());
     return std::string_view(bytes.data(), bytes.size()) == "MATLAB 7.3";
 }
 
 // MATLAB's index order from what it stores: the axes the other way round.
-NpyArray with_axes_reversed(const NpyArray& from) {
-    NpyArray out;
+files::NpyArray with_axes_reversed(const files::NpyArray& from) {
+    files::NpyArray out;
     out.shape.assign(from.shape.rbegin(), from.shape.rend());
     out.values.resize(from.values.size());
     const std::size_t n_0 = out.shape[0];
@@ -99,23 +99,23 @@ NpyArray with_axes_reversed(const NpyArray& from) {
 
 }  // namespace
 
-NpyArray read_hdf5(const std::filesystem::path& path, const std::string& dataset) {
+files::NpyArray read_hdf5(const std::filesystem::path& path, const std::string& dataset) {
     const std::string file = path.string();
-    check_input(path);
+    files::check_input(path);
     H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
     const Handle root(H5Fopen(file.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
-    if (!root.there()) throw bad_input(file, "", "no HDF5 file that can be opened", "a whole one");
+    if (!root.there()) throw files::bad_input(file, "", "no HDF5 file that can be opened", "a whole one");
     const std::string name = choose(root.id(), dataset, file);
     const Handle data(H5Dopen2(root.id(), name.c_str(), H5P_DEFAULT), H5Dclose);
-    if (!data.there()) throw bad_input(file, "", "nothing of that name", "an array " + shown(name));
-    NpyArray array;
+    if (!data.there()) throw files::bad_input(file, "", "nothing of that name", "an array " + files::shown(name));
+    files::NpyArray array;
     array.shape = grid_shape(data.id());
     if (array.shape.empty())
-        throw bad_input(file, name, "something else", "an array of numbers with two or three dimensions");
+        throw files::bad_input(file, name, "something else", "an array of numbers with two or three dimensions");
     const Handle type(H5Dget_type(data.id()), H5Tclose);
     const Handle how(H5Dget_create_plist(data.id()), H5Pclose);
     if (H5Pget_external_count(how.id()) > 0 || H5Pget_layout(how.id()) == H5D_VIRTUAL) {
-        throw bad_input(file, name, "numbers that stand in other files", "numbers in this one");
+        throw files::bad_input(file, name, "numbers that stand in other files", "numbers in this one");
     }
     const auto stored =
         std::min<std::size_t>(H5Dget_storage_size(data.id()), std::filesystem::file_size(path));
@@ -123,9 +123,9 @@ NpyArray read_hdf5(const std::filesystem::path& path, const std::string& dataset
         check_shape(array.shape, H5Tget_size(type.id()), stored, H5Pget_nfilters(how.id()) > 0, file);
     array.values.resize(n);
     if (H5Dread(data.id(), H5T_NATIVE_FLOAT, H5S_ALL, H5S_ALL, H5P_DEFAULT, array.values.data()) < 0) {
-        throw bad_input(file, name, "an array that cannot be read to its end", "a whole file");
+        throw files::bad_input(file, name, "an array that cannot be read to its end", "a whole file");
     }
     return starts_as_matlab(path) ? with_axes_reversed(array) : array;
 }
 
-}  // namespace palpa
+}  // namespace palpa::stiffnessmaps

@@ -12,7 +12,7 @@
 #include "files/text.h"
 #include "stiffnessmaps/import/arrays.h"
 
-namespace palpa {
+namespace palpa::stiffnessmaps {
 namespace {
 
 struct PngSource {
@@ -60,12 +60,12 @@ std::string decode_png(const std::string& bytes, std::size_t line, std::vector<u
 
 }  // namespace
 
-NpyArray read_png(const std::filesystem::path& path) {
+files::NpyArray read_png(const std::filesystem::path& path) {
     const std::string file = path.string();
-    const std::string bytes = read_text(path);
+    const std::string bytes = files::read_text(path);
     constexpr std::size_t kHeader = 33;  // signature and IHDR
     if (bytes.size() < kHeader || std::string_view(bytes).substr(12, 4) != "IHDR")
-        throw bad_input(file, "", "no PNG header", "a whole image");
+        throw files::bad_input(file, "", "no PNG header", "a whole image");
     const auto byte = [&](std::size_t i) {
         return static_cast<std::size_t>(static_cast<unsigned char>(bytes[i]));
     };
@@ -73,11 +73,11 @@ NpyArray read_png(const std::filesystem::path& path) {
         return byte(i) << 24 | byte(i + 1) << 16 | byte(i + 2) << 8 | byte(i + 3);
     };
     if (byte(25) != 0 || (byte(24) != 8 && byte(24) != 16)) {
-        throw bad_input(file, "", "an image with colours, transparency or under 8 bits",
+        throw files::bad_input(file, "", "an image with colours, transparency or under 8 bits",
                         "grey values of 8 or 16 bits");
     }
     const bool wide = byte(24) == 16;
-    NpyArray array;
+    files::NpyArray array;
     array.shape = {big_endian(20), big_endian(16)};
     const std::size_t n = check_shape(array.shape, wide ? 2 : 1, bytes.size(), true, file);
 
@@ -85,7 +85,7 @@ NpyArray read_png(const std::filesystem::path& path) {
     const std::size_t line = array.shape[1] * (wide ? 2 : 1);
     std::vector<unsigned char> rows(n * (wide ? 2 : 1));
     const std::string failed = decode_png(bytes, line, rows);
-    if (!failed.empty()) throw bad_input(file, "", failed, "a whole image");
+    if (!failed.empty()) throw files::bad_input(file, "", failed, "a whole image");
     for (std::size_t i = 0; i < n; ++i) {
         array.values[i] =
             wide ? static_cast<float>(rows[2 * i] << 8 | rows[2 * i + 1]) : static_cast<float>(rows[i]);
@@ -126,7 +126,7 @@ Format format_of(TIFF* tiff, const std::string& file) {
     const bool known = (whole && (f.bits == 8 || f.bits == 16 || f.bits == 32)) ||
                        (f.kind == SAMPLEFORMAT_IEEEFP && f.bits == 32);
     if (samples != 1 || !known || photometric != PHOTOMETRIC_MINISBLACK) {
-        throw bad_input(file, "",
+        throw files::bad_input(file, "",
                         std::to_string(samples) + " numbers of " + std::to_string(f.bits) +
                             " bits a pixel, or another meaning of them",
                         "grey values of 8, 16 or 32 bits, black the smallest");
@@ -155,20 +155,20 @@ float number_at(const Format& f, const unsigned char* at) {
     }
 }
 
-void read_strips(TIFF* tiff, const Format& f, std::size_t offset, NpyArray& array, const std::string& file) {
+void read_strips(TIFF* tiff, const Format& f, std::size_t offset, files::NpyArray& array, const std::string& file) {
     const std::size_t line = f.width * f.bytes();
     if (TIFFScanlineSize64(tiff) != line)
-        throw bad_input(file, "", "lines of another length", "a whole image");
+        throw files::bad_input(file, "", "lines of another length", "a whole image");
     std::vector<unsigned char> row(line);
     for (std::uint32_t y = 0; y < f.height; ++y) {
         if (TIFFReadScanline(tiff, row.data(), y, 0) != 1)
-            throw bad_input(file, "row " + std::to_string(y), "nothing that can be read", "a whole image");
+            throw files::bad_input(file, "row " + std::to_string(y), "nothing that can be read", "a whole image");
         for (std::size_t x = 0; x < f.width; ++x)
             array.values[offset + y * std::size_t{f.width} + x] = number_at(f, &row[x * f.bytes()]);
     }
 }
 
-void read_tiles(TIFF* tiff, const Format& f, std::size_t stored_bytes, std::size_t offset, NpyArray& array,
+void read_tiles(TIFF* tiff, const Format& f, std::size_t stored_bytes, std::size_t offset, files::NpyArray& array,
                 const std::string& file) {
     std::uint32_t wide = 0;
     std::uint32_t high = 0;
@@ -177,11 +177,11 @@ void read_tiles(TIFF* tiff, const Format& f, std::size_t stored_bytes, std::size
     check_shape({high, wide}, f.bytes(), stored_bytes, true, file);
     std::vector<unsigned char> tile(std::size_t{wide} * high * f.bytes());
     if (TIFFTileSize64(tiff) != tile.size())
-        throw bad_input(file, "", "tiles of another size", "a whole image");
+        throw files::bad_input(file, "", "tiles of another size", "a whole image");
     for (std::uint32_t y = 0; y < f.height; y += high) {
         for (std::uint32_t x = 0; x < f.width; x += wide) {
             if (TIFFReadTile(tiff, tile.data(), x, y, 0, 0) < 0)
-                throw bad_input(file, "", "a tile that cannot be read", "a whole image");
+                throw files::bad_input(file, "", "a tile that cannot be read", "a whole image");
             for (std::uint32_t b = 0; b < high && y + b < f.height; ++b) {
                 for (std::uint32_t a = 0; a < wide && x + a < f.width; ++a) {
                     array.values[offset + (y + b) * std::size_t{f.width} + x + a] =
@@ -194,15 +194,15 @@ void read_tiles(TIFF* tiff, const Format& f, std::size_t stored_bytes, std::size
 
 }  // namespace
 
-NpyArray read_tiff(const std::filesystem::path& path) {
+files::NpyArray read_tiff(const std::filesystem::path& path) {
     const std::string file = path.string();
-    check_input(path);
+    files::check_input(path);
     TIFFSetErrorHandler(nullptr);
     TIFFSetWarningHandler(nullptr);
     const std::unique_ptr<TIFF, CloseTiff> tiff(TIFFOpen(file.c_str(), "rm"));
-    if (!tiff) throw bad_input(file, "", "no TIFF file that can be opened", "a whole image");
+    if (!tiff) throw files::bad_input(file, "", "no TIFF file that can be opened", "a whole image");
     const std::size_t stored = std::filesystem::file_size(path);
-    NpyArray array;
+    files::NpyArray array;
     Format first;
     std::size_t pages = 0;
     constexpr std::size_t kMostPages = 1000;
@@ -210,8 +210,8 @@ NpyArray read_tiff(const std::filesystem::path& path) {
         const Format f = format_of(tiff.get(), file);
         if (pages == 0) first = f;
         if (f.width != first.width || f.height != first.height)
-            throw bad_input(file, "", "pages of several sizes", "one size");
-        if (++pages > kMostPages) throw bad_input(file, "", "more than 1000 pages", "fewer");
+            throw files::bad_input(file, "", "pages of several sizes", "one size");
+        if (++pages > kMostPages) throw files::bad_input(file, "", "more than 1000 pages", "fewer");
         const std::size_t n = check_shape({f.height, f.width}, f.bytes(), stored, f.packed, file);
         check_shape({pages, f.height, f.width}, f.bytes(), stored, f.packed, file);
         const std::size_t offset = array.values.size();
@@ -227,4 +227,4 @@ NpyArray read_tiff(const std::filesystem::path& path) {
     return array;
 }
 
-}  // namespace palpa
+}  // namespace palpa::stiffnessmaps

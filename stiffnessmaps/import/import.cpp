@@ -13,17 +13,17 @@
 #include "stiffnessmaps/import/probing.h"
 #include "stiffnessmaps/import/sliding.h"
 
-namespace palpa {
+namespace palpa::stiffnessmaps {
 namespace {
 
 namespace fs = std::filesystem;
 
-Table open_table(const fs::path& path, ImportReport& report) {
-    std::string text = read_text(path);
+files::Table open_table(const fs::path& path, ImportReport& report) {
+    std::string text = files::read_text(path);
     if (!text.empty() && text.back() != '\n')
         report.notes.push_back(path.string() + ": its last line has no end: is the file whole?");
     const char separator = separator_of(std::string_view(text).substr(0, text.find('\n')));
-    return Table(std::move(text), path.string(), separator);
+    return files::Table(std::move(text), path.string(), separator);
 }
 
 void note_columns(const Columns& columns, const ImportOptions& options, MapSource& source) {
@@ -39,13 +39,13 @@ void note_columns(const Columns& columns, const ImportOptions& options, MapSourc
 
 Map import_tables(const std::vector<fs::path>& files, const ImportOptions& options, ImportReport& report) {
     if (!options.at_depths_m.empty() && options.at_depths_m.size() != files.size()) {
-        throw bad_input("--at-depth-mm", "",
+        throw files::bad_input("--at-depth-mm", "",
                         std::to_string(options.at_depths_m.size()) + " depths for " +
                             std::to_string(files.size()) + " files",
                         "one for each file");
     }
     if (!std::is_sorted(options.depths_m.begin(), options.depths_m.end(), std::less_equal<>())) {
-        throw bad_input("--depths-mm", "", "depths out of order", "ascending depths");
+        throw files::bad_input("--depths-mm", "", "depths out of order", "ascending depths");
     }
     Map map;
     MapSource before;  // what is chosen before the map is there
@@ -55,7 +55,7 @@ Map import_tables(const std::vector<fs::path>& files, const ImportOptions& optio
                                 ? files[0].string()
                                 : files[0].string() + " and " + std::to_string(files.size() - 1) + " more";
     for (std::size_t i = 0; i < files.size(); ++i) {
-        Table table = open_table(files[i], report);
+        files::Table table = open_table(files[i], report);
         const Columns columns = find_columns(table, options);
         report.form = options.form.value_or(form_of(columns, table));
         if (i == 0) {
@@ -69,7 +69,7 @@ Map import_tables(const std::vector<fs::path>& files, const ImportOptions& optio
         } else if (i == 0) {
             probing = read_probing(table, columns, options, report);
         } else {
-            throw bad_input(files[i].string(), "", "a second file of probing",
+            throw files::bad_input(files[i].string(), "", "a second file of probing",
                             "one table (or --form sliding, --form matrices)");
         }
     }
@@ -82,7 +82,7 @@ Map import_tables(const std::vector<fs::path>& files, const ImportOptions& optio
 }  // namespace
 
 Map import_recording(const std::vector<fs::path>& files, const ImportOptions& options, ImportReport& report) {
-    if (files.empty()) throw bad_input("maps import", "", "no file", "one or more");
+    if (files.empty()) throw files::bad_input("maps import", "", "no file", "one or more");
     const bool arrays =
         options.form ? *options.form == RecordingForm::matrices : is_array_file(files.front());
     Map map = arrays ? import_matrices(files, options, report) : import_tables(files, options, report);
@@ -131,4 +131,4 @@ const char* name_of(TangentialChoice choice) {
     return "none";
 }
 
-}  // namespace palpa
+}  // namespace palpa::stiffnessmaps

@@ -6,7 +6,7 @@
 
 #include "stiffnessmaps/import/options.h"
 
-namespace palpa {
+namespace palpa::stiffnessmaps {
 
 // The form is what `options.form` says, or is told from the files: tables by their columns (columns.h),
 // arrays by their first bytes or as numbers without a header (arrays.h). Several files are one recording: one
@@ -14,4 +14,4 @@ namespace palpa {
 Map import_recording(const std::vector<std::filesystem::path>& files, const ImportOptions& options,
                      ImportReport& report);
 
-}  // namespace palpa
+}  // namespace palpa::stiffnessmaps

@@ -9,7 +9,7 @@
 #include "files/regular_file.h"
 #include "stiffnessmaps/import/arrays.h"
 
-namespace palpa {
+namespace palpa::stiffnessmaps {
 namespace {
 
 std::size_t bytes_of(matio_classes type) {
@@ -95,16 +95,16 @@ std::string choose(mat_t* mat, const std::string& dataset, const std::string& fi
         const std::string name = variable->name != nullptr ? variable->name : "";
         if (name == dataset) return name;
         if (!is_grid(*variable)) continue;
-        grids += " " + shown(name) + " " + shape_text(shape_of(*variable));
+        grids += " " + files::shown(name) + " " + files::shape_text(shape_of(*variable));
         if (!found.empty() && dataset.empty()) found = "*";
         if (found.empty()) found = name;
     }
     if (!dataset.empty())
-        throw bad_input(file, "", grids.empty() ? "no arrays" : "the arrays" + grids,
-                        "an array " + shown(dataset));
+        throw files::bad_input(file, "", grids.empty() ? "no arrays" : "the arrays" + grids,
+                        "an array " + files::shown(dataset));
     if (found.empty())
-        throw bad_input(file, "", "no array of real numbers with two or three dimensions", "one");
-    if (found == "*") throw bad_input(file, "", "the arrays" + grids, "one of them named by --dataset");
+        throw files::bad_input(file, "", "no array of real numbers with two or three dimensions", "one");
+    if (found == "*") throw files::bad_input(file, "", "the arrays" + grids, "one of them named by --dataset");
     return found;
 }
 
@@ -113,7 +113,7 @@ std::string choose(mat_t* mat, const std::string& dataset, const std::string& fi
 // then elements of type (4 bytes), length (4 bytes), data.
 void refuse_cut(const std::filesystem::path& path) {
     constexpr std::uint64_t kHeader = 128;
-    const InputFile in(path);
+    const files::InputFile in(path);
     const std::uint64_t size = in.bytes();
     const auto bytes_at = [&](std::uint64_t at, std::size_t n) {
         std::string bytes(n, '\0');
@@ -121,7 +121,7 @@ void refuse_cut(const std::filesystem::path& path) {
         return bytes;
     };
     const auto cut = [&] {
-        return bad_input(path.string(), "", "an end within an array: a cut file", "a whole file");
+        return files::bad_input(path.string(), "", "an end within an array: a cut file", "a whole file");
     };
     if (size < kHeader) throw cut();
     const bool little_endian = bytes_at(kHeader - 2, 2) == "IM";
@@ -141,26 +141,26 @@ void keep_quiet(int, char*) {}
 
 }  // namespace
 
-NpyArray read_matlab(const std::filesystem::path& path, const std::string& dataset) {
+files::NpyArray read_matlab(const std::filesystem::path& path, const std::string& dataset) {
     const std::string file = path.string();
     refuse_cut(path);
     Mat_LogInitFunc("palpa", keep_quiet);
     Mat mat(Mat_Open(file.c_str(), MAT_ACC_RDONLY));
-    if (!mat) throw bad_input(file, "", "no MATLAB file that can be opened", "MATLAB version 5");
+    if (!mat) throw files::bad_input(file, "", "no MATLAB file that can be opened", "MATLAB version 5");
     const std::string name = choose(mat.get(), dataset, file);
     Mat_Rewind(mat.get());
     Variable variable(Mat_VarReadInfo(mat.get(), name.c_str()));
     if (!variable || !is_grid(*variable))
-        throw bad_input(file, name, "something else",
+        throw files::bad_input(file, name, "something else",
                         "an array of real numbers with two or three dimensions");
-    NpyArray array;
+    files::NpyArray array;
     array.shape = shape_of(*variable);
     const bool packed = variable->compression != MAT_COMPRESSION_NONE;
     // a file may store doubles as bytes where their values allow it
     const std::size_t n = check_shape(array.shape, 1, std::filesystem::file_size(path), packed, file);
     if (Mat_VarReadDataAll(mat.get(), variable.get()) != 0 || variable->data == nullptr ||
         variable->nbytes < n * bytes_of(variable->class_type)) {
-        throw bad_input(file, name, "an array that cannot be read to its end", "a whole file");
+        throw files::bad_input(file, name, "an array that cannot be read to its end", "a whole file");
     }
     array.values.resize(n);
     const std::size_t n_0 = array.shape[0];
@@ -175,4 +175,4 @@ NpyArray read_matlab(const std::filesystem::path& path, const std::string& datas
     return array;
 }
 
-}  // namespace palpa
+}  // namespace palpa::stiffnessmaps

@@ -15,7 +15,7 @@
 #include "stiffnessmaps/import/finish.h"
 #include "stiffnessmaps/import/robust.h"
 
-namespace palpa {
+namespace palpa::stiffnessmaps {
 namespace {
 
 namespace fs = std::filesystem;
@@ -57,7 +57,7 @@ std::optional<double> depth_in_name(const fs::path& path) {
                (std::isdigit(static_cast<unsigned char>(name[begin - 1])) != 0 || name[begin - 1] == '.'))
             --begin;
         double value = 0.0;
-        if (begin < end && parse_number(std::string_view(name).substr(begin, end - begin), value) &&
+        if (begin < end && files::parse_number(std::string_view(name).substr(begin, end - begin), value) &&
             value > 0.0)
             return 1e-3 * value;
     }
@@ -65,13 +65,13 @@ std::optional<double> depth_in_name(const fs::path& path) {
 }
 
 // A three-dimensional array as [depth][y][x].
-void put_in_order(NpyArray& array, const std::string& axes) {
+void put_in_order(files::NpyArray& array, const std::string& axes) {
     if (axes == "dyx") return;
     const std::size_t d = axes.find('d');
     const std::size_t y = axes.find('y');
     const std::size_t x = axes.find('x');
     const std::array<std::size_t, 3> stride{array.shape[1] * array.shape[2], array.shape[2], 1};
-    NpyArray out;
+    files::NpyArray out;
     out.shape = {array.shape[d], array.shape[y], array.shape[x]};
     out.values.reserve(array.values.size());
     for (std::size_t k = 0; k < out.shape[0]; ++k) {
@@ -84,13 +84,13 @@ void put_in_order(NpyArray& array, const std::string& axes) {
 }
 
 void check_count(std::size_t n, const std::string& file) {
-    if (n > kMostNumbers) throw bad_input(file, "", "more than 20 million numbers with all files and depths", "less");
+    if (n > kMostNumbers) throw files::bad_input(file, "", "more than 20 million numbers with all files and depths", "less");
 }
 
 void append(const fs::path& path, const ImportOptions& options, Stack& stack) {
-    NpyArray array = read_array(path, options.dataset);
+    files::NpyArray array = read_array(path, options.dataset);
     if (is_image(*array_kind(path)) && !options.scale_stated) {
-        throw bad_input(
+        throw files::bad_input(
             path.string(), "", "an image of counts without a unit",
             "what one count is: --scale, with --quantity force (N), stiffness (N/mm) or young (kPa)");
     }
@@ -103,8 +103,8 @@ void append(const fs::path& path, const ImportOptions& options, Stack& stack) {
         stack.first_file = path.string();
     }
     if (n_y != stack.n_y || n_x != stack.n_x) {
-        throw bad_input(path.string(), "shape", shape_text({n_y, n_x}),
-                        shape_text({stack.n_y, stack.n_x}) + " as in " + stack.first_file + " (two grids?)");
+        throw files::bad_input(path.string(), "shape", files::shape_text({n_y, n_x}),
+                        files::shape_text({stack.n_y, stack.n_x}) + " as in " + stack.first_file + " (two grids?)");
     }
     check_count(stack.values.size() + array.values.size(), path.string());
     if (stack.values.empty()) {
@@ -120,7 +120,7 @@ std::vector<double> depths_of(const std::vector<fs::path>& files, const Stack& s
     from_names = false;
     if (!options.depths_m.empty()) {
         if (options.depths_m.size() == n) return options.depths_m;
-        throw bad_input(stack.first_file, "", std::to_string(n) + " matrices",
+        throw files::bad_input(stack.first_file, "", std::to_string(n) + " matrices",
                         std::to_string(options.depths_m.size()) +
                             ", one for each depth of --depths-mm (another order of axes: --axes)");
     }
@@ -130,7 +130,7 @@ std::vector<double> depths_of(const std::vector<fs::path>& files, const Stack& s
     }
     from_names = true;
     if (depths_m.size() == n && files.size() == n) return depths_m;
-    throw bad_input(stack.first_file, "",
+    throw files::bad_input(stack.first_file, "",
                     std::to_string(n) + " matrices in " + std::to_string(files.size()) +
                         " files, with a depth in " + std::to_string(depths_m.size()) + " of their names",
                     "the depth of each: --depths-mm, or names such as normal_3mm.csv");
@@ -149,7 +149,7 @@ void sort_layers(Stack& stack) {
     }
     const auto twice = std::adjacent_find(stack.depths_m.begin(), stack.depths_m.end(), std::greater_equal<>());
     if (twice == stack.depths_m.end()) return;
-    throw bad_input(stack.first_file, "", "the depth " + short_number(1e3 * *twice) + " mm twice", "each once");
+    throw files::bad_input(stack.first_file, "", "the depth " + files::short_number(1e3 * *twice) + " mm twice", "each once");
 }
 
 // In SI units of the quantity; NaN where not measured.
@@ -174,7 +174,7 @@ double greatest(const Stack& stack) {
             if (!std::isnan(stack.values[i])) values.push_back(std::abs(static_cast<double>(stack.values[i])));
         }
     }
-    if (values.empty()) throw bad_input(stack.first_file, "", "no number: all cells are empty", "forces");
+    if (values.empty()) throw files::bad_input(stack.first_file, "", "no number: all cells are empty", "forces");
     return quantile(std::move(values), 0.99);
 }
 
@@ -184,10 +184,10 @@ void check_size(const Stack& stack, const ImportOptions& options) {
     if (options.quantity == Quantity::force) {
         check_force_size(most, Columns{}, options, stack.first_file);
     } else if (options.quantity == Quantity::stiffness && !(most >= 1.0 && most <= 1e6)) {
-        throw bad_input(stack.first_file, "", "stiffnesses up to " + short_number(1e-3 * most) + " N/mm",
+        throw files::bad_input(stack.first_file, "", "stiffnesses up to " + files::short_number(1e-3 * most) + " N/mm",
                         "from 0.001 to 1000 N/mm: state the unit by --scale, N/mm for one of the file's");
     } else if (options.quantity == Quantity::young && !(most >= 50.0 && most <= 1e7)) {
-        throw bad_input(stack.first_file, "", "Young's moduli up to " + short_number(1e-3 * most) + " kPa",
+        throw files::bad_input(stack.first_file, "", "Young's moduli up to " + files::short_number(1e-3 * most) + " kPa",
                         "from 0.05 to 10000 kPa: state the unit by --scale, kPa for one of the file's");
     }
 }
@@ -195,10 +195,10 @@ void check_size(const Stack& stack, const ImportOptions& options) {
 // One slice becomes forces at each depth.
 void forces_from_slice(Stack& stack, const ImportOptions& options, ImportReport& report) {
     if (options.depths_m.empty())
-        throw bad_input(stack.first_file, "", "a slice without depths",
+        throw files::bad_input(stack.first_file, "", "a slice without depths",
                         "the depths that the forces are wanted at: --depths-mm");
     if (stack.n_layers() != 1)
-        throw bad_input(stack.first_file, "", std::to_string(stack.n_layers()) + " slices", "one");
+        throw files::bad_input(stack.first_file, "", std::to_string(stack.n_layers()) + " slices", "one");
     const std::vector<float> slice = std::move(stack.values);
     stack.values.clear();
     check_count(slice.size() * options.depths_m.size(), stack.first_file);
@@ -222,14 +222,14 @@ std::vector<float> tangential_of(const std::vector<fs::path>& files, const Stack
     Stack stack;
     for (const fs::path& file : files) append(file, options, stack);
     if (stack.n_x != normal.n_x || stack.n_y != normal.n_y) {
-        throw bad_input(stack.first_file, "shape", shape_text({stack.n_y, stack.n_x}),
-                        shape_text({normal.n_y, normal.n_x}) + " as in " + normal.first_file);
+        throw files::bad_input(stack.first_file, "shape", files::shape_text({stack.n_y, stack.n_x}),
+                        files::shape_text({normal.n_y, normal.n_x}) + " as in " + normal.first_file);
     }
     bool from_names = false;
     stack.depths_m = depths_of(files, stack, options, from_names);
     sort_layers(stack);
     if (stack.depths_m != normal.depths_m)
-        throw bad_input(stack.first_file, "", "other depths than the normal force has", "the same");
+        throw files::bad_input(stack.first_file, "", "other depths than the normal force has", "the same");
     ImportOptions unsigned_options = options;
     unsigned_options.negate_force = false;  // the normal force's sign
     scale(stack, unsigned_options);
@@ -284,9 +284,9 @@ Map import_matrices(const std::vector<fs::path>& files, const ImportOptions& opt
         (!tangential ? normal_files : says_along_y(file) ? along_y : along_x).push_back(file);
     }
     if (normal_files.empty())
-        throw bad_input(files.front().string(), "", "tangential forces alone", "normal forces as well");
+        throw files::bad_input(files.front().string(), "", "tangential forces alone", "normal forces as well");
     if (!(options.spacing_m[0] > 0.0)) {
-        throw bad_input(normal_files.front().string(), "", "an array without a scale",
+        throw files::bad_input(normal_files.front().string(), "", "an array without a scale",
                         "the distance between its numbers: --spacing-mm DX,DY");
     }
     Stack stack;
@@ -326,4 +326,4 @@ Map import_matrices(const std::vector<fs::path>& files, const ImportOptions& opt
     return map;
 }
 
-}  // namespace palpa
+}  // namespace palpa::stiffnessmaps

@@ -8,7 +8,7 @@
 
 #include "stiffnessmaps/import/options.h"
 
-namespace palpa {
+namespace palpa::stiffnessmaps {
 
 // Files whose name says tangential (or that options.tangential_x, _y name) hold the tangential force along x
 // (along y where the name ends in y), positive where it opposes motion along +. Depths come from
@@ -23,4 +23,4 @@ Map import_matrices(const std::vector<std::filesystem::path>& files, const Impor
 //   section 4.2)
 double elastic_force_N(double young_Pa, double depth_m, const ImportOptions& options);
 
-}  // namespace palpa
+}  // namespace palpa::stiffnessmaps

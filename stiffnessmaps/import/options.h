@@ -12,7 +12,7 @@
 
 #include "stiffnessmaps/map.h"
 
-namespace palpa {
+namespace palpa::stiffnessmaps {
 
 enum class RecordingForm { probing, sliding, matrices };
 enum class Gridding { on_grid, plane, inverse_distance, median };
@@ -106,4 +106,4 @@ const char* name_of(RecordingForm form);
 const char* name_of(Gridding gridding);
 const char* name_of(TangentialChoice choice);
 
-}  // namespace palpa
+}  // namespace palpa::stiffnessmaps

@@ -18,7 +18,7 @@
 #include "stiffnessmaps/import/probing_curve.h"
 #include "stiffnessmaps/import/robust.h"
 
-namespace palpa {
+namespace palpa::stiffnessmaps {
 namespace {
 
 constexpr double kOffCommand_m = 1e-3;
@@ -30,7 +30,7 @@ class Places {
   public:
     explicit Places(std::vector<ProbedPoint>& points) : points_(points) {}
 
-    ProbedPoint& of_number(const Table& table, std::size_t column, std::size_t line, double x_m, double y_m,
+    ProbedPoint& of_number(const files::Table& table, std::size_t column, std::size_t line, double x_m, double y_m,
                            std::size_t x_column) {
         const double id = table.finite_number(column);
         if (id != std::floor(id) || std::abs(id) > 1e9) table.fail(column, "a whole number");
@@ -85,7 +85,7 @@ class Places {
 };
 
 // The force along the surface's normal: as recorded, from the recorded normal, or along z.
-double normal_force(const Table& table, const Columns& columns) {
+double normal_force(const files::Table& table, const Columns& columns) {
     if (columns.has(Role::normal_force)) return value_of(table, columns, Role::normal_force);
     if (!columns.has(Role::normal_z)) return value_of(table, columns, Role::force_z);
     return value_of(table, columns, Role::force_x) * value_of(table, columns, Role::normal_x) +
@@ -93,7 +93,7 @@ double normal_force(const Table& table, const Columns& columns) {
            value_of(table, columns, Role::force_z) * value_of(table, columns, Role::normal_z);
 }
 
-void need_columns(const Columns& columns, const Table& table) {
+void need_columns(const Columns& columns, const files::Table& table) {
     need(columns, table, {Role::x, Role::y});
     if (!columns.has(Role::depth) && !columns.has(Role::z)) need(columns, table, {Role::depth});
     if (columns.has(Role::normal_force)) return;
@@ -104,7 +104,7 @@ void need_columns(const Columns& columns, const Table& table) {
 
 }  // namespace
 
-Probing read_probing(Table& table, const Columns& columns, const ImportOptions& options,
+Probing read_probing(files::Table& table, const Columns& columns, const ImportOptions& options,
                      ImportReport& report) {
     need_columns(columns, table);
     Probing probing;
@@ -161,7 +161,7 @@ Probing read_probing(Table& table, const Columns& columns, const ImportOptions& 
     }
     report.rejected_rows += not_numbers;
     if (probing.points.empty() || not_numbers == report.rows) {
-        throw bad_input(table.file(), "",
+        throw files::bad_input(table.file(), "",
                         report.rows == 0   ? "no rows"
                         : options.region_m ? "no row with numbers in the region"
                                            : "no row with numbers",
@@ -189,8 +189,8 @@ void refuse_off_grid(const Probing& probing, const GridAxis& axis, bool along_y,
     for (const ProbedPoint& p : probing.points) {
         const double place_m = along_y ? p.y_m : p.x_m;
         if (index_on(axis, place_m)) continue;
-        throw bad_input(file, at_line(p) + (along_y ? ", y" : ", x"), short_number(1e3 * place_m) + " mm",
-                        "a position on the regular grid of " + short_number(1e3 * axis.pitch_m) +
+        throw files::bad_input(file, at_line(p) + (along_y ? ", y" : ", x"), files::short_number(1e3 * place_m) + " mm",
+                        "a position on the regular grid of " + files::short_number(1e3 * axis.pitch_m) +
                             " mm that the other points lie on (scattered points: --grid plane)");
     }
 }
@@ -205,7 +205,7 @@ GridChoice choose_grid(const Probing& probing, const ImportOptions& options, con
     }
     const double near_m = neighbour_distance_m(x_m, y_m);
     if (const std::size_t groups = group_count(x_m, y_m, 3.0 * near_m); groups > 1 && !options.gridding) {
-        throw bad_input(
+        throw files::bad_input(
             file, "",
             std::to_string(groups) + " groups of points far from each other: two grids in one file?",
             "one; choose by --region-mm X0,X1,Y0,Y1, or take all as one by --grid plane (or on-grid)");
@@ -222,7 +222,7 @@ GridChoice choose_grid(const Probing& probing, const ImportOptions& options, con
     choice.on_grid = asked_on_grid || (!options.gridding && !options.pitch_m && !scattered);
     if (choice.on_grid) {
         if (!x || !y)
-            throw bad_input(file, "", "positions all over the place",
+            throw files::bad_input(file, "", "positions all over the place",
                             "a regular grid (scattered points: --grid plane)");
         refuse_off_grid(probing, x->axis, false, file);
         refuse_off_grid(probing, y->axis, true, file);
@@ -247,7 +247,7 @@ void fill_on_grid(const Probing& probing, const GridPlan& plan, Map& map, const 
     for (const ProbedPoint& p : probing.points) {
         const std::size_t cell = *index_on(plan.y, p.y_m) * map.n_x + *index_on(plan.x, p.x_m);
         if (line[cell] != 0) {
-            throw bad_input(
+            throw files::bad_input(
                 file, at_line(p),
                 "a second point in the cell of line " + std::to_string(line[cell]) +
                     ": two grids in one file?",
@@ -323,13 +323,13 @@ Map map_of_probing(Probing& probing, const ImportOptions& options, const std::st
     const std::size_t before = probing.points.size();
     std::erase_if(probing.points, [](const ProbedPoint& p) { return p.depth_m.size() < 2; });
     if (probing.points.empty()) {
-        throw bad_input(file, "", "no point with two depths or more",
+        throw files::bad_input(file, "", "no point with two depths or more",
                         "probing at several depths (if the tip presses towards +z: --column depth=NAME)");
     }
     clean_curves(probing, options, source, report);
     report.rejected_points = before - probing.points.size();
     if (probing.points.empty())
-        throw bad_input(file, "", "no point with two depths in contact",
+        throw files::bad_input(file, "", "no point with two depths in contact",
                         "forces that rise with depth (is the sign the other way round? --negate-force)");
 
     const GridChoice grid = choose_grid(probing, options, file);
@@ -348,7 +348,7 @@ Map map_of_probing(Probing& probing, const ImportOptions& options, const std::st
                       ? "on the grid of its places"
                       : "scattered places brought onto a grid by " + std::string(name_of(plan.method));
     source.how += "; force at contact subtracted point by point (median " +
-                  short_number(report.median_offset_N) + " N); linear between a point's own depths";
+                  files::short_number(report.median_offset_N) + " N); linear between a point's own depths";
 
     RecordedPoints recorded;
     std::size_t n_recorded = 0;
@@ -364,4 +364,4 @@ Map map_of_probing(Probing& probing, const ImportOptions& options, const std::st
     return map;
 }
 
-}  // namespace palpa
+}  // namespace palpa::stiffnessmaps

@@ -6,9 +6,12 @@
 
 #include "stiffnessmaps/import/options.h"
 
-namespace palpa {
-
+namespace palpa::files {
 class Table;
+}
+
+namespace palpa::stiffnessmaps {
+
 struct Columns;
 
 // Depth and force of one place, ascending in depth, from the contact on.
@@ -30,7 +33,7 @@ struct Probing {
 // Rows of one place are told by the column `point`, or else by a position within 0.2 mm. Rows are passed over
 // (and counted) that are not numbers, whose depth is not beyond the last one's, or that are off their command
 // by more than 1 mm (the arm had stopped). Throws InputError.
-Probing read_probing(Table& table, const Columns& columns, const ImportOptions& options,
+Probing read_probing(files::Table& table, const Columns& columns, const ImportOptions& options,
                      ImportReport& report);
 
 // What `read_probing` returns, as a map: on the grid that the places lie on, or else scattered places brought
@@ -40,4 +43,4 @@ Probing read_probing(Table& table, const Columns& columns, const ImportOptions& 
 Map map_of_probing(Probing& probing, const ImportOptions& options, const std::string& file,
                    ImportReport& report);
 
-}  // namespace palpa
+}  // namespace palpa::stiffnessmaps

@@ -12,7 +12,7 @@
 #include "stiffnessmaps/import/probing.h"
 #include "stiffnessmaps/import/robust.h"
 
-namespace palpa {
+namespace palpa::stiffnessmaps {
 namespace {
 
 void erase_row(ProbedPoint& p, std::size_t i) {
@@ -174,4 +174,4 @@ double force_at(const ProbedPoint& p, double depth_m, double step_m) {
     return p.force_N[i - 1] + s * (p.force_N[i] - p.force_N[i - 1]);
 }
 
-}  // namespace palpa
+}  // namespace palpa::stiffnessmaps

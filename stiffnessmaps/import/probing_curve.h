@@ -3,7 +3,7 @@
 
 #include "stiffnessmaps/import/options.h"
 
-namespace palpa {
+namespace palpa::stiffnessmaps {
 
 struct Probing;
 struct ProbedPoint;
@@ -25,4 +25,4 @@ void clean_curves(Probing& probing, const ImportOptions& options, MapSource& sou
 // let pass).
 double force_at(const ProbedPoint& point, double depth_m, double step_m);
 
-}  // namespace palpa
+}  // namespace palpa::stiffnessmaps

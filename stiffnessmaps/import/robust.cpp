@@ -5,7 +5,7 @@
 
 #include "stiffnessmaps/import/choices.h"
 
-namespace palpa {
+namespace palpa::stiffnessmaps {
 
 double quantile(std::vector<double> values, double q) {
     std::erase_if(values, [](double v) { return !std::isfinite(v); });  // what has no order
@@ -60,4 +60,4 @@ std::vector<double> choice_mm(const std::vector<double>& metres) {
     return out;
 }
 
-}  // namespace palpa
+}  // namespace palpa::stiffnessmaps

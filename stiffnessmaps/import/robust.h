@@ -3,7 +3,7 @@
 
 #include <vector>
 
-namespace palpa {
+namespace palpa::stiffnessmaps {
 
 double quantile(std::vector<double> values, double q);  // q 0 ... 1, of the finite ones; 0 if there are none
 inline double median(std::vector<double> values) {
@@ -23,4 +23,4 @@ std::vector<bool> lone_outliers(const std::vector<double>& values, double limit)
 void add_fourth_differences(const std::vector<double>& values, std::vector<double>& differences);
 double noise_of_fourth_differences(std::vector<double> differences);
 
-}  // namespace palpa
+}  // namespace palpa::stiffnessmaps

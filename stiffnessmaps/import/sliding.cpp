@@ -13,7 +13,7 @@
 #include "stiffnessmaps/import/robust.h"
 #include "stiffnessmaps/import/sliding_tangential.h"
 
-namespace palpa {
+namespace palpa::stiffnessmaps {
 namespace {
 
 constexpr double kLeastPitch_m = 0.5e-3;
@@ -86,7 +86,7 @@ void check_sizes(const Sliding& sliding, const Columns& columns, const ImportOpt
 
 }  // namespace
 
-void read_sliding(Table& table, const Columns& columns, const ImportOptions& options, double at_depth_m,
+void read_sliding(files::Table& table, const Columns& columns, const ImportOptions& options, double at_depth_m,
                   Sliding& sliding, ImportReport& report) {
     need(columns, table, {Role::time, Role::x, Role::y});
     const bool has_depth = columns.has(Role::depth) || at_depth_m > 0.0;
@@ -97,7 +97,7 @@ void read_sliding(Table& table, const Columns& columns, const ImportOptions& opt
     if (!has_depth && !has_lateral) need(columns, table, {Role::force_x, Role::force_y});
     SurfaceSamples& s = sliding.samples;
     if (s.size() > 0 && (has_depth == sliding.depth_m.empty() || has_normal == sliding.normal_N.empty())) {
-        throw bad_input(table.file(), "line 1", "other columns than in the file before it",
+        throw files::bad_input(table.file(), "line 1", "other columns than in the file before it",
                         "the same in all files");
     }
     const double sign = options.negate_force ? -1.0 : 1.0;
@@ -112,7 +112,7 @@ void read_sliding(Table& table, const Columns& columns, const ImportOptions& opt
         const double t_s = value_of(table, columns, Role::time);
         if (t_s < last_s) {
             table.fail(columns[Role::time].index, "a time that is not before the last row's, " +
-                                                      number_text(last_s) +
+                                                      files::number_text(last_s) +
                                                       " s (two recordings in one file?)");
         }
         const double x_m = value_of(table, columns, Role::x);
@@ -140,7 +140,7 @@ void read_sliding(Table& table, const Columns& columns, const ImportOptions& opt
         if (has_normal) sliding.normal_N.push_back(f[3]);
     }
     if (used < 16) {
-        throw bad_input(
+        throw files::bad_input(
             table.file(), "",
             std::to_string(used) + " rows with numbers" + (options.region_m ? " in the region" : ""),
             "a recording of at least 16");
@@ -302,7 +302,7 @@ Map map_of_sliding(Sliding& sliding, const ImportOptions& options, const std::st
     const SurfaceSamples& s = sliding.samples;
     const Bounds2 bounds = bounds_of(s);
     if (!options.gridding && group_count(s.x_m, s.y_m, 10e-3) > 1) {
-        throw bad_input(file, "", "groups of samples more than 10 mm from each other: two grids in one file?",
+        throw files::bad_input(file, "", "groups of samples more than 10 mm from each other: two grids in one file?",
                         "one; choose by --region-mm X0,X1,Y0,Y1, or take all as one by --grid plane");
     }
     const double pitch_m = options.pitch_m.value_or(default_pitch_m(s, bounds));
@@ -323,7 +323,7 @@ Map map_of_sliding(Sliding& sliding, const ImportOptions& options, const std::st
     drop_out_of_contact(outlier, pressed);
     report.points = pressed.size();
     if (pressed.size() < 16) {
-        throw bad_input(file, "", std::to_string(pressed.size()) + " samples below the surface",
+        throw files::bad_input(file, "", std::to_string(pressed.size()) + " samples below the surface",
                         "a tool that presses into the tissue");
     }
 
@@ -334,7 +334,7 @@ Map map_of_sliding(Sliding& sliding, const ImportOptions& options, const std::st
     plan.radius_m = options.radius_m.value_or(pitch_m);
     plan.least = 3;
     if (plan.method == Gridding::on_grid)
-        throw bad_input("--grid", "", "on-grid for a sliding tool", "plane, inverse-distance or median");
+        throw files::bad_input("--grid", "", "on-grid for a sliding tool", "plane, inverse-distance or median");
     add_choice(source, "grid", name_of(plan.method), "samples of a sliding tool lie on no grid", "--grid",
                options.gridding.has_value());
     add_choice(source, "pitch_mm", choice_mm(pitch_m),
@@ -366,4 +366,4 @@ Map map_of_sliding(Sliding& sliding, const ImportOptions& options, const std::st
     return map;
 }
 
-}  // namespace palpa
+}  // namespace palpa::stiffnessmaps

@@ -5,7 +5,7 @@
 #include "stiffnessmaps/import/finish.h"
 #include "stiffnessmaps/import/surface.h"
 
-namespace palpa {
+namespace palpa::stiffnessmaps {
 
 struct Columns;
 
@@ -18,7 +18,7 @@ struct Sliding {
 
 // Appends a file's rows; `at_depth_m` > 0: all were recorded at this depth. Rows that are not numbers are
 // passed over (and counted). Throws InputError, also where time goes back.
-void read_sliding(Table& table, const Columns& columns, const ImportOptions& options, double at_depth_m,
+void read_sliding(files::Table& table, const Columns& columns, const ImportOptions& options, double at_depth_m,
                   Sliding& sliding, ImportReport& report);
 
 // The surface is taken from the recording, from --surface-z-mm, or estimated (surface.h); depth is what the
@@ -28,4 +28,4 @@ void read_sliding(Table& table, const Columns& columns, const ImportOptions& opt
 Map map_of_sliding(Sliding& sliding, const ImportOptions& options, const std::string& file,
                    ImportReport& report);
 
-}  // namespace palpa
+}  // namespace palpa::stiffnessmaps

@@ -7,7 +7,7 @@
 #include "files/text.h"
 #include "stiffnessmaps/import/robust.h"
 
-namespace palpa {
+namespace palpa::stiffnessmaps {
 namespace {
 
 constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
@@ -92,11 +92,11 @@ bool take_tangential(const Sliding& sliding, const Surface& surface, const Impor
     pressed.tangential_y_N = against(sliding, surface, true, motion);
     const double share = drag(pressed);
     if (share > 0.0 || options.tangential) return true;
-    report.notes.push_back("the lateral force does not hold the tool back (median " + short_number(share) +
+    report.notes.push_back("the lateral force does not hold the tool back (median " + files::short_number(share) +
                            " of the normal force): it is not stored; --tangential measured stores it");
     pressed.tangential_x_N.clear();
     pressed.tangential_y_N.clear();
     return false;
 }
 
-}  // namespace palpa
+}  // namespace palpa::stiffnessmaps

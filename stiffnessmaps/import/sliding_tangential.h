@@ -4,7 +4,7 @@
 #include "stiffnessmaps/import/gridding.h"
 #include "stiffnessmaps/import/sliding.h"
 
-namespace palpa {
+namespace palpa::stiffnessmaps {
 
 // Fills the tangential forces of `pressed`, which has one sample for each of `sliding`'s: along +x from those
 // that move along +x (within 37 degrees), likewise y, along the surface, positive where it opposes the
@@ -13,4 +13,4 @@ namespace palpa {
 bool take_tangential(const Sliding& sliding, const Surface& surface, const ImportOptions& options,
                      Samples& pressed, ImportReport& report);
 
-}  // namespace palpa
+}  // namespace palpa::stiffnessmaps

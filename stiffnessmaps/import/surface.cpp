@@ -11,7 +11,7 @@
 #include "files/text.h"
 #include "stiffnessmaps/import/robust.h"
 
-namespace palpa {
+namespace palpa::stiffnessmaps {
 namespace {
 
 using Eigen::Index;
@@ -271,8 +271,8 @@ Surface fit_surface(const SurfaceSamples& samples, double node_m, const std::str
         if (static_cast<double>(samples.force_N[2][s]) > kTouching * great_N) chosen.sample.push_back(s);
     }
     if (!(great_N > 0.0) || chosen.sample.size() < 16) {
-        throw bad_input(
-            file, "", "a 95th percentile of the force along z of " + short_number(great_N) + " N",
+        throw files::bad_input(
+            file, "", "a 95th percentile of the force along z of " + files::short_number(great_N) + " N",
             "a tool that presses, with a positive force along z (the other sign: --negate-force)");
     }
     chosen.push.resize(chosen.sample.size());
@@ -282,9 +282,9 @@ Surface fit_surface(const SurfaceSamples& samples, double node_m, const std::str
     take_normals(surface, samples, 1.0, great_N, chosen);
     constexpr double kLeastVariety = 0.2;
     if (const double variety = force_variety(surface, samples, chosen); variety < kLeastVariety) {
-        throw bad_input(
+        throw files::bad_input(
             file, "",
-            "a force that hardly changes from pass to pass (by " + short_number(100.0 * variety) + " %)",
+            "a force that hardly changes from pass to pass (by " + files::short_number(100.0 * variety) + " %)",
             "forces from light to strong, to tell the surface; or its height by --surface-z-mm; or the depth "
             "of "
             "each file by --at-depth-mm");
@@ -297,11 +297,11 @@ Surface fit_surface(const SurfaceSamples& samples, double node_m, const std::str
         surface.exponent = exponent;
     }
     if (best.height_m.empty())
-        throw bad_input(file, "", "no surface through the samples", "places that extend along x and y");
+        throw files::bad_input(file, "", "no surface through the samples", "places that extend along x and y");
     surface.height_m = std::move(best.height_m);
     surface.deviation_m = best.deviation_m;
     measure_tilt(surface);
     return surface;
 }
 
-}  // namespace palpa
+}  // namespace palpa::stiffnessmaps

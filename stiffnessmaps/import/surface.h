@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-namespace palpa {
+namespace palpa::stiffnessmaps {
 
 struct SurfaceSamples {
     std::vector<double> x_m;
@@ -50,4 +50,4 @@ struct Indentation {
 };
 Indentation indentation_of(const Surface& surface, const SurfaceSamples& samples, std::size_t i);
 
-}  // namespace palpa
+}  // namespace palpa::stiffnessmaps

@@ -11,6 +11,8 @@
 #include "tests/temporary_folder.h"
 
 using namespace palpa;
+using namespace palpa::files;
+using namespace palpa::accuracy;
 using mechanics::Element;
 
 namespace {

@@ -7,6 +7,9 @@
 #include "files/text.h"
 
 using namespace palpa;
+using namespace palpa::files;
+using namespace palpa::scene;
+using namespace palpa::accuracy;
 
 TEST_CASE("bench speed: every time stands beside its ratio to the machine's unit") {
     const SpeedRow unit = machine_unit(3);

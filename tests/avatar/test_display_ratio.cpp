@@ -7,6 +7,7 @@
 #include "tests/avatar/test_tissues.h"
 
 using namespace palpa;
+using namespace palpa::avatar;
 using namespace palpa::test;
 
 namespace {

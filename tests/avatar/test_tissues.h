@@ -30,12 +30,12 @@ auto rise_of(Force force_N) {
     };
 }
 
-inline Touch touch_at(double t_s, double x_m, double y_m = 0.0) { return {t_s, {x_m, y_m}, 1.0, true}; }
+inline avatar::Touch touch_at(double t_s, double x_m, double y_m = 0.0) { return {t_s, {x_m, y_m}, 1.0, true}; }
 
 // Pen down at x = -15 mm, along +x at 30 mm/s with a sample every 1/rate and one exactly at `to_m`.
-inline std::vector<Touch> stroke(double rate_Hz, double to_m, double speed_m_per_s = kSpeed_m_per_s) {
+inline std::vector<avatar::Touch> stroke(double rate_Hz, double to_m, double speed_m_per_s = kSpeed_m_per_s) {
     const double from_m = -15e-3;
-    std::vector<Touch> out;
+    std::vector<avatar::Touch> out;
     const double end_s = (to_m - from_m) / speed_m_per_s;
     for (int i = 0; i / rate_Hz < end_s; ++i) {
         out.push_back(touch_at(i / rate_Hz, from_m + speed_m_per_s * i / rate_Hz));

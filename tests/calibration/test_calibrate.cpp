@@ -8,6 +8,8 @@
 #include "tests/error_message.h"
 
 using namespace palpa;
+using namespace palpa::files;
+using namespace palpa::calibration;
 using namespace palpa::test;
 
 namespace {

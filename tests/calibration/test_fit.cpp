@@ -7,6 +7,7 @@
 #include <vector>
 
 using namespace palpa;
+using namespace palpa::calibration;
 
 namespace {
 

@@ -9,6 +9,8 @@
 #include "tests/temporary_folder.h"
 
 using namespace palpa;
+using namespace palpa::files;
+using namespace palpa::calibration;
 using namespace palpa::test;
 
 namespace {

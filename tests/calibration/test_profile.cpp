@@ -7,6 +7,8 @@
 #include "calibration/profile_file.h"
 
 using namespace palpa;
+using namespace palpa::platform;
+using namespace palpa::calibration;
 
 namespace {
 

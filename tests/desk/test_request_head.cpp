@@ -5,6 +5,8 @@
 #include "study/random.h"
 
 using namespace palpa;
+using namespace palpa::study;
+using namespace palpa::desk;
 
 TEST_CASE("serve head: what the library gets, and what it never sees") {
     const auto head = check_head("PUT /api/logs/x HTTP/1.1\r\nHost: h\r\nContent-Length:  12 \r\nRange: bytes=0-1,0-1\r\nACCEPT-ENCODING: gzip\r\nX-A:b\r\n\r\n");

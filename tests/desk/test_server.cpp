@@ -7,6 +7,7 @@
 #include <thread>
 
 using namespace palpa;
+using namespace palpa::desk;
 
 namespace {
 

@@ -10,6 +10,8 @@
 #include "tests/temporary_folder.h"
 
 using namespace palpa;
+using namespace palpa::files;
+using namespace palpa::desk;
 using namespace palpa::test;
 
 namespace {

@@ -13,6 +13,7 @@
 #include "devices/spsc_ring.h"
 
 using namespace palpa;
+using namespace palpa::devices;
 
 TEST_CASE("Net F/T: frames are byte for byte as documented") {
     const auto request = encode_rdt_request(RdtCommand::stream, 0);

@@ -15,6 +15,7 @@
 #include "tests/temporary_folder.h"
 
 using namespace palpa;
+using namespace palpa::devices;
 using namespace palpa::test;
 
 namespace {

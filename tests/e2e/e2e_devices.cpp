@@ -13,6 +13,7 @@
 #include "tests/e2e/run_app.h"
 
 using namespace palpa;
+using namespace palpa::files;
 using namespace palpa::test;
 
 namespace {

@@ -21,6 +21,8 @@
 #include <X11/Xutil.h>
 
 using namespace palpa;
+using namespace palpa::files;
+using namespace palpa::stiffnessmaps;
 using namespace palpa::test;
 
 namespace {

@@ -15,6 +15,8 @@
 #include "tests/e2e/run_app.h"
 
 using namespace palpa;
+using namespace palpa::files;
+using namespace palpa::devices;
 using namespace palpa::test;
 
 namespace {

@@ -13,6 +13,8 @@
 #include "tests/error_message.h"
 
 using namespace palpa;
+using namespace palpa::files;
+using namespace palpa::study;
 using namespace palpa::test;
 
 namespace {

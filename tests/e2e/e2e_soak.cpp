@@ -13,6 +13,8 @@
 #include "tests/e2e/run_app.h"
 
 using namespace palpa;
+using namespace palpa::files;
+using namespace palpa::platform;
 using namespace palpa::test;
 
 namespace {

@@ -14,6 +14,9 @@
 #include "tests/e2e/run_app.h"
 
 using namespace palpa;
+using namespace palpa::files;
+using namespace palpa::scene;
+using namespace palpa::study;
 using namespace palpa::test;
 
 namespace {
@@ -64,7 +67,7 @@ void write_protocol(const TemporaryFolder& folder) {
         {"id": "hand", "modality": "hand", "nodules": ["A"]}]})");
 }
 
-std::string study(const TemporaryFolder& folder, const std::string& rest) {
+std::string study_arguments(const TemporaryFolder& folder, const std::string& rest) {
     return "study run " + (folder / "p.json").string() + " --log " + (folder / "log").string() + " --participant 07 --json " + rest;
 }
 
@@ -109,7 +112,7 @@ TEST_CASE("study: a person goes through it by pen and keys, and the menu stays c
     script.key(kEnter);  // keep: A missed
     script.wait(0.5);
     const std::string seconds = std::to_string(script.close() + 5.0);
-    const std::string arguments = study(folder, "--quit-after-s " + seconds + " --screenshot " + (folder / "p.png").string());
+    const std::string arguments = study_arguments(folder, "--quit-after-s " + seconds + " --screenshot " + (folder / "p.png").string());
     REQUIRE(run_program(folder, arguments, folder / "log/sub-07/now.json", [&] { CHECK(play_script(folder) == 0); }) == 0);
     const Json result = read_json(folder / "out.json");
     CHECK(result["finished"] == 2);
@@ -162,9 +165,9 @@ TEST_CASE("killed: the interrupted trial comes again, and its samples up to the 
         const double now_s = std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
         at_kill = text.substr(last, text.find('\t', last) - last) + " " + std::to_string(now_s);
     });
-    CHECK(run_program(folder, study(folder, "--quit-after-s 60"), folder / "log/sub-07/now.json", [] {}) != 0);
+    CHECK(run_program(folder, study_arguments(folder, "--quit-after-s 60"), folder / "log/sub-07/now.json", [] {}) != 0);
     killer.join();
-    const std::string arguments = study(folder, "--quit-after-s 14");
+    const std::string arguments = study_arguments(folder, "--quit-after-s 14");
     REQUIRE(run_program(folder, arguments, folder / "log/sub-07/now.json", [] {}) == 0);
     hand.join();
     CAPTURE(at_kill);
@@ -212,7 +215,7 @@ TEST_CASE("missing: a pen's trial does not begin before there is a pen") {
     script.key(kEnter);
     script.wait(1.0);
     script.key(kF);
-    const std::string arguments = study(folder, "--quit-after-s " + std::to_string(script.close() + 5.0));
+    const std::string arguments = study_arguments(folder, "--quit-after-s " + std::to_string(script.close() + 5.0));
     const auto first = folder / "log/sub-07/beh/sub-07_task-palpation_run-01_events.tsv";
     std::thread hand([&] {
         CHECK(wait_for([&] { return step_now(folder) == "device"; }));
@@ -238,7 +241,7 @@ TEST_CASE("left: a trial that its pen leaves is interrupted with its marks, neve
     keys.key(kEnter);  // begin anew
     keys.wait(1.0);
     keys.key(kF);
-    const std::string arguments = study(folder, "--quit-after-s " + std::to_string(keys.close() + 5.0));
+    const std::string arguments = study_arguments(folder, "--quit-after-s " + std::to_string(keys.close() + 5.0));
     Script pen(folder / "pen.tsv");
     pen.wait(0.2);
     pen.stroke(0.5, true);

@@ -14,6 +14,9 @@
 #include "tests/e2e/run_app.h"
 
 using namespace palpa;
+using namespace palpa::files;
+using namespace palpa::scene;
+using namespace palpa::app;
 using namespace palpa::test;
 
 namespace {

@@ -43,7 +43,7 @@ inline int run_program(const TemporaryFolder& folder, const std::string& argumen
     meanwhile();
     app.join();
     const char* keep = ::getenv("PALPA_KEEP_PICTURE");
-    if (keep != nullptr && std::filesystem::exists(folder / "p.png")) write_text_atomically(keep, read_text(folder / "p.png"));
+    if (keep != nullptr && std::filesystem::exists(folder / "p.png")) files::write_text_atomically(keep, files::read_text(folder / "p.png"));
     return status;
 }
 

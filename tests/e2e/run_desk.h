@@ -62,7 +62,7 @@ class DeskProcess {
             end(SIGKILL);
             throw std::runtime_error("palpa serve did not start");
         }
-        const Json first = events().front();
+        const files::Json first = events().front();
         port = first["port"].get<int>();
         code = first.value("code", "");
     }
@@ -82,23 +82,23 @@ class DeskProcess {
     }
 
     // What it has said so far.
-    std::vector<Json> events() const {
+    std::vector<files::Json> events() const {
         const std::lock_guard lock(mutex_);
         return events_;
     }
     int count(const std::string& event) const {
         int n = 0;
-        for (const Json& one : events()) n += one["event"] == event ? 1 : 0;
+        for (const files::Json& one : events()) n += one["event"] == event ? 1 : 0;
         return n;
     }
 
     // A figure of /proc/PID/status in MB: VmHWM, the most memory that was ever resident.
     double memory_MB(const std::string& figure) const {
-        const std::string text = read_text("/proc/" + std::to_string(pid_) + "/status");
+        const std::string text = files::read_text("/proc/" + std::to_string(pid_) + "/status");
         return std::atof(text.c_str() + text.find(figure) + figure.size() + 1) / 1024.0;
     }
     int threads() const {
-        const std::string text = read_text("/proc/" + std::to_string(pid_) + "/status");
+        const std::string text = files::read_text("/proc/" + std::to_string(pid_) + "/status");
         return std::atoi(text.c_str() + text.find("Threads:") + 8);
     }
 
@@ -113,7 +113,7 @@ class DeskProcess {
             text.append(buffer, static_cast<std::size_t>(n));
             for (auto end = text.find('\n'); end != std::string::npos; end = text.find('\n')) {
                 const std::lock_guard lock(mutex_);
-                events_.push_back(Json::parse(text.substr(0, end)));
+                events_.push_back(files::Json::parse(text.substr(0, end)));
                 text.erase(0, end + 1);
             }
         }
@@ -125,7 +125,7 @@ class DeskProcess {
     int status_ = -1;
     std::thread reader_;
     mutable std::mutex mutex_;
-    std::vector<Json> events_;
+    std::vector<files::Json> events_;
     std::atomic<bool> closed_ = false;
 };
 
@@ -147,7 +147,7 @@ inline httplib::Result pair_with(const std::string& code, httplib::SSLClient& cl
 // "" if the desk refuses.
 inline std::string token_of(const std::string& code, httplib::SSLClient& client) {
     const auto result = pair_with(code, client);
-    return result && result->status == 200 ? Json::parse(result->body)["token"].get<std::string>() : "";
+    return result && result->status == 200 ? files::Json::parse(result->body)["token"].get<std::string>() : "";
 }
 
 inline httplib::Headers upload_headers(const std::string& token, const std::string& sha256) {
@@ -155,7 +155,7 @@ inline httplib::Headers upload_headers(const std::string& token, const std::stri
 }
 
 inline httplib::Result upload(const std::string& label, const std::string& bytes, const std::string& token, httplib::SSLClient& client) {
-    return client.Put("/api/logs/" + label, upload_headers(token, sha256_hex(bytes)), bytes, "application/json");
+    return client.Put("/api/logs/" + label, upload_headers(token, files::sha256_hex(bytes)), bytes, "application/json");
 }
 
 // A bare socket, for what no decent client says. `from`: its own address, 127.0.0.x.

@@ -14,15 +14,15 @@ inline constexpr bool kSlow = true;  // instrumented: the largest meshes are lef
 inline constexpr bool kSlow = false;
 #endif
 
-inline FemCase case_of(const std::string& text, const std::filesystem::path& folder = ".") {
-    return parse_case(parse_json(text, "c.json"), "c.json", folder);
+inline fem::FemCase case_of(const std::string& text, const std::filesystem::path& folder = ".") {
+    return fem::parse_case(files::parse_json(text, "c.json"), "c.json", folder);
 }
 
-inline FemResult solved(const FemCase& model) {
-    return solve_case(model, [](const char*, int, int) {});
+inline fem::FemResult solved(const fem::FemCase& model) {
+    return fem::solve_case(model, [](const char*, int, int) {});
 }
 
-inline FemResult solved(const std::string& text, const std::filesystem::path& folder = ".") {
+inline fem::FemResult solved(const std::string& text, const std::filesystem::path& folder = ".") {
     return solved(case_of(text, folder));
 }
 
@@ -36,7 +36,7 @@ inline std::string case_text(const std::string& mesh, const std::string& element
 }
 
 inline std::string gel(double young_Pa, double poisson) {
-    return "{\"gel\": {\"young_Pa\": " + number_text(young_Pa) + ", \"poisson\": " + number_text(poisson) +
+    return "{\"gel\": {\"young_Pa\": " + files::number_text(young_Pa) + ", \"poisson\": " + files::number_text(poisson) +
            "}}";
 }
 
@@ -45,9 +45,9 @@ inline const std::string kSlab =
     R"({"box": {"size_mm": [100, 100, 50], "elements": [12, 12, 7], "grading": {"centre_mm": [50, 50], "finest_mm": 3}}})";
 
 inline std::string press_at(double x_mm, double y_mm, double diameter_mm, double force_N = 0.025) {
-    return R"([{"parabolic_pressure": {"face": "zmax", "centre_mm": [)" + number_text(x_mm) + ", " +
-           number_text(y_mm) + R"(], "diameter_mm": )" + number_text(diameter_mm) + R"(, "force_N": )" +
-           number_text(force_N) + "}}]";
+    return R"([{"parabolic_pressure": {"face": "zmax", "centre_mm": [)" + files::number_text(x_mm) + ", " +
+           files::number_text(y_mm) + R"(], "diameter_mm": )" + files::number_text(diameter_mm) + R"(, "force_N": )" +
+           files::number_text(force_N) + "}}]";
 }
 
 }  // namespace palpa::test

@@ -14,6 +14,9 @@
 #include "tests/temporary_folder.h"
 
 using namespace palpa;
+using namespace palpa::files;
+using namespace palpa::mechanics;
+using namespace palpa::fem;
 using namespace palpa::test;
 
 namespace {

@@ -5,6 +5,7 @@
 #include "tests/error_message.h"
 
 using namespace palpa;
+using namespace palpa::fem;
 using namespace palpa::test;
 
 namespace {

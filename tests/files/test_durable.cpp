@@ -6,6 +6,7 @@
 #include "tests/temporary_folder.h"
 
 using namespace palpa;
+using namespace palpa::files;
 using namespace palpa::test;
 
 namespace fs = std::filesystem;

@@ -9,6 +9,7 @@
 #include "tests/temporary_folder.h"
 
 using namespace palpa;
+using namespace palpa::files;
 using namespace palpa::test;
 
 TEST_CASE("mat: three-dimensional arrays and rows come back with every value at its place") {

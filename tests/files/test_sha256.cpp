@@ -3,6 +3,7 @@
 #include <doctest/doctest.h>
 
 using namespace palpa;
+using namespace palpa::files;
 
 TEST_CASE("sha256: the standard's examples, and lengths around a block") {
     CHECK(sha256_hex("") == "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");

@@ -8,6 +8,7 @@
 #include "tests/error_message.h"
 
 using namespace palpa;
+using namespace palpa::files;
 using namespace palpa::test;
 
 TEST_CASE("table: rows, missing values, CRLF, byte order mark, blank lines, no newline at the end") {

@@ -50,7 +50,7 @@ template <class Read>
 int read_or_refuse(Read&& read) {
     try {
         read();
-    } catch (const InputError& error) {
+    } catch (const files::InputError& error) {
         check_message(error.what());
     }
     return 0;

@@ -4,6 +4,8 @@
 #include "tests/fuzz/fuzz.h"
 
 using namespace palpa;
+using namespace palpa::files;
+using namespace palpa::fem;
 
 namespace {
 

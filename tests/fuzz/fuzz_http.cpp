@@ -5,6 +5,7 @@
 #include "tests/fuzz/fuzz.h"
 
 using namespace palpa;
+using namespace palpa::desk;
 
 namespace {
 

@@ -7,6 +7,7 @@
 #include "tests/fuzz/fuzz.h"
 
 using namespace palpa;
+using namespace palpa::study;
 
 namespace {
 

@@ -6,6 +6,7 @@
 #include "tests/fuzz/fuzz.h"
 
 using namespace palpa;
+using namespace palpa::stiffnessmaps;
 
 namespace {
 

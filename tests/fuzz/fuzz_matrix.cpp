@@ -4,6 +4,8 @@
 #include "tests/fuzz/fuzz.h"
 
 using namespace palpa;
+using namespace palpa::files;
+using namespace palpa::stiffnessmaps;
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     return fuzz::read_or_refuse([&] {

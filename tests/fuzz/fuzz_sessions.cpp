@@ -4,6 +4,7 @@
 #include "tests/fuzz/fuzz.h"
 
 using namespace palpa;
+using namespace palpa::desk;
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     static fuzz::MemoryFile file("sessions");

@@ -4,6 +4,7 @@
 #include "tests/fuzz/fuzz.h"
 
 using namespace palpa;
+using namespace palpa::platform;
 
 namespace {
 

@@ -38,7 +38,7 @@ TEST_CASE("fuzz: every target takes or refuses all of its corpus") {
         REQUIRE(fs::is_directory(corpus / target.name));
         for (const auto& entry : fs::directory_iterator(corpus / target.name)) {
             CAPTURE(entry.path().filename().string());
-            const std::string bytes = palpa::read_text(entry.path());
+            const std::string bytes = palpa::files::read_text(entry.path());
             const auto* data = reinterpret_cast<const std::uint8_t*>(bytes.data());
             CHECK_NOTHROW(target.run(data, bytes.size()));
             // every reader must bear an end anywhere

@@ -10,6 +10,7 @@
 #include "tests/platform/e2e_scripts.h"
 
 using namespace palpa;
+using namespace palpa::platform;
 using namespace palpa::xorg;
 
 TEST_CASE("keyboard: arrows, Space and Page Up press; keys that a panel takes do not; losing the focus cancels") {
@@ -62,7 +63,7 @@ TEST_CASE("keyboard: arrows, Space and Page Up press; keys that a panel takes do
     std::vector<Sample> downs, ups;
     int early_hovers = 0;
     for (const Sample& sample : of_tool(Tool::keyboard, samples)) {
-        CHECK(sample.pointer_id == palpa::kKeyboardPointerId);
+        CHECK(sample.pointer_id == palpa::platform::kKeyboardPointerId);
         if (sample.phase == Phase::down) downs.push_back(sample);
         if (sample.phase == Phase::up) ups.push_back(sample);
         early_hovers += sample.phase == Phase::hover && downs.empty() ? 1 : 0;
@@ -74,8 +75,8 @@ TEST_CASE("keyboard: arrows, Space and Page Up press; keys that a panel takes do
     CHECK(right_px > 100.0);
     CHECK(right_px < 160.0);
     CHECK(downs[0].y_px == 350.0);
-    CHECK(ups[0].y_px - 350.0 > 0.8 * 0.5 * 240.0 * palpa::kSlowShare);
-    CHECK(ups[0].y_px - 350.0 < 1.5 * 0.5 * 240.0 * palpa::kSlowShare);
+    CHECK(ups[0].y_px - 350.0 > 0.8 * 0.5 * 240.0 * palpa::platform::kSlowShare);
+    CHECK(ups[0].y_px - 350.0 < 1.5 * 0.5 * 240.0 * palpa::platform::kSlowShare);
     CHECK(downs[0].pressure == 0.0);
     double hardest = 0.0;
     for (const Sample& sample : samples) {

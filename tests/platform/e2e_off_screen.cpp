@@ -10,11 +10,11 @@
 
 #include "platform/window.h"
 
-using palpa::Phase;
-using palpa::Sample;
-using palpa::Window;
-using palpa::WindowEvent;
-using palpa::WindowOptions;
+using palpa::platform::Phase;
+using palpa::platform::Sample;
+using palpa::platform::Window;
+using palpa::platform::WindowEvent;
+using palpa::platform::WindowOptions;
 
 namespace {
 

@@ -12,6 +12,7 @@
 #include "tests/platform/e2e_scripts.h"
 
 using namespace palpa;
+using namespace palpa::platform;
 using namespace palpa::xorg;
 
 TEST_CASE("mouse: devices that come and go are noticed") {
@@ -54,7 +55,7 @@ TEST_CASE("plugging: a pen that goes and comes again costs the fingers no sample
     Window window(small_window());
     const auto pens = [&] {
         int count = 0;
-        for (const palpa::PointerDevice& device : window.devices()) count += device.tool == Tool::pen ? 1 : 0;
+        for (const palpa::platform::PointerDevice& device : window.devices()) count += device.tool == Tool::pen ? 1 : 0;
         return count;
     };
     std::vector<Row> rows;
@@ -86,7 +87,7 @@ TEST_CASE("plugging: a pen that goes and comes again costs the fingers no sample
     const double start_s = window.now_s();
     while (window.now_s() - start_s < 0.3) window.poll(0.05, samples);
     CHECK(pens() == 1);
-    for (const palpa::PointerDevice& device : window.devices()) {
+    for (const palpa::platform::PointerDevice& device : window.devices()) {
         CAPTURE(device.name);
         if (device.tool == Tool::pen) CHECK(device.levels == 1001);
         if (device.tool == Tool::finger) CHECK(device.levels == 2048);

@@ -27,8 +27,8 @@ struct Row {
     double pressure = 0.0;
 };
 
-inline WindowOptions small_window() {
-    WindowOptions options;
+inline platform::WindowOptions small_window() {
+    platform::WindowOptions options;
     options.width_px = 1000;
     options.height_px = 700;
     options.mouse_hold_s = 1.0;
@@ -48,8 +48,8 @@ inline std::string write_script(const std::vector<Row>& rows) {
 }
 
 // Polls like an application until the script is over and nothing has come for 0.3 s, or has not stopped for 1 s.
-inline std::vector<Sample> play(const std::vector<Row>& rows, Window& window) {
-    std::vector<Sample> samples;
+inline std::vector<platform::Sample> play(const std::vector<Row>& rows, platform::Window& window) {
+    std::vector<platform::Sample> samples;
     for (int i = 0; i < 20; ++i) window.poll(0.01, samples);  // what appearing brings with it
     samples.clear();
 
@@ -73,18 +73,18 @@ inline std::vector<Sample> play(const std::vector<Row>& rows, Window& window) {
     return samples;
 }
 
-inline std::vector<Sample> of_tool(Tool tool, const std::vector<Sample>& samples) {
-    std::vector<Sample> out;
-    for (const Sample& sample : samples) {
+inline std::vector<platform::Sample> of_tool(platform::Tool tool, const std::vector<platform::Sample>& samples) {
+    std::vector<platform::Sample> out;
+    for (const platform::Sample& sample : samples) {
         if (sample.tool == tool) out.push_back(sample);
     }
     return out;
 }
 
-inline void check_in_order(const std::vector<Sample>& samples) {
+inline void check_in_order(const std::vector<platform::Sample>& samples) {
     double host_s = 0.0, device_s = 0.0;
     int backwards = 0;
-    for (const Sample& sample : samples) {
+    for (const platform::Sample& sample : samples) {
         backwards += sample.t_host_s < host_s ? 1 : 0;
         host_s = sample.t_host_s;
         if (std::isnan(sample.t_device_s)) continue;
@@ -95,14 +95,14 @@ inline void check_in_order(const std::vector<Sample>& samples) {
 }
 
 // Each sample against the row that made it: phase, place to 0.1 px, pressure to half of 1/1000.
-inline void check_against(const std::vector<Row>& rows, const std::vector<Sample>& samples, Window& window) {
+inline void check_against(const std::vector<Row>& rows, const std::vector<platform::Sample>& samples, platform::Window& window) {
     int origin_x = 0, origin_y = 0;
     SDL_GetWindowPosition(window.sdl(), &origin_x, &origin_y);
     CHECK(origin_x > 0);
     REQUIRE(samples.size() == rows.size());
     for (std::size_t i = 0; i < rows.size(); ++i) {
         CAPTURE(i);
-        REQUIRE(name_of(samples[i].phase) == rows[i].phase);
+        REQUIRE(platform::name_of(samples[i].phase) == rows[i].phase);
         REQUIRE(std::abs(samples[i].x_px - (rows[i].x_px - origin_x)) < 0.1);
         REQUIRE(std::abs(samples[i].y_px - (rows[i].y_px - origin_y)) < 0.1);
         REQUIRE(std::abs(samples[i].pressure - rows[i].pressure) < 0.5e-3);

@@ -11,6 +11,7 @@
 #include "tests/platform/e2e_scripts.h"
 
 using namespace palpa;
+using namespace palpa::platform;
 using namespace palpa::xorg;
 
 namespace {
@@ -77,7 +78,7 @@ TEST_CASE("pen: 3 s at 1000 Hz and two fingers arrive complete") {
 TEST_CASE("pen: devices are listed with their range") {
     Window window(small_window());
     int pens = 0, touches = 0, mice = 0;
-    for (const palpa::PointerDevice& device : window.devices()) {
+    for (const palpa::platform::PointerDevice& device : window.devices()) {
         CAPTURE(device.name);
         pens += device.tool == Tool::pen && device.has_pressure && device.pressure_max == 1000.0 ? 1 : 0;
         touches +=
@@ -182,7 +183,7 @@ TEST_CASE("mouse: every motion, pressure by holding and by wheel") {
     // one per grid point between each down and its up, as they arrived
     double held_s = 0.0;
     for (std::size_t i = 0; i < 2; ++i) held_s += ups[i].t_host_s - downs[i].t_host_s;
-    CHECK(std::abs(static_cast<double>(held.size()) - held_s * palpa::kHoldGrid_Hz) <= 2.0);
+    CHECK(std::abs(static_cast<double>(held.size()) - held_s * palpa::platform::kHoldGrid_Hz) <= 2.0);
     CHECK(downs[0].pressure == 0.0);
     const double by_time = (moves[99].t_host_s - downs[0].t_host_s) / 1.0;
     CHECK(moves[99].pressure == doctest::Approx(by_time).epsilon(1e-9));

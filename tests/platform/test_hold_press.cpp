@@ -9,6 +9,7 @@
 #include "platform/held_pressure.h"
 
 using namespace palpa;
+using namespace palpa::platform;
 
 namespace {
 

@@ -6,14 +6,14 @@
 #include <initializer_list>
 #include <vector>
 
-using palpa::Keyboard;
-using palpa::Phase;
-using palpa::PointerKey;
-using palpa::Sample;
+using palpa::platform::Keyboard;
+using palpa::platform::Phase;
+using palpa::platform::PointerKey;
+using palpa::platform::Sample;
 
 namespace {
 
-constexpr double kTick_s = 1.0 / palpa::kHoldGrid_Hz;
+constexpr double kTick_s = 1.0 / palpa::platform::kHoldGrid_Hz;
 
 Keyboard keyboard_on(double speed_px_per_s = 120.0) {
     Keyboard keyboard;
@@ -76,8 +76,8 @@ TEST_CASE("keyboard: an arrow moves the cursor on the grid, hovering, and says w
     }
     for (const Sample& sample : out) {
         CHECK(sample.phase == Phase::hover);
-        CHECK(sample.tool == palpa::Tool::keyboard);
-        CHECK(sample.pointer_id == palpa::kKeyboardPointerId);
+        CHECK(sample.tool == palpa::platform::Tool::keyboard);
+        CHECK(sample.pointer_id == palpa::platform::kKeyboardPointerId);
         CHECK(std::isnan(sample.t_device_s));
         CHECK(sample.pressure == 0.0);
         CHECK(sample.y_px == 200.0);
@@ -96,7 +96,7 @@ TEST_CASE("keyboard: two arrows are as fast as one, Shift is slower, opposite ar
     };
     const double diagonal = 120.0 / std::sqrt(2.0);
     for (const Case& c : {Case{{PointerKey::right, PointerKey::up}, false, diagonal, -diagonal},
-                          Case{{PointerKey::down}, true, 0.0, 120.0 * palpa::kSlowShare},
+                          Case{{PointerKey::down}, true, 0.0, 120.0 * palpa::platform::kSlowShare},
                           Case{{PointerKey::left, PointerKey::right}, false, 0.0, 0.0}}) {
         Keyboard keyboard = keyboard_on();
         std::vector<Sample> out;
@@ -112,7 +112,7 @@ TEST_CASE("keyboard: two arrows are as fast as one, Shift is slower, opposite ar
     hold_keys(1.5, keyboard, out);
     set_slow(1.5, true, keyboard);  // in the middle of the way, from there on
     hold_keys(2.0, keyboard, out);
-    CHECK(keyboard.x_px == doctest::Approx(300.0 + 60.0 + 60.0 * palpa::kSlowShare).epsilon(1e-9));
+    CHECK(keyboard.x_px == doctest::Approx(300.0 + 60.0 + 60.0 * palpa::platform::kSlowShare).epsilon(1e-9));
 }
 
 TEST_CASE("keyboard: a held press key presses harder, repeats count once, the cursor may move meanwhile") {
@@ -144,10 +144,10 @@ TEST_CASE("keyboard: the level keys work as a wheel does") {
     for (int i = 0; i < 4; ++i) down(1.0, PointerKey::harder, keyboard, out);
     CHECK(out.empty());
     down(2.0, PointerKey::press, keyboard, out);
-    CHECK(out.back().pressure == doctest::Approx(4 * palpa::kLevelStep));
+    CHECK(out.back().pressure == doctest::Approx(4 * palpa::platform::kLevelStep));
     down(2.5, PointerKey::softer, keyboard, out);
     CHECK(out.back().phase == Phase::move);
-    CHECK(out.back().pressure == doctest::Approx(3 * palpa::kLevelStep));
+    CHECK(out.back().pressure == doctest::Approx(3 * palpa::platform::kLevelStep));
     CHECK(out.back().t_host_s == 2.5);
 }
 

@@ -2,10 +2,10 @@
 
 #include "platform/press.h"
 
-using palpa::Phase;
-using palpa::Presses;
-using palpa::PressOwner;
-using palpa::Sample;
+using palpa::platform::Phase;
+using palpa::platform::Presses;
+using palpa::platform::PressOwner;
+using palpa::platform::Sample;
 
 namespace {
 
@@ -27,7 +27,7 @@ std::vector<Phase> phases(const std::vector<Sample>& samples) {
 std::vector<Phase> admitted(const std::vector<Phase>& all, PressOwner owner) {
     Presses presses;
     std::vector<Sample> out;
-    for (const Phase phase : all) palpa::admit(at(phase), owner, presses, out);
+    for (const Phase phase : all) palpa::platform::admit(at(phase), owner, presses, out);
     CHECK(presses.held.empty());
     return phases(out);
 }
@@ -51,14 +51,14 @@ TEST_CASE("press: moves and ups without a down are dropped") {
 TEST_CASE("press: two fingers, one on a panel") {
     Presses presses;
     std::vector<Sample> out;
-    palpa::admit(at(Phase::down, 1), PressOwner::panel, presses, out);
-    palpa::admit(at(Phase::down, 2), PressOwner::tissue, presses, out);
-    CHECK_FALSE(palpa::presses_tissue(presses, 1));
-    CHECK(palpa::presses_tissue(presses, 2));
-    palpa::admit(at(Phase::move, 1), PressOwner::tissue, presses, out);
-    palpa::admit(at(Phase::move, 2), PressOwner::panel, presses, out);  // the down has decided
-    palpa::admit(at(Phase::up, 1), PressOwner::tissue, presses, out);
-    palpa::admit(at(Phase::up, 2), PressOwner::tissue, presses, out);
+    palpa::platform::admit(at(Phase::down, 1), PressOwner::panel, presses, out);
+    palpa::platform::admit(at(Phase::down, 2), PressOwner::tissue, presses, out);
+    CHECK_FALSE(palpa::platform::presses_tissue(presses, 1));
+    CHECK(palpa::platform::presses_tissue(presses, 2));
+    palpa::platform::admit(at(Phase::move, 1), PressOwner::tissue, presses, out);
+    palpa::platform::admit(at(Phase::move, 2), PressOwner::panel, presses, out);  // the down has decided
+    palpa::platform::admit(at(Phase::up, 1), PressOwner::tissue, presses, out);
+    palpa::platform::admit(at(Phase::up, 2), PressOwner::tissue, presses, out);
     CHECK(phases(out) == std::vector<Phase>{Phase::down, Phase::move, Phase::up});
     for (const Sample& sample : out) CHECK(sample.pointer_id == 2);
 }
@@ -66,12 +66,12 @@ TEST_CASE("press: two fingers, one on a panel") {
 TEST_CASE("press: cancelled, it stays dead until the next down") {
     Presses presses;
     std::vector<Sample> out;
-    palpa::admit(at(Phase::down), PressOwner::tissue, presses, out);
-    palpa::cancel_all(9.0, presses, out);
-    palpa::cancel_all(9.5, presses, out);
-    palpa::admit(at(Phase::move), PressOwner::tissue, presses, out);
-    palpa::admit(at(Phase::up), PressOwner::tissue, presses, out);
-    palpa::admit(at(Phase::down), PressOwner::tissue, presses, out);
+    palpa::platform::admit(at(Phase::down), PressOwner::tissue, presses, out);
+    palpa::platform::cancel_all(9.0, presses, out);
+    palpa::platform::cancel_all(9.5, presses, out);
+    palpa::platform::admit(at(Phase::move), PressOwner::tissue, presses, out);
+    palpa::platform::admit(at(Phase::up), PressOwner::tissue, presses, out);
+    palpa::platform::admit(at(Phase::down), PressOwner::tissue, presses, out);
     CHECK(phases(out) == std::vector<Phase>{Phase::down, Phase::cancel, Phase::down});
     CHECK(out[1].t_host_s == 9.0);
     CHECK(out[1].x_px == 50.0);
@@ -80,9 +80,9 @@ TEST_CASE("press: cancelled, it stays dead until the next down") {
 TEST_CASE("press: a lost up ends in a cancel") {
     Presses presses;
     std::vector<Sample> out;
-    palpa::admit(at(Phase::down), PressOwner::tissue, presses, out);
-    palpa::admit(at(Phase::down), PressOwner::tissue, presses, out);
-    palpa::admit(at(Phase::hover), PressOwner::tissue, presses, out);
+    palpa::platform::admit(at(Phase::down), PressOwner::tissue, presses, out);
+    palpa::platform::admit(at(Phase::down), PressOwner::tissue, presses, out);
+    palpa::platform::admit(at(Phase::hover), PressOwner::tissue, presses, out);
     CHECK(phases(out) ==
           std::vector<Phase>{Phase::down, Phase::cancel, Phase::down, Phase::cancel, Phase::hover});
 }
@@ -90,12 +90,12 @@ TEST_CASE("press: a lost up ends in a cancel") {
 TEST_CASE("press: a device that is gone cancels its own press only") {
     Presses presses;
     std::vector<Sample> out;
-    palpa::admit(at(Phase::down, 1), PressOwner::tissue, presses, out);
-    palpa::admit(at(Phase::down, 2), PressOwner::tissue, presses, out);
-    palpa::cancel_gone(3.0, 2, presses, out);
-    palpa::cancel_gone(3.0, 77, presses, out);
+    palpa::platform::admit(at(Phase::down, 1), PressOwner::tissue, presses, out);
+    palpa::platform::admit(at(Phase::down, 2), PressOwner::tissue, presses, out);
+    palpa::platform::cancel_gone(3.0, 2, presses, out);
+    palpa::platform::cancel_gone(3.0, 77, presses, out);
     REQUIRE(out.size() == 3);
     CHECK(out[2].phase == Phase::cancel);
     CHECK(out[2].pointer_id == 2);
-    CHECK(palpa::presses_tissue(presses, 1));
+    CHECK(palpa::platform::presses_tissue(presses, 1));
 }

@@ -9,6 +9,7 @@
 #include "tests/scene/allocations.h"
 
 using namespace palpa;
+using namespace palpa::platform;
 
 namespace {
 

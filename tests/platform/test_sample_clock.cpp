@@ -6,9 +6,9 @@
 namespace {
 
 std::vector<double> unwrapped(const std::vector<std::uint32_t>& readings_ms) {
-    palpa::UnwrapState state;
+    palpa::platform::UnwrapState state;
     std::vector<double> out;
-    for (const std::uint32_t now_ms : readings_ms) out.push_back(palpa::unwrap_ms(now_ms, state));
+    for (const std::uint32_t now_ms : readings_ms) out.push_back(palpa::platform::unwrap_ms(now_ms, state));
     return out;
 }
 

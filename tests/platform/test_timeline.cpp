@@ -6,6 +6,7 @@
 #include <random>
 
 using namespace palpa;
+using namespace palpa::platform;
 
 namespace {
 

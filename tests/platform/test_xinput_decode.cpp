@@ -3,14 +3,14 @@
 
 #include "platform/linux/xinput_decode.h"
 
-using palpa::Axis;
-using palpa::Phase;
-using palpa::Sample;
-using palpa::Tool;
-using palpa::XiDevice;
-using palpa::XiEvent;
-using palpa::XiKind;
-using palpa::XiState;
+using palpa::platform::Axis;
+using palpa::platform::Phase;
+using palpa::platform::Sample;
+using palpa::platform::Tool;
+using palpa::platform::XiDevice;
+using palpa::platform::XiEvent;
+using palpa::platform::XiKind;
+using palpa::platform::XiState;
 
 namespace {
 
@@ -78,16 +78,16 @@ struct Fake {
 };
 
 std::optional<Sample> decode(const Fake& fake, XiState& state) {
-    return palpa::decode(fake.event, 77.0, state);
+    return palpa::platform::decode(fake.event, 77.0, state);
 }
 
 }  // namespace
 
 TEST_CASE("xinput: what a device is") {
-    CHECK(palpa::tool_of_device(false, true) == Tool::pen);
-    CHECK(palpa::tool_of_device(true, false) == Tool::finger);
-    CHECK(palpa::tool_of_device(true, true) == Tool::finger);
-    CHECK(palpa::tool_of_device(false, false) == Tool::mouse);
+    CHECK(palpa::platform::tool_of_device(false, true) == Tool::pen);
+    CHECK(palpa::platform::tool_of_device(true, false) == Tool::finger);
+    CHECK(palpa::platform::tool_of_device(true, true) == Tool::finger);
+    CHECK(palpa::platform::tool_of_device(false, false) == Tool::mouse);
 }
 
 TEST_CASE("xinput: axes become px, pressure and degrees") {
@@ -100,7 +100,7 @@ TEST_CASE("xinput: axes become px, pressure and degrees") {
     REQUIRE(sample);
     CHECK(sample->tool == Tool::pen);
     CHECK(sample->phase == Phase::hover);
-    CHECK(sample->pointer_id == palpa::pen_pointer_id(kPen));
+    CHECK(sample->pointer_id == palpa::platform::pen_pointer_id(kPen));
     CHECK(sample->x_px == doctest::Approx(640.0 - 140.0));
     CHECK(sample->y_px == doctest::Approx(200.0 - 50.0));
     CHECK(sample->pressure_raw == 250.0);
@@ -264,9 +264,9 @@ TEST_CASE("xinput: pointers of an unplugged device are told") {
     Fake finger(XiKind::touch_begin, kMaster, kTouch, {{0, 1.0}, {1, 1.0}});
     finger.event.detail = 6;
     decode(finger, state);
-    CHECK(palpa::replace_devices(state.devices, state).empty());
-    const auto gone = palpa::replace_devices({touch_device()}, state);
-    CHECK(gone == std::vector<std::int64_t>{palpa::pen_pointer_id(kPen)});
-    CHECK(palpa::replace_devices({}, state) == std::vector<std::int64_t>{6});
+    CHECK(palpa::platform::replace_devices(state.devices, state).empty());
+    const auto gone = palpa::platform::replace_devices({touch_device()}, state);
+    CHECK(gone == std::vector<std::int64_t>{palpa::platform::pen_pointer_id(kPen)});
+    CHECK(palpa::platform::replace_devices({}, state) == std::vector<std::int64_t>{6});
     CHECK(state.touches.empty());
 }

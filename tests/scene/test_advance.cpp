@@ -7,6 +7,9 @@
 #include "tests/scene/allocations.h"
 
 using namespace palpa;
+using namespace palpa::platform;
+using namespace palpa::calibration;
+using namespace palpa::scene;
 using namespace palpa::test;
 
 namespace {

@@ -13,6 +13,10 @@
 #include "tests/temporary_folder.h"
 
 using namespace palpa;
+using namespace palpa::files;
+using namespace palpa::platform;
+using namespace palpa::avatar;
+using namespace palpa::scene;
 using namespace palpa::test;
 
 namespace {

@@ -5,6 +5,7 @@
 #include <Eigen/LU>
 
 using namespace palpa;
+using namespace palpa::scene;
 
 namespace {
 

@@ -3,6 +3,7 @@
 #include <doctest/doctest.h>
 
 using namespace palpa;
+using namespace palpa::scene;
 
 TEST_CASE("meter: quantiles are good to 3 %") {
     Meter meter;

@@ -6,6 +6,9 @@
 #include "tests/temporary_folder.h"
 
 using namespace palpa;
+using namespace palpa::files;
+using namespace palpa::stiffnessmaps;
+using namespace palpa::scene;
 using namespace palpa::test;
 
 namespace {

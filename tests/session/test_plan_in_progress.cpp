@@ -9,6 +9,10 @@
 #include "tests/temporary_folder.h"
 
 using namespace palpa;
+using namespace palpa::files;
+using namespace palpa::mechanics;
+using namespace palpa::scene;
+using namespace palpa::session;
 using namespace palpa::test;
 
 namespace {

@@ -9,6 +9,12 @@
 #include "tests/temporary_folder.h"
 
 using namespace palpa;
+using namespace palpa::files;
+using namespace palpa::platform;
+using namespace palpa::scene;
+using namespace palpa::study;
+using namespace palpa::session;
+using namespace palpa::app;
 using namespace palpa::test;
 
 namespace {

@@ -10,6 +10,13 @@
 #include "tests/temporary_folder.h"
 
 using namespace palpa;
+using namespace palpa::files;
+using namespace palpa::platform;
+using namespace palpa::stiffnessmaps;
+using namespace palpa::scene;
+using namespace palpa::study;
+using namespace palpa::session;
+using namespace palpa::app;
 using namespace palpa::test;
 
 namespace {

@@ -10,15 +10,15 @@
 
 namespace palpa::test {
 
-inline Map imported(const std::string& text, const ImportOptions& options = {},
-                    ImportReport* report = nullptr) {
+inline stiffnessmaps::Map imported(const std::string& text, const stiffnessmaps::ImportOptions& options = {},
+                    stiffnessmaps::ImportReport* report = nullptr) {
     const TemporaryFolder folder;
-    write_text_atomically(folder / "r.csv", text);
-    ImportReport unused;
-    return import_recording({folder / "r.csv"}, options, report != nullptr ? *report : unused);
+    files::write_text_atomically(folder / "r.csv", text);
+    stiffnessmaps::ImportReport unused;
+    return stiffnessmaps::import_recording({folder / "r.csv"}, options, report != nullptr ? *report : unused);
 }
 
-inline std::string refusal(const std::string& text, const ImportOptions& options = {}) {
+inline std::string refusal(const std::string& text, const stiffnessmaps::ImportOptions& options = {}) {
     return message_of([&] { imported(text, options); });
 }
 
@@ -28,8 +28,8 @@ inline std::filesystem::path recording(const std::string& name) {
     return std::filesystem::exists(file) ? file : std::filesystem::path();
 }
 
-inline const SourceChoice* choice_of(const Map& map, const std::string& key) {
-    for (const SourceChoice& choice : map.source.choices) {
+inline const stiffnessmaps::SourceChoice* choice_of(const stiffnessmaps::Map& map, const std::string& key) {
+    for (const stiffnessmaps::SourceChoice& choice : map.source.choices) {
         if (choice.key == key) return &choice;
     }
     return nullptr;

@@ -8,6 +8,8 @@
 #include "stiffnessmaps/map_file.h"
 
 using namespace palpa;
+using namespace palpa::files;
+using namespace palpa::stiffnessmaps;
 
 TEST_CASE("analytic: a thick layer is Hertz's half-space, a thin incompressible one has the printed coefficients") {
     const Elastic tissue{10e3, 0.5};

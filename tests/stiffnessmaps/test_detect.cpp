@@ -13,6 +13,7 @@
 #include "tests/stiffnessmaps/test_maps.h"
 
 using namespace palpa;
+using namespace palpa::stiffnessmaps;
 using namespace palpa::test;
 
 namespace {

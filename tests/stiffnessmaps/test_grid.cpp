@@ -7,6 +7,7 @@
 #include <random>
 
 using namespace palpa;
+using namespace palpa::stiffnessmaps;
 
 TEST_CASE("grid: isotonic regression is non-decreasing, keeps the sum, and is the closest such sequence") {
     std::vector<double> values{1, 3, 2, 4, 3, 3, 9};

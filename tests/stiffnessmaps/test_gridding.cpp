@@ -8,6 +8,7 @@
 #include "tests/stiffnessmaps/test_maps.h"
 
 using namespace palpa;
+using namespace palpa::stiffnessmaps;
 using namespace palpa::test;
 
 TEST_CASE("gridding: an axis is found with gaps in it, with jitter, and with a stray place beside it") {

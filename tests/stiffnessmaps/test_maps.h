@@ -9,13 +9,13 @@ namespace palpa::test {
 
 // force(x_m, y_m, depth_m) at every cell and depth.
 template <class Force>
-Map map_of(std::size_t n_x, std::size_t n_y, const std::vector<double>& depths_m, Force force) {
-    Map map;
+stiffnessmaps::Map map_of(std::size_t n_x, std::size_t n_y, const std::vector<double>& depths_m, Force force) {
+    stiffnessmaps::Map map;
     map.name = "test";
     map.n_x = n_x;
     map.n_y = n_y;
     map.depths_m = depths_m;
-    map.source.kind = SourceKind::simulated;
+    map.source.kind = stiffnessmaps::SourceKind::simulated;
     for (const double depth_m : depths_m) {
         for (std::size_t j = 0; j < n_y; ++j) {
             for (std::size_t i = 0; i < n_x; ++i) {

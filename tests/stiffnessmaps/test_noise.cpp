@@ -8,6 +8,7 @@
 #include "tests/stiffnessmaps/test_maps.h"
 
 using namespace palpa;
+using namespace palpa::stiffnessmaps;
 using namespace palpa::test;
 
 TEST_CASE("noise: white noise on a plane is estimated within 5 %, and smoothing by the rule quiets the avatar") {

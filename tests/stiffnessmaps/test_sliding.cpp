@@ -6,6 +6,8 @@
 #include "tests/stiffnessmaps/import_helpers.h"
 
 using namespace palpa;
+using namespace palpa::files;
+using namespace palpa::stiffnessmaps;
 using namespace palpa::test;
 
 namespace {

@@ -8,6 +8,7 @@
 #include "study/random.h"
 
 using namespace palpa;
+using namespace palpa::study;
 
 namespace {
 

@@ -6,6 +6,7 @@
 #include <numbers>
 
 using namespace palpa;
+using namespace palpa::study;
 
 TEST_CASE("coverage: the area of a press is that of its disc, and levels are thirds of the depth") {
     Coverage c = make_coverage(0.0, 0.0, 0.12, 0.12, 0.006);

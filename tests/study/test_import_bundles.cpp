@@ -14,6 +14,8 @@
 #include "tests/temporary_folder.h"
 
 using namespace palpa;
+using namespace palpa::files;
+using namespace palpa::study;
 using namespace palpa::test;
 
 namespace {
@@ -47,7 +49,7 @@ const std::string kHeader = "participant_id\tage\tsex\thandedness\tvision\tpalpa
 std::string people(const std::string& lines) { return kHeader + lines; }
 const std::string kAnna = "sub-01\t30\tf\tright\tn/a\tn/a\tn/a\ta\n";
 const std::string kBert = "sub-02\t31\tm\tleft\tn/a\tn/a\tn/a\ta\n";
-std::string study(const std::string& sha, const std::string& program) {
+std::string study_file(const std::string& sha, const std::string& program) {
     return R"({"protocol": "p", "version": "1", "sha256": ")" + sha + R"(", "simulated": false, "simulation_seed": 0, "program": ")" + program + "\"}";
 }
 
@@ -56,9 +58,9 @@ std::string study(const std::string& sha, const std::string& program) {
 TEST_CASE("import bundles: tablets' logs become one study; a second time nothing happens") {
     const TemporaryFolder folder;
     const auto a = write_bundle(folder / "a", {{run_file("01", "_events.tsv"), "e1\n"}, {run_file("01", "_samples.tsv"), "s1\n"},
-                                               {"participants.tsv", people(kAnna)}, {"study.json", study("aa", "tablet")}, {"protocol.json", "{}"}});
+                                               {"participants.tsv", people(kAnna)}, {"study.json", study_file("aa", "tablet")}, {"protocol.json", "{}"}});
     const auto b = write_bundle(folder / "b", {{run_file("02", "_events.tsv"), "e2\n"}, {"participants.tsv", people(kBert)},
-                                               {"study.json", study("aa", "another tablet")}, {"protocol.json", "{}"}});
+                                               {"study.json", study_file("aa", "another tablet")}, {"protocol.json", "{}"}});
     const BundleReport first = import_bundles({a, b}, folder / "study");
     CHECK(first.written.size() == 5);
     CHECK(first.already_there.empty());
@@ -68,7 +70,7 @@ TEST_CASE("import bundles: tablets' logs become one study; a second time nothing
     CHECK(made.at(run_file("01", "_samples.tsv")) == "s1\n");
     CHECK(made.at(run_file("02", "_events.tsv")) == "e2\n");
     CHECK(made.at("participants.tsv") == people(kAnna + kBert));
-    CHECK(made.at("study.json") == study("aa", "tablet"));
+    CHECK(made.at("study.json") == study_file("aa", "tablet"));
     CHECK(made.count("task-palpation_events.json") == 1);
     const BundleReport again = import_bundles({b, a}, folder / "study");
     CHECK(again.written.empty());
@@ -80,7 +82,7 @@ TEST_CASE("import bundles: tablets' logs become one study; a second time nothing
 TEST_CASE("import bundles: what does not fit is refused before anything is written") {
     const TemporaryFolder folder;
     const auto good = write_bundle(folder / "good", {{run_file("01", "_events.tsv"), "e1\n"}, {"participants.tsv", people(kAnna)},
-                                                     {"study.json", study("aa", "x")}});
+                                                     {"study.json", study_file("aa", "x")}});
     import_bundles({good}, folder / "study");
     const auto before = tree(folder / "study");
     const std::string fresh = run_file("09", "_events.tsv");
@@ -98,7 +100,7 @@ TEST_CASE("import bundles: what does not fit is refused before anything is writt
     refused({{"participants.tsv", people("../x\n")}}, "no participant");
     refused({{"participants.tsv", people("sub-03\tcut")}}, "no participant");
     refused({{"participants.tsv", people("sub-../x\t1\tf\tright\tn/a\tn/a\tn/a\ta\n")}}, "letters and digits");
-    refused({{"study.json", study("bb", "x")}}, "two studies never share a folder");
+    refused({{"study.json", study_file("bb", "x")}}, "two studies never share a folder");
     refused({{"study.json", "{}"}}, "study.json: protocol: found nothing");
     refused({{"../evil", "x"}}, "files[1].name");
     const auto twice = write_bundle(folder / "twice", {{fresh, "another fresh\n"}});
@@ -113,7 +115,7 @@ TEST_CASE("import bundles: what does not fit is refused before anything is writt
 TEST_CASE("import bundles: links are not followed") {
     const TemporaryFolder folder;
     fs::create_directories(folder / "elsewhere");
-    const auto bundle = write_bundle(folder / "b", {{run_file("01", "_events.tsv"), "e1\n"}, {"participants.tsv", people(kAnna)}, {"study.json", study("aa", "x")}});
+    const auto bundle = write_bundle(folder / "b", {{run_file("01", "_events.tsv"), "e1\n"}, {"participants.tsv", people(kAnna)}, {"study.json", study_file("aa", "x")}});
     const auto refused = [&] { return contains(message_of([&] { import_bundles({bundle}, folder / "study"); }), "a link in the way"); };
     fs::create_directories(folder / "study");
     fs::create_symlink(folder / "elsewhere", folder / "study" / "sub-01");
@@ -136,7 +138,7 @@ TEST_CASE("import bundles: links are not followed") {
 TEST_CASE("import bundles: logs of single runs and a study do not mix") {
     const TemporaryFolder folder;
     import_bundles({write_bundle(folder / "a", {{run_file("01", "_events.tsv"), "e1\n"}})}, folder / "logs");
-    const auto of_study = write_bundle(folder / "b", {{run_file("02", "_events.tsv"), "e2\n"}, {"study.json", study("aa", "x")}});
+    const auto of_study = write_bundle(folder / "b", {{run_file("02", "_events.tsv"), "e2\n"}, {"study.json", study_file("aa", "x")}});
     CHECK(contains(message_of([&] { import_bundles({of_study}, folder / "logs"); }), "which has no study.json"));
     CHECK_FALSE(fs::exists(folder / "logs" / "sub-02"));
 }
@@ -147,7 +149,7 @@ TEST_CASE("import bundles: answers grow from bundle to bundle, in any order; oth
     const std::string one = "condition\titem\tvalue\npen\teffort\t3\n";
     const std::string two = one + "hand\teffort\t5\n";
     const std::string three = two + "off\teffort\t1\n";
-    const auto bundle = [&](const char* file, const std::string& text) { return write_bundle(folder / file, {{name, text}, {"study.json", study("aa", "x")}}); };
+    const auto bundle = [&](const char* file, const std::string& text) { return write_bundle(folder / file, {{name, text}, {"study.json", study_file("aa", "x")}}); };
     const auto a = bundle("a", one), b = bundle("b", two), c = bundle("c", three);
     CHECK(import_bundles({b, a}, folder / "study").grown.empty());
     CHECK(read_text(folder / "study" / name) == two);
@@ -167,7 +169,7 @@ TEST_CASE("import bundles: answers grow from bundle to bundle, in any order; oth
 TEST_CASE("import bundles: single runs that a tablet took beside a study are passed over, and alone they are taken") {
     const TemporaryFolder folder;
     const auto single = write_bundle(folder / "s", {{run_file("tablet1", "_events.tsv"), "e\n"}, {run_file("tablet1", "_settings.json"), R"({"scene": "x"})"}});
-    const auto of_study = write_bundle(folder / "b", {{run_file("02", "_settings.json"), R"({"study": {}})"}, {"study.json", study("aa", "x")}});
+    const auto of_study = write_bundle(folder / "b", {{run_file("02", "_settings.json"), R"({"study": {}})"}, {"study.json", study_file("aa", "x")}});
     const BundleReport report = import_bundles({single, of_study}, folder / "study");
     CHECK(report.passed_over == std::vector<std::string>{single.string()});
     CHECK_FALSE(fs::exists(folder / "study" / "sub-tablet1"));
@@ -178,7 +180,7 @@ TEST_CASE("import bundles: single runs that a tablet took beside a study are pas
 
 TEST_CASE("import bundles: several people of one tablet in one file") {
     const TemporaryFolder folder;
-    const auto file = write_bundle(folder / "b", {{"participants.tsv", people(kAnna)}, {"participants.tsv", people(kBert)}, {"study.json", study("aa", "x")}});
+    const auto file = write_bundle(folder / "b", {{"participants.tsv", people(kAnna)}, {"participants.tsv", people(kBert)}, {"study.json", study_file("aa", "x")}});
     CHECK(import_bundles({file}, folder / "study").people_added == 2);
     CHECK(read_text(folder / "study" / "participants.tsv") == people(kAnna + kBert));
 }

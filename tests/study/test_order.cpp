@@ -7,6 +7,7 @@
 #include <set>
 
 using namespace palpa;
+using namespace palpa::study;
 
 namespace {
 

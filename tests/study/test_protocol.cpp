@@ -8,6 +8,8 @@
 #include "tests/temporary_folder.h"
 
 using namespace palpa;
+using namespace palpa::files;
+using namespace palpa::study;
 using namespace palpa::test;
 
 namespace {

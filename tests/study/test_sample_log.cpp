@@ -7,6 +7,8 @@
 #include "tests/temporary_folder.h"
 
 using namespace palpa;
+using namespace palpa::files;
+using namespace palpa::study;
 using namespace palpa::test;
 
 TEST_CASE("sample log: header, rows and explanation agree; missing is n/a") {

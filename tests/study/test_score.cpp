@@ -8,6 +8,7 @@
 #include <random>
 
 using namespace palpa;
+using namespace palpa::study;
 
 namespace {
 

@@ -6,6 +6,7 @@
 #include <cmath>
 
 using namespace palpa;
+using namespace palpa::study;
 
 namespace {
 

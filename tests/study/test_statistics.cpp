@@ -14,6 +14,8 @@
 #include "tests/study/python.h"
 
 using namespace palpa;
+using namespace palpa::files;
+using namespace palpa::study;
 using namespace palpa::test;
 
 namespace {

@@ -14,6 +14,11 @@
 #include "session/replay.h"
 
 using namespace palpa;
+using namespace palpa::platform;
+using namespace palpa::scene;
+using namespace palpa::study;
+using namespace palpa::session;
+using namespace palpa::app;
 
 namespace {
 

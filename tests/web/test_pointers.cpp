@@ -7,6 +7,7 @@
 #include <cmath>
 
 using namespace palpa;
+using namespace palpa::platform;
 
 namespace {
 

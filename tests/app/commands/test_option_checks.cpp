@@ -9,6 +9,8 @@
 #include "tests/error_message.h"
 
 using namespace palpa;
+using namespace palpa::files;
+using namespace palpa::app;
 using namespace palpa::test;
 
 namespace {

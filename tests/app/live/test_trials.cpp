@@ -10,6 +10,12 @@
 #include "scene/advance.h"
 
 using namespace palpa;
+using namespace palpa::platform;
+using namespace palpa::scene;
+using namespace palpa::render;
+using namespace palpa::study;
+using namespace palpa::session;
+using namespace palpa::app;
 
 namespace {
 
@@ -114,7 +120,8 @@ TEST_CASE("live: the tissue of a finished trial is changed while the keeper is b
     SUBCASE("for another one") { change_scene(desk.window, desk.gui, PALPA_SOURCE_DIR "/assets/scenes/delay.json", "", desk.app); }
     SUBCASE("turned") {
         const Mapping before = desk.app.session.scene.mapping;
-        turn_tissue(desk.window, desk.gui, desk.app);
+        turn_tissue(desk.window, desk.app);
+        begin_anew(desk.window, desk.gui, desk.app);
         const Mapping& now = desk.app.session.scene.mapping;
         CHECK((now.rotate_deg != before.rotate_deg || now.flip != before.flip));
         const View view = make_view(now, desk.app.session.plan.area, desk.app.session.state.screen);

@@ -5,6 +5,9 @@
 #include "app/screens/screens.h"
 
 using namespace palpa;
+using namespace palpa::platform;
+using namespace palpa::session;
+using namespace palpa::app;
 
 TEST_CASE("ask: everything that ends a trial waits for an answer, a mark of the same frame does not") {
     const auto wish = [](auto set) {

@@ -9,6 +9,8 @@
 #include "tests/scene/allocations.h"
 
 using namespace palpa;
+using namespace palpa::platform;
+using namespace palpa::app;
 
 namespace {
 

@@ -8,6 +8,12 @@
 #include "scene/advance.h"
 
 using namespace palpa;
+using namespace palpa::platform;
+using namespace palpa::stiffnessmaps;
+using namespace palpa::scene;
+using namespace palpa::render;
+using namespace palpa::session;
+using namespace palpa::app;
 
 namespace {
 

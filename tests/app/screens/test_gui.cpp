@@ -9,6 +9,8 @@
 #include <cstring>
 
 using namespace palpa;
+using namespace palpa::platform;
+using namespace palpa::app;
 
 namespace {
 

@@ -8,6 +8,7 @@
 #include <utility>
 
 using namespace palpa;
+using namespace palpa::app;
 
 TEST_CASE("layout: controls and tissue share the window without overlapping, whatever its size") {
     for (const bool left_handed : {false, true}) {

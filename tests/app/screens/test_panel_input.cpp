@@ -5,6 +5,8 @@
 #include "platform/window_event.h"
 
 using namespace palpa;
+using namespace palpa::platform;
+using namespace palpa::app;
 
 namespace {
 

@@ -7,6 +7,8 @@
 #include "tests/temporary_folder.h"
 
 using namespace palpa;
+using namespace palpa::files;
+using namespace palpa::app;
 using namespace palpa::test;
 
 TEST_CASE("settings: what is saved is read back") {

@@ -13,6 +13,8 @@
 #include "files/text.h"
 
 using namespace palpa;
+using namespace palpa::files;
+using namespace palpa::app;
 
 namespace {
 

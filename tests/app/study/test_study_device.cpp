@@ -3,6 +3,9 @@
 #include <doctest/doctest.h>
 
 using namespace palpa;
+using namespace palpa::platform;
+using namespace palpa::study;
+using namespace palpa::app;
 
 TEST_CASE("study device: a pen's trial needs a pen, a finger's a touch screen, the others nothing that is listed") {
     const PointerDevice pen{1, "Pen", Tool::pen};

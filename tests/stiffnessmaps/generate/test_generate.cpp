@@ -15,6 +15,8 @@
 #include "tests/temporary_folder.h"
 
 using namespace palpa;
+using namespace palpa::files;
+using namespace palpa::stiffnessmaps;
 using namespace palpa::test;
 
 namespace {
