@@ -26,9 +26,7 @@ namespace {
 class ProgressLine {
   public:
     explicit ProgressLine(double expected_s)
-        : expected_s_(expected_s),
-          on_(::isatty(STDERR_FILENO) == 1),
-          start_(std::chrono::steady_clock::now()) {}
+        : expected_s_(expected_s), on_(::isatty(STDERR_FILENO) == 1), start_(std::chrono::steady_clock::now()) {}
     ~ProgressLine() {
         if (on_) std::fputs("\r\033[K", stderr);
     }
@@ -38,8 +36,8 @@ class ProgressLine {
         if (!on_) return;
         const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start_;
         const double pace = done_s > 0.0 ? took.count() / done_s : 1.0;
-        std::fprintf(stderr, "\r\033[K%zu of %zu, about %.0f s left: %s", done, total,
-                     pace * (expected_s_ - done_s), what.c_str());
+        std::fprintf(stderr, "\r\033[K%zu of %zu, about %.0f s left: %s", done, total, pace * (expected_s_ - done_s),
+                     what.c_str());
         std::fflush(stderr);
     }
 
@@ -49,12 +47,8 @@ class ProgressLine {
     std::chrono::steady_clock::time_point start_;
 };
 
-std::string csv_cell(double value) {
-    return files::number_text(value);
-}
-std::string csv_cell(int value) {
-    return std::to_string(value);
-}
+std::string csv_cell(double value) { return files::number_text(value); }
+std::string csv_cell(int value) { return std::to_string(value); }
 std::string csv_cell(std::string value) {
     std::replace(value.begin(), value.end(), ',', ';');  // no quotes, so that gnuplot and awk read it too
     return value.empty() ? "n/a" : value;
@@ -107,9 +101,7 @@ std::string accuracy_csv(const std::vector<AccuracyRow>& rows) {
     out += '\n';
     for (const AccuracyRow& row : rows) {
         std::string line;
-        visit_fields(row, [&](const char*, const auto& value) {
-            line += (line.empty() ? "" : ",") + csv_cell(value);
-        });
+        visit_fields(row, [&](const char*, const auto& value) { line += (line.empty() ? "" : ",") + csv_cell(value); });
         out += line + '\n';
     }
     return out;
@@ -138,10 +130,8 @@ std::string accuracy_table(const std::vector<AccuracyRow>& rows) {
         for (const double value : {row.error_percent, row.worst_error_percent})
             out += padded(table_number(value), 10, true);
         out += padded(table_number(row.offline_s), 11, true);
-        for (const double value : {row.per_step_us, row.per_step_p99_us})
-            out += padded(table_number(value), 9, true);
-        out +=
-            padded(table_number(row.memory_MB), 8, true) + (row.note.empty() ? "" : "  " + row.note) + "\n";
+        for (const double value : {row.per_step_us, row.per_step_p99_us}) out += padded(table_number(value), 9, true);
+        out += padded(table_number(row.memory_MB), 8, true) + (row.note.empty() ? "" : "  " + row.note) + "\n";
     }
     return out;
 }
@@ -167,11 +157,11 @@ Machine this_machine() {
 
 files::Json accuracy_json(const std::vector<AccuracyRow>& rows, const Machine& machine) {
     files::Json out{{"machine",
-              {{"processor", machine.processor},
-               {"threads", machine.threads},
-               {"load", machine.load},
-               {"date", machine.date}}},
-             {"rows", files::Json::array()}};
+                     {{"processor", machine.processor},
+                      {"threads", machine.threads},
+                      {"load", machine.load},
+                      {"date", machine.date}}},
+                    {"rows", files::Json::array()}};
     for (const AccuracyRow& row : rows) {
         files::Json entry = files::Json::object();
         visit_fields(row, [&](const char* name, const auto& value) { entry[name] = value; });

@@ -35,8 +35,7 @@ Problem block(const Mesh& hexes, Element element, const Material& material) {
     problem.mesh = element == Element::tet4 ? split_to_tets(hexes) : hexes;
     problem.element = element;
     problem.materials.assign(static_cast<std::size_t>(problem.mesh.cells.cols()), material);
-    fix(nodes_of(faces_on(problem.mesh, boundary_faces(problem.mesh), Side::zmin)), "xyz", 0.0,
-        problem.supports);
+    fix(nodes_of(faces_on(problem.mesh, boundary_faces(problem.mesh), Side::zmin)), "xyz", 0.0, problem.supports);
     return problem;
 }
 
@@ -61,9 +60,9 @@ Eigen::VectorXd nested_coordinates_m(double length_m, int n) {
 
 Tool tool_on_path(int i, double x_m, double y_m) {
     const double t = 1e-3 * i;
-    return {kBenchBall,
-            {x_m + 0.002 * std::sin(3.0 * t), y_m + 0.002 * std::sin(4.1 * t),
-             0.002 * (1.0 + 0.1 * std::sin(7.0 * t))}};
+    return {
+        kBenchBall,
+        {x_m + 0.002 * std::sin(3.0 * t), y_m + 0.002 * std::sin(4.1 * t), 0.002 * (1.0 + 0.1 * std::sin(7.0 * t))}};
 }
 
 void set_size(const Problem& problem, const Factored& factored, AccuracyRow& row) {

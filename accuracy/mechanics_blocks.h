@@ -15,8 +15,7 @@ inline constexpr mechanics::Indenter kBenchBall{mechanics::IndenterShape::sphere
 const char* name_of(mechanics::Element element);
 
 // One material, bottom clamped; tetrahedra by splitting the hexahedra.
-mechanics::Problem block(const mechanics::Mesh& hexes, mechanics::Element element,
-                         const mechanics::Material& material);
+mechanics::Problem block(const mechanics::Mesh& hexes, mechanics::Element element, const mechanics::Material& material);
 // The same as the quarter x >= 0, y >= 0 of a block that is symmetric about both planes.
 mechanics::Problem quarter_block(const mechanics::Mesh& hexes, mechanics::Element element,
                                  const mechanics::Material& material);

@@ -40,9 +40,7 @@ Compliance prepare(const Problem& problem, const std::array<double, 4>& touch_m,
 
 // Depths at which forces are compared: single ones would hit or miss a jump of the contact area by luck.
 constexpr int kDepths = 9;
-double depth_m(double middle_m, int k) {
-    return middle_m * (0.9 + 0.2 * k / (kDepths - 1));
-}
+double depth_m(double middle_m, int k) { return middle_m * (0.9 + 0.2 * k / (kDepths - 1)); }
 
 double force_N(const Compliance& c, double x_m, double y_m, double depth) {
     ContactWork work = make_contact_work(c, 200);
@@ -60,14 +58,12 @@ Mesh quarter_mesh(double width_m, double height_m, int n, double fine_m) {
 
 // Forces of a quarter of the slab, times four.
 std::array<double, kDepths> quarter_forces_N(int n, double fine_m) {
-    const Problem problem =
-        quarter_block(quarter_mesh(0.05, 0.05, n, fine_m), Element::hex8_bbar, kBenchTissue);
+    const Problem problem = quarter_block(quarter_mesh(0.05, 0.05, n, fine_m), Element::hex8_bbar, kBenchTissue);
     const SurfaceRequest request =
         request_rectangle(problem.mesh, boundary_faces(problem.mesh), {0.0, 0.008, 0.0, 0.008});
     const Compliance c = surface_compliance(problem.mesh, factorise(problem, best_solver()), request);
     std::array<double, kDepths> out{};
-    for (int k = 0; k < kDepths; ++k)
-        out[static_cast<std::size_t>(k)] = 4.0 * force_N(c, 0.0, 0.0, depth_m(0.002, k));
+    for (int k = 0; k < kDepths; ++k) out[static_cast<std::size_t>(k)] = 4.0 * force_N(c, 0.0, 0.0, depth_m(0.002, k));
     return out;
 }
 
@@ -111,10 +107,8 @@ AccuracyRow contact_row(const ContactMesh& mesh, const ContactReference& referen
     for (int k = 0; k < kDepths; ++k) {
         for (const double share : {0.0, 0.25, 0.5}) {  // where between two nodes the ball stands
             const double at_m = 0.05 + share * mesh.finest_m;
-            add_error(
-                force_N(c, at_m, at_m, depth_m(0.002, k)) / reference.force_N[static_cast<std::size_t>(k)] -
-                    1.0,
-                sum);
+            add_error(force_N(c, at_m, at_m, depth_m(0.002, k)) / reference.force_N[static_cast<std::size_t>(k)] - 1.0,
+                      sum);
         }
     }
     set_error(sum, row);
@@ -124,8 +118,8 @@ AccuracyRow contact_row(const ContactMesh& mesh, const ContactReference& referen
 
 // On a block so large that Hertz's half-space holds.
 AccuracyRow hertz_row(double fine_m, int n, const Effort& effort) {
-    const Problem problem = quarter_block(quarter_mesh(kHertzBlock_m, kHertzBlock_m, n, fine_m),
-                                          Element::hex8_bbar, kBenchTissue);
+    const Problem problem =
+        quarter_block(quarter_mesh(kHertzBlock_m, kHertzBlock_m, n, fine_m), Element::hex8_bbar, kBenchTissue);
     constexpr double kDepth_m = 0.001;
     const double spacings = hertz_contact_radius_m(kBenchBall.radius_m, kDepth_m) / fine_m;
     AccuracyRow row{.group = "contact Hertz", .series = "hex8-bbar against Hertz"};
@@ -133,15 +127,13 @@ AccuracyRow hertz_row(double fine_m, int n, const Effort& effort) {
     row.reference = "Hertz on a half-space";
     const double layer_N = dimitriadis_force_N(1.0, kBenchBall.radius_m, kDepth_m, kHertzBlock_m);
     row.reference_error_percent =
-        100.0 *
-        (layer_N / hertz_force_N(plane_strain_modulus_Pa(1.0, 0.5), kBenchBall.radius_m, kDepth_m) - 1.0);
+        100.0 * (layer_N / hertz_force_N(plane_strain_modulus_Pa(1.0, 0.5), kBenchBall.radius_m, kDepth_m) - 1.0);
     row.note = "block 250 mm deep; a quarter by symmetry; contact radius / spacing " + files::short_number(spacings);
     const Compliance c = prepare(problem, {0.0, 0.008, 0.0, 0.008}, effort, row);
     ErrorSum sum;
     for (int k = 0; k < kDepths; ++k) {
-        const double hertz_N =
-            hertz_force_N(plane_strain_modulus_Pa(kBenchTissue.young_Pa, kBenchTissue.poisson),
-                          kBenchBall.radius_m, depth_m(kDepth_m, k));
+        const double hertz_N = hertz_force_N(plane_strain_modulus_Pa(kBenchTissue.young_Pa, kBenchTissue.poisson),
+                                             kBenchBall.radius_m, depth_m(kDepth_m, k));
         add_error(4.0 * force_N(c, 0.0, 0.0, depth_m(kDepth_m, k)) / hertz_N - 1.0, sum);
     }
     set_error(sum, row);
@@ -170,21 +162,20 @@ std::vector<Measurement> contact_measurements(const Effort& effort) {
     if (effort.quick) meshes.push_back({Element::hex8_bbar, {20, 20, 8}, 1.333e-3});
     const auto reference = std::make_shared<ContactReference>();
     const bool quick = effort.quick;
-    std::vector<Measurement> list{{"finest mesh under the ball", quick ? 1.5 : 8.0,
-                                   [=](auto&) { *reference = contact_reference(quick); }}};
+    std::vector<Measurement> list{
+        {"finest mesh under the ball", quick ? 1.5 : 8.0, [=](auto&) { *reference = contact_reference(quick); }}};
     for (const ContactMesh& mesh : meshes) {
         const double nodes = (mesh.cells[0] + 1.0) * (mesh.cells[1] + 1.0) * (mesh.cells[2] + 1.0);
-        list.push_back(
-            {std::string("contact, ") + name_of(mesh.element) + ", " + files::short_number(nodes) + " nodes",
-             0.4 + 5e-6 * std::pow(nodes, 1.4),
-             [=](std::vector<AccuracyRow>& rows) { rows.push_back(contact_row(mesh, *reference, effort)); }});
+        list.push_back({std::string("contact, ") + name_of(mesh.element) + ", " + files::short_number(nodes) + " nodes",
+                        0.4 + 5e-6 * std::pow(nodes, 1.4), [=](std::vector<AccuracyRow>& rows) {
+                            rows.push_back(contact_row(mesh, *reference, effort));
+                        }});
     }
     std::vector<std::pair<double, int>> spacings{{1.4e-3, 12}, {0.9e-3, 15}};
     if (!quick) spacings.insert(spacings.end(), {{0.55e-3, 20}, {0.35e-3, 24}});
     for (const auto& [fine_m, n] : spacings) {
         list.push_back({"contact against Hertz, spacing " + files::short_number(1e3 * fine_m) + " mm",
-                        quick ? 0.5 : 3.0,
-                        [fine = fine_m, cells = n, effort](std::vector<AccuracyRow>& rows) {
+                        quick ? 0.5 : 3.0, [fine = fine_m, cells = n, effort](std::vector<AccuracyRow>& rows) {
                             rows.push_back(hertz_row(fine, cells, effort));
                         }});
     }

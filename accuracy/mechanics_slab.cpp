@@ -28,9 +28,7 @@ PressureLoad press_at(const Mesh& mesh, double x_m, double y_m) {
                           LoadShare::consistent);
 }
 
-Material tissue(double poisson) {
-    return {kBenchTissue.young_Pa, poisson};
-}
+Material tissue(double poisson) { return {kBenchTissue.young_Pa, poisson}; }
 
 double quarter_mean_m(double poisson, int n) {
     const Eigen::VectorXd x = nested_coordinates_m(0.05, n);
@@ -87,10 +85,7 @@ AccuracyRow layer_row(Element element, double poisson, const Effort& effort) {
     const Factored factored = repeat_factorise(problem, effort, row);
     time_solves(factored, load, effort, row);
     Eigen::Index centre = 0;
-    (problem.mesh.nodes_m.colwise() - Eigen::Vector3d(0.0, 0.0, 0.05))
-        .colwise()
-        .squaredNorm()
-        .minCoeff(&centre);
+    (problem.mesh.nodes_m.colwise() - Eigen::Vector3d(0.0, 0.0, 0.05)).colwise().squaredNorm().minCoeff(&centre);
     const double u0_m = -solve(factored, load.force_N).u_m(2, centre);
     const double exact_m =
         layer_depression_m({kBenchTissue.young_Pa, poisson, 0.05}, {0.5 * kDiameter_m, kForce_N}, 0.0);
@@ -113,20 +108,19 @@ SlabReference slab_reference(double poisson, std::span<const int> finest) {
         // the error falls with the square of the cell size
         const double limit_m = (4.0 * quarter_mean_m(poisson, n) - quarter_mean_m(poisson, n / 2)) / 3.0;
         if (out.mean_m == 0.0) out.mean_m = limit_m;
-        out.uncertainty_percent =
-            std::max(out.uncertainty_percent, 100.0 * std::abs(limit_m / out.mean_m - 1.0));
+        out.uncertainty_percent = std::max(out.uncertainty_percent, 100.0 * std::abs(limit_m / out.mean_m - 1.0));
     }
     return out;
 }
 
 AccuracyRow slab_row(Element element, const std::array<int, 3>& cells, bool graded, double poisson,
                      const SlabReference& reference, const Effort& effort) {
-    const Mesh hexes = graded ? graded_slab(cells, 0.4 * 0.1 / cells[0])
-                              : hex_box(Box{{0.1, 0.1, 0.05}, cells, std::nullopt});
+    const Mesh hexes =
+        graded ? graded_slab(cells, 0.4 * 0.1 / cells[0]) : hex_box(Box{{0.1, 0.1, 0.05}, cells, std::nullopt});
     const Problem problem = block(hexes, element, tissue(poisson));
-    AccuracyRow row{.group = "slab",
-                    .series = std::string(name_of(element)) + (graded ? "" : " uniform") + " nu " +
-                              files::short_number(poisson)};
+    AccuracyRow row{
+        .group = "slab",
+        .series = std::string(name_of(element)) + (graded ? "" : " uniform") + " nu " + files::short_number(poisson)};
     row.choice = row.series;
     row.reference = "mean depression; Richardson limit of the B-bar series";
     row.reference_error_percent = reference.uncertainty_percent;
@@ -151,12 +145,11 @@ std::vector<Measurement> slab_measurements(const Effort& effort) {
         for (const Element element : kElements) {
             for (const auto& cells : meshes) {
                 const int nodes = (cells[0] + 1) * (cells[1] + 1) * (cells[2] + 1);
-                list.push_back(
-                    {"slab, " + slab_series(element, poisson) + ", " + std::to_string(nodes) + " nodes",
-                     expected_s(nodes, effort), [=](std::vector<AccuracyRow>& rows) {
-                         rows.push_back(
-                             slab_row(element, cells, true, poisson, references->at(poisson), effort));
-                     }});
+                list.push_back({"slab, " + slab_series(element, poisson) + ", " + std::to_string(nodes) + " nodes",
+                                expected_s(nodes, effort), [=](std::vector<AccuracyRow>& rows) {
+                                    rows.push_back(
+                                        slab_row(element, cells, true, poisson, references->at(poisson), effort));
+                                }});
             }
         }
     }
@@ -169,10 +162,9 @@ std::vector<Measurement> slab_measurements(const Effort& effort) {
     }
     for (const double poisson : kPoissons) {
         for (const Element element : kElements) {
-            list.push_back({"wide slab, " + slab_series(element, poisson), expected_s(5700, effort),
-                            [=](std::vector<AccuracyRow>& rows) {
-                                rows.push_back(layer_row(element, poisson, effort));
-                            }});
+            list.push_back(
+                {"wide slab, " + slab_series(element, poisson), expected_s(5700, effort),
+                 [=](std::vector<AccuracyRow>& rows) { rows.push_back(layer_row(element, poisson, effort)); }});
         }
     }
     return list;

@@ -66,8 +66,7 @@ struct ContactChoice {
 AccuracyRow contact_choice_row(const Bench& bench, const ContactChoice& choice, const Effort& effort) {
     AccuracyRow row = bench_row(bench, "contact solver", choice.name);
     const bool sweeps = choice.options.max_changes == 0;
-    row.reference =
-        sweeps ? "pressing forces by the active set" : "its own condition: penetration left / depth";
+    row.reference = sweeps ? "pressing forces by the active set" : "its own condition: penetration left / depth";
     row.reference_error_percent = sweeps ? 1e-8 : 0.0;
     ContactWork work = make_contact_work(bench.compliance, 200);
     ContactWork exact_work = make_contact_work(bench.compliance, 200);
@@ -79,9 +78,7 @@ AccuracyRow contact_choice_row(const Bench& bench, const ContactChoice& choice, 
     for (int i = 0; i < steps; ++i) {
         const Tool tool = tool_on_path(i, kMiddle_m, kMiddle_m);
         if (!choice.warm) work = make_contact_work(bench.compliance, 200);
-        time_call(timing, [&] {
-            press_to_depth(bench.compliance, {&tool, 1}, choice.options, work, contact);
-        });
+        time_call(timing, [&] { press_to_depth(bench.compliance, {&tool, 1}, choice.options, work, contact); });
         unsettled += contact.flags.not_settled ? 1 : 0;
         if (sweeps) {
             press_to_depth(bench.compliance, {&tool, 1}, {}, exact_work, exact);
@@ -103,8 +100,8 @@ Eigen::Vector3d tool_force_N(const Contact& contact) {
 }
 
 // Forces along one slide; 0.1 mm a step at most.
-std::vector<Eigen::Vector3d> slide(const Bench& bench, const FrictionOptions& options, int steps,
-                                   Timing& timing, int& unsettled) {
+std::vector<Eigen::Vector3d> slide(const Bench& bench, const FrictionOptions& options, int steps, Timing& timing,
+                                   int& unsettled) {
     FrictionWork work;
     FrictionState state;
     Contact contact;
@@ -202,8 +199,7 @@ void sparse_solver_rows(const Bench& bench, const Effort& effort, std::vector<Ac
     Eigen::VectorXd b;
     Eigen::VectorXd exact;
     for (const SolverKind kind : {SolverKind::mumps, SolverKind::eigen}) {
-        AccuracyRow row =
-            bench_row(bench, "sparse solver", kind == SolverKind::mumps ? "MUMPS" : "Eigen LDLT");
+        AccuracyRow row = bench_row(bench, "sparse solver", kind == SolverKind::mumps ? "MUMPS" : "Eigen LDLT");
         if (kind == SolverKind::mumps && !mumps_built_in()) {
             row.note = "not built in";
             rows.push_back(row);
@@ -233,8 +229,7 @@ void sparse_solver_rows(const Bench& bench, const Effort& effort, std::vector<Ac
                                  factored->cholesky.solve(q);
                              }),
                   row);
-        row.error_percent =
-            100.0 * (q.col(0) - exact).lpNorm<Eigen::Infinity>() / exact.lpNorm<Eigen::Infinity>();
+        row.error_percent = 100.0 * (q.col(0) - exact).lpNorm<Eigen::Infinity>() / exact.lpNorm<Eigen::Infinity>();
         row.worst_error_percent = row.error_percent;
         row.reference = "all displacements; refined with residuals in extended precision";
         row.reference_error_percent = 1e-14;
@@ -292,9 +287,7 @@ AccuracyRow live_row(const Bench& bench, Kept kept, const Effort& effort) {
             c.emplace(surface_compliance(bench.problem.mesh, *factored,
                                          request_rectangle(bench.problem.mesh, outer, kTouch_m)));
     });
-    row.memory_MB = kept == Kept::compliance ? compliance_MB(*c)
-                    : kept == Kept::factor   ? heap_MB() - before_MB
-                                             : 0.0;
+    row.memory_MB = kept == Kept::compliance ? compliance_MB(*c) : kept == Kept::factor ? heap_MB() - before_MB : 0.0;
     set_offline(offline, row);
     if (kept == Kept::nothing) row.offline_s = row.offline_repetitions = 0;
 
@@ -306,8 +299,8 @@ AccuracyRow live_row(const Bench& bench, Kept kept, const Effort& effort) {
         const Tool tool = tool_on_path(kept == Kept::compliance ? i : 50 * i, kMiddle_m, kMiddle_m);
         if (kept == Kept::nothing) factored.emplace(factorise(bench.problem, best_solver()));
         if (kept != Kept::compliance)
-            c.emplace(surface_compliance(bench.problem.mesh, *factored,
-                                         request_under(bench.problem.mesh, outer, tool)));
+            c.emplace(
+                surface_compliance(bench.problem.mesh, *factored, request_under(bench.problem.mesh, outer, tool)));
         press_to_depth(*c, {&tool, 1}, {}, work, contact);
         surface_depression_m(*c, contact, surface_m);
     };
@@ -345,14 +338,13 @@ std::vector<Measurement> step_measurements(const Effort& effort) {
                             rows.push_back(contact_choice_row(*bench, choice, effort));
                         }});
     }
-    list.push_back({"friction", quick ? 1.0 : 6.0,
-                    [=](std::vector<AccuracyRow>& rows) { friction_rows(*bench, effort, rows); }});
+    list.push_back(
+        {"friction", quick ? 1.0 : 6.0, [=](std::vector<AccuracyRow>& rows) { friction_rows(*bench, effort, rows); }});
     list.push_back({"sparse solvers", quick ? 2.0 : 16.0,
                     [=](std::vector<AccuracyRow>& rows) { sparse_solver_rows(*bench, effort, rows); }});
     for (const Kept kept : {Kept::compliance, Kept::factor, Kept::nothing}) {
-        list.push_back(
-            {std::string("live step, ") + name_of(kept), quick ? 1.0 : 8.0,
-             [=](std::vector<AccuracyRow>& rows) { rows.push_back(live_row(*bench, kept, effort)); }});
+        list.push_back({std::string("live step, ") + name_of(kept), quick ? 1.0 : 8.0,
+                        [=](std::vector<AccuracyRow>& rows) { rows.push_back(live_row(*bench, kept, effort)); }});
     }
     return list;
 }

@@ -6,10 +6,10 @@
 #include <limits>
 
 #include "accuracy/timing.h"
-#include "session/raster_trace.h"
-#include "session/session.h"
 #include "files/text.h"
 #include "scene/advance.h"
+#include "session/raster_trace.h"
+#include "session/session.h"
 
 namespace palpa::accuracy {
 namespace {
@@ -39,10 +39,12 @@ double mean_us(const scene::Scene& scene, const scene::Plan& plan, const platfor
     return timing.us[0] / static_cast<double>(trace.samples.size());
 }
 
-double single_p99_us(const scene::Scene& scene, const scene::Plan& plan, const platform::Trace& trace, scene::State& state) {
+double single_p99_us(const scene::Scene& scene, const scene::Plan& plan, const platform::Trace& trace,
+                     scene::State& state) {
     Timing timing;
     timing.us.reserve(trace.samples.size());
-    for (const platform::Sample& sample : trace.samples) time_call(timing, [&] { scene::advance(scene, plan, sample, state); });
+    for (const platform::Sample& sample : trace.samples)
+        time_call(timing, [&] { scene::advance(scene, plan, sample, state); });
     return quantile_us(timing, 0.99);
 }
 
@@ -81,9 +83,12 @@ SpeedRow sample_speed(const scene::Scene& scene, const scene::Plan& plan, double
 
 files::Json speed_json(const SpeedRow& unit, const std::vector<SpeedRow>& rows, const Machine& machine) {
     files::Json out{{"machine",
-              {{"processor", machine.processor}, {"threads", machine.threads}, {"load", machine.load}, {"date", machine.date}}},
-             {"unit_us", {{"what", unit.what}, {"least", unit.least_us}, {"median", unit.median_us}}},
-             {"rows", files::Json::array()}};
+                     {{"processor", machine.processor},
+                      {"threads", machine.threads},
+                      {"load", machine.load},
+                      {"date", machine.date}}},
+                    {"unit_us", {{"what", unit.what}, {"least", unit.least_us}, {"median", unit.median_us}}},
+                    {"rows", files::Json::array()}};
     for (const SpeedRow& row : rows) {
         out["rows"].push_back({{"what", row.what},
                                {"least_us", row.least_us},
@@ -97,11 +102,13 @@ files::Json speed_json(const SpeedRow& unit, const std::vector<SpeedRow>& rows, 
 }
 
 std::string speed_table(const SpeedRow& unit, const std::vector<SpeedRow>& rows) {
-    std::string out = unit.what + ": least " + files::short_number(unit.least_us) + " us, median " + files::short_number(unit.median_us) + " us\n";
+    std::string out = unit.what + ": least " + files::short_number(unit.least_us) + " us, median " +
+                      files::short_number(unit.median_us) + " us\n";
     for (const SpeedRow& row : rows) {
         out += row.what + ": a sample least " + files::short_number(row.least_us) + " us (" +
-               files::short_number(row.least_us / unit.least_us) + " units), median " + files::short_number(row.median_us) + " us, p99 " +
-               files::short_number(row.p99_us) + " us (" + files::short_number(row.p99_us / unit.least_us) + " units)\n";
+               files::short_number(row.least_us / unit.least_us) + " units), median " +
+               files::short_number(row.median_us) + " us, p99 " + files::short_number(row.p99_us) + " us (" +
+               files::short_number(row.p99_us / unit.least_us) + " units)\n";
     }
     return out;
 }

@@ -24,7 +24,7 @@ std::vector<std::filesystem::path> inputs_of(const scene::Scene& scene, const st
 // ($XDG_DATA_HOME/palpa/scenes and profiles). Files that cannot be read are left out.
 std::vector<Choice> scene_choices();
 std::vector<Choice> profile_choices();
-std::vector<Choice> map_choices();  // folders NAME.map, of the assets and of $XDG_DATA_HOME/palpa/maps
+std::vector<Choice> map_choices();    // folders NAME.map, of the assets and of $XDG_DATA_HOME/palpa/maps
 std::filesystem::path user_folder();  // empty if neither XDG_DATA_HOME nor HOME names one
 
 std::filesystem::path default_trace();

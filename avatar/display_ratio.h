@@ -46,8 +46,8 @@ double pause_factor(const DisplayRatio& law, const DisplayRatioState& state, dou
 
 // Goes to the sample and returns the lag there. Lifting or a jump of the pen sets it to 0 at once.
 template <class Rise>
-Eigen::Vector2d advance_lag(const DisplayRatio& law, const Touch& pen, const Rise& rise_N,
-                            DisplayRatioState& state, const StationLimit& limit = {}) {
+Eigen::Vector2d advance_lag(const DisplayRatio& law, const Touch& pen, const Rise& rise_N, DisplayRatioState& state,
+                            const StationLimit& limit = {}) {
     const auto at_station = [&](const Pull& pull) { apply_pull(law, pull, state); };
     const PathEvent event = walk_to(law.path, limit, pen, rise_N, at_station, state.path);
     if (event == PathEvent::lifted || event == PathEvent::started) {

@@ -40,16 +40,17 @@ struct StationLimit {
 // Of `due` stations that fall into dt_s.
 inline std::int64_t allowed_stations(const StationLimit& limit, double dt_s, std::int64_t due) {
     if (due <= limit.least) return due;
-    const double allowed = std::max(limit.per_s * dt_s, static_cast<double>(limit.least));  // 0 * infinity is not chosen
+    const double allowed =
+        std::max(limit.per_s * dt_s, static_cast<double>(limit.least));  // 0 * infinity is not chosen
     return std::min({due, static_cast<std::int64_t>(std::min(allowed, 1e15)), static_cast<std::int64_t>(limit.most)});
 }
 
 struct PathState {
     Touch last{-std::numeric_limits<double>::infinity(), Eigen::Vector2d::Zero(), 0.0, false};
-    double carry_m = 0.0;                                // length walked since the last station
-    Eigen::Vector2d rope_m = Eigen::Vector2d::Zero();    // the end that is dragged along
-    std::int64_t ignored = 0;                            // samples that were not numbers, or went back in time
-    std::int64_t skipped_stations = 0;                   // beyond the limit
+    double carry_m = 0.0;                              // length walked since the last station
+    Eigen::Vector2d rope_m = Eigen::Vector2d::Zero();  // the end that is dragged along
+    std::int64_t ignored = 0;                          // samples that were not numbers, or went back in time
+    std::int64_t skipped_stations = 0;                 // beyond the limit
 };
 
 // The pull of one piece of path on the rope.

@@ -7,9 +7,7 @@
 namespace palpa::avatar {
 namespace {
 
-double punch_term(double t_m, double radius_m) {
-    return 0.5 * t_m * std::log((radius_m + t_m) / (radius_m - t_m));
-}
+double punch_term(double t_m, double radius_m) { return 0.5 * t_m * std::log((radius_m + t_m) / (radius_m - t_m)); }
 
 }  // namespace
 

@@ -17,7 +17,8 @@
 namespace palpa::avatar {
 
 inline constexpr int kSurfacePoints = 64;
-inline constexpr double kLayerReach = 1.5;  // thicknesses; between 1 and 2 the error changes by 0.2 % of the depth, 2026-11
+inline constexpr double kLayerReach =
+    1.5;  // thicknesses; between 1 and 2 the error changes by 0.2 % of the depth, 2026-11
 
 // u at r_i = reach_m * (i / (kSurfacePoints - 1))^2: finer near the axis, 0 at reach_m and beyond.
 struct SurfaceCurve {

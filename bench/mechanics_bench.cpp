@@ -25,22 +25,18 @@ Problem slab(std::array<int, 3> cells, double finest_m) {
     assign_sphere({{0.05, 0.05, 0.03}, 0.008}, 1, problem.mesh);
     const Material list[2] = {{2500.0, 0.45}, {2.5e6, 0.45}};
     problem.materials = materials_of_cells(problem.mesh.region, list);
-    fix(nodes_of(faces_on(problem.mesh, boundary_faces(problem.mesh), Side::zmin)), "xyz", 0.0,
-        problem.supports);
+    fix(nodes_of(faces_on(problem.mesh, boundary_faces(problem.mesh), Side::zmin)), "xyz", 0.0, problem.supports);
     return problem;
 }
 
 // 39 x 39 x 7 = 10,647 nodes, 1,521 on the surface.
-Problem graded_slab() {
-    return slab({38, 38, 6}, 0.001);
-}
+Problem graded_slab() { return slab({38, 38, 6}, 0.001); }
 
 const Compliance& graded_compliance() {
     static const Compliance made = [] {
         const Problem problem = graded_slab();
-        return surface_compliance(
-            problem.mesh, factorise(problem, best_solver()),
-            request_rectangle(problem.mesh, boundary_faces(problem.mesh), {0.0, 0.1, 0.0, 0.1}));
+        return surface_compliance(problem.mesh, factorise(problem, best_solver()),
+                                  request_rectangle(problem.mesh, boundary_faces(problem.mesh), {0.0, 0.1, 0.0, 0.1}));
     }();
     return made;
 }
@@ -51,8 +47,7 @@ class Percentiles {
     void time(Call&& call) {
         const auto start = std::chrono::steady_clock::now();
         call();
-        us_.push_back(
-            std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - start).count());
+        us_.push_back(std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - start).count());
     }
     void report(benchmark::State& state) {
         std::sort(us_.begin(), us_.end());
@@ -89,24 +84,16 @@ void assemble_and_factor(benchmark::State& state, const Problem& problem, Solver
     state.counters["factor_s"] = factor_s;
 }
 
-void factor_regular(benchmark::State& state) {
-    assemble_and_factor(state, slab({25, 25, 14}, 0.0), best_solver());
-}
-void factor_graded(benchmark::State& state) {
-    assemble_and_factor(state, graded_slab(), best_solver());
-}
-void factor_graded_eigen(benchmark::State& state) {
-    assemble_and_factor(state, graded_slab(), SolverKind::eigen);
-}
+void factor_regular(benchmark::State& state) { assemble_and_factor(state, slab({25, 25, 14}, 0.0), best_solver()); }
+void factor_graded(benchmark::State& state) { assemble_and_factor(state, graded_slab(), best_solver()); }
+void factor_graded_eigen(benchmark::State& state) { assemble_and_factor(state, graded_slab(), SolverKind::eigen); }
 
 void compliance(benchmark::State& state) {
     const Problem problem = graded_slab();
     const Factored factored = factorise(problem, best_solver());
-    SurfaceRequest request =
-        request_rectangle(problem.mesh, boundary_faces(problem.mesh), {0.0, 0.1, 0.0, 0.1});
+    SurfaceRequest request = request_rectangle(problem.mesh, boundary_faces(problem.mesh), {0.0, 0.1, 0.0, 0.1});
     request.block = static_cast<int>(state.range(0));
-    for (auto _ : state)
-        benchmark::DoNotOptimize(surface_compliance(problem.mesh, factored, request).asymmetry);
+    for (auto _ : state) benchmark::DoNotOptimize(surface_compliance(problem.mesh, factored, request).asymmetry);
     state.counters["columns"] = static_cast<double>(request.touch_nodes.size());
 }
 
@@ -146,8 +133,7 @@ void contact_with_force(benchmark::State& state) {
         Tool tool = tool_at(i++, 0.0);
         tool.pose.depth_m = contact.tool.empty() ? 0.0 : contact.tool[0].depth_m;
         times.time([&] {
-            press_with_force(graded_compliance(), tool, 0.08 * (1.0 + 0.2 * std::sin(7e-3 * i)), {}, work,
-                             contact);
+            press_with_force(graded_compliance(), tool, 0.08 * (1.0 + 0.2 * std::sin(7e-3 * i)), {}, work, contact);
         });
     }
     times.report(state);
@@ -194,8 +180,7 @@ void live_step(benchmark::State& state) {
         Tool tool = tool_at(i++, 0.0);
         tool.pose.depth_m = contact.tool.empty() ? 0.0 : contact.tool[0].depth_m;
         times.time([&] {
-            press_with_force(graded_compliance(), tool, 0.08 * (1.0 + 0.2 * std::sin(7e-3 * i)), {}, work,
-                             contact);
+            press_with_force(graded_compliance(), tool, 0.08 * (1.0 + 0.2 * std::sin(7e-3 * i)), {}, work, contact);
             surface_depression_m(graded_compliance(), contact, u);
         });
     }
@@ -224,14 +209,7 @@ BENCHMARK(factor_regular)->Unit(benchmark::kMillisecond)->Iterations(3);
 BENCHMARK(factor_graded)->Unit(benchmark::kMillisecond)->Iterations(3);
 BENCHMARK(factor_graded_eigen)->Unit(benchmark::kMillisecond)->Iterations(1);
 BENCHMARK(compliance)->Arg(16)->Arg(64)->Arg(256)->Unit(benchmark::kMillisecond)->Iterations(1);
-BENCHMARK(contact_at_depth)
-    ->Arg(1)
-    ->Arg(2)
-    ->Arg(3)
-    ->Arg(4)
-    ->Arg(6)
-    ->Unit(benchmark::kMicrosecond)
-    ->Iterations(8000);
+BENCHMARK(contact_at_depth)->Arg(1)->Arg(2)->Arg(3)->Arg(4)->Arg(6)->Unit(benchmark::kMicrosecond)->Iterations(8000);
 BENCHMARK(contact_cold)->Unit(benchmark::kMicrosecond)->Iterations(1000);
 BENCHMARK(contact_with_force)->Unit(benchmark::kMicrosecond)->Iterations(8000);
 BENCHMARK(contact_by_sweeps)->Unit(benchmark::kMicrosecond)->Iterations(2000);

@@ -1,15 +1,14 @@
 // One sample from pressure to avatar state on the shipped scenes, against the same scene with every effect
 // off, and the parts of it. Each benchmark also reports quantiles of single samples, clock included.
 
-#include <benchmark/benchmark.h>
-
 #include <algorithm>
+#include <benchmark/benchmark.h>
 #include <string>
 
 #include "app/scene_choices.h"
 #include "app/screens/tissue_drawing.h"
-#include "session/raster_trace.h"
 #include "scene/advance.h"
+#include "session/raster_trace.h"
 
 namespace {
 

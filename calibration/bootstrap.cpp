@@ -8,8 +8,9 @@ namespace palpa::calibration {
 namespace {
 
 // 97.5 % quantiles of Student's t for 1 ... 30 degrees of freedom.
-constexpr double kStudent[] = {12.706, 4.303, 3.182, 2.776, 2.571, 2.447, 2.365, 2.306, 2.262, 2.228, 2.201, 2.179, 2.160, 2.145, 2.131,
-                               2.120,  2.110, 2.101, 2.093, 2.086, 2.080, 2.074, 2.069, 2.064, 2.060, 2.056, 2.052, 2.048, 2.045, 2.042};
+constexpr double kStudent[] = {12.706, 4.303, 3.182, 2.776, 2.571, 2.447, 2.365, 2.306, 2.262, 2.228,
+                               2.201,  2.179, 2.160, 2.145, 2.131, 2.120, 2.110, 2.101, 2.093, 2.086,
+                               2.080,  2.074, 2.069, 2.064, 2.060, 2.056, 2.052, 2.048, 2.045, 2.042};
 
 double widening(int repeats) {
     const int freedom = repeats - 1;
@@ -28,7 +29,8 @@ Eigen::Index below(Eigen::Index n, std::uint32_t random) {
     return static_cast<Eigen::Index>((static_cast<std::uint64_t>(random) * static_cast<std::uint64_t>(n)) >> 32);
 }
 
-void draw(const FitPoints& points, bool over_repeats, std::mt19937_64& random, Eigen::ArrayXd& drawn, Eigen::ArrayXd& count) {
+void draw(const FitPoints& points, bool over_repeats, std::mt19937_64& random, Eigen::ArrayXd& drawn,
+          Eigen::ArrayXd& count) {
     const Eigen::Index units = drawn.size();
     drawn.setZero();
     for (Eigen::Index i = 0; i < units; i += 2) {
@@ -56,8 +58,8 @@ CurveInterval interval_of(std::vector<double>& values, double estimate, double w
 
 }  // namespace
 
-Bootstrap bootstrap(const FitPoints& points, const FitOptions& options, const Curve& fitted, const std::vector<double>& level, int fits,
-                    std::uint64_t seed) {
+Bootstrap bootstrap(const FitPoints& points, const FitOptions& options, const Curve& fitted,
+                    const std::vector<double>& level, int fits, std::uint64_t seed) {
     Bootstrap out;
     const int repeats = repeats_of(points);
     out.over_repeats = repeats >= 3;
@@ -72,7 +74,9 @@ Bootstrap bootstrap(const FitPoints& points, const FitOptions& options, const Cu
         return out;
     }
     // `repeat` may have gaps where a press has no usable point: every number up to the greatest is a unit
-    const auto units = out.over_repeats ? Eigen::Index{1} + *std::max_element(points.repeat.begin(), points.repeat.end()) : points.level.size();
+    const auto units = out.over_repeats
+                           ? Eigen::Index{1} + *std::max_element(points.repeat.begin(), points.repeat.end())
+                           : points.level.size();
     Eigen::ArrayXd drawn(units);
     Eigen::ArrayXd count(points.level.size());
     std::mt19937_64 random(seed);

@@ -31,11 +31,15 @@ double rank_correlation(const FitPoints& points) {
 FitPoints rising_points(const CalibrationRows& rows, LevelRange range, const Ends& ends) {
     FitPoints points = fit_points(rows, range, ends);
     if (distinct_levels(points) < 3) {
-        throw files::bad_input(rows.file, "level", std::to_string(distinct_levels(points)) + " distinct levels below saturation", "3 at least");
+        throw files::bad_input(rows.file, "level",
+                               std::to_string(distinct_levels(points)) + " distinct levels below saturation",
+                               "3 at least");
     }
     if (rank_correlation(points) < 0.3) {
-        throw files::bad_input(rows.file, "force_N", "forces that do not rise with the level (rank correlation " + files::short_number(rank_correlation(points)) + ")",
-                        "a force that rises (columns exchanged, or sensor and pen not pressed together?)");
+        throw files::bad_input(rows.file, "force_N",
+                               "forces that do not rise with the level (rank correlation " +
+                                   files::short_number(rank_correlation(points)) + ")",
+                               "a force that rises (columns exchanged, or sensor and pen not pressed together?)");
     }
     return points;
 }
@@ -66,7 +70,8 @@ std::size_t slips_in(const Calibration& calibration) {
     const double scale = 1.4826 * quantile(off, 0.5);
     const double least = log_error ? 0.05 : 0.01 * calibration.force_at_full_N;  // too small to call a slip
     // 8 scales: a curve between sparse points is off by 5 here and there without any slip
-    return static_cast<std::size_t>(std::count_if(off.begin(), off.end(), [&](double v) { return v > 8.0 * scale && v > least; }));
+    return static_cast<std::size_t>(
+        std::count_if(off.begin(), off.end(), [&](double v) { return v > 8.0 * scale && v > least; }));
 }
 
 std::vector<double> band_levels(LevelRange range) {
@@ -76,15 +81,19 @@ std::vector<double> band_levels(LevelRange range) {
     return levels;
 }
 
-Curve fitted_curve(const FitPoints& points, const CalibrateOptions& options, LevelRange range, const std::string& file, Candidate& chosen) {
-    chosen = choose(points, candidates(points, options.model, options.error, options.robust, range.highest), options.error);
+Curve fitted_curve(const FitPoints& points, const CalibrateOptions& options, LevelRange range, const std::string& file,
+                   Candidate& chosen) {
+    chosen =
+        choose(points, candidates(points, options.model, options.error, options.robust, range.highest), options.error);
     std::optional<Curve> curve;
     if (chosen.predicted_N.size() > 0) curve = fit_curve(points, chosen.options);
-    const bool usable = curve && value_N(*curve, range.highest) > std::max(0.0, value_N(*curve, range.lowest)) && value_N(*curve, range.highest) < 1000.0;
+    const bool usable = curve && value_N(*curve, range.highest) > std::max(0.0, value_N(*curve, range.lowest)) &&
+                        value_N(*curve, range.highest) < 1000.0;
     if (usable) return *curve;
     const std::string model = options.model ? std::string(name_of(*options.model)) : "auto";
-    throw files::bad_input(file, "--model " + model, "no rising curve below 1000 N through " + std::to_string(points.level.size()) + " points",
-                    "points that determine it (more levels, or another model)");
+    throw files::bad_input(file, "--model " + model,
+                           "no rising curve below 1000 N through " + std::to_string(points.level.size()) + " points",
+                           "points that determine it (more levels, or another model)");
 }
 
 }  // namespace
@@ -114,15 +123,18 @@ Calibration calibrate(const CalibrationRows& measured, const CalibrateOptions& o
     profile.fitted_highest = out.points.level(n - 1);
     for (Eigen::Index i = 0; i < n; ++i) profile.points.push_back({out.points.level(i), out.points.force_N(i)});
 
-    out.fitted_N = Eigen::ArrayXd::NullaryExpr(n, [&](Eigen::Index i) { return value_N(profile.curve, out.points.level(i)); });
+    out.fitted_N =
+        Eigen::ArrayXd::NullaryExpr(n, [&](Eigen::Index i) { return value_N(profile.curve, out.points.level(i)); });
     out.quality = fit_quality(out.points.force_N, out.fitted_N);
     out.bands = error_bands(out.points.level, out.points.force_N, out.chosen.predicted_N, range);
-    out.median_relative_error = median_relative_error(out.points.level, out.points.force_N, out.chosen.predicted_N, range);
+    out.median_relative_error =
+        median_relative_error(out.points.level, out.points.force_N, out.chosen.predicted_N, range);
     profile.median_relative_error = out.median_relative_error;
     out.force_at_full_N = value_N(profile.curve, range.highest);
     out.by_repeats = folds_of(out.points) == out.points.repeat;
     if (options.bootstrap_fits > 0) {
-        out.bootstrap = bootstrap(out.points, out.chosen.options, profile.curve, band_levels(range), options.bootstrap_fits, options.seed);
+        out.bootstrap = bootstrap(out.points, out.chosen.options, profile.curve, band_levels(range),
+                                  options.bootstrap_fits, options.seed);
     }
     out.hysteresis = hysteresis_of(rows, range);
     out.drift = drift_of(out.points, profile.curve);

@@ -59,8 +59,8 @@ std::vector<int> folds_of(const FitPoints& points) {
     return fold;
 }
 
-std::vector<FitOptions> candidates(const FitPoints& points, const std::optional<CurveModel>& model, const std::optional<ErrorModel>& error,
-                                   Robust robust, double level_scale) {
+std::vector<FitOptions> candidates(const FitPoints& points, const std::optional<CurveModel>& model,
+                                   const std::optional<ErrorModel>& error, Robust robust, double level_scale) {
     std::vector<FitOptions> all;
     const int distinct = distinct_levels(points);
     for (const CurveModel m : {CurveModel::exponential, CurveModel::power, CurveModel::exponential_offset}) {
@@ -80,7 +80,8 @@ std::vector<FitOptions> candidates(const FitPoints& points, const std::optional<
     return all;
 }
 
-void cross_validate(const FitPoints& points, const std::vector<int>& fold, std::optional<ErrorModel> error, Candidate& candidate) {
+void cross_validate(const FitPoints& points, const std::vector<int>& fold, std::optional<ErrorModel> error,
+                    Candidate& candidate) {
     const auto n = points.level.size();
     const int folds = 1 + *std::max_element(fold.begin(), fold.end());
     candidate.predicted_N.resize(n);
@@ -93,13 +94,15 @@ void cross_validate(const FitPoints& points, const std::vector<int>& fold, std::
             return;
         }
         for (Eigen::Index i = 0; i < n; ++i) {
-            if (fold[static_cast<std::size_t>(i)] == left_out) candidate.predicted_N(i) = value_N(*curve, points.level(i));
+            if (fold[static_cast<std::size_t>(i)] == left_out)
+                candidate.predicted_N(i) = value_N(*curve, points.level(i));
         }
     }
     const bool cubic = candidate.options.model == CurveModel::monotone_cubic;
     const double in_newtons = newton_score(points, candidate.predicted_N);
     const double in_log = log_score(points, candidate.predicted_N);
-    candidate.error = cubic && !error ? (in_log > in_newtons ? ErrorModel::log : ErrorModel::newton) : candidate.options.error;
+    candidate.error =
+        cubic && !error ? (in_log > in_newtons ? ErrorModel::log : ErrorModel::newton) : candidate.options.error;
     candidate.score = candidate.error == ErrorModel::log ? in_log : in_newtons;
     candidate.options.error = candidate.error;
 }

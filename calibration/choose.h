@@ -19,8 +19,8 @@ struct Candidate {
 std::vector<int> folds_of(const FitPoints& points);
 
 // All models (or one), both error models (or one), several numbers of knots.
-std::vector<FitOptions> candidates(const FitPoints& points, const std::optional<CurveModel>& model, const std::optional<ErrorModel>& error,
-                                   Robust robust, double level_scale);
+std::vector<FitOptions> candidates(const FitPoints& points, const std::optional<CurveModel>& model,
+                                   const std::optional<ErrorModel>& error, Robust robust, double level_scale);
 
 // Predicts and scores. The density is Laplace's, with the mean |error| of the candidate itself as its scale, in
 // newtons or of log F (then divided by F, so that both are densities of F and can be compared):
@@ -28,7 +28,8 @@ std::vector<FitOptions> candidates(const FitPoints& points, const std::optional<
 //   newton: -log(2 m) - 1,  m = mean |f - F|      log: -log(2 m) - 1 - mean log f,  m = mean |log f - log F|
 //
 // A candidate fitted in newtons is judged in newtons, one fitted in log space there, a cubic by the better of both.
-void cross_validate(const FitPoints& points, const std::vector<int>& fold, std::optional<ErrorModel> error, Candidate& candidate);
+void cross_validate(const FitPoints& points, const std::vector<int>& fold, std::optional<ErrorModel> error,
+                    Candidate& candidate);
 
 // The best of them all; empty predictions if none could be fitted. A score from n points is itself uncertain by about
 // 1/sqrt(n), and real pens have bends that no smooth curve follows: within this uncertainty the cubic with a knot for

@@ -115,10 +115,14 @@ Curve monotone_cubic(std::vector<double> level, std::vector<double> force_N) {
 
 double value_N(const Curve& curve, double level) {
     switch (curve.model) {
-        case CurveModel::exponential: return curve.a_N * std::exp(curve.b * level);
-        case CurveModel::exponential_offset: return curve.offset_N + curve.a_N * std::exp(curve.b * level);
-        case CurveModel::power: return level > 0.0 ? curve.a_N * std::pow(level, curve.b) : 0.0;
-        case CurveModel::monotone_cubic: return cubic_value_N(curve, level);
+        case CurveModel::exponential:
+            return curve.a_N * std::exp(curve.b * level);
+        case CurveModel::exponential_offset:
+            return curve.offset_N + curve.a_N * std::exp(curve.b * level);
+        case CurveModel::power:
+            return level > 0.0 ? curve.a_N * std::pow(level, curve.b) : 0.0;
+        case CurveModel::monotone_cubic:
+            return cubic_value_N(curve, level);
     }
     return 0.0;
 }
@@ -126,9 +130,12 @@ double value_N(const Curve& curve, double level) {
 double slope_N_per_level(const Curve& curve, double level) {
     switch (curve.model) {
         case CurveModel::exponential:
-        case CurveModel::exponential_offset: return curve.a_N * curve.b * std::exp(curve.b * level);
-        case CurveModel::power: return level > 0.0 ? curve.a_N * curve.b * std::pow(level, curve.b - 1.0) : 0.0;
-        case CurveModel::monotone_cubic: return cubic_slope(curve, level);
+        case CurveModel::exponential_offset:
+            return curve.a_N * curve.b * std::exp(curve.b * level);
+        case CurveModel::power:
+            return level > 0.0 ? curve.a_N * curve.b * std::pow(level, curve.b - 1.0) : 0.0;
+        case CurveModel::monotone_cubic:
+            return cubic_slope(curve, level);
     }
     return 0.0;
 }
@@ -136,22 +143,29 @@ double slope_N_per_level(const Curve& curve, double level) {
 double level_at(const Curve& curve, double force_N) {
     const double above_N = force_N - curve.offset_N;  // the other models have none
     switch (curve.model) {
-        case CurveModel::exponential: return force_N > 0.0 ? std::log(force_N / curve.a_N) / curve.b : -kInfinity;
+        case CurveModel::exponential:
+            return force_N > 0.0 ? std::log(force_N / curve.a_N) / curve.b : -kInfinity;
         case CurveModel::exponential_offset:
             if (above_N / curve.a_N > 0.0) return std::log(above_N / curve.a_N) / curve.b;
             return curve.b > 0.0 ? -kInfinity : kInfinity;
-        case CurveModel::power: return force_N > 0.0 ? std::pow(force_N / curve.a_N, 1.0 / curve.b) : 0.0;
-        case CurveModel::monotone_cubic: return force_N > 0.0 ? cubic_level(curve, force_N) : -kInfinity;
+        case CurveModel::power:
+            return force_N > 0.0 ? std::pow(force_N / curve.a_N, 1.0 / curve.b) : 0.0;
+        case CurveModel::monotone_cubic:
+            return force_N > 0.0 ? cubic_level(curve, force_N) : -kInfinity;
     }
     return 0.0;
 }
 
 std::string_view name_of(CurveModel model) {
     switch (model) {
-        case CurveModel::exponential: return "exponential";
-        case CurveModel::exponential_offset: return "exponential_offset";
-        case CurveModel::power: return "power";
-        case CurveModel::monotone_cubic: return "monotone_cubic";
+        case CurveModel::exponential:
+            return "exponential";
+        case CurveModel::exponential_offset:
+            return "exponential_offset";
+        case CurveModel::power:
+            return "power";
+        case CurveModel::monotone_cubic:
+            return "monotone_cubic";
     }
     return "exponential";
 }

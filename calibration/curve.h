@@ -24,9 +24,9 @@ enum class CurveModel : std::uint8_t { exponential, exponential_offset, power, m
 struct Curve {
     CurveModel model = CurveModel::exponential;
     double a_N = 0.0;
-    double b = 0.0;         // per level; of `power` the exponent
-    double offset_N = 0.0;  // exponential_offset only
-    std::vector<double> knot_level;        // monotone_cubic only: at least 2
+    double b = 0.0;                  // per level; of `power` the exponent
+    double offset_N = 0.0;           // exponential_offset only
+    std::vector<double> knot_level;  // monotone_cubic only: at least 2
     std::vector<double> knot_N;
     std::vector<double> knot_N_per_level;  // set by monotone_cubic()
 };

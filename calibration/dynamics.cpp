@@ -30,7 +30,8 @@ std::vector<Run> runs_of(const CalibrationRows& rows, double step_s) {
     for (std::size_t i = 1; i <= rows.time_s.size(); ++i) {
         const bool end = i == rows.time_s.size();
         const bool other = !end && !rows.repeat.empty() && rows.repeat[i] != rows.repeat[i - 1];
-        const bool gap = !end && !(rows.time_s[i] - rows.time_s[i - 1] < 5.0 * step_s && rows.time_s[i] > rows.time_s[i - 1]);
+        const bool gap =
+            !end && !(rows.time_s[i] - rows.time_s[i - 1] < 5.0 * step_s && rows.time_s[i] > rows.time_s[i - 1]);
         if (!end && !other && !gap) continue;
         if (i - from >= 2) runs.push_back({from, i});
         from = i;
@@ -39,7 +40,8 @@ std::vector<Run> runs_of(const CalibrationRows& rows, double step_s) {
 }
 
 // Linear between the samples of a run; `at` moves along with rising times. NaN outside.
-double force_at(const CalibrationRows& rows, const Run& run, double t_s, std::size_t& at, const std::vector<double>& value) {
+double force_at(const CalibrationRows& rows, const Run& run, double t_s, std::size_t& at,
+                const std::vector<double>& value) {
     while (at > run.from && rows.time_s[at] > t_s) --at;
     while (at + 2 < run.to && rows.time_s[at + 1] < t_s) ++at;
     if (t_s < rows.time_s[at] || t_s > rows.time_s[at + 1]) return platform::kMissing;
@@ -48,7 +50,8 @@ double force_at(const CalibrationRows& rows, const Run& run, double t_s, std::si
 }
 
 // Correlation at one lag over the samples that have a partner at every lag that is tried.
-double correlation(const CalibrationRows& rows, const std::vector<Run>& runs, const std::vector<double>& expected_level, double tau_s, double most_s) {
+double correlation(const CalibrationRows& rows, const std::vector<Run>& runs, const std::vector<double>& expected_level,
+                   double tau_s, double most_s) {
     double n = 0.0, x = 0.0, y = 0.0, xx = 0.0, yy = 0.0, xy = 0.0;
     for (const Run& run : runs) {
         std::size_t at = run.from;
@@ -113,7 +116,8 @@ std::optional<double> lag_s(const CalibrationRows& rows, const Curve& curve, Lev
     if (step_s > 0.1) return std::nullopt;  // captured point by point
     const auto runs = runs_of(rows, step_s);
     std::vector<double> expected(rows.level.size());
-    for (std::size_t i = 0; i < expected.size(); ++i) expected[i] = std::clamp(level_at(curve, rows.force_N[i]), range.lowest, range.highest);
+    for (std::size_t i = 0; i < expected.size(); ++i)
+        expected[i] = std::clamp(level_at(curve, rows.force_N[i]), range.lowest, range.highest);
 
     constexpr int kHalf = 100;  // 5 ms apart, then finer around the best
     double best_s = 0.0;
@@ -195,7 +199,8 @@ std::optional<Drift> drift_of(const FitPoints& points, const Curve& curve) {
     for (auto& [repeat, values] : offsets) drift.repeat_offset.push_back(quantile(values, 0.5));
     const auto n = static_cast<double>(drift.repeat_offset.size());
     double sum = 0.0;
-    for (std::size_t i = 0; i < drift.repeat_offset.size(); ++i) sum += (static_cast<double>(i) - 0.5 * (n - 1.0)) * drift.repeat_offset[i];
+    for (std::size_t i = 0; i < drift.repeat_offset.size(); ++i)
+        sum += (static_cast<double>(i) - 0.5 * (n - 1.0)) * drift.repeat_offset[i];
     drift.per_repeat = sum / (n * (n * n - 1.0) / 12.0);
     const auto [lowest, highest] = std::minmax_element(drift.repeat_offset.begin(), drift.repeat_offset.end());
     drift.spread = *highest - *lowest;

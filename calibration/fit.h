@@ -25,18 +25,18 @@ struct FitOptions {
     CurveModel model = CurveModel::exponential;
     ErrorModel error = ErrorModel::newton;
     Robust robust = Robust::huber;
-    int knots = 0;              // monotone_cubic: at most so many; 0 = one for each level that occurs
-    double start_b = 0.0;       // tried besides the program's own starts; any number, NaN too
-    double level_scale = 1.0;   // the highest level of the device
+    int knots = 0;             // monotone_cubic: at most so many; 0 = one for each level that occurs
+    double start_b = 0.0;      // tried besides the program's own starts; any number, NaN too
+    double level_scale = 1.0;  // the highest level of the device
 };
 
 // Scratch memory of the parametric fits; means nothing between calls.
 struct FitWorkspace {
-    Eigen::ArrayXd z;          // the exponent's variable, see fit_parametric.cpp
+    Eigen::ArrayXd z;  // the exponent's variable, see fit_parametric.cpp
     Eigen::ArrayXd log_force;
-    Eigen::ArrayXd weight;     // of a point: 0 if the model cannot have it, x how far it is believed
+    Eigen::ArrayXd weight;  // of a point: 0 if the model cannot have it, x how far it is believed
     Eigen::ArrayXd residual;
-    Eigen::ArrayXd wave;       // exp(theta z)
+    Eigen::ArrayXd wave;  // exp(theta z)
     Eigen::ArrayXd sorted;
     Eigen::MatrixX3d jacobian;
 };
@@ -54,7 +54,8 @@ std::optional<Curve> fit_curve(const FitPoints& points, const FitOptions& option
 // counted `count` times (a bootstrap).
 bool start_fit(const FitPoints& points, const FitOptions& options, FitWorkspace& work, FitStart& start);
 std::optional<Curve> curve_at(const FitOptions& options, const FitStart& start);
-std::optional<Curve> refit(const FitPoints& points, const FitOptions& options, const Eigen::ArrayXd& count, const FitStart& start, FitWorkspace& work);
+std::optional<Curve> refit(const FitPoints& points, const FitOptions& options, const Eigen::ArrayXd& count,
+                           const FitStart& start, FitWorkspace& work);
 
 // Bins of equal count along the level; equal levels are never parted.
 struct CubicBins {

@@ -18,7 +18,8 @@ double count_of(const Eigen::ArrayXd& count, Eigen::Index i) { return count.size
 // The value with half of the weight below it, where `at(i)` gives the points of the bin in order of `value`; between two
 // values where the half falls between them.
 template <class At>
-double median(const Eigen::ArrayXd& value, const Eigen::ArrayXd& count, Eigen::Index from, Eigen::Index to, double weight, const At& at) {
+double median(const Eigen::ArrayXd& value, const Eigen::ArrayXd& count, Eigen::Index from, Eigen::Index to,
+              double weight, const At& at) {
     double below = 0.0;
     for (Eigen::Index k = from; k < to; ++k) {
         const Eigen::Index i = at(k);
@@ -77,7 +78,8 @@ std::optional<Curve> fit_cubic(const FitPoints& points, const CubicBins& bins, c
         const Eigen::Index to = bins.starts[bin + 1];
         const double weight = count.size() > 0 ? count.segment(from, to - from).sum() : static_cast<double>(to - from);
         if (weight == 0.0) continue;
-        const double force_N = median(points.force_N, count, from, to, weight, [&](Eigen::Index k) { return bins.by_force[static_cast<std::size_t>(k)]; });
+        const double force_N = median(points.force_N, count, from, to, weight,
+                                      [&](Eigen::Index k) { return bins.by_force[static_cast<std::size_t>(k)]; });
         const double level = median(points.level, count, from, to, weight, [](Eigen::Index k) { return k; });
         if (force_N > 0.0) knots.push_back({level, force_N, weight});
     }

@@ -7,11 +7,10 @@
 // SIAM J. Numer. Anal. 10, 1973). theta is searched over its whole sensible range, so that no start can miss it, then
 // all parameters are polished together by damped Gauss-Newton, whose fixed point does not depend on where it began.
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <limits>
-
-#include <Eigen/Cholesky>
 
 #include "calibration/fit.h"
 
@@ -101,7 +100,8 @@ bool polish(const FitPoints& points, const FitOptions& options, int steps, FitWo
 }
 
 // Best A (and c) for one theta, and the cost. Under a log error the weights 1/f^2 stand in for the logarithm.
-double project(const FitPoints& points, const FitOptions& options, double theta, const Eigen::ArrayXd& w, FitWorkspace& work, Eigen::Vector3d& p) {
+double project(const FitPoints& points, const FitOptions& options, double theta, const Eigen::ArrayXd& w,
+               FitWorkspace& work, Eigen::Vector3d& p) {
     work.wave = (theta * work.z).exp();
     const double ss = (w * work.wave.square()).sum();
     const double sf = (w * work.wave * points.force_N).sum();
@@ -208,8 +208,8 @@ void believe(const FitOptions& options, double scale, FitWorkspace& work) {
 
 // One Gauss-Newton step with the weights of the present residuals, in one pass over the points, block by block: what
 // repeats on resampled points spend their time in. Returns the greatest relative change, infinity if there is none.
-double reweighted_step(const FitPoints& points, const FitOptions& options, const Eigen::ArrayXd& count, double scale, FitWorkspace& work,
-                       Eigen::Vector3d& p) {
+double reweighted_step(const FitPoints& points, const FitOptions& options, const Eigen::ArrayXd& count, double scale,
+                       FitWorkspace& work, Eigen::Vector3d& p) {
     constexpr Eigen::Index kBlock = 512;
     using Block = Eigen::Array<double, Eigen::Dynamic, 1, 0, kBlock, 1>;  // on the stack
     const bool line = log_line(options);
@@ -260,7 +260,8 @@ double reweighted_step(const FitPoints& points, const FitOptions& options, const
     }
     if (k == 2) normal(2, 2) = 1.0;
     const Eigen::Vector3d unit = normal.diagonal().array().sqrt().max(1e-300).inverse();
-    const Eigen::Matrix3d scaled = unit.asDiagonal() * Eigen::Matrix3d(normal.selfadjointView<Eigen::Upper>()) * unit.asDiagonal();
+    const Eigen::Matrix3d scaled =
+        unit.asDiagonal() * Eigen::Matrix3d(normal.selfadjointView<Eigen::Upper>()) * unit.asDiagonal();
     const Eigen::Vector3d change = unit.asDiagonal() * scaled.ldlt().solve(unit.asDiagonal() * gradient);
     p += change;
     const bool rises = (line || p(0) > 0.0 || has_offset(options)) && (line ? 1.0 : p(0)) * p(1) > 0.0;
@@ -310,7 +311,8 @@ std::optional<Curve> curve_of(const FitOptions& options, const Eigen::Vector3d& 
         curve.b = p(1) / options.level_scale;
         curve.offset_N = has_offset(options) ? p(2) : 0.0;
     }
-    const bool usable = std::isfinite(curve.a_N) && std::isfinite(curve.b) && std::isfinite(curve.offset_N) && curve.a_N * curve.b > 0.0;
+    const bool usable = std::isfinite(curve.a_N) && std::isfinite(curve.b) && std::isfinite(curve.offset_N) &&
+                        curve.a_N * curve.b > 0.0;
     return usable ? std::optional(curve) : std::nullopt;
 }
 
@@ -335,7 +337,8 @@ bool start_fit(const FitPoints& points, const FitOptions& options, FitWorkspace&
 
 std::optional<Curve> curve_at(const FitOptions& options, const FitStart& start) { return curve_of(options, start.p); }
 
-std::optional<Curve> refit(const FitPoints& points, const FitOptions& options, const Eigen::ArrayXd& count, const FitStart& start, FitWorkspace& work) {
+std::optional<Curve> refit(const FitPoints& points, const FitOptions& options, const Eigen::ArrayXd& count,
+                           const FitStart& start, FitWorkspace& work) {
     // From so near, three steps leave less than a hundredth of the spread that is asked for.
     FitStart here = start;
     for (int step = 0; step < 3; ++step) {

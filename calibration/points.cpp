@@ -34,13 +34,16 @@ double median_of(std::vector<double> values) {
 void check_enough(const CalibrationRows& rows) {
     const std::set<double> levels(rows.level.begin(), rows.level.end());
     if (levels.size() < 3) {
-        throw files::bad_input(rows.file, "level", std::to_string(levels.size()) + " distinct levels in " + std::to_string(rows.level.size()) + " rows",
-                        "3 at least");
+        throw files::bad_input(
+            rows.file, "level",
+            std::to_string(levels.size()) + " distinct levels in " + std::to_string(rows.level.size()) + " rows",
+            "3 at least");
     }
     const auto [lowest, highest] = std::minmax_element(rows.force_N.begin(), rows.force_N.end());
     if (*lowest == *highest) {
-        throw files::bad_input(rows.file, "force_N", "the same force, " + files::short_number(*lowest) + " N, in every row",
-                        "forces that rise with the level (is the sensor connected?)");
+        throw files::bad_input(rows.file, "force_N",
+                               "the same force, " + files::short_number(*lowest) + " N, in every row",
+                               "forces that rise with the level (is the sensor connected?)");
     }
 }
 
@@ -48,12 +51,16 @@ void check_enough(const CalibrationRows& rows) {
 void check_unit(const CalibrationRows& rows) {
     const double highest_N = *std::max_element(rows.force_N.begin(), rows.force_N.end());
     if (highest_N > 60.0) {
-        throw files::bad_input(rows.file, "force_N", "forces up to " + files::short_number(highest_N) + " N",
-                        "less than 60 N under a pen or finger (gram-force? name the column force_gf; --any-force if it is right)");
+        throw files::bad_input(
+            rows.file, "force_N", "forces up to " + files::short_number(highest_N) + " N",
+            "less than 60 N under a pen or finger (gram-force? name the column force_gf; --any-force if it is right)");
     }
     if (highest_N < 0.15) {
-        throw files::bad_input(rows.file, "force_gf", "no force above " + files::short_number(highest_N) + " N (" + files::short_number(highest_N / 9.80665e-3) + " gf)",
-                        "more than 0.15 N at the highest level (newtons? name the column force_N; --any-force if it is right)");
+        throw files::bad_input(
+            rows.file, "force_gf",
+            "no force above " + files::short_number(highest_N) + " N (" + files::short_number(highest_N / 9.80665e-3) +
+                " gf)",
+            "more than 0.15 N at the highest level (newtons? name the column force_N; --any-force if it is right)");
     }
     // rows in another unit than their neighbours in level are off by 102
     const auto order = by_level(rows.level);
@@ -67,8 +74,10 @@ void check_unit(const CalibrationRows& rows) {
         const bool gf_here = factor > 50.0 && factor < 200.0;
         const bool N_here = factor < 1.0 / 50.0 && factor > 1.0 / 200.0;
         if (rows.level[order[i]] > 0.0 && (gf_here || N_here)) {
-            throw files::bad_input(rows.file, line_of(rows, order[i]) + ", force", files::short_number(rows.force_N[order[i]]) + " N",
-                            "about " + files::short_number(median_of(near)) + " N as at levels beside it (gram-force and newtons mixed up?)");
+            throw files::bad_input(rows.file, line_of(rows, order[i]) + ", force",
+                                   files::short_number(rows.force_N[order[i]]) + " N",
+                                   "about " + files::short_number(median_of(near)) +
+                                       " N as at levels beside it (gram-force and newtons mixed up?)");
         }
     }
 }
@@ -76,9 +85,11 @@ void check_unit(const CalibrationRows& rows) {
 void check_times(const CalibrationRows& rows) {
     for (std::size_t i = 1; i < rows.time_s.size(); ++i) {
         if (rows.time_s[i] > rows.time_s[i - 1]) continue;
-        if (!rows.repeat.empty() && rows.repeat[i] != rows.repeat[i - 1]) continue;  // each repeat may have its own zero
-        throw files::bad_input(rows.file, line_of(rows, i) + ", time_s", files::number_text(rows.time_s[i]) + " after " + files::number_text(rows.time_s[i - 1]),
-                        "times that rise (sorted, none twice)");
+        if (!rows.repeat.empty() && rows.repeat[i] != rows.repeat[i - 1])
+            continue;  // each repeat may have its own zero
+        throw files::bad_input(rows.file, line_of(rows, i) + ", time_s",
+                               files::number_text(rows.time_s[i]) + " after " + files::number_text(rows.time_s[i - 1]),
+                               "times that rise (sorted, none twice)");
     }
 }
 
@@ -97,9 +108,12 @@ void check_running(const CalibrationRows& rows) {
             high = std::max(high, rows.level[to]);
         }
         if (to - from + 1 >= kLong && high - low > 0.2 * (*highest - *lowest)) {
-            throw files::bad_input(rows.file, "lines " + std::to_string(rows.line[from]) + " to " + std::to_string(rows.line[to]) + ", force",
-                            files::short_number(rows.force_N[from]) + " N all the time while the level goes from " + files::short_number(low) + " to " + files::short_number(high),
-                            "a force that follows (the sensor stopped?)");
+            throw files::bad_input(
+                rows.file,
+                "lines " + std::to_string(rows.line[from]) + " to " + std::to_string(rows.line[to]) + ", force",
+                files::short_number(rows.force_N[from]) + " N all the time while the level goes from " +
+                    files::short_number(low) + " to " + files::short_number(high),
+                "a force that follows (the sensor stopped?)");
         }
         from = to + 1;
     }
@@ -109,19 +123,22 @@ void check_running(const CalibrationRows& rows) {
 double noise_N(const std::vector<double>& force_N) {
     if (force_N.size() < 3) return 0.0;
     std::vector<double> bends;
-    for (std::size_t i = 1; i + 1 < force_N.size(); ++i) bends.push_back(std::abs(force_N[i] - 0.5 * (force_N[i - 1] + force_N[i + 1])));
+    for (std::size_t i = 1; i + 1 < force_N.size(); ++i)
+        bends.push_back(std::abs(force_N[i] - 0.5 * (force_N[i - 1] + force_N[i + 1])));
     return 1.4826 * median_of(bends) / std::sqrt(1.5);
 }
 
 // The quarter of the rows next to one end, the rows at the very end not among them.
-std::vector<double> quarter(const CalibrationRows& rows, const std::vector<std::size_t>& order, double lowest, double highest, bool top) {
+std::vector<double> quarter(const CalibrationRows& rows, const std::vector<std::size_t>& order, double lowest,
+                            double highest, bool top) {
     std::vector<double> inside;
     for (const std::size_t i : order) {
         if (rows.level[i] > lowest && rows.level[i] < highest) inside.push_back(rows.force_N[i]);
     }
     const std::size_t n = std::min(inside.size(), std::max<std::size_t>(inside.size() / 4, 5));
     const auto count = static_cast<std::ptrdiff_t>(n);
-    return top ? std::vector<double>(inside.end() - count, inside.end()) : std::vector<double>(inside.begin(), inside.begin() + count);
+    return top ? std::vector<double>(inside.end() - count, inside.end())
+               : std::vector<double>(inside.begin(), inside.begin() + count);
 }
 
 int repeat_of(const CalibrationRows& rows, std::size_t i) { return rows.repeat.empty() ? 0 : rows.repeat[i]; }
@@ -180,13 +197,15 @@ Ends ends_of(const CalibrationRows& rows, LevelRange range) {
         ends.saturation_N = lowest_N;
         ends.saturation_level = plateau;
         ends.above_saturation_N = highest_N;
-        for (std::size_t i = 0; i < rows.level.size(); ++i) ends.saturated += rows.level[i] >= plateau && rows.force_N[i] > lowest_N + 3.0 * noise;
+        for (std::size_t i = 0; i < rows.level.size(); ++i)
+            ends.saturated += rows.level[i] >= plateau && rows.force_N[i] > lowest_N + 3.0 * noise;
     }
     double silent_N = 0.0;
     for (std::size_t i = 0; i < rows.level.size(); ++i) {
         if (rows.level[i] <= range.lowest) silent_N = std::max(silent_N, rows.force_N[i]);
     }
-    for (std::size_t i = 0; i < rows.level.size(); ++i) ends.silent += rows.level[i] <= range.lowest && rows.force_N[i] < silent_N;
+    for (std::size_t i = 0; i < rows.level.size(); ++i)
+        ends.silent += rows.level[i] <= range.lowest && rows.force_N[i] < silent_N;
     return ends;
 }
 

@@ -22,8 +22,8 @@ struct CalibrationRows {
     std::vector<double> time_s;
     std::vector<int> repeat;  // 0, 1, ... by first occurrence
     std::vector<PressPhase> phase;
-    DeviceNames device;               // from columns pen, tablet, driver, os, date, where all rows agree
-    std::vector<std::string> notes;   // for people: several sessions taken together
+    DeviceNames device;              // from columns pen, tablet, driver, os, date, where all rows agree
+    std::vector<std::string> notes;  // for people: several sessions taken together
 };
 
 struct RowFilter {
@@ -56,12 +56,13 @@ LevelRange level_range_of(const std::vector<double>& level);
 
 // What the two ends of the range do to the points.
 struct Ends {
-    double activation_N = platform::kMissing;   // lowest force with a level above 0 (median over repeats)
-    double saturation_N = platform::kMissing;   // lowest force at which the level rises no more; NaN: it rises to the end
+    double activation_N = platform::kMissing;  // lowest force with a level above 0 (median over repeats)
+    double saturation_N =
+        platform::kMissing;  // lowest force at which the level rises no more; NaN: it rises to the end
     double saturation_level = platform::kMissing;
     double above_saturation_N = platform::kMissing;  // the greatest force measured there
-    std::size_t silent = 0;           // rows at level 0 pressed with less than the greatest force there
-    std::size_t saturated = 0;        // rows beyond saturation
+    std::size_t silent = 0;                          // rows at level 0 pressed with less than the greatest force there
+    std::size_t saturated = 0;                       // rows beyond saturation
 };
 Ends ends_of(const CalibrationRows& rows, LevelRange range);
 

@@ -26,7 +26,8 @@ Columns find_columns(const files::Table& table, const ReadOptions& options) {
         return table.has_column(name) ? std::optional(table.column(name)) : std::nullopt;
     };
     Columns columns;
-    columns.level = table.column(!table.has_column("level") && table.has_column("pressure_norm") ? "pressure_norm" : "level");
+    columns.level =
+        table.column(!table.has_column("level") && table.has_column("pressure_norm") ? "pressure_norm" : "level");
     columns.force_N = optional("force_N");
     columns.force_gf = optional("force_gf");
     if (!columns.force_N && !columns.force_gf) table.column("force_N");  // says what there is
@@ -91,7 +92,8 @@ CalibrationRows read_points(const std::filesystem::path& file, const ReadOptions
     std::vector<int> session;
     while (table.next()) {
         bool wanted = true;
-        for (std::size_t i = 0; i < columns.where.size(); ++i) wanted = wanted && table.field(columns.where[i]) == options.where[i].value;
+        for (std::size_t i = 0; i < columns.where.size(); ++i)
+            wanted = wanted && table.field(columns.where[i]) == options.where[i].value;
         if (!wanted) continue;
         const double level = table.finite_number(columns.level);
         if (level < 0.0) table.fail(columns.level, "a level >= 0");
@@ -112,11 +114,13 @@ CalibrationRows read_points(const std::filesystem::path& file, const ReadOptions
     }
     if (rows.level.empty() && !options.where.empty()) {
         std::string asked;
-        for (const RowFilter& filter : options.where) asked += (asked.empty() ? "" : ", ") + filter.column + "=" + filter.value;
+        for (const RowFilter& filter : options.where)
+            asked += (asked.empty() ? "" : ", ") + filter.column + "=" + filter.value;
         throw files::bad_input(rows.file, "--where", "no row with " + asked, "a value that occurs in that column");
     }
     if (sessions.size() > 1) {
-        rows.notes.push_back(std::to_string(sessions.size()) + " sessions (pen, tablet, date) are taken together, as repeats: "
+        rows.notes.push_back(std::to_string(sessions.size()) +
+                             " sessions (pen, tablet, date) are taken together, as repeats: "
                              "choose one with --where, pens differ by half within one model");
         if (rows.repeat.empty()) rows.repeat = session;
     }

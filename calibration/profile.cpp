@@ -7,8 +7,10 @@ namespace palpa::calibration {
 
 double level_of(const Profile& profile, const platform::Sample& sample) {
     switch (profile.level) {
-        case LevelField::pressure: return sample.pressure;
-        case LevelField::pressure_raw: return sample.pressure_raw;
+        case LevelField::pressure:
+            return sample.pressure;
+        case LevelField::pressure_raw:
+            return sample.pressure_raw;
         case LevelField::contact_area:
             return 0.25 * std::numbers::pi * sample.width_px * sample.height_px / profile.full_contact_area_px2;
     }
@@ -28,9 +30,12 @@ double level_at_force(const Profile& profile, double force_N) {
 
 const char* name_of(LevelField level) {
     switch (level) {
-        case LevelField::pressure: return "pressure";
-        case LevelField::pressure_raw: return "pressure_raw";
-        case LevelField::contact_area: return "contact_area";
+        case LevelField::pressure:
+            return "pressure";
+        case LevelField::pressure_raw:
+            return "pressure_raw";
+        case LevelField::contact_area:
+            return "contact_area";
     }
     return "pressure";
 }

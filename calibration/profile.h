@@ -30,13 +30,14 @@ struct Profile {
     DeviceNames device;
     Curve curve;
     LevelField level = LevelField::pressure;
-    double level_lowest = 0.0;   // what the device can report; levels are clamped to this range
+    double level_lowest = 0.0;  // what the device can report; levels are clamped to this range
     double level_highest = 1.0;
-    double fitted_lowest = platform::kMissing;   // the part of it that the points cover; beyond, the curve is extrapolated
+    double fitted_lowest =
+        platform::kMissing;  // the part of it that the points cover; beyond, the curve is extrapolated
     double fitted_highest = platform::kMissing;
     double median_relative_error = platform::kMissing;  // on points left out of the fit, where known
-    double full_contact_area_px2 = 0.0;  // contact_area only: the ellipse whose level is 1
-    std::vector<CalibrationPoint> points;  // what the curve was fitted to, where known
+    double full_contact_area_px2 = 0.0;                 // contact_area only: the ellipse whose level is 1
+    std::vector<CalibrationPoint> points;               // what the curve was fitted to, where known
 };
 
 // The field of the sample that the profile reads; NaN if the device did not report it.

@@ -33,7 +33,8 @@ std::vector<CalibrationPoint> read_points(files::JsonReader json) {
 void must_rise(const files::JsonReader& json, std::string_view key, const std::vector<double>& values) {
     for (std::size_t i = 1; i < values.size(); ++i) {
         if (values[i] > values[i - 1]) continue;
-        json.fail(key, files::short_number(values[i]) + " after " + files::short_number(values[i - 1]), "numbers that rise");
+        json.fail(key, files::short_number(values[i]) + " after " + files::short_number(values[i - 1]),
+                  "numbers that rise");
     }
 }
 
@@ -63,7 +64,8 @@ Curve read_curve(CurveModel model, files::JsonReader json) {
             curve.b = json.number("b", {-1e3, 1e3});
             curve.offset_N = json.number("offset_N", {-kGreatest, kGreatest});
             if (!(curve.a_N * curve.b > 0.0)) {
-                json.fail("b", files::short_number(curve.b), "not 0, and the sign of a_N (" + files::short_number(curve.a_N) + "): the curve must rise");
+                json.fail("b", files::short_number(curve.b),
+                          "not 0, and the sign of a_N (" + files::short_number(curve.a_N) + "): the curve must rise");
             }
             break;
         case CurveModel::power:
@@ -71,7 +73,9 @@ Curve read_curve(CurveModel model, files::JsonReader json) {
             curve.a_N = json.number("a_N", {0.0, 1e300, true});  // N per level^b, tiny or huge where levels are counts
             curve.b = json.number("b", {0.0, 1e2, true});
             break;
-        case CurveModel::monotone_cubic: curve = read_cubic(json); break;
+        case CurveModel::monotone_cubic:
+            curve = read_cubic(json);
+            break;
     }
     curve.model = model;
     json.finish();
@@ -81,7 +85,8 @@ Curve read_curve(CurveModel model, files::JsonReader json) {
 void read_range(files::JsonReader& json, std::string_view key, double& lowest, double& highest) {
     const auto range = json.numbers(key, 2, {0.0, 1e9});
     if (!(range[0] < range[1])) {
-        json.fail(key, "[" + files::short_number(range[0]) + ", " + files::short_number(range[1]) + "]", "the lower level first");
+        json.fail(key, "[" + files::short_number(range[0]) + ", " + files::short_number(range[1]) + "]",
+                  "the lower level first");
     }
     lowest = range[0];
     highest = range[1];
@@ -97,7 +102,9 @@ void check_values(const files::JsonReader& json, const Profile& profile) {
                   "less than 1000 N (is b per count where level_range is 0 ... 1, or the other way round?)");
     }
     if (!(highest_N > std::max(lowest_N, 0.0))) {
-        json.fail("parameters", files::short_number(lowest_N) + " N at the lowest and " + files::short_number(highest_N) + " N at the highest level",
+        json.fail("parameters",
+                  files::short_number(lowest_N) + " N at the lowest and " + files::short_number(highest_N) +
+                      " N at the highest level",
                   "a force that rises above 0");
     }
 }
@@ -107,7 +114,8 @@ void check_values(const files::JsonReader& json, const Profile& profile) {
 Profile read_profile(const std::filesystem::path& path) {
     const files::Json root = files::read_json(path);
     files::JsonReader json(root, path.string());
-    json.only({"device", "model", "parameters", "level", "level_range", "fitted_range", "full_contact_area_px2", "quality", "points"});
+    json.only({"device", "model", "parameters", "level", "level_range", "fitted_range", "full_contact_area_px2",
+               "quality", "points"});
     Profile profile;
     profile.id = path.stem().string();
     profile.device = read_device(json.object("device"));
@@ -121,7 +129,8 @@ Profile read_profile(const std::filesystem::path& path) {
     }
     if (json.has("quality")) {
         const files::Json& quality = json.any("quality");
-        if (quality.is_object() && quality.contains("median_relative_error") && quality["median_relative_error"].is_number()) {
+        if (quality.is_object() && quality.contains("median_relative_error") &&
+            quality["median_relative_error"].is_number()) {
             profile.median_relative_error = quality["median_relative_error"].get<double>();
         }
     }
@@ -134,9 +143,12 @@ Profile read_profile(const std::filesystem::path& path) {
 files::Json parameters_json(const Curve& curve) {
     switch (curve.model) {
         case CurveModel::exponential:
-        case CurveModel::power: return {{"a_N", curve.a_N}, {"b", curve.b}};
-        case CurveModel::exponential_offset: return {{"a_N", curve.a_N}, {"b", curve.b}, {"offset_N", curve.offset_N}};
-        case CurveModel::monotone_cubic: return {{"level", curve.knot_level}, {"force_N", curve.knot_N}};
+        case CurveModel::power:
+            return {{"a_N", curve.a_N}, {"b", curve.b}};
+        case CurveModel::exponential_offset:
+            return {{"a_N", curve.a_N}, {"b", curve.b}, {"offset_N", curve.offset_N}};
+        case CurveModel::monotone_cubic:
+            return {{"level", curve.knot_level}, {"force_N", curve.knot_N}};
     }
     return {};
 }
@@ -144,7 +156,11 @@ files::Json parameters_json(const Curve& curve) {
 files::Json profile_json(const Profile& profile, const files::Json& quality) {
     const DeviceNames& device = profile.device;
     files::Json json;
-    json["device"] = {{"pen", device.pen}, {"tablet", device.tablet}, {"driver", device.driver}, {"os", device.os}, {"date", device.date}};
+    json["device"] = {{"pen", device.pen},
+                      {"tablet", device.tablet},
+                      {"driver", device.driver},
+                      {"os", device.os},
+                      {"date", device.date}};
     json["model"] = name_of(profile.curve.model);
     json["parameters"] = parameters_json(profile.curve);
     json["level"] = name_of(profile.level);

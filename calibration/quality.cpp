@@ -13,8 +13,8 @@ double r2(const Eigen::ArrayXd& measured, const Eigen::ArrayXd& predicted) {
     return scatter > 0.0 ? 1.0 - (measured - predicted).square().sum() / scatter : platform::kMissing;
 }
 
-std::vector<double> relative_errors(const Eigen::ArrayXd& level, const Eigen::ArrayXd& measured_N, const Eigen::ArrayXd& predicted_N, double lowest,
-                                    double from, double to) {
+std::vector<double> relative_errors(const Eigen::ArrayXd& level, const Eigen::ArrayXd& measured_N,
+                                    const Eigen::ArrayXd& predicted_N, double lowest, double from, double to) {
     std::vector<double> errors;
     for (Eigen::Index i = 0; i < level.size(); ++i) {
         if (!(level(i) > lowest && level(i) >= from && level(i) < to && measured_N(i) > 0.0)) continue;
@@ -50,7 +50,8 @@ FitQuality fit_quality(const Eigen::ArrayXd& measured_N, const Eigen::ArrayXd& p
     return quality;
 }
 
-std::vector<ErrorBand> error_bands(const Eigen::ArrayXd& level, const Eigen::ArrayXd& measured_N, const Eigen::ArrayXd& predicted_N, LevelRange range) {
+std::vector<ErrorBand> error_bands(const Eigen::ArrayXd& level, const Eigen::ArrayXd& measured_N,
+                                   const Eigen::ArrayXd& predicted_N, LevelRange range) {
     constexpr int kBands = 5;
     std::vector<ErrorBand> bands;
     for (int i = 0; i < kBands; ++i) {
@@ -58,7 +59,8 @@ std::vector<ErrorBand> error_bands(const Eigen::ArrayXd& level, const Eigen::Arr
         band.from = range.lowest + (range.highest - range.lowest) * i / kBands;
         band.to = range.lowest + (range.highest - range.lowest) * (i + 1) / kBands;
         const bool last = i + 1 == kBands;
-        auto errors = relative_errors(level, measured_N, predicted_N, range.lowest, band.from, last ? std::numeric_limits<double>::infinity() : band.to);
+        auto errors = relative_errors(level, measured_N, predicted_N, range.lowest, band.from,
+                                      last ? std::numeric_limits<double>::infinity() : band.to);
         band.n = errors.size();
         band.median = quantile(errors, 0.5);
         band.p90 = quantile(errors, 0.9);
@@ -67,8 +69,10 @@ std::vector<ErrorBand> error_bands(const Eigen::ArrayXd& level, const Eigen::Arr
     return bands;
 }
 
-double median_relative_error(const Eigen::ArrayXd& level, const Eigen::ArrayXd& measured_N, const Eigen::ArrayXd& predicted_N, LevelRange range) {
-    auto errors = relative_errors(level, measured_N, predicted_N, range.lowest, range.lowest, std::numeric_limits<double>::infinity());
+double median_relative_error(const Eigen::ArrayXd& level, const Eigen::ArrayXd& measured_N,
+                             const Eigen::ArrayXd& predicted_N, LevelRange range) {
+    auto errors = relative_errors(level, measured_N, predicted_N, range.lowest, range.lowest,
+                                  std::numeric_limits<double>::infinity());
     return quantile(errors, 0.5);
 }
 

@@ -28,8 +28,10 @@ FitQuality fit_quality(const Eigen::ArrayXd& measured_N, const Eigen::ArrayXd& p
 
 // Five bands of equal width over the range, the lightest first. Points without a level or a force above 0 are in none
 // of them: a device that reports 0 says nothing about the force. The range's highest level is in the last band.
-std::vector<ErrorBand> error_bands(const Eigen::ArrayXd& level, const Eigen::ArrayXd& measured_N, const Eigen::ArrayXd& predicted_N, LevelRange range);
-double median_relative_error(const Eigen::ArrayXd& level, const Eigen::ArrayXd& measured_N, const Eigen::ArrayXd& predicted_N, LevelRange range);
+std::vector<ErrorBand> error_bands(const Eigen::ArrayXd& level, const Eigen::ArrayXd& measured_N,
+                                   const Eigen::ArrayXd& predicted_N, LevelRange range);
+double median_relative_error(const Eigen::ArrayXd& level, const Eigen::ArrayXd& measured_N,
+                             const Eigen::ArrayXd& predicted_N, LevelRange range);
 
 // Linear between the order statistics; NaN for no values. Changes the order of `values`.
 double quantile(std::vector<double>& values, double share);

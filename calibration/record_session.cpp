@@ -33,7 +33,8 @@ bool level_in(const std::deque<RecordSession::Timed>& levels, double from_s, dou
 }
 
 // Mean force, and the difference of the means of its two halves: noise does not hide a hand that holds still.
-bool force_in(const std::deque<RecordSession::Timed>& forces, double from_s, double to_s, double& mean_N, double& moved_N) {
+bool force_in(const std::deque<RecordSession::Timed>& forces, double from_s, double to_s, double& mean_N,
+              double& moved_N) {
     double sum[2] = {0.0, 0.0};
     int n[2] = {0, 0};
     const double middle_s = 0.5 * (from_s + to_s);
@@ -110,15 +111,20 @@ bool capture(const RecordOptions& options, double now_s, RecordSession& session)
     if (!session.touching) return false;
     const double from_s = now_s - options.steady_s;
     double level = 0.0, level_moved = 0.0, force_N = 0.0, force_moved_N = 0.0;
-    if (!level_in(session.levels, from_s, level, level_moved) || !force_in(session.forces, from_s, now_s, force_N, force_moved_N)) return false;
+    if (!level_in(session.levels, from_s, level, level_moved) ||
+        !force_in(session.forces, from_s, now_s, force_N, force_moved_N))
+        return false;
     if (!(level > options.range.lowest) || level_moved > options.level_tolerance * width(options)) return false;
-    if (force_moved_N > std::max(options.force_tolerance * force_N, options.least_tolerance_N) || !(force_N > 0.0)) return false;
+    if (force_moved_N > std::max(options.force_tolerance * force_N, options.least_tolerance_N) || !(force_N > 0.0))
+        return false;
     const double apart = 0.5 * width(options) / options.bands;
     // at full level the force may still rise: that shows the saturation, and is captured too
-    const bool same_place = std::abs(level - session.last_level) < apart && std::abs(force_N - session.last_force_N) < 0.1 * session.last_force_N;
+    const bool same_place = std::abs(level - session.last_level) < apart &&
+                            std::abs(force_N - session.last_force_N) < 0.1 * session.last_force_N;
     if (same_place) return false;
     const bool rising = std::isnan(session.last_level) || force_N >= session.last_force_N;
-    session.points.push_back({now_s + session.clock_shift_s, level, force_N, session.repeat, rising ? PressPhase::press : PressPhase::release});
+    session.points.push_back({now_s + session.clock_shift_s, level, force_N, session.repeat,
+                              rising ? PressPhase::press : PressPhase::release});
     session.captured_in_repeat = true;
     session.last_level = level;
     session.last_force_N = force_N;
@@ -163,7 +169,8 @@ Knowledge knowledge_of(const RecordOptions& options, const std::vector<CapturedP
                     return std::abs(point.level - centre) <= 1.5 * width(options) / options.bands;
                 });
                 if (!near) continue;
-                const auto at = static_cast<std::size_t>(std::lround((band + 0.5) / options.bands * static_cast<double>(boot.level.size() - 1)));
+                const auto at = static_cast<std::size_t>(
+                    std::lround((band + 0.5) / options.bands * static_cast<double>(boot.level.size() - 1)));
                 const double force_N = value_N(calibration.profile.curve, boot.level[at]);
                 out.band_error[static_cast<std::size_t>(band)] = 0.5 * (boot.high_N[at] - boot.low_N[at]) / force_N;
             }
@@ -176,11 +183,14 @@ Knowledge knowledge_of(const RecordOptions& options, const std::vector<CapturedP
     for (int band = 0; band < options.bands; ++band) {
         const double error = out.band_error[static_cast<std::size_t>(band)];
         if (error <= options.goal) continue;
-        places += (places.empty() ? "" : ", ") + percent(static_cast<double>(band) / options.bands) + " to " + percent((band + 1.0) / options.bands) +
+        places += (places.empty() ? "" : ", ") + percent(static_cast<double>(band) / options.bands) + " to " +
+                  percent((band + 1.0) / options.bands) +
                   (std::isnan(error) ? " (no point)" : " (" + percent(error) + ")");
     }
-    if (out.repeats < options.least_repeats) out.missing = std::to_string(out.repeats) + " of " + std::to_string(options.least_repeats) + " repeats";
-    if (!places.empty()) out.missing += (out.missing.empty() ? "" : "; ") + ("not known to " + percent(options.goal) + ": " + places);
+    if (out.repeats < options.least_repeats)
+        out.missing = std::to_string(out.repeats) + " of " + std::to_string(options.least_repeats) + " repeats";
+    if (!places.empty())
+        out.missing += (out.missing.empty() ? "" : "; ") + ("not known to " + percent(options.goal) + ": " + places);
     out.done = out.missing.empty();
     return out;
 }
@@ -200,13 +210,14 @@ std::string points_csv(const std::vector<CapturedPoint>& points) {
 
 std::vector<CapturedPoint> read_session(const std::filesystem::path& file) {
     files::Table table = files::read_csv(file);
-    const std::size_t time_s = table.column("time_s"), level = table.column("level"), force_N = table.column("force_N"), repeat = table.column("repeat"),
-                      phase = table.column("phase");
+    const std::size_t time_s = table.column("time_s"), level = table.column("level"), force_N = table.column("force_N"),
+                      repeat = table.column("repeat"), phase = table.column("phase");
     std::vector<CapturedPoint> points;
     while (table.next()) {
         const double number = table.finite_number(repeat);
         if (number < 0.0 || number > 1e6 || number != std::floor(number)) table.fail(repeat, "a whole number from 0");
-        points.push_back({table.finite_number(time_s), table.finite_number(level), table.finite_number(force_N), static_cast<int>(number),
+        points.push_back({table.finite_number(time_s), table.finite_number(level), table.finite_number(force_N),
+                          static_cast<int>(number),
                           table.field(phase) == "release" ? PressPhase::release : PressPhase::press});
     }
     return points;

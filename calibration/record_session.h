@@ -12,13 +12,13 @@ namespace palpa::calibration {
 
 struct RecordOptions {
     LevelRange range;
-    double steady_s = 0.3;            // how long both signals must hold still
-    double level_tolerance = 0.01;    // of the range
-    double force_tolerance = 0.02;    // of the force, or
+    double steady_s = 0.3;          // how long both signals must hold still
+    double level_tolerance = 0.01;  // of the range
+    double force_tolerance = 0.02;  // of the force, or
     double least_tolerance_N = 0.01;
-    int bands = 20;                   // of equal width, over the range
+    int bands = 20;  // of equal width, over the range
     int least_repeats = 3;
-    double goal = 0.05;               // half of the 95 % interval, of the force
+    double goal = 0.05;  // half of the 95 % interval, of the force
 };
 
 struct CapturedPoint {
@@ -34,17 +34,17 @@ struct RecordSession {
         double t_s;
         double value;
     };
-    std::deque<Timed> levels;   // the last second or so, and one before the still moment
+    std::deque<Timed> levels;  // the last second or so, and one before the still moment
     std::deque<Timed> forces;
-    std::deque<Timed> rest;     // what the sensor shows while nothing touches
-    double zero_N = platform::kMissing;   // to be subtracted from what it shows
+    std::deque<Timed> rest;              // what the sensor shows while nothing touches
+    double zero_N = platform::kMissing;  // to be subtracted from what it shows
     bool touching = false;
-    double lifted_s = 0.0;      // since when not
-    int repeat = 0;             // 0, 1, ...; one press and release is one
+    double lifted_s = 0.0;  // since when not
+    int repeat = 0;         // 0, 1, ...; one press and release is one
     bool captured_in_repeat = false;
     double last_level = platform::kMissing;  // captured last in this repeat
     double last_force_N = 0.0;
-    double clock_shift_s = 0.0;    // so that times rise when the computer was started anew in between
+    double clock_shift_s = 0.0;  // so that times rise when the computer was started anew in between
     std::vector<CapturedPoint> points;
 };
 
@@ -69,8 +69,8 @@ int band_of(const RecordOptions& options, double level);
 struct Knowledge {
     std::vector<double> band_error;  // half of the 95 % interval / force; NaN: not measured
     int repeats = 0;
-    bool done = false;               // `goal` is met in every band, by enough repeats
-    std::string missing;             // what is not known, in plain words; empty when done
+    bool done = false;    // `goal` is met in every band, by enough repeats
+    std::string missing;  // what is not known, in plain words; empty when done
 };
 Knowledge knowledge_of(const RecordOptions& options, const std::vector<CapturedPoint>& points);
 

@@ -9,8 +9,8 @@ namespace {
 std::string percent(double share) { return files::short_number(std::round(1000.0 * share) / 10.0) + " %"; }
 
 struct Words {
-    std::string device;     // this pen, this touch surface
-    std::string level;      // pressure, contact area
+    std::string device;  // this pen, this touch surface
+    std::string level;   // pressure, contact area
     double lowest;
     double width;
     std::string at(double value) const { return percent((value - lowest) / width); }
@@ -21,7 +21,8 @@ void about_ends(const Calibration& calibration, const Words& words, std::vector<
     const Profile& profile = calibration.profile;
     if (!std::isnan(ends.saturation_N)) {
         const std::string above = "above " + files::short_number(ends.saturation_N) + " N " + words.device;
-        std::string text = profile.level == LevelField::contact_area ? "above " + files::short_number(ends.saturation_N) + " N the contact area grows no more"
+        std::string text = profile.level == LevelField::contact_area
+                               ? "above " + files::short_number(ends.saturation_N) + " N the contact area grows no more"
                            : ends.saturation_level < profile.level_highest
                                ? above + " reports no more than " + words.at(profile.fitted_highest) + " " + words.level
                                : above + " reports full " + words.level;
@@ -31,23 +32,26 @@ void about_ends(const Calibration& calibration, const Words& words, std::vector<
                       files::short_number(value_N(profile.curve, profile.fitted_highest)) + " N are extrapolated");
     }
     if (profile.fitted_lowest > words.lowest + 0.05 * words.width) {
-        out.push_back("the points begin at " + words.at(profile.fitted_lowest) + " " + words.level + ": light touch below " +
-                      files::short_number(value_N(profile.curve, profile.fitted_lowest)) + " N is extrapolated");
+        out.push_back("the points begin at " + words.at(profile.fitted_lowest) + " " + words.level +
+                      ": light touch below " + files::short_number(value_N(profile.curve, profile.fitted_lowest)) +
+                      " N is extrapolated");
     }
     if (!(value_N(profile.curve, profile.level_lowest) >= 0.0)) {
-        out.push_back("the curve falls below 0 N at the lightest touch, which is taken as 0 N: another model would do better");
+        out.push_back(
+            "the curve falls below 0 N at the lightest touch, which is taken as 0 N: another model would do better");
     }
 }
 
 void about_errors(const Calibration& calibration, const Words& words, std::vector<std::string>& out) {
     for (const ErrorBand& band : calibration.bands) {
         if (!(band.median > 0.1)) continue;
-        out.push_back("between " + words.at(band.from) + " and " + words.at(band.to) + " " + words.level + " the force is off by " + percent(band.median) +
-                      " (median over points left out of the fit)");
+        out.push_back("between " + words.at(band.from) + " and " + words.at(band.to) + " " + words.level +
+                      " the force is off by " + percent(band.median) + " (median over points left out of the fit)");
     }
     const Drift* drift = calibration.drift ? &*calibration.drift : nullptr;
     if (drift != nullptr && drift->spread > 0.05) {
-        out.push_back("repeats differ by " + percent(drift->spread) + " of the force, and drift by " + percent(drift->per_repeat) + " from one to the next");
+        out.push_back("repeats differ by " + percent(drift->spread) + " of the force, and drift by " +
+                      percent(drift->per_repeat) + " from one to the next");
     }
     if (calibration.hysteresis && std::abs(calibration.hysteresis->median_relative) > 0.05) {
         out.push_back("at one " + words.level + " pressing takes " + percent(calibration.hysteresis->median_relative) +
@@ -62,15 +66,18 @@ void about_errors(const Calibration& calibration, const Words& words, std::vecto
 void about_data(const Calibration& calibration, const Words& words, std::vector<std::string>& out) {
     const LevelsDelivered& levels = calibration.levels;
     if (levels.widest_gap > 0.15 * words.width) {
-        out.push_back("no point between " + words.at(levels.gap_from) + " and " + words.at(levels.gap_from + levels.widest_gap) + " " + words.level +
+        out.push_back("no point between " + words.at(levels.gap_from) + " and " +
+                      words.at(levels.gap_from + levels.widest_gap) + " " + words.level +
                       ": the curve is a guess there");
     }
     constexpr std::size_t kFew = 12;
     if (levels.distinct < kFew) {
-        out.push_back("only " + std::to_string(levels.distinct) + " distinct levels: " + std::to_string(kFew) + " or more show what the curve does between them");
+        out.push_back("only " + std::to_string(levels.distinct) + " distinct levels: " + std::to_string(kFew) +
+                      " or more show what the curve does between them");
     }
     if (calibration.bootstrap.over_repeats && calibration.drift && calibration.drift->repeat_offset.size() < 5) {
-        out.push_back("intervals from " + std::to_string(calibration.drift->repeat_offset.size()) + " repeats are wide and rough: 5 or more tell better");
+        out.push_back("intervals from " + std::to_string(calibration.drift->repeat_offset.size()) +
+                      " repeats are wide and rough: 5 or more tell better");
     }
 }
 
@@ -79,8 +86,8 @@ void about_data(const Calibration& calibration, const Words& words, std::vector<
 std::vector<std::string> warnings_of(const Calibration& calibration, const std::vector<std::string>& notes) {
     const Profile& profile = calibration.profile;
     const bool area = profile.level == LevelField::contact_area;
-    const Words words{area ? "this touch surface" : "this pen", area ? "contact area" : "pressure", profile.level_lowest,
-                      profile.level_highest - profile.level_lowest};
+    const Words words{area ? "this touch surface" : "this pen", area ? "contact area" : "pressure",
+                      profile.level_lowest, profile.level_highest - profile.level_lowest};
     std::vector<std::string> out = notes;
     about_ends(calibration, words, out);
     about_errors(calibration, words, out);

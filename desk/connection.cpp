@@ -1,6 +1,10 @@
 #include "desk/connection.h"
 
+#include <algorithm>
 #include <arpa/inet.h>
+#include <array>
+#include <cerrno>
+#include <chrono>
 #include <fcntl.h>
 #include <netinet/tcp.h>
 #include <openssl/err.h>
@@ -9,11 +13,6 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
-#include <algorithm>
-#include <array>
-#include <cerrno>
-#include <chrono>
-
 #include "desk/request_head.h"
 #include "files/input_error.h"
 #include "files/regular_file.h"
@@ -21,7 +20,7 @@
 namespace palpa::desk {
 namespace {
 
-constexpr double kSlice_s = 0.2;   // how often a waiting connection looks whether the desk is being ended
+constexpr double kSlice_s = 0.2;  // how often a waiting connection looks whether the desk is being ended
 constexpr double kLinger_s = 1.0;
 constexpr std::size_t kLinger_bytes = std::size_t{1} << 20;
 
@@ -66,12 +65,14 @@ TlsContext make_tls(const std::string& cert_file, const std::string& key_file) {
     if (!tls) throw std::runtime_error("TLS cannot be started: " + tls_trouble());
     SSL_CTX_set_min_proto_version(tls.get(), TLS1_2_VERSION);
     SSL_CTX_set_options(tls.get(), SSL_OP_NO_RENEGOTIATION | SSL_OP_NO_COMPRESSION);
-    SSL_CTX_set_mode(tls.get(), SSL_MODE_ENABLE_PARTIAL_WRITE | SSL_MODE_ACCEPT_MOVING_WRITE_BUFFER | SSL_MODE_RELEASE_BUFFERS);
+    SSL_CTX_set_mode(tls.get(),
+                     SSL_MODE_ENABLE_PARTIAL_WRITE | SSL_MODE_ACCEPT_MOVING_WRITE_BUFFER | SSL_MODE_RELEASE_BUFFERS);
     SSL_CTX_set_session_cache_mode(tls.get(), SSL_SESS_CACHE_OFF);
     if (SSL_CTX_use_certificate_chain_file(tls.get(), cert_file.c_str()) != 1) {
         throw files::bad_input(cert_file, "", tls_trouble(), "a certificate in PEM");
     }
-    if (SSL_CTX_use_PrivateKey_file(tls.get(), key_file.c_str(), SSL_FILETYPE_PEM) != 1 || SSL_CTX_check_private_key(tls.get()) != 1) {
+    if (SSL_CTX_use_PrivateKey_file(tls.get(), key_file.c_str(), SSL_FILETYPE_PEM) != 1 ||
+        SSL_CTX_check_private_key(tls.get()) != 1) {
         throw files::bad_input(key_file, "", tls_trouble(), "the private key in PEM that belongs to " + cert_file);
     }
     return tls;
@@ -175,8 +176,9 @@ bool Connection::shake_hands() {
 }
 
 ssize_t Connection::receive(char* out, size_t size) {
-    const auto n = transfer([&](SSL* ssl) { return SSL_read(ssl, out, static_cast<int>(std::min<size_t>(size, 1 << 20))); },
-                            [&](int fd) { return ::recv(fd, out, size, 0); }, POLLIN);
+    const auto n =
+        transfer([&](SSL* ssl) { return SSL_read(ssl, out, static_cast<int>(std::min<size_t>(size, 1 << 20))); },
+                 [&](int fd) { return ::recv(fd, out, size, 0); }, POLLIN);
     if (n > 0) {
         bytes_ += static_cast<double>(n);
         last_s_ = now_s();
@@ -207,7 +209,8 @@ int Connection::read_head() {
 }
 
 void Connection::refuse(int status) {
-    const std::string answer = "HTTP/1.1 " + std::to_string(status) + " Refused\r\nContent-Length: 0\r\nConnection: close\r\n\r\n";
+    const std::string answer =
+        "HTTP/1.1 " + std::to_string(status) + " Refused\r\nContent-Length: 0\r\nConnection: close\r\n\r\n";
     write(answer.data(), answer.size());
 }
 
@@ -244,8 +247,9 @@ bool Connection::skip_body() {
 ssize_t Connection::write(const char* bytes, size_t size) {
     if (size == 0) return 0;
     if (phase_ != Phase::answer) begin(Phase::answer);
-    const auto n = transfer([&](SSL* ssl) { return SSL_write(ssl, bytes, static_cast<int>(std::min<size_t>(size, 1 << 20))); },
-                            [&](int fd) { return ::send(fd, bytes, size, MSG_NOSIGNAL); }, POLLOUT);
+    const auto n =
+        transfer([&](SSL* ssl) { return SSL_write(ssl, bytes, static_cast<int>(std::min<size_t>(size, 1 << 20))); },
+                 [&](int fd) { return ::send(fd, bytes, size, MSG_NOSIGNAL); }, POLLOUT);
     if (n > 0) {
         bytes_ += static_cast<double>(n);
         last_s_ = now_s();

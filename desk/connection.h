@@ -2,10 +2,9 @@
 // One connection of a client, with or without TLS, which nobody can hold for long: a request's head must be there in
 // time, a body must come on and answers must be taken at a lowest rate.
 
-#include <httplib.h>
-
 #include <atomic>
 #include <cstdint>
+#include <httplib.h>
 #include <memory>
 #include <string>
 
@@ -28,7 +27,7 @@ std::string fingerprint(const SSL_CTX& tls);
 inline constexpr std::uint64_t kSkipped_bytes = 64 * 1024;
 
 class Connection : public httplib::Stream {
- public:
+  public:
     // Takes over the socket. tls: null for none. `ending`: set when the desk is being ended.
     Connection(int fd, SSL_CTX* tls, const Patience& patience, const std::atomic<bool>& ending);
     ~Connection() override;
@@ -54,7 +53,7 @@ class Connection : public httplib::Stream {
     void get_local_ip_and_port(std::string& ip, int& port) const override;
     socket_t socket() const override { return fd_; }
 
- private:
+  private:
     enum class Phase { handshake, idle, head, body, answer };
     void begin(Phase phase);
     double deadline_s() const;
@@ -71,11 +70,11 @@ class Connection : public httplib::Stream {
     Phase phase_ = Phase::handshake;
     double began_s_ = 0.0;
     double last_s_ = 0.0;
-    double ended_s_ = -1.0;       // when `ending` was first seen
-    double bytes_ = 0.0;          // of this phase
+    double ended_s_ = -1.0;  // when `ending` was first seen
+    double bytes_ = 0.0;     // of this phase
     bool broken_ = false;
-    std::string received_;        // of the next requests, not looked at yet
-    std::string head_;            // checked, for the HTTP library
+    std::string received_;  // of the next requests, not looked at yet
+    std::string head_;      // checked, for the HTTP library
     std::size_t head_read_ = 0;
     std::uint64_t body_left_ = 0;
 };

@@ -1,12 +1,11 @@
 #include "desk/pairing.h"
 
-#include <arpa/inet.h>
-#include <openssl/crypto.h>
-#include <openssl/rand.h>
-
 #include <algorithm>
+#include <arpa/inet.h>
 #include <cmath>
 #include <cstring>
+#include <openssl/crypto.h>
+#include <openssl/rand.h>
 #include <stdexcept>
 
 #include "files/input_error.h"
@@ -76,7 +75,8 @@ CodeGuard::Tries& CodeGuard::tries_of(const std::string& address) {
     if (by_address_.count(address) == 0 && by_address_.size() >= limits_.most_addresses) {
         // whoever comes with that many addresses meets the lock of all
         by_address_.erase(std::min_element(by_address_.begin(), by_address_.end(), [](const auto& a, const auto& b) {
-            return std::max(a.second.last_s, a.second.locked_until_s) < std::max(b.second.last_s, b.second.locked_until_s);
+            return std::max(a.second.last_s, a.second.locked_until_s) <
+                   std::max(b.second.last_s, b.second.locked_until_s);
         }));
     }
     return by_address_[address];
@@ -108,7 +108,8 @@ std::size_t CodeGuard::remembered() const {
     return by_address_.size();
 }
 
-Sessions::Sessions(const std::filesystem::path& file, const SessionLimits& limits, std::string& trouble) : file_(file), limits_(limits) {
+Sessions::Sessions(const std::filesystem::path& file, const SessionLimits& limits, std::string& trouble)
+    : file_(file), limits_(limits) {
     if (!file_.empty() && std::filesystem::exists(file_)) read(trouble);
 }
 
@@ -119,7 +120,8 @@ void Sessions::read(std::string& trouble) {
         std::vector<Session> sessions;
         const int last_device = json.integer("last_device", 0, 1000000000);
         for (files::JsonReader& one : json.objects("sessions")) {
-            sessions.push_back({one.text("token_sha256"), one.integer("device", 1, 1000000000), one.number("ends_unix_s", files::kNotNegative)});
+            sessions.push_back({one.text("token_sha256"), one.integer("device", 1, 1000000000),
+                                one.number("ends_unix_s", files::kNotNegative)});
             one.finish();
         }
         json.finish();
@@ -134,7 +136,8 @@ void Sessions::write() const {
     if (file_.empty()) return;
     files::Json json{{"last_device", last_device_}, {"sessions", files::Json::array()}};
     for (const Session& one : sessions_) {
-        json["sessions"].push_back({{"token_sha256", one.token_sha256}, {"device", one.device}, {"ends_unix_s", one.ends_unix_s}});
+        json["sessions"].push_back(
+            {{"token_sha256", one.token_sha256}, {"device", one.device}, {"ends_unix_s", one.ends_unix_s}});
     }
     files::write_text_atomically(file_, files::json_text(json));
 }
@@ -146,11 +149,13 @@ Sessions::Opened Sessions::open(double unix_s) {
         opened.token.push_back("0123456789abcdef"[byte & 15]);
     }
     const std::lock_guard lock(mutex_);
-    sessions_.erase(std::remove_if(sessions_.begin(), sessions_.end(), [&](const Session& one) { return one.ends_unix_s <= unix_s; }),
+    sessions_.erase(std::remove_if(sessions_.begin(), sessions_.end(),
+                                   [&](const Session& one) { return one.ends_unix_s <= unix_s; }),
                     sessions_.end());
     if (sessions_.size() >= limits_.most) {
-        sessions_.erase(std::min_element(sessions_.begin(), sessions_.end(),
-                                         [](const Session& a, const Session& b) { return a.ends_unix_s < b.ends_unix_s; }));
+        sessions_.erase(std::min_element(sessions_.begin(), sessions_.end(), [](const Session& a, const Session& b) {
+            return a.ends_unix_s < b.ends_unix_s;
+        }));
     }
     opened.device = ++last_device_;
     sessions_.push_back({files::sha256_hex(opened.token), opened.device, unix_s + limits_.lasts_s});

@@ -21,22 +21,22 @@ struct TryLimits {
     int tries_in_total = 20;     // wrong ones of all addresses before everybody is
     double first_lock_s = 30.0;  // doubles with each wrong try after a lock
     double longest_lock_s = 3600.0;
-    double forget_s = 600.0;     // one wrong try is forgotten in this time, counted from the last one and its lock's end
+    double forget_s = 600.0;  // one wrong try is forgotten in this time, counted from the last one and its lock's end
     std::size_t most_addresses = 1024;  // remembered; the one that has been quiet for longest goes
 };
 
 // Tries of the code. With the limits above somebody who never stops has a chance of about 2 in 10,000 a day. May be
 // called by many threads.
 class CodeGuard {
- public:
+  public:
     CodeGuard(std::string code, const TryLimits& limits) : code_(std::move(code)), limits_(limits) {}
 
     enum class Answer { right, wrong, locked };
     struct Result {
         Answer answer = Answer::wrong;
-        double wait_s = 0.0;         // of a lock-out: until it ends
-        bool lock_began = false;     // by this try
-        bool everybody = false;      // the lock-out is of all addresses
+        double wait_s = 0.0;      // of a lock-out: until it ends
+        bool lock_began = false;  // by this try
+        bool everybody = false;   // the lock-out is of all addresses
     };
     // While an address is locked out its tries are not even compared. now_s: a clock that never goes back.
     Result try_code(std::string_view code, const std::string& address, double now_s);
@@ -44,7 +44,7 @@ class CodeGuard {
     std::size_t remembered() const;
     const std::string& code() const { return code_; }
 
- private:
+  private:
     struct Tries {
         int wrong = 0;
         double last_s = 0.0;
@@ -72,7 +72,7 @@ struct SessionLimits {
 // Tokens that were given out: only their SHA-256 is kept. With a file they survive the end of the program: a tablet
 // whose desk was started again goes on. May be called by many threads.
 class Sessions {
- public:
+  public:
     // `file`: empty for none. What it holds is read if it can be, `trouble` says so if not.
     Sessions(const std::filesystem::path& file, const SessionLimits& limits, std::string& trouble);
 
@@ -87,7 +87,7 @@ class Sessions {
     std::optional<int> device_of(std::string_view token, double unix_s) const;
     double lasts_s() const { return limits_.lasts_s; }
 
- private:
+  private:
     struct Session {
         std::string token_sha256;
         int device = 0;

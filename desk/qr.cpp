@@ -1,10 +1,9 @@
 #include "desk/qr.h"
 
-#include <qrencode.h>
-
 #include <cerrno>
 #include <cstring>
 #include <memory>
+#include <qrencode.h>
 #include <stdexcept>
 
 namespace palpa::desk {
@@ -15,10 +14,13 @@ constexpr int kQuiet = 4;
 }  // namespace
 
 std::string qr_text(const std::string& text, bool coloured) {
-    const std::unique_ptr<QRcode, decltype(&QRcode_free)> code(QRcode_encodeString8bit(text.c_str(), 0, QR_ECLEVEL_L), &QRcode_free);
+    const std::unique_ptr<QRcode, decltype(&QRcode_free)> code(QRcode_encodeString8bit(text.c_str(), 0, QR_ECLEVEL_L),
+                                                               &QRcode_free);
     if (!code) throw std::runtime_error(std::string("no QR code can be made: ") + std::strerror(errno));
     const int n = code->width;
-    const auto dark = [&](int x, int y) { return x >= 0 && y >= 0 && x < n && y < n && (code->data[y * n + x] & 1) != 0; };
+    const auto dark = [&](int x, int y) {
+        return x >= 0 && y >= 0 && x < n && y < n && (code->data[y * n + x] & 1) != 0;
+    };
     std::string out;
     for (int y = -kQuiet; y < n + kQuiet; y += 2) {
         if (coloured) out += "\033[40;97m";

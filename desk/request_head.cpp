@@ -19,7 +19,8 @@ std::string lower_case(std::string_view text) {
 }
 
 bool is_token(char c) {
-    return (c >= '0' && c <= '9') || (lower(c) >= 'a' && lower(c) <= 'z') || std::string_view("!#$%&'*+-.^_`|~").find(c) != std::string_view::npos;
+    return (c >= '0' && c <= '9') || (lower(c) >= 'a' && lower(c) <= 'z') ||
+           std::string_view("!#$%&'*+-.^_`|~").find(c) != std::string_view::npos;
 }
 
 std::string_view trimmed(std::string_view text) {
@@ -29,7 +30,8 @@ std::string_view trimmed(std::string_view text) {
 }
 
 bool has_controls(std::string_view line) {
-    return std::any_of(line.begin(), line.end(), [](char c) { return (static_cast<unsigned char>(c) < 0x20 && c != '\t') || c == 0x7f; });
+    return std::any_of(line.begin(), line.end(),
+                       [](char c) { return (static_cast<unsigned char>(c) < 0x20 && c != '\t') || c == 0x7f; });
 }
 
 CheckedHead refused(int status) { return {status, "", 0}; }
@@ -53,14 +55,16 @@ CheckedHead check_head(std::string_view head) {
             const std::string_view method = line.substr(0, first);
             const std::string_view target = line.substr(first + 1, last - first - 1);
             if (target.size() > kLongestTarget) return refused(414);
-            if (target.empty() || target.front() != '/' || target.find(' ') != std::string_view::npos) return refused(400);
+            if (target.empty() || target.front() != '/' || target.find(' ') != std::string_view::npos)
+                return refused(400);
             wants_length = method == "PUT" || method == "POST" || method == "PATCH";
             out.text.append(line).append("\r\n");
             continue;
         }
         if (line.empty()) break;
         const auto colon = line.find(':');
-        if (colon == std::string_view::npos || colon == 0 || !std::all_of(line.begin(), line.begin() + static_cast<std::ptrdiff_t>(colon), is_token)) {
+        if (colon == std::string_view::npos || colon == 0 ||
+            !std::all_of(line.begin(), line.begin() + static_cast<std::ptrdiff_t>(colon), is_token)) {
             return refused(400);
         }
         const std::string name = lower_case(line.substr(0, colon));
@@ -71,7 +75,8 @@ CheckedHead check_head(std::string_view head) {
         if (name == "range" || name == "if-range" || name == "accept-encoding") continue;
         if (name == "content-length") {
             const auto [stop, error] = std::from_chars(value.data(), value.data() + value.size(), out.content_bytes);
-            if (has_length || error != std::errc() || stop != value.data() + value.size() || value.size() > kMostDigits) return refused(400);
+            if (has_length || error != std::errc() || stop != value.data() + value.size() || value.size() > kMostDigits)
+                return refused(400);
             has_length = true;
         }
         out.text.append(line.substr(0, colon)).append(": ").append(value).append("\r\n");

@@ -1,12 +1,11 @@
 #include "desk/routes.h"
 
-#include <arpa/inet.h>
-#include <openssl/x509v3.h>
-
 #include <algorithm>
+#include <arpa/inet.h>
 #include <array>
 #include <chrono>
 #include <memory>
+#include <openssl/x509v3.h>
 
 #include "desk/static_files.h"
 #include "files/input_error.h"
@@ -25,7 +24,9 @@ constexpr std::array<const char*, 5> kAssetFolders{"scenes", "maps", "profiles",
 double steady_s() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 double unix_s() { return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count(); }
 
-std::string dumped(const files::Json& json) { return json.dump(-1, ' ', false, files::Json::error_handler_t::replace) + "\n"; }
+std::string dumped(const files::Json& json) {
+    return json.dump(-1, ' ', false, files::Json::error_handler_t::replace) + "\n";
+}
 
 void answer(int status, const files::Json& json, Response& res) {
     res.status = status;
@@ -58,7 +59,8 @@ std::optional<int> device_of(const Request& req, const Desk& desk) {
     constexpr std::string_view kBearer = "Bearer ";
     const std::string header = req.get_header_value("Authorization");
     std::optional<int> device;
-    if (header.rfind(kBearer, 0) == 0) device = desk.sessions.device_of(std::string_view(header).substr(kBearer.size()), unix_s());
+    if (header.rfind(kBearer, 0) == 0)
+        device = desk.sessions.device_of(std::string_view(header).substr(kBearer.size()), unix_s());
     if (!device && !desk.pairs) device = 0;
     return device;
 }
@@ -69,13 +71,15 @@ void ask_to_pair(Response& res) {
 }
 
 std::string lower_case(std::string text) {
-    std::transform(text.begin(), text.end(), text.begin(), [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; });
+    std::transform(text.begin(), text.end(), text.begin(),
+                   [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; });
     return text;
 }
 
 bool is_hash(const std::string& text) {
-    return text.size() == kHashDigits &&
-           std::all_of(text.begin(), text.end(), [](char c) { return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'f'); });
+    return text.size() == kHashDigits && std::all_of(text.begin(), text.end(), [](char c) {
+               return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'f');
+           });
 }
 
 std::uint64_t announced_bytes(const Request& req) { return req.get_header_value<std::uint64_t>("Content-Length"); }
@@ -125,7 +129,8 @@ void pair(const Request& req, const std::string& body, Desk& desk, Response& res
         const CodeGuard::Result result = desk.codes.try_code(*code, req.remote_addr, steady_s());
         if (result.lock_began) tell_lock(result, req.remote_addr, desk);
         if (result.answer == CodeGuard::Answer::wrong) {
-            desk.events.tell_refused("a wrong code from " + req.remote_addr, {{"why", "wrong code"}, {"address", req.remote_addr}});
+            desk.events.tell_refused("a wrong code from " + req.remote_addr,
+                                     {{"why", "wrong code"}, {"address", req.remote_addr}});
             return refuse(401, "another code", res);
         }
         if (result.answer == CodeGuard::Answer::locked) {
@@ -144,9 +149,12 @@ void pair(const Request& req, const std::string& body, Desk& desk, Response& res
 
 void take_upload(const Request& req, const httplib::ContentReader& read_content, Desk& desk, Response& res) {
     const std::uint64_t bytes = announced_bytes(req);
-    const Sender sender{sane_label(req.path.substr(std::string_view("/api/logs/").size())), device_of(req, desk).value_or(0), req.remote_addr};
-    files::Json fields{{"label", sender.label}, {"device", sender.device}, {"address", sender.address}, {"bytes", bytes}};
-    const std::string who = sender.label + " (" + std::to_string(bytes) + " bytes) from tablet " + std::to_string(sender.device) + " at " + sender.address;
+    const Sender sender{sane_label(req.path.substr(std::string_view("/api/logs/").size())),
+                        device_of(req, desk).value_or(0), req.remote_addr};
+    files::Json fields{
+        {"label", sender.label}, {"device", sender.device}, {"address", sender.address}, {"bytes", bytes}};
+    const std::string who = sender.label + " (" + std::to_string(bytes) + " bytes) from tablet " +
+                            std::to_string(sender.device) + " at " + sender.address;
     std::optional<UploadRefused> refused;
     try {
         const auto incoming = desk.uploads->begin(bytes);
@@ -185,11 +193,12 @@ void hand_out(const Request& req, const fs::path& folder, const std::vector<std:
     }
     const std::string type = mime_type(names.back());
     if (file->bytes() == 0) return res.set_content("", type);
-    res.set_content_provider(file->bytes(), type, [file](std::size_t offset, std::size_t left, httplib::DataSink& sink) {
-        std::array<char, 1 << 16> buffer;
-        const long n = file->read(offset, buffer.data(), std::min(left, buffer.size()));
-        return n > 0 && sink.write(buffer.data(), static_cast<std::size_t>(n));
-    });
+    res.set_content_provider(file->bytes(), type,
+                             [file](std::size_t offset, std::size_t left, httplib::DataSink& sink) {
+                                 std::array<char, 1 << 16> buffer;
+                                 const long n = file->read(offset, buffer.data(), std::min(left, buffer.size()));
+                                 return n > 0 && sink.write(buffer.data(), static_cast<std::size_t>(n));
+                             });
 }
 
 void get(const Request& req, Desk& desk, Response& res) {
@@ -198,8 +207,13 @@ void get(const Request& req, Desk& desk, Response& res) {
     const std::string& first = names->front();
     if (first == "api") {
         if (*names == std::vector<std::string>{"api", "health"}) {
-            return answer(200, {{"ok", true}, {"program", "palpa " PALPA_VERSION}, {"pairing", desk.pairs}, {"paired", device_of(req, desk).has_value()},
-                                {"collects", desk.uploads.has_value()}}, res);
+            return answer(200,
+                          {{"ok", true},
+                           {"program", "palpa " PALPA_VERSION},
+                           {"pairing", desk.pairs},
+                           {"paired", device_of(req, desk).has_value()},
+                           {"collects", desk.uploads.has_value()}},
+                          res);
         }
         if (*names != std::vector<std::string>{"api", "files"}) return refuse(404, "no such thing", res);
         if (!device_of(req, desk)) return ask_to_pair(res);
@@ -207,7 +221,8 @@ void get(const Request& req, Desk& desk, Response& res) {
     }
     if (first == "files") {
         if (!device_of(req, desk)) return ask_to_pair(res);
-        const bool known = names->size() > 2 && std::find(kAssetFolders.begin(), kAssetFolders.end(), (*names)[1]) != kAssetFolders.end();
+        const bool known = names->size() > 2 &&
+                           std::find(kAssetFolders.begin(), kAssetFolders.end(), (*names)[1]) != kAssetFolders.end();
         if (!known) return refuse(404, "no such file", res);
         return hand_out(req, desk.options.assets, {names->begin() + 1, names->end()}, res);
     }
@@ -217,7 +232,8 @@ void get(const Request& req, Desk& desk, Response& res) {
 
 httplib::Headers strict_headers() {
     return {{"Content-Security-Policy",
-             "default-src 'self'; script-src 'self' 'wasm-unsafe-eval'; worker-src 'self'; style-src 'self'; img-src 'self' data: blob:; "
+             "default-src 'self'; script-src 'self' 'wasm-unsafe-eval'; worker-src 'self'; style-src 'self'; img-src "
+             "'self' data: blob:; "
              "connect-src 'self'; object-src 'none'; base-uri 'none'; form-action 'self'; frame-ancestors 'none'"},
             {"Cross-Origin-Opener-Policy", "same-origin"},
             {"Cross-Origin-Embedder-Policy", "require-corp"},
@@ -233,16 +249,20 @@ bool own_host(std::string_view host, X509* certificate) {
     if (!host.empty() && host.front() == '[') {
         const auto end = host.find(']');
         in6_addr six{};
-        return end != std::string_view::npos && ::inet_pton(AF_INET6, std::string(host.substr(1, end - 1)).c_str(), &six) == 1;
+        return end != std::string_view::npos &&
+               ::inet_pton(AF_INET6, std::string(host.substr(1, end - 1)).c_str(), &six) == 1;
     }
     const std::string name(host.substr(0, host.find(':')));
     in_addr four{};
     if (::inet_pton(AF_INET, name.c_str(), &four) == 1 || name == "localhost") return true;
-    return !name.empty() && certificate != nullptr && X509_check_host(certificate, name.data(), name.size(), 0, nullptr) == 1;
+    return !name.empty() && certificate != nullptr &&
+           X509_check_host(certificate, name.data(), name.size(), 0, nullptr) == 1;
 }
 
 files::Json files_json(const fs::path& assets) {
-    const auto plain = [](const fs::directory_entry& entry) { return !entry.is_symlink() && entry.path().filename().string().front() != '.'; };
+    const auto plain = [](const fs::directory_entry& entry) {
+        return !entry.is_symlink() && entry.path().filename().string().front() != '.';
+    };
     const auto listed = [&](const fs::path& folder) {
         std::vector<fs::path> paths;
         std::error_code none;
@@ -253,7 +273,8 @@ files::Json files_json(const fs::path& assets) {
         return paths;
     };
     const auto file_json = [&](const fs::path& path) {
-        return files::Json{{"path", "/files/" + fs::relative(path, assets).generic_string()}, {"bytes", fs::file_size(path)}};
+        return files::Json{{"path", "/files/" + fs::relative(path, assets).generic_string()},
+                           {"bytes", fs::file_size(path)}};
     };
     files::Json json;
     for (const std::string kind : kAssetFolders) {
@@ -275,7 +296,8 @@ void set_routes(Desk& desk, DeskServer& server) {
     server.set_default_headers(strict_headers());
     server.set_payload_max_length(std::max<std::uint64_t>(desk.options.uploads.upload_bytes, kLargestPairing_bytes));
     server.set_pre_routing_handler([&desk](const Request& req, Response& res) {
-        const bool refused = refused_outright(req, desk, res) || (req.method == "PUT" && upload_refused(req, desk, res));
+        const bool refused =
+            refused_outright(req, desk, res) || (req.method == "PUT" && upload_refused(req, desk, res));
         if (refused && changes_state(req)) {
             desk.events.tell_refused(req.method + " from " + req.remote_addr + ": status " + std::to_string(res.status),
                                      {{"why", "status " + std::to_string(res.status)}, {"address", req.remote_addr}});
@@ -284,7 +306,8 @@ void set_routes(Desk& desk, DeskServer& server) {
     });
     // refused before the body is sent, where the client waits for that
     server.set_expect_100_continue_handler([&desk](const Request& req, Response& res) {
-        const bool refused = refused_outright(req, desk, res) || (req.method == "PUT" && upload_refused(req, desk, res));
+        const bool refused =
+            refused_outright(req, desk, res) || (req.method == "PUT" && upload_refused(req, desk, res));
         return refused ? res.status : 100;
     });
     server.Get(".*", [&desk](const Request& req, Response& res) { get(req, desk, res); });
@@ -315,7 +338,8 @@ void set_routes(Desk& desk, DeskServer& server) {
             what = error.what();
         } catch (...) {
         }
-        desk.events.tell("failed", req.method + " from " + req.remote_addr + ": " + what, {{"why", what}, {"address", req.remote_addr}});
+        desk.events.tell("failed", req.method + " from " + req.remote_addr + ": " + what,
+                         {{"why", what}, {"address", req.remote_addr}});
         refuse(500, "the desk failed; it says why", res);
     });
 }

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
+#include "desk/events.h"
 #include "desk/pairing.h"
 #include "desk/serve.h"
-#include "desk/events.h"
 #include "desk/server.h"
 #include "desk/uploads.h"
 
@@ -16,8 +16,8 @@ namespace palpa::desk {
 
 struct Desk {
     const ServeOptions& options;
-    bool pairs = false;              // a code is asked for
-    X509* certificate = nullptr;     // whose names the desk answers to; nullptr without TLS
+    bool pairs = false;           // a code is asked for
+    X509* certificate = nullptr;  // whose names the desk answers to; nullptr without TLS
     CodeGuard codes;
     Sessions sessions;
     std::optional<Uploads> uploads;  // nothing: takes no logs

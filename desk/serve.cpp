@@ -1,19 +1,18 @@
 #include "desk/serve.h"
 
 #include <arpa/inet.h>
+#include <array>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
 #include <fcntl.h>
 #include <ifaddrs.h>
 #include <net/if.h>
 #include <poll.h>
 #include <signal.h>
-#include <unistd.h>
-
-#include <array>
-#include <cerrno>
-#include <cstdio>
-#include <cstring>
 #include <stdexcept>
 #include <thread>
+#include <unistd.h>
 
 #include "desk/qr.h"
 #include "desk/routes.h"
@@ -40,15 +39,17 @@ Binding binding_of(const std::string& address) {
     if (::inet_pton(AF_INET6, address.c_str(), &six) == 1) {
         return {true, IN6_IS_ADDR_LOOPBACK(&six) != 0, IN6_IS_ADDR_UNSPECIFIED(&six) != 0};
     }
-    throw files::bad_input("--bind", "", files::shown(address), "an IP address, such as 127.0.0.1 (this machine alone) or 0.0.0.0 (all)");
+    throw files::bad_input("--bind", "", files::shown(address),
+                           "an IP address, such as 127.0.0.1 (this machine alone) or 0.0.0.0 (all)");
 }
 
 void check_options(const ServeOptions& options, const Binding& binding) {
     const bool tls = !options.tls_cert.empty();
-    if (tls != !options.tls_key.empty()) throw files::bad_input("--tls-cert, --tls-key", "", "one of them", "both or none");
+    if (tls != !options.tls_key.empty())
+        throw files::bad_input("--tls-cert, --tls-key", "", "one of them", "both or none");
     if (!tls && !binding.loopback) {
         throw files::bad_input("--bind", "", files::shown(options.bind) + " without --tls-cert and --tls-key",
-                        "both, as others can be on that network: scripts/run --tablet makes them");
+                               "both, as others can be on that network: scripts/run --tablet makes them");
     }
     if (!options.web.empty() && !fs::is_regular_file(options.web / "index.html")) {
         throw files::bad_input("--web", "", files::shown(options.web.string()), "a folder with index.html");
@@ -62,7 +63,8 @@ std::vector<std::string> addresses(const std::string& bind, const Binding& bindi
     ifaddrs* list = nullptr;
     if (::getifaddrs(&list) != 0) return {"127.0.0.1"};
     for (const ifaddrs* one = list; one != nullptr; one = one->ifa_next) {
-        if (one->ifa_addr == nullptr || (one->ifa_flags & IFF_LOOPBACK) != 0 || (one->ifa_flags & IFF_UP) == 0) continue;
+        if (one->ifa_addr == nullptr || (one->ifa_flags & IFF_LOOPBACK) != 0 || (one->ifa_flags & IFF_UP) == 0)
+            continue;
         char text[INET6_ADDRSTRLEN] = "";
         if (one->ifa_addr->sa_family == AF_INET) {
             ::inet_ntop(AF_INET, &reinterpret_cast<const sockaddr_in*>(one->ifa_addr)->sin_addr, text, sizeof text);
@@ -81,12 +83,14 @@ std::vector<std::string> urls_of(const ServeOptions& options, const Binding& bin
     std::vector<std::string> urls;
     for (const std::string& address : addresses(options.bind, binding)) {
         const bool six = address.find(':') != std::string::npos;
-        urls.push_back((options.tls_cert.empty() ? "http://" : "https://") + (six ? "[" + address + "]" : address) + ":" + std::to_string(port) + "/");
+        urls.push_back((options.tls_cert.empty() ? "http://" : "https://") + (six ? "[" + address + "]" : address) +
+                       ":" + std::to_string(port) + "/");
     }
     return urls;
 }
 
-void print_start(const ServeOptions& options, const std::vector<std::string>& urls, const std::string& code, const std::string& print, int port) {
+void print_start(const ServeOptions& options, const std::vector<std::string>& urls, const std::string& code,
+                 const std::string& print, int port) {
     if (options.json) {
         files::Json json{{"event", "listening"}, {"port", port}, {"urls", urls}, {"pairing", !code.empty()}};
         if (!code.empty()) json["code"] = code;
@@ -95,7 +99,8 @@ void print_start(const ServeOptions& options, const std::vector<std::string>& ur
         std::fflush(stdout);
         return;
     }
-    if (!code.empty()) std::printf("%s\n", qr_text(urls.front() + "#code=" + code, ::isatty(STDOUT_FILENO) != 0).c_str());
+    if (!code.empty())
+        std::printf("%s\n", qr_text(urls.front() + "#code=" + code, ::isatty(STDOUT_FILENO) != 0).c_str());
     for (const std::string& url : urls) std::printf("%s\n", url.c_str());
     if (!code.empty()) std::printf("code  %s %s\n", code.substr(0, 3).c_str(), code.substr(3).c_str());
     if (!print.empty()) std::printf("certificate, SHA-256  %s\n", print.c_str());
@@ -135,9 +140,10 @@ void mask_end_signals(int how) {
 // What asks for the end goes through a pipe. To block the signals and to wait for them is not enough: libraries start
 // threads of their own before main(), which block nothing, and one of them would take the signal and end the program.
 class EndNotes {
- public:
+  public:
     EndNotes() {
-        if (::pipe2(ends_.data(), O_CLOEXEC | O_NONBLOCK) != 0) throw std::runtime_error(std::string("no pipe: ") + std::strerror(errno));
+        if (::pipe2(ends_.data(), O_CLOEXEC | O_NONBLOCK) != 0)
+            throw std::runtime_error(std::string("no pipe: ") + std::strerror(errno));
         notes_to_main = ends_[1];
         set_end_handler(note_end_signal);
     }
@@ -157,7 +163,7 @@ class EndNotes {
         return note == kAsked;
     }
 
- private:
+  private:
     std::array<int, 2> ends_{};
 };
 
@@ -183,9 +189,14 @@ void serve(const ServeOptions& options) {
 
     std::string trouble;
     std::vector<std::string> notes;
-    Desk desk{options, with_tls, certificate, CodeGuard(random_code(), options.tries),
-              Sessions(options.collect.empty() ? fs::path() : fs::path(options.collect) / "sessions.json", options.sessions, trouble),
-              std::nullopt, DeskEvents(options.json)};
+    Desk desk{options,
+              with_tls,
+              certificate,
+              CodeGuard(random_code(), options.tries),
+              Sessions(options.collect.empty() ? fs::path() : fs::path(options.collect) / "sessions.json",
+                       options.sessions, trouble),
+              std::nullopt,
+              DeskEvents(options.json)};
     if (!options.collect.empty()) desk.uploads.emplace(options.collect, options.uploads, notes);
 
     const EndNotes notes_of_end;

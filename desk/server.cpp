@@ -1,17 +1,16 @@
 #include "desk/server.h"
 
 #include <arpa/inet.h>
-#include <fcntl.h>
-#include <sys/socket.h>
-#include <unistd.h>
-
 #include <cerrno>
 #include <condition_variable>
 #include <cstring>
 #include <deque>
+#include <fcntl.h>
 #include <functional>
 #include <stdexcept>
+#include <sys/socket.h>
 #include <thread>
+#include <unistd.h>
 #include <vector>
 
 #include "desk/pairing.h"
@@ -24,7 +23,7 @@ constexpr int kBacklog = 128;
 // Threads as they are needed, up to a number. When as many connections wait, the one who accepts them waits too, and
 // further clients wait in the system's queue.
 class ConnectionQueue : public httplib::TaskQueue {
- public:
+  public:
     explicit ConnectionQueue(std::size_t most) : most_(most) {}
 
     void enqueue(std::function<void()> work) override {
@@ -44,7 +43,7 @@ class ConnectionQueue : public httplib::TaskQueue {
         for (std::thread& thread : threads_) thread.join();
     }
 
- private:
+  private:
     void serve() {
         std::unique_lock lock(mutex_);
         while (true) {

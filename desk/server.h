@@ -2,9 +2,8 @@
 // cpp-httplib's server on connections of desk/connection.h: it parses requests and writes answers, and this says
 // who is listened to, how long, and how many at a time.
 
-#include <httplib.h>
-
 #include <atomic>
+#include <httplib.h>
 #include <map>
 #include <mutex>
 #include <string>
@@ -14,13 +13,13 @@
 namespace palpa::desk {
 
 struct Places {
-    std::size_t in_all = 128;        // connections served at a time, a thread each; as many again may wait
-    std::size_t of_one_address = 64; // so that one client never takes all
-    int requests = 100;              // of one connection
+    std::size_t in_all = 128;         // connections served at a time, a thread each; as many again may wait
+    std::size_t of_one_address = 64;  // so that one client never takes all
+    int requests = 100;               // of one connection
 };
 
 class DeskServer : public httplib::Server {
- public:
+  public:
     DeskServer(TlsContext tls, const Patience& patience, const Places& places);
     ~DeskServer() override;
 
@@ -32,13 +31,14 @@ class DeskServer : public httplib::Server {
     // Once, after bind().
     void end();
 
- private:
+  private:
     bool process_and_close_socket(socket_t socket) override;
 
     TlsContext tls_;
     Patience patience_;
     Places places_;
-    int listening_ = -1;  // the socket a second time, so that it can be shut down whatever the library has done with its own
+    int listening_ =
+        -1;  // the socket a second time, so that it can be shut down whatever the library has done with its own
     std::atomic<bool> ending_ = false;
     std::mutex mutex_;
     std::map<std::string, std::size_t> connections_;  // by address

@@ -17,7 +17,7 @@ std::optional<std::vector<std::string>> names_of_path(std::string_view target);
 
 // A regular file, open for reading.
 class StaticFile {
- public:
+  public:
     StaticFile() = default;
     StaticFile(int fd, std::uint64_t bytes, std::string etag) : fd_(fd), bytes_(bytes), etag_(std::move(etag)) {}
     ~StaticFile();
@@ -31,7 +31,7 @@ class StaticFile {
     // Up to `size` bytes from `offset` on; 0 at the end, -1 if it cannot be read.
     long read(std::uint64_t offset, char* out, std::size_t size) const;
 
- private:
+  private:
     int fd_ = -1;
     std::uint64_t bytes_ = 0;
     std::string etag_;

@@ -1,15 +1,14 @@
 #include "desk/uploads.h"
 
-#include <fcntl.h>
-#include <openssl/evp.h>
-#include <sys/file.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstring>
 #include <ctime>
+#include <fcntl.h>
+#include <openssl/evp.h>
+#include <sys/file.h>
+#include <unistd.h>
 
 #include "files/append_file.h"
 #include "files/durable.h"
@@ -38,8 +37,9 @@ std::string utc_now() {
 }
 
 bool is_hash(std::string_view text) {
-    return text.size() == kHashDigits &&
-           std::all_of(text.begin(), text.end(), [](char c) { return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'f'); });
+    return text.size() == kHashDigits && std::all_of(text.begin(), text.end(), [](char c) {
+               return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'f');
+           });
 }
 
 // The hash in the name of an upload, or "".
@@ -53,14 +53,17 @@ std::string row_key(std::string_view sha256, std::string_view label, std::string
     return std::string(sha256).append("\t").append(label).append("\t").append(device);
 }
 
-[[noreturn]] void fail(const fs::path& path) { throw std::runtime_error(path.string() + ": cannot be written: " + std::strerror(errno)); }
+[[noreturn]] void fail(const fs::path& path) {
+    throw std::runtime_error(path.string() + ": cannot be written: " + std::strerror(errno));
+}
 
 }  // namespace
 
 std::string sane_label(std::string_view label) {
     std::string out(label.substr(0, kLongestLabel));
     for (char& c : out) {
-        const bool sane = (c >= '0' && c <= '9') || (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') || c == '.' || c == '-' || c == '_';
+        const bool sane = (c >= '0' && c <= '9') || (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') || c == '.' ||
+                          c == '-' || c == '_';
         if (!sane) c = '_';
     }
     return out.empty() ? "unnamed" : out;
@@ -69,7 +72,8 @@ std::string sane_label(std::string_view label) {
 struct Uploads::Incoming::Hash {
     EVP_MD_CTX* context = EVP_MD_CTX_new();
     Hash() {
-        if (context == nullptr || EVP_DigestInit_ex(context, EVP_sha256(), nullptr) != 1) throw std::runtime_error("OpenSSL has no SHA-256");
+        if (context == nullptr || EVP_DigestInit_ex(context, EVP_sha256(), nullptr) != 1)
+            throw std::runtime_error("OpenSSL has no SHA-256");
     }
     ~Hash() { EVP_MD_CTX_free(context); }
     Hash(const Hash&) = delete;
@@ -88,7 +92,8 @@ struct Uploads::Incoming::Hash {
     }
 };
 
-Uploads::Uploads(const fs::path& folder, const UploadLimits& limits, std::vector<std::string>& notes) : folder_(folder), limits_(limits) {
+Uploads::Uploads(const fs::path& folder, const UploadLimits& limits, std::vector<std::string>& notes)
+    : folder_(folder), limits_(limits) {
     std::error_code error;
     fs::create_directories(folder_ / "aside", error);
     if (error) throw std::runtime_error(folder_.string() + ": cannot be made: " + error.message());
@@ -97,7 +102,8 @@ Uploads::Uploads(const fs::path& folder, const UploadLimits& limits, std::vector
         notes.push_back(entry.path().string() + ": an upload that did not come to its end, removed");
         fs::remove(entry.path());
     }
-    if (!fs::exists(folder_ / "index.tsv") || fs::file_size(folder_ / "index.tsv") == 0) files::append_synced(folder_ / "index.tsv", kHeader);
+    if (!fs::exists(folder_ / "index.tsv") || fs::file_size(folder_ / "index.tsv") == 0)
+        files::append_synced(folder_ / "index.tsv", kHeader);
     read_index(notes);
     used_ += fs::file_size(folder_ / "index.tsv");
     for (const auto& entry : fs::directory_iterator(folder_)) {
@@ -117,7 +123,9 @@ void Uploads::lock_folder() {
     if (::flock(lock_fd_, LOCK_EX | LOCK_NB) == 0) return;
     const bool taken = errno == EWOULDBLOCK;
     ::close(lock_fd_);
-    if (taken) throw files::bad_input(folder_.string(), "", "another palpa serve that collects here", "a folder of its own for each");
+    if (taken)
+        throw files::bad_input(folder_.string(), "", "another palpa serve that collects here",
+                               "a folder of its own for each");
     throw std::runtime_error(folder_.string() + ": cannot be locked: " + std::strerror(errno));
 }
 
@@ -131,7 +139,8 @@ void Uploads::read_index(std::vector<std::string>& notes) {
         if (line == 1 || row.empty()) continue;
         const auto fields = files::fields_of(row, '\t');
         if (fields.size() != 7 || !is_hash(fields[1])) {
-            notes.push_back(file.string() + ": line " + std::to_string(line) + " is left out: " + files::shown(row) + " is not an upload with 7 fields");
+            notes.push_back(file.string() + ": line " + std::to_string(line) + " is left out: " + files::shown(row) +
+                            " is not an upload with 7 fields");
             continue;
         }
         indexed_.emplace(fields[1]);
@@ -145,10 +154,12 @@ void Uploads::adopt(const fs::path& file, std::vector<std::string>& notes) {
     const int fd = ::open(file.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
     std::array<char, 1 << 16> buffer;
     ssize_t n = 0;
-    while (fd >= 0 && (n = ::read(fd, buffer.data(), buffer.size())) > 0) hash.add({buffer.data(), static_cast<std::size_t>(n)});
+    while (fd >= 0 && (n = ::read(fd, buffer.data(), buffer.size())) > 0)
+        hash.add({buffer.data(), static_cast<std::size_t>(n)});
     if (fd >= 0) ::close(fd);
     if (fd < 0 || n < 0 || hash.hex() != hash_of_name(file)) {
-        notes.push_back(file.string() + ": its content is not what its name says; it is left alone and not in the index");
+        notes.push_back(file.string() +
+                        ": its content is not what its name says; it is left alone and not in the index");
         return;
     }
     notes.push_back(file.string() + ": was not in the index, added");
@@ -159,8 +170,8 @@ void Uploads::append_row(const std::string& sha256, std::uint64_t bytes, const S
     const std::string device = std::to_string(sender.device);
     const std::string key = row_key(sha256, sender.label, device);
     if (rows_.count(key) != 0) return;
-    const std::string row = utc_now() + "\t" + sha256 + "\t" + std::to_string(bytes) + "\t" + sha256 + std::string(kEnding) + "\t" +
-                            sender.label + "\t" + device + "\t" + sender.address + "\n";
+    const std::string row = utc_now() + "\t" + sha256 + "\t" + std::to_string(bytes) + "\t" + sha256 +
+                            std::string(kEnding) + "\t" + sender.label + "\t" + device + "\t" + sender.address + "\n";
     files::append_synced(folder_ / "index.tsv", row);
     used_ += row.size();
     rows_.insert(key);
@@ -169,11 +180,13 @@ void Uploads::append_row(const std::string& sha256, std::uint64_t bytes, const S
 
 std::unique_ptr<Uploads::Incoming> Uploads::begin(std::uint64_t bytes) {
     if (bytes > limits_.upload_bytes) {
-        throw UploadRefused(413, std::to_string(bytes) + " bytes, at most " + std::to_string(limits_.upload_bytes) + " in one upload");
+        throw UploadRefused(
+            413, std::to_string(bytes) + " bytes, at most " + std::to_string(limits_.upload_bytes) + " in one upload");
     }
     {
         const std::lock_guard lock(mutex_);
-        if (used_ + bytes + kRow_bytes > limits_.total_bytes) throw UploadRefused(507, "the desk has taken as much as it may");
+        if (used_ + bytes + kRow_bytes > limits_.total_bytes)
+            throw UploadRefused(507, "the desk has taken as much as it may");
         used_ += bytes;
     }
     try {
@@ -184,7 +197,8 @@ std::unique_ptr<Uploads::Incoming> Uploads::begin(std::uint64_t bytes) {
     }
 }
 
-Uploads::Incoming::Incoming(Uploads& uploads, std::uint64_t bytes) : uploads_(uploads), announced_(bytes), hash_(std::make_unique<Hash>()) {
+Uploads::Incoming::Incoming(Uploads& uploads, std::uint64_t bytes)
+    : uploads_(uploads), announced_(bytes), hash_(std::make_unique<Hash>()) {
     std::string name;
     {
         const std::lock_guard lock(uploads_.mutex_);
@@ -219,7 +233,8 @@ Uploads::Incoming::Stored Uploads::Incoming::finish(std::string_view expected_sh
     stored.sha256 = hash_->hex();
     if (stored.sha256 != expected_sha256) throw UploadRefused(422, "the bytes have another SHA-256: " + stored.sha256);
     stored.name = stored.sha256 + std::string(kEnding);
-    if (::fsync(fd_) != 0) throw UploadRefused(507, std::string("the desk's disk takes no more: ") + std::strerror(errno));
+    if (::fsync(fd_) != 0)
+        throw UploadRefused(507, std::string("the desk's disk takes no more: ") + std::strerror(errno));
     const fs::path target = uploads_.folder_ / stored.name;
     stored.fresh = files::rename_to_new(aside_, target);
     if (stored.fresh) announced_ = 0;  // counted for good

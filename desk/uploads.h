@@ -41,7 +41,7 @@ std::string sane_label(std::string_view label);
 
 // May be called by many threads.
 class Uploads {
- public:
+  public:
     // Makes the folder or goes on in it; `notes` says what was found there (files that are not in the index, lines that
     // cannot be read). Throws InputError if another desk collects there, std::runtime_error if it cannot be written.
     Uploads(const std::filesystem::path& folder, const UploadLimits& limits, std::vector<std::string>& notes);
@@ -51,7 +51,7 @@ class Uploads {
 
     // One upload on its way. Unless finish() comes to its end nothing is left of it.
     class Incoming {
-     public:
+      public:
         ~Incoming();
         Incoming(const Incoming&) = delete;
         Incoming& operator=(const Incoming&) = delete;
@@ -66,7 +66,7 @@ class Uploads {
         // another one.
         Stored finish(std::string_view expected_sha256, const Sender& sender);
 
-     private:
+      private:
         friend class Uploads;
         Incoming(Uploads& uploads, std::uint64_t bytes);
         Uploads& uploads_;
@@ -83,7 +83,7 @@ class Uploads {
     std::uint64_t stored_bytes() const { return used_; }
     const std::filesystem::path& folder() const { return folder_; }
 
- private:
+  private:
     void lock_folder();
     void read_index(std::vector<std::string>& notes);
     void adopt(const std::filesystem::path& file, std::vector<std::string>& notes);
@@ -92,9 +92,9 @@ class Uploads {
     std::filesystem::path folder_;
     UploadLimits limits_;
     int lock_fd_ = -1;
-    std::mutex mutex_;                   // of all below
-    std::set<std::string> indexed_;      // sha256
-    std::set<std::string> rows_;         // sha256, label and device: a repeated upload has one row
+    std::mutex mutex_;               // of all below
+    std::set<std::string> indexed_;  // sha256
+    std::set<std::string> rows_;     // sha256, label and device: a repeated upload has one row
     std::uint64_t next_aside_ = 1;
     std::atomic<std::uint64_t> used_ = 0;  // stored and announced bytes, the index too
 };

@@ -23,8 +23,9 @@ bool parse(const std::string& line, LoadCellLine& out) {
 }
 
 class LoadCell : public ForceSensor {
- public:
-    explicit LoadCell(const LoadCellOptions& options) : options_(options), port_(std::make_unique<platform::SerialPort>(options.path, options.baud)) {}
+  public:
+    explicit LoadCell(const LoadCellOptions& options)
+        : options_(options), port_(std::make_unique<platform::SerialPort>(options.path, options.baud)) {}
 
     void read(double wait_s, std::vector<ForceReading>& out) override {
         std::array<std::uint8_t, 4096> bytes;
@@ -48,7 +49,7 @@ class LoadCell : public ForceSensor {
     const SensorHealth& health() const override { return health_; }
     std::string name() const override { return "load cell at " + options_.path; }
 
- private:
+  private:
     // Unplugged: tries again twice a second.
     int reopen(double wait_s) {
         constexpr double kAgain_s = 0.5;
@@ -140,10 +141,13 @@ bool take_time(std::uint32_t t_us, LoadCellClock& clock, SensorHealth& health) {
     if (clock.period_us == 0.0) clock.period_us = step_us;
     if (step_us < 1.5 * clock.period_us) clock.period_us += (step_us - clock.period_us) / 8.0;  // follows a slow drift
     if (step_us < 0.7 * clock.period_us) clock.period_us = step_us;
-    if (clock.steps > kLearn && step_us > 1.5 * clock.period_us) health.lost += std::lround(step_us / clock.period_us) - 1;
+    if (clock.steps > kLearn && step_us > 1.5 * clock.period_us)
+        health.lost += std::lround(step_us / clock.period_us) - 1;
     return true;
 }
 
-std::unique_ptr<ForceSensor> open_load_cell(const LoadCellOptions& options) { return std::make_unique<LoadCell>(options); }
+std::unique_ptr<ForceSensor> open_load_cell(const LoadCellOptions& options) {
+    return std::make_unique<LoadCell>(options);
+}
 
 }  // namespace palpa::devices

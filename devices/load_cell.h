@@ -32,7 +32,7 @@ struct LoadCellClock {
     bool started = false;
     std::uint32_t last_us = 0;
     std::int64_t total_us = 0;
-    double period_us = 0.0;    // learned: the shortest usual step
+    double period_us = 0.0;  // learned: the shortest usual step
     std::int64_t steps = 0;
 };
 // False for a line that came twice or late. Counts loss once the period is known (after 16 steps).

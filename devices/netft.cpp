@@ -17,8 +17,10 @@ std::uint32_t get(const std::uint8_t* in, int bytes) {
 }
 
 class NetFt : public ForceSensor {
- public:
-    explicit NetFt(const NetFtOptions& options) : options_(options), port_(options.host, options.port) { ask(RdtCommand::stream); }
+  public:
+    explicit NetFt(const NetFtOptions& options) : options_(options), port_(options.host, options.port) {
+        ask(RdtCommand::stream);
+    }
     ~NetFt() override { ask(RdtCommand::stop); }
 
     void read(double wait_s, std::vector<ForceReading>& out) override {
@@ -37,7 +39,7 @@ class NetFt : public ForceSensor {
     const SensorHealth& health() const override { return health_; }
     std::string name() const override { return "Net F/T at " + options_.host + ":" + std::to_string(options_.port); }
 
- private:
+  private:
     void ask(RdtCommand command) {
         const auto request = encode_rdt_request(command, 0);
         port_.send(request.data(), request.size());

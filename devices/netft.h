@@ -27,8 +27,8 @@ enum class RdtCommand : std::uint16_t { stop = 0, stream = 2, reset_latch = 0x41
 
 struct RdtRecord {
     std::uint32_t rdt_sequence = 0;
-    std::uint32_t ft_sequence = 0;  // of the sensor's internal samples
-    std::uint32_t status = 0;       // 0: fine
+    std::uint32_t ft_sequence = 0;         // of the sensor's internal samples
+    std::uint32_t status = 0;              // 0: fine
     std::array<std::int32_t, 6> counts{};  // Fx Fy Fz Tx Ty Tz
 };
 
@@ -41,10 +41,10 @@ bool decode_rdt_request(const std::uint8_t* bytes, std::size_t count, RdtCommand
 struct NetFtOptions {
     std::string host = "192.168.1.1";  // as delivered
     int port = kRdtPort;
-    double counts_per_N = 1e6;         // "counts per force" of the sensor's web page, in newtons
-    int axis = 2;                      // 0 ... 2: x, y, z
-    double sign = -1.0;                // of the axis, so that pressing is positive: down is -z
-    double rate_Hz = 7000.0;           // of the internal samples, for the sensor's clock
+    double counts_per_N = 1e6;  // "counts per force" of the sensor's web page, in newtons
+    int axis = 2;               // 0 ... 2: x, y, z
+    double sign = -1.0;         // of the axis, so that pressing is positive: down is -z
+    double rate_Hz = 7000.0;    // of the internal samples, for the sensor's clock
 };
 std::unique_ptr<ForceSensor> open_netft(const NetFtOptions& options);
 

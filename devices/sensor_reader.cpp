@@ -10,7 +10,8 @@ double steady_s() {
     return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
-SensorReader::SensorReader(std::unique_ptr<ForceSensor> sensor) : sensor_(std::move(sensor)), name_(sensor_->name()), thread_([this] { run(); }) {}
+SensorReader::SensorReader(std::unique_ptr<ForceSensor> sensor)
+    : sensor_(std::move(sensor)), name_(sensor_->name()), thread_([this] { run(); }) {}
 
 SensorReader::~SensorReader() {
     stop_.store(true);

@@ -13,7 +13,7 @@
 namespace palpa::devices {
 
 class SensorReader {
- public:
+  public:
     explicit SensorReader(std::unique_ptr<ForceSensor> sensor);
     ~SensorReader();
     SensorReader(const SensorReader&) = delete;
@@ -24,7 +24,7 @@ class SensorReader {
     SensorHealth health() const;
     const std::string& name() const { return name_; }
 
- private:
+  private:
     void run();
 
     std::unique_ptr<ForceSensor> sensor_;  // the thread's alone, once it runs

@@ -11,9 +11,9 @@ enum class Arrival : std::uint8_t { next, duplicate, late, restart };
 
 struct Sequence {
     bool started = false;
-    std::uint32_t last = 0;      // the greatest so far, wrap-arounds apart
-    std::uint64_t seen = 0;      // bit k: last - k came
-    std::int64_t total = 0;      // `last` with its wrap-arounds undone
+    std::uint32_t last = 0;        // the greatest so far, wrap-arounds apart
+    std::uint64_t seen = 0;        // bit k: last - k came
+    std::int64_t total = 0;        // `last` with its wrap-arounds undone
     std::int64_t since_start = 0;  // `last` - the first one: what is older was never counted as lost
 };
 

@@ -12,7 +12,7 @@ template <class T, std::size_t N>
 class SpscRing {
     static_assert((N & (N - 1)) == 0, "the indices wrap around with their type");
 
- public:
+  public:
     // False if it is full: the value is not taken.
     bool push(const T& value) {
         const std::size_t head = head_.load(std::memory_order_relaxed);
@@ -30,7 +30,7 @@ class SpscRing {
         return true;
     }
 
- private:
+  private:
     std::array<T, N> values_{};
     alignas(64) std::atomic<std::size_t> head_{0};  // apart, so that the threads do not fight for one cache line
     alignas(64) std::atomic<std::size_t> tail_{0};

@@ -59,9 +59,7 @@ Eigen::Matrix3Xd centroids_m(const Mesh& mesh) {
     return out;
 }
 
-Eigen::Vector3d vector_of(const std::vector<double>& v) {
-    return {v[0], v[1], v[2]};
-}
+Eigen::Vector3d vector_of(const std::vector<double>& v) { return {v[0], v[1], v[2]}; }
 
 // Cells that one region takes: those whose centre is inside.
 std::vector<int> cells_of_region(files::JsonReader& entry, const CaseMesh& mesh, const Eigen::Matrix3Xd& centre_m) {
@@ -102,10 +100,9 @@ void read_regions(files::JsonReader& json, const std::vector<std::string>& mater
     const Eigen::Matrix3Xd centre_m = centroids_m(mesh.mesh);
     for (files::JsonReader& entry : entries) {
         entry.only({"all", "box", "sphere", "physical", "material"});
-        const int kinds = int{entry.has("all")} + int{entry.has("box")} + int{entry.has("sphere")} +
-                          int{entry.has("physical")};
-        if (kinds != 1)
-            entry.fail("", std::to_string(kinds) + " shapes", "one of all, box, sphere, physical");
+        const int kinds =
+            int{entry.has("all")} + int{entry.has("box")} + int{entry.has("sphere")} + int{entry.has("physical")};
+        if (kinds != 1) entry.fail("", std::to_string(kinds) + " shapes", "one of all, box, sphere, physical");
         const std::string name = entry.text("material");
         const auto it = std::find(materials.begin(), materials.end(), name);
         if (it == materials.end()) {
@@ -188,8 +185,7 @@ CaseIndenter read_indenter(files::JsonReader json, const CaseMesh& mesh) {
     if (faces_on(mesh.mesh, mesh.outer, Side::zmax).cell.size() == 0) {
         Index highest = 0;
         mesh.mesh.nodes_m.row(2).maxCoeff(&highest);
-        json.fail("", "a body without a face in its highest plane; its highest is " +
-                          describe_node(mesh.mesh, highest),
+        json.fail("", "a body without a face in its highest plane; its highest is " + describe_node(mesh.mesh, highest),
                   "a flat surface at zmax for the tool to come down on");
     }
     CaseIndenter out;
@@ -207,13 +203,13 @@ CaseIndenter read_indenter(files::JsonReader json, const CaseMesh& mesh) {
     for (int axis = 0; axis < 2; ++axis) {
         const double at = centre_mm[static_cast<std::size_t>(axis)];
         if (at >= low(axis) && at <= high(axis)) continue;
-        json.fail("centre_mm", files::short_number(at) + (axis == 0 ? " in x" : " in y"),
-                  "a place on the tissue, " + files::short_number(low(axis)) + " to " + files::short_number(high(axis)));
+        json.fail(
+            "centre_mm", files::short_number(at) + (axis == 0 ? " in x" : " in y"),
+            "a place on the tissue, " + files::short_number(low(axis)) + " to " + files::short_number(high(axis)));
     }
     out.centre_m = {1e-3 * centre_mm[0], 1e-3 * centre_mm[1]};
     if (json.has("depth_mm") == json.has("force_N")) {
-        json.fail("depth_mm", json.has("depth_mm") ? "depth_mm and force_N" : "nothing",
-                  "one of depth_mm and force_N");
+        json.fail("depth_mm", json.has("depth_mm") ? "depth_mm and force_N" : "nothing", "one of depth_mm and force_N");
     }
     if (json.has("depth_mm")) {
         const double thickness_mm = high(2) - low(2);
@@ -236,8 +232,7 @@ void read_loads(files::JsonReader& json, const CaseMesh& mesh, FemCase& out) {
         const int kinds =
             int{entry.has("parabolic_pressure")} + int{entry.has("traction_Pa")} + int{entry.has("indenter")};
         if (kinds != 1)
-            entry.fail("", std::to_string(kinds) + " loads",
-                       "one of parabolic_pressure, traction_Pa, indenter");
+            entry.fail("", std::to_string(kinds) + " loads", "one of parabolic_pressure, traction_Pa, indenter");
         if (entry.has("traction_Pa")) {
             out.tractions.push_back(read_traction(entry, mesh));
             continue;

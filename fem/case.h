@@ -37,7 +37,7 @@ struct CaseIndenter {
 // Checked as a whole: materials, mesh and supports are ones that can be solved.
 struct FemCase {
     std::string file;
-    std::string mesh_file;         // empty for a box
+    std::string mesh_file;       // empty for a box
     mechanics::Problem problem;  // mesh.region: position in `materials`
     mechanics::Faces outer;
     mechanics::MeshReport report;

@@ -28,7 +28,7 @@ constexpr int kFrictionSteps = 16;
 constexpr int kFrictionSweeps = 4000;
 constexpr double kForceTolerance = 1e-6;  // with friction; its sweeps leave 1e-7 of the largest nodal force
 constexpr int kMostPresses = 40;
-constexpr double kNarrowest = 1e-10;   // of the depth: the force jumps there
+constexpr double kNarrowest = 1e-10;  // of the depth: the force jumps there
 constexpr double kFewestCells = 4.0;  // across the contact's radius: docs/fem.md
 
 struct Pressed {
@@ -42,9 +42,7 @@ Tool tool_at(const CaseIndenter& indenter, double depth_m) {
     return {indenter.indenter, {indenter.centre_m[0], indenter.centre_m[1], depth_m}};
 }
 
-std::string mm_text(double metres) {
-    return files::short_number(1e3 * metres) + " mm";
-}
+std::string mm_text(double metres) { return files::short_number(1e3 * metres) + " mm"; }
 
 std::string overlap_text(const Contact& contact) {
     return "at " + mm_text(contact.tool[0].depth_m) + " the surface still reaches " + mm_text(contact.violation_m) +
@@ -61,17 +59,17 @@ Pressed press_smooth(const Compliance& c, const CaseIndenter& indenter, const Fe
         press_with_force(c, tool_at(indenter, 0.0), indenter.force_N, {}, work, out.contact);
         if (out.contact.flags.capped) {
             throw files::bad_input(model.file, "loads.indenter.force_N", files::short_number(indenter.force_N),
-                            "at most " + files::short_number(out.contact.tool[0].normal_N) +
-                                ", which presses the tool through the whole tissue, " +
-                                files::short_number(1e3 * c.thickness_m) + " mm");
+                                   "at most " + files::short_number(out.contact.tool[0].normal_N) +
+                                       ", which presses the tool through the whole tissue, " +
+                                       files::short_number(1e3 * c.thickness_m) + " mm");
         }
     }
     const ContactFlags& flags = out.contact.flags;
     if (flags.not_settled) {
         out.unsettled = "the nodes in contact keep changing: " + overlap_text(out.contact);
     } else if (flags.force_missed) {
-        out.unsettled = "the force comes no nearer than " + files::short_number(out.contact.tool[0].normal_N) + " N to " +
-                        files::short_number(indenter.force_N) + " N";
+        out.unsettled = "the force comes no nearer than " + files::short_number(out.contact.tool[0].normal_N) +
+                        " N to " + files::short_number(indenter.force_N) + " N";
     }
     out.touch = out.contact.touch;
     for (const double p : out.contact.force_N) out.force_N.insert(out.force_N.end(), {p, 0.0, 0.0});
@@ -107,7 +105,8 @@ struct Bound {
 double next_depth_m(const Bound& low, const Bound& high) {
     const bool open = !std::isfinite(high.miss);
     if (!(low.depth_m > 0.0) && open) return 0.5 * high.depth_m;
-    if (!std::isfinite(low.miss)) return open ? std::min(2.0 * low.depth_m, high.depth_m) : 0.5 * (low.depth_m + high.depth_m);
+    if (!std::isfinite(low.miss))
+        return open ? std::min(2.0 * low.depth_m, high.depth_m) : 0.5 * (low.depth_m + high.depth_m);
     if (open) return std::min(low.depth_m * std::exp(-low.miss / 1.5), high.depth_m);
     if (!(low.depth_m > 0.0)) return high.depth_m * std::exp(-high.miss / 1.5);
     const double share = low.miss / (low.miss - high.miss);
@@ -136,8 +135,8 @@ Pressed press_rough(const Compliance& c, const CaseIndenter& indenter, const Fem
         side = now;
         depth_m = next_depth_m(low, high);
     }
-    out.unsettled = "friction: the force jumps past " + files::short_number(indenter.force_N) + " N at " + mm_text(depth_m) +
-                    " (" + files::short_number(out.contact.tool[0].normal_N) + " N)";
+    out.unsettled = "friction: the force jumps past " + files::short_number(indenter.force_N) + " N at " +
+                    mm_text(depth_m) + " (" + files::short_number(out.contact.tool[0].normal_N) + " N)";
     return out;
 }
 
@@ -148,8 +147,7 @@ double hertz_depth_m(const CaseIndenter& indenter, const FemCase& model) {
     int cell = 0;
     for (Index f = 0; f < top.cell.size(); ++f) {
         Eigen::Vector3d middle = Eigen::Vector3d::Zero();
-        for (Index k = 0; k < top.corners.rows(); ++k)
-            middle += model.problem.mesh.nodes_m.col(top.corners(k, f));
+        for (Index k = 0; k < top.corners.rows(); ++k) middle += model.problem.mesh.nodes_m.col(top.corners(k, f));
         middle /= static_cast<double>(top.corners.rows());
         const double away = std::hypot(middle.x() - indenter.centre_m[0], middle.y() - indenter.centre_m[1]);
         if (away >= nearest) continue;
@@ -168,12 +166,11 @@ struct Rectangle {
     std::vector<int> held;          // nodes in it that a support holds
 };
 
-Rectangle rectangle_around(const FemCase& model, const CaseIndenter& indenter, double half_x_m,
-                           double half_y_m) {
+Rectangle rectangle_around(const FemCase& model, const CaseIndenter& indenter, double half_x_m, double half_y_m) {
     const auto [x, y] = indenter.centre_m;
     Rectangle out;
-    out.request = request_rectangle(model.problem.mesh, model.outer,
-                                    {x - half_x_m, x + half_x_m, y - half_y_m, y + half_y_m});
+    out.request =
+        request_rectangle(model.problem.mesh, model.outer, {x - half_x_m, x + half_x_m, y - half_y_m, y + half_y_m});
     out.whole = out.request.other_nodes.empty();
     out.request.other_nodes.clear();  // the full field is solved for afterwards
     out.request.tangential = indenter.friction > 0.0;
@@ -200,27 +197,24 @@ bool at_rim(const Compliance& c, const Pressed& pressed, const Rectangle& rectan
 }
 
 void check_size(const Rectangle& rectangle, const FemCase& model) {
-    const double rows = static_cast<double>(rectangle.request.touch_nodes.size()) *
-                        (rectangle.request.tangential ? 3.0 : 1.0);
+    const double rows =
+        static_cast<double>(rectangle.request.touch_nodes.size()) * (rectangle.request.tangential ? 3.0 : 1.0);
     if (8.0 * rows * rows <= kMostCompliance_bytes) return;
     throw files::bad_input(
         model.file, "loads.indenter",
         "a tool over " + std::to_string(rectangle.request.touch_nodes.size()) + " nodes of the surface",
         "at most " +
-            files::short_number(std::sqrt(kMostCompliance_bytes / 8.0) /
-                         (rectangle.request.tangential ? 3.0 : 1.0)) +
+            files::short_number(std::sqrt(kMostCompliance_bytes / 8.0) / (rectangle.request.tangential ? 3.0 : 1.0)) +
             " (a smaller radius or depth, or a coarser mesh)");
 }
 
-double at_mm(const FemCase& model, int node, Index axis) {
-    return 1e3 * model.problem.mesh.nodes_m(axis, node);
-}
+double at_mm(const FemCase& model, int node, Index axis) { return 1e3 * model.problem.mesh.nodes_m(axis, node); }
 
 [[noreturn]] void refuse_support(const FemCase& model, int node, const std::string& expected) {
     throw files::bad_input(model.file, "loads.indenter.centre_mm",
-                    "a support under the tool, at x " + files::short_number(at_mm(model, node, 0)) + ", y " +
-                        files::short_number(at_mm(model, node, 1)) + " mm",
-                    expected);
+                           "a support under the tool, at x " + files::short_number(at_mm(model, node, 0)) + ", y " +
+                               files::short_number(at_mm(model, node, 1)) + " mm",
+                           expected);
 }
 
 // Nodes that a support holds do not give way and are not solved for: they leave the list of touch nodes.
@@ -317,9 +311,10 @@ std::vector<std::string> contact_warnings(const IndenterContact& contact) {
     std::vector<std::string> out;
     if (!contact.settled) out.push_back("the contact did not settle: " + contact.why_not_settled);
     if (contact.cells_across_radius < kFewestCells) {
-        out.push_back("the contact's radius spans " + files::short_number(contact.cells_across_radius) +
-                      " cells: below 4 its force can be far off, whatever the other figures say; refine the mesh around "
-                      "the tool");
+        out.push_back(
+            "the contact's radius spans " + files::short_number(contact.cells_across_radius) +
+            " cells: below 4 its force can be far off, whatever the other figures say; refine the mesh around "
+            "the tool");
     }
     return out;
 }
@@ -352,7 +347,7 @@ IndenterContact press_indenter(const FemCase& model, const Factored& factored, c
         check_reach(model, pressed.contact.tool[0].depth_m);
         if (pressed.touch.empty()) {
             throw files::bad_input(model.file, "loads.indenter", "a tool that touches no node at this depth",
-                            "a deeper or larger tool, or a finer mesh around it");
+                                   "a deeper or larger tool, or a finer mesh around it");
         }
         IndenterContact out = result_of(c, pressed, model);
         out.columns = c.n_touch;

@@ -42,15 +42,13 @@ Box read_box(files::JsonReader box) {
             grading->fail("centre_mm", files::short_number(centre_mm[axis]),
                           "a place in the box, 0 to " + files::short_number(size_mm[axis]));
         }
-        out.grading = Grading{{1e-3 * centre_mm[0], 1e-3 * centre_mm[1]},
-                              1e-3 * grading->number("finest_mm", files::kPositive)};
+        out.grading =
+            Grading{{1e-3 * centre_mm[0], 1e-3 * centre_mm[1]}, 1e-3 * grading->number("finest_mm", files::kPositive)};
     }
     return out;
 }
 
-files::MshKind kind_of(Element element) {
-    return element == Element::tet4 ? files::MshKind::tet : files::MshKind::hex;
-}
+files::MshKind kind_of(Element element) { return element == Element::tet4 ? files::MshKind::tet : files::MshKind::hex; }
 
 // Nodes of none of these cells go; what stood on them keeps -1 there.
 void drop_loose_nodes(files::MshKind kind, files::Msh& msh) {
@@ -77,20 +75,18 @@ Mesh mesh_of(files::Msh& msh, Element element, const std::string& file) {
     const std::size_t others = msh.count(tets ? files::MshKind::hex : files::MshKind::tet);
     const auto n = static_cast<Index>(msh.count(wanted));
     if (n == 0 || others > 0) {
-        throw files::bad_input(
-            file, "",
-            std::to_string(msh.count(files::MshKind::hex)) + " hexahedra and " +
-                std::to_string(msh.count(files::MshKind::tet)) + " tetrahedra",
-            tets ? "tetrahedra only (element tet4)" : "hexahedra only (element hex8-bbar or hex8)");
+        throw files::bad_input(file, "",
+                               std::to_string(msh.count(files::MshKind::hex)) + " hexahedra and " +
+                                   std::to_string(msh.count(files::MshKind::tet)) + " tetrahedra",
+                               tets ? "tetrahedra only (element tet4)" : "hexahedra only (element hex8-bbar or hex8)");
     }
     drop_loose_nodes(wanted, msh);
     if (static_cast<double>(msh.n_nodes()) > kMostNodes) {
         throw files::bad_input(file, "", std::to_string(msh.n_nodes()) + " nodes",
-                        "at most " + files::short_number(kMostNodes));
+                               "at most " + files::short_number(kMostNodes));
     }
     Mesh mesh;
-    mesh.nodes_m =
-        1e-3 * Eigen::Map<const Eigen::Matrix3Xd>(msh.nodes.data(), 3, static_cast<Index>(msh.n_nodes()));
+    mesh.nodes_m = 1e-3 * Eigen::Map<const Eigen::Matrix3Xd>(msh.nodes.data(), 3, static_cast<Index>(msh.n_nodes()));
     mesh.cells = Eigen::Map<const Eigen::MatrixXi>(msh.of(wanted).nodes.data(), tets ? 4 : 8, n);
     mesh.region = Eigen::VectorXi::Zero(n);
     mesh.node_number = msh.node_number;
@@ -109,7 +105,7 @@ void check_cells(CaseMesh& mesh, const files::JsonReader& json) {
         }
         if (error.cells.size() > 8) found += " ...";
         throw files::bad_input(mesh.file, "", found + " (" + std::to_string(error.cells.size()) + " in all)",
-                        "elements with a positive volume");
+                               "elements with a positive volume");
     }
 }
 
@@ -119,20 +115,19 @@ void check_seams(CaseMesh& mesh) {
     if (!seams.hanging.empty()) {
         const Seam& seam = seams.hanging.front();
         throw files::bad_input(mesh.file, "",
-                        describe_node(mesh.mesh, seam.node) + " in a face of element " +
-                            std::to_string(number_of_cell(mesh.mesh, seam.cell)) +
-                            " without being its corner (" + std::to_string(seams.hanging.size()) +
-                            " such nodes)",
-                        "elements that share whole faces where they touch, or a gap between them");
+                               describe_node(mesh.mesh, seam.node) + " in a face of element " +
+                                   std::to_string(number_of_cell(mesh.mesh, seam.cell)) +
+                                   " without being its corner (" + std::to_string(seams.hanging.size()) +
+                                   " such nodes)",
+                               "elements that share whole faces where they touch, or a gap between them");
     }
     if (seams.doubled.empty()) return;
     const Seam& seam = seams.doubled.front();
-    mesh.warnings.push_back(
-        mesh.file + ": " + std::to_string(seams.doubled.size()) +
-        " nodes lie where another node is, the first is " + describe_node(mesh.mesh, seam.node) +
-        " on node " + std::to_string(number_of_node(mesh.mesh, seam.other)) +
-        "; the elements are not joined there and may move through each other (Gmsh joins them with "
-        "Tools > Coherence or `Coherence Mesh;`)");
+    mesh.warnings.push_back(mesh.file + ": " + std::to_string(seams.doubled.size()) +
+                            " nodes lie where another node is, the first is " + describe_node(mesh.mesh, seam.node) +
+                            " on node " + std::to_string(number_of_node(mesh.mesh, seam.other)) +
+                            "; the elements are not joined there and may move through each other (Gmsh joins them with "
+                            "Tools > Coherence or `Coherence Mesh;`)");
 }
 
 std::string name_of(const files::MshGroup& group) {
@@ -204,9 +199,8 @@ Faces faces_of_group(files::JsonReader& entry, const CaseMesh& mesh) {
         const auto it = at.find(sorted_corners(mesh.msh->of(kind).nodes.data() + corners * cell, corners));
         if (it == at.end()) {
             entry.fail("physical",
-                       "element " +
-                           std::to_string(mesh.msh->of(kind).number[static_cast<std::size_t>(cell)]) +
-                           " of " + mesh.file + ", which is no outer face of a cell",
+                       "element " + std::to_string(mesh.msh->of(kind).number[static_cast<std::size_t>(cell)]) + " of " +
+                           mesh.file + ", which is no outer face of a cell",
                        "faces on the outside");
         }
         found.push_back(it->second);
@@ -247,8 +241,7 @@ CaseMesh read_case_mesh(files::JsonReader& json, const std::filesystem::path& fo
     files::JsonReader mesh_json = json.object("mesh");
     mesh_json.only({"box", "file"});
     if (mesh_json.has("box") == mesh_json.has("file")) {
-        json.fail("mesh", mesh_json.has("box") ? "box and file" : "neither box nor file",
-                  "one of box and file");
+        json.fail("mesh", mesh_json.has("box") ? "box and file" : "neither box nor file", "one of box and file");
     }
     CaseMesh out;
     if (mesh_json.has("file")) {
@@ -291,8 +284,7 @@ std::vector<int> nodes_named(files::JsonReader& entry, const CaseMesh& mesh, std
             const int* first = mesh.msh->of(kind).nodes.data() + corners * static_cast<std::size_t>(cell);
             if (std::any_of(first, first + corners, [](int node) { return node < 0; })) {
                 entry.fail("physical",
-                           "element " +
-                               std::to_string(mesh.msh->of(kind).number[static_cast<std::size_t>(cell)]) +
+                           "element " + std::to_string(mesh.msh->of(kind).number[static_cast<std::size_t>(cell)]) +
                                " of " + mesh.file + ", with a node that no cell of the body has",
                            "faces of the body");
             }

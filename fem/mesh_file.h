@@ -17,7 +17,7 @@ struct CaseMesh {
     mechanics::Mesh mesh;
     mechanics::Faces outer;
     mechanics::MeshReport report;
-    std::string file;        // of the mesh, "" for a box
+    std::string file;               // of the mesh, "" for a box
     std::optional<files::Msh> msh;  // where physical groups are looked up; absent for a box
     std::vector<std::string> warnings;
 };
@@ -28,7 +28,7 @@ CaseMesh read_case_mesh(files::JsonReader& json, const std::filesystem::path& fo
 
 // What "face" (xmin ... zmax) or "physical" in an entry of the case means. `name` is filled for messages.
 mechanics::Faces faces_named(files::JsonReader& entry, const CaseMesh& mesh,
-                             std::string& name);  // all on the outside
+                             std::string& name);                                                  // all on the outside
 std::vector<int> nodes_named(files::JsonReader& entry, const CaseMesh& mesh, std::string& name);  // ascending
 std::vector<int> cells_of_group(files::JsonReader& entry, const CaseMesh& mesh);
 

@@ -49,14 +49,13 @@ void check_reach(const FemCase& model, double depth_m) {
             const Vector3d at = places.col(k);
             if (at.z() > top_m - tolerance_m) continue;
             if (at.z() <= tool_m(*model.indenter, top_m - depth_m, at.x(), at.y())) continue;
-            throw files::bad_input(model.file, "loads.indenter",
-                            "a tool, " + files::short_number(1e3 * depth_m) +
-                                " mm deep, that reaches a lower part of the surface at " +
-                                files::short_number(1e3 * at.x()) + ", " + files::short_number(1e3 * at.y()) + ", " +
-                                files::short_number(1e3 * at.z()) + " mm (element " +
-                                std::to_string(number_of_cell(mesh, model.outer.cell(f))) + ")",
-                            "a flat surface at zmax, " + files::short_number(1e3 * top_m) +
-                                " mm, wherever the tool reaches");
+            throw files::bad_input(
+                model.file, "loads.indenter",
+                "a tool, " + files::short_number(1e3 * depth_m) +
+                    " mm deep, that reaches a lower part of the surface at " + files::short_number(1e3 * at.x()) +
+                    ", " + files::short_number(1e3 * at.y()) + ", " + files::short_number(1e3 * at.z()) +
+                    " mm (element " + std::to_string(number_of_cell(mesh, model.outer.cell(f))) + ")",
+                "a flat surface at zmax, " + files::short_number(1e3 * top_m) + " mm, wherever the tool reaches");
         }
     }
 }

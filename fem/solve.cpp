@@ -62,10 +62,8 @@ void add_tractions(const FemCase& model, Loads& loads) {
         const Vector3d t(traction.vector_Pa[0], traction.vector_Pa[1], traction.vector_Pa[2]);
         loads.force_N += traction.pressure_Pa ? pressure_load(mesh, traction.faces, *traction.pressure_Pa)
                                               : traction_load(mesh, traction.faces, traction.vector_Pa);
-        loads.applied_N +=
-            area_m2.sum() * (traction.pressure_Pa ? std::abs(*traction.pressure_Pa) : t.norm());
-        if (!loads.centre)
-            loads.centre = LoadCentre{mesh.nodes_m * area_m2 / area_m2.sum(), traction.faces, 0.0};
+        loads.applied_N += area_m2.sum() * (traction.pressure_Pa ? std::abs(*traction.pressure_Pa) : t.norm());
+        if (!loads.centre) loads.centre = LoadCentre{mesh.nodes_m * area_m2 / area_m2.sum(), traction.faces, 0.0};
     }
 }
 
@@ -86,8 +84,7 @@ double depression_at_m(const Mesh& mesh, const LoadCentre& centre, const Matrix3
         nearest = here;
         const Vector3d n = outward_normal(x);
         depression_m = 0.0;
-        for (Index k = 0; k < corners.size(); ++k)
-            depression_m -= here.weight(k) * n.dot(u_m.col(corners(k)));
+        for (Index k = 0; k < corners.size(); ++k) depression_m -= here.weight(k) * n.dot(u_m.col(corners(k)));
     }
     return depression_m;
 }
@@ -136,8 +133,7 @@ void blank_rigid_cells(const Problem& problem, FemResult& result) {
     double softest = std::numeric_limits<double>::infinity();
     for (const Material& m : problem.materials) softest = std::min(softest, m.young_Pa);
     for (Index cell = 0; cell < result.von_mises_Pa.size(); ++cell) {
-        if (!(problem.materials[static_cast<std::size_t>(cell)].young_Pa > problem.rigid_contrast * softest))
-            continue;
+        if (!(problem.materials[static_cast<std::size_t>(cell)].young_Pa > problem.rigid_contrast * softest)) continue;
         result.fields.stress_Pa.col(cell).setConstant(std::numeric_limits<double>::quiet_NaN());
         result.von_mises_Pa(cell) = std::numeric_limits<double>::quiet_NaN();
     }
@@ -149,8 +145,7 @@ void judge_linearity(const FemCase& model, const Loads& loads, FemResult& result
     if (result.contact) width_m = 2.0 * std::sqrt(result.contact->area_m2 / std::numbers::pi);
     const double depth_m = result.contact ? result.contact->depth_m : std::abs(result.centre_m.value_or(0.0));
     result.max_strain = max_principal_strain(result.fields);
-    result.linear_ratio =
-        std::max(result.max_strain, linearity_ratio(depth_m, z.maxCoeff() - z.minCoeff(), width_m));
+    result.linear_ratio = std::max(result.max_strain, linearity_ratio(depth_m, z.maxCoeff() - z.minCoeff(), width_m));
     result.linear = linear_range(result.linear_ratio);
 }
 
@@ -188,7 +183,8 @@ FemResult solve_loads(const FemCase& model, const Factored& factored, const FemP
         result.skel_m = loads.force_N.cwiseProduct(result.solution.u_m).sum() / loads.applied_N;
     }
     result.residual = relative_residual(factored, loads.force_N, result.solution);
-    result.converged = result.solution.backward_error < kMostBackwardError && (!result.contact || result.contact->settled);
+    result.converged =
+        result.solution.backward_error < kMostBackwardError && (!result.contact || result.contact->settled);
     judge_linearity(model, loads, result);
     result.assemble_s = factored.assemble_s;
     result.factor_s = factored.factor_s;

@@ -17,8 +17,7 @@ struct FemResult {
     // Of the tissue on each support's side: force of the support on the body. A displacement that two
     // supports give counts for the first of them.
     std::vector<Eigen::Vector3d> reaction_N;
-    Eigen::Vector3d body_reaction_N =
-        Eigen::Vector3d::Zero();  // on rigid bodies, beside the supports' own nodes
+    Eigen::Vector3d body_reaction_N = Eigen::Vector3d::Zero();  // on rigid bodies, beside the supports' own nodes
     std::optional<IndenterContact> contact;
 
     double applied_N = 0.0;          // sum of the loads' sizes

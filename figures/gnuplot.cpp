@@ -1,9 +1,8 @@
 #include "figures/gnuplot.h"
 
-#include <unistd.h>
-
 #include <cstdlib>
 #include <stdexcept>
+#include <unistd.h>
 
 #include "files/input_error.h"
 #include "files/regular_file.h"
@@ -17,7 +16,9 @@ std::string terminal(const std::filesystem::path& file, int width_px, int height
     const std::string px = std::to_string(width_px) + "," + std::to_string(height_px);
     if (kind == ".png") return "pngcairo size " + px + " font 'DejaVu Sans,11'";
     if (kind == ".svg") return "svg size " + px + " font 'DejaVu Sans,13'";
-    if (kind == ".pdf") return "pdfcairo size " + files::short_number(width_px / 100.0) + "in," + files::short_number(height_px / 100.0) + "in font 'DejaVu Sans,11'";
+    if (kind == ".pdf")
+        return "pdfcairo size " + files::short_number(width_px / 100.0) + "in," +
+               files::short_number(height_px / 100.0) + "in font 'DejaVu Sans,11'";
     throw files::bad_input(file.string(), "", "a file name that ends in " + files::shown(kind), ".png, .svg or .pdf");
 }
 
@@ -46,12 +47,14 @@ void draw_figure(const std::string& script, const std::filesystem::path& name, i
     }
     const std::string aside = file.string() + ".part-" + std::to_string(::getpid());
     const std::string commands = aside + ".gp";
-    files::write_text_atomically(commands, "set encoding utf8\n" + set + "set output " + gnuplot_quoted(aside) + "\n" + script + "\nunset output\n");
+    files::write_text_atomically(commands, "set encoding utf8\n" + set + "set output " + gnuplot_quoted(aside) + "\n" +
+                                               script + "\nunset output\n");
     const int status = std::system(("gnuplot " + shell_quoted(commands)).c_str());
     ::unlink(commands.c_str());
     if (status == 0 && name.extension() == ".svg") {  // else a viewer may blend cells into each other and into gaps
         std::string svg = files::read_text(aside);
-        for (std::size_t at = svg.find("<image "); at != std::string::npos; at = svg.find("<image ", at + 1)) svg.insert(at + 6, " style='image-rendering:pixelated'");
+        for (std::size_t at = svg.find("<image "); at != std::string::npos; at = svg.find("<image ", at + 1))
+            svg.insert(at + 6, " style='image-rendering:pixelated'");
         files::write_text_whole(aside, svg);
     }
     if (status != 0 || ::rename(aside.c_str(), file.c_str()) != 0) {

@@ -15,7 +15,8 @@ namespace palpa::figures {
 namespace {
 
 // Ten steps of viridis (Smith and van der Walt, BIDS 2015); a diverging scale around white; colours by Okabe and Ito.
-constexpr const char* kHead = R"gp(viridis = "defined (0 '#440154', 1 '#482878', 2 '#3e4a89', 3 '#31688e', 4 '#26828e', 5 '#1f9e89', 6 '#35b779', 7 '#6ece58', 8 '#b5de2b', 9 '#fde725')"
+constexpr const char* kHead =
+    R"gp(viridis = "defined (0 '#440154', 1 '#482878', 2 '#3e4a89', 3 '#31688e', 4 '#26828e', 5 '#1f9e89', 6 '#35b779', 7 '#6ece58', 8 '#b5de2b', 9 '#fde725')"
 apart = "defined (-1 '#2166ac', -0.5 '#92c5de', 0 '#f7f7f7', 0.5 '#f4a582', 1 '#b2182b')"
 set border lw 0.8
 set tics out nomirror scale 0.5
@@ -36,8 +37,10 @@ std::string text_of(double value) { return std::isfinite(value) ? files::number_
 std::string quoted(const std::string& text) {
     std::string out = "'";
     for (const char c : text) {
-        if (c == '\'') out += "''";
-        else if (static_cast<unsigned char>(c) >= ' ') out += c;
+        if (c == '\'')
+            out += "''";
+        else if (static_cast<unsigned char>(c) >= ' ')
+            out += c;
     }
     return out + "' noenhanced";
 }
@@ -69,12 +72,12 @@ struct Image {
     std::size_t n_x = 1, n_y = 1;
     std::vector<double> values;  // [n_y][n_x]
     Span span;
-    bool apart = false;          // around 0
+    bool apart = false;  // around 0
     bool bar = true;
-    bool small = false;          // of small multiples: numbers at the outer axes only
-    bool title_left = false;     // beside a key
-    bool down = false;           // y grows downwards, and is not to the scale of x
-    std::string over;            // further plot elements, and commands before the plot
+    bool small = false;       // of small multiples: numbers at the outer axes only
+    bool title_left = false;  // beside a key
+    bool down = false;        // y grows downwards, and is not to the scale of x
+    std::string over;         // further plot elements, and commands before the plot
     std::string before;
 };
 
@@ -93,9 +96,12 @@ double tic_step(double range, double count) {
 }
 
 class Script {
- public:
+  public:
     Script(const std::string& title, double width_px, double height_px)
-        : width_px_(width_px), height_px_(height_px), text_(kHead + ("set label 99 " + quoted(title) + " at screen 0.5, screen " + text_of(1.0 - 16.0 / height_px) + " center font ',13'\n")) {}
+        : width_px_(width_px),
+          height_px_(height_px),
+          text_(kHead + ("set label 99 " + quoted(title) + " at screen 0.5, screen " + text_of(1.0 - 16.0 / height_px) +
+                         " center font ',13'\n")) {}
     void add(const std::string& text) { text_ += text; }
 
     std::string block(const std::string& rows) {
@@ -111,16 +117,18 @@ class Script {
         std::string rows;
         for (std::size_t j = 0; j < im.n_y; ++j) {
             for (std::size_t i = 0; i < im.n_x; ++i) {
-                rows += text_of(im.x0 + im.dx * static_cast<double>(i)) + " " + text_of(im.y0 + im.dy * static_cast<double>(j)) + " " +
-                        text_of(im.values[j * im.n_x + i]) + "\n";
+                rows += text_of(im.x0 + im.dx * static_cast<double>(i)) + " " +
+                        text_of(im.y0 + im.dy * static_cast<double>(j)) + " " + text_of(im.values[j * im.n_x + i]) +
+                        "\n";
             }
         }
         const std::string data = block(rows);
         place(box);
         text_ += std::string("set palette @") + (im.apart ? "apart" : "viridis") + "\n";
         text_ += "set cbrange [" + text_of(im.span.low) + ":" + text_of(im.span.high) + "]\n";
-        text_ += im.bar ? "set colorbox user origin screen " + text_of(box.x1 + 0.008) + ", screen " + text_of(box.y0) + " size screen 0.012, screen " +
-                              text_of(box.y1 - box.y0) + "\nset cblabel " + quoted(im.unit) + " offset 0.5,0\n"
+        text_ += im.bar ? "set colorbox user origin screen " + text_of(box.x1 + 0.008) + ", screen " + text_of(box.y0) +
+                              " size screen 0.012, screen " + text_of(box.y1 - box.y0) + "\nset cblabel " +
+                              quoted(im.unit) + " offset 0.5,0\n"
                         : "unset colorbox\n";
         text_ += im.down ? "set size noratio\n" : "set size ratio -1\n";
         const double x1 = im.x0 + im.dx * (static_cast<double>(im.n_x) - 0.5);
@@ -128,26 +136,35 @@ class Script {
         text_ += "set xrange [" + text_of(im.x0 - 0.5 * im.dx) + ":" + text_of(x1) + "]\n";
         const std::string low = text_of(im.y0 - 0.5 * im.dy);
         text_ += "set yrange [" + (im.down ? text_of(y1) + ":" + low : low + ":" + text_of(y1)) + "]\n";
-        text_ += "set xlabel " + quoted(im.x_label) + " offset 0,0.5\nset ylabel " + quoted(im.y_label) + " offset 1,0\n";
-        text_ += im.title_left ? "unset title\nset label 98 " + quoted(im.title) + " at graph 0, graph 1 left offset 0,0.7\n"
-                               : "set title " + quoted(im.title) + " offset 0,-0.6\n";
+        text_ +=
+            "set xlabel " + quoted(im.x_label) + " offset 0,0.5\nset ylabel " + quoted(im.y_label) + " offset 1,0\n";
+        text_ += im.title_left
+                     ? "unset title\nset label 98 " + quoted(im.title) + " at graph 0, graph 1 left offset 0,0.7\n"
+                     : "set title " + quoted(im.title) + " offset 0,-0.6\n";
         if (im.small && im.y_label.empty()) text_ += "set format y ''\n";
         if (im.small && im.x_label.empty()) text_ += "set format x ''\n";
         text_ += im.before;
-        text_ += "set object 1 rectangle from graph 0,0 to graph 1,1 fc rgb '#9a9a9a' fs pattern 4 noborder behind\nset grid noxtics noytics\n";
-        text_ += "set xtics " + text_of(tic_step(im.dx * static_cast<double>(im.n_x), (box.x1 - box.x0) * width_px_ / 70.0)) + "\n";
-        text_ += im.down ? "set ytics autofreq\n" : "set ytics " + text_of(tic_step(im.dy * static_cast<double>(im.n_y), (box.x1 - box.x0) * 20.0)) + "\n";
-        text_ += "plot " + data + " using 1:2:3 with image notitle" + im.over + "\nunset object 1\nunset label\nset key default\nset xtics autofreq\nset ytics autofreq\nset format x '% h'\nset format y '% h'\n";
+        text_ +=
+            "set object 1 rectangle from graph 0,0 to graph 1,1 fc rgb '#9a9a9a' fs pattern 4 noborder behind\nset "
+            "grid noxtics noytics\n";
+        text_ += "set xtics " +
+                 text_of(tic_step(im.dx * static_cast<double>(im.n_x), (box.x1 - box.x0) * width_px_ / 70.0)) + "\n";
+        text_ += im.down ? "set ytics autofreq\n"
+                         : "set ytics " +
+                               text_of(tic_step(im.dy * static_cast<double>(im.n_y), (box.x1 - box.x0) * 20.0)) + "\n";
+        text_ += "plot " + data + " using 1:2:3 with image notitle" + im.over +
+                 "\nunset object 1\nunset label\nset key default\nset xtics autofreq\nset ytics autofreq\nset format x "
+                 "'% h'\nset format y '% h'\n";
     }
 
     void place(const Box& box) {
-        text_ += "set lmargin at screen " + text_of(box.x0) + "\nset rmargin at screen " + text_of(box.x1) + "\nset bmargin at screen " +
-                 text_of(box.y0) + "\nset tmargin at screen " + text_of(box.y1) + "\n";
+        text_ += "set lmargin at screen " + text_of(box.x0) + "\nset rmargin at screen " + text_of(box.x1) +
+                 "\nset bmargin at screen " + text_of(box.y0) + "\nset tmargin at screen " + text_of(box.y1) + "\n";
     }
 
     std::string whole() const { return blocks_text_ + "set multiplot\n" + text_ + "unset multiplot\n"; }
 
- private:
+  private:
     double width_px_;
     double height_px_;
     std::string text_;
@@ -208,9 +225,11 @@ std::string label(const std::string& text, double x_mm, double y_mm) {
     // a dark rim under a white letter, so that it can be read on any colour
     std::string out;
     for (const char* rim : {"-0.09,0", "0.09,0", "0,-0.06", "0,0.06"}) {
-        out += "set label " + quoted(text) + " at " + text_of(x_mm) + "," + text_of(y_mm) + " center front tc rgb '#000000' offset " + rim + "\n";
+        out += "set label " + quoted(text) + " at " + text_of(x_mm) + "," + text_of(y_mm) +
+               " center front tc rgb '#000000' offset " + rim + "\n";
     }
-    return out + "set label " + quoted(text) + " at " + text_of(x_mm) + "," + text_of(y_mm) + " center front tc rgb '#ffffff'\n";
+    return out + "set label " + quoted(text) + " at " + text_of(x_mm) + "," + text_of(y_mm) +
+           " center front tc rgb '#ffffff'\n";
 }
 
 // Nodules of the map: placed ones dashed. Found regions: solid if sure, dotted if not.
@@ -224,7 +243,8 @@ void outline(const stiffnessmaps::Map& map, const stiffnessmaps::Detection& dete
         (region.sure ? sure : unsure) += outline_rows(map, region.cells);
         const double up_m = 0.5 * region.width_m + 0.03 * map.spacing_m[1] * static_cast<double>(map.n_y);
         const bool fits = region.y_m + up_m < map.y_of(map.n_y - 1);
-        im.before += label(region.id + (region.sure ? "" : "?"), 1e3 * region.x_m, 1e3 * (region.y_m + (fits ? up_m : -up_m)));
+        im.before +=
+            label(region.id + (region.sure ? "" : "?"), 1e3 * region.x_m, 1e3 * (region.y_m + (fits ? up_m : -up_m)));
     }
     const auto line = [&](const std::string& rows, const char* look, const char* title) {
         if (rows.empty()) return;
@@ -274,7 +294,8 @@ Image depth_image(const stiffnessmaps::Map& map, const stiffnessmaps::Field& fie
     im.title = "Depth at " + files::short_number(force_N) + " N";
     im.unit = "mm";
     for (std::size_t cell = 0; cell < map.n_cells(); ++cell) {
-        const stiffnessmaps::DepthAnswer answer = stiffnessmaps::depth_at(field, stiffnessmaps::place_at(field, {map.x_of(cell % map.n_x), map.y_of(cell / map.n_x)}), force_N);
+        const stiffnessmaps::DepthAnswer answer = stiffnessmaps::depth_at(
+            field, stiffnessmaps::place_at(field, {map.x_of(cell % map.n_x), map.y_of(cell / map.n_x)}), force_N);
         // deeper than was measured: not known
         im.values.push_back(field.measured[cell] > 0.0 && !answer.saturated ? 1e3 * answer.depth_m : kNaN);
     }
@@ -315,13 +336,16 @@ std::size_t stiffest_cell(const stiffnessmaps::Map& map) {
 }
 
 // Where curves are drawn if nobody says where.
-std::vector<Eigen::Vector2d> curve_places(const stiffnessmaps::Map& map, const stiffnessmaps::Detection& detection, const PlotOptions& options) {
+std::vector<Eigen::Vector2d> curve_places(const stiffnessmaps::Map& map, const stiffnessmaps::Detection& detection,
+                                          const PlotOptions& options) {
     if (!options.at_m.empty()) return options.at_m;
     std::vector<Eigen::Vector2d> out;
     for (const stiffnessmaps::StiffRegion& region : detection.regions) {
         if (out.size() < 3) out.emplace_back(region.peak_x_m, region.peak_y_m);
     }
-    const auto place_of = [&](std::size_t cell) { return Eigen::Vector2d(map.x_of(cell % map.n_x), map.y_of(cell / map.n_x)); };
+    const auto place_of = [&](std::size_t cell) {
+        return Eigen::Vector2d(map.x_of(cell % map.n_x), map.y_of(cell / map.n_x));
+    };
     if (out.empty()) out.push_back(place_of(stiffest_cell(map)));
     const std::vector<double> k = stiffnessmaps::stiffness_N_per_m(map);
     const double middle = stiffnessmaps::median_of(k);
@@ -336,7 +360,8 @@ std::vector<Eigen::Vector2d> curve_places(const stiffnessmaps::Map& map, const s
     return out;
 }
 
-void curves(const stiffnessmaps::Map& map, const stiffnessmaps::Field& field, const std::vector<Eigen::Vector2d>& places, const Box& box, Script& script) {
+void curves(const stiffnessmaps::Map& map, const stiffnessmaps::Field& field,
+            const std::vector<Eigen::Vector2d>& places, const Box& box, Script& script) {
     std::string plot;
     int style = 0;
     for (const Eigen::Vector2d& p_m : places) {
@@ -346,14 +371,18 @@ void curves(const stiffnessmaps::Map& map, const stiffnessmaps::Field& field, co
             if (depth_m > greatest_depth_m(field, place) * (1.0 + 1e-9)) break;
             rows += text_of(1e3 * depth_m) + " " + text_of(stiffnessmaps::normal_force_N(field, place, depth_m)) + "\n";
         }
-        const std::string name = "(" + files::short_number(1e3 * p_m.x()) + ", " + files::short_number(1e3 * p_m.y()) + ") mm" + (place.measured ? "" : ", not measured");
-        plot += (plot.empty() ? "plot " : ", ") + script.block(rows) + " using 1:2 with linespoints ls " + std::to_string(style++ % kLineStyles + 1) +
-                " title " + quoted(name);
+        const std::string name = "(" + files::short_number(1e3 * p_m.x()) + ", " + files::short_number(1e3 * p_m.y()) +
+                                 ") mm" + (place.measured ? "" : ", not measured");
+        plot += (plot.empty() ? "plot " : ", ") + script.block(rows) + " using 1:2 with linespoints ls " +
+                std::to_string(style++ % kLineStyles + 1) + " title " + quoted(name);
     }
     script.place(box);
-    script.add("set size noratio\nset xrange [0:" + text_of(1e3 * map.depths_m.back()) + "]\nset yrange [*:*]\nset key top left Left reverse samplen 2\n"
-               "set xlabel 'depth (mm)' offset 0,0.5\nset ylabel 'normal force (N)' offset 1,0\nset title 'Force over depth' offset 0,-0.6\n"
-               "set grid xtics ytics lc rgb '#BBBBBB' dt 3\nunset colorbox\n" + plot + "\n");
+    script.add("set size noratio\nset xrange [0:" + text_of(1e3 * map.depths_m.back()) +
+               "]\nset yrange [*:*]\nset key top left Left reverse samplen 2\n"
+               "set xlabel 'depth (mm)' offset 0,0.5\nset ylabel 'normal force (N)' offset 1,0\nset title 'Force over "
+               "depth' offset 0,-0.6\n"
+               "set grid xtics ytics lc rgb '#BBBBBB' dt 3\nunset colorbox\n" +
+               plot + "\n");
 }
 
 struct Kind {
@@ -371,7 +400,9 @@ std::vector<Kind> kinds_of(const stiffnessmaps::Map& map) {
 // Of small multiples.
 std::size_t columns_of(const stiffnessmaps::Map& map) { return map.n_depths() <= 6 ? map.n_depths() : 5; }
 
-std::size_t matrix_rows(const stiffnessmaps::Map& map) { return kinds_of(map).size() * ((map.n_depths() + columns_of(map) - 1) / columns_of(map)); }
+std::size_t matrix_rows(const stiffnessmaps::Map& map) {
+    return kinds_of(map).size() * ((map.n_depths() + columns_of(map) - 1) / columns_of(map));
+}
 
 // Small multiples in the strip from y0 to y1 of the figure; one scale for each kind of force.
 void matrices(const stiffnessmaps::Map& map, double y0, double y1, double height_px, Script& script) {
@@ -389,11 +420,13 @@ void matrices(const stiffnessmaps::Map& map, double y0, double y1, double height
             const std::size_t row = which * rows_of_kind + k / columns;
             const std::size_t column = k % columns;
             Image im = image_of(map);
-            im.values.assign(all.begin() + static_cast<std::ptrdiff_t>(k * map.n_cells()), all.begin() + static_cast<std::ptrdiff_t>((k + 1) * map.n_cells()));
+            im.values.assign(all.begin() + static_cast<std::ptrdiff_t>(k * map.n_cells()),
+                             all.begin() + static_cast<std::ptrdiff_t>((k + 1) * map.n_cells()));
             im.span = span;
             im.apart = which > 0;
             im.unit = "N";
-            im.title = (k == 0 ? std::string(kinds[which].name) + ", " : "") + files::short_number(1e3 * map.depths_m[k]) + " mm";
+            im.title = (k == 0 ? std::string(kinds[which].name) + ", " : "") +
+                       files::short_number(1e3 * map.depths_m[k]) + " mm";
             im.bar = column + 1 == columns || k + 1 == map.n_depths();
             im.small = true;
             if (column > 0) im.y_label = "";
@@ -414,14 +447,17 @@ int clamped(double px) { return static_cast<int>(std::clamp(px, 300.0, 4000.0));
 
 }  // namespace
 
-void plot_map(const stiffnessmaps::Map& map, const stiffnessmaps::Detection& detection, const PlotOptions& options, const std::filesystem::path& file) {
+void plot_map(const stiffnessmaps::Map& map, const stiffnessmaps::Detection& detection, const PlotOptions& options,
+              const std::filesystem::path& file) {
     check_figure(file);
     const stiffnessmaps::Field field = stiffnessmaps::make_field(map, {});
     for (const Eigen::Vector2d& p_m : options.at_m) {
         if (stiffnessmaps::place_at(field, p_m).inside) continue;
-        throw files::bad_input(map.name, "--at", files::short_number(1e3 * p_m.x()) + "," + files::short_number(1e3 * p_m.y()),
-                        "a place on the map: x " + files::short_number(1e3 * map.x_of(0)) + " to " + files::short_number(1e3 * map.x_of(map.n_x - 1)) + ", y " +
-                            files::short_number(1e3 * map.y_of(0)) + " to " + files::short_number(1e3 * map.y_of(map.n_y - 1)) + " mm");
+        throw files::bad_input(
+            map.name, "--at", files::short_number(1e3 * p_m.x()) + "," + files::short_number(1e3 * p_m.y()),
+            "a place on the map: x " + files::short_number(1e3 * map.x_of(0)) + " to " +
+                files::short_number(1e3 * map.x_of(map.n_x - 1)) + ", y " + files::short_number(1e3 * map.y_of(0)) +
+                " to " + files::short_number(1e3 * map.y_of(map.n_y - 1)) + " mm");
     }
     const double aspect = std::clamp(aspect_of(map), 0.25, 3.0);
     const std::size_t row = stiffest_cell(map) / map.n_x;
@@ -453,7 +489,8 @@ void plot_map(const stiffnessmaps::Map& map, const stiffnessmaps::Detection& det
             const double picture = std::min(900.0, 0.74 * width * aspect);
             const int height = clamped(picture + 440.0);
             Script script(map.name, width, height);
-            script.image(depth_image(map, field, force_N), {0.09, 0.85, 1.0 - (65.0 + picture) / height, 1.0 - 65.0 / height});
+            script.image(depth_image(map, field, force_N),
+                         {0.09, 0.85, 1.0 - (65.0 + picture) / height, 1.0 - 65.0 / height});
             script.image(section_image(map, field, row), {0.09, 0.85, 60.0 / height, 270.0 / height});
             return draw_figure(script.whole(), file, width, height);
         }
@@ -480,7 +517,8 @@ void plot_map(const stiffnessmaps::Map& map, const stiffnessmaps::Detection& det
             script.image(depth_image(map, field, force_N), {0.55, 0.92, first, top});
             const double second = first - 100.0 / height;
             script.image(section_image(map, field, row), {0.06, 0.43, second - 260.0 / height, second});
-            curves(map, field, curve_places(map, detection, options), {0.57, 0.94, second - 260.0 / height, second}, script);
+            curves(map, field, curve_places(map, detection, options), {0.57, 0.94, second - 260.0 / height, second},
+                   script);
             matrices(map, 0.0, second - 310.0 / height, height, script);
             return draw_figure(script.whole(), file, width, static_cast<int>(height));
         }

@@ -22,7 +22,8 @@ struct PlotOptions {
 
 // Throws InputError for another ending than .png, .svg, .pdf and for a place beside the map; std::runtime_error if gnuplot
 // is missing or cannot write.
-void plot_map(const stiffnessmaps::Map& map, const stiffnessmaps::Detection& detection, const PlotOptions& options, const std::filesystem::path& file);
+void plot_map(const stiffnessmaps::Map& map, const stiffnessmaps::Detection& detection, const PlotOptions& options,
+              const std::filesystem::path& file);
 
 // Both maps at the deepest common depth, and their difference.
 void plot_difference(const stiffnessmaps::MapDifference& difference, const std::filesystem::path& file);

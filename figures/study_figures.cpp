@@ -113,7 +113,8 @@ std::string draw_figures(const study::Report& report, const std::filesystem::pat
                "`gnuplot figures.gp` where it is";
     }
     for (const std::string kind : {"png", "svg", "pdf"}) {
-        const std::string command = "cd " + shell_quoted(folder.string()) + " && gnuplot -e \"kind='" + kind + "'\" figures.gp";
+        const std::string command =
+            "cd " + shell_quoted(folder.string()) + " && gnuplot -e \"kind='" + kind + "'\" figures.gp";
         if (std::system(command.c_str()) != 0) {
             return "gnuplot could not draw " + (folder / "figures.gp").string() + "; the tables are kept";
         }

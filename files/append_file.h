@@ -9,7 +9,7 @@
 namespace palpa::files {
 
 class AppendFile {
- public:
+  public:
     // Creates the file; throws std::runtime_error if it exists already or cannot be created.
     explicit AppendFile(const std::filesystem::path& path);
     ~AppendFile();
@@ -28,7 +28,7 @@ class AppendFile {
     bool failed() const { return failed_; }
     const std::filesystem::path& path() const { return path_; }
 
- private:
+  private:
     std::filesystem::path path_;
     int fd_ = -1;
     std::string buffer_;

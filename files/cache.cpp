@@ -71,8 +71,7 @@ std::optional<CachedArrays> parse(std::string_view bytes, std::uint64_t fingerpr
 
 std::filesystem::path cache_folder() {
     const char* const xdg = std::getenv("XDG_CACHE_HOME");
-    if (xdg != nullptr && std::filesystem::path(xdg).is_absolute())
-        return std::filesystem::path(xdg) / "palpa";
+    if (xdg != nullptr && std::filesystem::path(xdg).is_absolute()) return std::filesystem::path(xdg) / "palpa";
     const char* const home = std::getenv("HOME");
     if (home != nullptr && std::filesystem::path(home).is_absolute()) {
         return std::filesystem::path(home) / ".cache" / "palpa";
@@ -95,15 +94,13 @@ std::optional<CachedArrays> read_cache(const std::filesystem::path& folder, std:
     }
 }
 
-std::string write_cache(const std::filesystem::path& folder, std::uint64_t fingerprint,
-                        const CachedArrays& arrays) {
+std::string write_cache(const std::filesystem::path& folder, std::uint64_t fingerprint, const CachedArrays& arrays) {
     if (folder.empty()) return "cache: neither XDG_CACHE_HOME nor HOME names a folder; nothing is kept";
     std::string bytes;
     for (const std::uint64_t word : {kMagic, kVersion, fingerprint, std::uint64_t{arrays.size()}})
         append_word(word, bytes);
     for (const auto& array : arrays) append_word(array.size(), bytes);
-    for (const auto& array : arrays)
-        bytes.append(reinterpret_cast<const char*>(array.data()), array.size() * kWord);
+    for (const auto& array : arrays) bytes.append(reinterpret_cast<const char*>(array.data()), array.size() * kWord);
     append_word(checksum(bytes, bytes.size() / kWord), bytes);
     try {
         std::filesystem::create_directories(folder);

@@ -28,7 +28,6 @@ std::optional<CachedArrays> read_cache(const std::filesystem::path& folder, std:
 
 // Makes the folder, writes beside the file, renames over whatever was there. Returns a warning to show, ""
 // when it is stored: a full disk costs time at the next start, not the run.
-std::string write_cache(const std::filesystem::path& folder, std::uint64_t fingerprint,
-                        const CachedArrays& arrays);
+std::string write_cache(const std::filesystem::path& folder, std::uint64_t fingerprint, const CachedArrays& arrays);
 
 }  // namespace palpa::files

@@ -1,13 +1,12 @@
 #include "files/durable.h"
 
-#include <fcntl.h>
-#include <stdio.h>
-#include <unistd.h>
-
 #include <cerrno>
 #include <cstring>
+#include <fcntl.h>
 #include <stdexcept>
+#include <stdio.h>
 #include <string>
+#include <unistd.h>
 
 #include "files/text.h"
 

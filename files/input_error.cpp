@@ -4,8 +4,7 @@
 
 namespace palpa::files {
 
-InputError bad_input(std::string_view file, std::string_view where, std::string_view found,
-                     std::string_view expected) {
+InputError bad_input(std::string_view file, std::string_view where, std::string_view found, std::string_view expected) {
     std::string message(file);
     if (!where.empty()) message.append(": ").append(where);
     message.append(": found ").append(found).append(", expected ").append(expected);

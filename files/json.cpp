@@ -23,8 +23,8 @@ std::string bounds_text(Bounds bounds) {
     const bool from_below = bounds.lowest > -1e299;
     const bool to_above = bounds.highest < 1e299;
     if (from_below && to_above) {
-        return "a number " + std::string(bounds.lowest_excluded ? "> " : "from ") +
-               short_number(bounds.lowest) + " to " + short_number(bounds.highest);
+        return "a number " + std::string(bounds.lowest_excluded ? "> " : "from ") + short_number(bounds.lowest) +
+               " to " + short_number(bounds.highest);
     }
     if (from_below) return (bounds.lowest_excluded ? "a number > " : "a number >= ") + short_number(bounds.lowest);
     return "a number";
@@ -146,7 +146,8 @@ std::string JsonReader::text(std::string_view key) {
     if (!value.is_string()) fail(key, described(value), "a text");
     const auto& text = value.get_ref<const std::string&>();
     // as a file's name it would end there, and another file be opened than the one that stands here
-    if (text.find('\0') != std::string::npos) fail(key, described(value) + " with a zero byte (\\u0000)", "a text without it");
+    if (text.find('\0') != std::string::npos)
+        fail(key, described(value) + " with a zero byte (\\u0000)", "a text without it");
     return text;
 }
 
@@ -167,9 +168,9 @@ std::size_t JsonReader::choice(std::string_view key, std::initializer_list<std::
 }
 
 std::vector<double> JsonReader::numbers(std::string_view key, std::size_t count, Bounds bounds) {
-    const std::string expected =
-        "an array of " + (count > 0 ? std::to_string(count) + " numbers" : std::string("numbers")) + ", each " +
-        bounds_text(bounds);
+    const std::string expected = "an array of " +
+                                 (count > 0 ? std::to_string(count) + " numbers" : std::string("numbers")) + ", each " +
+                                 bounds_text(bounds);
     const Json& value = need(key, expected);
     if (!value.is_array() || value.empty() || (count > 0 && value.size() != count)) {
         fail(key, described(value), expected);
@@ -244,7 +245,9 @@ void refuse_unknown(const Json& object, const Keys& keys, const std::string& fil
 
 }  // namespace
 
-void JsonReader::only(std::initializer_list<std::string_view> keys) const { refuse_unknown(*value_, keys, file_, where_); }
+void JsonReader::only(std::initializer_list<std::string_view> keys) const {
+    refuse_unknown(*value_, keys, file_, where_);
+}
 
 void JsonReader::finish() const { refuse_unknown(*value_, asked_, file_, where_); }
 

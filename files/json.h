@@ -31,7 +31,7 @@ inline constexpr Bounds kNotNegative{0.0, 1e300};
 // One JSON object while it is read. Each key is asked for by name and checked; finish() then refuses the
 // keys that nobody asked for. All errors are InputError. A missing key without a default is an error.
 class JsonReader {
- public:
+  public:
     // The value outlives its reader.
     JsonReader(const Json& value, std::string file, std::string where = "");
     JsonReader(const Json&& value, std::string file, std::string where = "") = delete;
@@ -51,7 +51,7 @@ class JsonReader {
     JsonReader object(std::string_view key);
     std::optional<JsonReader> optional_object(std::string_view key);
     std::vector<JsonReader> objects(std::string_view key);  // an array of objects; empty if absent
-    const Json& any(std::string_view key);                   // taken as it is
+    const Json& any(std::string_view key);                  // taken as it is
 
     // Refuses other keys at once, so that a misspelt key (young_kPa) is named, not the one that it stands for.
     void only(std::initializer_list<std::string_view> keys) const;
@@ -60,7 +60,7 @@ class JsonReader {
     [[noreturn]] void fail(std::string_view key, std::string_view found, std::string_view expected) const;
     const std::string& file() const { return file_; }
 
- private:
+  private:
     const Json& need(std::string_view key, std::string_view expected);
     const Json* find(std::string_view key);
     std::string where_of(std::string_view key) const;

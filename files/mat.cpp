@@ -1,12 +1,11 @@
 #include "files/mat.h"
 
-#include <matio.h>
-#include <unistd.h>
-
 #include <cerrno>
 #include <cstring>
+#include <matio.h>
 #include <memory>
 #include <stdexcept>
+#include <unistd.h>
 
 #include "files/input_error.h"
 #include "files/regular_file.h"
@@ -58,8 +57,8 @@ void write_mat(const std::vector<MatArray>& arrays, const std::filesystem::path&
         std::vector<float> values(array.values.size());
         visit_order(array.shape, [&](std::size_t c, std::size_t in_file) { values[in_file] = array.values[c]; });
         std::vector<std::size_t> shape = array.shape;
-        const Variable variable(Mat_VarCreate(array.name.c_str(), MAT_C_SINGLE, MAT_T_SINGLE, static_cast<int>(shape.size()),
-                                              shape.data(), values.data(), 0));
+        const Variable variable(Mat_VarCreate(array.name.c_str(), MAT_C_SINGLE, MAT_T_SINGLE,
+                                              static_cast<int>(shape.size()), shape.data(), values.data(), 0));
         if (!variable || Mat_VarWrite(file.get(), variable.get(), MAT_COMPRESSION_NONE) != 0) fail();
     }
     file.reset();

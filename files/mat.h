@@ -8,9 +8,9 @@
 namespace palpa::files {
 
 struct MatArray {
-    std::string name;                 // a name of MATLAB: letters, digits, underscores
-    std::vector<std::size_t> shape;   // at least two
-    std::vector<float> values;        // C order: the last index runs fastest (the file has the first fastest)
+    std::string name;                // a name of MATLAB: letters, digits, underscores
+    std::vector<std::size_t> shape;  // at least two
+    std::vector<float> values;       // C order: the last index runs fastest (the file has the first fastest)
 };
 
 // Whole or not at all. Throws std::runtime_error if it cannot be written.

@@ -20,7 +20,7 @@ struct Reading {
     bool have_elements = false;
     std::unordered_map<std::uint64_t, int> node_at;                    // number in the file -> position
     std::map<std::pair<int, int>, std::vector<int>> groups_of_entity;  // (dimension, entity) -> physical tags
-    std::map<std::pair<int, int>, std::size_t> group_at;  // (dimension, physical tag) -> position
+    std::map<std::pair<int, int>, std::size_t> group_at;               // (dimension, physical tag) -> position
     Msh msh;
 };
 
@@ -146,8 +146,7 @@ void read_nodes_4(Reading& r) {
         }
     }
     if (r.msh.n_nodes() != total) {
-        r.in.fail(std::to_string(r.msh.n_nodes()) + " nodes in the blocks",
-                  std::to_string(total) + " as announced");
+        r.in.fail(std::to_string(r.msh.n_nodes()) + " nodes in the blocks", std::to_string(total) + " as announced");
     }
 }
 
@@ -184,8 +183,7 @@ CellType type_of(std::int64_t type, const MshCursor& in) {
 
 // Nodes of one cell; `next` gives a node's number.
 template <class Next>
-void add_cell(const CellType& type, std::uint64_t number, const std::vector<int>& groups, Next&& next,
-              Reading& r) {
+void add_cell(const CellType& type, std::uint64_t number, const std::vector<int>& groups, Next&& next, Reading& r) {
     if (type.kind < 0) {
         for (int k = 0; k < type.corners; ++k) next();
         return;
@@ -297,8 +295,7 @@ void merge_repeated(std::size_t kind, Msh& msh) {
     }
     std::vector<std::size_t> order(n);
     std::iota(order.begin(), order.end(), std::size_t{0});
-    std::stable_sort(order.begin(), order.end(),
-                     [&](std::size_t a, std::size_t b) { return key[a] < key[b]; });
+    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return key[a] < key[b]; });
     std::vector<std::size_t> first(n);
     for (std::size_t i = 0; i < n; ++i) {
         const bool repeats = i > 0 && key[order[i]] == key[order[i - 1]];
@@ -311,8 +308,7 @@ void merge_repeated(std::size_t kind, Msh& msh) {
             kept_as[i] = kept_as[first[i]];
             continue;
         }
-        for (std::size_t k = 0; k < corners; ++k)
-            cells.nodes[corners * kept + k] = cells.nodes[corners * i + k];
+        for (std::size_t k = 0; k < corners; ++k) cells.nodes[corners * kept + k] = cells.nodes[corners * i + k];
         cells.number[kept] = cells.number[i];
         kept_as[i] = static_cast<int>(kept++);
     }
@@ -357,8 +353,8 @@ Msh parse_msh(std::string_view bytes, const std::string& file_name) {
     while (!r.in.at_end()) {
         const std::string heading(r.in.word("a section"));
         if (heading.size() < 2 || heading.front() != '$') {
-            r.in.fail(shown(heading), r.have_format ? "a section such as $Nodes"
-                                                    : "a Gmsh file that begins with $MeshFormat");
+            r.in.fail(shown(heading),
+                      r.have_format ? "a section such as $Nodes" : "a Gmsh file that begins with $MeshFormat");
         }
         const std::string name = heading.substr(1);
         const bool read_here = name == "MeshFormat" || name == "PhysicalNames" || name == "Nodes" ||
@@ -376,8 +372,6 @@ Msh parse_msh(std::string_view bytes, const std::string& file_name) {
     return std::move(r.msh);
 }
 
-Msh read_msh(const std::filesystem::path& path) {
-    return parse_msh(read_text(path), path.string());
-}
+Msh read_msh(const std::filesystem::path& path) { return parse_msh(read_text(path), path.string()); }
 
 }  // namespace palpa::files

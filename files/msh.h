@@ -33,7 +33,7 @@ struct MshGroup {
 
 // Plain arrays. Corners are in Gmsh's order, which is VTK's. Lengths are in the file's own unit.
 struct Msh {
-    std::vector<double> nodes;  // x y z of each
+    std::vector<double> nodes;               // x y z of each
     std::vector<std::uint64_t> node_number;  // of each node, as in the file, for messages
     std::array<MshCells, kMshKinds> cells;
     std::vector<MshGroup> groups;

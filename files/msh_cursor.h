@@ -80,8 +80,7 @@ class MshCursor {
     }
 
     // Refuses a count of things, each of at least so many bytes, that the rest of the file cannot hold.
-    void check_count(std::uint64_t count, std::size_t text_bytes, std::size_t binary_bytes,
-                     std::string_view things) {
+    void check_count(std::uint64_t count, std::size_t text_bytes, std::size_t binary_bytes, std::string_view things) {
         const std::size_t each = binary ? binary_bytes : text_bytes;
         const std::size_t left = bytes_.size() - at_;
         if (count <= left / each) return;

@@ -39,8 +39,10 @@ Header find_header(std::string_view start, std::size_t file_bytes, const std::st
         header.from = 12;
     }
     if (header.length > file_bytes - header.from) {
-        throw bad_input(file, "", "a header of " + std::to_string(header.length) + " bytes in a file of " +
-                                      std::to_string(file_bytes), "a header that fits");
+        throw bad_input(
+            file, "",
+            "a header of " + std::to_string(header.length) + " bytes in a file of " + std::to_string(file_bytes),
+            "a header that fits");
     }
     return header;
 }
@@ -66,7 +68,8 @@ std::vector<std::size_t> parse_shape(std::string_view text, const std::string& f
         if (inside.empty()) return shape;
         std::size_t n = 0;
         const auto [end, error] = std::from_chars(inside.data(), inside.data() + inside.size(), n);
-        if (error != std::errc()) throw bad_input(file, "shape", shown(text.substr(0, close + 1)), "whole numbers >= 0");
+        if (error != std::errc())
+            throw bad_input(file, "shape", shown(text.substr(0, close + 1)), "whole numbers >= 0");
         shape.push_back(n);
         inside.remove_prefix(static_cast<std::size_t>(end - inside.data()));
     }
@@ -187,7 +190,8 @@ std::string_view bytes_of(const std::vector<float>& values) {
 
 std::string npy_bytes(const NpyArray& array) { return npy_header(array.shape).append(bytes_of(array.values)); }
 
-void write_npy(const std::filesystem::path& path, const std::vector<std::size_t>& shape, const std::vector<float>& values) {
+void write_npy(const std::filesystem::path& path, const std::vector<std::size_t>& shape,
+               const std::vector<float>& values) {
     write_pieces_atomically(path, {npy_header(shape), bytes_of(values)});
 }
 

@@ -23,7 +23,8 @@ std::string npy_header(const std::vector<std::size_t>& shape);
 std::string npy_bytes(const NpyArray& array);  // header and values
 
 // Whole or not at all; `values` are written from where they stand.
-void write_npy(const std::filesystem::path& path, const std::vector<std::size_t>& shape, const std::vector<float>& values);
+void write_npy(const std::filesystem::path& path, const std::vector<std::size_t>& shape,
+               const std::vector<float>& values);
 
 std::string shape_text(const std::vector<std::size_t>& shape);  // "(6, 59, 159)"
 

@@ -1,12 +1,11 @@
 #include "files/regular_file.h"
 
-#include <fcntl.h>
-#include <sys/stat.h>
-#include <unistd.h>
-
 #include <cerrno>
 #include <cstring>
+#include <fcntl.h>
 #include <string>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include "files/input_error.h"
 
@@ -48,7 +47,8 @@ bool is_in(const struct stat& file, const fs::path& input) {
 void check_folder_of(const fs::path& path) {
     std::error_code error;
     const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
-    if (!fs::is_directory(folder, error)) throw bad_input(path.string(), "", "no folder " + folder.string(), "a folder that is there");
+    if (!fs::is_directory(folder, error))
+        throw bad_input(path.string(), "", "no folder " + folder.string(), "a folder that is there");
 }
 
 }  // namespace
@@ -107,23 +107,29 @@ void check_output(const fs::path& path, const std::vector<fs::path>& inputs) {
     struct stat status {};
     if (::stat(path.c_str(), &status) != 0) return;
     for (const fs::path& input : inputs) {
-        if (is_in(status, input)) throw bad_input(path.string(), "", "the input " + input.string(), "another file: an input is never replaced");
+        if (is_in(status, input))
+            throw bad_input(path.string(), "", "the input " + input.string(),
+                            "another file: an input is never replaced");
     }
     for (const int fd : {STDOUT_FILENO, STDERR_FILENO}) {
         struct stat stream {};
         if (::fstat(fd, &stream) == 0 && is_same(status, stream)) {
-            throw bad_input(path.string(), "", fd == STDOUT_FILENO ? "where standard output goes" : "where standard error goes", "another file");
+            throw bad_input(path.string(), "",
+                            fd == STDOUT_FILENO ? "where standard output goes" : "where standard error goes",
+                            "another file");
         }
     }
 }
 
-void check_output_folder(const fs::path& folder, const std::vector<fs::path>& inputs, const std::vector<std::string>& names) {
+void check_output_folder(const fs::path& folder, const std::vector<fs::path>& inputs,
+                         const std::vector<std::string>& names) {
     if (folder.empty()) throw bad_input("output", "", "an empty name", "a folder's name");
     std::error_code error;
     const fs::file_status status = fs::status(folder, error);
     if (fs::exists(status) && !fs::is_directory(status)) {
         const auto kind = irregular_kind(folder);
-        throw bad_input(folder.string(), "", "no folder but " + std::string(kind.empty() ? "a file" : kind), "a folder or a new name");
+        throw bad_input(folder.string(), "", "no folder but " + std::string(kind.empty() ? "a file" : kind),
+                        "a folder or a new name");
     }
     if (!fs::exists(status)) return;
     for (const std::string& name : names) check_output(folder / name, inputs);

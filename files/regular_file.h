@@ -15,7 +15,7 @@ std::string_view irregular_kind(const std::filesystem::path& path);
 
 // A regular file that is open for reading. Throws InputError, at once, if it is none or cannot be read.
 class InputFile {
- public:
+  public:
     explicit InputFile(const std::filesystem::path& path);
     ~InputFile();
     InputFile(const InputFile&) = delete;
@@ -25,7 +25,7 @@ class InputFile {
     // How much was read: less than `n` at the file's end only. Throws InputError.
     std::size_t read_at(std::uintmax_t offset, char* to, std::size_t n) const;
 
- private:
+  private:
     std::filesystem::path path_;
     int fd_ = -1;
     std::uintmax_t bytes_ = 0;

@@ -76,8 +76,7 @@ double Table::done() const {
 }
 
 void Table::fail(std::size_t column, std::string_view expected) const {
-    throw bad_input(file_, "line " + std::to_string(line_) + ", " + columns_[column], shown(fields_[column]),
-                    expected);
+    throw bad_input(file_, "line " + std::to_string(line_) + ", " + columns_[column], shown(fields_[column]), expected);
 }
 
 double Table::number(std::size_t column) const {

@@ -10,9 +10,10 @@
 namespace palpa::files {
 
 class Table {
- public:
+  public:
     Table(std::string text, std::string file_name, char separator);
-    Table(const Table&) = delete;  // the fields of the row point into the text, which a short string carries within itself
+    Table(const Table&) =
+        delete;  // the fields of the row point into the text, which a short string carries within itself
     Table& operator=(const Table&) = delete;
 
     const std::vector<std::string>& columns() const { return columns_; }
@@ -33,7 +34,7 @@ class Table {
     double done() const;  // share of the text that was handed out, 0 ... 1
     const std::string& file() const { return file_; }
 
- private:
+  private:
     bool next_line(std::string_view& out);
     void split(std::string_view line);
 

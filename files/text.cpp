@@ -1,14 +1,13 @@
 #include "files/text.h"
 
-#include <fcntl.h>
-#include <unistd.h>
-
 #include <array>
 #include <cerrno>
 #include <cmath>
 #include <cstdio>
 #include <cstring>
+#include <fcntl.h>
 #include <stdexcept>
+#include <unistd.h>
 
 #include "files/input_error.h"
 #include "files/pieces.h"
@@ -80,7 +79,9 @@ void write_text_atomically(const std::filesystem::path& path, std::string_view t
 
 void write_pieces_atomically(const std::filesystem::path& path, Pieces pieces) { write_and_rename(path, pieces, true); }
 
-void write_text_whole(const std::filesystem::path& path, std::string_view text) { write_and_rename(path, {text}, false); }
+void write_text_whole(const std::filesystem::path& path, std::string_view text) {
+    write_and_rename(path, {text}, false);
+}
 
 void sync_file(const std::filesystem::path& path) {
     const int fd = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);

@@ -37,8 +37,7 @@ void append_array(const char* type, const std::string& name, int components, con
     constexpr const char* kTensor[] = {"xx", "yy", "zz", "xy", "yz", "xz"};
     constexpr const char* kVector[] = {"x", "y", "z"};
     for (int k = 0; components > 1 && k < components; ++k) {
-        out +=
-            " ComponentName" + std::to_string(k) + "=\"" + (components == 6 ? kTensor[k] : kVector[k]) + "\"";
+        out += " ComponentName" + std::to_string(k) + "=\"" + (components == 6 ? kTensor[k] : kVector[k]) + "\"";
     }
     out += " format=\"binary\">\n";
     const std::uint64_t length = values.size() * sizeof(Value);
@@ -49,8 +48,8 @@ void append_array(const char* type, const std::string& name, int components, con
     out += "\n</DataArray>\n";
 }
 
-void append_fields(const char* element, const std::vector<VtuField>& fields,
-                   [[maybe_unused]] std::size_t count, std::string& out) {
+void append_fields(const char* element, const std::vector<VtuField>& fields, [[maybe_unused]] std::size_t count,
+                   std::string& out) {
     out += "<" + std::string(element) + ">\n";
     for (const VtuField& field : fields) {
         assert(field.components == 1 || field.components == 3 || field.components == 6);
@@ -92,8 +91,6 @@ std::string vtu_text(const VtuGrid& grid) {
     return out;
 }
 
-void write_vtu(const std::filesystem::path& path, const VtuGrid& grid) {
-    write_text_atomically(path, vtu_text(grid));
-}
+void write_vtu(const std::filesystem::path& path, const VtuGrid& grid) { write_text_atomically(path, vtu_text(grid)); }
 
 }  // namespace palpa::files

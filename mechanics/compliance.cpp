@@ -51,21 +51,20 @@ Compliance empty_compliance(const Mesh& mesh, const SurfaceRequest& request) {
 
 void check_request(const Mesh& mesh, const SurfaceRequest& request) {
     if (request.touch_nodes.empty() || request.block < 1) {
-        throw LoadError(text("compliance: ", request.touch_nodes.size(), " touch nodes in blocks of ",
-                             request.block, "; wanted at least one of each"));
+        throw LoadError(text("compliance: ", request.touch_nodes.size(), " touch nodes in blocks of ", request.block,
+                             "; wanted at least one of each"));
     }
     for (const auto* list : {&request.touch_nodes, &request.other_nodes}) {
         for (const int node : *list) {
             if (node >= 0 && node < mesh.nodes_m.cols()) continue;
-            throw LoadError(
-                text("compliance: node ", node, " is not one of the mesh's ", mesh.nodes_m.cols()));
+            throw LoadError(text("compliance: node ", node, " is not one of the mesh's ", mesh.nodes_m.cols()));
         }
     }
 }
 
 // Reads the wanted rows of one solved column into the matrices.
-void store_column(const Reduction& reduction, const Eigen::Ref<const Eigen::VectorXd>& q, int column,
-                  bool tangential, Compliance& out) {
+void store_column(const Reduction& reduction, const Eigen::Ref<const Eigen::VectorXd>& q, int column, bool tangential,
+                  Compliance& out) {
     const int touched = tangential ? column / 3 : column;
     const int direction = tangential ? column % 3 : 0;
     const auto row = [&](int i, int c) {
@@ -146,20 +145,17 @@ Compliance surface_compliance(const Mesh& mesh, const Factored& factored, const 
         block.setZero(factored.reduction.equations, n);
         for (int k = 0; k < n; ++k) {
             const int column = first + k;
-            const Component at =
-                component(out.node[static_cast<std::size_t>(column / per_node)], column % per_node);
+            const Component at = component(out.node[static_cast<std::size_t>(column / per_node)], column % per_node);
             add_force(factored.reduction, at.dof, at.sign, block.col(k));
         }
         factored.cholesky.solve(block);
-        for (int k = 0; k < n; ++k)
-            store_column(factored.reduction, block.col(k), first + k, request.tangential, out);
+        for (int k = 0; k < n; ++k) store_column(factored.reduction, block.col(k), first + k, request.tangential, out);
         if (progress.report) progress.report(first + n, total);
     }
     out.asymmetry = make_symmetric(out.normal_m_per_N.topRows(out.n_touch));
     if (request.tangential) out.asymmetry = std::max(out.asymmetry, make_symmetric(out.full_m_per_N));
     if (!(out.asymmetry < 1e-9) || !out.normal_m_per_N.allFinite()) {
-        throw SolverError(
-            text("compliance: not symmetric, |C - C^T| / |C| = ", out.asymmetry, ", must be < 1e-9"), 0);
+        throw SolverError(text("compliance: not symmetric, |C - C^T| / |C| = ", out.asymmetry, ", must be < 1e-9"), 0);
     }
     return out;
 }

@@ -14,8 +14,7 @@
 namespace palpa::mechanics {
 
 struct SurfaceRequest {
-    std::vector<int>
-        touch_nodes;  // mesh nodes that a tool can touch; one column each (three with tangential)
+    std::vector<int> touch_nodes;  // mesh nodes that a tool can touch; one column each (three with tangential)
     std::vector<int> other_nodes;  // further nodes whose depression is wanted; rows only
     bool tangential = false;       // also all three components between touch nodes, for friction
     bool sideways = false;         // also how pressing moves the surface along x and y, for steady sliding

@@ -17,9 +17,7 @@ constexpr double kForceTolerance = 1e-9;
 constexpr double kDepthRoundOff = 1e-15;  // of the depth: a narrower bracket cannot be halved
 constexpr int kMostSearchSteps = 60;
 
-std::size_t at(int i) {
-    return static_cast<std::size_t>(i);
-}
+std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 double compliance_of(const Compliance& c, const ContactWork& w, int i, int j) {
     return c.normal_m_per_N(w.candidate[at(i)], w.candidate[at(j)]);
@@ -59,10 +57,8 @@ bool factor_active(const Compliance& c, ContactWork& w) {
     }
     double trace = 0.0;
     for (Index j = 0; j < n; ++j) {
-        const double* column =
-            c.normal_m_per_N.col(w.candidate[at(w.active[static_cast<std::size_t>(j)])]).data();
-        for (Index i = j; i < n; ++i)
-            w.factor(i, j) = column[w.candidate[at(w.active[static_cast<std::size_t>(i)])]];
+        const double* column = c.normal_m_per_N.col(w.candidate[at(w.active[static_cast<std::size_t>(j)])]).data();
+        for (Index i = j; i < n; ++i) w.factor(i, j) = column[w.candidate[at(w.active[static_cast<std::size_t>(i)])]];
         trace += w.factor(j, j);
     }
     w.factor.topLeftCorner(n, n).diagonal().array() +=
@@ -232,8 +228,7 @@ void prepare(const Compliance& c, ContactWork& w) {
     w.was_in_contact.assign(at(c.n_touch), 0);
     w.active.clear();
     w.factored.clear();
-    for (auto* list : {&w.delta_m, &w.slope_x, &w.slope_y, &w.p_N, &w.swept_N, &w.gap_m})
-        list->reserve(at(c.n_touch));
+    for (auto* list : {&w.delta_m, &w.slope_x, &w.slope_y, &w.p_N, &w.swept_N, &w.gap_m}) list->reserve(at(c.n_touch));
     for (auto* list : {&w.candidate, &w.tool_of, &w.factored, &w.active}) list->reserve(at(c.n_touch));
     w.in_contact.reserve(at(c.n_touch));
     const auto box_m = [&](int first, int n) -> std::array<double, 4> {
@@ -282,8 +277,8 @@ void press_to_depth(const Compliance& compliance, std::span<const Tool> tools, c
     solve_contact(compliance, options, work, contact);
 }
 
-void press_with_force(const Compliance& compliance, const Tool& tool, double force_N,
-                      const ContactOptions& options, ContactWork& work, Contact& contact) {
+void press_with_force(const Compliance& compliance, const Tool& tool, double force_N, const ContactOptions& options,
+                      ContactWork& work, Contact& contact) {
     // F(d) is convex and rising, linear while the set stays: Newton from above reaches the root in a few
     // steps, and the bracket holds it where nodes join and leave.
     Tool trial = tool;
@@ -311,13 +306,11 @@ void press_with_force(const Compliance& compliance, const Tool& tool, double for
         (miss < 0.0 ? low : high) = depth;
         contact.flags.force_missed = true;  // unless a later step meets it
         if (high - low <= kDepthRoundOff * high) return;
-        double next =
-            contact.stiffness_N_per_m > 0.0 ? depth - miss / contact.stiffness_N_per_m : 2.0 * depth + 1e-6;
+        double next = contact.stiffness_N_per_m > 0.0 ? depth - miss / contact.stiffness_N_per_m : 2.0 * depth + 1e-6;
         // shallow starts overshoot by Newton, as F rises faster than linearly: at most four times deeper at
         // once
         if (miss < 0.0) next = std::min(next, std::max(4.0 * depth, 1e-6));
-        if (!(next > low && next < high))
-            next = next >= high && high >= limit_m ? limit_m : 0.5 * (low + high);
+        if (!(next > low && next < high)) next = next >= high && high >= limit_m ? limit_m : 0.5 * (low + high);
         depth = next;
     }
 }

@@ -41,8 +41,7 @@ struct Tool {
 };
 
 struct ContactOptions {
-    double max_depth_m =
-        std::numeric_limits<double>::infinity();  // deeper poses stop here; the thickness always does
+    double max_depth_m = std::numeric_limits<double>::infinity();  // deeper poses stop here; the thickness always does
     int max_changes = 40;  // of the active set before Gauss-Seidel takes over; 0: Gauss-Seidel alone
     int sweeps = 300;
 };
@@ -62,11 +61,11 @@ struct ToolForce {
 
 // What was not as asked. All false for an ordinary contact.
 struct ContactFlags {
-    bool held = false;         // the pose was not finite: everything else is the last valid answer
-    bool capped = false;       // depth cut to the limit, or the force not reached at the limit
-    bool over_edge = false;    // the tool reaches beyond the touch nodes
-    bool not_settled = false;  // Gauss-Seidel's answer, exact to `violation_m` only
-    bool force_missed = false; // press_with_force came no nearer to the force it was given than normal_N
+    bool held = false;          // the pose was not finite: everything else is the last valid answer
+    bool capped = false;        // depth cut to the limit, or the force not reached at the limit
+    bool over_edge = false;     // the tool reaches beyond the touch nodes
+    bool not_settled = false;   // Gauss-Seidel's answer, exact to `violation_m` only
+    bool force_missed = false;  // press_with_force came no nearer to the force it was given than normal_N
 };
 
 struct Contact {
@@ -83,13 +82,13 @@ struct Contact {
 
 // Scratch memory; also remembers the last active set and its factor. A new one is a cold start.
 struct ContactWork {
-    std::uint64_t revision = 0;  // of the compliance this belongs to; another one, or 0, starts cold
-    std::vector<Tool> tools;              // with their depths limited
-    std::array<double, 4> touch_box_m{};  // x_min, x_max, y_min, y_max of the touch nodes
+    std::uint64_t revision = 0;                    // of the compliance this belongs to; another one, or 0, starts cold
+    std::vector<Tool> tools;                       // with their depths limited
+    std::array<double, 4> touch_box_m{};           // x_min, x_max, y_min, y_max of the touch nodes
     std::vector<std::array<double, 4>> run_box_m;  // the same of each run of kRunLength touch nodes
-    std::vector<int> candidate;           // touch nodes within reach, ascending
-    std::vector<int> tool_of;             // per candidate
-    std::vector<double> delta_m;          // per candidate
+    std::vector<int> candidate;                    // touch nodes within reach, ascending
+    std::vector<int> tool_of;                      // per candidate
+    std::vector<double> delta_m;                   // per candidate
     std::vector<double> slope_x, slope_y;
     std::vector<double> p_N, swept_N, gap_m;  // per candidate
     std::vector<char> in_contact;             // per candidate
@@ -109,8 +108,8 @@ void press_to_depth(const Compliance& compliance, std::span<const Tool> tools, c
 
 // One tool with a given normal force; finds the depth (the pose's own depth is where the search starts if >
 // 0).
-void press_with_force(const Compliance& compliance, const Tool& tool, double force_N,
-                      const ContactOptions& options, ContactWork& work, Contact& contact);
+void press_with_force(const Compliance& compliance, const Tool& tool, double force_N, const ContactOptions& options,
+                      ContactWork& work, Contact& contact);
 
 // Depression of all surface nodes under a contact, n_surface.
 void surface_depression_m(const Compliance& compliance, const Contact& contact, Eigen::VectorXd& out_m);

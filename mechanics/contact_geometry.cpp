@@ -50,13 +50,15 @@ Rectangle box_of_reach(std::span<const Tool> tools, double margin) {
         const double rx = std::sqrt(kRoundOff * R * R - below_axis_m * below_axis_m);
         const bool cylinder = tool.indenter.shape == IndenterShape::cylinder;
         const double ry = cylinder ? 0.5 * kRoundOff * tool.indenter.length_m : rx;
-        box_m = {std::min(box_m[0], pose.x_m - rx), std::max(box_m[1], pose.x_m + rx), std::min(box_m[2], pose.y_m - ry),
-                 std::max(box_m[3], pose.y_m + ry)};
+        box_m = {std::min(box_m[0], pose.x_m - rx), std::max(box_m[1], pose.x_m + rx),
+                 std::min(box_m[2], pose.y_m - ry), std::max(box_m[3], pose.y_m + ry)};
     }
     return box_m;
 }
 
-bool overlap(const Rectangle& a, const Rectangle& b) { return a[0] <= b[1] && a[1] >= b[0] && a[2] <= b[3] && a[3] >= b[2]; }
+bool overlap(const Rectangle& a, const Rectangle& b) {
+    return a[0] <= b[1] && a[1] >= b[0] && a[2] <= b[3] && a[3] >= b[2];
+}
 
 // The deepest tool that reaches the node takes it.
 void add_if_near(const Compliance& compliance, std::span<const Tool> tools, double margin, int touch,
@@ -85,8 +87,7 @@ void add_if_near(const Compliance& compliance, std::span<const Tool> tools, doub
 
 }  // namespace
 
-void find_candidates(const Compliance& compliance, std::span<const Tool> tools, double margin,
-                     ContactWork& work) {
+void find_candidates(const Compliance& compliance, std::span<const Tool> tools, double margin, ContactWork& work) {
     for (auto* list : {&work.delta_m, &work.slope_x, &work.slope_y}) list->clear();
     work.candidate.clear();
     work.tool_of.clear();
@@ -112,24 +113,23 @@ bool reaches_beyond(const Tool& tool, const std::array<double, 4>& box_m) {
 
 void check_tool(const Compliance& compliance, const Tool& tool) {
     const Pose& p = tool.pose;
-    if (!(tool.indenter.radius_m > 0.0) || !std::isfinite(tool.indenter.radius_m) ||
-        !(tool.indenter.length_m > 0.0)) {
-        throw LoadError(text("indenter: radius ", tool.indenter.radius_m, " m, length ",
-                             tool.indenter.length_m, " m; wanted a finite radius > 0 and a length > 0"));
+    if (!(tool.indenter.radius_m > 0.0) || !std::isfinite(tool.indenter.radius_m) || !(tool.indenter.length_m > 0.0)) {
+        throw LoadError(text("indenter: radius ", tool.indenter.radius_m, " m, length ", tool.indenter.length_m,
+                             " m; wanted a finite radius > 0 and a length > 0"));
     }
     if (!std::isfinite(p.x_m) || !std::isfinite(p.y_m) || !std::isfinite(p.depth_m)) {
         throw LoadError(text("indenter: at ", p.x_m, ", ", p.y_m, " m, depth ", p.depth_m, " m: not finite"));
     }
     if (p.depth_m >= compliance.thickness_m) {
-        throw LoadError(text("indenter: depth ", p.depth_m, " m, but the tissue is ", compliance.thickness_m,
-                             " m thick"));
+        throw LoadError(
+            text("indenter: depth ", p.depth_m, " m, but the tissue is ", compliance.thickness_m, " m thick"));
     }
     const auto touched = compliance.position_m.leftCols(compliance.n_touch);
     const auto low = touched.rowwise().minCoeff();
     const auto high = touched.rowwise().maxCoeff();
     if (p.x_m < low(0) || p.x_m > high(0) || p.y_m < low(1) || p.y_m > high(1)) {
-        throw LoadError(text("indenter: at ", p.x_m, ", ", p.y_m, " m, beside the touchable surface x ",
-                             low(0), "..", high(0), ", y ", low(1), "..", high(1), " m"));
+        throw LoadError(text("indenter: at ", p.x_m, ", ", p.y_m, " m, beside the touchable surface x ", low(0), "..",
+                             high(0), ", y ", low(1), "..", high(1), " m"));
     }
 }
 

@@ -21,8 +21,7 @@ Reach reach(const Tool& tool, double x_m, double y_m);
 inline constexpr int kRunLength = 16;
 
 // Fills the candidate lists with the touch nodes whose delta exceeds -margin times their tool's depth.
-void find_candidates(const Compliance& compliance, std::span<const Tool> tools, double margin,
-                     ContactWork& work);
+void find_candidates(const Compliance& compliance, std::span<const Tool> tools, double margin, ContactWork& work);
 
 // First use of `work`, or with another compliance: every list at its full size once.
 void prepare(const Compliance& compliance, ContactWork& work);

@@ -9,9 +9,7 @@ namespace {
 
 using Eigen::Vector2d;
 
-double cross(const Vector2d& a, const Vector2d& b) {
-    return a.x() * b.y() - a.y() * b.x();
-}
+double cross(const Vector2d& a, const Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
 
 void add_fan(const Vector2d& p, const Vector2d& q, double radius_m, DiscMoments& sum) {
     const double root = std::sqrt(15.0);
@@ -88,8 +86,7 @@ void add_edge(const Vector2d& a, const Vector2d& b, double R, DiscMoments& sum) 
 DiscMoments disc_moments(const Eigen::Matrix2Xd& corners_m, double radius_m) {
     DiscMoments sum = DiscMoments::Zero();
     const Eigen::Index n = corners_m.cols();
-    for (Eigen::Index k = 0; k < n; ++k)
-        add_edge(corners_m.col(k), corners_m.col((k + 1) % n), radius_m, sum);
+    for (Eigen::Index k = 0; k < n; ++k) add_edge(corners_m.col(k), corners_m.col((k + 1) % n), radius_m, sum);
     return sum;
 }
 

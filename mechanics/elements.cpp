@@ -45,8 +45,7 @@ void stiffness_from_products(const Matrix& M, double mu, double lambda, Matrix& 
     for (int b = 0; b < n; ++b) {
         for (int a = 0; a < n; ++a) {
             const Matrix3d m = M.template block<3, 3>(3 * a, 3 * b);
-            K.template block<3, 3>(3 * a, 3 * b) =
-                mu * (m.trace() * Matrix3d::Identity() + m.transpose()) + lambda * m;
+            K.template block<3, 3>(3 * a, 3 * b) = mu * (m.trace() * Matrix3d::Identity() + m.transpose()) + lambda * m;
         }
     }
 }

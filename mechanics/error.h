@@ -21,8 +21,7 @@ struct MeshError : MechanicsError {
 
 // Moduli that no elastic solid has; `entries` are positions in the list that was given.
 struct MaterialError : MechanicsError {
-    MaterialError(const std::string& what, std::vector<int> bad)
-        : MechanicsError(what), entries(std::move(bad)) {}
+    MaterialError(const std::string& what, std::vector<int> bad) : MechanicsError(what), entries(std::move(bad)) {}
     std::vector<int> entries;
 };
 

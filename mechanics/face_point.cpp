@@ -28,8 +28,7 @@ OnFace nearest_on_face(const Matrix3Xd& x, const Vector3d& place) {
                         : Vector3d(x.col(1) - x.col(0));
         J.col(1) = quad ? Vector3d((1.0 - r) * (x.col(3) - x.col(0)) + r * (x.col(2) - x.col(1)))
                         : Vector3d(x.col(2) - x.col(0));
-        const Eigen::Vector2d step =
-            (J.transpose() * J).inverse() * (J.transpose() * (place - x * weights(r, s)));
+        const Eigen::Vector2d step = (J.transpose() * J).inverse() * (J.transpose() * (place - x * weights(r, s)));
         r = std::clamp(r + step(0), 0.0, 1.0);
         s = std::clamp(s + step(1), 0.0, quad ? 1.0 : 1.0 - r);
     }

@@ -11,9 +11,7 @@ namespace {
 
 using Eigen::Index;
 
-std::size_t at(Index i) {
-    return static_cast<std::size_t>(i);
-}
+std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
 void make_room(Index n, FrictionWork& w) {
     if (w.C.rows() >= 3 * n) return;
@@ -40,16 +38,14 @@ void gather(const Compliance& c, const FrictionState& state, FrictionWork& w) {
         const Eigen::Map<const Eigen::Vector3d> force(&state.force_N[3 * k]);
         for (Index i = 0; i < n; ++i) {
             const int touch = w.contact.candidate[at(i)];
-            w.u_before_m.segment<3>(3 * i) +=
-                c.full_m_per_N.block<3, 3>(3 * touch, 3 * state.touch[k]) * force;
+            w.u_before_m.segment<3>(3 * i) += c.full_m_per_N.block<3, 3>(3 * touch, 3 * state.touch[k]) * force;
             if (touch == state.touch[k]) w.f_N.segment<3>(3 * i) = force;
         }
     }
     w.u_m.head(3 * n).noalias() = w.C.topLeftCorner(3 * n, 3 * n) * w.f_N.head(3 * n);
 }
 
-Eigen::Vector3d updated_force_N(const FrictionWork& w, Index i, const Eigen::Vector2d& move_m,
-                                double friction) {
+Eigen::Vector3d updated_force_N(const FrictionWork& w, Index i, const Eigen::Vector2d& move_m, double friction) {
     const Eigen::Vector3d f = w.f_N.segment<3>(3 * i);
     const Eigen::Vector3d u = w.u_m.segment<3>(3 * i);
     const auto Cii = w.C.block<3, 3>(3 * i, 3 * i);
@@ -85,8 +81,7 @@ bool sweep_until_settled(const Eigen::Vector2d& move_m, const FrictionOptions& o
     return false;
 }
 
-void collect(const Compliance& c, const Pose& pose, const FrictionWork& w, FrictionState& state,
-             Contact& out) {
+void collect(const Compliance& c, const Pose& pose, const FrictionWork& w, FrictionState& state, Contact& out) {
     out.touch.clear();
     out.by_tool.clear();
     out.force_N.clear();
@@ -124,8 +119,8 @@ FrictionWork make_friction_work(const Compliance& compliance, int most_in_reach)
     return work;
 }
 
-void slide_to(const Compliance& compliance, const Tool& tool, const FrictionOptions& options,
-              FrictionWork& work, FrictionState& state, Contact& contact) {
+void slide_to(const Compliance& compliance, const Tool& tool, const FrictionOptions& options, FrictionWork& work,
+              FrictionState& state, Contact& contact) {
     if (compliance.full_m_per_N.rows() != 3 * compliance.n_touch) {
         throw LoadError("friction: the compliance has no tangential part; ask for it with tangential = true");
     }

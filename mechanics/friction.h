@@ -18,9 +18,8 @@ namespace palpa::mechanics {
 
 struct FrictionOptions {
     double coefficient = 0.3;
-    int sweeps = 400;  // at most
-    double tolerance =
-        1e-7;  // stops when a sweep changes no force by more than this share of the largest one
+    int sweeps = 400;         // at most
+    double tolerance = 1e-7;  // stops when a sweep changes no force by more than this share of the largest one
     double max_depth_m = std::numeric_limits<double>::infinity();
 };
 
@@ -46,7 +45,7 @@ FrictionWork make_friction_work(const Compliance& compliance, int most_in_reach)
 // Moves the tool to its pose in one step (a slide takes many: at most half a node spacing each) and solves
 // there. Needs a compliance with tangential = true; throws LoadError otherwise. A pose that is not finite
 // holds everything.
-void slide_to(const Compliance& compliance, const Tool& tool, const FrictionOptions& options,
-              FrictionWork& work, FrictionState& state, Contact& contact);
+void slide_to(const Compliance& compliance, const Tool& tool, const FrictionOptions& options, FrictionWork& work,
+              FrictionState& state, Contact& contact);
 
 }  // namespace palpa::mechanics

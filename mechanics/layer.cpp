@@ -37,9 +37,7 @@ double layer_factor_minus_1(double x, double poisson) {
 }
 
 // J2(t)/t^2, 1/8 at 0.
-double j2_over_square(double t) {
-    return t < 1e-3 ? 0.125 - t * t / 96.0 : ::jn(2, t) / (t * t);
-}
+double j2_over_square(double t) { return t < 1e-3 ? 0.125 - t * t / 96.0 : ::jn(2, t) / (t * t); }
 
 // int_0^(40/h) f(k) dk, eight-point Gauss on panels short against 1/h, a and r.
 template <class Function>
@@ -61,9 +59,7 @@ double integrate_wavenumbers(double thickness_m, double longest_m, Function&& f)
     return sum;
 }
 
-double compliance_factor(const Layer& layer) {
-    return 2.0 / plane_strain_modulus_Pa(layer.young_Pa, layer.poisson);
-}
+double compliance_factor(const Layer& layer) { return 2.0 / plane_strain_modulus_Pa(layer.young_Pa, layer.poisson); }
 
 }  // namespace
 
@@ -77,11 +73,10 @@ double half_space_depression_m(const Layer& layer, const ParabolicPatch& patch, 
 
 double layer_depression_m(const Layer& layer, const ParabolicPatch& patch, double r_m) {
     const double a = patch.radius_m;
-    const double integral =
-        integrate_wavenumbers(layer.thickness_m, std::max(a, std::abs(r_m)), [&](double k) {
-            return a * a * j2_over_square(k * a) * ::j0(k * r_m) *
-                   layer_factor_minus_1(k * layer.thickness_m, layer.poisson);
-        });
+    const double integral = integrate_wavenumbers(layer.thickness_m, std::max(a, std::abs(r_m)), [&](double k) {
+        return a * a * j2_over_square(k * a) * ::j0(k * r_m) *
+               layer_factor_minus_1(k * layer.thickness_m, layer.poisson);
+    });
     return half_space_depression_m(layer, patch, r_m) +
            compliance_factor(layer) * 2.0 * peak_pressure_Pa(patch) * integral;
 }
@@ -91,8 +86,7 @@ double half_space_mean_depression_m(const Layer& layer, const ParabolicPatch& pa
     const double integral =
         std::tgamma(4.0) * std::tgamma(0.5) / (16.0 * std::tgamma(2.5) * std::tgamma(2.5) * std::tgamma(4.5));
     const double P = peak_pressure_Pa(patch);
-    return 2.0 * kPi / patch.force_N * compliance_factor(layer) * 4.0 * P * P * std::pow(patch.radius_m, 3) *
-           integral;
+    return 2.0 * kPi / patch.force_N * compliance_factor(layer) * 4.0 * P * P * std::pow(patch.radius_m, 3) * integral;
 }
 
 double layer_mean_depression_m(const Layer& layer, const ParabolicPatch& patch) {
@@ -102,17 +96,14 @@ double layer_mean_depression_m(const Layer& layer, const ParabolicPatch& patch) 
         const double pbar = 2.0 * P * a * a * j2_over_square(k * a);
         return pbar * pbar * layer_factor_minus_1(k * layer.thickness_m, layer.poisson);
     });
-    return half_space_mean_depression_m(layer, patch) +
-           2.0 * kPi / patch.force_N * compliance_factor(layer) * integral;
+    return half_space_mean_depression_m(layer, patch) + 2.0 * kPi / patch.force_N * compliance_factor(layer) * integral;
 }
 
 double hertz_force_N(double plane_modulus_Pa, double radius_m, double depth_m) {
     return 4.0 / 3.0 * plane_modulus_Pa * std::sqrt(radius_m) * std::pow(depth_m, 1.5);
 }
 
-double hertz_contact_radius_m(double radius_m, double depth_m) {
-    return std::sqrt(radius_m * depth_m);
-}
+double hertz_contact_radius_m(double radius_m, double depth_m) { return std::sqrt(radius_m * depth_m); }
 
 double dimitriadis_force_N(double young_Pa, double radius_m, double depth_m, double thickness_m) {
     const double x = std::sqrt(radius_m * depth_m) / thickness_m;

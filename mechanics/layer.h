@@ -31,9 +31,7 @@ double half_space_depression_m(const Layer& layer, const ParabolicPatch& patch, 
 double half_space_mean_depression_m(const Layer& layer, const ParabolicPatch& patch);
 
 // E / (1 - nu^2)
-inline double plane_strain_modulus_Pa(double young_Pa, double poisson) {
-    return young_Pa / (1.0 - poisson * poisson);
-}
+inline double plane_strain_modulus_Pa(double young_Pa, double poisson) { return young_Pa / (1.0 - poisson * poisson); }
 
 // Rigid sphere on a half-space (Hertz):  F = 4/3 E* sqrt(R) d^1.5,  a = sqrt(R d),  p0 = 3 F / (2 pi a^2)
 double hertz_force_N(double plane_modulus_Pa, double radius_m, double depth_m);

@@ -39,12 +39,10 @@ Eigen::Vector4d parallelogram_shares(const Matrix2Xd& x, const DiscMoments& m) {
     const auto first = [&](int i) { return origin(i) * m(0) + inverse(i, 0) * m(1) + inverse(i, 1) * m(2); };
     const double r = first(0);
     const double s = first(1);
-    const double rs = origin(0) * origin(1) * m(0) +
-                      (origin(0) * inverse(1, 0) + origin(1) * inverse(0, 0)) * m(1) +
-                      (origin(0) * inverse(1, 1) + origin(1) * inverse(0, 1)) * m(2) +
-                      inverse(0, 0) * inverse(1, 0) * m(3) +
-                      (inverse(0, 0) * inverse(1, 1) + inverse(0, 1) * inverse(1, 0)) * m(4) +
-                      inverse(0, 1) * inverse(1, 1) * m(5);
+    const double rs =
+        origin(0) * origin(1) * m(0) + (origin(0) * inverse(1, 0) + origin(1) * inverse(0, 0)) * m(1) +
+        (origin(0) * inverse(1, 1) + origin(1) * inverse(0, 1)) * m(2) + inverse(0, 0) * inverse(1, 0) * m(3) +
+        (inverse(0, 0) * inverse(1, 1) + inverse(0, 1) * inverse(1, 0)) * m(4) + inverse(0, 1) * inverse(1, 1) * m(5);
     return {m(0) - r - s + rs, r - rs, rs, s - rs};
 }
 
@@ -68,14 +66,13 @@ VectorXd face_shares(const Matrix2Xd& x, double R, LoadShare share) {
 
 }  // namespace
 
-PressureLoad parabolic_load(const Mesh& mesh, const Faces& outer, const ParabolicPressure& pressure,
-                            LoadShare share) {
+PressureLoad parabolic_load(const Mesh& mesh, const Faces& outer, const ParabolicPressure& pressure, LoadShare share) {
     const double R = 0.5 * pressure.diameter_m;
-    if (!(R > 0.0) || !std::isfinite(R) || !std::isfinite(pressure.force_N) ||
-        !std::isfinite(pressure.centre_m[0]) || !std::isfinite(pressure.centre_m[1])) {
-        throw LoadError(text("parabolic pressure: diameter ", pressure.diameter_m, " m, force ",
-                             pressure.force_N, " N, centre ", pressure.centre_m[0], ", ",
-                             pressure.centre_m[1], " m; wanted finite numbers and a diameter > 0"));
+    if (!(R > 0.0) || !std::isfinite(R) || !std::isfinite(pressure.force_N) || !std::isfinite(pressure.centre_m[0]) ||
+        !std::isfinite(pressure.centre_m[1])) {
+        throw LoadError(text("parabolic pressure: diameter ", pressure.diameter_m, " m, force ", pressure.force_N,
+                             " N, centre ", pressure.centre_m[0], ", ", pressure.centre_m[1],
+                             " m; wanted finite numbers and a diameter > 0"));
     }
     const int axis = axis_of(pressure.side);
     const int first = axis == 0 ? 1 : 0;
@@ -107,8 +104,7 @@ PressureLoad parabolic_load(const Mesh& mesh, const Faces& outer, const Paraboli
     return load;
 }
 
-Eigen::Matrix3Xd traction_load(const Mesh& mesh, const Faces& faces,
-                               const std::array<double, 3>& traction_Pa) {
+Eigen::Matrix3Xd traction_load(const Mesh& mesh, const Faces& faces, const std::array<double, 3>& traction_Pa) {
     const Eigen::Vector3d t(traction_Pa[0], traction_Pa[1], traction_Pa[2]);
     if (!t.allFinite()) throw LoadError(text("traction ", t.transpose(), " Pa is not finite"));
     return t * tributary_area_m2(mesh, faces).transpose();

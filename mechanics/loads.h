@@ -31,12 +31,10 @@ struct PressureLoad {
     bool partial = false;    // part of the disc is beside the body
 };
 // Throws LoadError for a diameter that is not > 0 or numbers that are not finite.
-PressureLoad parabolic_load(const Mesh& mesh, const Faces& outer, const ParabolicPressure& pressure,
-                            LoadShare share);
+PressureLoad parabolic_load(const Mesh& mesh, const Faces& outer, const ParabolicPressure& pressure, LoadShare share);
 
 // Constant traction on faces, Pa in x, y, z: F_i = A_i t.
-Eigen::Matrix3Xd traction_load(const Mesh& mesh, const Faces& faces,
-                               const std::array<double, 3>& traction_Pa);
+Eigen::Matrix3Xd traction_load(const Mesh& mesh, const Faces& faces, const std::array<double, 3>& traction_Pa);
 
 // Constant pressure into the body on faces that may be bent: F_i = -p int N_i n dA (2 x 2 Gauss on quads).
 Eigen::Matrix3Xd pressure_load(const Mesh& mesh, const Faces& faces, double pressure_Pa);

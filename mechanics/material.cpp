@@ -26,16 +26,15 @@ void check_materials(std::span<const Material> materials) {
     std::vector<int> bad;
     for (std::size_t i = 0; i < materials.size(); ++i) {
         const Material& m = materials[i];
-        const bool good =
-            std::isfinite(m.young_Pa) && m.young_Pa > 0.0 && m.poisson > -1.0 && m.poisson < 0.5;
+        const bool good = std::isfinite(m.young_Pa) && m.young_Pa > 0.0 && m.poisson > -1.0 && m.poisson < 0.5;
         if (!good) bad.push_back(static_cast<int>(i));
     }
     if (bad.empty()) return;
     const Material& first = materials[static_cast<std::size_t>(bad.front())];
-    throw MaterialError(text("material ", bad.front(), ": young_Pa is ", first.young_Pa,
-                             ", must be > 0; poisson is ", first.poisson, ", must be > -1 and < 0.5 (",
-                             bad.size(), " of ", materials.size(), " materials are wrong)"),
-                        bad);
+    throw MaterialError(
+        text("material ", bad.front(), ": young_Pa is ", first.young_Pa, ", must be > 0; poisson is ", first.poisson,
+             ", must be > -1 and < 0.5 (", bad.size(), " of ", materials.size(), " materials are wrong)"),
+        bad);
 }
 
 Voigt stress_Pa(const Material& material, const Voigt& strain) {
@@ -53,8 +52,8 @@ std::vector<Material> materials_of_cells(const Eigen::VectorXi& region, std::spa
     for (Eigen::Index cell = 0; cell < region.size(); ++cell) {
         const int r = region(cell);
         if (r < 0 || r >= static_cast<int>(list.size())) {
-            throw MaterialError(
-                text("cell ", cell, " has region ", r, ", but there are ", list.size(), " materials"), {r});
+            throw MaterialError(text("cell ", cell, " has region ", r, ", but there are ", list.size(), " materials"),
+                                {r});
         }
         of_cells.push_back(list[static_cast<std::size_t>(r)]);
     }
@@ -67,8 +66,7 @@ Material mix(const Material& inside, const Material& outside, double share_insid
     return {9.0 * kappa * mu / (3.0 * kappa + mu), (3.0 * kappa - 2.0 * mu) / (6.0 * kappa + 2.0 * mu)};
 }
 
-void mix_in(const Eigen::VectorXd& share, const Material& inside, Mixing rule,
-            std::vector<Material>& of_cells) {
+void mix_in(const Eigen::VectorXd& share, const Material& inside, Mixing rule, std::vector<Material>& of_cells) {
     for (Eigen::Index cell = 0; cell < share.size(); ++cell) {
         Material& m = of_cells[static_cast<std::size_t>(cell)];
         if (share(cell) >= 1.0)

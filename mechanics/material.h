@@ -18,15 +18,11 @@ void check_materials(std::span<const Material> materials);
 
 // Lame constants and bulk modulus:
 //   mu = E / (2 (1 + nu)),  lambda = E nu / ((1 + nu)(1 - 2 nu)),  kappa = lambda + 2 mu / 3
-inline double mu_Pa(const Material& m) {
-    return m.young_Pa / (2.0 * (1.0 + m.poisson));
-}
+inline double mu_Pa(const Material& m) { return m.young_Pa / (2.0 * (1.0 + m.poisson)); }
 inline double lambda_Pa(const Material& m) {
     return m.young_Pa * m.poisson / ((1.0 + m.poisson) * (1.0 - 2.0 * m.poisson));
 }
-inline double kappa_Pa(const Material& m) {
-    return m.young_Pa / (3.0 * (1.0 - 2.0 * m.poisson));
-}
+inline double kappa_Pa(const Material& m) { return m.young_Pa / (3.0 * (1.0 - 2.0 * m.poisson)); }
 
 // Strain and stress are 6-vectors in VTK order xx yy zz xy yz xz; shear strains are engineering ones (2
 // eps_xy).
@@ -45,7 +41,6 @@ enum class Mixing { stiff, soft, between };
 Material mix(const Material& inside, const Material& outside, double share_inside, Mixing rule);
 
 // Mixes `inside` into each cell by its share (sphere_share in mesh.h); cells with share 0 stay as they are.
-void mix_in(const Eigen::VectorXd& share, const Material& inside, Mixing rule,
-            std::vector<Material>& of_cells);
+void mix_in(const Eigen::VectorXd& share, const Material& inside, Mixing rule, std::vector<Material>& of_cells);
 
 }  // namespace palpa::mechanics

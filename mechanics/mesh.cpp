@@ -107,8 +107,7 @@ Vector3d point_in_cell(const Mesh& mesh, Index cell, double r, double s, double 
     if (!is_hex(mesh)) return (1.0 - r - s - t) * node(0) + r * node(1) + s * node(2) + t * node(3);
     const Vector3d bottom =
         (1 - r) * (1 - s) * node(0) + r * (1 - s) * node(1) + r * s * node(2) + (1 - r) * s * node(3);
-    const Vector3d top =
-        (1 - r) * (1 - s) * node(4) + r * (1 - s) * node(5) + r * s * node(6) + (1 - r) * s * node(7);
+    const Vector3d top = (1 - r) * (1 - s) * node(4) + r * (1 - s) * node(5) + r * s * node(6) + (1 - r) * s * node(7);
     return (1 - t) * bottom + t * top;
 }
 
@@ -169,8 +168,7 @@ std::vector<std::array<int, 2>> face_neighbours(const Mesh& mesh) {
 Faces faces_on(const Mesh& mesh, const Faces& outer, Side side) {
     const auto along = mesh.nodes_m.row(axis_of(side));
     const double plane = is_max(side) ? along.maxCoeff() : along.minCoeff();
-    const double tolerance =
-        1e-9 * (mesh.nodes_m.rowwise().maxCoeff() - mesh.nodes_m.rowwise().minCoeff()).maxCoeff();
+    const double tolerance = 1e-9 * (mesh.nodes_m.rowwise().maxCoeff() - mesh.nodes_m.rowwise().minCoeff()).maxCoeff();
     std::vector<Index> kept;
     for (Index i = 0; i < outer.cell.size(); ++i) {
         double off = 0.0;
@@ -206,10 +204,8 @@ Eigen::VectorXd tributary_area_m2(const Mesh& mesh, const Faces& faces) {
         }
         for (const double r : {-g, g}) {
             for (const double s : {-g, g}) {
-                const Vector3d along_r =
-                    0.25 * ((1 - s) * (node(1) - node(0)) + (1 + s) * (node(2) - node(3)));
-                const Vector3d along_s =
-                    0.25 * ((1 - r) * (node(3) - node(0)) + (1 + r) * (node(2) - node(1)));
+                const Vector3d along_r = 0.25 * ((1 - s) * (node(1) - node(0)) + (1 + s) * (node(2) - node(3)));
+                const Vector3d along_s = 0.25 * ((1 - r) * (node(3) - node(0)) + (1 + r) * (node(2) - node(1)));
                 const double dA = along_r.cross(along_s).norm();
                 area(faces.corners(0, f)) += 0.25 * (1 - r) * (1 - s) * dA;
                 area(faces.corners(1, f)) += 0.25 * (1 + r) * (1 - s) * dA;
@@ -223,10 +219,9 @@ Eigen::VectorXd tributary_area_m2(const Mesh& mesh, const Faces& faces) {
 
 Eigen::VectorXd graded_coordinates_m(double length_m, int n, double centre_m, double finest_m) {
     if (!(length_m > 0.0) || n < 1 || !(finest_m > 0.0) || !(centre_m >= 0.0 && centre_m <= length_m)) {
-        throw MeshError(
-            text("graded box: length ", length_m, " m, ", n, " cells, centre ", centre_m, " m, finest ",
-                 finest_m, " m; wanted length > 0, cells >= 1, 0 <= centre <= length, finest > 0"),
-            {});
+        throw MeshError(text("graded box: length ", length_m, " m, ", n, " cells, centre ", centre_m, " m, finest ",
+                             finest_m, " m; wanted length > 0, cells >= 1, 0 <= centre <= length, finest > 0"),
+                        {});
     }
     const double left = n == 1 ? length_m : centre_m;  // one cell has no room for a node inside
     const double right = length_m - left;
@@ -265,8 +260,8 @@ Mesh hex_box(const Eigen::VectorXd& x_m, const Eigen::VectorXd& y_m, const Eigen
         for (Index j = 0; j + 1 < ny; ++j) {
             for (Index i = 0; i + 1 < nx; ++i, ++cell) {
                 mesh.cells.col(cell) << node_at(i, j, k), node_at(i + 1, j, k), node_at(i + 1, j + 1, k),
-                    node_at(i, j + 1, k), node_at(i, j, k + 1), node_at(i + 1, j, k + 1),
-                    node_at(i + 1, j + 1, k + 1), node_at(i, j + 1, k + 1);
+                    node_at(i, j + 1, k), node_at(i, j, k + 1), node_at(i + 1, j, k + 1), node_at(i + 1, j + 1, k + 1),
+                    node_at(i, j + 1, k + 1);
             }
         }
     }
@@ -281,8 +276,7 @@ Mesh hex_box(const Box& box) {
         const int n = box.cells[axis];
         if (!(length > 0.0) || n < 1) {
             throw MeshError(
-                text("box: size ", length, " m in ", n, " cells along axis ", axis, "; wanted > 0 and >= 1"),
-                {});
+                text("box: size ", length, " m in ", n, " cells along axis ", axis, "; wanted > 0 and >= 1"), {});
         }
         if (box.grading) {
             const double centre = axis == 2 ? length : box.grading->centre_m[axis];
@@ -297,12 +291,10 @@ Mesh hex_box(const Box& box) {
 Mesh split_to_tets(const Mesh& hexes) {
     constexpr std::array<std::array<int, 4>, 6> kTets{
         {{0, 1, 2, 6}, {0, 2, 3, 6}, {0, 3, 7, 6}, {0, 7, 4, 6}, {0, 4, 5, 6}, {0, 5, 1, 6}}};
-    Mesh tets{hexes.nodes_m, Eigen::MatrixXi(4, 6 * hexes.cells.cols()),
-              Eigen::VectorXi(6 * hexes.cells.cols())};
+    Mesh tets{hexes.nodes_m, Eigen::MatrixXi(4, 6 * hexes.cells.cols()), Eigen::VectorXi(6 * hexes.cells.cols())};
     for (Index cell = 0, tet = 0; cell < hexes.cells.cols(); ++cell) {
         for (const auto& corners : kTets) {
-            for (int k = 0; k < 4; ++k)
-                tets.cells(k, tet) = hexes.cells(corners[static_cast<std::size_t>(k)], cell);
+            for (int k = 0; k < 4; ++k) tets.cells(k, tet) = hexes.cells(corners[static_cast<std::size_t>(k)], cell);
             tets.region(tet++) = hexes.region(cell);
         }
     }

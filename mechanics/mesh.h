@@ -29,9 +29,7 @@ inline std::uint64_t number_of_cell(const Mesh& mesh, Eigen::Index cell) {
     return mesh.cell_number.empty() ? i : mesh.cell_number[i];
 }
 
-inline bool is_hex(const Mesh& mesh) {
-    return mesh.cells.rows() == 8;
-}
+inline bool is_hex(const Mesh& mesh) { return mesh.cells.rows() == 8; }
 
 // Outer faces, corners counter-clockwise seen from outside. corners: 4 x n or 3 x n.
 struct Faces {
@@ -46,12 +44,8 @@ std::vector<std::array<int, 2>> face_neighbours(const Mesh& mesh);
 
 // The six sides of a mesh's bounding box.
 enum class Side { xmin, xmax, ymin, ymax, zmin, zmax };
-inline int axis_of(Side side) {
-    return static_cast<int>(side) / 2;
-}
-inline bool is_max(Side side) {
-    return static_cast<int>(side) % 2 == 1;
-}
+inline int axis_of(Side side) { return static_cast<int>(side) / 2; }
+inline bool is_max(Side side) { return static_cast<int>(side) % 2 == 1; }
 
 // Those of `outer` that lie in a side of the bounding box, to 1e-9 of its size.
 Faces faces_on(const Mesh& mesh, const Faces& outer, Side side);

@@ -42,8 +42,7 @@ void check_numbers(const Mesh& mesh) {
     }
     if (!bad.empty()) {
         throw MeshError(
-            text("mesh: node numbers outside 0..", mesh.nodes_m.cols() - 1, " in cells ", first_few(mesh, bad)),
-            bad);
+            text("mesh: node numbers outside 0..", mesh.nodes_m.cols() - 1, " in cells ", first_few(mesh, bad)), bad);
     }
     for (Index cell = 0; cell < mesh.cells.cols(); ++cell) {
         for (Index k = 0; k < mesh.cells.rows(); ++k) {
@@ -68,9 +67,7 @@ Hex hex_corners(const Mesh& mesh, Index cell) {
     return corners;
 }
 
-double det_of(const Vector3d& a, const Vector3d& b, const Vector3d& c) {
-    return a.dot(b.cross(c));
-}
+double det_of(const Vector3d& a, const Vector3d& b, const Vector3d& c) { return a.dot(b.cross(c)); }
 
 CellQuality hex_quality(const Hex& x) {
     // the three edges that leave each corner, right-handed
@@ -116,8 +113,7 @@ CellQuality tet_quality(const Tet& x) {
     const Vector3d to_centre =
         a.squaredNorm() * b.cross(c) + b.squaredNorm() * c.cross(a) + c.squaredNorm() * a.cross(b);
     const double r_out = to_centre.norm() / (2.0 * std::abs(det));
-    return {det / std::pow(longest, 3), min_angle * 180.0 / std::numbers::pi,
-            det == 0.0 ? 0.0 : 3.0 * r_in / r_out};
+    return {det / std::pow(longest, 3), min_angle * 180.0 / std::numbers::pi, det == 0.0 ? 0.0 : 3.0 * r_in / r_out};
 }
 
 int root_of(std::vector<int>& parent, int i) {
@@ -149,15 +145,13 @@ MeshReport check_mesh(const Mesh& mesh) {
             inverted.push_back(number);
         else if (!(q.relative_det > kFlat))
             flat.push_back(number);
-        if (q.relative_det < kSliver || q.min_dihedral_deg < kSliverAngle_deg)
-            report.slivers.push_back(number);
+        if (q.relative_det < kSliver || q.min_dihedral_deg < kSliverAngle_deg) report.slivers.push_back(number);
         if (q.relative_det < report.worst_relative_det) {
             report.worst_relative_det = q.relative_det;
             report.worst_cell = number;
         }
         report.worst_dihedral_deg = std::min(report.worst_dihedral_deg, q.min_dihedral_deg);
-        for (Index k = 0; k < mesh.cells.rows(); ++k)
-            used[static_cast<std::size_t>(mesh.cells(k, cell))] = true;
+        for (Index k = 0; k < mesh.cells.rows(); ++k) used[static_cast<std::size_t>(mesh.cells(k, cell))] = true;
         if (is_hex(mesh)) {
             const Hex corners = hex_corners(mesh, cell);
             for (int g = 0; g < 8; ++g) report.volume_m3 += hex_point(corners, g).volume_m3;
@@ -213,9 +207,9 @@ std::string describe_part(const Mesh& mesh, const Parts& parts, int part) {
     }
     low *= 1e3;
     high *= 1e3;
-    return text("part ", part + 1, " of ", parts.count, " (", cells, " cells from cell ",
-                number_of_cell(mesh, first), ", x ", low.x(), "..", high.x(), ", y ", low.y(), "..", high.y(),
-                ", z ", low.z(), "..", high.z(), " mm)");
+    return text("part ", part + 1, " of ", parts.count, " (", cells, " cells from cell ", number_of_cell(mesh, first),
+                ", x ", low.x(), "..", high.x(), ", y ", low.y(), "..", high.y(), ", z ", low.z(), "..", high.z(),
+                " mm)");
 }
 
 std::string describe_node(const Mesh& mesh, Index node) {

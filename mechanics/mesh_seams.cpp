@@ -66,9 +66,7 @@ void each_near(const Grid& grid, const Vector3d& low_m, const Vector3d& high_m, 
     }
 }
 
-bool has_corner(const Mesh& mesh, int cell, int node) {
-    return (mesh.cells.col(cell).array() == node).any();
-}
+bool has_corner(const Mesh& mesh, int cell, int node) { return (mesh.cells.col(cell).array() == node).any(); }
 
 int corner_at(const Mesh& mesh, const Faces& outer, Index face, int node, double reach_m) {
     for (Index k = 0; k < outer.corners.rows(); ++k) {

@@ -12,9 +12,7 @@ namespace {
 
 constexpr double kWorstViolation = 1e-6;  // of the depth, when a slide does not settle
 
-std::size_t at(int i) {
-    return static_cast<std::size_t>(i);
-}
+std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 // Four sample lines around a point and Lagrange's weights on them; the outermost four at the ends.
 struct Stencil {
@@ -81,8 +79,7 @@ void add_part(const PairTable& table, const std::vector<double>& values, const W
                     const int dx = ix - jx + table.reach_x;
                     const int dy = iy - jy + table.reach_y;
                     if (dx < 0 || dx >= w_x || dy < 0 || dy >= w_y) continue;
-                    work.local(iy * n_x + ix, jy * n_x + jx) =
-                        values[at(node) * at(w_x * w_y) + at(dy * w_x + dx)];
+                    work.local(iy * n_x + ix, jy * n_x + jx) = values[at(node) * at(w_x * w_y) + at(dy * w_x + dx)];
                 }
             }
         }
@@ -218,8 +215,8 @@ RollingForce force_at(const RollingModel& model, const Compliance& compliance, c
     return out;
 }
 
-void roll_to(const RollingModel& model, const RollingMesh& mesh, const RollingTables& tables, double x_m,
-             double y_m, std::span<const double> depths_m, RollingWork& work, std::vector<RollingForce>& out) {
+void roll_to(const RollingModel& model, const RollingMesh& mesh, const RollingTables& tables, double x_m, double y_m,
+             std::span<const double> depths_m, RollingWork& work, std::vector<RollingForce>& out) {
     place_lattice(model, mesh.contact_m, x_m, y_m, work);
     if (work.lattice_x.empty()) {
         throw LoadError(text("rolling: the indenter at ", x_m, ", ", y_m, " m is off the tissue, 0..", model.size_m[0],

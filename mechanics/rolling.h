@@ -44,10 +44,10 @@ struct RollingModel {
 
 // How fine each table is.
 struct RollingMesh {
-    double contact_m = 0.0;                   // lattice under the tool; divides a cylinder's length
+    double contact_m = 0.0;                     // lattice under the tool; divides a cylinder's length
     std::array<double, 2> surface_m{0.0, 0.0};  // of S; divides half the block
-    double cells_across = 8.0;                // cells over the diameter of an inclusion
-    double reach_m = 0.0;                     // how far beyond an inclusion T goes before it is faded to 0
+    double cells_across = 8.0;                  // cells over the diameter of an inclusion
+    double reach_m = 0.0;                       // how far beyond an inclusion T goes before it is faded to 0
 };
 // sqrt(R d) / contact_m > 4 at the least depth, as long as that needs at most about 600 nodes. coarseness 1 is
 // meant for maps, larger ones for quick tests, 0.5 for a check: half of every spacing, whatever that needs. Throws
@@ -112,8 +112,8 @@ struct RollingWork {
 // Forces at each depth (ascending) with the tool's lowest point over (x, y). The tool may hang over a side;
 // throws LoadError when nothing of the block is under it, or a depth is not in 0 .. thickness, SolverError when a
 // slide does not settle (far too much friction).
-void roll_to(const RollingModel& model, const RollingMesh& mesh, const RollingTables& tables, double x_m,
-             double y_m, std::span<const double> depths_m, RollingWork& work, std::vector<RollingForce>& out);
+void roll_to(const RollingModel& model, const RollingMesh& mesh, const RollingTables& tables, double x_m, double y_m,
+             std::span<const double> depths_m, RollingWork& work, std::vector<RollingForce>& out);
 
 // The same place on one mesh of the whole block, graded around it, without taking anything apart: the
 // reference that shows what that costs. spacing_m: of the nodes under the tool.

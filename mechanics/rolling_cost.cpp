@@ -14,10 +14,10 @@ constexpr double kNever = std::numeric_limits<double>::infinity();
 constexpr double kMostLines = 1e5;  // along one axis; more is out of reach in any case
 
 // Sparse Cholesky of N equations of a compact mesh: entries grow with N^(4/3), work with N^2.
-constexpr double kFactorEntries = 13.0;       // times N^(4/3)
-constexpr double kFactorBytes = 2.2 * 8.0;    // an entry, with the solver's work space
-constexpr double kFactorWork_s = 1.7e-9;      // times N^2
-constexpr double kEntriesPerSecond = 1.4e9;   // of a solve, one right-hand side
+constexpr double kFactorEntries = 13.0;      // times N^(4/3)
+constexpr double kFactorBytes = 2.2 * 8.0;   // an entry, with the solver's work space
+constexpr double kFactorWork_s = 1.7e-9;     // times N^2
+constexpr double kEntriesPerSecond = 1.4e9;  // of a solve, one right-hand side
 
 RollingCost mesh_cost(const GridLines& lines, double columns, double dense) {
     RollingCost out;
@@ -30,18 +30,14 @@ RollingCost mesh_cost(const GridLines& lines, double columns, double dense) {
     return out;
 }
 
-double lists(const RollingModel& model) {
-    return model.friction > 0.0 ? 3.0 : 1.0;
-}
+double lists(const RollingModel& model) { return model.friction > 0.0 ? 3.0 : 1.0; }
 
 RollingCost larger(const RollingCost& a, const RollingCost& b) {
     return {std::max(a.unknowns, b.unknowns), std::max(a.memory_bytes, b.memory_bytes), a.time_s + b.time_s};
 }
 
 // Sample lines that the tool can cover, of n that are `spacing` apart.
-double covered(double width_m, double spacing_m, double n) {
-    return std::min(n, width_m / spacing_m + 4.0);
-}
+double covered(double width_m, double spacing_m, double n) { return std::min(n, width_m / spacing_m + 4.0); }
 
 }  // namespace
 
@@ -62,7 +58,8 @@ RollingCost side_cost(const RollingModel& model, const RollingMesh& mesh) {
     const double w_x = 2.0 * covered(2.0 * half_m[0], mesh.surface_m[0], 0.5 * n_x) + 1.0;
     const double w_y = 2.0 * covered(2.0 * half_m[1], mesh.surface_m[1], 0.5 * n_y) + 1.0;
     const double quarter = 0.25 * n_x * n_y;
-    const double under = covered(2.0 * half_m[0], mesh.surface_m[0], n_x) * covered(2.0 * half_m[1], mesh.surface_m[1], n_y);
+    const double under =
+        covered(2.0 * half_m[0], mesh.surface_m[0], n_x) * covered(2.0 * half_m[1], mesh.surface_m[1], n_y);
     const double table = n_x * n_y * w_x * w_y + under * under;
     const double dense = lists(model) * (quarter * quarter + table);
     const RollingCost block = mesh_cost(side_lines(model, mesh), 4.0 * quarter, dense);

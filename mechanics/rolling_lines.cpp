@@ -26,8 +26,8 @@ GridLines layer_lines(const RollingModel& model, const std::array<double, 2>& sp
 
 // Fine over every inclusion of the group; `centre_m` along the axis.
 template <class Centre>
-VectorXd group_lines_m(const RollingModel& model, const RollingMesh& mesh, const std::vector<int>& group, double length_m,
-                       double most_m, Centre&& centre_m) {
+VectorXd group_lines_m(const RollingModel& model, const RollingMesh& mesh, const std::vector<int>& group,
+                       double length_m, double most_m, Centre&& centre_m) {
     std::vector<FineZone> zones;
     for (const int i : group) {
         const Sphere& s = model.inclusions[static_cast<std::size_t>(i)].sphere;
@@ -76,8 +76,9 @@ std::array<int, 2> contact_offsets(const RollingModel& model, const RollingMesh&
 
 GridLines contact_lines(const RollingModel& model, const RollingMesh& mesh) {
     const double h = mesh.contact_m;
-    return layer_lines(model, {h, h}, contact_offsets(model, mesh),
-                       heights_from_depths(outward_coordinates_m(0.75 * h, 1, kGrowth, model.size_m[2]), model.size_m[2]));
+    return layer_lines(
+        model, {h, h}, contact_offsets(model, mesh),
+        heights_from_depths(outward_coordinates_m(0.75 * h, 1, kGrowth, model.size_m[2]), model.size_m[2]));
 }
 
 GridLines side_lines(const RollingModel& model, const RollingMesh& mesh) {

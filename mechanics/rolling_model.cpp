@@ -11,9 +11,9 @@
 namespace palpa::mechanics {
 namespace {
 
-constexpr int kMostInPatch = 600;    // contact nodes under the tool
-constexpr int kMostSideCells = 60;   // of S over half the block
-constexpr double kShortest = 0.25;   // cylinder, in spacings
+constexpr int kMostInPatch = 600;   // contact nodes under the tool
+constexpr int kMostSideCells = 60;  // of S over half the block
+constexpr double kShortest = 0.25;  // cylinder, in spacings
 
 double tool_reach_m(const RollingModel& model) {
     const double d = std::min(model.greatest_depth_m, model.radius_m);
@@ -56,11 +56,11 @@ void check_model(const RollingModel& model) {
         }
         for (std::size_t j = 0; j < i; ++j) {
             const Sphere& b = model.inclusions[j].sphere;
-            const double apart_m = std::hypot(a.centre_m[0] - b.centre_m[0], a.centre_m[1] - b.centre_m[1],
-                                              a.centre_m[2] - b.centre_m[2]);
+            const double apart_m =
+                std::hypot(a.centre_m[0] - b.centre_m[0], a.centre_m[1] - b.centre_m[1], a.centre_m[2] - b.centre_m[2]);
             if (apart_m >= a.radius_m + b.radius_m) continue;
-            throw LoadError(text("rolling: inclusions ", j, " and ", i, " overlap: centres ", apart_m, " m apart, radii ",
-                                 b.radius_m, " and ", a.radius_m, " m"));
+            throw LoadError(text("rolling: inclusions ", j, " and ", i, " overlap: centres ", apart_m,
+                                 " m apart, radii ", b.radius_m, " and ", a.radius_m, " m"));
         }
     }
 }

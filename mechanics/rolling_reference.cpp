@@ -27,16 +27,18 @@ std::vector<RollingForce> press_on_one_mesh(const RollingModel& model, double sp
     VectorXd lines_m[2];
     std::vector<FineZone> deep{{0.0, 0.75 * spacing_m, 0.75 * spacing_m}};
     std::vector<FineZone> zones[2] = {{{x_m - reach_m[0], x_m + reach_m[0], spacing_m}},
-                                    {{y_m - reach_m[1], y_m + reach_m[1], spacing_m}}};
+                                      {{y_m - reach_m[1], y_m + reach_m[1], spacing_m}}};
     for (const Inclusion& inclusion : model.inclusions) {
         const Sphere& s = inclusion.sphere;
         if (std::hypot(s.centre_m[0] - x_m, s.centre_m[1] - y_m) > s.radius_m + kNear * model.size_m[2]) continue;
         const double cell_m = 2.0 * s.radius_m / cells_across;
-        for (std::size_t c = 0; c < 2; ++c) zones[c].push_back({s.centre_m[c] - s.radius_m, s.centre_m[c] + s.radius_m, cell_m});
+        for (std::size_t c = 0; c < 2; ++c)
+            zones[c].push_back({s.centre_m[c] - s.radius_m, s.centre_m[c] + s.radius_m, cell_m});
         const double middle_m = model.size_m[2] - s.centre_m[2];
         deep.push_back({middle_m - s.radius_m, middle_m + s.radius_m, cell_m});
     }
-    for (std::size_t c = 0; c < 2; ++c) lines_m[c] = zoned_coordinates_m(model.size_m[c], zones[c], kReferenceGrowth, 0.4 * model.size_m[2]);
+    for (std::size_t c = 0; c < 2; ++c)
+        lines_m[c] = zoned_coordinates_m(model.size_m[c], zones[c], kReferenceGrowth, 0.4 * model.size_m[2]);
     const VectorXd z_m = heights_from_depths(
         zoned_coordinates_m(model.size_m[2], deep, kReferenceGrowth, 0.15 * model.size_m[2]), model.size_m[2]);
     const Problem problem = block_problem(lines_m[0], lines_m[1], z_m, model.tissue, model.inclusions);

@@ -12,7 +12,7 @@ namespace {
 using Eigen::Index;
 using Eigen::VectorXd;
 
-constexpr double kFadeFrom = 0.65;   // of the reach
+constexpr double kFadeFrom = 0.65;  // of the reach
 
 // What pressing at one surface point does at another. The lists of a table and the matrices of a compliance
 // hold one each, the last two with friction only.
@@ -58,8 +58,8 @@ std::vector<int> end_plane(const Problem& problem, int axis) {
 
 // The layer under a load at the corner of its quarter, where both planes of symmetry meet.
 // n: offsets along x and y.
-LayerKernel layer_kernel(const RollingModel& model, const std::array<double, 2>& spacing_m,
-                         const std::array<int, 2>& n, const GridLines& lines) {
+LayerKernel layer_kernel(const RollingModel& model, const std::array<double, 2>& spacing_m, const std::array<int, 2>& n,
+                         const GridLines& lines) {
     const auto& [x_m, y_m, z_m] = lines;
     Problem problem = block_problem(x_m, y_m, z_m, model.tissue, {});
     for (int axis = 0; axis < 2; ++axis) {
@@ -90,8 +90,8 @@ LayerKernel layer_kernel(const RollingModel& model, const std::array<double, 2>&
 
 // Surface compliance of a quarter of the block between all its surface nodes; mirrored planes either
 // symmetric or antisymmetric.
-Compliance quarter_compliance(const RollingModel& model, const VectorXd& x_m, const VectorXd& y_m,
-                              const VectorXd& z_m, const std::array<bool, 2>& antisymmetric) {
+Compliance quarter_compliance(const RollingModel& model, const VectorXd& x_m, const VectorXd& y_m, const VectorXd& z_m,
+                              const std::array<bool, 2>& antisymmetric) {
     Problem problem = block_problem(x_m, y_m, z_m, model.tissue, {});
     for (int axis = 0; axis < 2; ++axis) {
         const bool anti = antisymmetric[static_cast<std::size_t>(axis)];

@@ -9,13 +9,9 @@
 namespace palpa::mechanics {
 
 #ifdef PALPA_HAS_MUMPS
-bool mumps_built_in() {
-    return true;
-}
+bool mumps_built_in() { return true; }
 #else
-bool mumps_built_in() {
-    return false;
-}
+bool mumps_built_in() { return false; }
 struct MumpsFactor {
     MumpsFactor() { throw SolverError("MUMPS asked for, but this build has none; use eigen", 0); }
 };

@@ -17,9 +17,7 @@ namespace palpa::mechanics {
 enum class SolverKind { mumps, eigen };
 
 bool mumps_built_in();
-inline SolverKind best_solver() {
-    return mumps_built_in() ? SolverKind::mumps : SolverKind::eigen;
-}
+inline SolverKind best_solver() { return mumps_built_in() ? SolverKind::mumps : SolverKind::eigen; }
 
 struct MumpsFactor;
 struct EigenFactor;

@@ -4,9 +4,7 @@
 
 namespace palpa::mechanics {
 
-void analyse(const LowerMatrix& A, EigenFactor& factor) {
-    factor.ldlt.analyzePattern(A);
-}
+void analyse(const LowerMatrix& A, EigenFactor& factor) { factor.ldlt.analyzePattern(A); }
 
 void refactor(const LowerMatrix& A, EigenFactor& factor) {
     factor.ldlt.factorize(A);
@@ -20,8 +18,7 @@ void refactor(const LowerMatrix& A, EigenFactor& factor) {
 
 void solve_in_place(const EigenFactor& factor, Eigen::Ref<Eigen::MatrixXd> block) {
     // column by column: the vector path needs no copy of the block
-    for (Eigen::Index k = 0; k < block.cols(); ++k)
-        block.col(k) = factor.ldlt.solve(Eigen::VectorXd(block.col(k)));
+    for (Eigen::Index k = 0; k < block.cols(); ++k) block.col(k) = factor.ldlt.solve(Eigen::VectorXd(block.col(k)));
 }
 
 }  // namespace palpa::mechanics

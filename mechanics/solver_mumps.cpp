@@ -21,9 +21,7 @@ constexpr int kSolve = 3;
 constexpr int kErrorNoMemory = -9;
 
 // Its integer or real work space could not be had, or outgrew what the analysis promised.
-bool is_memory(int code) {
-    return code == -7 || code == -8 || code == kErrorNoMemory || code == -13;
-}
+bool is_memory(int code) { return code == -7 || code == -8 || code == kErrorNoMemory || code == -13; }
 
 // Orderings that give the same factor, to the last bit, at every call. Scotch, which MUMPS would choose for the larger
 // systems, depends on the race of its threads and on the calls before; PORD factors as fast at 30 000 equations and a
@@ -34,9 +32,7 @@ constexpr int kPord = 4;
 constexpr int kSmall = 10000;  // equations
 
 // icntl as the users' guide numbers it, from 1
-MUMPS_INT& icntl(DMUMPS_STRUC_C& id, int i) {
-    return id.icntl[i - 1];
-}
+MUMPS_INT& icntl(DMUMPS_STRUC_C& id, int i) { return id.icntl[i - 1]; }
 
 void call(DMUMPS_STRUC_C& id, int job) {
     id.job = job;
@@ -46,11 +42,11 @@ void call(DMUMPS_STRUC_C& id, int job) {
 void check(const DMUMPS_STRUC_C& id, const char* what) {
     const int code = id.infog[0];
     if (code >= 0) return;
-    const char* meaning = code == -10 || code == -40              ? "the matrix is not positive definite"
-                          : is_memory(code) ? "not enough memory"
-                                            : "see its users' guide";
-    const std::string message = text("MUMPS: ", what, " of ", id.n, " equations failed with ", code, " (detail ",
-                                     id.infog[1], "): ", meaning);
+    const char* meaning = code == -10 || code == -40 ? "the matrix is not positive definite"
+                          : is_memory(code)          ? "not enough memory"
+                                                     : "see its users' guide";
+    const std::string message =
+        text("MUMPS: ", what, " of ", id.n, " equations failed with ", code, " (detail ", id.infog[1], "): ", meaning);
     if (is_memory(code)) throw OutOfMemory(message, code);
     throw SolverError(message, code);
 }
@@ -70,8 +66,8 @@ MumpsFactor::MumpsFactor() {
     id.comm_fortran = -987654;  // MPI_COMM_WORLD of the sequential stub
     call(id, kInit);
     for (int i = 1; i <= 4; ++i) icntl(id, i) = i == 4 ? 0 : -1;  // silent
-    icntl(id, 14) = 30;  // per cent of memory beyond the estimate
-    icntl(id, 16) = 1;   // threads
+    icntl(id, 14) = 30;                                           // per cent of memory beyond the estimate
+    icntl(id, 16) = 1;                                            // threads
 }
 
 MumpsFactor::~MumpsFactor() {
@@ -112,8 +108,8 @@ void refactor(const LowerMatrix& A, MumpsFactor& factor) {
     check(id, "factorisation");
     const int negative = id.infog[11];  // counted, but no error by itself
     if (negative > 0) {
-        throw SolverError(text("Cholesky: the matrix of ", id.n, " equations is not positive definite, ",
-                               negative, " negative pivots"),
+        throw SolverError(text("Cholesky: the matrix of ", id.n, " equations is not positive definite, ", negative,
+                               " negative pivots"),
                           -40);
     }
 }

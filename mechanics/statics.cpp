@@ -53,8 +53,7 @@ Factored factorise(const Problem& problem, SolverKind solver) {
 
     const auto start = std::chrono::steady_clock::now();
     if (static_cast<Eigen::Index>(problem.materials.size()) != problem.mesh.cells.cols()) {
-        throw MaterialError(
-            text(problem.materials.size(), " materials for ", problem.mesh.cells.cols(), " cells"), {});
+        throw MaterialError(text(problem.materials.size(), " materials for ", problem.mesh.cells.cols(), " cells"), {});
     }
     const std::vector<bool> rigid = rigid_cells(problem);
     out.K_N_per_m = stiffness_N_per_m(problem.mesh, problem.element, problem.materials, rigid);
@@ -80,8 +79,7 @@ Solution solve(const Factored& factored, const Eigen::Matrix3Xd& load_N) {
     }
     const auto K = factored.K_N_per_m.selfadjointView<Eigen::Lower>();
     const Eigen::Map<const Eigen::VectorXd> f(load_N.data(), n_dof);
-    const Eigen::VectorXd given =
-        expand(factored.reduction, Eigen::VectorXd::Zero(factored.reduction.equations));
+    const Eigen::VectorXd given = expand(factored.reduction, Eigen::VectorXd::Zero(factored.reduction.equations));
     const Eigen::VectorXd b = reduce_load(factored.reduction, f - K * given);
 
     Solution out;

@@ -15,9 +15,7 @@ using Eigen::Index;
 
 constexpr double kGapTolerance = 1e-10;  // of the greatest penetration, as in contact.cpp
 
-std::size_t at(Index i) {
-    return static_cast<std::size_t>(i);
-}
+std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
 void gather(const Compliance& c, const SteadySlide& slide, SteadyWork& w) {
     const std::vector<int>& touch = w.contact.candidate;
@@ -138,8 +136,9 @@ bool solve_with(const Compliance& c, const SteadySlide& slide, double depth_m, S
 void slide_steadily(const Compliance& compliance, const Tool& tool, const SteadySlide& slide, SteadyWork& work,
                     Contact& contact) {
     if (compliance.along_x_m_per_N.rows() < compliance.n_touch || compliance.n_touch == 0) {
-        throw LoadError("sliding: the compliance does not know how pressing moves the surface sideways; ask for it "
-                        "with sideways = true");
+        throw LoadError(
+            "sliding: the compliance does not know how pressing moves the surface sideways; ask for it "
+            "with sideways = true");
     }
     if (!std::isfinite(tool.pose.x_m) || !std::isfinite(tool.pose.y_m) || !std::isfinite(tool.pose.depth_m)) {
         throw LoadError(text("sliding: tool at ", tool.pose.x_m, ", ", tool.pose.y_m, " m, depth ", tool.pose.depth_m,
@@ -162,9 +161,8 @@ void slide_steadily(const Compliance& compliance, const Tool& tool, const Steady
         find_candidates(compliance, work.contact.tools, margin, work.contact);
         if (work.contact.candidate.empty()) break;
         contact.flags.not_settled = !solve_with(compliance, slide, pose.depth_m, work, contact.changes);
-        const bool at_rim = std::any_of(work.active.begin(), work.active.end(), [&](int i) {
-            return work.delta_m(i) < -0.5 * margin * pose.depth_m;
-        });
+        const bool at_rim = std::any_of(work.active.begin(), work.active.end(),
+                                        [&](int i) { return work.delta_m(i) < -0.5 * margin * pose.depth_m; });
         if (!at_rim || margin > 8.0) break;
     }
     collect(compliance, work.contact.tools[0], slide, work, contact);

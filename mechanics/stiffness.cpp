@@ -21,8 +21,7 @@ struct Neighbours {
 Neighbours neighbours_of(const Mesh& mesh) {
     const auto n_nodes = static_cast<std::size_t>(mesh.nodes_m.cols());
     std::vector<int> cell_start(n_nodes + 1, 0);
-    for (Index i = 0; i < mesh.cells.size(); ++i)
-        ++cell_start[static_cast<std::size_t>(mesh.cells.data()[i]) + 1];
+    for (Index i = 0; i < mesh.cells.size(); ++i) ++cell_start[static_cast<std::size_t>(mesh.cells.data()[i]) + 1];
     for (std::size_t i = 0; i < n_nodes; ++i) cell_start[i + 1] += cell_start[i];
     std::vector<int> cell_of(static_cast<std::size_t>(mesh.cells.size()));
     std::vector<int> fill(cell_start.begin(), cell_start.end() - 1);
@@ -63,8 +62,8 @@ LowerMatrix pattern_of(const Neighbours& near) {
         for (int c = 0; c < 3; ++c) {
             outer[3 * j + c] = at;
             for (int r = c; r < 3; ++r) inner[at++] = 3 * j + r;
-            for (int i = near.start[static_cast<std::size_t>(j)] + 1;
-                 i < near.start[static_cast<std::size_t>(j) + 1]; ++i) {
+            for (int i = near.start[static_cast<std::size_t>(j)] + 1; i < near.start[static_cast<std::size_t>(j) + 1];
+                 ++i) {
                 for (int r = 0; r < 3; ++r) inner[at++] = 3 * near.node[static_cast<std::size_t>(i)] + r;
             }
         }
@@ -114,13 +113,12 @@ Tet tet_of(const Mesh& mesh, const Eigen::Matrix3Xd& values, Index cell) {
 LowerMatrix stiffness_N_per_m(const Mesh& mesh, Element element, std::span<const Material> materials,
                               const std::vector<bool>& skip) {
     if (is_hex(mesh) == (element == Element::tet4)) {
-        throw MeshError(
-            text("element tet4 needs cells of 4 corners, the others 8; the mesh has ", mesh.cells.rows()),
-            {});
+        throw MeshError(text("element tet4 needs cells of 4 corners, the others 8; the mesh has ", mesh.cells.rows()),
+                        {});
     }
     if (static_cast<Index>(materials.size()) != mesh.cells.cols()) {
-        throw MaterialError(
-            text(materials.size(), " materials for ", mesh.cells.cols(), " cells; wanted one per cell"), {});
+        throw MaterialError(text(materials.size(), " materials for ", mesh.cells.cols(), " cells; wanted one per cell"),
+                            {});
     }
     const Neighbours near = neighbours_of(mesh);
     LowerMatrix K = pattern_of(near);
@@ -132,9 +130,8 @@ LowerMatrix stiffness_N_per_m(const Mesh& mesh, Element element, std::span<const
                         tet4_stiffness_N_per_m(tet_of(mesh, mesh.nodes_m, cell), materials[i]), K);
         } else {
             const Hex corners = hex_of(mesh, mesh.nodes_m, cell);
-            const HexMatrix Ke = element == Element::hex8
-                                     ? hex8_stiffness_N_per_m(corners, materials[i])
-                                     : hex8_bbar_stiffness_N_per_m(corners, materials[i]);
+            const HexMatrix Ke = element == Element::hex8 ? hex8_stiffness_N_per_m(corners, materials[i])
+                                                          : hex8_bbar_stiffness_N_per_m(corners, materials[i]);
             add_cell<8>(near, mesh.cells.col(cell), Ke, K);
         }
     }
@@ -146,9 +143,8 @@ CellFields cell_fields(const Mesh& mesh, std::span<const Material> materials, co
     fields.strain.resize(6, mesh.cells.cols());
     fields.stress_Pa.resize(6, mesh.cells.cols());
     for (Index cell = 0; cell < mesh.cells.cols(); ++cell) {
-        const Voigt strain = is_hex(mesh)
-                                 ? mean_strain(hex_of(mesh, mesh.nodes_m, cell), hex_of(mesh, u_m, cell))
-                                 : mean_strain(tet_of(mesh, mesh.nodes_m, cell), tet_of(mesh, u_m, cell));
+        const Voigt strain = is_hex(mesh) ? mean_strain(hex_of(mesh, mesh.nodes_m, cell), hex_of(mesh, u_m, cell))
+                                          : mean_strain(tet_of(mesh, mesh.nodes_m, cell), tet_of(mesh, u_m, cell));
         fields.strain.col(cell) = strain;
         fields.stress_Pa.col(cell) = stress_Pa(materials[static_cast<std::size_t>(cell)], strain);
     }
@@ -161,11 +157,10 @@ double max_principal_strain(const CellFields& fields) {
         const Voigt e = fields.strain.col(cell);
         Eigen::Matrix3d strain;
         strain << e(0), 0.5 * e(3), 0.5 * e(5), 0.5 * e(3), e(1), 0.5 * e(4), 0.5 * e(5), 0.5 * e(4), e(2);
-        largest =
-            std::max(largest, Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(strain, Eigen::EigenvaluesOnly)
-                                  .eigenvalues()
-                                  .cwiseAbs()
-                                  .maxCoeff());
+        largest = std::max(largest, Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(strain, Eigen::EigenvaluesOnly)
+                                        .eigenvalues()
+                                        .cwiseAbs()
+                                        .maxCoeff());
     }
     return largest;
 }

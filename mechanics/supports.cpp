@@ -55,12 +55,10 @@ std::vector<std::vector<int>> nodes_by_part(const Mesh& mesh, const Parts& parts
 
 // Conditions on the rigid motions of all parts, as their Gram matrix A^T A (6 per part).
 Eigen::MatrixXd motion_conditions(const Mesh& mesh, const Supports& supports,
-                                  const std::vector<std::vector<int>>& nodes,
-                                  const std::vector<Frame>& frames) {
+                                  const std::vector<std::vector<int>>& nodes, const std::vector<Frame>& frames) {
     std::vector<std::vector<int>> parts_of_node(static_cast<std::size_t>(mesh.nodes_m.cols()));
     for (std::size_t p = 0; p < nodes.size(); ++p) {
-        for (const int node : nodes[p])
-            parts_of_node[static_cast<std::size_t>(node)].push_back(static_cast<int>(p));
+        for (const int node : nodes[p]) parts_of_node[static_cast<std::size_t>(node)].push_back(static_cast<int>(p));
     }
     const auto motions = [&](int node, int part) {
         const Frame& frame = frames[static_cast<std::size_t>(part)];
@@ -95,8 +93,7 @@ std::string motion_names(const Eigen::Matrix<double, 6, 1>& motion) {
                                       "rotation about x", "rotation about y", "rotation about z"};
     std::string out;
     for (int k = 0; k < 6; ++k) {
-        if (std::abs(motion(k)) > 0.3 * motion.cwiseAbs().maxCoeff())
-            out += text(out.empty() ? "" : " + ", kNames[k]);
+        if (std::abs(motion(k)) > 0.3 * motion.cwiseAbs().maxCoeff()) out += text(out.empty() ? "" : " + ", kNames[k]);
     }
     return out;
 }
@@ -112,8 +109,7 @@ std::string free_motions(const Eigen::MatrixXd& conditions) {
 
 // All dofs of a body that a support holds must fit one rigid motion, which then holds for its other nodes
 // too.
-bool prescribe_body(const Mesh& mesh, const std::vector<int>& nodes, const Frame& frame,
-                    Reduction& reduction) {
+bool prescribe_body(const Mesh& mesh, const std::vector<int>& nodes, const Frame& frame, Reduction& reduction) {
     Eigen::MatrixXd rows(0, 6);
     Eigen::VectorXd values(0);
     int touched = -1;
@@ -134,13 +130,12 @@ bool prescribe_body(const Mesh& mesh, const std::vector<int>& nodes, const Frame
     const double misfit = (rows * q - values).cwiseAbs().maxCoeff();
     if (qr.rank() < 6 || misfit > 1e-9 * values.cwiseAbs().maxCoeff()) {
         const Vector3d mm = 1e3 * frame.centre;
-        throw SupportError(text("a rigid inclusion of ", nodes.size(), " nodes around ", mm.x(), ", ", mm.y(),
-                                ", ", mm.z(), " mm that a support touches, at ",
-                                describe_node(mesh, touched), ", and ",
-                                qr.rank() < 6 ? text("leaves free to move in ", 6 - qr.rank(), " ways (",
-                                                     free_motions(rows), ")")
-                                              : text("strains by ", 1e3 * misfit, " mm")),
-                           -1);
+        throw SupportError(
+            text("a rigid inclusion of ", nodes.size(), " nodes around ", mm.x(), ", ", mm.y(), ", ", mm.z(),
+                 " mm that a support touches, at ", describe_node(mesh, touched), ", and ",
+                 qr.rank() < 6 ? text("leaves free to move in ", 6 - qr.rank(), " ways (", free_motions(rows), ")")
+                               : text("strains by ", 1e3 * misfit, " mm")),
+            -1);
     }
     for (const int node : nodes) {
         const Vector3d u = rigid_motions(mesh.nodes_m.col(node), frame.centre, frame.length) * q;
@@ -205,15 +200,14 @@ void check_supported(const Mesh& mesh, const Supports& supports) {
     constexpr int kMostParts = 200;  // 1200 x 1200 eigenvalues: seconds
     const Parts parts = parts_of(mesh);
     if (parts.count > kMostParts) {
-        throw SupportError(text("mesh falls into ", parts.count, " parts that share no faces, at most ",
-                                kMostParts, " are accepted; ", describe_part(mesh, parts, 1)),
+        throw SupportError(text("mesh falls into ", parts.count, " parts that share no faces, at most ", kMostParts,
+                                " are accepted; ", describe_part(mesh, parts, 1)),
                            1);
     }
     const std::vector<std::vector<int>> nodes = nodes_by_part(mesh, parts);
     std::vector<Frame> frames;
     for (const auto& list : nodes) frames.push_back(frame_of(mesh, list));
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(
-        motion_conditions(mesh, supports, nodes, frames));
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(motion_conditions(mesh, supports, nodes, frames));
     const double largest = std::max(eigen.eigenvalues().maxCoeff(), 1.0);
     Index free = 0;
     while (free < eigen.eigenvalues().size() && eigen.eigenvalues()(free) < 1e-10 * largest) ++free;
@@ -223,8 +217,7 @@ void check_supported(const Mesh& mesh, const Supports& supports) {
     const Eigen::MatrixXd motions = eigen.eigenvectors().leftCols(free);
     int part = 0;
     for (int p = 1; p < parts.count; ++p) {
-        if (motions.middleRows<6>(6 * p).squaredNorm() >
-            (1.0 + 1e-9) * motions.middleRows<6>(6 * part).squaredNorm())
+        if (motions.middleRows<6>(6 * p).squaredNorm() > (1.0 + 1e-9) * motions.middleRows<6>(6 * part).squaredNorm())
             part = p;
     }
     std::string names;
@@ -233,8 +226,7 @@ void check_supported(const Mesh& mesh, const Supports& supports) {
         names += text(names.empty() ? "" : "; ", motion_names(motions.col(k).segment<6>(6 * part)));
     }
     throw SupportError(
-        text(describe_part(mesh, parts, part), " is not held: free to move in ", free, " ways (", names, ")"),
-        part);
+        text(describe_part(mesh, parts, part), " is not held: free to move in ", free, " ways (", names, ")"), part);
 }
 
 Reduction make_reduction(const Mesh& mesh, const Supports& supports, const std::vector<bool>& rigid_cell) {
@@ -250,10 +242,10 @@ Reduction make_reduction(const Mesh& mesh, const Supports& supports, const std::
         const int dof = supports.dof[i];
         if (equation(dof) == kLoose) continue;
         if (equation(dof) == kPrescribed && reduction.prescribed_m(dof) != supports.value_m[i]) {
-            throw SupportError(text(describe_node(mesh, dof / 3), " is given two displacements along ",
-                                    "xyz"[dof % 3], ": ", 1e3 * reduction.prescribed_m(dof), " mm and ",
-                                    1e3 * supports.value_m[i], " mm"),
-                               -1);
+            throw SupportError(
+                text(describe_node(mesh, dof / 3), " is given two displacements along ", "xyz"[dof % 3], ": ",
+                     1e3 * reduction.prescribed_m(dof), " mm and ", 1e3 * supports.value_m[i], " mm"),
+                -1);
         }
         equation(dof) = kPrescribed;
         reduction.prescribed_m(dof) = supports.value_m[i];
@@ -277,8 +269,7 @@ Reduction make_reduction(const Mesh& mesh, const Supports& supports, const std::
         for (const int node : nodes) {
             const Rigid motions = rigid_motions(mesh.nodes_m.col(node), frame.centre, frame.length);
             for (int c = 0; c < 3; ++c) {
-                for (int k = 0; k < 6; ++k)
-                    rows.emplace_back(3 * node + c, reduction.equations + k, motions(c, k));
+                for (int k = 0; k < 6; ++k) rows.emplace_back(3 * node + c, reduction.equations + k, motions(c, k));
             }
         }
         reduction.equations += 6;

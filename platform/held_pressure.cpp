@@ -5,9 +5,7 @@
 
 namespace palpa::platform {
 
-double held_share(double held_s, double hold_s) {
-    return hold_s <= 0.0 ? 1.0 : std::clamp(held_s / hold_s, 0.0, 1.0);
-}
+double held_share(double held_s, double hold_s) { return hold_s <= 0.0 ? 1.0 : std::clamp(held_s / hold_s, 0.0, 1.0); }
 
 double pressure_at(const HeldPressure& held, double t_host_s) {
     if (held.by_level) return held.level;
@@ -19,13 +17,9 @@ void turn_level(double t_host_s, double notches, HeldPressure& held) {
     held.by_level = held.down || held.level > 0.0;
 }
 
-std::int64_t last_grid_point(double t_s) {
-    return static_cast<std::int64_t>(std::floor(t_s * kHoldGrid_Hz));
-}
+std::int64_t last_grid_point(double t_s) { return static_cast<std::int64_t>(std::floor(t_s * kHoldGrid_Hz)); }
 
-double grid_time_s(std::int64_t point) {
-    return static_cast<double>(point) / kHoldGrid_Hz;
-}
+double grid_time_s(std::int64_t point) { return static_cast<double>(point) / kHoldGrid_Hz; }
 
 std::int64_t first_grid_point(std::int64_t done, std::int64_t now) {
     constexpr auto kMost = static_cast<std::int64_t>(60.0 * kHoldGrid_Hz);

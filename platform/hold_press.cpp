@@ -34,9 +34,8 @@ void take(Sample sample, HoldPress& hold) {
         hold.merged.push_back(sample);
         return;
     }
-    auto pointer = std::find_if(hold.held.begin(), hold.held.end(), [&](const HeldPointer& other) {
-        return other.last.pointer_id == sample.pointer_id;
-    });
+    auto pointer = std::find_if(hold.held.begin(), hold.held.end(),
+                                [&](const HeldPointer& other) { return other.last.pointer_id == sample.pointer_id; });
     if (sample.phase != Phase::down && sample.phase != Phase::move) {
         if (pointer != hold.held.end()) hold.held.erase(pointer);
         hold.merged.push_back(sample);

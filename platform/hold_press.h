@@ -20,8 +20,8 @@ struct HoldPress {
     double hold_s = 2.0;  // from no pressure to full
     // what is going on
     std::vector<HeldPointer> held;
-    std::int64_t last_tick = 0;   // grid points up to this one were looked at
-    std::vector<Sample> merged;   // scratch
+    std::int64_t last_tick = 0;  // grid points up to this one were looked at
+    std::vector<Sample> merged;  // scratch
 };
 
 // Replaces the pressure of touching samples of the chosen tools by the share of the hold time that has passed;

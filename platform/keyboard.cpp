@@ -18,9 +18,7 @@ Sample keyboard_sample(const Keyboard& keyboard, double t_host_s, Phase phase) {
     return sample;
 }
 
-Phase resting_phase(const Keyboard& keyboard) {
-    return keyboard.button.down ? Phase::move : Phase::hover;
-}
+Phase resting_phase(const Keyboard& keyboard) { return keyboard.button.down ? Phase::move : Phase::hover; }
 
 void keep_inside(Keyboard& keyboard) {
     keyboard.x_px = std::clamp(keyboard.x_px, keyboard.area.x0_px, keyboard.area.x1_px);
@@ -46,9 +44,7 @@ void begin_to_hold(double t_host_s, Keyboard& keyboard) {
     move_cursor(t_host_s, keyboard);
 }
 
-bool is_arrow(PointerKey key) {
-    return key <= PointerKey::down;
-}
+bool is_arrow(PointerKey key) { return key <= PointerKey::down; }
 
 }  // namespace
 
@@ -57,7 +53,8 @@ bool is_on(const Keyboard& keyboard) {
 }
 
 bool key_held(const Keyboard& keyboard) {
-    return keyboard.button.down || std::any_of(keyboard.held.begin(), keyboard.held.end(), [](bool held) { return held; });
+    return keyboard.button.down ||
+           std::any_of(keyboard.held.begin(), keyboard.held.end(), [](bool held) { return held; });
 }
 
 void set_area(const KeyboardArea& area, Keyboard& keyboard) {

@@ -27,8 +27,7 @@ void hold_mouse(double t_host_s, Mouse& mouse, std::vector<Sample>& out) {
     }
 }
 
-void move_mouse(double t_host_s, double t_device_s, double x_px, double y_px, Mouse& mouse,
-                std::vector<Sample>& out) {
+void move_mouse(double t_host_s, double t_device_s, double x_px, double y_px, Mouse& mouse, std::vector<Sample>& out) {
     mouse.x_px = x_px;
     mouse.y_px = y_px;
     const Phase phase = mouse.button.down ? Phase::move : Phase::hover;

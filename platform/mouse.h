@@ -24,8 +24,7 @@ struct Mouse {
 void hold_mouse(double t_host_s, Mouse& mouse, std::vector<Sample>& out);
 
 // The mouse's own events, each appended as a sample: hover or move, down, up.
-void move_mouse(double t_host_s, double t_device_s, double x_px, double y_px, Mouse& mouse,
-                std::vector<Sample>& out);
+void move_mouse(double t_host_s, double t_device_s, double x_px, double y_px, Mouse& mouse, std::vector<Sample>& out);
 void press_mouse(double t_host_s, double t_device_s, Mouse& mouse, std::vector<Sample>& out);
 void release_mouse(double t_host_s, double t_device_s, Mouse& mouse, std::vector<Sample>& out);
 

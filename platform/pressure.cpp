@@ -8,9 +8,7 @@ namespace {
 constexpr double kLongEnough_s = 0.5;
 constexpr std::int64_t kEnough = 30;
 
-const ToolPressure& of(const PressureWatch& watch, Tool tool) {
-    return watch.tools[static_cast<std::size_t>(tool)];
-}
+const ToolPressure& of(const PressureWatch& watch, Tool tool) { return watch.tools[static_cast<std::size_t>(tool)]; }
 
 }  // namespace
 

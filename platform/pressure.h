@@ -18,12 +18,12 @@ enum class PressureKind : std::uint8_t {
 
 // What has come of one tool, all its pointers together.
 struct ToolPressure {
-    std::int64_t without = 0;     // touching samples that had no pressure
-    std::int64_t with = 0;        // touching samples after the first of each press, with pressure
-    double first = kMissing;      // pressure of the first of these
+    std::int64_t without = 0;  // touching samples that had no pressure
+    std::int64_t with = 0;     // touching samples after the first of each press, with pressure
+    double first = kMissing;   // pressure of the first of these
     bool changed = false;
-    double touching_s = 0.0;      // between samples of a touch
-    double last_s = kMissing;     // time of the sample before; missing while nothing touches
+    double touching_s = 0.0;   // between samples of a touch
+    double last_s = kMissing;  // time of the sample before; missing while nothing touches
 };
 
 struct PressureWatch {

@@ -19,23 +19,33 @@ enum class Phase : std::uint8_t { hover, down, move, up, cancel, ui };
 // resize: x_px, y_px, width_px, height_px hold the part of the window that the tissue has now, so that a replay maps
 // positions alike. hidden, shown: the window went out of sight and came back; nothing is sampled in between. mark: x_px, y_px hold its place. confidence_*: how sure the person is of the last mark.
 enum class Action : std::uint8_t {
-    none, resize, mark, undo, finish, confidence_1, confidence_2, confidence_3, confidence_4, confidence_5,
-    hidden, shown
+    none,
+    resize,
+    mark,
+    undo,
+    finish,
+    confidence_1,
+    confidence_2,
+    confidence_3,
+    confidence_4,
+    confidence_5,
+    hidden,
+    shown
 };
 
 struct Sample {
-    double t_host_s = 0.0;             // steady clock of the host, stamped on arrival
-    double t_device_s = kMissing;      // the device's (or X server's) own clock, wrap-arounds undone
-    std::int64_t pointer_id = 0;       // tells fingers and pens apart while they touch
+    double t_host_s = 0.0;         // steady clock of the host, stamped on arrival
+    double t_device_s = kMissing;  // the device's (or X server's) own clock, wrap-arounds undone
+    std::int64_t pointer_id = 0;   // tells fingers and pens apart while they touch
     Tool tool = Tool::mouse;
     Phase phase = Phase::hover;
-    double x_px = 0.0;                 // from the left edge of the window's drawing area
-    double y_px = 0.0;                 // from its top edge, downwards
-    double pressure = kMissing;        // 0..1 of the device's range; above 1 on some tablets
-    double pressure_raw = kMissing;    // counts, as the device reports them
+    double x_px = 0.0;               // from the left edge of the window's drawing area
+    double y_px = 0.0;               // from its top edge, downwards
+    double pressure = kMissing;      // 0..1 of the device's range; above 1 on some tablets
+    double pressure_raw = kMissing;  // counts, as the device reports them
     double tilt_x_deg = kMissing;
     double tilt_y_deg = kMissing;
-    double width_px = kMissing;        // contact ellipse
+    double width_px = kMissing;  // contact ellipse
     double height_px = kMissing;
     Action action = Action::none;
 };

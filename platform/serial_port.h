@@ -8,7 +8,7 @@ namespace palpa::platform {
 
 // A serial port, raw 8N1. Blocks for no longer than it is told to; meant for a thread of its own.
 class SerialPort {
- public:
+  public:
     // Throws std::runtime_error with the system's reason; InputError for a rate that the system does not know.
     SerialPort(const std::string& path, int baud);
     ~SerialPort();
@@ -20,7 +20,7 @@ class SerialPort {
     // Writes all of it or returns false.
     bool write(const std::uint8_t* bytes, std::size_t count);
 
- private:
+  private:
     int fd_ = -1;
 };
 

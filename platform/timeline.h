@@ -9,15 +9,15 @@
 namespace palpa::platform {
 
 struct Timeline {
-    double now_s = 0.0;           // never goes back
+    double now_s = 0.0;  // never goes back
     bool started = false;
-    double offset_s = 0.0;        // host - device; meaningless before has_offset
+    double offset_s = 0.0;  // host - device; meaningless before has_offset
     bool has_offset = false;
-    double device_s = 0.0;        // of the sample before
-    std::int64_t backwards = 0;   // samples from the past, not taken
-    std::int64_t late = 0;        // samples a little behind others of the same frame, taken at the present time
-    std::int64_t duplicates = 0;  // samples at the time of the one before
-    std::int64_t clock_jumps = 0; // the device's clock was set, or another device took over
+    double device_s = 0.0;         // of the sample before
+    std::int64_t backwards = 0;    // samples from the past, not taken
+    std::int64_t late = 0;         // samples a little behind others of the same frame, taken at the present time
+    std::int64_t duplicates = 0;   // samples at the time of the one before
+    std::int64_t clock_jumps = 0;  // the device's clock was set, or another device took over
 };
 
 // Moves `now_s` to the sample's time and returns true, or leaves it and returns false for a sample from the

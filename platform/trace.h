@@ -31,13 +31,13 @@ Trace read_trace(const std::filesystem::path& tsv);
 // Writes a trace NAME.tsv and its NAME.json while it happens; nothing is overwritten (throws InputError for a name that
 // will not do, std::runtime_error if the file cannot be made).
 class TraceWriter {
- public:
+  public:
     TraceWriter(const std::filesystem::path& tsv, const TraceInfo& info);
     void write(const Sample& sample);
     bool sync() { return file_.sync(); }
     bool failed() const { return file_.failed(); }
 
- private:
+  private:
     files::AppendFile file_;
     std::string row_;
 };

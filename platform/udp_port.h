@@ -8,7 +8,7 @@ namespace palpa::platform {
 
 // Datagrams to and from one address. Meant for a thread of its own.
 class UdpPort {
- public:
+  public:
     // Throws std::runtime_error with the system's reason.
     UdpPort(const std::string& host, int port);
     ~UdpPort();
@@ -19,7 +19,7 @@ class UdpPort {
     // Bytes of one datagram, 0 if none came within `wait_s` (0: what is there already) or nobody listens over there.
     int receive(double wait_s, std::uint8_t* bytes, std::size_t room);
 
- private:
+  private:
     int fd_ = -1;
 };
 

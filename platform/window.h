@@ -17,8 +17,8 @@ struct WindowOptions {
     std::string title = "Palpa";
     int width_px = 1280;
     int height_px = 800;
-    bool visible = true;       // false: an off-screen context that needs no display
-    double mouse_hold_s = 2.0; // how long the mouse button or the Space key is held for full pressure
+    bool visible = true;        // false: an off-screen context that needs no display
+    double mouse_hold_s = 2.0;  // how long the mouse button or the Space key is held for full pressure
 };
 
 // What a pointing device reports, for messages to the person ("this pen has no pressure sensor").
@@ -37,7 +37,7 @@ struct PointerDevice {
 
 // One window. Throws std::runtime_error with a message for people if there is no display or no OpenGL ES 3.
 class Window {
- public:
+  public:
     explicit Window(const WindowOptions& options);
     ~Window();
     Window(const Window&) = delete;
@@ -75,15 +75,15 @@ class Window {
     bool close_requested() const;
     // Forgets that the person asked to close it. False if the system itself ends the program: that cannot be refused.
     bool stay_open();
-    void present();            // shows what was drawn
-    double now_s() const;      // steady clock; the same as t_host_s
-    int width_px() const;      // drawing area
+    void present();        // shows what was drawn
+    double now_s() const;  // steady clock; the same as t_host_s
+    int width_px() const;  // drawing area
     int height_px() const;
     double keyboard_x_px() const;  // the cursor that keys move
     double keyboard_y_px() const;
     double mouse_pressure() const;  // what the mouse presses with now (wheel or hold), or its wheel is set to
     std::vector<PointerDevice> devices() const;
-    bool lists_devices() const;  // false, in a browser: only those are known that have sent something
+    bool lists_devices() const;      // false, in a browser: only those are known that have sent something
     std::string input_note() const;  // why no pen or finger has pressure here, for people; empty if they may
     void set_title(const std::string& title);
     bool full_screen() const;
@@ -93,7 +93,7 @@ class Window {
     double touch_px_per_mm() const;
     SDL_Window* sdl() const;  // desktop only
 
- private:
+  private:
     struct Impl;
     std::unique_ptr<Impl> impl_;
 };

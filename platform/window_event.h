@@ -9,7 +9,8 @@ namespace palpa::platform {
 // A key: the ASCII code of what it types, small letters, or one of these.
 namespace key {
 inline constexpr int backspace = 8, tab = 9, enter = 13, escape = 27, space = 32, del = 127;
-inline constexpr int left = 256, right = 257, up = 258, down = 259, page_up = 260, page_down = 261, home = 262, end = 263;
+inline constexpr int left = 256, right = 257, up = 258, down = 259, page_up = 260, page_down = 261, home = 262,
+                     end = 263;
 inline constexpr int f10 = 264, f11 = 265;
 inline constexpr int pad_enter = 266, pad_plus = 267, pad_minus = 268, pad_0 = 269;  // pad_0 + 1 ... pad_0 + 9 follow
 inline constexpr int count = 300;
@@ -19,19 +20,28 @@ inline constexpr int other = 0;  // any other key
 struct WindowEvent {
     // button_*: the left button of a mouse, or a pen's tip.
     enum class Kind : std::uint8_t {
-        pointer_move, button_down, button_up, wheel, finger_down, finger_move, finger_up, key_down, key_up, text
+        pointer_move,
+        button_down,
+        button_up,
+        wheel,
+        finger_down,
+        finger_move,
+        finger_up,
+        key_down,
+        key_up,
+        text
     };
     Kind kind = Kind::pointer_move;
     double x_px = 0.0;
     double y_px = 0.0;
     bool made_from_touch = false;  // a mouse event that the system makes of a finger's
     std::int64_t finger_id = 0;
-    double notches = 0.0;          // of a wheel, away from the person
+    double notches = 0.0;  // of a wheel, away from the person
     int key = key::other;
     bool ctrl = false;
     bool shift = false;
-    bool repeat = false;           // the key is held
-    std::string text;              // typed, UTF-8
+    bool repeat = false;  // the key is held
+    std::string text;     // typed, UTF-8
 };
 
 // Returns true to keep a press for panels (set_event_filter of window.h).

@@ -3,14 +3,13 @@
 // the desktop and in a browser.
 
 #include <GLES3/gl3.h>
-
 #include <string>
 #include <vector>
 
 namespace palpa::render {
 
 class Program {
- public:
+  public:
     // Throws std::runtime_error with the compiler's own words.
     Program(const char* vertex_source, const char* fragment_source);
     ~Program();
@@ -19,14 +18,14 @@ class Program {
     void use() const { glUseProgram(id_); }
     GLint uniform(const char* name) const { return glGetUniformLocation(id_, name); }
 
- private:
+  private:
     GLuint id_ = 0;
 };
 
 // Vertices with a 2-float attribute at location 0 and, if it was set, a changing 3-float one at location 1; drawn by
 // index.
 class Mesh {
- public:
+  public:
     Mesh(const std::vector<float>& points, const std::vector<unsigned>& triangles);
     ~Mesh();
     Mesh(const Mesh&) = delete;
@@ -34,7 +33,7 @@ class Mesh {
     void set_second(const std::vector<float>& values);
     void draw() const;
 
- private:
+  private:
     GLuint vertex_array_ = 0;
     GLuint buffers_[3] = {0, 0, 0};
     GLsizei count_ = 0;

@@ -1,7 +1,6 @@
 #include "render/png.h"
 
 #include <png.h>
-
 #include <stdexcept>
 
 namespace palpa::render {

@@ -12,18 +12,18 @@ namespace {
 constexpr int kCells = 160;  // 0.75 mm on the 120 mm phantom
 
 // Shared by both programs: the map from the tissue to the screen.
-#define PALPA_PROJECTION                                                                     \
-    "#version 300 es\n"                                                                      \
-    "precision highp float;\n"                                                               \
-    "layout(location = 0) in vec2 unit;\n"                                                   \
-    "uniform vec2 area_px; uniform vec2 centre_px; uniform vec2 centre_m; uniform vec2 size_m;\n" \
-    "uniform mat2 axes; uniform float px_per_m; uniform float tilt;\n"                       \
-    "vec4 project(vec3 p) {\n"                                                               \
-    "  vec2 q = px_per_m * (axes * (p.xy - centre_m));\n" \
-    "  float y = q.y * cos(tilt) - px_per_m * p.z * sin(tilt);\n"                            \
+#define PALPA_PROJECTION                                                                                     \
+    "#version 300 es\n"                                                                                      \
+    "precision highp float;\n"                                                                               \
+    "layout(location = 0) in vec2 unit;\n"                                                                   \
+    "uniform vec2 area_px; uniform vec2 centre_px; uniform vec2 centre_m; uniform vec2 size_m;\n"            \
+    "uniform mat2 axes; uniform float px_per_m; uniform float tilt;\n"                                       \
+    "vec4 project(vec3 p) {\n"                                                                               \
+    "  vec2 q = px_per_m * (axes * (p.xy - centre_m));\n"                                                    \
+    "  float y = q.y * cos(tilt) - px_per_m * p.z * sin(tilt);\n"                                            \
     "  float depth = (-q.y * sin(tilt) - px_per_m * p.z * cos(tilt)) / (4.0 * max(area_px.x, area_px.y));\n" \
-    "  vec2 s = centre_px + vec2(q.x, y);\n"                                                 \
-    "  return vec4(2.0 * s.x / area_px.x - 1.0, 1.0 - 2.0 * s.y / area_px.y, depth, 1.0);\n" \
+    "  vec2 s = centre_px + vec2(q.x, y);\n"                                                                 \
+    "  return vec4(2.0 * s.x / area_px.x - 1.0, 1.0 - 2.0 * s.y / area_px.y, depth, 1.0);\n"                 \
     "}\n"
 
 constexpr const char* kSurfaceVertex = PALPA_PROJECTION R"(
@@ -217,7 +217,8 @@ void refine(const Relief& relief, const glm::vec2& size_m, int cells, std::vecto
     // along x first: value and slope of every row at the n places
     std::vector<float> rows(2 * n * static_cast<std::size_t>(relief.n_y));
     for (std::size_t i = 0; i < n; ++i) {
-        const Weights w = weights_at((static_cast<float>(i) / static_cast<float>(cells) * size_m.x - relief.shift_m.x) / dx_m);
+        const Weights w =
+            weights_at((static_cast<float>(i) / static_cast<float>(cells) * size_m.x - relief.shift_m.x) / dx_m);
         for (int j = 0; j < relief.n_y; ++j) {
             float value = 0.0f;
             float slope = 0.0f;
@@ -234,7 +235,8 @@ void refine(const Relief& relief, const glm::vec2& size_m, int cells, std::vecto
     }
     out.resize(3 * n * n);
     for (std::size_t j = 0; j < n; ++j) {
-        const Weights w = weights_at((static_cast<float>(j) / static_cast<float>(cells) * size_m.y - relief.shift_m.y) / dy_m);
+        const Weights w =
+            weights_at((static_cast<float>(j) / static_cast<float>(cells) * size_m.y - relief.shift_m.y) / dy_m);
         for (std::size_t i = 0; i < n; ++i) {
             float* vertex = &out[3 * (j * n + i)];
             vertex[0] = vertex[1] = vertex[2] = 0.0f;

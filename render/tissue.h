@@ -48,7 +48,7 @@ struct Ball {
 };
 
 class TissueDrawer {
- public:
+  public:
     TissueDrawer();  // needs a current context; throws std::runtime_error
     ~TissueDrawer();
     TissueDrawer(const TissueDrawer&) = delete;
@@ -57,7 +57,7 @@ class TissueDrawer {
     // Clears the drawing area and draws.
     void draw(const TissueView& view, const Dent& dent, const Relief& relief, const Ball& ball);
 
- private:
+  private:
     struct Gpu;
     std::unique_ptr<Gpu> gpu_;
 };

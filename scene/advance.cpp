@@ -54,7 +54,8 @@ void calibrate(const Scene& scene, const Plan& plan, const platform::Sample& sam
         return;
     }
     // Some pens report full pressure in their first sample, whatever the force.
-    const double believable = plan.profile.level_lowest + kUnbelievable * (plan.profile.level_highest - plan.profile.level_lowest);
+    const double believable =
+        plan.profile.level_lowest + kUnbelievable * (plan.profile.level_highest - plan.profile.level_lowest);
     if (sample.phase == platform::Phase::down && has_sensor(sample.tool) && level > believable) {
         ++state.counters.distrusted;
         return;
@@ -81,7 +82,8 @@ void sink(const MapTissue& tissue, State& state) {
     state.contact.measured = at.measured && at.inside;
     if (tissue.map.source.kind == stiffnessmaps::SourceKind::simulated) {
         // the simulation was linear: how far this depth is from where that holds
-        const double a_m = std::sqrt(tissue.map.indenter_radius_m * std::min(answer.depth_m, tissue.map.indenter_radius_m));
+        const double a_m =
+            std::sqrt(tissue.map.indenter_radius_m * std::min(answer.depth_m, tissue.map.indenter_radius_m));
         state.contact.linearity = mechanics::linearity_ratio(answer.depth_m, kUnknownThickness_m, 2.0 * a_m);
     }
 }
@@ -114,7 +116,8 @@ double tangential_N(const MapTissue& tissue, State& state) {
 
 double tangential_N(const LinearTissue& tissue, State& state) {
     const double depth_m = state.contact.depth_m;
-    if (tissue.friction) return rough_tangential_force_N(tissue, state.touch.p_m, state.heading, depth_m, *state.linear);
+    if (tissue.friction)
+        return rough_tangential_force_N(tissue, state.touch.p_m, state.heading, depth_m, *state.linear);
     return tangential_force_N(tissue, state.touch.p_m, state.heading, depth_m, *state.linear);
 }
 
@@ -131,7 +134,8 @@ void resist(const Scene& scene, const Plan& plan, State& state) {
         state.heading = v / length_m;
         state.heading_rope_m = state.touch.p_m - dead_band_m * state.heading;
     }
-    state.contact.tangential_N = std::visit([&](const auto& tissue) { return tangential_N(tissue, state); }, plan.tissue);
+    state.contact.tangential_N =
+        std::visit([&](const auto& tissue) { return tangential_N(tissue, state); }, plan.tissue);
 }
 
 avatar::Touch timed(const State& state) {
@@ -145,7 +149,8 @@ void lag(const Scene& scene, const Rise& rise_N, const avatar::StationLimit& lim
     std::int64_t& skipped = state.counters.skipped_stations;
     skipped = 0;
     if (state.display_ratio) {
-        state.avatar.lag_m = avatar::advance_lag(*scene.display_ratio, timed(state), rise_N, *state.display_ratio, limit);
+        state.avatar.lag_m =
+            avatar::advance_lag(*scene.display_ratio, timed(state), rise_N, *state.display_ratio, limit);
         skipped += state.display_ratio->path.skipped_stations;
     }
     if (state.delay) {
@@ -157,20 +162,28 @@ void lag(const Scene& scene, const Rise& rise_N, const avatar::StationLimit& lim
 }
 
 void lag(const Scene& scene, const Plan& plan, State& state) {
-    if (const auto* map = std::get_if<MapTissue>(&plan.tissue)) return lag(scene, RiseOnMap{&map->field}, avatar::StationLimit{}, state);
+    if (const auto* map = std::get_if<MapTissue>(&plan.tissue))
+        return lag(scene, RiseOnMap{&map->field}, avatar::StationLimit{}, state);
     lag(scene, RiseOnLinear{&std::get<LinearTissue>(plan.tissue), &*state.linear}, kStationsOnLinear, state);
 }
 
 void run_stage(StageId id, const Scene& scene, const Plan& plan, const platform::Sample& sample, State& state) {
     switch (id) {
-        case StageId::calibration: return calibrate(scene, plan, sample, state);
-        case StageId::position: return place(sample, state);
-        case StageId::depth: return sink(plan, state);
-        case StageId::friction: return rub(plan, state);
-        case StageId::tangential: return resist(scene, plan, state);
+        case StageId::calibration:
+            return calibrate(scene, plan, sample, state);
+        case StageId::position:
+            return place(sample, state);
+        case StageId::depth:
+            return sink(plan, state);
+        case StageId::friction:
+            return rub(plan, state);
+        case StageId::tangential:
+            return resist(scene, plan, state);
         case StageId::display_ratio:
-        case StageId::delay: return lag(scene, plan, state);
-        case StageId::surface: return;  // once a frame, surface_now()
+        case StageId::delay:
+            return lag(scene, plan, state);
+        case StageId::surface:
+            return;  // once a frame, surface_now()
     }
 }
 
@@ -273,8 +286,8 @@ void follow_pointer(const Scene& scene, const Plan& plan, const platform::Sample
 
 void resize(const Scene& scene, const Plan& plan, const ScreenArea& screen, State& state) {
     constexpr double kMost_px = 1e6;
-    const bool sized = screen.width_px >= 1.0 && screen.height_px >= 1.0 && screen.width_px < kMost_px &&
-                       screen.height_px < kMost_px;
+    const bool sized =
+        screen.width_px >= 1.0 && screen.height_px >= 1.0 && screen.width_px < kMost_px && screen.height_px < kMost_px;
     if (!sized || !(std::abs(screen.x_px) < kMost_px && std::abs(screen.y_px) < kMost_px)) return;
     state.screen = screen;
     state.view = make_view(scene.mapping, plan.area, screen);
@@ -357,7 +370,8 @@ avatar::SurfaceCurve surface_now(const Scene& scene, const Plan& plan, State& st
 }
 
 void surface_now(const LinearTissue& tissue, State& state, Eigen::VectorXd& sink_m) {
-    metered(StageId::surface, [&] { surface_sink_m(tissue, *state.linear, sink_m); }, state);
+    metered(
+        StageId::surface, [&] { surface_sink_m(tissue, *state.linear, sink_m); }, state);
     if (!state.touch.down) sink_m.setZero();
 }
 

@@ -15,12 +15,12 @@
 namespace palpa::scene {
 namespace {
 
-constexpr int kLayers = 9;              // over the thickness, finer towards the surface
-constexpr double kDeepestShare = 0.45;  // of the thickness: deeper poses stop here, far beyond the linear range
+constexpr int kLayers = 9;                  // over the thickness, finer towards the surface
+constexpr double kDeepestShare = 0.45;      // of the thickness: deeper poses stop here, far beyond the linear range
 constexpr double kMostCompliance_GB = 1.0;  // with friction: nine times the frictionless one
-constexpr int kMostSlides = 16;         // half spacings a sample: more than two contact radii, friction is steady by then
+constexpr int kMostSlides = 16;  // half spacings a sample: more than two contact radii, friction is steady by then
 constexpr double kFrictionTolerance = 1e-5;  // of the largest force: 2e-6 from the converged one (docs/performance.md)
-constexpr int kMostInContact = 256;     // nodes; more would be a tool of 16 spacings
+constexpr int kMostInContact = 256;          // nodes; more would be a tool of 16 spacings
 
 mechanics::Material material_of(const stiffnessmaps::Elastic& elastic) { return {elastic.young_Pa, elastic.poisson}; }
 
@@ -58,7 +58,8 @@ std::vector<double> plain(const Eigen::Ref<const Eigen::MatrixXd>& values) {
 }
 
 files::CachedArrays arrays_of(const mechanics::Compliance& c) {
-    files::CachedArrays out{plain(c.position_m), plain(c.area_m2), {c.surface_z_m, c.thickness_m, c.asymmetry}, plain(c.normal_m_per_N)};
+    files::CachedArrays out{
+        plain(c.position_m), plain(c.area_m2), {c.surface_z_m, c.thickness_m, c.asymmetry}, plain(c.normal_m_per_N)};
     if (c.full_m_per_N.size() > 0) out.push_back(plain(c.full_m_per_N));
     return out;
 }
@@ -83,7 +84,8 @@ bool restore(const std::filesystem::path& cache, std::uint64_t number, const mec
     out.thickness_m = numbers[1];
     out.asymmetry = numbers[2];
     out.normal_m_per_N = Eigen::Map<const Eigen::MatrixXd>(normal.data(), rows, rows);
-    if (request.tangential) out.full_m_per_N = Eigen::Map<const Eigen::MatrixXd>(arrays->back().data(), 3 * rows, 3 * rows);
+    if (request.tangential)
+        out.full_m_per_N = Eigen::Map<const Eigen::MatrixXd>(arrays->back().data(), 3 * rows, 3 * rows);
     return true;
 }
 
@@ -110,10 +112,12 @@ LinearTissue make_linear_tissue(const LinearOptions& options, const std::filesys
                                 const mechanics::Progress& progress) {
     LinearTissue tissue;
     tissue.phantom = stiffnessmaps::read_phantom(options.phantom);
-    tissue.indenter.shape = tissue.phantom.indenter == stiffnessmaps::IndenterShape::sphere ? mechanics::IndenterShape::sphere
-                                                                             : mechanics::IndenterShape::cylinder;
+    tissue.indenter.shape = tissue.phantom.indenter == stiffnessmaps::IndenterShape::sphere
+                                ? mechanics::IndenterShape::sphere
+                                : mechanics::IndenterShape::cylinder;
     tissue.indenter.radius_m = tissue.phantom.indenter_radius_m;
-    if (tissue.indenter.shape == mechanics::IndenterShape::cylinder) tissue.indenter.length_m = tissue.phantom.indenter_length_m;
+    if (tissue.indenter.shape == mechanics::IndenterShape::cylinder)
+        tissue.indenter.length_m = tissue.phantom.indenter_length_m;
     tissue.friction = options.friction;
     const auto nodes_along = [&](double length_m) {
         return 1 + static_cast<std::size_t>(std::max(2.0, std::round(length_m / options.spacing_m)));
@@ -122,15 +126,18 @@ LinearTissue make_linear_tissue(const LinearOptions& options, const std::filesys
     tissue.n_y = nodes_along(tissue.phantom.size_m[1]);
     constexpr std::size_t kMostNodes = 20000;  // 3.2 GB of compliance
     if (tissue.n_x * tissue.n_y > kMostNodes) {
-        throw files::bad_input(options.phantom.string(), "", std::to_string(tissue.n_x * tissue.n_y) + " surface nodes at " +
-                                                          files::short_number(1e3 * options.spacing_m) + " mm",
-                        "at most 20000 (a larger spacing_mm)");
+        throw files::bad_input(options.phantom.string(), "",
+                               std::to_string(tissue.n_x * tissue.n_y) + " surface nodes at " +
+                                   files::short_number(1e3 * options.spacing_m) + " mm",
+                               "at most 20000 (a larger spacing_mm)");
     }
     const double full_GB = 8e-9 * 10.0 * std::pow(static_cast<double>(tissue.n_x * tissue.n_y), 2.0);
     if (options.friction && full_GB > kMostCompliance_GB) {
-        throw files::bad_input(options.phantom.string(), "", files::short_number(full_GB) + " GB of compliance with friction, at " +
-                                                          files::short_number(1e3 * options.spacing_m) + " mm",
-                        "at most " + files::short_number(kMostCompliance_GB) + " GB (a larger spacing_mm, or no friction)");
+        throw files::bad_input(
+            options.phantom.string(), "",
+            files::short_number(full_GB) + " GB of compliance with friction, at " +
+                files::short_number(1e3 * options.spacing_m) + " mm",
+            "at most " + files::short_number(kMostCompliance_GB) + " GB (a larger spacing_mm, or no friction)");
     }
     tissue.spacing_m[0] = tissue.phantom.size_m[0] / static_cast<double>(tissue.n_x - 1);
     tissue.spacing_m[1] = tissue.phantom.size_m[1] / static_cast<double>(tissue.n_y - 1);
@@ -155,8 +162,9 @@ LinearTissue make_linear_tissue(const LinearOptions& options, const std::filesys
 
 LinearWork make_linear_work(const LinearTissue& tissue) {
     LinearWork out;
-    for (mechanics::ContactWork* work : {&out.work, &out.slope.ahead, &out.slope.behind, &out.station, &out.station_slope.ahead,
-                                         &out.station_slope.behind, &out.reference_slope.ahead, &out.reference_slope.behind}) {
+    for (mechanics::ContactWork* work :
+         {&out.work, &out.slope.ahead, &out.slope.behind, &out.station, &out.station_slope.ahead,
+          &out.station_slope.behind, &out.reference_slope.ahead, &out.reference_slope.behind}) {
         *work = mechanics::make_contact_work(tissue.compliance, kMostInContact);
     }
     if (tissue.friction) {

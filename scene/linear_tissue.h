@@ -18,7 +18,7 @@ namespace palpa::scene {
 
 struct LinearOptions {
     std::filesystem::path phantom;
-    double spacing_m = 2e-3;  // of the surface nodes; cost of the precomputation grows with its power -6
+    double spacing_m = 2e-3;         // of the surface nodes; cost of the precomputation grows with its power -6
     std::optional<double> friction;  // coefficient, > 0; absent: frictionless
 };
 
@@ -73,8 +73,8 @@ LinearWork make_linear_work(const LinearTissue& tissue);
 // Depth for a normal force.
 struct LinearAnswer {
     double depth_m = 0.0;
-    bool saturated = false;   // the force is not reached at the depth limit
-    double linearity = 0.0;   // mechanics/linear_range.h: amber above 0.10, red above 0.25
+    bool saturated = false;  // the force is not reached at the depth limit
+    double linearity = 0.0;  // mechanics/linear_range.h: amber above 0.10, red above 0.25
 };
 LinearAnswer press(const LinearTissue& tissue, const Eigen::Vector2d& p_m, double force_N, LinearWork& work);
 

@@ -25,8 +25,8 @@ struct Mapping {
 struct ScreenArea {
     double width_px = 0.0;
     double height_px = 0.0;
-    double x_px = 0.0;  // of the left edge
-    double y_px = 0.0;  // of the top edge
+    double x_px = 0.0;                                           // of the left edge
+    double y_px = 0.0;                                           // of the top edge
     double px_per_m = std::numeric_limits<double>::quiet_NaN();  // of the screen itself; NaN: nobody measured it
 };
 
@@ -41,15 +41,15 @@ struct TissueArea {
 struct View {
     TissueArea area;
     Eigen::Vector2d centre_px = Eigen::Vector2d::Zero();
-    Eigen::Matrix2d axes = Eigen::Matrix2d::Identity();  // orthogonal; screen y points down
-    double px_per_m = 1.0;                               // as drawn
+    Eigen::Matrix2d axes = Eigen::Matrix2d::Identity();       // orthogonal; screen y points down
+    double px_per_m = 1.0;                                    // as drawn
     double scale = std::numeric_limits<double>::quiet_NaN();  // drawn size / true size; NaN: not known
     Eigen::Vector2d input_px_per_m = Eigen::Vector2d::Ones();
 };
 
 View make_view(const Mapping& mapping, const TissueArea& area, const ScreenArea& screen);
 
-Eigen::Vector2d tissue_of_px(const View& view, const Eigen::Vector2d& px);  // input
+Eigen::Vector2d tissue_of_px(const View& view, const Eigen::Vector2d& px);   // input
 Eigen::Vector2d px_of_tissue(const View& view, const Eigen::Vector2d& p_m);  // drawing
 bool on_tissue(const View& view, const Eigen::Vector2d& p_m);
 

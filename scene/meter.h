@@ -8,7 +8,7 @@
 namespace palpa::scene {
 
 class Meter {
- public:
+  public:
     void count() { ++calls_; }
     void add_ns(double ns);
     std::int64_t calls() const { return calls_; }
@@ -16,7 +16,7 @@ class Meter {
     double quantile_ns(double q) const;  // 0 if nothing was timed
     double worst_ns() const { return worst_ns_; }
 
- private:
+  private:
     static constexpr int kPerOctave = 32;
     static constexpr int kOctaves = 36;  // 1 ns to 68 s
     std::int64_t calls_ = 0;

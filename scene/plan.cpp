@@ -23,19 +23,23 @@ constexpr double kFewestSpacings = 4.0;  // across the contact's radius: docs/fe
 constexpr double kTooFewSpacings = 2.0;
 
 constexpr const char* kFrictionError =
-    "tangential force 0.2 % of mu F (median, worst 4 %) against 1.5 mm on the shipped block at 2 mm, raster trace, mu 0.3";
+    "tangential force 0.2 % of mu F (median, worst 4 %) against 1.5 mm on the shipped block at 2 mm, raster trace, mu "
+    "0.3";
 constexpr double kFriction_us = 75.0;  // p99 145
 
 std::string mm_text(double metres) { return files::short_number(1e3 * metres) + " mm"; }
 
 Stage calibration_stage(const Plan& plan) {
     Stage stage{StageId::calibration, false, "", "", 0.03};
-    stage.fidelity = std::string(name_of(plan.profile.curve.model)) + " curve " + plan.profile.id + " from " + name_of(plan.profile.level);
+    stage.fidelity = std::string(name_of(plan.profile.curve.model)) + " curve " + plan.profile.id + " from " +
+                     name_of(plan.profile.level);
     if (!std::isnan(plan.profile.median_relative_error)) {
-        stage.error = files::short_number(100.0 * plan.profile.median_relative_error) + " % of the force (median over points left out of the fit)";
+        stage.error = files::short_number(100.0 * plan.profile.median_relative_error) +
+                      " % of the force (median over points left out of the fit)";
     } else {
-        stage.error = plan.profile.points.empty() ? "not known: the profile brings no points"
-                                                  : std::to_string(plan.profile.points.size()) + " points in the profile";
+        stage.error = plan.profile.points.empty()
+                          ? "not known: the profile brings no points"
+                          : std::to_string(plan.profile.points.size()) + " points in the profile";
     }
     return stage;
 }
@@ -47,8 +51,9 @@ Stage depth_stage(const MapTissue& tissue) {
     if (tissue.map.source.kind == stiffnessmaps::SourceKind::recorded) {
         stage.error = files::short_number(1e3 * tissue.noise_N) + " mN of noise in the recording";
     } else {
-        stage.error = files::short_number(25.0 * stiffnessmaps::coarse_grid_error_N(tissue.map) / std::max(greatest_N, 1e-9)) +
-                      " % of the greatest force (95th percentile, from twice the pitch)";
+        stage.error =
+            files::short_number(25.0 * stiffnessmaps::coarse_grid_error_N(tissue.map) / std::max(greatest_N, 1e-9)) +
+            " % of the greatest force (95th percentile, from twice the pitch)";
     }
     return stage;
 }
@@ -63,10 +68,11 @@ double spacings_across(const LinearTissue& tissue) {
 std::string linear_error(const LinearTissue& tissue) {
     const double spacings = spacings_across(tissue);
     if (spacings >= kFewestSpacings) return kLinearError;
-    const std::string here = "at " + mm_text(tissue.phantom.depths_m.back()) + " the contact's radius spans " + files::short_number(spacings) +
-                             " spacings here, fewer where it is shallower";
+    const std::string here = "at " + mm_text(tissue.phantom.depths_m.back()) + " the contact's radius spans " +
+                             files::short_number(spacings) + " spacings here, fewer where it is shallower";
     if (spacings >= kTooFewSpacings) return std::string(kLinearError) + "; " + here;
-    return "not known, the force can be several times too large: even " + here + "; four are wanted (a smaller spacing_mm)";
+    return "not known, the force can be several times too large: even " + here +
+           "; four are wanted (a smaller spacing_mm)";
 }
 
 Stage depth_stage(const LinearTissue& tissue) {
@@ -98,8 +104,8 @@ Stage tangential_stage(const MapTissue& tissue, const TangentialOptions& options
 
 Stage friction_stage(const LinearTissue& tissue) {
     return {StageId::friction, false,
-            "Coulomb friction " + files::short_number(*tissue.friction) + ", stick and slip of every node, in steps of at most " +
-                mm_text(0.5 * tissue.spacing_m[0]),
+            "Coulomb friction " + files::short_number(*tissue.friction) +
+                ", stick and slip of every node, in steps of at most " + mm_text(0.5 * tissue.spacing_m[0]),
             kFrictionError, kFriction_us};
 }
 
@@ -118,14 +124,16 @@ void add_notes(const MapTissue& tissue, const Scene& scene, Plan& plan) {
         plan.notes.push_back("the tissue is simulated, not recorded: " + tissue.map.source.how);
     }
     if (plan.nodules.size() < tissue.map.nodules.size()) {
-        plan.notes.push_back("detected nodules of the map are not asked for: where nodules were placed, those alone count");
+        plan.notes.push_back(
+            "detected nodules of the map are not asked for: where nodules were placed, those alone count");
     }
     if (scene.tangential.force == stiffnessmaps::TangentialForce::recorded) {
         plan.notes.push_back("tangential force as recorded: right for motion along +x only");
         return;
     }
     const bool recorded = tissue.map.tangential == stiffnessmaps::TangentialKind::recorded;
-    plan.notes.push_back(std::string("tangential force ") + (recorded ? "off the scan direction" : "in every direction") +
+    plan.notes.push_back(std::string("tangential force ") +
+                         (recorded ? "off the scan direction" : "in every direction") +
                          ": derived from the normal force (work argument), not measured");
 }
 
@@ -143,21 +151,24 @@ void add_notes(const LinearTissue& tissue, const Scene&, Plan& plan) {
         plan.notes.push_back("the surface nodes are too far apart for this indenter: " + linear_error(tissue));
     }
     if (tissue.friction) {
-        plan.notes.push_back("friction acts on the tangential force, not on the avatar's lag: under the same force it is the same "
-                             "here and a reference distance before");
+        plan.notes.push_back(
+            "friction acts on the tangential force, not on the avatar's lag: under the same force it is the same "
+            "here and a reference distance before");
     }
-    plan.notes.push_back("the tissue is simulated: linear elastic, small displacements, moduli of " + tissue.phantom.name +
-                         "; the panel shows when a press leaves the linear range");
+    plan.notes.push_back("the tissue is simulated: linear elastic, small displacements, moduli of " +
+                         tissue.phantom.name + "; the panel shows when a press leaves the linear range");
 }
 
 MapTissue load_map(const Scene& scene) {
     MapTissue tissue;
     tissue.map = stiffnessmaps::read_map(scene.map);
-    if (scene.tangential.force == stiffnessmaps::TangentialForce::recorded && tissue.map.tangential != stiffnessmaps::TangentialKind::recorded) {
+    if (scene.tangential.force == stiffnessmaps::TangentialForce::recorded &&
+        tissue.map.tangential != stiffnessmaps::TangentialKind::recorded) {
         throw files::bad_input(scene.file.string(), "avatar force", "recorded",
-                        "energy: the map " + tissue.map.name + " holds no recorded tangential force");
+                               "energy: the map " + tissue.map.name + " holds no recorded tangential force");
     }
-    for (std::vector<float>* forces_N : {&tissue.map.normal_N, &tissue.map.tangential_x_N, &tissue.map.tangential_y_N}) {
+    for (std::vector<float>* forces_N :
+         {&tissue.map.normal_N, &tissue.map.tangential_x_N, &tissue.map.tangential_y_N}) {
         for (float& force_N : *forces_N) force_N *= static_cast<float>(scene.stiffness_scale);
     }
     tissue.noise_N = stiffnessmaps::normal_noise_N(tissue.map);
@@ -202,7 +213,8 @@ double median_force_N(const LinearTissue& tissue, double depth_m) {
     LinearWork work = make_linear_work(tissue);
     const Eigen::Vector2d size_m(tissue.phantom.size_m[0], tissue.phantom.size_m[1]);
     std::vector<double> forces_N;
-    for (const Eigen::Vector2d& share : {Eigen::Vector2d(0.5, 0.5), {0.25, 0.25}, {0.75, 0.25}, {0.25, 0.75}, {0.75, 0.75}}) {
+    for (const Eigen::Vector2d& share :
+         {Eigen::Vector2d(0.5, 0.5), {0.25, 0.25}, {0.75, 0.25}, {0.25, 0.75}, {0.75, 0.75}}) {
         double low_N = 0.0;
         double high_N = kBarOfLinear_N;
         for (int i = 0; i < 20; ++i) {
@@ -222,7 +234,8 @@ std::size_t at(int i) { return static_cast<std::size_t>(i); }
 // nodule that was detected too must not count twice.
 std::vector<stiffnessmaps::Nodule> nodules_to_find(const stiffnessmaps::Map& map) {
     std::vector<stiffnessmaps::Nodule> placed;
-    std::copy_if(map.nodules.begin(), map.nodules.end(), std::back_inserter(placed), [](const stiffnessmaps::Nodule& n) { return n.placed; });
+    std::copy_if(map.nodules.begin(), map.nodules.end(), std::back_inserter(placed),
+                 [](const stiffnessmaps::Nodule& n) { return n.placed; });
     return placed.empty() ? map.nodules : placed;
 }
 
@@ -233,7 +246,8 @@ void describe(const MapTissue& tissue, Plan& plan) {
     plan.nodules = nodules_to_find(map);
     plan.greatest_force_N = stiffnessmaps::force_range(map).highest_N;
     plan.greatest_depth_m = map.depths_m.back();
-    for (const int third : {1, 2}) plan.zone_N[at(third - 1)] = median_force_N(tissue, third * plan.greatest_depth_m / 3.0);
+    for (const int third : {1, 2})
+        plan.zone_N[at(third - 1)] = median_force_N(tissue, third * plan.greatest_depth_m / 3.0);
     plan.indenter_radius_m = map.indenter_radius_m;
     const Eigen::Vector2d first(map.origin_m[0], map.origin_m[1]);
     const Eigen::Vector2d last(map.x_of(map.n_x - 1), map.y_of(map.n_y - 1));
@@ -248,7 +262,8 @@ void describe(const LinearTissue& tissue, Plan& plan) {
     plan.nodules = stiffnessmaps::placed_nodules(phantom);
     plan.greatest_force_N = kBarOfLinear_N;
     plan.greatest_depth_m = phantom.depths_m.back();
-    for (const int third : {1, 2}) plan.zone_N[at(third - 1)] = median_force_N(tissue, third * plan.greatest_depth_m / 3.0);
+    for (const int third : {1, 2})
+        plan.zone_N[at(third - 1)] = median_force_N(tissue, third * plan.greatest_depth_m / 3.0);
     plan.indenter_radius_m = phantom.indenter_radius_m;
     plan.area.size_m = Eigen::Vector2d(phantom.size_m[0], phantom.size_m[1]);
     plan.area.centre_m = 0.5 * plan.area.size_m;
@@ -264,7 +279,8 @@ void add_stages(const Scene& scene, Plan& plan) {
     std::visit([&](const auto& tissue) { plan.sample_stages.push_back(tangential_stage(tissue, scene.tangential)); },
                plan.tissue);
     const avatar::PathParameters path = path_of(scene);
-    std::string stations = "stations every " + mm_text(path.station_m) + ", difference over " + mm_text(path.reference_m);
+    std::string stations =
+        "stations every " + mm_text(path.station_m) + ", difference over " + mm_text(path.reference_m);
     if (scene.linear) {
         stations += ", fewer in strokes faster than " +
                     files::short_number(1e3 * kStationsOnLinear.per_s * path.station_m) + " mm/s";
@@ -279,7 +295,8 @@ void add_stages(const Scene& scene, Plan& plan) {
     }
     if (!scene.surface) return;
     if (scene.linear) {
-        plan.frame_stages.push_back({StageId::surface, true, "surface nodes of the finite elements", "that of depth", 30.0});
+        plan.frame_stages.push_back(
+            {StageId::surface, true, "surface nodes of the finite elements", "that of depth", 30.0});
     } else {
         plan.frame_stages.push_back({StageId::surface, true, "sphere on a half-space, tapered",
                                      "7 % of the depth at worst against the exact bonded layer (25 mm, depth to 2 mm)",
@@ -291,14 +308,22 @@ void add_stages(const Scene& scene, Plan& plan) {
 
 const char* name_of(StageId id) {
     switch (id) {
-        case StageId::calibration: return "calibration";
-        case StageId::position: return "position";
-        case StageId::depth: return "depth";
-        case StageId::friction: return "friction";
-        case StageId::tangential: return "tangential";
-        case StageId::display_ratio: return "display_ratio";
-        case StageId::delay: return "delay";
-        case StageId::surface: return "surface";
+        case StageId::calibration:
+            return "calibration";
+        case StageId::position:
+            return "position";
+        case StageId::depth:
+            return "depth";
+        case StageId::friction:
+            return "friction";
+        case StageId::tangential:
+            return "tangential";
+        case StageId::display_ratio:
+            return "display_ratio";
+        case StageId::delay:
+            return "delay";
+        case StageId::surface:
+            return "surface";
     }
     return "";
 }
@@ -324,7 +349,8 @@ Plan make_plan(const Scene& scene, const mechanics::Progress& progress) {
         plan.notes.push_back("the tissue's forces are multiplied by " + files::short_number(scene.stiffness_scale));
     }
     if (scene.force_scale != 1.0) {
-        plan.notes.push_back("phantom force: the pen's newtons are multiplied by " + files::short_number(scene.force_scale));
+        plan.notes.push_back("phantom force: the pen's newtons are multiplied by " +
+                             files::short_number(scene.force_scale));
     }
     return plan;
 }

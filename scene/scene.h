@@ -28,13 +28,13 @@ struct SurfaceEffect {
 
 struct Scene {
     std::string name;
-    std::filesystem::path file;     // where it was read; empty if made up from a map
-    std::filesystem::path map;             // either a map
-    std::optional<LinearOptions> linear;   // or a block that is computed live
-    double stiffness_scale = 1.0;          // multiplies the tissue's forces: linear elastic tissue of so many times the modulus
+    std::filesystem::path file;           // where it was read; empty if made up from a map
+    std::filesystem::path map;            // either a map
+    std::optional<LinearOptions> linear;  // or a block that is computed live
+    double stiffness_scale = 1.0;  // multiplies the tissue's forces: linear elastic tissue of so many times the modulus
     std::filesystem::path profile;
     Mapping mapping;
-    double force_scale = 1.0;       // phantom force: multiplies the pen's newtons
+    double force_scale = 1.0;  // phantom force: multiplies the pen's newtons
     TangentialOptions tangential;
     std::optional<avatar::DisplayRatio> display_ratio;  // at most one of the two laws
     std::optional<avatar::Delay> delay;

@@ -48,8 +48,8 @@ void read_law_options(files::JsonReader& json, avatar::PathParameters& path, Tan
 }
 
 avatar::DisplayRatio read_display_ratio(files::JsonReader json, TangentialOptions& tangential) {
-    json.only({"preset", "f_0_N", "cap_mm", "release", "gate_N", "hold_s", "pause_decay_s", "s_ref_mm", "dead_band_mm", "force",
-               "smoothing_mm"});
+    json.only({"preset", "f_0_N", "cap_mm", "release", "gate_N", "hold_s", "pause_decay_s", "s_ref_mm", "dead_band_mm",
+               "force", "smoothing_mm"});
     const bool paper = json.choice("preset", {"clear", "paper"}) == 1;
     avatar::DisplayRatio law = paper ? avatar::display_ratio_paper() : avatar::display_ratio_clear();
     law.f_0_N = json.number("f_0_N", files::kPositive, law.f_0_N);
@@ -67,7 +67,8 @@ avatar::DisplayRatio read_display_ratio(files::JsonReader json, TangentialOption
 }
 
 avatar::Delay read_delay(files::JsonReader json, TangentialOptions& tangential) {
-    json.only({"preset", "m_ms_per_N", "cap_ms", "rise", "fall", "hold_s", "s_ref_mm", "dead_band_mm", "force", "smoothing_mm"});
+    json.only({"preset", "m_ms_per_N", "cap_ms", "rise", "fall", "hold_s", "s_ref_mm", "dead_band_mm", "force",
+               "smoothing_mm"});
     const bool paper = json.choice("preset", {"clear", "paper"}) == 1;
     avatar::Delay law = paper ? avatar::delay_paper() : avatar::delay_clear();
     law.m_s_per_N = 1e-3 * json.number("m_ms_per_N", files::kNotNegative, 1e3 * law.m_s_per_N);

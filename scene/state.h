@@ -7,9 +7,9 @@
 #include "avatar/delay.h"
 #include "avatar/display_ratio.h"
 #include "avatar/surface.h"
+#include "platform/timeline.h"
 #include "scene/meter.h"
 #include "scene/plan.h"
-#include "platform/timeline.h"
 
 namespace palpa::scene {
 
@@ -32,18 +32,18 @@ struct Avatar {
 
 struct Counters {
     std::int64_t samples = 0;
-    std::int64_t steps = 0;           // of the 240 Hz grid
+    std::int64_t steps = 0;  // of the 240 Hz grid
     std::int64_t dropped_steps = 0;
     std::int64_t skipped_stations = 0;  // of the path, where the pen was too fast for the tissue's cost
     std::int64_t skipped_slides = 0;    // of friction, where it leapt
-    std::int64_t levels_clamped = 0;  // outside the profile's range
-    std::int64_t without_level = 0;   // touching, but the device reported no level
-    std::int64_t distrusted = 0;      // first samples of a press with a level that no touch begins with
-    std::int64_t palms = 0;           // fingers' touches that ended because a pen came
+    std::int64_t levels_clamped = 0;    // outside the profile's range
+    std::int64_t without_level = 0;     // touching, but the device reported no level
+    std::int64_t distrusted = 0;        // first samples of a press with a level that no touch begins with
+    std::int64_t palms = 0;             // fingers' touches that ended because a pen came
     std::int64_t saturated = 0;
-    std::int64_t off_tissue = 0;      // touching beside the tissue
-    std::int64_t not_numbers = 0;     // a position that is not finite
-    std::int64_t unmeasured = 0;      // touches on cells that were not measured
+    std::int64_t off_tissue = 0;   // touching beside the tissue
+    std::int64_t not_numbers = 0;  // a position that is not finite
+    std::int64_t unmeasured = 0;   // touches on cells that were not measured
 };
 
 struct Extremes {
@@ -67,11 +67,11 @@ struct State {
     std::optional<std::int64_t> pointer;  // the one that touches; others are logged, and press nothing
     platform::Tool pointer_tool = platform::Tool::mouse;
     Palms palms;
-    bool without_level = false;           // the device of this touch does not report what the profile reads
-    bool answered = false;                // the last sample belonged to it (or nothing touches)
+    bool without_level = false;  // the device of this touch does not report what the profile reads
+    bool answered = false;       // the last sample belonged to it (or nothing touches)
     avatar::Touch touch;
-    stiffnessmaps::Place place;  // of the touch in the map; between the stages of one sample
-    std::optional<LinearWork> linear;     // of a linear tissue
+    stiffnessmaps::Place place;        // of the touch in the map; between the stages of one sample
+    std::optional<LinearWork> linear;  // of a linear tissue
     Contact contact;
     Avatar avatar;
     Eigen::Vector2d heading = Eigen::Vector2d::Zero();  // direction of motion, length 1 once moving

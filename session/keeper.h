@@ -9,7 +9,7 @@
 namespace palpa::session {
 
 class TrialKeeper {
- public:
+  public:
     virtual ~TrialKeeper() = default;
 
     // Copies the files of a run as they are now. finished: no more will be written to them.
@@ -19,12 +19,12 @@ class TrialKeeper {
     // Of a study in `directory`: who takes part, and what they have answered so far.
     virtual void keep_answers(const std::filesystem::path& directory, const std::string& code) = 0;
     virtual void participant(const std::string& code) = 0;  // who is here now; "": nobody
-    virtual bool ready() const = 0;         // all that was given is safe
-    virtual std::string problem() = 0;      // why something is not, for people; each once, then ""
-    virtual std::string note() const = 0;   // what is kept, for people
+    virtual bool ready() const = 0;                         // all that was given is safe
+    virtual std::string problem() = 0;                      // why something is not, for people; each once, then ""
+    virtual std::string note() const = 0;                   // what is kept, for people
     virtual void keep_settings(const std::filesystem::path& file) = 0;
-    virtual void open() = 0;                // shows the person all that is kept
-    virtual void open_studies() = 0;        // lets the person choose one
+    virtual void open() = 0;          // shows the person all that is kept
+    virtual void open_studies() = 0;  // lets the person choose one
 };
 
 }  // namespace palpa::session

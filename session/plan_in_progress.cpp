@@ -1,11 +1,10 @@
 #include "session/plan_in_progress.h"
 
-#include <unistd.h>
-
 #include <atomic>
 #include <chrono>
 #include <cstdio>
 #include <future>
+#include <unistd.h>
 
 namespace palpa::session {
 

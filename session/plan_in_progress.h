@@ -8,18 +8,18 @@
 namespace palpa::session {
 
 class PlanInProgress {
- public:
+  public:
     explicit PlanInProgress(const scene::Scene& scene);
     ~PlanInProgress();  // stops the work and waits for it
     PlanInProgress(const PlanInProgress&) = delete;
     PlanInProgress& operator=(const PlanInProgress&) = delete;
 
-    double share() const;         // done, 0 ... 1
-    bool wait(double seconds);    // true once it is ready
+    double share() const;       // done, 0 ... 1
+    bool wait(double seconds);  // true once it is ready
     void cancel();
-    scene::Plan take();                  // once; throws what make_plan threw
+    scene::Plan take();  // once; throws what make_plan threw
 
- private:
+  private:
     struct Work;
     std::unique_ptr<Work> work_;
 };

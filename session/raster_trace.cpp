@@ -33,7 +33,7 @@ std::vector<Line> lines_over(const scene::Plan& plan) {
 double rounded(double value, double step) { return std::round(value / step) * step; }
 
 class Pen {
- public:
+  public:
     Pen(const scene::Scene& scene, const scene::Plan& plan, const RasterOptions& options)
         : plan_(plan), options_(options), random_(options.seed), force_scale_(scene.force_scale) {
         view_ = scene::make_view(scene.mapping, plan.area, {options.screen_width_px, options.screen_height_px});
@@ -50,7 +50,8 @@ class Pen {
             const double s = static_cast<double>(i) / n;
             const Eigen::Vector2d jitter_m(2e-5 * normal_(random_), 2e-5 * normal_(random_));
             const double force_N = options_.force_N * (1.0 + 0.1 * std::sin(2.0 * std::numbers::pi * 0.7 * t_s_));
-            add(i == 0 ? platform::Phase::down : platform::Phase::move, line.from_m + s * (line.to_m - line.from_m) + jitter_m, force_N);
+            add(i == 0 ? platform::Phase::down : platform::Phase::move,
+                line.from_m + s * (line.to_m - line.from_m) + jitter_m, force_N);
         }
         add(platform::Phase::up, line.to_m, 0.0);
         t_s_ += 0.3;
@@ -59,7 +60,7 @@ class Pen {
     double t_s() const { return t_s_; }
     platform::Trace take() { return std::move(trace_); }
 
- private:
+  private:
     void add(platform::Phase phase, const Eigen::Vector2d& p_m, double force_N) {
         platform::Sample sample;
         sample.t_host_s = rounded(t_s_, 1e-6);
@@ -74,7 +75,9 @@ class Pen {
         const double level = force_N > 0.0 ? calibration::level_at_force(plan_.profile, force_N / force_scale_) : 0.0;
         const double share = level / plan_.profile.level_highest;
         constexpr double kLevels = 4096.0;
-        sample.pressure_raw = plan_.profile.level == calibration::LevelField::pressure_raw ? std::round(level) : std::round(share * kLevels);
+        sample.pressure_raw = plan_.profile.level == calibration::LevelField::pressure_raw
+                                  ? std::round(level)
+                                  : std::round(share * kLevels);
         sample.pressure = rounded(share, 1.0 / kLevels);
         trace_.samples.push_back(sample);
         t_s_ += 1.0 / options_.rate_Hz;

@@ -1,9 +1,9 @@
 #include "session/replay.h"
 
-#include "session/session.h"
-
 #include <algorithm>
 #include <cmath>
+
+#include "session/session.h"
 
 namespace palpa::session {
 namespace {
@@ -50,7 +50,8 @@ ReplayResult replay(const scene::Scene& scene, const scene::Plan& plan, const pl
             const double behind = std::min(1.0 + std::floor((now_s - shown_s) * kVirtualDisplay_Hz), 1e9);
             result.frames += static_cast<std::int64_t>(behind);
             shown_s += behind / kVirtualDisplay_Hz;
-            if (scene.surface && scene.linear) scene::surface_now(std::get<scene::LinearTissue>(plan.tissue), state, sink_m);
+            if (scene.surface && scene.linear)
+                scene::surface_now(std::get<scene::LinearTissue>(plan.tissue), state, sink_m);
             if (scene.surface && !scene.linear) scene::surface_now(scene, plan, state);
         }
         result.latency.count();
@@ -60,7 +61,8 @@ ReplayResult replay(const scene::Scene& scene, const scene::Plan& plan, const pl
     return result;
 }
 
-files::Json run_json(const scene::Scene& scene, const scene::Plan& plan, const scene::State& state, std::int64_t frames, const scene::Meter& latency) {
+files::Json run_json(const scene::Scene& scene, const scene::Plan& plan, const scene::State& state, std::int64_t frames,
+                     const scene::Meter& latency) {
     const scene::Counters& counters = state.counters;
     files::Json json;
     json["scene"] = scene.name;
@@ -70,8 +72,7 @@ files::Json run_json(const scene::Scene& scene, const scene::Plan& plan, const s
     json["dropped_steps"] = counters.dropped_steps;
     json["skipped_stations"] = counters.skipped_stations;
     json["skipped_slides"] = counters.skipped_slides;
-    json["latency_ms"] = {{"p50", 1e-6 * latency.quantile_ns(0.5)},
-                          {"p99", 1e-6 * latency.quantile_ns(0.99)}};
+    json["latency_ms"] = {{"p50", 1e-6 * latency.quantile_ns(0.5)}, {"p99", 1e-6 * latency.quantile_ns(0.99)}};
     json["max_force_N"] = state.extremes.force_N;
     json["max_depth_mm"] = 1e3 * state.extremes.depth_m;
     json["max_lag_mm"] = 1e3 * state.extremes.lag_m;

@@ -22,7 +22,7 @@ struct NodulePass {
 struct ReplayResult {
     scene::State state;
     std::int64_t frames = 0;  // of a virtual display that shows every 1/60 s of the trace's time
-    scene::Meter latency;            // from a sample's time to the virtual frame that shows it, ns
+    scene::Meter latency;     // from a sample's time to the virtual frame that shows it, ns
     std::vector<NodulePass> over;
     double lag_beside_m = 0.0;  // greatest lag farther than radius + 4 indenter radii from every nodule
 };
@@ -35,7 +35,8 @@ ReplayResult replay(const scene::Scene& scene, const scene::Plan& plan, const pl
                     const AfterSample& after_sample = {}, double until_s = 1e300);
 
 // The keys that every run reports (docs/formats.md).
-files::Json run_json(const scene::Scene& scene, const scene::Plan& plan, const scene::State& state, std::int64_t frames, const scene::Meter& latency);
+files::Json run_json(const scene::Scene& scene, const scene::Plan& plan, const scene::State& state, std::int64_t frames,
+                     const scene::Meter& latency);
 
 // The same for a replay, with the lag over and beside the nodules.
 files::Json result_json(const scene::Scene& scene, const scene::Plan& plan, const ReplayResult& result);

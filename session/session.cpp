@@ -6,9 +6,9 @@
 #include <exception>
 #include <utility>
 
-#include "session/log_rows.h"
 #include "files/text.h"
 #include "scene/advance.h"
+#include "session/log_rows.h"
 
 namespace palpa::session {
 namespace {
@@ -20,14 +20,22 @@ const char* condition_of(const scene::Scene& scene) {
 
 const char* event_name(platform::Action action) {
     switch (action) {
-        case platform::Action::none: return "start";
-        case platform::Action::mark: return "mark";
-        case platform::Action::undo: return "undo";
-        case platform::Action::finish: return "finish";
-        case platform::Action::resize: return "resize";
-        case platform::Action::hidden: return "hidden";
-        case platform::Action::shown: return "shown";
-        default: return "confidence";
+        case platform::Action::none:
+            return "start";
+        case platform::Action::mark:
+            return "mark";
+        case platform::Action::undo:
+            return "undo";
+        case platform::Action::finish:
+            return "finish";
+        case platform::Action::resize:
+            return "resize";
+        case platform::Action::hidden:
+            return "hidden";
+        case platform::Action::shown:
+            return "shown";
+        default:
+            return "confidence";
     }
 }
 
@@ -128,7 +136,8 @@ void log_interruption(Session& session) {
 
 std::filesystem::path trace_name(const std::string& first, int trial) {
     std::filesystem::path path = first;
-    if (trial > 1) path.replace_filename(path.stem().string() + "-" + std::to_string(trial) + path.extension().string());
+    if (trial > 1)
+        path.replace_filename(path.stem().string() + "-" + std::to_string(trial) + path.extension().string());
     return path;
 }
 
@@ -251,7 +260,8 @@ bool close_files(const files::Json& performance, Session& session) {
     if (session.files && good) {
         try {
             if (!session.label) {
-                files::write_text_atomically(session.files->file("_settings.json"), files::json_text(settings_of(session)));
+                files::write_text_atomically(session.files->file("_settings.json"),
+                                             files::json_text(settings_of(session)));
             }
             files::Json with_clock = performance;
             with_clock["began_utc"] = session.began_utc;

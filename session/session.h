@@ -5,10 +5,10 @@
 #include <string>
 #include <string_view>
 
-#include "session/trial.h"
 #include "platform/trace.h"
 #include "scene/scene.h"
 #include "scene/state.h"
+#include "session/trial.h"
 #include "study/sample_log.h"
 #include "study/trial_log.h"
 
@@ -16,15 +16,15 @@ namespace palpa::session {
 
 // What a session writes; empty: nothing.
 struct SessionFiles {
-    std::string log;                 // folder
+    std::string log;  // folder
     std::string participant = "01";
-    std::string record;              // TRACE.tsv; later trials get TRACE-2.tsv and so on
-    bool samples = true;             // false: events, marks and settings only
-    bool sync_rows = true;           // false: rows are on the disk when the trial ends, for simulations
+    std::string record;                        // TRACE.tsv; later trials get TRACE-2.tsv and so on
+    bool samples = true;                       // false: events, marks and settings only
+    bool sync_rows = true;                     // false: rows are on the disk when the trial ends, for simulations
     std::optional<study::TrialLabel> label{};  // of a study's trial
     std::string task = "palpation";
-    double finger_offset_mm = 0.0;   // positions of fingers were moved up by this, for the settings
-    int first_run = 1;               // runs before it are known to be taken, elsewhere
+    double finger_offset_mm = 0.0;  // positions of fingers were moved up by this, for the settings
+    int first_run = 1;              // runs before it are known to be taken, elsewhere
 };
 
 struct Session {

@@ -86,10 +86,13 @@ void act(const platform::Sample& sample, const scene::State& state, Trial& trial
 Finding finding_of(const study::Coverage& coverage, bool found, double deepest_m) {
     if (found) return Finding::found;
     switch (level_of(coverage, deepest_m)) {
-        case study::PalpationLevel::none: return Finding::not_touched;
-        case study::PalpationLevel::light: return Finding::too_light;
+        case study::PalpationLevel::none:
+            return Finding::not_touched;
+        case study::PalpationLevel::light:
+            return Finding::too_light;
         case study::PalpationLevel::medium:
-        case study::PalpationLevel::deep: break;
+        case study::PalpationLevel::deep:
+            break;
     }
     return Finding::not_marked;
 }
@@ -103,7 +106,7 @@ Trial make_trial(const scene::Plan& plan, TrialMode mode) {
     trial.mode = mode;
     const Eigen::Vector2d corner_m = plan.area.centre_m - 0.5 * plan.area.size_m;
     trial.coverage = study::make_coverage(corner_m.x(), corner_m.y(), plan.area.size_m.x(), plan.area.size_m.y(),
-                                   plan.greatest_depth_m);
+                                          plan.greatest_depth_m);
     trial.path.reserve(kPathPoints);
     constexpr std::size_t kMarksWithoutAllocation = 256;
     trial.marks.reserve(kMarksWithoutAllocation);
@@ -154,12 +157,13 @@ files::Json trial_json(const scene::Plan& plan, const Trial& trial) {
         const Mark& mark = trial.marks[i];
         const study::MarkScore& score = result.score.marks[i];
         constexpr const char* kKinds[] = {"hit", "again", "false"};
-        json["marks"].push_back({{"x_mm", 1e3 * mark.p_m.x()},
-                                 {"y_mm", 1e3 * mark.p_m.y()},
-                                 {"confidence", mark.confidence > 0 ? files::Json(mark.confidence) : files::Json(nullptr)},
-                                 {"onset_s", mark.onset_s},
-                                 {"kind", kKinds[static_cast<int>(score.kind)]},
-                                 {"distance_mm", score.target < 0 ? files::Json(nullptr) : files::Json(1e3 * score.distance_m)}});
+        json["marks"].push_back(
+            {{"x_mm", 1e3 * mark.p_m.x()},
+             {"y_mm", 1e3 * mark.p_m.y()},
+             {"confidence", mark.confidence > 0 ? files::Json(mark.confidence) : files::Json(nullptr)},
+             {"onset_s", mark.onset_s},
+             {"kind", kKinds[static_cast<int>(score.kind)]},
+             {"distance_mm", score.target < 0 ? files::Json(nullptr) : files::Json(1e3 * score.distance_m)}});
     }
     json["nodules"] = files::Json::array();
     for (std::size_t i = 0; i < plan.nodules.size(); ++i) {
@@ -167,7 +171,8 @@ files::Json trial_json(const scene::Plan& plan, const Trial& trial) {
                                    {"finding", name_of(result.findings[i])},
                                    {"deepest_mm", 1e3 * result.depth_m[i]}});
     }
-    for (const study::PalpationLevel level : {study::PalpationLevel::light, study::PalpationLevel::medium, study::PalpationLevel::deep}) {
+    for (const study::PalpationLevel level :
+         {study::PalpationLevel::light, study::PalpationLevel::medium, study::PalpationLevel::deep}) {
         json["area_at_least"][name_of(level)] = result.area.at_least[static_cast<int>(level)];
     }
     return json;
@@ -177,10 +182,14 @@ const char* name_of(TrialMode mode) { return mode == TrialMode::practice ? "prac
 
 const char* name_of(Finding finding) {
     switch (finding) {
-        case Finding::found: return "found";
-        case Finding::not_touched: return "not touched";
-        case Finding::too_light: return "pressed too lightly";
-        case Finding::not_marked: return "pressed, not marked";
+        case Finding::found:
+            return "found";
+        case Finding::not_touched:
+            return "not touched";
+        case Finding::too_light:
+            return "pressed too lightly";
+        case Finding::not_marked:
+            return "pressed, not marked";
     }
     return "";
 }

@@ -38,7 +38,7 @@ struct Trial {
     std::vector<PathPoint> path;  // at most kPathPoints; thinned by half when full
     double path_step_m = 0.5e-3;
     bool pressing = false;
-    double pressed_m = 0.0;   // way while pressing, jitter left out
+    double pressed_m = 0.0;  // way while pressing, jitter left out
     double pressed_s = 0.0;
     double impulse_Ns = 0.0;  // force over that time
     double max_force_N = 0.0;

@@ -14,7 +14,8 @@ namespace {
 
 std::string span_text(const Map& map) {
     const auto mm = [](double m) { return files::short_number(1e3 * m); };
-    return "x " + mm(map.x_of(0)) + " to " + mm(map.x_of(map.n_x - 1)) + ", y " + mm(map.y_of(0)) + " to " + mm(map.y_of(map.n_y - 1)) + " mm";
+    return "x " + mm(map.x_of(0)) + " to " + mm(map.x_of(map.n_x - 1)) + ", y " + mm(map.y_of(0)) + " to " +
+           mm(map.y_of(map.n_y - 1)) + " mm";
 }
 
 // First and last index of the places of `grid` along an axis that lie on `other`, or none.
@@ -83,7 +84,8 @@ void correlate(MapDifference& d) {
     }
     const double va = n * saa - sa * sa;
     const double vb = n * sbb - sb * sb;
-    d.correlation = va > 0.0 && vb > 0.0 ? (n * sab - sa * sb) / std::sqrt(va * vb) : std::numeric_limits<double>::quiet_NaN();
+    d.correlation =
+        va > 0.0 && vb > 0.0 ? (n * sab - sa * sb) / std::sqrt(va * vb) : std::numeric_limits<double>::quiet_NaN();
     d.relative = saa > 0.0 ? d.all.rms_N / std::sqrt(saa / n) : std::numeric_limits<double>::quiet_NaN();
 }
 
@@ -98,12 +100,14 @@ MapDifference compare_maps(const Map& a, const std::string& name_a, const Map& b
     const Range x = shared(grid, other, 0);
     const Range y = shared(grid, other, 1);
     if (x.count == 0 || y.count == 0) {
-        throw files::bad_input(name_b, "", "a map of " + span_text(b), "one that overlaps " + name_a + ", " + span_text(a));
+        throw files::bad_input(name_b, "", "a map of " + span_text(b),
+                               "one that overlaps " + name_a + ", " + span_text(a));
     }
     const double deepest_m = std::min(a.depths_m.back(), b.depths_m.back()) * (1.0 + 1e-9);
     const auto depths_of = [&](const Map& map) {
         std::vector<double> out;
-        std::copy_if(map.depths_m.begin(), map.depths_m.end(), std::back_inserter(out), [&](double depth) { return depth <= deepest_m; });
+        std::copy_if(map.depths_m.begin(), map.depths_m.end(), std::back_inserter(out),
+                     [&](double depth) { return depth <= deepest_m; });
         return out;
     };
     std::vector<double> depths_m = depths_of(a);
@@ -130,13 +134,15 @@ MapDifference compare_maps(const Map& a, const std::string& name_a, const Map& b
             const Eigen::Vector2d p_m(d.a.x_of(cell % d.a.n_x), d.a.y_of(cell / d.a.n_x));
             double force_a = force_or_nan(field_a, p_m, depth_m);
             double force_b = force_or_nan(field_b, p_m, depth_m);
-            if (std::isnan(force_a) || std::isnan(force_b)) force_a = force_b = std::numeric_limits<double>::quiet_NaN();
+            if (std::isnan(force_a) || std::isnan(force_b))
+                force_a = force_b = std::numeric_limits<double>::quiet_NaN();
             d.a.normal_N.push_back(static_cast<float>(force_a));
             d.b.normal_N.push_back(static_cast<float>(force_b));
         }
     }
     if (missing_count(d.a) == d.a.normal_N.size()) {
-        throw files::bad_input(name_b, "", "no place and depth where both maps were measured", "one that overlaps " + name_a);
+        throw files::bad_input(name_b, "", "no place and depth where both maps were measured",
+                               "one that overlaps " + name_a);
     }
     for (std::size_t k = 0; k < depths_m.size(); ++k) {
         DepthDifference at = difference(d, k, k + 1);

@@ -10,22 +10,22 @@ namespace palpa::stiffnessmaps {
 
 struct DepthDifference {
     double depth_m = 0.0;
-    std::size_t n = 0;         // places where both are known
+    std::size_t n = 0;  // places where both are known
     double mean_a_N = 0.0;
-    double bias_N = 0.0;       // mean of b - a
-    double median_N = 0.0;     // of |b - a|
+    double bias_N = 0.0;    // mean of b - a
+    double median_N = 0.0;  // of |b - a|
     double rms_N = 0.0;
-    double greatest_N = 0.0;   // |b - a|
-    double at_x_m = 0.0;       // there
+    double greatest_N = 0.0;  // |b - a|
+    double at_x_m = 0.0;      // there
     double at_y_m = 0.0;
 };
 
 // b - a on the places of the coarser map (larger cells; of two alike, a) within the other's area, at the depths of the
 // map with fewer of them down to the shallower map's last. The finer map is interpolated as in field.h.
 struct MapDifference {
-    std::string grid_of;       // "a" or "b"
+    std::string grid_of;  // "a" or "b"
     std::string depths_of;
-    Map a;                     // both on that grid: NaN = not known to both
+    Map a;  // both on that grid: NaN = not known to both
     Map b;
     std::vector<DepthDifference> depths;
     DepthDifference all;       // over all depths; depth_m: where it is greatest

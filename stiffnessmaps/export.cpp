@@ -1,9 +1,8 @@
 #include "stiffnessmaps/export.h"
 
-#include <unistd.h>
-
 #include <charconv>
 #include <cmath>
+#include <unistd.h>
 
 #include "files/input_error.h"
 #include "files/mat.h"
@@ -57,7 +56,8 @@ std::string csv_of(const Map& map) {
     const auto mm = [](double m) { return files::number_text(std::round(1e9 * m) / 1e6); };  // to the nanometre
     for (std::size_t at = 0; at < map.normal_N.size(); ++at) {
         const std::size_t cell = at % map.n_cells();
-        out += mm(map.x_of(cell % map.n_x)) + "," + mm(map.y_of(cell / map.n_x)) + "," + mm(map.depths_m[at / map.n_cells()]);
+        out += mm(map.x_of(cell % map.n_x)) + "," + mm(map.y_of(cell / map.n_x)) + "," +
+               mm(map.depths_m[at / map.n_cells()]);
         append_force(map.normal_N, at, out);
         append_force(map.tangential_x_N, at, out);
         append_force(map.tangential_y_N, at, out);
@@ -68,7 +68,8 @@ std::string csv_of(const Map& map) {
 
 void write_folder(const Map& map, fs::path folder) {
     if (!folder.has_filename()) folder = folder.parent_path();
-    if (fs::exists(folder)) throw files::bad_input(folder.string(), "", "something of that name", "a new name (nothing is overwritten)");
+    if (fs::exists(folder))
+        throw files::bad_input(folder.string(), "", "something of that name", "a new name (nothing is overwritten)");
     fs::path aside = folder;
     aside += ".part-" + std::to_string(::getpid());
     try {
@@ -108,7 +109,8 @@ void export_map(const Map& map, const std::string& array, const fs::path& file) 
     if (kind == ".csv") return files::write_text_atomically(file, csv_of(map));
     if (kind == ".mat") return files::write_mat(arrays_of(map), file);
     if (kind.empty() && !file.empty()) return write_folder(map, file);
-    throw files::bad_input(file.string(), "", "a name that ends in " + files::shown(kind), ".npy, .csv, .mat, or no ending for a folder of arrays");
+    throw files::bad_input(file.string(), "", "a name that ends in " + files::shown(kind),
+                           ".npy, .csv, .mat, or no ending for a folder of arrays");
 }
 
 }  // namespace palpa::stiffnessmaps

@@ -114,7 +114,8 @@ void fill_rest(const Map& map, Field& field) {
         const auto along_y = recorded_layer(map, map.tangential_y_N, k, field.options.sigma_m);
         for (std::size_t cell = 0; cell < map.n_cells(); ++cell) {
             Field::Slope& here = field.slopes[cell * field.n_layers() + k];
-            const double rho = map.tangential_x_N.empty() ? along_y[cell] - here.energy_y : along_x[cell] - here.energy_x;
+            const double rho =
+                map.tangential_x_N.empty() ? along_y[cell] - here.energy_y : along_x[cell] - here.energy_x;
             here.rest_x = as_recorded ? along_x[cell] : std::max(0.0, rho);
             here.rest_y = as_recorded ? along_y[cell] : 0.0;
         }
@@ -130,7 +131,8 @@ std::size_t layer_above(const Field& field, double depth_m) {
 
 double layer_force_N(const Field& field, const Place& place, std::size_t layer) {
     double sum = 0.0;
-    for (std::size_t c = 0; c < 4; ++c) sum += place.weight[c] * field.normal_N[place.cell[c] * field.n_layers() + layer];
+    for (std::size_t c = 0; c < 4; ++c)
+        sum += place.weight[c] * field.normal_N[place.cell[c] * field.n_layers() + layer];
     return sum;
 }
 

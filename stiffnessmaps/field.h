@@ -28,25 +28,25 @@ struct FieldOptions {
 };
 
 struct Field {
-    struct Slope {          // at one cell and layer
+    struct Slope {              // at one cell and layer
         double energy_x = 0.0;  // dE/dx, N
         double energy_y = 0.0;
-        double force_x = 0.0;   // dF/dx, N/m
+        double force_x = 0.0;  // dF/dx, N/m
         double force_y = 0.0;
-        double rest_x = 0.0;    // energy: rho; recorded: f_x
-        double rest_y = 0.0;    // recorded: f_y
+        double rest_x = 0.0;  // energy: rho; recorded: f_x
+        double rest_y = 0.0;  // recorded: f_y
     };
     double origin_m[2] = {0.0, 0.0};
     double cells_per_m[2] = {1.0, 1.0};
     std::size_t n_x = 0;
     std::size_t n_y = 0;
-    std::vector<double> depths_m;      // layers, the first one at depth 0
-    std::vector<double> normal_N;      // [cell][layer], non-decreasing, without gaps
-    std::vector<Slope> slopes;         // [cell][layer]
-    std::vector<double> greatest_m;    // [cell] deepest measured depth
-    std::vector<double> measured;      // [cell] 1 or 0
+    std::vector<double> depths_m;    // layers, the first one at depth 0
+    std::vector<double> normal_N;    // [cell][layer], non-decreasing, without gaps
+    std::vector<Slope> slopes;       // [cell][layer]
+    std::vector<double> greatest_m;  // [cell] deepest measured depth
+    std::vector<double> measured;    // [cell] 1 or 0
     FieldOptions options;
-    bool complete = false;             // every cell was measured down to the last depth
+    bool complete = false;  // every cell was measured down to the last depth
     bool has_rest = false;
     std::size_t isotonic_changed = 0;  // forces that had to be changed to rise with depth
 

@@ -27,18 +27,24 @@ const char* name_of(IndenterShape shape) { return shape == IndenterShape::sphere
 
 const char* name_of(TangentialKind kind) {
     switch (kind) {
-        case TangentialKind::recorded: return "recorded";
-        case TangentialKind::energy: return "energy";
-        case TangentialKind::none: return "none";
+        case TangentialKind::recorded:
+            return "recorded";
+        case TangentialKind::energy:
+            return "energy";
+        case TangentialKind::none:
+            return "none";
     }
     return "none";
 }
 
 const char* name_of(SourceKind kind) {
     switch (kind) {
-        case SourceKind::recorded: return "recorded";
-        case SourceKind::simulated: return "simulated";
-        case SourceKind::analytic: return "analytic";
+        case SourceKind::recorded:
+            return "recorded";
+        case SourceKind::simulated:
+            return "simulated";
+        case SourceKind::analytic:
+            return "analytic";
     }
     return "recorded";
 }

@@ -42,11 +42,11 @@ struct MapSource {
 
 struct Map {
     std::string name;
-    double origin_m[2] = {0.0, 0.0};   // position of cell (0, 0), in the recording's own frame
+    double origin_m[2] = {0.0, 0.0};  // position of cell (0, 0), in the recording's own frame
     double spacing_m[2] = {1e-3, 1e-3};
     std::size_t n_x = 0;
     std::size_t n_y = 0;
-    std::vector<double> depths_m;      // ascending, > 0
+    std::vector<double> depths_m;  // ascending, > 0
     // [n_depth][n_y][n_x]; NaN = not measured. The tangential arrays may be empty. Tangential force that
     // opposes motion along +x (+y) is positive.
     std::vector<float> normal_N;

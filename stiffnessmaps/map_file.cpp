@@ -1,10 +1,9 @@
 #include "stiffnessmaps/map_file.h"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <unistd.h>
 
 #include "files/input_error.h"
 #include "files/npy.h"
@@ -78,7 +77,8 @@ MapSource read_source(files::JsonReader json) {
 void read_depths(files::JsonReader& json, Map& map) {
     for (const double depth_mm : json.numbers("depths_mm", 0, {0.0, 1e4, true})) {
         if (!map.depths_m.empty() && 1e-3 * depth_mm <= map.depths_m.back()) {
-            json.fail("depths_mm", files::short_number(depth_mm) + " after " + files::short_number(1e3 * map.depths_m.back()),
+            json.fail("depths_mm",
+                      files::short_number(depth_mm) + " after " + files::short_number(1e3 * map.depths_m.back()),
                       "ascending depths");
         }
         map.depths_m.push_back(1e-3 * depth_mm);
@@ -89,8 +89,9 @@ void check_forces(const std::vector<float>& forces_N, const std::string& file) {
     constexpr float kAbsurd_N = 1e5f;
     for (std::size_t i = 0; i < forces_N.size(); ++i) {
         if (!std::isnan(forces_N[i]) && !(std::abs(forces_N[i]) < kAbsurd_N)) {
-            throw files::bad_input(file, "value " + std::to_string(i), files::short_number(static_cast<double>(forces_N[i])),
-                            "forces in newtons, below 1e5");
+            throw files::bad_input(file, "value " + std::to_string(i),
+                                   files::short_number(static_cast<double>(forces_N[i])),
+                                   "forces in newtons, below 1e5");
         }
     }
 }
@@ -98,12 +99,13 @@ void check_forces(const std::vector<float>& forces_N, const std::string& file) {
 std::vector<float> read_forces(const fs::path& path, const Map& map, std::vector<std::size_t>& shape) {
     files::NpyArray array = files::read_npy(path);
     if (array.shape.size() != 3 || array.shape[0] != map.n_depths()) {
-        throw files::bad_input(path.string(), "shape", files::shape_text(array.shape),
-                        "(" + std::to_string(map.n_depths()) + ", n_y, n_x) for " +
-                            std::to_string(map.n_depths()) + " depths");
+        throw files::bad_input(
+            path.string(), "shape", files::shape_text(array.shape),
+            "(" + std::to_string(map.n_depths()) + ", n_y, n_x) for " + std::to_string(map.n_depths()) + " depths");
     }
     if (shape.empty()) shape = array.shape;
-    if (array.shape != shape) throw files::bad_input(path.string(), "shape", files::shape_text(array.shape), files::shape_text(shape));
+    if (array.shape != shape)
+        throw files::bad_input(path.string(), "shape", files::shape_text(array.shape), files::shape_text(shape));
     check_forces(array.values, path.string());
     return std::move(array.values);
 }
@@ -114,7 +116,7 @@ void check_filled(const Map& map, const std::string& file) {
         const float filled = map.filled_normal_N[i];
         if (std::isnan(filled) || (!std::isnan(map.normal_N[i]) && filled != map.normal_N[i])) {
             throw files::bad_input(file, "value " + std::to_string(i), files::short_number(static_cast<double>(filled)),
-                            "the force of normal_N.npy where it was measured, and a number where it was not");
+                                   "the force of normal_N.npy where it was measured, and a number where it was not");
         }
     }
 }
@@ -123,13 +125,15 @@ void check_area(const Map& map, const std::string& file) {
     const double x_end = map.x_of(map.n_x - 1);
     const double y_end = map.y_of(map.n_y - 1);
     for (const Nodule& nodule : map.nodules) {
-        const bool inside = nodule.x_m >= map.origin_m[0] - map.spacing_m[0] && nodule.x_m <= x_end + map.spacing_m[0] &&
+        const bool inside = nodule.x_m >= map.origin_m[0] - map.spacing_m[0] &&
+                            nodule.x_m <= x_end + map.spacing_m[0] &&
                             nodule.y_m >= map.origin_m[1] - map.spacing_m[1] && nodule.y_m <= y_end + map.spacing_m[1];
         if (!inside) {
-            throw files::bad_input(file, "nodules " + nodule.id,
-                            "x " + files::short_number(1e3 * nodule.x_m) + ", y " + files::short_number(1e3 * nodule.y_m) + " mm",
-                            "a place on the map, which ends at x " + files::short_number(1e3 * x_end) + ", y " +
-                                files::short_number(1e3 * y_end) + " mm (are x and y of the arrays exchanged?)");
+            throw files::bad_input(
+                file, "nodules " + nodule.id,
+                "x " + files::short_number(1e3 * nodule.x_m) + ", y " + files::short_number(1e3 * nodule.y_m) + " mm",
+                "a place on the map, which ends at x " + files::short_number(1e3 * x_end) + ", y " +
+                    files::short_number(1e3 * y_end) + " mm (are x and y of the arrays exchanged?)");
         }
     }
 }
@@ -139,12 +143,14 @@ void check_area(const Map& map, const std::string& file) {
 Map read_map(const fs::path& folder) {
     if (!fs::is_directory(folder)) {
         const std::string_view kind = fs::exists(folder) ? files::irregular_kind(folder) : "nothing";
-        throw files::bad_input(folder.string(), "", kind.empty() ? "a file" : kind, "a map folder NAME.map with a map.json");
+        throw files::bad_input(folder.string(), "", kind.empty() ? "a file" : kind,
+                               "a map folder NAME.map with a map.json");
     }
     const fs::path file = folder / "map.json";
     const files::Json root = files::read_json(file);
     files::JsonReader json(root, file.string());
-    json.only({"name", "origin_mm", "spacing_mm", "count", "depths_mm", "tangential", "indenter", "nodules", "source", "noise_N"});
+    json.only({"name", "origin_mm", "spacing_mm", "count", "depths_mm", "tangential", "indenter", "nodules", "source",
+               "noise_N"});
     Map map;
     map.name = json.text("name");
     const auto origin_mm = json.numbers("origin_mm", 2, kLength_mm);
@@ -176,13 +182,15 @@ Map read_map(const fs::path& folder) {
     map.normal_N = read_forces(folder / "normal_N.npy", map, shape);
     map.n_y = shape[1];
     map.n_x = shape[2];
-    if (map.n_cells() == 0) throw files::bad_input((folder / "normal_N.npy").string(), "shape", files::shape_text(shape), "cells");
+    if (map.n_cells() == 0)
+        throw files::bad_input((folder / "normal_N.npy").string(), "shape", files::shape_text(shape), "cells");
     for (const bool along_y : {false, true}) {
         const fs::path path = folder / (along_y ? "tangential_y_N.npy" : "tangential_x_N.npy");
         if (fs::exists(path)) (along_y ? map.tangential_y_N : map.tangential_x_N) = read_forces(path, map, shape);
     }
     if (map.tangential == TangentialKind::recorded && map.tangential_x_N.empty() && map.tangential_y_N.empty()) {
-        throw files::bad_input(file.string(), "tangential", "recorded", "tangential_x_N.npy or tangential_y_N.npy beside it");
+        throw files::bad_input(file.string(), "tangential", "recorded",
+                               "tangential_x_N.npy or tangential_y_N.npy beside it");
     }
     if (const fs::path path = folder / "filled_normal_N.npy"; fs::exists(path)) {
         map.filled_normal_N = read_forces(path, map, shape);
@@ -225,9 +233,9 @@ files::Json map_json(const Map& map) {
     json["nodules"] = files::Json::array();
     for (const Nodule& nodule : map.nodules) {
         files::Json entry{{"id", nodule.id},
-                   {"origin", nodule.placed ? "placed" : "detected"},
-                   {"x_mm", mm(nodule.x_m)},
-                   {"y_mm", mm(nodule.y_m)}};
+                          {"origin", nodule.placed ? "placed" : "detected"},
+                          {"x_mm", mm(nodule.x_m)},
+                          {"y_mm", mm(nodule.y_m)}};
         if (nodule.top_depth_m) entry["top_depth_mm"] = mm(*nodule.top_depth_m);
         if (nodule.diameter_m) entry["diameter_mm"] = mm(*nodule.diameter_m);
         if (nodule.length_m) entry["length_mm"] = mm(*nodule.length_m);
@@ -245,13 +253,16 @@ files::Json map_json(const Map& map) {
 void check_map(const Map& map, const std::string& file) {
     const auto in = [](double mm, files::Bounds bounds) { return mm >= bounds.lowest && mm <= bounds.highest; };
     for (int i = 0; i < 2; ++i) {
-        if (!in(1e3 * map.origin_m[i], kLength_mm)) throw files::bad_input(file, "origin", files::short_number(1e3 * map.origin_m[i]) + " mm", "within 100 m");
+        if (!in(1e3 * map.origin_m[i], kLength_mm))
+            throw files::bad_input(file, "origin", files::short_number(1e3 * map.origin_m[i]) + " mm", "within 100 m");
         if (!in(1e3 * map.spacing_m[i], kSpacing_mm)) {
-            throw files::bad_input(file, "spacing", files::short_number(1e3 * map.spacing_m[i]) + " mm", "from 0.001 to 10000 mm");
+            throw files::bad_input(file, "spacing", files::short_number(1e3 * map.spacing_m[i]) + " mm",
+                                   "from 0.001 to 10000 mm");
         }
     }
     if (!(map.depths_m.back() <= kDeepest_m)) {
-        throw files::bad_input(file, "depth", files::short_number(1e3 * map.depths_m.back()) + " mm", "at most 10000 mm");
+        throw files::bad_input(file, "depth", files::short_number(1e3 * map.depths_m.back()) + " mm",
+                               "at most 10000 mm");
     }
     check_forces(map.normal_N, file);
     check_forces(map.tangential_x_N, file);
@@ -263,7 +274,8 @@ void check_map(const Map& map, const std::string& file) {
 void write_map(const Map& map, const fs::path& folder) {
     check_map(map, folder.string());
     if (folder.empty() || !fs::is_directory(folder.has_parent_path() ? folder.parent_path() : ".")) {
-        throw files::bad_input(files::shown(folder.string()), "", "no folder to put it into", "a new map folder in a folder that exists");
+        throw files::bad_input(files::shown(folder.string()), "", "no folder to put it into",
+                               "a new map folder in a folder that exists");
     }
     if (fs::exists(folder)) {
         throw files::bad_input(folder.string(), "", "something of that name", "a new name (nothing is overwritten)");

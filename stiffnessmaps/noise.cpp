@@ -16,7 +16,8 @@ void second_differences(const Map& map, std::size_t along, std::size_t n, std::s
             const std::size_t i = (cell / along) % n;
             if (i == 0 || i + 1 >= n) continue;
             const std::size_t at = k * map.n_cells() + cell;
-            const double d = static_cast<double>(map.normal_N[at - stride]) - 2.0 * static_cast<double>(map.normal_N[at]) +
+            const double d = static_cast<double>(map.normal_N[at - stride]) -
+                             2.0 * static_cast<double>(map.normal_N[at]) +
                              static_cast<double>(map.normal_N[at + stride]);
             if (!std::isnan(d)) out.push_back(std::abs(d));
         }

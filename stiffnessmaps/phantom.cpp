@@ -25,7 +25,8 @@ PhantomNodule read_nodule(files::JsonReader json, const Phantom& phantom) {
         nodule.centre_m[i] = 1e-3 * centre_mm[i];
         const double radius_m = 0.5 * nodule.diameter_m;
         if (nodule.centre_m[i] < radius_m || nodule.centre_m[i] > phantom.size_m[i] - radius_m) {
-            json.fail("centre_mm", files::short_number(centre_mm[i]) + " with a radius of " + files::short_number(1e3 * radius_m),
+            json.fail("centre_mm",
+                      files::short_number(centre_mm[i]) + " with a radius of " + files::short_number(1e3 * radius_m),
                       "a sphere inside the block of " + files::short_number(1e3 * phantom.size_m[i]) + " mm");
         }
     }
@@ -88,7 +89,8 @@ Phantom read_phantom(const std::filesystem::path& path) {
     if (phantom.indenter == IndenterShape::cylinder) {
         phantom.indenter_length_m = 1e-3 * indenter.number("length_mm", {0.0, 1e4, true});
     } else if (indenter.has("length_mm")) {
-        indenter.fail("length_mm", files::short_number(indenter.number("length_mm", {-1e9, 1e9})), "none: a sphere has no length");
+        indenter.fail("length_mm", files::short_number(indenter.number("length_mm", {-1e9, 1e9})),
+                      "none: a sphere has no length");
     }
     phantom.rolling = indenter.choice("contact", {"rolling", "sliding"}) == 0;
     phantom.friction = indenter.number("friction", {0.0, 10.0}, 0.0);

@@ -16,12 +16,17 @@ constexpr std::size_t kLongestRun = 6;
 constexpr std::size_t kLongestMessage = 400;
 constexpr int kMostFiles = 100000;
 
-constexpr std::array<std::string_view, 8> kTrialEndings{"_events.tsv",  "_events.json",  "_marks.tsv",     "_marks.json",
-                                                        "_samples.tsv", "_samples.json", "_settings.json", "_performance.json"};
-constexpr std::array<std::string_view, 8> kDatasetNames{"dataset_description.json",    ".bidsignore",
-                                                        "protocol.json",               "task-palpation_events.json",
-                                                        "task-palpation_marks.json",   "task-palpation_samples.json",
-                                                        "task-softer_events.json",      "task-ratings_beh.json"};
+constexpr std::array<std::string_view, 8> kTrialEndings{"_events.tsv",    "_events.json",     "_marks.tsv",
+                                                        "_marks.json",    "_samples.tsv",     "_samples.json",
+                                                        "_settings.json", "_performance.json"};
+constexpr std::array<std::string_view, 8> kDatasetNames{"dataset_description.json",
+                                                        ".bidsignore",
+                                                        "protocol.json",
+                                                        "task-palpation_events.json",
+                                                        "task-palpation_marks.json",
+                                                        "task-palpation_samples.json",
+                                                        "task-softer_events.json",
+                                                        "task-ratings_beh.json"};
 
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 bool is_plain(char c) { return is_digit(c) || (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z'); }
@@ -43,10 +48,12 @@ bool take_all(bool (*wanted)(char), std::size_t longest, std::string_view& out, 
 // Of a run, or a participant's ratings.
 bool is_trial_file(std::string_view rest) {
     std::string_view subject, again, task, run;
-    const bool of_subject = take("sub-", rest) && take_all(is_plain, kLongestLabel, subject, rest) && take("/beh/sub-", rest) &&
-           take_all(is_plain, kLongestLabel, again, rest) && again == subject && take("_task-", rest);
+    const bool of_subject = take("sub-", rest) && take_all(is_plain, kLongestLabel, subject, rest) &&
+                            take("/beh/sub-", rest) && take_all(is_plain, kLongestLabel, again, rest) &&
+                            again == subject && take("_task-", rest);
     if (!of_subject || rest == "ratings_beh.tsv") return of_subject;
-    return take_all(is_plain, kLongestLabel, task, rest) && take("_run-", rest) && take_all(is_digit, kLongestRun, run, rest) &&
+    return take_all(is_plain, kLongestLabel, task, rest) && take("_run-", rest) &&
+           take_all(is_digit, kLongestRun, run, rest) &&
            std::find(kTrialEndings.begin(), kTrialEndings.end(), rest) != kTrialEndings.end();
 }
 
@@ -64,12 +71,15 @@ BundleFile read_file(files::JsonReader& json) {
     BundleFile file;
     file.name = json.text("name");
     const auto kind = kind_of_log_file(file.name);
-    if (!kind) json.fail("name", files::shown(file.name), "a file of a study's log, such as sub-01/beh/sub-01_task-palpation_run-01_events.tsv");
+    if (!kind)
+        json.fail("name", files::shown(file.name),
+                  "a file of a study's log, such as sub-01/beh/sub-01_task-palpation_run-01_events.tsv");
     file.kind = *kind;
     file.sha256 = json.text("sha256");
     file.text = json.text("text");
     const std::string is = files::sha256_hex(file.text);
-    if (file.sha256 != is) json.fail("sha256", files::shown(file.sha256), is + ", the text's own: it was changed on its way");
+    if (file.sha256 != is)
+        json.fail("sha256", files::shown(file.sha256), is + ", the text's own: it was changed on its way");
     return file;
 }
 
@@ -80,7 +90,8 @@ Bundle read_checked(std::string_view bytes, const std::string& file_name) {
     json.integer("palpa_bundle", 1, 1);
     if (!json.has("files")) json.fail("files", "nothing", "an array of files");
     std::vector<files::JsonReader> files = json.objects("files");
-    if (files.empty() || files.size() > kMostFiles) json.fail("files", std::to_string(files.size()) + " files", "1 to " + std::to_string(kMostFiles));
+    if (files.empty() || files.size() > kMostFiles)
+        json.fail("files", std::to_string(files.size()) + " files", "1 to " + std::to_string(kMostFiles));
     Bundle bundle;
     std::map<std::string, std::string> hashes;
     for (files::JsonReader& json_file : files) {
@@ -107,8 +118,11 @@ std::optional<LogFileKind> kind_of_log_file(std::string_view name) {
 }
 
 bool grows(std::string_view name) {
-    const auto ends = [&](std::string_view ending) { return name.size() > ending.size() && name.substr(name.size() - ending.size()) == ending; };
-    return ends("_task-ratings_beh.tsv") || (name.find("_task-softer_run-") != std::string_view::npos && ends("_events.tsv"));
+    const auto ends = [&](std::string_view ending) {
+        return name.size() > ending.size() && name.substr(name.size() - ending.size()) == ending;
+    };
+    return ends("_task-ratings_beh.tsv") ||
+           (name.find("_task-softer_run-") != std::string_view::npos && ends("_events.tsv"));
 }
 
 Bundle read_bundle(std::string_view bytes, const std::string& file_name) {

@@ -30,8 +30,9 @@ std::optional<LogFileKind> kind_of_log_file(std::string_view name);
 bool grows(std::string_view name);
 
 struct BundleFile {
-    std::string name;  // of one of the kinds above; what stands twice alike in a bundle is here once. Only people and what grows
-                     // may stand there with several contents
+    std::string
+        name;  // of one of the kinds above; what stands twice alike in a bundle is here once. Only people and what grows
+               // may stand there with several contents
     LogFileKind kind = LogFileKind::trial;
     std::string sha256;  // 64 lower-case hex digits, of `text`
     std::string text;

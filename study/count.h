@@ -20,6 +20,8 @@ inline std::int64_t whole_number(const files::Table& table, std::size_t column, 
     return static_cast<std::int64_t>(value);
 }
 
-inline std::int64_t count(const files::Table& table, std::size_t column) { return whole_number(table, column, 0, kMostCounts); }
+inline std::int64_t count(const files::Table& table, std::size_t column) {
+    return whole_number(table, column, 0, kMostCounts);
+}
 
 }  // namespace palpa::study

@@ -23,7 +23,9 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t kLargestBundle_bytes = std::size_t{1} << 30;
 
-Bundle read_whole(const fs::path& file) { return read_bundle(files::read_text(file, kLargestBundle_bytes), file.string()); }
+Bundle read_whole(const fs::path& file) {
+    return read_bundle(files::read_text(file, kLargestBundle_bytes), file.string());
+}
 
 // What somebody tried on a tablet before the study: settings that name no protocol.
 bool is_single_run(const Bundle& bundle) {
@@ -31,13 +33,16 @@ bool is_single_run(const Bundle& bundle) {
     for (const BundleFile& file : bundle.files) {
         if (file.kind == LogFileKind::identity) return false;
         const bool settings = file.name.find("_settings.json") != std::string::npos;
-        if (settings && files::Json::accept(file.text)) single = single || !files::Json::parse(file.text).contains("study");
+        if (settings && files::Json::accept(file.text))
+            single = single || !files::Json::parse(file.text).contains("study");
     }
     return single;
 }
 
 // One of two that says all that the other says.
-bool begins_with(const std::string& text, const std::string& other) { return text.compare(0, other.size(), other) == 0; }
+bool begins_with(const std::string& text, const std::string& other) {
+    return text.compare(0, other.size(), other) == 0;
+}
 
 bool same_study(const StudyIdentity& a, const StudyIdentity& b) {
     return a.name == b.name && a.version == b.version && a.sha256 == b.sha256 && a.kind.simulated == b.kind.simulated &&
@@ -54,10 +59,11 @@ bool has_subjects(const fs::path& directory) {
 
 // What all bundles hold together, and what of it is new.
 class Plan {
- public:
+  public:
     explicit Plan(const fs::path& directory) : directory_(directory) {
         if (!fs::exists(directory)) return;
-        if (!fs::is_directory(directory)) throw files::bad_input(directory.string(), "", "a file", "a study's folder, or a name that is free");
+        if (!fs::is_directory(directory))
+            throw files::bad_input(directory.string(), "", "a file", "a study's folder, or a name that is free");
         std::vector<std::string> notes;
         for (Person& one : read_people(directory, notes)) known_.emplace(one.code, one);
         identity_ = read_identity(directory);
@@ -70,7 +76,8 @@ class Plan {
         if (grows(file.name)) return add_answers(file, from);
         const auto [it, fresh] = first_.emplace(file.name, std::pair(file.sha256, from));
         if (!fresh && it->second.first != file.sha256) {
-            throw files::bad_input(from, file.name, "other content than in " + it->second.second, "the same, or another name");
+            throw files::bad_input(from, file.name, "other content than in " + it->second.second,
+                                   "the same, or another name");
         }
         if (fresh && !is_there(file, from)) new_.insert(file.name);
         if (fresh && new_.count(file.name) == 0) report.already_there.push_back(file.name);
@@ -79,7 +86,8 @@ class Plan {
     bool is_new(const BundleFile& file, const std::string& from) const {
         const auto it = first_.find(file.name);
         if (new_.count(file.name) == 0) return false;
-        if (it->second.first != file.sha256) throw files::bad_input(from, file.name, "content that changed while it was read", "the file left alone");
+        if (it->second.first != file.sha256)
+            throw files::bad_input(from, file.name, "content that changed while it was read", "the file left alone");
         return true;
     }
 
@@ -102,7 +110,8 @@ class Plan {
             most.there = is_taken(name, most.from);
             const std::string there = most.there ? files::read_text(path) : "";
             if (!begins_with(most.text, there) && !begins_with(there, most.text)) {
-                throw files::bad_input(most.from, name, "other answers than in " + path.string(), "the same ones, or more of them: nothing is overwritten");
+                throw files::bad_input(most.from, name, "other answers than in " + path.string(),
+                                       "the same ones, or more of them: nothing is overwritten");
             }
             const bool more = !most.there || most.text.size() > there.size();
             if (!more) report.already_there.push_back(name);
@@ -111,16 +120,17 @@ class Plan {
     }
 
     BundleReport report;
-    std::vector<Person> people;                                    // new ones
-    std::optional<std::string> identity_text;                      // of a study.json that is not there yet
+    std::vector<Person> people;                // new ones
+    std::optional<std::string> identity_text;  // of a study.json that is not there yet
 
- private:
+  private:
     void add_answers(const BundleFile& file, const std::string& from) {
         const auto [it, fresh] = answers.emplace(file.name, Answers{file.text, from, false});
         Answers& most = it->second;
         if (fresh || begins_with(most.text, file.text)) return;
         if (!begins_with(file.text, most.text)) {
-            throw files::bad_input(from, file.name, "other answers than in " + most.from, "the same ones, or more of them");
+            throw files::bad_input(from, file.name, "other answers than in " + most.from,
+                                   "the same ones, or more of them");
         }
         most = {file.text, from, false};
     }
@@ -131,11 +141,13 @@ class Plan {
         for (const fs::path& part : fs::path(name)) {
             path /= part;
             const auto status = fs::symlink_status(path);
-            if (fs::is_symlink(status)) throw files::bad_input(from, name, "a link in the way: " + path.string(), "folders and files");
+            if (fs::is_symlink(status))
+                throw files::bad_input(from, name, "a link in the way: " + path.string(), "folders and files");
             if (!fs::exists(status)) return false;
             const bool last = path == directory_ / name;
             if (last ? !fs::is_regular_file(status) : !fs::is_directory(status)) {
-                throw files::bad_input(from, name, path.string() + " in the way", last ? "a file, or nothing" : "a folder, or nothing");
+                throw files::bad_input(from, name, path.string() + " in the way",
+                                       last ? "a file, or nothing" : "a folder, or nothing");
             }
         }
         return true;
@@ -145,36 +157,46 @@ class Plan {
         if (!is_taken(file.name, from)) return false;
         const fs::path path = directory_ / file.name;
         if (files::sha256_hex(files::read_text(path)) == file.sha256) return true;
-        throw files::bad_input(from, file.name, "other content than in " + path.string(), "the same, or a name that is free: nothing is overwritten");
+        throw files::bad_input(from, file.name, "other content than in " + path.string(),
+                               "the same, or a name that is free: nothing is overwritten");
     }
 
     void add_people_of(const BundleFile& file, const std::string& from) {
         refuse_link(file, from);
         std::vector<std::string> notes;
         for (const Person& one : people_in(file.text, from + ": " + file.name, notes)) {
-            if (one.code.empty() || !std::all_of(one.code.begin(), one.code.end(), [](unsigned char c) { return c < 128 && std::isalnum(c) != 0; })) {
-                throw files::bad_input(from, file.name, files::shown("sub-" + one.code), "a code of letters and digits");
+            if (one.code.empty() || !std::all_of(one.code.begin(), one.code.end(),
+                                                 [](unsigned char c) { return c < 128 && std::isalnum(c) != 0; })) {
+                throw files::bad_input(from, file.name, files::shown("sub-" + one.code),
+                                       "a code of letters and digits");
             }
             const auto [it, fresh] = known_.emplace(one.code, one);
             if (fresh) {
                 people.push_back(one);
             } else if (!(it->second == one)) {
-                throw files::bad_input(from, file.name, "sub-" + one.code + " described otherwise than in the study", "the same participant, or another code");
+                throw files::bad_input(from, file.name, "sub-" + one.code + " described otherwise than in the study",
+                                       "the same participant, or another code");
             }
         }
-        if (!notes.empty()) throw files::bad_input(from, file.name, "a line that is no participant", "lines with 8 fields: " + notes.front());
+        if (!notes.empty())
+            throw files::bad_input(from, file.name, "a line that is no participant",
+                                   "lines with 8 fields: " + notes.front());
     }
 
     void add_identity(const BundleFile& file, const std::string& from) {
         refuse_link(file, from);
         const StudyIdentity its = identity_in(file.text, from + ": " + file.name);
         if (logs_without_identity_) {
-            throw files::bad_input(from, file.name, "a study", "logs of single runs, as in " + directory_.string() + ", which has no study.json");
+            throw files::bad_input(from, file.name, "a study",
+                                   "logs of single runs, as in " + directory_.string() + ", which has no study.json");
         }
         if (identity_ && !same_study(*identity_, its)) {
-            throw files::bad_input(from, file.name, files::shown(its.name) + " version " + files::shown(its.version) + ", sha256 " + files::shown(its.sha256.substr(0, 12)),
-                            files::shown(identity_->name) + " version " + files::shown(identity_->version) + ", sha256 " +
-                                files::shown(identity_->sha256.substr(0, 12)) + ": two studies never share a folder");
+            throw files::bad_input(from, file.name,
+                                   files::shown(its.name) + " version " + files::shown(its.version) + ", sha256 " +
+                                       files::shown(its.sha256.substr(0, 12)),
+                                   files::shown(identity_->name) + " version " + files::shown(identity_->version) +
+                                       ", sha256 " + files::shown(identity_->sha256.substr(0, 12)) +
+                                       ": two studies never share a folder");
         }
         if (identity_) return;
         identity_ = its;
@@ -197,7 +219,7 @@ class Plan {
 
 // Files of this import; they go again unless keep() is called.
 class NewFiles {
- public:
+  public:
     explicit NewFiles(const fs::path& directory) : directory_(directory) {}
     ~NewFiles() {
         std::error_code ignored;
@@ -209,7 +231,9 @@ class NewFiles {
     void write(const std::string& name, const std::string& text) {
         const fs::path path = directory_ / name;
         fs::create_directories(path.parent_path());
-        if (!files::write_new_text(path, text)) throw files::bad_input(path.string(), "", "a file that was not there before", "the folder left alone meanwhile");
+        if (!files::write_new_text(path, text))
+            throw files::bad_input(path.string(), "", "a file that was not there before",
+                                   "the folder left alone meanwhile");
         paths_.push_back(path);
         folders_.insert(path.parent_path());
         folders_.insert(path.parent_path().parent_path());
@@ -221,7 +245,7 @@ class NewFiles {
         paths_.clear();
     }
 
- private:
+  private:
     fs::path directory_;
     std::vector<fs::path> paths_;
     std::set<fs::path> folders_;
@@ -260,7 +284,8 @@ BundleReport import_bundles(const std::vector<fs::path>& bundles, const fs::path
                          [](const BundleFile& a, const BundleFile& b) { return is_events(a) < is_events(b); });
         for (const BundleFile& file : bundle.files) {
             const auto& done = plan.report.written;
-            const bool later = file.kind == LogFileKind::people || file.kind == LogFileKind::identity || grows(file.name);
+            const bool later =
+                file.kind == LogFileKind::people || file.kind == LogFileKind::identity || grows(file.name);
             if (later || !plan.is_new(file, path.string())) continue;
             if (std::find(done.begin(), done.end(), file.name) != done.end()) continue;  // in two bundles alike
             written.write(file.name, file.text);

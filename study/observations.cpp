@@ -31,7 +31,7 @@ int condition_index(const files::Table& table, std::size_t column, Observations&
 
 // The same people, condition and item in two rows would be counted twice.
 class Unique {
- public:
+  public:
     void add(const files::Table& table, std::size_t column, const std::array<int, 3>& key) {
         const auto [it, fresh] = first_line_.emplace(key, table.line());
         if (!fresh) {
@@ -40,7 +40,7 @@ class Unique {
         }
     }
 
- private:
+  private:
     std::map<std::array<int, 3>, std::size_t> first_line_;
 };
 
@@ -100,10 +100,12 @@ Observations read_counts(const std::filesystem::path& tsv) {
     files::Table table = files::read_tsv(tsv);
     Observations out;
     for (const std::string& column : table.columns()) {
-        constexpr std::array<std::string_view, 8> kKnown{"condition", "tp", "fn", "fp", "n", "nodule", "participant", "correct"};
+        constexpr std::array<std::string_view, 8> kKnown{"condition", "tp",     "fn",          "fp",
+                                                         "n",         "nodule", "participant", "correct"};
         if (column != "comparison" && std::find(kKnown.begin(), kKnown.end(), column) == kKnown.end()) {
-            throw files::bad_input(tsv.string(), "line 1", "the column " + files::shown(column),
-                            "condition tp fn fp [n] [nodule] [participant], or condition correct n [comparison] [participant]");
+            throw files::bad_input(
+                tsv.string(), "line 1", "the column " + files::shown(column),
+                "condition tp fn fp [n] [nodule] [participant], or condition correct n [comparison] [participant]");
         }
     }
     if (table.has_column("correct")) {

@@ -37,9 +37,14 @@ std::vector<std::size_t> sequence(const Protocol& protocol, const PlannedPartici
     const std::size_t n = protocol.groups[who.group].conditions.size();
     std::vector<std::vector<std::size_t>> rows{counted(n)};
     switch (protocol.order) {
-        case OrderKind::fixed: break;
-        case OrderKind::latin: rows = latin_square(n); break;
-        case OrderKind::williams: rows = williams_design(n); break;
+        case OrderKind::fixed:
+            break;
+        case OrderKind::latin:
+            rows = latin_square(n);
+            break;
+        case OrderKind::williams:
+            rows = williams_design(n);
+            break;
         case OrderKind::random: {
             Random random(derived_seed(protocol.seed, kOrder, static_cast<std::uint64_t>(who.number)));
             random.shuffle(rows[0]);
@@ -81,7 +86,8 @@ void add_trial(const Protocol& protocol, PlannedTrial trial, const std::vector<V
     constexpr std::uint64_t kSeeds = 2000000000;  // what a scene's seed may be
     const std::uint64_t of_person = derived_seed(protocol.seed, kTrial, static_cast<std::uint64_t>(who.number));
     trial.seed = static_cast<std::uint32_t>(derived_seed(of_person, kTrial, index) % kSeeds);
-    const auto tests = std::count_if(who.trials.begin(), who.trials.end(), [](const PlannedTrial& t) { return !t.practice; });
+    const auto tests =
+        std::count_if(who.trials.begin(), who.trials.end(), [](const PlannedTrial& t) { return !t.practice; });
     const int every = protocol.break_every_trials;
     trial.break_before = every > 0 && !trial.practice && tests > 0 && tests % every == 0;
     who.trials.push_back(trial);
@@ -137,17 +143,21 @@ int spread(const std::map<Key, int>& counts) {
 std::vector<std::size_t> conditions_of(const PlannedParticipant& who) {
     std::vector<std::size_t> out;
     for (const PlannedTrial& trial : who.trials) {
-        if (!trial.practice && std::find(out.begin(), out.end(), trial.condition) == out.end()) out.push_back(trial.condition);
+        if (!trial.practice && std::find(out.begin(), out.end(), trial.condition) == out.end())
+            out.push_back(trial.condition);
     }
     return out;
 }
 
 int rows_of(const Protocol& protocol, std::size_t n) {
     switch (protocol.order) {
-        case OrderKind::latin: return static_cast<int>(n);
-        case OrderKind::williams: return static_cast<int>(williams_design(n).size());
+        case OrderKind::latin:
+            return static_cast<int>(n);
+        case OrderKind::williams:
+            return static_cast<int>(williams_design(n).size());
         case OrderKind::fixed:
-        case OrderKind::random: break;
+        case OrderKind::random:
+            break;
     }
     return 1;
 }

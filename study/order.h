@@ -11,22 +11,22 @@
 namespace palpa::study {
 
 struct PlannedTrial {
-    int trial = 1;             // number within the participant, practice included
+    int trial = 1;  // number within the participant, practice included
     bool practice = false;
-    std::size_t condition = 0; // index in the protocol
-    int repeat = 0;            // which one of this condition, from 0
+    std::size_t condition = 0;  // index in the protocol
+    int repeat = 0;             // which one of this condition, from 0
     int rotate_deg = 0;
     bool flip = false;
     std::uint32_t seed = 0;
     bool break_before = false;
-    int comparison = -1;         // of a choice: index
+    int comparison = -1;  // of a choice: index
     bool reference_first = false;
 };
 
 struct PlannedParticipant {
-    int number = 1;            // from 1, in the order in which people come
+    int number = 1;  // from 1, in the order in which people come
     std::size_t group = 0;
-    int order_id = 0;          // row of the square, or the number of the shuffle
+    int order_id = 0;  // row of the square, or the number of the shuffle
     std::vector<PlannedTrial> trials;
 };
 
@@ -44,9 +44,9 @@ std::vector<std::vector<std::size_t>> williams_design(std::size_t n);
 struct Imbalance {
     std::string group;
     int participants = 0;
-    int position = 0;    // most minus least often that a condition stands at a position
-    int carry_over = 0;  // most minus least often that a condition directly follows another
-    int turns = 0;       // most minus least often that a condition is seen in a view
+    int position = 0;        // most minus least often that a condition stands at a position
+    int carry_over = 0;      // most minus least often that a condition directly follows another
+    int turns = 0;           // most minus least often that a condition is seen in a view
     int full_rounds_of = 1;  // a multiple of so many people balances positions (1: any number does, or none can)
 };
 std::vector<Imbalance> imbalance_of(const Protocol& protocol, const std::vector<PlannedParticipant>& people);

@@ -17,7 +17,8 @@ constexpr const char* kOrders[] = {"fixed", "random", "latin", "williams"};
 
 std::string new_id(files::JsonReader& json, std::set<std::string>& known) {
     const std::string id = json.text("id");
-    if (id.empty() || id.find_first_of("\t\n\r") != std::string::npos) json.fail("id", files::shown(id), "a name without tabs");
+    if (id.empty() || id.find_first_of("\t\n\r") != std::string::npos)
+        json.fail("id", files::shown(id), "a name without tabs");
     if (!known.insert(id).second) json.fail("id", files::shown(id) + " a second time", "each name once");
     return id;
 }
@@ -28,8 +29,10 @@ std::vector<std::string> read_names(files::JsonReader& json, std::string_view ke
     if (!list.is_array() || list.empty()) json.fail(key, files::described(list), "an array of names");
     for (const files::Json& entry : list) {
         const std::string name = entry.is_string() ? entry.get<std::string>() : "";
-        if (name.empty() || name.find_first_of("\t\n\r") != std::string::npos) json.fail(key, files::described(entry), "a name without tabs");
-        if (std::count(names.begin(), names.end(), name) > 0) json.fail(key, files::shown(name) + " a second time", "each name once");
+        if (name.empty() || name.find_first_of("\t\n\r") != std::string::npos)
+            json.fail(key, files::described(entry), "a name without tabs");
+        if (std::count(names.begin(), names.end(), name) > 0)
+            json.fail(key, files::shown(name) + " a second time", "each name once");
         names.push_back(name);
     }
     return names;
@@ -48,7 +51,8 @@ Condition read_condition(files::JsonReader json, TaskKind task, std::set<std::st
     condition.instructions = json.text("instructions", "");
     if (json.has("nodules")) condition.nodules = read_names(json, "nodules");
     const bool by_hand = condition.modality == Modality::hand;
-    if (by_hand && !condition.scene.empty()) json.fail("scene", files::shown(condition.scene), "none: a real phantom has no scene");
+    if (by_hand && !condition.scene.empty())
+        json.fail("scene", files::shown(condition.scene), "none: a real phantom has no scene");
     if (!by_hand && condition.scene.empty() && task == TaskKind::find) json.fail("scene", "nothing", "a scene file");
     if (!by_hand && !condition.nodules.empty()) json.fail("nodules", "names", "none: a scene knows its nodules");
     json.finish();
@@ -60,11 +64,15 @@ Group read_group(files::JsonReader json, const std::vector<Condition>& condition
     Group group;
     group.id = new_id(json, known);
     const files::Json& list = json.any("conditions");
-    if (!list.is_array() || list.empty()) json.fail("conditions", files::described(list), "an array of conditions' ids");
+    if (!list.is_array() || list.empty())
+        json.fail("conditions", files::described(list), "an array of conditions' ids");
     for (const files::Json& entry : list) {
-        const auto same = [&](const Condition& one) { return entry.is_string() && one.id == entry.get_ref<const std::string&>(); };
+        const auto same = [&](const Condition& one) {
+            return entry.is_string() && one.id == entry.get_ref<const std::string&>();
+        };
         const auto it = std::find_if(conditions.begin(), conditions.end(), same);
-        if (it == conditions.end()) json.fail("conditions", files::described(entry), "the id of a condition of this protocol");
+        if (it == conditions.end())
+            json.fail("conditions", files::described(entry), "the id of a condition of this protocol");
         const auto index = static_cast<std::size_t>(it - conditions.begin());
         if (std::count(group.conditions.begin(), group.conditions.end(), index) > 0) {
             json.fail("conditions", files::described(entry) + " a second time", "each condition once (use repeats)");
@@ -110,7 +118,8 @@ ChoiceTask read_choice(files::JsonReader json) {
     task.reference_kPa = json.number("reference_kPa", {0.0, 1e6, true});
     task.comparisons_kPa = json.numbers("comparisons_kPa", 0, {0.0, 1e6, true});
     for (const double comparison : task.comparisons_kPa) {
-        if (comparison == task.reference_kPa) json.fail("comparisons_kPa", files::short_number(comparison), "values unlike the reference");
+        if (comparison == task.reference_kPa)
+            json.fail("comparisons_kPa", files::short_number(comparison), "values unlike the reference");
     }
     task.repeats = json.integer("repeats", 1, 1000, task.repeats);
     task.alternate_conditions = json.boolean("alternate_conditions", false);
@@ -134,8 +143,9 @@ Protocol read_protocol(const std::filesystem::path& file) {
     protocol.sha256 = files::sha256_hex(protocol.text);
     const files::Json root = files::parse_json(protocol.text, file.string());
     files::JsonReader json(root, file.string());
-    json.only({"name", "version", "seed", "choice", "conditions", "groups", "assignment", "order", "repeats", "turn_maps", "flip_maps",
-               "time_limit_s", "practice", "break_every_trials", "nodule_count_told", "instructions", "demographics", "ratings"});
+    json.only({"name", "version", "seed", "choice", "conditions", "groups", "assignment", "order", "repeats",
+               "turn_maps", "flip_maps", "time_limit_s", "practice", "break_every_trials", "nodule_count_told",
+               "instructions", "demographics", "ratings"});
     protocol.name = json.text("name");
     protocol.version = json.text("version");
     protocol.seed = static_cast<std::uint32_t>(json.integer("seed", 0, 2000000000));
@@ -148,12 +158,14 @@ Protocol read_protocol(const std::filesystem::path& file) {
         protocol.conditions.push_back(read_condition(entry, protocol.task, conditions));
     }
     if (protocol.conditions.empty()) json.fail("conditions", "nothing", "one condition at least");
-    for (files::JsonReader& entry : json.objects("groups")) protocol.groups.push_back(read_group(entry, protocol.conditions, groups));
+    for (files::JsonReader& entry : json.objects("groups"))
+        protocol.groups.push_back(read_group(entry, protocol.conditions, groups));
     if (protocol.groups.empty()) {
         protocol.groups.push_back({"all", {}});
         for (std::size_t i = 0; i < protocol.conditions.size(); ++i) protocol.groups[0].conditions.push_back(i);
     }
-    if (json.has("assignment")) protocol.assignment = static_cast<Assignment>(json.choice("assignment", {"alternate", "random"}));
+    if (json.has("assignment"))
+        protocol.assignment = static_cast<Assignment>(json.choice("assignment", {"alternate", "random"}));
     protocol.order = static_cast<OrderKind>(json.choice("order", {"fixed", "random", "latin", "williams"}));
     protocol.repeats = json.integer("repeats", 1, 1000, 1);
     protocol.turn_maps = json.boolean("turn_maps", true);

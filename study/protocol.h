@@ -16,11 +16,11 @@ enum class Assignment { alternate, random };
 
 struct Condition {
     std::string id;
-    std::string title;     // as the experimenter sees it
+    std::string title;  // as the experimenter sees it
     Modality modality = Modality::pen;
-    std::string scene;     // file, relative to the protocol, or among the assets' scenes; empty: by hand
-    std::string profile;   // instead of the scene's; empty: the scene's
-    std::string device;    // free text, for the log
+    std::string scene;    // file, relative to the protocol, or among the assets' scenes; empty: by hand
+    std::string profile;  // instead of the scene's; empty: the scene's
+    std::string device;   // free text, for the log
     std::string instructions;
     std::vector<std::string> nodules;  // by hand: names of the phantom's, for the answers that are typed in
 };
@@ -34,8 +34,8 @@ struct Group {
 struct ChoiceTask {
     double reference_kPa = 0.0;
     std::vector<double> comparisons_kPa;
-    int repeats = 2;                     // of each pair under each condition; even: both orders alike often
-    bool alternate_conditions = false;   // trial by trial, else one condition after the other
+    int repeats = 2;                    // of each pair under each condition; even: both orders alike often
+    bool alternate_conditions = false;  // trial by trial, else one condition after the other
 };
 
 // A question to the participant, before the trials or after each condition.
@@ -48,25 +48,25 @@ struct Item {
 
 struct Protocol {
     std::filesystem::path file;
-    std::string text;          // of the file, as it is copied beside the logs
-    std::string sha256;        // of the text
+    std::string text;    // of the file, as it is copied beside the logs
+    std::string sha256;  // of the text
     std::string name;
     std::string version;
     std::uint32_t seed = 1;
     TaskKind task = TaskKind::find;
-    ChoiceTask choice;         // with TaskKind::choice
+    ChoiceTask choice;  // with TaskKind::choice
     std::vector<Condition> conditions;
     std::vector<Group> groups;
     Assignment assignment = Assignment::alternate;
     OrderKind order = OrderKind::random;
-    int repeats = 1;           // trials of each condition, one after the other
-    bool turn_maps = true;     // a quarter turn of its own for each trial of a participant, as far as there are enough
-    bool flip_maps = false;    // left and right exchanged too: eight views instead of four
-    double time_limit_s = 0.0; // 0: none
-    int practice_trials = 0;   // before the first trial of each condition, with known positions
+    int repeats = 1;            // trials of each condition, one after the other
+    bool turn_maps = true;      // a quarter turn of its own for each trial of a participant, as far as there are enough
+    bool flip_maps = false;     // left and right exchanged too: eight views instead of four
+    double time_limit_s = 0.0;  // 0: none
+    int practice_trials = 0;    // before the first trial of each condition, with known positions
     double practice_limit_s = 0.0;
     int break_every_trials = 0;
-    bool count_told = false;   // is the participant told how many nodules there are
+    bool count_told = false;  // is the participant told how many nodules there are
     std::string instructions;
     std::vector<Item> demographics;
     std::vector<Item> ratings;

@@ -12,7 +12,7 @@ namespace palpa::study {
 
 // SplitMix64 (Steele, Lea & Flood, OOPSLA 2014): one word of state; passes BigCrush.
 class Random {
- public:
+  public:
     explicit Random(std::uint64_t seed) : state_(seed) {}
 
     std::uint64_t bits() {
@@ -33,10 +33,11 @@ class Random {
     }
     template <class T>
     void shuffle(std::vector<T>& items) {
-        for (std::size_t i = items.size(); i > 1; --i) std::swap(items[i - 1], items[below(static_cast<std::uint32_t>(i))]);
+        for (std::size_t i = items.size(); i > 1; --i)
+            std::swap(items[i - 1], items[below(static_cast<std::uint32_t>(i))]);
     }
 
- private:
+  private:
     std::uint64_t state_;
 };
 

@@ -19,7 +19,8 @@ fs::path file_of(const fs::path& directory, const std::string& code) {
 }
 
 std::string one_field(std::string text) {
-    std::replace_if(text.begin(), text.end(), [](char c) { return c == '\t' || c == '\n' || c == '\r'; }, ' ');
+    std::replace_if(
+        text.begin(), text.end(), [](char c) { return c == '\t' || c == '\n' || c == '\r'; }, ' ');
     return text.empty() ? "n/a" : text;
 }
 
@@ -33,7 +34,8 @@ void add_ratings(const fs::path& directory, const std::string& code, const std::
     if (error) throw std::runtime_error(file.parent_path().string() + ": cannot be created: " + error.message());
     std::string lines;
     if (!fs::exists(file) || fs::file_size(file) == 0) lines = "condition\titem\tvalue\n";
-    for (const Rating& r : ratings) lines += one_field(r.condition) + "\t" + one_field(r.item) + "\t" + one_field(r.value) + "\n";
+    for (const Rating& r : ratings)
+        lines += one_field(r.condition) + "\t" + one_field(r.item) + "\t" + one_field(r.value) + "\n";
     files::append_synced(file, lines);
 }
 
@@ -50,7 +52,8 @@ std::vector<Rating> read_ratings(const fs::path& directory, const std::string& c
         const auto fields = files::fields_of(row, '\t');
         if (line == 1 || row.empty()) continue;
         if (fields.size() != 3) {  // cut off, and gone on after
-            notes.push_back(file.string() + ": line " + std::to_string(line) + " is left out: " + files::shown(row) + " is not an answer with 3 fields");
+            notes.push_back(file.string() + ": line " + std::to_string(line) + " is left out: " + files::shown(row) +
+                            " is not an answer with 3 fields");
             continue;
         }
         out.push_back({std::string(fields[0]), std::string(fields[1]), std::string(fields[2])});
@@ -61,9 +64,12 @@ std::vector<Rating> read_ratings(const fs::path& directory, const std::string& c
 void explain_ratings_once(const fs::path& directory) {
     const fs::path file = directory / "task-ratings_beh.json";
     if (fs::exists(file)) return;
-    files::write_text_atomically(file, files::json_text({{"condition", {{"Description", "of the protocol, after whose trials it was asked; n/a: before all trials"}}},
-                                           {"item", {{"Description", "id of the question in protocol.json"}}},
-                                           {"value", {{"Description", "the answer, as it was chosen or typed; n/a: none"}}}}));
+    files::write_text_atomically(
+        file, files::json_text(
+                  {{"condition",
+                    {{"Description", "of the protocol, after whose trials it was asked; n/a: before all trials"}}},
+                   {"item", {{"Description", "id of the question in protocol.json"}}},
+                   {"value", {{"Description", "the answer, as it was chosen or typed; n/a: none"}}}}));
 }
 
 }  // namespace palpa::study

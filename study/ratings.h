@@ -12,14 +12,15 @@ namespace palpa::study {
 struct Rating {
     std::string condition = "n/a";  // n/a: asked before the trials
     std::string item;
-    std::string value = "n/a";      // n/a: no answer
+    std::string value = "n/a";  // n/a: no answer
 };
 
 // Appended, and on the disk when it returns. Tabs and line ends in values become spaces. Throws std::runtime_error.
 void add_ratings(const std::filesystem::path& directory, const std::string& code, const std::vector<Rating>& ratings);
 
 // Of one person; nothing if nobody was asked. A last line that was cut off is left out and noted.
-std::vector<Rating> read_ratings(const std::filesystem::path& directory, const std::string& code, std::vector<std::string>& notes);
+std::vector<Rating> read_ratings(const std::filesystem::path& directory, const std::string& code,
+                                 std::vector<std::string>& notes);
 
 // The file's columns in words, once for the whole dataset.
 void explain_ratings_once(const std::filesystem::path& directory);

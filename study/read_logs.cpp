@@ -54,7 +54,8 @@ void take_finish(const files::Table& table, RunLog& run) {
 
 void take_choice(const files::Table& table, RunLog& run) {
     const bool correct = whole_number(table, table.column("correct"), 0, 1) == 1;
-    run.choices.push_back({run.trial, run.condition, std::string(table.field(table.column("comparison_kPa"))), correct, run.practice});
+    run.choices.push_back(
+        {run.trial, run.condition, std::string(table.field(table.column("comparison_kPa"))), correct, run.practice});
 }
 
 struct Settings {
@@ -116,8 +117,10 @@ void add_find(const RunLog& run, int participant, const Settings& settings, std:
         out.rows.push_back({condition, participant, -1, repeat, run.tp, run.fn, run.fp});
     } else {
         if (found != run.tp || n != run.tp + run.fn) {
-            throw files::bad_input(run.events.string(), "finish", std::to_string(run.tp) + " found and " + std::to_string(run.fn) + " missed",
-                            std::to_string(found) + " of " + std::to_string(n) + " as the marks and the settings beside it say");
+            throw files::bad_input(
+                run.events.string(), "finish",
+                std::to_string(run.tp) + " found and " + std::to_string(run.fn) + " missed",
+                std::to_string(found) + " of " + std::to_string(n) + " as the marks and the settings beside it say");
         }
         out.rows.push_back({condition, participant, -1, repeat, 0, 0, run.fp});
     }
@@ -142,14 +145,15 @@ void add_choices(const RunLog& run, int participant, Observations& out) {
 
 // Everything of one participant, runs in the order of their numbers.
 class Subject {
- public:
+  public:
     explicit Subject(int index) : index_(index) {}
 
     void add(const fs::path& events, const std::optional<StudyIdentity>& identity, Observations& out) {
         const RunLog run = read_run(events, out.notes);
         add_choices(run, index_, out);
         if (!run.choices.empty()) return;
-        const Settings settings = run.finished ? read_settings(beside(events, "_settings.json"), out.notes) : Settings{};
+        const Settings settings =
+            run.finished ? read_settings(beside(events, "_settings.json"), out.notes) : Settings{};
         check_version(events, settings, identity);
         note_clock(events, out.notes);
         out.simulated = out.simulated || settings.simulated;
@@ -164,16 +168,19 @@ class Subject {
         const auto [it, fresh] = finished_.emplace(run.trial, events.string());
         if (identity && !fresh) {
             throw files::bad_input(events.string(), "trial", std::to_string(run.trial) + " finished a second time",
-                            "once: it is in " + it->second + " too");
+                                   "once: it is in " + it->second + " too");
         }
         add_find(run, index_, settings, repeats_, out);
     }
 
- private:
-    static void check_version(const fs::path& events, const Settings& settings, const std::optional<StudyIdentity>& identity) {
+  private:
+    static void check_version(const fs::path& events, const Settings& settings,
+                              const std::optional<StudyIdentity>& identity) {
         if (!identity || settings.sha256.empty() || settings.sha256 == identity->sha256) return;
-        throw files::bad_input(beside(events, "_settings.json").string(), "study.sha256", files::shown(settings.sha256.substr(0, 12)),
-                        files::shown(identity->sha256.substr(0, 12)) + " as in study.json: two versions of a protocol in one folder");
+        throw files::bad_input(beside(events, "_settings.json").string(), "study.sha256",
+                               files::shown(settings.sha256.substr(0, 12)),
+                               files::shown(identity->sha256.substr(0, 12)) +
+                                   " as in study.json: two versions of a protocol in one folder");
     }
 
     // UTC in ISO 8601 sorts as text.
@@ -181,8 +188,9 @@ class Subject {
         const std::string began = began_utc(beside(events, "_performance.json"));
         if (began.empty()) return;
         if (!last_began_.empty() && began < last_began_) {
-            notes.push_back(events.string() + ": began at " + began + " by the computer's clock, before the run before it (" +
-                            last_began_ + "): the clock was set back. Times within trials are of the steady clock and hold");
+            notes.push_back(events.string() + ": began at " + began +
+                            " by the computer's clock, before the run before it (" + last_began_ +
+                            "): the clock was set back. Times within trials are of the steady clock and hold");
         }
         last_began_ = began;
     }
@@ -214,13 +222,15 @@ RunLog read_run(const fs::path& events, std::vector<std::string>& notes) {
     if (whole_text.empty()) return run;  // killed before the first line
     files::Table table(std::string(whole_text), events.string(), '\t');
     const std::size_t type = table.column("trial_type"), trial = table.column("trial");
-    const std::size_t condition = table.column("condition"), block = table.column("block"), onset = table.column("onset");
+    const std::size_t condition = table.column("condition"), block = table.column("block"),
+                      onset = table.column("onset");
     double before_s = 0.0;
     while (table.next()) {
         const double onset_s = table.finite_number(onset);
         if (onset_s < before_s) {
-            notes.push_back(events.string() + ": line " + std::to_string(table.line()) + ": found the time " + files::short_number(onset_s) +
-                            " s after " + files::short_number(before_s) + " s: the clock went back");
+            notes.push_back(events.string() + ": line " + std::to_string(table.line()) + ": found the time " +
+                            files::short_number(onset_s) + " s after " + files::short_number(before_s) +
+                            " s: the clock went back");
         }
         before_s = onset_s;
         run.trial = static_cast<int>(whole_number(table, trial, 1, kMostCounts));
@@ -239,7 +249,8 @@ std::vector<fs::path> events_files(const fs::path& subject) {
         const std::string name = entry.path().filename().string();
         constexpr std::string_view kEnd = "_events.tsv";
         if (name.find("_task-interval_") != std::string::npos) continue;
-        if (name.size() > kEnd.size() && name.compare(name.size() - kEnd.size(), kEnd.size(), kEnd) == 0) files.push_back(entry.path());
+        if (name.size() > kEnd.size() && name.compare(name.size() - kEnd.size(), kEnd.size(), kEnd) == 0)
+            files.push_back(entry.path());
     }
     // run-100 comes after run-99
     std::sort(files.begin(), files.end(), [](const fs::path& a, const fs::path& b) {
@@ -263,7 +274,8 @@ Observations read_study(const fs::path& directory) {
         out.participants.push_back(subject.filename().string().substr(4));
         Subject reader(static_cast<int>(out.participants.size()) - 1);
         for (const fs::path& events : events_files(subject)) reader.add(events, identity, out);
-        for (const Rating& r : read_ratings(directory, out.participants.back(), out.notes)) out.answers.push_back({r.condition, r.item, r.value});
+        for (const Rating& r : read_ratings(directory, out.participants.back(), out.notes))
+            out.answers.push_back({r.condition, r.item, r.value});
     }
     if (out.rows.empty() && out.choices.empty() && out.interrupted_trials == 0) {
         throw files::bad_input(directory.string(), "", "no trial", "sub-XX/beh/..._events.tsv of one trial at least");

@@ -101,16 +101,16 @@ std::optional<PairedCounts> paired_counts(const Observations& seen, int a, int b
     PairedCounts counts;
     for (const auto& [key, hit] : found) {
         if (hit[0] < 0 || hit[1] < 0) continue;
-        std::int64_t& cell = hit[0] == 1 ? (hit[1] == 1 ? counts.both : counts.only_a)
-                                         : (hit[1] == 1 ? counts.only_b : counts.neither);
+        std::int64_t& cell =
+            hit[0] == 1 ? (hit[1] == 1 ? counts.both : counts.only_a) : (hit[1] == 1 ? counts.only_b : counts.neither);
         ++cell;
     }
     if (counts.n() == 0) return std::nullopt;
     return counts;
 }
 
-PairResult pair_result(const Observations& seen, int a, int b, const Share& of_a, const Share& of_b,
-                       Quantity quantity, const ReportOptions& options) {
+PairResult pair_result(const Observations& seen, int a, int b, const Share& of_a, const Share& of_b, Quantity quantity,
+                       const ReportOptions& options) {
     const double z = z_of_level(options.bootstrap.level);
     const double difference = of_a.x.p() - of_b.x.p();
     PairResult pair;
@@ -138,7 +138,8 @@ PairResult pair_result(const Observations& seen, int a, int b, const Share& of_a
 }
 
 int place_of(const Observations& seen, const ConditionResult& condition) {
-    return static_cast<int>(std::find(seen.conditions.begin(), seen.conditions.end(), condition.name) - seen.conditions.begin());
+    return static_cast<int>(std::find(seen.conditions.begin(), seen.conditions.end(), condition.name) -
+                            seen.conditions.begin());
 }
 
 std::vector<PairResult> all_pairs(const Observations& seen, const std::vector<ConditionResult>& conditions,
@@ -214,7 +215,8 @@ void add_ratings(const Answer& like, const std::vector<Answer>& answers, Report&
         report.ratings.push_back({like.condition, like.item, spread_of(numbers), "", n});
         return;
     }
-    for (const auto& [value, count] : texts) report.ratings.push_back({like.condition, like.item, std::nullopt, value, count});
+    for (const auto& [value, count] : texts)
+        report.ratings.push_back({like.condition, like.item, std::nullopt, value, count});
 }
 
 void add_ratings(const std::vector<Answer>& answers, Report& report) {

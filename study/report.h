@@ -50,17 +50,17 @@ struct ConditionResult {
 struct PairResult {
     std::string a;
     std::string b;
-    std::string higher;   // a, b or "" if equal
-    double delta = 0.0;   // |p_a - p_b|
+    std::string higher;  // a, b or "" if equal
+    double delta = 0.0;  // |p_a - p_b|
     double combined_interval = 0.0;
-    bool significant = false;       // delta > combined_interval: the paper's test, without any correction
-    Interval newcombe;              // of p_a - p_b, as if independent
-    double p = 1.0;                 // of the paper's test
-    double p_holm = 1.0;            // corrected for all pairs of the table
+    bool significant = false;            // delta > combined_interval: the paper's test, without any correction
+    Interval newcombe;                   // of p_a - p_b, as if independent
+    double p = 1.0;                      // of the paper's test
+    double p_holm = 1.0;                 // corrected for all pairs of the table
     std::optional<PairedCounts> paired;  // nodules that the same people judged under both conditions
     Interval newcombe_paired;            // of p_a - p_b; with `paired`
     double mcnemar_p = 1.0;
-    std::optional<Interval> bootstrap;   // of p_a - p_b, over participants
+    std::optional<Interval> bootstrap;  // of p_a - p_b, over participants
     int participants_in_both = 0;
 };
 
@@ -89,13 +89,13 @@ struct ReportOptions {
 struct Report {
     ReportOptions options;
     std::vector<ConditionResult> conditions;
-    std::vector<PairResult> pairs;      // sensitivity
+    std::vector<PairResult> pairs;  // sensitivity
     std::vector<PairResult> ppv_pairs;
     std::vector<ChoiceResult> choices;
     std::vector<RatingResult> ratings;
     std::vector<std::string> notes;
     int participants = 0;
-    std::int64_t trials = 0;             // finished tests; 0 for a table of counts
+    std::int64_t trials = 0;  // finished tests; 0 for a table of counts
     std::int64_t practice_trials = 0;
     std::int64_t interrupted_trials = 0;
     bool simulated = false;
@@ -109,7 +109,7 @@ files::Json report_json(const Report& report);
 
 // One table of the report, for a .tsv and for Markdown.
 struct ReportTable {
-    std::string name;   // of the file
+    std::string name;  // of the file
     std::string title;
     std::vector<std::string> columns;
     std::vector<std::vector<std::string>> rows;

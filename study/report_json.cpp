@@ -18,10 +18,11 @@ void add_share(const std::string& key, const std::optional<Share>& share, files:
 
 void add_spread(const char* key, double scale, const std::optional<Spread>& spread, files::Json& json) {
     if (!spread) return;
-    json[key] = {{"n", spread->n},
-                 {"mean", scale * spread->mean},
-                 {"sd", scale * spread->sd},
-                 {"quartiles", {scale * spread->lower_quartile, scale * spread->median, scale * spread->upper_quartile}}};
+    json[key] = {
+        {"n", spread->n},
+        {"mean", scale * spread->mean},
+        {"sd", scale * spread->sd},
+        {"quartiles", {scale * spread->lower_quartile, scale * spread->median, scale * spread->upper_quartile}}};
 }
 
 files::Json condition_json(const ConditionResult& condition) {
@@ -43,21 +44,18 @@ files::Json condition_json(const ConditionResult& condition) {
 
 files::Json pair_json(const PairResult& pair) {
     files::Json json{{"a", pair.a},
-              {"b", pair.b},
-              {"delta", pair.delta},
-              {"higher", pair.higher.empty() ? files::Json(nullptr) : files::Json(pair.higher)},
-              {"combined_interval", pair.combined_interval},
-              {"significant", pair.significant},
-              {"newcombe_ci", interval(pair.newcombe)},
-              {"p", pair.p},
-              {"p_holm", pair.p_holm}};
+                     {"b", pair.b},
+                     {"delta", pair.delta},
+                     {"higher", pair.higher.empty() ? files::Json(nullptr) : files::Json(pair.higher)},
+                     {"combined_interval", pair.combined_interval},
+                     {"significant", pair.significant},
+                     {"newcombe_ci", interval(pair.newcombe)},
+                     {"p", pair.p},
+                     {"p_holm", pair.p_holm}};
     if (pair.paired) {
-        json["paired"] = {{"n", pair.paired->n()},
-                          {"both", pair.paired->both},
-                          {"only_a", pair.paired->only_a},
-                          {"only_b", pair.paired->only_b},
-                          {"neither", pair.paired->neither},
-                          {"newcombe_ci", interval(pair.newcombe_paired)},
+        json["paired"] = {{"n", pair.paired->n()},           {"both", pair.paired->both},
+                          {"only_a", pair.paired->only_a},   {"only_b", pair.paired->only_b},
+                          {"neither", pair.paired->neither}, {"newcombe_ci", interval(pair.newcombe_paired)},
                           {"mcnemar_p", pair.mcnemar_p}};
     }
     if (pair.bootstrap) json["bootstrap_ci"] = interval(*pair.bootstrap);
@@ -70,7 +68,8 @@ files::Json t_json(const TTest& test) {
 }
 
 files::Json choice_json(const ChoiceResult& choice) {
-    files::Json json{{"condition", choice.condition}, {"comparison", choice.comparison.empty() ? files::Json(nullptr) : files::Json(choice.comparison)}};
+    files::Json json{{"condition", choice.condition},
+                     {"comparison", choice.comparison.empty() ? files::Json(nullptr) : files::Json(choice.comparison)}};
     json["correct"] = choice.correct.x.k;
     json["n"] = choice.correct.x.n;
     add_share("share", choice.correct, json);
@@ -113,7 +112,8 @@ files::Json report_json(const Report& report) {
     json["practice_trials"] = report.practice_trials;
     json["interrupted_trials"] = report.interrupted_trials;
     json["conditions"] = files::Json::object();
-    for (const ConditionResult& condition : report.conditions) json["conditions"][condition.name] = condition_json(condition);
+    for (const ConditionResult& condition : report.conditions)
+        json["conditions"][condition.name] = condition_json(condition);
     json["pairs"] = files::Json::array();
     for (const PairResult& pair : report.pairs) json["pairs"].push_back(pair_json(pair));
     json["ppv_pairs"] = files::Json::array();

@@ -75,13 +75,19 @@ ReportTable ppv_table(const Report& report) {
 }
 
 ReportTable pair_table(const char* name, const char* title, const std::vector<PairResult>& pairs) {
-    ReportTable table{name, title,
-                      {"a", "b", "higher", "delta", "combined_interval", "significant", "newcombe_low", "newcombe_high",
-                       "p", "p_holm", "pairs", "paired_low", "paired_high", "mcnemar_p", "bootstrap_low", "bootstrap_high"},
-                      {}};
+    ReportTable table{
+        name,
+        title,
+        {"a", "b", "higher", "delta", "combined_interval", "significant", "newcombe_low", "newcombe_high", "p",
+         "p_holm", "pairs", "paired_low", "paired_high", "mcnemar_p", "bootstrap_low", "bootstrap_high"},
+        {}};
     for (const PairResult& pair : pairs) {
-        Row row{pair.a, pair.b, pair.higher.empty() ? kNone : pair.higher, share_text(pair.delta),
-                share_text(pair.combined_interval), pair.significant ? "yes" : "no"};
+        Row row{pair.a,
+                pair.b,
+                pair.higher.empty() ? kNone : pair.higher,
+                share_text(pair.delta),
+                share_text(pair.combined_interval),
+                pair.significant ? "yes" : "no"};
         add_interval(pair.newcombe, row);
         row.push_back(p_text(pair.p));
         row.push_back(p_text(pair.p_holm));
@@ -95,9 +101,12 @@ ReportTable pair_table(const char* name, const char* title, const std::vector<Pa
 }
 
 ReportTable trial_table(const Report& report) {
-    ReportTable table{"trials", "Time, path and force per trial",
-                      {"condition", "quantity", "n", "mean", "sd", "lower_quartile", "median", "upper_quartile"}, {}};
-    const auto add = [&](const ConditionResult& condition, const char* name, double scale, const std::optional<Spread>& s) {
+    ReportTable table{"trials",
+                      "Time, path and force per trial",
+                      {"condition", "quantity", "n", "mean", "sd", "lower_quartile", "median", "upper_quartile"},
+                      {}};
+    const auto add = [&](const ConditionResult& condition, const char* name, double scale,
+                         const std::optional<Spread>& s) {
         if (!s) return;
         table.rows.push_back({condition.name, name, whole(s->n), fixed(scale * s->mean, 3), fixed(scale * s->sd, 3),
                               fixed(scale * s->lower_quartile, 3), fixed(scale * s->median, 3),
@@ -113,8 +122,7 @@ ReportTable trial_table(const Report& report) {
 }
 
 ReportTable choice_table(const Report& report) {
-    ReportTable table{"choices", "Forced choices against chance (0.5)",
-                      share_columns({"condition", "comparison"}), {}};
+    ReportTable table{"choices", "Forced choices against chance (0.5)", share_columns({"condition", "comparison"}), {}};
     for (const char* column : {"binomial_p", "t_participants", "df", "p_participants", "t_answers", "p_answers"}) {
         table.columns.emplace_back(column);
     }
@@ -135,12 +143,15 @@ ReportTable choice_table(const Report& report) {
 }
 
 ReportTable rating_table(const Report& report) {
-    ReportTable table{"ratings", "Answers of the participants",
-                      {"condition", "item", "answer", "n", "mean", "sd", "lower_quartile", "median", "upper_quartile"}, {}};
+    ReportTable table{"ratings",
+                      "Answers of the participants",
+                      {"condition", "item", "answer", "n", "mean", "sd", "lower_quartile", "median", "upper_quartile"},
+                      {}};
     for (const RatingResult& r : report.ratings) {
         Row row{r.condition, r.item, r.spread ? "scale" : r.value, whole(r.n)};
         const Spread s = r.spread.value_or(Spread{});
-        for (const double x : {s.mean, s.sd, s.lower_quartile, s.median, s.upper_quartile}) row.push_back(r.spread ? fixed(x, 2) : kNone);
+        for (const double x : {s.mean, s.sd, s.lower_quartile, s.median, s.upper_quartile})
+            row.push_back(r.spread ? fixed(x, 2) : kNone);
         table.rows.push_back(row);
     }
     return table;

@@ -26,7 +26,8 @@ inline void append_field(std::int64_t value, std::string& row) {
 template <class Row>
 std::string header_of() {
     std::string header;
-    visit_fields(Row{}, [&](std::string_view name, auto&&...) { header.append(header.empty() ? "" : "\t").append(name); });
+    visit_fields(Row{},
+                 [&](std::string_view name, auto&&...) { header.append(header.empty() ? "" : "\t").append(name); });
     return header + "\n";
 }
 

@@ -43,13 +43,17 @@ void write_if_absent(const std::filesystem::path& path, const std::string& text)
 }  // namespace
 
 void prepare_dataset(const std::filesystem::path& directory) {
-    write_if_absent(directory / ".bidsignore", "*_samples.tsv\n*_samples.json\n*_marks.tsv\n*_marks.json\n*_settings.json\n*_performance.json\nstudy.json\nprotocol.json\nsub-*/now.json\n");
-    write_if_absent(directory / "dataset_description.json", files::json_text({{"Name", "Palpa"}, {"BIDSVersion", "1.8.0"}}));
+    write_if_absent(directory / ".bidsignore",
+                    "*_samples.tsv\n*_samples.json\n*_marks.tsv\n*_marks.json\n*_settings.json\n*_performance."
+                    "json\nstudy.json\nprotocol.json\nsub-*/now.json\n");
+    write_if_absent(directory / "dataset_description.json",
+                    files::json_text({{"Name", "Palpa"}, {"BIDSVersion", "1.8.0"}}));
 }
 
 void explain_samples_once(const std::filesystem::path& json) { write_if_absent(json, explanation_of<SampleRow>()); }
 
-RunFiles next_run(const std::filesystem::path& directory, std::string_view participant, std::string_view task, int first) {
+RunFiles next_run(const std::filesystem::path& directory, std::string_view participant, std::string_view task,
+                  int first) {
     const bool plain = !participant.empty() && std::all_of(participant.begin(), participant.end(), [](char c) {
         return (c >= '0' && c <= '9') || (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z');
     });
@@ -65,7 +69,8 @@ RunFiles next_run(const std::filesystem::path& directory, std::string_view parti
         char number[16];
         std::snprintf(number, sizeof number, "%02d", run);
         files.stem = subject + "_task-" + std::string(task) + "_run-" + number;
-        const bool taken = std::filesystem::exists(files.file("_samples.tsv")) || std::filesystem::exists(files.file("_settings.json")) ||
+        const bool taken = std::filesystem::exists(files.file("_samples.tsv")) ||
+                           std::filesystem::exists(files.file("_settings.json")) ||
                            std::filesystem::exists(files.file("_events.tsv"));
         if (!taken) return files;
     }

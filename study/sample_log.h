@@ -53,14 +53,14 @@ void prepare_dataset(const std::filesystem::path& directory);
 void explain_samples_once(const std::filesystem::path& json);
 
 class SampleLog {
- public:
+  public:
     explicit SampleLog(const RunFiles& files, bool sidecar = true);
     void write(const SampleRow& row);  // allocates nothing after the first row
     bool flush() { return file_.flush(); }
     bool sync() { return file_.sync(); }
     bool failed() const { return file_.failed(); }
 
- private:
+  private:
     files::AppendFile file_;
     std::string row_;
 };

@@ -89,7 +89,8 @@ double distance_m(const Target& target, const MarkedPlace& mark) {
 Score score_marks(std::span<const Target> targets, std::span<const MarkedPlace> marks) {
     Score score;
     score.marks.resize(marks.size());
-    std::vector<std::vector<double>> cost(targets.size(), std::vector<double>(marks.size() + targets.size(), kNoMark_m));
+    std::vector<std::vector<double>> cost(targets.size(),
+                                          std::vector<double>(marks.size() + targets.size(), kNoMark_m));
     for (std::size_t t = 0; t < targets.size(); ++t) {
         for (std::size_t m = 0; m < marks.size(); ++m) {
             const double d_m = distance_m(targets[t], marks[m]);

@@ -7,14 +7,14 @@
 namespace palpa::study {
 namespace {
 
-constexpr double kMargin = 0.92;          // share of the surface that the search covers
-constexpr double kCheck_m = 12e-3;        // strokes over a place in doubt go so far to each side
-constexpr double kMarked_m = 14e-3;       // no second look so near a mark
-constexpr double kDismissed_m = 6e-3;     // nor so near a place that was looked at in vain
-constexpr double kMoreForce = 1.15;       // on a place in doubt, as masters of palpation do (Laufer 2024)
-constexpr double kPressing_s = 0.25;      // until a press has its full force
-constexpr double kExponent = 0.6;         // depth ~ force^0.6: between a flat punch and a sphere
-constexpr double kCompliance_s = 3.0;     // what is plain tissue is learned over so long
+constexpr double kMargin = 0.92;       // share of the surface that the search covers
+constexpr double kCheck_m = 12e-3;     // strokes over a place in doubt go so far to each side
+constexpr double kMarked_m = 14e-3;    // no second look so near a mark
+constexpr double kDismissed_m = 6e-3;  // nor so near a place that was looked at in vain
+constexpr double kMoreForce = 1.15;    // on a place in doubt, as masters of palpation do (Laufer 2024)
+constexpr double kPressing_s = 0.25;   // until a press has its full force
+constexpr double kExponent = 0.6;      // depth ~ force^0.6: between a flat punch and a sphere
+constexpr double kCompliance_s = 3.0;  // what is plain tissue is learned over so long
 
 double distance_m(const ScreenPlace& a, const ScreenPlace& b) { return std::hypot(a.x_m - b.x_m, a.y_m - b.y_m); }
 
@@ -48,8 +48,8 @@ std::vector<ScreenPlace> spiral(const SimulatedPerson& person) {
 }
 
 void plan_pass(SimulatedPerson& person) {
-    std::vector<ScreenPlace> pass = person.traits.path == SearchPath::strips ? strips(person, person.passes % 2 == 0)
-                                                                           : spiral(person);
+    std::vector<ScreenPlace> pass =
+        person.traits.path == SearchPath::strips ? strips(person, person.passes % 2 == 0) : spiral(person);
     if (person.passes % 4 >= 2) std::reverse(pass.begin(), pass.end());
     ++person.passes;
     person.way.assign(pass.rbegin(), pass.rend());
@@ -78,7 +78,8 @@ double press_N(SimulatedPerson& person) {
     const double tremor = 1.0 + traits.tremor * std::sin(2.0 * std::numbers::pi * traits.tremor_Hz * person.t_s) +
                           0.01 * person.random.normal();
     const double ramp = std::min(1.0, (person.t_s + 0.02) / kPressing_s);
-    return std::max(0.0, traits.force_N * sway * tremor * ramp * (person.check != SimulatedPerson::Check::none ? kMoreForce : 1.0));
+    return std::max(
+        0.0, traits.force_N * sway * tremor * ramp * (person.check != SimulatedPerson::Check::none ? kMoreForce : 1.0));
 }
 
 bool is_settled(const ScreenPlace& place, const SimulatedPerson& person) {
@@ -202,7 +203,8 @@ Move move(double dt_s, SimulatedPerson& person) {
         person.t_s += dt_s;
         go(person.traits.speed_m_per_s * dt_s, person);
     }
-    if (person.check != SimulatedPerson::Check::none && person.way.size() <= person.way_before) go_on_with_check(person, out);
+    if (person.check != SimulatedPerson::Check::none && person.way.size() <= person.way_before)
+        go_on_with_check(person, out);
     if (person.way.empty()) plan_pass(person);
     out.at = {person.at.x_m + person.traits.jitter_m * person.random.normal(),
               person.at.y_m + person.traits.jitter_m * person.random.normal()};

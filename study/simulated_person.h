@@ -23,26 +23,26 @@ enum class SearchPath { strips, spiral };
 // What differs from person to person.
 struct PersonTraits {
     SearchPath path = SearchPath::strips;
-    double spacing_m = 12e-3;     // of strips or turns: about a fingertip
+    double spacing_m = 12e-3;  // of strips or turns: about a fingertip
     double speed_m_per_s = 35e-3;
-    double force_N = 2.5;         // aimed at while searching; on a place in doubt 15 % more
-    double sway = 0.1;            // slow change of the force, share
-    double tremor = 0.03;         // 8 to 12 Hz, share of the force
+    double force_N = 2.5;  // aimed at while searching; on a place in doubt 15 % more
+    double sway = 0.1;     // slow change of the force, share
+    double tremor = 0.03;  // 8 to 12 Hz, share of the force
     double tremor_Hz = 10.0;
     double jitter_m = 0.1e-3;     // of the hand, rms
     double lag_noise_m = 0.1e-3;  // of the eye, after looking for `look_s`
     double dent_noise = 0.2;      // of the dent against the force that is felt, share
     double dent_weight = 0.4;     // beside the lag's 1
     double look_s = 0.12;
-    double criterion = 3.5;       // in noise: what is taken for something
+    double criterion = 3.5;  // in noise: what is taken for something
 };
 
 // `deep_N`: the force that the force bar shows as deep; `greatest_N`: the most that the device can tell.
 PersonTraits draw_person(double deep_N, double greatest_N, Random& random);
 
 struct Sight {
-    double lag_m = 0.0;      // avatar behind the pen
-    double depth_m = 0.0;    // of the dent; with dent_shown
+    double lag_m = 0.0;    // avatar behind the pen
+    double depth_m = 0.0;  // of the dent; with dent_shown
     bool dent_shown = false;
 };
 
@@ -54,7 +54,7 @@ struct Move {
     bool began = false;      // the pen comes down with this move
     Deed deed = Deed::none;  // after the move
     ScreenPlace mark;
-    int confidence = 0;      // 1 ... 5, of the mark
+    int confidence = 0;  // 1 ... 5, of the mark
 };
 
 struct SettledPlace {
@@ -70,28 +70,28 @@ struct SimulatedPerson {
     double limit_s = 60.0;
     double t_s = 0.0;
     bool down = false;
-    ScreenPlace at;             // the hand, without jitter
+    ScreenPlace at;                // the hand, without jitter
     std::vector<ScreenPlace> way;  // still to go, last first
     int passes = 0;
     // the eye
     double lag_seen_m = 0.0;
-    double lag_noise = 0.0;     // standard normal, remembered for look_s
+    double lag_noise = 0.0;  // standard normal, remembered for look_s
     double dent_seen = 0.0;
     double dent_noise = 0.0;
-    double compliance = 0.0;    // mean of log(depth / force^0.6) so far
+    double compliance = 0.0;  // mean of log(depth / force^0.6) so far
     bool has_compliance = false;
     double felt_N = 0.0;
     // a place in doubt
     enum class Check { none, along_x, along_y };
     Check check = Check::none;
-    std::size_t way_before = 0; // length of `way` when the check began, with the place to go back to
-    ScreenPlace doubt;          // where it is thought to be
-    double weight = 0.0;        // of the evidence in this half of the check
+    std::size_t way_before = 0;  // length of `way` when the check began, with the place to go back to
+    ScreenPlace doubt;           // where it is thought to be
+    double weight = 0.0;         // of the evidence in this half of the check
     ScreenPlace weighted;
-    double best = 0.0;          // strongest evidence of the check
-    int passes_over = 0;        // separate times that the evidence passed the criterion, in this half
-    int passes_before = 0;      // in the half before
-    double moved_m = 0.0;       // how far that half had moved the place
+    double best = 0.0;      // strongest evidence of the check
+    int passes_over = 0;    // separate times that the evidence passed the criterion, in this half
+    int passes_before = 0;  // in the half before
+    double moved_m = 0.0;   // how far that half had moved the place
     int halves = 0;
     bool above = false;
     std::vector<SettledPlace> settled;  // marked, or looked at and dismissed

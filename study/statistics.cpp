@@ -149,7 +149,8 @@ double exact_binomial_p(const Proportion& x, double chance) {
 double incomplete_beta(double a, double b, double x) {
     if (x <= 0.0) return 0.0;
     if (x >= 1.0) return 1.0;
-    const double log_front = std::lgamma(a + b) - std::lgamma(a) - std::lgamma(b) + a * std::log(x) + b * std::log1p(-x);
+    const double log_front =
+        std::lgamma(a + b) - std::lgamma(a) - std::lgamma(b) + a * std::log(x) + b * std::log1p(-x);
     if (x > (a + 1.0) / (a + b + 2.0)) return 1.0 - std::exp(log_front) / b * beta_fraction(b, a, 1.0 - x);
     return std::exp(log_front) / a * beta_fraction(a, b, x);
 }

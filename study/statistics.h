@@ -49,7 +49,7 @@ double combined_p(const Proportion& a, const Proportion& b);
 
 // The same items judged under two conditions.
 struct PairedCounts {
-    std::int64_t both = 0;    // found under both
+    std::int64_t both = 0;  // found under both
     std::int64_t only_a = 0;
     std::int64_t only_b = 0;
     std::int64_t neither = 0;
@@ -70,10 +70,10 @@ double exact_binomial_p(const Proportion& x, double chance);
 // Student's t against a mean that chance would give.
 struct TTest {
     double mean = 0.0;
-    double t = 0.0;       // infinite where all values are the same and not `chance`
+    double t = 0.0;  // infinite where all values are the same and not `chance`
     double df = 0.0;
-    double p = 1.0;       // two-sided
-    Interval ci;          // of the mean
+    double p = 1.0;  // two-sided
+    Interval ci;     // of the mean
 };
 TTest t_test(std::span<const double> values, double chance, double level);  // two values at least
 

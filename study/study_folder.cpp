@@ -22,7 +22,8 @@ constexpr const char* kPeopleHeader =
 
 std::string line_of(const Person& p) {
     std::string line = "sub-" + p.code;
-    for (const std::string* field : {&p.age, &p.sex, &p.handedness, &p.vision, &p.palpation_experience, &p.vr_experience, &p.group}) {
+    for (const std::string* field :
+         {&p.age, &p.sex, &p.handedness, &p.vision, &p.palpation_experience, &p.vr_experience, &p.group}) {
         line += "\t";
         for (const char c : *field) line.push_back(static_cast<unsigned char>(c) < 0x20 ? ' ' : c);
     }
@@ -43,15 +44,16 @@ bool has_logs(const fs::path& directory) {
 void check_same(const fs::path& file, const StudyIdentity& found, const Protocol& protocol, const StudyKind& kind) {
     if (found.sha256 != protocol.sha256) {
         throw files::bad_input(file.string(), "sha256",
-                        files::shown(found.name) + " " + version_text(found.version, found.sha256),
-                        files::shown(protocol.name) + " " + version_text(protocol.version, protocol.sha256) +
-                            ": two versions of a protocol never share a folder");
+                               files::shown(found.name) + " " + version_text(found.version, found.sha256),
+                               files::shown(protocol.name) + " " + version_text(protocol.version, protocol.sha256) +
+                                   ": two versions of a protocol never share a folder");
     }
     const auto told = [](const StudyKind& k) {
         return k.simulated ? "simulated participants of seed " + std::to_string(k.seed) : std::string("people");
     };
     if (found.kind.simulated != kind.simulated || found.kind.seed != kind.seed) {
-        throw files::bad_input(file.string(), "simulated", told(found.kind), told(kind) + ": they never share a folder");
+        throw files::bad_input(file.string(), "simulated", told(found.kind),
+                               told(kind) + ": they never share a folder");
     }
 }
 
@@ -61,21 +63,19 @@ void open_study(const fs::path& directory, const Protocol& protocol, const Study
     std::error_code error;
     fs::create_directories(directory, error);
     if (error || !fs::is_directory(directory)) {
-        throw std::runtime_error(directory.string() + ": cannot be made: " + (error ? error.message() : "a file is in the way"));
+        throw std::runtime_error(directory.string() +
+                                 ": cannot be made: " + (error ? error.message() : "a file is in the way"));
     }
     const fs::path file = directory / "study.json";
     if (const auto found = read_identity(directory)) return check_same(file, *found, protocol, kind);
     if (has_logs(directory)) {
-        throw files::bad_input(directory.string(), "", "logs (sub-...) but no study.json", "an empty folder, or one of this protocol");
+        throw files::bad_input(directory.string(), "", "logs (sub-...) but no study.json",
+                               "an empty folder, or one of this protocol");
     }
     prepare_log_folder(directory);
     files::write_text_atomically(directory / "protocol.json", protocol.text);
-    files::Json json{{"protocol", protocol.name},
-              {"version", protocol.version},
-              {"sha256", protocol.sha256},
-              {"simulated", kind.simulated},
-              {"simulation_seed", kind.seed},
-              {"program", kind.program}};
+    files::Json json{{"protocol", protocol.name},   {"version", protocol.version},  {"sha256", protocol.sha256},
+                     {"simulated", kind.simulated}, {"simulation_seed", kind.seed}, {"program", kind.program}};
     files::write_text_atomically(file, files::json_text(json));  // last: from here on the folder is a study
 }
 
@@ -106,7 +106,8 @@ std::vector<Person> read_people(const fs::path& directory, std::vector<std::stri
     return people_in(files::read_text(file), file.string(), notes);
 }
 
-std::vector<Person> people_in(std::string_view participants_tsv, const std::string& file_name, std::vector<std::string>& notes) {
+std::vector<Person> people_in(std::string_view participants_tsv, const std::string& file_name,
+                              std::vector<std::string>& notes) {
     std::vector<Person> people;
     std::string_view rest = whole_lines(participants_tsv, file_name, notes);
     std::map<std::string, int> first_line;
@@ -126,8 +127,9 @@ std::vector<Person> people_in(std::string_view participants_tsv, const std::stri
         people.push_back({field(0).substr(4), field(1), field(2), field(3), field(4), field(5), field(6), field(7)});
         const auto [it, fresh] = first_line.emplace(people.back().code, line);
         if (!fresh) {
-            throw files::bad_input(file_name, "line " + std::to_string(line) + ", participant_id", files::shown(fields[0]),
-                            "it once: line " + std::to_string(it->second) + " has the same code");
+            throw files::bad_input(file_name, "line " + std::to_string(line) + ", participant_id",
+                                   files::shown(fields[0]),
+                                   "it once: line " + std::to_string(it->second) + " has the same code");
         }
     }
     return people;

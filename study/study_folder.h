@@ -14,8 +14,8 @@ namespace palpa::study {
 
 struct StudyKind {
     bool simulated = false;
-    std::uint64_t seed = 0;      // of the simulation
-    std::string program;         // and version
+    std::uint64_t seed = 0;  // of the simulation
+    std::string program;     // and version
 };
 
 // Makes the folder, or goes on in one of the same protocol and kind. Throws InputError naming both versions if another
@@ -43,7 +43,8 @@ struct Person {
 // In the order of the file. A last line that was cut off is left out and noted. Throws InputError for a code that
 // stands twice.
 std::vector<Person> read_people(const std::filesystem::path& directory, std::vector<std::string>& notes);
-std::vector<Person> people_in(std::string_view participants_tsv, const std::string& file_name, std::vector<std::string>& notes);
+std::vector<Person> people_in(std::string_view participants_tsv, const std::string& file_name,
+                              std::vector<std::string>& notes);
 
 // Adds those whose codes are not there yet, on the disk when it returns. Throws std::runtime_error if it cannot.
 void add_people(const std::filesystem::path& directory, const std::vector<Person>& people);
@@ -56,8 +57,8 @@ std::optional<PlannedTrial> next_trial(const PlannedParticipant& plan, const std
 
 // Where a participant stands: what a screen needs to begin, or to go on after a crash.
 struct StudyProgress {
-    bool known = false;           // the code is in participants.tsv already
-    PlannedParticipant plan;      // of the place that the code has there, or of the next free one
+    bool known = false;       // the code is in participants.tsv already
+    PlannedParticipant plan;  // of the place that the code has there, or of the next free one
     std::set<int> finished;
     std::optional<PlannedTrial> next;  // nothing: everything is done
 };

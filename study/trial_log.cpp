@@ -9,12 +9,15 @@ template <class Visit>
 void visit_fields(const EventRow& r, Visit&& visit) {
     visit("onset", r.onset_s, "s", "since the trial began");
     visit("duration", r.duration_s, "s", "of the trial, on the row finish");
-    visit("trial_type", r.trial_type, "", "start, mark, confidence, undo, finish; hidden and shown: the app was out of sight in between; device_gone: what the trial "
+    visit("trial_type", r.trial_type, "",
+          "start, mark, confidence, undo, finish; hidden and shown: the app was out of sight in between; device_gone: "
+          "what the trial "
           "is done with was unplugged; interrupted: it ended without finish");
     visit("block", r.block, "", "practice (nodules shown) or test (hidden)");
     visit("trial", r.trial, "", "number of the trial");
     visit("order_id", r.order_id, "", "row of the protocol's order");
-    visit("condition", r.condition, "", "of the protocol; without one the law of the avatar: display_ratio, delay or none");
+    visit("condition", r.condition, "",
+          "of the protocol; without one the law of the avatar: display_ratio, delay or none");
     visit("device_id", r.device_id, "", "pen, touch screen or mouse");
     visit("calibration_id", r.calibration_id, "", "profile of the pressure");
     visit("map_id", r.map_id, "", "tissue");

@@ -35,7 +35,7 @@ struct EventRow {
     double true_positives = kMissing;
     double false_positives = kMissing;
     double false_negatives = kMissing;
-    double path_mm = kMissing;        // these three on the row finish: of the pen while it presses
+    double path_mm = kMissing;  // these three on the row finish: of the pen while it presses
     double mean_force_N = kMissing;
     double max_force_N = kMissing;
     double x_mm = kMissing;  // of a mark, so that a trial that is broken off has its places too
@@ -89,7 +89,7 @@ struct LogOptions {
 };
 
 class TrialLog {
- public:
+  public:
     explicit TrialLog(const RunFiles& files, const LogOptions& options = {});
     // Return false once anything could not be written.
     bool write(const EventRow& row);
@@ -98,7 +98,7 @@ class TrialLog {
     bool sync_events() { return events_.sync(); }
     bool failed() const { return events_.failed() || marks_.failed(); }
 
- private:
+  private:
     files::AppendFile events_;
     files::AppendFile marks_;
     std::string line_;
@@ -107,11 +107,11 @@ class TrialLog {
 
 // Choices of one participant, each on the disk when write() returns.
 class ChoiceLog {
- public:
+  public:
     explicit ChoiceLog(const RunFiles& files);
     bool write(const ChoiceRow& row);
 
- private:
+  private:
     files::AppendFile file_;
     std::string line_;
 };

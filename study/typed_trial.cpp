@@ -9,12 +9,14 @@ namespace palpa::study {
 namespace {
 
 files::Json settings_of(const TrialLabel& label, const std::vector<std::string>& nodules) {
-    files::Json json{{"study", label.study}, {"answers", "typed in by the experimenter"}, {"nodules", files::Json::array()}};
+    files::Json json{
+        {"study", label.study}, {"answers", "typed in by the experimenter"}, {"nodules", files::Json::array()}};
     for (const std::string& id : nodules) json["nodules"].push_back({{"id", id}});
     return json;
 }
 
-bool write_marks(const TrialLabel& label, const std::vector<std::string>& nodules, const TypedAnswers& answers, TrialLog& log) {
+bool write_marks(const TrialLabel& label, const std::vector<std::string>& nodules, const TypedAnswers& answers,
+                 TrialLog& log) {
     MarkRow row;
     row.onset_s = answers.duration_s;  // when each was said is not known
     row.trial = label.trial;
@@ -42,7 +44,8 @@ bool write_marks(const TrialLabel& label, const std::vector<std::string>& nodule
 }  // namespace
 
 int found_of(const TypedAnswers& answers) {
-    const auto named = std::count_if(answers.nodules.begin(), answers.nodules.end(), [](int said) { return said != kMissed; });
+    const auto named =
+        std::count_if(answers.nodules.begin(), answers.nodules.end(), [](int said) { return said != kMissed; });
     return answers.found + static_cast<int>(named);
 }
 

@@ -1,16 +1,15 @@
 #pragma once
 // A folder of a test's own, gone when the test ends.
 
-#include <stdlib.h>
-
 #include <filesystem>
 #include <stdexcept>
+#include <stdlib.h>
 #include <string>
 
 namespace palpa::test {
 
 class TemporaryFolder {
- public:
+  public:
     TemporaryFolder() {
         std::string name = (std::filesystem::temp_directory_path() / "palpa-test-XXXXXX").string();
         if (::mkdtemp(name.data()) == nullptr) throw std::runtime_error(name + ": cannot be made");
@@ -25,7 +24,7 @@ class TemporaryFolder {
     std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
     const std::filesystem::path& path() const { return path_; }
 
- private:
+  private:
     std::filesystem::path path_;
 };
 

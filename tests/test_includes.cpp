@@ -1,7 +1,6 @@
 // Who may include whom: the table of folders, checked on every #include of the sources.
 
 #include <doctest/doctest.h>
-
 #include <filesystem>
 #include <fstream>
 #include <map>
@@ -24,24 +23,31 @@ const std::map<std::string, std::set<std::string>> kMayInclude{
     {"stiffnessmaps/generate", {"stiffnessmaps", "files", "mechanics"}},
     {"mechanics", {}},
     {"avatar", {}},
-    {"scene", {"files", "platform/sample.h", "platform/timeline.h", "calibration", "stiffnessmaps", "mechanics", "avatar"}},
+    {"scene",
+     {"files", "platform/sample.h", "platform/timeline.h", "calibration", "stiffnessmaps", "mechanics", "avatar"}},
     {"render", {"platform"}},
     {"devices", {"files", "platform"}},
     {"study", {"files"}},
-    {"session", {"files", "platform/sample.h", "platform/timeline.h", "platform/trace.h", "calibration", "scene", "study"}},
+    {"session",
+     {"files", "platform/sample.h", "platform/timeline.h", "platform/trace.h", "calibration", "scene", "study"}},
     {"fem", {"files", "mechanics"}},
     {"figures", {"files", "stiffnessmaps", "calibration", "study"}},
-    {"accuracy", {"files", "platform", "calibration", "stiffnessmaps", "mechanics", "avatar", "scene", "devices", "study", "session", "fem",
-                  "figures"}},
+    {"accuracy",
+     {"files", "platform", "calibration", "stiffnessmaps", "mechanics", "avatar", "scene", "devices", "study",
+      "session", "fem", "figures"}},
     {"desk", {"files", "study"}},
     // the rooms of the app
     {"app", {"files", "scene", "app/commands/command_line.h"}},
     {"app/study", {"app/assets.h", "app/scene_choices.h", "files", "platform", "scene", "session", "study"}},
-    {"app/screens", {"app/assets.h", "app/scene_choices.h", "app/study", "files", "platform", "calibration", "stiffnessmaps", "mechanics", "scene",
-                     "render", "study", "session", "figures"}},
-    {"app/live", {"app/assets.h", "app/scene_choices.h", "app/screens", "app/study", "files", "platform", "scene", "render", "study", "session"}},
-    {"app/commands", {"app", "files", "platform", "calibration", "stiffnessmaps", "mechanics", "avatar", "scene", "render", "devices",
-                      "study", "session", "fem", "figures", "accuracy", "desk"}},
+    {"app/screens",
+     {"app/assets.h", "app/scene_choices.h", "app/study", "files", "platform", "calibration", "stiffnessmaps",
+      "mechanics", "scene", "render", "study", "session", "figures"}},
+    {"app/live",
+     {"app/assets.h", "app/scene_choices.h", "app/screens", "app/study", "files", "platform", "scene", "render",
+      "study", "session"}},
+    {"app/commands",
+     {"app", "files", "platform", "calibration", "stiffnessmaps", "mechanics", "avatar", "scene", "render", "devices",
+      "study", "session", "fem", "figures", "accuracy", "desk"}},
     {"app/web", {"app", "files", "platform", "calibration", "scene", "render", "study", "session"}},
 };
 
@@ -86,7 +92,8 @@ void for_each_source(const Check& check) {
         if (folder.find('/') != std::string::npos || !fs::exists(root / folder)) continue;
         for (const auto& entry : fs::recursive_directory_iterator(root / folder)) {
             const std::string extension = entry.path().extension().string();
-            if (extension == ".h" || extension == ".cpp") check(entry.path(), row_of(fs::relative(entry.path(), root).string()));
+            if (extension == ".h" || extension == ".cpp")
+                check(entry.path(), row_of(fs::relative(entry.path(), root).string()));
         }
     }
 }
@@ -103,7 +110,8 @@ TEST_CASE("includes: every #include is in the table of folders") {
             ++checked;
             CAPTURE(source.string());
             CAPTURE(name);
-            CHECK_MESSAGE(fs::exists(fs::path(PALPA_SOURCE_DIR) / name), "includes are written from the root of the project");
+            CHECK_MESSAGE(fs::exists(fs::path(PALPA_SOURCE_DIR) / name),
+                          "includes are written from the root of the project");
             CHECK(allowed(row, name));
         }
     });
@@ -124,7 +132,8 @@ TEST_CASE("includes: the table refuses what it must") {
 
 // Two types of one name link without a word, and one of them gets the other's functions.
 TEST_CASE("names: no two headers define the same type") {
-    static const std::regex opens("namespace ([a-z:]+) \\{"), type("(struct|class|enum class) ([A-Z][A-Za-z0-9]+)[^;]*\\{.*");
+    static const std::regex opens("namespace ([a-z:]+) \\{"),
+        type("(struct|class|enum class) ([A-Z][A-Za-z0-9]+)[^;]*\\{.*");
     std::map<std::string, std::string> defined;
     for_each_source([&](const fs::path& source, const std::string&) {
         if (source.extension() != ".h" || source.parent_path().filename() == "web") return;  // those of other systems

@@ -6,9 +6,9 @@
 
 #include "app/commands/command_line.h"
 #include "app/scene_choices.h"
+#include "files/regular_file.h"
 #include "session/plan_in_progress.h"
 #include "session/raster_trace.h"
-#include "files/regular_file.h"
 
 namespace palpa::app {
 namespace {

@@ -27,7 +27,7 @@ void make_folder(const std::filesystem::path& folder) {
     std::filesystem::create_directories(folder, error);
     if (error || !std::filesystem::is_directory(folder))
         throw files::InputError("-o " + folder.string() + ": found " + (error ? error.message() : "a file") +
-                         ", expected a folder or a name for one");
+                                ", expected a folder or a name for one");
 }
 
 void run_accuracy(const Options& options) {
@@ -45,7 +45,8 @@ void run_accuracy(const Options& options) {
         std::printf("%s\n", accuracy::accuracy_json(rows, machine).dump(2).c_str());
     } else {
         std::printf("%s, %u threads, load %s, %s\n%s", machine.processor.c_str(), machine.threads,
-                    files::short_number(machine.load).c_str(), machine.date.c_str(), accuracy::accuracy_table(rows).c_str());
+                    files::short_number(machine.load).c_str(), machine.date.c_str(),
+                    accuracy::accuracy_table(rows).c_str());
     }
     if (options.folder.empty()) return;
     files::write_text_atomically(std::filesystem::path(options.folder) / "mechanics.csv", accuracy::accuracy_csv(rows));

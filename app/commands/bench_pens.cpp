@@ -47,16 +47,18 @@ struct Contestant {
     std::optional<calibration::CurveModel> model;
     std::optional<calibration::ErrorModel> error;
     calibration::Robust robust = calibration::Robust::huber;
-    bool all_rows = false;   // nothing is left out at the ends, and a cubic has a knot for each level
+    bool all_rows = false;  // nothing is left out at the ends, and a cubic has a knot for each level
 };
 
 const Contestant kContestants[] = {
-    {"exponential, newton, plain (as printed)", calibration::CurveModel::exponential, calibration::ErrorModel::newton, calibration::Robust::none, true},
+    {"exponential, newton, plain (as printed)", calibration::CurveModel::exponential, calibration::ErrorModel::newton,
+     calibration::Robust::none, true},
     {"exponential, log", calibration::CurveModel::exponential, calibration::ErrorModel::log},
     {"exponential_offset, newton", calibration::CurveModel::exponential_offset, calibration::ErrorModel::newton},
     {"exponential_offset, log", calibration::CurveModel::exponential_offset, calibration::ErrorModel::log},
     {"power, log", calibration::CurveModel::power, calibration::ErrorModel::log},
-    {"monotone_cubic, a knot for each level", calibration::CurveModel::monotone_cubic, calibration::ErrorModel::log, calibration::Robust::huber, true},
+    {"monotone_cubic, a knot for each level", calibration::CurveModel::monotone_cubic, calibration::ErrorModel::log,
+     calibration::Robust::huber, true},
     {"auto", std::nullopt, std::nullopt},
 };
 
@@ -69,15 +71,21 @@ struct Errors {
 constexpr calibration::LevelRange kRange{0.0, 1.0};
 
 std::optional<calibration::Curve> fitted(const Contestant& contestant, const calibration::CalibrationRows& rows) {
-    const calibration::FitPoints points = contestant.all_rows ? calibration::fit_points(rows, {-1.0, 1.0}, {}) : calibration::fit_points(rows, kRange, calibration::ends_of(rows, kRange));
-    if (contestant.all_rows && contestant.model == calibration::CurveModel::monotone_cubic) return calibration::fit_cubic(points, calibration::cubic_bins(points, 0));
-    const calibration::Candidate best = calibration::choose(points, calibration::candidates(points, contestant.model, contestant.error, contestant.robust, kRange.highest), contestant.error);
+    const calibration::FitPoints points =
+        contestant.all_rows ? calibration::fit_points(rows, {-1.0, 1.0}, {})
+                            : calibration::fit_points(rows, kRange, calibration::ends_of(rows, kRange));
+    if (contestant.all_rows && contestant.model == calibration::CurveModel::monotone_cubic)
+        return calibration::fit_cubic(points, calibration::cubic_bins(points, 0));
+    const calibration::Candidate best = calibration::choose(
+        points, calibration::candidates(points, contestant.model, contestant.error, contestant.robust, kRange.highest),
+        contestant.error);
     if (best.predicted_N.size() == 0) return std::nullopt;
     return calibration::fit_curve(points, best.options);
 }
 
 // Fits to the rows 2, 4, ... of a session (or 1, 3, ...), and judges on the others.
-void judge(const Contestant& contestant, const Session& session, std::size_t first_fitted, bool silent_too, Errors& errors) {
+void judge(const Contestant& contestant, const Session& session, std::size_t first_fitted, bool silent_too,
+           Errors& errors) {
     calibration::CalibrationRows rows;
     for (std::size_t i = first_fitted; i < session.level.size(); i += 2) {
         rows.level.push_back(session.level[i]);
@@ -99,15 +107,20 @@ void judge(const Contestant& contestant, const Session& session, std::size_t fir
 
 files::Json row_json(const char* name, Errors& errors) {
     return {{"curve", name},
-            {"n_light", errors.light.size()}, {"median_light", calibration::quantile(errors.light, 0.5)}, {"p90_light", calibration::quantile(errors.light, 0.9)},
-            {"n_firm", errors.firm.size()}, {"median_firm", calibration::quantile(errors.firm, 0.5)}, {"p90_firm", calibration::quantile(errors.firm, 0.9)},
+            {"n_light", errors.light.size()},
+            {"median_light", calibration::quantile(errors.light, 0.5)},
+            {"p90_light", calibration::quantile(errors.light, 0.9)},
+            {"n_firm", errors.firm.size()},
+            {"median_firm", calibration::quantile(errors.firm, 0.5)},
+            {"p90_firm", calibration::quantile(errors.firm, 0.9)},
             {"failed", errors.failed}};
 }
 
 void print_row(const files::Json& row) {
     const auto percent = [&](const char* key) { return 100.0 * row[key].get<double>(); };
-    std::printf("  %-42s %7.2f %7.1f    %7.2f %7.2f %8d\n", row["curve"].get_ref<const std::string&>().c_str(), percent("median_light"), percent("p90_light"),
-                percent("median_firm"), percent("p90_firm"), row["failed"].get<int>());
+    std::printf("  %-42s %7.2f %7.1f    %7.2f %7.2f %8d\n", row["curve"].get_ref<const std::string&>().c_str(),
+                percent("median_light"), percent("p90_light"), percent("median_firm"), percent("p90_firm"),
+                row["failed"].get<int>());
 }
 
 struct PensOptions {
@@ -129,17 +142,20 @@ void bench_pens(const PensOptions& options) {
         bool silent_too;
     };
     files::Json json{{"sessions", sessions.size()}, {"splits", files::Json::array()}};
-    for (const Split& split : {Split{"fitted to rows 2, 4, ..., judged on rows 1, 3, ... with a level above 0", 1, false},
-                               Split{"the same, rows with level 0 judged too", 1, true},
-                               Split{"fitted to rows 1, 3, ..., judged on rows 2, 4, ... with a level above 0", 0, false}}) {
+    for (const Split& split :
+         {Split{"fitted to rows 2, 4, ..., judged on rows 1, 3, ... with a level above 0", 1, false},
+          Split{"the same, rows with level 0 judged too", 1, true},
+          Split{"fitted to rows 1, 3, ..., judged on rows 2, 4, ... with a level above 0", 0, false}}) {
         if (!options.json) {
-            std::printf("%zu sessions, %s\n  %-42s %15s    %15s\n  %-42s %7s %7s    %7s %7s %8s\n", sessions.size(), split.name, "relative error (%)",
-                        "below 20 %", "above 20 %", "", "median", "p90", "median", "p90", "failed");
+            std::printf("%zu sessions, %s\n  %-42s %15s    %15s\n  %-42s %7s %7s    %7s %7s %8s\n", sessions.size(),
+                        split.name, "relative error (%)", "below 20 %", "above 20 %", "", "median", "p90", "median",
+                        "p90", "failed");
         }
         files::Json rows = files::Json::array();
         for (const Contestant& contestant : kContestants) {
             Errors errors;
-            for (const Session* session : sessions) judge(contestant, *session, split.first_fitted, split.silent_too, errors);
+            for (const Session* session : sessions)
+                judge(contestant, *session, split.first_fitted, split.silent_too, errors);
             rows.push_back(row_json(contestant.name, errors));
             if (!options.json) print_row(rows.back());
         }
@@ -154,7 +170,8 @@ void add_bench_pens(CLI::App& bench) {
     auto options = std::make_shared<PensOptions>();
     CLI::App* command = bench.add_subcommand(
         "pens", "Measure the calibration curves' error on recordings of real pens, on points left out of the fit");
-    command->add_option("FILE", options->file, "CSV with inventory_id, tablet, date, pressure_norm, force_N")->required();
+    command->add_option("FILE", options->file, "CSV with inventory_id, tablet, date, pressure_norm, force_N")
+        ->required();
     command->add_flag("--json", options->json, "print one JSON object on standard output");
     command->callback([options] { bench_pens(*options); });
 }

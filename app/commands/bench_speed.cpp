@@ -34,14 +34,16 @@ void run_speed(const Options& options) {
     std::vector<accuracy::SpeedRow> rows;
     for (const std::string& name : scenes) {
         const scene::Scene scene = load_scene(name);
-        rows.push_back(accuracy::sample_speed(scene, session::make_plan_here(scene), options.seconds, options.repetitions));
+        rows.push_back(
+            accuracy::sample_speed(scene, session::make_plan_here(scene), options.seconds, options.repetitions));
     }
     const accuracy::Machine machine = accuracy::this_machine();
     if (options.json) {
         std::fputs(files::json_text(accuracy::speed_json(unit, rows, machine)).c_str(), stdout);
     } else {
         std::printf("%s, %u threads, load %s, %s\n%s", machine.processor.c_str(), machine.threads,
-                    files::short_number(machine.load).c_str(), machine.date.c_str(), accuracy::speed_table(unit, rows).c_str());
+                    files::short_number(machine.load).c_str(), machine.date.c_str(),
+                    accuracy::speed_table(unit, rows).c_str());
     }
 }
 
@@ -51,7 +53,8 @@ void add_bench_speed(CLI::App& bench) {
     auto options = std::make_shared<Options>();
     CLI::App* speed = bench.add_subcommand("speed", "What a sample costs, pressure to avatar, at 1,000 Hz");
     speed->add_option("SCENES", options->scenes, "scene JSON or map folder (default: four that ship)");
-    speed->add_option("--seconds", options->seconds, "of input, in each repetition (default 10)")->check(CLI::Range(0.1, 1e4));
+    speed->add_option("--seconds", options->seconds, "of input, in each repetition (default 10)")
+        ->check(CLI::Range(0.1, 1e4));
     speed->add_option("--repetitions", options->repetitions, "default 5")->check(CLI::Range(1, 1000));
     speed->add_flag("--json", options->json, "one JSON object on standard output");
     speed->callback([options] { run_speed(*options); });

@@ -1,16 +1,17 @@
 // palpa calibrate fit | check | compare
 
+#include "calibration/calibrate.h"
+
 #include <CLI/CLI.hpp>
 #include <cmath>
 #include <cstdio>
 #include <memory>
 
-#include "figures/calibration_report.h"
 #include "app/commands/command_line.h"
-#include "figures/gnuplot.h"
 #include "app/commands/option_checks.h"
-#include "calibration/calibrate.h"
 #include "calibration/profile_file.h"
+#include "figures/calibration_report.h"
+#include "figures/gnuplot.h"
 #include "files/input_error.h"
 #include "files/regular_file.h"
 #include "files/text.h"
@@ -22,7 +23,8 @@ std::vector<calibration::RowFilter> parse_where(const std::vector<std::string>& 
     std::vector<calibration::RowFilter> where;
     for (const std::string& text : texts) {
         const auto equals = text.find('=');
-        if (equals == std::string::npos || equals == 0) throw files::bad_input("--where", "", files::shown(text), "COLUMN=VALUE");
+        if (equals == std::string::npos || equals == 0)
+            throw files::bad_input("--where", "", files::shown(text), "COLUMN=VALUE");
         where.push_back({text.substr(0, equals), text.substr(equals + 1)});
     }
     return where;
@@ -61,14 +63,22 @@ std::optional<Enum> parsed(const std::string& name, std::initializer_list<Enum> 
 
 calibration::CalibrateOptions fit_options(const FitArguments& arguments) {
     calibration::CalibrateOptions options = arguments.options;
-    options.model = parsed(arguments.model, {calibration::CurveModel::exponential, calibration::CurveModel::exponential_offset, calibration::CurveModel::power, calibration::CurveModel::monotone_cubic});
+    options.model =
+        parsed(arguments.model, {calibration::CurveModel::exponential, calibration::CurveModel::exponential_offset,
+                                 calibration::CurveModel::power, calibration::CurveModel::monotone_cubic});
     options.error = parsed(arguments.error, {calibration::ErrorModel::newton, calibration::ErrorModel::log});
-    options.robust = arguments.robust == "none" ? calibration::Robust::none : arguments.robust == "huber" ? calibration::Robust::huber : calibration::Robust::tukey;
-    options.level = parsed(arguments.level, {calibration::LevelField::pressure, calibration::LevelField::pressure_raw, calibration::LevelField::contact_area});
+    options.robust = arguments.robust == "none"    ? calibration::Robust::none
+                     : arguments.robust == "huber" ? calibration::Robust::huber
+                                                   : calibration::Robust::tukey;
+    options.level = parsed(arguments.level, {calibration::LevelField::pressure, calibration::LevelField::pressure_raw,
+                                             calibration::LevelField::contact_area});
     options.remove_lag = !arguments.keep_lag;
     if (!arguments.range.empty()) {
         if (!(arguments.range[0] < arguments.range[1])) {
-            throw files::bad_input("--level-range", "", files::short_number(arguments.range[0]) + " " + files::short_number(arguments.range[1]), "the lower level first");
+            throw files::bad_input(
+                "--level-range", "",
+                files::short_number(arguments.range[0]) + " " + files::short_number(arguments.range[1]),
+                "the lower level first");
         }
         options.range = calibration::LevelRange{arguments.range[0], arguments.range[1]};
     }
@@ -77,7 +87,9 @@ calibration::CalibrateOptions fit_options(const FitArguments& arguments) {
 
 // What the person says about the device wins over the columns of the file.
 void name_device(const calibration::DeviceNames& given, calibration::DeviceNames& device) {
-    for (const auto field : {&calibration::DeviceNames::pen, &calibration::DeviceNames::tablet, &calibration::DeviceNames::driver, &calibration::DeviceNames::os, &calibration::DeviceNames::date}) {
+    for (const auto field :
+         {&calibration::DeviceNames::pen, &calibration::DeviceNames::tablet, &calibration::DeviceNames::driver,
+          &calibration::DeviceNames::os, &calibration::DeviceNames::date}) {
         if (!(given.*field).empty()) device.*field = given.*field;
         if ((device.*field).empty()) device.*field = "n/a";
     }
@@ -90,11 +102,13 @@ void fit(const FitArguments& arguments) {
         files::check_output(arguments.figure, {arguments.data});
     }
     const calibration::CalibrateOptions options = fit_options(arguments);
-    const calibration::CalibrationRows rows = calibration::read_points(arguments.data, {parse_where(arguments.where), arguments.any_force});
+    const calibration::CalibrationRows rows =
+        calibration::read_points(arguments.data, {parse_where(arguments.where), arguments.any_force});
     if (options.range) {
         const double highest = *std::max_element(rows.level.begin(), rows.level.end());
         if (highest > options.range->highest) {
-            throw files::bad_input(rows.file, "level", "levels up to " + files::short_number(highest), "at most " + files::short_number(options.range->highest) + " as --level-range says");
+            throw files::bad_input(rows.file, "level", "levels up to " + files::short_number(highest),
+                                   "at most " + files::short_number(options.range->highest) + " as --level-range says");
         }
     }
     calibration::Calibration calibration = calibration::calibrate(rows, options);
@@ -182,22 +196,34 @@ void check(const CheckArguments& arguments) {
     const Eigen::Map<const Eigen::ArrayXd> level(rows.level.data(), n);
     const Eigen::Map<const Eigen::ArrayXd> measured_N(rows.force_N.data(), n);
     std::int64_t clamped = 0;
-    const Eigen::ArrayXd predicted_N = Eigen::ArrayXd::NullaryExpr(n, [&](Eigen::Index i) { return calibration::force_N(profile, level(i), clamped); });
+    const Eigen::ArrayXd predicted_N = Eigen::ArrayXd::NullaryExpr(
+        n, [&](Eigen::Index i) { return calibration::force_N(profile, level(i), clamped); });
     const auto bands = calibration::error_bands(level, measured_N, predicted_N, range);
     const double median = calibration::median_relative_error(level, measured_N, predicted_N, range);
     const calibration::FitQuality quality = calibration::fit_quality(measured_N, predicted_N);
     std::vector<std::string> warnings = rows.notes;
-    if (clamped > 0) warnings.push_back(std::to_string(clamped) + " of " + std::to_string(n) + " levels are outside the profile's range and taken at its end");
-    if (median > 0.1) warnings.push_back("the profile is off by " + files::short_number(100.0 * median) + " % of the force (median): calibrate this device anew");
+    if (clamped > 0)
+        warnings.push_back(std::to_string(clamped) + " of " + std::to_string(n) +
+                           " levels are outside the profile's range and taken at its end");
+    if (median > 0.1)
+        warnings.push_back("the profile is off by " + files::short_number(100.0 * median) +
+                           " % of the force (median): calibrate this device anew");
     if (arguments.json) {
-        const files::Json json{{"profile", profile.id}, {"n_points", n}, {"median_relative_error", median}, {"relative_error_bands", figures::bands_json(bands)},
-                        {"r2_newton", quality.r2_newton}, {"r2_log", quality.r2_log}, {"rmse_N", quality.rmse_N},
-                        {"predicted_N", std::vector<double>(predicted_N.begin(), predicted_N.end())}, {"warnings", warnings}};
+        const files::Json json{{"profile", profile.id},
+                               {"n_points", n},
+                               {"median_relative_error", median},
+                               {"relative_error_bands", figures::bands_json(bands)},
+                               {"r2_newton", quality.r2_newton},
+                               {"r2_log", quality.r2_log},
+                               {"rmse_N", quality.rmse_N},
+                               {"predicted_N", std::vector<double>(predicted_N.begin(), predicted_N.end())},
+                               {"warnings", warnings}};
         std::fputs(files::json_text(json).c_str(), stdout);
         return;
     }
-    std::printf("%s on %lld points: off by %s %% of the force (median), RMSE %s N\n", profile.id.c_str(), static_cast<long long>(n),
-                files::short_number(100.0 * median).c_str(), files::short_number(quality.rmse_N).c_str());
+    std::printf("%s on %lld points: off by %s %% of the force (median), RMSE %s N\n", profile.id.c_str(),
+                static_cast<long long>(n), files::short_number(100.0 * median).c_str(),
+                files::short_number(quality.rmse_N).c_str());
     figures::print_bands(bands, "these points");
     for (const std::string& warning : warnings) std::fprintf(stderr, "palpa: warning: %s\n", warning.c_str());
 }
@@ -245,8 +271,15 @@ void compare(const CompareArguments& arguments) {
     }
     const double median = calibration::quantile(apart, 0.5);
     if (arguments.json) {
-        const files::Json json{{"a", a.id}, {"b", b.id}, {"same_level", a.level == b.level}, {"level_share", share}, {"a_N", a_N}, {"b_N", b_N},
-                        {"median_relative_difference", median}, {"greatest_relative_difference", greatest}, {"greatest_at", at}};
+        const files::Json json{{"a", a.id},
+                               {"b", b.id},
+                               {"same_level", a.level == b.level},
+                               {"level_share", share},
+                               {"a_N", a_N},
+                               {"b_N", b_N},
+                               {"median_relative_difference", median},
+                               {"greatest_relative_difference", greatest},
+                               {"greatest_at", at}};
         std::fputs(files::json_text(json).c_str(), stdout);
         return;
     }
@@ -254,12 +287,16 @@ void compare(const CompareArguments& arguments) {
     for (std::size_t i = 0; i < share.size(); i += 2) {
         const double F_a = a_N[i].get<double>();
         const double F_b = b_N[i].get<double>();
-        std::printf("%5.0f %%  %10s N %10s N %8s %%\n", 100.0 * share[i].get<double>(), files::short_number(F_a).c_str(), files::short_number(F_b).c_str(),
+        std::printf("%5.0f %%  %10s N %10s N %8s %%\n", 100.0 * share[i].get<double>(),
+                    files::short_number(F_a).c_str(), files::short_number(F_b).c_str(),
                     files::short_number(200.0 * (F_b - F_a) / (F_a + F_b)).c_str());
     }
-    std::printf("apart by %s %% (median), at most %s %% at %s %% of the range\n", files::short_number(100.0 * median).c_str(), files::short_number(100.0 * greatest).c_str(),
+    std::printf("apart by %s %% (median), at most %s %% at %s %% of the range\n",
+                files::short_number(100.0 * median).c_str(), files::short_number(100.0 * greatest).c_str(),
                 files::short_number(100.0 * at).c_str());
-    if (a.level != b.level) std::fprintf(stderr, "palpa: warning: the profiles read different fields: %s and %s\n", name_of(a.level), name_of(b.level));
+    if (a.level != b.level)
+        std::fprintf(stderr, "palpa: warning: the profiles read different fields: %s and %s\n", name_of(a.level),
+                     name_of(b.level));
 }
 
 void add_compare(CLI::App& calibrate) {

@@ -32,7 +32,10 @@ void record(Arguments& arguments) {
     }
     if (!arguments.range.empty()) {
         if (!(arguments.range[0] < arguments.range[1])) {
-            throw files::bad_input("--level-range", "", files::short_number(arguments.range[0]) + " " + files::short_number(arguments.range[1]), "the lower level first");
+            throw files::bad_input(
+                "--level-range", "",
+                files::short_number(arguments.range[0]) + " " + files::short_number(arguments.range[1]),
+                "the lower level first");
         }
         record.options.range = {arguments.range[0], arguments.range[1]};
     }
@@ -41,10 +44,13 @@ void record(Arguments& arguments) {
         std::fputs(files::json_text(result).c_str(), stdout);
         return;
     }
-    std::printf("%s: %s points of %s presses; %s\n", result["file"].get_ref<const std::string&>().c_str(), result["points"].dump().c_str(), result["repeats"].dump().c_str(),
-                result["done"].get<bool>() ? "the curve is known everywhere" : result["missing"].get_ref<const std::string&>().c_str());
+    std::printf("%s: %s points of %s presses; %s\n", result["file"].get_ref<const std::string&>().c_str(),
+                result["points"].dump().c_str(), result["repeats"].dump().c_str(),
+                result["done"].get<bool>() ? "the curve is known everywhere"
+                                           : result["missing"].get_ref<const std::string&>().c_str());
     if (result.contains("sensor")) std::printf("  sensor      %s\n", result["sensor"]["health"].dump().c_str());
-    std::printf("  next        palpa calibrate fit %s -o PROFILE.json%s\n", result["file"].get_ref<const std::string&>().c_str(),
+    std::printf("  next        palpa calibrate fit %s -o PROFILE.json%s\n",
+                result["file"].get_ref<const std::string&>().c_str(),
                 arguments.level == "pressure" ? "" : (" --level " + arguments.level).c_str());
 }
 

@@ -1,18 +1,17 @@
 #include "app/commands/command_line.h"
 
-#include <fcntl.h>
-#include <signal.h>
-#include <unistd.h>
-
 #include <CLI/CLI.hpp>
 #include <cerrno>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <exception>
+#include <fcntl.h>
 #include <iostream>
 #include <new>
+#include <signal.h>
 #include <string>
+#include <unistd.h>
 #include <vector>
 
 #include "app/commands/option_checks.h"

@@ -50,14 +50,17 @@ files::Json region_json(const stiffnessmaps::Map& map, const stiffnessmaps::Stif
 
 std::string region_text(const stiffnessmaps::Map& map, const stiffnessmaps::StiffRegion& r) {
     const std::string placed = placed_at(map, r);
-    std::string out = "  " + r.id + (r.sure ? "" : " UNSURE") + "  at (" + mm(r.x_m) + ", " + mm(r.y_m) + ") mm, " + mm(r.length_m) +
-                      " x " + mm(r.width_m) + " mm, long side at " + files::short_number(r.angle_deg) + " deg, " + files::short_number(1e6 * r.area_m2) + " mm2";
+    std::string out = "  " + r.id + (r.sure ? "" : " UNSURE") + "  at (" + mm(r.x_m) + ", " + mm(r.y_m) + ") mm, " +
+                      mm(r.length_m) + " x " + mm(r.width_m) + " mm, long side at " + files::short_number(r.angle_deg) +
+                      " deg, " + files::short_number(1e6 * r.area_m2) + " mm2";
     if (r.at_edge) out += ", at the edge of what was measured: its size is a lower bound";
     out += placed.empty() ? "\n" : "; placed nodule " + placed + "\n";
-    out += "      " + files::short_number(1e-3 * r.peak_N_per_m) + " N/mm at (" + mm(r.peak_x_m) + ", " + mm(r.peak_y_m) + ") mm over " +
-           files::short_number(1e-3 * r.background_N_per_m) + " around it: ";
+    out += "      " + files::short_number(1e-3 * r.peak_N_per_m) + " N/mm at (" + mm(r.peak_x_m) + ", " +
+           mm(r.peak_y_m) + ") mm over " + files::short_number(1e-3 * r.background_N_per_m) + " around it: ";
     out += std::isfinite(r.contrast) ? files::short_number(r.contrast) + " times" : "no ratio";
-    if (std::isfinite(r.contrast_to_noise)) out += "; " + files::short_number(r.contrast_to_noise) + " times the variation of areas of its size" + (r.against_edge ? " at the edge (" : " (") + files::short_number(r.needed) + " needed)";
+    if (std::isfinite(r.contrast_to_noise))
+        out += "; " + files::short_number(r.contrast_to_noise) + " times the variation of areas of its size" +
+               (r.against_edge ? " at the edge (" : " (") + files::short_number(r.needed) + " needed)";
     if (r.look > 1) out += "; found once the sure ones above were set aside";
     return out + "\n";
 }
@@ -67,14 +70,11 @@ std::string region_text(const stiffnessmaps::Map& map, const stiffnessmaps::Stif
 files::Json detection_json(const stiffnessmaps::Map& map, const stiffnessmaps::Detection& d) {
     files::Json json;
     json["map"] = map.name;
-    json["rule"] = {{"threshold", number_or_null(d.threshold)},
-                    {"threshold_from", d.options.threshold ? "given" : "spread"},
-                    {"spread_N_per_mm", 1e-3 * d.spread_N_per_m},
-                    {"window_mm", 1e3 * d.options.window_m},
-                    {"smoothing_mm", 1e3 * *d.options.smoothing_m},
-                    {"smallest_mm", 1e3 * *d.options.smallest_m},
-                    {"deepest_mm", 1e3 * *d.options.deepest_m},
-                    {"least_independent_areas", stiffnessmaps::kLeastAreas}};
+    json["rule"] = {
+        {"threshold", number_or_null(d.threshold)},     {"threshold_from", d.options.threshold ? "given" : "spread"},
+        {"spread_N_per_mm", 1e-3 * d.spread_N_per_m},   {"window_mm", 1e3 * d.options.window_m},
+        {"smoothing_mm", 1e3 * *d.options.smoothing_m}, {"smallest_mm", 1e3 * *d.options.smallest_m},
+        {"deepest_mm", 1e3 * *d.options.deepest_m},     {"least_independent_areas", stiffnessmaps::kLeastAreas}};
     json["sure"] = d.sure();
     json["regions"] = files::Json::array();
     for (const stiffnessmaps::StiffRegion& region : d.regions) json["regions"].push_back(region_json(map, region));
@@ -84,11 +84,13 @@ files::Json detection_json(const stiffnessmaps::Map& map, const stiffnessmaps::D
 
 std::string detection_text(const stiffnessmaps::Map& map, const stiffnessmaps::Detection& d) {
     const std::size_t n = d.regions.size();
-    std::string out = map.name + ": " + (n == 0 ? "no stiff region" : std::to_string(n) + (n == 1 ? " stiff region" : " stiff regions"));
+    std::string out = map.name + ": " +
+                      (n == 0 ? "no stiff region" : std::to_string(n) + (n == 1 ? " stiff region" : " stiff regions"));
     if (n > d.sure()) out += ", " + std::to_string(n - d.sure()) + " of them unsure";
-    out += "\n  rule: smoothed by " + mm(*d.options.smoothing_m) + " mm, background by medians within " + mm(d.options.window_m) +
-           " mm; from " + files::short_number(d.threshold) + " times the background (" + (d.options.threshold ? "given" : "3 spreads, at least 1.03") +
-           "), down to half of the peak; a disc of " + mm(*d.options.smallest_m) + " mm at least\n";
+    out += "\n  rule: smoothed by " + mm(*d.options.smoothing_m) + " mm, background by medians within " +
+           mm(d.options.window_m) + " mm; from " + files::short_number(d.threshold) + " times the background (" +
+           (d.options.threshold ? "given" : "3 spreads, at least 1.03") + "), down to half of the peak; a disc of " +
+           mm(*d.options.smallest_m) + " mm at least\n";
     for (const stiffnessmaps::StiffRegion& region : d.regions) out += region_text(map, region);
     return out;
 }

@@ -8,6 +8,7 @@ namespace palpa::app {
 
 files::Json detection_json(const stiffnessmaps::Map& map, const stiffnessmaps::Detection& detection);
 std::string detection_text(const stiffnessmaps::Map& map, const stiffnessmaps::Detection& detection);
-std::vector<std::string> detection_warnings(const stiffnessmaps::Detection& detection);  // of the map, and of the regions by their names
+std::vector<std::string> detection_warnings(
+    const stiffnessmaps::Detection& detection);  // of the map, and of the regions by their names
 
 }  // namespace palpa::app

@@ -1,11 +1,10 @@
 // palpa devices: the pens, touch screens and mice that are there, and what they really send.
 
-#include <unistd.h>
-
 #include <CLI/CLI.hpp>
 #include <cmath>
 #include <cstdio>
 #include <memory>
+#include <unistd.h>
 
 #include "app/commands/command_line.h"
 #include "app/screens/device_check.h"
@@ -31,7 +30,8 @@ void show(platform::Window& window) {
 void tell_time_left(double left_s, platform::Window& window) {
     const std::string left = std::to_string(static_cast<int>(std::ceil(left_s)));
     window.set_title("Palpa: press here with pen and fingers, " + left + " s left");
-    if (isatty(STDERR_FILENO) != 0) std::fprintf(stderr, "\rpress in the window with pen and fingers: %s s left ", left.c_str());
+    if (isatty(STDERR_FILENO) != 0)
+        std::fprintf(stderr, "\rpress in the window with pen and fingers: %s s left ", left.c_str());
 }
 
 // `check` is large, so it lives with the caller.
@@ -57,7 +57,8 @@ void watch_devices(double seconds, platform::Window& window, DeviceCheck& check)
 
 files::Json device_json(const platform::PointerDevice& device) {
     files::Json json{{"name", device.name}, {"tool", name_of(device.tool)}, {"has_pressure", device.has_pressure}};
-    json["pressure_range"] = device.has_pressure ? files::Json{device.pressure_min, device.pressure_max} : files::Json(nullptr);
+    json["pressure_range"] =
+        device.has_pressure ? files::Json{device.pressure_min, device.pressure_max} : files::Json(nullptr);
     json["levels"] = device.levels;
     json["has_tilt"] = device.has_tilt;
     json["has_contact_size"] = device.has_contact_size;
@@ -68,7 +69,8 @@ files::Json device_json(const platform::PointerDevice& device) {
 void print_device(const platform::PointerDevice& device) {
     std::printf("%s: %s", std::string(name_of(device.tool)).c_str(), device.name.c_str());
     if (device.has_pressure) {
-        std::printf(", pressure %g to %g (%lld levels)", device.pressure_min, device.pressure_max, static_cast<long long>(device.levels));
+        std::printf(", pressure %g to %g (%lld levels)", device.pressure_min, device.pressure_max,
+                    static_cast<long long>(device.levels));
     } else {
         std::printf(", no pressure");
     }
@@ -79,22 +81,32 @@ void print_seen(platform::Tool which, const DeviceCheck& check) {
     const ToolCheck& tool = of_tool(which, check);
     std::printf("%s: %lld samples, %lld of them touching\n", std::string(name_of(which)).c_str(),
                 static_cast<long long>(tool.samples), static_cast<long long>(tool.touching));
-    if (tool.gap_count > 0) std::printf("  %.4g a second while it moves; from one to the next %.3g ms (median), %.3g ms (worst; rests over %g s left out)\n",
-                rate_Hz(tool), 1e3 * median_gap_s(tool), 1e3 * worst_gap_s(tool), kRest_s);
+    if (tool.gap_count > 0)
+        std::printf(
+            "  %.4g a second while it moves; from one to the next %.3g ms (median), %.3g ms (worst; rests over %g s "
+            "left out)\n",
+            rate_Hz(tool), 1e3 * median_gap_s(tool), 1e3 * worst_gap_s(tool), kRest_s);
     switch (platform::pressure_kind(check.pressure, which)) {
         case platform::PressureKind::constant:
-            std::printf("  pressure is always %g: this is no sensor\n", platform::constant_pressure(check.pressure, which));
+            std::printf("  pressure is always %g: this is no sensor\n",
+                        platform::constant_pressure(check.pressure, which));
             break;
-        case platform::PressureKind::missing: std::printf("  no pressure\n"); break;
-        case platform::PressureKind::unknown: std::printf("  too few touches to judge the pressure\n"); break;
+        case platform::PressureKind::missing:
+            std::printf("  no pressure\n");
+            break;
+        case platform::PressureKind::unknown:
+            std::printf("  too few touches to judge the pressure\n");
+            break;
         case platform::PressureKind::varies:
             std::printf("  pressure %.3g to %.3g, %lld different values\n", tool.pressure.lowest, tool.pressure.highest,
                         static_cast<long long>(distinct_pressures(tool)));
     }
     if (const ClockDrift drift = clock_drift(tool); std::isfinite(drift.ppm)) {
-        std::printf("  its clock runs %+.0f ppm (standard error %.0f) against the computer's\n", drift.ppm, drift.standard_error_ppm);
+        std::printf("  its clock runs %+.0f ppm (standard error %.0f) against the computer's\n", drift.ppm,
+                    drift.standard_error_ppm);
     }
-    std::printf("  x %.1f to %.1f px, y %.1f to %.1f px\n", tool.x_px.lowest, tool.x_px.highest, tool.y_px.lowest, tool.y_px.highest);
+    std::printf("  x %.1f to %.1f px, y %.1f to %.1f px\n", tool.x_px.lowest, tool.x_px.highest, tool.y_px.lowest,
+                tool.y_px.highest);
 }
 
 void list_devices(const DevicesOptions& options) {
@@ -117,7 +129,8 @@ void list_devices(const DevicesOptions& options) {
         json["seconds"] = options.seconds;
         json["seen"] = check_json(*check);
         if (!options.json) std::printf("\nin %g s came:\n", options.seconds);
-        for (const platform::Tool tool : {platform::Tool::pen, platform::Tool::finger, platform::Tool::mouse, platform::Tool::keyboard}) {
+        for (const platform::Tool tool :
+             {platform::Tool::pen, platform::Tool::finger, platform::Tool::mouse, platform::Tool::keyboard}) {
             if (of_tool(tool, *check).samples == 0) continue;
             if (!options.json) print_seen(tool, *check);
         }

@@ -42,14 +42,16 @@ void explain(const ExplainOptions& options) {
     const scene::Scene scene = load_scene(options.scene);
     const scene::Plan plan = session::make_plan_here(scene);
     session::ReplayResult measured;
-    const std::filesystem::path trace_file = options.trace.empty() ? default_trace() : std::filesystem::path(options.trace);
+    const std::filesystem::path trace_file =
+        options.trace.empty() ? default_trace() : std::filesystem::path(options.trace);
     if (options.measure) measured = session::replay(scene, plan, platform::read_trace(trace_file), 1);
 
     files::Json json{{"scene", scene.name}, {"stages", files::Json::array()}, {"notes", plan.notes}};
     if (!options.json) std::printf("%s\n", scene.name.c_str());
     for (const auto* stages : {&plan.sample_stages, &plan.frame_stages}) {
         for (const scene::Stage& stage : *stages) {
-            const scene::Meter* meter = options.measure ? &measured.state.meters[static_cast<std::size_t>(stage.id)] : nullptr;
+            const scene::Meter* meter =
+                options.measure ? &measured.state.meters[static_cast<std::size_t>(stage.id)] : nullptr;
             files::Json entry = stage_json(stage);
             if (meter != nullptr) {
                 entry["calls"] = meter->calls();
@@ -65,7 +67,8 @@ void explain(const ExplainOptions& options) {
         std::fputs(files::json_text(json).c_str(), stdout);
         return;
     }
-    if (options.measure) std::printf("measured on %s; each time includes reading the clock\n", trace_file.string().c_str());
+    if (options.measure)
+        std::printf("measured on %s; each time includes reading the clock\n", trace_file.string().c_str());
     for (const std::string& note : plan.notes) std::printf("note: %s\n", note.c_str());
 }
 

@@ -11,8 +11,8 @@
 #include "fem/locking.h"
 #include "fem/solve.h"
 #include "files/input_error.h"
-#include "files/regular_file.h"
 #include "files/printable.h"
+#include "files/regular_file.h"
 #include "files/text.h"
 
 namespace palpa::app {
@@ -64,8 +64,7 @@ std::vector<std::string> warnings_of(const fem::FemCase& model, const fem::FemRe
     if (result.partial)
         out.push_back("part of the pressure is beside the body: " + files::short_number(result.applied_N) +
                       " N fell on it");
-    if (result.contact && result.contact->over_edge)
-        out.push_back("part of the indenter is beside the tissue");
+    if (result.contact && result.contact->over_edge) out.push_back("part of the indenter is beside the tissue");
     if (result.contact) {
         for (std::string& warning : fem::contact_warnings(*result.contact)) out.push_back(std::move(warning));
     }
@@ -92,9 +91,8 @@ files::Json json_of(const fem::FemCase& model, const fem::FemResult& result) {
     json["reaction_N"] = files::Json::array();
     for (std::size_t i = 0; i < model.supports.size(); ++i) {
         const Eigen::Vector3d& f = result.reaction_N[i];
-        json["reaction_N"].push_back({{"support", model.supports[i].name},
-                                      {"fix", model.supports[i].axes},
-                                      {"force_N", {f.x(), f.y(), f.z()}}});
+        json["reaction_N"].push_back(
+            {{"support", model.supports[i].name}, {"fix", model.supports[i].axes}, {"force_N", {f.x(), f.y(), f.z()}}});
     }
     if (!result.body_reaction_N.isZero(0.0)) {
         const Eigen::Vector3d& f = result.body_reaction_N;
@@ -118,8 +116,7 @@ files::Json json_of(const fem::FemCase& model, const fem::FemResult& result) {
     json["residual"] = result.residual;
     json["backward_error"] = result.solution.backward_error;
     json["converged"] = result.converged;
-    json["time_s"] = {
-        {"assemble", result.assemble_s}, {"factor", result.factor_s}, {"solve", result.solution.solve_s}};
+    json["time_s"] = {{"assemble", result.assemble_s}, {"factor", result.factor_s}, {"solve", result.solution.solve_s}};
     if (result.contact) json["time_s"]["contact"] = result.contact->seconds;
     json["warnings"] = warnings_of(model, result);
     return json;
@@ -144,8 +141,8 @@ void print_table(const fem::FemCase& model, const fem::FemResult& result) {
         return value_m ? six_digits(1e3 * *value_m) + " mm" : std::string("-");
     };
     std::printf("%s: %s, %td nodes, %td elements, %d equations\n", files::printable(model.file).c_str(),
-                name_of(model.problem.element), model.problem.mesh.nodes_m.cols(),
-                model.problem.mesh.cells.cols(), result.equations);
+                name_of(model.problem.element), model.problem.mesh.nodes_m.cols(), model.problem.mesh.cells.cols(),
+                result.equations);
     row("applied", files::short_number(result.applied_N) + " N");
     row("centre displacement", mm(result.centre_m));
     row("d_skel (mean)", mm(result.skel_m));
@@ -169,7 +166,8 @@ void print_table(const fem::FemCase& model, const fem::FemResult& result) {
                         files::short_number(result.solution.backward_error) +
                         (result.converged ? ", converged" : ", NOT converged"));
     std::string times = "assemble " + files::short_number(result.assemble_s) + ", factor " +
-                        files::short_number(result.factor_s) + ", solve " + files::short_number(result.solution.solve_s);
+                        files::short_number(result.factor_s) + ", solve " +
+                        files::short_number(result.solution.solve_s);
     if (result.contact) times += ", contact " + files::short_number(result.contact->seconds);
     row("time", times + " s");
 }
@@ -200,7 +198,8 @@ struct SolveOptions {
 
 void solve_file(const SolveOptions& options) {
     const fem::FemCase model = fem::read_case(options.file);
-    if (!options.output.empty()) files::check_output(options.output, {options.file, model.mesh_file});  // before the long part
+    if (!options.output.empty())
+        files::check_output(options.output, {options.file, model.mesh_file});  // before the long part
     const fem::FemResult result = fem::solve_case(model, progress_line());
     if (isatty(STDERR_FILENO) != 0) std::fprintf(stderr, "\r\033[K");
     if (!options.output.empty()) files::write_vtu(options.output, fem::vtu_of(model, result));

@@ -1,17 +1,16 @@
-#include <fcntl.h>
-#include <poll.h>
-#include <unistd.h>
-
 #include <array>
 #include <cerrno>
 #include <chrono>
 #include <cmath>
 #include <cstring>
+#include <fcntl.h>
+#include <poll.h>
 #include <stdexcept>
 #include <thread>
+#include <unistd.h>
 
-#include "app/screens/calibrate_screen.h"
 #include "app/commands/record_calibration.h"
+#include "app/screens/calibrate_screen.h"
 #include "calibration/record/acquisition.h"
 #include "files/input_error.h"
 #include "files/text.h"
@@ -23,7 +22,7 @@ namespace {
 
 // One number a line, as it comes; a level of 0 is a pen that does not touch.
 class LevelStream : public LevelSource {
- public:
+  public:
     explicit LevelStream(const std::string& path) : path_(path) {
         fd_ = path == "-" ? ::dup(0) : ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
         if (fd_ < 0) throw files::InputError(path + ": cannot be read: " + std::strerror(errno));
@@ -49,12 +48,13 @@ class LevelStream : public LevelSource {
         return true;
     }
 
- private:
+  private:
     platform::Sample sample(double now_s) {
         ++line_;
         double level = 0.0;
         if (!files::parse_number(text_, level) || !(level >= 0.0) || std::isinf(level)) {
-            throw files::bad_input(path_, "line " + std::to_string(line_), files::shown(text_), "a level >= 0, one a line");
+            throw files::bad_input(path_, "line " + std::to_string(line_), files::shown(text_),
+                                   "a level >= 0, one a line");
         }
         platform::Sample sample;
         sample.t_host_s = now_s;
@@ -73,7 +73,7 @@ class LevelStream : public LevelSource {
 
 // A window to press on, with the same guide as the app's screen.
 class LevelWindow : public LevelSource {
- public:
+  public:
     LevelWindow() : window_(options()), gui_(window_) {}
 
     bool poll(double wait_s, std::vector<platform::Sample>& out) override {
@@ -95,7 +95,7 @@ class LevelWindow : public LevelSource {
         window_.present();
     }
 
- private:
+  private:
     static platform::WindowOptions options() {
         platform::WindowOptions options;
         options.title = "Palpa calibration: press here";
@@ -116,7 +116,9 @@ std::unique_ptr<LevelSource> open_level_window() {
     try {
         return std::make_unique<LevelWindow>();
     } catch (const std::runtime_error& error) {
-        throw std::runtime_error(std::string(error.what()) + "\nThe pen's level comes from a window; without a display give levels as text: --levels FILE");
+        throw std::runtime_error(
+            std::string(error.what()) +
+            "\nThe pen's level comes from a window; without a display give levels as text: --levels FILE");
     }
 }
 

@@ -1,18 +1,19 @@
 // palpa maps info | sample | import | generate, and those of command_maps.h
 
+#include "app/commands/maps.h"
+
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <memory>
 #include <thread>
 
 #include "app/commands/command_line.h"
-#include "app/commands/maps.h"
-#include "stiffnessmaps/generate/generate.h"
 #include "app/commands/map_info.h"
 #include "app/commands/option_checks.h"
 #include "files/input_error.h"
 #include "files/text.h"
 #include "stiffnessmaps/field.h"
+#include "stiffnessmaps/generate/generate.h"
 #include "stiffnessmaps/map_file.h"
 
 namespace palpa::app {
@@ -43,7 +44,8 @@ void print_info(const stiffnessmaps::Map& map, const files::Json& info) {
             std::fprintf(stderr, "palpa: warning: recorded tangential force and the work argument disagree\n");
         }
     }
-    std::printf("  indenter    %s, radius %s mm\n", name_of(map.indenter), files::short_number(1e3 * map.indenter_radius_m).c_str());
+    std::printf("  indenter    %s, radius %s mm\n", name_of(map.indenter),
+                files::short_number(1e3 * map.indenter_radius_m).c_str());
     for (const stiffnessmaps::Nodule& nodule : map.nodules) {
         std::printf("  nodule %-4s (%s, %s) mm, %s\n", nodule.id.c_str(), files::short_number(1e3 * nodule.x_m).c_str(),
                     files::short_number(1e3 * nodule.y_m).c_str(), nodule.placed ? "placed" : "detected");
@@ -98,23 +100,25 @@ void sample_map(const SampleOptions& options) {
     const double along_y_N = stiffnessmaps::tangential_force_N(field, place, {0.0, 1.0}, answer.depth_m);
     if (options.json) {
         const files::Json json{{"x_mm", options.x_mm},
-                        {"y_mm", options.y_mm},
-                        {"force_N", force_N},
-                        {"depth_mm", 1e3 * answer.depth_m},
-                        {"tangential_x_N", along_x_N},
-                        {"tangential_y_N", along_y_N},
-                        {"saturated", answer.saturated},
-                        {"inside", place.inside},
-                        {"measured", place.measured}};
+                               {"y_mm", options.y_mm},
+                               {"force_N", force_N},
+                               {"depth_mm", 1e3 * answer.depth_m},
+                               {"tangential_x_N", along_x_N},
+                               {"tangential_y_N", along_y_N},
+                               {"saturated", answer.saturated},
+                               {"inside", place.inside},
+                               {"measured", place.measured}};
         std::fputs(files::json_text(json).c_str(), stdout);
     } else {
         std::printf("force %.6g N, depth %.6g mm, resists +x with %.4g N, +y with %.4g N\n", force_N,
                     1e3 * answer.depth_m, along_x_N, along_y_N);
     }
     const char* name = options.map.c_str();
-    if (answer.saturated) std::fprintf(stderr, "palpa: %s: deeper than recorded here, shown at the greatest depth\n", name);
+    if (answer.saturated)
+        std::fprintf(stderr, "palpa: %s: deeper than recorded here, shown at the greatest depth\n", name);
     if (!place.inside) std::fprintf(stderr, "palpa: %s: outside the map, taken at its edge\n", name);
-    if (place.inside && !place.measured) std::fprintf(stderr, "palpa: %s: not measured here, taken from the neighbours\n", name);
+    if (place.inside && !place.measured)
+        std::fprintf(stderr, "palpa: %s: not measured here, taken from the neighbours\n", name);
 }
 
 void add_sample(CLI::App& maps) {
@@ -188,8 +192,10 @@ void add_generate(CLI::App& maps) {
         ->check(CLI::Range(0.5, 4.0))
         ->capture_default_str();
     command->add_option("--window", arguments->window)->check(CLI::Range(0, 1000000))->group("");
-    command->add_flag_callback("--refined", [&options] { options.meshes = stiffnessmaps::MeshSet::refined; })->group("");
-    command->add_flag_callback("--coarser", [&options] { options.meshes = stiffnessmaps::MeshSet::coarser; })->group("");
+    command->add_flag_callback("--refined", [&options] { options.meshes = stiffnessmaps::MeshSet::refined; })
+        ->group("");
+    command->add_flag_callback("--coarser", [&options] { options.meshes = stiffnessmaps::MeshSet::coarser; })
+        ->group("");
     part->excludes(jobs)->excludes(merge);
     command->callback([arguments] { stiffnessmaps::generate_map(generate_options(*arguments)); });
 }
@@ -197,7 +203,8 @@ void add_generate(CLI::App& maps) {
 }  // namespace
 
 void add_maps(CLI::App& app) {
-    CLI::App* maps = app.add_subcommand("maps", "Stiffness maps: info, sample, import, generate, detect, plot, export, compare");
+    CLI::App* maps =
+        app.add_subcommand("maps", "Stiffness maps: info, sample, import, generate, detect, plot, export, compare");
     maps->require_subcommand(1);
     add_info(*maps);
     add_sample(*maps);

@@ -27,8 +27,9 @@ files::Json number_or_null(double value) { return std::isfinite(value) ? files::
 
 files::Json depth_json(const stiffnessmaps::DepthDifference& d) {
     if (d.n == 0) return {{"depth_mm", 1e3 * d.depth_m}, {"n", 0}};
-    return {{"depth_mm", 1e3 * d.depth_m}, {"n", d.n},           {"mean_a_N", d.mean_a_N},
-            {"bias_N", d.bias_N},          {"median_N", d.median_N}, {"rms_N", d.rms_N},
+    return {{"depth_mm", 1e3 * d.depth_m}, {"n", d.n},
+            {"mean_a_N", d.mean_a_N},      {"bias_N", d.bias_N},
+            {"median_N", d.median_N},      {"rms_N", d.rms_N},
             {"greatest_N", d.greatest_N},  {"at_mm", {1e3 * d.at_x_m, 1e3 * d.at_y_m}}};
 }
 
@@ -47,17 +48,20 @@ files::Json difference_json(const stiffnessmaps::MapDifference& d) {
 
 void print_difference(const stiffnessmaps::MapDifference& d) {
     const auto text = [](double v) { return files::short_number(v); };
-    std::printf("B (%s) - A (%s), normal force: %zu x %zu places of map %s (%s x %s mm), %zu depths of map %s\n", d.b.name.c_str(),
-                d.a.name.c_str(), d.a.n_x, d.a.n_y, d.grid_of == "a" ? "A" : "B", text(1e3 * d.a.spacing_m[0]).c_str(),
-                text(1e3 * d.a.spacing_m[1]).c_str(), d.a.n_depths(), d.depths_of == "a" ? "A" : "B");
+    std::printf("B (%s) - A (%s), normal force: %zu x %zu places of map %s (%s x %s mm), %zu depths of map %s\n",
+                d.b.name.c_str(), d.a.name.c_str(), d.a.n_x, d.a.n_y, d.grid_of == "a" ? "A" : "B",
+                text(1e3 * d.a.spacing_m[0]).c_str(), text(1e3 * d.a.spacing_m[1]).c_str(), d.a.n_depths(),
+                d.depths_of == "a" ? "A" : "B");
     std::printf("  bias %s N, median %s N, RMS %s N (%s %% of A's RMS), correlation %s\n", text(d.all.bias_N).c_str(),
-                text(d.all.median_N).c_str(), text(d.all.rms_N).c_str(), text(100.0 * d.relative).c_str(), text(d.correlation).c_str());
-    std::printf("  greatest %s N at (%s, %s) mm, %s mm deep\n", text(d.all.greatest_N).c_str(), text(1e3 * d.all.at_x_m).c_str(),
-                text(1e3 * d.all.at_y_m).c_str(), text(1e3 * d.all.depth_m).c_str());
+                text(d.all.median_N).c_str(), text(d.all.rms_N).c_str(), text(100.0 * d.relative).c_str(),
+                text(d.correlation).c_str());
+    std::printf("  greatest %s N at (%s, %s) mm, %s mm deep\n", text(d.all.greatest_N).c_str(),
+                text(1e3 * d.all.at_x_m).c_str(), text(1e3 * d.all.at_y_m).c_str(), text(1e3 * d.all.depth_m).c_str());
     std::printf("  depth mm   places   mean of A N      bias N    median N       RMS N  greatest N\n");
     for (const stiffnessmaps::DepthDifference& depth : d.depths) {
-        std::printf("  %8s %8zu %13s %11s %11s %11s %11s\n", text(1e3 * depth.depth_m).c_str(), depth.n, text(depth.mean_a_N).c_str(),
-                    text(depth.bias_N).c_str(), text(depth.median_N).c_str(), text(depth.rms_N).c_str(), text(depth.greatest_N).c_str());
+        std::printf("  %8s %8zu %13s %11s %11s %11s %11s\n", text(1e3 * depth.depth_m).c_str(), depth.n,
+                    text(depth.mean_a_N).c_str(), text(depth.bias_N).c_str(), text(depth.median_N).c_str(),
+                    text(depth.rms_N).c_str(), text(depth.greatest_N).c_str());
     }
 }
 
@@ -66,7 +70,8 @@ void run_compare(const CompareArguments& arguments) {
         figures::check_figure(arguments.output);
         files::check_output(arguments.output, {arguments.a, arguments.b});
     }
-    const stiffnessmaps::MapDifference difference = stiffnessmaps::compare_maps(stiffnessmaps::read_map(arguments.a), arguments.a, stiffnessmaps::read_map(arguments.b), arguments.b);
+    const stiffnessmaps::MapDifference difference = stiffnessmaps::compare_maps(
+        stiffnessmaps::read_map(arguments.a), arguments.a, stiffnessmaps::read_map(arguments.b), arguments.b);
     if (arguments.json) {
         std::fputs(files::json_text(difference_json(difference)).c_str(), stdout);
     } else {

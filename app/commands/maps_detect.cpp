@@ -4,8 +4,8 @@
 #include <cstdio>
 #include <memory>
 
-#include "app/commands/maps.h"
 #include "app/commands/detect_report.h"
+#include "app/commands/maps.h"
 #include "files/text.h"
 #include "stiffnessmaps/map_file.h"
 
@@ -40,7 +40,8 @@ void run_detect(const CLI::App& command, const DetectArguments& arguments) {
         std::fputs(files::json_text(detection_json(map, detection)).c_str(), stdout);
     } else {
         std::fputs(detection_text(map, detection).c_str(), stdout);
-        if (arguments.write) std::printf("%s: map.json now holds %zu detected\n", arguments.map.c_str(), detection.sure());
+        if (arguments.write)
+            std::printf("%s: map.json now holds %zu detected\n", arguments.map.c_str(), detection.sure());
     }
     for (const std::string& warning : detection_warnings(detection)) {
         std::fprintf(stderr, "palpa: warning: %s: %s\n", arguments.map.c_str(), warning.c_str());
@@ -59,9 +60,11 @@ void add_maps_detect(CLI::App& maps) {
             "--threshold", arguments->threshold,
             "stiffness / background from which a cell counts (default: 3 spreads of the excess, at least 1.03)")
         ->check(CLI::Range(1.0, 1e6));
-    command->add_option("--window-mm", arguments->window_mm,
-                        "radius of the background's running median; a region may take up to half of it")
-        ->check(CLI::Range(1e-3, 1e6))->capture_default_str();
+    command
+        ->add_option("--window-mm", arguments->window_mm,
+                     "radius of the background's running median; a region may take up to half of it")
+        ->check(CLI::Range(1e-3, 1e6))
+        ->capture_default_str();
     command
         ->add_option("--smoothing-mm", arguments->smoothing_mm,
                      "sigma of the Gaussian smoothing (default: half the indenter's radius)")

@@ -4,9 +4,9 @@
 #include <memory>
 
 #include "app/commands/maps.h"
-#include "stiffnessmaps/export.h"
 #include "app/commands/option_checks.h"
 #include "files/regular_file.h"
+#include "stiffnessmaps/export.h"
 #include "stiffnessmaps/map_file.h"
 
 namespace palpa::app {
@@ -20,14 +20,18 @@ void add_maps_export(CLI::App& maps) {
     auto arguments = std::make_shared<Arguments>();
     CLI::App* command = maps.add_subcommand("export", "Export a map's arrays for other programs: NumPy, CSV, MATLAB");
     command->add_option("MAP", arguments->map, "map folder")->required();
-    command->add_option("-o,--output", arguments->output,
-                        "FILE.npy (one array [n_depth, n_y, n_x]), FILE.csv (a row per place and depth), FILE.mat (MATLAB 5), or a new "
-                        "folder of .npy")->required();
+    command
+        ->add_option("-o,--output", arguments->output,
+                     "FILE.npy (one array [n_depth, n_y, n_x]), FILE.csv (a row per place and depth), FILE.mat (MATLAB "
+                     "5), or a new "
+                     "folder of .npy")
+        ->required();
     command->add_option("--array", arguments->array, "array to write to FILE.npy")
         ->check(one_of({"normal_N", "tangential_x_N", "tangential_y_N"}))
         ->capture_default_str();
     command->callback([arguments] {
-        if (std::filesystem::path(arguments->output).has_extension()) files::check_output(arguments->output, {arguments->map});
+        if (std::filesystem::path(arguments->output).has_extension())
+            files::check_output(arguments->output, {arguments->map});
         stiffnessmaps::export_map(stiffnessmaps::read_map(arguments->map), arguments->array, arguments->output);
     });
 }

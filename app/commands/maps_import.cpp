@@ -21,12 +21,10 @@ namespace {
 struct Arguments {
     std::vector<std::string> files;
     std::string output;
-    std::string form, grid, contact, tangential, tilt, quantity, indenter, length_unit, depth_unit,
-        force_unit, axes;
+    std::string form, grid, contact, tangential, tilt, quantity, indenter, length_unit, depth_unit, force_unit, axes;
     std::string depths, at_depths, spacing, origin, region;  // lists of mm
     std::vector<std::string> columns, tangential_x, tangential_y;
-    std::optional<double> pitch_mm, radius_mm, contact_force_N, surface_z_mm, surface_node_mm, outliers,
-        scale, missing;
+    std::optional<double> pitch_mm, radius_mm, contact_force_N, surface_z_mm, surface_node_mm, outliers, scale, missing;
     std::optional<int> layers;
     double indenter_radius_mm = 3.0;
     double cylinder_length_mm = 20.0;
@@ -64,9 +62,9 @@ std::vector<double> depths_m(const std::string& text, const char* option, bool a
     for (std::size_t i = 0; i < out.size(); ++i) {
         if (!(out[i] > 0.0)) throw files::bad_input(option, "", files::short_number(1e3 * out[i]), "depths > 0");
         if (ascending && i > 0 && !(out[i] > out[i - 1])) {
-            throw files::bad_input(option, "",
-                            files::short_number(1e3 * out[i]) + " after " + files::short_number(1e3 * out[i - 1]),
-                            "ascending depths");
+            throw files::bad_input(
+                option, "", files::short_number(1e3 * out[i]) + " after " + files::short_number(1e3 * out[i - 1]),
+                "ascending depths");
         }
     }
     return out;
@@ -96,8 +94,8 @@ void set_array_options(const Arguments& a, stiffnessmaps::ImportOptions& options
         throw files::bad_input("--spacing-mm", "", files::shown(a.spacing), "distances > 0");
     const std::vector<double> origin = lengths_m(a.origin, "--origin-mm", 2);
     if (!origin.empty()) options.origin_m = {origin[0], origin[1]};
-    options.quantity =
-        choice<stiffnessmaps::Quantity>(a.quantity, {"force", "stiffness", "young"}).value_or(stiffnessmaps::Quantity::force);
+    options.quantity = choice<stiffnessmaps::Quantity>(a.quantity, {"force", "stiffness", "young"})
+                           .value_or(stiffnessmaps::Quantity::force);
     options.scale_stated = a.scale.has_value();
     options.scale =
         a.scale.value_or(1.0) * (options.quantity == stiffnessmaps::Quantity::force ? 1.0 : 1e3);  // N/mm and kPa
@@ -115,8 +113,8 @@ stiffnessmaps::ImportOptions options_of(const Arguments& a) {
     options.form = choice<stiffnessmaps::RecordingForm>(a.form, {"probing", "sliding", "matrices"});
     options.name = a.name;
     options.licence = a.licence;
-    options.indenter =
-        choice<stiffnessmaps::IndenterShape>(a.indenter, {"sphere", "cylinder"}).value_or(stiffnessmaps::IndenterShape::sphere);
+    options.indenter = choice<stiffnessmaps::IndenterShape>(a.indenter, {"sphere", "cylinder"})
+                           .value_or(stiffnessmaps::IndenterShape::sphere);
     options.indenter_radius_m = 1e-3 * a.indenter_radius_mm;
     options.cylinder_length_m = 1e-3 * a.cylinder_length_mm;
     for (const std::string& column : a.columns) {
@@ -155,12 +153,10 @@ std::function<void(const char*, double)> progress_on_terminal() {
     if (::isatty(STDERR_FILENO) == 0) return {};
     const auto start = std::chrono::steady_clock::now();
     return [start](const char* what, double done) {
-        const double spent_s =
-            std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+        const double spent_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
         if (spent_s < 1.0) return;
         std::fprintf(stderr, "\r\033[K%s", what);
-        if (done > 0.0)
-            std::fprintf(stderr, " %.0f %%, %.0f s left", 100.0 * done, spent_s * (1.0 - done) / done);
+        if (done > 0.0) std::fprintf(stderr, " %.0f %%, %.0f s left", 100.0 * done, spent_s * (1.0 - done) / done);
         std::fflush(stderr);
     };
 }
@@ -177,43 +173,42 @@ std::string value_text(const stiffnessmaps::SourceChoice& choice) {
 void print_choices(const stiffnessmaps::Map& map) {
     std::printf("what was chosen, why, and what chooses otherwise:\n");
     for (const stiffnessmaps::SourceChoice& choice : map.source.choices) {
-        std::printf("  %-22s %s\n%25s%s%s%s\n", choice.key.c_str(), value_text(choice).c_str(), "",
-                    choice.how.c_str(), choice.option.empty() ? "" : "; ", choice.option.c_str());
+        std::printf("  %-22s %s\n%25s%s%s%s\n", choice.key.c_str(), value_text(choice).c_str(), "", choice.how.c_str(),
+                    choice.option.empty() ? "" : "; ", choice.option.c_str());
     }
 }
 
 files::Json import_json(const stiffnessmaps::ImportReport& report) {
     const stiffnessmaps::ImportResidual& residual = report.residual;
-    return {{"form", name_of(report.form)},
-            {"rows", report.rows},
-            {"points", report.points},
-            {"rejected_rows", report.rejected_rows},
-            {"outliers", report.outliers},
-            {"rejected_points", report.rejected_points},
-            {"missing_cells", report.missing_cells},
-            {"median_offset_N", report.median_offset_N},
-            {"residual_points", residual.n},
-            {"median_residual_N", residual.median_N},
-            {"worst_residual_N", residual.worst_N},
-            {"greatest_force_N", residual.greatest_N},
-            {"median_residual_share", residual.median_share()},
-            {"worst_residual_share", residual.worst_share()},
-            {"worst_residual_at_mm",
-             {1e3 * residual.worst_x_m, 1e3 * residual.worst_y_m, 1e3 * residual.worst_depth_m}},
-            {"notes", report.notes}};
+    return {
+        {"form", name_of(report.form)},
+        {"rows", report.rows},
+        {"points", report.points},
+        {"rejected_rows", report.rejected_rows},
+        {"outliers", report.outliers},
+        {"rejected_points", report.rejected_points},
+        {"missing_cells", report.missing_cells},
+        {"median_offset_N", report.median_offset_N},
+        {"residual_points", residual.n},
+        {"median_residual_N", residual.median_N},
+        {"worst_residual_N", residual.worst_N},
+        {"greatest_force_N", residual.greatest_N},
+        {"median_residual_share", residual.median_share()},
+        {"worst_residual_share", residual.worst_share()},
+        {"worst_residual_at_mm", {1e3 * residual.worst_x_m, 1e3 * residual.worst_y_m, 1e3 * residual.worst_depth_m}},
+        {"notes", report.notes}};
 }
 
 void print_report(const std::string& name, const stiffnessmaps::Map& map, const stiffnessmaps::ImportReport& report) {
     const stiffnessmaps::ImportResidual& residual = report.residual;
     const char* unit = report.form == stiffnessmaps::RecordingForm::probing   ? "points"
                        : report.form == stiffnessmaps::RecordingForm::sliding ? "samples"
-                                                               : "numbers";
+                                                                              : "numbers";
     std::printf("%s: %zu %s become %zu x %zu cells of %.2f x %.2f mm, %zu depths to %.2f mm\n", name.c_str(),
-                report.points, unit, map.n_x, map.n_y, 1e3 * map.spacing_m[0], 1e3 * map.spacing_m[1],
-                map.n_depths(), 1e3 * map.depths_m.back());
-    std::printf("  %zu cells missing; %zu of %zu rows and %zu points rejected (%zu outliers)",
-                report.missing_cells, report.rejected_rows, report.rows, report.rejected_points,
-                report.outliers);
+                report.points, unit, map.n_x, map.n_y, 1e3 * map.spacing_m[0], 1e3 * map.spacing_m[1], map.n_depths(),
+                1e3 * map.depths_m.back());
+    std::printf("  %zu cells missing; %zu of %zu rows and %zu points rejected (%zu outliers)", report.missing_cells,
+                report.rejected_rows, report.rows, report.rejected_points, report.outliers);
     if (report.form == stiffnessmaps::RecordingForm::probing)
         std::printf("; %.3g N at contact subtracted (median)", report.median_offset_N);
     std::printf(
@@ -229,7 +224,7 @@ void import_map(const Arguments& a) {
     options.depths_m = depths_m(a.depths, "--depths-mm", false);
     if (a.output.empty() && !a.explain)
         throw files::bad_input("maps import", "", "no output",
-                        "-o NAME.map (or --explain, to see what would be chosen)");
+                               "-o NAME.map (or --explain, to see what would be chosen)");
     if (std::filesystem::exists(a.output)) {  // before a long import, not after it
         throw files::bad_input(a.output, "", "something of that name", "a new name (nothing is overwritten)");
     }
@@ -278,8 +273,7 @@ void add_table_options(CLI::App& command, Arguments& a) {
     number("--pitch-mm", a.pitch_mm, "pitch of the map where the places do not lie on a grid", 0.01, 1000.0);
     number("--radius-mm", a.radius_mm, "radius around a cell from which it then takes samples", 0.01, 1000.0);
     command.add_option("--layers", a.layers, "number of depths of the map")->check(CLI::Range(1, 200))->group("Tables");
-    text("--contact", a.contact, "start of contact: first-row or threshold")
-        ->check(one_of({"first-row", "threshold"}));
+    text("--contact", a.contact, "start of contact: first-row or threshold")->check(one_of({"first-row", "threshold"}));
     number("--contact-force-N", a.contact_force_N, "threshold of the force at contact", 0.0, 100.0);
     number("--surface-z-mm", a.surface_z_mm, "sliding: height of a flat surface, used instead of an estimated one",
            -1e5, 1e5);
@@ -329,9 +323,8 @@ void add_maps_import(CLI::App& maps) {
     CLI::App* command = maps.add_subcommand(
         "import", "Turn a recording into a map: probing, sliding, matrices of force, slices of stiffness");
     command
-        ->add_option(
-            "FILE", a->files,
-            "a table with a header line (probing, sliding), or arrays: .npy, text, MATLAB, HDF5, PNG, TIFF")
+        ->add_option("FILE", a->files,
+                     "a table with a header line (probing, sliding), or arrays: .npy, text, MATLAB, HDF5, PNG, TIFF")
         ->required();
     command->add_option("-o,--output", a->output, "new map folder NAME.map");
     command

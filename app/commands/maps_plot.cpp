@@ -5,8 +5,8 @@
 #include <memory>
 
 #include "app/commands/maps.h"
-#include "figures/gnuplot.h"
 #include "app/commands/option_checks.h"
+#include "figures/gnuplot.h"
 #include "figures/map_figures.h"
 #include "files/input_error.h"
 #include "files/regular_file.h"
@@ -28,9 +28,11 @@ Eigen::Vector2d place_of(const std::string& text) {
     const auto comma = text.find(',');
     double x_mm = 0.0;
     double y_mm = 0.0;
-    const bool read = comma != std::string::npos && files::parse_number(std::string_view(text).substr(0, comma), x_mm) &&
+    const bool read = comma != std::string::npos &&
+                      files::parse_number(std::string_view(text).substr(0, comma), x_mm) &&
                       files::parse_number(std::string_view(text).substr(comma + 1), y_mm);
-    if (!read || !std::isfinite(x_mm + y_mm)) throw files::bad_input("--at", "", files::shown(text), "X,Y in mm, such as 35,42.5");
+    if (!read || !std::isfinite(x_mm + y_mm))
+        throw files::bad_input("--at", "", files::shown(text), "X,Y in mm, such as 35,42.5");
     return {1e-3 * x_mm, 1e-3 * y_mm};
 }
 

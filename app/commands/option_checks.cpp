@@ -33,7 +33,8 @@ std::string refuse_wrapped(std::string& text) {
     const bool negative = text.find('-') != std::string::npos;
     std::strtoull(text.c_str(), nullptr, 0);
     if (!negative && errno != ERANGE) return {};
-    return "found " + files::shown(text) + ", expected a whole number from 0 to " + std::to_string(std::numeric_limits<std::uint64_t>::max());
+    return "found " + files::shown(text) + ", expected a whole number from 0 to " +
+           std::to_string(std::numeric_limits<std::uint64_t>::max());
 }
 
 std::string refuse_empty(std::string& text) { return text.empty() ? "found nothing, expected a value" : std::string(); }

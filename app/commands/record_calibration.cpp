@@ -1,11 +1,10 @@
 #include "app/commands/record_calibration.h"
 
-#include <poll.h>
-#include <unistd.h>
-
 #include <cmath>
 #include <csignal>
 #include <cstdio>
+#include <poll.h>
+#include <unistd.h>
 #include <utility>
 
 #include "calibration/record/acquisition.h"
@@ -31,11 +30,13 @@ bool take_typed(std::string& typed, calibration::Recording& recording) {
     const bool good = files::parse_number(typed, shows) && shows >= 0.0 && shows < 1e5;
     const std::string line = std::exchange(typed, "");
     if (!good) {
-        std::fprintf(stderr, "palpa: found %s, expected what the scale shows, a number >= 0\n", files::shown(line).c_str());
+        std::fprintf(stderr, "palpa: found %s, expected what the scale shows, a number >= 0\n",
+                     files::shown(line).c_str());
         return true;
     }
     const double force_N = recording.arguments.newton ? shows : shows * calibration::kN_per_gf;
-    if (!calibration::take_typed_N(force_N, recording)) std::fprintf(stderr, "palpa: not taken: hold the pen still at another level while you type\n");
+    if (!calibration::take_typed_N(force_N, recording))
+        std::fprintf(stderr, "palpa: not taken: hold the pen still at another level while you type\n");
     return true;
 }
 
@@ -48,19 +49,23 @@ void tell(const calibration::Recording& recording) {
     std::string health;
     if (recording.sensor) {
         const devices::SensorHealth now = recording.sensor->health();
-        health = (now.alive ? "" : "  SENSOR SILENT") + std::string("  lost ") + std::to_string(now.lost) + " twice " + std::to_string(now.duplicate) + " late " +
-                 std::to_string(now.reordered) + " bad " + std::to_string(now.malformed) + " stalls " + std::to_string(now.stalls);
+        health = (now.alive ? "" : "  SENSOR SILENT") + std::string("  lost ") + std::to_string(now.lost) + " twice " +
+                 std::to_string(now.duplicate) + " late " + std::to_string(now.reordered) + " bad " +
+                 std::to_string(now.malformed) + " stalls " + std::to_string(now.stalls);
     }
-    std::fprintf(stderr, "\r%-22s level %5.1f %%  force %6.3f N  points %zu  press %d%s\033[K", calibration::advice(recording).c_str(),
-                 100.0 * (level - options.range.lowest) / (options.range.highest - options.range.lowest), force_N, session.points.size(),
-                 session.repeat + 1, health.c_str());
+    std::fprintf(stderr, "\r%-22s level %5.1f %%  force %6.3f N  points %zu  press %d%s\033[K",
+                 calibration::advice(recording).c_str(),
+                 100.0 * (level - options.range.lowest) / (options.range.highest - options.range.lowest), force_N,
+                 session.points.size(), session.repeat + 1, health.c_str());
 }
 
 void tell_news(bool was_silent, const calibration::Recording& recording) {
     if (recording.silent && !was_silent) {
-        std::fprintf(stderr, "\npalpa: warning: %s has stopped; nothing is captured until it is back\n", recording.sensor->name().c_str());
+        std::fprintf(stderr, "\npalpa: warning: %s has stopped; nothing is captured until it is back\n",
+                     recording.sensor->name().c_str());
     }
-    if (!recording.silent && was_silent) std::fprintf(stderr, "\npalpa: %s is back\n", recording.sensor->name().c_str());
+    if (!recording.silent && was_silent)
+        std::fprintf(stderr, "\npalpa: %s is back\n", recording.sensor->name().c_str());
     if (!recording.judged) return;
     std::fprintf(stderr, "%spress %d: %s\n", ::isatty(2) != 0 ? "\r\033[K" : "", recording.session.repeat + 1,
                  recording.knowledge.done ? "the curve is known everywhere" : recording.knowledge.missing.c_str());
@@ -72,7 +77,8 @@ files::Json record_calibration(const calibration::RecordArguments& arguments) {
     if (arguments.sensor == "typed" && arguments.levels == "-") {
         throw files::bad_input("--levels", "", "-", "a file or pipe: standard input is for the typed numbers");
     }
-    const std::unique_ptr<LevelSource> source = arguments.levels.empty() ? open_level_window() : open_level_stream(arguments.levels);
+    const std::unique_ptr<LevelSource> source =
+        arguments.levels.empty() ? open_level_window() : open_level_stream(arguments.levels);
     const std::unique_ptr<calibration::Recording> recording = calibration::open_recording(arguments);
     interrupted = 0;
     const auto before = std::signal(SIGINT, [](int) { interrupted = 1; });

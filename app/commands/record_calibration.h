@@ -13,7 +13,7 @@ namespace palpa::app {
 
 // Where levels come from.
 class LevelSource {
- public:
+  public:
     virtual ~LevelSource() = default;
     // Appends what arrived; waits up to `wait_s`. False once there will be no more.
     virtual bool poll(double wait_s, std::vector<platform::Sample>& out) = 0;

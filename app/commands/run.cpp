@@ -1,25 +1,24 @@
 // palpa run: the app, or a trace without a window.
 
-#include <sys/resource.h>
-
 #include <CLI/CLI.hpp>
 #include <chrono>
 #include <cstdio>
 #include <map>
 #include <memory>
+#include <sys/resource.h>
 
 #include "app/commands/command_line.h"
+#include "app/commands/option_checks.h"
 #include "app/live/live.h"
 #include "app/scene_choices.h"
-#include "session/plan_in_progress.h"
-#include "session/log_rows.h"
-#include "app/commands/option_checks.h"
-#include "session/replay.h"
 #include "app/screens/frame.h"
-#include "session/session.h"
 #include "files/input_error.h"
 #include "files/regular_file.h"
 #include "files/text.h"
+#include "session/log_rows.h"
+#include "session/plan_in_progress.h"
+#include "session/replay.h"
+#include "session/session.h"
 
 namespace palpa::app {
 namespace {
@@ -48,9 +47,12 @@ void print(const files::Json& result, bool as_json) {
 }
 
 // A finished trial is drawn as what it revealed, another one at its moment of greatest lag or force.
-void draw(const scene::Scene& scene, const scene::Plan& plan, const platform::Trace& trace, const session::Trial& whole, double at_s, const RunOptions& options) {
+void draw(const scene::Scene& scene, const scene::Plan& plan, const platform::Trace& trace, const session::Trial& whole,
+          double at_s, const RunOptions& options) {
     session::Trial trial = session::make_trial(plan, whole.mode);
-    const auto observing = [&](const platform::Sample& sample, const scene::State& state) { observe(plan, sample, state, trial); };
+    const auto observing = [&](const platform::Sample& sample, const scene::State& state) {
+        observe(plan, sample, state, trial);
+    };
     session::ReplayResult again = session::replay(scene, plan, trace, 0, observing, whole.finished ? 1e300 : at_s);
     Screens screens;
     if (trial.finished) {
@@ -66,9 +68,11 @@ void draw(const scene::Scene& scene, const scene::Plan& plan, const platform::Tr
 
 void run_headless(const RunOptions& options) {
     if (options.trace.empty()) {
-        throw files::InputError("--headless: found no --replay TRACE.tsv, expected one (without a window there is no pen)");
+        throw files::InputError(
+            "--headless: found no --replay TRACE.tsv, expected one (without a window there is no pen)");
     }
-    if (!options.record.empty()) throw files::InputError("--record: found with --headless, expected a window (a replay has its trace)");
+    if (!options.record.empty())
+        throw files::InputError("--record: found with --headless, expected a window (a replay has its trace)");
     const auto began = std::chrono::steady_clock::now();
     const scene::Scene scene = load_scene(options.scene);
     if (!options.screenshot.empty()) files::check_output(options.screenshot, inputs_of(scene, options.trace));
@@ -82,11 +86,13 @@ void run_headless(const RunOptions& options) {
         log.emplace(*files);
     }
     constexpr int kTimeEvery = 16;
-    session::Trial trial = session::make_trial(plan, options.test ? session::TrialMode::test : session::TrialMode::practice);
-    const session::ReplayResult result = session::replay(scene, plan, trace, kTimeEvery, [&](const platform::Sample& sample, const scene::State& state) {
-        if (log) log->write(session::row_of(sample, plan, state));
-        observe(plan, sample, state, trial);
-    });
+    session::Trial trial =
+        session::make_trial(plan, options.test ? session::TrialMode::test : session::TrialMode::practice);
+    const session::ReplayResult result =
+        session::replay(scene, plan, trace, kTimeEvery, [&](const platform::Sample& sample, const scene::State& state) {
+            if (log) log->write(session::row_of(sample, plan, state));
+            observe(plan, sample, state, trial);
+        });
     files::Json json = session::result_json(scene, plan, result);
     json["trials"] = files::Json::array({session::trial_json(plan, trial)});
     json["wall_s"] = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
@@ -95,7 +101,8 @@ void run_headless(const RunOptions& options) {
     json["peak_memory_MB"] = static_cast<double>(usage.ru_maxrss) / 1024.0;
     if (log) {
         if (!log->sync()) throw std::runtime_error(options.log + ": the log could not be written to its end");
-        files::write_text_atomically(files->file("_settings.json"), files::json_text(session::settings_json(scene, plan, result.state)));
+        files::write_text_atomically(files->file("_settings.json"),
+                                     files::json_text(session::settings_json(scene, plan, result.state)));
         files::write_text_atomically(files->file("_performance.json"), files::json_text(json));
     }
     if (!options.screenshot.empty()) {
@@ -134,10 +141,15 @@ void add_run(CLI::App& app) {
         ->check(CLI::Range(100, 16384));
     command->add_flag("--practice", options->practice, "show the nodules during the trial");
     command->add_flag("--test", options->test, "hide the nodules until the trial is finished")->excludes("--practice");
-    const std::map<std::string, Screen> screens{{"trial", Screen::trial}, {"devices", Screen::devices}, {"scale", Screen::scale},
-                                                {"calibrate", Screen::calibrate}, {"maps", Screen::maps}};
-    command->add_option_function<std::string>("--screen", [options, screens](const std::string& name) { options->screen = screens.at(name); },
-                                              "screen to open first")
+    const std::map<std::string, Screen> screens{{"trial", Screen::trial},
+                                                {"devices", Screen::devices},
+                                                {"scale", Screen::scale},
+                                                {"calibrate", Screen::calibrate},
+                                                {"maps", Screen::maps}};
+    command
+        ->add_option_function<std::string>(
+            "--screen", [options, screens](const std::string& name) { options->screen = screens.at(name); },
+            "screen to open first")
         ->check(one_of({"trial", "devices", "scale", "calibrate", "maps"}));
     command->add_flag("--left-handed", options->left_handed, "put the controls on the right");
     command->callback([options] {

@@ -1,11 +1,12 @@
 // palpa serve
 
+#include "desk/serve.h"
+
 #include <CLI/CLI.hpp>
 #include <memory>
 
 #include "app/assets.h"
 #include "app/commands/command_line.h"
-#include "desk/serve.h"
 #include "files/regular_file.h"
 
 namespace palpa::app {
@@ -22,7 +23,8 @@ struct Arguments {
 void start(const Arguments& arguments) {
     desk::ServeOptions options = arguments.options;
     options.assets = assets_folder();
-    options.web = arguments.web.empty() ? desk::web_folder_beside(options.assets) : std::filesystem::path(arguments.web);
+    options.web =
+        arguments.web.empty() ? desk::web_folder_beside(options.assets) : std::filesystem::path(arguments.web);
     options.sessions.lasts_s = 3600.0 * arguments.hours;
     options.uploads.upload_bytes = static_cast<std::uint64_t>(1e6 * arguments.upload_MB);
     options.uploads.total_bytes = static_cast<std::uint64_t>(1e6 * arguments.total_MB);

@@ -27,7 +27,8 @@ struct AnalyseOptions {
 void write_report(const study::Report& report, const fs::path& folder) {
     std::error_code error;
     fs::create_directories(folder, error);
-    if (error || !fs::is_directory(folder)) throw files::bad_input(folder.string(), "", "no folder", "a folder, or a name that is free");
+    if (error || !fs::is_directory(folder))
+        throw files::bad_input(folder.string(), "", "no folder", "a folder, or a name that is free");
     for (const study::ReportTable& table : study::report_tables(report)) {
         files::write_text_atomically(folder / (table.name + ".tsv"), study::tsv_text(table));
     }
@@ -38,7 +39,8 @@ void write_report(const study::Report& report, const fs::path& folder) {
 }
 
 std::vector<std::string> names_of(const study::Report& report) {
-    std::vector<std::string> names{"report.md", "report.json", "figures.gp", "figures.png", "figures.svg", "figures.pdf"};
+    std::vector<std::string> names{"report.md",   "report.json", "figures.gp",
+                                   "figures.png", "figures.svg", "figures.pdf"};
     for (const study::ReportTable& table : study::report_tables(report)) names.push_back(table.name + ".tsv");
     return names;
 }
@@ -52,9 +54,11 @@ void analyse(const AnalyseOptions& options) {
     if (!options.output.empty()) files::check_output_folder(options.output);
     const study::Report report = study::make_report(read_observations(options.input), options.report);
     // logs of a study have names of their own; a table of counts may have any
-    if (!options.output.empty() && !fs::is_directory(options.input)) files::check_output_folder(options.output, {options.input}, names_of(report));
+    if (!options.output.empty() && !fs::is_directory(options.input))
+        files::check_output_folder(options.output, {options.input}, names_of(report));
     if (!options.output.empty()) write_report(report, options.output);
-    const std::string text = options.json ? files::json_text(study::report_json(report)) : study::report_markdown(report);
+    const std::string text =
+        options.json ? files::json_text(study::report_json(report)) : study::report_markdown(report);
     std::fputs(text.c_str(), stdout);
 }
 
@@ -63,9 +67,10 @@ void analyse(const AnalyseOptions& options) {
 void add_study_analyse(CLI::App& study) {
     auto options = std::make_shared<AnalyseOptions>();
     CLI::App* command = study.add_subcommand("analyse", "Make tables and figures from a study's logs, or from counts");
-    command->add_option("INPUT", options->input,
-                        "folder of a study's logs; or a table COUNTS.tsv with the columns condition tp fn fp (also n, "
-                        "nodule, participant), or condition correct n (also comparison, participant)")
+    command
+        ->add_option("INPUT", options->input,
+                     "folder of a study's logs; or a table COUNTS.tsv with the columns condition tp fn fp (also n, "
+                     "nodule, participant), or condition correct n (also comparison, participant)")
         ->required();
     command->add_option("-o,--output", options->output, "folder for report.md, report.json, tables and figures");
     command->add_option("--level", options->report.bootstrap.level, "confidence level of all intervals (default 0.95)")

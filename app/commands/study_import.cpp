@@ -20,18 +20,23 @@ struct ImportOptions {
 
 void import(const ImportOptions& options) {
     files::check_output_folder(options.output);
-    const study::BundleReport report = study::import_bundles({options.bundles.begin(), options.bundles.end()}, options.output);
+    const study::BundleReport report =
+        study::import_bundles({options.bundles.begin(), options.bundles.end()}, options.output);
     if (options.json) {
-        const files::Json json{{"written", report.written}, {"already_there", report.already_there}, {"people_added", report.people_added},
-                        {"grown", report.grown}, {"passed_over", report.passed_over}};
+        const files::Json json{{"written", report.written},
+                               {"already_there", report.already_there},
+                               {"people_added", report.people_added},
+                               {"grown", report.grown},
+                               {"passed_over", report.passed_over}};
         std::fputs(files::json_text(json).c_str(), stdout);
         return;
     }
     for (const std::string& name : report.already_there) std::printf("%s: there already, the same\n", name.c_str());
     for (const std::string& name : report.grown) std::printf("%s: answers added\n", name.c_str());
-    for (const std::string& name : report.passed_over) std::printf("%s: a single run, no part of the study; passed over\n", name.c_str());
-    std::printf("%s: %zu files written, %zu there already, %d participants added\n", options.output.c_str(), report.written.size(),
-                report.already_there.size(), report.people_added);
+    for (const std::string& name : report.passed_over)
+        std::printf("%s: a single run, no part of the study; passed over\n", name.c_str());
+    std::printf("%s: %zu files written, %zu there already, %d participants added\n", options.output.c_str(),
+                report.written.size(), report.already_there.size(), report.people_added);
 }
 
 }  // namespace
@@ -40,7 +45,8 @@ void add_study_import(CLI::App& study) {
     auto options = std::make_shared<ImportOptions>();
     CLI::App* command = study.add_subcommand(
         "import", "Add the logs of tablets to a study's folder; existing files are never overwritten");
-    command->add_option("FILE", options->bundles, "bundles, exported by a tablet or collected by palpa serve")->required();
+    command->add_option("FILE", options->bundles, "bundles, exported by a tablet or collected by palpa serve")
+        ->required();
     command->add_option("-o,--output", options->output, "the study's folder; it is created if it does not exist")
         ->required();
     command->add_flag("--json", options->json, "print one JSON object on standard output");

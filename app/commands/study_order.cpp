@@ -20,9 +20,9 @@ struct OrderOptions {
 
 files::Json trial_json(const study::Protocol& protocol, const study::PlannedTrial& trial) {
     files::Json json{{"trial", trial.trial},
-              {"block", trial.practice ? "practice" : "test"},
-              {"condition", protocol.conditions[trial.condition].id},
-              {"repeat", trial.repeat + 1}};
+                     {"block", trial.practice ? "practice" : "test"},
+                     {"condition", protocol.conditions[trial.condition].id},
+                     {"repeat", trial.repeat + 1}};
     if (protocol.task == study::TaskKind::find) {
         json["map_rotation_deg"] = trial.rotate_deg;
         json["map_flip"] = trial.flip;
@@ -36,12 +36,8 @@ files::Json trial_json(const study::Protocol& protocol, const study::PlannedTria
 }
 
 files::Json order_json(const study::Protocol& protocol, const std::vector<study::PlannedParticipant>& people) {
-    files::Json json{{"protocol", protocol.name},
-              {"version", protocol.version},
-              {"sha256", protocol.sha256},
-              {"seed", protocol.seed},
-              {"order", name_of(protocol.order)},
-              {"task", name_of(protocol.task)}};
+    files::Json json{{"protocol", protocol.name}, {"version", protocol.version},      {"sha256", protocol.sha256},
+                     {"seed", protocol.seed},     {"order", name_of(protocol.order)}, {"task", name_of(protocol.task)}};
     json["participants"] = files::Json::array();
     for (const study::PlannedParticipant& who : people) {
         files::Json trials = files::Json::array();
@@ -69,7 +65,8 @@ void print_trial(const study::Protocol& protocol, const study::PlannedTrial& tri
                 trial.practice ? "practice" : "test", condition.c_str());
     if (protocol.task == study::TaskKind::choice) {
         const double comparison_kPa = protocol.choice.comparisons_kPa[static_cast<std::size_t>(trial.comparison)];
-        std::printf("  %s kPa, reference %s\n", files::short_number(comparison_kPa).c_str(), trial.reference_first ? "first" : "second");
+        std::printf("  %s kPa, reference %s\n", files::short_number(comparison_kPa).c_str(),
+                    trial.reference_first ? "first" : "second");
         return;
     }
     std::printf("  turned %3d deg%s\n", trial.rotate_deg, trial.flip ? ", flipped" : "");
@@ -90,7 +87,8 @@ void print_order(const OrderOptions& options) {
     const study::Protocol protocol = study::read_protocol(options.protocol);
     load_study_scenes(protocol);  // a missing map is better found now
     std::vector<study::PlannedParticipant> people;
-    for (int number = 1; number <= options.participants; ++number) people.push_back(study::plan_participant(protocol, number));
+    for (int number = 1; number <= options.participants; ++number)
+        people.push_back(study::plan_participant(protocol, number));
     if (options.json) {
         std::fputs(files::json_text(order_json(protocol, people)).c_str(), stdout);
         return;
@@ -98,7 +96,8 @@ void print_order(const OrderOptions& options) {
     std::printf("%s, version %s, seed %u, order %s\n", protocol.name.c_str(), protocol.version.c_str(), protocol.seed,
                 name_of(protocol.order));
     for (const study::PlannedParticipant& who : people) {
-        std::printf("participant %d, group %s, order %d\n", who.number, protocol.groups[who.group].id.c_str(), who.order_id);
+        std::printf("participant %d, group %s, order %d\n", who.number, protocol.groups[who.group].id.c_str(),
+                    who.order_id);
         for (const study::PlannedTrial& trial : who.trials) print_trial(protocol, trial);
     }
     print_imbalance(protocol, people);

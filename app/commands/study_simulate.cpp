@@ -6,8 +6,8 @@
 #include <memory>
 #include <thread>
 
-#include "app/commands/study.h"
 #include "app/commands/option_checks.h"
+#include "app/commands/study.h"
 #include "app/study/simulate.h"
 #include "files/json.h"
 #include "files/regular_file.h"
@@ -37,14 +37,14 @@ void simulate(const Arguments& arguments) {
     const double MB_per_s = result.wall_s > 0.0 ? result.written_MB / result.wall_s : 0.0;
     if (arguments.json) {
         const files::Json json{{"simulated", true},
-                        {"participants", options.participants},
-                        {"trials", result.trials},
-                        {"already_there", result.already_there},
-                        {"left_out", result.left_out},
-                        {"samples", result.samples},
-                        {"samples_MB", result.written_MB},
-                        {"samples_MB_per_s", MB_per_s},
-                        {"wall_s", result.wall_s}};
+                               {"participants", options.participants},
+                               {"trials", result.trials},
+                               {"already_there", result.already_there},
+                               {"left_out", result.left_out},
+                               {"samples", result.samples},
+                               {"samples_MB", result.written_MB},
+                               {"samples_MB_per_s", MB_per_s},
+                               {"wall_s", result.wall_s}};
         std::fputs(files::json_text(json).c_str(), stdout);
         return;
     }
@@ -52,7 +52,8 @@ void simulate(const Arguments& arguments) {
                 arguments.output.c_str(), options.participants, result.trials, result.already_there,
                 static_cast<long long>(result.samples), result.wall_s);
     if (result.left_out > 0) {
-        std::printf("  %d trials left out: by hand on a real phantom, or on devices that are not simulated\n", result.left_out);
+        std::printf("  %d trials left out: by hand on a real phantom, or on devices that are not simulated\n",
+                    result.left_out);
     }
     if (options.samples) std::printf("  %.1f MB of samples, %.1f MB/s\n", result.written_MB, MB_per_s);
 }

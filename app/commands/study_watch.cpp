@@ -1,8 +1,6 @@
 // palpa study watch DIR: the experimenter's view of a study that runs elsewhere, on another screen or over ssh. It
 // reads what the study writes, and changes nothing.
 
-#include <unistd.h>
-
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
@@ -10,6 +8,7 @@
 #include <filesystem>
 #include <memory>
 #include <thread>
+#include <unistd.h>
 
 #include "app/commands/study.h"
 #include "files/input_error.h"
@@ -123,7 +122,8 @@ files::Json state_of(const fs::path& directory, const study::Person& person, std
 
 files::Json look(const Arguments& arguments) {
     if (!study::read_identity(arguments.directory)) {
-        throw files::bad_input(arguments.directory, "", "no study.json", "the folder of a study (--log of palpa study run)");
+        throw files::bad_input(arguments.directory, "", "no study.json",
+                               "the folder of a study (--log of palpa study run)");
     }
     std::vector<std::string> notes;
     files::Json json{{"people", files::Json::array()}};
@@ -140,7 +140,8 @@ files::Json look(const Arguments& arguments) {
         json["people"].push_back(state_of(arguments.directory, person, notes));
     }
     if (!arguments.participant.empty() && json["people"].empty()) {
-        throw files::bad_input("--participant", "", files::shown(arguments.participant), "a code that is in " + arguments.directory);
+        throw files::bad_input("--participant", "", files::shown(arguments.participant),
+                               "a code that is in " + arguments.directory);
     }
     json["notes"] = notes;
     return json;
@@ -154,7 +155,8 @@ void print(const files::Json& state) {
         return;
     }
     const files::Json& now = state["now"];
-    std::printf("%s of %s  %s", now["finished"].dump().c_str(), now["of"].dump().c_str(), now["step"].get<std::string>().c_str());
+    std::printf("%s of %s  %s", now["finished"].dump().c_str(), now["of"].dump().c_str(),
+                now["step"].get<std::string>().c_str());
     if (now.contains("trial")) {
         std::printf(", trial %s%s, %s", now["trial"].dump().c_str(), now["practice"] == true ? " (practice)" : "",
                     now["condition"].get<std::string>().c_str());
@@ -169,8 +171,8 @@ void print(const files::Json& state) {
     if (state.contains("sample")) {
         const files::Json& s = state["sample"];
         const auto text = [&](const char* name) { return s.value(name, "n/a"); };
-        std::printf(", %s at (%s, %s) mm, pressure %s, %s N, %s mm deep", text("tool").c_str(), text("x_mm").c_str(), text("y_mm").c_str(),
-                    text("pressure").c_str(), text("force_N").c_str(), text("depth_mm").c_str());
+        std::printf(", %s at (%s, %s) mm, pressure %s, %s N, %s mm deep", text("tool").c_str(), text("x_mm").c_str(),
+                    text("y_mm").c_str(), text("pressure").c_str(), text("force_N").c_str(), text("depth_mm").c_str());
     } else if (state.contains("events")) {
         std::printf(", the tissue was not touched in the last seconds");
     }

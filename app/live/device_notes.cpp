@@ -11,7 +11,8 @@ namespace palpa::app {
 namespace {
 
 bool named(const std::vector<platform::PointerDevice>& devices, const std::string& name) {
-    return std::any_of(devices.begin(), devices.end(), [&](const platform::PointerDevice& d) { return d.name == name; });
+    return std::any_of(devices.begin(), devices.end(),
+                       [&](const platform::PointerDevice& d) { return d.name == name; });
 }
 
 // Plugged in or out while the app runs.
@@ -20,7 +21,8 @@ void note_changes(const std::vector<platform::PointerDevice>& now, Screens& scre
         if (!named(now, device.name)) screens.note = words::filled(words::kIsGone, {device.name});
     }
     for (const platform::PointerDevice& device : now) {
-        if (!screens.devices.empty() && !named(screens.devices, device.name)) screens.note = words::filled(words::kIsHere, {device.name});
+        if (!screens.devices.empty() && !named(screens.devices, device.name))
+            screens.note = words::filled(words::kIsHere, {device.name});
     }
 }
 
@@ -56,7 +58,8 @@ void note_devices(const platform::Window& window, App& app) {
     app.screens.offer_hold = false;
     for (const platform::Tool tool : {platform::Tool::pen, platform::Tool::finger}) note_pressure(tool, app);
     const auto& devices = app.screens.devices;
-    const bool pressure = std::any_of(devices.begin(), devices.end(), [](const platform::PointerDevice& d) { return d.has_pressure; });
+    const bool pressure =
+        std::any_of(devices.begin(), devices.end(), [](const platform::PointerDevice& d) { return d.has_pressure; });
     if (!pressure) notes.push_back(words::kNoSensorHere);
     if (!pressure || app.screens.offer_hold) notes.push_back(words::kOtherWays);
 }

@@ -5,14 +5,14 @@
 #include <stdexcept>
 #include <utility>
 
-#include "app/screens/calibrate_form.h"
-#include "app/screens/frame.h"
 #include "app/live/live_app.h"
 #include "app/scene_choices.h"
+#include "app/screens/calibrate_form.h"
+#include "app/screens/frame.h"
 #include "app/screens/map_screen.h"
 #include "app/screens/screenshot.h"
-#include "app/study/study_run.h"
 #include "app/screens/words.h"
+#include "app/study/study_run.h"
 #include "files/regular_file.h"
 #include "files/text.h"
 #include "render/gl.h"
@@ -47,7 +47,8 @@ void open_screen(Screen screen, platform::Window& window, App& app) {
     }
     if (screen == Screen::calibrate && !app.screens.calibrate) app.screens.calibrate = make_calibrate_form();
     if (app.screens.screen == Screen::calibrate && screen != Screen::calibrate) close_calibrate(app);
-    if (screen == Screen::maps && !app.screens.maps) app.screens.maps = make_map_browser(app.session.scene, map_choices());
+    if (screen == Screen::maps && !app.screens.maps)
+        app.screens.maps = make_map_browser(app.session.scene, map_choices());
     if (screen != Screen::maps) app.screens.maps.reset();
     app.screens.screen = screen;
     app.screens.menu = false;
@@ -66,7 +67,8 @@ void change_settings(const Wishes& wishes, platform::Window& window, Gui& gui, A
         app.settings.px_per_mm.erase(app.screens.screen_name);
         if (std::isfinite(*wishes.px_per_mm)) app.settings.px_per_mm[app.screens.screen_name] = *wishes.px_per_mm;
     }
-    const bool changed = wishes.left_handed || wishes.above_finger || wishes.mode || wishes.full_screen || wishes.px_per_mm || wishes.scene || wishes.profile;
+    const bool changed = wishes.left_handed || wishes.above_finger || wishes.mode || wishes.full_screen ||
+                         wishes.px_per_mm || wishes.scene || wishes.profile;
     if (changed) keep_settings(app);
     // what was measured with another scale or shown another way is another trial
     if (!wishes.px_per_mm && !wishes.mode && !wishes.above_finger) return;
@@ -84,7 +86,8 @@ void carry_out(const Wishes& asked_for, platform::Window& window, Gui& gui, App&
     }
     if (wishes.quit) app.quit = true;
     if (app.screens.study) follow_study(window, gui, app);
-    if (wishes.action && app.screens.screen == Screen::trial && !app.trace) act(*wishes.action, now_of(app, window), app);
+    if (wishes.action && app.screens.screen == Screen::trial && !app.trace)
+        act(*wishes.action, now_of(app, window), app);
     if (wishes.screen) open_screen(*wishes.screen, window, app);
     if (wishes.scene) app.settings.scene = *wishes.scene;
     if (wishes.profile) app.settings.profile = *wishes.profile;
@@ -156,16 +159,18 @@ void place_keyboard(platform::Window& window, const App& app) {
     constexpr double kSpeed_m_per_s = 0.03;
     const scene::ScreenArea& a = app.session.state.screen;
     const bool elsewhere = app.screens.study && app.screens.screen != Screen::trial;
-    if (elsewhere || app.screens.menu || app.screens.asked || (app.screens.screen != Screen::trial && app.screens.screen != Screen::devices)) {
+    if (elsewhere || app.screens.menu || app.screens.asked ||
+        (app.screens.screen != Screen::trial && app.screens.screen != Screen::devices)) {
         window.set_keyboard(0.0, 0.0, 0.0, 0.0, 0.0);
     } else {
-        window.set_keyboard(a.x_px, a.y_px, a.x_px + a.width_px, a.y_px + a.height_px, kSpeed_m_per_s * app.session.state.view.px_per_m);
+        window.set_keyboard(a.x_px, a.y_px, a.x_px + a.width_px, a.y_px + a.height_px,
+                            kSpeed_m_per_s * app.session.state.view.px_per_m);
     }
 }
 
 float scale_now(const App& app, const platform::Window& window) {
-    return control_scale(app.screens.px_per_mm, static_cast<float>(window.width_px()), static_cast<float>(window.height_px()),
-                         window.touch_px_per_mm());
+    return control_scale(app.screens.px_per_mm, static_cast<float>(window.width_px()),
+                         static_cast<float>(window.height_px()), window.touch_px_per_mm());
 }
 
 // A window that changed its size, or a hand that changed sides, is input too: a replay must map positions alike.
@@ -175,7 +180,8 @@ void note_resize(const platform::Window& window, Gui& gui, App& app) {
     if (app.trace || none || app.session.trial.finished) return;
     const platform::Sample now = resize_sample(window, gui, app.settings, now_of(app, window));
     const scene::ScreenArea& area = app.session.state.screen;
-    const bool same = now.x_px == area.x_px && now.y_px == area.y_px && now.width_px == area.width_px && now.height_px == area.height_px;
+    const bool same = now.x_px == area.x_px && now.y_px == area.y_px && now.width_px == area.width_px &&
+                      now.height_px == area.height_px;
     if (!same) take(now, app);
 }
 
@@ -203,10 +209,12 @@ void show(platform::Window& window, App& app, render::TissueDrawer& tissue, Gui&
     const session::Session& s = app.session;
     const bool save = std::exchange(app.save_waits, false);
     if (save) app.on_screen.content = 0;  // what the window hands out is only sure while it has just been drawn
-    const Wishes wishes = draw_frame(s.scene, s.plan, s.trial, app.settings, now_of(app, window), dt_s, tissue, gui, app.screens,
-                                     app.session.state, app.times, app.on_screen);
+    const Wishes wishes = draw_frame(s.scene, s.plan, s.trial, app.settings, now_of(app, window), dt_s, tissue, gui,
+                                     app.screens, app.session.state, app.times, app.on_screen);
     if (save) {
-        attempt(app, [&] { app.screens.note = words::filled(words::kSaved, {save_picture(window, app.options.log).string()}); });
+        attempt(app, [&] {
+            app.screens.note = words::filled(words::kSaved, {save_picture(window, app.options.log).string()});
+        });
     }
     if (app.on_screen.drawn) {
         window.present();
@@ -297,7 +305,7 @@ struct Live::Impl {
 
     void take_samples(double wait_s) {
         samples.clear();
-        window->poll(wait_s, samples);                 // 1. read
+        window->poll(wait_s, samples);  // 1. read
         if (window->stirred() || !samples.empty()) stirred_s = window->now_s();
         if (window->uncovered()) app.on_screen.content = 0;
         if (app.trace) {
@@ -308,7 +316,7 @@ struct Live::Impl {
         note_resize(*window, *gui, app);
         place_keyboard(*window, app);
         lift_fingers(gui->mm(), samples, app);
-        take_all(window->now_s(), samples, app);       // 2. simulate, 3. log
+        take_all(window->now_s(), samples, app);  // 2. simulate, 3. log
         watch_files(app);
         session::flush_if_due(app.session);  // also while nothing moves, and nothing is drawn
         keep_part(window->now_s(), app);
@@ -396,8 +404,8 @@ files::Json Live::close() {
     if (!it.app.options.screenshot.empty()) {
         it.app.on_screen.content = 0;
         const session::Session& s = it.app.session;
-        draw_frame(s.scene, s.plan, s.trial, it.app.settings, now_of(it.app, *it.window), kFrame_s, *it.tissue, *it.gui, it.app.screens,
-                   it.app.session.state, it.app.times, it.app.on_screen);
+        draw_frame(s.scene, s.plan, s.trial, it.app.settings, now_of(it.app, *it.window), kFrame_s, *it.tissue, *it.gui,
+                   it.app.screens, it.app.session.state, it.app.times, it.app.on_screen);
         save_screen(*it.window, it.app.options.screenshot);
     }
     if (it.app.screens.calibrate) stop_recording(*it.app.screens.calibrate);
@@ -412,7 +420,8 @@ files::Json Live::close() {
 }
 
 std::optional<files::Json> run_live(const RunOptions& options) {
-    if (!options.screenshot.empty()) files::check_output(options.screenshot, {options.scene, options.trace, options.protocol});
+    if (!options.screenshot.empty())
+        files::check_output(options.screenshot, {options.scene, options.trace, options.protocol});
     if (!options.log.empty()) files::check_output_folder(options.log);
     Live live(options);
     if (!live.ready()) return std::nullopt;

@@ -7,35 +7,35 @@
 #include <string>
 
 #include "app/screens/screens.h"
-#include "session/keeper.h"
 #include "files/json.h"
+#include "session/keeper.h"
 
 namespace palpa::app {
 
 // `palpa run`, as typed.
 struct RunOptions {
     std::string scene;
-    std::string trace;        // replayed at its own pace instead of a pen
-    std::string log;          // folder, empty for none
+    std::string trace;  // replayed at its own pace instead of a pen
+    std::string log;    // folder, empty for none
     std::string participant = "01";
-    int first_run = 1;        // of the log
-    std::string record;       // TRACE.tsv, empty for none
-    std::string screenshot;   // of the last frame
+    int first_run = 1;          // of the log
+    std::string record;         // TRACE.tsv, empty for none
+    std::string screenshot;     // of the last frame
     double quit_after_s = 0.0;  // 0: until the window is closed
-    int width_px = 0;         // 0: as last time
+    int width_px = 0;           // 0: as last time
     int height_px = 0;
-    bool test = false;        // nodules hidden until the end; neither: as last time
-    bool practice = false;    // nodules shown
+    bool test = false;      // nodules hidden until the end; neither: as last time
+    bool practice = false;  // nodules shown
     bool left_handed = false;
     Screen screen = Screen::trial;  // that is open first
-    std::string protocol;     // of a study: its trials, instead of a scene; `log` is its folder
+    std::string protocol;           // of a study: its trials, instead of a scene; `log` is its folder
     bool headless = false;
     bool json = false;
 };
 
 // The app while its window is open, a turn at a time: for a system that calls, as a browser does.
 class Live {
- public:
+  public:
     // Throws InputError or std::runtime_error before there is anything to see. `keeper` outlives it, or is null.
     explicit Live(const RunOptions& options, session::TrialKeeper* keeper = nullptr);
     ~Live();
@@ -56,10 +56,10 @@ class Live {
     std::optional<Gui::TextField> text_field() const;
     void type_instead(const std::string& text);
 
-    void renew_drawing();  // the GL context was lost, and is back
-    files::Json report() const;   // as `run --json` so far
-    files::Json close();          // throws std::runtime_error if a file could not be written
- private:
+    void renew_drawing();        // the GL context was lost, and is back
+    files::Json report() const;  // as `run --json` so far
+    files::Json close();         // throws std::runtime_error if a file could not be written
+  private:
     struct Impl;
     std::unique_ptr<Impl> impl_;
 };

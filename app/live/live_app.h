@@ -7,13 +7,13 @@
 #include <string>
 #include <vector>
 
-#include "app/screens/frame.h"
 #include "app/live/live.h"
+#include "app/screens/frame.h"
 #include "app/screens/screens.h"
-#include "session/session.h"
 #include "platform/hold_press.h"
 #include "platform/pressure.h"
 #include "platform/trace.h"
+#include "session/session.h"
 
 namespace palpa::app {
 
@@ -25,22 +25,22 @@ struct App {
     Screens screens;
     session::Session session;
     std::optional<scene::Scene> unprepared;  // its tissue is computed once there is a window that can say so
-    std::optional<platform::Trace> trace;  // replayed
+    std::optional<platform::Trace> trace;    // replayed
     std::size_t next_row = 0;
     double trace_shift_s = 0.0;  // window's clock - trace's clock
     FrameTimes times;
-    std::int64_t frames = 0;     // drawn
+    std::int64_t frames = 0;  // drawn
     OnScreen on_screen;
-    double drawn_s = 0.0;        // window's clock, at the last frame that was drawn
+    double drawn_s = 0.0;           // window's clock, at the last frame that was drawn
     double devices_noted_s = -1e9;  // when devices were listed last
-    bool save_waits = false;     // a picture of the next frame is wanted
+    bool save_waits = false;        // a picture of the next frame is wanted
     platform::PressureWatch pressure;
     platform::HoldPress hold;
-    std::vector<double> waiting_s;  // host times of the samples that no frame has shown yet
-    std::string stopped;            // why the trial cannot go on
+    std::vector<double> waiting_s;           // host times of the samples that no frame has shown yet
+    std::string stopped;                     // why the trial cannot go on
     session::TrialKeeper* keeper = nullptr;  // may be null
-    double parted_s = 0.0;          // when the keeper last had the trial so far
-    bool begin_waits = false;       // for the keeper to have the last trial
+    double parted_s = 0.0;                   // when the keeper last had the trial so far
+    bool begin_waits = false;                // for the keeper to have the last trial
     bool quit = false;
 };
 
@@ -61,28 +61,32 @@ bool attempt(App& app, const Work& work) {
 // prepare_run.cpp
 void load(const RunOptions& options, App& app);  // everything that bad input can refuse, before a window is there
 void know_screen(const platform::Window& window, App& app);  // how large the settings say that it is
-bool prepare_chosen(platform::Window& window, Gui& gui, App& app);  // what load() left unprepared; false: the window was closed
+bool prepare_chosen(platform::Window& window, Gui& gui,
+                    App& app);  // what load() left unprepared; false: the window was closed
 
 // trials.cpp
 platform::TraceInfo info_of(const App& app, const platform::Window& window);
 double now_of(const App& app, const platform::Window& window);  // of samples
-double finger_offset_mm(const App& app);              // 0, or kFingerOffset_mm
-files::Json result_of(const App& app);                       // what `run --json` says so far
+double finger_offset_mm(const App& app);                        // 0, or kFingerOffset_mm
+files::Json result_of(const App& app);                          // what `run --json` says so far
 // A press belongs to the trial and the screen in which it began: it ends now, and what still comes of it is dropped.
 void end_presses(platform::Window& window, App& app);
 // Ends the presses and the trial, then puts the tissue of `scene` under the hand. A trial begins on it with begin().
 void put_scene(scene::Scene scene, scene::Plan plan, platform::Window& window, App& app);
 // False if the window was closed before the plan was ready; a tissue that has to be computed is, while the window shows how far.
 bool prepare(platform::Window& window, Gui& gui, const scene::Scene& scene, scene::Plan& plan);
-void begin(const platform::Window& window, const Gui& gui, App& app);     // a trial; throws InputError or std::runtime_error
-void begin_anew(platform::Window& window, const Gui& gui, App& app);      // ends the one that goes on; waits for a keeper that is busy
+void begin(const platform::Window& window, const Gui& gui,
+           App& app);  // a trial; throws InputError or std::runtime_error
+void begin_anew(platform::Window& window, const Gui& gui,
+                App& app);  // ends the one that goes on; waits for a keeper that is busy
 void begin_when_kept(platform::Window& window, const Gui& gui, App& app);  // what begin_anew() left waiting
 // Another scene or profile; whatever is wrong with it, the present one stays.
 void change_scene(platform::Window& window, Gui& gui, const std::string& file, const std::string& profile, App& app);
 // The eight turns in an order that the seed decides, so that nobody learns where its nodules are. Begin a trial after it.
 void turn_tissue(platform::Window& window, App& app);
-void turn_if_shown(platform::Window& window, App& app);  // whoever has seen where the nodules are is tested on them somewhere else
-bool marks_at_stake(const App& app);           // that nobody has scored yet, in a trial that goes on
+void turn_if_shown(platform::Window& window,
+                   App& app);         // whoever has seen where the nodules are is tested on them somewhere else
+bool marks_at_stake(const App& app);  // that nobody has scored yet, in a trial that goes on
 bool close_trial(App& app);  // its files whole on the disk, and with the keeper; false: app.stopped says why not
 void act(platform::Action action, double now_s, App& app);
 
@@ -91,11 +95,12 @@ void note_devices(const platform::Window& window, App& app);  // into app.screen
 
 // study_trials.cpp: a study's trials instead of a scene that was chosen. `app.screens.study` is there.
 void load_study(const RunOptions& options, App& app);  // throws InputError or std::runtime_error
-void follow_study(platform::Window& window, const Gui& gui, App& app);  // what a screen has led to, the end of a trial's time
+void follow_study(platform::Window& window, const Gui& gui,
+                  App& app);  // what a screen has led to, the end of a trial's time
 void finish_study_trial(App& app);
 double trial_ends_s(const App& app);  // at this time its limit ends the trial that goes on; infinity: never
 bool allowed(const platform::Sample& sample, App& app);  // its condition names the device
-files::Json study_json(const App& app);               // how far it is
-files::Json close_study(const Gui& gui, App& app);    // throws std::runtime_error if the study had to stop
+files::Json study_json(const App& app);                  // how far it is
+files::Json close_study(const Gui& gui, App& app);       // throws std::runtime_error if the study had to stop
 
 }  // namespace palpa::app

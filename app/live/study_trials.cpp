@@ -5,12 +5,12 @@
 #include <limits>
 #include <stdexcept>
 
-#include "app/screens/frame.h"
 #include "app/live/live_app.h"
 #include "app/scene_choices.h"
+#include "app/screens/frame.h"
+#include "app/screens/words.h"
 #include "app/study/study_device.h"
 #include "app/study/study_run.h"
-#include "app/screens/words.h"
 
 namespace palpa::app {
 namespace {
@@ -26,7 +26,8 @@ void begin_study_trial(platform::Window& window, const Gui& gui, App& app) {
         files.finger_offset_mm = finger_offset_mm(app);
         put_scene(scene_of(due, trial), *due.plan, window, app);
         app.screens.note.clear();
-        session::begin_trial(files, info_of(app, window), known ? session::TrialMode::practice : session::TrialMode::test, app.session);
+        session::begin_trial(files, info_of(app, window),
+                             known ? session::TrialMode::practice : session::TrialMode::test, app.session);
         app.parted_s = 0.0;
         session::take_sample(resize_sample(window, gui, app.settings, now_of(app, window)), app.session);
         app.screens.screen = Screen::trial;
@@ -70,7 +71,8 @@ void load_study(const RunOptions& options, App& app) {
     app.settings_path.clear();  // what a study fixes is nobody's choice to keep
     const bool tablet = app.keeper != nullptr;
     // on a tablet a code that has finished is refused on the screen: there is no command line to give another one
-    const auto run = std::make_shared<StudyRun>(open_study_run(study::read_protocol(options.protocol), options.log, tablet ? "" : options.participant));
+    const auto run = std::make_shared<StudyRun>(
+        open_study_run(study::read_protocol(options.protocol), options.log, tablet ? "" : options.participant));
     run->on_tablet = tablet;
     run->first_run = options.first_run;
     if (tablet && !options.participant.empty()) enter_code(options.participant, *run);
@@ -122,8 +124,10 @@ bool allowed(const platform::Sample& sample, App& app) {
 
 files::Json study_json(const App& app) {
     const StudyRun& run = *app.screens.study;
-    return files::Json{{"participant", run.code}, {"step", name_of(run.step)}, {"finished", run.progress.finished.size()},
-                {"of", run.progress.plan.trials.size()}};
+    return files::Json{{"participant", run.code},
+                       {"step", name_of(run.step)},
+                       {"finished", run.progress.finished.size()},
+                       {"of", run.progress.plan.trials.size()}};
 }
 
 // A trial that goes on is an interrupted one.

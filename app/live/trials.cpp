@@ -4,15 +4,15 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "app/screens/frame.h"
 #include "app/live/live_app.h"
 #include "app/scene_choices.h"
+#include "app/screens/frame.h"
 #include "app/screens/map_screen.h"
+#include "app/screens/words.h"
+#include "app/study/study_run.h"
+#include "render/gl.h"
 #include "session/plan_in_progress.h"
 #include "session/replay.h"
-#include "app/study/study_run.h"
-#include "app/screens/words.h"
-#include "render/gl.h"
 
 namespace palpa::app {
 namespace {
@@ -38,7 +38,9 @@ platform::TraceInfo info_of(const App& app, const platform::Window& window) {
     return info;
 }
 
-double finger_offset_mm(const App& app) { return app.settings.above_finger ? static_cast<double>(kFingerOffset_mm) : 0.0; }
+double finger_offset_mm(const App& app) {
+    return app.settings.above_finger ? static_cast<double>(kFingerOffset_mm) : 0.0;
+}
 
 double now_of(const App& app, const platform::Window& window) { return window.now_s() - app.trace_shift_s; }
 
@@ -100,7 +102,8 @@ void put_scene(scene::Scene scene, scene::Plan plan, platform::Window& window, A
     end_presses(window, app);
     if (!close_trial(app)) app.screens.problems.push_back(app.stopped);
     session::change_tissue(std::move(scene), std::move(plan), session::screen_of(info_of(app, window)), app.session);
-    if (app.screens.screen == Screen::reveal) app.screens.screen = Screen::trial;  // what it tells is of the tissue before
+    if (app.screens.screen == Screen::reveal)
+        app.screens.screen = Screen::trial;  // what it tells is of the tissue before
 }
 
 void begin_anew(platform::Window& window, const Gui& gui, App& app) {
@@ -181,7 +184,7 @@ bool marks_at_stake(const App& app) {
 void act(platform::Action action, double now_s, App& app) {
     const bool choice = app.screens.study && app.screens.study->protocol.task == study::TaskKind::choice;
     if (choice && action != platform::Action::finish) return;  // there is nothing to mark
-    if (app.begin_waits) return;                     // there is no trial to act on yet
+    if (app.begin_waits) return;                               // there is no trial to act on yet
     platform::Sample sample;
     sample.t_host_s = now_s;
     sample.phase = platform::Phase::ui;

@@ -2,15 +2,16 @@
 
 #include <algorithm>
 
-#include "app/screens/widgets.h"
 #include "app/screens/screens.h"
+#include "app/screens/widgets.h"
 #include "app/screens/words.h"
 
 namespace palpa::app {
 namespace {
 
 bool ends_trial(const Wishes& wishes) {
-    return wishes.again || wishes.next || wishes.quit || wishes.scene || wishes.profile || wishes.mode || wishes.above_finger || wishes.px_per_mm;
+    return wishes.again || wishes.next || wishes.quit || wishes.scene || wishes.profile || wishes.mode ||
+           wishes.above_finger || wishes.px_per_mm;
 }
 
 }  // namespace
@@ -36,9 +37,10 @@ void draw_ask(const Shown& shown, Gui& gui, Screens& screens, Wishes& wishes) {
     const std::size_t marks = shown.trial.marks.size();
     ImGui::TextUnformatted(words::kLoseMarks);
     paragraph(marks == 1 ? words::kLoseMark : words::filled(words::kLoseManyMarks, {std::to_string(marks)}));
-    const bool stay = big_button(words::kGoOnWithTrial, words::kEscape, {0.0f, kMark_mm, true, false}, gui) || gui.pressed(platform::key::escape);
-    const bool end = big_button(words::kEndTrial, words::kEnter, {0.0f, kTarget_mm, true, false}, gui) || gui.pressed(platform::key::enter) ||
-                     gui.pressed(platform::key::pad_enter);
+    const bool stay = big_button(words::kGoOnWithTrial, words::kEscape, {0.0f, kMark_mm, true, false}, gui) ||
+                      gui.pressed(platform::key::escape);
+    const bool end = big_button(words::kEndTrial, words::kEnter, {0.0f, kTarget_mm, true, false}, gui) ||
+                     gui.pressed(platform::key::enter) || gui.pressed(platform::key::pad_enter);
     end_panel("ask", gui);
     if (!stay && !end) return;
     if (!stay) {

@@ -22,7 +22,8 @@ std::filesystem::path session_folder(const CalibrateForm& form) {
 
 bool plain(const char* name) {
     const std::string text = name;
-    return !text.empty() && std::all_of(text.begin(), text.end(), [](unsigned char c) { return std::isalnum(c) != 0 || c == '-' || c == '_'; });
+    return !text.empty() && std::all_of(text.begin(), text.end(),
+                                        [](unsigned char c) { return std::isalnum(c) != 0 || c == '-' || c == '_'; });
 }
 
 calibration::RecordArguments arguments_of(const CalibrateForm& form) {
@@ -30,7 +31,9 @@ calibration::RecordArguments arguments_of(const CalibrateForm& form) {
     calibration::RecordArguments arguments;
     arguments.folder = session_folder(form).string();
     arguments.resume = std::filesystem::exists(calibration::points_file(arguments));
-    arguments.sensor = form.kind == 0 ? "typed" : form.kind == 1 ? "netft:" + std::string(form.address) : "serial:" + std::string(form.port);
+    arguments.sensor = form.kind == 0   ? "typed"
+                       : form.kind == 1 ? "netft:" + std::string(form.address)
+                                        : "serial:" + std::string(form.port);
     arguments.counts_per_N = form.counts_per_N;
     arguments.N_per_count = form.N_per_count;
     return arguments;
@@ -50,7 +53,8 @@ std::filesystem::path free_profile(const CalibrateForm& form) {
     const std::filesystem::path folder = user_folder() / "profiles";
     std::filesystem::create_directories(folder);
     std::filesystem::path file = folder / (std::string(form.name) + ".json");
-    for (int i = 2; std::filesystem::exists(file); ++i) file = folder / (std::string(form.name) + "-" + std::to_string(i) + ".json");
+    for (int i = 2; std::filesystem::exists(file); ++i)
+        file = folder / (std::string(form.name) + "-" + std::to_string(i) + ".json");
     return file;
 }
 
@@ -68,13 +72,15 @@ void keep_profile(CalibrateForm& form) {
         calibration::close_recording(*form.recording);
         calibration::CalibrateOptions options;
         options.range = form.recording->arguments.options.range;
-        calibration::CalibrationRows rows = calibration::read_points(calibration::points_file(form.recording->arguments), {});
+        calibration::CalibrationRows rows =
+            calibration::read_points(calibration::points_file(form.recording->arguments), {});
         calibration::Calibration calibration = calibration::calibrate(rows, options);
         calibration.profile.device.pen = form.name;
         calibration.profile.device.date = today();
         const std::filesystem::path file = free_profile(form);
-        const files::Json quality{{"median_relative_error", calibration.median_relative_error}, {"n_points", calibration.n_points},
-                           {"warnings", calibration.warnings}};
+        const files::Json quality{{"median_relative_error", calibration.median_relative_error},
+                                  {"n_points", calibration.n_points},
+                                  {"warnings", calibration.warnings}};
         calibration::write_profile(calibration.profile, quality, file);
         form.guide.note = words::filled(words::kKeptAs, {file.string()});
         for (const std::string& warning : calibration.warnings) form.guide.note += "\n! " + warning;
@@ -94,7 +100,8 @@ struct Plot {
     }
 };
 
-void draw_frame_of(const Plot& plot, const char* title, const std::string& top, const std::string& bottom, ImDrawList& draw) {
+void draw_frame_of(const Plot& plot, const char* title, const std::string& top, const std::string& bottom,
+                   ImDrawList& draw) {
     draw.AddRect(ImVec2(plot.area.x0, plot.area.y0), ImVec2(plot.area.x1, plot.area.y1), kPale);
     draw.AddText(ImVec2(plot.area.x0 + 4.0f, plot.area.y0 - 1.2f * ImGui::GetFontSize()), kInk, title);
     draw.AddText(ImVec2(plot.area.x0 + 4.0f, plot.area.y0 + 2.0f), kPale, top.c_str());
@@ -106,14 +113,16 @@ double share_of(const calibration::RecordOptions& options, double level) {
 }
 
 // Points and curve above, what is left of the points without the curve below; the band to press next is tinted.
-void draw_plots(const calibration::Recording& recording, const Guide& guide, const PanelArea& area, const Gui& gui, ImDrawList& draw) {
+void draw_plots(const calibration::Recording& recording, const Guide& guide, const PanelArea& area, const Gui& gui,
+                ImDrawList& draw) {
     const calibration::RecordOptions& options = recording.arguments.options;
     const calibration::RecordSession& session = recording.session;
     const float gap_px = 3.0f * gui.mm() + 1.3f * ImGui::GetFontSize();
     const float split = area.y0 + 0.68f * area.height();
     Plot curve{{area.x0 + 4 * gui.mm(), area.y0 + gap_px, area.x1 - 4 * gui.mm(), split}, 1.0, 0.0, 0.5};
     const double now_N = session.forces.empty() ? 0.0 : session.forces.back().value;
-    for (const calibration::CapturedPoint& point : session.points) curve.most_y = std::max(curve.most_y, 1.1 * point.force_N);
+    for (const calibration::CapturedPoint& point : session.points)
+        curve.most_y = std::max(curve.most_y, 1.1 * point.force_N);
     curve.most_y = std::max(curve.most_y, 1.1 * now_N);
     const int band = calibration::target_band(options, session, recording.knowledge.band_error);
     if (band >= 0) {
@@ -142,7 +151,8 @@ void draw_plots(const calibration::Recording& recording, const Guide& guide, con
         for (int i = 0; i < kSteps; ++i) draw.AddLine(at(i), at(i + 1), kLag, 0.4f * gui.mm());
     }
     if (!session.levels.empty()) {
-        cross(draw, curve.at(share_of(options, session.levels.back().value), now_N), 1.2f * gui.mm(), kLag, 0.4f * gui.mm());
+        cross(draw, curve.at(share_of(options, session.levels.back().value), now_N), 1.2f * gui.mm(), kLag,
+              0.4f * gui.mm());
     }
 }
 
@@ -152,7 +162,9 @@ void draw_typed(calibration::Recording& recording, const Gui& gui, Guide& guide)
     ImGui::InputDouble(words::kGramForce, &guide.shown_gf, 0.0, 0.0, "%.2f");
     if (!big_button(words::kTake, "", {}, gui)) return;
     const bool good = std::isfinite(guide.shown_gf) && guide.shown_gf >= 0.0 && guide.shown_gf < 1e5;
-    guide.note = good && calibration::take_typed_N(guide.shown_gf * calibration::kN_per_gf, recording) ? words::kTaken : words::kNotTaken;
+    guide.note = good && calibration::take_typed_N(guide.shown_gf * calibration::kN_per_gf, recording)
+                     ? words::kTaken
+                     : words::kNotTaken;
 }
 
 void form_lines(Gui& gui, CalibrateForm& form) {
@@ -206,9 +218,11 @@ GuideWishes draw_guide(calibration::Recording& recording, Gui& gui, Guide& guide
     ImGui::SetWindowFontScale(1.0f);
     const float column_px = 26.0f * gui.mm();
     const calibration::RecordSession& session = recording.session;
-    const double level = session.levels.empty() ? 0.0 : share_of(recording.arguments.options, session.levels.back().value);
+    const double level =
+        session.levels.empty() ? 0.0 : share_of(recording.arguments.options, session.levels.back().value);
     value_line(words::kPressure, fixed(100.0 * level, 1) + " %", column_px);
-    value_line(words::kForce, fixed(session.forces.empty() ? platform::kMissing : session.forces.back().value, 3) + " N", column_px);
+    value_line(words::kForce,
+               fixed(session.forces.empty() ? platform::kMissing : session.forces.back().value, 3) + " N", column_px);
     value_line(words::kPoints, std::to_string(session.points.size()), column_px);
     value_line(words::kPress, std::to_string(session.repeat + 1), column_px);
     if (!recording.sensor) draw_typed(recording, gui, guide);
@@ -217,8 +231,10 @@ GuideWishes draw_guide(calibration::Recording& recording, Gui& gui, Guide& guide
     ImGui::BeginChild("state", ImVec2(0.0f, 0.0f), false, ImGuiWindowFlags_NavFlattened);
     if (recording.sensor) {
         const devices::SensorHealth health = recording.sensor->health();
-        paragraph(words::filled(words::kSensorHealth, {recording.sensor->name(), std::to_string(health.received), std::to_string(health.lost),
-                                                       std::to_string(health.duplicate), std::to_string(health.reordered), std::to_string(health.stalls)}));
+        paragraph(words::filled(
+            words::kSensorHealth,
+            {recording.sensor->name(), std::to_string(health.received), std::to_string(health.lost),
+             std::to_string(health.duplicate), std::to_string(health.reordered), std::to_string(health.stalls)}));
         if (recording.silent) warning_paragraph(words::kSensorStopped);
     }
     if (recording.knowledge.done) ImGui::TextWrapped("%s", words::kCurveKnown);
@@ -245,7 +261,8 @@ void draw_calibrate_screen(const Shown& shown, Gui& gui, CalibrateForm& form, Wi
     const WindowSize window = gui.size_px();
     ImGui::GetBackgroundDrawList()->AddRectFilled(ImVec2(0.0f, 0.0f), ImVec2(window.width, window.height), kDark);
     begin_panel("calibrate", {0.0f, 0.0f, window.width, window.height}, gui);
-    ImGui::BeginChild("form", ImVec2(std::min(110.0f * gui.mm(), ImGui::GetContentRegionAvail().x), 0.0f), false, ImGuiWindowFlags_NavFlattened);
+    ImGui::BeginChild("form", ImVec2(std::min(110.0f * gui.mm(), ImGui::GetContentRegionAvail().x), 0.0f), false,
+                      ImGuiWindowFlags_NavFlattened);
     if (big_button(words::kBack, words::kEscape, {40.0f * gui.mm(), kTarget_mm, true, false}, gui)) {
         wishes.screen = shown.trial.finished ? Screen::reveal : Screen::trial;
     }
@@ -275,7 +292,8 @@ void step_calibrate(const std::vector<platform::Sample>& samples, CalibrateForm&
 void stop_recording(CalibrateForm& form) {
     if (!form.recording) return;
     attempt(form, [&] { calibration::close_recording(*form.recording); });
-    form.guide.note = words::filled(words::kPointsIn, {std::to_string(form.recording->session.points.size()), form.recording->arguments.folder});
+    form.guide.note = words::filled(
+        words::kPointsIn, {std::to_string(form.recording->session.points.size()), form.recording->arguments.folder});
     form.recording.reset();
 }
 

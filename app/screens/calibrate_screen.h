@@ -8,17 +8,17 @@
 
 #include "app/screens/calibrate_form.h"
 #include "app/screens/gui.h"
-#include "calibration/record/acquisition.h"
 #include "app/screens/screens.h"
 #include "calibration/calibrate.h"
+#include "calibration/record/acquisition.h"
 
 namespace palpa::app {
 
 // What the guide has worked out for a recording, and the number that is typed for a scale.
 struct Guide {
     std::optional<calibration::Calibration> fit;  // through the points so far, without intervals
-    std::size_t fitted = 0;          // points that it was made from
-    double shown_gf = 0.0;           // what the scale shows
+    std::size_t fitted = 0;                       // points that it was made from
+    double shown_gf = 0.0;                        // what the scale shows
     std::string note;
 };
 
@@ -33,12 +33,12 @@ void refresh_fit(const calibration::Recording& recording, Guide& guide);
 GuideWishes draw_guide(calibration::Recording& recording, Gui& gui, Guide& guide);
 
 struct CalibrateForm {
-    int kind = 0;                     // 0 a scale, typed; 1 Net F/T; 2 load cell on a serial port
+    int kind = 0;  // 0 a scale, typed; 1 Net F/T; 2 load cell on a serial port
     char address[128] = "192.168.1.1";
     char port[128] = "/dev/ttyUSB0";
     double counts_per_N = 1e6;
     double N_per_count = 1e-5;
-    char name[64] = "my-pen";         // of the profile
+    char name[64] = "my-pen";  // of the profile
     std::unique_ptr<calibration::Recording> recording;
     Guide guide;
     std::string problem;

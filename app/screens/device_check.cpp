@@ -113,11 +113,14 @@ void observe(const platform::Sample& sample, DeviceCheck& check) {
     }
     PointerTime& pointer = slot_of(sample.pointer_id, check);
     note_gap(sample, pointer, tool);
-    const bool finger_gone = sample.tool == platform::Tool::finger && (sample.phase == platform::Phase::up || sample.phase == platform::Phase::cancel);
+    const bool finger_gone = sample.tool == platform::Tool::finger &&
+                             (sample.phase == platform::Phase::up || sample.phase == platform::Phase::cancel);
     if (finger_gone) pointer.used = false;  // another touch gets another number
 }
 
-const ToolCheck& of_tool(platform::Tool tool, const DeviceCheck& check) { return check.tools[static_cast<std::size_t>(tool)]; }
+const ToolCheck& of_tool(platform::Tool tool, const DeviceCheck& check) {
+    return check.tools[static_cast<std::size_t>(tool)];
+}
 
 double rate_Hz(const ToolCheck& tool) {
     return tool.gaps_s > 0.0 ? static_cast<double>(tool.gap_count) / tool.gaps_s : 0.0;
@@ -141,14 +144,18 @@ ClockDrift clock_drift(const ToolCheck& tool) {
 }
 
 double samples_per_delivery(const ToolCheck& tool) {
-    return tool.deliveries > 0 ? static_cast<double>(tool.samples) / static_cast<double>(tool.deliveries) : platform::kMissing;
+    return tool.deliveries > 0 ? static_cast<double>(tool.samples) / static_cast<double>(tool.deliveries)
+                               : platform::kMissing;
 }
 
-double median_delay_s(const ToolCheck& tool) { return tool.delays.timed() > 0 ? 1e-9 * tool.delays.quantile_ns(0.5) : platform::kMissing; }
+double median_delay_s(const ToolCheck& tool) {
+    return tool.delays.timed() > 0 ? 1e-9 * tool.delays.quantile_ns(0.5) : platform::kMissing;
+}
 
 files::Json check_json(const DeviceCheck& check) {
     files::Json json = files::Json::object();
-    for (const platform::Tool tool : {platform::Tool::pen, platform::Tool::finger, platform::Tool::mouse, platform::Tool::keyboard}) {
+    for (const platform::Tool tool :
+         {platform::Tool::pen, platform::Tool::finger, platform::Tool::mouse, platform::Tool::keyboard}) {
         if (of_tool(tool, check).samples > 0) json[std::string(name_of(tool))] = seen_json(tool, check);
     }
     return json;
@@ -156,10 +163,14 @@ files::Json check_json(const DeviceCheck& check) {
 
 const char* name_of(platform::PressureKind kind) {
     switch (kind) {
-        case platform::PressureKind::unknown: return "unknown";
-        case platform::PressureKind::varies: return "varies";
-        case platform::PressureKind::constant: return "constant";
-        case platform::PressureKind::missing: return "missing";
+        case platform::PressureKind::unknown:
+            return "unknown";
+        case platform::PressureKind::varies:
+            return "varies";
+        case platform::PressureKind::constant:
+            return "constant";
+        case platform::PressureKind::missing:
+            return "missing";
     }
     return "unknown";
 }

@@ -18,16 +18,17 @@ struct ClockFit {
     std::int64_t count = 0;
     double first_host_s = 0.0;
     double first_device_s = 0.0;
-    double mean_host_s = 0.0;     // since the first
-    double mean_ahead_s = 0.0;    // device - host, since the first
-    double sum_host_host = 0.0;   // of products of differences from the means, s^2
+    double mean_host_s = 0.0;    // since the first
+    double mean_ahead_s = 0.0;   // device - host, since the first
+    double sum_host_host = 0.0;  // of products of differences from the means, s^2
     double sum_host_ahead = 0.0;
     double sum_ahead_ahead = 0.0;
 };
 
 struct ClockDrift {
     double ppm = platform::kMissing;  // positive: the device's clock is fast; NaN before 30 samples over some 4 s
-    double standard_error_ppm = platform::kMissing;  // if delays come by chance; a computer that gets busy meanwhile adds to it
+    double standard_error_ppm =
+        platform::kMissing;  // if delays come by chance; a computer that gets busy meanwhile adds to it
 };
 
 struct Range {
@@ -41,17 +42,18 @@ struct ToolCheck {
     std::int64_t samples = 0;
     std::int64_t touching = 0;
     Range x_px, y_px;
-    Range pressure;          // 0..1, while touching
-    Range pressure_raw;      // counts, while touching
+    Range pressure;                   // 0..1, while touching
+    Range pressure_raw;               // counts, while touching
     std::bitset<kMostValues> values;  // of the pressure, each count (or 1/65535) that came
     bool tilt = false;
     bool contact_size = false;
-    scene::Meter gaps;              // between samples of one pointer
+    scene::Meter gaps;  // between samples of one pointer
     std::int64_t gap_count = 0;
-    double gaps_s = 0.0;     // their sum
+    double gaps_s = 0.0;  // their sum
     ClockFit clock;
-    std::int64_t deliveries = 0;  // of samples of one pointer at one moment: fewer than samples where the system collects them
-    scene::Meter delays;                 // from the device's clock to the host's, where both count from the same moment
+    std::int64_t deliveries =
+        0;                // of samples of one pointer at one moment: fewer than samples where the system collects them
+    scene::Meter delays;  // from the device's clock to the host's, where both count from the same moment
 };
 
 // A pointer that is being followed from sample to sample.

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "app/screens/widgets.h"
 #include "app/screens/screens.h"
+#include "app/screens/widgets.h"
 #include "app/screens/words.h"
 
 namespace palpa::app {
@@ -18,7 +18,8 @@ void said_lines(const Screens& screens) {
     ImGui::TextDisabled(words::kSaysItHas);
     for (const platform::PointerDevice& device : screens.devices) {
         std::string text = device.name + " (" + std::string(name_of(device.tool)) + "): ";
-        text += device.has_pressure ? words::filled(words::kPressureRange, {fixed(device.pressure_min, 0), fixed(device.pressure_max, 0)})
+        text += device.has_pressure ? words::filled(words::kPressureRange,
+                                                    {fixed(device.pressure_min, 0), fixed(device.pressure_max, 0)})
                                     : words::kNoPressure;
         if (device.levels > 0) text += words::filled(words::kLevels, {std::to_string(device.levels)});
         if (device.has_tilt) text += std::string(", ") + words::kTilt;
@@ -31,10 +32,14 @@ void said_lines(const Screens& screens) {
 std::string verdict(platform::Tool which, const DeviceCheck& check) {
     if (which == platform::Tool::mouse || which == platform::Tool::keyboard) return words::kByTimeHeld;
     switch (platform::pressure_kind(check.pressure, which)) {
-        case platform::PressureKind::varies: return words::kVaries;
-        case platform::PressureKind::constant: return words::filled(words::kAlways, {fixed(platform::constant_pressure(check.pressure, which), 2)});
-        case platform::PressureKind::missing: return words::kNone;
-        case platform::PressureKind::unknown: break;
+        case platform::PressureKind::varies:
+            return words::kVaries;
+        case platform::PressureKind::constant:
+            return words::filled(words::kAlways, {fixed(platform::constant_pressure(check.pressure, which), 2)});
+        case platform::PressureKind::missing:
+            return words::kNone;
+        case platform::PressureKind::unknown:
+            break;
     }
     return words::kVaryIt;
 }
@@ -46,15 +51,23 @@ void seen_lines(platform::Tool which, const DeviceCheck& check, const Gui& gui) 
     ImGui::Separator();
     ImGui::Text("%s", std::string(name_of(which)).c_str());
     value_line(words::kPressure, verdict(which, check), column_px);
-    value_line("", words::filled(words::kValues, {range_text(tool.pressure, 3), std::to_string(distinct_pressures(tool))}), column_px);
+    value_line("",
+               words::filled(words::kValues, {range_text(tool.pressure, 3), std::to_string(distinct_pressures(tool))}),
+               column_px);
     value_line(words::kCounts, range_text(tool.pressure_raw, 0), column_px);
-    value_line(words::kRate, words::filled(words::kRateAndGap, {fixed(rate_Hz(tool), 0), fixed(1e3 * worst_gap_s(tool), 0)}), column_px);
+    value_line(words::kRate,
+               words::filled(words::kRateAndGap, {fixed(rate_Hz(tool), 0), fixed(1e3 * worst_gap_s(tool), 0)}),
+               column_px);
     const ClockDrift drift = clock_drift(tool);
-    const std::string clock = std::isfinite(drift.ppm) ? fixed(drift.ppm, 0) + " +- " + fixed(drift.standard_error_ppm, 0) + " ppm" : "-";
+    const std::string clock =
+        std::isfinite(drift.ppm) ? fixed(drift.ppm, 0) + " +- " + fixed(drift.standard_error_ppm, 0) + " ppm" : "-";
     value_line(words::kClockDrift, clock, column_px);
-    const std::string delivery = words::filled(words::kAtATime, {fixed(samples_per_delivery(tool), 1), fixed(1e3 * median_delay_s(tool), 0)});
+    const std::string delivery =
+        words::filled(words::kAtATime, {fixed(samples_per_delivery(tool), 1), fixed(1e3 * median_delay_s(tool), 0)});
     if (which != platform::Tool::keyboard) value_line(words::kDelivered, delivery, column_px);
-    value_line(words::kTiltAndSize, std::string(tool.tilt ? words::kTilt : "-") + ", " + (tool.contact_size ? words::kContactSize : "-"), column_px);
+    value_line(words::kTiltAndSize,
+               std::string(tool.tilt ? words::kTilt : "-") + ", " + (tool.contact_size ? words::kContactSize : "-"),
+               column_px);
     value_line(words::kSamples, std::to_string(tool.samples), column_px);
 }
 
@@ -65,7 +78,8 @@ void draw_test_area(const PanelArea& area, const Gui& gui, const Screens& screen
     draw.AddText(ImVec2(area.x0 + 2.0f * gui.mm(), area.y0 + 2.0f * gui.mm()), kInk, words::kTryHere);
     for (const Dot& dot : screens.dots) {
         const float level = std::isfinite(dot.pressure) ? std::clamp(dot.pressure, 0.0f, 1.0f) : 0.0f;
-        draw.AddCircle(ImVec2(dot.x_px, dot.y_px), (0.4f + 5.0f * level) * gui.mm(), dot.touching ? kLag : kPale, 16, 0.2f * gui.mm());
+        draw.AddCircle(ImVec2(dot.x_px, dot.y_px), (0.4f + 5.0f * level) * gui.mm(), dot.touching ? kLag : kPale, 16,
+                       0.2f * gui.mm());
     }
 }
 
@@ -98,7 +112,9 @@ void draw_device_screen(const Shown& shown, Gui& gui, Screens& screens, Wishes& 
     said_lines(screens);
     for (const std::string& note : screens.device_notes) warning_paragraph(note);
     if (screens.check != nullptr) {
-        for (const platform::Tool tool : {platform::Tool::pen, platform::Tool::finger, platform::Tool::mouse, platform::Tool::keyboard}) seen_lines(tool, *screens.check, gui);
+        for (const platform::Tool tool :
+             {platform::Tool::pen, platform::Tool::finger, platform::Tool::mouse, platform::Tool::keyboard})
+            seen_lines(tool, *screens.check, gui);
     }
     ImGui::EndChild();
     end_panel("devices", gui);

@@ -9,7 +9,8 @@ namespace palpa::app {
 std::string system_font_file() {
     FcConfig* config = FcInitLoadConfigAndFonts();
     if (config == nullptr) return {};
-    FcPattern* wanted = FcNameParse(reinterpret_cast<const FcChar8*>("DejaVu Sans,Noto Sans,sans-serif:fontformat=TrueType:style=Book,Regular"));
+    FcPattern* wanted = FcNameParse(
+        reinterpret_cast<const FcChar8*>("DejaVu Sans,Noto Sans,sans-serif:fontformat=TrueType:style=Book,Regular"));
     FcConfigSubstitute(config, wanted, FcMatchPattern);
     FcDefaultSubstitute(wanted);
     FcResult result = FcResultNoMatch;

@@ -20,7 +20,8 @@ struct Surface {
     render::Relief relief;
 };
 
-Surface surface_of(const scene::Scene& scene, const scene::Plan& plan, const scene::Avatar& avatar, scene::State& state) {
+Surface surface_of(const scene::Scene& scene, const scene::Plan& plan, const scene::Avatar& avatar,
+                   scene::State& state) {
     Surface surface;
     if (!scene.surface) return surface;
     if (const auto* linear = std::get_if<scene::LinearTissue>(&plan.tissue)) {
@@ -41,9 +42,11 @@ void draw_panels(const Shown& shown, const Layout& layout, Gui& gui, Screens& sc
     take_keys(shown, gui, screens, wishes);
     if (screens.screen == Screen::devices) return draw_device_screen(shown, gui, screens, wishes);
     if (screens.screen == Screen::scale) return draw_scale_screen(shown, gui, screens, wishes);
-    if (screens.screen == Screen::calibrate && screens.calibrate) return draw_calibrate_screen(shown, gui, *screens.calibrate, wishes);
+    if (screens.screen == Screen::calibrate && screens.calibrate)
+        return draw_calibrate_screen(shown, gui, *screens.calibrate, wishes);
     if (screens.screen == Screen::maps && screens.maps) return draw_map_screen(shown, gui, *screens.maps, wishes);
-    if (screens.screen == Screen::study && screens.study) return draw_study_screen(shown.now_s, gui, *screens.study, wishes);
+    if (screens.screen == Screen::study && screens.study)
+        return draw_study_screen(shown.now_s, gui, *screens.study, wishes);
     if (screens.screen == Screen::reveal) {
         draw_reveal_on_tissue(shown, gui, screens.debrief);
         draw_reveal_panel(shown, layout, gui, screens, wishes);
@@ -64,7 +67,8 @@ std::uint64_t hash_of(std::uint64_t hash, const Numbers& numbers) {
     return hash_more(hash, &numbers, sizeof numbers);
 }
 
-std::uint64_t content_of(const render::TissueView& view, const Surface& surface, const render::Ball& ball, const Gui& gui) {
+std::uint64_t content_of(const render::TissueView& view, const Surface& surface, const render::Ball& ball,
+                         const Gui& gui) {
     static_assert(sizeof(render::TissueView) == 14 * sizeof(float) && sizeof(render::Ball) == 5 * sizeof(float));
     static_assert(sizeof(render::Dent) == (3 + render::kSinkPoints) * sizeof(float));
     std::uint64_t hash = hash_of(hash_of(hash_of(gui.content(), view), surface.dent), ball);
@@ -75,11 +79,12 @@ std::uint64_t content_of(const render::TissueView& view, const Surface& surface,
 
 }  // namespace
 
-Wishes draw_frame(const scene::Scene& scene, const scene::Plan& plan, const session::Trial& trial, const Settings& settings, double now_s,
-                  double dt_s, render::TissueDrawer& tissue, Gui& gui, Screens& screens, scene::State& state, FrameTimes& times,
-                  OnScreen& on_screen) {
+Wishes draw_frame(const scene::Scene& scene, const scene::Plan& plan, const session::Trial& trial,
+                  const Settings& settings, double now_s, double dt_s, render::TissueDrawer& tissue, Gui& gui,
+                  Screens& screens, scene::State& state, FrameTimes& times, OnScreen& on_screen) {
     const std::int64_t began_ns = scene::steady_ns();
-    const bool keys_to_panels = screens.menu || screens.asked || (screens.screen != Screen::trial && screens.screen != Screen::devices);
+    const bool keys_to_panels =
+        screens.menu || screens.asked || (screens.screen != Screen::trial && screens.screen != Screen::devices);
     gui.keep_enter(screens.screen == Screen::study || screens.asked);
     gui.begin_frame(dt_s, keys_to_panels);
     const WindowSize window = gui.size_px();
@@ -106,8 +111,10 @@ Wishes draw_frame(const scene::Scene& scene, const scene::Plan& plan, const sess
     return wishes;
 }
 
-platform::Sample resize_sample(const platform::Window& window, const Gui& gui, const Settings& settings, double t_host_s) {
-    const Layout layout = layout_now(gui, static_cast<float>(window.width_px()), static_cast<float>(window.height_px()), settings);
+platform::Sample resize_sample(const platform::Window& window, const Gui& gui, const Settings& settings,
+                               double t_host_s) {
+    const Layout layout =
+        layout_now(gui, static_cast<float>(window.width_px()), static_cast<float>(window.height_px()), settings);
     platform::Sample sample;
     sample.t_host_s = t_host_s;
     sample.phase = platform::Phase::ui;

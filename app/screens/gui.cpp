@@ -1,11 +1,10 @@
 #include "app/screens/gui.h"
 
 #include <GLES3/gl3.h>
+#include <algorithm>
 #include <backends/imgui_impl_opengl3.h>
 #include <imgui.h>
 #include <imgui_internal.h>
-
-#include <algorithm>
 #include <stdexcept>
 #include <utility>
 
@@ -24,13 +23,22 @@ void map_keys(ImGuiIO& io) {
         ImGuiKey_ gui;
         int key;
     };
-    constexpr Pair kPairs[] = {
-        {ImGuiKey_Tab, platform::key::tab},           {ImGuiKey_LeftArrow, platform::key::left},  {ImGuiKey_RightArrow, platform::key::right},
-        {ImGuiKey_UpArrow, platform::key::up},        {ImGuiKey_DownArrow, platform::key::down},  {ImGuiKey_PageUp, platform::key::page_up},
-        {ImGuiKey_PageDown, platform::key::page_down}, {ImGuiKey_Home, platform::key::home},      {ImGuiKey_End, platform::key::end},
-        {ImGuiKey_Delete, platform::key::del},        {ImGuiKey_Backspace, platform::key::backspace}, {ImGuiKey_Space, platform::key::space},
-        {ImGuiKey_Enter, platform::key::enter},       {ImGuiKey_Escape, platform::key::escape},   {ImGuiKey_KeyPadEnter, platform::key::pad_enter},
-        {ImGuiKey_A, 'a'}};
+    constexpr Pair kPairs[] = {{ImGuiKey_Tab, platform::key::tab},
+                               {ImGuiKey_LeftArrow, platform::key::left},
+                               {ImGuiKey_RightArrow, platform::key::right},
+                               {ImGuiKey_UpArrow, platform::key::up},
+                               {ImGuiKey_DownArrow, platform::key::down},
+                               {ImGuiKey_PageUp, platform::key::page_up},
+                               {ImGuiKey_PageDown, platform::key::page_down},
+                               {ImGuiKey_Home, platform::key::home},
+                               {ImGuiKey_End, platform::key::end},
+                               {ImGuiKey_Delete, platform::key::del},
+                               {ImGuiKey_Backspace, platform::key::backspace},
+                               {ImGuiKey_Space, platform::key::space},
+                               {ImGuiKey_Enter, platform::key::enter},
+                               {ImGuiKey_Escape, platform::key::escape},
+                               {ImGuiKey_KeyPadEnter, platform::key::pad_enter},
+                               {ImGuiKey_A, 'a'}};
     static_assert(platform::key::count <= IM_ARRAYSIZE(ImGuiIO::KeysDown));
     for (const Pair& pair : kPairs) io.KeyMap[pair.gui] = pair.key;
 }
@@ -70,8 +78,10 @@ Gui::Gui(platform::Window& window) : window_(window), font_file_(system_font_fil
     io.IniFilename = nullptr;
     held_as_.fill(kNotHeld);
     map_keys(io);
-    if (!ImGui_ImplOpenGL3_Init("#version 300 es")) throw std::runtime_error("the panels cannot be drawn: Dear ImGui found no OpenGL (libGL)");
-    set_scale(control_scale(platform::kMissing, static_cast<float>(window.width_px()), static_cast<float>(window.height_px())));
+    if (!ImGui_ImplOpenGL3_Init("#version 300 es"))
+        throw std::runtime_error("the panels cannot be drawn: Dear ImGui found no OpenGL (libGL)");
+    set_scale(control_scale(platform::kMissing, static_cast<float>(window.width_px()),
+                            static_cast<float>(window.height_px())));
     window.set_event_filter(&Gui::filter, this);
 }
 
@@ -123,16 +133,19 @@ bool Gui::receive(const platform::WindowEvent& event) {
             pointer_y_px_ = static_cast<float>(event.y_px);
             return false;
         case Kind::button_down:
-        case Kind::button_up: return receive_button(event);
+        case Kind::button_up:
+            return receive_button(event);
         case Kind::wheel:
             if (!owns(pointer_x_px_, pointer_y_px_)) return false;
             ImGui::GetIO().MouseWheel += static_cast<float>(event.notches);
             return true;
         case Kind::finger_down:
         case Kind::finger_move:
-        case Kind::finger_up: return receive_finger(event);
+        case Kind::finger_up:
+            return receive_finger(event);
         case Kind::key_down:
-        case Kind::key_up: return receive_key(event);
+        case Kind::key_up:
+            return receive_key(event);
         case Kind::text: {
             PanelInput input{PanelInput::Kind::text};
             input.text = event.text;
@@ -192,9 +205,12 @@ void Gui::hand_over(const PanelInput& input) {
             io.MousePos = ImVec2(input.x_px, input.y_px);
             io.MouseDown[0] = input.down;
             return;
-        case PanelInput::Kind::key: return hand_over_key(input);
-        case PanelInput::Kind::text: return io.AddInputCharactersUTF8(input.text.c_str());
-        case PanelInput::Kind::replace: return replace_text(input.text);
+        case PanelInput::Kind::key:
+            return hand_over_key(input);
+        case PanelInput::Kind::text:
+            return io.AddInputCharactersUTF8(input.text.c_str());
+        case PanelInput::Kind::replace:
+            return replace_text(input.text);
     }
 }
 
@@ -270,7 +286,9 @@ void Gui::renew_drawing() {
 std::uint64_t Gui::content() const {
     const ImDrawData* data = ImGui::GetDrawData();
     std::uint64_t hash = hash_more(0, &data->DisplaySize, sizeof data->DisplaySize);
-    const auto take = [&](const auto& values) { hash = hash_more(hash, values.Data, static_cast<std::size_t>(values.size_in_bytes())); };
+    const auto take = [&](const auto& values) {
+        hash = hash_more(hash, values.Data, static_cast<std::size_t>(values.size_in_bytes()));
+    };
     for (int i = 0; i < data->CmdListsCount; ++i) {
         const ImDrawList& list = *data->CmdLists[i];
         take(list.VtxBuffer);

@@ -19,7 +19,7 @@ struct WindowSize {
 };
 
 class Gui {
- public:
+  public:
     explicit Gui(platform::Window& window);  // also becomes the window's event filter
     ~Gui();
     Gui(const Gui&) = delete;
@@ -37,8 +37,8 @@ class Gui {
     // Enter is the screen's own key (pressed()) instead of that of the control which has the focus.
     void keep_enter(bool keep) { keep_enter_ = keep; }
     std::uint64_t content() const;  // of the panels that were closed last; the same number: the same look
-    void draw();       // hands them to GL
-    void renew_drawing();  // all that GL held was lost
+    void draw();                    // hands them to GL
+    void renew_drawing();           // all that GL held was lost
 
     // Presses in a claimed area reach no tissue (from the next event on, until the next frame says anew).
     void claim(const PanelArea& area) { areas_.push_back(area); }
@@ -57,7 +57,7 @@ class Gui {
     void note_overflow(const std::string& panel) { overflow_ = panel; }
     const std::string& overflow() const { return overflow_; }
 
- private:
+  private:
     static bool filter(const platform::WindowEvent& event, void* self);
     bool receive(const platform::WindowEvent& event);
     bool receive_button(const platform::WindowEvent& event);
@@ -77,9 +77,10 @@ class Gui {
     platform::Window& window_;
     std::vector<PanelArea> areas_;  // of the frame before
     std::deque<PanelInput> waiting_;
-    std::vector<PanelInput> frame_;        // what this frame gets
-    std::vector<Key> keys_;                // that go down in this frame
-    std::array<int, platform::key::count> held_as_;  // what Dear ImGui was told that a key is, while it is held; else kNotHeld
+    std::vector<PanelInput> frame_;  // what this frame gets
+    std::vector<Key> keys_;          // that go down in this frame
+    std::array<int, platform::key::count>
+        held_as_;  // what Dear ImGui was told that a key is, while it is held; else kNotHeld
     PanelArea text_area_{};
     std::optional<std::int64_t> finger_;  // the one that uses the panels; others may palpate meanwhile
     bool mouse_on_panel_ = false;

@@ -5,18 +5,19 @@
 #include <limits>
 #include <numbers>
 
-#include "figures/colour_maps.h"
-#include "app/screens/widgets.h"
 #include "app/screens/map_screen.h"
+#include "app/screens/widgets.h"
 #include "app/screens/words.h"
+#include "figures/colour_maps.h"
 #include "files/text.h"
 
 namespace palpa::app {
 namespace {
 
 // Okabe and Ito, which colour-blind people can tell apart; numbers say the same again.
-constexpr ImU32 kCurves[kPins + 1] = {IM_COL32(230, 159, 0, 255), IM_COL32(86, 180, 233, 255), IM_COL32(0, 158, 115, 255),
-                                      IM_COL32(204, 121, 167, 255), IM_COL32(236, 239, 241, 255)};
+constexpr ImU32 kCurves[kPins + 1] = {IM_COL32(230, 159, 0, 255), IM_COL32(86, 180, 233, 255),
+                                      IM_COL32(0, 158, 115, 255), IM_COL32(204, 121, 167, 255),
+                                      IM_COL32(236, 239, 241, 255)};
 
 // Round steps between two numbers, `about` of them.
 double tic_step(double range, double about) {
@@ -41,10 +42,14 @@ struct Values {
     double at(std::size_t cell) const {
         const std::size_t k = static_cast<std::size_t>(browser.depth) * map.n_cells() + cell;
         switch (browser.quantity) {
-            case MapQuantity::normal: return static_cast<double>(map.normal_N[k]);
-            case MapQuantity::tangential_x: return static_cast<double>(map.tangential_x_N[k]);
-            case MapQuantity::tangential_y: return static_cast<double>(map.tangential_y_N[k]);
-            case MapQuantity::stiffness: return 1e-3 * browser.stiffness_N_per_m[cell];
+            case MapQuantity::normal:
+                return static_cast<double>(map.normal_N[k]);
+            case MapQuantity::tangential_x:
+                return static_cast<double>(map.tangential_x_N[k]);
+            case MapQuantity::tangential_y:
+                return static_cast<double>(map.tangential_y_N[k]);
+            case MapQuantity::stiffness:
+                return 1e-3 * browser.stiffness_N_per_m[cell];
         }
         return 0.0;
     }
@@ -96,7 +101,8 @@ Frame frame_of(const stiffnessmaps::Map& map, ImVec2 low, ImVec2 high) {
     Frame f;
     f.map = &map;
     f.px_per_m = std::min((high.x - low.x) / width_m, (high.y - low.y) / height_m);
-    f.low = ImVec2(low.x + 0.5f * (high.x - low.x - f.px_per_m * width_m), low.y + 0.5f * (high.y - low.y - f.px_per_m * height_m));
+    f.low = ImVec2(low.x + 0.5f * (high.x - low.x - f.px_per_m * width_m),
+                   low.y + 0.5f * (high.y - low.y - f.px_per_m * height_m));
     f.high = ImVec2(f.low.x + f.px_per_m * width_m, f.low.y + f.px_per_m * height_m);
     return f;
 }
@@ -105,7 +111,8 @@ void hatch(ImDrawList& draw, ImVec2 low, ImVec2 high, float step_px) {
     draw.PushClipRect(low, high, true);
     draw.AddRectFilled(low, high, IM_COL32(58, 63, 68, 255));
     const float size = high.y - low.y;
-    for (float x = low.x - size; x < high.x; x += step_px) draw.AddLine(ImVec2(x, high.y), ImVec2(x + size, low.y), IM_COL32(110, 118, 124, 255));
+    for (float x = low.x - size; x < high.x; x += step_px)
+        draw.AddLine(ImVec2(x, high.y), ImVec2(x + size, low.y), IM_COL32(110, 118, 124, 255));
     draw.PopClipRect();
 }
 
@@ -125,7 +132,8 @@ void draw_cells(const Values& values, const Frame& f, float mm, ImDrawList& draw
             if (std::isnan(v)) continue;
             const std::size_t right = std::min(i + stride, map.n_x) - 1;
             const std::size_t top = std::min(j + stride, map.n_y) - 1;
-            draw.AddRectFilled(f.px(map.x_of(i) - dx, map.y_of(top) + dy), f.px(map.x_of(right) + dx, map.y_of(j) - dy), values.colour(v));
+            draw.AddRectFilled(f.px(map.x_of(i) - dx, map.y_of(top) + dy), f.px(map.x_of(right) + dx, map.y_of(j) - dy),
+                               values.colour(v));
         }
     }
     draw.Flags = flags;
@@ -165,7 +173,8 @@ void draw_bar(const Values& values, const Frame& f, ImVec2 low, float width_px, 
     for (int k = 0; k < kSteps; ++k) {
         const float y1 = f.high.y - height * static_cast<float>(k) / kSteps;
         const float y0 = f.high.y - height * static_cast<float>(k + 1) / kSteps;
-        draw.AddRectFilled(ImVec2(low.x, y0), ImVec2(low.x + width_px, y1), values.colour(values.low + (values.high - values.low) * (k + 0.5) / kSteps));
+        draw.AddRectFilled(ImVec2(low.x, y0), ImVec2(low.x + width_px, y1),
+                           values.colour(values.low + (values.high - values.low) * (k + 0.5) / kSteps));
     }
     draw.Flags = flags;
     draw.AddRect(ImVec2(low.x, f.low.y), ImVec2(low.x + width_px, f.high.y), kPale);
@@ -174,7 +183,8 @@ void draw_bar(const Values& values, const Frame& f, ImVec2 low, float width_px, 
     for (double v = std::ceil((values.low - 1e-9) / step) * step; v <= values.high + 1e-9; v += step) {
         const float y = f.high.y - height * static_cast<float>((v - values.low) / (values.high - values.low));
         draw.AddLine(ImVec2(low.x + width_px, y), ImVec2(low.x + width_px + mm, y), kPale);
-        draw.AddText(ImGui::GetFont(), text_px, ImVec2(low.x + width_px + 1.4f * mm, y - 0.5f * text_px), kPale, tic_text(v).c_str());
+        draw.AddText(ImGui::GetFont(), text_px, ImVec2(low.x + width_px + 1.4f * mm, y - 0.5f * text_px), kPale,
+                     tic_text(v).c_str());
     }
     draw.AddText(ImVec2(low.x, f.low.y - ImGui::GetFontSize() - mm), kInk, values.unit);
 }
@@ -191,12 +201,14 @@ void draw_nodule(const stiffnessmaps::Nodule& nodule, const Frame& f, float mm, 
         double s = share * length_m;
         const double side = s < 0.5 * length_m ? 1.0 : -1.0;
         if (side < 0.0) s -= 0.5 * length_m;
-        const double a = s < round_m ? s / radius_m - 0.5 * std::numbers::pi : 0.0;  // the end on that side, then the long side
+        const double a =
+            s < round_m ? s / radius_m - 0.5 * std::numbers::pi : 0.0;  // the end on that side, then the long side
         const double along = s < round_m ? half_m + radius_m * std::cos(a) : half_m - (s - round_m);
         const double across = s < round_m ? radius_m * std::sin(a) : radius_m;
         const double x = side * along;
         const double y = side * across;
-        return f.px(nodule.x_m + x * std::cos(turn) - y * std::sin(turn), nodule.y_m + x * std::sin(turn) + y * std::cos(turn));
+        return f.px(nodule.x_m + x * std::cos(turn) - y * std::sin(turn),
+                    nodule.y_m + x * std::sin(turn) + y * std::cos(turn));
     };
     constexpr int kPoints = 96;
     ImVec2 points[kPoints + 1];
@@ -220,12 +232,19 @@ void draw_pin(ImVec2 at, std::size_t number, float mm, ImDrawList& draw) {
 }
 
 std::string title_of(const MapBrowser& browser) {
-    const std::string depth = ", " + words::filled(words::kMmDeep, {files::short_number(1e3 * browser.map.depths_m[static_cast<std::size_t>(browser.depth)])});
+    const std::string depth =
+        ", " +
+        words::filled(words::kMmDeep,
+                      {files::short_number(1e3 * browser.map.depths_m[static_cast<std::size_t>(browser.depth)])});
     switch (browser.quantity) {
-        case MapQuantity::normal: return words::kNormalForce + depth;
-        case MapQuantity::tangential_x: return words::kForceAgainstX + depth;
-        case MapQuantity::tangential_y: return words::kForceAgainstY + depth;
-        case MapQuantity::stiffness: return words::kStiffness;
+        case MapQuantity::normal:
+            return words::kNormalForce + depth;
+        case MapQuantity::tangential_x:
+            return words::kForceAgainstX + depth;
+        case MapQuantity::tangential_y:
+            return words::kForceAgainstY + depth;
+        case MapQuantity::stiffness:
+            return words::kStiffness;
     }
     return "";
 }
@@ -238,14 +257,16 @@ bool has_quantity(const stiffnessmaps::Map& map, MapQuantity quantity) {
     return true;
 }
 
-std::optional<Eigen::Vector2d> draw_map_matrix(const MapBrowser& browser, ImVec2 size_px, const Gui& gui, bool& pressed) {
+std::optional<Eigen::Vector2d> draw_map_matrix(const MapBrowser& browser, ImVec2 size_px, const Gui& gui,
+                                               bool& pressed) {
     const float mm = gui.mm();
     const stiffnessmaps::Map& map = browser.map;
     const float text_px = ImGui::GetFontSize();
     const ImVec2 corner = ImGui::GetCursorScreenPos();
     const float bar_px = 4.0f * mm;
     const Frame f = frame_of(map, ImVec2(corner.x + 3.0f * text_px, corner.y + 1.3f * text_px + mm),
-                             ImVec2(corner.x + size_px.x - bar_px - 3.0f * mm - 3.0f * text_px, corner.y + size_px.y - 2.2f * text_px - 2.0f * mm));
+                             ImVec2(corner.x + size_px.x - bar_px - 3.0f * mm - 3.0f * text_px,
+                                    corner.y + size_px.y - 2.2f * text_px - 2.0f * mm));
     ImDrawList& draw = *ImGui::GetWindowDrawList();
     draw.AddText(ImVec2(f.low.x, f.low.y - text_px - mm), kInk, title_of(browser).c_str());
     const Values values = values_of(browser);
@@ -253,16 +274,19 @@ std::optional<Eigen::Vector2d> draw_map_matrix(const MapBrowser& browser, ImVec2
     draw_axes(map, f, mm, draw);
     draw_bar(values, f, ImVec2(f.high.x + 3.0f * mm, f.low.y), bar_px, mm, draw);
     for (const stiffnessmaps::Nodule& nodule : map.nodules) draw_nodule(nodule, f, mm, draw);
-    for (std::size_t k = 0; k < browser.pins_m.size(); ++k) draw_pin(f.px(browser.pins_m[k].x(), browser.pins_m[k].y()), k, mm, draw);
+    for (std::size_t k = 0; k < browser.pins_m.size(); ++k)
+        draw_pin(f.px(browser.pins_m[k].x(), browser.pins_m[k].y()), k, mm, draw);
     if (browser.pointed_m) {
         const ImVec2 at = f.px(browser.pointed_m->x(), browser.pointed_m->y());
         cross(draw, at, 2.0f * mm, kDark, 1.2f * mm);
         cross(draw, at, 2.0f * mm, kInk, 0.6f * mm);
     }
     ImGui::SetCursorScreenPos(f.low);
-    pressed = ImGui::InvisibleButton("cells", ImVec2(std::max(1.0f, f.high.x - f.low.x), std::max(1.0f, f.high.y - f.low.y)));
+    pressed =
+        ImGui::InvisibleButton("cells", ImVec2(std::max(1.0f, f.high.x - f.low.x), std::max(1.0f, f.high.y - f.low.y)));
     const ImVec2 mouse = ImGui::GetMousePos();
-    const bool over = ImGui::IsItemHovered() && mouse.x >= f.low.x && mouse.x < f.high.x && mouse.y >= f.low.y && mouse.y < f.high.y;
+    const bool over =
+        ImGui::IsItemHovered() && mouse.x >= f.low.x && mouse.x < f.high.x && mouse.y >= f.low.y && mouse.y < f.high.y;
     if (!over) return std::nullopt;
     return f.metres(mouse);
 }
@@ -271,21 +295,23 @@ namespace {
 
 struct DepthCurve {
     std::vector<ImVec2> points;  // mm, N
-    std::string name;   // which one, and its force at the shown depth
-    std::string place;  // left out where there is no room
+    std::string name;            // which one, and its force at the shown depth
+    std::string place;           // left out where there is no room
     ImU32 colour;
 };
 
 DepthCurve curve_at(const MapBrowser& browser, const Eigen::Vector2d& p_m, ImU32 colour, const std::string& name) {
     const stiffnessmaps::Place place = stiffnessmaps::place_at(browser.field, p_m);
-    DepthCurve out{{}, name, words::filled(words::kAtPlace, {fixed(1e3 * p_m.x(), 1), fixed(1e3 * p_m.y(), 1)}), colour};
+    DepthCurve out{
+        {}, name, words::filled(words::kAtPlace, {fixed(1e3 * p_m.x(), 1), fixed(1e3 * p_m.y(), 1)}), colour};
     if (!place.measured) {
         out.name += words::kNotMeasured;
         return out;
     }
     for (const double depth_m : browser.field.depths_m) {
         if (depth_m > greatest_depth_m(browser.field, place) * (1.0 + 1e-9)) break;
-        out.points.emplace_back(static_cast<float>(1e3 * depth_m), static_cast<float>(stiffnessmaps::normal_force_N(browser.field, place, depth_m)));
+        out.points.emplace_back(static_cast<float>(1e3 * depth_m),
+                                static_cast<float>(stiffnessmaps::normal_force_N(browser.field, place, depth_m)));
     }
     const double shown_m = browser.map.depths_m[static_cast<std::size_t>(browser.depth)];
     const bool known = shown_m <= stiffnessmaps::greatest_depth_m(browser.field, place) * (1.0 + 1e-9);
@@ -295,7 +321,8 @@ DepthCurve curve_at(const MapBrowser& browser, const Eigen::Vector2d& p_m, ImU32
 
 }  // namespace
 
-void draw_map_curves(const MapBrowser& browser, const std::optional<Eigen::Vector2d>& pointed_m, ImVec2 size_px, const Gui& gui) {
+void draw_map_curves(const MapBrowser& browser, const std::optional<Eigen::Vector2d>& pointed_m, ImVec2 size_px,
+                     const Gui& gui) {
     const float mm = gui.mm();
     std::vector<DepthCurve> curves;
     for (std::size_t k = 0; k < browser.pins_m.size(); ++k) {
@@ -318,23 +345,29 @@ void draw_map_curves(const MapBrowser& browser, const std::optional<Eigen::Vecto
         return ImVec2(low.x + (high.x - low.x) * x_mm / deepest_mm, high.y - (high.y - low.y) * y_N / (1.08f * most_N));
     };
     draw.AddText(ImVec2(low.x, corner.y), kInk, words::kForceOverDepth);
-    const double step_N = tic_step(1.08 * static_cast<double>(most_N), static_cast<double>((high.y - low.y) / (3.0f * small_px)));
+    const double step_N =
+        tic_step(1.08 * static_cast<double>(most_N), static_cast<double>((high.y - low.y) / (3.0f * small_px)));
     for (double v = 0.0; v <= 1.08 * static_cast<double>(most_N); v += step_N) {
         const ImVec2 at = px(0.0f, static_cast<float>(v));
         draw.AddLine(at, ImVec2(high.x, at.y), IM_COL32(70, 76, 82, 255));
         const std::string text = tic_text(v);
-        draw.AddText(ImGui::GetFont(), small_px, ImVec2(at.x - mm - 0.8f * ImGui::CalcTextSize(text.c_str()).x, at.y - 0.5f * small_px), kPale, text.c_str());
+        draw.AddText(ImGui::GetFont(), small_px,
+                     ImVec2(at.x - mm - 0.8f * ImGui::CalcTextSize(text.c_str()).x, at.y - 0.5f * small_px), kPale,
+                     text.c_str());
     }
-    const double step_mm = tic_step(static_cast<double>(deepest_mm), static_cast<double>((high.x - low.x) / (5.0f * small_px)));
+    const double step_mm =
+        tic_step(static_cast<double>(deepest_mm), static_cast<double>((high.x - low.x) / (5.0f * small_px)));
     for (double v = 0.0; v <= static_cast<double>(deepest_mm) * (1.0 + 1e-9); v += step_mm) {
         const ImVec2 at = px(static_cast<float>(v), 0.0f);
         draw.AddLine(at, ImVec2(at.x, at.y + mm), kPale);
         const std::string text = tic_text(v);
-        draw.AddText(ImGui::GetFont(), small_px, ImVec2(at.x - 0.4f * ImGui::CalcTextSize(text.c_str()).x, at.y + 1.2f * mm), kPale, text.c_str());
+        draw.AddText(ImGui::GetFont(), small_px,
+                     ImVec2(at.x - 0.4f * ImGui::CalcTextSize(text.c_str()).x, at.y + 1.2f * mm), kPale, text.c_str());
     }
     draw.AddText(ImGui::GetFont(), small_px, ImVec2(low.x - 2.0f * small_px, low.y - small_px - 0.4f * mm), kPale, "N");
     const char* x_name = words::kDepthAxis;
-    draw.AddText(ImGui::GetFont(), small_px, ImVec2(high.x - 0.8f * ImGui::CalcTextSize(x_name).x, high.y + 1.2f * mm + small_px), kPale, x_name);
+    draw.AddText(ImGui::GetFont(), small_px,
+                 ImVec2(high.x - 0.8f * ImGui::CalcTextSize(x_name).x, high.y + 1.2f * mm + small_px), kPale, x_name);
     if (browser.quantity != MapQuantity::stiffness) {  // where the matrix lies
         const auto depth_mm = static_cast<float>(1e3 * browser.map.depths_m[static_cast<std::size_t>(browser.depth)]);
         draw.AddLine(px(depth_mm, 0.0f), ImVec2(px(depth_mm, 0.0f).x, low.y), kLag, 0.3f * mm);
@@ -343,7 +376,8 @@ void draw_map_curves(const MapBrowser& browser, const std::optional<Eigen::Vecto
     for (const DepthCurve& curve : curves) {
         std::vector<ImVec2> points;
         for (const ImVec2& p : curve.points) points.push_back(px(p.x, p.y));
-        if (points.size() > 1) draw.AddPolyline(points.data(), static_cast<int>(points.size()), curve.colour, 0, 0.5f * mm);
+        if (points.size() > 1)
+            draw.AddPolyline(points.data(), static_cast<int>(points.size()), curve.colour, 0, 0.5f * mm);
         for (const ImVec2& p : points) draw.AddCircleFilled(p, 0.8f * mm, curve.colour);
         const std::string whole = curve.name + curve.place;
         const bool fits = low.x + 2.0f * mm + ImGui::CalcTextSize(whole.c_str()).x < high.x - 0.25f * (high.x - low.x);

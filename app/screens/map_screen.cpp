@@ -19,18 +19,27 @@ std::string mm(double metres) { return files::short_number(1e3 * metres); }
 std::vector<std::string> facts_of(const stiffnessmaps::Map& map, const stiffnessmaps::Field& field) {
     const stiffnessmaps::ForceRange range = stiffnessmaps::force_range(map);
     std::vector<std::string> out;
-    out.push_back(words::filled(words::kCellsOf, {std::to_string(map.n_x), std::to_string(map.n_y), mm(map.spacing_m[0]), mm(map.spacing_m[1])}));
-    out.push_back(words::filled(words::kDepthsFromTo, {std::to_string(map.n_depths()), mm(map.depths_m.front()), mm(map.depths_m.back())}));
-    out.push_back(words::filled(words::kForceFromTo, {files::short_number(range.lowest_N), files::short_number(range.highest_N)}));
-    const double missing = 100.0 * static_cast<double>(stiffnessmaps::missing_count(map)) / static_cast<double>(map.normal_N.size());
-    out.push_back(missing > 0.0 ? words::filled(words::kShareMissing, {files::short_number(missing)}) : words::kMeasuredEverywhere);
-    out.push_back(words::filled(words::kNoise, {files::short_number(1e3 * normal_noise_N(map)), std::to_string(field.isotonic_changed)}));
+    out.push_back(words::filled(words::kCellsOf, {std::to_string(map.n_x), std::to_string(map.n_y),
+                                                  mm(map.spacing_m[0]), mm(map.spacing_m[1])}));
+    out.push_back(words::filled(words::kDepthsFromTo,
+                                {std::to_string(map.n_depths()), mm(map.depths_m.front()), mm(map.depths_m.back())}));
+    out.push_back(words::filled(words::kForceFromTo,
+                                {files::short_number(range.lowest_N), files::short_number(range.highest_N)}));
+    const double missing =
+        100.0 * static_cast<double>(stiffnessmaps::missing_count(map)) / static_cast<double>(map.normal_N.size());
+    out.push_back(missing > 0.0 ? words::filled(words::kShareMissing, {files::short_number(missing)})
+                                : words::kMeasuredEverywhere);
+    out.push_back(words::filled(
+        words::kNoise, {files::short_number(1e3 * normal_noise_N(map)), std::to_string(field.isotonic_changed)}));
     out.push_back(words::filled(words::kTangential, {name_of(map.tangential)}));
     out.push_back(words::filled(words::kIndenter, {name_of(map.indenter), mm(map.indenter_radius_m)}));
     for (const stiffnessmaps::Nodule& nodule : map.nodules) {
-        std::string text = words::filled(nodule.placed ? words::kPlacedNodule : words::kDetectedNodule, {nodule.id, mm(nodule.x_m), mm(nodule.y_m)});
-        if (nodule.length_m) text += words::filled(words::kMmLong, {mm(*nodule.length_m)});
-        else if (nodule.diameter_m) text += words::filled(words::kMmWide, {mm(*nodule.diameter_m)});
+        std::string text = words::filled(nodule.placed ? words::kPlacedNodule : words::kDetectedNodule,
+                                         {nodule.id, mm(nodule.x_m), mm(nodule.y_m)});
+        if (nodule.length_m)
+            text += words::filled(words::kMmLong, {mm(*nodule.length_m)});
+        else if (nodule.diameter_m)
+            text += words::filled(words::kMmWide, {mm(*nodule.diameter_m)});
         out.push_back(text);
     }
     out.push_back(std::string(name_of(map.source.kind)) + ": " + map.source.how);
@@ -49,7 +58,9 @@ void quantity_buttons(const Gui& gui, MapBrowser& browser) {
     for (int i = 0; i < 4; ++i) {
         const auto quantity = static_cast<MapQuantity>(i);
         if (i % 2 == 1) ImGui::SameLine();
-        if (big_button(kNames[i], kKeys[i], {width_px, kTarget_mm, has_quantity(browser.map, quantity), browser.quantity == quantity}, gui)) {
+        if (big_button(kNames[i], kKeys[i],
+                       {width_px, kTarget_mm, has_quantity(browser.map, quantity), browser.quantity == quantity},
+                       gui)) {
             browser.quantity = quantity;
         }
     }
@@ -63,10 +74,12 @@ void depth_controls(const Gui& gui, MapBrowser& browser) {
     if (big_button("-", "", {button_px, kTarget_mm, matters && browser.depth > 0, false}, gui)) --browser.depth;
     ImGui::SameLine();
     ImGui::BeginDisabled(!matters);
-    ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, ImVec2(gui.mm(), 0.5f * (kTarget_mm * gui.mm() - ImGui::GetFontSize())));
+    ImGui::PushStyleVar(ImGuiStyleVar_FramePadding,
+                        ImVec2(gui.mm(), 0.5f * (kTarget_mm * gui.mm() - ImGui::GetFontSize())));
     ImGui::PushStyleVar(ImGuiStyleVar_GrabMinSize, 5.0f * gui.mm());
     ImGui::SetNextItemWidth(slider_px);
-    const std::string text = words::filled(words::kMmDeep, {mm(browser.map.depths_m[static_cast<std::size_t>(browser.depth)])});
+    const std::string text =
+        words::filled(words::kMmDeep, {mm(browser.map.depths_m[static_cast<std::size_t>(browser.depth)])});
     std::string format;
     for (const char c : text) format += c == '%' ? std::string("%%") : std::string(1, c);
     ImGui::SliderInt("##depth", &browser.depth, 0, std::max(last, 1), format.c_str(), ImGuiSliderFlags_NoInput);
@@ -85,7 +98,8 @@ void map_list(float height_px, const Gui& gui, MapBrowser& browser) {
         ImGui::PushID(choice.file.c_str());
         ImGui::PushStyleVar(ImGuiStyleVar_ButtonTextAlign, ImVec2(0.0f, 0.5f));
         ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, ImVec2(1.5f * gui.mm(), 0.0f));
-        if (big_button(choice.name.c_str(), "", {0.0f, kTarget_mm, true, choice.file == browser.file}, gui)) wanted = choice.file;
+        if (big_button(choice.name.c_str(), "", {0.0f, kTarget_mm, true, choice.file == browser.file}, gui))
+            wanted = choice.file;
         ImGui::PopStyleVar(2);
         ImGui::PopID();
     }
@@ -97,10 +111,12 @@ void map_list(float height_px, const Gui& gui, MapBrowser& browser) {
 void take_map_keys(const Gui& gui, MapBrowser& browser) {
     for (int i = 0; i < 4; ++i) {
         const auto quantity = static_cast<MapQuantity>(i);
-        if ((gui.pressed('1' + i) || gui.pressed(platform::key::pad_0 + 1 + i)) && has_quantity(browser.map, quantity)) browser.quantity = quantity;
+        if ((gui.pressed('1' + i) || gui.pressed(platform::key::pad_0 + 1 + i)) && has_quantity(browser.map, quantity))
+            browser.quantity = quantity;
     }
     const stiffnessmaps::Map& map = browser.map;
-    if (gui.pressed(platform::key::page_down)) browser.depth = std::min(browser.depth + 1, static_cast<int>(map.n_depths()) - 1);
+    if (gui.pressed(platform::key::page_down))
+        browser.depth = std::min(browser.depth + 1, static_cast<int>(map.n_depths()) - 1);
     if (gui.pressed(platform::key::page_up)) browser.depth = std::max(browser.depth - 1, 0);
     const double width_m = map.x_of(map.n_x - 1) - map.x_of(0);
     const double height_m = map.y_of(map.n_y - 1) - map.y_of(0);
@@ -110,7 +126,8 @@ void take_map_keys(const Gui& gui, MapBrowser& browser) {
     if (right != 0.0 || up != 0.0) {
         const Eigen::Vector2d middle(map.x_of(0) + 0.5 * width_m, map.y_of(0) + 0.5 * height_m);
         const Eigen::Vector2d p = browser.pointed_m.value_or(middle) + step_m * Eigen::Vector2d(right, up);
-        browser.pointed_m = Eigen::Vector2d(std::clamp(p.x(), map.x_of(0), map.x_of(map.n_x - 1)), std::clamp(p.y(), map.y_of(0), map.y_of(map.n_y - 1)));
+        browser.pointed_m = Eigen::Vector2d(std::clamp(p.x(), map.x_of(0), map.x_of(map.n_x - 1)),
+                                            std::clamp(p.y(), map.y_of(0), map.y_of(map.n_y - 1)));
     }
     if (gui.pressed('o') && browser.pointed_m) add_pin(*browser.pointed_m, browser);
 }
@@ -141,7 +158,8 @@ Areas areas_of(float width, float height, float mm_px) {
 }
 
 void back_button(const Shown& shown, const Gui& gui, Wishes& wishes) {
-    if (big_button(words::kBack, words::kEscape, {40.0f * gui.mm(), kTarget_mm, true, false}, gui)) wishes.screen = shown.trial.finished ? Screen::reveal : Screen::trial;
+    if (big_button(words::kBack, words::kEscape, {40.0f * gui.mm(), kTarget_mm, true, false}, gui))
+        wishes.screen = shown.trial.finished ? Screen::reveal : Screen::trial;
 }
 
 void draw_controls(const Shown& shown, const Areas& areas, Gui& gui, MapBrowser& browser, Wishes& wishes) {
@@ -155,7 +173,8 @@ void draw_controls(const Shown& shown, const Areas& areas, Gui& gui, MapBrowser&
             quantity_buttons(gui, browser);
             depth_controls(gui, browser);
         }
-        map_list(ImGui::GetContentRegionAvail().y - ImGui::GetFontSize() - 3.0f * ImGui::GetStyle().ItemSpacing.y, gui, browser);
+        map_list(ImGui::GetContentRegionAvail().y - ImGui::GetFontSize() - 3.0f * ImGui::GetStyle().ItemSpacing.y, gui,
+                 browser);
     } else {
         const float half_px = share_of_line_px(2);
         ImGui::BeginChild("left", ImVec2(half_px, 0.0f), false, ImGuiWindowFlags_NavFlattened);
@@ -167,7 +186,9 @@ void draw_controls(const Shown& shown, const Areas& areas, Gui& gui, MapBrowser&
         ImGui::EndChild();
         ImGui::SameLine();
         ImGui::BeginChild("right", ImVec2(0.0f, 0.0f), false, ImGuiWindowFlags_NavFlattened);
-        map_list(std::max(line_px, ImGui::GetContentRegionAvail().y - ImGui::GetFontSize() - 3.0f * ImGui::GetStyle().ItemSpacing.y), gui, browser);
+        map_list(std::max(line_px, ImGui::GetContentRegionAvail().y - ImGui::GetFontSize() -
+                                       3.0f * ImGui::GetStyle().ItemSpacing.y),
+                 gui, browser);
         ImGui::EndChild();
     }
     end_panel("map controls", gui);
@@ -200,14 +221,17 @@ std::shared_ptr<MapBrowser> make_map_browser(const scene::Scene& scene, std::vec
     browser->maps = std::move(maps);
     std::string first = scene.map.string();
     if (first.empty() && !browser->maps.empty()) first = browser->maps.front().file;
-    const auto listed = std::find_if(browser->maps.begin(), browser->maps.end(), [&](const Choice& c) { return same_file(c.file, first); });
+    const auto listed = std::find_if(browser->maps.begin(), browser->maps.end(),
+                                     [&](const Choice& c) { return same_file(c.file, first); });
     if (listed != browser->maps.end()) {
         first = listed->file;
     } else if (!first.empty()) {
         browser->maps.insert(browser->maps.begin(), {scene.map.stem().string(), first});
     }
-    if (first.empty()) browser->problem = words::kNoMap;
-    else choose_map(first, *browser);
+    if (first.empty())
+        browser->problem = words::kNoMap;
+    else
+        choose_map(first, *browser);
     return browser;
 }
 
@@ -237,7 +261,8 @@ void draw_map_screen(const Shown& shown, Gui& gui, MapBrowser& browser, Wishes& 
     if (pressed && pointed_m) add_pin(*pointed_m, browser);
     if (pointed_m) browser.pointed_m.reset();  // the pointer has taken over from the keys
     begin_panel("map curves", areas.curves, gui);
-    if (browser.map.n_cells() > 0) draw_map_curves(browser, pointed_m ? pointed_m : browser.pointed_m, ImGui::GetContentRegionAvail(), gui);
+    if (browser.map.n_cells() > 0)
+        draw_map_curves(browser, pointed_m ? pointed_m : browser.pointed_m, ImGui::GetContentRegionAvail(), gui);
     end_panel("map curves", gui);
     begin_panel("map facts", areas.facts, gui);
     ImGui::BeginChild("facts", ImVec2(0.0f, 0.0f), false, ImGuiWindowFlags_NavFlattened);

@@ -2,9 +2,8 @@
 // The map browser: a matrix of a map in colour, its nodules, force over depth where one points, and what the map is.
 // While a test trial goes on it shows nothing: the tissue under test, turned or not, may be among the maps.
 
-#include <imgui.h>
-
 #include <Eigen/Core>
+#include <imgui.h>
 #include <optional>
 #include <string>
 #include <vector>
@@ -19,16 +18,16 @@ enum class MapQuantity : std::uint8_t { normal, tangential_x, tangential_y, stif
 
 struct MapBrowser {
     std::vector<Choice> maps;
-    std::string file;                // of the map that is shown
-    std::string problem;             // why another could not be
-    stiffnessmaps::Map map;                         // without cells: none is shown
+    std::string file;        // of the map that is shown
+    std::string problem;     // why another could not be
+    stiffnessmaps::Map map;  // without cells: none is shown
     stiffnessmaps::Field field;
     std::vector<double> stiffness_N_per_m;
     std::vector<std::string> facts;
     MapQuantity quantity = MapQuantity::stiffness;
-    int depth = 0;                   // index of the matrix
-    std::vector<Eigen::Vector2d> pins_m;        // curves that stay, the newest last
-    std::optional<Eigen::Vector2d> pointed_m;   // by the keys
+    int depth = 0;                             // index of the matrix
+    std::vector<Eigen::Vector2d> pins_m;       // curves that stay, the newest last
+    std::optional<Eigen::Vector2d> pointed_m;  // by the keys
 };
 inline constexpr std::size_t kPins = 4;
 
@@ -45,7 +44,9 @@ void draw_map_screen(const Shown& shown, Gui& gui, MapBrowser& browser, Wishes& 
 bool has_quantity(const stiffnessmaps::Map& map, MapQuantity quantity);
 void add_pin(const Eigen::Vector2d& p_m, MapBrowser& browser);  // the oldest goes if there are too many
 // Returns the place under the pointer; a press there is told in `pressed`.
-std::optional<Eigen::Vector2d> draw_map_matrix(const MapBrowser& browser, ImVec2 size_px, const Gui& gui, bool& pressed);
-void draw_map_curves(const MapBrowser& browser, const std::optional<Eigen::Vector2d>& pointed_m, ImVec2 size_px, const Gui& gui);
+std::optional<Eigen::Vector2d> draw_map_matrix(const MapBrowser& browser, ImVec2 size_px, const Gui& gui,
+                                               bool& pressed);
+void draw_map_curves(const MapBrowser& browser, const std::optional<Eigen::Vector2d>& pointed_m, ImVec2 size_px,
+                     const Gui& gui);
 
 }  // namespace palpa::app

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
-#include "app/screens/widgets.h"
 #include "app/screens/map_screen.h"
 #include "app/screens/screens.h"
+#include "app/screens/widgets.h"
 #include "app/screens/words.h"
 
 namespace palpa::app {
@@ -18,15 +18,16 @@ PanelArea menu_area(const Layout& layout, float mm) {
     return area;
 }
 
-void choices(const char* title, const std::vector<Choice>& list, const std::string& chosen, float height_px, const Gui& gui,
-             std::optional<std::string>& wish) {
+void choices(const char* title, const std::vector<Choice>& list, const std::string& chosen, float height_px,
+             const Gui& gui, std::optional<std::string>& wish) {
     ImGui::TextDisabled("%s", title);
     ImGui::BeginChild(title, ImVec2(0.0f, height_px), false, ImGuiWindowFlags_NavFlattened);
     for (const Choice& choice : list) {
         ImGui::PushID(choice.file.c_str());
         ImGui::PushStyleVar(ImGuiStyleVar_ButtonTextAlign, ImVec2(0.0f, 0.5f));
         ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, ImVec2(1.5f * gui.mm(), 0.0f));
-        if (big_button(choice.name.c_str(), "", {0.0f, kTarget_mm, true, choice.file == chosen}, gui)) wish = choice.file;
+        if (big_button(choice.name.c_str(), "", {0.0f, kTarget_mm, true, choice.file == chosen}, gui))
+            wish = choice.file;
         if (choice.file == chosen) ImGui::SetItemDefaultFocus();  // where arrow keys start
         ImGui::PopStyleVar(2);
         ImGui::PopID();
@@ -75,9 +76,11 @@ void right_side(const Shown& shown, const Gui& gui, Screens& screens, Wishes& wi
     if (big_button(words::kSizeOfScreen, "Z", {}, gui)) wishes.screen = Screen::scale;
     if (big_button(words::kDeviceCheck, "D", {}, gui)) wishes.screen = Screen::devices;
     if (big_button(words::kCalibratePressure, "P", {}, gui)) wishes.screen = Screen::calibrate;
-    if (big_button(words::kMaps, "B", {0.0f, kTarget_mm, may_show_maps(shown.trial), false}, gui)) wishes.screen = Screen::maps;
+    if (big_button(words::kMaps, "B", {0.0f, kTarget_mm, may_show_maps(shown.trial), false}, gui))
+        wishes.screen = Screen::maps;
     if (big_button(words::kCost, "C", {0.0f, kTarget_mm, true, screens.cost}, gui)) screens.cost = !screens.cost;
-    if (big_button(words::kFullScreen, "F11", {0.0f, kTarget_mm, true, shown.settings.full_screen}, gui)) wishes.full_screen = true;
+    if (big_button(words::kFullScreen, "F11", {0.0f, kTarget_mm, true, shown.settings.full_screen}, gui))
+        wishes.full_screen = true;
     if (!screens.keeps_trials && big_button(words::kQuit, words::kCtrlQ, {}, gui)) wishes.quit = true;
 }
 
@@ -104,16 +107,18 @@ std::string frame_text(const Shown& shown) {
     const FrameTimes& t = shown.times;
     const scene::Counters& counters = shown.state.counters;
     const auto ms = [](const scene::Meter& meter, double q) { return 1e-6 * meter.quantile_ns(q); };
-    return words::filled(words::kFrameTimes, {fixed(ms(t.latency, 0.5), 1), fixed(ms(t.latency, 0.99), 1), fixed(ms(t.ready, 0.5), 1),
-                                              fixed(ms(t.cpu, 0.5), 2), fixed(ms(t.cpu, 0.99), 2), fixed(ms(t.gl, 0.5), 1),
-                                              fixed(t.frames_per_s, 0), std::to_string(counters.samples),
-                                              std::to_string(counters.dropped_steps),
-                                              std::to_string(counters.skipped_stations + counters.skipped_slides)});
+    return words::filled(
+        words::kFrameTimes,
+        {fixed(ms(t.latency, 0.5), 1), fixed(ms(t.latency, 0.99), 1), fixed(ms(t.ready, 0.5), 1),
+         fixed(ms(t.cpu, 0.5), 2), fixed(ms(t.cpu, 0.99), 2), fixed(ms(t.gl, 0.5), 1), fixed(t.frames_per_s, 0),
+         std::to_string(counters.samples), std::to_string(counters.dropped_steps),
+         std::to_string(counters.skipped_stations + counters.skipped_slides)});
 }
 
 void trial_keys(const Shown& shown, const Gui& gui, Wishes& wishes) {
     if (gui.pressed('m') && shown.trial.last_px) wishes.action = platform::Action::mark;
-    if (gui.pressed('u') || gui.pressed('z', true) || gui.pressed(platform::key::backspace)) wishes.action = platform::Action::undo;
+    if (gui.pressed('u') || gui.pressed('z', true) || gui.pressed(platform::key::backspace))
+        wishes.action = platform::Action::undo;
     if (gui.pressed('f')) wishes.action = platform::Action::finish;
     if (gui.pressed('h')) wishes.press_by_hold = true;
     for (int i = 0; i < 5; ++i) {
@@ -136,7 +141,8 @@ void draw_menu(const Shown& shown, const Layout& layout, Gui& gui, Screens& scre
     const float line_px = ImGui::GetFontSize() + 2.0f * ImGui::GetStyle().ItemSpacing.y;
     const float list_px = ImGui::GetContentRegionAvail().y - 2.0f * line_px;
     choices(words::kScene, screens.scenes, shown.scene.file.string(), 0.62f * list_px, gui, wishes.scene);
-    choices(words::kPressureProfile, screens.profiles, shown.scene.profile.string(), 0.36f * list_px, gui, wishes.profile);
+    choices(words::kPressureProfile, screens.profiles, shown.scene.profile.string(), 0.36f * list_px, gui,
+            wishes.profile);
     ImGui::EndChild();
     if (two_columns) ImGui::SameLine();
     ImGui::BeginChild("how", ImVec2(0.0f, 0.0f), false, ImGuiWindowFlags_NavFlattened);
@@ -149,15 +155,18 @@ void draw_cost(const Shown& shown, const Layout& layout, Gui& gui) {
     const PanelArea& t = layout.tissue_px;
     const float height_px = std::min(0.55f * t.height(), 80.0f * gui.mm());
     begin_panel("cost", {t.x0, t.y1 - height_px, t.x1, t.y1}, gui, 0.9f);
-    constexpr ImGuiTableFlags kFlags = ImGuiTableFlags_RowBg | ImGuiTableFlags_SizingStretchProp | ImGuiTableFlags_ScrollY;
+    constexpr ImGuiTableFlags kFlags =
+        ImGuiTableFlags_RowBg | ImGuiTableFlags_SizingStretchProp | ImGuiTableFlags_ScrollY;
     const std::string text = frame_text(shown);
     const ImVec2 text_size = ImGui::CalcTextSize(text.c_str(), nullptr, false, ImGui::GetContentRegionAvail().x);
     const float text_px = text_size.y + 2.0f * ImGui::GetStyle().ItemSpacing.y;
     if (ImGui::BeginTable("stages", 6, kFlags, ImVec2(0.0f, ImGui::GetContentRegionAvail().y - text_px))) {
         ImGui::TableSetupScrollFreeze(0, 1);
-        constexpr const char* kColumns[] = {words::kStage, words::kFidelity, words::kError, words::kMicroseconds, words::kMicroseconds99, words::kCalls};
+        constexpr const char* kColumns[] = {words::kStage,        words::kFidelity,       words::kError,
+                                            words::kMicroseconds, words::kMicroseconds99, words::kCalls};
         constexpr float kWidths[] = {1.9f, 4.0f, 4.0f, 0.8f, 1.1f, 1.0f};
-        for (int i = 0; i < 6; ++i) ImGui::TableSetupColumn(kColumns[i], ImGuiTableColumnFlags_WidthStretch, kWidths[i]);
+        for (int i = 0; i < 6; ++i)
+            ImGui::TableSetupColumn(kColumns[i], ImGuiTableColumnFlags_WidthStretch, kWidths[i]);
         ImGui::TableHeadersRow();
         stage_rows(shown, shown.plan.sample_stages);
         stage_rows(shown, shown.plan.frame_stages);
@@ -186,7 +195,8 @@ void take_keys(const Shown& shown, const Gui& gui, Screens& screens, Wishes& wis
     }
     if (gui.pressed('t')) wishes.trials = true;
     if (gui.pressed('y')) wishes.studies = true;
-    if (gui.pressed(platform::key::f10) || (gui.pressed(platform::key::tab) && !screens.menu && screens.screen == Screen::trial)) {
+    if (gui.pressed(platform::key::f10) ||
+        (gui.pressed(platform::key::tab) && !screens.menu && screens.screen == Screen::trial)) {
         screens.menu = !screens.menu;
     }
     if (gui.pressed(platform::key::escape)) {

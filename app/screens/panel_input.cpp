@@ -10,21 +10,28 @@ namespace {
 
 using Kind = PanelInput::Kind;
 
-bool types_letter(int key) { return (key >= platform::key::space && key < platform::key::del) || key >= platform::key::pad_plus; }
+bool types_letter(int key) {
+    return (key >= platform::key::space && key < platform::key::del) || key >= platform::key::pad_plus;
+}
 
-bool is_press(const PanelInput& input) { return input.kind == Kind::key && input.down && input.key != platform::key::other; }
+bool is_press(const PanelInput& input) {
+    return input.kind == Kind::key && input.down && input.key != platform::key::other;
+}
 
 // An emptied field is Dear ImGui's Backspace on a selection: as good as a key that goes down.
 bool ends_letters(const PanelInput& input) {
     return (is_press(input) && !types_letter(input.key)) || (input.kind == Kind::replace && input.text.empty());
 }
 
-bool same_key(const PanelInput& a, const PanelInput& b) { return a.kind == Kind::key && b.kind == Kind::key && a.key == b.key; }
+bool same_key(const PanelInput& a, const PanelInput& b) {
+    return a.kind == Kind::key && b.kind == Kind::key && a.key == b.key;
+}
 
 bool fits(const PanelInput& next, const std::vector<PanelInput>& frame) {
     if (frame.empty()) return true;
     const PanelInput& last = frame.back();
-    if (next.kind == Kind::button || last.kind == Kind::button || next.kind == Kind::replace || ends_letters(last)) return false;
+    if (next.kind == Kind::button || last.kind == Kind::button || next.kind == Kind::replace || ends_letters(last))
+        return false;
     const bool pressed = std::any_of(frame.begin(), frame.end(), is_press);
     if (pressed) return next.kind == Kind::text;
     if (!is_press(next)) return true;

@@ -12,11 +12,11 @@ namespace palpa::app {
 struct PanelInput {
     enum class Kind : std::uint8_t { button, key, text, replace };
     Kind kind = Kind::button;
-    bool down = false;        // button, key
-    float x_px = 0.0f;        // button
+    bool down = false;  // button, key
+    float x_px = 0.0f;  // button
     float y_px = 0.0f;
-    int key = 0;              // platform/window_event.h
-    bool ctrl = false;        // with the key
+    int key = 0;        // platform/window_event.h
+    bool ctrl = false;  // with the key
     bool shift = false;
     bool for_panels = false;  // the key may work a control; else it is a shortcut only
     std::string text{};       // UTF-8; replace: instead of all that stands in the field

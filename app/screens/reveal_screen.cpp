@@ -3,16 +3,16 @@
 #include <algorithm>
 #include <cmath>
 
-#include "app/screens/widgets.h"
 #include "app/screens/screens.h"
+#include "app/screens/widgets.h"
 #include "app/screens/words.h"
 
 namespace palpa::app {
 namespace {
 
 // One run of cells of a row that reached the same level.
-void draw_run(const Shown& shown, const study::Coverage& c, int row, int first, int last, study::PalpationLevel level, float mm,
-              ImDrawList& draw) {
+void draw_run(const Shown& shown, const study::Coverage& c, int row, int first, int last, study::PalpationLevel level,
+              float mm, ImDrawList& draw) {
     const double x0 = c.x_m + first * c.cell_m;
     const double x1 = c.x_m + (last + 1) * c.cell_m;
     const double y0 = c.y_m + row * c.cell_m;
@@ -21,7 +21,8 @@ void draw_run(const Shown& shown, const study::Coverage& c, int row, int first, 
         for (int i = first; i <= last; ++i) {
             if ((i + c.n_y - row) % 4 != 0) continue;  // diagonals from cell to cell
             const double x_m = c.x_m + i * c.cell_m;
-            draw.AddLine(on_screen(shown.view, x_m, y0), on_screen(shown.view, x_m + c.cell_m, y1), IM_COL32(20, 22, 24, 70), 0.2f * mm);
+            draw.AddLine(on_screen(shown.view, x_m, y0), on_screen(shown.view, x_m + c.cell_m, y1),
+                         IM_COL32(20, 22, 24, 70), 0.2f * mm);
         }
         return;
     }
@@ -71,11 +72,14 @@ void draw_nodules(const Shown& shown, const session::Debrief& debrief, float mm,
             draw.AddCircle(at, radius_px, kDark, 48, 1.3f * mm);
             dashed_circle(draw, at, radius_px, kInk, 0.8f * mm);
         }
-        const std::string text = words::filled(found ? words::kFoundNodule : words::kMissedNodule, {nodule.id});  // why: in the panel
+        const std::string text =
+            words::filled(found ? words::kFoundNodule : words::kMissedNodule, {nodule.id});  // why: in the panel
         const float width_px = ImGui::CalcTextSize(text.c_str()).x;
         const bool fits = at.x + radius_px + mm + width_px < ImGui::GetIO().DisplaySize.x;
-        rimmed_text(draw, ImVec2(fits ? at.x + radius_px + mm : at.x - radius_px - mm - width_px, at.y + 0.3f * ImGui::GetFontSize()),
-                    kInk, text);
+        rimmed_text(
+            draw,
+            ImVec2(fits ? at.x + radius_px + mm : at.x - radius_px - mm - width_px, at.y + 0.3f * ImGui::GetFontSize()),
+            kInk, text);
     }
 }
 
@@ -91,10 +95,13 @@ void draw_marks(const Shown& shown, const study::Score& score, float mm, ImDrawL
             draw.AddCircleFilled(at, 1.7f * mm, kDark);
             if (kind == study::MarkKind::hit) draw.AddCircleFilled(at, 1.3f * mm, kInk);
         }
-        const char* pattern = kind == study::MarkKind::hit ? "{}" : kind == study::MarkKind::again ? words::kMarkAgain : words::kMarkFalse;
+        const char* pattern = kind == study::MarkKind::hit     ? "{}"
+                              : kind == study::MarkKind::again ? words::kMarkAgain
+                                                               : words::kMarkFalse;
         const std::string word = words::filled(pattern, {std::to_string(i + 1)});
-        rimmed_text(draw, ImVec2(at.x - 1.5f * mm - ImGui::CalcTextSize(std::to_string(i + 1).c_str()).x,
-                                 at.y - 1.2f * ImGui::GetFontSize()),
+        rimmed_text(draw,
+                    ImVec2(at.x - 1.5f * mm - ImGui::CalcTextSize(std::to_string(i + 1).c_str()).x,
+                           at.y - 1.2f * ImGui::GetFontSize()),
                     kInk, word);
     }
 }
@@ -104,7 +111,8 @@ std::string percent(double share) { return std::isfinite(share) ? fixed(100.0 * 
 void result_lines(const Shown& shown, const session::Debrief& debrief, const Gui& gui) {
     const study::Score& s = debrief.score;
     const float column_px = 34.0f * gui.mm();
-    const std::string found = words::filled(words::kFoundOf, {std::to_string(s.true_positives), std::to_string(s.true_positives + s.false_negatives)});
+    const std::string found = words::filled(
+        words::kFoundOf, {std::to_string(s.true_positives), std::to_string(s.true_positives + s.false_negatives)});
     ImGui::TextUnformatted(found.c_str());
     value_line(words::kSensitivity, percent(s.sensitivity), column_px);
     value_line(words::kPpv, percent(s.ppv), column_px);
@@ -119,7 +127,8 @@ void result_lines(const Shown& shown, const session::Debrief& debrief, const Gui
 
 void legend(const session::Debrief& debrief, const Gui& gui) {
     ImGui::TextDisabled(words::kAreaExamined);
-    constexpr const char* kNames[study::kPalpationLevels] = {words::kNotTouched, words::kLightOrDeeper, words::kMediumOrDeeper, words::kDeep};
+    constexpr const char* kNames[study::kPalpationLevels] = {words::kNotTouched, words::kLightOrDeeper,
+                                                             words::kMediumOrDeeper, words::kDeep};
     ImDrawList& draw = *ImGui::GetWindowDrawList();
     for (int level = study::kPalpationLevels - 1; level >= 0; --level) {
         const ImVec2 at = ImGui::GetCursorScreenPos();
@@ -143,7 +152,8 @@ void buttons(const Gui& gui, Screens& screens, Wishes& wishes) {
     if (big_button(words::kNext, "N", {width_px, kMark_mm, true, false}, gui)) wishes.next = true;
     if (big_button(words::kSavePicture, "S", {width_px, kTarget_mm, true, false}, gui)) wishes.save_picture = true;
     ImGui::SameLine();
-    if (big_button(screens.menu ? words::kClose : words::kMenu, "F10", {width_px, kTarget_mm, true, screens.menu}, gui)) {
+    if (big_button(screens.menu ? words::kClose : words::kMenu, "F10", {width_px, kTarget_mm, true, screens.menu},
+                   gui)) {
         screens.menu = !screens.menu;
     }
 }

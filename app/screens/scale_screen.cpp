@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "app/screens/widgets.h"
 #include "app/screens/screens.h"
+#include "app/screens/widgets.h"
 #include "app/screens/words.h"
 
 namespace palpa::app {
@@ -27,7 +27,9 @@ void draw_card(const PanelArea& area, float px_per_mm) {
         const float x = low.x + static_cast<float>(mm) * px_per_mm;
         const float length_px = (mm % 10 == 0 ? 5.0f : mm % 5 == 0 ? 3.5f : 2.0f) * px_per_mm;
         draw.AddLine(ImVec2(x, high.y - length_px), ImVec2(x, high.y), kPale);
-        if (mm % 10 == 0 && mm > 0) draw.AddText(ImVec2(x, high.y - 6.0f * px_per_mm - ImGui::GetFontSize()), kPale, std::to_string(mm).c_str());
+        if (mm % 10 == 0 && mm > 0)
+            draw.AddText(ImVec2(x, high.y - 6.0f * px_per_mm - ImGui::GetFontSize()), kPale,
+                         std::to_string(mm).c_str());
     }
     const char* text = words::kCardSize;
     draw.AddText(ImVec2(low.x + 4.0f * px_per_mm, low.y + 4.0f * px_per_mm), kInk, text);
@@ -51,11 +53,13 @@ void draw_scale_screen(const Shown& shown, Gui& gui, Screens& screens, Wishes& w
     ImGui::TextWrapped("%s", words::kHoldCard);
     step_buttons(gui, screens.card_px_per_mm);
     if (!ImGui::GetIO().WantTextInput) {
-        if (gui.pressed('+') || gui.pressed('=') || gui.pressed(platform::key::pad_plus)) screens.card_px_per_mm *= 1.002;
+        if (gui.pressed('+') || gui.pressed('=') || gui.pressed(platform::key::pad_plus))
+            screens.card_px_per_mm *= 1.002;
         if (gui.pressed('-') || gui.pressed(platform::key::pad_minus)) screens.card_px_per_mm /= 1.002;
     }
     ImGui::SetNextItemWidth(40.0f * gui.mm());
-    ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, ImVec2(2.0f * gui.mm(), 0.5f * (kTarget_mm * gui.mm() - ImGui::GetFontSize())));
+    ImGui::PushStyleVar(ImGuiStyleVar_FramePadding,
+                        ImVec2(2.0f * gui.mm(), 0.5f * (kTarget_mm * gui.mm() - ImGui::GetFontSize())));
     ImGui::InputDouble(words::kPxPerMm, &screens.card_px_per_mm, 0.0, 0.0, "%.3f");
     ImGui::PopStyleVar();
     if (!std::isfinite(screens.card_px_per_mm)) screens.card_px_per_mm = kLeast_px_per_mm;
@@ -63,12 +67,14 @@ void draw_scale_screen(const Shown& shown, Gui& gui, Screens& screens, Wishes& w
     const float width_px = std::min(share_of_line_px(3), 42.0f * gui.mm());
     if (big_button(words::kKeep, "", {width_px, kMark_mm, true, false}, gui)) wishes.px_per_mm = screens.card_px_per_mm;
     ImGui::SameLine();
-    if (big_button(words::kForget, "", {width_px, kMark_mm, std::isfinite(screens.px_per_mm), false}, gui)) wishes.px_per_mm = platform::kMissing;
+    if (big_button(words::kForget, "", {width_px, kMark_mm, std::isfinite(screens.px_per_mm), false}, gui))
+        wishes.px_per_mm = platform::kMissing;
     ImGui::SameLine();
     if (big_button(words::kBack, words::kEscape, {width_px, kMark_mm, true, false}, gui)) {
         wishes.screen = shown.trial.finished ? Screen::reveal : Screen::trial;
     }
-    const std::string kept = std::isfinite(screens.px_per_mm) ? fixed(screens.px_per_mm, 3) + " " + words::kPxPerMm : words::kNotMeasured;
+    const std::string kept =
+        std::isfinite(screens.px_per_mm) ? fixed(screens.px_per_mm, 3) + " " + words::kPxPerMm : words::kNotMeasured;
     paragraph(words::filled(words::kThisScreen, {screens.screen_name, kept}));
     const float top_px = ImGui::GetCursorScreenPos().y;
     draw_card({0.0f, top_px, screen.x, screen.y}, static_cast<float>(screens.card_px_per_mm));

@@ -11,9 +11,9 @@
 #include "app/screens/device_check.h"
 #include "app/screens/gui.h"
 #include "app/screens/settings.h"
-#include "session/trial.h"
 #include "render/tissue.h"
 #include "scene/scene.h"
+#include "session/trial.h"
 
 namespace palpa::app {
 
@@ -21,11 +21,11 @@ enum class Screen : std::uint8_t { trial, reveal, devices, scale, calibrate, stu
 
 // Times of the frame loop.
 struct FrameTimes {
-    scene::Meter latency;  // sample to the end of the frame that shows it
-    scene::Meter ready;    // sample to the moment when that frame is ready to be drawn: without the rasteriser
+    scene::Meter latency;       // sample to the end of the frame that shows it
+    scene::Meter ready;         // sample to the moment when that frame is ready to be drawn: without the rasteriser
     std::int64_t built_ns = 0;  // that moment, steady clock
-    scene::Meter cpu;      // a frame up to the calls of GL
-    scene::Meter gl;       // the calls of GL; with software rendering that is where the drawing is done
+    scene::Meter cpu;           // a frame up to the calls of GL
+    scene::Meter gl;            // the calls of GL; with software rendering that is where the drawing is done
     double frames_per_s = 0.0;
 };
 
@@ -39,23 +39,23 @@ struct MapBrowser;     // map_screen.h
 struct StudyRun;       // study_run.h
 
 struct Wishes {
-    std::optional<platform::Action> action;         // mark, confidence, undo, finish
-    std::optional<std::string> scene;     // file
-    std::optional<std::string> profile;   // file; empty: the scene's own
+    std::optional<platform::Action> action;  // mark, confidence, undo, finish
+    std::optional<std::string> scene;        // file
+    std::optional<std::string> profile;      // file; empty: the scene's own
     std::optional<Screen> screen;
     std::optional<session::TrialMode> mode;
     std::optional<bool> left_handed;
     std::optional<bool> above_finger;
-    std::optional<double> px_per_mm;      // of this screen, measured; NaN: forget it
-    bool again = false;                   // the same tissue once more
-    bool next = false;                    // turned another way
+    std::optional<double> px_per_mm;  // of this screen, measured; NaN: forget it
+    bool again = false;               // the same tissue once more
+    bool next = false;                // turned another way
     bool save_picture = false;
-    bool full_screen = false;             // the other way round
+    bool full_screen = false;  // the other way round
     bool press_by_hold = false;
-    bool trials = false;                  // show what is kept
-    bool studies = false;                 // let the person choose one
+    bool trials = false;   // show what is kept
+    bool studies = false;  // let the person choose one
     bool quit = false;
-    bool sure = false;                    // of throwing away the marks of the trial that goes on
+    bool sure = false;  // of throwing away the marks of the trial that goes on
 };
 
 // What is open, and what a person has typed so far; means nothing to a replay.
@@ -73,18 +73,18 @@ struct Screens {
     std::optional<Wishes> asked;            // what would throw away marks: done once the person is sure
     bool offer_hold = false;                // a pen or finger without pressure: offer to press by time
     std::string screen_name;                // key of Settings::px_per_mm
-    double px_per_mm = platform::kMissing;            // of this screen; NaN: not measured
+    double px_per_mm = platform::kMissing;  // of this screen; NaN: not measured
     double card_px_per_mm = 3.78;           // while it is being measured
     std::string trials_note;                // what is kept, and what the desk has
     bool keeps_trials = false;              // in the browser: a screen of its own, no way to quit
-    session::Debrief debrief;                        // of the finished trial
+    session::Debrief debrief;               // of the finished trial
     std::vector<platform::PointerDevice> devices;
-    bool devices_listed = false;            // those are all; false, in a browser: others may come with their first sample
-    std::shared_ptr<DeviceCheck> check;     // what they sent while the device check was open
-    std::vector<Dot> dots;                  // the last places in its test area
+    bool devices_listed = false;         // those are all; false, in a browser: others may come with their first sample
+    std::shared_ptr<DeviceCheck> check;  // what they sent while the device check was open
+    std::vector<Dot> dots;               // the last places in its test area
     std::shared_ptr<CalibrateForm> calibrate;  // while its screen is open
     std::shared_ptr<MapBrowser> maps;          // likewise
-    std::shared_ptr<StudyRun> study;        // the app runs a study: no menu, no truth before the end
+    std::shared_ptr<StudyRun> study;           // the app runs a study: no menu, no truth before the end
 };
 
 // All that a screen is drawn from.

@@ -36,10 +36,17 @@ Settings parse(const fs::path& file) {
 }
 
 files::Json json_of(const Settings& s) {
-    files::Json json{{"scene", s.scene},         {"profile", s.profile},         {"left_handed", s.left_handed}, {"above_finger", s.above_finger},
-              {"test_mode", s.test_mode}, {"full_screen", s.full_screen}, {"width_px", s.width_px},       {"height_px", s.height_px},
-              {"screens", files::Json::array()}};
-    for (const auto& [name, px_per_mm] : s.px_per_mm) json["screens"].push_back({{"name", name}, {"px_per_mm", px_per_mm}});
+    files::Json json{{"scene", s.scene},
+                     {"profile", s.profile},
+                     {"left_handed", s.left_handed},
+                     {"above_finger", s.above_finger},
+                     {"test_mode", s.test_mode},
+                     {"full_screen", s.full_screen},
+                     {"width_px", s.width_px},
+                     {"height_px", s.height_px},
+                     {"screens", files::Json::array()}};
+    for (const auto& [name, px_per_mm] : s.px_per_mm)
+        json["screens"].push_back({{"name", name}, {"px_per_mm", px_per_mm}});
     return json;
 }
 

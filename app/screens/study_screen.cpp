@@ -5,15 +5,17 @@
 #include <cmath>
 #include <cstdio>
 
-#include "app/screens/widgets.h"
 #include "app/screens/screens.h"
-#include "app/study/study_run.h"
+#include "app/screens/widgets.h"
 #include "app/screens/words.h"
+#include "app/study/study_run.h"
 
 namespace palpa::app {
 namespace {
 
-bool enter_pressed(const Gui& gui) { return gui.pressed(platform::key::enter) || gui.pressed(platform::key::pad_enter); }
+bool enter_pressed(const Gui& gui) {
+    return gui.pressed(platform::key::enter) || gui.pressed(platform::key::pad_enter);
+}
 
 // The one way on; Enter does it too.
 bool forward(const char* label, const Gui& gui, bool enabled = true) {
@@ -36,7 +38,8 @@ void beside(const std::string& text, const Gui& gui) {
 
 // As high as what is touched.
 bool text_field(const char* label, char* text, std::size_t size, ImGuiInputTextFlags flags, Gui& gui) {
-    ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, ImVec2(2.0f * gui.mm(), 0.5f * (kTarget_mm * gui.mm() - ImGui::GetFontSize())));
+    ImGui::PushStyleVar(ImGuiStyleVar_FramePadding,
+                        ImVec2(2.0f * gui.mm(), 0.5f * (kTarget_mm * gui.mm() - ImGui::GetFontSize())));
     const ImVec2 low = ImGui::GetCursorScreenPos();
     const float width_px = ImGui::CalcItemWidth();
     const bool done = ImGui::InputText(label, text, size, flags);
@@ -50,14 +53,17 @@ void gap(const Gui& gui) { ImGui::Dummy(ImVec2(0.0f, 2.0f * gui.mm())); }
 // For the experimenter: pairing, sending, exporting.
 void trials_button(const Gui& gui, const StudyRun& run, Wishes& wishes) {
     if (!run.on_tablet) return;
-    if (big_button(words::kTrialsOnTablet, "", {std::min(70.0f * gui.mm(), share_of_line_px(1)), kTarget_mm, true, false}, gui)) wishes.trials = true;
+    if (big_button(words::kTrialsOnTablet, "",
+                   {std::min(70.0f * gui.mm(), share_of_line_px(1)), kTarget_mm, true, false}, gui))
+        wishes.trials = true;
 }
 
 // Leaves the study; where there is no window to close, the way to the rest of the app.
 void leave_button(const Gui& gui, const StudyRun& run, Wishes& wishes) {
     const char* label = run.on_tablet ? words::kLeaveStudy : words::kClose;
     const char* key = run.on_tablet ? "" : words::kCtrlQ;
-    if (big_button(label, key, {std::min(70.0f * gui.mm(), share_of_line_px(1)), kTarget_mm, true, false}, gui)) wishes.quit = true;
+    if (big_button(label, key, {std::min(70.0f * gui.mm(), share_of_line_px(1)), kTarget_mm, true, false}, gui))
+        wishes.quit = true;
 }
 
 // Where what was done goes: usually for less than a frame.
@@ -96,7 +102,8 @@ void draw_code(Gui& gui, StudyRun& run, Wishes& wishes) {
 
 void draw_again(Gui& gui, StudyRun& run) {
     title(words::filled(words::kHasBeenHere, {run.code}));
-    paragraph(words::filled(words::kTrialsDone, {std::to_string(run.progress.finished.size()), std::to_string(run.progress.plan.trials.size())}));
+    paragraph(words::filled(words::kTrialsDone, {std::to_string(run.progress.finished.size()),
+                                                 std::to_string(run.progress.plan.trials.size())}));
     gap(gui);
     if (forward(words::kGoOnWithStudy, gui)) return same_person(true, run);
     if (big_button(words::kSomebodyElse, "", {70.0f * gui.mm(), kTarget_mm, true, false}, gui)) same_person(false, run);
@@ -114,7 +121,8 @@ void draw_choices(const std::vector<std::string>& choices, float least_px, const
         }
         ImGui::PushID(static_cast<int>(i));
         const bool chosen = answer == choices[i];
-        if (big_button(choices[i].c_str(), "", {width_px, kTarget_mm, true, chosen}, gui)) answer = chosen ? "" : choices[i];
+        if (big_button(choices[i].c_str(), "", {width_px, kTarget_mm, true, chosen}, gui))
+            answer = chosen ? "" : choices[i];
         ImGui::PopID();
     }
 }
@@ -128,7 +136,8 @@ void draw_item(const study::Item& item, Gui& gui, std::string& answer) {
         for (int i = *item.from; i <= *item.to; ++i) steps.push_back(std::to_string(i));
         // on one line, if that makes no button too small
         const float share_px = share_of_line_px(static_cast<int>(steps.size()));
-        return draw_choices(steps, share_px > 8.0f * gui.mm() ? std::min(11.0f * gui.mm(), share_px) : 11.0f * gui.mm(), gui, answer);
+        return draw_choices(steps, share_px > 8.0f * gui.mm() ? std::min(11.0f * gui.mm(), share_px) : 11.0f * gui.mm(),
+                            gui, answer);
     }
     ImGui::SetNextItemWidth(40.0f * gui.mm());
     char text[120];
@@ -151,14 +160,16 @@ void draw_items(Gui& gui, StudyRun& run) {
     if (run.step == StudyStep::ratings) paragraph(run.protocol.conditions[run.rated].title);
     paragraph(words::kMayLeaveOpen);
     const float below_px = (kMark_mm + 4.0f) * gui.mm();
-    ImGui::BeginChild("items", ImVec2(0.0f, ImGui::GetContentRegionAvail().y - below_px), false, ImGuiWindowFlags_NavFlattened);
+    ImGui::BeginChild("items", ImVec2(0.0f, ImGui::GetContentRegionAvail().y - below_px), false,
+                      ImGuiWindowFlags_NavFlattened);
     bool good = true;
     for (std::size_t i = 0; i < items.size(); ++i) {
         ImGui::PushID(static_cast<int>(i));
         draw_item(items[i], gui, run.answers[i]);
         if (!acceptable(items[i], run.answers[i])) {
             good = false;
-            warning_paragraph(words::filled(words::kNumberFromTo, {std::to_string(*items[i].from), std::to_string(*items[i].to)}));
+            warning_paragraph(
+                words::filled(words::kNumberFromTo, {std::to_string(*items[i].from), std::to_string(*items[i].to)}));
         }
         ImGui::PopID();
         gap(gui);
@@ -171,7 +182,8 @@ void draw_instructions(Gui& gui, StudyRun& run) {
     const study::PlannedTrial& trial = due_trial(run);
     title(words::filled(trial.practice ? words::kPracticeOf : words::kTrialOf, {progress_text(run)}));
     const float below_px = (kMark_mm + 4.0f) * gui.mm();
-    ImGui::BeginChild("text", ImVec2(0.0f, ImGui::GetContentRegionAvail().y - below_px), false, ImGuiWindowFlags_NavFlattened);
+    ImGui::BeginChild("text", ImVec2(0.0f, ImGui::GetContentRegionAvail().y - below_px), false,
+                      ImGuiWindowFlags_NavFlattened);
     ImGui::TextWrapped("%s", study::instructions_for(run.protocol, trial).c_str());
     if (run.protocol.count_told && run.protocol.task == study::TaskKind::find) {
         gap(gui);
@@ -206,9 +218,11 @@ void draw_question(double now_s, Gui& gui, StudyRun& run) {
     title(words::kWhichSofter);
     gap(gui);
     const float width_px = std::min(60.0f * gui.mm(), share_of_line_px(2));
-    const bool first = big_button(words::kTheFirst, "1", {width_px, 2.0f * kMark_mm, true, false}, gui) || gui.pressed('1') || gui.pressed(platform::key::pad_0 + 1);
+    const bool first = big_button(words::kTheFirst, "1", {width_px, 2.0f * kMark_mm, true, false}, gui) ||
+                       gui.pressed('1') || gui.pressed(platform::key::pad_0 + 1);
     ImGui::SameLine();
-    const bool second = big_button(words::kTheSecond, "2", {width_px, 2.0f * kMark_mm, true, false}, gui) || gui.pressed('2') || gui.pressed(platform::key::pad_0 + 2);
+    const bool second = big_button(words::kTheSecond, "2", {width_px, 2.0f * kMark_mm, true, false}, gui) ||
+                        gui.pressed('2') || gui.pressed(platform::key::pad_0 + 2);
     gap(gui);
     paragraph(words::filled(words::kPairOf, {progress_text(run)}));
     if (first || second) choose_softer(first, now_s, run);
@@ -236,7 +250,8 @@ void draw_nodule_line(const std::string& name, const Gui& gui, int& said) {
     beside(name, gui);
     ImGui::EndGroup();
     ImGui::SameLine(22.0f * gui.mm());
-    if (big_button(words::kMissed, "", {24.0f * gui.mm(), kTarget_mm, true, said == study::kMissed}, gui)) said = study::kMissed;
+    if (big_button(words::kMissed, "", {24.0f * gui.mm(), kTarget_mm, true, said == study::kMissed}, gui))
+        said = study::kMissed;
     ImGui::SameLine();
     if (big_button(words::kFound, "", {24.0f * gui.mm(), kTarget_mm, true, said == 0}, gui)) said = 0;
     constexpr const char* kDigits[5] = {"1", "2", "3", "4", "5"};
@@ -252,11 +267,14 @@ void draw_typed_clock(double now_s, const Gui& gui, StudyRun& run) {
     const bool runs = run.typed_began_s > 0.0;
     if (runs) typed.duration_s = now_s - run.typed_began_s;
     const char* label = runs ? words::kStopClock : typed.duration_s > 0.0 ? words::kStartClockAnew : words::kStartClock;
-    if (big_button(label, "T", {60.0f * gui.mm(), kTarget_mm, true, runs}, gui) || gui.pressed('t')) run.typed_began_s = runs ? 0.0 : now_s;
+    if (big_button(label, "T", {60.0f * gui.mm(), kTarget_mm, true, runs}, gui) || gui.pressed('t'))
+        run.typed_began_s = runs ? 0.0 : now_s;
     ImGui::SameLine();
     const double limit_s = due_limit_s(run);
     std::string text = clock_text(typed.duration_s);
-    if (limit_s > 0.0) text = words::filled(typed.duration_s < limit_s ? words::kTimeOf : words::kTimeOver, {text, clock_text(limit_s)});
+    if (limit_s > 0.0)
+        text =
+            words::filled(typed.duration_s < limit_s ? words::kTimeOf : words::kTimeOver, {text, clock_text(limit_s)});
     ImGui::BeginGroup();
     beside(text, gui);
     ImGui::EndGroup();
@@ -265,11 +283,11 @@ void draw_typed_clock(double now_s, const Gui& gui, StudyRun& run) {
 void draw_typed(double now_s, Gui& gui, StudyRun& run) {
     const study::Condition& condition = due_condition(run);
     title(words::filled(words::kExperimenter, {progress_text(run), condition.title}));
-    paragraph(condition.modality == study::Modality::hand ? words::kTypeWhatWasSaid
-                                                   : words::kNotDriven);
+    paragraph(condition.modality == study::Modality::hand ? words::kTypeWhatWasSaid : words::kNotDriven);
     draw_typed_clock(now_s, gui, run);
     const float below_px = (kMark_mm + 4.0f) * gui.mm();
-    ImGui::BeginChild("answers", ImVec2(0.0f, ImGui::GetContentRegionAvail().y - below_px), false, ImGuiWindowFlags_NavFlattened);
+    ImGui::BeginChild("answers", ImVec2(0.0f, ImGui::GetContentRegionAvail().y - below_px), false,
+                      ImGuiWindowFlags_NavFlattened);
     const std::vector<std::string> names = due_nodules(run);
     if (names.empty()) {
         stepper(words::kNodulesFound, gui, run.typed.found);
@@ -286,7 +304,8 @@ void draw_typed(double now_s, Gui& gui, StudyRun& run) {
 
 void draw_done(Gui& gui, StudyRun& run, Wishes& wishes) {
     title(words::kThatWasAll);
-    paragraph(words::filled(run.on_tablet ? words::kAllOnTablet : words::kAllOnDisk, {run.code, std::to_string(run.progress.finished.size())}));
+    paragraph(words::filled(run.on_tablet ? words::kAllOnTablet : words::kAllOnDisk,
+                            {run.code, std::to_string(run.progress.finished.size())}));
     gap(gui);
     if (forward(words::kNextParticipant, gui)) same_person(false, run);
     trials_button(gui, run, wishes);
@@ -329,19 +348,42 @@ void draw_study_screen(double now_s, Gui& gui, StudyRun& run, Wishes& wishes) {
     }
     run.keeping_began_s = 0.0;
     switch (run.step) {
-        case StudyStep::code: draw_code(gui, run, wishes); break;
-        case StudyStep::again: draw_again(gui, run); break;
+        case StudyStep::code:
+            draw_code(gui, run, wishes);
+            break;
+        case StudyStep::again:
+            draw_again(gui, run);
+            break;
         case StudyStep::questions:
-        case StudyStep::ratings: draw_items(gui, run); break;
-        case StudyStep::instructions: draw_instructions(gui, run); break;
-        case StudyStep::trial: break;  // on the tissue
-        case StudyStep::device: draw_device(gui, run, wishes); break;
-        case StudyStep::present: draw_present(gui, run); break;
-        case StudyStep::question: draw_question(now_s, gui, run); break;
-        case StudyStep::typed: draw_typed(now_s, gui, run); break;
-        case StudyStep::pause: draw_pause(now_s, gui, run); break;
-        case StudyStep::done: draw_done(gui, run, wishes); break;
-        case StudyStep::stopped: draw_stopped(gui, run, wishes); break;
+        case StudyStep::ratings:
+            draw_items(gui, run);
+            break;
+        case StudyStep::instructions:
+            draw_instructions(gui, run);
+            break;
+        case StudyStep::trial:
+            break;  // on the tissue
+        case StudyStep::device:
+            draw_device(gui, run, wishes);
+            break;
+        case StudyStep::present:
+            draw_present(gui, run);
+            break;
+        case StudyStep::question:
+            draw_question(now_s, gui, run);
+            break;
+        case StudyStep::typed:
+            draw_typed(now_s, gui, run);
+            break;
+        case StudyStep::pause:
+            draw_pause(now_s, gui, run);
+            break;
+        case StudyStep::done:
+            draw_done(gui, run, wishes);
+            break;
+        case StudyStep::stopped:
+            draw_stopped(gui, run, wishes);
+            break;
     }
     end_panel("study", gui);
 }

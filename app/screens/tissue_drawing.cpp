@@ -9,7 +9,8 @@ glm::vec2 to_gl(const Eigen::Vector2d& v) { return {v.x(), v.y()}; }
 
 }  // namespace
 
-render::TissueView tissue_view(const scene::Scene& scene, const scene::State& state, float window_width_px, float window_height_px) {
+render::TissueView tissue_view(const scene::Scene& scene, const scene::State& state, float window_width_px,
+                               float window_height_px) {
     const scene::View& view = state.view;
     render::TissueView out;
     out.area_px = {window_width_px, window_height_px};
@@ -33,7 +34,8 @@ render::Dent dent_of(const avatar::SurfaceCurve& curve, const scene::Avatar& ava
     return dent;
 }
 
-render::Relief relief_of(const scene::LinearTissue& tissue, const Eigen::VectorXd& sink_m, const scene::Avatar& avatar) {
+render::Relief relief_of(const scene::LinearTissue& tissue, const Eigen::VectorXd& sink_m,
+                         const scene::Avatar& avatar) {
     render::Relief relief;
     relief.n_x = static_cast<int>(tissue.n_x);
     relief.n_y = static_cast<int>(tissue.n_y);

@@ -8,7 +8,8 @@
 namespace palpa::app {
 
 // As the scene maps it; an indirect scene is drawn tilted, since no pen has to lie on it.
-render::TissueView tissue_view(const scene::Scene& scene, const scene::State& state, float window_width_px, float window_height_px);
+render::TissueView tissue_view(const scene::Scene& scene, const scene::State& state, float window_width_px,
+                               float window_height_px);
 
 render::Dent dent_of(const avatar::SurfaceCurve& curve, const scene::Avatar& avatar);
 

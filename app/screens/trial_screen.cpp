@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "app/screens/widgets.h"
 #include "app/screens/screens.h"
-#include "app/study/study_run.h"
+#include "app/screens/widgets.h"
 #include "app/screens/words.h"
+#include "app/study/study_run.h"
 #include "mechanics/linear_range.h"
 
 namespace palpa::app {
@@ -30,9 +30,11 @@ void draw_force_bar(const Shown& shown, float height_px, const Gui& gui) {
         const float bottom = y_of(bounds_N[zone]);
         draw.AddRectFilled(ImVec2(at.x, top), ImVec2(at.x + width_px, bottom), kForceTints[zone]);
         if (bottom - top < 1.1f * text_px) continue;
-        const bool room = width_px + 1.5f * mm + ImGui::CalcTextSize(kZones[zone]).x <= ImGui::GetContentRegionAvail().x;
+        const bool room =
+            width_px + 1.5f * mm + ImGui::CalcTextSize(kZones[zone]).x <= ImGui::GetContentRegionAvail().x;
         const float name_px = room ? text_px : 0.75f * text_px;
-        draw.AddText(ImGui::GetFont(), name_px, ImVec2(at.x + width_px + 1.5f * mm, 0.5f * (top + bottom - name_px)), kPale, kZones[zone]);
+        draw.AddText(ImGui::GetFont(), name_px, ImVec2(at.x + width_px + 1.5f * mm, 0.5f * (top + bottom - name_px)),
+                     kPale, kZones[zone]);
         if (bottom - top < 2.0f * text_px) continue;
         const std::string bound = fixed(bounds_N[zone + 1], 1) + (zone == 2 ? " N" : "");
         draw.AddText(ImGui::GetFont(), 0.7f * text_px, ImVec2(at.x + width_px + 1.5f * mm, top), kPale, bound.c_str());
@@ -47,7 +49,9 @@ void draw_force_bar(const Shown& shown, float height_px, const Gui& gui) {
 }
 
 // Of a forced choice: there is nothing to mark, and no number may tell how soft it is.
-bool is_interval(const Screens& screens) { return screens.study && screens.study->protocol.task == study::TaskKind::choice; }
+bool is_interval(const Screens& screens) {
+    return screens.study && screens.study->protocol.task == study::TaskKind::choice;
+}
 
 void draw_numbers(const Shown& shown, const Gui& gui, const Screens& screens) {
     const float column_px = 13.5f * gui.mm();
@@ -60,7 +64,8 @@ void draw_numbers(const Shown& shown, const Gui& gui, const Screens& screens) {
         value_line(words::kLag, fixed(1e3 * shown.avatar.lag_m.norm(), 2) + " mm", column_px);
         if (shown.scene.delay) value_line(words::kDelay, fixed(1e3 * shown.avatar.delay_s, 0) + " ms", column_px);
     }
-    if (shown.scene.force_scale != 1.0) value_line(words::kPhantom, fixed(shown.scene.force_scale, 2) + " x", column_px);
+    if (shown.scene.force_scale != 1.0)
+        value_line(words::kPhantom, fixed(shown.scene.force_scale, 2) + " x", column_px);
     ImGui::EndGroup();
 }
 
@@ -68,10 +73,14 @@ void draw_numbers(const Shown& shown, const Gui& gui, const Screens& screens) {
 void draw_contact_note(const Shown& shown) {
     const scene::Contact& contact = shown.state.contact;
     const char* note = "";
-    if (contact.saturated) note = words::kDeeperThanKnown;
-    else if (!contact.measured) note = words::kNotMeasuredHere;
-    else if (mechanics::linear_range(contact.linearity) == mechanics::LinearRange::red) note = words::kBeyondLinear;
-    else if (mechanics::linear_range(contact.linearity) == mechanics::LinearRange::amber) note = words::kLeavingLinear;
+    if (contact.saturated)
+        note = words::kDeeperThanKnown;
+    else if (!contact.measured)
+        note = words::kNotMeasuredHere;
+    else if (mechanics::linear_range(contact.linearity) == mechanics::LinearRange::red)
+        note = words::kBeyondLinear;
+    else if (mechanics::linear_range(contact.linearity) == mechanics::LinearRange::amber)
+        note = words::kLeavingLinear;
     ImGui::TextColored(ImVec4(1.0f, 0.84f, 0.35f, 1.0f), "%s", note);
 }
 
@@ -94,7 +103,8 @@ void draw_study_header(const Shown& shown, const StudyRun& run) {
 void draw_header(const Shown& shown, const Gui& gui, Screens& screens) {
     if (screens.study) return draw_study_header(shown, *screens.study);
     const float line_px = kTarget_mm * gui.mm();
-    if (big_button(screens.menu ? words::kClose : words::kMenu, "F10", {26.0f * gui.mm(), kTarget_mm, true, screens.menu}, gui)) {
+    if (big_button(screens.menu ? words::kClose : words::kMenu, "F10",
+                   {26.0f * gui.mm(), kTarget_mm, true, screens.menu}, gui)) {
         screens.menu = !screens.menu;
     }
     ImGui::SameLine();
@@ -128,19 +138,23 @@ void draw_actions(const Shown& shown, const Gui& gui, const Screens& screens, Wi
         return;
     }
     const std::string mark = words::filled(words::kMark, {std::to_string(shown.trial.marks.size())}) + "###mark";
-    if (big_button(mark.c_str(), "M", {0.0f, kMark_mm, shown.trial.last_px.has_value(), false}, gui)) wishes.action = platform::Action::mark;
+    if (big_button(mark.c_str(), "M", {0.0f, kMark_mm, shown.trial.last_px.has_value(), false}, gui))
+        wishes.action = platform::Action::mark;
     draw_confidence(shown, gui, wishes);
     const float width_px = share_of_line_px(2);
-    if (big_button(words::kUndo, "U", {width_px, kTarget_mm, !shown.trial.marks.empty(), false}, gui)) wishes.action = platform::Action::undo;
+    if (big_button(words::kUndo, "U", {width_px, kTarget_mm, !shown.trial.marks.empty(), false}, gui))
+        wishes.action = platform::Action::undo;
     ImGui::SameLine();
-    if (big_button(words::kFinish, "F", {width_px, kTarget_mm, true, false}, gui)) wishes.action = platform::Action::finish;
+    if (big_button(words::kFinish, "F", {width_px, kTarget_mm, true, false}, gui))
+        wishes.action = platform::Action::finish;
 }
 
 void draw_messages(const Shown& shown, const Gui& gui, Screens& screens, Wishes& wishes) {
     for (const std::string& problem : screens.problems) warning_paragraph(problem);
     if (!screens.problems.empty() && big_button(words::kUnderstood, "", {}, gui)) screens.problems.clear();
     if (shown.state.without_level) {
-        warning_paragraph(words::filled(words::kWithoutLevel, {std::string(name_of(shown.plan.profile.level)), shown.plan.profile.id}));
+        warning_paragraph(words::filled(words::kWithoutLevel,
+                                        {std::string(name_of(shown.plan.profile.level)), shown.plan.profile.id}));
     }
     if (screens.offer_hold && big_button(words::kPressByHolding, "H", {}, gui)) wishes.press_by_hold = true;
     for (const std::string& note : screens.device_notes) paragraph(note);
@@ -168,7 +182,8 @@ void column_panel(const Shown& shown, Gui& gui, Screens& screens, Wishes& wishes
     draw_numbers(shown, gui, screens);
     if (!is_interval(screens)) draw_contact_note(shown);
     draw_actions(shown, gui, screens, wishes);
-    ImGui::BeginChild("messages", ImVec2(0.0f, 0.0f), false, ImGuiWindowFlags_NavFlattened);  // long ones scroll in what is left
+    ImGui::BeginChild("messages", ImVec2(0.0f, 0.0f), false,
+                      ImGuiWindowFlags_NavFlattened);  // long ones scroll in what is left
     draw_messages(shown, gui, screens, wishes);
     ImGui::EndChild();
 }

@@ -12,8 +12,9 @@ void begin_panel(const char* name, const PanelArea& area, Gui& gui, float opacit
     ImGui::SetNextWindowPos(ImVec2(area.x0, area.y0));
     ImGui::SetNextWindowSize(ImVec2(area.width(), area.height()));
     ImGui::SetNextWindowBgAlpha(opacity);
-    constexpr ImGuiWindowFlags kFixed = ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoCollapse |
-                                        ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings;
+    constexpr ImGuiWindowFlags kFixed = ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize |
+                                        ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoMove |
+                                        ImGuiWindowFlags_NoSavedSettings;
     ImGui::Begin(name, nullptr, kFixed);
 }
 
@@ -24,11 +25,13 @@ void end_panel(const char* name, Gui& gui) {
 
 float share_of_line_px(int count) {
     const float gap_px = ImGui::GetStyle().ItemSpacing.x;
-    return std::floor((ImGui::GetContentRegionAvail().x - gap_px * static_cast<float>(count - 1)) / static_cast<float>(count));
+    return std::floor((ImGui::GetContentRegionAvail().x - gap_px * static_cast<float>(count - 1)) /
+                      static_cast<float>(count));
 }
 
 bool big_button(const char* label, const char* key, const ButtonLook& look, const Gui& gui) {
-    const ImVec2 size(look.width_px > 0.0f ? look.width_px : ImGui::GetContentRegionAvail().x, look.height_mm * gui.mm());
+    const ImVec2 size(look.width_px > 0.0f ? look.width_px : ImGui::GetContentRegionAvail().x,
+                      look.height_mm * gui.mm());
     ImGui::BeginDisabled(!look.enabled);
     if (look.chosen) {
         ImGui::PushStyleColor(ImGuiCol_Button, ImVec4(0.78f, 0.88f, 0.95f, 1.0f));
@@ -47,7 +50,8 @@ bool big_button(const char* label, const char* key, const ButtonLook& look, cons
     if (*key != '\0' && label_size.x + 2.0f * key_px + 3.0f * gui.mm() < size.x) {
         const ImU32 colour = look.chosen ? IM_COL32(60, 66, 70, 255) : kPale;
         ImGui::GetWindowDrawList()->AddText(ImGui::GetFont(), small_px,
-                                            ImVec2(high.x - key_px - 1.2f * gui.mm(), low.y + 0.8f * gui.mm()), colour, key);
+                                            ImVec2(high.x - key_px - 1.2f * gui.mm(), low.y + 0.8f * gui.mm()), colour,
+                                            key);
     }
     return pressed;
 }

@@ -2,7 +2,6 @@
 // Widgets that all screens share: large targets with their key beside the word, colours that everybody can tell apart.
 
 #include <imgui.h>
-
 #include <string>
 
 #include "app/screens/gui.h"
@@ -17,8 +16,10 @@ inline constexpr ImU32 kDark = IM_COL32(20, 22, 24, 255);
 
 // Light, medium, deep: three tints of one hue for the force, three steps of cividis (made for eyes that do not tell red
 // from green; PLOS ONE 13 (2018) e0199239) for areas.
-inline constexpr ImU32 kForceTints[3] = {IM_COL32(44, 66, 84, 255), IM_COL32(58, 92, 120, 255), IM_COL32(76, 122, 160, 255)};
-inline constexpr ImU32 kAreaTints[3] = {IM_COL32(58, 76, 107, 150), IM_COL32(148, 142, 119, 150), IM_COL32(250, 221, 76, 150)};
+inline constexpr ImU32 kForceTints[3] = {IM_COL32(44, 66, 84, 255), IM_COL32(58, 92, 120, 255),
+                                         IM_COL32(76, 122, 160, 255)};
+inline constexpr ImU32 kAreaTints[3] = {IM_COL32(58, 76, 107, 150), IM_COL32(148, 142, 119, 150),
+                                        IM_COL32(250, 221, 76, 150)};
 
 inline constexpr float kTarget_mm = 9.0f;  // least size of what is touched
 inline constexpr float kMark_mm = 12.0f;
@@ -29,10 +30,10 @@ void begin_panel(const char* name, const PanelArea& area, Gui& gui, float opacit
 void end_panel(const char* name, Gui& gui);
 
 struct ButtonLook {
-    float width_px = 0.0f;   // 0: the rest of the line
+    float width_px = 0.0f;  // 0: the rest of the line
     float height_mm = kTarget_mm;
     bool enabled = true;
-    bool chosen = false;     // filled bright: what is in force now
+    bool chosen = false;  // filled bright: what is in force now
 };
 // `key`: shown small beside the label, for people who use the keyboard; may be empty.
 bool big_button(const char* label, const char* key, const ButtonLook& look, const Gui& gui);
@@ -40,8 +41,8 @@ bool big_button(const char* label, const char* key, const ButtonLook& look, cons
 // Width of one of `count` buttons that share the rest of the line.
 float share_of_line_px(int count);
 
-void paragraph(const std::string& text);      // wrapped, pale
-void one_line(std::string text);              // pale; what does not fit is left out, so that nothing below it moves
+void paragraph(const std::string& text);          // wrapped, pale
+void one_line(std::string text);                  // pale; what does not fit is left out, so that nothing below it moves
 void warning_paragraph(const std::string& text);  // wrapped, with a mark in front
 void value_line(const char* name, const std::string& value, float column_px);
 

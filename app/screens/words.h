@@ -57,7 +57,8 @@ inline constexpr const char* kMicroseconds = "us";
 inline constexpr const char* kMicroseconds99 = "us, 99 %";
 inline constexpr const char* kCalls = "calls";
 inline constexpr const char* kFrameTimes =
-    "Sample to frame {} ms (99 %: {}), besides drawing {} ms. Frame {} ms besides drawing (99 %: {}), drawing {} ms. {} "
+    "Sample to frame {} ms (99 %: {}), besides drawing {} ms. Frame {} ms besides drawing (99 %: {}), drawing {} ms. "
+    "{} "
     "frames/s, {} samples, {} steps dropped, {} along fast strokes skipped.";
 
 // trial
@@ -142,7 +143,8 @@ inline constexpr const char* kPxPerMm = "px per mm";
 inline constexpr const char* kForget = "Forget";
 inline constexpr const char* kNotMeasured = "not measured";
 inline constexpr const char* kHoldCard = "Hold a bank card against the screen and make the frame as large as the card.";
-inline constexpr const char* kThisScreen = "This screen ({}): {}. Where it is known, tissue under the pen is drawn true to size.";
+inline constexpr const char* kThisScreen =
+    "This screen ({}): {}. Where it is known, tissue under the pen is drawn true to size.";
 
 // calibration of pressure
 inline constexpr const char* kPoints = "Points";
@@ -170,12 +172,14 @@ inline constexpr const char* kKeptAs = "Kept as {}; choose it in the menu.";
 inline constexpr const char* kSensorHealth = "{}: {} readings, lost {}, twice {}, late {}, stalls {}";
 inline constexpr const char* kCurveKnown = "The curve is known to 5 % everywhere.";
 inline constexpr const char* kHowToCalibrate =
-    "Put a force sensor under the tablet, or the tablet on a scale. Then press slowly, hold still, press harder, several "
+    "Put a force sensor under the tablet, or the tablet on a scale. Then press slowly, hold still, press harder, "
+    "several "
     "times.";
 inline constexpr const char* kPointsIn = "{} points in {}; the same name goes on with them.";
 inline constexpr const char* kCalibratedOnDesk = "Pressure is calibrated on the desk, which has the force sensors.";
 inline constexpr const char* kHowOnDesk =
-    "palpa calibrate record takes the points and palpa calibrate fit makes a profile of them. Profiles that are shipped "
+    "palpa calibrate record takes the points and palpa calibrate fit makes a profile of them. Profiles that are "
+    "shipped "
     "with the app stand in the menu. They were measured on single devices: another pen of the same model may differ by "
     "half, and the logs hold the pressure as the device sent it, so that newtons can be worked out later.";
 inline constexpr const char* kProfileNow = "Profile now: {}";
@@ -228,8 +232,10 @@ inline constexpr const char* kDoneWith = "This trial is done with the {}.";
 
 // before marks are thrown away
 inline constexpr const char* kLoseMarks = "End this trial?";
-inline constexpr const char* kLoseMark = "1 mark stands on the tissue and nothing is scored yet. This trial cannot be gone on with.";
-inline constexpr const char* kLoseManyMarks = "{} marks stand on the tissue and nothing is scored yet. This trial cannot be gone on with.";
+inline constexpr const char* kLoseMark =
+    "1 mark stands on the tissue and nothing is scored yet. This trial cannot be gone on with.";
+inline constexpr const char* kLoseManyMarks =
+    "{} marks stand on the tissue and nothing is scored yet. This trial cannot be gone on with.";
 inline constexpr const char* kGoOnWithTrial = "Go on with the trial";
 inline constexpr const char* kEndTrial = "End it";
 
@@ -237,7 +243,8 @@ inline constexpr const char* kEndTrial = "End it";
 inline constexpr const char* kTrialsOnTablet = "Trials on this tablet";
 inline constexpr const char* kLeaveStudy = "Leave the study";
 inline constexpr const char* kOneMoment = "One moment";
-inline constexpr const char* kBeingKept = "What was done is being put into this tablet's storage. The study goes on when it is there.";
+inline constexpr const char* kBeingKept =
+    "What was done is being put into this tablet's storage. The study goes on when it is there.";
 inline constexpr const char* kWhoIsHere = "Who is here?";
 inline constexpr const char* kCodeNoName =
     "A code for the participant, no name: letters and digits. Whoever was here before goes on with the same code.";
@@ -249,11 +256,13 @@ inline constexpr const char* kHowWasIt = "How was it?";
 inline constexpr const char* kMayLeaveOpen = "You may leave any of them open.";
 inline constexpr const char* kDeviceMissing = "The {} is not connected";
 inline constexpr const char* kDeviceIsBack = "The {} is connected";
-inline constexpr const char* kTrialWaits = "This trial is done with the {}. Connect it or switch it on: it is noticed within a second.";
+inline constexpr const char* kTrialWaits =
+    "This trial is done with the {}. Connect it or switch it on: it is noticed within a second.";
 inline constexpr const char* kTrialBrokenOff =
     "The trial that was going on was interrupted. It is logged as interrupted, counts as no answer, and begins anew.";
 inline constexpr const char* kCloseAndGoOn =
-    "Or close the study: everything that was finished is on the disk, and the same command goes on here with the same code.";
+    "Or close the study: everything that was finished is on the disk, and the same command goes on here with the same "
+    "code.";
 inline constexpr const char* kFeelFirst = "Feel the first surface.";
 inline constexpr const char* kFeelSecond = "Now feel the second surface.";
 inline constexpr const char* kWhichSofter = "Which one was softer?";
@@ -284,7 +293,8 @@ inline constexpr const char* kTimeOver = "{} of {}: the time is over";
 inline constexpr const char* kExperimenter = "Experimenter: trial {}, {}";
 inline constexpr const char* kAllOnTablet = "Participant {}: {} trials, all kept on this tablet.";
 inline constexpr const char* kAllOnDisk = "Participant {}: {} trials, all on the disk.";
-inline constexpr const char* kRestKept = "Everything that was finished before is kept. Start the study again with the same code to go on.";
+inline constexpr const char* kRestKept =
+    "Everything that was finished before is kept. Start the study again with the same code to go on.";
 inline constexpr const char* kRestOnDisk =
     "Everything that was finished before is on the disk. Start the study again with the same code to go on.";
 inline constexpr const char* kComesNext = "Trial {} comes next. Go on when you like.";
@@ -314,20 +324,24 @@ inline constexpr const char* pageInTheApp = "in the app";
 inline constexpr const char* pageOfDeskKept = "of the desk, kept here";
 inline constexpr const char* pageOfDesk = "of the desk";
 inline constexpr const char* pageNoDesk =
-    "No desk is reachable, or this tablet is not paired (Menu, Trials): its protocols are missing here unless they were "
+    "No desk is reachable, or this tablet is not paired (Menu, Trials): its protocols are missing here unless they "
+    "were "
     "used before.";
 inline constexpr const char* pageNoStorage = "the browser has no storage for this page";
 inline constexpr const char* pageInterrupted = "broken off";
 inline constexpr const char* pageHeldElsewhere = "another page holds it";
 inline constexpr const char* pageGone = "{} trial(s) that were kept here are gone: the browser has removed them ({}).";
-inline constexpr const char* pageSecondTab = "Palpa is open in another tab or window of this browser; close one of them";
-inline constexpr const char* pageStorageClosed = "The browser has closed its storage: trials are not kept any more. Export what is there.";
+inline constexpr const char* pageSecondTab =
+    "Palpa is open in another tab or window of this browser; close one of them";
+inline constexpr const char* pageStorageClosed =
+    "The browser has closed its storage: trials are not kept any more. Export what is there.";
 inline constexpr const char* pageCannotKeep = "Trials cannot be kept in this browser ({}): export each one after it.";
 inline constexpr const char* pageTakesNoLogs = "This desk takes no logs (it was started without --collect).";
 inline constexpr const char* pageNotKept =
     "Trial {} is not kept: {}. Menu, Trials, Export saves it to a file; the next trial waits for that.";
 inline constexpr const char* pageStorageFull = "the storage of this browser is full";
-inline constexpr const char* pagePartNotKept = "While it is going on this trial is not kept ({}); it will be tried at its end.";
+inline constexpr const char* pagePartNotKept =
+    "While it is going on this trial is not kept ({}); it will be tried at its end.";
 inline constexpr const char* pagePairAgain = "The desk does not know this tablet any more: pair again.";
 inline constexpr const char* pageOtherBytes = "The desk has other bytes of {}; it is sent again.";
 inline constexpr const char* pageTrialsWait = "The desk is not reachable; trials wait here.";

@@ -1,7 +1,5 @@
 #include "app/study/simulate.h"
 
-#include <unistd.h>
-
 #include <atomic>
 #include <chrono>
 #include <cmath>
@@ -11,11 +9,12 @@
 #include <numbers>
 #include <stdexcept>
 #include <thread>
+#include <unistd.h>
 
 #include "app/assets.h"
-#include "session/session.h"
 #include "files/text.h"
 #include "scene/mapping.h"
+#include "session/session.h"
 #include "study/simulated_person.h"
 #include "study/study_folder.h"
 
@@ -50,9 +49,11 @@ std::string code_of(int number) {
 
 // Sample of a hand that presses so hard at a place of the screen: the inverse of calibration and mapping.
 class Hand {
- public:
+  public:
     Hand(const study::Condition& condition, const session::Session& session)
-        : profile_(session.plan.profile), view_(session.state.view), force_scale_(session.scene.force_scale),
+        : profile_(session.plan.profile),
+          view_(session.state.view),
+          force_scale_(session.scene.force_scale),
           tool_(condition.modality == study::Modality::finger ? platform::Tool::finger : platform::Tool::pen) {}
 
     platform::Sample sample(double t_s, const study::ScreenPlace& at, double force_N, platform::Phase phase) const {
@@ -81,7 +82,7 @@ class Hand {
         return out;
     }
 
- private:
+  private:
     // the person's y points up, the screen's down
     void place(const study::ScreenPlace& at, const Eigen::Vector2d& px_per_m, platform::Sample& out) const {
         out.x_px = view_.centre_px.x() + at.x_m * px_per_m.x();
@@ -99,7 +100,8 @@ double greatest_force_N(const session::Session& session) {
     return session.scene.force_scale * force_N(session.plan.profile, session.plan.profile.level_highest, clamped);
 }
 
-session::SessionFiles files_of(const Shared& shared, const study::PlannedParticipant& who, const study::PlannedTrial& trial) {
+session::SessionFiles files_of(const Shared& shared, const study::PlannedParticipant& who,
+                               const study::PlannedTrial& trial) {
     session::SessionFiles files;
     files.log = shared.options.output.string();
     files.participant = code_of(who.number);
@@ -121,13 +123,16 @@ void palpate(study::SimulatedPerson& person, const Hand& hand, double rate_Hz, s
     for (std::int64_t i = 0; !session.trial.finished; ++i) {
         const double t_s = static_cast<double>(i) * dt_s;
         const study::Move made = study::move(dt_s, person);
-        session::take_sample(hand.sample(t_s, made.at, made.force_N, made.began ? platform::Phase::down : platform::Phase::move), session);
+        session::take_sample(
+            hand.sample(t_s, made.at, made.force_N, made.began ? platform::Phase::down : platform::Phase::move),
+            session);
         study::see(sight_of(session), dt_s, person);
         if (made.deed == study::Deed::none) continue;
         if (made.deed == study::Deed::mark) {
             session::take_sample(hand.act(t_s, made.mark, platform::Action::mark), session);
             const int first = static_cast<int>(platform::Action::confidence_1) - 1;
-            session::take_sample(hand.act(t_s, made.mark, static_cast<platform::Action>(first + made.confidence)), session);
+            session::take_sample(hand.act(t_s, made.mark, static_cast<platform::Action>(first + made.confidence)),
+                                 session);
         } else {
             session::take_sample(hand.sample(t_s, made.at, 0.0, platform::Phase::up), session);
             session::take_sample(hand.act(t_s, made.at, platform::Action::finish), session);
@@ -135,12 +140,15 @@ void palpate(study::SimulatedPerson& person, const Hand& hand, double rate_Hz, s
     }
 }
 
-void run_trial(Shared& shared, const study::PlannedParticipant& who, const study::PlannedTrial& trial, session::Session& session) {
+void run_trial(Shared& shared, const study::PlannedParticipant& who, const study::PlannedTrial& trial,
+               session::Session& session) {
     const auto began = std::chrono::steady_clock::now();
     const study::Protocol& protocol = shared.protocol;
     session.scene = scene_of(*shared.scenes[trial.condition], trial);
-    const platform::TraceInfo info{kScreenWidth_px, kScreenHeight_px, platform::kMissing, platform::kMissing, "simulated participant"};
-    session::begin_trial(files_of(shared, who, trial), info, trial.practice ? session::TrialMode::practice : session::TrialMode::test, session);
+    const platform::TraceInfo info{kScreenWidth_px, kScreenHeight_px, platform::kMissing, platform::kMissing,
+                                   "simulated participant"};
+    session::begin_trial(files_of(shared, who, trial), info,
+                         trial.practice ? session::TrialMode::practice : session::TrialMode::test, session);
     session.state.time_every = 0;
     // the same hand and eye in all trials of a person, noise of its own in each
     study::Random of_person(study::derived_seed(shared.options.seed, kTraits, static_cast<std::uint64_t>(who.number)));
@@ -148,10 +156,12 @@ void run_trial(Shared& shared, const study::PlannedParticipant& who, const study
     const double asked_s = trial.practice ? protocol.practice_limit_s : protocol.time_limit_s;
     const bool on_side = trial.rotate_deg % 180 != 0;
     const Eigen::Vector2d& size_m = session.plan.area.size_m;
-    const std::uint64_t trials = study::derived_seed(shared.options.seed, kTrials, static_cast<std::uint64_t>(who.number));
-    study::SimulatedPerson person = study::make_person(traits, on_side ? size_m.y() : size_m.x(), on_side ? size_m.x() : size_m.y(),
-                                         asked_s > 0.0 ? asked_s : kNoLimit_s,
-                                         study::derived_seed(trials, kTrials, static_cast<std::uint64_t>(trial.trial)));
+    const std::uint64_t trials =
+        study::derived_seed(shared.options.seed, kTrials, static_cast<std::uint64_t>(who.number));
+    study::SimulatedPerson person =
+        study::make_person(traits, on_side ? size_m.y() : size_m.x(), on_side ? size_m.x() : size_m.y(),
+                           asked_s > 0.0 ? asked_s : kNoLimit_s,
+                           study::derived_seed(trials, kTrials, static_cast<std::uint64_t>(trial.trial)));
     palpate(person, Hand(protocol.conditions[trial.condition], session), shared.options.rate_Hz, session);
     const std::int64_t samples = session.state.counters.samples;
     double written_MB = 0.0;
@@ -162,7 +172,8 @@ void run_trial(Shared& shared, const study::PlannedParticipant& who, const study
     const std::string stem = session.files->stem;
     session.finished.clear();
     if (!session::close_files({{"wall_s", wall_s}, {"samples", samples}}, session)) {
-        throw std::runtime_error(stem + ": the trial could not be written to its end (is the disk full?); the study stops here");
+        throw std::runtime_error(
+            stem + ": the trial could not be written to its end (is the disk full?); the study stops here");
     }
     const std::lock_guard lock(shared.mutex);
     ++shared.result.trials;
@@ -175,7 +186,8 @@ void run_choices(Shared& shared, const study::PlannedParticipant& who, const std
     const study::Protocol& protocol = shared.protocol;
     if (!study::next_trial(who, finished)) return;
     study::ChoiceLog log(study::next_run(shared.options.output, code_of(who.number), "softer"));
-    const std::uint64_t of_person = study::derived_seed(shared.options.seed, kAnswers, static_cast<std::uint64_t>(who.number));
+    const std::uint64_t of_person =
+        study::derived_seed(shared.options.seed, kAnswers, static_cast<std::uint64_t>(who.number));
     int done = 0;
     for (const study::PlannedTrial& trial : who.trials) {
         if (finished.count(trial.trial) > 0) continue;
@@ -196,7 +208,8 @@ void run_choices(Shared& shared, const study::PlannedParticipant& who, const std
         const bool reference_softer = row.reference_kPa < row.comparison_kPa;
         row.answer = right == reference_softer ? "reference" : "comparison";
         row.correct = right ? 1 : 0;
-        if (!log.write(row)) throw std::runtime_error(code_of(who.number) + ": a choice could not be written; the study stops here");
+        if (!log.write(row))
+            throw std::runtime_error(code_of(who.number) + ": a choice could not be written; the study stops here");
         ++done;
     }
     const std::lock_guard lock(shared.mutex);
@@ -213,7 +226,8 @@ void run_participant(Shared& shared, int number, std::vector<std::optional<sessi
     if (shared.protocol.task == study::TaskKind::choice) return run_choices(shared, who, finished);
     for (const study::PlannedTrial& trial : who.trials) {
         if (shared.stop) return;
-        const bool simulated = shared.scenes[trial.condition].has_value() && (!trial.practice || shared.options.practice);
+        const bool simulated =
+            shared.scenes[trial.condition].has_value() && (!trial.practice || shared.options.practice);
         if (!simulated && !trial.practice) {
             const std::lock_guard lock(shared.mutex);
             ++shared.result.left_out;

@@ -5,9 +5,9 @@
 #include <exception>
 #include <stdexcept>
 
-#include "session/plan_in_progress.h"
 #include "files/input_error.h"
 #include "files/text.h"
+#include "session/plan_in_progress.h"
 #include "study/ratings.h"
 
 namespace palpa::app {
@@ -42,8 +42,10 @@ bool plain(const std::string& code) {
 
 // What the experimenter sees from elsewhere (palpa study watch).
 files::Json now_json(const StudyRun& run) {
-    files::Json json{{"participant", run.code}, {"step", name_of(run.step)}, {"finished", run.progress.finished.size()},
-              {"of", run.progress.plan.trials.size()}};
+    files::Json json{{"participant", run.code},
+                     {"step", name_of(run.step)},
+                     {"finished", run.progress.finished.size()},
+                     {"of", run.progress.plan.trials.size()}};
     if (!run.stopped.empty()) json["stopped"] = run.stopped;
     if (!run.progress.next) return json;
     const study::PlannedTrial& trial = *run.progress.next;
@@ -87,8 +89,9 @@ void enter(StudyStep step, StudyRun& run) {
 void check_room(const StudyRun& run) {
     const double free_MB = 1e-6 * static_cast<double>(fs::space(run.directory).available);
     if (free_MB >= kRoom_MB) return;
-    throw std::runtime_error(run.directory.string() + ": found " + files::short_number(free_MB) + " MB free, expected " +
-                             files::short_number(kRoom_MB) + " MB for a trial; the study stops here");
+    throw std::runtime_error(run.directory.string() + ": found " + files::short_number(free_MB) +
+                             " MB free, expected " + files::short_number(kRoom_MB) +
+                             " MB for a trial; the study stops here");
 }
 
 // The first condition whose trials are all done and that was not rated.
@@ -97,7 +100,9 @@ std::optional<std::size_t> to_rate(const StudyRun& run) {
     std::vector<std::string> notes;
     const std::vector<study::Rating> known = study::read_ratings(run.directory, run.code, notes);
     for (const study::PlannedTrial& trial : run.progress.plan.trials) {
-        const auto open = [&](const study::PlannedTrial& t) { return t.condition == trial.condition && run.progress.finished.count(t.trial) == 0; };
+        const auto open = [&](const study::PlannedTrial& t) {
+            return t.condition == trial.condition && run.progress.finished.count(t.trial) == 0;
+        };
         if (std::any_of(run.progress.plan.trials.begin(), run.progress.plan.trials.end(), open)) continue;
         const std::string& id = run.protocol.conditions[trial.condition].id;
         const auto same = [&](const study::Rating& r) { return r.condition == id; };
@@ -114,13 +119,20 @@ void add_person(StudyRun& run) {
     for (std::size_t i = 0; i < run.protocol.demographics.size(); ++i) {
         const std::string& id = run.protocol.demographics[i].id;
         const std::string value = i < run.answers.size() && !run.answers[i].empty() ? run.answers[i] : "n/a";
-        if (id == "age") person.age = value;
-        else if (id == "sex") person.sex = value;
-        else if (id == "handedness") person.handedness = value;
-        else if (id == "vision") person.vision = value;
-        else if (id == "palpation_experience") person.palpation_experience = value;
-        else if (id == "vr_experience") person.vr_experience = value;
-        else others.push_back({"n/a", id, value});
+        if (id == "age")
+            person.age = value;
+        else if (id == "sex")
+            person.sex = value;
+        else if (id == "handedness")
+            person.handedness = value;
+        else if (id == "vision")
+            person.vision = value;
+        else if (id == "palpation_experience")
+            person.palpation_experience = value;
+        else if (id == "vr_experience")
+            person.vr_experience = value;
+        else
+            others.push_back({"n/a", id, value});
     }
     study::add_ratings(run.directory, run.code, others);
     study::add_people(run.directory, {person});
@@ -144,7 +156,8 @@ void begin_trial_step(StudyRun& run) {
 }
 
 void go_on(StudyRun& run) {
-    if (!run.progress.known && !run.asked && !run.protocol.demographics.empty()) return enter(StudyStep::questions, run);
+    if (!run.progress.known && !run.asked && !run.protocol.demographics.empty())
+        return enter(StudyStep::questions, run);
     if (!run.progress.known && !kept(run, [&] { add_person(run); })) return;
     if (const auto condition = to_rate(run)) {
         run.rated = *condition;
@@ -168,8 +181,8 @@ void finish_due(StudyRun& run) {
 }  // namespace
 
 const char* name_of(StudyStep step) {
-    constexpr const char* kNames[] = {"code", "again", "questions", "instructions", "trial", "device", "present",
-                                      "question", "typed", "ratings", "pause", "done", "stopped"};
+    constexpr const char* kNames[] = {"code",     "again", "questions", "instructions", "trial", "device", "present",
+                                      "question", "typed", "ratings",   "pause",        "done",  "stopped"};
     return kNames[static_cast<int>(step)];
 }
 
@@ -187,7 +200,8 @@ StudyRun open_study_run(const study::Protocol& protocol, const fs::path& directo
     if (code.empty()) return run;
     if (!plain(code)) throw files::bad_input("--participant", "", files::shown(code), "up to 20 letters and digits");
     enter_code(code, run);
-    if (!run.note.empty()) throw files::bad_input("--participant", "", files::shown(code) + ", who has finished all trials", "a new code");
+    if (!run.note.empty())
+        throw files::bad_input("--participant", "", files::shown(code) + ", who has finished all trials", "a new code");
     if (run.step == StudyStep::stopped) throw std::runtime_error(run.stopped);
     return run;
 }
@@ -198,7 +212,8 @@ std::string free_code(const StudyRun& run) {
     for (std::size_t number = people.size() + 1;; ++number) {
         char code[24];
         std::snprintf(code, sizeof code, "%02zu", number);
-        if (std::none_of(people.begin(), people.end(), [&](const study::Person& p) { return p.code == code; })) return code;
+        if (std::none_of(people.begin(), people.end(), [&](const study::Person& p) { return p.code == code; }))
+            return code;
     }
 }
 
@@ -239,7 +254,8 @@ void submit_answers(StudyRun& run) {
     std::vector<study::Rating> ratings;
     for (std::size_t i = 0; i < run.protocol.ratings.size(); ++i) {
         const bool answered = i < run.answers.size() && !run.answers[i].empty();
-        ratings.push_back({run.protocol.conditions[run.rated].id, run.protocol.ratings[i].id, answered ? run.answers[i] : "n/a"});
+        ratings.push_back(
+            {run.protocol.conditions[run.rated].id, run.protocol.ratings[i].id, answered ? run.answers[i] : "n/a"});
     }
     run.unkept_answers = true;
     if (kept(run, [&] { study::add_ratings(run.directory, run.code, ratings); })) go_on(run);
@@ -298,11 +314,14 @@ void choose_softer(bool first, double now_s, StudyRun& run) {
     row.correct = reference == (row.reference_kPa < row.comparison_kPa) ? 1 : 0;
     const bool good = kept(run, [&] {
         if (!run.choices) {
-            run.choices = std::make_unique<study::ChoiceLog>(study::next_run(run.directory, run.code, "softer", run.first_run));
+            run.choices =
+                std::make_unique<study::ChoiceLog>(study::next_run(run.directory, run.code, "softer", run.first_run));
             run.choices_began_s = now_s;
         }
         row.onset_s = now_s - run.choices_began_s;
-        if (!run.choices->write(row)) throw std::runtime_error(run.directory.string() + ": the choice could not be written; the study stops here");
+        if (!run.choices->write(row))
+            throw std::runtime_error(run.directory.string() +
+                                     ": the choice could not be written; the study stops here");
     });
     run.unkept_answers = true;
     if (good) finish_due(run);
@@ -339,7 +358,9 @@ bool typed_in(const study::Condition& condition) {
            condition.modality == study::Modality::shape_display;
 }
 
-bool shows_tissue(const StudyRun& run) { return !typed_in(due_condition(run)) && run.scenes[due_trial(run).condition].has_value(); }
+bool shows_tissue(const StudyRun& run) {
+    return !typed_in(due_condition(run)) && run.scenes[due_trial(run).condition].has_value();
+}
 
 const StudyScene& due_scene(const StudyRun& run) {
     const study::PlannedTrial& trial = due_trial(run);

@@ -1,10 +1,10 @@
 #include "app/study/study_scenes.h"
 
 #include "app/assets.h"
-#include "session/plan_in_progress.h"
 #include "files/input_error.h"
 #include "files/sha256.h"
 #include "files/text.h"
+#include "session/plan_in_progress.h"
 
 namespace palpa::app {
 namespace {
@@ -46,7 +46,7 @@ StudyScenes load_study_scenes(const study::Protocol& protocol) {
             scenes.back() = load(protocol, condition);
         } catch (const files::InputError& error) {
             throw files::InputError(protocol.file.string() + ": conditions[" + std::to_string(i) + "] " +
-                             files::shown(condition.id) + ": " + error.what());
+                                    files::shown(condition.id) + ": " + error.what());
         }
     }
     return scenes;
@@ -67,16 +67,17 @@ files::Json identity_of(const std::optional<StudyScene>& scene) {
     return json;
 }
 
-study::TrialLabel label_of(const study::Protocol& protocol, const study::PlannedParticipant& who, const study::PlannedTrial& trial, const files::Json& identity) {
+study::TrialLabel label_of(const study::Protocol& protocol, const study::PlannedParticipant& who,
+                           const study::PlannedTrial& trial, const files::Json& identity) {
     const study::Condition& condition = protocol.conditions[trial.condition];
     files::Json study{{"protocol", protocol.name},
-               {"version", protocol.version},
-               {"sha256", protocol.sha256},
-               {"seed", protocol.seed},
-               {"participant_number", who.number},
-               {"group", protocol.groups[who.group].id},
-               {"modality", name_of(condition.modality)},
-               {"trial_seed", trial.seed}};
+                      {"version", protocol.version},
+                      {"sha256", protocol.sha256},
+                      {"seed", protocol.seed},
+                      {"participant_number", who.number},
+                      {"group", protocol.groups[who.group].id},
+                      {"modality", name_of(condition.modality)},
+                      {"trial_seed", trial.seed}};
     study.update(identity);
     return {condition.id, condition.device, trial.trial, who.order_id, study};
 }

@@ -24,7 +24,8 @@ StudyScenes load_study_scenes(const study::Protocol& protocol);
 files::Json identity_of(const std::optional<StudyScene>& scene);
 
 // Of this trial, for its events and its settings.
-study::TrialLabel label_of(const study::Protocol& protocol, const study::PlannedParticipant& who, const study::PlannedTrial& trial, const files::Json& identity);
+study::TrialLabel label_of(const study::Protocol& protocol, const study::PlannedParticipant& who,
+                           const study::PlannedTrial& trial, const files::Json& identity);
 
 // The scene as this trial shows it.
 scene::Scene scene_of(const StudyScene& scene, const study::PlannedTrial& trial);

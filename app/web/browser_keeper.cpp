@@ -1,9 +1,8 @@
 #include "app/web/browser_keeper.h"
 
-#include <emscripten.h>
-
 #include <cstdio>
 #include <cstdlib>
+#include <emscripten.h>
 #include <exception>
 #include <fstream>
 #include <iterator>
@@ -112,7 +111,8 @@ void BrowserKeeper::keep_answers(const fs::path& directory, const std::string& c
     try {
         char run[16];
         std::snprintf(run, sizeof run, "%02d", palpa_trials_next_run());
-        put("sub-" + code + "_task-answers_run-" + run, study::bundle_of_answers(directory, code), "finished", study::study_files(directory, code));
+        put("sub-" + code + "_task-answers_run-" + run, study::bundle_of_answers(directory, code), "finished",
+            study::study_files(directory, code));
     } catch (const std::exception& error) {
         palpa_trials_failed(error.what());
     }

@@ -8,7 +8,7 @@
 namespace palpa::app {
 
 class BrowserKeeper : public session::TrialKeeper {
- public:
+  public:
     void keep(const study::RunFiles& run, bool finished) override;
     void keep_part(const study::RunFiles& run) override;
     void keep_answers(const std::filesystem::path& directory, const std::string& code) override;
@@ -20,7 +20,7 @@ class BrowserKeeper : public session::TrialKeeper {
     void open() override;
     void open_studies() override;
 
- private:
+  private:
     std::map<std::string, std::size_t> parts_;  // of the run that is going on: file and how much of it is kept
 };
 

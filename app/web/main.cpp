@@ -1,15 +1,14 @@
 // The app in a browser: one canvas, one thread, a turn of the loop per frame of the display.
 
-#include <emscripten.h>
-#include <emscripten/html5.h>
-#include <stdlib.h>
-
 #include <algorithm>
 #include <cctype>
+#include <emscripten.h>
+#include <emscripten/html5.h>
 #include <exception>
 #include <filesystem>
 #include <memory>
 #include <set>
+#include <stdlib.h>
 #include <string>
 
 #include "app/live/live.h"
@@ -105,7 +104,8 @@ EM_BOOL gl_restored(int, const void*, void*) {
 // One folder for one version of one protocol; whoever was here before goes on in it.
 std::string study_folder(const std::string& name, const study::Protocol& protocol) {
     std::string folder = name + "-" + protocol.version;
-    std::replace_if(folder.begin(), folder.end(), [](unsigned char c) { return c >= 128 || std::isalnum(c) == 0; }, '-');
+    std::replace_if(
+        folder.begin(), folder.end(), [](unsigned char c) { return c >= 128 || std::isalnum(c) == 0; }, '-');
     return "/studies/" + folder;
 }
 
@@ -118,7 +118,8 @@ void choose_study(const std::string& name, RunOptions& options) {
     std::string known;
     for (const std::string& one : names) known += " " + one;
     if (name.find('/') != std::string::npos || !std::filesystem::exists(file)) {
-        throw files::bad_input("?protocol", "", files::shown(name), "one of" + known + ", or of a desk that this tablet is paired with");
+        throw files::bad_input("?protocol", "", files::shown(name),
+                               "one of" + known + ", or of a desk that this tablet is paired with");
     }
     options.protocol = file.string();
     options.log = study_folder(name, study::read_protocol(file));
@@ -138,7 +139,6 @@ EMSCRIPTEN_KEEPALIVE const char* palpa_report() {
     page.report = page.live ? files::json_text(page.live->report()) : "{}";
     return page.report.c_str();
 }
-
 }
 
 int main() {

@@ -9,7 +9,9 @@ namespace palpa::app {
 struct PlanInProgress::Work {};
 
 PlanInProgress::PlanInProgress(const scene::Scene& scene) {
-    throw files::InputError("\"" + scene.name + "\" is a linear tissue, which is computed on the desk: found a browser, expected a scene with a map");
+    throw files::InputError(
+        "\"" + scene.name +
+        "\" is a linear tissue, which is computed on the desk: found a browser, expected a scene with a map");
 }
 PlanInProgress::~PlanInProgress() = default;
 

@@ -2,9 +2,8 @@
 
 #include "app/screens/screenshot.h"
 
-#include <emscripten.h>
-
 #include <ctime>
+#include <emscripten.h>
 
 #include "app/screens/frame.h"
 
@@ -24,7 +23,9 @@ EM_JS(void, palpa_download_canvas, (const char* name), {
 
 namespace palpa::app {
 
-void save_screen(const platform::Window&, const std::filesystem::path& png) { palpa_download_canvas(png.filename().c_str()); }
+void save_screen(const platform::Window&, const std::filesystem::path& png) {
+    palpa_download_canvas(png.filename().c_str());
+}
 
 std::filesystem::path save_picture(const platform::Window& window, const std::string&) {
     const std::time_t now = std::time(nullptr);

@@ -31,10 +31,13 @@ std::unique_ptr<devices::ForceSensor> open_sensor(const RecordArguments& argumen
         return devices::open_netft(options);
     }
     if (sensor.rfind("serial:", 0) == 0) {
-        if (arguments.N_per_count == 0.0) throw files::bad_input("--N-per-count", "", "nothing", "newtons for one count of the load cell (may be negative)");
+        if (arguments.N_per_count == 0.0)
+            throw files::bad_input("--N-per-count", "", "nothing",
+                                   "newtons for one count of the load cell (may be negative)");
         return devices::open_load_cell({sensor.substr(7), arguments.baud, arguments.N_per_count});
     }
-    if (sensor != "typed") throw files::bad_input("--sensor", "", files::shown(sensor), "netft:HOST[:PORT], serial:PATH or typed");
+    if (sensor != "typed")
+        throw files::bad_input("--sensor", "", files::shown(sensor), "netft:HOST[:PORT], serial:PATH or typed");
     return nullptr;
 }
 
@@ -48,14 +51,19 @@ void save_points(const Recording& recording) {
     files::write_text_atomically(points_file(recording.arguments), points_csv(recording.session.points));
 }
 
-bool touches(const platform::Sample& sample, double level) { return (sample.phase == platform::Phase::down || sample.phase == platform::Phase::move) && level > 0.0; }
+bool touches(const platform::Sample& sample, double level) {
+    return (sample.phase == platform::Phase::down || sample.phase == platform::Phase::move) && level > 0.0;
+}
 
 void take_levels(const std::vector<platform::Sample>& samples, Recording& recording) {
     const Profile& profile = recording.arguments.level;
     for (const platform::Sample& sample : samples) {
-        if (sample.phase == platform::Phase::ui || sample.tool == platform::Tool::mouse) continue;  // a mouse has no sensor
+        if (sample.phase == platform::Phase::ui || sample.tool == platform::Tool::mouse)
+            continue;  // a mouse has no sensor
         const double level = level_of(profile, sample);
-        if (sample.phase != platform::Phase::up && sample.phase != platform::Phase::hover && sample.phase != platform::Phase::cancel && std::isnan(level)) continue;
+        if (sample.phase != platform::Phase::up && sample.phase != platform::Phase::hover &&
+            sample.phase != platform::Phase::cancel && std::isnan(level))
+            continue;
         ++recording.samples;
         recording.raw->write(sample, level);
         const bool touching = touches(sample, level);
@@ -72,15 +80,18 @@ void take_forces(Recording& recording) {
     recording.sensor->poll(readings);
     RecordSession& session = recording.session;
     const RecordOptions& options = recording.arguments.options;
-    const bool knows_touch = recording.samples > 0 || recording.arguments.levels.empty();  // a stream may begin amid a press
+    const bool knows_touch =
+        recording.samples > 0 || recording.arguments.levels.empty();  // a stream may begin amid a press
     for (const devices::ForceReading& reading : readings) {
         ++recording.readings;
         recording.raw->write(reading);
         constexpr double kLift_s = 0.1;
         const bool resting = knows_touch && !session.touching && reading.t_host_s - recording.touched_s > kLift_s;
         if (!resting) session.rest.clear();
-        if (resting && session.points.size() == recording.resumed) take_rest(options, reading.t_host_s, reading.force_N, session);
-        if (!std::isnan(session.zero_N)) take_force(options, reading.t_host_s, reading.force_N - session.zero_N, session);
+        if (resting && session.points.size() == recording.resumed)
+            take_rest(options, reading.t_host_s, reading.force_N, session);
+        if (!std::isnan(session.zero_N))
+            take_force(options, reading.t_host_s, reading.force_N - session.zero_N, session);
     }
 }
 
@@ -90,7 +101,8 @@ void watch_sensor(double now_s, Recording& recording) {
     const devices::SensorHealth health = recording.sensor->health();
     constexpr double kPatience_s = 5.0;
     if (health.received == 0 && now_s - recording.began_s > kPatience_s) {
-        throw std::runtime_error(recording.sensor->name() + ": no reading in " + files::short_number(kPatience_s) + " s (connected, powered, right address?)");
+        throw std::runtime_error(recording.sensor->name() + ": no reading in " + files::short_number(kPatience_s) +
+                                 " s (connected, powered, right address?)");
     }
     recording.silent = health.received > 0 && !health.alive;
 }
@@ -98,7 +110,9 @@ void watch_sensor(double now_s, Recording& recording) {
 // After each press: is it enough?
 bool enough(Recording& recording) {
     recording.judged = false;
-    if (recording.session.touching || recording.session.repeat == recording.known_repeats || !recording.session.captured_in_repeat) return false;
+    if (recording.session.touching || recording.session.repeat == recording.known_repeats ||
+        !recording.session.captured_in_repeat)
+        return false;
     recording.known_repeats = recording.session.repeat;
     recording.knowledge = knowledge_of(recording.arguments.options, recording.session.points);
     recording.judged = true;
@@ -106,17 +120,26 @@ bool enough(Recording& recording) {
 }
 
 files::Json health_json(const devices::SensorHealth& health) {
-    return {{"received", health.received}, {"lost", health.lost}, {"duplicate", health.duplicate}, {"reordered", health.reordered},
-            {"malformed", health.malformed}, {"overflowed", health.overflowed}, {"stalls", health.stalls}, {"reconnects", health.reconnects},
+    return {{"received", health.received},   {"lost", health.lost},
+            {"duplicate", health.duplicate}, {"reordered", health.reordered},
+            {"malformed", health.malformed}, {"overflowed", health.overflowed},
+            {"stalls", health.stalls},       {"reconnects", health.reconnects},
             {"faults", health.faults}};
 }
 
 files::Json result_of(const Recording& recording) {
     const Knowledge knowledge = knowledge_of(recording.arguments.options, recording.session.points);
-    files::Json json{{"points", recording.session.points.size()}, {"repeats", knowledge.repeats}, {"done", knowledge.done}, {"missing", knowledge.missing},
-              {"relative_half_interval", knowledge.band_error}, {"samples", recording.samples}, {"file", points_file(recording.arguments).string()}};
+    files::Json json{{"points", recording.session.points.size()},
+                     {"repeats", knowledge.repeats},
+                     {"done", knowledge.done},
+                     {"missing", knowledge.missing},
+                     {"relative_half_interval", knowledge.band_error},
+                     {"samples", recording.samples},
+                     {"file", points_file(recording.arguments).string()}};
     if (recording.sensor) {
-        json["sensor"] = {{"name", recording.sensor->name()}, {"readings", recording.readings}, {"health", health_json(recording.sensor->health())}};
+        json["sensor"] = {{"name", recording.sensor->name()},
+                          {"readings", recording.readings},
+                          {"health", health_json(recording.sensor->health())}};
         json["sensor"]["zero_N"] = recording.session.zero_N;
     }
     return json;
@@ -126,10 +149,12 @@ files::Json result_of(const Recording& recording) {
 void open_session(const RecordArguments& arguments, RecordSession& session) {
     const auto file = points_file(arguments);
     if (std::filesystem::exists(file)) {
-        if (!arguments.resume) throw files::bad_input(file.string(), "", "a session", "a new folder, or --resume to go on with it");
+        if (!arguments.resume)
+            throw files::bad_input(file.string(), "", "a session", "a new folder, or --resume to go on with it");
         session.points = read_session(file);
         for (const CapturedPoint& point : session.points) session.repeat = std::max(session.repeat, point.repeat + 1);
-        if (!session.points.empty()) session.clock_shift_s = std::max(0.0, session.points.back().time_s + 1.0 - devices::steady_s());
+        if (!session.points.empty())
+            session.clock_shift_s = std::max(0.0, session.points.back().time_s + 1.0 - devices::steady_s());
         return;
     }
     if (arguments.resume) throw files::bad_input(file.string(), "", "nothing", "the session to resume");
@@ -137,7 +162,8 @@ void open_session(const RecordArguments& arguments, RecordSession& session) {
 
 }  // namespace
 
-RawFiles::RawFiles(const std::filesystem::path& folder) : levels(free_name(folder, "levels")), forces(free_name(folder, "forces")) {
+RawFiles::RawFiles(const std::filesystem::path& folder)
+    : levels(free_name(folder, "levels")), forces(free_name(folder, "forces")) {
     levels.append("t_host_s\tt_device_s\tphase\tlevel\n");
     forces.append("t_host_s\tt_device_s\tforce_N\traw\n");
 }
@@ -164,10 +190,13 @@ void RawFiles::write(const devices::ForceReading& reading) {
     forces.append(row);
 }
 void RawFiles::sync() {
-    if (!levels.sync() || !forces.sync()) throw std::runtime_error(levels.path().string() + ": can no longer be written; stopped (is the disk full?)");
+    if (!levels.sync() || !forces.sync())
+        throw std::runtime_error(levels.path().string() + ": can no longer be written; stopped (is the disk full?)");
 }
 
-std::filesystem::path points_file(const RecordArguments& arguments) { return std::filesystem::path(arguments.folder) / "points.csv"; }
+std::filesystem::path points_file(const RecordArguments& arguments) {
+    return std::filesystem::path(arguments.folder) / "points.csv";
+}
 
 std::unique_ptr<Recording> open_recording(const RecordArguments& arguments) {
     std::unique_ptr<devices::ForceSensor> device = open_sensor(arguments);
@@ -204,7 +233,8 @@ bool step(const std::vector<platform::Sample>& samples, Recording& recording) {
 bool take_typed_N(double force_N, Recording& recording) {
     const RecordOptions& options = recording.arguments.options;
     const double now_s = devices::steady_s();
-    for (const double ago : {0.95, 0.7, 0.45, 0.2}) take_force(options, now_s - ago * options.steady_s, force_N, recording.session);
+    for (const double ago : {0.95, 0.7, 0.45, 0.2})
+        take_force(options, now_s - ago * options.steady_s, force_N, recording.session);
     if (!capture(options, now_s, recording.session)) return false;
     save_points(recording);
     return true;
@@ -216,7 +246,8 @@ std::string advice(const Recording& recording) {
     if (recording.sensor && std::isnan(recording.session.zero_N)) return "do not touch (zero)";
     const int band = target_band(options, recording.session, recording.knowledge.band_error);
     if (band < 0) return "lift the pen";
-    return "press to " + files::short_number(100.0 * band / options.bands) + " - " + files::short_number(100.0 * (band + 1) / options.bands) + " %";
+    return "press to " + files::short_number(100.0 * band / options.bands) + " - " +
+           files::short_number(100.0 * (band + 1) / options.bands) + " %";
 }
 
 files::Json close_recording(Recording& recording) {

@@ -21,16 +21,16 @@ inline constexpr double kN_per_gf = 9.80665e-3;
 
 struct RecordArguments {
     std::string folder;
-    std::string sensor;            // netft:HOST[:PORT], serial:PATH, typed
-    std::string levels;            // a file or pipe with one level a line, "-" for standard input; empty: a window
-    double counts_per_N = 1e6;     // netft
-    std::string axis = "-z";       // netft
-    double N_per_count = 0.0;      // serial
+    std::string sensor;         // netft:HOST[:PORT], serial:PATH, typed
+    std::string levels;         // a file or pipe with one level a line, "-" for standard input; empty: a window
+    double counts_per_N = 1e6;  // netft
+    std::string axis = "-z";    // netft
+    double N_per_count = 0.0;   // serial
     int baud = 115200;
-    double seconds = 0.0;          // 0: until it is known, or ended
+    double seconds = 0.0;  // 0: until it is known, or ended
     bool resume = false;
-    bool newton = false;           // typed numbers are newtons, not gram-force
-    Profile level;                 // which field of a sample is the level, and its range
+    bool newton = false;  // typed numbers are newtons, not gram-force
+    Profile level;        // which field of a sample is the level, and its range
     RecordOptions options;
 };
 
@@ -52,16 +52,16 @@ struct Recording {
     std::optional<RawFiles> raw;
     RecordSession session;
     Knowledge knowledge;
-    platform::Timeline timeline;          // when samples really came: a slow frame holds them up, but not their device's clock
+    platform::Timeline timeline;  // when samples really came: a slow frame holds them up, but not their device's clock
     double began_s = 0.0;
     double synced_s = 0.0;
-    double touched_s = -1.0;    // ended last
+    double touched_s = -1.0;  // ended last
     std::int64_t samples = 0;
     std::int64_t readings = 0;
-    std::size_t resumed = 0;    // points of earlier runs
-    int known_repeats = -1;     // the press whose end has been judged
-    bool judged = false;        // a press ended in the last step
-    bool silent = false;        // the sensor has stopped; nothing is captured until it is back
+    std::size_t resumed = 0;  // points of earlier runs
+    int known_repeats = -1;   // the press whose end has been judged
+    bool judged = false;      // a press ended in the last step
+    bool silent = false;      // the sensor has stopped; nothing is captured until it is back
 };
 
 // Opens sensor, folder and files. Throws InputError for what cannot be, std::runtime_error for what cannot be opened.

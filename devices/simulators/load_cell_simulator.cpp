@@ -2,14 +2,13 @@
 // sent. Unplugged, the terminal is closed; plugged in again, it is a new one behind the same --link.
 
 #include <fcntl.h>
+#include <filesystem>
 #include <poll.h>
 #include <stdlib.h>
+#include <string>
 #include <sys/wait.h>
 #include <termios.h>
 #include <unistd.h>
-
-#include <filesystem>
-#include <string>
 
 #include "devices/load_cell.h"
 #include "devices/simulators/stream.h"
@@ -84,7 +83,8 @@ int main(int argc, char** argv) {
     };
     const double began_s = steady_s();
     const double step_s = 1.0 / options.rate_Hz;
-    for (double due_s = began_s; ended == 0 && (options.seconds <= 0.0 || due_s - began_s < options.seconds); due_s += step_s) {
+    for (double due_s = began_s; ended == 0 && (options.seconds <= 0.0 || due_s - began_s < options.seconds);
+         due_s += step_s) {
         std::this_thread::sleep_for(std::chrono::duration<double>(std::max(0.0, due_s - steady_s())));
         const bool gone = silent(options, due_s - began_s);
         if (gone && terminal.master >= 0) unplug(terminal);

@@ -2,10 +2,9 @@
 // end what it sent.
 
 #include <arpa/inet.h>
+#include <optional>
 #include <sys/socket.h>
 #include <unistd.h>
-
-#include <optional>
 
 #include "devices/netft.h"
 #include "devices/simulators/stream.h"

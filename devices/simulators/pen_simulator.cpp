@@ -22,7 +22,8 @@ int main(int argc, char** argv) {
     end_on_signals();
     Line<double> line(options);
     const double began_s = steady_s();
-    for (double due_s = began_s; ended == 0 && (options.seconds <= 0.0 || due_s - began_s < options.seconds); due_s += 1.0 / options.rate_Hz) {
+    for (double due_s = began_s; ended == 0 && (options.seconds <= 0.0 || due_s - began_s < options.seconds);
+         due_s += 1.0 / options.rate_Hz) {
         std::this_thread::sleep_for(std::chrono::duration<double>(std::max(0.0, due_s - steady_s())));
         const double felt_N = std::max(hand_N(options, due_s - options.lag_s) + line.noise_N(), 1e-9);
         const double level = std::clamp(std::log(felt_N / first_N) / std::log(full_N / first_N), 0.0, 1.0);

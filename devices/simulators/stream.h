@@ -17,13 +17,13 @@ namespace palpa::devices::simulators {
 
 struct StreamOptions {
     double rate_Hz = 80.0;
-    double seconds = 0.0;        // 0: until it is ended
-    double greatest_N = 3.0;     // of each press
-    double period_s = 4.0;       // from one press to the next
-    int steps = 0;               // a staircase of so many still moments; 0: one wave
+    double seconds = 0.0;     // 0: until it is ended
+    double greatest_N = 3.0;  // of each press
+    double period_s = 4.0;    // from one press to the next
+    int steps = 0;            // a staircase of so many still moments; 0: one wave
     double noise_N = 0.0;
-    double lag_s = 0.0;          // of the sensor behind the hand
-    double lose = 0.0;           // share of the records
+    double lag_s = 0.0;  // of the sensor behind the hand
+    double lose = 0.0;   // share of the records
     double duplicate = 0.0;
     double reorder = 0.0;        // swapped with the next
     double silent_from_s = 0.0;  // unplugged, and plugged in again
@@ -35,13 +35,19 @@ inline void add_stream_options(CLI::App& app, StreamOptions& options) {
     app.add_option("--rate-Hz", options.rate_Hz)->check(CLI::Range(0.1, 1e5))->capture_default_str();
     app.add_option("--seconds", options.seconds, "0: until it is ended")->capture_default_str();
     app.add_option("--greatest-N", options.greatest_N, "of each press")->capture_default_str();
-    app.add_option("--period-s", options.period_s, "from one press to the next")->check(CLI::Range(1e-3, 1e6))->capture_default_str();
-    app.add_option("--steps", options.steps, "a staircase of so many still moments up; 0: one wave")->check(CLI::Range(0, 1000))->capture_default_str();
+    app.add_option("--period-s", options.period_s, "from one press to the next")
+        ->check(CLI::Range(1e-3, 1e6))
+        ->capture_default_str();
+    app.add_option("--steps", options.steps, "a staircase of so many still moments up; 0: one wave")
+        ->check(CLI::Range(0, 1000))
+        ->capture_default_str();
     app.add_option("--noise-N", options.noise_N)->capture_default_str();
     app.add_option("--lag-s", options.lag_s, "of the sensor behind the hand")->capture_default_str();
     app.add_option("--lose", options.lose, "share of the records")->check(CLI::Range(0.0, 1.0))->capture_default_str();
     app.add_option("--duplicate", options.duplicate)->check(CLI::Range(0.0, 1.0))->capture_default_str();
-    app.add_option("--reorder", options.reorder, "swapped with the next")->check(CLI::Range(0.0, 1.0))->capture_default_str();
+    app.add_option("--reorder", options.reorder, "swapped with the next")
+        ->check(CLI::Range(0.0, 1.0))
+        ->capture_default_str();
     app.add_option("--silent-from-s", options.silent_from_s, "unplugged then")->capture_default_str();
     app.add_option("--silent-s", options.silent_s, "for so long")->capture_default_str();
     app.add_option("--seed", options.seed)->capture_default_str();
@@ -97,7 +103,9 @@ struct Line {
         held.pop_front();
         ++sent.reordered;
     }
-    double noise_N() { return options.noise_N > 0.0 ? std::normal_distribution<double>(0.0, options.noise_N)(random) : 0.0; }
+    double noise_N() {
+        return options.noise_N > 0.0 ? std::normal_distribution<double>(0.0, options.noise_N)(random) : 0.0;
+    }
 };
 
 inline volatile std::sig_atomic_t ended = 0;
@@ -108,12 +116,14 @@ inline void end_on_signals() {
 }
 
 inline bool silent(const StreamOptions& options, double since_start_s) {
-    return options.silent_s > 0.0 && since_start_s >= options.silent_from_s && since_start_s < options.silent_from_s + options.silent_s;
+    return options.silent_s > 0.0 && since_start_s >= options.silent_from_s &&
+           since_start_s < options.silent_from_s + options.silent_s;
 }
 
 inline void print_sent(const Sent& sent) {
-    std::printf("sent %lld lost %lld duplicate %lld reordered %lld\n", static_cast<long long>(sent.records), static_cast<long long>(sent.lost),
-                static_cast<long long>(sent.duplicate), static_cast<long long>(sent.reordered));
+    std::printf("sent %lld lost %lld duplicate %lld reordered %lld\n", static_cast<long long>(sent.records),
+                static_cast<long long>(sent.lost), static_cast<long long>(sent.duplicate),
+                static_cast<long long>(sent.reordered));
     std::fflush(stdout);
 }
 

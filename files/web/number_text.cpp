@@ -14,7 +14,8 @@ bool parse_number(std::string_view text, double& out) {
     if (!text.empty() && text.front() == '+') text.remove_prefix(1);
     // strtod skips spaces and takes hexadecimal numbers, which no file of ours holds
     const std::string copy(text);
-    if (copy.empty() || copy.find_first_of(" \t\n\v\f\rxX(+") == 0 || copy.find_first_of("xX(") != std::string::npos) return false;
+    if (copy.empty() || copy.find_first_of(" \t\n\v\f\rxX(+") == 0 || copy.find_first_of("xX(") != std::string::npos)
+        return false;
     char* end = nullptr;
     const double value = std::strtod(copy.c_str(), &end);
     if (end != copy.c_str() + copy.size()) return false;

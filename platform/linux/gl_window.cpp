@@ -61,16 +61,13 @@ GlWindow::GlWindow(const WindowOptions& options) {
     }
 }
 
-GlWindow::~GlWindow() {
-    destroy();
-}
+GlWindow::~GlWindow() { destroy(); }
 
 void GlWindow::create(const WindowOptions& options) {
     ask_for_es3();
     const Uint32 shown = options.visible ? SDL_WINDOW_SHOWN | SDL_WINDOW_RESIZABLE : SDL_WINDOW_HIDDEN;
-    window_ = SDL_CreateWindow(options.title.c_str(), SDL_WINDOWPOS_CENTERED, SDL_WINDOWPOS_CENTERED,
-                               options.width_px, options.height_px,
-                               SDL_WINDOW_OPENGL | SDL_WINDOW_ALLOW_HIGHDPI | shown);
+    window_ = SDL_CreateWindow(options.title.c_str(), SDL_WINDOWPOS_CENTERED, SDL_WINDOWPOS_CENTERED, options.width_px,
+                               options.height_px, SDL_WINDOW_OPENGL | SDL_WINDOW_ALLOW_HIGHDPI | shown);
     if (window_ == nullptr) throw std::runtime_error(no_gl_message("no window with OpenGL ES 3"));
     context_ = SDL_GL_CreateContext(window_);
     if (context_ == nullptr) throw std::runtime_error(no_gl_message("no OpenGL ES 3 context"));

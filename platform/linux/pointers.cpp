@@ -16,9 +16,7 @@ bool ask_filter(const SDL_Event& event, const Pointers& pointers) {
     return for_panels && ask_filter(*for_panels, pointers);
 }
 
-PressOwner owner_if(bool on_panel) {
-    return on_panel ? PressOwner::panel : PressOwner::tissue;
-}
+PressOwner owner_if(bool on_panel) { return on_panel ? PressOwner::panel : PressOwner::tissue; }
 
 void admit_made(PressOwner down_owner, Pointers& pointers) {
     for (const Sample& sample : pointers.made) {
@@ -130,9 +128,7 @@ void receive_finger(const SDL_TouchFingerEvent& finger, double t_host_s, Pointer
     sample.t_device_s = 1e-3 * finger.timestamp;
     sample.pointer_id = finger.fingerId + 1;
     sample.tool = Tool::finger;
-    sample.phase = finger.type == SDL_FINGERDOWN ? Phase::down
-                   : finger.type == SDL_FINGERUP ? Phase::up
-                                                 : Phase::move;
+    sample.phase = finger.type == SDL_FINGERDOWN ? Phase::down : finger.type == SDL_FINGERUP ? Phase::up : Phase::move;
     sample.x_px = static_cast<double>(finger.x) * width_px;
     sample.y_px = static_cast<double>(finger.y) * height_px;
     pointers.made.push_back(sample);

@@ -4,9 +4,9 @@
 #include <optional>
 #include <vector>
 
+#include "platform/keyboard.h"
 #include "platform/linux/window_event.h"
 #include "platform/linux/xinput.h"
-#include "platform/keyboard.h"
 #include "platform/mouse.h"
 #include "platform/press.h"
 #include "platform/sample.h"
@@ -35,8 +35,8 @@ struct Pointers {
     bool quit_requested = false;   // by a signal, or the end of the session
     bool stirred = false;          // since the last poll(): an event of any kind,
     bool uncovered = false;        // one after which the window has to be drawn again
-    std::vector<Sample> made;     // scratch
-    std::vector<Sample> pending;  // for the next poll()
+    std::vector<Sample> made;      // scratch
+    std::vector<Sample> pending;   // for the next poll()
 };
 
 // Takes one event; call it for each, in order, from an SDL event watch.

@@ -1,15 +1,14 @@
 #include "platform/serial_port.h"
 
-#include <fcntl.h>
-#include <poll.h>
-#include <termios.h>
-#include <unistd.h>
-
 #include <cerrno>
 #include <cmath>
 #include <cstring>
+#include <fcntl.h>
 #include <map>
+#include <poll.h>
 #include <stdexcept>
+#include <termios.h>
+#include <unistd.h>
 
 #include "files/input_error.h"
 
@@ -17,10 +16,12 @@ namespace palpa::platform {
 namespace {
 
 speed_t speed_of(int baud) {
-    const std::map<int, speed_t> known{{9600, B9600},     {19200, B19200},   {38400, B38400},   {57600, B57600},  {115200, B115200},
-                                       {230400, B230400}, {460800, B460800}, {500000, B500000}, {921600, B921600}, {1000000, B1000000}};
+    const std::map<int, speed_t> known{{9600, B9600},     {19200, B19200},    {38400, B38400},   {57600, B57600},
+                                       {115200, B115200}, {230400, B230400},  {460800, B460800}, {500000, B500000},
+                                       {921600, B921600}, {1000000, B1000000}};
     const auto it = known.find(baud);
-    if (it == known.end()) throw files::bad_input("--baud", "", std::to_string(baud), "9600, 19200, 38400, 57600, 115200, ... 1000000");
+    if (it == known.end())
+        throw files::bad_input("--baud", "", std::to_string(baud), "9600, 19200, 38400, 57600, 115200, ... 1000000");
     return it->second;
 }
 

@@ -1,14 +1,13 @@
 #include "platform/udp_port.h"
 
-#include <netdb.h>
-#include <poll.h>
-#include <sys/socket.h>
-#include <unistd.h>
-
 #include <cerrno>
 #include <cmath>
 #include <cstring>
+#include <netdb.h>
+#include <poll.h>
 #include <stdexcept>
+#include <sys/socket.h>
+#include <unistd.h>
 
 namespace palpa::platform {
 
@@ -30,13 +29,15 @@ UdpPort::UdpPort(const std::string& host, int port) {
     // a second of a 7 kHz stream (with the kernel's own overhead per datagram), should we not get the processor
     const int room_bytes = 8 << 20;
     if (::setsockopt(fd_, SOL_SOCKET, SO_RCVBUFFORCE, &room_bytes, sizeof room_bytes) != 0) {  // root only
-        ::setsockopt(fd_, SOL_SOCKET, SO_RCVBUF, &room_bytes, sizeof room_bytes);             // up to net.core.rmem_max
+        ::setsockopt(fd_, SOL_SOCKET, SO_RCVBUF, &room_bytes, sizeof room_bytes);  // up to net.core.rmem_max
     }
 }
 
 UdpPort::~UdpPort() { ::close(fd_); }
 
-bool UdpPort::send(const std::uint8_t* bytes, std::size_t count) { return ::send(fd_, bytes, count, 0) == static_cast<ssize_t>(count); }
+bool UdpPort::send(const std::uint8_t* bytes, std::size_t count) {
+    return ::send(fd_, bytes, count, 0) == static_cast<ssize_t>(count);
+}
 
 int UdpPort::receive(double wait_s, std::uint8_t* bytes, std::size_t room) {
     const ssize_t at_once = ::recv(fd_, bytes, room, MSG_DONTWAIT);

@@ -16,9 +16,7 @@
 namespace palpa::platform {
 namespace {
 
-double steady_s() {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
+double steady_s() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
 int SDLCALL watch(void* user, SDL_Event* event) {
     receive(*event, steady_s(), *static_cast<Pointers*>(user));
@@ -85,51 +83,35 @@ void Window::poll(double wait_s, std::vector<Sample>& out) {
     impl_->uncovered = std::exchange(pointers.uncovered, false);
 }
 
-bool Window::stirred() const {
-    return impl_->stirred;
-}
+bool Window::stirred() const { return impl_->stirred; }
 
-bool Window::uncovered() const {
-    return impl_->uncovered;
-}
+bool Window::uncovered() const { return impl_->uncovered; }
 
 void Window::set_event_filter(EventFilter filter, void* user) {
     impl_->pointers.filter = filter;
     impl_->pointers.filter_user = user;
 }
 
-void Window::end_presses() {
-    forget_presses(impl_->pointers);
-}
+void Window::end_presses() { forget_presses(impl_->pointers); }
 
 void Window::set_keyboard(double x0_px, double y0_px, double x1_px, double y1_px, double speed_px_per_s) {
     set_keyboard_area(steady_s(), {x0_px, y0_px, x1_px, y1_px, speed_px_per_s}, impl_->pointers);
 }
 
-double Window::keyboard_x_px() const {
-    return impl_->pointers.keyboard.x_px;
-}
+double Window::keyboard_x_px() const { return impl_->pointers.keyboard.x_px; }
 
-double Window::keyboard_y_px() const {
-    return impl_->pointers.keyboard.y_px;
-}
+double Window::keyboard_y_px() const { return impl_->pointers.keyboard.y_px; }
 
-bool Window::close_requested() const {
-    return impl_->pointers.close_requested || impl_->pointers.quit_requested;
-}
+bool Window::close_requested() const { return impl_->pointers.close_requested || impl_->pointers.quit_requested; }
 
 bool Window::stay_open() {
     impl_->pointers.close_requested = false;
     return !impl_->pointers.quit_requested;
 }
 
-void Window::present() {
-    SDL_GL_SwapWindow(sdl());
-}
+void Window::present() { SDL_GL_SwapWindow(sdl()); }
 
-double Window::now_s() const {
-    return steady_s();
-}
+double Window::now_s() const { return steady_s(); }
 
 int Window::width_px() const {
     int width_px = 0;
@@ -161,9 +143,7 @@ std::vector<PointerDevice> Window::devices() const {
     return devices;
 }
 
-bool Window::lists_devices() const {
-    return true;
-}
+bool Window::lists_devices() const { return true; }
 
 std::string Window::input_note() const {
     if (impl_->pointers.xinput) return {};
@@ -176,32 +156,23 @@ std::string Window::input_note() const {
     return "no pressure of pens or fingers with the display driver " + std::string(name) + ": it needs X11";
 }
 
-void Window::set_title(const std::string& title) {
-    SDL_SetWindowTitle(sdl(), title.c_str());
-}
+void Window::set_title(const std::string& title) { SDL_SetWindowTitle(sdl(), title.c_str()); }
 
-bool Window::full_screen() const {
-    return (SDL_GetWindowFlags(sdl()) & SDL_WINDOW_FULLSCREEN_DESKTOP) != 0;
-}
+bool Window::full_screen() const { return (SDL_GetWindowFlags(sdl()) & SDL_WINDOW_FULLSCREEN_DESKTOP) != 0; }
 
-void Window::set_full_screen(bool full) {
-    SDL_SetWindowFullscreen(sdl(), full ? SDL_WINDOW_FULLSCREEN_DESKTOP : 0);
-}
+void Window::set_full_screen(bool full) { SDL_SetWindowFullscreen(sdl(), full ? SDL_WINDOW_FULLSCREEN_DESKTOP : 0); }
 
 std::string Window::screen_name() const {
     const int display = std::max(0, SDL_GetWindowDisplayIndex(sdl()));
     SDL_DisplayMode mode{};
     SDL_GetDesktopDisplayMode(display, &mode);
     const char* name = SDL_GetDisplayName(display);
-    return std::string(name != nullptr ? name : "screen") + ", " + std::to_string(mode.w) + " x " + std::to_string(mode.h);
+    return std::string(name != nullptr ? name : "screen") + ", " + std::to_string(mode.w) + " x " +
+           std::to_string(mode.h);
 }
 
-double Window::touch_px_per_mm() const {
-    return kMissing;
-}
+double Window::touch_px_per_mm() const { return kMissing; }
 
-SDL_Window* Window::sdl() const {
-    return impl_->gl.sdl();
-}
+SDL_Window* Window::sdl() const { return impl_->gl.sdl(); }
 
 }  // namespace palpa::platform

@@ -7,21 +7,36 @@ namespace {
 
 int key_of(SDL_Keycode code) {
     switch (code) {
-        case SDLK_LEFT: return key::left;
-        case SDLK_RIGHT: return key::right;
-        case SDLK_UP: return key::up;
-        case SDLK_DOWN: return key::down;
-        case SDLK_PAGEUP: return key::page_up;
-        case SDLK_PAGEDOWN: return key::page_down;
-        case SDLK_HOME: return key::home;
-        case SDLK_END: return key::end;
-        case SDLK_F10: return key::f10;
-        case SDLK_F11: return key::f11;
-        case SDLK_KP_ENTER: return key::pad_enter;
-        case SDLK_KP_PLUS: return key::pad_plus;
-        case SDLK_KP_MINUS: return key::pad_minus;
-        case SDLK_KP_0: return key::pad_0;
-        default: break;
+        case SDLK_LEFT:
+            return key::left;
+        case SDLK_RIGHT:
+            return key::right;
+        case SDLK_UP:
+            return key::up;
+        case SDLK_DOWN:
+            return key::down;
+        case SDLK_PAGEUP:
+            return key::page_up;
+        case SDLK_PAGEDOWN:
+            return key::page_down;
+        case SDLK_HOME:
+            return key::home;
+        case SDLK_END:
+            return key::end;
+        case SDLK_F10:
+            return key::f10;
+        case SDLK_F11:
+            return key::f11;
+        case SDLK_KP_ENTER:
+            return key::pad_enter;
+        case SDLK_KP_PLUS:
+            return key::pad_plus;
+        case SDLK_KP_MINUS:
+            return key::pad_minus;
+        case SDLK_KP_0:
+            return key::pad_0;
+        default:
+            break;
     }
     if (code >= SDLK_KP_1 && code <= SDLK_KP_9) return key::pad_0 + 1 + (code - SDLK_KP_1);
     return code > 0 && code <= key::del ? code : key::other;  // SDL's codes of what types are ASCII too
@@ -74,26 +89,31 @@ std::optional<WindowEvent> window_event(const SDL_Event& event, SDL_Window* wind
     WindowEvent out;
     switch (event.type) {
         case SDL_MOUSEMOTION:
-            return of_mouse(WindowEvent::Kind::pointer_move, event.motion.which, event.motion.x, event.motion.y, window);
+            return of_mouse(WindowEvent::Kind::pointer_move, event.motion.which, event.motion.x, event.motion.y,
+                            window);
         case SDL_MOUSEBUTTONDOWN:
         case SDL_MOUSEBUTTONUP:
             if (event.button.button != SDL_BUTTON_LEFT) return std::nullopt;
-            return of_mouse(event.type == SDL_MOUSEBUTTONDOWN ? WindowEvent::Kind::button_down : WindowEvent::Kind::button_up,
-                            event.button.which, event.button.x, event.button.y, window);
+            return of_mouse(
+                event.type == SDL_MOUSEBUTTONDOWN ? WindowEvent::Kind::button_down : WindowEvent::Kind::button_up,
+                event.button.which, event.button.x, event.button.y, window);
         case SDL_MOUSEWHEEL:
             out.kind = WindowEvent::Kind::wheel;
             out.notches = event.wheel.y;
             return out;
         case SDL_FINGERDOWN:
         case SDL_FINGERMOTION:
-        case SDL_FINGERUP: return of_finger(event.tfinger, window);
+        case SDL_FINGERUP:
+            return of_finger(event.tfinger, window);
         case SDL_KEYDOWN:
-        case SDL_KEYUP: return of_key(event.key);
+        case SDL_KEYUP:
+            return of_key(event.key);
         case SDL_TEXTINPUT:
             out.kind = WindowEvent::Kind::text;
             out.text = event.text.text;
             return out;
-        default: return std::nullopt;
+        default:
+            return std::nullopt;
     }
 }
 

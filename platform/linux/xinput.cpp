@@ -26,9 +26,7 @@ void select_events(const XInput& xinput, int device_id, EventMask mask) {
     XISelectEvents(xinput.display, xinput.window, &selection, 1);
 }
 
-int ignore_error(Display*, XErrorEvent*) {
-    return 0;
-}
+int ignore_error(Display*, XErrorEvent*) { return 0; }
 
 // A device may be unplugged between the list and the request; Xlib would end the program for that.
 void select_device_events(const XInput& xinput) {
@@ -147,16 +145,14 @@ XiEvent plain_event(XiKind kind, const XIDeviceEvent& device_event) {
 std::optional<XInput> open_xinput(SDL_Window* window) {
     SDL_SysWMinfo info;
     SDL_VERSION(&info.version);
-    if (SDL_GetWindowWMInfo(window, &info) == SDL_FALSE || info.subsystem != SDL_SYSWM_X11)
-        return std::nullopt;
+    if (SDL_GetWindowWMInfo(window, &info) == SDL_FALSE || info.subsystem != SDL_SYSWM_X11) return std::nullopt;
 
     XInput xinput;
     xinput.display = info.info.x11.display;
     xinput.window = info.info.x11.window;
     int first_event = 0;
     int first_error = 0;
-    if (XQueryExtension(xinput.display, "XInputExtension", &xinput.opcode, &first_event, &first_error) ==
-        False) {
+    if (XQueryExtension(xinput.display, "XInputExtension", &xinput.opcode, &first_event, &first_error) == False) {
         return std::nullopt;
     }
     // on our window, since a second selection on the root window would undo SDL's

@@ -40,19 +40,15 @@ void keep_axes(const XiEvent& event, AxisValues& values) {
     }
 }
 
-bool usable(const Axis& axis, const AxisValues& values) {
-    return values.contains(axis.number) && axis.hi > axis.lo;
-}
+bool usable(const Axis& axis, const AxisValues& values) { return values.contains(axis.number) && axis.hi > axis.lo; }
 
 void fill(const XiDevice& device, const XiEvent& event, const AxisValues& values, const XiState& state,
           Sample& sample) {
     const bool by_axes = usable(device.x, values) && usable(device.y, values);
     const double x = last_value(device.x, values);
     const double y = last_value(device.y, values);
-    sample.x_px =
-        by_axes ? screen_px(device.x, x, state.screen_width_px) - event.origin_x_px : event.event_x_px;
-    sample.y_px =
-        by_axes ? screen_px(device.y, y, state.screen_height_px) - event.origin_y_px : event.event_y_px;
+    sample.x_px = by_axes ? screen_px(device.x, x, state.screen_width_px) - event.origin_x_px : event.event_x_px;
+    sample.y_px = by_axes ? screen_px(device.y, y, state.screen_height_px) - event.origin_y_px : event.event_y_px;
 
     sample.pressure_raw = last_value(device.pressure, values);
     sample.pressure = fraction(device.pressure, sample.pressure_raw);
@@ -135,16 +131,13 @@ const XiDevice* find_device(const XiState& state, int id) {
     return device == state.devices.end() ? nullptr : &*device;
 }
 
-std::int64_t pen_pointer_id(int device_id) {
-    return -static_cast<std::int64_t>(device_id);
-}
+std::int64_t pen_pointer_id(int device_id) { return -static_cast<std::int64_t>(device_id); }
 
 std::optional<Sample> decode(const XiEvent& event, double t_host_s, XiState& state) {
     const double t_device_s = 1e-3 * unwrap_ms(event.time_ms, state.clock);
     const XiDevice* device = find_device(state, event.source_id);
     if (device == nullptr || device->tool == Tool::mouse) return std::nullopt;
-    auto sample =
-        device->tool == Tool::pen ? decode_pen(*device, event, state) : decode_touch(*device, event, state);
+    auto sample = device->tool == Tool::pen ? decode_pen(*device, event, state) : decode_touch(*device, event, state);
     if (sample) {
         sample->t_host_s = t_host_s;
         sample->t_device_s = t_device_s;

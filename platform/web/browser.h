@@ -11,10 +11,10 @@ int canvas_width_px();
 int canvas_height_px();
 double px_per_css_px();  // of the canvas
 
-double now_s();          // of events too; steady
+double now_s();  // of events too; steady
 bool has_touch_screen();
-bool is_secure();        // https, or this machine: else events between frames are kept from the page
-int screen_long_px();    // the same however it is turned
+bool is_secure();      // https, or this machine: else events between frames are kept from the page
+int screen_long_px();  // the same however it is turned
 int screen_short_px();
 bool full_screen();
 void set_full_screen(bool full);  // works only shortly after somebody has touched something

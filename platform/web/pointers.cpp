@@ -85,8 +85,10 @@ bool tell_panels(const Sample& sample, const Pointers& pointers) {
             if (!finger) tell(Kind::pointer_move);
             return tell(finger ? Kind::finger_down : Kind::button_down);
         case Phase::up:
-        case Phase::cancel: return tell(finger ? Kind::finger_up : Kind::button_up);
-        default: return tell(finger ? Kind::finger_move : Kind::pointer_move);
+        case Phase::cancel:
+            return tell(finger ? Kind::finger_up : Kind::button_up);
+        default:
+            return tell(finger ? Kind::finger_move : Kind::pointer_move);
     }
 }
 
@@ -113,14 +115,22 @@ void receive_mouse(const BrowserPointer& event, double t_host_s, Pointers& point
 
 std::optional<PointerKey> pointer_key(int code) {
     switch (code) {
-        case key::left: return PointerKey::left;
-        case key::right: return PointerKey::right;
-        case key::up: return PointerKey::up;
-        case key::down: return PointerKey::down;
-        case key::space: return PointerKey::press;
-        case key::page_up: return PointerKey::harder;
-        case key::page_down: return PointerKey::softer;
-        default: return std::nullopt;
+        case key::left:
+            return PointerKey::left;
+        case key::right:
+            return PointerKey::right;
+        case key::up:
+            return PointerKey::up;
+        case key::down:
+            return PointerKey::down;
+        case key::space:
+            return PointerKey::press;
+        case key::page_up:
+            return PointerKey::harder;
+        case key::page_down:
+            return PointerKey::softer;
+        default:
+            return std::nullopt;
     }
 }
 

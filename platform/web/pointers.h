@@ -19,15 +19,15 @@ struct BrowserPointer {
     Kind kind = Kind::move;
     std::int64_t pointer_id = 0;
     Tool tool = Tool::mouse;
-    double x_px = 0.0;       // of the drawing area
+    double x_px = 0.0;  // of the drawing area
     double y_px = 0.0;
-    double pressure = 0.0;   // 0..1
+    double pressure = 0.0;  // 0..1
     double tilt_x_deg = 0.0;
     double tilt_y_deg = 0.0;
-    double width_px = 0.0;   // contact
+    double width_px = 0.0;  // contact
     double height_px = 0.0;
-    double time_s = 0.0;     // the clock of now_s()
-    int buttons = 0;         // bit mask: 1 the tip or the left button, 32 a pen's other end
+    double time_s = 0.0;  // the clock of now_s()
+    int buttons = 0;      // bit mask: 1 the tip or the left button, 32 a pen's other end
 };
 
 struct Pointers {
@@ -36,11 +36,11 @@ struct Pointers {
     Presses presses;
     EventFilter filter = nullptr;
     void* filter_user = nullptr;
-    std::vector<std::int64_t> touching;     // pens and fingers, by their number in samples
-    std::array<bool, kToolCount> seen{};    // tools that have sent something
-    bool stirred = false;                   // something came since the last poll()
-    std::vector<Sample> made;               // scratch
-    std::vector<Sample> pending;            // for the next poll()
+    std::vector<std::int64_t> touching;   // pens and fingers, by their number in samples
+    std::array<bool, kToolCount> seen{};  // tools that have sent something
+    bool stirred = false;                 // something came since the last poll()
+    std::vector<Sample> made;             // scratch
+    std::vector<Sample> pending;          // for the next poll()
 };
 
 void receive(const BrowserPointer& event, double t_host_s, Pointers& pointers);

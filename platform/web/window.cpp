@@ -4,7 +4,6 @@
 
 #include <emscripten.h>
 #include <emscripten/html5.h>
-
 #include <stdexcept>
 #include <utility>
 
@@ -133,9 +132,9 @@ double Window::touch_px_per_mm() const {
 // What the page sends (platform/web/browser.cpp).
 extern "C" {
 
-EMSCRIPTEN_KEEPALIVE void palpa_pointer(int kind, double pointer_id, int tool, double x_css, double y_css, double pressure,
-                                        double tilt_x_deg, double tilt_y_deg, double width_css, double height_css,
-                                        double time_ms, int buttons) {
+EMSCRIPTEN_KEEPALIVE void palpa_pointer(int kind, double pointer_id, int tool, double x_css, double y_css,
+                                        double pressure, double tilt_x_deg, double tilt_y_deg, double width_css,
+                                        double height_css, double time_ms, int buttons) {
     using namespace palpa;
     if (open_pointers == nullptr) return;
     open_pointers->stirred = true;
@@ -174,7 +173,8 @@ EMSCRIPTEN_KEEPALIVE void palpa_key(int down, int code, int typed, int ctrl, int
     event.repeat = repeat != 0;
     receive_key(event, browser::now_s(), *open_pointers);
     constexpr int kLatin = 0xff;  // what the font has
-    if (down == 0 || typed < ' ' || (typed > '~' && typed < 0xa0) || typed > kLatin || open_pointers->filter == nullptr) return;
+    if (down == 0 || typed < ' ' || (typed > '~' && typed < 0xa0) || typed > kLatin || open_pointers->filter == nullptr)
+        return;
     event.kind = WindowEvent::Kind::text;
     if (typed > '~') event.text += static_cast<char>(0xc0 | (typed >> 6));
     event.text += static_cast<char>(typed > '~' ? 0x80 | (typed & 0x3f) : typed);
@@ -186,5 +186,4 @@ EMSCRIPTEN_KEEPALIVE void palpa_focus_lost() {
     palpa::platform::open_pointers->stirred = true;
     release_all(palpa::platform::browser::now_s(), *palpa::platform::open_pointers);
 }
-
 }

@@ -1,21 +1,20 @@
 #include "stiffnessmaps/generate/generate.h"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <stdexcept>
+#include <unistd.h>
 
-#include "stiffnessmaps/generate/worker_processes.h"
-#include "stiffnessmaps/generate/pieces.h"
-#include "stiffnessmaps/generate/provenance.h"
 #include "files/input_error.h"
 #include "files/json.h"
 #include "files/text.h"
 #include "mechanics/error.h"
 #include "stiffnessmaps/analytic.h"
+#include "stiffnessmaps/generate/pieces.h"
+#include "stiffnessmaps/generate/provenance.h"
+#include "stiffnessmaps/generate/worker_processes.h"
 #include "stiffnessmaps/grid.h"
 #include "stiffnessmaps/map_file.h"
 
@@ -44,7 +43,7 @@ MapTask task_of(const GenerateOptions& options, MeshSet meshes) {
 
 // Done of total on one line of a terminal, with the time left; silent elsewhere.
 class Progress {
- public:
+  public:
     Progress(const char* what, double total) : what_(what), total_(total), shown_(::isatty(STDERR_FILENO) == 1) {}
     ~Progress() {
         if (shown_) std::fprintf(stderr, "\r\033[K");
@@ -54,13 +53,13 @@ class Progress {
         if (first_ < 0.0) first_ = done;
         const double spent_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
         const int bars = static_cast<int>(30.0 * done / total_);
-        std::fprintf(stderr, "\r\033[K%s [%.*s%*s] %.0f %%", what_, bars, "##############################", 30 - bars, "",
-                     100.0 * done / total_);
+        std::fprintf(stderr, "\r\033[K%s [%.*s%*s] %.0f %%", what_, bars, "##############################", 30 - bars,
+                     "", 100.0 * done / total_);
         if (done > first_) std::fprintf(stderr, ", %.0f s left", spent_s * (total_ - done) / (done - first_));
         std::fflush(stderr);
     }
 
- private:
+  private:
     const char* what_;
     double total_;
     bool shown_;
@@ -69,7 +68,12 @@ class Progress {
 };
 
 Arguments call_of(const GenerateOptions& options) {
-    Arguments out{"maps", "generate", options.phantom.string(), "-o", options.output.string(), "--coarseness",
+    Arguments out{"maps",
+                  "generate",
+                  options.phantom.string(),
+                  "-o",
+                  options.output.string(),
+                  "--coarseness",
                   files::number_text(options.coarseness)};
     return out;
 }
@@ -157,8 +161,9 @@ Map joined(const MapTask& task) {
     map.normal_N.resize(n_depths * n_cells);
     const auto gaps = missing(task, p.n_y, line_name);
     if (!gaps.empty()) {
-        throw std::runtime_error(task.folder.string() + ": " + std::to_string(gaps.size()) + " of " + std::to_string(p.n_y) +
-                                 " lines are not there yet (first: line " + std::to_string(gaps.front()) + ")");
+        throw std::runtime_error(task.folder.string() + ": " + std::to_string(gaps.size()) + " of " +
+                                 std::to_string(p.n_y) + " lines are not there yet (first: line " +
+                                 std::to_string(gaps.front()) + ")");
     }
     const bool rough = is_rough(task);
     std::vector<std::vector<double>> energy_J(rough ? 0 : n_depths, std::vector<double>(n_cells));
@@ -222,7 +227,9 @@ files::Json convergence_json(const MapTask& task, const MapTask& refined, const 
             const double off_y_N = std::abs(static_cast<double>(map.tangential_y_N[at]) - reference[d].tangential_y_N);
             found.largest_tangential = std::max({found.largest_tangential, off_x_N / greatest_N, off_y_N / greatest_N});
         }
-        points.push_back({{"x_mm", 1e3 * map.x_of(cell.i)}, {"y_mm", 1e3 * map.y_of(cell.j)}, {"map_N", in_map},
+        points.push_back({{"x_mm", 1e3 * map.x_of(cell.i)},
+                          {"y_mm", 1e3 * map.y_of(cell.j)},
+                          {"map_N", in_map},
                           {"refined_N", refined_N}});
     }
     std::sort(differences.begin(), differences.end());
@@ -230,18 +237,18 @@ files::Json convergence_json(const MapTask& task, const MapTask& refined, const 
     found.median = differences[differences.size() / 2];
     const auto mesh_json = [](const MapTask& t) {
         return files::Json{{"contact_spacing_mm", 1e3 * t.mesh.contact_m},
-                    {"side_spacing_mm", {1e3 * t.mesh.surface_m[0], 1e3 * t.mesh.surface_m[1]}},
-                    {"cells_across_nodule", t.mesh.cells_across}};
+                           {"side_spacing_mm", {1e3 * t.mesh.surface_m[0], 1e3 * t.mesh.surface_m[1]}},
+                           {"cells_across_nodule", t.mesh.cells_across}};
     };
     files::Json report{{"what", "normal force of the map against all its meshes refined once, at stated points"},
-            {"mesh", mesh_json(task)},
-            {"refined_mesh", mesh_json(refined)},
-            {"greatest_force_N", greatest_N},
-            {"max_difference", found.largest},
-            {"median_difference", found.median},
-            {"differences_are", "shares of the greatest force"},
-            {"depths_mm", map_json(map)["depths_mm"]},
-            {"points", points}};
+                       {"mesh", mesh_json(task)},
+                       {"refined_mesh", mesh_json(refined)},
+                       {"greatest_force_N", greatest_N},
+                       {"max_difference", found.largest},
+                       {"median_difference", found.median},
+                       {"differences_are", "shares of the greatest force"},
+                       {"depths_mm", map_json(map)["depths_mm"]},
+                       {"points", points}};
     if (is_rough(task)) report["max_tangential_difference"] = found.largest_tangential;
     return report;
 }
@@ -265,9 +272,12 @@ std::string error_estimate(const GenerateOptions& options, const MapTask& task, 
         Differences found;
         convergence_json(task, coarser, map, found);
         std::string text = " Estimated error of the meshes: " + files::short_number(100.0 * found.largest) +
-                           " % of the greatest force at most, " + files::short_number(100.0 * found.median) + " % in the median";
-        if (is_rough(task)) text += ", tangential force " + files::short_number(100.0 * found.largest_tangential) + " % of it at most";
-        return text + " (" + std::to_string(kProbes) + " points against meshes " + files::short_number(kCoarser) + " times coarser).";
+                           " % of the greatest force at most, " + files::short_number(100.0 * found.median) +
+                           " % in the median";
+        if (is_rough(task))
+            text += ", tangential force " + files::short_number(100.0 * found.largest_tangential) + " % of it at most";
+        return text + " (" + std::to_string(kProbes) + " points against meshes " + files::short_number(kCoarser) +
+               " times coarser).";
     } catch (const files::InputError&) {
         return " Error of the meshes: not estimated, coarser ones cannot be made.";
     } catch (const mechanics::SolverError&) {
@@ -283,40 +293,52 @@ void merge(const GenerateOptions& options, const MapTask& task) {
     fs::remove_all(pieces_folder(options.output, MeshSet::coarser));
     const ForceRange range = force_range(map);
     std::printf("%s: %zu x %zu cells, %zu depths, %s to %s N, by finite elements\n", options.output.c_str(), map.n_x,
-                map.n_y, map.n_depths(), files::short_number(range.lowest_N).c_str(), files::short_number(range.highest_N).c_str());
+                map.n_y, map.n_depths(), files::short_number(range.lowest_N).c_str(),
+                files::short_number(range.highest_N).c_str());
 }
 
 void check(const GenerateOptions& options, const MapTask& task, const MapTask& refined) {
     Map map = read_map(options.output);
     const Map expected = map_of_phantom(task.phantom);
     if (is_rough(task) && (map.tangential_x_N.empty() || map.tangential_y_N.empty())) {
-        throw files::bad_input(options.output.string(), "", "no tangential arrays", "a map made from " + options.phantom.string());
+        throw files::bad_input(options.output.string(), "", "no tangential arrays",
+                               "a map made from " + options.phantom.string());
     }
-    if (map.n_x != expected.n_x || map.n_y != expected.n_y || map_json(map)["depths_mm"] != map_json(expected)["depths_mm"]) {
-        throw files::bad_input(options.output.string(), "", "another grid or other depths", "a map made from " + options.phantom.string());
+    if (map.n_x != expected.n_x || map.n_y != expected.n_y ||
+        map_json(map)["depths_mm"] != map_json(expected)["depths_mm"]) {
+        throw files::bad_input(options.output.string(), "", "another grid or other depths",
+                               "a map made from " + options.phantom.string());
     }
     compute_windows(options, refined, MeshSet::refined, "checking");
     Differences differences;
     const files::Json report = convergence_json(task, refined, map, differences);
     files::write_text_atomically(without_slash(options.output) / "convergence.json", report.dump(1) + "\n");
-    std::string found = std::to_string(kProbes) + " points against meshes refined once: " + files::short_number(100.0 * differences.largest) +
-                        " % of the greatest force at most, " + files::short_number(100.0 * differences.median) + " % in the median";
-    if (is_rough(task)) found += "; tangential force " + files::short_number(100.0 * differences.largest_tangential) + " % of it at most";
-    map.source.how = map.source.how.substr(0, map.source.how.find(kChecked)) + kChecked + " " + found + " (convergence.json).";
+    std::string found = std::to_string(kProbes) +
+                        " points against meshes refined once: " + files::short_number(100.0 * differences.largest) +
+                        " % of the greatest force at most, " + files::short_number(100.0 * differences.median) +
+                        " % in the median";
+    if (is_rough(task))
+        found +=
+            "; tangential force " + files::short_number(100.0 * differences.largest_tangential) + " % of it at most";
+    map.source.how =
+        map.source.how.substr(0, map.source.how.find(kChecked)) + kChecked + " " + found + " (convergence.json).";
     files::write_text_atomically(without_slash(options.output) / "map.json", files::json_text(map_json(map)));
     fs::remove_all(refined.folder);
     std::printf("%s: %s\n", options.output.c_str(), found.c_str());
 }
 
 void refuse_existing(const fs::path& output) {
-    if (fs::exists(output)) throw files::bad_input(output.string(), "", "something of that name", "a new name (nothing is overwritten)");
+    if (fs::exists(output))
+        throw files::bad_input(output.string(), "", "something of that name", "a new name (nothing is overwritten)");
 }
 
 int number_from_environment(const char* name) {
     const char* text = std::getenv(name);
     double value = 0.0;
-    if (text == nullptr || !files::parse_number(text, value) || value < 0.0 || value > 1e6 || value != std::floor(value)) {
-        throw files::bad_input(name, "", text == nullptr ? "nothing" : files::shown(text), "a whole number (or give --part i/n)");
+    if (text == nullptr || !files::parse_number(text, value) || value < 0.0 || value > 1e6 ||
+        value != std::floor(value)) {
+        throw files::bad_input(name, "", text == nullptr ? "nothing" : files::shown(text),
+                               "a whole number (or give --part i/n)");
     }
     return static_cast<int>(value);
 }
@@ -326,7 +348,8 @@ void refuse_beyond_analytic(const Phantom& phantom, const fs::path& file) {
         throw files::bad_input(file.string(), "indenter.shape", "cylinder", "sphere with --method analytic");
     }
     if (!phantom.rolling && phantom.friction > 0.0) {
-        throw files::bad_input(file.string(), "indenter.friction", files::short_number(phantom.friction), "0 with --method analytic");
+        throw files::bad_input(file.string(), "indenter.friction", files::short_number(phantom.friction),
+                               "0 with --method analytic");
     }
 }
 
@@ -336,9 +359,10 @@ Part parse_part(const std::string& text) {
     const std::size_t slash = text.find('/');
     double index = 0.0;
     double count = 0.0;
-    const bool good = slash != std::string::npos && files::parse_number(std::string_view(text).substr(0, slash), index) &&
-                      files::parse_number(std::string_view(text).substr(slash + 1), count) && index == std::floor(index) &&
-                      count == std::floor(count) && index >= 1.0 && index <= count && count <= 1e6;
+    const bool good =
+        slash != std::string::npos && files::parse_number(std::string_view(text).substr(0, slash), index) &&
+        files::parse_number(std::string_view(text).substr(slash + 1), count) && index == std::floor(index) &&
+        count == std::floor(count) && index >= 1.0 && index <= count && count <= 1e6;
     if (!good) throw files::bad_input("--part", "", files::shown(text), "i/n with 1 <= i <= n, such as 2/8");
     return {static_cast<int>(index), static_cast<int>(count)};
 }
@@ -346,7 +370,8 @@ Part parse_part(const std::string& text) {
 std::optional<Part> part_from_environment() {
     Part part;
     if (std::getenv("SLURM_ARRAY_TASK_ID") != nullptr) {
-        part.index = number_from_environment("SLURM_ARRAY_TASK_ID") - number_from_environment("SLURM_ARRAY_TASK_MIN") + 1;
+        part.index =
+            number_from_environment("SLURM_ARRAY_TASK_ID") - number_from_environment("SLURM_ARRAY_TASK_MIN") + 1;
         part.count = number_from_environment("SLURM_ARRAY_TASK_COUNT");
     } else if (std::getenv("OMPI_COMM_WORLD_RANK") != nullptr) {
         part.index = number_from_environment("OMPI_COMM_WORLD_RANK") + 1;
@@ -369,7 +394,8 @@ void generate_map(const GenerateOptions& options) {
     }
     const MapTask task = task_of(options, options.meshes);
     if (options.window && !(*options.window >= 0 && *options.window < window_count(task))) {
-        throw files::bad_input("--window", "", std::to_string(*options.window), "0 to " + std::to_string(window_count(task) - 1));
+        throw files::bad_input("--window", "", std::to_string(*options.window),
+                               "0 to " + std::to_string(window_count(task) - 1));
     }
     if (options.window) return compute_window(task, *options.window);
     if (!options.check || !fs::exists(options.output)) {

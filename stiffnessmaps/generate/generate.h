@@ -25,8 +25,8 @@ struct GenerateOptions {
     bool merge = false;
     bool check = false;
     double coarseness = 1.0;
-    std::optional<int> window;         // one call of run_jobs: this window only,
-    MeshSet meshes = MeshSet::own;     // of these meshes
+    std::optional<int> window;      // one call of run_jobs: this window only,
+    MeshSet meshes = MeshSet::own;  // of these meshes
 };
 
 // Throws InputError for bad input and std::runtime_error when the run fails.

@@ -6,10 +6,10 @@
 #include <cstring>
 #include <stdexcept>
 
-#include "stiffnessmaps/generate/cost.h"
 #include "files/input_error.h"
 #include "files/text.h"
 #include "mechanics/error.h"
+#include "stiffnessmaps/generate/cost.h"
 #include "stiffnessmaps/map_file.h"
 
 namespace palpa::stiffnessmaps {
@@ -80,7 +80,9 @@ void check_phantom(const Phantom& phantom, const std::filesystem::path& file) {
         const double last_m = first_m + phantom.spacing_m[c] * static_cast<double>(n - 1);
         const double slack_m = 0.5 * phantom.indenter_radius_m;  // how far the indenter may hang over a side
         if (first_m >= -slack_m && last_m <= phantom.size_m[c] + slack_m) continue;
-        refuse(file, "grid", std::string(c == 0 ? "x " : "y ") + files::short_number(1e3 * first_m) + " to " + files::short_number(1e3 * last_m) + " mm",
+        refuse(file, "grid",
+               std::string(c == 0 ? "x " : "y ") + files::short_number(1e3 * first_m) + " to " +
+                   files::short_number(1e3 * last_m) + " mm",
                "an indenter on the tissue, 0 to " + files::short_number(1e3 * phantom.size_m[c]) + " mm");
     }
 }
@@ -119,7 +121,8 @@ mechanics::PairTable pair_table_of(const MapTask& task, const Numbers& numbers) 
 }
 
 Numbers numbers_of(const mechanics::LayerKernel& kernel) {
-    Numbers out{kernel.spacing_m[0], kernel.spacing_m[1], static_cast<double>(kernel.n_x), static_cast<double>(kernel.n_y)};
+    Numbers out{kernel.spacing_m[0], kernel.spacing_m[1], static_cast<double>(kernel.n_x),
+                static_cast<double>(kernel.n_y)};
     for (const auto* list : {&kernel.value, &kernel.along_x, &kernel.along_y}) append(*list, out);
     return out;
 }

@@ -50,6 +50,7 @@ std::vector<Cell> probe_cells(const Phantom& phantom, std::size_t count);
 // With friction: slides.
 inline bool is_rough(const MapTask& task) { return task.model.friction > 0.0; }
 // Forces at each depth over a cell.
-std::vector<mechanics::RollingForce> press_cell(const MapTask& task, const mechanics::RollingTables& tables, const Cell& cell);
+std::vector<mechanics::RollingForce> press_cell(const MapTask& task, const mechanics::RollingTables& tables,
+                                                const Cell& cell);
 
 }  // namespace palpa::stiffnessmaps

@@ -29,13 +29,14 @@ std::string tool_text(const MapTask& task) {
                                   ? "sphere"
                                   : "cylinder " + mm(p.indenter_length_m) + " long with its axis along y";
     if (!is_rough(task)) return "a frictionless " + shape + " rolled";
-    return "a " + shape + " that slides steadily with a friction coefficient of " + files::number_text(task.model.friction) +
-           ", slipping all over its contact,";
+    return "a " + shape + " that slides steadily with a friction coefficient of " +
+           files::number_text(task.model.friction) + ", slipping all over its contact,";
 }
 
 std::string tangential_text(const MapTask& task) {
     if (!is_rough(task)) return "Tangential force: slope of the contact's energy, central differences on the grid.";
-    return "Tangential force: friction and slope of the pressure, tangential_x_N of a slide along +x (and the normal force), "
+    return "Tangential force: friction and slope of the pressure, tangential_x_N of a slide along +x (and the normal "
+           "force), "
            "tangential_y_N of one along +y; for motion along -x and -y friction has the other sign than these arrays.";
 }
 
@@ -44,18 +45,21 @@ std::string tangential_text(const MapTask& task) {
 std::string how_made(const MapTask& task) {
     const Phantom& p = task.phantom;
     const double contact_radius_m = std::sqrt(p.indenter_radius_m * std::min(p.depths_m.front(), p.indenter_radius_m));
-    std::string how = "Linear finite elements (B-bar hexahedra), " + tool_text(task) + " over the phantom: " +
-                      mm(task.mesh.contact_m) + " between nodes under the tool (contact radius / spacing " +
-                      files::short_number(contact_radius_m / task.mesh.contact_m) + " at " + mm(p.depths_m.front()) +
-                      "), nodules " + files::short_number(task.mesh.cells_across) + " cells across, the block's sides every " +
-                      mm(task.mesh.surface_m[0]) + ". " + tangential_text(task);
+    std::string how =
+        "Linear finite elements (B-bar hexahedra), " + tool_text(task) +
+        " over the phantom: " + mm(task.mesh.contact_m) + " between nodes under the tool (contact radius / spacing " +
+        files::short_number(contact_radius_m / task.mesh.contact_m) + " at " + mm(p.depths_m.front()) + "), nodules " +
+        files::short_number(task.mesh.cells_across) + " cells across, the block's sides every " +
+        mm(task.mesh.surface_m[0]) + ". " + tangential_text(task);
     how += " The tissue's Young's modulus, " + files::number_text(p.tissue.young_Pa) + " Pa, is " +
            (p.tissue.assumed ? "ASSUMED." : "the phantom's.");
     const double amber_m = depth_at_ratio_m(p, mechanics::kAmber);
     const double red_m = depth_at_ratio_m(p, mechanics::kRed);
     if (p.depths_m.back() > amber_m) {
-        how += " Leaves the linear range (larger of depth / contact width and depth / thickness): amber, above 10 %, from " +
-               mm(amber_m) + "; red, above 25 %, from " + mm(red_m) + ".";
+        how +=
+            " Leaves the linear range (larger of depth / contact width and depth / thickness): amber, above 10 %, "
+            "from " +
+            mm(amber_m) + "; red, above 25 %, from " + mm(red_m) + ".";
     }
     return how;
 }

@@ -1,17 +1,16 @@
 #include "stiffnessmaps/generate/worker_processes.h"
 
-#include <fcntl.h>
-#include <signal.h>
-#include <sys/file.h>
-#include <sys/prctl.h>
-#include <sys/wait.h>
-#include <unistd.h>
-
 #include <cerrno>
 #include <chrono>
 #include <cstring>
+#include <fcntl.h>
+#include <signal.h>
 #include <stdexcept>
+#include <sys/file.h>
+#include <sys/prctl.h>
+#include <sys/wait.h>
 #include <thread>
+#include <unistd.h>
 
 namespace palpa::stiffnessmaps {
 namespace {
@@ -56,7 +55,8 @@ void run_jobs(const std::vector<Arguments>& calls, int at_a_time, const std::fun
         meanwhile();
         if (!running.empty()) std::this_thread::sleep_for(std::chrono::milliseconds(100));
     }
-    if (failed) throw std::runtime_error("a job failed; what is finished is kept, and the same command goes on from there");
+    if (failed)
+        throw std::runtime_error("a job failed; what is finished is kept, and the same command goes on from there");
 }
 
 FolderLock::FolderLock(const std::filesystem::path& file, bool wait) {

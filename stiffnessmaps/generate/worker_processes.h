@@ -18,14 +18,14 @@ void run_jobs(const std::vector<Arguments>& calls, int at_a_time, const std::fun
 // Held until destroyed; other processes wait, or pass by with `wait` false. Where the file system has no locks,
 // everybody gets it.
 class FolderLock {
- public:
+  public:
     FolderLock(const std::filesystem::path& file, bool wait);
     ~FolderLock();
     FolderLock(const FolderLock&) = delete;
     FolderLock& operator=(const FolderLock&) = delete;
     bool held() const { return held_; }
 
- private:
+  private:
     int fd_ = -1;
     bool held_ = true;
 };

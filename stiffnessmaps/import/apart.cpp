@@ -145,9 +145,9 @@ files::NpyArray read_apart(const std::string& file, const char* library, const s
     if (!WIFEXITED(status) || WEXITSTATUS(status) != 0 || !whole) {
         const bool slow = WIFSIGNALED(status) && WTERMSIG(status) == SIGXCPU;
         throw files::bad_input(file, "",
-                        slow ? "over a minute of work for " + std::string(library)
-                             : "what " + std::string(library) + " cannot read without failing",
-                        "a whole file of moderate size");
+                               slow ? "over a minute of work for " + std::string(library)
+                                    : "what " + std::string(library) + " cannot read without failing",
+                               "a whole file of moderate size");
     }
     if (kind == kRefused) throw files::InputError(refused);
     return array;

@@ -69,8 +69,8 @@ bool is_number_line(std::string_view line) {
 
 }  // namespace
 
-std::size_t check_shape(const std::vector<std::size_t>& shape, std::size_t value_bytes,
-                        std::size_t stored_bytes, bool packed, const std::string& file) {
+std::size_t check_shape(const std::vector<std::size_t>& shape, std::size_t value_bytes, std::size_t stored_bytes,
+                        bool packed, const std::string& file) {
     if (shape.size() < 2 || shape.size() > 3)
         throw files::bad_input(file, "shape", files::shape_text(shape), "two or three dimensions");
     constexpr double kMostPacked = 1032.0;
@@ -132,8 +132,8 @@ files::NpyArray parse_number_matrix(std::string_view text, const std::string& fi
             float value = 0.0f;
             if (!parse_cell(field, value)) {
                 throw files::bad_input(file,
-                                "line " + std::to_string(line_number) + ", number " + std::to_string(n + 1),
-                                files::shown(field), "a finite number or n/a");
+                                       "line " + std::to_string(line_number) + ", number " + std::to_string(n + 1),
+                                       files::shown(field), "a finite number or n/a");
             }
             array.values.push_back(value);
             ++n;
@@ -142,7 +142,7 @@ files::NpyArray parse_number_matrix(std::string_view text, const std::string& fi
         if (rows == 0) columns = n;
         if (n != columns) {
             throw files::bad_input(file, "line " + std::to_string(line_number), std::to_string(n) + " numbers",
-                            std::to_string(columns) + " as in the first line");
+                                   std::to_string(columns) + " as in the first line");
         }
         ++rows;
     }
@@ -156,7 +156,7 @@ files::NpyArray read_array(const fs::path& path, const std::string& dataset) {
     const auto kind = array_kind(path);
     if (!kind)
         throw files::bad_input(file, "", "another kind of file",
-                        "an array: .npy, rows of numbers, MATLAB, HDF5, PNG or TIFF");
+                               "an array: .npy, rows of numbers, MATLAB, HDF5, PNG or TIFF");
     files::NpyArray array;
     switch (*kind) {
         case ArrayKind::npy:

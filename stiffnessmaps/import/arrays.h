@@ -16,12 +16,8 @@ enum class ArrayKind { npy, text, matlab, hdf5, png, tiff };
 // Told from the first bytes; text is an array if its first line holds nothing but numbers. Empty: none of
 // these.
 std::optional<ArrayKind> array_kind(const std::filesystem::path& path);
-inline bool is_array_file(const std::filesystem::path& path) {
-    return array_kind(path).has_value();
-}
-inline bool is_image(ArrayKind kind) {
-    return kind == ArrayKind::png || kind == ArrayKind::tiff;
-}
+inline bool is_array_file(const std::filesystem::path& path) { return array_kind(path).has_value(); }
+inline bool is_image(ArrayKind kind) { return kind == ArrayKind::png || kind == ArrayKind::tiff; }
 
 inline constexpr std::size_t kMostNumbers = 20'000'000;  // in an array, and in a map made of several
 
@@ -30,7 +26,7 @@ inline constexpr std::size_t kMostNumbers = 20'000'000;  // in an array, and in 
 files::NpyArray read_array(const std::filesystem::path& path, const std::string& dataset);
 
 files::NpyArray parse_number_matrix(std::string_view text,
-                             const std::string& file);  // rows of numbers, NaN for n/a or nothing
+                                    const std::string& file);  // rows of numbers, NaN for n/a or nothing
 // The libraries behind these are not safe against every file (HDF5 1.10 reads and writes beyond its memory on
 // some): read_array runs them in a process of their own, and nothing else should call them on strangers' files.
 files::NpyArray read_matlab(const std::filesystem::path& path, const std::string& dataset);
@@ -43,7 +39,7 @@ files::NpyArray read_tiff(
 // number
 // (`packed`: compressed, at most 1032 times, which is the most that deflate can). Returns how many numbers
 // there are.
-std::size_t check_shape(const std::vector<std::size_t>& shape, std::size_t value_bytes,
-                        std::size_t stored_bytes, bool packed, const std::string& file);
+std::size_t check_shape(const std::vector<std::size_t>& shape, std::size_t value_bytes, std::size_t stored_bytes,
+                        bool packed, const std::string& file);
 
 }  // namespace palpa::stiffnessmaps

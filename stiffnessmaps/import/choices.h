@@ -10,8 +10,8 @@ namespace palpa::stiffnessmaps {
 using ChoiceValue = std::variant<double, std::string, std::vector<double>>;
 
 // `stated`: by the person, which is then all that is said of why.
-inline void add_choice(MapSource& source, std::string key, ChoiceValue value, std::string how,
-                       std::string option, bool stated = false) {
+inline void add_choice(MapSource& source, std::string key, ChoiceValue value, std::string how, std::string option,
+                       bool stated = false) {
     if (stated) how = "as asked for";
     source.choices.push_back({std::move(key), std::move(value), std::move(how), std::move(option)});
 }

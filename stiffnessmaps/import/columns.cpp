@@ -28,9 +28,7 @@ const std::array<KnownRole, kRoles>& known_roles() {
         {Role::y, "y", {"ref_y", "y", "pos_y", "y_pos", "position_y", "contact_y", "py", "tip_y"}},
         {Role::z, "z", {"z", "pos_z", "z_pos", "position_z", "pz", "tip_z"}},
         {Role::depth, "depth", {"depth", "indentation", "penetration", "indent"}},
-        {Role::commanded_depth,
-         "depth_cmd",
-         {"depth_cmd", "cmd_depth", "commanded_depth", "depth_commanded"}},
+        {Role::commanded_depth, "depth_cmd", {"depth_cmd", "cmd_depth", "commanded_depth", "depth_commanded"}},
         {Role::normal_force, "fn", {"fn", "normal_force", "force_normal", "f_n", "force", "load", "f"}},
         {Role::force_x, "fx", {"fx", "force_x", "f_x", "x_force"}},
         {Role::force_y, "fy", {"fy", "force_y", "f_y", "y_force"}},
@@ -42,15 +40,9 @@ const std::array<KnownRole, kRoles>& known_roles() {
     return known;
 }
 
-bool is_force(Role role) {
-    return role >= Role::normal_force && role <= Role::force_z;
-}
-bool is_depth(Role role) {
-    return role == Role::depth || role == Role::commanded_depth;
-}
-bool is_position(Role role) {
-    return role == Role::x || role == Role::y || role == Role::z;
-}
+bool is_force(Role role) { return role >= Role::normal_force && role <= Role::force_z; }
+bool is_depth(Role role) { return role == Role::depth || role == Role::commanded_depth; }
+bool is_position(Role role) { return role == Role::x || role == Role::y || role == Role::z; }
 
 struct Unit {
     const char* name;
@@ -83,8 +75,7 @@ std::string lower(std::string_view text) {
 SplitName split_name(std::string_view name) {
     const auto blank = [](char c) { return c == ' ' || c == '"' || c == '\''; };
     while (!name.empty() && blank(name.front())) name.remove_prefix(1);
-    while (!name.empty() && (blank(name.back()) || name.back() == ')' || name.back() == ']'))
-        name.remove_suffix(1);
+    while (!name.empty() && (blank(name.back()) || name.back() == ')' || name.back() == ']')) name.remove_suffix(1);
     const auto cut = name.find_last_of("_ ([");
     if (cut != std::string_view::npos && cut > 0) {
         const std::string_view last = name.substr(cut + 1);
@@ -104,9 +95,7 @@ char kind_of(Role role) {
     return role == Role::time ? 't' : ' ';
 }
 
-double metres_of(LengthUnit unit) {
-    return unit == LengthUnit::mm ? 1e-3 : unit == LengthUnit::m ? 1.0 : 1e-6;
-}
+double metres_of(LengthUnit unit) { return unit == LengthUnit::mm ? 1e-3 : unit == LengthUnit::m ? 1.0 : 1e-6; }
 
 double unit_of(Role role, const SplitName& name, const ImportOptions& options, const std::string& column,
                const std::string& file) {
@@ -117,10 +106,10 @@ double unit_of(Role role, const SplitName& name, const ImportOptions& options, c
     if (name.unit != nullptr) {
         if (name.unit->of != kind) {
             throw files::bad_input(file, "line 1", "the column " + files::shown(column) + " as " + name_of(role),
-                            kind == 'f'   ? "a force (N, mN)"
-                            : kind == 'l' ? "a length (mm, m, um)"
-                            : kind == 't' ? "a time (s, ms)"
-                                          : "a number without a unit");
+                                   kind == 'f'   ? "a force (N, mN)"
+                                   : kind == 'l' ? "a length (mm, m, um)"
+                                   : kind == 't' ? "a time (s, ms)"
+                                                 : "a number without a unit");
         }
         return name.unit->to_SI;
     }
@@ -152,14 +141,13 @@ std::string all_roles() {
 
 }  // namespace
 
-const char* name_of(Role role) {
-    return known_roles()[static_cast<std::size_t>(role)].name;
-}
+const char* name_of(Role role) { return known_roles()[static_cast<std::size_t>(role)].name; }
 
 Columns find_columns(const files::Table& table, const ImportOptions& options) {
     for (const auto& [role, name] : options.columns) {
         const auto& known = known_roles();
-        const bool is_known = std::any_of(known.begin(), known.end(), [&asked = role](const KnownRole& k) { return asked == k.name; });
+        const bool is_known =
+            std::any_of(known.begin(), known.end(), [&asked = role](const KnownRole& k) { return asked == k.name; });
         if (!is_known) throw files::bad_input("--column", "", files::shown(role), "one of " + all_roles());
         table.column(name);
     }
@@ -168,8 +156,8 @@ Columns find_columns(const files::Table& table, const ImportOptions& options) {
     Columns columns;
     for (const KnownRole& known : known_roles()) {
         const auto asked = options.columns.find(known.name);
-        const auto index = asked != options.columns.end() ? index_of(table.columns(), asked->second)
-                                                          : usual_index(known, names);
+        const auto index =
+            asked != options.columns.end() ? index_of(table.columns(), asked->second) : usual_index(known, names);
         if (!index) continue;
         const std::string& name = table.columns()[*index];
         columns.of[static_cast<std::size_t>(known.role)] =
@@ -188,7 +176,7 @@ void need(const Columns& columns, const files::Table& table, std::initializer_li
         for (const std::string_view usual : known.usual)
             expected += (expected.back() == '(' ? "" : ", ") + std::string(usual);
         throw files::bad_input(table.file(), "line 1", found,
-                        expected + ", with or without a unit; or name it: --column " + known.name + "=NAME)");
+                               expected + ", with or without a unit; or name it: --column " + known.name + "=NAME)");
     }
 }
 
@@ -201,8 +189,8 @@ RecordingForm form_of(const Columns& columns, const files::Table& table) {
     std::string found = "the columns";
     for (const std::string& column : table.columns()) found += " " + files::shown(column);
     throw files::bad_input(table.file(), "line 1", found,
-                    "probing (x, y, depth or z, fn or fz, ...) or sliding (t, x, y, z, fx, fy, fz); name "
-                    "them with --column");
+                           "probing (x, y, depth or z, fn or fz, ...) or sliding (t, x, y, z, fx, fy, fz); name "
+                           "them with --column");
 }
 
 void check_force_size(double greatest_N, const Columns& columns, const ImportOptions& options,
@@ -221,7 +209,8 @@ void check_force_size(double greatest_N, const Columns& columns, const ImportOpt
 void check_length_size(double extent_m, const ImportOptions& options, const std::string& file) {
     constexpr double kAbsurd_m = 100.0;
     if (!(extent_m <= kAbsurd_m)) {
-        throw files::bad_input(file, "", "places that extend over " + files::short_number(extent_m) + " m", "at most 100 m");
+        throw files::bad_input(file, "", "places that extend over " + files::short_number(extent_m) + " m",
+                               "at most 100 m");
     }
     if (options.length_unit || extent_m == 0.0) return;
     constexpr double kLeast_m = 1e-3;

@@ -58,8 +58,7 @@ inline double value_of(const files::Table& table, const Columns& columns, Role r
 }
 
 // Refuses numbers of another unit than they claim, unless the person has stated the unit.
-void check_force_size(double greatest_N, const Columns& columns, const ImportOptions& options,
-                      const std::string& file);
+void check_force_size(double greatest_N, const Columns& columns, const ImportOptions& options, const std::string& file);
 void check_length_size(double extent_m, const ImportOptions& options, const std::string& file);
 void check_depth_size(double greatest_m, const ImportOptions& options, const std::string& file);
 

@@ -18,7 +18,7 @@ constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kOfNormal95 = 1.645;
 constexpr double kSelection = 1.5;
 constexpr double kClip = 1.5;
-constexpr double kLeastShare = 0.03;      // of the background
+constexpr double kLeastShare = 0.03;  // of the background
 constexpr int kMostLooks = 5;
 constexpr std::ptrdiff_t kFewCells = 30;  // fewer cannot tell a background from a region
 
@@ -35,7 +35,8 @@ std::vector<cv::Point> maxima(const StiffnessGrid& grid, const Detection& d) {
     for (int j = 0; j < grid.n_y; ++j) {
         for (int i = 0; i < grid.n_x; ++i) {
             const double here = grid.excess(j, i);
-            if (grid.there(j, i) == 0 || grid.known(j, i) != 0 || here <= 0.0 || here < threshold_at(grid, d, j, i)) continue;
+            if (grid.there(j, i) == 0 || grid.known(j, i) != 0 || here <= 0.0 || here < threshold_at(grid, d, j, i))
+                continue;
             bool highest = true;
             for (int b = std::max(0, j - 1); b <= std::min(grid.n_y - 1, j + 1); ++b) {
                 for (int a = std::max(0, i - 1); a <= std::min(grid.n_x - 1, i + 1); ++a) {
@@ -45,7 +46,8 @@ std::vector<cv::Point> maxima(const StiffnessGrid& grid, const Detection& d) {
             if (highest) out.emplace_back(i, j);
         }
     }
-    std::sort(out.begin(), out.end(), [&](const cv::Point& a, const cv::Point& b) { return grid.excess(a) > grid.excess(b); });
+    std::sort(out.begin(), out.end(),
+              [&](const cv::Point& a, const cv::Point& b) { return grid.excess(a) > grid.excess(b); });
     return out;
 }
 
@@ -70,7 +72,8 @@ void measure_rectangle(const StiffnessGrid& grid, const cv::Mat1b& mask, StiffRe
             if (mask(j, i) == 0) continue;
             for (const double a : {-0.5, 0.5}) {
                 for (const double b : {-0.5, 0.5}) {  // mm, so that float keeps four digits behind the point
-                    corners.emplace_back(static_cast<float>(1e3 * grid.dx_m * (i + a)), static_cast<float>(1e3 * grid.dy_m * (j + b)));
+                    corners.emplace_back(static_cast<float>(1e3 * grid.dx_m * (i + a)),
+                                         static_cast<float>(1e3 * grid.dy_m * (j + b)));
                 }
             }
         }
@@ -114,7 +117,9 @@ StiffRegion measure(const StiffnessGrid& grid, const Map& map, const cv::Mat1b& 
 
 // With a margin, at least one cell.
 cv::Mat1b widened(const StiffnessGrid& grid, const cv::Mat1b& mask, double by_m) {
-    const auto cells = [&](double pitch_m) { return 2 * std::max(1, static_cast<int>(std::lround(by_m / pitch_m))) + 1; };
+    const auto cells = [&](double pitch_m) {
+        return 2 * std::max(1, static_cast<int>(std::lround(by_m / pitch_m))) + 1;
+    };
     cv::Mat1b out;
     cv::dilate(mask, out, cv::getStructuringElement(cv::MORPH_ELLIPSE, cv::Size(cells(grid.dx_m), cells(grid.dy_m))));
     return out;
@@ -135,7 +140,8 @@ cv::Mat1d as_ones(const cv::Mat1b& mask) {
 
 // Appends the mean excess under `shape` wherever at least 3/4 of it fit on the rest of the map with at least
 // `least_on_edge` of its cells along the edge.
-void add_means(const StiffnessGrid& grid, const cv::Mat1d& shape, const cv::Mat1b& rest, double least_on_edge, std::vector<double>& means) {
+void add_means(const StiffnessGrid& grid, const cv::Mat1d& shape, const cv::Mat1b& rest, double least_on_edge,
+               std::vector<double>& means) {
     const cv::Mat1d ones = as_ones(rest);
     const cv::Mat1d count = laid_everywhere(ones, shape);
     cv::Mat1d excess;
@@ -146,14 +152,16 @@ void add_means(const StiffnessGrid& grid, const cv::Mat1d& shape, const cv::Mat1
     const double least = 0.75 * cv::sum(shape)[0] - kHair;
     for (int j = 0; j < grid.n_y; ++j) {
         for (int i = 0; i < grid.n_x; ++i) {
-            if (count(j, i) >= least && on_edge(j, i) >= least_on_edge - kHair) means.push_back(sum(j, i) / count(j, i));
+            if (count(j, i) >= least && on_edge(j, i) >= least_on_edge - kHair)
+                means.push_back(sum(j, i) / count(j, i));
         }
     }
 }
 
 // Mean excess under the region's shape wherever it fits on the rest of the map; or along the edge alone, with as much of it
 // there as the region has, turned to each side of the map.
-std::vector<double> means_elsewhere(const StiffnessGrid& grid, const cv::Mat1b& mask, const cv::Mat1b& rest, bool at_edge) {
+std::vector<double> means_elsewhere(const StiffnessGrid& grid, const cv::Mat1b& mask, const cv::Mat1b& rest,
+                                    bool at_edge) {
     cv::Mat1d shape = as_ones(mask(cv::boundingRect(mask)));
     std::vector<double> means;
     if (!at_edge) {
@@ -215,7 +223,8 @@ std::vector<Candidate> candidates(const StiffnessGrid& grid, const Map& map, con
     cv::Mat1b taken(grid.n_y, grid.n_x, static_cast<unsigned char>(0));
     for (const cv::Point& peak : maxima(grid, d)) {
         if (taken(peak) != 0) continue;
-        const cv::Mat1b mask = hang_together(grid, peak, std::max(0.5 * grid.excess(peak), threshold_at(grid, d, peak.y, peak.x)));
+        const cv::Mat1b mask =
+            hang_together(grid, peak, std::max(0.5 * grid.excess(peak), threshold_at(grid, d, peak.y, peak.x)));
         const bool another = cv::countNonZero(mask & taken) > 0;
         taken |= mask;
         if (another) continue;
@@ -229,7 +238,6 @@ std::vector<Candidate> candidates(const StiffnessGrid& grid, const Map& map, con
 // Area over which the excess is alike: product of its integral scales along x and y (to the first zero of each
 // autocorrelation). The regions are part of it: in a map that a region fills there is little to compare with.
 double alike_m2(const StiffnessGrid& grid, double clip_N_per_m) {
-
     const auto clipped = [&](int j, int i) { return std::clamp(grid.excess(j, i), -clip_N_per_m, clip_N_per_m); };
     const auto scale = [&](int a, int b, int n) {  // in cells
         double at_zero = 0.0;
@@ -282,9 +290,12 @@ void judge(const StiffnessGrid& grid, const cv::Mat1b& mask, const cv::Mat1b& re
     region.needed = needed_contrast(region.areas);
     if (!(region.areas >= kLeastAreas) || std::isnan(region.noise_N_per_m)) {
         region.warnings.push_back("the map holds only " + files::short_number(region.areas) +
-                                  " independent areas to tell how much the background varies (" + files::short_number(kLeastAreas) + " are needed)");
+                                  " independent areas to tell how much the background varies (" +
+                                  files::short_number(kLeastAreas) + " are needed)");
     } else if (region.noise_N_per_m > 0.0 && region.contrast_to_noise < region.needed) {
-        region.warnings.push_back("stands out by only " + files::short_number(region.contrast_to_noise) + " times what areas of its size vary by " + (region.against_edge ? "at the map's edge" : "elsewhere") + " (" +
+        region.warnings.push_back("stands out by only " + files::short_number(region.contrast_to_noise) +
+                                  " times what areas of its size vary by " +
+                                  (region.against_edge ? "at the map's edge" : "elsewhere") + " (" +
                                   files::short_number(region.needed) + " are needed in this map)");
     }
     region.sure = region.warnings.empty();
@@ -309,12 +320,16 @@ void judge_all(const StiffnessGrid& grid, const Detection& d, std::vector<Candid
         judge(grid, c.mask, without_all, region);
         if (region.sure && region.contrast_to_noise >= 2.0 * region.needed) outstanding.push_back(&c);
     }
-    const auto settled = [&](const Candidate& c) { return std::find(outstanding.begin(), outstanding.end(), &c) != outstanding.end(); };
-    for (std::size_t before = found.size() + 1; before != outstanding.size();) {  // what turns out sure is no background either
+    const auto settled = [&](const Candidate& c) {
+        return std::find(outstanding.begin(), outstanding.end(), &c) != outstanding.end();
+    };
+    for (std::size_t before = found.size() + 1;
+         before != outstanding.size();) {  // what turns out sure is no background either
         before = outstanding.size();
         for (Candidate& c : found) {
             if (c.region.sure) continue;
-            judge(grid, c.mask, rest_without([&](const Candidate& other) { return &other == &c || settled(other); }), c.region);
+            judge(grid, c.mask, rest_without([&](const Candidate& other) { return &other == &c || settled(other); }),
+                  c.region);
         }
         for (const Candidate& c : found) {
             if (c.region.sure && !settled(c)) outstanding.push_back(&c);
@@ -347,7 +362,9 @@ void look_again(const Map& map, const Detection& d, StiffnessGrid& grid, std::ve
             if (!c.region.sure) continue;
             c.region.look = number;
             found.erase(std::remove_if(found.begin(), found.end(),
-                                       [&](const Candidate& old) { return !old.region.sure && cv::countNonZero(old.mask & c.mask) > 0; }),
+                                       [&](const Candidate& old) {
+                                           return !old.region.sure && cv::countNonZero(old.mask & c.mask) > 0;
+                                       }),
                         found.end());
             found.push_back(c);
         }
@@ -373,16 +390,20 @@ void check_options(const DetectOptions& o) {
     const auto refuse = [](const char* name, double value, const char* expected) {
         throw files::bad_input("detect", name, files::short_number(value), expected);
     };
-    if (o.threshold && !(*o.threshold > 1.0 && *o.threshold <= 1e6)) refuse("threshold", *o.threshold, "a ratio above 1");
+    if (o.threshold && !(*o.threshold > 1.0 && *o.threshold <= 1e6))
+        refuse("threshold", *o.threshold, "a ratio above 1");
     if (!(o.window_m > 0.0 && o.window_m <= 1e3)) refuse("window", o.window_m, "a radius above 0");
-    if (o.smoothing_m && !(*o.smoothing_m >= 0.0 && *o.smoothing_m <= 1.0)) refuse("smoothing", *o.smoothing_m, "0 to 1000 mm");
-    if (o.smallest_m && !(*o.smallest_m >= 0.0 && *o.smallest_m <= 1e3)) refuse("smallest", *o.smallest_m, "at least 0");
+    if (o.smoothing_m && !(*o.smoothing_m >= 0.0 && *o.smoothing_m <= 1.0))
+        refuse("smoothing", *o.smoothing_m, "0 to 1000 mm");
+    if (o.smallest_m && !(*o.smallest_m >= 0.0 && *o.smallest_m <= 1e3))
+        refuse("smallest", *o.smallest_m, "at least 0");
 }
 
 }  // namespace
 
 std::size_t Detection::sure() const {
-    return static_cast<std::size_t>(std::count_if(regions.begin(), regions.end(), [](const StiffRegion& r) { return r.sure; }));
+    return static_cast<std::size_t>(
+        std::count_if(regions.begin(), regions.end(), [](const StiffRegion& r) { return r.sure; }));
 }
 
 Detection detect_regions(const Map& map, const std::string& file, const DetectOptions& options) {
@@ -395,18 +416,22 @@ Detection detect_regions(const Map& map, const std::string& file, const DetectOp
     const std::vector<double> raw = stiffness_N_per_m(map, *d.options.deepest_m);
     const auto measured = std::count_if(raw.begin(), raw.end(), [](double k) { return !std::isnan(k); });
     if (measured == 0) {
-        throw files::bad_input(file, "", "no cell with a force down to " + files::short_number(1e3 * *d.options.deepest_m) + " mm", "at least one");
+        throw files::bad_input(
+            file, "", "no cell with a force down to " + files::short_number(1e3 * *d.options.deepest_m) + " mm",
+            "at least one");
     }
     StiffnessGrid grid = make_grid(map, raw, d.options);
     if (measured < kFewCells) {
-        d.warnings.push_back("only " + std::to_string(measured) + " measured cells: too few to tell a background from a region");
+        d.warnings.push_back("only " + std::to_string(measured) +
+                             " measured cells: too few to tell a background from a region");
     }
     take_background(d.options, grid);
     std::vector<Candidate> found = look(grid, map, d);
     note_ground(grid, d);
     look_again(map, d, grid, found);
     const auto weight = [](const Candidate& c) { return c.region.mean_excess_N_per_m * std::sqrt(c.region.area_m2); };
-    std::stable_sort(found.begin(), found.end(), [&](const Candidate& a, const Candidate& b) { return weight(a) > weight(b); });
+    std::stable_sort(found.begin(), found.end(),
+                     [&](const Candidate& a, const Candidate& b) { return weight(a) > weight(b); });
     for (Candidate& c : found) {
         c.region.id = "D" + std::to_string(d.regions.size() + 1);
         d.regions.push_back(std::move(c.region));
@@ -416,7 +441,8 @@ Detection detect_regions(const Map& map, const std::string& file, const DetectOp
 
 void keep_regions(const Detection& detection, Map& map) {
     auto& nodules = map.nodules;
-    nodules.erase(std::remove_if(nodules.begin(), nodules.end(), [](const Nodule& n) { return !n.placed; }), nodules.end());
+    nodules.erase(std::remove_if(nodules.begin(), nodules.end(), [](const Nodule& n) { return !n.placed; }),
+                  nodules.end());
     const auto named = [&](const std::string& id) {
         return std::any_of(nodules.begin(), nodules.end(), [&](const Nodule& n) { return n.id == id; });
     };

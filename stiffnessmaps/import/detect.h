@@ -39,8 +39,8 @@
 namespace palpa::stiffnessmaps {
 
 struct DetectOptions {
-    std::optional<double> threshold;    // stiffness / background from which a cell counts, > 1; empty: by the rule above
-    double window_m = 20e-3;            // radius of the background's median
+    std::optional<double> threshold;  // stiffness / background from which a cell counts, > 1; empty: by the rule above
+    double window_m = 20e-3;          // radius of the background's median
     std::optional<double> smoothing_m;  // sigma; empty: half the indenter's radius
     std::optional<double> smallest_m;   // diameter of the disc that has the least area; empty: the indenter's radius
     std::optional<double> deepest_m;    // leaves out deeper forces
@@ -49,8 +49,8 @@ inline constexpr double kLeastAreas = 3.0;
 inline constexpr std::size_t kLeastCells = 3;  // of a region
 
 struct StiffRegion {
-    std::string id;         // D1, D2, ..., the clearest first
-    double x_m = 0.0;       // centroid, weighted by the excess
+    std::string id;    // D1, D2, ..., the clearest first
+    double x_m = 0.0;  // centroid, weighted by the excess
     double y_m = 0.0;
     double length_m = 0.0;  // sides of the smallest rectangle around its cells, with the cells' own size
     double width_m = 0.0;
@@ -62,26 +62,26 @@ struct StiffRegion {
     double background_N_per_m = 0.0;  // there
     double contrast = 0.0;            // peak / background; NaN where the background is not above 0
     double mean_excess_N_per_m = 0.0;
-    double noise_N_per_m = 0.0;       // NaN: no area of its size fits beside it
-    bool against_edge = false;        // that noise is of areas along the map's edge
-    double contrast_to_noise = 0.0;   // NaN likewise
-    double needed = 0.0;              // contrast_to_noise from which it would be sure
-    double areas = 0.0;               // independent ones in the map
-    bool at_edge = false;             // reaches unmeasured ground: its size is a lower bound
-    int look = 1;                 // 2, ...: found once the sure ones of the looks before were set aside
+    double noise_N_per_m = 0.0;      // NaN: no area of its size fits beside it
+    bool against_edge = false;       // that noise is of areas along the map's edge
+    double contrast_to_noise = 0.0;  // NaN likewise
+    double needed = 0.0;             // contrast_to_noise from which it would be sure
+    double areas = 0.0;              // independent ones in the map
+    bool at_edge = false;            // reaches unmeasured ground: its size is a lower bound
+    int look = 1;                    // 2, ...: found once the sure ones of the looks before were set aside
     bool sure = false;
     std::vector<std::string> warnings;  // why it is not sure, in words
     std::vector<std::size_t> cells;
 };
 
 struct Detection {
-    DetectOptions options;               // with nothing left open but the threshold
-    double threshold = 0.0;              // stiffness / background, in the median over the map
-    double spread_N_per_m = 0.0;         // of the excess of single cells
+    DetectOptions options;                  // with nothing left open but the threshold
+    double threshold = 0.0;                 // stiffness / background, in the median over the map
+    double spread_N_per_m = 0.0;            // of the excess of single cells
     std::vector<double> stiffness_N_per_m;  // [n_y][n_x], smoothed; NaN = not measured
     std::vector<double> background_N_per_m;
     std::vector<StiffRegion> regions;
-    std::vector<std::string> warnings;   // about the map as a whole; no region is sure then
+    std::vector<std::string> warnings;  // about the map as a whole; no region is sure then
     std::size_t sure() const;
 };
 

@@ -70,7 +70,8 @@ cv::Mat1d robust_plane(const StiffnessGrid& grid) {
         std::vector<double> off;
         for (int j = 0; j < grid.n_y; ++j) {
             for (int i = 0; i < grid.n_x; ++i) {
-                if (grid.there(j, i) != 0 && grid.known(j, i) == 0) off.push_back(std::abs(grid.stiffness(j, i) - plane.dot(Eigen::Vector3d(1.0, u_of(i), v_of(j)))));
+                if (grid.there(j, i) != 0 && grid.known(j, i) == 0)
+                    off.push_back(std::abs(grid.stiffness(j, i) - plane.dot(Eigen::Vector3d(1.0, u_of(i), v_of(j)))));
             }
         }
         const double reach = 4.685 * median_of(off) / kOfNormal;
@@ -100,7 +101,9 @@ cv::Mat1d robust_plane(const StiffnessGrid& grid) {
 
 // Median of the plain cells within a disc. Fine grids are read in strides, so that the disc is at most some 40 wide.
 cv::Mat1d window_median(const cv::Mat1d& values, const StiffnessGrid& grid, double radius_m) {
-    const auto reach = [&](double pitch_m, int n) { return static_cast<int>(std::min(radius_m / pitch_m, static_cast<double>(n))); };
+    const auto reach = [&](double pitch_m, int n) {
+        return static_cast<int>(std::min(radius_m / pitch_m, static_cast<double>(n)));
+    };
     const int reach_x = reach(grid.dx_m, grid.n_x);
     const int reach_y = reach(grid.dy_m, grid.n_y);
     const int stride_x = std::max(1, reach_x / 20);
@@ -114,7 +117,8 @@ cv::Mat1d window_median(const cv::Mat1d& values, const StiffnessGrid& grid, doub
             for (int b = j - reach_y / stride_y * stride_y; b <= j + reach_y; b += stride_y) {
                 for (int a = i - reach_x / stride_x * stride_x; a <= i + reach_x; a += stride_x) {
                     if (b < 0 || b >= grid.n_y || a < 0 || a >= grid.n_x || grid.plain(b, a) == 0) continue;
-                    if (std::hypot((a - i) * grid.dx_m, (b - j) * grid.dy_m) <= radius_m) window.push_back(values(b, a));
+                    if (std::hypot((a - i) * grid.dx_m, (b - j) * grid.dy_m) <= radius_m)
+                        window.push_back(values(b, a));
                 }
             }
             out(j, i) = window.empty() ? values(j, i) : part_of(window, 0.5);
@@ -160,7 +164,8 @@ void take_background(const DetectOptions& options, StiffnessGrid& grid) {
         return std::min(both.lower, both.upper);
     };
     grid.plain = without(grid.there, grid.known);
-    for (int pass = 0; pass < 3; ++pass) {  // soft outliers leave the windows, as a free edge would pull them down for a window's width
+    for (int pass = 0; pass < 3;
+         ++pass) {  // soft outliers leave the windows, as a free edge would pull them down for a window's width
         cv::add(plane, window_median(rest, grid, options.window_m), grid.background);
         cv::subtract(grid.stiffness, grid.background, grid.excess);
         grid.excess.setTo(0.0, grid.there == 0);

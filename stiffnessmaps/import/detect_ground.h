@@ -22,8 +22,8 @@ struct StiffnessGrid {  // all [n_y][n_x]; masks hold 0 or 255
     cv::Mat1d stiffness;  // smoothed, N/m; 0 where not measured
     cv::Mat1b known;      // in a region that an earlier look found: no part of what follows
     cv::Mat1d background;
-    cv::Mat1d excess;     // 0 where not measured
-    cv::Mat1b plain;      // there, not known, and no soft outlier, such as ground beside the tissue's free edge
+    cv::Mat1d excess;             // 0 where not measured
+    cv::Mat1b plain;              // there, not known, and no soft outlier, such as ground beside the tissue's free edge
     double spread_N_per_m = 0.0;  // of the excess of plain cells
 };
 

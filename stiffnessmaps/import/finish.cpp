@@ -36,14 +36,14 @@ void refuse_no_forces(const Map& map, const std::string& file) {
     std::vector<double> deepest_N = deepest_forces(map, 1 + map.n_cells() / 1'000'000);
     if (deepest_N.empty()) deepest_N = deepest_forces(map, 1);
     if (deepest_N.empty()) {
-        throw files::bad_input(
-            file, "", "no force that was measured: all " + std::to_string(map.n_cells()) + " cells are empty",
-            "forces at the map's depths (is the pitch too fine, are the depths too great?)");
+        throw files::bad_input(file, "",
+                               "no force that was measured: all " + std::to_string(map.n_cells()) + " cells are empty",
+                               "forces at the map's depths (is the pitch too fine, are the depths too great?)");
     }
     const double typical_N = median(std::move(deepest_N));
     if (typical_N > 0.0) return;
     throw files::bad_input(file, "", files::short_number(typical_N) + " N at the greatest depths (median)",
-                    "forces that rise with depth (is the sign the other way round? --negate-force)");
+                           "forces that rise with depth (is the sign the other way round? --negate-force)");
 }
 
 // Depth by depth, the cells' gaps between measured layers closed along the cell's own curve.
@@ -92,7 +92,7 @@ void choose_tangential(Map& map, bool measured, const ImportOptions& options, co
         options.tangential.value_or(measured ? TangentialChoice::measured : TangentialChoice::none);
     if (choice == TangentialChoice::measured && !measured) {
         throw files::bad_input(file, "", "no force that resists motion along +x or +y",
-                        "a recording of a sliding tool, or matrices of it; else --tangential energy or none");
+                               "a recording of a sliding tool, or matrices of it; else --tangential energy or none");
     }
     if (choice != TangentialChoice::measured) {
         map.tangential_x_N.clear();
@@ -164,8 +164,7 @@ ImportResidual residual_of(const Map& map, const RecordedPoints& recorded) {
         const double depth_m = static_cast<double>(recorded.depth_m[i]);
         constexpr double kHair_m = 1e-9;
         if (!place.inside || !place.measured || depth_m > greatest_depth_m(field, place) + kHair_m) continue;
-        const double off_N =
-            std::abs(normal_force_N(field, place, depth_m) - static_cast<double>(recorded.force_N[i]));
+        const double off_N = std::abs(normal_force_N(field, place, depth_m) - static_cast<double>(recorded.force_N[i]));
         residuals.push_back(off_N);
         if (off_N <= out.worst_N) continue;
         out.worst_N = off_N;
@@ -210,8 +209,8 @@ ImportResidual residual_of_numbers(const Map& map) {
     return out;
 }
 
-void finish_map(Map& map, const RecordedPoints& recorded, bool measured_tangential,
-                const ImportOptions& options, const std::string& file, ImportReport& report) {
+void finish_map(Map& map, const RecordedPoints& recorded, bool measured_tangential, const ImportOptions& options,
+                const std::string& file, ImportReport& report) {
     refuse_no_forces(map, file);
     map.indenter = options.indenter;
     map.indenter_radius_m = options.indenter_radius_m;
@@ -230,8 +229,8 @@ void finish_map(Map& map, const RecordedPoints& recorded, bool measured_tangenti
     map.noise_N = estimated_noise_N(map);
     add_choice(map.source, "noise_N", *map.noise_N, "second differences along x and y", "");
     add_choice(map.source, "over_depth", "isotonic at look-up", "the raw forces are kept in the map", "");
-    add_choice(map.source, "indenter_radius_mm", choice_mm(options.indenter_radius_m),
-               "recordings do not say", "--indenter-radius-mm");
+    add_choice(map.source, "indenter_radius_mm", choice_mm(options.indenter_radius_m), "recordings do not say",
+               "--indenter-radius-mm");
     check_map(map, file);
     report.residual = recorded.x_m.empty() ? residual_of_numbers(map) : residual_of(map, recorded);
 }

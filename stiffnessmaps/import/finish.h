@@ -42,8 +42,8 @@ std::vector<float> filled_forces(const Map& map);
 // Refuses a map without forces, or whose forces fall with depth; then fills, estimates the noise, derives the
 // tangential force where asked for, writes its choices, and measures the residual. `measured_tangential`: the
 // map has arrays of its own. `recorded` empty: the map's numbers are the recording.
-void finish_map(Map& map, const RecordedPoints& recorded, bool measured_tangential,
-                const ImportOptions& options, const std::string& file, ImportReport& report);
+void finish_map(Map& map, const RecordedPoints& recorded, bool measured_tangential, const ImportOptions& options,
+                const std::string& file, ImportReport& report);
 
 // |map - recording| at every recorded point that is not deeper than the map there.
 ImportResidual residual_of(const Map& map, const RecordedPoints& recorded);

@@ -24,8 +24,7 @@ constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 struct SquareIndex {
     double side_m;
     static std::uint64_t key(std::int32_t i, std::int32_t j) {
-        return (static_cast<std::uint64_t>(static_cast<std::uint32_t>(i)) << 32) |
-               static_cast<std::uint32_t>(j);
+        return (static_cast<std::uint64_t>(static_cast<std::uint32_t>(i)) << 32) | static_cast<std::uint32_t>(j);
     }
     std::int32_t square(double place_m) const {
         constexpr double kFar = 1e9;
@@ -120,8 +119,7 @@ double neighbour_distance_m(const std::vector<double>& x_m, const std::vector<do
     const SquareIndex index{std::max({std::sqrt(area / static_cast<double>(n)), line, 1e-7})};
     std::unordered_map<std::uint64_t, std::vector<std::uint32_t>> squares;
     for (std::size_t i = 0; i < n; ++i) {
-        squares[SquareIndex::key(index.square(x_m[i]), index.square(y_m[i]))].push_back(
-            static_cast<std::uint32_t>(i));
+        squares[SquareIndex::key(index.square(x_m[i]), index.square(y_m[i]))].push_back(static_cast<std::uint32_t>(i));
     }
     std::vector<double> nearest_m;
     const std::size_t step = 1 + n / 20000;  // the median needs no more
@@ -129,8 +127,7 @@ double neighbour_distance_m(const std::vector<double>& x_m, const std::vector<do
         double best = std::numeric_limits<double>::infinity();
         for (std::int32_t b = -1; b <= 1; ++b) {
             for (std::int32_t a = -1; a <= 1; ++a) {
-                const auto at =
-                    squares.find(SquareIndex::key(index.square(x_m[i]) + a, index.square(y_m[i]) + b));
+                const auto at = squares.find(SquareIndex::key(index.square(x_m[i]) + a, index.square(y_m[i]) + b));
                 if (at == squares.end()) continue;
                 std::size_t looked_at = 0;
                 for (const std::uint32_t j : at->second) {
@@ -189,11 +186,11 @@ void check_grid(const GridAxis& x, const GridAxis& y, std::size_t n_depths, cons
     const double values = static_cast<double>(x.n) * static_cast<double>(y.n) * static_cast<double>(n_depths);
     if (values <= static_cast<double>(kMostValues)) return;
     throw files::bad_input(file, "",
-                    std::to_string(x.n) + " x " + std::to_string(y.n) + " cells of " +
-                        files::short_number(1e3 * x.pitch_m) + " x " + files::short_number(1e3 * y.pitch_m) + " mm and " +
-                        std::to_string(n_depths) + " depths",
-                    "a grid of at most 20 million forces (is a position far off the others? else --pitch-mm, "
-                    "--region-mm)");
+                           std::to_string(x.n) + " x " + std::to_string(y.n) + " cells of " +
+                               files::short_number(1e3 * x.pitch_m) + " x " + files::short_number(1e3 * y.pitch_m) +
+                               " mm and " + std::to_string(n_depths) + " depths",
+                           "a grid of at most 20 million forces (is a position far off the others? else --pitch-mm, "
+                           "--region-mm)");
 }
 
 namespace {
@@ -254,8 +251,7 @@ std::vector<LayerRange> layer_ranges(const std::vector<double>& depths_m) {
 }
 
 // How far a depth lies from a layer, in layers' distances; 1 or more: it does not belong to it.
-double layers_off(const std::vector<double>& depths_m, const LayerRange& range, std::size_t layer,
-                  double depth_m) {
+double layers_off(const std::vector<double>& depths_m, const LayerRange& range, std::size_t layer, double depth_m) {
     const double off_m = depth_m - depths_m[layer];
     return off_m / (off_m < 0.0 ? range.below_m : range.above_m);
 }
@@ -308,8 +304,8 @@ std::vector<float> by_planes(const Samples& samples, const GridPlan& plan) {
         for (std::size_t s = 0; s < samples.size(); ++s) {
             const double w = layers_off(plan.depths_m, ranges[layer], layer, samples.depth_m[s]);
             if (!(std::abs(w) < 1.0)) continue;
-            const double off = (samples.depth_m[s] - plan.depths_m[layer]) /
-                               std::max(ranges[layer].below_m, ranges[layer].above_m);
+            const double off =
+                (samples.depth_m[s] - plan.depths_m[layer]) / std::max(ranges[layer].below_m, ranges[layer].above_m);
             const double carried = inverse ? plan.depths_m[layer] / samples.depth_m[s] : 1.0;
             visit_cells(plan, samples.x_m[s], samples.y_m[s], [&](std::size_t cell, double u, double v) {
                 const double rr = u * u + v * v;
@@ -338,8 +334,7 @@ std::vector<float> by_medians(const Samples& samples, const GridPlan& plan) {
         };
         const double i = nearest(plan.x, samples.x_m[s]);
         const double j = nearest(plan.y, samples.y_m[s]);
-        if (i < 0.0 || j < 0.0 || i >= static_cast<double>(plan.x.n) || j >= static_cast<double>(plan.y.n))
-            continue;
+        if (i < 0.0 || j < 0.0 || i >= static_cast<double>(plan.x.n) || j >= static_cast<double>(plan.y.n)) continue;
         const std::size_t cell = static_cast<std::size_t>(j) * plan.x.n + static_cast<std::size_t>(i);
         for (std::size_t layer = 0; layer < plan.depths_m.size(); ++layer) {
             const double depth_m = samples.depth_m[s];

@@ -117,10 +117,8 @@ files::NpyArray read_hdf5(const std::filesystem::path& path, const std::string& 
     if (H5Pget_external_count(how.id()) > 0 || H5Pget_layout(how.id()) == H5D_VIRTUAL) {
         throw files::bad_input(file, name, "numbers that stand in other files", "numbers in this one");
     }
-    const auto stored =
-        std::min<std::size_t>(H5Dget_storage_size(data.id()), std::filesystem::file_size(path));
-    const std::size_t n =
-        check_shape(array.shape, H5Tget_size(type.id()), stored, H5Pget_nfilters(how.id()) > 0, file);
+    const auto stored = std::min<std::size_t>(H5Dget_storage_size(data.id()), std::filesystem::file_size(path));
+    const std::size_t n = check_shape(array.shape, H5Tget_size(type.id()), stored, H5Pget_nfilters(how.id()) > 0, file);
     array.values.resize(n);
     if (H5Dread(data.id(), H5T_NATIVE_FLOAT, H5S_ALL, H5S_ALL, H5P_DEFAULT, array.values.data()) < 0) {
         throw files::bad_input(file, name, "an array that cannot be read to its end", "a whole file");

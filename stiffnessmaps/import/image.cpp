@@ -66,15 +66,13 @@ files::NpyArray read_png(const std::filesystem::path& path) {
     constexpr std::size_t kHeader = 33;  // signature and IHDR
     if (bytes.size() < kHeader || std::string_view(bytes).substr(12, 4) != "IHDR")
         throw files::bad_input(file, "", "no PNG header", "a whole image");
-    const auto byte = [&](std::size_t i) {
-        return static_cast<std::size_t>(static_cast<unsigned char>(bytes[i]));
-    };
+    const auto byte = [&](std::size_t i) { return static_cast<std::size_t>(static_cast<unsigned char>(bytes[i])); };
     const auto big_endian = [&](std::size_t i) {
         return byte(i) << 24 | byte(i + 1) << 16 | byte(i + 2) << 8 | byte(i + 3);
     };
     if (byte(25) != 0 || (byte(24) != 8 && byte(24) != 16)) {
         throw files::bad_input(file, "", "an image with colours, transparency or under 8 bits",
-                        "grey values of 8 or 16 bits");
+                               "grey values of 8 or 16 bits");
     }
     const bool wide = byte(24) == 16;
     files::NpyArray array;
@@ -87,8 +85,7 @@ files::NpyArray read_png(const std::filesystem::path& path) {
     const std::string failed = decode_png(bytes, line, rows);
     if (!failed.empty()) throw files::bad_input(file, "", failed, "a whole image");
     for (std::size_t i = 0; i < n; ++i) {
-        array.values[i] =
-            wide ? static_cast<float>(rows[2 * i] << 8 | rows[2 * i + 1]) : static_cast<float>(rows[i]);
+        array.values[i] = wide ? static_cast<float>(rows[2 * i] << 8 | rows[2 * i + 1]) : static_cast<float>(rows[i]);
     }
     return array;
 }
@@ -123,13 +120,13 @@ Format format_of(TIFF* tiff, const std::string& file) {
     TIFFGetFieldDefaulted(tiff, TIFFTAG_COMPRESSION, &compression);
     f.packed = compression != COMPRESSION_NONE;
     const bool whole = f.kind == SAMPLEFORMAT_UINT || f.kind == SAMPLEFORMAT_INT;
-    const bool known = (whole && (f.bits == 8 || f.bits == 16 || f.bits == 32)) ||
-                       (f.kind == SAMPLEFORMAT_IEEEFP && f.bits == 32);
+    const bool known =
+        (whole && (f.bits == 8 || f.bits == 16 || f.bits == 32)) || (f.kind == SAMPLEFORMAT_IEEEFP && f.bits == 32);
     if (samples != 1 || !known || photometric != PHOTOMETRIC_MINISBLACK) {
         throw files::bad_input(file, "",
-                        std::to_string(samples) + " numbers of " + std::to_string(f.bits) +
-                            " bits a pixel, or another meaning of them",
-                        "grey values of 8, 16 or 32 bits, black the smallest");
+                               std::to_string(samples) + " numbers of " + std::to_string(f.bits) +
+                                   " bits a pixel, or another meaning of them",
+                               "grey values of 8, 16 or 32 bits, black the smallest");
     }
     return f;
 }
@@ -157,8 +154,7 @@ float number_at(const Format& f, const unsigned char* at) {
 
 void read_strips(TIFF* tiff, const Format& f, std::size_t offset, files::NpyArray& array, const std::string& file) {
     const std::size_t line = f.width * f.bytes();
-    if (TIFFScanlineSize64(tiff) != line)
-        throw files::bad_input(file, "", "lines of another length", "a whole image");
+    if (TIFFScanlineSize64(tiff) != line) throw files::bad_input(file, "", "lines of another length", "a whole image");
     std::vector<unsigned char> row(line);
     for (std::uint32_t y = 0; y < f.height; ++y) {
         if (TIFFReadScanline(tiff, row.data(), y, 0) != 1)
@@ -176,8 +172,7 @@ void read_tiles(TIFF* tiff, const Format& f, std::size_t stored_bytes, std::size
     TIFFGetField(tiff, TIFFTAG_TILELENGTH, &high);
     check_shape({high, wide}, f.bytes(), stored_bytes, true, file);
     std::vector<unsigned char> tile(std::size_t{wide} * high * f.bytes());
-    if (TIFFTileSize64(tiff) != tile.size())
-        throw files::bad_input(file, "", "tiles of another size", "a whole image");
+    if (TIFFTileSize64(tiff) != tile.size()) throw files::bad_input(file, "", "tiles of another size", "a whole image");
     for (std::uint32_t y = 0; y < f.height; y += high) {
         for (std::uint32_t x = 0; x < f.width; x += wide) {
             if (TIFFReadTile(tiff, tile.data(), x, y, 0, 0) < 0)

@@ -39,10 +39,10 @@ void note_columns(const Columns& columns, const ImportOptions& options, MapSourc
 
 Map import_tables(const std::vector<fs::path>& files, const ImportOptions& options, ImportReport& report) {
     if (!options.at_depths_m.empty() && options.at_depths_m.size() != files.size()) {
-        throw files::bad_input("--at-depth-mm", "",
-                        std::to_string(options.at_depths_m.size()) + " depths for " +
-                            std::to_string(files.size()) + " files",
-                        "one for each file");
+        throw files::bad_input(
+            "--at-depth-mm", "",
+            std::to_string(options.at_depths_m.size()) + " depths for " + std::to_string(files.size()) + " files",
+            "one for each file");
     }
     if (!std::is_sorted(options.depths_m.begin(), options.depths_m.end(), std::less_equal<>())) {
         throw files::bad_input("--depths-mm", "", "depths out of order", "ascending depths");
@@ -64,13 +64,13 @@ Map import_tables(const std::vector<fs::path>& files, const ImportOptions& optio
             note_columns(columns, options, before);
         }
         if (report.form == RecordingForm::sliding) {
-            read_sliding(table, columns, options, options.at_depths_m.empty() ? 0.0 : options.at_depths_m[i],
-                         sliding, report);
+            read_sliding(table, columns, options, options.at_depths_m.empty() ? 0.0 : options.at_depths_m[i], sliding,
+                         report);
         } else if (i == 0) {
             probing = read_probing(table, columns, options, report);
         } else {
             throw files::bad_input(files[i].string(), "", "a second file of probing",
-                            "one table (or --form sliding, --form matrices)");
+                                   "one table (or --form sliding, --form matrices)");
         }
     }
     map = report.form == RecordingForm::sliding ? map_of_sliding(sliding, options, all, report)
@@ -83,8 +83,7 @@ Map import_tables(const std::vector<fs::path>& files, const ImportOptions& optio
 
 Map import_recording(const std::vector<fs::path>& files, const ImportOptions& options, ImportReport& report) {
     if (files.empty()) throw files::bad_input("maps import", "", "no file", "one or more");
-    const bool arrays =
-        options.form ? *options.form == RecordingForm::matrices : is_array_file(files.front());
+    const bool arrays = options.form ? *options.form == RecordingForm::matrices : is_array_file(files.front());
     Map map = arrays ? import_matrices(files, options, report) : import_tables(files, options, report);
     map.name = options.name.empty() ? files.front().stem().string() : options.name;
     map.source.from = files.front().filename().string();

@@ -68,8 +68,7 @@ std::vector<std::size_t> shape_of(const matvar_t& variable) {
 }
 
 bool is_grid(const matvar_t& variable) {
-    if (bytes_of(variable.class_type) == 0 || variable.isComplex != 0 || variable.dims == nullptr)
-        return false;
+    if (bytes_of(variable.class_type) == 0 || variable.isComplex != 0 || variable.dims == nullptr) return false;
     if (variable.rank < 2 || variable.rank > 3) return false;
     const auto shape = shape_of(variable);
     return std::count(shape.begin(), shape.end(), 1u) + 1 < variable.rank;  // two axes longer than one
@@ -101,9 +100,8 @@ std::string choose(mat_t* mat, const std::string& dataset, const std::string& fi
     }
     if (!dataset.empty())
         throw files::bad_input(file, "", grids.empty() ? "no arrays" : "the arrays" + grids,
-                        "an array " + files::shown(dataset));
-    if (found.empty())
-        throw files::bad_input(file, "", "no array of real numbers with two or three dimensions", "one");
+                               "an array " + files::shown(dataset));
+    if (found.empty()) throw files::bad_input(file, "", "no array of real numbers with two or three dimensions", "one");
     if (found == "*") throw files::bad_input(file, "", "the arrays" + grids, "one of them named by --dataset");
     return found;
 }
@@ -129,8 +127,7 @@ void refuse_cut(const std::filesystem::path& path) {
         const std::string tag = bytes_at(at, 8);
         std::uint64_t length = 0;
         for (std::size_t i = 0; i < 4; ++i) {
-            length |= std::uint64_t{static_cast<unsigned char>(tag[4 + i])}
-                      << (little_endian ? 8 * i : 24 - 8 * i);
+            length |= std::uint64_t{static_cast<unsigned char>(tag[4 + i])} << (little_endian ? 8 * i : 24 - 8 * i);
         }
         if (length > size - at - 8) throw cut();
         at += 8 + length;
@@ -151,8 +148,7 @@ files::NpyArray read_matlab(const std::filesystem::path& path, const std::string
     Mat_Rewind(mat.get());
     Variable variable(Mat_VarReadInfo(mat.get(), name.c_str()));
     if (!variable || !is_grid(*variable))
-        throw files::bad_input(file, name, "something else",
-                        "an array of real numbers with two or three dimensions");
+        throw files::bad_input(file, name, "something else", "an array of real numbers with two or three dimensions");
     files::NpyArray array;
     array.shape = shape_of(*variable);
     const bool packed = variable->compression != MAT_COMPRESSION_NONE;

@@ -53,12 +53,10 @@ std::optional<double> depth_in_name(const fs::path& path) {
         std::size_t end = unit;
         while (end > 0 && (name[end - 1] == ' ' || name[end - 1] == '_')) --end;
         std::size_t begin = end;
-        while (begin > 0 &&
-               (std::isdigit(static_cast<unsigned char>(name[begin - 1])) != 0 || name[begin - 1] == '.'))
+        while (begin > 0 && (std::isdigit(static_cast<unsigned char>(name[begin - 1])) != 0 || name[begin - 1] == '.'))
             --begin;
         double value = 0.0;
-        if (begin < end && files::parse_number(std::string_view(name).substr(begin, end - begin), value) &&
-            value > 0.0)
+        if (begin < end && files::parse_number(std::string_view(name).substr(begin, end - begin), value) && value > 0.0)
             return 1e-3 * value;
     }
     return std::nullopt;
@@ -84,7 +82,8 @@ void put_in_order(files::NpyArray& array, const std::string& axes) {
 }
 
 void check_count(std::size_t n, const std::string& file) {
-    if (n > kMostNumbers) throw files::bad_input(file, "", "more than 20 million numbers with all files and depths", "less");
+    if (n > kMostNumbers)
+        throw files::bad_input(file, "", "more than 20 million numbers with all files and depths", "less");
 }
 
 void append(const fs::path& path, const ImportOptions& options, Stack& stack) {
@@ -103,8 +102,9 @@ void append(const fs::path& path, const ImportOptions& options, Stack& stack) {
         stack.first_file = path.string();
     }
     if (n_y != stack.n_y || n_x != stack.n_x) {
-        throw files::bad_input(path.string(), "shape", files::shape_text({n_y, n_x}),
-                        files::shape_text({stack.n_y, stack.n_x}) + " as in " + stack.first_file + " (two grids?)");
+        throw files::bad_input(
+            path.string(), "shape", files::shape_text({n_y, n_x}),
+            files::shape_text({stack.n_y, stack.n_x}) + " as in " + stack.first_file + " (two grids?)");
     }
     check_count(stack.values.size() + array.values.size(), path.string());
     if (stack.values.empty()) {
@@ -114,15 +114,15 @@ void append(const fs::path& path, const ImportOptions& options, Stack& stack) {
     }
 }
 
-std::vector<double> depths_of(const std::vector<fs::path>& files, const Stack& stack,
-                              const ImportOptions& options, bool& from_names) {
+std::vector<double> depths_of(const std::vector<fs::path>& files, const Stack& stack, const ImportOptions& options,
+                              bool& from_names) {
     const std::size_t n = stack.n_layers();
     from_names = false;
     if (!options.depths_m.empty()) {
         if (options.depths_m.size() == n) return options.depths_m;
         throw files::bad_input(stack.first_file, "", std::to_string(n) + " matrices",
-                        std::to_string(options.depths_m.size()) +
-                            ", one for each depth of --depths-mm (another order of axes: --axes)");
+                               std::to_string(options.depths_m.size()) +
+                                   ", one for each depth of --depths-mm (another order of axes: --axes)");
     }
     std::vector<double> depths_m;
     for (const fs::path& file : files) {
@@ -131,9 +131,9 @@ std::vector<double> depths_of(const std::vector<fs::path>& files, const Stack& s
     from_names = true;
     if (depths_m.size() == n && files.size() == n) return depths_m;
     throw files::bad_input(stack.first_file, "",
-                    std::to_string(n) + " matrices in " + std::to_string(files.size()) +
-                        " files, with a depth in " + std::to_string(depths_m.size()) + " of their names",
-                    "the depth of each: --depths-mm, or names such as normal_3mm.csv");
+                           std::to_string(n) + " matrices in " + std::to_string(files.size()) +
+                               " files, with a depth in " + std::to_string(depths_m.size()) + " of their names",
+                           "the depth of each: --depths-mm, or names such as normal_3mm.csv");
 }
 
 // Layers in ascending depth.
@@ -149,14 +149,14 @@ void sort_layers(Stack& stack) {
     }
     const auto twice = std::adjacent_find(stack.depths_m.begin(), stack.depths_m.end(), std::greater_equal<>());
     if (twice == stack.depths_m.end()) return;
-    throw files::bad_input(stack.first_file, "", "the depth " + files::short_number(1e3 * *twice) + " mm twice", "each once");
+    throw files::bad_input(stack.first_file, "", "the depth " + files::short_number(1e3 * *twice) + " mm twice",
+                           "each once");
 }
 
 // In SI units of the quantity; NaN where not measured.
 void scale(Stack& stack, const ImportOptions& options) {
-    const double factor =
-        options.scale * (options.negate_force ? -1.0 : 1.0) *
-        (options.quantity == Quantity::force && options.force_unit == ForceUnit::mN ? 1e-3 : 1.0);
+    const double factor = options.scale * (options.negate_force ? -1.0 : 1.0) *
+                          (options.quantity == Quantity::force && options.force_unit == ForceUnit::mN ? 1e-3 : 1.0);
     for (float& value : stack.values) {
         if (std::isnan(value)) continue;
         const bool missing = options.missing && static_cast<double>(value) == *options.missing;
@@ -185,10 +185,11 @@ void check_size(const Stack& stack, const ImportOptions& options) {
         check_force_size(most, Columns{}, options, stack.first_file);
     } else if (options.quantity == Quantity::stiffness && !(most >= 1.0 && most <= 1e6)) {
         throw files::bad_input(stack.first_file, "", "stiffnesses up to " + files::short_number(1e-3 * most) + " N/mm",
-                        "from 0.001 to 1000 N/mm: state the unit by --scale, N/mm for one of the file's");
+                               "from 0.001 to 1000 N/mm: state the unit by --scale, N/mm for one of the file's");
     } else if (options.quantity == Quantity::young && !(most >= 50.0 && most <= 1e7)) {
-        throw files::bad_input(stack.first_file, "", "Young's moduli up to " + files::short_number(1e-3 * most) + " kPa",
-                        "from 0.05 to 10000 kPa: state the unit by --scale, kPa for one of the file's");
+        throw files::bad_input(stack.first_file, "",
+                               "Young's moduli up to " + files::short_number(1e-3 * most) + " kPa",
+                               "from 0.05 to 10000 kPa: state the unit by --scale, kPa for one of the file's");
     }
 }
 
@@ -196,7 +197,7 @@ void check_size(const Stack& stack, const ImportOptions& options) {
 void forces_from_slice(Stack& stack, const ImportOptions& options, ImportReport& report) {
     if (options.depths_m.empty())
         throw files::bad_input(stack.first_file, "", "a slice without depths",
-                        "the depths that the forces are wanted at: --depths-mm");
+                               "the depths that the forces are wanted at: --depths-mm");
     if (stack.n_layers() != 1)
         throw files::bad_input(stack.first_file, "", std::to_string(stack.n_layers()) + " slices", "one");
     const std::vector<float> slice = std::move(stack.values);
@@ -207,13 +208,13 @@ void forces_from_slice(Stack& stack, const ImportOptions& options, ImportReport&
     for (const double depth_m : stack.depths_m) {
         const double per_unit =
             options.quantity == Quantity::stiffness ? depth_m : elastic_force_N(1.0, depth_m, options);
-        for (const float value : slice) stack.values.push_back(static_cast<float>(per_unit * static_cast<double>(value)));
+        for (const float value : slice)
+            stack.values.push_back(static_cast<float>(per_unit * static_cast<double>(value)));
     }
     const bool beyond = options.quantity == Quantity::young && options.indenter == IndenterShape::sphere &&
                         stack.depths_m.back() > 0.5 * options.indenter_radius_m;
     if (beyond)
-        report.notes.push_back(
-            "depths beyond half the indenter's radius are beyond what Hertz's formula is made for");
+        report.notes.push_back("depths beyond half the indenter's radius are beyond what Hertz's formula is made for");
 }
 
 std::vector<float> tangential_of(const std::vector<fs::path>& files, const Stack& normal,
@@ -223,7 +224,7 @@ std::vector<float> tangential_of(const std::vector<fs::path>& files, const Stack
     for (const fs::path& file : files) append(file, options, stack);
     if (stack.n_x != normal.n_x || stack.n_y != normal.n_y) {
         throw files::bad_input(stack.first_file, "shape", files::shape_text({stack.n_y, stack.n_x}),
-                        files::shape_text({normal.n_y, normal.n_x}) + " as in " + normal.first_file);
+                               files::shape_text({normal.n_y, normal.n_x}) + " as in " + normal.first_file);
     }
     bool from_names = false;
     stack.depths_m = depths_of(files, stack, options, from_names);
@@ -237,14 +238,12 @@ std::vector<float> tangential_of(const std::vector<fs::path>& files, const Stack
 }
 
 void note_choices(const ImportOptions& options, bool from_names, const Stack& stack, MapSource& source) {
-    add_choice(source, "form", "matrices", "arrays, by their first bytes", "--form",
-               options.form.has_value());
-    add_choice(source, "spacing_mm", choice_mm({options.spacing_m[0], options.spacing_m[1]}), "",
-               "--spacing-mm", true);
+    add_choice(source, "form", "matrices", "arrays, by their first bytes", "--form", options.form.has_value());
+    add_choice(source, "spacing_mm", choice_mm({options.spacing_m[0], options.spacing_m[1]}), "", "--spacing-mm", true);
     add_choice(source, "origin_mm", choice_mm({options.origin_m[0], options.origin_m[1]}),
                "the first number lies at 0, 0 unless told otherwise", "--origin-mm");
-    add_choice(source, "depths_mm", choice_mm(stack.depths_m), "numbers before mm in the files' names",
-               "--depths-mm", !from_names);
+    add_choice(source, "depths_mm", choice_mm(stack.depths_m), "numbers before mm in the files' names", "--depths-mm",
+               !from_names);
     const char* quantity = options.quantity == Quantity::force       ? "force"
                            : options.quantity == Quantity::stiffness ? "stiffness"
                                                                      : "young";
@@ -259,8 +258,7 @@ void note_choices(const ImportOptions& options, bool from_names, const Stack& st
         const bool sphere = options.indenter == IndenterShape::sphere;
         add_choice(source, "contact_formula",
                    sphere ? "Hertz, sphere on a half space" : "line contact, cylinder on a half space",
-                   "the indenter's shape",
-                   "--indenter, --indenter-radius-mm, --cylinder-length-mm, --poisson");
+                   "the indenter's shape", "--indenter, --indenter-radius-mm, --cylinder-length-mm, --poisson");
         add_choice(source, "poisson", options.poisson, "soft tissue hardly changes its volume", "--poisson");
     }
 }
@@ -287,12 +285,11 @@ Map import_matrices(const std::vector<fs::path>& files, const ImportOptions& opt
         throw files::bad_input(files.front().string(), "", "tangential forces alone", "normal forces as well");
     if (!(options.spacing_m[0] > 0.0)) {
         throw files::bad_input(normal_files.front().string(), "", "an array without a scale",
-                        "the distance between its numbers: --spacing-mm DX,DY");
+                               "the distance between its numbers: --spacing-mm DX,DY");
     }
     Stack stack;
     for (std::size_t i = 0; i < normal_files.size(); ++i) {
-        if (options.progress)
-            options.progress("reading", static_cast<double>(i) / static_cast<double>(files.size()));
+        if (options.progress) options.progress("reading", static_cast<double>(i) / static_cast<double>(files.size()));
         append(normal_files[i], options, stack);
     }
     scale(stack, options);

@@ -38,16 +38,13 @@ class Places {
         if (is_new) return add(x_m, y_m, line);
         ProbedPoint& point = points_[it->second];
         if (x_m != point.x_m || y_m != point.y_m) {
-            table.fail(x_column,
-                       "the position of line " + std::to_string(point.line) + " for the same point");
+            table.fail(x_column, "the position of line " + std::to_string(point.line) + " for the same point");
         }
         return point;
     }
 
     ProbedPoint& near(double x_m, double y_m, std::size_t line) {
-        const auto same = [&](const ProbedPoint& p) {
-            return std::hypot(p.x_m - x_m, p.y_m - y_m) <= kSamePlace_m;
-        };
+        const auto same = [&](const ProbedPoint& p) { return std::hypot(p.x_m - x_m, p.y_m - y_m) <= kSamePlace_m; };
         if (!points_.empty() && same(points_.back())) return points_.back();
         for (std::int64_t b = -1; b <= 1; ++b) {
             for (std::int64_t a = -1; a <= 1; ++a) {
@@ -104,8 +101,7 @@ void need_columns(const Columns& columns, const files::Table& table) {
 
 }  // namespace
 
-Probing read_probing(files::Table& table, const Columns& columns, const ImportOptions& options,
-                     ImportReport& report) {
+Probing read_probing(files::Table& table, const Columns& columns, const ImportOptions& options, ImportReport& report) {
     need_columns(columns, table);
     Probing probing;
     probing.depth_from_z = !columns.has(Role::depth);
@@ -130,10 +126,9 @@ Probing read_probing(files::Table& table, const Columns& columns, const ImportOp
         if (!inside_region(options.region_m, x_m, y_m)) continue;
         extent_m = {std::min(extent_m[0], x_m), std::max(extent_m[1], x_m), std::min(extent_m[2], y_m),
                     std::max(extent_m[3], y_m)};
-        ProbedPoint& p = columns.has(Role::point)
-                             ? places.of_number(table, columns[Role::point].index, table.line(), x_m, y_m,
-                                                columns[Role::x].index)
-                             : places.near(x_m, y_m, table.line());
+        ProbedPoint& p = columns.has(Role::point) ? places.of_number(table, columns[Role::point].index, table.line(),
+                                                                     x_m, y_m, columns[Role::x].index)
+                                                  : places.near(x_m, y_m, table.line());
         const double depth_m =
             probing.depth_from_z ? -value_of(table, columns, Role::z) : value_of(table, columns, Role::depth);
         const double force_N = sign * normal_force(table, columns);
@@ -145,9 +140,8 @@ Probing read_probing(files::Table& table, const Columns& columns, const ImportOp
             all_depths_m.push_back(std::abs(depth_m));
             all_forces_N.push_back(std::abs(force_N));
         }
-        const double off_m = columns.has(Role::commanded_depth)
-                                 ? depth_m - value_of(table, columns, Role::commanded_depth)
-                                 : 0.0;
+        const double off_m =
+            columns.has(Role::commanded_depth) ? depth_m - value_of(table, columns, Role::commanded_depth) : 0.0;
         const bool moved_on = p.depth_m.empty() || depth_m > p.depth_m.back();
         if (!moved_on || !(std::abs(off_m) < kOffCommand_m)) {
             ++report.rejected_rows;
@@ -162,10 +156,10 @@ Probing read_probing(files::Table& table, const Columns& columns, const ImportOp
     report.rejected_rows += not_numbers;
     if (probing.points.empty() || not_numbers == report.rows) {
         throw files::bad_input(table.file(), "",
-                        report.rows == 0   ? "no rows"
-                        : options.region_m ? "no row with numbers in the region"
-                                           : "no row with numbers",
-                        "probing at several depths");
+                               report.rows == 0   ? "no rows"
+                               : options.region_m ? "no row with numbers in the region"
+                                                  : "no row with numbers",
+                               "probing at several depths");
     }
     constexpr double kNearlyAll = 0.99;  // a wild row is no other unit
     if (!probing.depth_from_z) check_depth_size(quantile(all_depths_m, kNearlyAll), options, table.file());
@@ -181,17 +175,15 @@ struct GridChoice {
     bool on_grid = true;
 };
 
-std::string at_line(const ProbedPoint& p) {
-    return "line " + std::to_string(p.line);
-}
+std::string at_line(const ProbedPoint& p) { return "line " + std::to_string(p.line); }
 
 void refuse_off_grid(const Probing& probing, const GridAxis& axis, bool along_y, const std::string& file) {
     for (const ProbedPoint& p : probing.points) {
         const double place_m = along_y ? p.y_m : p.x_m;
         if (index_on(axis, place_m)) continue;
         throw files::bad_input(file, at_line(p) + (along_y ? ", y" : ", x"), files::short_number(1e3 * place_m) + " mm",
-                        "a position on the regular grid of " + files::short_number(1e3 * axis.pitch_m) +
-                            " mm that the other points lie on (scattered points: --grid plane)");
+                               "a position on the regular grid of " + files::short_number(1e3 * axis.pitch_m) +
+                                   " mm that the other points lie on (scattered points: --grid plane)");
     }
 }
 
@@ -206,24 +198,23 @@ GridChoice choose_grid(const Probing& probing, const ImportOptions& options, con
     const double near_m = neighbour_distance_m(x_m, y_m);
     if (const std::size_t groups = group_count(x_m, y_m, 3.0 * near_m); groups > 1 && !options.gridding) {
         throw files::bad_input(
-            file, "",
-            std::to_string(groups) + " groups of points far from each other: two grids in one file?",
+            file, "", std::to_string(groups) + " groups of points far from each other: two grids in one file?",
             "one; choose by --region-mm X0,X1,Y0,Y1, or take all as one by --grid plane (or on-grid)");
     }
     GridChoice choice;
     const auto x = fit_axis(x_m);
     const auto y = fit_axis(y_m);
     const std::size_t n = probing.points.size();
-    const bool sparse = !x || !y ||
-                        static_cast<double>(x->axis.n) * static_cast<double>(y->axis.n) >
-                            20.0 * static_cast<double>(n) + 100.0;
+    const bool sparse =
+        !x || !y ||
+        static_cast<double>(x->axis.n) * static_cast<double>(y->axis.n) > 20.0 * static_cast<double>(n) + 100.0;
     const bool scattered = sparse || 2 * (x->off + y->off) > n;
     const bool asked_on_grid = options.gridding == Gridding::on_grid;
     choice.on_grid = asked_on_grid || (!options.gridding && !options.pitch_m && !scattered);
     if (choice.on_grid) {
         if (!x || !y)
             throw files::bad_input(file, "", "positions all over the place",
-                            "a regular grid (scattered points: --grid plane)");
+                                   "a regular grid (scattered points: --grid plane)");
         refuse_off_grid(probing, x->axis, false, file);
         refuse_off_grid(probing, y->axis, true, file);
         choice.plan.x = x->axis;
@@ -249,8 +240,7 @@ void fill_on_grid(const Probing& probing, const GridPlan& plan, Map& map, const 
         if (line[cell] != 0) {
             throw files::bad_input(
                 file, at_line(p),
-                "a second point in the cell of line " + std::to_string(line[cell]) +
-                    ": two grids in one file?",
+                "a second point in the cell of line " + std::to_string(line[cell]) + ": two grids in one file?",
                 "one point in one cell (to take all together: --grid plane, median or inverse-distance)");
         }
         line[cell] = p.line;
@@ -315,8 +305,7 @@ std::vector<double> choose_depths(const Probing& probing, const ImportOptions& o
 
 }  // namespace
 
-Map map_of_probing(Probing& probing, const ImportOptions& options, const std::string& file,
-                   ImportReport& report) {
+Map map_of_probing(Probing& probing, const ImportOptions& options, const std::string& file, ImportReport& report) {
     Map map;
     MapSource& source = map.source;
     report.points = probing.points.size();
@@ -324,13 +313,13 @@ Map map_of_probing(Probing& probing, const ImportOptions& options, const std::st
     std::erase_if(probing.points, [](const ProbedPoint& p) { return p.depth_m.size() < 2; });
     if (probing.points.empty()) {
         throw files::bad_input(file, "", "no point with two depths or more",
-                        "probing at several depths (if the tip presses towards +z: --column depth=NAME)");
+                               "probing at several depths (if the tip presses towards +z: --column depth=NAME)");
     }
     clean_curves(probing, options, source, report);
     report.rejected_points = before - probing.points.size();
     if (probing.points.empty())
         throw files::bad_input(file, "", "no point with two depths in contact",
-                        "forces that rise with depth (is the sign the other way round? --negate-force)");
+                               "forces that rise with depth (is the sign the other way round? --negate-force)");
 
     const GridChoice grid = choose_grid(probing, options, file);
     note_grid(grid.plan, grid.on_grid, options, source);
@@ -344,9 +333,8 @@ Map map_of_probing(Probing& probing, const ImportOptions& options, const std::st
         fill_scattered(probing, plan, map, file);
     }
     source.how = "point-wise probing; ";
-    source.how += grid.on_grid
-                      ? "on the grid of its places"
-                      : "scattered places brought onto a grid by " + std::string(name_of(plan.method));
+    source.how += grid.on_grid ? "on the grid of its places"
+                               : "scattered places brought onto a grid by " + std::string(name_of(plan.method));
     source.how += "; force at contact subtracted point by point (median " +
                   files::short_number(report.median_offset_N) + " N); linear between a point's own depths";
 
@@ -355,8 +343,7 @@ Map map_of_probing(Probing& probing, const ImportOptions& options, const std::st
     for (const ProbedPoint& p : probing.points) n_recorded += p.depth_m.size() - 1;
     recorded.reserve(n_recorded);
     for (const ProbedPoint& p : probing.points) {
-        for (std::size_t i = 1; i < p.depth_m.size(); ++i)
-            recorded.add(p.x_m, p.y_m, p.depth_m[i], p.force_N[i]);
+        for (std::size_t i = 1; i < p.depth_m.size(); ++i) recorded.add(p.x_m, p.y_m, p.depth_m[i], p.force_N[i]);
     }
     probing = {};  // the greater part of the memory, in pieces that the allocator would keep
     ::malloc_trim(0);

@@ -33,14 +33,12 @@ struct Probing {
 // Rows of one place are told by the column `point`, or else by a position within 0.2 mm. Rows are passed over
 // (and counted) that are not numbers, whose depth is not beyond the last one's, or that are off their command
 // by more than 1 mm (the arm had stopped). Throws InputError.
-Probing read_probing(files::Table& table, const Columns& columns, const ImportOptions& options,
-                     ImportReport& report);
+Probing read_probing(files::Table& table, const Columns& columns, const ImportOptions& options, ImportReport& report);
 
 // What `read_probing` returns, as a map: on the grid that the places lie on, or else scattered places brought
 // onto one (gridding.h). Each place's curve, less its force at contact, is interpolated linearly between its
 // own depths; beyond its greatest depth it is missing. Choices go to map.source. `probing` is used up. Throws
 // InputError.
-Map map_of_probing(Probing& probing, const ImportOptions& options, const std::string& file,
-                   ImportReport& report);
+Map map_of_probing(Probing& probing, const ImportOptions& options, const std::string& file, ImportReport& report);
 
 }  // namespace palpa::stiffnessmaps

@@ -33,8 +33,7 @@ void reject_outliers(Probing& probing, double deviations, ImportReport& report) 
     }
     const double least_N =
         1e-3 * std::abs(median(std::move(greatest_N)));  // a sensor that counts in steps may have no noise
-    const double limit_N =
-        deviations * std::max(noise_of_fourth_differences(std::move(differences)), least_N);
+    const double limit_N = deviations * std::max(noise_of_fourth_differences(std::move(differences)), least_N);
     for (ProbedPoint& p : probing.points) {
         const std::vector<bool> outlier = lone_outliers(p.force_N, limit_N);
         for (std::size_t i = outlier.size(); i-- > 0;) {
@@ -60,8 +59,7 @@ double start_at_first_row(ProbedPoint& p) {
 // is emptied.
 double start_at_threshold(ProbedPoint& p, double threshold_N) {
     const std::size_t in_air = std::min<std::size_t>(3, p.force_N.size());
-    const double offset_N =
-        median({p.force_N.begin(), p.force_N.begin() + static_cast<std::ptrdiff_t>(in_air)});
+    const double offset_N = median({p.force_N.begin(), p.force_N.begin() + static_cast<std::ptrdiff_t>(in_air)});
     for (double& f : p.force_N) f -= offset_N;
     std::size_t first = 0;
     while (first < p.force_N.size() && p.force_N[first] < threshold_N) ++first;
@@ -113,8 +111,8 @@ void remove_tilt(Probing& probing, MapSource& source) {
         }
     }
     const double tilt_deg = std::atan(slope.norm()) * 180.0 / std::numbers::pi;
-    add_choice(source, "tilt_removed_deg", std::round(1e3 * tilt_deg) / 1e3,
-               "plane through the contact heights", "--tilt keep");
+    add_choice(source, "tilt_removed_deg", std::round(1e3 * tilt_deg) / 1e3, "plane through the contact heights",
+               "--tilt keep");
 }
 
 }  // namespace
@@ -124,8 +122,8 @@ void clean_curves(Probing& probing, const ImportOptions& options, MapSource& sou
     const double deviations = options.outliers.value_or(kOutliers);
     if (deviations > 0.0) reject_outliers(probing, deviations, report);
     add_choice(source, "outliers_deviations", deviations,
-               "a single force that far outside the range of the two beside it; " +
-                   std::to_string(report.outliers) + " left out",
+               "a single force that far outside the range of the two beside it; " + std::to_string(report.outliers) +
+                   " left out",
                "--outliers", options.outliers.has_value());
 
     const ContactStart contact =
@@ -140,8 +138,7 @@ void clean_curves(Probing& probing, const ImportOptions& options, MapSource& sou
         }
         constexpr double kAboveNoise = 4.0;
         constexpr double kLeastShare = 0.01;  // of the places' greatest force
-        threshold_N =
-            std::max(kAboveNoise * robust_deviation(steps_N), kLeastShare * std::abs(median(greatest_N)));
+        threshold_N = std::max(kAboveNoise * robust_deviation(steps_N), kLeastShare * std::abs(median(greatest_N)));
     }
     std::vector<double> offsets_N;
     for (ProbedPoint& p : probing.points) {
@@ -149,7 +146,7 @@ void clean_curves(Probing& probing, const ImportOptions& options, MapSource& sou
             for (std::size_t i = lateral.size(); i-- > 0;) lateral[i] -= lateral[0];
         }
         offsets_N.push_back(contact == ContactStart::first_row ? start_at_first_row(p)
-                                                          : start_at_threshold(p, threshold_N));
+                                                               : start_at_threshold(p, threshold_N));
     }
     report.median_offset_N = median(offsets_N);
     std::erase_if(probing.points, [](const ProbedPoint& p) { return p.depth_m.size() < 2; });

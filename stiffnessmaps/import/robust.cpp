@@ -50,9 +50,7 @@ double noise_of_fourth_differences(std::vector<double> differences) {
     return robust_deviation(std::move(differences)) / std::sqrt(70.0);
 }
 
-double choice_mm(double metres) {
-    return std::round(metres * 1e9) / 1e6;
-}
+double choice_mm(double metres) { return std::round(metres * 1e9) / 1e6; }
 
 std::vector<double> choice_mm(const std::vector<double>& metres) {
     std::vector<double> out;

@@ -6,9 +6,7 @@
 namespace palpa::stiffnessmaps {
 
 double quantile(std::vector<double> values, double q);  // q 0 ... 1, of the finite ones; 0 if there are none
-inline double median(std::vector<double> values) {
-    return quantile(std::move(values), 0.5);
-}
+inline double median(std::vector<double> values) { return quantile(std::move(values), 0.5); }
 
 // 1.4826 times the median distance from the median: the standard deviation of what is normal among the
 // values.

@@ -36,8 +36,7 @@ Bounds2 bounds_of(const SurfaceSamples& s) {
 
 double length_of_path(const SurfaceSamples& s) {
     double length_m = 0.0;
-    for (std::size_t i = 1; i < s.size(); ++i)
-        length_m += std::hypot(s.x_m[i] - s.x_m[i - 1], s.y_m[i] - s.y_m[i - 1]);
+    for (std::size_t i = 1; i < s.size(); ++i) length_m += std::hypot(s.x_m[i] - s.x_m[i - 1], s.y_m[i] - s.y_m[i - 1]);
     return length_m;
 }
 
@@ -98,7 +97,7 @@ void read_sliding(files::Table& table, const Columns& columns, const ImportOptio
     SurfaceSamples& s = sliding.samples;
     if (s.size() > 0 && (has_depth == sliding.depth_m.empty() || has_normal == sliding.normal_N.empty())) {
         throw files::bad_input(table.file(), "line 1", "other columns than in the file before it",
-                        "the same in all files");
+                               "the same in all files");
     }
     const double sign = options.negate_force ? -1.0 : 1.0;
     const auto force = [&](Role role) {
@@ -112,8 +111,7 @@ void read_sliding(files::Table& table, const Columns& columns, const ImportOptio
         const double t_s = value_of(table, columns, Role::time);
         if (t_s < last_s) {
             table.fail(columns[Role::time].index, "a time that is not before the last row's, " +
-                                                      files::number_text(last_s) +
-                                                      " s (two recordings in one file?)");
+                                                      files::number_text(last_s) + " s (two recordings in one file?)");
         }
         const double x_m = value_of(table, columns, Role::x);
         const double y_m = value_of(table, columns, Role::y);
@@ -140,10 +138,9 @@ void read_sliding(files::Table& table, const Columns& columns, const ImportOptio
         if (has_normal) sliding.normal_N.push_back(f[3]);
     }
     if (used < 16) {
-        throw files::bad_input(
-            table.file(), "",
-            std::to_string(used) + " rows with numbers" + (options.region_m ? " in the region" : ""),
-            "a recording of at least 16");
+        throw files::bad_input(table.file(), "",
+                               std::to_string(used) + " rows with numbers" + (options.region_m ? " in the region" : ""),
+                               "a recording of at least 16");
     }
     check_sizes(sliding, columns, options, table.file());
 }
@@ -171,14 +168,14 @@ void take_surface(Sliding& sliding, const ImportOptions& options, double pitch_m
     add_choice(source, "surface_node_mm", choice_mm(surface.node_m),
                "the map's pitch, or as fine as 4000 nodes and 8 samples a node allow", "--surface-node-mm",
                options.surface_node_m.has_value());
-    add_choice(source, "surface_deviation_mm", choice_mm(surface.deviation_m),
-               "of the samples' heights from that fit", "");
+    add_choice(source, "surface_deviation_mm", choice_mm(surface.deviation_m), "of the samples' heights from that fit",
+               "");
     add_choice(source, "surface_exponent", surface.exponent,
                "depth as force to this power, 1 or 2/3: whichever left less", "");
-    add_choice(source, "surface_tilt_deg", std::round(1e3 * surface.tilt_deg) / 1e3,
-               options.remove_tilt ? "depth and force are along the surface's normal"
-                                   : "kept: depth and force are along z",
-               "--tilt", !options.remove_tilt);
+    add_choice(
+        source, "surface_tilt_deg", std::round(1e3 * surface.tilt_deg) / 1e3,
+        options.remove_tilt ? "depth and force are along the surface's normal" : "kept: depth and force are along z",
+        "--tilt", !options.remove_tilt);
 }
 
 // Depths that the recording kept to: groups of depths with empty space between them. Empty if it did not.
@@ -211,8 +208,7 @@ std::vector<double> choose_depths(const Samples& samples, const ImportOptions& o
     std::vector<double> depths_m;
     if (!options.layers) {
         const std::set<double> stated(options.at_depths_m.begin(), options.at_depths_m.end());
-        depths_m =
-            stated.empty() ? kept_depths(samples.depth_m) : std::vector<double>(stated.begin(), stated.end());
+        depths_m = stated.empty() ? kept_depths(samples.depth_m) : std::vector<double>(stated.begin(), stated.end());
     }
     if (!depths_m.empty()) {
         add_choice(source, "depths_mm", choice_mm(depths_m), "the depths that the tool kept to",
@@ -224,8 +220,7 @@ std::vector<double> choose_depths(const Samples& samples, const ImportOptions& o
     constexpr double kNearlyAll = 0.9;
     const double greatest_m = quantile(samples.depth_m, kNearlyAll);
     for (int k = 1; k <= n; ++k) depths_m.push_back(greatest_m * k / n);
-    add_choice(source, "layers", static_cast<double>(n), "enough for a curve", "--layers",
-               options.layers.has_value());
+    add_choice(source, "layers", static_cast<double>(n), "enough for a curve", "--layers", options.layers.has_value());
     add_choice(source, "depths_mm", choice_mm(depths_m),
                "equal steps to the depth that 90 % of the samples do not exceed", "--depths-mm");
     return depths_m;
@@ -244,8 +239,7 @@ Samples indentations(const Sliding& sliding, const Surface& surface, const Impor
         Indentation in;
         if (!sliding.depth_m.empty()) {
             in.depth_m = static_cast<double>(sliding.depth_m[i]);
-            in.force_N =
-                static_cast<double>(sliding.normal_N.empty() ? s.force_N[2][i] : sliding.normal_N[i]);
+            in.force_N = static_cast<double>(sliding.normal_N.empty() ? s.force_N[2][i] : sliding.normal_N[i]);
         } else if (options.remove_tilt) {
             in = indentation_of(surface, s, i);
         } else {
@@ -269,8 +263,7 @@ std::vector<bool> outliers(const std::vector<double>& force_N, double deviations
                                differences);
     }
     const double least_N = 1e-3 * quantile(force_N, 0.95);  // a sensor that counts in steps may have no noise
-    return lone_outliers(force_N,
-                         deviations * std::max(noise_of_fourth_differences(std::move(differences)), least_N));
+    return lone_outliers(force_N, deviations * std::max(noise_of_fourth_differences(std::move(differences)), least_N));
 }
 
 // In place: only samples below the surface that are no outliers.
@@ -295,15 +288,14 @@ void drop_out_of_contact(const std::vector<bool>& outlier, Samples& samples) {
 
 }  // namespace
 
-Map map_of_sliding(Sliding& sliding, const ImportOptions& options, const std::string& file,
-                   ImportReport& report) {
+Map map_of_sliding(Sliding& sliding, const ImportOptions& options, const std::string& file, ImportReport& report) {
     Map map;
     MapSource& source = map.source;
     const SurfaceSamples& s = sliding.samples;
     const Bounds2 bounds = bounds_of(s);
     if (!options.gridding && group_count(s.x_m, s.y_m, 10e-3) > 1) {
         throw files::bad_input(file, "", "groups of samples more than 10 mm from each other: two grids in one file?",
-                        "one; choose by --region-mm X0,X1,Y0,Y1, or take all as one by --grid plane");
+                               "one; choose by --region-mm X0,X1,Y0,Y1, or take all as one by --grid plane");
     }
     const double pitch_m = options.pitch_m.value_or(default_pitch_m(s, bounds));
 
@@ -316,15 +308,15 @@ Map map_of_sliding(Sliding& sliding, const ImportOptions& options, const std::st
     report.outliers = static_cast<std::size_t>(std::count(outlier.begin(), outlier.end(), true));
     report.rejected_rows += report.outliers;
     add_choice(source, "outliers_deviations", deviations,
-               "a single force that far outside the range of the two beside it; " +
-                   std::to_string(report.outliers) + " left out",
+               "a single force that far outside the range of the two beside it; " + std::to_string(report.outliers) +
+                   " left out",
                "--outliers", options.outliers.has_value());
     const bool measured_tangential = take_tangential(sliding, surface, options, pressed, report);
     drop_out_of_contact(outlier, pressed);
     report.points = pressed.size();
     if (pressed.size() < 16) {
         throw files::bad_input(file, "", std::to_string(pressed.size()) + " samples below the surface",
-                        "a tool that presses into the tissue");
+                               "a tool that presses into the tissue");
     }
 
     GridPlan plan;
@@ -340,8 +332,7 @@ Map map_of_sliding(Sliding& sliding, const ImportOptions& options, const std::st
     add_choice(source, "pitch_mm", choice_mm(pitch_m),
                "two passes a cell and some four samples a cell and layer, by the area covered", "--pitch-mm",
                options.pitch_m.has_value());
-    add_choice(source, "radius_mm", choice_mm(plan.radius_m), "the pitch", "--radius-mm",
-               options.radius_m.has_value());
+    add_choice(source, "radius_mm", choice_mm(plan.radius_m), "the pitch", "--radius-mm", options.radius_m.has_value());
     plan.depths_m = choose_depths(pressed, options, source);
     check_grid(plan.x, plan.y, plan.depths_m.size(), file);
     check_enough_samples(plan, pressed.size(), file);

@@ -25,7 +25,6 @@ void read_sliding(files::Table& table, const Columns& columns, const ImportOptio
 // tool is below it along its normal. The tangential force is that against the motion of samples that move
 // along + an axis (within 37 degrees). Cells draw from the samples around them (gridding.h). Throws
 // InputError.
-Map map_of_sliding(Sliding& sliding, const ImportOptions& options, const std::string& file,
-                   ImportReport& report);
+Map map_of_sliding(Sliding& sliding, const ImportOptions& options, const std::string& file, ImportReport& report);
 
 }  // namespace palpa::stiffnessmaps

@@ -48,9 +48,7 @@ std::vector<Motion> motions(const Sliding& sliding) {
     std::size_t to = 0;
     for (std::size_t i = 0; i < s.size(); ++i) {
         // files follow each other: a clock that goes back is another file
-        const auto near = [&](std::size_t j) {
-            return std::abs(sliding.time_s[j] - sliding.time_s[i]) <= kWindow_s;
-        };
+        const auto near = [&](std::size_t j) { return std::abs(sliding.time_s[j] - sliding.time_s[i]) <= kWindow_s; };
         from = std::min(from, i);
         while (from < i && !near(from)) ++from;
         to = std::max(to, i);
@@ -79,8 +77,8 @@ double drag(const Samples& samples) {
 
 }  // namespace
 
-bool take_tangential(const Sliding& sliding, const Surface& surface, const ImportOptions& options,
-                     Samples& pressed, ImportReport& report) {
+bool take_tangential(const Sliding& sliding, const Surface& surface, const ImportOptions& options, Samples& pressed,
+                     ImportReport& report) {
     const auto& lateral = sliding.samples.force_N;
     const auto silent = [](const std::vector<float>& f) {
         return std::all_of(f.begin(), f.end(), [](float v) { return v == 0.0f; });

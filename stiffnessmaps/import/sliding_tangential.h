@@ -10,7 +10,7 @@ namespace palpa::stiffnessmaps {
 // that move along +x (within 37 degrees), likewise y, along the surface, positive where it opposes the
 // motion. False, with a note, where the recording has no lateral force, where it is not wanted, or where it
 // pushes the tool along instead of holding it back.
-bool take_tangential(const Sliding& sliding, const Surface& surface, const ImportOptions& options,
-                     Samples& pressed, ImportReport& report);
+bool take_tangential(const Sliding& sliding, const Surface& surface, const ImportOptions& options, Samples& pressed,
+                     ImportReport& report);
 
 }  // namespace palpa::stiffnessmaps

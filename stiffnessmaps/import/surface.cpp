@@ -176,16 +176,14 @@ void take_normals(const Surface& surface, const SurfaceSamples& samples, double 
         const std::size_t s = chosen.sample[m];
         const SurfacePoint p = surface_at(surface, samples.x_m[s], samples.y_m[s]);
         double force_N = 0.0;
-        for (std::size_t a = 0; a < 3; ++a)
-            force_N += p.normal[a] * static_cast<double>(samples.force_N[a][s]);
+        for (std::size_t a = 0; a < 3; ++a) force_N += p.normal[a] * static_cast<double>(samples.force_N[a][s]);
         chosen.n_z[m] = p.normal[2];
         chosen.push[m] = std::pow(std::max(force_N, 0.0) / typical_N, exponent);
     }
 }
 
 // Robust least squares, with the normals of the last solution.
-Fit fit_robustly(Surface surface, const SurfaceSamples& samples, Chosen chosen, double exponent,
-                 double typical_N) {
+Fit fit_robustly(Surface surface, const SurfaceSamples& samples, Chosen chosen, double exponent, double typical_N) {
     Fit fit;
     std::vector<double> residual_m;
     constexpr int kRounds = 5;
@@ -242,8 +240,7 @@ Indentation indentation_of(const Surface& surface, const SurfaceSamples& samples
     const SurfacePoint p = surface_at(surface, samples.x_m[i], samples.y_m[i]);
     Indentation out;
     out.depth_m = p.normal[2] * (p.height_m - samples.z_m[i]);
-    for (std::size_t a = 0; a < 3; ++a)
-        out.force_N += p.normal[a] * static_cast<double>(samples.force_N[a][i]);
+    for (std::size_t a = 0; a < 3; ++a) out.force_N += p.normal[a] * static_cast<double>(samples.force_N[a][i]);
     return out;
 }
 
@@ -271,9 +268,9 @@ Surface fit_surface(const SurfaceSamples& samples, double node_m, const std::str
         if (static_cast<double>(samples.force_N[2][s]) > kTouching * great_N) chosen.sample.push_back(s);
     }
     if (!(great_N > 0.0) || chosen.sample.size() < 16) {
-        throw files::bad_input(
-            file, "", "a 95th percentile of the force along z of " + files::short_number(great_N) + " N",
-            "a tool that presses, with a positive force along z (the other sign: --negate-force)");
+        throw files::bad_input(file, "",
+                               "a 95th percentile of the force along z of " + files::short_number(great_N) + " N",
+                               "a tool that presses, with a positive force along z (the other sign: --negate-force)");
     }
     chosen.push.resize(chosen.sample.size());
     chosen.n_z.resize(chosen.sample.size());

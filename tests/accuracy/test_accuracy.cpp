@@ -60,9 +60,9 @@ TEST_CASE("CSV: every row has every column, commas do not split, what is unknown
 }
 
 TEST_CASE("a measurement that fails is listed with its reason, and the others go on") {
-    const std::vector<AccuracyRow> rows = run_measurements(
-        {{"broken", 1.0, [](auto&) { throw std::runtime_error("no memory"); }},
-         {"good", 1.0, [](std::vector<AccuracyRow>& out) { out.push_back({.group = "g"}); }}});
+    const std::vector<AccuracyRow> rows =
+        run_measurements({{"broken", 1.0, [](auto&) { throw std::runtime_error("no memory"); }},
+                          {"good", 1.0, [](std::vector<AccuracyRow>& out) { out.push_back({.group = "g"}); }}});
     REQUIRE(rows.size() == 2);
     CHECK(rows[0].group == "failed");
     CHECK(rows[0].choice == "broken");

@@ -1,9 +1,7 @@
-#include "accuracy/speed.h"
-
 #include <doctest/doctest.h>
-
 #include <string>
 
+#include "accuracy/speed.h"
 #include "files/text.h"
 
 using namespace palpa;

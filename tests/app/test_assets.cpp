@@ -1,7 +1,6 @@
-#include "app/assets.h"
-
 #include <doctest/doctest.h>
 
+#include "app/assets.h"
 #include "tests/error_message.h"
 #include "tests/temporary_folder.h"
 
@@ -27,7 +26,8 @@ TEST_CASE("assets: found beside the program, installed or in a build folder, whe
     CHECK(assets_beside(source / "bin/palpa") == source / "share/palpa/assets");
 }
 
-TEST_CASE("assets: a folder of that name without scenes is another program's; without any the message names the places") {
+TEST_CASE(
+    "assets: a folder of that name without scenes is another program's; without any the message names the places") {
     const TemporaryFolder folder;
     fs::create_directories(folder / "x/assets");
     const std::string message = message_of([&] { assets_beside(folder / "x/bin/palpa"); });

@@ -1,7 +1,6 @@
-#include "avatar/delay.h"
-
 #include <doctest/doctest.h>
 
+#include "avatar/delay.h"
 #include "tests/avatar/test_tissues.h"
 
 using namespace palpa;
@@ -26,9 +25,9 @@ TEST_CASE("delay: reference delays on the tent, at every sampling rate") {
         double tau_ms;
         double lag_mm;
     };
-    const Row rows[] = {{false, -4, 9, 0.27},       {false, -3, 9, 0.27},  {false, 0, 9, 0.27},
-                        {false, 1, 0, 0},           {true, -4.5, 12, 0.36}, {true, -4, 25.333333, 0.76},
-                        {true, -3, 52, 1.56},       {true, 0, 54, 1.62},   {true, 1, 22.333333, 0.67},
+    const Row rows[] = {{false, -4, 9, 0.27}, {false, -3, 9, 0.27},   {false, 0, 9, 0.27},
+                        {false, 1, 0, 0},     {true, -4.5, 12, 0.36}, {true, -4, 25.333333, 0.76},
+                        {true, -3, 52, 1.56}, {true, 0, 54, 1.62},    {true, 1, 22.333333, 0.67},
                         {true, 2, 0, 0}};
     for (const Row& row : rows) {
         for (const double rate_Hz : {30.0, 60.0, 100.0, 133.0, 240.0, 1000.0}) {
@@ -70,7 +69,9 @@ TEST_CASE("delay: peaks over a round bump") {
         double tau_ms;
         double lag_mm;
     };
-    for (const Row& row : {Row{true, 0.01, 79.3, 0.793}, {true, 0.03, 79.3, 2.380}, {true, 0.1, 47.8, 4.783},
+    for (const Row& row : {Row{true, 0.01, 79.3, 0.793},
+                           {true, 0.03, 79.3, 2.380},
+                           {true, 0.1, 47.8, 4.783},
                            {false, 0.03, 13.22, 0.397}}) {
         const Delay law = row.clear ? delay_clear() : delay_paper();
         DelayState state;

@@ -1,9 +1,7 @@
-#include "avatar/display_ratio.h"
-
 #include <doctest/doctest.h>
-
 #include <random>
 
+#include "avatar/display_ratio.h"
 #include "tests/avatar/test_tissues.h"
 
 using namespace palpa;
@@ -15,8 +13,7 @@ namespace {
 constexpr double kTolerance_m = 1e-9;  // 1e-6 mm, as the reference values are printed
 
 template <class Force>
-double lag_after(const DisplayRatio& law, const std::vector<Touch>& samples, Force force_N,
-                 DisplayRatioState& state) {
+double lag_after(const DisplayRatio& law, const std::vector<Touch>& samples, Force force_N, DisplayRatioState& state) {
     Eigen::Vector2d lag = Eigen::Vector2d::Zero();
     for (const Touch& touch : samples) lag = advance_lag(law, touch, rise_of(force_N), state);
     return lag.x();

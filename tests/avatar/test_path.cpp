@@ -1,12 +1,10 @@
-#include "avatar/path.h"
-
-#include <doctest/doctest.h>
-
 #include <algorithm>
 #include <cmath>
+#include <doctest/doctest.h>
 #include <vector>
 
 #include "avatar/display_ratio.h"
+#include "avatar/path.h"
 #include "tests/avatar/test_tissues.h"
 
 using namespace palpa;
@@ -36,11 +34,13 @@ Walk sweep(double speed_m_per_s, double rate_Hz, const StationLimit& limit) {
         pen.force_N = 1.0;
         pen.down = true;
         int asked = 0;
-        const auto rise = [&](const Eigen::Vector2d& e_m, const Eigen::Vector2d& u, double force_N, double reference_m) {
+        const auto rise = [&](const Eigen::Vector2d& e_m, const Eigen::Vector2d& u, double force_N,
+                              double reference_m) {
             ++asked;
             return rise_of(bump_N)(e_m, u, force_N, reference_m);
         };
-        walk_to(law.path, limit, pen, rise, [&](const Pull& pull) { walk.pulls.push_back(pull); }, walk.state);
+        walk_to(
+            law.path, limit, pen, rise, [&](const Pull& pull) { walk.pulls.push_back(pull); }, walk.state);
         walk.asked_most = std::max(walk.asked_most, asked);
         walk.lags.push_back(advance_lag(law, pen, rise_of(bump_N), ratio, limit));
     }
@@ -55,7 +55,8 @@ double way_m(const Walk& walk) {
 
 }  // namespace
 
-TEST_CASE("path: a stroke slower than the limit loses no station at any rate and gives the same numbers to the last bit") {
+TEST_CASE(
+    "path: a stroke slower than the limit loses no station at any rate and gives the same numbers to the last bit") {
     for (const double rate_Hz : {30.0, 60.0, 240.0, 1000.0}) {
         CAPTURE(rate_Hz);
         const Walk limited = sweep(0.15, rate_Hz, {4000.0, 4, 1000});
@@ -67,7 +68,8 @@ TEST_CASE("path: a stroke slower than the limit loses no station at any rate and
     }
 }
 
-TEST_CASE("path: a faster stroke asks the tissue no more often than the limit allows, counts the rest, and keeps its way") {
+TEST_CASE(
+    "path: a faster stroke asks the tissue no more often than the limit allows, counts the rest, and keeps its way") {
     struct Case {
         double rate_Hz;
         int most;
@@ -105,7 +107,8 @@ TEST_CASE("path: the stations that are left lie evenly") {
     walk_to({}, StationLimit{4000.0, 4, 64}, touch(0.001, 0.00101), rise, note, state);  // 20 stations, 4 allowed
     REQUIRE(at_m.size() == 4);
     CHECK(state.skipped_stations == 16);
-    for (std::size_t i = 0; i < 4; ++i) CHECK(at_m[i] == doctest::Approx((static_cast<double>(i) + 1.0) * 2.5e-4 / 1.01));
+    for (std::size_t i = 0; i < 4; ++i)
+        CHECK(at_m[i] == doctest::Approx((static_cast<double>(i) + 1.0) * 2.5e-4 / 1.01));
 }
 
 TEST_CASE("path: samples of a burst have the least number of stations each, whatever their times say") {

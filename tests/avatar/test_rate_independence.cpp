@@ -1,7 +1,6 @@
 // Random polylines, cut more and more finely: both laws depend on the line alone.
 
 #include <doctest/doctest.h>
-
 #include <random>
 
 #include "avatar/delay.h"
@@ -79,7 +78,7 @@ TEST_CASE("rate independence: cutting a polyline 5 or 40 times more changes noth
         for (int c = 1; c < 3; ++c) {
             REQUIRE(lags[c].size() == lags[0].size());
             for (std::size_t i = 0; i < lags[0].size(); ++i) {
-                CHECK((lags[c][i] - lags[0][i]).norm() < 1e-12);      // 1e-9 mm
+                CHECK((lags[c][i] - lags[0][i]).norm() < 1e-12);  // 1e-9 mm
                 CHECK(std::abs(taus[c][i] - taus[0][i]) < 1e-12);
             }
         }

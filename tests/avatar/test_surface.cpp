@@ -1,10 +1,9 @@
-#include "avatar/surface.h"
-
-#include <doctest/doctest.h>
-
 #include <cmath>
+#include <doctest/doctest.h>
 #include <numbers>
 #include <vector>
+
+#include "avatar/surface.h"
 
 using namespace palpa;
 using namespace palpa::avatar;
@@ -27,9 +26,8 @@ double layer_sink(double r, double a, double thickness) {
         for (double k = 0.5 * dk; k < 100.0 / a; k += dk) {
             const double x = k * thickness;
             const double e2 = std::exp(-2.0 * x);
-            const double w = x > 40.0 ? 1.0
-                                      : ((1.0 - e2 * e2) - 4.0 * x * e2) /
-                                            ((1.0 + e2 * e2) + (4.0 * x * x + 2.0) * e2);
+            const double w =
+                x > 40.0 ? 1.0 : ((1.0 - e2 * e2) - 4.0 * x * e2) / ((1.0 + e2 * e2) + (4.0 * x * x + 2.0) * e2);
             const double ka = k * a;
             const double pressure = (std::sin(ka) - ka * std::cos(ka)) / (ka * ka * ka);
             sum += pressure * ::j0(k * at) * w * dk;

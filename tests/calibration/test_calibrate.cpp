@@ -1,10 +1,8 @@
-#include "calibration/calibrate.h"
-
-#include <doctest/doctest.h>
-
 #include <cmath>
+#include <doctest/doctest.h>
 #include <random>
 
+#include "calibration/calibrate.h"
 #include "tests/error_message.h"
 
 using namespace palpa;

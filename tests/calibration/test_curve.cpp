@@ -1,10 +1,9 @@
-#include "calibration/curve.h"
-
-#include <doctest/doctest.h>
-
 #include <cmath>
+#include <doctest/doctest.h>
 #include <random>
 #include <vector>
+
+#include "calibration/curve.h"
 
 using namespace palpa;
 using namespace palpa::calibration;

@@ -1,10 +1,9 @@
-#include "calibration/fit.h"
-
-#include <doctest/doctest.h>
-
 #include <cmath>
+#include <doctest/doctest.h>
 #include <random>
 #include <vector>
+
+#include "calibration/fit.h"
 
 using namespace palpa;
 using namespace palpa::calibration;
@@ -37,8 +36,26 @@ FitOptions options_of(CurveModel model, ErrorModel error, Robust robust, double 
 }  // namespace
 
 TEST_CASE("hard case 1: the paper's three curves come back to 1e-9 from any of 20 starts") {
-    const double starts[] = {0.0,   1.0,   1000.0, -1000.0, -5.0, 1e-9, 1e9, 1e300, -1e300, static_cast<double>(NAN), static_cast<double>(INFINITY),
-                             3.0,   7.0,   0.0039, 4.2,     60.0, 1e-3, -1e-3, 50.0, 100.0};
+    const double starts[] = {0.0,
+                             1.0,
+                             1000.0,
+                             -1000.0,
+                             -5.0,
+                             1e-9,
+                             1e9,
+                             1e300,
+                             -1e300,
+                             static_cast<double>(NAN),
+                             static_cast<double>(INFINITY),
+                             3.0,
+                             7.0,
+                             0.0039,
+                             4.2,
+                             60.0,
+                             1e-3,
+                             -1e-3,
+                             50.0,
+                             100.0};
     for (const Published& curve : kPaper) {
         const FitPoints points = exponential(curve, 57);
         for (const ErrorModel error : {ErrorModel::newton, ErrorModel::log}) {
@@ -70,7 +87,8 @@ TEST_CASE("fit: power and exponential with offset come back from exact points, b
             CAPTURE(bend);
             const double a_N = bend > 0.0 ? 0.3 : -0.3;
             points.force_N = 0.5 + a_N * (bend * points.level / 8191.0).exp();
-            const auto offset = fit_curve(points, options_of(CurveModel::exponential_offset, error, Robust::huber, 8191.0));
+            const auto offset =
+                fit_curve(points, options_of(CurveModel::exponential_offset, error, Robust::huber, 8191.0));
             REQUIRE(offset);
             // a nearly straight line tells a, b and offset apart only to 1e-16 / bend^2
             const double tolerance = 1e-14 / (bend * bend) + 1e-12;
@@ -92,8 +110,11 @@ TEST_CASE("hard case 2: bias at full scale below 3 % over 500 trials with the er
             double sum = 0.0;
             for (int trial = 0; trial < 500; ++trial) {
                 FitPoints points = exponential(curve, 57);
-                for (double& F : points.force_N) F = additive ? std::max(0.0, F + 0.15 * normal(random)) : F * std::exp(0.1 * normal(random));
-                const auto fitted = fit_curve(points, options_of(CurveModel::exponential, additive ? ErrorModel::newton : ErrorModel::log, robust, 1023.0));
+                for (double& F : points.force_N)
+                    F = additive ? std::max(0.0, F + 0.15 * normal(random)) : F * std::exp(0.1 * normal(random));
+                const auto fitted =
+                    fit_curve(points, options_of(CurveModel::exponential,
+                                                 additive ? ErrorModel::newton : ErrorModel::log, robust, 1023.0));
                 REQUIRE(fitted);
                 sum += value_N(*fitted, 1024.0) / (curve.a_N * std::exp(curve.b * 1024.0)) - 1.0;
             }
@@ -108,7 +129,8 @@ TEST_CASE("fit: slips of a factor of three in every tenth point move a robust fi
     FitPoints points = exponential(curve, 100);
     std::mt19937_64 random(3);
     std::normal_distribution<double> normal;
-    for (Eigen::Index i = 0; i < 100; ++i) points.force_N(i) *= std::exp(0.02 * normal(random)) * (i % 10 == 5 ? 3.0 : 1.0);
+    for (Eigen::Index i = 0; i < 100; ++i)
+        points.force_N(i) *= std::exp(0.02 * normal(random)) * (i % 10 == 5 ? 3.0 : 1.0);
     const auto off = [&](Robust robust) {
         const auto fitted = fit_curve(points, options_of(CurveModel::exponential, ErrorModel::log, robust, 1.0));
         return std::abs(value_N(*fitted, 0.7) / (curve.a_N * std::exp(curve.b * 0.7)) - 1.0);
@@ -146,7 +168,8 @@ TEST_CASE("hard case 3: points that determine no rising curve give none, never a
     std::mt19937_64 random(17);
     std::uniform_real_distribution<double> uniform(0.0, 1.0);
     const auto check = [&](const FitPoints& points) {
-        for (const CurveModel model : {CurveModel::exponential, CurveModel::exponential_offset, CurveModel::power, CurveModel::monotone_cubic}) {
+        for (const CurveModel model :
+             {CurveModel::exponential, CurveModel::exponential_offset, CurveModel::power, CurveModel::monotone_cubic}) {
             for (const ErrorModel error : {ErrorModel::newton, ErrorModel::log}) {
                 for (const Robust robust : {Robust::none, Robust::huber, Robust::tukey}) {
                     const auto curve = fit_curve(points, options_of(model, error, robust, 1.0));

@@ -1,9 +1,7 @@
-#include "calibration/points.h"
-
+#include <cmath>
 #include <doctest/doctest.h>
 
-#include <cmath>
-
+#include "calibration/points.h"
 #include "files/text.h"
 #include "tests/error_message.h"
 #include "tests/temporary_folder.h"
@@ -28,13 +26,15 @@ std::string said(const std::string& text, const ReadOptions& options = {}) {
 }  // namespace
 
 TEST_CASE("points: columns by name, gram-force becomes newtons") {
-    const CalibrationRows rows = read("repeat,force_gf,level,phase,time_s\nb,10,0.1,press,1\nb,100,0.5,press,2\na,200,0.9,release,0\n");
+    const CalibrationRows rows =
+        read("repeat,force_gf,level,phase,time_s\nb,10,0.1,press,1\nb,100,0.5,press,2\na,200,0.9,release,0\n");
     CHECK(rows.force_N[1] == doctest::Approx(0.980665));
     CHECK(rows.repeat == std::vector<int>{0, 0, 1});
     CHECK(rows.phase[2] == PressPhase::release);
     CHECK(rows.line[2] == 4);
     CHECK(read("pressure_norm,force_N\n0,0.1\n0.5,1\n1,2\n").level[1] == 0.5);
-    CHECK(read("level,force_N,pen\n0,0.1,a\n0.5,1,a\n0.7,2,b\n1,2,a\n", {{{"pen", "a"}}, false, true}).level.size() == 3);
+    CHECK(read("level,force_N,pen\n0,0.1,a\n0.5,1,a\n0.7,2,b\n1,2,a\n", {{{"pen", "a"}}, false, true}).level.size() ==
+          3);
     const CalibrationRows sessions = read("level,force_N,pen\n0,0.1,a\n0.5,1,a\n1,2,a\n0.5,2,b\n");
     CHECK(contains(sessions.notes.at(0), "2 sessions"));
     CHECK(sessions.repeat.back() == 1);
@@ -61,20 +61,26 @@ TEST_CASE("hard case 3: gram-force and newtons mixed up are seen") {
     CHECK(contains(said("level,force_N\n0,5\n0.5,80\n1,250\n"), "forces up to 250 N, expected less than 60 N"));
     CHECK(said("level,force_N\n0,5\n0.5,80\n1,250\n", {{}, true, true}) == "");
     CHECK(contains(said("level,force_gf\n0,0.05\n0.5,0.8\n1,2.5\n"), "(2.5 gf), expected more than 0.15 N"));
-    CHECK(contains(said("level,force_N,force_gf\n0,0.1,10.2\n0.5,1,102\n1,2,2\n"), "line 4, force_gf: found '2', expected 203.9 gf"));
+    CHECK(contains(said("level,force_N,force_gf\n0,0.1,10.2\n0.5,1,102\n1,2,2\n"),
+                   "line 4, force_gf: found '2', expected 203.9 gf"));
     std::string mixed = "level,force_N\n";
-    for (int i = 1; i <= 12; ++i) mixed += number_text(i / 12.0) + "," + number_text(i == 7 ? 0.4 * 101.97 : 0.05 * i) + "\n";
+    for (int i = 1; i <= 12; ++i)
+        mixed += number_text(i / 12.0) + "," + number_text(i == 7 ? 0.4 * 101.97 : 0.05 * i) + "\n";
     CHECK(contains(said(mixed), "line 8, force: found 40.79 N, expected about"));
 }
 
 TEST_CASE("hard case 3: times that do not rise, and a sensor that stands still") {
     const std::string head = "time_s,level,force_N\n";
-    CHECK(contains(said(head + "0,0,0.1\n2,0.5,1\n1,1,2\n"), "line 4, time_s: found 1 after 2, expected times that rise"));
+    CHECK(contains(said(head + "0,0,0.1\n2,0.5,1\n1,1,2\n"),
+                   "line 4, time_s: found 1 after 2, expected times that rise"));
     CHECK(contains(said(head + "0,0,0.1\n1,0.5,1\n1,1,2\n"), "line 4, time_s: found 1 after 1"));
     CHECK(said("time_s,repeat,level,force_N\n0,1,0,0.1\n1,1,0.5,1\n0,2,1,2\n") == "");
     std::string stopped = head;
-    for (int i = 0; i < 40; ++i) stopped += number_text(0.1 * i) + "," + number_text(i / 40.0) + "," + number_text(i < 20 ? 0.1 + 0.05 * i : 1.05) + "\n";
-    CHECK(contains(said(stopped), "lines 21 to 41, force: found 1.05 N all the time while the level goes from 0.475 to 0.975"));
+    for (int i = 0; i < 40; ++i)
+        stopped += number_text(0.1 * i) + "," + number_text(i / 40.0) + "," +
+                   number_text(i < 20 ? 0.1 + 0.05 * i : 1.05) + "\n";
+    CHECK(contains(said(stopped),
+                   "lines 21 to 41, force: found 1.05 N all the time while the level goes from 0.475 to 0.975"));
 }
 
 TEST_CASE("points: silence below activation and the plateau above saturation are told from the curve") {
@@ -96,14 +102,16 @@ TEST_CASE("points: silence below activation and the plateau above saturation are
 
     // a finger's area that flattens at 0.62 with noise: no hard stop, and no full scale
     for (std::size_t i = 0; i < rows.level.size(); ++i) {
-        rows.level[i] = 0.62 * (1.0 - std::exp(-rows.force_N[i] / 0.3)) + 0.002 * std::sin(1e3 * static_cast<double>(i));
+        rows.level[i] =
+            0.62 * (1.0 - std::exp(-rows.force_N[i] / 0.3)) + 0.002 * std::sin(1e3 * static_cast<double>(i));
     }
     const Ends area = ends_of(rows, {0.0, 1.0});
     CHECK(area.saturation_N > 0.8);
     CHECK(area.saturation_N < 1.3);
 
     // a curve that simply ends is not saturated
-    for (std::size_t i = 0; i < rows.level.size(); ++i) rows.level[i] = std::clamp(std::log(std::max(rows.force_N[i], 1e-9) / 0.05) / 5.0, 0.0, 1.0);
+    for (std::size_t i = 0; i < rows.level.size(); ++i)
+        rows.level[i] = std::clamp(std::log(std::max(rows.force_N[i], 1e-9) / 0.05) / 5.0, 0.0, 1.0);
     CHECK(std::isnan(ends_of(rows, {0.0, 1.0}).saturation_N));
 }
 

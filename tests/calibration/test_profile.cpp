@@ -1,9 +1,7 @@
-#include "calibration/profile.h"
-
+#include <cmath>
 #include <doctest/doctest.h>
 
-#include <cmath>
-
+#include "calibration/profile.h"
 #include "calibration/profile_file.h"
 
 using namespace palpa;
@@ -23,7 +21,9 @@ TEST_CASE("profile: the paper's three curves at both ends of their range") {
         double highest_N;
     };
     // a exp(b level), computed by hand from the printed coefficients
-    for (const Row& row : {Row{"bamboo.json", 0.0827, 4.46906}, {"s-pen.json", 0.1008, 6.77632}, {"xoom-finger.json", 0.0772, 1.66768}}) {
+    for (const Row& row : {Row{"bamboo.json", 0.0827, 4.46906},
+                           {"s-pen.json", 0.1008, 6.77632},
+                           {"xoom-finger.json", 0.0772, 1.66768}}) {
         CAPTURE(row.file);
         const Profile profile = shipped(row.file);
         std::int64_t clamped = 0;

@@ -1,7 +1,6 @@
-#include "calibration/profile_file.h"
-
 #include <doctest/doctest.h>
 
+#include "calibration/profile_file.h"
 #include "files/text.h"
 #include "tests/error_message.h"
 #include "tests/temporary_folder.h"
@@ -45,13 +44,15 @@ TEST_CASE("hard case 3: profiles that are no usable curve are refused by key") {
 
 TEST_CASE("profile file: points need as many levels as forces") {
     const std::string points = R"("points": {"level": [0, 0.5], "force_N": [0.1]}, "model")";
-    CHECK(contains(said(with("\"model\"", points)), "points.force_N: found an array of 1, expected an array of 2 numbers"));
+    CHECK(contains(said(with("\"model\"", points)),
+                   "points.force_N: found an array of 1, expected an array of 2 numbers"));
 }
 
 namespace {
 
 std::string of_model(const std::string& model, const std::string& parameters) {
-    return R"({"device": {}, "model": ")" + model + R"(", "parameters": )" + parameters + R"(, "level": "pressure", "level_range": [0, 1]})";
+    return R"({"device": {}, "model": ")" + model + R"(", "parameters": )" + parameters +
+           R"(, "level": "pressure", "level_range": [0, 1]})";
 }
 
 }  // namespace
@@ -85,10 +86,14 @@ TEST_CASE("profile file: every model is written and read back to the last bit") 
 TEST_CASE("profile file: parameters of every model are checked by key") {
     CHECK(contains(said(of_model("power", R"({"a_N": 2, "b": -1})")), "parameters.b: found -1"));
     CHECK(contains(said(of_model("power", R"({"a_N": 2})")), "parameters.b: found nothing"));
-    CHECK(contains(said(of_model("exponential_offset", R"({"a_N": -2, "b": 1, "offset_N": 3})")), "the curve must rise"));
-    CHECK(contains(said(of_model("exponential_offset", R"({"a_N": 2, "b": 1, "offset_N": -30})")), "a force that rises above 0"));
-    CHECK(contains(said(of_model("monotone_cubic", R"({"level": [0, 0], "force_N": [1, 2]})")), "parameters.level: found 0 after 0"));
-    CHECK(contains(said(of_model("monotone_cubic", R"({"level": [0, 1], "force_N": [2, 1]})")), "parameters.force_N: found 1 after 2"));
+    CHECK(
+        contains(said(of_model("exponential_offset", R"({"a_N": -2, "b": 1, "offset_N": 3})")), "the curve must rise"));
+    CHECK(contains(said(of_model("exponential_offset", R"({"a_N": 2, "b": 1, "offset_N": -30})")),
+                   "a force that rises above 0"));
+    CHECK(contains(said(of_model("monotone_cubic", R"({"level": [0, 0], "force_N": [1, 2]})")),
+                   "parameters.level: found 0 after 0"));
+    CHECK(contains(said(of_model("monotone_cubic", R"({"level": [0, 1], "force_N": [2, 1]})")),
+                   "parameters.force_N: found 1 after 2"));
     CHECK(contains(said(of_model("monotone_cubic", R"({"level": [0, 1], "force_N": [2]})")), "an array of 2 numbers"));
     CHECK(contains(said(of_model("monotone_cubic", R"({"level": [0], "force_N": [2]})")), "two at least"));
     CHECK(contains(said(of_model("monotone_cubic", R"({"level": [0, 1], "force_N": [0, 1]})")), "> 0"));

@@ -1,10 +1,8 @@
-#include "calibration/record_session.h"
-
-#include <doctest/doctest.h>
-
 #include <cmath>
+#include <doctest/doctest.h>
 #include <random>
 
+#include "calibration/record_session.h"
 #include "files/text.h"
 #include "tests/error_message.h"
 #include "tests/temporary_folder.h"
@@ -17,14 +15,16 @@ using namespace palpa::test;
 namespace {
 
 // One press: holds still for 0.4 s at each level, 0.2 s from one to the next; level at 200 Hz, force at 100 Hz.
-double press(const RecordOptions& options, const std::vector<double>& levels, double t_s, double factor, std::mt19937_64& random, RecordSession& session) {
+double press(const RecordOptions& options, const std::vector<double>& levels, double t_s, double factor,
+             std::mt19937_64& random, RecordSession& session) {
     std::normal_distribution<double> normal;
     double before = 0.0;
     for (const double level : levels) {
         for (int i = 0; i < 120; ++i, t_s += 0.005) {
             const double now = i < 40 ? before + (level - before) * i / 40.0 : level;
             take_level(options, t_s, now, true, session);
-            if (i % 2 == 0) take_force(options, t_s, factor * 0.1 * std::exp(3.5 * now) * (1.0 + 0.005 * normal(random)), session);
+            if (i % 2 == 0)
+                take_force(options, t_s, factor * 0.1 * std::exp(3.5 * now) * (1.0 + 0.005 * normal(random)), session);
             capture(options, t_s, session);
         }
         before = level;
@@ -67,8 +67,8 @@ TEST_CASE("record: nothing is captured without a sensor, without touch, or on th
     for (int i = 100; i < 200; ++i) take_force(options, 0.01 * i, 1.0 + 0.02 * i, session);
     CHECK_FALSE(capture(options, 2.0, session));  // the force still rises
     for (int i = 200; i < 300; ++i) take_force(options, 0.01 * i, 1.0, session);
-    CHECK(capture(options, 2.9, session));        // a pen that is held still sends nothing: its level holds
-    CHECK_FALSE(capture(options, 2.95, session)); // captured already
+    CHECK(capture(options, 2.9, session));         // a pen that is held still sends nothing: its level holds
+    CHECK_FALSE(capture(options, 2.95, session));  // captured already
     take_level(options, 3.0, 0.0, false, session);
     CHECK_FALSE(capture(options, 3.4, session));
 }
@@ -124,7 +124,8 @@ TEST_CASE("record: it is enough when every band is known to 5 %, and until then 
 
 TEST_CASE("record: a session is kept in a file, and resumed from it") {
     const TemporaryFolder folder;
-    const std::vector<CapturedPoint> points{{1.25, 0.1, 1.0 / 3.0, 0, PressPhase::press}, {2.5, 0.7, 2.0, 4, PressPhase::release}};
+    const std::vector<CapturedPoint> points{{1.25, 0.1, 1.0 / 3.0, 0, PressPhase::press},
+                                            {2.5, 0.7, 2.0, 4, PressPhase::release}};
     write_text_atomically(folder / "points.csv", points_csv(points));
     const auto back = read_session(folder / "points.csv");
     REQUIRE(back.size() == 2);

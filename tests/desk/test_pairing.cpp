@@ -1,10 +1,8 @@
-#include "desk/pairing.h"
-
-#include <doctest/doctest.h>
-
 #include <algorithm>
+#include <doctest/doctest.h>
 #include <set>
 
+#include "desk/pairing.h"
 #include "files/text.h"
 #include "tests/error_message.h"
 #include "tests/temporary_folder.h"
@@ -67,7 +65,8 @@ TEST_CASE("pairing: many addresses meet the lock of all, and take no more memory
     CodeGuard guard("123456", {});
     int compared = 0;
     for (int i = 0; i < 5000; ++i) {
-        const std::string address = "10." + std::to_string(i / 65536) + "." + std::to_string(i / 256 % 256) + "." + std::to_string(i % 256);
+        const std::string address =
+            "10." + std::to_string(i / 65536) + "." + std::to_string(i / 256 % 256) + "." + std::to_string(i % 256);
         const auto result = guard.try_code("0", address, 0.001 * i);
         compared += result.answer == Answer::wrong ? 1 : 0;
         if (result.lock_began) CHECK(result.everybody);

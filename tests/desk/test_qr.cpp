@@ -1,10 +1,9 @@
-#include "desk/qr.h"
-
-#include <doctest/doctest.h>
-
 #include <algorithm>
+#include <doctest/doctest.h>
 #include <sstream>
 #include <vector>
+
+#include "desk/qr.h"
 
 using namespace palpa;
 using namespace palpa::desk;

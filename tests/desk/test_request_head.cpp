@@ -1,7 +1,6 @@
-#include "desk/request_head.h"
-
 #include <doctest/doctest.h>
 
+#include "desk/request_head.h"
 #include "study/random.h"
 
 using namespace palpa;
@@ -9,7 +8,9 @@ using namespace palpa::study;
 using namespace palpa::desk;
 
 TEST_CASE("serve head: what the library gets, and what it never sees") {
-    const auto head = check_head("PUT /api/logs/x HTTP/1.1\r\nHost: h\r\nContent-Length:  12 \r\nRange: bytes=0-1,0-1\r\nACCEPT-ENCODING: gzip\r\nX-A:b\r\n\r\n");
+    const auto head = check_head(
+        "PUT /api/logs/x HTTP/1.1\r\nHost: h\r\nContent-Length:  12 \r\nRange: bytes=0-1,0-1\r\nACCEPT-ENCODING: "
+        "gzip\r\nX-A:b\r\n\r\n");
     CHECK(head.refused == 0);
     CHECK(head.content_bytes == 12);
     CHECK(head.text == "PUT /api/logs/x HTTP/1.1\r\nHost: h\r\nContent-Length: 12\r\nX-A: b\r\n\r\n");
@@ -52,13 +53,16 @@ TEST_CASE("serve head: any bytes are refused or become lines without surprises")
     constexpr std::uint64_t kSeed = 11;
     CAPTURE(kSeed);
     Random random(kSeed);
-    const std::string good = "PUT /api/logs/x HTTP/1.1\r\nHost: 127.0.0.1:8443\r\nContent-Length: 12\r\nX-Content-SHA256: ab\r\n\r\n";
+    const std::string good =
+        "PUT /api/logs/x HTTP/1.1\r\nHost: 127.0.0.1:8443\r\nContent-Length: 12\r\nX-Content-SHA256: ab\r\n\r\n";
     for (int i = 0; i < 20000; ++i) {
         std::string head = good;
         for (int change = 0; change < 3; ++change) {
             const auto at = static_cast<std::size_t>(random.uniform(0.0, static_cast<double>(head.size())));
-            if (random.uniform() < 0.5) head[at] = static_cast<char>(random.uniform(0.0, 256.0));
-            else head.insert(at, 1, " \r\n:/\t"[static_cast<std::size_t>(random.uniform(0.0, 6.0))]);
+            if (random.uniform() < 0.5)
+                head[at] = static_cast<char>(random.uniform(0.0, 256.0));
+            else
+                head.insert(at, 1, " \r\n:/\t"[static_cast<std::size_t>(random.uniform(0.0, 6.0))]);
         }
         CAPTURE(i);
         const auto checked = check_head(head);

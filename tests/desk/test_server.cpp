@@ -1,10 +1,9 @@
-#include "desk/server.h"
-
-#include <doctest/doctest.h>
-
 #include <chrono>
+#include <doctest/doctest.h>
 #include <future>
 #include <thread>
+
+#include "desk/server.h"
 
 using namespace palpa;
 using namespace palpa::desk;

@@ -1,8 +1,7 @@
-#include "desk/static_files.h"
-
 #include <doctest/doctest.h>
 #include <sys/stat.h>
 
+#include "desk/static_files.h"
 #include "files/text.h"
 #include "tests/temporary_folder.h"
 
@@ -28,12 +27,36 @@ TEST_CASE("static files: names of plain paths") {
 }
 
 TEST_CASE("static files: tricks are no paths") {
-    for (const std::string& target : {
-             std::string(), std::string("a"), std::string("http://x/a"), std::string("*"), std::string("/../a"), std::string("/a/../b"), std::string("/./a"),
-             std::string("/a/.."), std::string("/%2e%2e/a"), std::string("/%2E%2e%2Fa"), std::string("/a%2fb"), std::string("/a%5cb"), std::string("/a\\b"),
-             std::string("/..%5c..%5ca"), std::string("/a%00.html"), std::string("/a%0a"), std::string("/a%7f"), std::string("/a%"), std::string("/a%2"),
-             std::string("/a%zz"), std::string("/a%u002e"), std::string("//a"), std::string("/a//b"), std::string("/.git/config"), std::string("/a/.htaccess"),
-             std::string("/%c0%ae%c0%ae/a"), std::string("/%ff"), std::string("/%e2%82"), std::string("/a\0b", 4), "/" + std::string(2000, 'a')}) {
+    for (const std::string& target : {std::string(),
+                                      std::string("a"),
+                                      std::string("http://x/a"),
+                                      std::string("*"),
+                                      std::string("/../a"),
+                                      std::string("/a/../b"),
+                                      std::string("/./a"),
+                                      std::string("/a/.."),
+                                      std::string("/%2e%2e/a"),
+                                      std::string("/%2E%2e%2Fa"),
+                                      std::string("/a%2fb"),
+                                      std::string("/a%5cb"),
+                                      std::string("/a\\b"),
+                                      std::string("/..%5c..%5ca"),
+                                      std::string("/a%00.html"),
+                                      std::string("/a%0a"),
+                                      std::string("/a%7f"),
+                                      std::string("/a%"),
+                                      std::string("/a%2"),
+                                      std::string("/a%zz"),
+                                      std::string("/a%u002e"),
+                                      std::string("//a"),
+                                      std::string("/a//b"),
+                                      std::string("/.git/config"),
+                                      std::string("/a/.htaccess"),
+                                      std::string("/%c0%ae%c0%ae/a"),
+                                      std::string("/%ff"),
+                                      std::string("/%e2%82"),
+                                      std::string("/a\0b", 4),
+                                      "/" + std::string(2000, 'a')}) {
         CAPTURE(target);
         CHECK_FALSE(names_of_path(target).has_value());
     }

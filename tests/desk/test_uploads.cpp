@@ -1,9 +1,7 @@
-#include "desk/uploads.h"
-
+#include <algorithm>
 #include <doctest/doctest.h>
 
-#include <algorithm>
-
+#include "desk/uploads.h"
 #include "files/sha256.h"
 #include "files/text.h"
 #include "tests/error_message.h"
@@ -36,7 +34,9 @@ int status_of(Call&& call) {
     return 0;
 }
 
-std::size_t files_in(const fs::path& folder) { return static_cast<std::size_t>(std::distance(fs::directory_iterator(folder), {})); }
+std::size_t files_in(const fs::path& folder) {
+    return static_cast<std::size_t>(std::distance(fs::directory_iterator(folder), {}));
+}
 std::size_t lines_of(const fs::path& file) {
     const std::string text = read_text(file);
     return static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n'));
@@ -67,7 +67,8 @@ TEST_CASE("uploads: bytes get a name of their own; again they are there already"
     CHECK(lines_of(folder / "in" / "index.tsv") == 2);
     send(bytes, uploads, {"other", 2, "10.0.0.8"});  // the same from somebody else is worth a row
     CHECK(lines_of(folder / "in" / "index.tsv") == 3);
-    CHECK(contains(read_text(folder / "in" / "index.tsv"), "\t" + first.sha256 + "\t5000\t" + first.name + "\ttablet\t1\t10.0.0.7\n"));
+    CHECK(contains(read_text(folder / "in" / "index.tsv"),
+                   "\t" + first.sha256 + "\t5000\t" + first.name + "\ttablet\t1\t10.0.0.7\n"));
     CHECK(send("", uploads).fresh);
     CHECK(files_in(folder / "in" / "aside") == 0);
 }
@@ -111,7 +112,8 @@ TEST_CASE("uploads: after a kill asides go, and whole files find their row") {
     const std::string orphan = sha256_hex("named, then killed") + ".upload", changed = sha256_hex("x") + ".upload";
     write_text_atomically(folder / "in" / orphan, "named, then killed");
     write_text_atomically(folder / "in" / changed, "y");
-    write_text_atomically(folder / "in" / "index.tsv", read_text(folder / "in" / "index.tsv") + "2026-11-21T10:00:00Z\tcut");
+    write_text_atomically(folder / "in" / "index.tsv",
+                          read_text(folder / "in" / "index.tsv") + "2026-11-21T10:00:00Z\tcut");
     {
         Uploads uploads(folder / "in", {}, notes);
         CHECK(notes.size() == 4);

@@ -1,20 +1,19 @@
 #pragma once
 // A simulator as a process of its own, ended with the test.
 
+#include <cstdio>
 #include <fcntl.h>
 #include <signal.h>
-#include <sys/wait.h>
-#include <unistd.h>
-
-#include <cstdio>
 #include <stdexcept>
 #include <string>
+#include <sys/wait.h>
+#include <unistd.h>
 #include <vector>
 
 namespace palpa::test {
 
 class SimulatorProcess {
- public:
+  public:
     SimulatorProcess(const std::string& program, std::vector<std::string> arguments) {
         int ends[2];
         if (::pipe(ends) != 0) throw std::runtime_error("no pipe");
@@ -47,7 +46,8 @@ class SimulatorProcess {
     // The next line that it prints, without the newline; waits for it.
     std::string line() {
         std::string text;
-        for (int c = std::fgetc(out_); c != EOF && c != '\n'; c = std::fgetc(out_)) text.push_back(static_cast<char>(c));
+        for (int c = std::fgetc(out_); c != EOF && c != '\n'; c = std::fgetc(out_))
+            text.push_back(static_cast<char>(c));
         return text;
     }
     void end() {
@@ -57,7 +57,7 @@ class SimulatorProcess {
         pid_ = -1;
     }
 
- private:
+  private:
     pid_t pid_ = -1;
     std::FILE* out_ = nullptr;
     std::string port_;

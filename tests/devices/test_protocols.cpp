@@ -1,8 +1,7 @@
 // Frames, sequence numbers and lines, without any device.
 
-#include <doctest/doctest.h>
-
 #include <atomic>
+#include <doctest/doctest.h>
 #include <random>
 #include <string>
 #include <thread>
@@ -88,7 +87,8 @@ TEST_CASE("load cell: only whole and sensible lines are taken") {
     REQUIRE(taken.size() == 3);
     CHECK(taken[0].raw == -8388608);
     CHECK(taken[2].t_us == 4294967295u);
-    for (const char* bad : {"\n", "abc\n", "1,2,3\n", "1;2\n", ",5\n", "5,\n", "1,8388608\n", "4294967296,1\n", "1,2.5\n", "-1,2\n", "1, 2\n"}) {
+    for (const char* bad : {"\n", "abc\n", "1,2,3\n", "1;2\n", ",5\n", "5,\n", "1,8388608\n", "4294967296,1\n",
+                            "1,2.5\n", "-1,2\n", "1, 2\n"}) {
         const auto before = health.malformed;
         give(bad);
         CAPTURE(bad);
@@ -125,8 +125,10 @@ TEST_CASE("ring: every value arrives once and in order, and a full ring says so"
     constexpr int kCount = 200000;
     std::thread writer([&] {
         for (int i = 0; i < kCount;) {
-            if (ring->push(i)) ++i;
-            else std::this_thread::yield();
+            if (ring->push(i))
+                ++i;
+            else
+                std::this_thread::yield();
         }
     });
     int next = 0;

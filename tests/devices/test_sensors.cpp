@@ -1,10 +1,9 @@
 // Sensors against their simulators, over loopback UDP and a pseudo-terminal.
 
-#include <doctest/doctest.h>
-
 #include <chrono>
 #include <cmath>
 #include <cstdlib>
+#include <doctest/doctest.h>
 #include <functional>
 #include <thread>
 
@@ -26,12 +25,14 @@ struct Sent {
 
 Sent parse(const std::string& text) {
     Sent sent;
-    REQUIRE(std::sscanf(text.c_str(), "sent %lld lost %lld duplicate %lld reordered %lld", &sent.records, &sent.lost, &sent.duplicate, &sent.reordered) == 4);
+    REQUIRE(std::sscanf(text.c_str(), "sent %lld lost %lld duplicate %lld reordered %lld", &sent.records, &sent.lost,
+                        &sent.duplicate, &sent.reordered) == 4);
     return sent;
 }
 
 // Reads until `done` says so, 30 s at most.
-std::vector<ForceReading> read_until(SensorReader& reader, const std::function<bool(const std::vector<ForceReading>&)>& done) {
+std::vector<ForceReading> read_until(SensorReader& reader,
+                                     const std::function<bool(const std::vector<ForceReading>&)>& done) {
     std::vector<ForceReading> all;
     const double until_s = steady_s() + 30.0;
     while (steady_s() < until_s && !done(all)) {
@@ -55,7 +56,8 @@ TEST_CASE("Net F/T: 7 kHz with nothing lost, times and forces as sent") {
     // PALPA_LONG_S: for how long (3 s here; 60 s in the long run)
     const char* asked = std::getenv("PALPA_LONG_S");
     const std::string seconds = asked != nullptr ? asked : "3";
-    SimulatorProcess simulator(PALPA_NETFT_SIMULATOR, {"--rate-Hz", "7000", "--seconds", seconds, "--first-sequence", "4294960000"});
+    SimulatorProcess simulator(PALPA_NETFT_SIMULATOR,
+                               {"--rate-Hz", "7000", "--seconds", seconds, "--first-sequence", "4294960000"});
     std::unique_ptr<SensorReader> reader;
     open_reader(simulator, reader);
     const double until_s = steady_s() + std::atof(seconds.c_str()) + 0.7;
@@ -76,18 +78,21 @@ TEST_CASE("Net F/T: 7 kHz with nothing lost, times and forces as sent") {
     int wrong = 0;
     for (std::size_t i = 1; i < all.size(); ++i) {
         wrong += all[i].t_host_s < all[i - 1].t_host_s;
-        wrong += std::abs(all[i].t_device_s - all[i - 1].t_device_s - 1.0 / 7000.0) > 1e-9;  // across the wrap-around too
-        wrong += std::abs(all[i].force_N - all[i - 1].force_N) > 1e-3;                        // 3 N, 0.25 Hz: 0.34 mN a step
+        wrong +=
+            std::abs(all[i].t_device_s - all[i - 1].t_device_s - 1.0 / 7000.0) > 1e-9;  // across the wrap-around too
+        wrong += std::abs(all[i].force_N - all[i - 1].force_N) > 1e-3;                  // 3 N, 0.25 Hz: 0.34 mN a step
     }
     CHECK(wrong == 0);
 }
 
 TEST_CASE("Net F/T: lost, duplicate and reordered records are counted as the line made them") {
-    SimulatorProcess simulator(PALPA_NETFT_SIMULATOR, {"--rate-Hz", "2000", "--seconds", "2", "--lose", "0.02", "--duplicate", "0.03", "--reorder", "0.02",
-                                                       "--noise-N", "0.01", "--seed", "7", "--status", "2147483648"});
+    SimulatorProcess simulator(PALPA_NETFT_SIMULATOR,
+                               {"--rate-Hz", "2000", "--seconds", "2", "--lose", "0.02", "--duplicate", "0.03",
+                                "--reorder", "0.02", "--noise-N", "0.01", "--seed", "7", "--status", "2147483648"});
     std::unique_ptr<SensorReader> reader;
     open_reader(simulator, reader);
-    const auto all = read_until(*reader, [&](const auto& so_far) { return !so_far.empty() && !reader->health().alive; });
+    const auto all =
+        read_until(*reader, [&](const auto& so_far) { return !so_far.empty() && !reader->health().alive; });
     const Sent sent = parse(simulator.line());
     const SensorHealth health = reader->health();
     CHECK(sent.lost > 20);
@@ -102,7 +107,8 @@ TEST_CASE("Net F/T: lost, duplicate and reordered records are counted as the lin
 }
 
 TEST_CASE("Net F/T: a sensor that falls silent is asked again, and goes on") {
-    SimulatorProcess simulator(PALPA_NETFT_SIMULATOR, {"--rate-Hz", "500", "--silent-from-s", "0.5", "--silent-s", "1.2"});
+    SimulatorProcess simulator(PALPA_NETFT_SIMULATOR,
+                               {"--rate-Hz", "500", "--silent-from-s", "0.5", "--silent-s", "1.2"});
     std::unique_ptr<SensorReader> reader;
     open_reader(simulator, reader);
     bool was_gone = false;
@@ -118,8 +124,9 @@ TEST_CASE("Net F/T: a sensor that falls silent is asked again, and goes on") {
 
 TEST_CASE("load cell: lines, clock wrap-around, loss, repetition, garbled lines") {
     const TemporaryFolder folder;
-    SimulatorProcess simulator(PALPA_LOAD_CELL_SIMULATOR, {"--rate-Hz", "200", "--seconds", "3", "--first-us", "4293967295", "--lose", "0.03", "--duplicate", "0.03",
-                                                           "--reorder", "0.02", "--garble", "0.02", "--seed", "3"});
+    SimulatorProcess simulator(PALPA_LOAD_CELL_SIMULATOR,
+                               {"--rate-Hz", "200", "--seconds", "3", "--first-us", "4293967295", "--lose", "0.03",
+                                "--duplicate", "0.03", "--reorder", "0.02", "--garble", "0.02", "--seed", "3"});
     LoadCellOptions options;
     options.path = simulator.port();
     options.N_per_count = 1.0 / 40000.0;
@@ -143,7 +150,8 @@ TEST_CASE("load cell: lines, clock wrap-around, loss, repetition, garbled lines"
 TEST_CASE("load cell: unplugged and plugged in again, it goes on by itself") {
     const TemporaryFolder folder;
     const std::string link = (folder / "cell").string();
-    SimulatorProcess simulator(PALPA_LOAD_CELL_SIMULATOR, {"--rate-Hz", "100", "--silent-from-s", "0.8", "--silent-s", "1.0", "--link", link});
+    SimulatorProcess simulator(PALPA_LOAD_CELL_SIMULATOR,
+                               {"--rate-Hz", "100", "--silent-from-s", "0.8", "--silent-s", "1.0", "--link", link});
     LoadCellOptions options;
     options.path = simulator.port();
     options.N_per_count = 1.0 / 40000.0;
@@ -156,6 +164,8 @@ TEST_CASE("load cell: unplugged and plugged in again, it goes on by itself") {
     CHECK(reader.health().reconnects == 1);
     CHECK(reader.health().stalls == 1);
     CHECK(all.size() > 50);
-    CHECK_THROWS_WITH_AS(open_load_cell({(folder / "none").string(), 115200, 1.0}), doctest::Contains("none: cannot be opened"), std::runtime_error);
-    CHECK_THROWS_WITH_AS(open_load_cell({"/dev/null", 115200, 1.0}), doctest::Contains("is not a serial port"), std::runtime_error);
+    CHECK_THROWS_WITH_AS(open_load_cell({(folder / "none").string(), 115200, 1.0}),
+                         doctest::Contains("none: cannot be opened"), std::runtime_error);
+    CHECK_THROWS_WITH_AS(open_load_cell({"/dev/null", 115200, 1.0}), doctest::Contains("is not a serial port"),
+                         std::runtime_error);
 }

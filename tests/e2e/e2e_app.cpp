@@ -1,9 +1,8 @@
 // From the X server to the avatar: a pen with pressure strokes the tissue in the app's window; what was
 // recorded replays without a window to the same log, byte for byte. Run it under tests/platform/xorg/with-xorg.
 
-#include <doctest/doctest.h>
-
 #include <cmath>
+#include <doctest/doctest.h>
 #include <fstream>
 #include <string>
 
@@ -17,7 +16,7 @@ using namespace palpa::test;
 
 namespace {
 
-constexpr double kScale = 0.94 * 800 / 120.0;  // px per mm of the default scene on 1280 x 800
+constexpr double kScale = 0.94 * 800 / 120.0;      // px per mm of the default scene on 1280 x 800
 constexpr double kColumn_px = 64.0 * 96.0 / 25.4;  // the controls, left of the tissue
 double x_px(double x_mm) { return 0.5 * (kColumn_px + 1280.0) + (x_mm - 60.0) * kScale; }
 double y_px(double y_mm) { return 400.0 - (y_mm - 60.0) * kScale; }
@@ -57,7 +56,8 @@ TEST_CASE("app: a pen on a real X server presses the tissue, and the run replays
     CHECK(result["dropped_steps"] == 0);
     CHECK(result["counts"]["without_level"] == 0);
 
-    const std::string replay = std::string(PALPA_PROGRAM " run --headless --replay ") + path("t.tsv") + " --log " + path("again") + " >/dev/null";
+    const std::string replay = std::string(PALPA_PROGRAM " run --headless --replay ") + path("t.tsv") + " --log " +
+                               path("again") + " >/dev/null";
     CHECK(shell(replay) == 0);
     const std::string log = "/sub-01/beh/sub-01_task-palpation_run-01_samples.tsv";
     const std::string live = read_text(path("live") + log);

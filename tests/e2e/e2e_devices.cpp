@@ -2,15 +2,14 @@
 // under tests/platform/xorg/with-xorg.
 
 #include <doctest/doctest.h>
-
 #include <fstream>
 #include <string>
 #include <thread>
 
 #include "files/json.h"
 #include "files/text.h"
-#include "tests/error_message.h"
 #include "tests/e2e/run_app.h"
+#include "tests/error_message.h"
 
 using namespace palpa;
 using namespace palpa::files;
@@ -33,16 +32,20 @@ const Json& device(const char* tool, const Json& json) {
 void write_script(const std::filesystem::path& file) {
     std::ofstream out(file);
     out << "t_s\tkind\tid\tphase\tx_px\ty_px\tpressure\n";
-    const auto row = [&](double t_s, const char* kind, int id, const char* phase, double x_px, double y_px, double pressure) {
-        out << t_s << '\t' << kind << '\t' << id << '\t' << phase << '\t' << x_px << '\t' << y_px << '\t' << pressure << '\n';
+    const auto row = [&](double t_s, const char* kind, int id, const char* phase, double x_px, double y_px,
+                         double pressure) {
+        out << t_s << '\t' << kind << '\t' << id << '\t' << phase << '\t' << x_px << '\t' << y_px << '\t' << pressure
+            << '\n';
     };
     row(0.0, "pen", 0, "hover", 500.0, 300.0, 0.0);
-    for (int i = 0; i < 500; ++i) row(0.02 + 0.004 * i, "pen", 0, i == 0 ? "down" : "move", 500.0 + 0.5 * i, 300.0, 0.1 + 0.001 * i);
+    for (int i = 0; i < 500; ++i)
+        row(0.02 + 0.004 * i, "pen", 0, i == 0 ? "down" : "move", 500.0 + 0.5 * i, 300.0, 0.1 + 0.001 * i);
     row(2.02, "pen", 0, "up", 749.5, 300.0, 0.0);
     for (int i = 0; i < 200; ++i) {
         for (int id = 1; id <= 2; ++id) {
             const char* phase = i == 0 ? "down" : i == 199 ? "up" : "move";
-            row(2.1 + 0.01 * i + 0.005 * (id - 1), "touch", id, phase, 400.0 + 200.0 * id + 0.5 * i, 500.0, 1023.0 / 2047.0);
+            row(2.1 + 0.01 * i + 0.005 * (id - 1), "touch", id, phase, 400.0 + 200.0 * id + 0.5 * i, 500.0,
+                1023.0 / 2047.0);
         }
     }
 }

@@ -1,10 +1,9 @@
 // The map browser on a real X server: a map chosen by mouse, depth by pen, kind and depth by keys, places pinned, and out
 // again; what stands on the screen is watched all the while. Run it under tests/platform/xorg/with-xorg.
 
-#include <doctest/doctest.h>
-
 #include <algorithm>
 #include <atomic>
+#include <doctest/doctest.h>
 #include <fstream>
 #include <functional>
 #include <string>
@@ -35,11 +34,14 @@ constexpr Point kMirrored{120, 217}, kSilicone{120, 257}, kShallower{26, 147}, k
 enum Key { kB = 56, kEsc = 9, k1 = 10, k4 = 13, kI = 31, kO = 32, kPageDown = 105 };
 
 class Script {
- public:
-    explicit Script(const std::filesystem::path& file) : out_(file) { out_ << "t_s\tkind\tid\tphase\tx_px\ty_px\tpressure\n"; }
+  public:
+    explicit Script(const std::filesystem::path& file) : out_(file) {
+        out_ << "t_s\tkind\tid\tphase\tx_px\ty_px\tpressure\n";
+    }
     void wait(double seconds) { t_s_ += seconds; }
     void row(const char* kind, const char* phase, Point at, double pressure, int id = 0) {
-        out_ << t_s_ << '\t' << kind << '\t' << id << '\t' << phase << '\t' << at.x_px << '\t' << at.y_px << '\t' << pressure << '\n';
+        out_ << t_s_ << '\t' << kind << '\t' << id << '\t' << phase << '\t' << at.x_px << '\t' << at.y_px << '\t'
+             << pressure << '\n';
     }
     void tap(const char* kind, Point at) {
         row(kind, kind[0] == 'm' ? "move" : "hover", at, 0.0);
@@ -60,7 +62,7 @@ class Script {
         return t_s_;
     }
 
- private:
+  private:
     static constexpr double kSettle_s = 1.8;  // long beside what the watcher needs, also on a busy machine
     std::ofstream out_;
     double t_s_ = 0.5;
@@ -68,16 +70,18 @@ class Script {
 
 // What stood for a while in a part of the screen, one after the other; a hash of the pixels.
 class Watcher {
- public:
+  public:
     Watcher(int x, int y, int width, int height)
         : thread_([=, this] {
               Display* display = ::XOpenDisplay(nullptr);
               std::size_t last = 0;
               int same = 0;
               while (display != nullptr && !over_) {
-                  XImage* image = ::XGetImage(display, DefaultRootWindow(display), x, y, static_cast<unsigned>(width), static_cast<unsigned>(height), AllPlanes, ZPixmap);
+                  XImage* image = ::XGetImage(display, DefaultRootWindow(display), x, y, static_cast<unsigned>(width),
+                                              static_cast<unsigned>(height), AllPlanes, ZPixmap);
                   if (image == nullptr) break;
-                  const std::string_view pixels(image->data, static_cast<std::size_t>(image->bytes_per_line) * static_cast<std::size_t>(height));
+                  const std::string_view pixels(
+                      image->data, static_cast<std::size_t>(image->bytes_per_line) * static_cast<std::size_t>(height));
                   const std::size_t now = std::hash<std::string_view>{}(pixels);
                   XDestroyImage(image);
                   same = now == last ? same + 1 : 0;
@@ -96,7 +100,7 @@ class Watcher {
     }
     std::vector<std::size_t> stood;
 
- private:
+  private:
     std::atomic<bool> over_ = false;
     std::thread thread_;
 };
@@ -123,24 +127,25 @@ TEST_CASE("maps: the browser by mouse, pen and keys draws what was asked for, an
     const TemporaryFolder folder;
     add_map(folder);
     Script script(folder / "script.tsv");
-    script.key(kB);                   // from the trial (a) to the shipped map's stiffness (b)
-    script.key(k1);                   // its normal force, as deep as it goes (c)
-    script.tap("mouse", kMirrored);   // the other one's (d)
-    script.tap("pen", kShallower);    // one depth less (e)
-    script.key(kPageDown);            // back (d)
-    script.key(k4);                   // stiffness (f)
-    script.key(k1);                   // back (d)
-    script.tap("pen", kOnMatrix);     // a place pinned (g)
+    script.key(kB);                  // from the trial (a) to the shipped map's stiffness (b)
+    script.key(k1);                  // its normal force, as deep as it goes (c)
+    script.tap("mouse", kMirrored);  // the other one's (d)
+    script.tap("pen", kShallower);   // one depth less (e)
+    script.key(kPageDown);           // back (d)
+    script.key(k4);                  // stiffness (f)
+    script.key(k1);                  // back (d)
+    script.tap("pen", kOnMatrix);    // a place pinned (g)
     script.row("pen", "hover", kBack, 0.0);
     script.wait(0.5);
-    script.key(kI);                   // a point moved by keys (h)
-    script.key(kO);                   // and pinned (i)
-    script.tap("pen", kSilicone);     // the shipped one without pins (c)
-    script.tap("pen", kBack);         // the trial (a)
-    script.key(kB);                   // opened anew (b)
-    script.key(kEsc);                 // the trial (a)
+    script.key(kI);                // a point moved by keys (h)
+    script.key(kO);                // and pinned (i)
+    script.tap("pen", kSilicone);  // the shipped one without pins (c)
+    script.tap("pen", kBack);      // the trial (a)
+    script.key(kB);                // opened anew (b)
+    script.key(kEsc);              // the trial (a)
     const double played_s = script.close();
-    const std::string arguments = "--practice --width-px 1280 --height-px 800 --quit-after-s " + std::to_string(played_s + 12.0) + " --screenshot " + (folder / "p.png").string();
+    const std::string arguments = "--practice --width-px 1280 --height-px 800 --quit-after-s " +
+                                  std::to_string(played_s + 12.0) + " --screenshot " + (folder / "p.png").string();
     std::vector<std::size_t> stood;
     const int status = run_app(folder, arguments, [&] {
         Watcher watcher(262, 40, 420, 700);  // within the matrix

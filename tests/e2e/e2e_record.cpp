@@ -1,9 +1,8 @@
 // A calibration session on a real X server: a pen with pressure in the window, a simulated Net F/T under it, one hand
 // for both. Run it under tests/platform/xorg/with-xorg.
 
-#include <doctest/doctest.h>
-
 #include <cmath>
+#include <doctest/doctest.h>
 #include <fstream>
 #include <string>
 #include <thread>
@@ -22,7 +21,8 @@ using namespace palpa::test;
 namespace {
 
 // The pen under the hand from `from_s` of the steady clock on, 200 Hz: level = log(F / 0.05) / log(2.5 / 0.05).
-void write_pen(const simulators::StreamOptions& hand, double from_s, double seconds, const std::filesystem::path& file) {
+void write_pen(const simulators::StreamOptions& hand, double from_s, double seconds,
+               const std::filesystem::path& file) {
     std::ofstream out(file);
     out << "t_s\tkind\tid\tphase\tx_px\ty_px\tpressure\n";
     out << "-1.5\tpen\t0\thover\t600\t400\t0\n";
@@ -47,10 +47,12 @@ TEST_CASE("record: a pen on a real X server and a force sensor give points of on
     hand.steps = 16;  // each too short to be taken for the sensor's rest before the pen is there
     hand.greatest_N = 2.4;
     hand.period_s = 5.0;
-    SimulatorProcess sensor(PALPA_NETFT_SIMULATOR, {"--rate-Hz", "1000", "--steps", "16", "--greatest-N", "2.4", "--period-s", "5"});
+    SimulatorProcess sensor(PALPA_NETFT_SIMULATOR,
+                            {"--rate-Hz", "1000", "--steps", "16", "--greatest-N", "2.4", "--period-s", "5"});
     int status = -1;
     std::thread session([&] {
-        const std::string command = "timeout 60 " PALPA_PROGRAM " calibrate record -o " + path("s") + " --sensor netft:127.0.0.1:" + sensor.port() +
+        const std::string command = "timeout 60 " PALPA_PROGRAM " calibrate record -o " + path("s") +
+                                    " --sensor netft:127.0.0.1:" + sensor.port() +
                                     " --steady-s 0.12 --seconds 18 --json >" + path("out.json");
         status = shell(command);
     });
@@ -67,9 +69,11 @@ TEST_CASE("record: a pen on a real X server and a force sensor give points of on
     CHECK(result["samples"].get<int>() > 2000);
     CHECK(result["sensor"]["health"]["lost"] == 0);
 
-    const std::string fit = "timeout 60 " PALPA_PROGRAM " calibrate fit " + path("s/points.csv") + " -o " + path("p.json") + " --json >" + path("fit.json");
+    const std::string fit = "timeout 60 " PALPA_PROGRAM " calibrate fit " + path("s/points.csv") + " -o " +
+                            path("p.json") + " --json >" + path("fit.json");
     CHECK(shell(fit) == 0);
     const Json fitted = read_json(folder / "fit.json");
-    MESSAGE(result["points"].dump(), " points of ", result["repeats"].dump(), " presses, off by ", fitted["median_relative_error"].dump());
+    MESSAGE(result["points"].dump(), " points of ", result["repeats"].dump(), " presses, off by ",
+            fitted["median_relative_error"].dump());
     CHECK(fitted["median_relative_error"].get<double>() < 0.05);
 }

@@ -1,9 +1,8 @@
 // The desk as a process, with tablets over real TLS, bad clients, kills.
 
-#include <doctest/doctest.h>
-
 #include <algorithm>
 #include <atomic>
+#include <doctest/doctest.h>
 #include <filesystem>
 #include <map>
 #include <set>
@@ -40,7 +39,8 @@ struct Place {
         return all;
     }
     std::vector<std::string> with_tls(std::vector<std::string> more = {}) const {
-        more.insert(more.end(), {"--tls-cert", (folder / "cert.pem").string(), "--tls-key", (folder / "key.pem").string()});
+        more.insert(more.end(),
+                    {"--tls-cert", (folder / "cert.pem").string(), "--tls-key", (folder / "key.pem").string()});
         return arguments(more);
     }
     // Uploads under their final names: name to text.
@@ -51,12 +51,15 @@ struct Place {
         }
         return out;
     }
-    std::size_t asides() const { return static_cast<std::size_t>(std::distance(fs::directory_iterator(folder / "in" / "aside"), {})); }
+    std::size_t asides() const {
+        return static_cast<std::size_t>(std::distance(fs::directory_iterator(folder / "in" / "aside"), {}));
+    }
 };
 
 int run(const std::string& arguments, const TemporaryFolder& folder, std::string* message = nullptr) {
     const std::string err = (folder / "err.txt").string();
-    const int status = std::system(("timeout 100 " PALPA_PROGRAM " " + arguments + " >" + (folder / "out.txt").string() + " 2>" + err).c_str());
+    const int status = std::system(
+        ("timeout 100 " PALPA_PROGRAM " " + arguments + " >" + (folder / "out.txt").string() + " 2>" + err).c_str());
     if (message != nullptr) *message = read_text(err);
     return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
 }
@@ -84,10 +87,12 @@ TEST_CASE("serve: a tablet pairs, takes its files and leaves a log") {
     CHECK(Json::parse(health->body)["pairing"] == true);
     CHECK(Json::parse(health->body)["paired"] == false);
     CHECK(client->Get("/")->body == "<!doctype html><title>Palpa</title>");
-    for (const char* header : {"Content-Security-Policy", "Cross-Origin-Opener-Policy", "Cross-Origin-Embedder-Policy", "Cross-Origin-Resource-Policy",
-                               "X-Content-Type-Options", "Referrer-Policy", "Cache-Control"}) {
+    for (const char* header :
+         {"Content-Security-Policy", "Cross-Origin-Opener-Policy", "Cross-Origin-Embedder-Policy",
+          "Cross-Origin-Resource-Policy", "X-Content-Type-Options", "Referrer-Policy", "Cache-Control"}) {
         CAPTURE(header);
-        for (const char* path : {"/", "/api/health", "/none", "/api/files"}) CHECK(client->Get(path)->get_header_value_count(header) == 1);
+        for (const char* path : {"/", "/api/health", "/none", "/api/files"})
+            CHECK(client->Get(path)->get_header_value_count(header) == 1);
     }
     CHECK(contains(health->get_header_value("Content-Security-Policy"), "script-src 'self' 'wasm-unsafe-eval'"));
     CHECK(health->get_header_value("Cache-Control") == "no-store");
@@ -198,7 +203,8 @@ TEST_CASE("serve: only who asks from here, as he should, changes anything") {
     CHECK(status_of(pair_from({{"Origin", "null"}})) == 403);
     CHECK(status_of(pair_from({{"Origin", "http://127.0.0.1:" + std::to_string(desk.port)}})) == 403);
     CHECK(status_of(pair_from({{"Host", "evil.test"}, {"Origin", "https://evil.test"}})) == 421);
-    CHECK(status_of(pair_from({{"Host", "desk.test"}, {"Origin", "https://desk.test"}})) == 200);  // the certificate's name
+    CHECK(status_of(pair_from({{"Host", "desk.test"}, {"Origin", "https://desk.test"}})) ==
+          200);  // the certificate's name
     CHECK(status_of(client->Get("/", {{"Host", "evil.test"}})) == 421);
     CHECK(status_of(client->Delete("/api/logs/a")) == 405);
     CHECK(status_of(client->Options("/api/logs/a")) == 405);
@@ -217,7 +223,9 @@ TEST_CASE("serve: without TLS this machine alone, without a code") {
     CHECK(contains(message, "--tls-cert"));
     CHECK(run("serve --bind somewhere", place.folder, &message) == 2);
     CHECK(run("serve --tls-cert " + (place.folder / "cert.pem").string(), place.folder, &message) == 2);
-    CHECK(run("serve --tls-cert " + (place.folder / "key.pem").string() + " --tls-key " + (place.folder / "key.pem").string(), place.folder, &message) == 2);
+    CHECK(run("serve --tls-cert " + (place.folder / "key.pem").string() + " --tls-key " +
+                  (place.folder / "key.pem").string(),
+              place.folder, &message) == 2);
     CHECK(contains(message, "key.pem"));
     CHECK(run("serve --web " + place.folder.path().string(), place.folder, &message) == 2);
     DeskProcess desk(place.arguments());
@@ -230,7 +238,8 @@ TEST_CASE("serve: without TLS this machine alone, without a code") {
     const httplib::Headers hash{{"X-Content-SHA256", sha256_hex(log)}};
     CHECK(status_of(client.Put("/api/logs/a", hash, log, "text/plain")) == 201);
     CHECK(status_of(client.Post("/api/pair", "{\"code\": \"0\"}", "application/json")) == 200);
-    CHECK(status_of(client.Put("/api/logs/a", {{"X-Content-SHA256", sha256_hex(log)}, {"Origin", "http://evil.test"}}, log, "text/plain")) == 403);
+    CHECK(status_of(client.Put("/api/logs/a", {{"X-Content-SHA256", sha256_hex(log)}, {"Origin", "http://evil.test"}},
+                               log, "text/plain")) == 403);
     CHECK(desk.end(SIGINT) == 0);
 }
 
@@ -297,14 +306,23 @@ TEST_CASE("serve: uploads that are wrong leave nothing") {
     gzip.emplace("Content-Encoding", "gzip");
     CHECK(status_with(gzip, "x") == 415);
     // chunked, so without a length
-    const auto chunked = client->Put("/api/logs/a", upload_headers(token, sha256_hex("x")),
-                                     [](std::size_t, httplib::DataSink& sink) { sink.write("x", 1); sink.done(); return true; }, "application/json");
+    const auto chunked = client->Put(
+        "/api/logs/a", upload_headers(token, sha256_hex("x")),
+        [](std::size_t, httplib::DataSink& sink) {
+            sink.write("x", 1);
+            sink.done();
+            return true;
+        },
+        "application/json");
     CHECK((!chunked || chunked->status == 411));
     // a client that goes in the middle
     const std::string half(50000, 'h');
-    const auto cut = client->Put("/api/logs/a", upload_headers(token, sha256_hex(half)), half.size(),
-                                 [&](std::size_t offset, std::size_t, httplib::DataSink& sink) { return offset < 20000 && sink.write(half.data() + offset, 10000); },
-                                 "application/json");
+    const auto cut = client->Put(
+        "/api/logs/a", upload_headers(token, sha256_hex(half)), half.size(),
+        [&](std::size_t offset, std::size_t, httplib::DataSink& sink) {
+            return offset < 20000 && sink.write(half.data() + offset, 10000);
+        },
+        "application/json");
     CHECK(!cut);
     for (int i = 0; i < 100 && place.asides() > 0; ++i) sleep_s(0.05);
     CHECK(place.asides() == 0);
@@ -323,10 +341,33 @@ TEST_CASE("serve: uploads that are wrong leave nothing") {
 TEST_CASE("serve: paths lead nowhere else") {
     const Place place;
     DeskProcess desk(place.arguments());
-    std::vector<std::string> targets{"/../secret", "/%2e%2e/secret", "/..%2fsecret", "/sub/../../secret", "/sub/%2e%2e/%2e%2e/secret", "/..%5csecret", "/up/secret",
-                                     "/link", "/link%00.js", "//etc/passwd", "/./secret", "/%252e%252e/secret", "/%u002e%u002e/secret", "/..;/secret", "/web/../secret",
-                                     "/files/../../secret", "/files/scenes/../../../secret", "/files/maps/%2e%2e/%2e%2e/README.md", "/files//etc/passwd", "/files/traces/raster.tsv",
-                                     "http://127.0.0.1/secret", "secret", "*", "/\x01", "/%c0%ae%c0%ae/secret", "/api/logs/../../secret", "/api/../index.html"};
+    std::vector<std::string> targets{"/../secret",
+                                     "/%2e%2e/secret",
+                                     "/..%2fsecret",
+                                     "/sub/../../secret",
+                                     "/sub/%2e%2e/%2e%2e/secret",
+                                     "/..%5csecret",
+                                     "/up/secret",
+                                     "/link",
+                                     "/link%00.js",
+                                     "//etc/passwd",
+                                     "/./secret",
+                                     "/%252e%252e/secret",
+                                     "/%u002e%u002e/secret",
+                                     "/..;/secret",
+                                     "/web/../secret",
+                                     "/files/../../secret",
+                                     "/files/scenes/../../../secret",
+                                     "/files/maps/%2e%2e/%2e%2e/README.md",
+                                     "/files//etc/passwd",
+                                     "/files/traces/raster.tsv",
+                                     "http://127.0.0.1/secret",
+                                     "secret",
+                                     "*",
+                                     "/\x01",
+                                     "/%c0%ae%c0%ae/secret",
+                                     "/api/logs/../../secret",
+                                     "/api/../index.html"};
     targets.push_back("/" + std::string(5000, 'a'));
     targets.push_back("/" + std::string(40000, 'a'));
     for (const std::string& target : targets) {
@@ -359,7 +400,8 @@ TEST_CASE("serve: clients that are slow or silent hold nobody up") {
     DeskProcess desk(place.with_tls({"--patience-s", "4"}));
     // more than there are threads, of two addresses: silent before TLS; half of them say something now and then
     std::vector<std::unique_ptr<RawClient>> slow;
-    for (int i = 0; i < 200; ++i) slow.push_back(std::make_unique<RawClient>(desk.port, i % 2 == 0 ? "127.0.0.2" : "127.0.0.3"));
+    for (int i = 0; i < 200; ++i)
+        slow.push_back(std::make_unique<RawClient>(desk.port, i % 2 == 0 ? "127.0.0.2" : "127.0.0.3"));
     const auto client = tablet(place.folder, desk.port);
     const auto health = client->Get("/api/health");
     REQUIRE(health);
@@ -382,7 +424,8 @@ TEST_CASE("serve: a head or a body that drips ends, one that flows slowly comes 
     DeskProcess desk(place.arguments({"--patience-s", "2"}));
     RawClient head(desk.port), body(desk.port);
     head.send("GET / HTTP/1.1\r\n");
-    body.send("PUT /api/logs/a HTTP/1.1\r\nHost: 127.0.0.1\r\nContent-Length: 100000\r\nX-Content-SHA256: " + sha256_hex("x") + "\r\n\r\n");
+    body.send("PUT /api/logs/a HTTP/1.1\r\nHost: 127.0.0.1\r\nContent-Length: 100000\r\nX-Content-SHA256: " +
+              sha256_hex("x") + "\r\n\r\n");
     int head_drops = 0, body_drops = 0;
     for (int i = 0; i < 150; ++i) {  // 15 s, a byte each 0.1 s: neither is ever silent
         head_drops += head.send("A") ? 1 : 0;
@@ -394,11 +437,13 @@ TEST_CASE("serve: a head or a body that drips ends, one that flows slowly comes 
     CHECK(place.asides() == 0);
     httplib::Client client("127.0.0.1", desk.port);
     const std::string log(40000, 's');
-    const auto slow = client.Put("/api/logs/a", {{"X-Content-SHA256", sha256_hex(log)}}, log.size(),
-                                 [&](std::size_t offset, std::size_t, httplib::DataSink& sink) {
-                                     sleep_s(0.2);
-                                     return sink.write(log.data() + offset, 1000);
-                                 }, "application/json");
+    const auto slow = client.Put(
+        "/api/logs/a", {{"X-Content-SHA256", sha256_hex(log)}}, log.size(),
+        [&](std::size_t offset, std::size_t, httplib::DataSink& sink) {
+            sleep_s(0.2);
+            return sink.write(log.data() + offset, 1000);
+        },
+        "application/json");
     REQUIRE(slow);
     CHECK(slow->status == 201);
     CHECK(desk.end() == 0);
@@ -423,7 +468,8 @@ TEST_CASE("serve: fifty tablets at once, none lost, none mixed up") {
             for (int log = 0; log < kLogs; ++log) {
                 const std::string bytes = noise(random, static_cast<std::size_t>(random.uniform(1000.0, 4e5)));
                 const auto result = upload(label, bytes, token, *client);
-                if (!result || result->status != 201 || Json::parse(result->body)["sha256"] != sha256_hex(bytes)) ++failed;
+                if (!result || result->status != 201 || Json::parse(result->body)["sha256"] != sha256_hex(bytes))
+                    ++failed;
                 const std::lock_guard lock(mutex);
                 label_of[sha256_hex(bytes)] = label;
             }
@@ -503,7 +549,8 @@ TEST_CASE("serve: killed in the middle of uploads and started again, nothing is 
         CHECK(contains(index, "\t" + sha256 + "\t"));
     }
     CHECK(interrupted > 0);  // else the kills hit nothing
-    MESSAGE("", kKills, " kills, ", interrupted, " uploads cut, ", retries.load(), " retries, ", acknowledged.size(), " logs");
+    MESSAGE("", kKills, " kills, ", interrupted, " uploads cut, ", retries.load(), " retries, ", acknowledged.size(),
+            " logs");
     CHECK(desk->end() == 0);
     CHECK(place.asides() == 0);
 }
@@ -511,7 +558,8 @@ TEST_CASE("serve: killed in the middle of uploads and started again, nothing is 
 TEST_CASE("serve: what was collected becomes a study") {
     const Place place;
     const auto bundle = [](const std::string& name, const std::string& text) {
-        return Json{{"palpa_bundle", 1}, {"files", {{{"name", name}, {"sha256", sha256_hex(text)}, {"text", text}}}}}.dump();
+        return Json{{"palpa_bundle", 1}, {"files", {{{"name", name}, {"sha256", sha256_hex(text)}, {"text", text}}}}}
+            .dump();
     };
     const std::string name = "sub-01/beh/sub-01_task-palpation_run-01_events.tsv";
     std::string stored;

@@ -1,11 +1,10 @@
 // Two fingers with pressure at 1,000 Hz each: every event of theirs is a row of the trace. 3 s; as long as
 // PALPA_SOAK_S says in scripts/soak. Run it under tests/platform/xorg/with-xorg.
 
-#include <doctest/doctest.h>
-#include <stdlib.h>
-
 #include <cmath>
+#include <doctest/doctest.h>
 #include <fstream>
+#include <stdlib.h>
 #include <string>
 
 #include "files/json.h"
@@ -27,7 +26,8 @@ int write_script(const std::filesystem::path& file, double seconds) {
     const auto row = [&](double t_s, int id, const char* phase) {
         const double x_px = 600.0 + 250.0 * id + 80.0 * std::sin(2.0 * t_s);
         const double y_px = 400.0 + 80.0 * std::cos(3.0 * t_s);
-        out << t_s << "\ttouch\t" << id << '\t' << phase << '\t' << x_px << '\t' << y_px << '\t' << 0.5 + 0.3 * std::sin(5.0 * t_s) << '\n';
+        out << t_s << "\ttouch\t" << id << '\t' << phase << '\t' << x_px << '\t' << y_px << '\t'
+            << 0.5 + 0.3 * std::sin(5.0 * t_s) << '\n';
     };
     for (const int id : {0, 1}) row(0.0, id, "down");
     for (int i = 1; i <= n; ++i) {
@@ -56,8 +56,9 @@ TEST_CASE("app: two pointers at 1,000 Hz, and no sample is lost") {
         ++counts[sample.pointer_id == first ? 0 : 1];
     }
     const Json result = read_json(folder / "out.json");
-    MESSAGE(counts[0], " and ", counts[1], " of ", moves, " moves; sample to frame ", result["latency_ms"].dump(), " ms, besides drawing ",
-            result["latency_besides_drawing_ms"].dump(), " ms, frame ", result["frame_cpu_ms"].dump(), " ms");
+    MESSAGE(counts[0], " and ", counts[1], " of ", moves, " moves; sample to frame ", result["latency_ms"].dump(),
+            " ms, besides drawing ", result["latency_besides_drawing_ms"].dump(), " ms, frame ",
+            result["frame_cpu_ms"].dump(), " ms");
     CHECK(counts[0] == moves);
     CHECK(counts[1] == moves);
     CHECK(result["dropped_steps"] == 0);

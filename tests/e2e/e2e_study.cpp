@@ -1,9 +1,8 @@
 // A study with a person, on a real X server: instructions, a trial by pen, a trial typed in, the thanks; and the same
 // after the program was killed in the middle of a trial. Run it under tests/platform/xorg/with-xorg.
 
-#include <doctest/doctest.h>
-
 #include <algorithm>
+#include <doctest/doctest.h>
 #include <fstream>
 #include <string>
 
@@ -24,8 +23,10 @@ namespace {
 enum Key { kEnter = 36, kT = 28, kM = 58, kF = 41, k4 = 13, k0 = 19, k7 = 16, kBackspace = 22, kMenuKey = 76, kC = 54 };
 
 class Script {
- public:
-    explicit Script(const std::filesystem::path& file) : out_(file) { out_ << "t_s\tkind\tid\tphase\tx_px\ty_px\tpressure\n"; }
+  public:
+    explicit Script(const std::filesystem::path& file) : out_(file) {
+        out_ << "t_s\tkind\tid\tphase\tx_px\ty_px\tpressure\n";
+    }
     void wait(double seconds) { t_s_ += seconds; }
     void key(int code) {
         row("key", code, "down", 0, 0, 0.0);
@@ -52,23 +53,26 @@ class Script {
     }
     double now_s() const { return t_s_; }
 
- private:
+  private:
     void row(const char* kind, int id, const char* phase, double x_px, double y_px, double pressure) {
-        out_ << t_s_ << '\t' << kind << '\t' << id << '\t' << phase << '\t' << x_px << '\t' << y_px << '\t' << pressure << '\n';
+        out_ << t_s_ << '\t' << kind << '\t' << id << '\t' << phase << '\t' << x_px << '\t' << y_px << '\t' << pressure
+             << '\n';
     }
     std::ofstream out_;
     double t_s_ = 0.0;
 };
 
 void write_protocol(const TemporaryFolder& folder) {
-    write_text_atomically(folder / "p.json", R"({"name": "n", "version": "1", "seed": 1, "order": "fixed", "turn_maps": false,
+    write_text_atomically(folder / "p.json",
+                          R"({"name": "n", "version": "1", "seed": 1, "order": "fixed", "turn_maps": false,
         "time_limit_s": 60, "instructions": "Find what is harder.", "conditions": [
         {"id": "pen", "modality": "pen", "scene": ")" PALPA_SOURCE_DIR R"(/assets/scenes/default.json"},
         {"id": "hand", "modality": "hand", "nodules": ["A"]}]})");
 }
 
 std::string study_arguments(const TemporaryFolder& folder, const std::string& rest) {
-    return "study run " + (folder / "p.json").string() + " --log " + (folder / "log").string() + " --participant 07 --json " + rest;
+    return "study run " + (folder / "p.json").string() + " --log " + (folder / "log").string() +
+           " --participant 07 --json " + rest;
 }
 
 void plug(const char* way) { CHECK(shell(std::string("timeout 10 " PALPA_XORG_PEN " ") + way + " pen") == 0); }
@@ -112,8 +116,10 @@ TEST_CASE("study: a person goes through it by pen and keys, and the menu stays c
     script.key(kEnter);  // keep: A missed
     script.wait(0.5);
     const std::string seconds = std::to_string(script.close() + 5.0);
-    const std::string arguments = study_arguments(folder, "--quit-after-s " + seconds + " --screenshot " + (folder / "p.png").string());
-    REQUIRE(run_program(folder, arguments, folder / "log/sub-07/now.json", [&] { CHECK(play_script(folder) == 0); }) == 0);
+    const std::string arguments =
+        study_arguments(folder, "--quit-after-s " + seconds + " --screenshot " + (folder / "p.png").string());
+    REQUIRE(run_program(folder, arguments, folder / "log/sub-07/now.json", [&] { CHECK(play_script(folder) == 0); }) ==
+            0);
     const Json result = read_json(folder / "out.json");
     CHECK(result["finished"] == 2);
     CHECK(result["step"] == "done");
@@ -123,7 +129,8 @@ TEST_CASE("study: a person goes through it by pen and keys, and the menu stays c
     REQUIRE(seen.trials.size() == 2);
     CHECK(seen.trials[0].path_m > 0.01);
     CHECK(seen.trials[1].duration_s > 0.9);
-    CHECK(read_text(folder / "log/sub-07/beh/sub-07_task-palpation_run-01_marks.tsv").find("\t4\t") != std::string::npos);
+    CHECK(read_text(folder / "log/sub-07/beh/sub-07_task-palpation_run-01_marks.tsv").find("\t4\t") !=
+          std::string::npos);
     const Json settings = read_json(folder / "log/sub-07/beh/sub-07_task-palpation_run-01_settings.json");
     CHECK(settings["study"]["map_sha256"]["normal_N.npy"].get<std::string>().size() == 64);
 }
@@ -165,7 +172,8 @@ TEST_CASE("killed: the interrupted trial comes again, and its samples up to the 
         const double now_s = std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
         at_kill = text.substr(last, text.find('\t', last) - last) + " " + std::to_string(now_s);
     });
-    CHECK(run_program(folder, study_arguments(folder, "--quit-after-s 60"), folder / "log/sub-07/now.json", [] {}) != 0);
+    CHECK(run_program(folder, study_arguments(folder, "--quit-after-s 60"), folder / "log/sub-07/now.json", [] {}) !=
+          0);
     killer.join();
     const std::string arguments = study_arguments(folder, "--quit-after-s 14");
     REQUIRE(run_program(folder, arguments, folder / "log/sub-07/now.json", [] {}) == 0);
@@ -195,7 +203,8 @@ TEST_CASE("typed: a code that is not taken is typed again, and Enter twice begin
     script.wait(1.0);    // a slow machine shows the instructions first
     script.key(kEnter);  // begin
     const std::string arguments = "study run " + (folder / "p.json").string() + " --log " + (folder / "log").string() +
-                                  " --json --quit-after-s " + std::to_string(script.close() + 6.0) + " --screenshot " + (folder / "p.png").string();
+                                  " --json --quit-after-s " + std::to_string(script.close() + 6.0) + " --screenshot " +
+                                  (folder / "p.png").string();
     REQUIRE(run_program(folder, arguments, folder / "log/study.json", [&] { CHECK(play_script(folder) == 0); }) == 0);
     const Json result = read_json(folder / "out.json");
     CHECK(result["participant"] == "07");
@@ -211,7 +220,7 @@ TEST_CASE("missing: a pen's trial does not begin before there is a pen") {
     script.wait(3.0);
     script.key(kEnter);  // begin: not without a pen
     script.key(kEnter);
-    script.wait(8.0);    // which comes meanwhile
+    script.wait(8.0);  // which comes meanwhile
     script.key(kEnter);
     script.wait(1.0);
     script.key(kF);
@@ -223,7 +232,8 @@ TEST_CASE("missing: a pen's trial does not begin before there is a pen") {
         CHECK_FALSE(std::filesystem::exists(first));
         plug("--enable");
     });
-    CHECK(run_program(folder, arguments, folder / "log/sub-07/now.json", [&] { CHECK(play_script(folder) == 0); }) == 0);
+    CHECK(run_program(folder, arguments, folder / "log/sub-07/now.json", [&] { CHECK(play_script(folder) == 0); }) ==
+          0);
     hand.join();
     CHECK(text_of(first).find("\tfinish\t") != std::string::npos);
     CHECK(read_json(folder / "out.json")["finished"] == 1);
@@ -256,7 +266,8 @@ TEST_CASE("left: a trial that its pen leaves is interrupted with its marks, neve
         CHECK(wait_for([&] { return step_now(folder) == "device"; }));
         plug("--enable");
     });
-    CHECK(run_program(folder, arguments, folder / "log/sub-07/now.json", [&] { CHECK(play_script(folder) == 0); }) == 0);
+    CHECK(run_program(folder, arguments, folder / "log/sub-07/now.json", [&] { CHECK(play_script(folder) == 0); }) ==
+          0);
     hand.join();
     CHECK(text_of(stem + "_events.tsv").find("\tdevice_gone\t") != std::string::npos);
     CHECK(text_of(stem + "_events.tsv").find("\tinterrupted\t") != std::string::npos);

@@ -1,9 +1,8 @@
 // Whole trials on a real X server, in one run of the app: by pen, by two fingers, by keyboard alone; and a device that
 // is unplugged and plugged in again. Run it under tests/platform/xorg/with-xorg.
 
-#include <doctest/doctest.h>
-
 #include <algorithm>
+#include <doctest/doctest.h>
 #include <fstream>
 #include <string>
 
@@ -30,23 +29,44 @@ struct Point {
 // Where the default scene draws a place.
 Point place(double x_mm, double y_mm, bool above_finger = false) {
     const PanelArea t = layout_of(1280, 800, kMm, false, above_finger).tissue_px;
-    const ScreenArea screen{static_cast<double>(t.width()), static_cast<double>(t.height()), static_cast<double>(t.x0), 0.0};
+    const ScreenArea screen{static_cast<double>(t.width()), static_cast<double>(t.height()), static_cast<double>(t.x0),
+                            0.0};
     const View view = make_view({}, {{0.06, 0.06}, {0.12, 0.12}}, screen);
     const Eigen::Vector2d px = px_of_tissue(view, {1e-3 * x_mm, 1e-3 * y_mm});
     return {px.x(), px.y()};
 }
 
 // The middle of controls, as the screenshot of this size shows them.
-constexpr Point kMenu{58, 27}, kSecondScene{360, 91}, kMark{120, 335}, kSure4{162, 405}, kSure2{72, 405}, kUndo{62, 446},
-    kFinish{176, 446}, kAgain{64, 33}, kTest{739, 51};
-enum Key { kF10 = 76, kEnter = 36, kSpace = 65, kLeft = 100, kRight = 102, kUp = 98, kDown = 104, kM = 58, kU = 30, kF = 41, k5 = 14, kN = 57, kR = 27, kEscape = 9, kControl = 37, kQ = 24 };
+constexpr Point kMenu{58, 27}, kSecondScene{360, 91}, kMark{120, 335}, kSure4{162, 405}, kSure2{72, 405},
+    kUndo{62, 446}, kFinish{176, 446}, kAgain{64, 33}, kTest{739, 51};
+enum Key {
+    kF10 = 76,
+    kEnter = 36,
+    kSpace = 65,
+    kLeft = 100,
+    kRight = 102,
+    kUp = 98,
+    kDown = 104,
+    kM = 58,
+    kU = 30,
+    kF = 41,
+    k5 = 14,
+    kN = 57,
+    kR = 27,
+    kEscape = 9,
+    kControl = 37,
+    kQ = 24
+};
 
 class Script {
- public:
-    explicit Script(const std::filesystem::path& file) : out_(file) { out_ << "t_s\tkind\tid\tphase\tx_px\ty_px\tpressure\n"; }
+  public:
+    explicit Script(const std::filesystem::path& file) : out_(file) {
+        out_ << "t_s\tkind\tid\tphase\tx_px\ty_px\tpressure\n";
+    }
     void wait(double seconds) { t_s_ += seconds; }
     void row(const char* kind, int id, const char* phase, Point at, double pressure) {
-        out_ << t_s_ << '\t' << kind << '\t' << id << '\t' << phase << '\t' << at.x_px << '\t' << at.y_px << '\t' << pressure << '\n';
+        out_ << t_s_ << '\t' << kind << '\t' << id << '\t' << phase << '\t' << at.x_px << '\t' << at.y_px << '\t'
+             << pressure << '\n';
     }
     void tap(const char* kind, int id, Point at) {
         if (kind[0] == 'p') row(kind, id, "hover", at, 0.0);
@@ -85,7 +105,7 @@ class Script {
         return t_s_;
     }
 
- private:
+  private:
     std::ofstream out_;
     double t_s_ = 0.0;
 };
@@ -93,7 +113,7 @@ class Script {
 void by_pen(Script& script) {
     script.tap("pen", 0, kMenu);
     script.tap("pen", 0, kSecondScene);  // "Silicone phantom, delay"
-    script.wait(2.5);  // the scene is read anew
+    script.wait(2.5);                    // the scene is read anew
     script.stroke("pen", 0, 35, 35);
     script.lift("pen", 0, 35, 35);
     script.tap("pen", 0, kMark);
@@ -148,7 +168,8 @@ TEST_CASE("app: whole trials by pen, by two fingers and by keyboard alone") {
     by_keyboard(script);
     script.wait(0.5);
     const std::string seconds = std::to_string(script.close() + 6.0);
-    const std::string arguments = "--test --quit-after-s " + seconds + " --log " + path("log") + " --screenshot " + path("p.png");
+    const std::string arguments =
+        "--test --quit-after-s " + seconds + " --log " + path("log") + " --screenshot " + path("p.png");
     REQUIRE(run_app(folder, arguments, [&] { CHECK(play_script(folder) == 0); }) == 0);
     const Json result = read_json(folder / "out.json");
     CHECK(result["overflow"] == "");
@@ -193,7 +214,8 @@ TEST_CASE("app: a finger that may not hide the avatar marks what lies above it")
     const Point nodule = place(35, 35, true);
     const auto press = [&](const char* phase, double pressure) {
         script.wait(0.02);
-        script.row("touch", 0, phase, {nodule.x_px, nodule.y_px + static_cast<double>(kFingerOffset_mm * kMm)}, pressure);
+        script.row("touch", 0, phase, {nodule.x_px, nodule.y_px + static_cast<double>(kFingerOffset_mm * kMm)},
+                   pressure);
     };
     press("down", 0.3);
     for (int i = 0; i < 20; ++i) press("move", 0.7 + 0.001 * i);
@@ -201,7 +223,8 @@ TEST_CASE("app: a finger that may not hide the avatar marks what lies above it")
     script.wait(0.2);
     script.tap("touch", 0, kMark);
     script.tap("touch", 0, kFinish);
-    const std::string arguments = "--quit-after-s " + std::to_string(script.close() + 4.0) + " --log " + (folder / "log").string();
+    const std::string arguments =
+        "--quit-after-s " + std::to_string(script.close() + 4.0) + " --log " + (folder / "log").string();
     REQUIRE(run_app(folder, arguments, [&] { CHECK(play_script(folder) == 0); }) == 0);
     const Json trial = read_json(folder / "out.json")["trials"][0];
     REQUIRE(trial["marks"].size() == 1);
@@ -244,7 +267,8 @@ TEST_CASE("asked: marks are thrown away only when the person says so, and are in
     script.key(kEnter);
     script.close();
     // it ends by Ctrl+Q, or never
-    REQUIRE(run_app(folder, "--practice --log " + (folder / "log").string(), [&] { CHECK(play_script(folder) == 0); }) == 0);
+    REQUIRE(run_app(folder, "--practice --log " + (folder / "log").string(),
+                    [&] { CHECK(play_script(folder) == 0); }) == 0);
     const auto beh = [&](const std::string& name) { return folder / ("log/sub-01/beh/sub-01_task-palpation_" + name); };
     CHECK(read_text(beh("run-01_marks.tsv")).find("\t5\tA\t") != std::string::npos);
     for (const char* run : {"run-01", "run-02", "run-03"}) {

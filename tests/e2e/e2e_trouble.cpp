@@ -2,16 +2,15 @@
 // that is full, a pen that is unplugged in the middle of a press, a window of 200 x 100 px. Run it under
 // tests/platform/xorg/with-xorg.
 
-#include <doctest/doctest.h>
-
 #include <algorithm>
+#include <doctest/doctest.h>
 #include <fstream>
 #include <string>
 
 #include "files/json.h"
 #include "files/text.h"
-#include "tests/error_message.h"
 #include "tests/e2e/run_app.h"
+#include "tests/error_message.h"
 
 using namespace palpa;
 using namespace palpa::files;
@@ -70,8 +69,9 @@ TEST_CASE("disk full: the trial stops in words, what was logged before is there,
         rows += std::to_string(0.02 + 0.001 * i) + "\tpen\t0\tmove\t" + std::to_string(760 + 0.05 * i) + "\t400\t" +
                 std::to_string(0.5 + 0.1 * ((i / 50) % 2)) + "\n";
     }
-    const int status = run_with_copy(folder, "--quit-after-s 7 --screenshot " + (folder / "p.png").string() + " --log " + small,
-                               [&] { play(folder, rows); });
+    const int status =
+        run_with_copy(folder, "--quit-after-s 7 --screenshot " + (folder / "p.png").string() + " --log " + small,
+                      [&] { play(folder, rows); });
     const std::string samples = read_text(folder / "small/sub-01/beh/sub-01_task-palpation_run-01_samples.tsv");
     CHECK(shell("umount " + small) == 0);
     CHECK(status == 1);
@@ -83,12 +83,14 @@ TEST_CASE("unplugged: a pen that goes in the middle of a press ends it, and anot
     const TemporaryFolder folder;
     copy_assets(folder);
     const int status = run_with_copy(folder, "--quit-after-s 7", [&] {
-        play(folder, "0\tpen\t0\thover\t760\t400\t0\n0.05\tpen\t0\tdown\t760\t400\t0.2\n0.1\tpen\t0\tmove\t770\t400\t0.6\n");
+        play(folder,
+             "0\tpen\t0\thover\t760\t400\t0\n0.05\tpen\t0\tdown\t760\t400\t0.2\n0.1\tpen\t0\tmove\t770\t400\t0.6\n");
         CHECK(shell("timeout 10 " PALPA_XORG_PEN " --disable pen") == 0);
         sleep_s(1.5);
         CHECK(shell("timeout 10 " PALPA_XORG_PEN " --enable pen") == 0);
-        std::ofstream(folder / "touch.tsv") << "t_s\tkind\tid\tphase\tx_px\ty_px\tpressure\n0\ttouch\t0\tdown\t700\t300\t0.3\n"
-                                               "0.1\ttouch\t0\tmove\t720\t300\t0.6\n0.3\ttouch\t0\tup\t720\t300\t0\n";
+        std::ofstream(folder / "touch.tsv")
+            << "t_s\tkind\tid\tphase\tx_px\ty_px\tpressure\n0\ttouch\t0\tdown\t700\t300\t0.3\n"
+               "0.1\ttouch\t0\tmove\t720\t300\t0.6\n0.3\ttouch\t0\tup\t720\t300\t0\n";
         CHECK(shell("timeout 10 " PALPA_XORG_PEN " " + (folder / "touch.tsv").string()) == 0);
     });
     CHECK(status == 0);
@@ -105,8 +107,10 @@ TEST_CASE("tiny: a window of 200 x 100 px has no room for controls, and the keys
     const TemporaryFolder folder;
     copy_assets(folder);
     const int status = run_with_copy(folder, "--quit-after-s 7 --width-px 200 --height-px 100 --test", [&] {
-        play(folder, "0\tkey\t65\tdown\t0\t0\t0\n1.2\tkey\t65\tup\t0\t0\t0\n1.5\tkey\t58\tdown\t0\t0\t0\n1.6\tkey\t58\tup\t0\t0\t0\n"
-                     "2.0\tkey\t41\tdown\t0\t0\t0\n2.1\tkey\t41\tup\t0\t0\t0\n");
+        play(folder,
+             "0\tkey\t65\tdown\t0\t0\t0\n1.2\tkey\t65\tup\t0\t0\t0\n1.5\tkey\t58\tdown\t0\t0\t0\n1."
+             "6\tkey\t58\tup\t0\t0\t0\n"
+             "2.0\tkey\t41\tdown\t0\t0\t0\n2.1\tkey\t41\tup\t0\t0\t0\n");
     });
     CHECK(status == 0);
     const Json result = read_json(folder / "out.json");

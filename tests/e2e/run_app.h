@@ -1,13 +1,12 @@
 #pragma once
 // The app, run as a person runs it, in a folder of the test's own (settings, home) under tests/platform/xorg/with-xorg.
 
-#include <stdlib.h>
-#include <sys/wait.h>
-
 #include <chrono>
 #include <filesystem>
 #include <functional>
+#include <stdlib.h>
 #include <string>
+#include <sys/wait.h>
 #include <thread>
 
 #include "files/text.h"
@@ -35,20 +34,22 @@ inline int run_program(const TemporaryFolder& folder, const std::string& argumen
     const std::string home = folder.path().string();
     int status = -1;
     std::thread app([&] {
-        status = shell("XDG_CONFIG_HOME=" + home + "/config HOME=" + home + " timeout 900 " PALPA_PROGRAM " " + arguments + " >" + home +
-                       "/out.json 2>" + home + "/err.txt");
+        status = shell("XDG_CONFIG_HOME=" + home + "/config HOME=" + home + " timeout 900 " PALPA_PROGRAM " " +
+                       arguments + " >" + home + "/out.json 2>" + home + "/err.txt");
     });
     for (int i = 0; i < 200 && !std::filesystem::exists(sign); ++i) sleep_s(0.05);
     sleep_s(1.5);
     meanwhile();
     app.join();
     const char* keep = ::getenv("PALPA_KEEP_PICTURE");
-    if (keep != nullptr && std::filesystem::exists(folder / "p.png")) files::write_text_atomically(keep, files::read_text(folder / "p.png"));
+    if (keep != nullptr && std::filesystem::exists(folder / "p.png"))
+        files::write_text_atomically(keep, files::read_text(folder / "p.png"));
     return status;
 }
 
 // `palpa run`; the recording is opened after the window, so input may come once it is there.
-inline int run_app(const TemporaryFolder& folder, const std::string& arguments, const std::function<void()>& meanwhile) {
+inline int run_app(const TemporaryFolder& folder, const std::string& arguments,
+                   const std::function<void()>& meanwhile) {
     const std::string trace = (folder / "t.tsv").string();
     return run_program(folder, "run --json --record " + trace + " " + arguments, trace, meanwhile);
 }

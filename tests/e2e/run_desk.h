@@ -2,22 +2,21 @@
 // `palpa serve` as a process of its own, and clients that talk to it over real sockets and real TLS.
 
 #include <arpa/inet.h>
+#include <chrono>
+#include <cstdlib>
 #include <fcntl.h>
 #include <httplib.h>
+#include <memory>
+#include <mutex>
 #include <poll.h>
 #include <signal.h>
+#include <stdexcept>
+#include <string>
 #include <sys/prctl.h>
 #include <sys/socket.h>
 #include <sys/wait.h>
-#include <unistd.h>
-
-#include <chrono>
-#include <cstdlib>
-#include <memory>
-#include <mutex>
-#include <stdexcept>
-#include <string>
 #include <thread>
+#include <unistd.h>
 #include <vector>
 
 #include "files/json.h"
@@ -32,13 +31,15 @@ inline void sleep_s(double seconds) { std::this_thread::sleep_for(std::chrono::d
 // A certificate for 127.0.0.1, made once in a folder: cert.pem and key.pem.
 inline void make_certificate(const TemporaryFolder& folder) {
     const std::string at = folder.path().string();
-    const std::string command = "openssl req -x509 -newkey ec -pkeyopt ec_paramgen_curve:prime256v1 -nodes -days 2 -subj /CN=palpa -addext "
-                                "subjectAltName=IP:127.0.0.1,DNS:desk.test -keyout " + at + "/key.pem -out " + at + "/cert.pem 2>/dev/null";
+    const std::string command =
+        "openssl req -x509 -newkey ec -pkeyopt ec_paramgen_curve:prime256v1 -nodes -days 2 -subj /CN=palpa -addext "
+        "subjectAltName=IP:127.0.0.1,DNS:desk.test -keyout " +
+        at + "/key.pem -out " + at + "/cert.pem 2>/dev/null";
     if (std::system(command.c_str()) != 0) throw std::runtime_error("no certificate: " + command);
 }
 
 class DeskProcess {
- public:
+  public:
     // Starts `palpa serve --json ARGUMENTS` and waits until it listens. Throws if it ends instead.
     explicit DeskProcess(std::vector<std::string> arguments) {
         ::signal(SIGPIPE, SIG_IGN);  // clients here write to desks that were killed
@@ -105,7 +106,7 @@ class DeskProcess {
     int port = 0;
     std::string code;
 
- private:
+  private:
     void read_lines(int fd) {
         std::string text;
         char buffer[4096];
@@ -154,13 +155,14 @@ inline httplib::Headers upload_headers(const std::string& token, const std::stri
     return {{"Authorization", "Bearer " + token}, {"X-Content-SHA256", sha256}};
 }
 
-inline httplib::Result upload(const std::string& label, const std::string& bytes, const std::string& token, httplib::SSLClient& client) {
+inline httplib::Result upload(const std::string& label, const std::string& bytes, const std::string& token,
+                              httplib::SSLClient& client) {
     return client.Put("/api/logs/" + label, upload_headers(token, files::sha256_hex(bytes)), bytes, "application/json");
 }
 
 // A bare socket, for what no decent client says. `from`: its own address, 127.0.0.x.
 class RawClient {
- public:
+  public:
     RawClient(int port, const std::string& from = "127.0.0.1") : fd_(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0)) {
         sockaddr_in own{}, desk{};
         own.sin_family = desk.sin_family = AF_INET;
@@ -175,7 +177,9 @@ class RawClient {
     RawClient& operator=(const RawClient&) = delete;
 
     bool connected() const { return connected_; }
-    bool send(const std::string& bytes) { return ::send(fd_, bytes.data(), bytes.size(), MSG_NOSIGNAL) == static_cast<ssize_t>(bytes.size()); }
+    bool send(const std::string& bytes) {
+        return ::send(fd_, bytes.data(), bytes.size(), MSG_NOSIGNAL) == static_cast<ssize_t>(bytes.size());
+    }
     // Everything until the desk closes, or nothing more comes for so long.
     std::string receive(double patience_s = 20.0) {
         std::string out;
@@ -191,7 +195,7 @@ class RawClient {
     }
     bool closed() const { return closed_; }  // by the desk, as receive() saw
 
- private:
+  private:
     int fd_;
     bool connected_ = false;
     bool closed_ = false;

@@ -36,8 +36,8 @@ inline std::string case_text(const std::string& mesh, const std::string& element
 }
 
 inline std::string gel(double young_Pa, double poisson) {
-    return "{\"gel\": {\"young_Pa\": " + files::number_text(young_Pa) + ", \"poisson\": " + files::number_text(poisson) +
-           "}}";
+    return "{\"gel\": {\"young_Pa\": " + files::number_text(young_Pa) +
+           ", \"poisson\": " + files::number_text(poisson) + "}}";
 }
 
 inline const std::string kClamped = R"([{"face": "zmin", "fix": "xyz"}])";

@@ -8,8 +8,8 @@
 #include "fem/case.h"
 #include "files/input_error.h"
 #include "mechanics/layer.h"
-#include "tests/fem/fem_cases.h"
 #include "tests/error_message.h"
+#include "tests/fem/fem_cases.h"
 #include "tests/files/msh_writer.h"
 #include "tests/temporary_folder.h"
 
@@ -32,14 +32,13 @@ const std::string kRollers =
 FemResult quarter(int n, int nz, double finest_mm, double width_mm, double poisson) {
     const std::string side = number_text(0.5 * width_mm);
     const std::string cells = std::to_string(n);
-    const std::string mesh =
-        "{\"box\": {\"size_mm\": [" + side + ", " + side + ", 50], \"elements\": [" + cells + ", " + cells +
-        ", " + std::to_string(nz) +
-        "], \"grading\": {\"centre_mm\": [0, 0], \"finest_mm\": " + number_text(finest_mm) + "}}}";
-    return solved(case_text(
-        mesh, "hex8-bbar",
-        R"([{"face": "zmin", "fix": "xyz"}, {"face": "xmin", "fix": "x"}, {"face": "ymin", "fix": "y"}])",
-        press_at(0, 0, 16), gel(2500, poisson)));
+    const std::string mesh = "{\"box\": {\"size_mm\": [" + side + ", " + side + ", 50], \"elements\": [" + cells +
+                             ", " + cells + ", " + std::to_string(nz) +
+                             "], \"grading\": {\"centre_mm\": [0, 0], \"finest_mm\": " + number_text(finest_mm) + "}}}";
+    return solved(
+        case_text(mesh, "hex8-bbar",
+                  R"([{"face": "zmin", "fix": "xyz"}, {"face": "xmin", "fix": "x"}, {"face": "ymin", "fix": "y"}])",
+                  press_at(0, 0, 16), gel(2500, poisson)));
 }
 
 std::string said(const std::string& text, const std::filesystem::path& folder = ".") {
@@ -52,9 +51,8 @@ TEST_CASE("case: patch test, a uniform traction makes the same strain in every c
     for (const char* element : {"hex8-bbar", "hex8", "tet4"}) {
         CAPTURE(element);
         // a pull of 100 Pa along z: 1/E of it along z, -nu/E across
-        const FemResult r =
-            solved(case_text(kBlock, element, "[" + kRollers + "]",
-                             R"([{"traction_Pa": [0, 0, 100], "face": "zmax"}])", gel(4000, 0.4)));
+        const FemResult r = solved(case_text(kBlock, element, "[" + kRollers + "]",
+                                             R"([{"traction_Pa": [0, 0, 100], "face": "zmax"}])", gel(4000, 0.4)));
         const double e = 100.0 / 4000.0;
         for (Eigen::Index cell = 0; cell < r.fields.strain.cols(); ++cell) {
             const mechanics::Voigt expected{-0.4 * e, -0.4 * e, e, 0.0, 0.0, 0.0};
@@ -73,12 +71,10 @@ TEST_CASE("case: patch test, a uniform traction makes the same strain in every c
 TEST_CASE("case: pressure on every side squeezes evenly, by -p (1 - 2 nu)/E") {
     std::string loads = "[";
     for (const char* face : {"xmin", "xmax", "ymin", "ymax", "zmin", "zmax"}) {
-        loads +=
-            std::string(loads.size() > 1 ? ", " : "") + R"({"traction_Pa": 50, "face": ")" + face + "\"}";
+        loads += std::string(loads.size() > 1 ? ", " : "") + R"({"traction_Pa": 50, "face": ")" + face + "\"}";
     }
     for (const char* element : {"hex8-bbar", "tet4"}) {
-        const FemResult r =
-            solved(case_text(kBlock, element, "[" + kRollers + "]", loads + "]", gel(4000, 0.4)));
+        const FemResult r = solved(case_text(kBlock, element, "[" + kRollers + "]", loads + "]", gel(4000, 0.4)));
         const double e = -50.0 * 0.2 / 4000.0;
         for (Eigen::Index cell = 0; cell < r.fields.strain.cols(); ++cell) {
             CHECK((r.fields.strain.col(cell).head<3>().array() - e).abs().maxCoeff() < 1e-12);
@@ -104,9 +100,9 @@ TEST_CASE("case: a rigid translation makes no strain and no force") {
 }
 
 TEST_CASE("case: a squeezed block answers E A d/h at both supports") {
-    const FemResult r = solved(case_text(
-        kBlock, "hex8-bbar", "[" + kRollers + R"(, {"face": "zmax", "fix": "z", "value_mm": -0.1}])", "[]",
-        gel(4000, 0.4)));
+    const FemResult r =
+        solved(case_text(kBlock, "hex8-bbar", "[" + kRollers + R"(, {"face": "zmax", "fix": "z", "value_mm": -0.1}])",
+                         "[]", gel(4000, 0.4)));
     CHECK(r.reaction_N[3].z() == doctest::Approx(-4000.0 * 6e-4 * 0.01).epsilon(1e-10));
     CHECK(r.reaction_N[2].z() == doctest::Approx(4000.0 * 6e-4 * 0.01).epsilon(1e-10));
     CHECK(r.solution.energy_J == doctest::Approx(0.5 * 4000.0 * 6e-4 * 0.01 * 1e-4).epsilon(1e-10));
@@ -122,15 +118,13 @@ TEST_CASE("case: CalculiX 2.20 stores the same energy in the same mesh") {
     const std::string regions =
         R"([{"all": true, "material": "gel"}, {"sphere": {"centre_mm": [50, 50, 30], "radius_mm": 15}, "material": "ball"}])";
     const auto energy_J = [&](const std::string& element, const std::string& list) {
-        return solved(case_text(mesh, element, kClamped, press_at(47, 52, 30), materials, list))
-            .solution.energy_J;
+        return solved(case_text(mesh, element, kClamped, press_at(47, 52, 30), materials, list)).solution.energy_J;
     };
     CHECK(energy_J("hex8", regions) == doctest::Approx(1.147082e-6 + 1.242941e-8).epsilon(1e-6));
     CHECK(energy_J("tet4", regions) == doctest::Approx(5.040069e-7 + 1.477925e-8).epsilon(1e-6));
     // later regions win
-    CHECK(energy_J("hex8",
-                   regions.substr(0, regions.size() - 1) +
-                       R"(, {"box": {"min_mm": [0, 0, 0], "max_mm": [100, 100, 50]}, "material": "gel"}])") >
+    CHECK(energy_J("hex8", regions.substr(0, regions.size() - 1) +
+                               R"(, {"box": {"min_mm": [0, 0, 0], "max_mm": [100, 100, 50]}, "material": "gel"}])") >
           1.2 * energy_J("hex8", regions));
 }
 
@@ -169,23 +163,20 @@ TEST_CASE("hertz through a case: depth gives the force within 3 %, the force giv
     const std::string mesh =
         R"({"box": {"size_mm": [120, 120, 80], "elements": [22, 22, 12], "grading": {"centre_mm": [60, 60], "finest_mm": 0.24}}})";
     const auto with = [&](const std::string& rest) {
-        return solved(case_text(
-            mesh, "hex8-bbar", kClamped,
-            R"([{"indenter": {"shape": "sphere", "radius_mm": 10, "centre_mm": [60, 60], )" + rest + "}}]"));
+        return solved(
+            case_text(mesh, "hex8-bbar", kClamped,
+                      R"([{"indenter": {"shape": "sphere", "radius_mm": 10, "centre_mm": [60, 60], )" + rest + "}}]"));
     };
     const FemResult deep = with(R"("depth_mm": 0.1)");
     REQUIRE(deep.contact);
-    const double hertz_N =
-        mechanics::hertz_force_N(mechanics::plane_strain_modulus_Pa(2500, 0.45), 0.01, 1e-4);
+    const double hertz_N = mechanics::hertz_force_N(mechanics::plane_strain_modulus_Pa(2500, 0.45), 0.01, 1e-4);
     CHECK(deep.contact->normal_N == doctest::Approx(hertz_N).epsilon(0.03));
-    CHECK(deep.contact->area_m2 ==
-          doctest::Approx(std::numbers::pi * 1e-6).epsilon(0.05));
+    CHECK(deep.contact->area_m2 == doctest::Approx(std::numbers::pi * 1e-6).epsilon(0.05));
     CHECK(deep.contact->cells_across_radius == doctest::Approx(1.0 / 0.24).epsilon(1e-6));
     CHECK(contact_warnings(*deep.contact).empty());
     CHECK(*deep.centre_m == doctest::Approx(1e-4).epsilon(1e-9));
     CHECK(deep.reaction_N[0].z() == doctest::Approx(deep.contact->normal_N).epsilon(1e-9));
-    CHECK(deep.contact->force_N.rowwise().sum().z() ==
-          doctest::Approx(-deep.contact->normal_N).epsilon(1e-12));
+    CHECK(deep.contact->force_N.rowwise().sum().z() == doctest::Approx(-deep.contact->normal_N).epsilon(1e-12));
     CHECK(deep.converged);
 
     const FemResult pushed = with("\"force_N\": " + number_text(deep.contact->normal_N));
@@ -204,23 +195,21 @@ TEST_CASE("indenter: a rectangle that was too small grows until the contact is i
     const FemResult r = solved(case_text(
         kSlab, "hex8-bbar", kClamped,
         R"([{"indenter": {"shape": "sphere", "radius_mm": 30, "centre_mm": [50, 50], "force_N": 0.1}}])",
-        R"({"gel": {"young_Pa": 500, "poisson": 0.45}, "skin": {"young_Pa": 50000, "poisson": 0.45}})",
-        layered));
+        R"({"gel": {"young_Pa": 500, "poisson": 0.45}, "skin": {"young_Pa": 50000, "poisson": 0.45}})", layered));
     CHECK(r.contact->normal_N == doctest::Approx(0.1).epsilon(1e-8));
     CHECK(-r.contact->force_N.row(2).sum() == doctest::Approx(0.1).epsilon(1e-8));
-    const FemResult bar = solved(case_text(
-        kSlab, "hex8-bbar", kClamped,
-        R"([{"indenter": {"shape": "cylinder", "radius_mm": 20, "centre_mm": [50, 50], "depth_mm": 1}}])"));
+    const FemResult bar = solved(
+        case_text(kSlab, "hex8-bbar", kClamped,
+                  R"([{"indenter": {"shape": "cylinder", "radius_mm": 20, "centre_mm": [50, 50], "depth_mm": 1}}])"));
     CHECK(bar.contact->over_edge);  // endless along y
     CHECK(bar.contact->normal_N > 0.0);
 }
 
 TEST_CASE("indenter: supports beside it do not matter, supports under it are refused") {
     const auto with = [](double x_mm, const std::string& rest = "") {
-        return case_text(
-            kSlab, "hex8-bbar", R"([{"face": "zmin", "fix": "xyz"}, {"face": "xmin", "fix": "xyz"}])",
-            R"([{"indenter": {"shape": "sphere", "radius_mm": 40, "depth_mm": 2, "centre_mm": [)" +
-                number_text(x_mm) + ", 50]" + rest + "}}]");
+        return case_text(kSlab, "hex8-bbar", R"([{"face": "zmin", "fix": "xyz"}, {"face": "xmin", "fix": "xyz"}])",
+                         R"([{"indenter": {"shape": "sphere", "radius_mm": 40, "depth_mm": 2, "centre_mm": [)" +
+                             number_text(x_mm) + ", 50]" + rest + "}}]");
     };
     const FemResult r = solved(with(25));  // the rectangle reaches the held border, the tool does not
     CHECK(r.contact->normal_N > 0.0);
@@ -238,13 +227,17 @@ TEST_CASE("indenter: supports beside it do not matter, supports under it are ref
     CHECK(solved(corner("0")).contact->normal_N > 0.0);
 }
 
-TEST_CASE("indenter beside other loads: a block that rises by its support meets the tool as one that it sinks into deeper") {
-    const std::string mesh = R"({"box": {"size_mm": [60, 60, 20], "elements": [12, 12, 5], "grading": {"centre_mm": [30, 30], "finest_mm": 1.5}}})";
+TEST_CASE(
+    "indenter beside other loads: a block that rises by its support meets the tool as one that it sinks into deeper") {
+    const std::string mesh =
+        R"({"box": {"size_mm": [60, 60, 20], "elements": [12, 12, 5], "grading": {"centre_mm": [30, 30], "finest_mm": 1.5}}})";
     const auto pressed = [&](double raised_mm, double depth_mm, const std::string& friction) {
-        const std::string support = "[{\"face\": \"zmin\", \"fix\": \"xy\"}, {\"face\": \"zmin\", \"fix\": \"z\", \"value_mm\": " +
-                                    number_text(raised_mm) + "}]";
-        const std::string tool = R"([{"indenter": {"shape": "sphere", "radius_mm": 8, "centre_mm": [30, 30], "depth_mm": )" +
-                                 number_text(depth_mm) + friction + "}}]";
+        const std::string support =
+            "[{\"face\": \"zmin\", \"fix\": \"xy\"}, {\"face\": \"zmin\", \"fix\": \"z\", \"value_mm\": " +
+            number_text(raised_mm) + "}]";
+        const std::string tool =
+            R"([{"indenter": {"shape": "sphere", "radius_mm": 8, "centre_mm": [30, 30], "depth_mm": )" +
+            number_text(depth_mm) + friction + "}}]";
         return solved(case_text(mesh, "hex8-bbar", support, tool));
     };
     for (const char* friction : {"", ", \"friction\": 0.3"}) {
@@ -255,13 +248,16 @@ TEST_CASE("indenter beside other loads: a block that rises by its support meets 
         REQUIRE(risen.contact);
         CHECK(risen.contact->nodes == deeper.contact->nodes);
         // with friction the last halves of the way differ: sticking begins elsewhere
-        CHECK(risen.contact->normal_N == doctest::Approx(deeper.contact->normal_N).epsilon(*friction == '\0' ? 1e-9 : 0.01));
+        CHECK(risen.contact->normal_N ==
+              doctest::Approx(deeper.contact->normal_N).epsilon(*friction == '\0' ? 1e-9 : 0.01));
     }
 }
 
 TEST_CASE("indenter beside other loads: where it touches, the surface has the tool's shape; nowhere it pulls") {
-    const std::string mesh = R"({"box": {"size_mm": [60, 60, 20], "elements": [12, 12, 5], "grading": {"centre_mm": [30, 30], "finest_mm": 1.5}}})";
-    const std::string tool = R"({"indenter": {"shape": "sphere", "radius_mm": 8, "centre_mm": [30, 30], "depth_mm": 1}})";
+    const std::string mesh =
+        R"({"box": {"size_mm": [60, 60, 20], "elements": [12, 12, 5], "grading": {"centre_mm": [30, 30], "finest_mm": 1.5}}})";
+    const std::string tool =
+        R"({"indenter": {"shape": "sphere", "radius_mm": 8, "centre_mm": [30, 30], "depth_mm": 1}})";
     const std::string pulled = "[{\"traction_Pa\": [0, 0, 60], \"face\": \"zmax\"}, " + tool + "]";
     const FemResult alone = solved(case_text(mesh, "hex8-bbar", kClamped, "[" + tool + "]"));
     const FemCase model = case_of(case_text(mesh, "hex8-bbar", kClamped, pulled));
@@ -291,8 +287,8 @@ TEST_CASE("hard case 12: stiffness contrast 1e6, 1e8, and rigid beyond") {
     const auto with = [](double contrast) {
         return solved(case_text(
             kSlab, "hex8-bbar", kClamped, press_at(48, 50, 16),
-            R"({"gel": {"young_Pa": 2500, "poisson": 0.45}, "ball": {"young_Pa": )" +
-                number_text(2500 * contrast) + R"(, "poisson": 0.45}})",
+            R"({"gel": {"young_Pa": 2500, "poisson": 0.45}, "ball": {"young_Pa": )" + number_text(2500 * contrast) +
+                R"(, "poisson": 0.45}})",
             R"([{"all": true, "material": "gel"}, {"sphere": {"centre_mm": [50, 50, 30], "radius_mm": 12}, "material": "ball"}])"));
     };
     const FemResult soft = with(1e6);
@@ -306,8 +302,7 @@ TEST_CASE("hard case 12: stiffness contrast 1e6, 1e8, and rigid beyond") {
     const double size = rigid.max_displacement_m;
     CHECK((soft.solution.u_m - stiff.solution.u_m).cwiseAbs().maxCoeff() < 1e-5 * size);
     CHECK((soft.solution.u_m - rigid.solution.u_m).cwiseAbs().maxCoeff() < 1e-5 * size);
-    CHECK((with(1e3).solution.u_m - rigid.solution.u_m).cwiseAbs().maxCoeff() >
-          1e-4 * size);  // 1000 is not rigid
+    CHECK((with(1e3).solution.u_m - rigid.solution.u_m).cwiseAbs().maxCoeff() > 1e-4 * size);  // 1000 is not rigid
     CHECK(rigid.von_mises_Pa.array().isNaN().count() > 0);
     CHECK(soft.von_mises_Pa.allFinite());
 }
@@ -322,8 +317,7 @@ TEST_CASE("hard case 13: inverted and flat elements are refused by their number 
     };
     MshWritten good = row_of_cubes(3);
     CHECK(with(good, "hex8-bbar").empty());
-    CHECK(
-        contains(with(good, "tet4"), "m.msh: found 3 hexahedra and 0 tetrahedra, expected tetrahedra only"));
+    CHECK(contains(with(good, "tet4"), "m.msh: found 3 hexahedra and 0 tetrahedra, expected tetrahedra only"));
     MshWritten inverted = good;
     auto& cube = inverted.cells[7].nodes;
     REQUIRE(inverted.cells[7].type == 5);
@@ -350,11 +344,10 @@ TEST_CASE("hard case 13: a sliver changes the answer by less than 1e-4") {
                       {4, {3}, {0, 1, 2, 4}}};
         write_text_atomically(folder / "m.msh", msh_2(mesh, false));
         const FemCase model = case_of(
-            case_text(
-                R"({"file": "m.msh"})", "tet4", R"([{"physical": "base", "fix": "xyz"}])",
-                R"([{"traction_Pa": [0, 0, -5], "face": "xmin"}])",
-                R"({"gel": {"young_Pa": 2500, "poisson": 0.45}, "film": {"young_Pa": 1250, "poisson": 0.45}})",
-                R"([{"physical": "gel", "material": "gel"}, {"physical": "film", "material": "film"}])"),
+            case_text(R"({"file": "m.msh"})", "tet4", R"([{"physical": "base", "fix": "xyz"}])",
+                      R"([{"traction_Pa": [0, 0, -5], "face": "xmin"}])",
+                      R"({"gel": {"young_Pa": 2500, "poisson": 0.45}, "film": {"young_Pa": 1250, "poisson": 0.45}})",
+                      R"([{"physical": "gel", "material": "gel"}, {"physical": "film", "material": "film"}])"),
             folder.path());
         CHECK(model.report.slivers.empty() == (thickness_mm > 0.1));
         const FemResult r = solved(model);
@@ -392,8 +385,7 @@ TEST_CASE("hard case 14: a floating body, or a missing support, is named and nev
     const TemporaryFolder folder;
     write_text_atomically(folder / "m.msh", msh_2(apart, true));
     const std::string message =
-        said(case_text(R"({"file": "m.msh"})", "hex8", R"([{"physical": "base", "fix": "xyz"}])", "[]"),
-             folder.path());
+        said(case_text(R"({"file": "m.msh"})", "hex8", R"([{"physical": "base", "fix": "xyz"}])", "[]"), folder.path());
     CHECK(contains(message, "part 2 of 2"));
     CHECK(contains(message, "x 50..60"));
 }
@@ -440,12 +432,11 @@ TEST_CASE(
                    "centre_mm: found a disc beside the body"));
 }
 
-TEST_CASE(
-    "case: mechanics does not depend on how the mesh came: box or file, either version, either encoding") {
+TEST_CASE("case: mechanics does not depend on how the mesh came: box or file, either version, either encoding") {
     const TemporaryFolder folder;
     const std::string loads = R"([{"traction_Pa": 10, "face": "zmax"}])";
-    const FemResult box = solved(case_text(R"({"box": {"size_mm": [30, 10, 10], "elements": [3, 1, 1]}})",
-                                           "hex8-bbar", kClamped, loads));
+    const FemResult box =
+        solved(case_text(R"({"box": {"size_mm": [30, 10, 10], "elements": [3, 1, 1]}})", "hex8-bbar", kClamped, loads));
     for (const std::string& bytes : all_encodings(row_of_cubes(3))) {
         write_text_atomically(folder / "m.msh", bytes);
         const FemResult file =
@@ -455,18 +446,17 @@ TEST_CASE(
         CHECK((file.solution.u_m - box.solution.u_m).cwiseAbs().maxCoeff() < 1e-14);
         CHECK(file.reaction_N[0].z() == doctest::Approx(box.reaction_N[0].z()).epsilon(1e-12));
         const FemCase hard = case_of(
-            case_text(
-                R"({"file": "m.msh"})", "hex8-bbar", R"([{"physical": "base", "fix": "xyz"}])", "[]",
-                R"({"gel": {"young_Pa": 2500, "poisson": 0.45}, "b": {"young_Pa": 9000, "poisson": 0.45}})",
-                R"([{"physical": "gel", "material": "gel"}, {"physical": "hard", "material": "b"}])"),
+            case_text(R"({"file": "m.msh"})", "hex8-bbar", R"([{"physical": "base", "fix": "xyz"}])", "[]",
+                      R"({"gel": {"young_Pa": 2500, "poisson": 0.45}, "b": {"young_Pa": 9000, "poisson": 0.45}})",
+                      R"([{"physical": "gel", "material": "gel"}, {"physical": "hard", "material": "b"}])"),
             folder.path());
         CHECK(hard.problem.mesh.region == Eigen::Vector3i(0, 0, 1));
     }
 }
 
 TEST_CASE("case: far out of the linear range the gauge is red") {
-    const FemResult r = solved(case_text(kSlab, "hex8-bbar", kClamped,
-                                         press_at(50, 50, 16, 2.5)));  // the paper's force: numerics 0.6
+    const FemResult r =
+        solved(case_text(kSlab, "hex8-bbar", kClamped, press_at(50, 50, 16, 2.5)));  // the paper's force: numerics 0.6
     CHECK(r.linear == mechanics::LinearRange::red);
     CHECK(*r.centre_m > 0.05);  // more than the slab is thick
 }
@@ -493,8 +483,8 @@ TEST_CASE("hard case 31: random damage to a case file ends in an answer or a ref
     constexpr std::uint32_t kSeed = 8;
     CAPTURE(kSeed);
     std::mt19937 random(kSeed);
-    const std::string good = case_text(R"({"box": {"size_mm": [20, 30, 10], "elements": [2, 2, 2]}})", "tet4",
-                                       kClamped, press_at(10, 10, 8));
+    const std::string good = case_text(R"({"box": {"size_mm": [20, 30, 10], "elements": [2, 2, 2]}})", "tet4", kClamped,
+                                       press_at(10, 10, 8));
     REQUIRE(said(good).empty());
     int refused = 0;
     for (int i = 0; i < 400; ++i) {

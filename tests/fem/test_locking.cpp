@@ -1,8 +1,8 @@
 #include <doctest/doctest.h>
 
 #include "fem/locking.h"
-#include "tests/fem/fem_cases.h"
 #include "tests/error_message.h"
+#include "tests/fem/fem_cases.h"
 
 using namespace palpa;
 using namespace palpa::fem;

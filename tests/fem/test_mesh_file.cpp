@@ -2,8 +2,8 @@
 
 #include <doctest/doctest.h>
 
-#include "tests/fem/fem_cases.h"
 #include "tests/error_message.h"
+#include "tests/fem/fem_cases.h"
 #include "tests/files/msh_writer.h"
 #include "tests/temporary_folder.h"
 
@@ -39,7 +39,8 @@ std::vector<std::string> warned(const MshWritten& mesh) {
 // `other` stands beside `mesh`, moved and stretched; its groups are the same.
 void add_beside(const MshWritten& other, double along_x, double along_y, double scale, MshWritten& mesh) {
     const int first = static_cast<int>(mesh.nodes.size());
-    for (const auto& x : other.nodes) mesh.nodes.push_back({scale * x[0] + along_x, scale * x[1] + along_y, scale * x[2]});
+    for (const auto& x : other.nodes)
+        mesh.nodes.push_back({scale * x[0] + along_x, scale * x[1] + along_y, scale * x[2]});
     for (auto cell : other.cells) {
         for (int& node : cell.nodes) node += first;
         mesh.cells.push_back(cell);
@@ -99,7 +100,8 @@ TEST_CASE("fem mesh: hanging nodes are refused by number and place, doubled ones
     add_beside(row_of_cubes(1), 10.0, 0.0, 1.0, equal);
     CHECK(said(equal).empty());
     REQUIRE(warned(equal).size() == 1);
-    CHECK(contains(warned(equal)[0], "8 nodes lie where another node is, the first is node 17 (10, 0, 0 mm) on node 87"));
+    CHECK(
+        contains(warned(equal)[0], "8 nodes lie where another node is, the first is node 17 (10, 0, 0 mm) on node 87"));
 
     MshWritten apart = row_of_cubes(1);
     add_beside(row_of_cubes(1), 10.1, 2.0, 0.5, apart);
@@ -108,7 +110,8 @@ TEST_CASE("fem mesh: hanging nodes are refused by number and place, doubled ones
 }
 
 TEST_CASE("fem mesh: messages give the file's numbers and mm, and say what a cut rigid inclusion needs") {
-    const std::string twice = R"([{"physical": "base", "fix": "xyz"}, {"physical": "base", "fix": "x", "value_mm": 1}])";
+    const std::string twice =
+        R"([{"physical": "base", "fix": "xyz"}, {"physical": "base", "fix": "x", "value_mm": 1}])";
     CHECK(contains(said(row_of_cubes(1), kTop, twice),
                    "c.json: supports: found node 7 (0, 0, 0 mm) is given two displacements along x: 0 mm and 1 mm"));
     const std::string symmetric = R"([{"face": "zmin", "fix": "xyz"}, {"face": "xmin", "fix": "x"}])";

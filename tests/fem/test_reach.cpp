@@ -3,8 +3,8 @@
 #include <doctest/doctest.h>
 #include <functional>
 
-#include "tests/fem/fem_cases.h"
 #include "tests/error_message.h"
+#include "tests/fem/fem_cases.h"
 #include "tests/files/msh_writer.h"
 #include "tests/temporary_folder.h"
 
@@ -21,15 +21,19 @@ MshWritten block(const std::function<double(double x_mm, double y_mm)>& height_m
     const auto at = [](int i, int j, int k) { return (k * 7 + j) * 7 + i; };
     for (int k = 0; k <= 2; ++k) {
         for (int j = 0; j <= 6; ++j) {
-            for (int i = 0; i <= 6; ++i) mesh.nodes.push_back({5.0 * i, 5.0 * j, 0.5 * k * height_mm(5.0 * i, 5.0 * j)});
+            for (int i = 0; i <= 6; ++i)
+                mesh.nodes.push_back({5.0 * i, 5.0 * j, 0.5 * k * height_mm(5.0 * i, 5.0 * j)});
         }
     }
     for (int j = 0; j < 6; ++j) {
         for (int i = 0; i < 6; ++i) {
             mesh.cells.push_back({3, {1}, {at(i, j, 0), at(i + 1, j, 0), at(i + 1, j + 1, 0), at(i, j + 1, 0)}});
             for (int k = 0; k < 2; ++k) {
-                mesh.cells.push_back({5, {3}, {at(i, j, k), at(i + 1, j, k), at(i + 1, j + 1, k), at(i, j + 1, k),
-                                               at(i, j, k + 1), at(i + 1, j, k + 1), at(i + 1, j + 1, k + 1), at(i, j + 1, k + 1)}});
+                mesh.cells.push_back(
+                    {5,
+                     {3},
+                     {at(i, j, k), at(i + 1, j, k), at(i + 1, j + 1, k), at(i, j + 1, k), at(i, j, k + 1),
+                      at(i + 1, j, k + 1), at(i + 1, j + 1, k + 1), at(i, j + 1, k + 1)}});
             }
         }
     }

@@ -26,12 +26,8 @@ struct MshWritten {
     std::vector<Name> names;
 };
 
-inline int msh_dimension(int type) {
-    return type == 15 ? 0 : type == 1 ? 1 : type <= 3 ? 2 : 3;
-}
-inline int msh_node_number(int position) {
-    return 10 * position + 7;
-}  // with gaps
+inline int msh_dimension(int type) { return type == 15 ? 0 : type == 1 ? 1 : type <= 3 ? 2 : 3; }
+inline int msh_node_number(int position) { return 10 * position + 7; }  // with gaps
 
 class MshBytes {
   public:
@@ -118,22 +114,20 @@ inline std::string msh_4(const MshWritten& mesh, bool binary) {
             w.put(std::int32_t{tag});
             for (int k = 0; k < (d == 0 ? 3 : 6); ++k) w.put(0.5 * k);
             w.put(Size{groups.size()});
-            for (const int group : groups)
-                w.put(std::int32_t{d == 2 ? -group : group});  // turned round: same group
+            for (const int group : groups) w.put(std::int32_t{d == 2 ? -group : group});  // turned round: same group
             if (d > 0) w.put(Size{1}), w.put(std::int32_t{-1});
             w.end_row();
         }
     }
     w.text("\n$EndEntities\n$Nodes\n");
     const Size half = mesh.nodes.size() / 2;
-    w.put(Size{2}), w.put(Size{mesh.nodes.size()}), w.put(Size{7}), w.put(Size{10 * mesh.nodes.size()}),
-        w.end_row();
+    w.put(Size{2}), w.put(Size{mesh.nodes.size()}), w.put(Size{7}), w.put(Size{10 * mesh.nodes.size()}), w.end_row();
     for (int block = 0; block < 2; ++block) {
         const Size first = block == 0 ? 0 : half;
         const Size last = block == 0 ? half : mesh.nodes.size();
         const int parametric = block;  // the second block carries u v
-        w.put(std::int32_t{2}), w.put(std::int32_t{1}), w.put(std::int32_t{parametric}),
-            w.put(Size{last - first}), w.end_row();
+        w.put(std::int32_t{2}), w.put(std::int32_t{1}), w.put(std::int32_t{parametric}), w.put(Size{last - first}),
+            w.end_row();
         for (Size i = first; i < last; ++i) w.put(Size(msh_node_number(static_cast<int>(i)))), w.end_row();
         for (Size i = first; i < last; ++i) {
             for (const double x : mesh.nodes[i]) w.put(x);
@@ -142,8 +136,7 @@ inline std::string msh_4(const MshWritten& mesh, bool binary) {
         }
     }
     w.text("\n$EndNodes\n$Elements\n");
-    w.put(Size{mesh.cells.size()}), w.put(Size{mesh.cells.size()}), w.put(Size{100}), w.put(Size{999}),
-        w.end_row();
+    w.put(Size{mesh.cells.size()}), w.put(Size{mesh.cells.size()}), w.put(Size{100}), w.put(Size{999}), w.end_row();
     Size number = 100;
     for (const auto& cell : mesh.cells) {
         const int d = msh_dimension(cell.type);
@@ -179,8 +172,8 @@ inline MshWritten row_of_cubes(int n) {
             mesh.cells.push_back({3, {k + 1}, {at(i, 0, k), at(i + 1, 0, k), at(i + 1, 1, k), at(i, 1, k)}});
         mesh.cells.push_back({5,
                               i + 1 == n ? std::vector<int>{3, 4} : std::vector<int>{3},
-                              {at(i, 0, 0), at(i + 1, 0, 0), at(i + 1, 1, 0), at(i, 1, 0), at(i, 0, 1),
-                               at(i + 1, 0, 1), at(i + 1, 1, 1), at(i, 1, 1)}});
+                              {at(i, 0, 0), at(i + 1, 0, 0), at(i + 1, 1, 0), at(i, 1, 0), at(i, 0, 1), at(i + 1, 0, 1),
+                               at(i + 1, 1, 1), at(i, 1, 1)}});
     }
     return mesh;
 }

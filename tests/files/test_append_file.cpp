@@ -1,10 +1,8 @@
-#include "files/append_file.h"
-
+#include <csignal>
 #include <doctest/doctest.h>
 #include <sys/resource.h>
 
-#include <csignal>
-
+#include "files/append_file.h"
 #include "files/text.h"
 #include "tests/temporary_folder.h"
 

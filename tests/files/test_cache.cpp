@@ -92,8 +92,7 @@ TEST_CASE("hard case: every flipped bit and every cut of a cache file is noticed
     CHECK(*read_cache(folder.path(), kKey) == kArrays);
 }
 
-TEST_CASE(
-    "hard case: a foreign file under a cache's name, another fingerprint's file, a folder in its place") {
+TEST_CASE("hard case: a foreign file under a cache's name, another fingerprint's file, a folder in its place") {
     const TemporaryFolder folder;
     const auto file = cache_file(folder.path(), kKey);
     write_text_atomically(file, "not ours at all, but as long as a header: 64 bytes of plain text.");

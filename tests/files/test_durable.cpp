@@ -1,7 +1,6 @@
-#include "files/durable.h"
-
 #include <doctest/doctest.h>
 
+#include "files/durable.h"
 #include "files/text.h"
 #include "tests/temporary_folder.h"
 

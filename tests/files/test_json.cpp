@@ -1,10 +1,8 @@
-#include "files/json.h"
-
-#include <doctest/doctest.h>
-
 #include <algorithm>
+#include <doctest/doctest.h>
 #include <type_traits>
 
+#include "files/json.h"
 #include "tests/error_message.h"
 
 using namespace palpa;
@@ -67,7 +65,9 @@ TEST_CASE("json: arrays, choices and whole numbers") {
 TEST_CASE("json: with only() a misspelt key is named, not the missing one") {
     const Json json = parse_json(R"({"young_kPa": 2.5, "poisson": 0.45})", "c.json");
     const JsonReader reader(json, "c.json", "gel");
-    CHECK(message_of([&] { reader.only({"young_Pa", "poisson"}); }) == "c.json: gel.young_kPa: found an unknown key, expected one of young_Pa poisson (is young_Pa meant?)");
+    CHECK(message_of([&] {
+              reader.only({"young_Pa", "poisson"});
+          }) == "c.json: gel.young_kPa: found an unknown key, expected one of young_Pa poisson (is young_Pa meant?)");
     CHECK_NOTHROW(reader.only({"young_kPa", "poisson", "law"}));
     CHECK(contains(message_of([&] { reader.fail("", "nothing", "something"); }), "c.json: gel: found nothing"));
 }
@@ -88,7 +88,8 @@ TEST_CASE("json: of the keys that are known the nearest to a misspelt one is nam
         const JsonReader reader(json, "c.json", "tissue");
         return message_of([&] { reader.only({"linear", "map", "stiffness_scale"}); });
     };
-    CHECK(contains(said("mapp"), "tissue.mapp: found an unknown key, expected one of linear map stiffness_scale (is map meant?)"));
+    CHECK(contains(said("mapp"),
+                   "tissue.mapp: found an unknown key, expected one of linear map stiffness_scale (is map meant?)"));
     CHECK(contains(said("amp"), "(is map meant?)"));
     CHECK(contains(said("Linear"), "(is linear meant?)"));
     CHECK(contains(said("stifness_scal"), "(is stiffness_scale meant?)"));
@@ -102,7 +103,8 @@ TEST_CASE("json: what a broken file holds does not steer the terminal that shows
     CHECK(std::none_of(escapes.begin(), escapes.end(), [](char c) { return (c >= 0 && c < 0x20) || c == 0x7f; }));
     const auto unknown = [](JsonReader&) {};
     CHECK(refusal("{\"a\\u001b[31m\": 1}", unknown) == "slab.json: a?[31m: found an unknown key, expected one of");
-    CHECK(refusal("{\"a\\u009bm\\u00e4\": 1}", unknown) == "slab.json: a?m\xc3\xa4: found an unknown key, expected one of");
+    CHECK(refusal("{\"a\\u009bm\\u00e4\": 1}", unknown) ==
+          "slab.json: a?m\xc3\xa4: found an unknown key, expected one of");
     const std::string endless = "{\"a\": \"" + std::string(100'000, 'x');
     CHECK(message_of([&] { parse_json(endless, "x.json"); }).size() < 5'000);
 }

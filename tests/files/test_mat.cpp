@@ -1,9 +1,7 @@
-#include "files/mat.h"
-
+#include <cmath>
 #include <doctest/doctest.h>
 
-#include <cmath>
-
+#include "files/mat.h"
 #include "files/text.h"
 #include "tests/error_message.h"
 #include "tests/temporary_folder.h"
@@ -20,9 +18,11 @@ TEST_CASE("mat: three-dimensional arrays and rows come back with every value at 
     write_mat({array, {"x_mm", {1, 3}, {1.0f, 2.5f, 4.0f}}}, folder / "m.mat");
     const MatArray read = read_mat("normal_N", folder / "m.mat");
     CHECK(read.shape == array.shape);
-    for (std::size_t i = 0; i < 24; ++i) CHECK((i == 7 ? std::isnan(read.values[i]) : read.values[i] == array.values[i]));
+    for (std::size_t i = 0; i < 24; ++i)
+        CHECK((i == 7 ? std::isnan(read.values[i]) : read.values[i] == array.values[i]));
     CHECK(read_mat("x_mm", folder / "m.mat").values == std::vector<float>{1.0f, 2.5f, 4.0f});
-    CHECK(contains(message_of([&] { read_mat("other", folder / "m.mat"); }), "other: found no array of single numbers"));
+    CHECK(
+        contains(message_of([&] { read_mat("other", folder / "m.mat"); }), "other: found no array of single numbers"));
     write_text_atomically(folder / "text.mat", "no matrix");
     CHECK(contains(message_of([&] { read_mat("x_mm", folder / "text.mat"); }), "no MATLAB file"));
     CHECK_THROWS_AS(write_mat({array}, folder / "no/such/m.mat"), std::runtime_error);

@@ -81,8 +81,7 @@ TEST_CASE("msh: a tetrahedron, unknown sections passed over, groups without a na
 
 TEST_CASE("msh: CRLF line ends read like LF") {
     std::string text = msh_2(row_of_cubes(1), false);
-    for (std::size_t at = 0; (at = text.find('\n', at)) != std::string::npos; at += 2)
-        text.insert(at, 1, '\r');
+    for (std::size_t at = 0; (at = text.find('\n', at)) != std::string::npos; at += 2) text.insert(at, 1, '\r');
     CHECK(parse_msh(text, "m.msh").count(MshKind::hex) == 1);
 }
 
@@ -106,11 +105,10 @@ TEST_CASE("msh: what is refused says line or byte, what was found, what was expe
     CHECK(contains(said(two.substr(0, two.find("$Elements"))), "found no $Elements so far"));
     CHECK(contains(said(two.substr(0, two.size() - 30)), "found the end of the file"));
     CHECK(contains(said(replaced(four, "$Entities", "$PartitionedEntities")), "a partitioned mesh"));
-    CHECK(contains(said(replaced(four, "$Elements\n5 5", "$Elements\n5 6")),
-                   "5 elements in the blocks, expected 6"));
+    CHECK(contains(said(replaced(four, "$Elements\n5 5", "$Elements\n5 6")), "5 elements in the blocks, expected 6"));
     CHECK(contains(said(replaced(four, "$Nodes\n2 8", "$Nodes\n2 9")), "8 nodes in the blocks, expected 9"));
-    const std::string swapped = replaced(msh_2(row_of_cubes(1), true), std::string("\x01\x00\x00\x00", 4),
-                                         std::string("\x00\x00\x00\x01", 4));
+    const std::string swapped =
+        replaced(msh_2(row_of_cubes(1), true), std::string("\x01\x00\x00\x00", 4), std::string("\x00\x00\x00\x01", 4));
     CHECK(contains(said(swapped), "little-endian"));
     CHECK(contains(said(swapped), "m.msh: byte "));
 }
@@ -118,17 +116,13 @@ TEST_CASE("msh: what is refused says line or byte, what was found, what was expe
 TEST_CASE("hard case 31: msh with impossible counts allocates nothing for them") {
     const std::string two = msh_2(row_of_cubes(1), false);
     const std::string four = msh_4(row_of_cubes(1), false);
-    CHECK(contains(said(replaced(two, "$Nodes\n8", "$Nodes\n999999999999")),
-                   "999999999999 nodes announced with"));
+    CHECK(contains(said(replaced(two, "$Nodes\n8", "$Nodes\n999999999999")), "999999999999 nodes announced with"));
     CHECK(contains(said(replaced(two, "$Nodes\n8", "$Nodes\n-8")), "found -8"));
-    CHECK(
-        contains(said(replaced(two, "$Nodes\n8", "$Nodes\n99999999999999999999999")), "the number of nodes"));
-    CHECK(contains(said(replaced(two, "$Elements\n6", "$Elements\n888888888888")),
-                   "888888888888 elements announced"));
+    CHECK(contains(said(replaced(two, "$Nodes\n8", "$Nodes\n99999999999999999999999")), "the number of nodes"));
+    CHECK(contains(said(replaced(two, "$Elements\n6", "$Elements\n888888888888")), "888888888888 elements announced"));
     CHECK(contains(said(replaced(four, "$Nodes\n2 8", "$Nodes\n2 18446744073709551615")),
                    "18446744073709551615 nodes announced"));
-    CHECK(contains(said(replaced(four, "$Entities\n1", "$Entities\n999999999")),
-                   "999999999 entities announced"));
+    CHECK(contains(said(replaced(four, "$Entities\n1", "$Entities\n999999999")), "999999999 entities announced"));
     CHECK(contains(said(replaced(four, "$Elements\n5 5", "$Elements\n500000000000 5")),
                    "500000000000 entity blocks announced"));
 }
@@ -141,8 +135,7 @@ TEST_CASE("hard case 31: random damage to a msh file ends in a reading or a refu
         int refused = 0;
         for (int i = 0; i < 3000; ++i) {
             std::string bytes = i % 2 == 0 ? good : good.substr(0, random() % (good.size() + 1));
-            for (int k = 0; k < 3 && !bytes.empty(); ++k)
-                bytes[random() % bytes.size()] = static_cast<char>(random());
+            for (int k = 0; k < 3 && !bytes.empty(); ++k) bytes[random() % bytes.size()] = static_cast<char>(random());
             refused += !said(bytes).empty();
         }
         CHECK(refused > 1500);

@@ -1,10 +1,8 @@
-#include "files/npy.h"
-
-#include <doctest/doctest.h>
-
 #include <cmath>
+#include <doctest/doctest.h>
 #include <random>
 
+#include "files/npy.h"
 #include "files/text.h"
 #include "tests/error_message.h"
 #include "tests/temporary_folder.h"
@@ -90,12 +88,15 @@ TEST_CASE("hard case 31: npy with impossible sizes, other types and cut ends") {
         return with_header("{'descr': '<f4', 'fortran_order': False, 'shape': " + shape + ", }", "");
     };
     const bool wide = sizeof(std::size_t) > 4;  // else such numbers are refused as they stand
-    CHECK(contains(said(dictionary("(1000000000000, 1000000000000)")), wide ? "a size that fits into memory" : "whole numbers"));
-    CHECK(contains(said(dictionary("(1000000000000,)")), wide ? "expected 4000000000000 for the shape" : "whole numbers"));
+    CHECK(contains(said(dictionary("(1000000000000, 1000000000000)")),
+                   wide ? "a size that fits into memory" : "whole numbers"));
+    CHECK(contains(said(dictionary("(1000000000000,)")),
+                   wide ? "expected 4000000000000 for the shape" : "whole numbers"));
     CHECK(contains(said(dictionary("(-1, 4)")), "whole numbers >= 0"));
     CHECK(contains(said(dictionary("(99999999999999999999999,)")), "whole numbers >= 0"));
     CHECK(contains(said(dictionary("nonsense")), "shape"));
-    CHECK(contains(said(with_header("{'descr': '>f4', 'fortran_order': False, 'shape': (1,), }", "abcd")), "little-endian"));
+    CHECK(contains(said(with_header("{'descr': '>f4', 'fortran_order': False, 'shape': (1,), }", "abcd")),
+                   "little-endian"));
     CHECK(contains(said(with_header("{'descr': '<f4', 'fortran_order': True, 'shape': (1,), }", "abcd")), "C order"));
     CHECK(contains(said(with_header("{'fortran_order': False, 'shape': (1,), }", "abcd")), "descr"));
 }

@@ -1,16 +1,14 @@
-#include "files/regular_file.h"
-
+#include <cstring>
 #include <doctest/doctest.h>
+#include <stdexcept>
 #include <sys/socket.h>
 #include <sys/stat.h>
 #include <sys/un.h>
 #include <unistd.h>
 
-#include <cstring>
-#include <stdexcept>
-
 #include "files/json.h"
 #include "files/npy.h"
+#include "files/regular_file.h"
 #include "files/table.h"
 #include "files/text.h"
 #include "tests/error_message.h"
@@ -89,7 +87,10 @@ TEST_CASE("regular file: an output replaces a regular file alone") {
     write_text_atomically(folder / "there", "old");
     CHECK(output_refusal(folder / "there").empty());
     CHECK(output_refusal(folder / "new").empty());
-    for (const auto& [name, kind] : {std::pair{"fifo", "a FIFO"}, {"socket", "a socket"}, {"null", "a character device"}, {".", "a folder"},
+    for (const auto& [name, kind] : {std::pair{"fifo", "a FIFO"},
+                                     {"socket", "a socket"},
+                                     {"null", "a character device"},
+                                     {".", "a folder"},
                                      {"dangling", "a link to nothing"}}) {
         const fs::path path = folder / name;
         CAPTURE(path);
@@ -131,7 +132,8 @@ TEST_CASE("regular file: an output is none of the inputs under any name, nor sta
     fs::create_hard_link(folder / "in", folder / "hard");
     fs::create_symlink("in.map", folder / "map_link");
     const std::vector<fs::path> inputs{"", folder / "none", folder / "in", folder / "map_link"};
-    for (const char* name : {"in", "link", "hard", "./in", "in.map/../in", "in.map/normal_N.npy", "map_link/normal_N.npy"}) {
+    for (const char* name :
+         {"in", "link", "hard", "./in", "in.map/../in", "in.map/normal_N.npy", "map_link/normal_N.npy"}) {
         CAPTURE(name);
         CHECK(contains(output_refusal(folder / name, inputs), "found the input"));
     }
@@ -146,7 +148,8 @@ TEST_CASE("regular file: an output is none of the inputs under any name, nor sta
     CHECK(contains(refusal, "found where standard output goes"));
 }
 
-TEST_CASE("regular file: a folder of results is a folder or a new name, and holds none of the inputs under a result's name") {
+TEST_CASE(
+    "regular file: a folder of results is a folder or a new name, and holds none of the inputs under a result's name") {
     const TemporaryFolder folder;
     make_fifo(folder / "fifo");
     write_text_atomically(folder / "trials.tsv", "input");

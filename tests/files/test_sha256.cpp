@@ -1,6 +1,6 @@
-#include "files/sha256.h"
-
 #include <doctest/doctest.h>
+
+#include "files/sha256.h"
 
 using namespace palpa;
 using namespace palpa::files;

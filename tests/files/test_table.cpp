@@ -1,10 +1,8 @@
-#include "files/table.h"
-
-#include <doctest/doctest.h>
-
 #include <cmath>
+#include <doctest/doctest.h>
 #include <type_traits>
 
+#include "files/table.h"
 #include "tests/error_message.h"
 
 using namespace palpa;

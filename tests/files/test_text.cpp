@@ -1,11 +1,9 @@
-#include "files/text.h"
-
-#include <doctest/doctest.h>
-
 #include <cmath>
 #include <cstring>
+#include <doctest/doctest.h>
 #include <random>
 
+#include "files/text.h"
 #include "tests/error_message.h"
 #include "tests/temporary_folder.h"
 

@@ -26,11 +26,8 @@ struct VtuRead {
     template <class Value>
     std::vector<Value> as(const std::string& name) const {
         const Array& array = arrays.at(name);
-        const char* const wanted = sizeof(Value) == 1                ? "UInt8"
-                                   : std::is_floating_point_v<Value> ? "Float64"
-                                                                     : "Int64";
-        if (array.type != wanted || array.bytes.size() % sizeof(Value) != 0)
-            throw std::runtime_error(name + ": type");
+        const char* const wanted = sizeof(Value) == 1 ? "UInt8" : std::is_floating_point_v<Value> ? "Float64" : "Int64";
+        if (array.type != wanted || array.bytes.size() % sizeof(Value) != 0) throw std::runtime_error(name + ": type");
         std::vector<Value> out(array.bytes.size() / sizeof(Value));
         if (!out.empty()) std::memcpy(out.data(), array.bytes.data(), array.bytes.size());
         return out;
@@ -73,8 +70,7 @@ inline VtuRead read_vtu_text(const std::string& text) {
         if (tag.front() == '?') continue;
         const std::string name = tag.substr(0, tag.find(' '));
         if (name.front() == '/') {
-            if (open.empty() || open.back() != name.substr(1))
-                throw std::runtime_error(name + " closes nothing");
+            if (open.empty() || open.back() != name.substr(1)) throw std::runtime_error(name + " closes nothing");
             open.pop_back();
             continue;
         }
@@ -94,9 +90,8 @@ inline VtuRead read_vtu_text(const std::string& text) {
             if (bytes.size() < sizeof length) throw std::runtime_error("no length");
             std::memcpy(&length, bytes.data(), sizeof length);
             if (length != bytes.size() - sizeof length) throw std::runtime_error(tag + ": length");
-            out.arrays[attribute(tag, "Name")] = {attribute(tag, "type"),
-                                                  std::stoi(attribute(tag, "NumberOfComponents")),
-                                                  bytes.substr(sizeof length)};
+            out.arrays[attribute(tag, "Name")] = {
+                attribute(tag, "type"), std::stoi(attribute(tag, "NumberOfComponents")), bytes.substr(sizeof length)};
         } else if (open.size() == 3) {
             out.sections.push_back(name);
         }

@@ -2,10 +2,6 @@
 // What fuzz targets are made of. A target hands any bytes to one reader, which takes them or throws InputError.
 // Whatever else gets out of it ends the process, and is a finding.
 
-#include <sys/mman.h>
-#include <sys/stat.h>
-#include <unistd.h>
-
 #include <cstddef>
 #include <cstdint>
 #include <cstdio>
@@ -13,6 +9,9 @@
 #include <filesystem>
 #include <string>
 #include <string_view>
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <unistd.h>
 #include <utility>
 #include <vector>
 
@@ -58,7 +57,7 @@ int read_or_refuse(Read&& read) {
 
 // A file in memory, for readers that take a path.
 class MemoryFile {
- public:
+  public:
     explicit MemoryFile(const char* name) : fd_(::memfd_create(name, MFD_CLOEXEC)) {
         if (fd_ < 0) finding("no file in memory");
     }
@@ -67,13 +66,14 @@ class MemoryFile {
     MemoryFile& operator=(const MemoryFile&) = delete;
 
     const std::filesystem::path& with(std::string_view bytes) {
-        const bool written = ::ftruncate(fd_, 0) == 0 && ::pwrite(fd_, bytes.data(), bytes.size(), 0) == static_cast<ssize_t>(bytes.size());
+        const bool written = ::ftruncate(fd_, 0) == 0 &&
+                             ::pwrite(fd_, bytes.data(), bytes.size(), 0) == static_cast<ssize_t>(bytes.size());
         if (!written) finding("a file in memory that cannot be written");
         return path_;
     }
     const std::filesystem::path& path() const { return path_; }
 
- private:
+  private:
     int fd_;
     std::filesystem::path path_ = "/proc/self/fd/" + std::to_string(fd_);
 };
@@ -81,14 +81,14 @@ class MemoryFile {
 // A folder whose files are links to files in memory, for readers that take several files. Gone when the process ends
 // without a finding.
 class MemoryFolder {
- public:
+  public:
     void add(const std::string& name, const MemoryFile& file) const {
         std::filesystem::create_directories((folder_ / name).parent_path());
         std::filesystem::create_symlink(file.path(), folder_ / name);
     }
     const std::filesystem::path& path() const { return folder_.path(); }
 
- private:
+  private:
     test::TemporaryFolder folder_;
 };
 

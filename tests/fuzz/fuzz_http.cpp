@@ -22,12 +22,15 @@ std::string_view target_in(std::string_view head) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     const std::string_view head = fuzz::text_of(data, size);
     const CheckedHead checked = check_head(head);
-    if (checked.refused == 0 && check_head(checked.text).refused != 0) fuzz::finding("a head that is refused when it is checked again");
-    if (checked.refused != 0 && (checked.refused < 400 || checked.refused > 505)) fuzz::finding("no status of a refusal");
+    if (checked.refused == 0 && check_head(checked.text).refused != 0)
+        fuzz::finding("a head that is refused when it is checked again");
+    if (checked.refused != 0 && (checked.refused < 400 || checked.refused > 505))
+        fuzz::finding("no status of a refusal");
     const auto names = names_of_path(target_in(head));
     if (!names) return 0;
     for (const std::string& name : *names) {
-        const bool plain = !name.empty() && name.front() != '.' && name.find_first_of(std::string_view("/\\\0", 3)) == std::string::npos;
+        const bool plain = !name.empty() && name.front() != '.' &&
+                           name.find_first_of(std::string_view("/\\\0", 3)) == std::string::npos;
         if (!plain) fuzz::finding("a name that leads elsewhere");
         mime_type(name);
     }

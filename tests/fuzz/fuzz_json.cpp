@@ -10,6 +10,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     return fuzz::read_or_refuse([&] {
         const Json json = parse_json(fuzz::text_of(data, size), "a.json");
         described(json);
-        if (parse_json(json_text(json), "again.json").type() != json.type()) fuzz::finding("another value when written and read again");
+        if (parse_json(json_text(json), "again.json").type() != json.type())
+            fuzz::finding("another value when written and read again");
     });
 }

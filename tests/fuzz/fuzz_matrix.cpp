@@ -10,6 +10,7 @@ using namespace palpa::stiffnessmaps;
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     return fuzz::read_or_refuse([&] {
         const NpyArray array = parse_number_matrix(fuzz::text_of(data, size), "a.csv");
-        if (array.shape.at(0) * array.shape.at(1) != array.values.size()) fuzz::finding("a shape that is not the numbers'");
+        if (array.shape.at(0) * array.shape.at(1) != array.values.size())
+            fuzz::finding("a shape that is not the numbers'");
     });
 }

@@ -1,9 +1,8 @@
 // Runs each fuzz target over its corpus, in the usual builds and without libFuzzer: seeds, and what was found once, stay
 // readable or refused.
 
-#include <doctest/doctest.h>
-
 #include <algorithm>
+#include <doctest/doctest.h>
 
 #include "files/text.h"
 #include "tests/fuzz/fuzz.h"
@@ -42,7 +41,8 @@ TEST_CASE("fuzz: every target takes or refuses all of its corpus") {
             const auto* data = reinterpret_cast<const std::uint8_t*>(bytes.data());
             CHECK_NOTHROW(target.run(data, bytes.size()));
             // every reader must bear an end anywhere
-            for (const std::size_t cut : {std::size_t{0}, bytes.size() / 3, bytes.size() / 2, bytes.size() - std::min<std::size_t>(bytes.size(), 1)}) {
+            for (const std::size_t cut : {std::size_t{0}, bytes.size() / 3, bytes.size() / 2,
+                                          bytes.size() - std::min<std::size_t>(bytes.size(), 1)}) {
                 CAPTURE(cut);
                 const std::vector<std::uint8_t> part(data, data + cut);  // of this size, so that reading on is noticed
                 CHECK_NOTHROW(target.run(part.data(), part.size()));

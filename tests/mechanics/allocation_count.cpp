@@ -16,20 +16,12 @@ extern "C" void* malloc(std::size_t bytes) {
     return __libc_malloc(bytes);
 }
 
-long allocation_count() {
-    return count.load();
-}
-bool allocation_count_works() {
-    return true;
-}
+long allocation_count() { return count.load(); }
+bool allocation_count_works() { return true; }
 
 #else
 
-long allocation_count() {
-    return 0;
-}
-bool allocation_count_works() {
-    return false;
-}
+long allocation_count() { return 0; }
+bool allocation_count_works() { return false; }
 
 #endif

@@ -24,11 +24,13 @@ inline Inclusion ball(double x_m, double y_m, double diameter_m) {
 inline const std::vector<double> kDepths_m{0.001, 0.002};
 
 struct Roller {
-    explicit Roller(RollingModel m, double contact_m = 0.0) : model(std::move(m)), mesh(choose_rolling_mesh(model, 2.0)) {
+    explicit Roller(RollingModel m, double contact_m = 0.0)
+        : model(std::move(m)), mesh(choose_rolling_mesh(model, 2.0)) {
         if (contact_m > 0.0) mesh.contact_m = contact_m;
         tables.contact = contact_kernel(model, mesh);
         tables.parts.push_back(side_table(model, mesh));
-        for (const auto& group : inclusion_groups(model, mesh)) tables.parts.push_back(inclusion_table(model, mesh, group));
+        for (const auto& group : inclusion_groups(model, mesh))
+            tables.parts.push_back(inclusion_table(model, mesh, group));
     }
     RollingForce at(double x_m, double y_m, std::size_t depth = 1) {
         roll_to(model, mesh, tables, x_m, y_m, kDepths_m, work, forces);

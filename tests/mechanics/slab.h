@@ -43,9 +43,7 @@ inline Problem calculix_problem(Element element) {
     return problem;
 }
 
-inline ParabolicPressure calculix_pressure() {
-    return {Side::zmax, {0.047, 0.052}, 0.03, 0.025};
-}
+inline ParabolicPressure calculix_pressure() { return {Side::zmax, {0.047, 0.052}, 0.03, 0.025}; }
 
 inline Compliance slab_compliance(const Problem& problem, const std::array<double, 4>& touch_m,
                                   bool tangential = false) {

@@ -17,8 +17,7 @@ Problem small_slab() {
 TEST_CASE("compliance: columns are what a direct solution gives, rows beyond the touch nodes included") {
     const Problem problem = small_slab();
     const Factored factored = factorise(problem, best_solver());
-    SurfaceRequest request =
-        request_rectangle(problem.mesh, boundary_faces(problem.mesh), {0.03, 0.07, 0.03, 0.07});
+    SurfaceRequest request = request_rectangle(problem.mesh, boundary_faces(problem.mesh), {0.03, 0.07, 0.03, 0.07});
     request.tangential = true;
     request.block = 7;
     const Compliance c = surface_compliance(problem.mesh, factored, request);
@@ -38,15 +37,14 @@ TEST_CASE("compliance: columns are what a direct solution gives, rows beyond the
             const double size = s.u_m.cwiseAbs().maxCoeff();
             if (direction == 0) {
                 for (Eigen::Index i = 0; i < c.normal_m_per_N.rows(); ++i) {
-                    CHECK(std::abs(c.normal_m_per_N(i, column) +
-                                   s.u_m(2, c.node[static_cast<std::size_t>(i)])) < 1e-12 * size);
+                    CHECK(std::abs(c.normal_m_per_N(i, column) + s.u_m(2, c.node[static_cast<std::size_t>(i)])) <
+                          1e-12 * size);
                 }
             }
             for (int i = 0; i < c.n_touch; ++i) {
                 const Eigen::Vector3d u = s.u_m.col(c.node[static_cast<std::size_t>(i)]);
                 const Eigen::Vector3d expected(-u.z(), u.x(), u.y());
-                CHECK((c.full_m_per_N.block<3, 1>(3 * i, 3 * column + direction) - expected).norm() <
-                      1e-12 * size);
+                CHECK((c.full_m_per_N.block<3, 1>(3 * i, 3 * column + direction) - expected).norm() < 1e-12 * size);
             }
         }
     }
@@ -56,8 +54,7 @@ TEST_CASE("compliance: columns are what a direct solution gives, rows beyond the
 TEST_CASE("compliance: progress counts up, cancel stops, wrong requests are refused") {
     const Problem problem = small_slab();
     const Factored factored = factorise(problem, best_solver());
-    const SurfaceRequest request =
-        request_rectangle(problem.mesh, boundary_faces(problem.mesh), {0.0, 0.1, 0.0, 0.1});
+    const SurfaceRequest request = request_rectangle(problem.mesh, boundary_faces(problem.mesh), {0.0, 0.1, 0.0, 0.1});
     std::vector<int> seen;
     std::atomic<bool> cancel = false;
     Progress progress{[&](int done, int total) {

@@ -20,11 +20,10 @@ constexpr double kPoisson = 0.45;
 // 100 x 100 x 50 mm, finest cells 1.2 mm; a stiff ball 8 mm right of the middle if asked for.
 const Compliance& slab(bool nodule) {
     const auto make = [](bool with_nodule) {
-        Problem problem = slab_problem(hex_box(graded_box(0.1, 0.05, 36, 6, 0.0012)), Element::hex8_bbar,
-                                       {kYoung_Pa, kPoisson});
+        Problem problem =
+            slab_problem(hex_box(graded_box(0.1, 0.05, 36, 6, 0.0012)), Element::hex8_bbar, {kYoung_Pa, kPoisson});
         const Sphere ball{{0.058, 0.05, 0.043}, 0.005};
-        if (with_nodule)
-            mix_in(sphere_share(problem.mesh, ball, 6), {2.5e6, 0.49}, Mixing::between, problem.materials);
+        if (with_nodule) mix_in(sphere_share(problem.mesh, ball, 6), {2.5e6, 0.49}, Mixing::between, problem.materials);
         return slab_compliance(problem, {0.035, 0.068, 0.037, 0.063});
     };
     static const Compliance plain = make(false);
@@ -40,8 +39,7 @@ Contact press(const Compliance& c, const Tool& tool, const ContactOptions& optio
 }
 
 // p >= 0, g >= -tol, p . g <= tol over every touch node, from the compliance itself.
-void check_complementary(const Compliance& c, std::span<const Tool> tools, const Contact& contact,
-                         double tolerance_m) {
+void check_complementary(const Compliance& c, std::span<const Tool> tools, const Contact& contact, double tolerance_m) {
     Eigen::VectorXd u;
     surface_depression_m(c, contact, u);
     std::vector<double> p(static_cast<std::size_t>(c.n_touch), 0.0);
@@ -55,9 +53,8 @@ void check_complementary(const Compliance& c, std::span<const Tool> tools, const
         for (std::size_t t = 0; t < tools.size(); ++t) {
             const double R = tools[t].indenter.radius_m;
             const double dx = c.position_m(0, i) - tools[t].pose.x_m;
-            const double dy = tools[t].indenter.shape == IndenterShape::cylinder
-                                  ? 0.0
-                                  : c.position_m(1, i) - tools[t].pose.y_m;
+            const double dy =
+                tools[t].indenter.shape == IndenterShape::cylinder ? 0.0 : c.position_m(1, i) - tools[t].pose.y_m;
             const double r2 = dx * dx + dy * dy;
             if (r2 < R * R) delta = std::max(delta, contact.tool[t].depth_m - R + std::sqrt(R * R - r2));
         }
@@ -98,9 +95,8 @@ TEST_CASE("Hertz: within 3 % at contact radius / spacing > 4, on a block that is
         const double hertz = hertz_force_N(plane_strain_modulus_Pa(kYoung_Pa, kPoisson), 0.008, depth);
         const Contact contact = press(c, {kBall, {0.0, 0.0, depth}});
         CHECK(hertz_contact_radius_m(0.008, depth) / 0.55e-3 > 4.0);
-        MESSAGE("force over Hertz at contact radius / spacing "
-                << hertz_contact_radius_m(0.008, depth) / 0.55e-3 << ": "
-                << 4.0 * contact.tool[0].normal_N / hertz);
+        MESSAGE("force over Hertz at contact radius / spacing " << hertz_contact_radius_m(0.008, depth) / 0.55e-3
+                                                                << ": " << 4.0 * contact.tool[0].normal_N / hertz);
         CHECK(4.0 * contact.tool[0].normal_N == doctest::Approx(hertz).epsilon(0.03));
         CHECK(contact.flags.over_edge);  // the quarter ends under the ball
     }
@@ -148,8 +144,7 @@ TEST_CASE("hard case 20: deep starts, random jumps: the same answer warm or cold
     }
 }
 
-TEST_CASE(
-    "hard case 20: Gauss-Seidel alone gives the same force; without sweeps it says that it has not settled") {
+TEST_CASE("hard case 20: Gauss-Seidel alone gives the same force; without sweeps it says that it has not settled") {
     const Tool tool{kBall, {0.0511, 0.0493, 0.004}};
     const Contact direct = press(slab(true), tool);
     ContactOptions sweeps;
@@ -174,14 +169,12 @@ TEST_CASE("hard case 20: two tools at one node, doubled nodes") {
           doctest::Approx(single.tool[0].normal_N).epsilon(1e-12));
 
     // every touch node listed twice: a singular compliance
-    const Problem problem = slab_problem(hex_box(graded_box(0.1, 0.05, 14, 5, 0.0025)), Element::hex8_bbar,
-                                         {kYoung_Pa, kPoisson});
-    SurfaceRequest request =
-        request_rectangle(problem.mesh, boundary_faces(problem.mesh), {0.03, 0.07, 0.03, 0.07});
+    const Problem problem =
+        slab_problem(hex_box(graded_box(0.1, 0.05, 14, 5, 0.0025)), Element::hex8_bbar, {kYoung_Pa, kPoisson});
+    SurfaceRequest request = request_rectangle(problem.mesh, boundary_faces(problem.mesh), {0.03, 0.07, 0.03, 0.07});
     const Factored factored = factorise(problem, best_solver());
     const Compliance plain = surface_compliance(problem.mesh, factored, request);
-    request.touch_nodes.insert(request.touch_nodes.end(), request.touch_nodes.begin(),
-                               request.touch_nodes.end());
+    request.touch_nodes.insert(request.touch_nodes.end(), request.touch_nodes.begin(), request.touch_nodes.end());
     const Compliance doubled = surface_compliance(problem.mesh, factored, request);
     const Contact twice = press(doubled, one);
     CHECK(twice.tool[0].normal_N == doctest::Approx(press(plain, one).tool[0].normal_N).epsilon(1e-6));
@@ -196,8 +189,8 @@ TEST_CASE("hard case 20: a pose that is not a number holds the last answer and s
     press_to_depth(slab(false), {&tool, 1}, {}, work, contact);
     const double force = contact.tool[0].normal_N;
     CHECK(!contact.flags.held);
-    for (const Pose& pose : {Pose{nan, 0.05, 0.002}, Pose{0.05, nan, 0.002}, Pose{0.05, 0.05, nan},
-                             Pose{0.05, 0.05, HUGE_VAL}}) {
+    for (const Pose& pose :
+         {Pose{nan, 0.05, 0.002}, Pose{0.05, nan, 0.002}, Pose{0.05, 0.05, nan}, Pose{0.05, 0.05, HUGE_VAL}}) {
         tool.pose = pose;
         press_to_depth(slab(false), {&tool, 1}, {}, work, contact);
         CHECK(contact.flags.held);
@@ -216,8 +209,7 @@ TEST_CASE("hard case 20: a pose that is not a number holds the last answer and s
     CHECK(capped.flags.capped);
     CHECK(capped.tool[0].normal_N == force);
     CHECK(capped.tool[0].depth_m == 0.002);
-    CHECK(press(slab(false), {kBall, {0.05, 0.05, 1.0}}).tool[0].depth_m ==
-          doctest::Approx(0.05));  // the thickness
+    CHECK(press(slab(false), {kBall, {0.05, 0.05, 1.0}}).tool[0].depth_m == doctest::Approx(0.05));  // the thickness
 
     const Contact beside = press(slab(false), {kBall, {0.2, 0.05, 0.002}});
     CHECK(beside.flags.over_edge);
@@ -254,8 +246,7 @@ TEST_CASE("contact: energy is the work of the normal force, tangential force its
         const int n = 60;
         double sum = 0.0;
         for (int i = 0; i < n; ++i)
-            sum += press(slab(true), {kBall, {x_m, 0.05, depth_m * (i + 0.5) / n}}).tool[0].normal_N *
-                   depth_m / n;
+            sum += press(slab(true), {kBall, {x_m, 0.05, depth_m * (i + 0.5) / n}}).tool[0].normal_N * depth_m / n;
         return sum;
     };
     for (const double x_m : {0.049, 0.051, 0.0525}) {
@@ -264,8 +255,7 @@ TEST_CASE("contact: energy is the work of the normal force, tangential force its
         const Contact contact = press(slab(true), {kBall, {x_m, 0.05, depth_m}});
         CHECK(work_J(x_m, depth_m) == doctest::Approx(contact.energy_J).epsilon(2e-3));
         const double reach_m = 0.15e-3;  // within one cell: both sides see the same nodes
-        const double slope_N =
-            (work_J(x_m + reach_m, depth_m) - work_J(x_m - reach_m, depth_m)) / (2.0 * reach_m);
+        const double slope_N = (work_J(x_m + reach_m, depth_m) - work_J(x_m - reach_m, depth_m)) / (2.0 * reach_m);
         CHECK(contact.tool[0].tangential_x_N == doctest::Approx(slope_N).epsilon(0.05).scale(0.0));
         CHECK(slope_N > 0.03 * contact.tool[0].normal_N);  // a slope worth the name
     }
@@ -286,8 +276,8 @@ TEST_CASE("contact: over a nodule it is stiffer, and the tangential force change
 
 TEST_CASE("hard case 21: the force ripple of a straight slide is small, and smaller on finer meshes") {
     const auto ripple = [](double finest_m) {
-        const Problem problem = slab_problem(hex_box(graded_box(0.1, 0.05, 32, 6, finest_m)),
-                                             Element::hex8_bbar, {kYoung_Pa, kPoisson});
+        const Problem problem =
+            slab_problem(hex_box(graded_box(0.1, 0.05, 32, 6, finest_m)), Element::hex8_bbar, {kYoung_Pa, kPoisson});
         const Compliance c = slab_compliance(problem, {0.035, 0.065, 0.035, 0.065});
         double low = HUGE_VAL;
         double high = 0.0;
@@ -303,8 +293,8 @@ TEST_CASE("hard case 21: the force ripple of a straight slide is small, and smal
     };
     const double coarse = ripple(2e-3);  // contact radius / spacing 2.4
     const double fine = ripple(1.1e-3);  // 4.5
-    MESSAGE("force ripple at contact radius / spacing 2.4: " << 100.0 * coarse
-                                                             << " %, at 4.5: " << 100.0 * fine << " %");
+    MESSAGE("force ripple at contact radius / spacing 2.4: " << 100.0 * coarse << " %, at 4.5: " << 100.0 * fine
+                                                             << " %");
     CHECK(coarse < 0.05);
     CHECK(fine < 0.02);
     CHECK(fine < coarse);
@@ -397,18 +387,16 @@ TEST_CASE("contact: a roller, and a thin incompressible layer that bulges up to 
     CHECK(rolled.tool[0].tangential_y_N == 0.0);
     for (const int touch : rolled.touch) CHECK(std::abs(slab(false).position_m(1, touch) - 0.05) <= 0.01);
 
-    const Problem thin = slab_problem(hex_box(graded_box(0.08, 0.004, 32, 4, 0.0008)), Element::hex8_bbar,
-                                      {kYoung_Pa, 0.4999});
+    const Problem thin =
+        slab_problem(hex_box(graded_box(0.08, 0.004, 32, 4, 0.0008)), Element::hex8_bbar, {kYoung_Pa, 0.4999});
     const Compliance c = slab_compliance(thin, {0.02, 0.06, 0.02, 0.06});
     const Tool ball{{IndenterShape::sphere, 0.05}, {0.0402, 0.0399, 0.0004}};
     const Contact contact = press(c, ball);
     check_complementary(c, {&ball, 1}, contact, 1e-12);
     double widest = 0.0;
     for (const int touch : contact.touch)
-        widest =
-            std::max(widest, std::hypot(c.position_m(0, touch) - 0.0402, c.position_m(1, touch) - 0.0399));
-    CHECK(widest >
-          std::sqrt(2.0 * 0.05 * 0.0004) * 1.05);  // beyond where the undeformed ball would cut the plane
+        widest = std::max(widest, std::hypot(c.position_m(0, touch) - 0.0402, c.position_m(1, touch) - 0.0399));
+    CHECK(widest > std::sqrt(2.0 * 0.05 * 0.0004) * 1.05);  // beyond where the undeformed ball would cut the plane
 }
 
 TEST_CASE("contact: nothing is allocated after the first calls") {
@@ -417,8 +405,7 @@ TEST_CASE("contact: nothing is allocated after the first calls") {
     Eigen::VectorXd u;
     const auto run = [&] {
         for (int i = 0; i < 200; ++i) {
-            const Tool tool{kBall,
-                            {0.05 + 0.006 * std::sin(0.1 * i), 0.05, 0.003 + 0.002 * std::cos(0.07 * i)}};
+            const Tool tool{kBall, {0.05 + 0.006 * std::sin(0.1 * i), 0.05, 0.003 + 0.002 * std::cos(0.07 * i)}};
             press_to_depth(slab(true), {&tool, 1}, {}, work, contact);
             press_with_force(slab(true), tool, 0.05 + 0.02 * std::cos(0.07 * i), {}, work, contact);
             surface_depression_m(slab(true), contact, u);

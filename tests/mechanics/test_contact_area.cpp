@@ -1,10 +1,9 @@
-#include "mechanics/contact_area.h"
-
 #include <cmath>
 #include <doctest/doctest.h>
 #include <numbers>
 
 #include "mechanics/contact.h"
+#include "mechanics/contact_area.h"
 #include "mechanics/layer.h"
 #include "tests/mechanics/slab.h"
 
@@ -37,8 +36,10 @@ Pressed pressed(double spacing_m, double off_m) {
     const Problem problem = slab_problem(mesh, Element::hex8_bbar, {2500.0, 0.45});
     const double middle_m = half(m - 1);
     const double near_m = 1.5 * kContact_m + spacing_m;
-    const Compliance c = slab_compliance(problem, {middle_m - near_m, middle_m + near_m, middle_m - near_m, middle_m + near_m});
-    const Tool tool{{IndenterShape::sphere, kRadius_m}, {middle_m + off_m, middle_m + 0.5 * off_m, kContact_m * kContact_m / kRadius_m}};
+    const Compliance c =
+        slab_compliance(problem, {middle_m - near_m, middle_m + near_m, middle_m - near_m, middle_m + near_m});
+    const Tool tool{{IndenterShape::sphere, kRadius_m},
+                    {middle_m + off_m, middle_m + 0.5 * off_m, kContact_m * kContact_m / kRadius_m}};
     Pressed out;
     ContactWork work;
     press_to_depth(c, {&tool, 1}, {}, work, out.contact);
@@ -60,8 +61,8 @@ TEST_CASE("contact area: within a tenth of Hertz at three spacings across the ra
             CAPTURE(off);
             const double spacing_m = kContact_m / spacings;
             const Pressed p = pressed(spacing_m, off * spacing_m);
-            MESSAGE(spacings << " spacings, " << off << " beside a node: " << p.area_m2 / hertz_m2 << " of Hertz, whole shares "
-                             << p.node_sum_m2 / hertz_m2);
+            MESSAGE(spacings << " spacings, " << off << " beside a node: " << p.area_m2 / hertz_m2
+                             << " of Hertz, whole shares " << p.node_sum_m2 / hertz_m2);
             CHECK(p.area_m2 == doctest::Approx(hertz_m2).epsilon(spacings < 4.0 ? 0.10 : 0.06));
             CHECK(p.area_m2 < p.node_sum_m2);
         }

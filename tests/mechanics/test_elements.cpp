@@ -47,8 +47,7 @@ TEST_CASE("patch test: linear displacements are exact on irregular meshes, all c
             for (const int node : nodes_of(boundary_faces(problem.mesh))) {
                 const Eigen::Vector3d u = gradient * problem.mesh.nodes_m.col(node);
                 for (int c = 0; c < 3; ++c)
-                    fix({node}, std::string_view("xyz").substr(static_cast<std::size_t>(c), 1), u(c),
-                        problem.supports);
+                    fix({node}, std::string_view("xyz").substr(static_cast<std::size_t>(c), 1), u(c), problem.supports);
             }
             const Factored factored = factorise(problem, best_solver());
             const Solution solution = solve(factored, Eigen::Matrix3Xd::Zero(3, problem.mesh.nodes_m.cols()));
@@ -62,8 +61,7 @@ TEST_CASE("patch test: linear displacements are exact on irregular meshes, all c
             const CellFields fields = cell_fields(problem.mesh, problem.materials, solution.u_m);
             CHECK((fields.strain.colwise() - strain).cwiseAbs().maxCoeff() < 1e-12 * 3e-3 * 10);
             const Voigt stress = stress_Pa(material, strain);
-            CHECK((fields.stress_Pa.colwise() - stress).cwiseAbs().maxCoeff() <
-                  1e-11 * kappa_Pa(material) * 3e-3);
+            CHECK((fields.stress_Pa.colwise() - stress).cwiseAbs().maxCoeff() < 1e-11 * kappa_Pa(material) * 3e-3);
             CHECK(solution.energy_J ==
                   doctest::Approx(0.5 * stress.dot(strain) * factored.report.volume_m3).epsilon(1e-11));
         }
@@ -76,8 +74,7 @@ TEST_CASE("stiffness: moving a cell rigidly makes no force, and the matrix is sy
     for (int trial = 0; trial < 20; ++trial) {
         const Hex x = random_hex(random);
         for (const bool bbar : {true, false}) {
-            const HexMatrix K =
-                bbar ? hex8_bbar_stiffness_N_per_m(x, material) : hex8_stiffness_N_per_m(x, material);
+            const HexMatrix K = bbar ? hex8_bbar_stiffness_N_per_m(x, material) : hex8_stiffness_N_per_m(x, material);
             const double size = K.cwiseAbs().maxCoeff();
             CHECK((K - K.transpose()).cwiseAbs().maxCoeff() < 1e-14 * size);
             for (int axis = 0; axis < 3; ++axis) {
@@ -129,7 +126,6 @@ TEST_CASE(
     Hex u = Hex::Zero();
     u.row(0) = 1e-3 * shear.row(1);
     const Material m{2500.0, 0.45};
-    CHECK((hex8_stiffness_N_per_m(shear, m) * u.reshaped() -
-           hex8_bbar_stiffness_N_per_m(shear, m) * u.reshaped())
+    CHECK((hex8_stiffness_N_per_m(shear, m) * u.reshaped() - hex8_bbar_stiffness_N_per_m(shear, m) * u.reshaped())
               .norm() < 1e-12 * (hex8_stiffness_N_per_m(shear, m) * u.reshaped()).norm());
 }

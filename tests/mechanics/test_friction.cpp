@@ -12,9 +12,9 @@ namespace {
 constexpr Indenter kBall{IndenterShape::sphere, 0.008};
 
 const Compliance& slab() {
-    static const Compliance made = slab_compliance(
-        slab_problem(hex_box(graded_box(0.1, 0.05, 20, 6, 0.0015)), Element::hex8_bbar, {2500.0, 0.45}),
-        {0.035, 0.065, 0.035, 0.065}, true);
+    static const Compliance made =
+        slab_compliance(slab_problem(hex_box(graded_box(0.1, 0.05, 20, 6, 0.0015)), Element::hex8_bbar, {2500.0, 0.45}),
+                        {0.035, 0.065, 0.035, 0.065}, true);
     return made;
 }
 
@@ -109,7 +109,6 @@ TEST_CASE("friction: bad poses hold, a compliance without tangential part is ref
     CHECK(slide.contact.tool[0].normal_N == force);
     Compliance normal_only = slab();
     normal_only.full_m_per_N.resize(0, 0);
-    CHECK_THROWS_AS(
-        slide_to(normal_only, {kBall, {0.05, 0.05, 0.002}}, {}, slide.work, slide.state, slide.contact),
-        LoadError);
+    CHECK_THROWS_AS(slide_to(normal_only, {kBall, {0.05, 0.05, 0.002}}, {}, slide.work, slide.state, slide.contact),
+                    LoadError);
 }

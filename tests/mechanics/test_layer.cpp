@@ -42,16 +42,15 @@ TEST_CASE("layer: a thick one is the half-space, far away both are a point load,
     const double P = 2.0 * patch.force_N / (std::numbers::pi * 1.6e-5);
     for (int i = 0; i < n; ++i) {
         const double r = 0.004 * (i + 0.5) / n;
-        work += P * (1.0 - r * r / 1.6e-5) * layer_depression_m(layer, patch, r) * 2.0 * std::numbers::pi *
-                r * 0.004 / n;
+        work +=
+            P * (1.0 - r * r / 1.6e-5) * layer_depression_m(layer, patch, r) * 2.0 * std::numbers::pi * r * 0.004 / n;
     }
     CHECK(work / patch.force_N == doctest::Approx(layer_mean_depression_m(layer, patch)).epsilon(1e-5));
     CHECK(layer_depression_m(layer, patch, 0.0) < half_space_depression_m(layer, patch, 0.0));
 }
 
 TEST_CASE("Hertz, Dimitriadis, punch") {
-    CHECK(hertz_force_N(4000.0, 0.01, 0.001) ==
-          doctest::Approx(4.0 / 3.0 * 4000.0 * 0.1 * std::pow(0.001, 1.5)));
+    CHECK(hertz_force_N(4000.0, 0.01, 0.001) == doctest::Approx(4.0 / 3.0 * 4000.0 * 0.1 * std::pow(0.001, 1.5)));
     CHECK(hertz_contact_radius_m(0.01, 0.001) == doctest::Approx(std::sqrt(1e-5)));
     CHECK(dimitriadis_force_N(3000.0, 0.01, 1e-4, 10.0) ==
           doctest::Approx(hertz_force_N(4000.0, 0.01, 1e-4)).epsilon(2e-4));

@@ -33,8 +33,7 @@ void check_exact(const Mesh& mesh, const ParabolicPressure& pressure) {
     CAPTURE(pressure.centre_m[0]);
     CAPTURE(pressure.centre_m[1]);
     CAPTURE(pressure.diameter_m);
-    const double Pmax =
-        8.0 * pressure.force_N / (std::numbers::pi * pressure.diameter_m * pressure.diameter_m);
+    const double Pmax = 8.0 * pressure.force_N / (std::numbers::pi * pressure.diameter_m * pressure.diameter_m);
     CHECK(Pmax * std::numbers::pi * pressure.diameter_m * pressure.diameter_m / 8.0 ==
           doctest::Approx(pressure.force_N).epsilon(1e-14));
     for (const LoadShare share : {LoadShare::consistent, LoadShare::thirds}) {
@@ -46,10 +45,9 @@ void check_exact(const Mesh& mesh, const ParabolicPressure& pressure) {
         if (share == LoadShare::thirds) continue;
         // first moment about the disc's centre, in radii
         for (int c = 0; c < 2; ++c) {
-            const double moment =
-                (load.force_N.row(2).array() *
-                 (mesh.nodes_m.row(c).array() - pressure.centre_m[static_cast<std::size_t>(c)]))
-                    .sum();
+            const double moment = (load.force_N.row(2).array() *
+                                   (mesh.nodes_m.row(c).array() - pressure.centre_m[static_cast<std::size_t>(c)]))
+                                      .sum();
             CHECK(std::abs(moment) / (pressure.force_N * 0.5 * pressure.diameter_m) < 1e-9);
         }
     }
@@ -62,8 +60,7 @@ TEST_CASE("hard case 19: the load is exact for any mesh and centre, even a disc 
     std::uniform_real_distribution<double> place(0.03, 0.07);
     std::uniform_real_distribution<double> logarithm(std::log(0.0005), std::log(0.05));
     for (unsigned trial = 0; trial < 25; ++trial) {
-        const ParabolicPressure pressure{
-            Side::zmax, {place(random), place(random)}, std::exp(logarithm(random)), 0.7};
+        const ParabolicPressure pressure{Side::zmax, {place(random), place(random)}, std::exp(logarithm(random)), 0.7};
         check_exact(jittered(true, trial, 0.003), pressure);
         check_exact(jittered(false, trial, 0.003), pressure);
         check_exact(jittered(false, trial, 0.0), pressure);
@@ -71,8 +68,7 @@ TEST_CASE("hard case 19: the load is exact for any mesh and centre, even a disc 
     const double h = 0.1 / 9.0;
     for (const auto& centre :
          {std::array{4.0 * h, 5.0 * h}, std::array{4.0 * h, 4.5 * h}, std::array{4.5 * h, 4.5 * h}}) {
-        for (const double diameter :
-             {1e-4, 0.5 * h, h, 2.0 * h, 0.04}) {  // corner, edge, diagonal; touching circles
+        for (const double diameter : {1e-4, 0.5 * h, h, 2.0 * h, 0.04}) {  // corner, edge, diagonal; touching circles
             check_exact(jittered(true, 0, 0.0), {Side::zmax, centre, diameter, 0.025});
             check_exact(jittered(false, 0, 0.0), {Side::zmax, centre, diameter, 0.025});
         }
@@ -82,15 +78,12 @@ TEST_CASE("hard case 19: the load is exact for any mesh and centre, even a disc 
 TEST_CASE("hard case 19: off the mesh only the inside share acts, and it is flagged") {
     const Mesh mesh = jittered(true, 1, 0.003);
     const Faces outer = boundary_faces(mesh);
-    const PressureLoad half =
-        parabolic_load(mesh, outer, {Side::zmax, {0.0, 0.05}, 0.02, 1.0}, LoadShare::consistent);
+    const PressureLoad half = parabolic_load(mesh, outer, {Side::zmax, {0.0, 0.05}, 0.02, 1.0}, LoadShare::consistent);
     CHECK(half.applied_N == doctest::Approx(0.5).epsilon(1e-10));
     CHECK(half.partial);
-    const PressureLoad quarter =
-        parabolic_load(mesh, outer, {Side::zmax, {0.1, 0.1}, 0.02, 1.0}, LoadShare::thirds);
+    const PressureLoad quarter = parabolic_load(mesh, outer, {Side::zmax, {0.1, 0.1}, 0.02, 1.0}, LoadShare::thirds);
     CHECK(quarter.applied_N == doctest::Approx(0.25).epsilon(1e-10));
-    const PressureLoad none =
-        parabolic_load(mesh, outer, {Side::zmax, {0.2, 0.2}, 0.02, 1.0}, LoadShare::consistent);
+    const PressureLoad none = parabolic_load(mesh, outer, {Side::zmax, {0.2, 0.2}, 0.02, 1.0}, LoadShare::consistent);
     CHECK(none.applied_N == 0.0);
     CHECK(none.partial);
 }
@@ -112,8 +105,7 @@ TEST_CASE("parabolic load: moved and turned meshes carry the same forces, all si
     const Faces outer = boundary_faces(mesh);
     std::vector<double> first;
     for (const Side side : {Side::xmin, Side::xmax, Side::ymin, Side::ymax, Side::zmin, Side::zmax}) {
-        const PressureLoad load =
-            parabolic_load(mesh, outer, {side, {0.043, 0.06}, 0.03, 1.0}, LoadShare::consistent);
+        const PressureLoad load = parabolic_load(mesh, outer, {side, {0.043, 0.06}, 0.03, 1.0}, LoadShare::consistent);
         const double sign = is_max(side) ? -1.0 : 1.0;
         CHECK(load.force_N.row(axis_of(side)).sum() * sign == doctest::Approx(1.0).epsilon(1e-12));
         std::vector<double> forces;
@@ -139,8 +131,7 @@ TEST_CASE("loads: traction adds up, wrong numbers are refused") {
                     LoadError);
 }
 
-TEST_CASE(
-    "pressure load: over a whole bent surface it has no resultant and no moment; it turns with the faces") {
+TEST_CASE("pressure load: over a whole bent surface it has no resultant and no moment; it turns with the faces") {
     Mesh mesh = hex_box({{0.04, 0.03, 0.02}, {4, 3, 2}, std::nullopt});
     std::mt19937 random(5);
     std::uniform_real_distribution<double> push(-0.0015, 0.0015);
@@ -150,8 +141,7 @@ TEST_CASE(
         const Faces outer = boundary_faces(body);
         const Eigen::Matrix3Xd f_N = pressure_load(body, outer, 100.0);
         CHECK(f_N.rowwise().sum().norm() < 1e-12 * f_N.norm());
-        const Eigen::Matrix3d moment =
-            f_N * body.nodes_m.transpose();  // -p V on the diagonal (divergence theorem)
+        const Eigen::Matrix3d moment = f_N * body.nodes_m.transpose();  // -p V on the diagonal (divergence theorem)
         CHECK((moment + 100.0 * check_mesh(body).volume_m3 * Eigen::Matrix3d::Identity()).norm() <
               1e-10 * moment.norm());
         Eigen::Matrix3d turn;
@@ -160,6 +150,5 @@ TEST_CASE(
         turned.nodes_m = turn * body.nodes_m;
         CHECK((pressure_load(turned, outer, 100.0) - turn * f_N).norm() < 1e-12 * f_N.norm());
     }
-    CHECK_THROWS_AS(pressure_load(mesh, boundary_faces(mesh), std::numeric_limits<double>::quiet_NaN()),
-                    LoadError);
+    CHECK_THROWS_AS(pressure_load(mesh, boundary_faces(mesh), std::numeric_limits<double>::quiet_NaN()), LoadError);
 }

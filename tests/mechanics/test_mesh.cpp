@@ -13,8 +13,7 @@ TEST_CASE("box: every cell has its corners in VTK order") {
     const Mesh mesh = hex_box({{0.3, 0.2, 0.1}, {3, 2, 4}, std::nullopt});
     REQUIRE(mesh.nodes_m.cols() == 4 * 3 * 5);
     REQUIRE(mesh.cells.cols() == 24);
-    const int corner[8][3] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0},
-                              {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}};
+    const int corner[8][3] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}};
     for (Eigen::Index cell = 0; cell < mesh.cells.cols(); ++cell) {
         for (int k = 0; k < 8; ++k) {
             const Eigen::Vector3d step(0.1 * corner[k][0], 0.1 * corner[k][1], 0.025 * corner[k][2]);
@@ -59,8 +58,7 @@ TEST_CASE("tets: six per hexahedron fill it, faces match") {
     REQUIRE(tets.cells.cols() == 6 * hexes.cells.cols());
     CHECK(check_mesh(tets).volume_m3 == doctest::Approx(5e-4).epsilon(1e-12));
     CHECK(check_mesh(hexes).volume_m3 == doctest::Approx(5e-4).epsilon(1e-12));
-    CHECK(boundary_faces(tets).cell.size() ==
-          2 * boundary_faces(hexes).cell.size());  // none left open inside
+    CHECK(boundary_faces(tets).cell.size() == 2 * boundary_faces(hexes).cell.size());  // none left open inside
 }
 
 TEST_CASE("faces: outward, closed, and their shares add up") {
@@ -90,8 +88,7 @@ TEST_CASE("sphere: shares converge to its volume, centroids decide the region") 
     const double exact = 4.0 / 3.0 * std::numbers::pi * 1e-6;
     const double cell = 6.4e-8;
     CHECK(sphere_share(mesh, sphere, 8).sum() * cell == doctest::Approx(exact).epsilon(0.005));
-    CHECK(sphere_share(split_to_tets(mesh), sphere, 6).sum() * cell / 6.0 ==
-          doctest::Approx(exact).epsilon(0.01));
+    CHECK(sphere_share(split_to_tets(mesh), sphere, 6).sum() * cell / 6.0 == doctest::Approx(exact).epsilon(0.01));
     const int inside = assign_sphere(sphere, 3, mesh);
     CHECK(inside * cell == doctest::Approx(exact).epsilon(0.1));
     CHECK((mesh.region.array() == 3).count() == inside);

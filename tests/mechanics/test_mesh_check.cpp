@@ -66,8 +66,7 @@ TEST_CASE("hard case 13: sliver sweep, the answer stays within 1e-4 until the ce
     while ((problem.mesh.cells.col(cell).array() != moved).all()) ++cell;
     Eigen::Vector3d target = Eigen::Vector3d::Zero();  // centroid of the face opposite to the node
     for (int k = 0; k < 4; ++k) {
-        if (problem.mesh.cells(k, cell) != moved)
-            target += problem.mesh.nodes_m.col(problem.mesh.cells(k, cell)) / 3.0;
+        if (problem.mesh.cells(k, cell) != moved) target += problem.mesh.nodes_m.col(problem.mesh.cells(k, cell)) / 3.0;
     }
     const Eigen::Vector3d from = problem.mesh.nodes_m.col(moved);
     double before = 0.0;
@@ -113,8 +112,7 @@ TEST_CASE("parts: cells that share faces, loose nodes are reported") {
     CHECK(parts.count == 2);
     CHECK(describe_part(mesh, parts, 1).find("part 2 of 2 (1 cells from cell 1") == 0);
     mesh.cell_number = {70, 90};
-    CHECK(describe_part(mesh, parts, 1) ==
-          "part 2 of 2 (1 cells from cell 90, x 200..300, y 0..100, z 0..100 mm)");
+    CHECK(describe_part(mesh, parts, 1) == "part 2 of 2 (1 cells from cell 90, x 200..300, y 0..100, z 0..100 mm)");
     mesh.cells.conservativeResize(8, 1);
     mesh.region.conservativeResize(1);
     CHECK(check_mesh(mesh).loose_nodes.size() == 8);

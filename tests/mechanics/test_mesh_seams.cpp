@@ -19,13 +19,9 @@ Mesh side_by_side(const Mesh& a, const Mesh& b, double along_x_m) {
     return out;
 }
 
-Mesh cube(int cells) {
-    return hex_box({{0.03, 0.03, 0.03}, {cells, cells, cells}, std::nullopt});
-}
+Mesh cube(int cells) { return hex_box({{0.03, 0.03, 0.03}, {cells, cells, cells}, std::nullopt}); }
 
-Seams seams_of(const Mesh& mesh) {
-    return find_seams(mesh, boundary_faces(mesh));
-}
+Seams seams_of(const Mesh& mesh) { return find_seams(mesh, boundary_faces(mesh)); }
 
 }  // namespace
 

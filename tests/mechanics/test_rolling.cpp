@@ -1,15 +1,15 @@
-#include "mechanics/rolling.h"
-
 #include <doctest/doctest.h>
 
 #include "mechanics/error.h"
+#include "mechanics/rolling.h"
 #include "mechanics/rolling_mesh.h"
 #include "tests/mechanics/rolling_block.h"
 
 using namespace palpa::mechanics;
 
 TEST_CASE("rolling: coordinates pass through the ends of every zone and rise") {
-    const Eigen::VectorXd x = zoned_coordinates_m(0.1, {{0.02, 0.03, 0.002}, {0.025, 0.05, 0.001}, {-1.0, 0.005, 0.003}}, 1.3, 0.02);
+    const Eigen::VectorXd x =
+        zoned_coordinates_m(0.1, {{0.02, 0.03, 0.002}, {0.025, 0.05, 0.001}, {-1.0, 0.005, 0.003}}, 1.3, 0.02);
     for (const double end : {0.0, 0.005, 0.02, 0.025, 0.05, 0.1}) CHECK((x.array() - end).abs().minCoeff() < 1e-12);
     for (Eigen::Index i = 1; i < x.size(); ++i) {
         CHECK(x(i) > x(i - 1));
@@ -20,10 +20,12 @@ TEST_CASE("rolling: coordinates pass through the ends of every zone and rise") {
 TEST_CASE("rolling: taken apart and put together is one mesh of the whole block, within 4 % of the greatest force") {
     Roller roller(rolling_block({ball(0.02, 0.025, 0.005)}));
     const double greatest_N = roller.at(0.02, 0.025).normal_N;
-    for (const auto& place : {std::pair{0.02, 0.025}, {0.0245, 0.025}, {0.038, 0.02}, {0.048, 0.025}, {0.0, 0.025}, {0.049, 0.002}}) {
+    for (const auto& place :
+         {std::pair{0.02, 0.025}, {0.0245, 0.025}, {0.038, 0.02}, {0.048, 0.025}, {0.0, 0.025}, {0.049, 0.002}}) {
         const double x = place.first, y = place.second;
         CAPTURE(x);
-        const auto one = press_on_one_mesh(roller.model, roller.mesh.contact_m, roller.mesh.cells_across, x, y, kDepths_m);
+        const auto one =
+            press_on_one_mesh(roller.model, roller.mesh.contact_m, roller.mesh.cells_across, x, y, kDepths_m);
         for (std::size_t k = 0; k < 2; ++k) {
             const double apart_N = roller.at(x, y, k).normal_N;
             MESSAGE("taken apart ", apart_N, " N, one mesh ", one[k].normal_N, " N");
@@ -53,8 +55,11 @@ TEST_CASE("rolling: two balls pressed at mirrored places give mirrored answers")
     }
 }
 
-TEST_CASE("rolling: the tangential force of the pressure is the slope of the energy within 5 %; it rises on approach and falls behind") {
-    Roller roller(rolling_block({ball(0.025, 0.025, 0.006)}), 3e-4);  // the sum over the rim of the contact needs small nodes
+TEST_CASE(
+    "rolling: the tangential force of the pressure is the slope of the energy within 5 %; it rises on approach and "
+    "falls behind") {
+    Roller roller(rolling_block({ball(0.025, 0.025, 0.006)}),
+                  3e-4);  // the sum over the rim of the contact needs small nodes
     const double h_m = 2e-4;
     const auto slope_N = [&](double x) {
         return (roller.at(x + h_m, 0.025).energy_J - roller.at(x - h_m, 0.025).energy_J) / (2.0 * h_m);
@@ -82,7 +87,8 @@ TEST_CASE("rolling, hard case 21: no ripple where nodes pass under the tool") {
 TEST_CASE("rolling: what cannot be computed is told with numbers") {
     CHECK_THROWS_WITH_AS(choose_rolling_mesh(rolling_block({ball(0.02, 0.025, 0.005), ball(0.023, 0.025, 0.005)})),
                          doctest::Contains("overlap"), LoadError);
-    CHECK_THROWS_WITH_AS(choose_rolling_mesh(rolling_block({ball(0.001, 0.025, 0.005)})), doctest::Contains("reaches out"), LoadError);
+    CHECK_THROWS_WITH_AS(choose_rolling_mesh(rolling_block({ball(0.001, 0.025, 0.005)})),
+                         doctest::Contains("reaches out"), LoadError);
     RollingModel deep = rolling_block({});
     deep.greatest_depth_m = 0.013;
     CHECK_THROWS_WITH_AS(choose_rolling_mesh(deep), doctest::Contains("less than the thickness"), LoadError);

@@ -40,7 +40,8 @@ TEST_CASE("cost: the unknowns are those of the meshes that are built") {
     const RollingModel model = silicone();
     const RollingMesh mesh = choose_rolling_mesh(model, 4.0);
     const auto nodes = [&](const GridLines& lines) {
-        return static_cast<double>(block_problem(lines.x_m, lines.y_m, lines.z_m, model.tissue, {}).mesh.nodes_m.cols());
+        return static_cast<double>(
+            block_problem(lines.x_m, lines.y_m, lines.z_m, model.tissue, {}).mesh.nodes_m.cols());
     };
     CHECK(contact_cost(model, mesh).unknowns == 3.0 * nodes(contact_lines(model, mesh)));
     CHECK(inclusion_cost(model, mesh, {1}).unknowns == 3.0 * nodes(inclusion_lines(model, mesh, {1})));

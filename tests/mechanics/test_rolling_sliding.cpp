@@ -31,7 +31,8 @@ void compare_with_one_mesh(Roller& roller, const Places& places, double most) {
     for (const auto& place : places) {
         const double x = place.first, y = place.second;
         CAPTURE(x);
-        const auto one = press_on_one_mesh(roller.model, roller.mesh.contact_m, roller.mesh.cells_across, x, y, kDepths_m);
+        const auto one =
+            press_on_one_mesh(roller.model, roller.mesh.contact_m, roller.mesh.cells_across, x, y, kDepths_m);
         for (std::size_t k = 0; k < 2; ++k) {
             const RollingForce apart = roller.at(x, y, k);
             MESSAGE("normal ", apart.normal_N, " / ", one[k].normal_N, " N, along x ", apart.tangential_x_N, " / ",
@@ -143,6 +144,7 @@ TEST_CASE("cylinder: its lattice ends where it does and stays bounded; half the 
         CHECK(choose_rolling_mesh(model, 0.5).contact_m == doctest::Approx(0.5 * h_m).epsilon(0.35));
     }
     CHECK_THROWS_WITH_AS(choose_rolling_mesh(cylinder(rolling_block({}), 0.0)), doctest::Contains("length"), LoadError);
-    CHECK_THROWS_WITH_AS(choose_rolling_mesh(cylinder(rolling_block({}), 1e-5)), doctest::Contains("at least"), LoadError);
+    CHECK_THROWS_WITH_AS(choose_rolling_mesh(cylinder(rolling_block({}), 1e-5)), doctest::Contains("at least"),
+                         LoadError);
     CHECK_THROWS_WITH_AS(choose_rolling_mesh(rough(rolling_block({}), -0.1)), doctest::Contains("friction"), LoadError);
 }

@@ -25,8 +25,7 @@ QuarterSlab press_quarter(const Box& box, Element element, double poisson) {
     CHECK(load.partial);
     const Solution solution = solve(factorise(problem, best_solver()), load.force_N);
     CHECK(solution.backward_error < 1e-14);
-    return {-solution.u_m(2, nearest_node(problem.mesh, 0.0, 0.0, 0.05)),
-            mean_displacement_m(load, solution.u_m)};
+    return {-solution.u_m(2, nearest_node(problem.mesh, 0.0, 0.0, 0.05)), mean_displacement_m(load, solution.u_m)};
 }
 
 Box quarter_box(int n, int nz, double finest_m) {
@@ -34,21 +33,18 @@ Box quarter_box(int n, int nz, double finest_m) {
 }
 
 Solution press_with_contrast(double contrast) {
-    Problem problem =
-        slab_problem(hex_box(graded_box(0.1, 0.05, 10, 6, 0.005)), Element::hex8_bbar, {2500.0, 0.45});
+    Problem problem = slab_problem(hex_box(graded_box(0.1, 0.05, 10, 6, 0.005)), Element::hex8_bbar, {2500.0, 0.45});
     assign_sphere({{0.05, 0.05, 0.03}, 0.012}, 1, problem.mesh);
     const Material list[2] = {{2500.0, 0.45}, {2500.0 * contrast, 0.45}};
     problem.materials = materials_of_cells(problem.mesh.region, list);
-    const PressureLoad load =
-        parabolic_load(problem.mesh, boundary_faces(problem.mesh), {Side::zmax, {0.048, 0.05}, 0.016, 0.025},
-                       LoadShare::consistent);
+    const PressureLoad load = parabolic_load(problem.mesh, boundary_faces(problem.mesh),
+                                             {Side::zmax, {0.048, 0.05}, 0.016, 0.025}, LoadShare::consistent);
     return solve(factorise(problem, best_solver()), load.force_N);
 }
 
 }  // namespace
 
-TEST_CASE(
-    "bonded layer: 400 mm wide, 40 x 40 x 12 graded, within 0.3 % of the exact depression at every poisson") {
+TEST_CASE("bonded layer: 400 mm wide, 40 x 40 x 12 graded, within 0.3 % of the exact depression at every poisson") {
     const ParabolicPatch patch;
     for (const double poisson : {0.30, 0.45, 0.49, 0.499, 0.4999}) {
         CAPTURE(poisson);
@@ -72,8 +68,7 @@ TEST_CASE("bonded layer: the quarter is the whole") {
     // the supports carry the load, and the work of the load is stored
     CHECK(solution.reaction_N.row(2).sum() == doctest::Approx(0.025).epsilon(1e-10));
     CHECK(std::abs(solution.reaction_N.row(0).sum()) < 1e-12);
-    CHECK(solution.energy_J ==
-          doctest::Approx(0.5 * 0.025 * mean_displacement_m(load, solution.u_m)).epsilon(1e-10));
+    CHECK(solution.energy_J == doctest::Approx(0.5 * 0.025 * mean_displacement_m(load, solution.u_m)).epsilon(1e-10));
     CHECK(solution.work_J == doctest::Approx(solution.energy_J).epsilon(1e-10));
 }
 
@@ -90,7 +85,8 @@ TEST_CASE("hard case 15: B-bar does not lock, its error at 0.4999 is within 1 % 
     CHECK(error(Element::tet4, 0.4999) < -0.5);
 }
 
-TEST_CASE("work-precision table of numerics.md 1.3: errors of 2,890 graded nodes, B-bar's the same up to poisson 0.4999") {
+TEST_CASE(
+    "work-precision table of numerics.md 1.3: errors of 2,890 graded nodes, B-bar's the same up to poisson 0.4999") {
     // 100 x 100 x 50 mm, d0 16 mm, 16 x 16 x 9 cells of which a quarter is computed, 2.5 mm at the load; mean
     // depression relative to the Richardson limit of B-bar from meshes of 1.25 and 2.5 mm. The table's own grading is
     // not written down: each error is within about a tenth of its size, B-bar's within 0.2 %.
@@ -102,7 +98,8 @@ TEST_CASE("work-precision table of numerics.md 1.3: errors of 2,890 graded nodes
         double poisson, bbar, hex8, tet4;
     };
     double bbar_at_03 = 0.0;
-    for (const Row& row : {Row{0.30, -0.025, -0.053, -0.16}, Row{0.45, -0.021, -0.090, -0.23}, Row{0.4999, -0.021, -0.86, 0.0}}) {
+    for (const Row& row :
+         {Row{0.30, -0.025, -0.053, -0.16}, Row{0.45, -0.021, -0.090, -0.23}, Row{0.4999, -0.021, -0.86, 0.0}}) {
         CAPTURE(row.poisson);
         const double fine_m = mean_m(Element::hex8_bbar, 14, 16, 0.00125, row.poisson);
         const double limit_m = fine_m + (fine_m - mean_m(Element::hex8_bbar, 7, 8, 0.0025, row.poisson)) / 3.0;
@@ -136,8 +133,8 @@ TEST_CASE("CalculiX 2.20: the same displacements and energies on the same meshes
                         {126, {8.423718e-6, -1.036686e-6, -6.025785e-6}}};
     const auto compare = [](Element element, std::span<const Row> rows, double energy_J) {
         const Problem problem = calculix_problem(element);
-        const PressureLoad load = parabolic_load(problem.mesh, boundary_faces(problem.mesh),
-                                                 calculix_pressure(), LoadShare::consistent);
+        const PressureLoad load =
+            parabolic_load(problem.mesh, boundary_faces(problem.mesh), calculix_pressure(), LoadShare::consistent);
         const Solution solution = solve(factorise(problem, best_solver()), load.force_N);
         for (const Row& row : rows) {
             CAPTURE(row.node);
@@ -160,8 +157,7 @@ TEST_CASE("hard case 12: stiffness contrast, 1e6 and 1e8 and the rigid limit") {
     CHECK((soft.u_m - stiff.u_m).cwiseAbs().maxCoeff() / size < 1e-5);
     CHECK((soft.u_m - rigid.u_m).cwiseAbs().maxCoeff() / size < 1e-5);
     CHECK((stiff.u_m - rigid.u_m).cwiseAbs().maxCoeff() / size < 1e-6);
-    CHECK((press_with_contrast(1e3).u_m - rigid.u_m).cwiseAbs().maxCoeff() / size >
-          1e-4);  // 1000 is not rigid
+    CHECK((press_with_contrast(1e3).u_m - rigid.u_m).cwiseAbs().maxCoeff() / size > 1e-4);  // 1000 is not rigid
     CHECK(rigid.energy_J == doctest::Approx(stiff.energy_J).epsilon(1e-6));
 }
 
@@ -177,8 +173,7 @@ TEST_CASE("prescribed displacement: a squeezed free-sided block answers E A d/h"
         fix(nodes_of(faces_on(mesh, outer, Side::zmax)), "z", -1e-4, problem.supports);
         fix(nodes_of(faces_on(mesh, outer, Side::xmin)), "x", 0.0, problem.supports);
         fix(nodes_of(faces_on(mesh, outer, Side::ymin)), "y", 0.0, problem.supports);
-        const Solution s =
-            solve(factorise(problem, best_solver()), Eigen::Matrix3Xd::Zero(3, mesh.nodes_m.cols()));
+        const Solution s = solve(factorise(problem, best_solver()), Eigen::Matrix3Xd::Zero(3, mesh.nodes_m.cols()));
         double top_N = 0.0;
         for (const int node : nodes_of(faces_on(mesh, outer, Side::zmax))) top_N += s.reaction_N(2, node);
         CHECK(top_N == doctest::Approx(-4000.0 * 6e-4 * 0.01).epsilon(1e-10));
@@ -189,8 +184,8 @@ TEST_CASE("prescribed displacement: a squeezed free-sided block answers E A d/h"
 }
 
 TEST_CASE("statics: bad input has numbers in its message") {
-    Problem problem = slab_problem(hex_box({{0.1, 0.1, 0.05}, {2, 2, 2}, std::nullopt}), Element::hex8_bbar,
-                                   {2500.0, 0.45});
+    Problem problem =
+        slab_problem(hex_box({{0.1, 0.1, 0.05}, {2, 2, 2}, std::nullopt}), Element::hex8_bbar, {2500.0, 0.45});
     const Factored factored = factorise(problem, best_solver());
     CHECK_THROWS_AS(solve(factored, Eigen::Matrix3Xd::Zero(3, 5)), LoadError);
     Eigen::Matrix3Xd wild = Eigen::Matrix3Xd::Zero(3, 27);

@@ -1,10 +1,9 @@
-#include "mechanics/steady_sliding.h"
-
 #include <cmath>
 #include <doctest/doctest.h>
 
 #include "mechanics/error.h"
 #include "mechanics/friction.h"
+#include "mechanics/steady_sliding.h"
 #include "tests/mechanics/slab.h"
 
 using namespace palpa::mechanics;
@@ -52,7 +51,9 @@ TEST_CASE("steady sliding: without friction it is the frictionless contact") {
     }
 }
 
-TEST_CASE("steady sliding: nothing pulls, nothing penetrates, what presses touches; the drag is that of the full compliance") {
+TEST_CASE(
+    "steady sliding: nothing pulls, nothing penetrates, what presses touches; the drag is that of the full "
+    "compliance") {
     for (const double mu : {0.1, 0.5, 1.0}) {
         for (const double turn : {0.0, 0.7, -2.4}) {
             const Eigen::Vector2d e(std::cos(turn), std::sin(turn));
@@ -82,7 +83,9 @@ TEST_CASE("steady sliding: nothing pulls, nothing penetrates, what presses touch
     }
 }
 
-TEST_CASE("steady sliding: the force against the motion is mu N and the slope of the pressure; nothing to the side of a symmetric path") {
+TEST_CASE(
+    "steady sliding: the force against the motion is mu N and the slope of the pressure; nothing to the side of a "
+    "symmetric path") {
     const double mu = 0.4;
     const Tool tool{kBall, {0.05, 0.05, 0.003}};
     const Contact contact = steady(tool, {1.0, 0.0}, mu);

@@ -119,8 +119,7 @@ TEST_CASE("rigid bodies: six unknowns each, held completely or not at all") {
     Supports bottom;
     fix(nodes_of(faces_on(mesh, outer, Side::zmin)), "xyz", 0.0, bottom);
     std::vector<bool> rigid(64, false);
-    rigid[static_cast<std::size_t>(16 + 5)] = rigid[static_cast<std::size_t>(32 + 5)] =
-        true;  // two cells, inside
+    rigid[static_cast<std::size_t>(16 + 5)] = rigid[static_cast<std::size_t>(32 + 5)] = true;  // two cells, inside
     const Reduction inside = make_reduction(mesh, bottom, rigid);
     CHECK(inside.equations == 3 * (125 - 25 - 12) + 6);
     std::vector<bool> held(64, false);

@@ -1,8 +1,7 @@
 // The keyboard as a pointer, with real key events (run it under with-xorg).
 #include <SDL.h>
-#include <doctest/doctest.h>
-
 #include <algorithm>
+#include <doctest/doctest.h>
 #include <string>
 #include <vector>
 
@@ -34,7 +33,9 @@ TEST_CASE("keyboard: arrows, Space and Page Up press; keys that a panel takes do
         },
         &panel);
     std::vector<Row> rows;
-    const auto key = [&](double t_s, int code, const char* phase) { rows.push_back({t_s, "key", code, phase, 0.0, 0.0, 0.0}); };
+    const auto key = [&](double t_s, int code, const char* phase) {
+        rows.push_back({t_s, "key", code, phase, 0.0, 0.0, 0.0});
+    };
     const auto tap = [&](double t_s, int code) {
         key(t_s, code, "down");
         key(t_s + 0.02, code, "up");
@@ -80,7 +81,8 @@ TEST_CASE("keyboard: arrows, Space and Page Up press; keys that a panel takes do
     CHECK(downs[0].pressure == 0.0);
     double hardest = 0.0;
     for (const Sample& sample : samples) {
-        if (sample.phase == Phase::move && sample.t_host_s < ups[0].t_host_s) hardest = std::max(hardest, sample.pressure);
+        if (sample.phase == Phase::move && sample.t_host_s < ups[0].t_host_s)
+            hardest = std::max(hardest, sample.pressure);
     }
     CHECK(hardest > 0.9);  // held for 1 s of 1 s
     CHECK(downs[1].pressure == doctest::Approx(0.2));

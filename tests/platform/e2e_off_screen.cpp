@@ -18,9 +18,7 @@ using palpa::platform::WindowOptions;
 
 namespace {
 
-Uint32 id_of(const Window& window) {
-    return SDL_GetWindowID(window.sdl());
-}
+Uint32 id_of(const Window& window) { return SDL_GetWindowID(window.sdl()); }
 
 void push_button(Uint32 type, int x_px, const Window& window) {
     SDL_Event event{};
@@ -88,8 +86,8 @@ TEST_CASE("off screen: losing the focus cancels a press, and its release is not 
 
 TEST_CASE("off screen: a press that a panel owns stays silent until its release") {
     Window window(off_screen());
-    window.set_event_filter([](const WindowEvent& event, void*) { return event.kind == WindowEvent::Kind::button_down; },
-                            nullptr);
+    window.set_event_filter(
+        [](const WindowEvent& event, void*) { return event.kind == WindowEvent::Kind::button_down; }, nullptr);
     std::vector<Sample> samples;
     window.poll(0.0, samples);
     samples.clear();

@@ -1,10 +1,9 @@
 // Devices that come and go (run it under with-xorg).
-#include <doctest/doctest.h>
-
 #include <atomic>
 #include <chrono>
 #include <cmath>
 #include <cstdlib>
+#include <doctest/doctest.h>
 #include <string>
 #include <thread>
 #include <vector>
@@ -61,12 +60,14 @@ TEST_CASE("plugging: a pen that goes and comes again costs the fingers no sample
     std::vector<Row> rows;
     for (int i = 0; i < 400; ++i) {  // 2 s at 200 Hz
         const char* phase = i == 0 ? "down" : i == 399 ? "up" : "move";
-        rows.push_back({0.005 * i, "touch", 1, phase, 400.0 + i, 500.0, i == 399 ? 0.0 : std::round(2.047 * i) / 2047.0});
+        rows.push_back(
+            {0.005 * i, "touch", 1, phase, 400.0 + i, 500.0, i == 399 ? 0.0 : std::round(2.047 * i) / 2047.0});
     }
     std::atomic<bool> over = false;
     std::thread hand([&] {
         const auto run = [](const char* what) { CHECK(std::system(what) == 0); };
-        for (const char* what : {PALPA_XORG_PEN " --disable pen", PALPA_XORG_PEN " --enable pen", PALPA_XORG_PEN " --disable pen"}) {
+        for (const char* what :
+             {PALPA_XORG_PEN " --disable pen", PALPA_XORG_PEN " --enable pen", PALPA_XORG_PEN " --disable pen"}) {
             std::this_thread::sleep_for(std::chrono::milliseconds(500));
             run(what);
         }

@@ -2,11 +2,10 @@
 // Scripts for the devices of with-xorg, and what their samples must be.
 
 #include <SDL.h>
-#include <doctest/doctest.h>
-
 #include <atomic>
 #include <cmath>
 #include <cstdlib>
+#include <doctest/doctest.h>
 #include <filesystem>
 #include <fstream>
 #include <string>
@@ -95,7 +94,8 @@ inline void check_in_order(const std::vector<platform::Sample>& samples) {
 }
 
 // Each sample against the row that made it: phase, place to 0.1 px, pressure to half of 1/1000.
-inline void check_against(const std::vector<Row>& rows, const std::vector<platform::Sample>& samples, platform::Window& window) {
+inline void check_against(const std::vector<Row>& rows, const std::vector<platform::Sample>& samples,
+                          platform::Window& window) {
     int origin_x = 0, origin_y = 0;
     SDL_GetWindowPosition(window.sdl(), &origin_x, &origin_y);
     CHECK(origin_x > 0);

@@ -1,9 +1,8 @@
 // The window with real events: a pen, fingers and a mouse of an X server (run it under with-xorg).
 #define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
 #include <SDL.h>
-#include <doctest/doctest.h>
-
 #include <cmath>
+#include <doctest/doctest.h>
 #include <string>
 #include <vector>
 
@@ -67,8 +66,7 @@ TEST_CASE("pen: 3 s at 1000 Hz and two fingers arrive complete") {
     std::vector<Sample> fingers = of_tool(Tool::finger, samples);
     REQUIRE(fingers.size() == finger_rows.size());
     CHECK(fingers[0].pointer_id != fingers[1].pointer_id);
-    fingers[402].pressure = fingers[403].pressure =
-        0.0;  // what a lifted finger presses with is the driver's matter
+    fingers[402].pressure = fingers[403].pressure = 0.0;  // what a lifted finger presses with is the driver's matter
     check_against(finger_rows, fingers, window);
     for (std::size_t i = 2; i < fingers.size(); ++i) {
         REQUIRE(fingers[i].pointer_id == fingers[i % 2].pointer_id);
@@ -81,8 +79,7 @@ TEST_CASE("pen: devices are listed with their range") {
     for (const palpa::platform::PointerDevice& device : window.devices()) {
         CAPTURE(device.name);
         pens += device.tool == Tool::pen && device.has_pressure && device.pressure_max == 1000.0 ? 1 : 0;
-        touches +=
-            device.tool == Tool::finger && device.has_pressure && device.pressure_max == 2047.0 ? 1 : 0;
+        touches += device.tool == Tool::finger && device.has_pressure && device.pressure_max == 2047.0 ? 1 : 0;
         mice += device.tool == Tool::mouse && !device.has_pressure ? 1 : 0;
     }
     CHECK(pens == 1);
@@ -149,8 +146,7 @@ TEST_CASE("mouse: every motion, pressure by holding and by wheel") {
     SDL_GetWindowPosition(window.sdl(), &origin_x, &origin_y);
     std::vector<Row> rows;
     const auto add = [&](double t_s, const char* phase, int x_px, double notches = 0.0) {
-        rows.push_back(
-            {t_s, "mouse", 0, phase, static_cast<double>(origin_x + x_px), origin_y + 350.0, notches});
+        rows.push_back({t_s, "mouse", 0, phase, static_cast<double>(origin_x + x_px), origin_y + 350.0, notches});
     };
     for (int i = 0; i < 500; ++i) add(i / 1000.0, "hover", 100 + i);  // 1000 Hz
     add(0.6, "down", 599);

@@ -1,15 +1,19 @@
-#include "platform/held_pressure.h"
-
 #include <doctest/doctest.h>
-
 #include <initializer_list>
+
+#include "platform/held_pressure.h"
 
 TEST_CASE("held pressure: the share of the hold time, kept within 0 and 1") {
     struct Case {
         double held_s, hold_s, share;
     };
-    for (const Case& c : {Case{-1.0, 2.0, 0.0}, {0.0, 2.0, 0.0}, {0.5, 2.0, 0.25}, {2.0, 2.0, 1.0}, {9.0, 2.0, 1.0},
-                          {0.0, 0.0, 1.0}, {3.0, -1.0, 1.0}}) {
+    for (const Case& c : {Case{-1.0, 2.0, 0.0},
+                          {0.0, 2.0, 0.0},
+                          {0.5, 2.0, 0.25},
+                          {2.0, 2.0, 1.0},
+                          {9.0, 2.0, 1.0},
+                          {0.0, 0.0, 1.0},
+                          {3.0, -1.0, 1.0}}) {
         CAPTURE(c.held_s);
         CAPTURE(c.hold_s);
         CHECK(palpa::platform::held_share(c.held_s, c.hold_s) == c.share);

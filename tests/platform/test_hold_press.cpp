@@ -1,12 +1,10 @@
-#include "platform/hold_press.h"
-
-#include <doctest/doctest.h>
-
 #include <cmath>
+#include <doctest/doctest.h>
 #include <initializer_list>
 #include <vector>
 
 #include "platform/held_pressure.h"
+#include "platform/hold_press.h"
 
 using namespace palpa;
 using namespace palpa::platform;
@@ -82,9 +80,14 @@ TEST_CASE("hold press: a device that keeps sending gets no samples added") {
 }
 
 TEST_CASE("hold press: two fingers and a pen, in order of time, however often it is polled") {
-    std::vector<Sample> all{at(1.0, Phase::hover, -3, Tool::pen), at(1.1, Phase::down, 7), at(1.2, Phase::down, 8),
-                            at(1.25, Phase::down, -3, Tool::pen), at(1.3, Phase::move, 7), at(1.5, Phase::up, 8),
-                            at(1.6, Phase::cancel, 7), at(1.9, Phase::up, -3, Tool::pen)};
+    std::vector<Sample> all{at(1.0, Phase::hover, -3, Tool::pen),
+                            at(1.1, Phase::down, 7),
+                            at(1.2, Phase::down, 8),
+                            at(1.25, Phase::down, -3, Tool::pen),
+                            at(1.3, Phase::move, 7),
+                            at(1.5, Phase::up, 8),
+                            at(1.6, Phase::cancel, 7),
+                            at(1.9, Phase::up, -3, Tool::pen)};
     HoldPress often_hold = holding(false, true), seldom_hold = holding(false, true);
     const std::vector<Sample> often = polled(all, 2.0, 0.001, often_hold);
     const std::vector<Sample> seldom = polled(all, 2.0, 1.0, seldom_hold);

@@ -1,10 +1,9 @@
-#include "platform/keyboard.h"
-
-#include <doctest/doctest.h>
-
 #include <cmath>
+#include <doctest/doctest.h>
 #include <initializer_list>
 #include <vector>
+
+#include "platform/keyboard.h"
 
 using palpa::platform::Keyboard;
 using palpa::platform::Phase;
@@ -37,7 +36,8 @@ TEST_CASE("keyboard: off at the start, and then no key does anything") {
     Keyboard keyboard;
     std::vector<Sample> out;
     CHECK_FALSE(is_on(keyboard));
-    for (const PointerKey key : {PointerKey::left, PointerKey::press, PointerKey::harder}) down(1.0, key, keyboard, out);
+    for (const PointerKey key : {PointerKey::left, PointerKey::press, PointerKey::harder})
+        down(1.0, key, keyboard, out);
     hold_keys(2.0, keyboard, out);
     up(3.0, PointerKey::press, keyboard, out);
     CHECK(out.empty());

@@ -20,10 +20,10 @@ TEST_CASE("mouse pressure: rises with time from 0 to 1 and stays there") {
     std::vector<Sample> out;
     CHECK(palpa::platform::pressure_at(mouse.button, 1000.0) == 0.0);
     palpa::platform::press_mouse(1000.0, 5.0, mouse, out);
-    for (const auto& [after_s, pressure] :
-         {std::pair{0.0, 0.0}, {0.5, 0.25}, {1.0, 0.5}, {2.0, 1.0}, {9.0, 1.0}}) {
+    for (const auto& [after_s, pressure] : {std::pair{0.0, 0.0}, {0.5, 0.25}, {1.0, 0.5}, {2.0, 1.0}, {9.0, 1.0}}) {
         CAPTURE(after_s);
-        CHECK(palpa::platform::pressure_at(mouse.button, 1000.0 + after_s) == doctest::Approx(pressure).epsilon(kRounding));
+        CHECK(palpa::platform::pressure_at(mouse.button, 1000.0 + after_s) ==
+              doctest::Approx(pressure).epsilon(kRounding));
     }
     palpa::platform::release_mouse(1003.0, 8.0, mouse, out);
     CHECK(palpa::platform::pressure_at(mouse.button, 1004.0) == 0.0);
@@ -53,8 +53,7 @@ TEST_CASE("mouse pressure: a still button gives one sample per grid point, on th
     REQUIRE(out.size() == 240);  // grid points in (1000.001, 1001.001]
     for (std::size_t i = 0; i < out.size(); ++i) {
         CAPTURE(i);
-        CHECK(out[i].t_host_s ==
-              doctest::Approx(1000.0 + static_cast<double>(i + 1) * kTick_s).epsilon(1e-12));
+        CHECK(out[i].t_host_s == doctest::Approx(1000.0 + static_cast<double>(i + 1) * kTick_s).epsilon(1e-12));
         CHECK(out[i].phase == Phase::move);
         CHECK(out[i].pressure == doctest::Approx((out[i].t_host_s - 1000.001) / 2.0).epsilon(kRounding));
         CHECK(std::isnan(out[i].t_device_s));

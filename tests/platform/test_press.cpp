@@ -83,8 +83,7 @@ TEST_CASE("press: a lost up ends in a cancel") {
     palpa::platform::admit(at(Phase::down), PressOwner::tissue, presses, out);
     palpa::platform::admit(at(Phase::down), PressOwner::tissue, presses, out);
     palpa::platform::admit(at(Phase::hover), PressOwner::tissue, presses, out);
-    CHECK(phases(out) ==
-          std::vector<Phase>{Phase::down, Phase::cancel, Phase::down, Phase::cancel, Phase::hover});
+    CHECK(phases(out) == std::vector<Phase>{Phase::down, Phase::cancel, Phase::down, Phase::cancel, Phase::hover});
 }
 
 TEST_CASE("press: a device that is gone cancels its own press only") {

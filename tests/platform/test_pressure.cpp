@@ -1,11 +1,9 @@
-#include "platform/pressure.h"
-
-#include <doctest/doctest.h>
-
 #include <cmath>
+#include <doctest/doctest.h>
 #include <initializer_list>
 #include <vector>
 
+#include "platform/pressure.h"
 #include "tests/scene/allocations.h"
 
 using namespace palpa;
@@ -38,7 +36,8 @@ TEST_CASE("pressure: a value that never changes is no sensor, whatever the value
         CAPTURE(value);
         PressureWatch seen;
         CHECK(pressure_kind(seen, Tool::pen) == PressureKind::unknown);
-        press(10.0, 100, Tool::pen, [&](int) { return value; }, seen);
+        press(
+            10.0, 100, Tool::pen, [&](int) { return value; }, seen);
         CHECK(pressure_kind(seen, Tool::pen) == PressureKind::constant);
         CHECK(constant_pressure(seen, Tool::pen) == value);
         CHECK(pressure_kind(seen, Tool::finger) == PressureKind::unknown);
@@ -71,33 +70,40 @@ TEST_CASE("pressure: too short, or too few samples, is no verdict") {
 
 TEST_CASE("pressure: a later change corrects the verdict, and stays") {
     PressureWatch seen;
-    press(0.0, 100, Tool::finger, [](int) { return 1.0; }, seen);
+    press(
+        0.0, 100, Tool::finger, [](int) { return 1.0; }, seen);
     CHECK(pressure_kind(seen, Tool::finger) == PressureKind::constant);
-    press(2.0, 3, Tool::finger, [](int i) { return i == 2 ? 0.99 : 1.0; }, seen);
+    press(
+        2.0, 3, Tool::finger, [](int i) { return i == 2 ? 0.99 : 1.0; }, seen);
     CHECK(pressure_kind(seen, Tool::finger) == PressureKind::varies);
-    press(3.0, 100, Tool::finger, [](int) { return 1.0; }, seen);
+    press(
+        3.0, 100, Tool::finger, [](int) { return 1.0; }, seen);
     CHECK(pressure_kind(seen, Tool::finger) == PressureKind::varies);
 }
 
 TEST_CASE("pressure: the first sample of a press, hovering and lifting say nothing") {
     PressureWatch seen;
-    press(0.0, 100, Tool::pen, [](int i) { return i == 0 ? 1.0 : 0.5; }, seen);
+    press(
+        0.0, 100, Tool::pen, [](int i) { return i == 0 ? 1.0 : 0.5; }, seen);
     CHECK(pressure_kind(seen, Tool::pen) == PressureKind::constant);
     CHECK(constant_pressure(seen, Tool::pen) == 0.5);
 }
 
 TEST_CASE("pressure: missing until there is some") {
     PressureWatch seen;
-    press(0.0, 1, Tool::finger, [](int) { return kMissing; }, seen);
+    press(
+        0.0, 1, Tool::finger, [](int) { return kMissing; }, seen);
     CHECK(pressure_kind(seen, Tool::finger) == PressureKind::missing);
-    press(1.0, 5, Tool::finger, [](int i) { return 0.1 * i; }, seen);
+    press(
+        1.0, 5, Tool::finger, [](int i) { return 0.1 * i; }, seen);
     CHECK(pressure_kind(seen, Tool::finger) == PressureKind::varies);
 }
 
 TEST_CASE("pressure: watching allocates nothing") {
     PressureWatch seen;
     const auto before = test::allocations();
-    press(0.0, 100, Tool::pen, [](int i) { return 0.01 * i; }, seen);
+    press(
+        0.0, 100, Tool::pen, [](int i) { return 0.01 * i; }, seen);
     CHECK(pressure_kind(seen, Tool::pen) == PressureKind::varies);
     CHECK(test::allocations() == before);
 }

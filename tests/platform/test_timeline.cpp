@@ -1,9 +1,8 @@
-#include "platform/timeline.h"
-
-#include <doctest/doctest.h>
-
 #include <cmath>
+#include <doctest/doctest.h>
 #include <random>
+
+#include "platform/timeline.h"
 
 using namespace palpa;
 using namespace palpa::platform;

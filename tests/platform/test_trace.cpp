@@ -1,11 +1,9 @@
-#include "platform/trace.h"
-
-#include <doctest/doctest.h>
-
 #include <cmath>
+#include <doctest/doctest.h>
 
 #include "files/text.h"
 #include "platform/keyboard.h"
+#include "platform/trace.h"
 #include "tests/error_message.h"
 #include "tests/temporary_folder.h"
 
@@ -85,7 +83,8 @@ TEST_CASE("hard case 31: a trace with wrong names, numbers, columns or no sideca
     CHECK(contains(said("finger", "toe"), "t.tsv: line 2, tool: found 'toe'"));
     CHECK(contains(said("cancel", "fell"), "line 2, phase: found 'fell'"));
     CHECK(contains(said("-12", "1.5"), "line 2, pointer_id: found '1.5', expected a whole number"));
-    CHECK(contains(said("640.125", "640,125"), "line 2, x_px: found '640,125', expected a number with a decimal point"));
+    CHECK(
+        contains(said("640.125", "640,125"), "line 2, x_px: found '640,125', expected a number with a decimal point"));
     CHECK(contains(said("0.3333333333333333", "n/a"), "expected a time on every row"));
     CHECK(contains(said("0.3333333333333333", "1e18"), "below 1e9 s"));
     CHECK(contains(said("tilt_x_deg", "tilt"), "expected a column 'tilt_x_deg'"));

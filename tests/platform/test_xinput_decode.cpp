@@ -125,9 +125,8 @@ TEST_CASE("xinput: an axis that an event leaves out keeps its value") {
 TEST_CASE("xinput: axes between two that are there do not shift values") {
     XiState state = new_state();
     // axes 2, 3 (scrolling) and 9 (second byte) mean nothing to us
-    const auto sample = decode(
-        Fake(XiKind::motion, kPen, kPen, {{0, 0.0}, {1, 0.0}, {2, 7.0}, {3, 7.0}, {4, 500.0}, {9, 7.0}}),
-        state);
+    const auto sample =
+        decode(Fake(XiKind::motion, kPen, kPen, {{0, 0.0}, {1, 0.0}, {2, 7.0}, {3, 7.0}, {4, 500.0}, {9, 7.0}}), state);
     REQUIRE(sample);
     CHECK(sample->pressure == doctest::Approx(0.5));
 }
@@ -136,8 +135,7 @@ TEST_CASE("xinput: what a device does not have is missing") {
     XiState state = new_state();
     state.devices[0].pressure = {};
     state.devices[0].tilt_x = {};
-    const auto sample =
-        decode(Fake(XiKind::motion, kPen, kPen, {{0, 0.0}, {1, 0.0}, {4, 9.0}, {5, 9.0}}), state);
+    const auto sample = decode(Fake(XiKind::motion, kPen, kPen, {{0, 0.0}, {1, 0.0}, {4, 9.0}, {5, 9.0}}), state);
     REQUIRE(sample);
     CHECK(std::isnan(sample->pressure));
     CHECK(std::isnan(sample->pressure_raw));
@@ -214,8 +212,7 @@ TEST_CASE("xinput: two fingers keep their own values") {
         fake.event.detail = id;
         return decode(fake, state);
     };
-    const auto first =
-        touch(XiKind::touch_begin, 1, {{0, 200.0}, {1, 300.0}, {2, 74.0}, {3, 40.0}, {4, 30.0}});
+    const auto first = touch(XiKind::touch_begin, 1, {{0, 200.0}, {1, 300.0}, {2, 74.0}, {3, 40.0}, {4, 30.0}});
     REQUIRE(first);
     CHECK(first->tool == Tool::finger);
     CHECK(first->phase == Phase::down);
@@ -242,8 +239,7 @@ TEST_CASE("xinput: two fingers keep their own values") {
 TEST_CASE("xinput: a touch screen without a minor axis reports circles") {
     XiState state = new_state();
     state.devices[1].touch_minor = {};
-    const auto sample =
-        decode(Fake(XiKind::touch_begin, kMaster, kTouch, {{0, 200.0}, {1, 300.0}, {3, 40.0}}), state);
+    const auto sample = decode(Fake(XiKind::touch_begin, kMaster, kTouch, {{0, 200.0}, {1, 300.0}, {3, 40.0}}), state);
     CHECK(sample->width_px == doctest::Approx(40.0));
     CHECK(sample->height_px == doctest::Approx(20.0));  // two counts per px that way
 }

@@ -1,9 +1,7 @@
-#include "scene/advance.h"
-
+#include <cmath>
 #include <doctest/doctest.h>
 
-#include <cmath>
-
+#include "scene/advance.h"
 #include "tests/scene/allocations.h"
 
 using namespace palpa;

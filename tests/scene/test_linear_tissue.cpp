@@ -1,14 +1,12 @@
-#include "scene/linear_tissue.h"
-
-#include <doctest/doctest.h>
-
 #include <algorithm>
 #include <cmath>
+#include <doctest/doctest.h>
 
 #include "files/cache.h"
 #include "files/input_error.h"
 #include "files/text.h"
 #include "scene/advance.h"
+#include "scene/linear_tissue.h"
 #include "tests/scene/allocations.h"
 #include "tests/temporary_folder.h"
 
@@ -73,7 +71,8 @@ TEST_CASE("linear tissue: resists on the way to the nodule, lets go behind it, m
     CHECK(along_x(0.032, 1.0) == 0.0);
     CHECK(along_x(0.032, -1.0) == doctest::Approx(along_x(0.016, 1.0)).epsilon(0.25));  // the near side differs
     CHECK(tangential_force_N(block.tissue, {0.024, 0.022}, {0.0, 1.0}, depth_m, block.work) ==
-          doctest::Approx(tangential_force_N(block.tissue, {0.024, 0.038}, {0.0, -1.0}, depth_m, block.work)).epsilon(1e-6));
+          doctest::Approx(tangential_force_N(block.tissue, {0.024, 0.038}, {0.0, -1.0}, depth_m, block.work))
+              .epsilon(1e-6));
     CHECK(along_x(0.016, 0.0) == 0.0);
 }
 
@@ -112,7 +111,8 @@ TEST_CASE("linear tissue: a second start reads the cache to the same bits, a dam
     CHECK(rough_again.compliance.full_m_per_N.rows() == 3 * rough_again.compliance.n_touch);
 }
 
-TEST_CASE("linear tissue: friction sticks, then slides at mu N, turns back with the tool, and is forgotten when lifted") {
+TEST_CASE(
+    "linear tissue: friction sticks, then slides at mu N, turns back with the tool, and is forgotten when lifted") {
     const double mu = 0.3;
     const double force_N = 1.0;
     Block block(mu);
@@ -166,7 +166,8 @@ TEST_CASE("linear tissue: a compliance with friction beyond 1 GB is refused befo
     Block block;
     block.options.friction = 0.3;
     block.options.spacing_m = 0.9e-3;
-    CHECK_THROWS_WITH_AS(make_linear_tissue(block.options, {}, {}), doctest::Contains("GB of compliance with friction"), InputError);
+    CHECK_THROWS_WITH_AS(make_linear_tissue(block.options, {}, {}), doctest::Contains("GB of compliance with friction"),
+                         InputError);
 }
 
 namespace {

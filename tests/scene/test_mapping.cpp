@@ -1,8 +1,7 @@
-#include "scene/mapping.h"
-
+#include <Eigen/LU>
 #include <doctest/doctest.h>
 
-#include <Eigen/LU>
+#include "scene/mapping.h"
 
 using namespace palpa;
 using namespace palpa::scene;

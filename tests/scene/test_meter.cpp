@@ -1,6 +1,6 @@
-#include "scene/meter.h"
-
 #include <doctest/doctest.h>
+
+#include "scene/meter.h"
 
 using namespace palpa;
 using namespace palpa::scene;

@@ -1,10 +1,8 @@
-#include "scene/plan.h"
-
+#include <algorithm>
 #include <doctest/doctest.h>
 
-#include <algorithm>
-
 #include "files/text.h"
+#include "scene/plan.h"
 #include "stiffnessmaps/map_file.h"
 #include "tests/error_message.h"
 #include "tests/temporary_folder.h"
@@ -38,7 +36,8 @@ std::vector<std::string> stages_of(const char* scene) {
 TEST_CASE("plan: only what the scene asks for, in the order of the road") {
     using Names = std::vector<std::string>;
     CHECK(stages_of("off.json") == Names{"calibration", "position", "depth", "tangential"});
-    CHECK(stages_of("default.json") == Names{"calibration", "position", "depth", "tangential", "display_ratio", "surface"});
+    CHECK(stages_of("default.json") ==
+          Names{"calibration", "position", "depth", "tangential", "display_ratio", "surface"});
     CHECK(stages_of("delay.json") == Names{"calibration", "position", "depth", "tangential", "delay", "surface"});
 }
 
@@ -47,7 +46,8 @@ TEST_CASE("plan: a person is told what is assumed, derived or scaled") {
     scene.force_scale = 2.0;
     const Plan plan = make_plan(scene);
     const auto noted = [&](const char* part) {
-        return std::any_of(plan.notes.begin(), plan.notes.end(), [&](const std::string& n) { return contains(n, part); });
+        return std::any_of(plan.notes.begin(), plan.notes.end(),
+                           [&](const std::string& n) { return contains(n, part); });
     };
     CHECK(noted("simulated, not recorded"));
     CHECK(noted("Young's modulus, 47000 Pa, is ASSUMED"));
@@ -73,8 +73,9 @@ TEST_CASE("plan: a nodule that was placed and detected is asked for once; detect
     const Plan both = make_plan(scene);
     CHECK(both.nodules.size() == placed);
     CHECK(std::all_of(both.nodules.begin(), both.nodules.end(), [](const Nodule& n) { return n.placed; }));
-    CHECK(std::any_of(both.notes.begin(), both.notes.end(),
-                      [](const std::string& note) { return contains(note, "detected nodules of the map are not asked for"); }));
+    CHECK(std::any_of(both.notes.begin(), both.notes.end(), [](const std::string& note) {
+        return contains(note, "detected nodules of the map are not asked for");
+    }));
     scene.map = folder / "detected.map";
     REQUIRE(make_plan(scene).nodules.size() == 1);
     CHECK(make_plan(scene).nodules[0].id == "D1");

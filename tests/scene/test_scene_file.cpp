@@ -53,11 +53,13 @@ TEST_CASE("scene file: presets and what overrides them") {
     const Scene paper = read(with(R"(, "avatar": {"display_ratio": {"preset": "paper"}})"));
     CHECK(paper.display_ratio->f_0_N == 1.0);
     CHECK_FALSE(paper.display_ratio->cap_m);
-    const Scene own = read(with(R"(, "avatar": {"display_ratio": {"preset": "clear", "f_0_N": 0.05, "cap_mm": null, "s_ref_mm": 0.5}})"));
+    const Scene own = read(
+        with(R"(, "avatar": {"display_ratio": {"preset": "clear", "f_0_N": 0.05, "cap_mm": null, "s_ref_mm": 0.5}})"));
     CHECK(own.display_ratio->f_0_N == 0.05);
     CHECK_FALSE(own.display_ratio->cap_m);
     CHECK(own.display_ratio->path.reference_m == doctest::Approx(5e-4));
-    const Scene delay = read(with(R"(, "avatar": {"delay": {"preset": "clear", "m_ms_per_N": 1000, "force": "recorded", "smoothing_mm": 1.5}})"));
+    const Scene delay = read(with(
+        R"(, "avatar": {"delay": {"preset": "clear", "m_ms_per_N": 1000, "force": "recorded", "smoothing_mm": 1.5}})"));
     CHECK(delay.delay->m_s_per_N == 1.0);
     CHECK(delay.delay->cap_s == doctest::Approx(0.15));
     CHECK(delay.tangential.force == TangentialForce::recorded);
@@ -68,12 +70,17 @@ TEST_CASE("scene file: wrong keys and values are refused by key") {
     CHECK(contains(said("{}"), "name: found nothing"));
     CHECK(contains(said(with(R"(, "avatr": {})")), "avatr: found an unknown key, expected one of"));
     CHECK(contains(said(with(R"(, "avatar": {})")), "found no law, expected display_ratio or delay"));
-    CHECK(contains(said(with(R"(, "avatar": {"delay": {"preset": "clear"}, "display_ratio": {"preset": "clear"}})")), "found both laws"));
-    CHECK(contains(said(with(R"(, "avatar": {"delay": {"preset": "slow"}})")), "avatar.delay.preset: found 'slow', expected one of clear paper"));
-    CHECK(contains(said(with(R"(, "avatar": {"delay": {"preset": "clear", "rise": 1.5}})")), "avatar.delay.rise: found 1.5"));
+    CHECK(contains(said(with(R"(, "avatar": {"delay": {"preset": "clear"}, "display_ratio": {"preset": "clear"}})")),
+                   "found both laws"));
+    CHECK(contains(said(with(R"(, "avatar": {"delay": {"preset": "slow"}})")),
+                   "avatar.delay.preset: found 'slow', expected one of clear paper"));
+    CHECK(contains(said(with(R"(, "avatar": {"delay": {"preset": "clear", "rise": 1.5}})")),
+                   "avatar.delay.rise: found 1.5"));
     CHECK(contains(said(with(R"(, "avatar": {"display_ratio": {"preset": "clear", "f_0_N": 0}})")), "f_0_N: found 0"));
-    CHECK(contains(said(with(R"(, "mapping": {"kind": "direct", "rotate_deg": 45})")), "mapping.rotate_deg: found 45, expected 0, 90, 180 or 270"));
-    CHECK(contains(said(with(R"(, "mapping": {"kind": "direct", "tissue_mm": [0, 1]})")), "mapping.tissue_mm: found 0"));
+    CHECK(contains(said(with(R"(, "mapping": {"kind": "direct", "rotate_deg": 45})")),
+                   "mapping.rotate_deg: found 45, expected 0, 90, 180 or 270"));
+    CHECK(
+        contains(said(with(R"(, "mapping": {"kind": "direct", "tissue_mm": [0, 1]})")), "mapping.tissue_mm: found 0"));
     CHECK(contains(said(with(R"(, "force_scale": -1)")), "force_scale: found -1"));
     CHECK(contains(said(with(R"(, "seed": 0.5)")), "seed: found 0.5, expected a whole number"));
 }

@@ -1,11 +1,10 @@
-#include "session/plan_in_progress.h"
-
 #include <doctest/doctest.h>
 #include <stdlib.h>
 
 #include "files/input_error.h"
 #include "files/text.h"
 #include "mechanics/error.h"
+#include "session/plan_in_progress.h"
 #include "tests/temporary_folder.h"
 
 using namespace palpa;

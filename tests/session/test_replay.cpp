@@ -1,11 +1,10 @@
-#include "session/replay.h"
-
 #include <doctest/doctest.h>
 
 #include "app/scene_choices.h"
+#include "files/text.h"
 #include "session/log_rows.h"
 #include "session/raster_trace.h"
-#include "files/text.h"
+#include "session/replay.h"
 #include "tests/temporary_folder.h"
 
 using namespace palpa;
@@ -26,7 +25,8 @@ std::string log_of(const char* scene_name, const Trace& trace) {
     const RunFiles files = next_run(folder.path(), "01");
     {
         SampleLog log(files);
-        replay(scene, plan, trace, 16, [&](const Sample& sample, const State& state) { log.write(row_of(sample, plan, state)); });
+        replay(scene, plan, trace, 16,
+               [&](const Sample& sample, const State& state) { log.write(row_of(sample, plan, state)); });
     }
     return read_text(files.file("_samples.tsv"));
 }

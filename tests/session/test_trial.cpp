@@ -1,11 +1,10 @@
-#include "session/trial.h"
-
 #include <doctest/doctest.h>
 
 #include "app/scene_choices.h"
-#include "session/session.h"
 #include "files/text.h"
 #include "scene/advance.h"
+#include "session/session.h"
+#include "session/trial.h"
 #include "study/read_logs.h"
 #include "tests/temporary_folder.h"
 
@@ -32,7 +31,9 @@ struct Person {
         session.plan = make_plan(session.scene);
         begin_trial(files, info, TrialMode::test, session);
     }
-    Eigen::Vector2d px(double x_mm, double y_mm) const { return px_of_tissue(session.state.view, {1e-3 * x_mm, 1e-3 * y_mm}); }
+    Eigen::Vector2d px(double x_mm, double y_mm) const {
+        return px_of_tissue(session.state.view, {1e-3 * x_mm, 1e-3 * y_mm});
+    }
     void sample(Phase phase, double x_mm, double y_mm, double pressure, Action action = Action::none) {
         Sample s;
         s.t_host_s = t_s += 0.01;
@@ -70,7 +71,7 @@ TEST_CASE("trial: found, pressed too lightly, never touched; marks with confiden
     person.act(Action::mark, 110.0, 110.0);
     person.act(Action::mark, -50.0, 10.0);  // beside the tissue: none
     person.act(Action::finish);
-    person.act(Action::mark, 20.0, 20.0);   // after the end: none
+    person.act(Action::mark, 20.0, 20.0);  // after the end: none
 
     const Trial& trial = person.session.trial;
     CHECK(trial.finished);
@@ -124,7 +125,8 @@ TEST_CASE("trial: it replays from its trace, and its log holds what happened as 
         person.act(Action::mark, 1e3 * nodule.x_m, 1e3 * nodule.y_m);
         person.act(Action::confidence_5);
         const std::string events = read_text(folder / "log/sub-03/beh/sub-03_task-palpation_run-01_events.tsv");
-        CHECK(std::count(events.begin(), events.end(), '\n') == 4);  // header, start, mark, confidence: on the disk already
+        CHECK(std::count(events.begin(), events.end(), '\n') ==
+              4);  // header, start, mark, confidence: on the disk already
         person.act(Action::finish);
         live = person.session.finished[0];
         CHECK(close_files({{"any", 1}}, person.session));

@@ -13,9 +13,8 @@
 namespace palpa::test {
 
 // `values` in C order of `shape`; MATLAB's own order is made of them.
-inline void write_mat(const std::filesystem::path& path, const std::string& name,
-                      const std::vector<std::size_t>& shape, const std::vector<double>& values,
-                      bool packed = false, const char* version_7_3 = nullptr) {
+inline void write_mat(const std::filesystem::path& path, const std::string& name, const std::vector<std::size_t>& shape,
+                      const std::vector<double>& values, bool packed = false, const char* version_7_3 = nullptr) {
     std::vector<double> turned(values.size());
     const std::size_t n_2 = shape.size() == 3 ? shape[2] : 1;
     for (std::size_t i = 0; i < shape[0]; ++i) {
@@ -26,11 +25,10 @@ inline void write_mat(const std::filesystem::path& path, const std::string& name
     }
     std::vector<std::size_t> dims = shape;
     const bool there = std::filesystem::exists(path);
-    mat_t* mat =
-        there ? Mat_Open(path.c_str(), MAT_ACC_RDWR)
-              : Mat_CreateVer(path.c_str(), nullptr, version_7_3 != nullptr ? MAT_FT_MAT73 : MAT_FT_MAT5);
-    matvar_t* variable = Mat_VarCreate(name.c_str(), MAT_C_DOUBLE, MAT_T_DOUBLE,
-                                       static_cast<int>(dims.size()), dims.data(), turned.data(), 0);
+    mat_t* mat = there ? Mat_Open(path.c_str(), MAT_ACC_RDWR)
+                       : Mat_CreateVer(path.c_str(), nullptr, version_7_3 != nullptr ? MAT_FT_MAT73 : MAT_FT_MAT5);
+    matvar_t* variable = Mat_VarCreate(name.c_str(), MAT_C_DOUBLE, MAT_T_DOUBLE, static_cast<int>(dims.size()),
+                                       dims.data(), turned.data(), 0);
     Mat_VarWrite(mat, variable, packed ? MAT_COMPRESSION_ZLIB : MAT_COMPRESSION_NONE);
     Mat_VarFree(variable);
     Mat_Close(mat);
@@ -39,8 +37,7 @@ inline void write_mat(const std::filesystem::path& path, const std::string& name
 // Creates the file, or adds to it. `chunk` > 0: packed in chunks of so many numbers along each axis; without
 // values nothing is stored.
 inline void write_hdf5(const std::filesystem::path& path, const std::string& name,
-                       const std::vector<std::size_t>& shape, const std::vector<float>& values,
-                       std::size_t chunk = 0) {
+                       const std::vector<std::size_t>& shape, const std::vector<float>& values, std::size_t chunk = 0) {
     const bool there = std::filesystem::exists(path);
     const hid_t file = there ? H5Fopen(path.c_str(), H5F_ACC_RDWR, H5P_DEFAULT)
                              : H5Fcreate(path.c_str(), H5F_ACC_EXCL, H5P_DEFAULT, H5P_DEFAULT);
@@ -101,8 +98,7 @@ inline void write_tiff(const std::filesystem::path& path, std::uint32_t width, s
 
 // Grey of 16 bits (or 8), with a gamma in the file that must not change the numbers.
 inline void write_png(const std::filesystem::path& path, std::uint32_t width, std::uint32_t height,
-                      const std::vector<std::uint16_t>& pixels, int bits = 16,
-                      int colour = PNG_COLOR_TYPE_GRAY) {
+                      const std::vector<std::uint16_t>& pixels, int bits = 16, int colour = PNG_COLOR_TYPE_GRAY) {
     std::FILE* file = std::fopen(path.c_str(), "wb");
     png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, nullptr, nullptr, nullptr);
     png_infop info = png_create_info_struct(png);

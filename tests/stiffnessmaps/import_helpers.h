@@ -11,7 +11,7 @@
 namespace palpa::test {
 
 inline stiffnessmaps::Map imported(const std::string& text, const stiffnessmaps::ImportOptions& options = {},
-                    stiffnessmaps::ImportReport* report = nullptr) {
+                                   stiffnessmaps::ImportReport* report = nullptr) {
     const TemporaryFolder folder;
     files::write_text_atomically(folder / "r.csv", text);
     stiffnessmaps::ImportReport unused;

@@ -1,10 +1,8 @@
-#include "stiffnessmaps/analytic.h"
-
+#include <cmath>
 #include <doctest/doctest.h>
 
-#include <cmath>
-
 #include "files/json.h"
+#include "stiffnessmaps/analytic.h"
 #include "stiffnessmaps/map_file.h"
 
 using namespace palpa;
@@ -30,9 +28,11 @@ TEST_CASE("analytic: a map of the whole grid that says it is a stand-in, nodules
     CHECK(map.n_depths() == 6);
     CHECK(map.nodules.size() == 3);
     CHECK(map.source.kind == SourceKind::analytic);
-    for (const auto* forces : {&map.normal_N, &map.tangential_x_N, &map.tangential_y_N}) CHECK(forces->size() == 6 * map.n_cells());
+    for (const auto* forces : {&map.normal_N, &map.tangential_x_N, &map.tangential_y_N})
+        CHECK(forces->size() == 6 * map.n_cells());
     const std::size_t cell = 20 * map.n_x + 40;
-    CHECK(map.normal_N[cell] == doctest::Approx(phantom_force_N(phantom, map.x_of(40), map.y_of(20), 2e-3)).epsilon(1e-6));
+    CHECK(map.normal_N[cell] ==
+          doctest::Approx(phantom_force_N(phantom, map.x_of(40), map.y_of(20), 2e-3)).epsilon(1e-6));
     const double a = phantom_force_N(phantom, 35e-3, 35e-3, 5e-3);
     const double b = phantom_force_N(phantom, 85e-3, 45e-3, 5e-3);
     const double c = phantom_force_N(phantom, 60e-3, 88e-3, 5e-3);
@@ -41,7 +41,8 @@ TEST_CASE("analytic: a map of the whole grid that says it is a stand-in, nodules
     CHECK(c > 1.1 * phantom_force_N(phantom, 110e-3, 110e-3, 5e-3));
 }
 
-TEST_CASE("the default map is a simulation of its phantom: 3 N at 7 mm beside the nodules, checked, smooth, order of size") {
+TEST_CASE(
+    "the default map is a simulation of its phantom: 3 N at 7 mm beside the nodules, checked, smooth, order of size") {
     const std::string assets = PALPA_SOURCE_DIR "/assets/";
     const Phantom phantom = read_phantom(assets + "phantoms/silicone.json");
     const Map map = read_map(assets + "maps/silicone.map");

@@ -77,9 +77,8 @@ TEST_CASE("arrays: the same numbers come out of every kind of file") {
     write_png(folder / "eight.png", 4, 3, counted<std::uint16_t>(12, 20.0), 8);
     check_counted(read_array(folder / "eight.png", ""), {3, 4}, 20.0);
 
-    for (const char* text :
-         {"0,1,2,3\n4,5,6,7\n8,9,10,11\n", "\xef\xbb\xbf 0 1  2 3\r\n4 5 6 7 \r\n\r\n8 9 10 11",
-          "0\t1\t2\t3\n4\t5\t6\t7\n8\t9\t10\t11\n", "0; 1; 2; 3\n4;5;6;7\n8;9;10;11\n"}) {
+    for (const char* text : {"0,1,2,3\n4,5,6,7\n8,9,10,11\n", "\xef\xbb\xbf 0 1  2 3\r\n4 5 6 7 \r\n\r\n8 9 10 11",
+                             "0\t1\t2\t3\n4\t5\t6\t7\n8\t9\t10\t11\n", "0; 1; 2; 3\n4;5;6;7\n8;9;10;11\n"}) {
         write_text_whole(folder / "a.txt", text);
         check_counted(read_array(folder / "a.txt", ""), {3, 4});
     }
@@ -112,8 +111,7 @@ TEST_CASE("arrays: 10^12 cells in a header are refused before anything is alloca
 
     // uncompressed: the dimensions stand in the file as two int32
     write_mat(folder / "a.mat", "F", {7, 11}, counted<double>(77));
-    patch(folder / "a.mat", std::string("\7\0\0\0\13\0\0\0", 8),
-          std::string("\x40\x42\x0f\0\x40\x42\x0f\0", 8));
+    patch(folder / "a.mat", std::string("\7\0\0\0\13\0\0\0", 8), std::string("\x40\x42\x0f\0\x40\x42\x0f\0", 8));
     CHECK(contains(said(folder / "a.mat"), "found (1000000, 1000000), expected at most 20 million numbers"));
     write_mat(folder / "b.mat", "F", {7, 11}, counted<double>(77));
     patch(folder / "b.mat", std::string("\7\0\0\0\13\0\0\0", 8), std::string("\x00\x08\0\0\x00\x08\0\0", 8));
@@ -125,8 +123,7 @@ TEST_CASE("arrays: 10^12 cells in a header are refused before anything is alloca
     CHECK(contains(said(folder / "b.h5"), "found (3000, 3000), expected numbers that fit into its"));
 
     write_png(folder / "a.png", 4, 3, counted<std::uint16_t>(12));
-    patch(folder / "a.png", std::string("\0\0\0\4\0\0\0\3", 8),
-          std::string("\0\x0f\x42\x40\0\x0f\x42\x40", 8));
+    patch(folder / "a.png", std::string("\0\0\0\4\0\0\0\3", 8), std::string("\0\x0f\x42\x40\0\x0f\x42\x40", 8));
     CHECK(contains(said(folder / "a.png"), "found (1000000, 1000000), expected at most 20 million numbers"));
     write_tiff(folder / "a.tif", 1234, 3, counted<std::uint16_t>(3702), 0, COMPRESSION_NONE);
     patch(folder / "a.tif", std::string("\0\1\3\0\1\0\0\0\xd2\4\0\0", 12),
@@ -157,9 +154,8 @@ TEST_CASE("arrays: cut files are refused by name") {
         const std::string bytes = read_text(folder / name);
         for (const double share : {0.02, 0.3, 0.6, 0.95}) {
             CAPTURE(share);
-            write_text_whole(
-                folder / name,
-                bytes.substr(0, static_cast<std::size_t>(share * static_cast<double>(bytes.size()))));
+            write_text_whole(folder / name,
+                             bytes.substr(0, static_cast<std::size_t>(share * static_cast<double>(bytes.size()))));
             const std::string message = said(folder / name);
             CAPTURE(message);
             CHECK(contains(message, name));
@@ -222,8 +218,7 @@ TEST_CASE("apart: a library that crashes, or never ends its work, is a message a
         return message_of([&] { read_apart("x.h5", "the library", read); });
     };
     CHECK(said_by([]() -> NpyArray { return {{1, 2}, {3.0f, 4.0f}}; }) == "");
-    CHECK(said_by([]() -> NpyArray { throw InputError("x.h5: found a, expected b"); }) ==
-          "x.h5: found a, expected b");
+    CHECK(said_by([]() -> NpyArray { throw InputError("x.h5: found a, expected b"); }) == "x.h5: found a, expected b");
     CHECK(contains(said_by([]() -> NpyArray {
                        ::raise(SIGSEGV);
                        return {};

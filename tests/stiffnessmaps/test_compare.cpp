@@ -1,10 +1,8 @@
-#include "stiffnessmaps/compare.h"
-
-#include <doctest/doctest.h>
-
 #include <cmath>
+#include <doctest/doctest.h>
 #include <limits>
 
+#include "stiffnessmaps/compare.h"
 #include "tests/error_message.h"
 #include "tests/stiffnessmaps/test_maps.h"
 
@@ -41,7 +39,8 @@ TEST_CASE("compare: bias, median, RMS and the greatest difference with its place
     const MapDifference d = compare_maps(a, "a", b, "b");
     const auto n = static_cast<double>(d.all.n);
     CHECK(d.all.median_N == doctest::Approx(0.25).epsilon(1e-4));
-    CHECK(d.all.greatest_N > 0.9);  // the curve over depth is made to rise, so a single spike is shared with its neighbours
+    CHECK(d.all.greatest_N >
+          0.9);  // the curve over depth is made to rise, so a single spike is shared with its neighbours
     CHECK(d.all.at_x_m == doctest::Approx(a.x_of(7)));
     CHECK(d.all.at_y_m == doctest::Approx(a.y_of(4)));
     CHECK(d.all.bias_N == doctest::Approx(0.25 + 3.0 / n).epsilon(1e-3));
@@ -55,10 +54,12 @@ TEST_CASE("compare: on the coarser grid, the common area and the common depths")
     coarse = placed(coarse, 25e-3, -10e-3);
     for (std::size_t at = 0; at < coarse.normal_N.size(); ++at) {
         const std::size_t cell = at % coarse.n_cells();
-        coarse.normal_N[at] = static_cast<float>(plane(coarse.x_of(cell % coarse.n_x), coarse.y_of(cell / coarse.n_x), coarse.depths_m[at / coarse.n_cells()]));
+        coarse.normal_N[at] = static_cast<float>(plane(coarse.x_of(cell % coarse.n_x), coarse.y_of(cell / coarse.n_x),
+                                                       coarse.depths_m[at / coarse.n_cells()]));
     }
     for (const bool swapped : {false, true}) {
-        const MapDifference d = swapped ? compare_maps(coarse, "coarse", fine, "fine") : compare_maps(fine, "fine", coarse, "coarse");
+        const MapDifference d =
+            swapped ? compare_maps(coarse, "coarse", fine, "fine") : compare_maps(fine, "fine", coarse, "coarse");
         CHECK(d.grid_of == (swapped ? "a" : "b"));
         CHECK(d.depths_of == (swapped ? "a" : "b"));
         CHECK(d.a.spacing_m[0] == doctest::Approx(3.7e-3));
@@ -73,15 +74,19 @@ TEST_CASE("compare: on the coarser grid, the common area and the common depths")
 TEST_CASE("compare: what one of them has not measured is left out; nothing in common is refused") {
     const Map a = map_of(12, 10, kPaperDepths_m, plane);
     Map holes = a;
-    for (std::size_t k = 0; k < a.n_depths(); ++k) holes.normal_N[k * a.n_cells() + 5] = std::numeric_limits<float>::quiet_NaN();
+    for (std::size_t k = 0; k < a.n_depths(); ++k)
+        holes.normal_N[k * a.n_cells() + 5] = std::numeric_limits<float>::quiet_NaN();
     CHECK(compare_maps(a, "a", holes, "b").all.n == (a.n_cells() - 1) * a.n_depths());
     const Map away = placed(a, 0.5, 0.0);
     const std::string said = message_of([&] { compare_maps(a, "a.map", away, "b.map"); });
-    CHECK(contains(said, "b.map: found a map of x 500 to 511, y 0 to 9 mm, expected one that overlaps a.map, x 0 to 11, y 0 to 9 mm"));
+    CHECK(contains(
+        said,
+        "b.map: found a map of x 500 to 511, y 0 to 9 mm, expected one that overlaps a.map, x 0 to 11, y 0 to 9 mm"));
     Map left = a;
     Map right = a;
     for (std::size_t at = 0; at < a.normal_N.size(); ++at) {
         (at % a.n_x < 6 ? right : left).normal_N[at] = std::numeric_limits<float>::quiet_NaN();
     }
-    CHECK(contains(message_of([&] { compare_maps(left, "a.map", right, "b.map"); }), "no place and depth where both maps were measured"));
+    CHECK(contains(message_of([&] { compare_maps(left, "a.map", right, "b.map"); }),
+                   "no place and depth where both maps were measured"));
 }

@@ -1,12 +1,10 @@
-#include "stiffnessmaps/import/detect.h"
-
-#include <doctest/doctest.h>
-
 #include <algorithm>
+#include <doctest/doctest.h>
 #include <filesystem>
 #include <random>
 
 #include "stiffnessmaps/grid.h"
+#include "stiffnessmaps/import/detect.h"
 #include "stiffnessmaps/import/import.h"
 #include "stiffnessmaps/map_file.h"
 #include "tests/error_message.h"
@@ -23,8 +21,8 @@ struct Bump {
 };
 
 // 400 N/m, `share` of it noise that is alike over `alike_m`, and bumps.
-Map noisy(std::size_t n_x, std::size_t n_y, double pitch_m, double share, double alike_m, unsigned seed, const std::vector<Bump>& bumps = {},
-          double tilt = 0.0) {
+Map noisy(std::size_t n_x, std::size_t n_y, double pitch_m, double share, double alike_m, unsigned seed,
+          const std::vector<Bump>& bumps = {}, double tilt = 0.0) {
     std::mt19937 random(seed);
     std::normal_distribution<double> normal;
     std::vector<double> noise(n_x * n_y);
@@ -47,7 +45,8 @@ Map noisy(std::size_t n_x, std::size_t n_y, double pitch_m, double share, double
             double k = 1.0 + scale * noise[cell] + tilt * x / map.x_of(n_x - 1);
             for (const Bump& b : bumps) {
                 const double along = std::max(0.0, std::abs(x - b.x_m) - b.half_length_m);
-                k += (b.contrast - 1.0) * std::exp(-0.5 * (along * along + (y - b.y_m) * (y - b.y_m)) / (b.sigma_m * b.sigma_m));
+                k += (b.contrast - 1.0) *
+                     std::exp(-0.5 * (along * along + (y - b.y_m) * (y - b.y_m)) / (b.sigma_m * b.sigma_m));
             }
             map.normal_N.push_back(static_cast<float>(400.0 * depth_m * k));
         }
@@ -74,9 +73,9 @@ TEST_CASE("detect: noise alone makes no claim that is not warned about") {
         std::size_t n_x, n_y;
         double pitch_m, share, alike_m;
     };
-    const Kind kinds[] = {{62, 39, 1.58e-3, 0.15, 0.0},    {62, 39, 1.58e-3, 0.15, 1.5e-3}, {62, 39, 1.58e-3, 0.15, 3e-3},
-                          {62, 39, 1.58e-3, 0.15, 6e-3},   {19, 14, 3.16e-3, 0.3, 4e-3},    {13, 12, 5.5e-3, 0.3, 0.0},
-                          {13, 12, 5.5e-3, 0.3, 7e-3},     {7, 19, 1.58e-3, 0.1, 0.0},      {7, 19, 1.58e-3, 0.1, 2e-3}};
+    const Kind kinds[] = {{62, 39, 1.58e-3, 0.15, 0.0},  {62, 39, 1.58e-3, 0.15, 1.5e-3}, {62, 39, 1.58e-3, 0.15, 3e-3},
+                          {62, 39, 1.58e-3, 0.15, 6e-3}, {19, 14, 3.16e-3, 0.3, 4e-3},    {13, 12, 5.5e-3, 0.3, 0.0},
+                          {13, 12, 5.5e-3, 0.3, 7e-3},   {7, 19, 1.58e-3, 0.1, 0.0},      {7, 19, 1.58e-3, 0.1, 2e-3}};
     int found = 0;
     int sure = 0;
     int maps = 0;
@@ -86,7 +85,8 @@ TEST_CASE("detect: noise alone makes no claim that is not warned about") {
             CAPTURE(kind.alike_m);
             CAPTURE(kind.n_x);
             CAPTURE(seed);
-            const Detection d = detect_regions(noisy(kind.n_x, kind.n_y, kind.pitch_m, kind.share, kind.alike_m, seed), "noise", {});
+            const Detection d =
+                detect_regions(noisy(kind.n_x, kind.n_y, kind.pitch_m, kind.share, kind.alike_m, seed), "noise", {});
             CHECK(d.sure() == 0);
             ++maps;
             found += !d.regions.empty();
@@ -102,14 +102,18 @@ TEST_CASE("detect: noise alone makes no claim that is not warned about") {
 }
 
 TEST_CASE("detect: planted nodules are found to within a cell of 1.58 mm, with their size and contrast") {
-    const std::vector<Bump> bumps{{20e-3, 15e-3, 0.0, 4e-3, 1.8}, {70e-3, 40e-3, 0.0, 3e-3, 2.0}, {60e-3, 12e-3, 12e-3, 3e-3, 1.6}};
+    const std::vector<Bump> bumps{
+        {20e-3, 15e-3, 0.0, 4e-3, 1.8}, {70e-3, 40e-3, 0.0, 3e-3, 2.0}, {60e-3, 12e-3, 12e-3, 3e-3, 1.6}};
     for (unsigned seed = 1; seed <= 20; ++seed) {
         CAPTURE(seed);
-        const Detection d = detect_regions(noisy(62, 39, 1.58e-3, 0.05, seed % 2 == 0 ? 0.0 : 2e-3, seed, bumps, 0.2), "planted", {});
+        const Detection d =
+            detect_regions(noisy(62, 39, 1.58e-3, 0.05, seed % 2 == 0 ? 0.0 : 2e-3, seed, bumps, 0.2), "planted", {});
         REQUIRE(d.sure() == 3);
         for (const Bump& b : bumps) {
             const auto away_m = [&](const StiffRegion& r) { return std::hypot(r.x_m - b.x_m, r.y_m - b.y_m); };
-            const StiffRegion& r = *std::min_element(d.regions.begin(), d.regions.end(), [&](const auto& a, const auto& c) { return away_m(a) < away_m(c); });
+            const StiffRegion& r =
+                *std::min_element(d.regions.begin(), d.regions.end(),
+                                  [&](const auto& a, const auto& c) { return away_m(a) < away_m(c); });
             CAPTURE(b.x_m);
             CHECK(r.sure);
             CHECK(away_m(r) < 1.58e-3);
@@ -127,7 +131,9 @@ TEST_CASE("detect: planted nodules are found to within a cell of 1.58 mm, with t
 TEST_CASE("detect: a tilt, a free edge, or one level make no region") {
     const auto tilted = [](double x, double, double d) { return d * (300.0 + 8000.0 * x); };
     CHECK(detect_regions(map_of(40, 30, kPaperDepths_m, tilted), "tilt", {}).regions.empty());
-    CHECK(detect_regions(map_of(40, 30, kPaperDepths_m, [](double, double, double d) { return 400.0 * d; }), "level", {}).regions.empty());
+    CHECK(
+        detect_regions(map_of(40, 30, kPaperDepths_m, [](double, double, double d) { return 400.0 * d; }), "level", {})
+            .regions.empty());
     const auto edge = [](double x, double y, double d) {
         const double from_edge = std::min({x, y, 0.039 - x, 0.029 - y});
         return 400.0 * d * (1.0 - 0.7 * std::exp(-from_edge / 4e-3));
@@ -142,7 +148,8 @@ TEST_CASE("detect: the shipped phantom's three nodules, and nothing else") {
     CHECK(d.sure() == 3);
     for (const Nodule& nodule : map.nodules) {
         double away_m = 1.0;
-        for (const StiffRegion& r : d.regions) away_m = std::min(away_m, std::hypot(r.x_m - nodule.x_m, r.y_m - nodule.y_m));
+        for (const StiffRegion& r : d.regions)
+            away_m = std::min(away_m, std::hypot(r.x_m - nodule.x_m, r.y_m - nodule.y_m));
         CAPTURE(nodule.id);
         CHECK(away_m < 0.5e-3);
     }
@@ -205,7 +212,8 @@ TEST_CASE("detect: a region at the edge is held against the edge's own variation
             const std::size_t i = cell % map.n_x;
             const std::size_t j = cell / map.n_x;
             if (i > 0 && j > 0 && i + 1 < map.n_x && j + 1 < map.n_y) continue;
-            const std::size_t at = j == 0 || j + 1 == map.n_y ? (j == 0 ? i : map.n_x + i) : 2 * map.n_x + (i == 0 ? j : map.n_y + j);
+            const std::size_t at =
+                j == 0 || j + 1 == map.n_y ? (j == 0 ? i : map.n_x + i) : 2 * map.n_x + (i == 0 ? j : map.n_y + j);
             for (std::size_t k = 0; k < map.n_depths(); ++k) {
                 map.normal_N[k * map.n_cells() + cell] *= static_cast<float>(std::max(0.1, 1.0 + rim * along[at]));
             }
@@ -262,7 +270,9 @@ TEST_CASE("detect: recorded liver and meat make no claim that is not warned abou
 
 TEST_CASE("detect: options and maps that cannot be are refused by name; few cells are warned about") {
     const Map level = map_of(12, 10, kPaperDepths_m, [](double, double, double d) { return 400.0 * d; });
-    const auto said = [&](const DetectOptions& options) { return message_of([&] { detect_regions(level, "x.map", options); }); };
+    const auto said = [&](const DetectOptions& options) {
+        return message_of([&] { detect_regions(level, "x.map", options); });
+    };
     CHECK(said({}) == "");
     DetectOptions o;
     o.threshold = 0.9;
@@ -273,7 +283,9 @@ TEST_CASE("detect: options and maps that cannot be are refused by name; few cell
     o = {};
     o.window_m = 0.0;
     CHECK(contains(said(o), "window"));
-    const auto peak = [](double x, double y, double d) { return 400.0 * d * (std::hypot(x - 2e-3, y - 2e-3) < 1.1e-3 ? 3.0 : 1.0); };
+    const auto peak = [](double x, double y, double d) {
+        return 400.0 * d * (std::hypot(x - 2e-3, y - 2e-3) < 1.1e-3 ? 3.0 : 1.0);
+    };
     const Detection few = detect_regions(map_of(5, 5, kPaperDepths_m, peak), "few", {});
     CHECK(few.warnings.size() == 1);
     CHECK(few.sure() == 0);

@@ -1,10 +1,8 @@
-#include "stiffnessmaps/field.h"
-
 #include <doctest/doctest.h>
-
 #include <limits>
 #include <random>
 
+#include "stiffnessmaps/field.h"
 #include "tests/stiffnessmaps/test_maps.h"
 
 using namespace palpa;
@@ -28,7 +26,8 @@ TEST_CASE("hard case 5: a noisy map has one depth for each force, rising, round 
     CAPTURE(kSeed);
     std::mt19937 random(kSeed);
     std::normal_distribution<double> noise(0.0, 0.3);
-    const Map map = map_of(6, 5, kPaperDepths_m, [&](double x, double y, double d) { return rising(x, y, d) + noise(random); });
+    const Map map =
+        map_of(6, 5, kPaperDepths_m, [&](double x, double y, double d) { return rising(x, y, d) + noise(random); });
     const Map raw = map;
     const Field field = make_field(map, {});
     CHECK(field.isotonic_changed > 20);
@@ -105,7 +104,8 @@ TEST_CASE("field: the tangential force is the slope of the energy, uphill only")
         double sum = 0.0;  // trapezoid over the piecewise linear force
         const int n = 7000;
         for (int i = 0; i < n; ++i) {
-            sum += 0.5 * (normal_force_N(field, place, depth * i / n) + normal_force_N(field, place, depth * (i + 1) / n));
+            sum +=
+                0.5 * (normal_force_N(field, place, depth * i / n) + normal_force_N(field, place, depth * (i + 1) / n));
         }
         return sum * depth / n;
     };
@@ -113,8 +113,10 @@ TEST_CASE("field: the tangential force is the slope of the energy, uphill only")
         const Eigen::Vector2d p(17.3e-3, 11.6e-3);
         const Eigen::Vector2d g = energy_gradient_N(field, place_at(field, p), depth);
         const double h = 1e-4;
-        const double along_x = (energy_J(p + Eigen::Vector2d(h, 0), depth) - energy_J(p - Eigen::Vector2d(h, 0), depth)) / (2 * h);
-        const double along_y = (energy_J(p + Eigen::Vector2d(0, h), depth) - energy_J(p - Eigen::Vector2d(0, h), depth)) / (2 * h);
+        const double along_x =
+            (energy_J(p + Eigen::Vector2d(h, 0), depth) - energy_J(p - Eigen::Vector2d(h, 0), depth)) / (2 * h);
+        const double along_y =
+            (energy_J(p + Eigen::Vector2d(0, h), depth) - energy_J(p - Eigen::Vector2d(0, h), depth)) / (2 * h);
         CHECK(g.x() == doctest::Approx(along_x).epsilon(1e-4));
         CHECK(g.y() == doctest::Approx(along_y).epsilon(1e-4));
         const Place place = place_at(field, p);
@@ -131,7 +133,8 @@ TEST_CASE("field: a recorded tangential force is given back for +x uphill, its e
     constexpr double kRolling_N = 0.05;
     for (std::size_t k = 0; k < map.n_depths(); ++k) {
         for (std::size_t cell = 0; cell < map.n_cells(); ++cell) {
-            map.tangential_x_N.push_back(static_cast<float>(energy.slopes[cell * energy.n_layers() + k + 1].energy_x + kRolling_N));
+            map.tangential_x_N.push_back(
+                static_cast<float>(energy.slopes[cell * energy.n_layers() + k + 1].energy_x + kRolling_N));
         }
     }
     map.tangential = TangentialKind::recorded;

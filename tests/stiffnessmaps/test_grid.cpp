@@ -1,10 +1,9 @@
-#include "stiffnessmaps/grid.h"
-
-#include <doctest/doctest.h>
-
 #include <algorithm>
 #include <cmath>
+#include <doctest/doctest.h>
 #include <random>
+
+#include "stiffnessmaps/grid.h"
 
 using namespace palpa;
 using namespace palpa::stiffnessmaps;

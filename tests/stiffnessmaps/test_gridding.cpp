@@ -13,8 +13,7 @@ using namespace palpa::test;
 
 TEST_CASE("gridding: an axis is found with gaps in it, with jitter, and with a stray place beside it") {
     std::vector<double> places;
-    for (const int i : {0, 1, 2, 5, 6, 7, 8, 20, 1, 2, 3})
-        places.push_back(0.3 + 1.5e-3 * i + (i % 2) * 2e-5);
+    for (const int i : {0, 1, 2, 5, 6, 7, 8, 20, 1, 2, 3}) places.push_back(0.3 + 1.5e-3 * i + (i % 2) * 2e-5);
     auto fit = fit_axis(places);
     REQUIRE(fit.has_value());
     CHECK(fit->off == 0);
@@ -76,8 +75,8 @@ TEST_CASE("gridding: a linear field comes back exactly, and nothing is extrapola
         if (std::isnan(out.normal_N[i])) continue;
         ++measured;
         const std::size_t cell = i % plan.n_cells();
-        const double wanted = 0.2 + 10.0 * plan.x.at(cell % 21) - 20.0 * plan.y.at(cell / 21) +
-                              400.0 * plan.depths_m[i / plan.n_cells()];
+        const double wanted =
+            0.2 + 10.0 * plan.x.at(cell % 21) - 20.0 * plan.y.at(cell / 21) + 400.0 * plan.depths_m[i / plan.n_cells()];
         CHECK(static_cast<double>(out.normal_N[i]) == doctest::Approx(wanted).epsilon(2e-3));
         CHECK(plan.x.at(cell % 21) > -1e-3);
         CHECK(plan.x.at(cell % 21) < 21e-3);
@@ -89,8 +88,7 @@ TEST_CASE("gridding: a linear field comes back exactly, and nothing is extrapola
 }
 
 TEST_CASE("gridding: the filled copy has no gap, keeps what was measured, and goes on as its neighbours do") {
-    Map map = map_of(5, 4, {1e-3, 2e-3, 3e-3},
-                     [](double x, double, double d) { return 500.0 * d * (1.0 + 20.0 * x); });
+    Map map = map_of(5, 4, {1e-3, 2e-3, 3e-3}, [](double x, double, double d) { return 500.0 * d * (1.0 + 20.0 * x); });
     const std::vector<float> whole = map.normal_N;
     const float nan = std::numeric_limits<float>::quiet_NaN();
     map.normal_N[20 + 7] = nan;                                            // between two depths of one cell
@@ -105,9 +103,8 @@ TEST_CASE("gridding: the filled copy has no gap, keeps what was measured, and go
 }
 
 TEST_CASE("finish: the residual of a map's own numbers is what look-up makes of them") {
-    Map map = map_of(5, 4, {1e-3, 2e-3, 3e-3}, [](double x, double y, double d) {
-        return 500.0 * d + 30.0 * x + std::sin(4e3 * y + 3e3 * d);
-    });
+    Map map = map_of(5, 4, {1e-3, 2e-3, 3e-3},
+                     [](double x, double y, double d) { return 500.0 * d + 30.0 * x + std::sin(4e3 * y + 3e3 * d); });
     map.normal_N[27] = std::numeric_limits<float>::quiet_NaN();
     RecordedPoints recorded;
     for (std::size_t i = 0; i < map.normal_N.size(); ++i) {
@@ -137,8 +134,7 @@ TEST_CASE("robust: medians and deviations that wild values do not move") {
     CHECK(robust_deviation(values) == doctest::Approx(0.3).epsilon(0.1));
     // a spike on a slope stands out; its neighbours, a kink and a step do not
     CHECK(lone_outliers({0, 0, 0, 1, 2, 9, 4, 5, 6, 6, 6, 0, 0}, 0.5) ==
-          std::vector<bool>{false, false, false, false, false, true, false, false, false, false, false, false,
-                            false});
+          std::vector<bool>{false, false, false, false, false, true, false, false, false, false, false, false, false});
     std::vector<double> differences;
     std::vector<double> noisy;
     for (int i = 0; i < 5000; ++i) noisy.push_back(1e-6 * i * i + normal(random));

@@ -1,11 +1,9 @@
-#include "stiffnessmaps/map_file.h"
-
 #include <doctest/doctest.h>
-
 #include <limits>
 
 #include "files/npy.h"
 #include "files/text.h"
+#include "stiffnessmaps/map_file.h"
 #include "tests/error_message.h"
 #include "tests/stiffnessmaps/test_maps.h"
 #include "tests/temporary_folder.h"
@@ -62,7 +60,8 @@ TEST_CASE("map file: choices, noise and the filled copy read back; a copy that d
     map.filled_normal_N = map.normal_N;
     map.filled_normal_N[5] = 1.5f;
     map.noise_N = 0.02;
-    map.source.choices = {{"grid", std::string("plane"), "no regular grid", "--grid"}, {"pitch_mm", std::vector<double>{1.0, 2.0}, "", "--pitch-mm"},
+    map.source.choices = {{"grid", std::string("plane"), "no regular grid", "--grid"},
+                          {"pitch_mm", std::vector<double>{1.0, 2.0}, "", "--pitch-mm"},
                           {"noise_N", 0.02, "", ""}};
     write_map(map, folder / "x.map");
     const Map back = read_map(folder / "x.map");
@@ -100,7 +99,8 @@ TEST_CASE("hard case 7: a transposed or otherwise wrong array is an error, not a
 
 TEST_CASE("map file: absurd numbers and unknown keys are refused by key") {
     CHECK(contains(said("\"spacing_mm\": [\n    1.0", "\"spacing_mm\": [\n    -1.0"), "spacing_mm: found -1.0"));
-    CHECK(contains(said("\"depths_mm\": [\n    1.0", "\"depths_mm\": [\n    3.0"), "depths_mm: found 2 after 3, expected ascending"));
+    CHECK(contains(said("\"depths_mm\": [\n    1.0", "\"depths_mm\": [\n    3.0"),
+                   "depths_mm: found 2 after 3, expected ascending"));
     CHECK(contains(said("\"name\"", "\"nome\""), "name: found nothing"));
     CHECK(contains(said("\"name\"", "\"colour\": 1, \"name\""), "colour: found an unknown key"));
     CHECK(contains(said("\"none\"", "\"recorded\""), "tangential: found recorded, expected tangential_x_N.npy"));

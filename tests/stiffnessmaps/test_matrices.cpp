@@ -84,8 +84,8 @@ TEST_CASE("matrices: what is not stated is asked for") {
     CHECK(contains(said({"a.csv"}, spaced()),
                    "found 1 matrices in 1 files, with a depth in 0 of their names, expected the depth of "
                    "each: --depths-mm"));
-    CHECK(contains(said({"b_3mm.csv", "c_4mm.csv"}, spaced()),
-                   "c_4mm.csv: shape: found (3, 5), expected (3, 4) as in"));
+    CHECK(
+        contains(said({"b_3mm.csv", "c_4mm.csv"}, spaced()), "c_4mm.csv: shape: found (3, 5), expected (3, 4) as in"));
     CHECK(contains(said({"b_3mm.csv", "b_3mm.csv"}, spaced()), "the depth 3 mm twice"));
     CHECK(contains(said({"mN_4mm.csv"}, spaced()), "--force-unit mN"));
     CHECK(contains(said({"empty_4mm.csv"}, spaced()), "no number: all cells are empty"));
@@ -95,8 +95,7 @@ TEST_CASE("matrices: what is not stated is asked for") {
     options.force_unit = ForceUnit::mN;
     CHECK(said({"mN_4mm.csv"}, options) == "");
     options.depths_m = {1e-3, 2e-3};
-    CHECK(contains(said({"mN_4mm.csv"}, options),
-                   "found 1 matrices, expected 2, one for each depth of --depths-mm"));
+    CHECK(contains(said({"mN_4mm.csv"}, options), "found 1 matrices, expected 2, one for each depth of --depths-mm"));
 }
 
 TEST_CASE("matrices: a three-dimensional array in any order of its axes") {
@@ -117,9 +116,8 @@ TEST_CASE("matrices: a three-dimensional array in any order of its axes") {
     CHECK(map.n_y == 3);
     CHECK(map.normal_N[12 + 4 + 3] == doctest::Approx(2.13f));
     options.axes = "dyx";
-    CHECK(contains(
-        message_of([&] { import_recording({folder / "a.mat"}, options, report); }),
-        "found 3 matrices, expected 2, one for each depth of --depths-mm (another order of axes: --axes)"));
+    CHECK(contains(message_of([&] { import_recording({folder / "a.mat"}, options, report); }),
+                   "found 3 matrices, expected 2, one for each depth of --depths-mm (another order of axes: --axes)"));
 }
 
 TEST_CASE("matrices: slices of stiffness and elasticity become forces by a stated formula") {
@@ -151,8 +149,7 @@ TEST_CASE("matrices: slices of stiffness and elasticity become forces by a state
     CHECK(contains(report.notes[0], "Hertz"));
     REQUIRE(choice_of(map, "contact_formula") != nullptr);
     options.indenter = IndenterShape::cylinder;
-    CHECK(elastic_force_N(1e4, 1e-3, options) ==
-          doctest::Approx(3.14159265 / 4.0 * 1e4 / 0.75 * 20e-3 * 1e-3));
+    CHECK(elastic_force_N(1e4, 1e-3, options) == doctest::Approx(3.14159265 / 4.0 * 1e4 / 0.75 * 20e-3 * 1e-3));
     // stiffness: a straight line
     write_text_whole(folder / "k.csv", "0.5,1\n2,n/a\n");
     options.quantity = Quantity::stiffness;
@@ -173,5 +170,6 @@ TEST_CASE("matrices: a slice at many depths holds no more numbers than files may
     options.scale = 1e3;
     for (int k = 1; k <= 21; ++k) options.depths_m.push_back(1e-3 * k);
     ImportReport report;
-    CHECK(contains(message_of([&] { import_recording({folder / "k.npy"}, options, report); }), "more than 20 million numbers"));
+    CHECK(contains(message_of([&] { import_recording({folder / "k.npy"}, options, report); }),
+                   "more than 20 million numbers"));
 }

@@ -1,10 +1,8 @@
-#include "stiffnessmaps/noise.h"
-
 #include <doctest/doctest.h>
-
 #include <random>
 
 #include "stiffnessmaps/field.h"
+#include "stiffnessmaps/noise.h"
 #include "tests/stiffnessmaps/test_maps.h"
 
 using namespace palpa;
@@ -16,7 +14,8 @@ TEST_CASE("noise: white noise on a plane is estimated within 5 %, and smoothing 
     CAPTURE(kSeed);
     std::mt19937 random(kSeed);
     std::normal_distribution<double> noise(0.0, 0.02);
-    Map map = map_of(159, 59, kPaperDepths_m, [&](double x, double, double d) { return 300.0 * d + x + noise(random); });
+    Map map =
+        map_of(159, 59, kPaperDepths_m, [&](double x, double, double d) { return 300.0 * d + x + noise(random); });
     map.spacing_m[0] = 0.76e-3;
     map.spacing_m[1] = 2e-3;
     const double noise_N = normal_noise_N(map);
@@ -45,7 +44,8 @@ TEST_CASE("noise: white noise on a plane is estimated within 5 %, and smoothing 
 }
 
 TEST_CASE("noise: none in a smooth map, none to estimate in a tiny one") {
-    CHECK(normal_noise_N(map_of(30, 30, kPaperDepths_m, [](double x, double y, double d) { return 300 * d + x + y; })) < 1e-6);
+    CHECK(normal_noise_N(map_of(30, 30, kPaperDepths_m, [](double x, double y, double d) { return 300 * d + x + y; })) <
+          1e-6);
     CHECK(normal_noise_N(map_of(2, 2, kPaperDepths_m, [](double, double, double d) { return d; })) == 0.0);
     CHECK(smoothing_sigma_m(Map{}, 0.0, 3e-4, 2e-3) == 0.0);
 }

@@ -1,8 +1,7 @@
-#include "stiffnessmaps/phantom.h"
-
 #include <doctest/doctest.h>
 
 #include "files/text.h"
+#include "stiffnessmaps/phantom.h"
 #include "tests/error_message.h"
 #include "tests/temporary_folder.h"
 
@@ -38,5 +37,6 @@ TEST_CASE("phantom: absurd blocks are refused by key") {
     CHECK(contains(said("\"sphere\"", "\"cylinder\""), "length_mm"));
     CHECK(said("\"sphere\"", "\"cylinder\", \"length_mm\": 20") == "");
     CHECK(contains(said("\"sphere\"", "\"cylinder\", \"length_mm\": 0"), "indenter.length_mm: found 0"));
-    CHECK(contains(said("\"sphere\"", "\"sphere\", \"length_mm\": 20"), "indenter.length_mm: found 20, expected none: a sphere has no length"));
+    CHECK(contains(said("\"sphere\"", "\"sphere\", \"length_mm\": 20"),
+                   "indenter.length_mm: found 20, expected none: a sphere has no length"));
 }

@@ -17,8 +17,8 @@ namespace {
 constexpr const char* kHeader = "point,depth_step,ref_x_mm,ref_y_mm,depth_cmd_mm,depth_mm,fn_N\n";
 
 std::string row(int point, int step, double x, double y, double depth, double force) {
-    return std::to_string(point) + "," + std::to_string(step) + "," + number_text(x) + "," + number_text(y) +
-           "," + number_text(depth) + "," + number_text(depth + 0.001) + "," + number_text(force) + "\n";
+    return std::to_string(point) + "," + std::to_string(step) + "," + number_text(x) + "," + number_text(y) + "," +
+           number_text(depth) + "," + number_text(depth + 0.001) + "," + number_text(force) + "\n";
 }
 
 std::string point(int id, double x, double y, double stiffness = 0.5) {
@@ -45,8 +45,7 @@ std::string replaced(const std::string& from, const std::string& to) {
 
 }  // namespace
 
-TEST_CASE(
-    "probing: grid from the commanded positions, force at contact subtracted, missing cells stay missing") {
+TEST_CASE("probing: grid from the commanded positions, force at contact subtracted, missing cells stay missing") {
     ImportReport report;
     const Map map = imported(small(), {}, &report);
     CHECK(report.form == RecordingForm::probing);
@@ -86,8 +85,7 @@ TEST_CASE("probing: bad recordings are refused by line and column") {
     // off the grid, and twice in one cell
     std::string off = small();
     off += point(9, -4.7, 7.0);
-    CHECK(
-        contains(refusal(off), "line 27, x: found -4.7 mm, expected a position on the regular grid of 2 mm"));
+    CHECK(contains(refusal(off), "line 27, x: found -4.7 mm, expected a position on the regular grid of 2 mm"));
     CHECK(contains(refusal(small() + point(9, -4.0, 7.0)),
                    "line 27: found a second point in the cell of line 2: two grids in one file?"));
     CHECK(contains(refusal(small().substr(0, small().size() - 6)), "found 6 fields"));  // cut
@@ -110,15 +108,13 @@ TEST_CASE("probing: two grids in one file are told, and one of them can be chose
     CHECK(map.origin_m[0] == doctest::Approx(80e-3));
 }
 
-TEST_CASE(
-    "probing: rows that are not numbers are passed over and counted; a file of nothing else is refused") {
+TEST_CASE("probing: rows that are not numbers are passed over and counted; a file of nothing else is refused") {
     std::string text = small();
     text += "0,5,-4,7,5,nan,n/a\n0,5,-4,7,5,,\n";
     ImportReport report;
     imported(text, {}, &report);
     CHECK(report.rejected_rows == 2);
-    CHECK(contains(refusal(std::string(kHeader) + "0,0,0,0,0,nan,nan\n0,1,0,0,1,nan,nan\n"),
-                   "no row with numbers"));
+    CHECK(contains(refusal(std::string(kHeader) + "0,0,0,0,0,nan,nan\n0,1,0,0,1,nan,nan\n"), "no row with numbers"));
     // every cell empty at the depths asked for
     ImportOptions deep;
     deep.depths_m = {20e-3};
@@ -193,8 +189,7 @@ TEST_CASE("probing: any columns, named or by usual names, with the unit in the n
     CHECK(contains(message_of([&] { imported(text, options); }),
                    "--column: found 'weight', expected one of t, point, x"));
     options.columns = {{"x", "Load_mN"}};
-    CHECK(contains(message_of([&] { imported(text, options); }),
-                   "found the column 'Load_mN' as x, expected a length"));
+    CHECK(contains(message_of([&] { imported(text, options); }), "found the column 'Load_mN' as x, expected a length"));
 }
 
 TEST_CASE("probing: height and force in the air are enough: contact is found, the tilt removed") {
@@ -208,8 +203,7 @@ TEST_CASE("probing: height and force in the air are enough: contact is found, th
         for (int k = 0; k < 30; ++k) {
             const double z = surface + 1.03 - 0.15 * k;
             const double force = std::max(0.0, 0.8 * std::cos(tilt) * (surface - z));
-            for (const double v :
-                 {x, 3.0 * (p / 4), z, -std::sin(tilt) * force, 0.0, 0.3 + std::cos(tilt) * force}) {
+            for (const double v : {x, 3.0 * (p / 4), z, -std::sin(tilt) * force, 0.0, 0.3 + std::cos(tilt) * force}) {
                 text += number_text(v) + (v == 0.3 + std::cos(tilt) * force ? "\n" : ",");
             }
         }
@@ -273,8 +267,7 @@ TEST_CASE("probing: scattered places are brought onto a grid by each method") {
             if (std::isnan(map.normal_N[i])) continue;
             const std::size_t cell = i % map.n_cells();
             const double depth = 1e3 * map.depths_m[i / map.n_cells()];
-            const double wanted =
-                depth * (0.5 + 10.0 * map.x_of(cell % map.n_x) + 20.0 * map.y_of(cell / map.n_x));
+            const double wanted = depth * (0.5 + 10.0 * map.x_of(cell % map.n_x) + 20.0 * map.y_of(cell / map.n_x));
             worst = std::max(worst, std::abs(static_cast<double>(map.normal_N[i]) - wanted));
         }
         CHECK(worst < (method == Gridding::plane ? 0.02 : 0.2));
@@ -291,8 +284,7 @@ TEST_CASE("probing: scattered places are brought onto a grid by each method") {
     CHECK(contains(message_of([&] { imported(text, fine); }), "--pitch-mm"));
 }
 
-TEST_CASE(
-    "probing: tangential force is derived where asked for, never taken from a tool that did not slide") {
+TEST_CASE("probing: tangential force is derived where asked for, never taken from a tool that did not slide") {
     ImportOptions options;
     options.tangential = TangentialChoice::energy;
     const Map map = imported(small(), options);
@@ -302,8 +294,7 @@ TEST_CASE(
     CHECK(contains(message_of([&] { imported(small(), options); }), "--tangential energy or none"));
 }
 
-TEST_CASE(
-    "probing: every real recording imports without options, within 2 % of its greatest force in the median") {
+TEST_CASE("probing: every real recording imports without options, within 2 % of its greatest force in the median") {
     for (const char* name :
          {"meat20150903_region1", "pig_liver_20150826_region1", "probingRAL2018B_T2", "region_small_balls"}) {
         const auto file = recording("probing/" + std::string(name) + ".csv");
@@ -321,8 +312,7 @@ TEST_CASE(
     }
 }
 
-TEST_CASE(
-    "probing: the real recording of a phantom with a stiff inclusion becomes 62 x 39 cells of 1.58 mm") {
+TEST_CASE("probing: the real recording of a phantom with a stiff inclusion becomes 62 x 39 cells of 1.58 mm") {
     const auto file = recording("probing/probingRAL2018B_T2.csv");
     if (file.empty()) {
         MESSAGE("not checked: the recording is not beside the checkout");

@@ -34,9 +34,8 @@ std::string raster(const Raster& r) {
                 const int direction = line % 2 == 0 ? 1 : -1;
                 const double x = direction > 0 ? 0.2 * i : 40.0 - 0.2 * i;
                 const double y = 2.0 * line;
-                const double depth = r.sinusoidal
-                                         ? 1.5 - 1.4 * std::cos(2.0 * 3.14159265 * 1.03 * t + pass * 2.0)
-                                         : r.depth_mm;
+                const double depth =
+                    r.sinusoidal ? 1.5 - 1.4 * std::cos(2.0 * 3.14159265 * 1.03 * t + pass * 2.0) : r.depth_mm;
                 const double lump =
                     1.0 + r.lump * std::exp(-((x - 20.0) * (x - 20.0) + (y - 15.0) * (y - 15.0)) / 50.0);
                 const double fn = kStiffness_N_per_mm * lump * depth;
@@ -59,8 +58,7 @@ double force_in(const Map& map, double x_mm, double y_mm, double depth_mm) {
 
 }  // namespace
 
-TEST_CASE(
-    "sliding: under a sinusoidal force the surface is found, its tilt removed, and the forces come back") {
+TEST_CASE("sliding: under a sinusoidal force the surface is found, its tilt removed, and the forces come back") {
     Raster r;
     r.tilt = 0.15;
     r.lump = 0.5;
@@ -71,8 +69,7 @@ TEST_CASE(
     for (const double depth : {1.0, 1.5, 2.0, 2.4}) {
         CAPTURE(depth);
         CHECK(force_in(map, 6.0, 6.0, depth) == doctest::Approx(kStiffness_N_per_mm * depth).epsilon(0.06));
-        CHECK(force_in(map, 20.0, 15.0, depth) ==
-              doctest::Approx(1.5 * kStiffness_N_per_mm * depth).epsilon(0.08));
+        CHECK(force_in(map, 20.0, 15.0, depth) == doctest::Approx(1.5 * kStiffness_N_per_mm * depth).epsilon(0.08));
     }
     CHECK(report.residual.median_share() < 0.02);
     CHECK(report.residual.n > 5000);
@@ -144,7 +141,8 @@ TEST_CASE("sliding: depths that the recording has are taken as they are, and uni
         std::string text = "t_s,x_mm,y_mm,depth,fn\n";
         for (int i = 0; i < 4000; ++i) {
             const double depth = 1.0 + i / 1000;
-            for (const double v : {0.01 * i, 0.2 * (i % 100), 2.0 * ((i / 100) % 10), depths * depth}) text += number_text(v) + ",";
+            for (const double v : {0.01 * i, 0.2 * (i % 100), 2.0 * ((i / 100) % 10), depths * depth})
+                text += number_text(v) + ",";
             text += number_text(forces * 0.7 * depth) + "\n";
         }
         return text;
@@ -172,8 +170,7 @@ TEST_CASE("sliding: bad recordings are refused by line and column") {
     CHECK(contains(refusal("t_s,x_mm,y_mm,z_mm,fx_N,fy_N,fz_N\n1,2,3,4,5,6,7\n"), "1 rows with numbers"));
     ImportOptions forced;
     forced.form = RecordingForm::sliding;
-    CHECK(contains(message_of([&] { imported("x_mm,y_mm,depth_mm,fn_N\n1,2,3,4\n", forced); }),
-                   "a column for t ("));
+    CHECK(contains(message_of([&] { imported("x_mm,y_mm,depth_mm,fn_N\n1,2,3,4\n", forced); }), "a column for t ("));
     // a force of the other sign presses nothing
     ImportOptions negated;
     negated.negate_force = true;
@@ -198,8 +195,7 @@ TEST_CASE("sliding: every real recording imports without options and says how fa
         CHECK(report.form == RecordingForm::sliding);
         CHECK(map.tangential == TangentialKind::recorded);
         CHECK(report.residual.n > 10000);
-        CHECK(report.residual.median_share() <
-              0.05);  // the surface is soft and curved, and was never recorded
+        CHECK(report.residual.median_share() < 0.05);  // the surface is soft and curved, and was never recorded
         CHECK(static_cast<double>(report.outliers) < 0.01 * static_cast<double>(report.rows));
     }
 }

@@ -22,7 +22,8 @@ inline std::string python_with(const std::string& modules) {
 // Exit status 0? The script stands in `folder` as script.py and runs there; what it says goes to said.txt.
 inline bool run_python(const std::string& python, const TemporaryFolder& folder, const std::string& script) {
     files::write_text_atomically(folder / "script.py", script);
-    const std::string command = "cd " + folder.path().string() + " && timeout 120 " + python + " script.py >said.txt 2>&1";
+    const std::string command =
+        "cd " + folder.path().string() + " && timeout 120 " + python + " script.py >said.txt 2>&1";
     return std::system(command.c_str()) == 0;
 }
 

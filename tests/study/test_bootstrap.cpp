@@ -1,10 +1,8 @@
-#include "study/bootstrap.h"
-
-#include <doctest/doctest.h>
-
 #include <algorithm>
 #include <cmath>
+#include <doctest/doctest.h>
 
+#include "study/bootstrap.h"
 #include "study/random.h"
 
 using namespace palpa;

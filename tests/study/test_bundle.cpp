@@ -1,11 +1,9 @@
-#include "study/bundle.h"
-
-#include <doctest/doctest.h>
-
 #include <algorithm>
+#include <doctest/doctest.h>
 
 #include "files/json.h"
 #include "files/sha256.h"
+#include "study/bundle.h"
 #include "study/random.h"
 #include "tests/error_message.h"
 
@@ -18,7 +16,9 @@ namespace {
 
 const std::string kName = "sub-01/beh/sub-01_task-palpation_run-01_events.tsv";
 
-Json file_json(const std::string& name, const std::string& text) { return {{"name", name}, {"sha256", sha256_hex(text)}, {"text", text}}; }
+Json file_json(const std::string& name, const std::string& text) {
+    return {{"name", name}, {"sha256", sha256_hex(text)}, {"text", text}};
+}
 std::string bundle_text(const std::vector<Json>& files) { return Json{{"palpa_bundle", 1}, {"files", files}}.dump(); }
 std::string refusal(const std::string& bytes) {
     return message_of([&] { read_bundle(bytes, "b.json"); });
@@ -28,7 +28,8 @@ std::string refusal(const std::string& bytes) {
 
 TEST_CASE("bundle: files come out as they went in, whatever their text") {
     const std::string odd = "onset\ttrial\n\"quoted\" \\ \r\n\xc3\xa4\t\x01 0.5\n";
-    const Bundle bundle = read_bundle(bundle_text({file_json(kName, odd), file_json("participants.tsv", "")}), "b.json");
+    const Bundle bundle =
+        read_bundle(bundle_text({file_json(kName, odd), file_json("participants.tsv", "")}), "b.json");
     REQUIRE(bundle.files.size() == 2);
     CHECK(bundle.files[0].name == kName);
     CHECK(bundle.files[0].kind == LogFileKind::trial);
@@ -39,8 +40,10 @@ TEST_CASE("bundle: files come out as they went in, whatever their text") {
 }
 
 TEST_CASE("bundle: names of logs and no others") {
-    for (const char* name : {"sub-01/beh/sub-01_task-palpation_run-01_samples.tsv", "sub-aB9/beh/sub-aB9_task-softer_run-100_events.tsv",
-                             "sub-01/beh/sub-01_task-palpation_run-01_settings.json", "sub-1/beh/sub-1_task-palpation_run-2_performance.json"}) {
+    for (const char* name :
+         {"sub-01/beh/sub-01_task-palpation_run-01_samples.tsv", "sub-aB9/beh/sub-aB9_task-softer_run-100_events.tsv",
+          "sub-01/beh/sub-01_task-palpation_run-01_settings.json",
+          "sub-1/beh/sub-1_task-palpation_run-2_performance.json"}) {
         CAPTURE(name);
         CHECK(kind_of_log_file(name) == LogFileKind::trial);
     }
@@ -53,17 +56,33 @@ TEST_CASE("bundle: names of logs and no others") {
     CHECK(kind_of_log_file(".bidsignore") == LogFileKind::dataset);
     const std::string nul = kName.substr(0, 10) + '\0' + kName.substr(10);
     for (const std::string& name :
-         {std::string(), std::string("/etc/passwd"), "../" + kName, "sub-01/../" + kName, "/" + kName, kName + "/", kName + "x", "x" + kName,
-          kName + "\n", nul, std::string("sub-01\\beh\\sub-01_task-palpation_run-01_events.tsv"),
-          std::string("sub-01/beh/sub-02_task-palpation_run-01_events.tsv"), std::string("sub-01/beh/sub-01_task-palpation_run-_events.tsv"),
-          std::string("sub-01/beh/sub-01_task-palpation_run-01_events.sh"), std::string("sub-/beh/sub-_task-palpation_run-01_events.tsv"),
-          std::string("sub-../beh/sub-.._task-palpation_run-01_events.tsv"), std::string("sub-01/anat/sub-01_task-palpation_run-01_events.tsv"),
-          std::string("SUB-01/beh/SUB-01_task-palpation_run-01_events.tsv"), std::string(".bashrc"), std::string("sub-01"),
+         {std::string(),
+          std::string("/etc/passwd"),
+          "../" + kName,
+          "sub-01/../" + kName,
+          "/" + kName,
+          kName + "/",
+          kName + "x",
+          "x" + kName,
+          kName + "\n",
+          nul,
+          std::string("sub-01\\beh\\sub-01_task-palpation_run-01_events.tsv"),
+          std::string("sub-01/beh/sub-02_task-palpation_run-01_events.tsv"),
+          std::string("sub-01/beh/sub-01_task-palpation_run-_events.tsv"),
+          std::string("sub-01/beh/sub-01_task-palpation_run-01_events.sh"),
+          std::string("sub-/beh/sub-_task-palpation_run-01_events.tsv"),
+          std::string("sub-../beh/sub-.._task-palpation_run-01_events.tsv"),
+          std::string("sub-01/anat/sub-01_task-palpation_run-01_events.tsv"),
+          std::string("SUB-01/beh/SUB-01_task-palpation_run-01_events.tsv"),
+          std::string(".bashrc"),
+          std::string("sub-01"),
           "sub-" + std::string(65, 'a') + "/beh/sub-" + std::string(65, 'a') + "_task-palpation_run-01_events.tsv",
-          std::string("sub-01/beh/sub-01_task-palpation_run-1234567_events.tsv"), std::string("sub-01/beh/sub-01_task-palpation_run-01_events.tsv.part-7")}) {
+          std::string("sub-01/beh/sub-01_task-palpation_run-1234567_events.tsv"),
+          std::string("sub-01/beh/sub-01_task-palpation_run-01_events.tsv.part-7")}) {
         CAPTURE(name);
         CHECK_FALSE(kind_of_log_file(name).has_value());
-        if (name.find('\0') == std::string::npos) CHECK(contains(refusal(bundle_text({file_json(name, "x")})), "files[0].name"));
+        if (name.find('\0') == std::string::npos)
+            CHECK(contains(refusal(bundle_text({file_json(name, "x")})), "files[0].name"));
     }
 }
 
@@ -72,7 +91,8 @@ TEST_CASE("bundle: what is refused, and how it is said") {
     changed["text"] = "Text";
     Json upper = file_json(kName, "text");
     std::string hash = upper["sha256"];
-    std::transform(hash.begin(), hash.end(), hash.begin(), [](char c) { return c >= 'a' ? static_cast<char>(c - 32) : c; });
+    std::transform(hash.begin(), hash.end(), hash.begin(),
+                   [](char c) { return c >= 'a' ? static_cast<char>(c - 32) : c; });
     upper["sha256"] = hash;
     Json more = file_json(kName, "text");
     more["mode"] = "0777";
@@ -93,7 +113,8 @@ TEST_CASE("bundle: what is refused, and how it is said") {
 
 TEST_CASE("bundle: a message is one short line that no terminal obeys") {
     const std::string key(5000, 'k');
-    for (const std::string& bytes : {R"({")" + key + R"(": 1})", R"({"\u001b[2J\u009b": 1})" + std::string(), "{\"" + key, std::string("{\"\xc2\x9b\x1b\": 1}")}) {
+    for (const std::string& bytes : {R"({")" + key + R"(": 1})", R"({"\u001b[2J\u009b": 1})" + std::string(),
+                                     "{\"" + key, std::string("{\"\xc2\x9b\x1b\": 1}")}) {
         const std::string message = refusal(bytes);
         CHECK(!message.empty());
         CHECK(message.size() <= 400);
@@ -106,7 +127,8 @@ TEST_CASE("bundle: damaged bytes give a bundle of checked files or a refusal, no
     constexpr std::uint64_t kSeed = 7;
     CAPTURE(kSeed);
     Random random(kSeed);
-    const std::string good = bundle_text({file_json(kName, "onset\ttrial\n0\t1\n"), file_json("study.json", "{}"), file_json("participants.tsv", "\xc3\xa4\n")});
+    const std::string good = bundle_text({file_json(kName, "onset\ttrial\n0\t1\n"), file_json("study.json", "{}"),
+                                          file_json("participants.tsv", "\xc3\xa4\n")});
     int taken = 0, refused = 0;
     for (int i = 0; i < 4000; ++i) {
         std::string bytes = good;

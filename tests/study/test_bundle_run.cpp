@@ -1,11 +1,10 @@
-#include "study/bundle_run.h"
-
 #include <doctest/doctest.h>
 
 #include "files/json.h"
 #include "files/sha256.h"
 #include "files/text.h"
 #include "study/bundle.h"
+#include "study/bundle_run.h"
 #include "study/ratings.h"
 #include "study/study_folder.h"
 #include "study/trial_log.h"
@@ -47,7 +46,9 @@ TEST_CASE("bundle of a run: a first run may be asked for, and none is overwritte
 TEST_CASE("bundle of a study's run: what the study is, this participant, the answers so far; nobody else") {
     const TemporaryFolder folder;
     const auto log = folder / "log";
-    write_text_atomically(folder / "p.json", R"({"name": "n", "version": "1", "seed": 1, "order": "fixed", "conditions": [{"id": "hand", "modality": "hand"}]})");
+    write_text_atomically(
+        folder / "p.json",
+        R"({"name": "n", "version": "1", "seed": 1, "order": "fixed", "conditions": [{"id": "hand", "modality": "hand"}]})");
     open_study(log, read_protocol(folder / "p.json"), {false, 0, "test"});
     add_people(log, {{"1", "20"}, {"07", "30"}, {"071", "40"}});
     add_ratings(log, "07", {{"hand", "effort", "3"}});
@@ -59,8 +60,10 @@ TEST_CASE("bundle of a study's run: what the study is, this participant, the ans
     const Bundle bundle = read_bundle(bundle_text(run), "x.json");
     std::string names;
     for (const BundleFile& file : bundle.files) names += file.name + " ";
-    CHECK(names == "sub-07/beh/sub-07_task-palpation_run-01_events.tsv sub-07/beh/sub-07_task-palpation_run-01_marks.tsv study.json "
-                   "protocol.json participants.tsv sub-07/beh/sub-07_task-ratings_beh.tsv ");
+    CHECK(names ==
+          "sub-07/beh/sub-07_task-palpation_run-01_events.tsv sub-07/beh/sub-07_task-palpation_run-01_marks.tsv "
+          "study.json "
+          "protocol.json participants.tsv sub-07/beh/sub-07_task-ratings_beh.tsv ");
     std::vector<std::string> notes;
     const auto people = people_in(bundle.files[4].text, "p", notes);
     REQUIRE(people.size() == 1);

@@ -1,9 +1,8 @@
-#include "study/coverage.h"
-
-#include <doctest/doctest.h>
-
 #include <cmath>
+#include <doctest/doctest.h>
 #include <numbers>
+
+#include "study/coverage.h"
 
 using namespace palpa;
 using namespace palpa::study;

@@ -1,15 +1,13 @@
-#include "study/import_bundles.h"
-
-#include <doctest/doctest.h>
-#include <sys/resource.h>
-
 #include <csignal>
+#include <doctest/doctest.h>
 #include <filesystem>
 #include <map>
+#include <sys/resource.h>
 
 #include "files/json.h"
 #include "files/sha256.h"
 #include "files/text.h"
+#include "study/import_bundles.h"
 #include "tests/error_message.h"
 #include "tests/temporary_folder.h"
 
@@ -30,7 +28,8 @@ std::string run_file(const std::string& code, const std::string& ending) {
 
 fs::path write_bundle(const fs::path& path, const Texts& texts) {
     Json files = Json::array();
-    for (const auto& [name, text] : texts) files.push_back({{"name", name}, {"sha256", sha256_hex(text)}, {"text", text}});
+    for (const auto& [name, text] : texts)
+        files.push_back({{"name", name}, {"sha256", sha256_hex(text)}, {"text", text}});
     write_text_atomically(path, Json{{"palpa_bundle", 1}, {"files", files}}.dump());
     return path;
 }
@@ -45,22 +44,29 @@ std::map<std::string, std::string> tree(const fs::path& folder) {
     return out;
 }
 
-const std::string kHeader = "participant_id\tage\tsex\thandedness\tvision\tpalpation_experience\tvr_experience\tgroup\n";
+const std::string kHeader =
+    "participant_id\tage\tsex\thandedness\tvision\tpalpation_experience\tvr_experience\tgroup\n";
 std::string people(const std::string& lines) { return kHeader + lines; }
 const std::string kAnna = "sub-01\t30\tf\tright\tn/a\tn/a\tn/a\ta\n";
 const std::string kBert = "sub-02\t31\tm\tleft\tn/a\tn/a\tn/a\ta\n";
 std::string study_file(const std::string& sha, const std::string& program) {
-    return R"({"protocol": "p", "version": "1", "sha256": ")" + sha + R"(", "simulated": false, "simulation_seed": 0, "program": ")" + program + "\"}";
+    return R"({"protocol": "p", "version": "1", "sha256": ")" + sha +
+           R"(", "simulated": false, "simulation_seed": 0, "program": ")" + program + "\"}";
 }
 
 }  // namespace
 
 TEST_CASE("import bundles: tablets' logs become one study; a second time nothing happens") {
     const TemporaryFolder folder;
-    const auto a = write_bundle(folder / "a", {{run_file("01", "_events.tsv"), "e1\n"}, {run_file("01", "_samples.tsv"), "s1\n"},
-                                               {"participants.tsv", people(kAnna)}, {"study.json", study_file("aa", "tablet")}, {"protocol.json", "{}"}});
-    const auto b = write_bundle(folder / "b", {{run_file("02", "_events.tsv"), "e2\n"}, {"participants.tsv", people(kBert)},
-                                               {"study.json", study_file("aa", "another tablet")}, {"protocol.json", "{}"}});
+    const auto a = write_bundle(folder / "a", {{run_file("01", "_events.tsv"), "e1\n"},
+                                               {run_file("01", "_samples.tsv"), "s1\n"},
+                                               {"participants.tsv", people(kAnna)},
+                                               {"study.json", study_file("aa", "tablet")},
+                                               {"protocol.json", "{}"}});
+    const auto b = write_bundle(folder / "b", {{run_file("02", "_events.tsv"), "e2\n"},
+                                               {"participants.tsv", people(kBert)},
+                                               {"study.json", study_file("aa", "another tablet")},
+                                               {"protocol.json", "{}"}});
     const BundleReport first = import_bundles({a, b}, folder / "study");
     CHECK(first.written.size() == 5);
     CHECK(first.already_there.empty());
@@ -81,7 +87,8 @@ TEST_CASE("import bundles: tablets' logs become one study; a second time nothing
 
 TEST_CASE("import bundles: what does not fit is refused before anything is written") {
     const TemporaryFolder folder;
-    const auto good = write_bundle(folder / "good", {{run_file("01", "_events.tsv"), "e1\n"}, {"participants.tsv", people(kAnna)},
+    const auto good = write_bundle(folder / "good", {{run_file("01", "_events.tsv"), "e1\n"},
+                                                     {"participants.tsv", people(kAnna)},
                                                      {"study.json", study_file("aa", "x")}});
     import_bundles({good}, folder / "study");
     const auto before = tree(folder / "study");
@@ -115,8 +122,12 @@ TEST_CASE("import bundles: what does not fit is refused before anything is writt
 TEST_CASE("import bundles: links are not followed") {
     const TemporaryFolder folder;
     fs::create_directories(folder / "elsewhere");
-    const auto bundle = write_bundle(folder / "b", {{run_file("01", "_events.tsv"), "e1\n"}, {"participants.tsv", people(kAnna)}, {"study.json", study_file("aa", "x")}});
-    const auto refused = [&] { return contains(message_of([&] { import_bundles({bundle}, folder / "study"); }), "a link in the way"); };
+    const auto bundle = write_bundle(folder / "b", {{run_file("01", "_events.tsv"), "e1\n"},
+                                                    {"participants.tsv", people(kAnna)},
+                                                    {"study.json", study_file("aa", "x")}});
+    const auto refused = [&] {
+        return contains(message_of([&] { import_bundles({bundle}, folder / "study"); }), "a link in the way");
+    };
     fs::create_directories(folder / "study");
     fs::create_symlink(folder / "elsewhere", folder / "study" / "sub-01");
     CHECK(refused());
@@ -138,7 +149,8 @@ TEST_CASE("import bundles: links are not followed") {
 TEST_CASE("import bundles: logs of single runs and a study do not mix") {
     const TemporaryFolder folder;
     import_bundles({write_bundle(folder / "a", {{run_file("01", "_events.tsv"), "e1\n"}})}, folder / "logs");
-    const auto of_study = write_bundle(folder / "b", {{run_file("02", "_events.tsv"), "e2\n"}, {"study.json", study_file("aa", "x")}});
+    const auto of_study =
+        write_bundle(folder / "b", {{run_file("02", "_events.tsv"), "e2\n"}, {"study.json", study_file("aa", "x")}});
     CHECK(contains(message_of([&] { import_bundles({of_study}, folder / "logs"); }), "which has no study.json"));
     CHECK_FALSE(fs::exists(folder / "logs" / "sub-02"));
 }
@@ -149,7 +161,9 @@ TEST_CASE("import bundles: answers grow from bundle to bundle, in any order; oth
     const std::string one = "condition\titem\tvalue\npen\teffort\t3\n";
     const std::string two = one + "hand\teffort\t5\n";
     const std::string three = two + "off\teffort\t1\n";
-    const auto bundle = [&](const char* file, const std::string& text) { return write_bundle(folder / file, {{name, text}, {"study.json", study_file("aa", "x")}}); };
+    const auto bundle = [&](const char* file, const std::string& text) {
+        return write_bundle(folder / file, {{name, text}, {"study.json", study_file("aa", "x")}});
+    };
     const auto a = bundle("a", one), b = bundle("b", two), c = bundle("c", three);
     CHECK(import_bundles({b, a}, folder / "study").grown.empty());
     CHECK(read_text(folder / "study" / name) == two);
@@ -168,8 +182,10 @@ TEST_CASE("import bundles: answers grow from bundle to bundle, in any order; oth
 
 TEST_CASE("import bundles: single runs that a tablet took beside a study are passed over, and alone they are taken") {
     const TemporaryFolder folder;
-    const auto single = write_bundle(folder / "s", {{run_file("tablet1", "_events.tsv"), "e\n"}, {run_file("tablet1", "_settings.json"), R"({"scene": "x"})"}});
-    const auto of_study = write_bundle(folder / "b", {{run_file("02", "_settings.json"), R"({"study": {}})"}, {"study.json", study_file("aa", "x")}});
+    const auto single = write_bundle(folder / "s", {{run_file("tablet1", "_events.tsv"), "e\n"},
+                                                    {run_file("tablet1", "_settings.json"), R"({"scene": "x"})"}});
+    const auto of_study = write_bundle(
+        folder / "b", {{run_file("02", "_settings.json"), R"({"study": {}})"}, {"study.json", study_file("aa", "x")}});
     const BundleReport report = import_bundles({single, of_study}, folder / "study");
     CHECK(report.passed_over == std::vector<std::string>{single.string()});
     CHECK_FALSE(fs::exists(folder / "study" / "sub-tablet1"));
@@ -180,17 +196,22 @@ TEST_CASE("import bundles: single runs that a tablet took beside a study are pas
 
 TEST_CASE("import bundles: several people of one tablet in one file") {
     const TemporaryFolder folder;
-    const auto file = write_bundle(folder / "b", {{"participants.tsv", people(kAnna)}, {"participants.tsv", people(kBert)}, {"study.json", study_file("aa", "x")}});
+    const auto file = write_bundle(folder / "b", {{"participants.tsv", people(kAnna)},
+                                                  {"participants.tsv", people(kBert)},
+                                                  {"study.json", study_file("aa", "x")}});
     CHECK(import_bundles({file}, folder / "study").people_added == 2);
     CHECK(read_text(folder / "study" / "participants.tsv") == people(kAnna + kBert));
 }
 
 TEST_CASE("import bundles: a file where a folder must be, and the other way round") {
     const TemporaryFolder folder;
-    const auto bundle = write_bundle(folder / "b", {{run_file("01", "_samples.tsv"), "s1\n"}, {run_file("02", "_events.tsv"), "e2\n"}});
+    const auto bundle =
+        write_bundle(folder / "b", {{run_file("01", "_samples.tsv"), "s1\n"}, {run_file("02", "_events.tsv"), "e2\n"}});
     fs::create_directories(folder / "study");
     write_text_atomically(folder / "study" / "sub-02", "in the way");
-    const auto refused = [&] { return contains(message_of([&] { import_bundles({bundle}, folder / "study"); }), "in the way, expected"); };
+    const auto refused = [&] {
+        return contains(message_of([&] { import_bundles({bundle}, folder / "study"); }), "in the way, expected");
+    };
     CHECK(refused());
     fs::remove(folder / "study" / "sub-02");
     fs::create_directories(folder / "study" / run_file("02", "_events.tsv"));
@@ -200,7 +221,8 @@ TEST_CASE("import bundles: a file where a folder must be, and the other way roun
 
 TEST_CASE("import bundles: what a full disk interrupts is taken back") {
     const TemporaryFolder folder;
-    const auto bundle = write_bundle(folder / "b", {{run_file("01", "_samples.tsv"), "s1\n"}, {run_file("02", "_samples.tsv"), std::string(20000, 'x')}});
+    const auto bundle = write_bundle(folder / "b", {{run_file("01", "_samples.tsv"), "s1\n"},
+                                                    {run_file("02", "_samples.tsv"), std::string(20000, 'x')}});
     rlimit before{};
     getrlimit(RLIMIT_FSIZE, &before);
     std::signal(SIGXFSZ, SIG_IGN);

@@ -1,10 +1,9 @@
-#include "study/order.h"
-
-#include <doctest/doctest.h>
-
 #include <algorithm>
+#include <doctest/doctest.h>
 #include <map>
 #include <set>
+
+#include "study/order.h"
 
 using namespace palpa;
 using namespace palpa::study;
@@ -80,7 +79,8 @@ TEST_CASE("order: it is a function of protocol, seed and number; another seed gi
         std::string out;
         for (const PlannedParticipant& who : people(protocol, 10)) {
             for (const PlannedTrial& trial : who.trials) {
-                out += std::to_string(trial.condition) + "," + std::to_string(trial.rotate_deg) + "," + std::to_string(trial.seed) + " ";
+                out += std::to_string(trial.condition) + "," + std::to_string(trial.rotate_deg) + "," +
+                       std::to_string(trial.seed) + " ";
             }
         }
         return out;
@@ -114,7 +114,8 @@ TEST_CASE("order: a participant sees every view before one comes again, and prac
     }
     CHECK(breaks == 2);
     protocol.turn_maps = protocol.flip_maps = false;
-    for (const PlannedTrial& trial : plan_participant(protocol, 1).trials) CHECK((trial.rotate_deg == 0 && !trial.flip));
+    for (const PlannedTrial& trial : plan_participant(protocol, 1).trials)
+        CHECK((trial.rotate_deg == 0 && !trial.flip));
 }
 
 TEST_CASE("order: groups never differ by more than one person; random ones are shuffled in blocks") {

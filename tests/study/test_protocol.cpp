@@ -1,9 +1,8 @@
-#include "study/protocol.h"
-
 #include <doctest/doctest.h>
 
 #include "files/sha256.h"
 #include "files/text.h"
+#include "study/protocol.h"
 #include "tests/error_message.h"
 #include "tests/temporary_folder.h"
 
@@ -24,7 +23,8 @@ std::string refused(const std::string& text) {
 
 // A protocol with `conditions` and whatever else.
 std::string with(const std::string& conditions, const std::string& rest = "") {
-    return R"({"name": "n", "version": "1", "seed": 1, "order": "fixed", "conditions": [)" + conditions + "]" + rest + "}";
+    return R"({"name": "n", "version": "1", "seed": 1, "order": "fixed", "conditions": [)" + conditions + "]" + rest +
+           "}";
 }
 
 const std::string kPen = R"({"id": "pen", "modality": "pen", "scene": "default.json"})";
@@ -52,14 +52,20 @@ TEST_CASE("protocol: what is wrong is named with its key") {
     CHECK(refused(with(kPen)).empty());
     CHECK(contains(refused(with("")), "conditions: found nothing, expected one condition"));
     CHECK(contains(refused(with(kPen + "," + kPen)), "conditions[1].id: found 'pen' a second time"));
-    CHECK(contains(refused(with(R"({"id": "x", "modality": "nose", "scene": "s"})")), "conditions[0].modality: found 'nose'"));
+    CHECK(contains(refused(with(R"({"id": "x", "modality": "nose", "scene": "s"})")),
+                   "conditions[0].modality: found 'nose'"));
     CHECK(contains(refused(with(R"({"id": "x", "modality": "pen"})")), "conditions[0].scene: found nothing"));
-    CHECK(contains(refused(with(R"({"id": "x", "modality": "hand", "scene": "s.json"})")), "a real phantom has no scene"));
-    CHECK(contains(refused(with(kPen, R"(, "groups": [{"id": "g", "conditions": ["pin"]}])")), "groups[0].conditions: found 'pin'"));
-    CHECK(contains(refused(with(kPen, R"(, "groups": [{"id": "g", "conditions": ["pen", "pen"]}])")), "found 'pen' a second time"));
+    CHECK(contains(refused(with(R"({"id": "x", "modality": "hand", "scene": "s.json"})")),
+                   "a real phantom has no scene"));
+    CHECK(contains(refused(with(kPen, R"(, "groups": [{"id": "g", "conditions": ["pin"]}])")),
+                   "groups[0].conditions: found 'pin'"));
+    CHECK(contains(refused(with(kPen, R"(, "groups": [{"id": "g", "conditions": ["pen", "pen"]}])")),
+                   "found 'pen' a second time"));
     CHECK(contains(refused(with(kPen, R"(, "time_limit": 3)")), "time_limit: found an unknown key"));
     CHECK(contains(refused(with(kPen, R"(, "seed": 2)")), "seed: found the key twice"));
-    CHECK(contains(refused(with(kPen, R"(, "choice": {"reference_kPa": 1, "comparisons_kPa": [1]})")), "values unlike the reference"));
-    CHECK(contains(refused(with(kPen, R"(, "ratings": [{"id": "a", "text": "t", "from": 5, "to": 1}])")), "ratings[0].to: found 1"));
+    CHECK(contains(refused(with(kPen, R"(, "choice": {"reference_kPa": 1, "comparisons_kPa": [1]})")),
+                   "values unlike the reference"));
+    CHECK(contains(refused(with(kPen, R"(, "ratings": [{"id": "a", "text": "t", "from": 5, "to": 1}])")),
+                   "ratings[0].to: found 1"));
     CHECK(contains(refused("{"), "line 1, column"));
 }

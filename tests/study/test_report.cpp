@@ -1,10 +1,8 @@
-#include "study/report.h"
-
+#include <cmath>
 #include <doctest/doctest.h>
 
-#include <cmath>
-
 #include "files/text.h"
+#include "study/report.h"
 #include "tests/error_message.h"
 
 using namespace palpa;

@@ -1,9 +1,8 @@
-#include "study/sample_log.h"
-
 #include <doctest/doctest.h>
 
 #include "files/json.h"
 #include "files/text.h"
+#include "study/sample_log.h"
 #include "tests/temporary_folder.h"
 
 using namespace palpa;
@@ -25,10 +24,11 @@ TEST_CASE("sample log: header, rows and explanation agree; missing is n/a") {
     }
     CHECK(files.folder == folder / "sub-07/beh");
     const std::string text = read_text(files.file("_samples.tsv"));
-    CHECK(text ==
-          "t_host_s\tt_device_s\ttrial\tpointer_id\ttool\tphase\tx_mm\ty_mm\tpressure\tforce_N\tdepth_mm\ttangential_N\t"
-          "avatar_x_mm\tavatar_y_mm\tlag_mm\tdelay_ms\tsaturated\tft_source\n"
-          "0.1\tn/a\t1\t0\tpen\tn/a\tn/a\tn/a\tn/a\tn/a\tn/a\tn/a\tn/a\tn/a\tn/a\tn/a\t1\tn/a\n");
+    CHECK(
+        text ==
+        "t_host_s\tt_device_s\ttrial\tpointer_id\ttool\tphase\tx_mm\ty_mm\tpressure\tforce_N\tdepth_mm\ttangential_N\t"
+        "avatar_x_mm\tavatar_y_mm\tlag_mm\tdelay_ms\tsaturated\tft_source\n"
+        "0.1\tn/a\t1\t0\tpen\tn/a\tn/a\tn/a\tn/a\tn/a\tn/a\tn/a\tn/a\tn/a\tn/a\tn/a\t1\tn/a\n");
     const Json json = read_json(files.file("_samples.json"));
     CHECK(json.size() == 18);
     CHECK(json["force_N"]["Units"] == "N");

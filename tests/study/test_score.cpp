@@ -1,11 +1,10 @@
-#include "study/score.h"
-
-#include <doctest/doctest.h>
-
 #include <cmath>
+#include <doctest/doctest.h>
 #include <limits>
 #include <numbers>
 #include <random>
+
+#include "study/score.h"
 
 using namespace palpa;
 using namespace palpa::study;

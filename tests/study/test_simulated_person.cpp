@@ -1,9 +1,8 @@
-#include "study/simulated_person.h"
-
-#include <doctest/doctest.h>
-
 #include <algorithm>
 #include <cmath>
+#include <doctest/doctest.h>
+
+#include "study/simulated_person.h"
 
 using namespace palpa;
 using namespace palpa::study;

@@ -1,9 +1,6 @@
-#include "study/statistics.h"
-
-#include <doctest/doctest.h>
-
 #include <algorithm>
 #include <cmath>
+#include <doctest/doctest.h>
 #include <filesystem>
 #include <map>
 #include <string>
@@ -11,6 +8,7 @@
 #include "files/json.h"
 #include "files/table.h"
 #include "study/random.h"
+#include "study/statistics.h"
 #include "tests/study/python.h"
 
 using namespace palpa;

@@ -1,13 +1,11 @@
-#include "study/study_folder.h"
-
-#include <doctest/doctest.h>
-
 #include <algorithm>
+#include <doctest/doctest.h>
 #include <filesystem>
 
 #include "files/text.h"
 #include "study/read_logs.h"
 #include "study/report.h"
+#include "study/study_folder.h"
 #include "study/trial_log.h"
 #include "tests/error_message.h"
 #include "tests/temporary_folder.h"
@@ -22,7 +20,8 @@ namespace {
 namespace fs = std::filesystem;
 
 Protocol protocol_of(const TemporaryFolder& folder, const std::string& version = "1") {
-    write_text_atomically(folder / "p.json", R"({"name": "n", "version": ")" + version + R"(", "seed": 1, "order": "fixed",
+    write_text_atomically(folder / "p.json",
+                          R"({"name": "n", "version": ")" + version + R"(", "seed": 1, "order": "fixed",
         "instructions": "Find them.", "time_limit_s": 60, "practice": {"trials": 1},
         "conditions": [{"id": "a", "modality": "pen", "scene": "s.json", "instructions": "Press."},
                        {"id": "b", "modality": "pen", "scene": "s.json"}]})");
@@ -30,8 +29,9 @@ Protocol protocol_of(const TemporaryFolder& folder, const std::string& version =
 }
 
 // A trial as the app logs it; found: how many of two nodules.
-std::string write_run(const fs::path& directory, const std::string& code, int trial, const std::string& condition, int found,
-                      bool finished, const std::string& sha256, const std::string& began_utc = "2026-11-21T10:00:00Z") {
+std::string write_run(const fs::path& directory, const std::string& code, int trial, const std::string& condition,
+                      int found, bool finished, const std::string& sha256,
+                      const std::string& began_utc = "2026-11-21T10:00:00Z") {
     const RunFiles files = next_run(directory, code);
     write_text_atomically(files.file("_settings.json"),
                           R"({"nodules": [{"id": "A"}, {"id": "B"}], "study": {"sha256": ")" + sha256 + "\"}}");
@@ -79,10 +79,13 @@ TEST_CASE("study folder: made once, gone on with, refused to another version or 
     const std::string message = message_of([&] { open_study(folder / "log", changed, {false, 0, "palpa"}); });
     CHECK(contains(message, "study.json: sha256: found 'n' version '1'"));
     CHECK(contains(message, "expected 'n' version '2'"));
-    CHECK(contains(message_of([&] { open_study(folder / "log", protocol, {true, 3, "palpa"}); }),
+    CHECK(contains(message_of([&] {
+                       open_study(folder / "log", protocol, {true, 3, "palpa"});
+                   }),
                    "found people, expected simulated participants of seed 3"));
     fs::create_directories(folder / "other/sub-01");
-    CHECK(contains(message_of([&] { open_study(folder / "other", protocol, {}); }), "logs (sub-...) but no study.json"));
+    CHECK(
+        contains(message_of([&] { open_study(folder / "other", protocol, {}); }), "logs (sub-...) but no study.json"));
 }
 
 TEST_CASE("study folder: people are added once; a code that stands twice is named; a line cut off is noted, not lost") {
@@ -171,7 +174,9 @@ TEST_CASE("read logs: nodules, pairs, times; interrupted trials and cut lines ar
     CHECK(report.trials == 6);
 }
 
-TEST_CASE("read logs: two versions in one folder, disagreeing files and double trials are refused, a clock set back is noted") {
+TEST_CASE(
+    "read logs: two versions in one folder, disagreeing files and double trials are refused, a clock set back is "
+    "noted") {
     const TemporaryFolder folder;
     const fs::path log = folder / "log";
     const Protocol protocol = protocol_of(folder);
@@ -205,13 +210,14 @@ TEST_CASE("read logs: settings that are JSON but not a log's are refused by thei
     open_study(log, protocol, {});
     write_run(log, "01", 1, "a", 1, true, protocol.sha256);
     const fs::path settings = log / "sub-01/beh/sub-01_task-palpation_run-01_settings.json";
-    for (const auto& [text, said] : {std::pair{"[]", "found an array of 0, expected an object"},
-                                     std::pair{R"({"study": 3})", "study: found 3, expected an object"},
-                                     std::pair{R"({"study": {"sha256": 3}})", "study.sha256: found 3, expected a text"},
-                                     std::pair{R"({"study": {"simulated": "no"}})", "study.simulated: found 'no', expected true or false"},
-                                     std::pair{R"({"nodules": {"A": 1}})", "nodules: found an object, expected an array of objects"},
-                                     std::pair{R"({"nodules": ["A"]})", "nodules[0]: found 'A', expected an object"},
-                                     std::pair{R"({"nodules": [{}]})", "nodules[0].id: found nothing, expected a text"}}) {
+    for (const auto& [text, said] :
+         {std::pair{"[]", "found an array of 0, expected an object"},
+          std::pair{R"({"study": 3})", "study: found 3, expected an object"},
+          std::pair{R"({"study": {"sha256": 3}})", "study.sha256: found 3, expected a text"},
+          std::pair{R"({"study": {"simulated": "no"}})", "study.simulated: found 'no', expected true or false"},
+          std::pair{R"({"nodules": {"A": 1}})", "nodules: found an object, expected an array of objects"},
+          std::pair{R"({"nodules": ["A"]})", "nodules[0]: found 'A', expected an object"},
+          std::pair{R"({"nodules": [{}]})", "nodules[0].id: found nothing, expected a text"}}) {
         write_text_atomically(settings, text);
         CHECK(contains(message_of([&] { read_study(log); }), said));
     }
@@ -227,7 +233,8 @@ TEST_CASE("read logs: a count or an amount that cannot be is refused with its li
         const auto last = text.rfind('\n', text.size() - 2) + 1;
         std::string row;
         const auto fields = fields_of(std::string_view(text).substr(last, text.size() - 1 - last), '\t');
-        for (std::size_t i = 0; i < fields.size(); ++i) row += (i > 0 ? "\t" : "") + (i == at ? value : std::string(fields[i]));
+        for (std::size_t i = 0; i < fields.size(); ++i)
+            row += (i > 0 ? "\t" : "") + (i == at ? value : std::string(fields[i]));
         write_text_atomically(events, text.substr(0, last) + row + "\n");
         const std::string message = message_of([&] { read_study(folder.path()); });
         CAPTURE(message);

@@ -1,9 +1,8 @@
-#include "study/trial_log.h"
-
 #include <doctest/doctest.h>
 
 #include "files/json.h"
 #include "files/text.h"
+#include "study/trial_log.h"
 #include "tests/temporary_folder.h"
 
 using namespace palpa;

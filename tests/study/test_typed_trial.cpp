@@ -1,7 +1,4 @@
-#include "study/typed_trial.h"
-
 #include <doctest/doctest.h>
-
 #include <filesystem>
 
 #include "files/text.h"
@@ -9,6 +6,7 @@
 #include "study/read_logs.h"
 #include "study/report.h"
 #include "study/study_folder.h"
+#include "study/typed_trial.h"
 #include "tests/temporary_folder.h"
 
 using namespace palpa;
@@ -83,7 +81,8 @@ TEST_CASE("ratings: kept, read, a line that was cut off left out, summed up by c
     TypedAnswers answers;
     answers.found = 1;
     answers.duration_s = 1.0;
-    for (const char* code : {"01", "02"}) write_typed_trial(next_run(folder.path(), code), label_of_trial(1, "pen"), false, 1, {}, answers);
+    for (const char* code : {"01", "02"})
+        write_typed_trial(next_run(folder.path(), code), label_of_trial(1, "pen"), false, 1, {}, answers);
     const Report report = make_report(read_study(folder.path()), {});
     REQUIRE(report.ratings.size() == 2);
     CHECK(report.ratings[0].value == "yes no");

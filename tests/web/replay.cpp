@@ -2,16 +2,16 @@
 //     replay SCENE.json TRACE.tsv FOLDER [REPEATS]
 // Prints microseconds per sample of the fastest repeat. Built for node.js and, to compare, for this machine.
 
-#include <stdlib.h>
+#include "session/replay.h"
 
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
+#include <stdlib.h>
 
 #include "app/scene_choices.h"
 #include "session/log_rows.h"
-#include "session/replay.h"
 
 using namespace palpa;
 using namespace palpa::platform;
@@ -30,7 +30,8 @@ void run(const char* scene_file, const char* trace_file, const char* folder, int
     const Trace trace = read_trace(trace_file);
     {
         SampleLog log(next_run(folder, "01"));
-        replay(scene, plan, trace, 0, [&](const Sample& sample, const State& state) { log.write(row_of(sample, plan, state)); });
+        replay(scene, plan, trace, 0,
+               [&](const Sample& sample, const State& state) { log.write(row_of(sample, plan, state)); });
         if (!log.sync()) throw std::runtime_error("the log could not be written");
     }
     double best_s = 1e300;
@@ -39,7 +40,8 @@ void run(const char* scene_file, const char* trace_file, const char* folder, int
         replay(scene, plan, trace, 0);
         best_s = std::min(best_s, seconds() - began_s);
     }
-    std::printf("%zu samples, %.3f us per sample\n", trace.samples.size(), 1e6 * best_s / static_cast<double>(trace.samples.size()));
+    std::printf("%zu samples, %.3f us per sample\n", trace.samples.size(),
+                1e6 * best_s / static_cast<double>(trace.samples.size()));
 }
 
 }  // namespace

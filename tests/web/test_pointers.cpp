@@ -1,10 +1,9 @@
 // The browser's events as samples (platform/web/pointers.h), without a browser.
 
-#include "platform/web/pointers.h"
-
+#include <cmath>
 #include <doctest/doctest.h>
 
-#include <cmath>
+#include "platform/web/pointers.h"
 
 using namespace palpa;
 using namespace palpa::platform;

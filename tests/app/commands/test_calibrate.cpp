@@ -1,11 +1,10 @@
 // palpa calibrate as a person calls it, and what it reaches on recordings of real pens.
 
-#include <doctest/doctest.h>
-#include <sys/wait.h>
-
 #include <cmath>
+#include <doctest/doctest.h>
 #include <filesystem>
 #include <random>
+#include <sys/wait.h>
 
 #include "files/json.h"
 #include "files/text.h"
@@ -28,8 +27,8 @@ struct Called {
 
 Called calibrate(const std::string& arguments, const std::string& command_before = "calibrate ") {
     const TemporaryFolder folder;
-    const std::string command = "timeout 100 " PALPA_PROGRAM " " + command_before + arguments + " >" + (folder / "out").string() + " 2>" +
-                                (folder / "err").string() + " </dev/null";
+    const std::string command = "timeout 100 " PALPA_PROGRAM " " + command_before + arguments + " >" +
+                                (folder / "out").string() + " 2>" + (folder / "err").string() + " </dev/null";
     const int status = std::system(command.c_str());
     return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_text(folder / "out"), read_text(folder / "err")};
 }
@@ -57,11 +56,13 @@ TEST_CASE("calibrate fit: exact points give the paper's curve, a profile that th
     const std::string data = (folder / "d.csv").string();
     const std::string profile = (folder / "p.json").string();
     write_text_atomically(data, touchpad());
-    const Called fit = calibrate("fit " + data + " -o " + profile + " --model exponential --error newton --pen 'my pen' --json");
+    const Called fit =
+        calibrate("fit " + data + " -o " + profile + " --model exponential --error newton --pen 'my pen' --json");
     REQUIRE(fit.status == 0);
     const Json json = parse_json(fit.out, "stdout");
-    for (const char* key : {"model", "parameters", "r2_newton", "r2_log", "rmse_N", "relative_error_bands", "activation_force_N", "saturation_force_N",
-                            "n_points", "warnings", "force_at_full_N", "hysteresis", "drift", "lag_s", "levels", "intervals"}) {
+    for (const char* key : {"model", "parameters", "r2_newton", "r2_log", "rmse_N", "relative_error_bands",
+                            "activation_force_N", "saturation_force_N", "n_points", "warnings", "force_at_full_N",
+                            "hysteresis", "drift", "lag_s", "levels", "intervals"}) {
         CHECK_MESSAGE(json.contains(key), key);
     }
     CHECK(json["n_points"] == 57);
@@ -77,7 +78,8 @@ TEST_CASE("calibrate fit: exact points give the paper's curve, a profile that th
     REQUIRE(check.status == 0);
     const Json checked = parse_json(check.out, "stdout");
     CHECK(checked["predicted_N"].size() == 57);
-    CHECK(checked["predicted_N"][56].get<double>() == doctest::Approx(0.0827 * std::exp(0.0039 * 1023.0)).epsilon(1e-9));
+    CHECK(checked["predicted_N"][56].get<double>() ==
+          doctest::Approx(0.0827 * std::exp(0.0039 * 1023.0)).epsilon(1e-9));
     CHECK(checked["median_relative_error"].get<double>() < 1e-9);
     CHECK(checked["relative_error_bands"].size() == 5);
 
@@ -95,7 +97,8 @@ TEST_CASE("calibrate fit: figures are drawn in all three kinds") {
     const auto path = [&](const char* name) { return (folder / name).string(); };
     const std::pair<const char*, const char*> kinds[] = {{"f.png", "\x89PNG"}, {"f.svg", "<?xml"}, {"f.pdf", "%PDF"}};
     for (const auto& [name, magic] : kinds) {
-        const Called fit = calibrate("fit " + path("d.csv") + " -o " + path("p.json") + " --pen \"pen's 5 % \\\"x\\\"\" --plot " + path(name));
+        const Called fit = calibrate("fit " + path("d.csv") + " -o " + path("p.json") +
+                                     " --pen \"pen's 5 % \\\"x\\\"\" --plot " + path(name));
         CAPTURE(fit.err);
         CHECK(fit.status == 0);
         CHECK(read_text(path(name)).substr(0, 5).find(std::string(magic).substr(0, 4)) == 0);

@@ -1,11 +1,10 @@
 // The program as a person calls it: exit status, messages, JSON.
 
-#include <doctest/doctest.h>
-#include <sys/wait.h>
-
 #include <cstdio>
+#include <doctest/doctest.h>
 #include <filesystem>
 #include <string>
+#include <sys/wait.h>
 
 #include "files/json.h"
 #include "files/text.h"
@@ -29,8 +28,8 @@ struct Called {
 
 Called palpa_with(const std::string& arguments, const std::string& before = "") {
     const TemporaryFolder folder;
-    const std::string command = before + " timeout 60 " PALPA_PROGRAM " " + arguments + " >" + (folder / "out").string() + " 2>" +
-                                (folder / "err").string() + " </dev/null";
+    const std::string command = before + " timeout 60 " PALPA_PROGRAM " " + arguments + " >" +
+                                (folder / "out").string() + " 2>" + (folder / "err").string() + " </dev/null";
     const int status = std::system(command.c_str());
     return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_text(folder / "out"), read_text(folder / "err")};
 }
@@ -38,9 +37,10 @@ Called palpa_with(const std::string& arguments, const std::string& before = "") 
 }  // namespace
 
 TEST_CASE("command line: help and version exist for every command") {
-    for (const char* command : {"", "run", "explain", "devices", "maps", "maps info", "maps sample", "maps import", "maps generate", "bench trace", "bench pens", "bench speed", "bench accuracy",
-                                "calibrate", "calibrate record", "calibrate fit", "calibrate check", "calibrate compare",
-                                "bench accuracy mechanics"}) {
+    for (const char* command :
+         {"", "run", "explain", "devices", "maps", "maps info", "maps sample", "maps import", "maps generate",
+          "bench trace", "bench pens", "bench speed", "bench accuracy", "calibrate", "calibrate record",
+          "calibrate fit", "calibrate check", "calibrate compare", "bench accuracy mechanics"}) {
         CAPTURE(command);
         const Called help = palpa_with(std::string(command) + " --help");
         CHECK(help.status == 0);
@@ -54,13 +54,15 @@ TEST_CASE("command line: headless replay reports its keys as one JSON object") {
     CHECK(run.status == 0);
     CHECK(run.err.empty());
     const Json json = parse_json(run.out, "stdout");
-    for (const char* key : {"samples", "frames", "steps", "dropped_steps", "skipped_stations", "skipped_slides", "latency_ms", "max_force_N", "max_depth_mm", "max_lag_mm", "stages"}) {
+    for (const char* key : {"samples", "frames", "steps", "dropped_steps", "skipped_stations", "skipped_slides",
+                            "latency_ms", "max_force_N", "max_depth_mm", "max_lag_mm", "stages"}) {
         CHECK(json.contains(key));
     }
     CHECK(json["latency_ms"].contains("p99"));
     for (const char* key : {"name", "fidelity", "calls", "median_us"}) CHECK(json["stages"][0].contains(key));
     CHECK(json["dropped_steps"] == 0);
-    CHECK(palpa_with(kAssets + "scenes/delay.json --replay " + kTrace + " --headless").status == 0);  // `run` may be left out
+    CHECK(palpa_with(kAssets + "scenes/delay.json --replay " + kTrace + " --headless").status ==
+          0);  // `run` may be left out
 }
 
 TEST_CASE("command line: a log is written in the BIDS layout and repeats byte for byte") {
@@ -97,7 +99,8 @@ TEST_CASE("command line: a picture of the greatest lag needs no display") {
 TEST_CASE("command line: explain names every stage with its error and cost, measured if asked") {
     const Called plain = palpa_with("explain");
     CHECK(plain.status == 0);
-    for (const char* word : {"calibration", "depth", "display_ratio", "surface", "error:", "not measured", "simulated, not recorded"}) {
+    for (const char* word :
+         {"calibration", "depth", "display_ratio", "surface", "error:", "not measured", "simulated, not recorded"}) {
         CHECK(contains(plain.out, word));
     }
     const Json json = parse_json(palpa_with("explain " + kAssets + "scenes/off.json --measure --json").out, "stdout");
@@ -114,12 +117,16 @@ TEST_CASE("command line: maps info, sample, generate and import") {
     CHECK(info["missing"] == 0);
     CHECK(info["force_range_N"][1].get<double>() > 3.0);
     CHECK(info["source"]["kind"] == "simulated");
-    const Json at = parse_json(palpa_with("maps sample " + map + " --x-mm 60 --y-mm 60 --depth-mm 7 --json").out, "stdout");
+    const Json at =
+        parse_json(palpa_with("maps sample " + map + " --x-mm 60 --y-mm 60 --depth-mm 7 --json").out, "stdout");
     CHECK(at["force_N"].get<double>() == doctest::Approx(2.98).epsilon(0.01));
     const std::string force = number_text(at["force_N"].get<double>());
-    const Json back = parse_json(palpa_with("maps sample " + map + " --x-mm 60 --y-mm 60 --force-N " + force + " --json").out, "stdout");
+    const Json back = parse_json(
+        palpa_with("maps sample " + map + " --x-mm 60 --y-mm 60 --force-N " + force + " --json").out, "stdout");
     CHECK(back["depth_mm"].get<double>() == doctest::Approx(7.0).epsilon(1e-9));
-    CHECK(palpa_with("maps generate --method analytic " + kAssets + "phantoms/silicone.json -o " + (folder / "s.map").string()).status == 0);
+    CHECK(palpa_with("maps generate --method analytic " + kAssets + "phantoms/silicone.json -o " +
+                     (folder / "s.map").string())
+              .status == 0);
     CHECK(palpa_with("run " + (folder / "s.map").string() + " --replay " + kTrace + " --headless").status == 0);
 
     const std::string recording = PALPA_RECORDINGS "/probing/probingRAL2018B_T2.csv";
@@ -130,8 +137,11 @@ TEST_CASE("command line: maps info, sample, generate and import") {
     const Called import = palpa_with("maps import " + recording + " -o " + (folder / "x.map").string());
     CHECK(import.status == 0);
     CHECK(contains(import.out, "62 x 39 cells of 1.58 x 1.58 mm"));
-    CHECK(palpa_with("bench trace " + (folder / "x.map").string() + " --seconds 30 --force-N 1 -o " + (folder / "t.tsv").string()).status == 0);
-    const Called run = palpa_with("run " + (folder / "x.map").string() + " --replay " + (folder / "t.tsv").string() + " --headless --json");
+    CHECK(palpa_with("bench trace " + (folder / "x.map").string() + " --seconds 30 --force-N 1 -o " +
+                     (folder / "t.tsv").string())
+              .status == 0);
+    const Called run = palpa_with("run " + (folder / "x.map").string() + " --replay " + (folder / "t.tsv").string() +
+                                  " --headless --json");
     CHECK(run.status == 0);
     CHECK(parse_json(run.out, "stdout")["max_lag_mm"].get<double>() > 0.3);
 }
@@ -155,14 +165,18 @@ TEST_CASE("command line: wrong usage and bad input end with status 2 and say wha
     refused("maps sample " + kAssets + "maps/silicone.map --x-mm one --y-mm 1 --force-N 1", "--x-mm");
     refused("bench accuracy mechanics --quick -o " + (folder / "bad.json").string(), "expected a folder");
     refused("run none.json", "none.json: found nothing, expected a scene");
-    refused("run " + (folder / "bad.json").string() + " --replay " + kTrace + " --headless", "name: found 3, expected a text");
+    refused("run " + (folder / "bad.json").string() + " --replay " + kTrace + " --headless",
+            "name: found 3, expected a text");
     refused("run --headless --replay " + (folder / "none.tsv").string(), "none.tsv: cannot be read");
     refused("run --headless --replay " + (folder / "bad.tsv").string(), "bad.json");
     refused("maps info " + folder.path().string(), "map.json: cannot be read");
-    refused("maps import " + (folder / "comma.csv").string() + " -o " + (folder / "n.map").string(), "line 2: found 7 fields");
+    refused("maps import " + (folder / "comma.csv").string() + " -o " + (folder / "n.map").string(),
+            "line 2: found 7 fields");
     CHECK_FALSE(std::filesystem::exists(folder / "n.map"));
-    refused("maps generate " + (folder / "bad.json").string() + " -o " + (folder / "n.map").string(), "name: found an unknown key, expected one of size_mm");
-    refused("maps generate " + kAssets + "phantoms/silicone.json -o " + folder.path().string(), "nothing is overwritten");
+    refused("maps generate " + (folder / "bad.json").string() + " -o " + (folder / "n.map").string(),
+            "name: found an unknown key, expected one of size_mm");
+    refused("maps generate " + kAssets + "phantoms/silicone.json -o " + folder.path().string(),
+            "nothing is overwritten");
 }
 
 TEST_CASE("command line: without a display the app says so and what can be done instead") {

@@ -5,8 +5,8 @@
 
 #include "files/json.h"
 #include "files/text.h"
-#include "tests/fem/fem_cases.h"
 #include "tests/error_message.h"
+#include "tests/fem/fem_cases.h"
 #include "tests/files/vtu_reader.h"
 #include "tests/temporary_folder.h"
 
@@ -28,16 +28,15 @@ Called palpa_with(const std::string& arguments, const std::string& before = "") 
     const std::string command = before + " timeout 60 " PALPA_PROGRAM " " + arguments + " >" +
                                 (folder / "out").string() + " 2>" + (folder / "err").string() + " </dev/null";
     const int status = std::system(command.c_str());
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_text(folder / "out"),
-            read_text(folder / "err")};
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_text(folder / "out"), read_text(folder / "err")};
 }
 
 // four cells across the contact's radius
 const std::string kFine =
     R"({"box": {"size_mm": [100, 100, 50], "elements": [12, 12, 7], "grading": {"centre_mm": [50, 50], "finest_mm": 1}}})";
-const std::string kIndented = case_text(
-    kFine, "hex8-bbar", kClamped,
-    R"([{"indenter": {"shape": "sphere", "radius_mm": 20, "centre_mm": [50, 50], "depth_mm": 1}}])");
+const std::string kIndented =
+    case_text(kFine, "hex8-bbar", kClamped,
+              R"([{"indenter": {"shape": "sphere", "radius_mm": 20, "centre_mm": [50, 50], "depth_mm": 1}}])");
 
 }  // namespace
 
@@ -57,9 +56,9 @@ TEST_CASE("fem solve: help, a table for people, JSON with every key that design 
     const Called called = palpa_with("fem solve " + file + " --json");
     CHECK(called.status == 0);
     const Json json = parse_json(called.out, "stdout");
-    for (const char* key : {"nodes", "elements", "dofs", "max_displacement_mm", "centre_displacement_mm",
-                            "d_skel_mm", "reaction_N", "contact", "energy_J", "residual", "backward_error",
-                            "converged", "time_s", "max_strain", "linear_range"}) {
+    for (const char* key :
+         {"nodes", "elements", "dofs", "max_displacement_mm", "centre_displacement_mm", "d_skel_mm", "reaction_N",
+          "contact", "energy_J", "residual", "backward_error", "converged", "time_s", "max_strain", "linear_range"}) {
         CAPTURE(key);
         CHECK(json.contains(key));
     }
@@ -123,8 +122,10 @@ TEST_CASE("fem solve: leaving the linear range and a load beside the body are sa
 
 TEST_CASE("fem solve: a contact that the mesh cannot resolve is said, whatever colour the gauge has") {
     const TemporaryFolder folder;
-    write_text_atomically(folder / "c.json", case_text(R"({"box": {"size_mm": [56, 56, 24], "elements": [14, 14, 6]}})", "hex8-bbar", kClamped,
-        R"([{"indenter": {"shape": "sphere", "radius_mm": 0.5, "centre_mm": [28, 28], "depth_mm": 0.1}}])"));
+    write_text_atomically(
+        folder / "c.json",
+        case_text(R"({"box": {"size_mm": [56, 56, 24], "elements": [14, 14, 6]}})", "hex8-bbar", kClamped,
+                  R"([{"indenter": {"shape": "sphere", "radius_mm": 0.5, "centre_mm": [28, 28], "depth_mm": 0.1}}])"));
     const Called called = palpa_with("fem solve " + (folder / "c.json").string() + " --json");
     CHECK(called.status == 0);
     CHECK(contains(called.err, "the contact's radius spans 0.0559 cells: below 4"));
@@ -137,8 +138,11 @@ TEST_CASE("fem solve: a contact that the mesh cannot resolve is said, whatever c
 
 TEST_CASE("fem solve: a force with friction is met where nodes join at once and the force rises steeply") {
     const TemporaryFolder folder;
-    write_text_atomically(folder / "c.json", case_text(R"({"box": {"size_mm": [60, 60, 25], "elements": [6, 6, 4]}})", "hex8-bbar", kClamped,
-        R"([{"indenter": {"shape": "sphere", "radius_mm": 20, "centre_mm": [30, 30], "friction": 0.3, "force_N": 0.05}}])"));
+    write_text_atomically(
+        folder / "c.json",
+        case_text(
+            R"({"box": {"size_mm": [60, 60, 25], "elements": [6, 6, 4]}})", "hex8-bbar", kClamped,
+            R"([{"indenter": {"shape": "sphere", "radius_mm": 20, "centre_mm": [30, 30], "friction": 0.3, "force_N": 0.05}}])"));
     const Called met = palpa_with("fem solve " + (folder / "c.json").string() + " --json");
     CHECK_MESSAGE(met.status == 0, met.err);
     const Json json = parse_json(met.out, "stdout");
@@ -183,9 +187,8 @@ TEST_CASE("fem solve: bad input ends with status 2, a disk that takes nothing wi
     CHECK(palpa_with("fem solve").status == 2);
     CHECK(palpa_with("fem solve a.json --nonsense").status == 2);
 
-    const Called full =
-        palpa_with("fem solve " + (folder / "c.json").string() + " -o " + (folder / "o.vtu").string(),
-                   "ulimit -f 64; trap '' XFSZ;");
+    const Called full = palpa_with("fem solve " + (folder / "c.json").string() + " -o " + (folder / "o.vtu").string(),
+                                   "ulimit -f 64; trap '' XFSZ;");
     CHECK(full.status == 1);
     CHECK(contains(full.err, "o.vtu"));
     CHECK(contains(full.err, "cannot be written"));
@@ -196,7 +199,8 @@ TEST_CASE("fem solve: bad input ends with status 2, a disk that takes nothing wi
 
 TEST_CASE("fem solve: warnings of the element stand in the JSON and on stderr") {
     const TemporaryFolder folder;
-    write_text_atomically(folder / "c.json", case_text(kSlab, "tet4", kClamped, press_at(50, 50, 16), gel(2500, 0.499)));
+    write_text_atomically(folder / "c.json",
+                          case_text(kSlab, "tet4", kClamped, press_at(50, 50, 16), gel(2500, 0.499)));
     const Called called = palpa_with("fem solve " + (folder / "c.json").string() + " --json");
     CHECK(called.status == 0);
     CHECK(contains(called.err, "c.json: tet4 locks at poisson 0.499"));

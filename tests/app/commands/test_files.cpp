@@ -1,16 +1,15 @@
 // The files that a person names on the command line: inputs and outputs that are none, results that cannot be written.
 
-#include <doctest/doctest.h>
-#include <fcntl.h>
-#include <sys/stat.h>
-#include <sys/wait.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <cstdlib>
+#include <doctest/doctest.h>
+#include <fcntl.h>
 #include <filesystem>
 #include <stdexcept>
 #include <string>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
 #include <vector>
 
 #include "files/text.h"
@@ -35,8 +34,8 @@ struct Called {
 
 // In the folder; `after` is what the shell does with the output.
 Called palpa_in(const TemporaryFolder& folder, const std::string& arguments, const std::string& after = ">/dev/null") {
-    const std::string command = "cd " + folder.path().string() + " && timeout 60 " PALPA_PROGRAM " " + arguments + " 2>" +
-                                (folder / "err").string() + " </dev/null " + after;
+    const std::string command = "cd " + folder.path().string() + " && timeout 60 " PALPA_PROGRAM " " + arguments +
+                                " 2>" + (folder / "err").string() + " </dev/null " + after;
     const int status = std::system(command.c_str());
     return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_text(folder / "err")};
 }
@@ -46,7 +45,8 @@ void make_fifo(const fs::path& path) {
 }
 
 void replace_all(const std::string& what, const std::string& by, std::string& text) {
-    for (auto at = text.find(what); at != std::string::npos; at = text.find(what, at + by.size())) text.replace(at, what.size(), by);
+    for (auto at = text.find(what); at != std::string::npos; at = text.find(what, at + by.size()))
+        text.replace(at, what.size(), by);
 }
 
 // Inputs under their names; copies, so that a result that replaced one would be seen.
@@ -55,7 +55,8 @@ void fill(const TemporaryFolder& folder) {
     fs::copy_file(kAssets + "phantoms/silicone.json", folder / "phantom.json");
     fs::copy_file(kAssets + "traces/raster.tsv", folder / "trace.tsv");
     fs::copy_file(kAssets + "traces/raster.json", folder / "trace.json");
-    write_text_atomically(folder / "points.csv", "level,force_N\n0.1,0.2\n0.2,0.45\n0.4,1.1\n0.6,2\n0.8,3.1\n0.9,3.9\n1,4.4\n");
+    write_text_atomically(folder / "points.csv",
+                          "level,force_N\n0.1,0.2\n0.2,0.45\n0.4,1.1\n0.6,2\n0.8,3.1\n0.9,3.9\n1,4.4\n");
     write_text_atomically(folder / "case.json", R"({"mesh": {"box": {"size_mm": [10, 10, 10], "elements": [2, 2, 2]}},
         "materials": {"gel": {"young_Pa": 2500, "poisson": 0.45}}, "supports": [{"face": "zmin", "fix": "xyz"}],
         "loads": [{"face": "zmax", "traction_Pa": 10}]})");
@@ -70,7 +71,8 @@ std::string listed(const TemporaryFolder& folder) {
     for (const auto& entry : fs::recursive_directory_iterator(folder.path())) {
         const std::string name = entry.path().lexically_relative(folder.path()).string();
         if (name == "err" || entry.is_directory()) continue;
-        lines.push_back(name + (entry.is_regular_file() && !entry.is_symlink() ? " " + std::to_string(entry.file_size()) : " none"));
+        lines.push_back(name + (entry.is_regular_file() && !entry.is_symlink() ? " " + std::to_string(entry.file_size())
+                                                                               : " none"));
     }
     std::sort(lines.begin(), lines.end());
     std::string out;
@@ -85,7 +87,9 @@ struct Writer {
     std::vector<const char*> inputs;
 };
 const std::vector<Writer> kWriters{
-    {"run --headless --replay trace.tsv scene.json --screenshot OUT", "", {"scene.json", "trace.tsv", "trace.json", "in.map/normal_N.npy"}},
+    {"run --headless --replay trace.tsv scene.json --screenshot OUT",
+     "",
+     {"scene.json", "trace.tsv", "trace.json", "in.map/normal_N.npy"}},
     {"run in.map --headless --replay trace.tsv --screenshot OUT", "", {"trace.tsv", "in.map/normal_N.npy"}},
     {"maps export in.map -o OUT", ".npy", {"in.map/normal_N.npy"}},
     {"maps export in.map -o OUT", ".csv", {}},
@@ -100,10 +104,14 @@ const std::vector<Writer> kWriters{
 
 // Writes OUT, a folder.
 const std::vector<const char*> kFolderWriters{
-    "run --headless --replay trace.tsv in.map --log OUT",   "study simulate protocol.json --participants 1 -o OUT",
-    "study analyse " PALPA_SOURCE_DIR "/assets/none -o OUT", "study import none.json -o OUT",
-    "calibrate record --sensor typed --levels none -o OUT", "bench accuracy mechanics --quick -o OUT",
-    "serve --port 0 --collect OUT",                         "maps generate phantom.json --method analytic -o OUT",
+    "run --headless --replay trace.tsv in.map --log OUT",
+    "study simulate protocol.json --participants 1 -o OUT",
+    "study analyse " PALPA_SOURCE_DIR "/assets/none -o OUT",
+    "study import none.json -o OUT",
+    "calibrate record --sensor typed --levels none -o OUT",
+    "bench accuracy mechanics --quick -o OUT",
+    "serve --port 0 --collect OUT",
+    "maps generate phantom.json --method analytic -o OUT",
 };
 
 std::string with(const char* arguments, const std::string& out) {
@@ -119,12 +127,29 @@ TEST_CASE("files: an input that is no regular file is refused at once by every c
     fill(folder);
     make_fifo(folder / "fifo");
     fs::create_symlink("/dev/zero", folder / "zero");
-    for (const char* call : {"run IN", "run --headless --replay IN", "explain IN", "explain --measure --trace IN", "maps info IN",
-                             "maps sample IN --x-mm 1 --y-mm 1 --force-N 1", "maps import IN -o n.map", "maps generate IN -o n.map",
-                             "maps plot IN -o f.png", "maps compare in.map IN", "maps detect IN", "maps export IN -o x.csv",
-                             "calibrate fit IN -o p.json", "calibrate check IN points.csv", "calibrate compare IN IN", "fem solve IN",
-                             "study order IN --participants 1", "study simulate IN --participants 1 -o n", "study analyse IN", "study import IN -o n",
-                             "bench trace IN -o t.tsv", "bench pens IN", "serve --port 0 --tls-cert IN --tls-key IN"}) {
+    for (const char* call : {"run IN",
+                             "run --headless --replay IN",
+                             "explain IN",
+                             "explain --measure --trace IN",
+                             "maps info IN",
+                             "maps sample IN --x-mm 1 --y-mm 1 --force-N 1",
+                             "maps import IN -o n.map",
+                             "maps generate IN -o n.map",
+                             "maps plot IN -o f.png",
+                             "maps compare in.map IN",
+                             "maps detect IN",
+                             "maps export IN -o x.csv",
+                             "calibrate fit IN -o p.json",
+                             "calibrate check IN points.csv",
+                             "calibrate compare IN IN",
+                             "fem solve IN",
+                             "study order IN --participants 1",
+                             "study simulate IN --participants 1 -o n",
+                             "study analyse IN",
+                             "study import IN -o n",
+                             "bench trace IN -o t.tsv",
+                             "bench pens IN",
+                             "serve --port 0 --tls-cert IN --tls-key IN"}) {
         for (const auto& [name, kind] : {std::pair{"fifo", "found a FIFO"}, {"zero", "found a character device"}}) {
             std::string arguments = call;
             replace_all("IN", name, arguments);
@@ -150,8 +175,10 @@ TEST_CASE("files: an input that another input names is a regular file too") {
     replace_all(R"("box": {"size_mm": [10, 10, 10], "elements": [2, 2, 2]})", R"("file": "fifo")", with_mesh);
     write_text_atomically(folder / "mesh.json", with_mesh);
     write_text_atomically(folder / "tissue.json", R"({"name": "s", "tissue": {"map": "fifo.map"}})");
-    write_text_atomically(folder / "profile.json", R"({"name": "s", "profile": "./fifo", "tissue": {"map": "in.map"}})");
-    for (const char* arguments : {"fem solve mesh.json", "explain tissue.json", "explain profile.json", "maps info fifo.map"}) {
+    write_text_atomically(folder / "profile.json",
+                          R"({"name": "s", "profile": "./fifo", "tissue": {"map": "in.map"}})");
+    for (const char* arguments :
+         {"fem solve mesh.json", "explain tissue.json", "explain profile.json", "maps info fifo.map"}) {
         CAPTURE(arguments);
         const Called called = palpa_in(folder, arguments);
         CAPTURE(called.err);
@@ -169,7 +196,8 @@ TEST_CASE("files: no result replaces what is no regular file") {
         fs::create_symlink("/dev/null", folder / ("null" + ending));
         fs::create_directory(folder / ("dir" + ending));
         const std::string before = listed(folder);
-        for (const auto& [name, kind] : {std::pair{"fifo", "a FIFO"}, {"null", "a character device"}, {"dir", "a folder"}}) {
+        for (const auto& [name, kind] :
+             {std::pair{"fifo", "a FIFO"}, {"null", "a character device"}, {"dir", "a folder"}}) {
             const std::string arguments = with(writer.arguments, name + ending);
             const Called called = palpa_in(folder, arguments);
             CAPTURE(arguments);
@@ -192,7 +220,8 @@ TEST_CASE("files: no result replaces an input, under whatever name") {
             fs::create_symlink(input, folder / ("link" + ending));
             fs::create_hard_link(folder / input, folder / ("hard" + ending));
             const std::string before = listed(folder);
-            for (const std::string& name : {input, "./in.map/../" + input, (folder / input).string(), "link" + ending, "hard" + ending}) {
+            for (const std::string& name :
+                 {input, "./in.map/../" + input, (folder / input).string(), "link" + ending, "hard" + ending}) {
                 const std::string arguments = with(writer.arguments, name);
                 const Called called = palpa_in(folder, arguments);
                 CAPTURE(arguments);
@@ -245,11 +274,13 @@ TEST_CASE("files: what cannot be printed is told, by every command that prints")
     const TemporaryFolder folder;
     fill(folder);
     const std::string profile = kAssets + "profiles/s-pen.json";
-    for (const std::string& arguments :
-         std::vector<std::string>{"--help", "--version", "run --help", "maps --help", "maps info in.map", "maps info in.map --json", "maps sample in.map --x-mm 1 --y-mm 1 --force-N 1",
-          "maps detect in.map", "maps compare in.map in.map", "explain in.map", "explain in.map --json", "fem solve case.json", "fem solve case.json --json",
-          "calibrate compare " + profile + " " + profile, "calibrate fit points.csv --bootstrap 0 -o profile.json --json",
-          "study order protocol.json --participants 2", "run in.map --headless --replay trace.tsv --json"}) {
+    for (const std::string& arguments : std::vector<std::string>{
+             "--help", "--version", "run --help", "maps --help", "maps info in.map", "maps info in.map --json",
+             "maps sample in.map --x-mm 1 --y-mm 1 --force-N 1", "maps detect in.map", "maps compare in.map in.map",
+             "explain in.map", "explain in.map --json", "fem solve case.json", "fem solve case.json --json",
+             "calibrate compare " + profile + " " + profile,
+             "calibrate fit points.csv --bootstrap 0 -o profile.json --json",
+             "study order protocol.json --participants 2", "run in.map --headless --replay trace.tsv --json"}) {
         CAPTURE(arguments);
         for (const char* out : {">/dev/full", ">&-"}) {
             CAPTURE(out);
@@ -283,7 +314,8 @@ TEST_CASE("files: with standard output closed nothing that is printed gets into 
     const TemporaryFolder folder;
     fill(folder);
     // more than the buffer of standard output holds is printed while the log is still open
-    write_text_atomically(folder / "long.json", R"({"name": ")" + std::string(6000, 'x') + R"(", "tissue": {"map": "in.map"}})");
+    write_text_atomically(folder / "long.json",
+                          R"({"name": ")" + std::string(6000, 'x') + R"(", "tissue": {"map": "in.map"}})");
     const std::string call = "run long.json --headless --replay trace.tsv --json --log ";
     palpa_in(folder, call + "open");
     palpa_in(folder, call + "closed", ">&-");
@@ -302,7 +334,8 @@ TEST_CASE("files: words and numbers that an option does not take are told in wor
         CHECK(contains(called.err, word));
     };
     refused("run --screen map", "--screen: found 'map', expected trial, devices, scale, calibrate or maps");
-    refused("maps plot in.map -o f.png --what all_of_it", "expected all, matrices, stiffness, slice, curves or nodules");
+    refused("maps plot in.map -o f.png --what all_of_it",
+            "expected all, matrices, stiffness, slice, curves or nodules");
     refused("maps sample in.map --x-mm nan --y-mm 1 --force-N 1", "--x-mm: found 'nan', expected a finite number");
     refused("bench trace in.map -o t.tsv --seconds nan", "--seconds: found 'nan'");
     refused("bench trace in.map -o t.tsv --seconds -1", "--seconds");
@@ -310,5 +343,6 @@ TEST_CASE("files: words and numbers that an option does not take are told in wor
     refused("maps plot in.map -o f.png --force-N inf", "--force-N");
     refused("study order protocol.json --participants -2", "--participants");
     write_text_atomically(folder / "mapp.json", R"({"name": "s", "tissue": {"mapp": "in.map"}})");
-    refused("explain mapp.json", "tissue.mapp: found an unknown key, expected one of map linear stiffness_scale (is map meant?)");
+    refused("explain mapp.json",
+            "tissue.mapp: found an unknown key, expected one of map linear stiffness_scale (is map meant?)");
 }

@@ -1,13 +1,12 @@
 // palpa maps detect, plot, export and compare as a person calls them.
 
-#include <doctest/doctest.h>
-#include <sys/wait.h>
-
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
+#include <doctest/doctest.h>
 #include <filesystem>
 #include <limits>
+#include <sys/wait.h>
 
 #include "files/json.h"
 #include "files/mat.h"
@@ -36,8 +35,8 @@ struct Called {
 
 Called maps(const std::string& arguments, const std::string& before = "") {
     const TemporaryFolder folder;
-    const std::string command = before + " timeout 120 " PALPA_PROGRAM " maps " + arguments + " >" + (folder / "out").string() + " 2>" +
-                                (folder / "err").string() + " </dev/null";
+    const std::string command = before + " timeout 120 " PALPA_PROGRAM " maps " + arguments + " >" +
+                                (folder / "out").string() + " 2>" + (folder / "err").string() + " </dev/null";
     const int status = std::system(command.c_str());
     return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_text(folder / "out"), read_text(folder / "err")};
 }
@@ -180,10 +179,12 @@ TEST_CASE("command maps: a map without a measured cell is refused by name") {
     Map map = small(folder);
     std::string bytes = read_text(folder / "small.map/normal_N.npy");
     const float nan = std::numeric_limits<float>::quiet_NaN();
-    for (std::size_t at = bytes.size() - 4 * map.normal_N.size(); at < bytes.size(); at += 4) std::memcpy(&bytes[at], &nan, 4);
+    for (std::size_t at = bytes.size() - 4 * map.normal_N.size(); at < bytes.size(); at += 4)
+        std::memcpy(&bytes[at], &nan, 4);
     write_text_atomically(folder / "small.map/normal_N.npy", bytes);
     const std::string name = (folder / "small.map").string();
-    for (const std::string& command : {"detect " + name, "plot " + name + " -o x.png", "export " + name + " -o x.csv", "compare " + name + " " + kSilicone}) {
+    for (const std::string& command : {"detect " + name, "plot " + name + " -o x.png", "export " + name + " -o x.csv",
+                                       "compare " + name + " " + kSilicone}) {
         refused(command, "no force that was measured");
     }
 }
@@ -209,7 +210,8 @@ TEST_CASE("command maps plot: every figure in every format, whatever the map is 
     CHECK(contains(read_text(folder / "a.svg"), "it's"));
     CHECK(maps("plot " + name + " --what curves --at 1,2 --at 4,4 -o " + (folder / "a.pdf").string()).status == 0);
     CHECK(read_text(folder / "a.pdf").substr(0, 4) == "%PDF");
-    refused("plot " + name + " --what curves --at 99,2 -o " + (folder / "b.png").string(), "expected a place on the map");
+    refused("plot " + name + " --what curves --at 99,2 -o " + (folder / "b.png").string(),
+            "expected a place on the map");
     refused("plot " + name + " -o " + (folder / "no/such/x.png").string(), "no/such/x.png", 1);
     CHECK_FALSE(std::filesystem::exists(folder / "b.png"));
 }
@@ -219,8 +221,8 @@ TEST_CASE("command maps plot: without gnuplot a message says what is missing") {
     small(folder);
     const TemporaryFolder empty;
     std::filesystem::create_symlink("/usr/bin/timeout", empty / "timeout");
-    refused("plot " + (folder / "small.map").string() + " -o " + (folder / "x.png").string(), "gnuplot is not installed (package gnuplot-nox)", 1,
-            "PATH=" + empty.path().string());
+    refused("plot " + (folder / "small.map").string() + " -o " + (folder / "x.png").string(),
+            "gnuplot is not installed (package gnuplot-nox)", 1, "PATH=" + empty.path().string());
 }
 
 TEST_CASE("command maps compare: figures of difference, as text, JSON and picture") {
@@ -231,7 +233,8 @@ TEST_CASE("command maps compare: figures of difference, as text, JSON and pictur
     const std::string pair = (folder / "small.map").string() + " " + (folder / "more.map").string();
     const Called text = maps("compare " + pair);
     CHECK(text.status == 0);
-    CHECK(contains(text.out, "  bias 0.49"));  // one force was missing: interpolated over depth, where the rise is shared
+    CHECK(
+        contains(text.out, "  bias 0.49"));  // one force was missing: interpolated over depth, where the rise is shared
     const Json json = parse_json(maps("compare " + pair + " --json").out, "stdout");
     CHECK(json["all"]["rms_N"].get<double>() == doctest::Approx(0.5).epsilon(0.01));
     CHECK(json["grid_of"] == "a");
@@ -239,7 +242,8 @@ TEST_CASE("command maps compare: figures of difference, as text, JSON and pictur
     refused("compare " + pair + " -o x.gif", "expected .png, .svg or .pdf");
     map.origin_m[0] += 1.0;
     write_map(map, folder / "away.map");
-    refused("compare " + (folder / "small.map").string() + " " + (folder / "away.map").string(), "expected one that overlaps");
+    refused("compare " + (folder / "small.map").string() + " " + (folder / "away.map").string(),
+            "expected one that overlaps");
     if (!has_gnuplot()) return;
     CHECK(maps("compare " + pair + " -o " + (folder / "d.png").string()).status == 0);
     CHECK(read_text(folder / "d.png").substr(1, 3) == "PNG");

@@ -30,12 +30,10 @@ struct Called {
 };
 
 Called import(const TemporaryFolder& folder, const std::string& arguments) {
-    const std::string command = "cd " + folder.path().string() +
-                                " && timeout 60 " PALPA_PROGRAM " maps import " + arguments +
-                                " >out 2>err </dev/null";
+    const std::string command = "cd " + folder.path().string() + " && timeout 60 " PALPA_PROGRAM " maps import " +
+                                arguments + " >out 2>err </dev/null";
     const int status = std::system(command.c_str());
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_text(folder / "out"),
-            read_text(folder / "err")};
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_text(folder / "out"), read_text(folder / "err")};
 }
 
 // 4 x 3 places, 0.5 N/mm, with columns that nobody could guess.
@@ -43,9 +41,8 @@ std::string odd_table() {
     std::string text = "where,across,along,how_deep_mm,push_mN\n";
     for (int p = 0; p < 12; ++p) {
         for (int k = 0; k < 5; ++k) {
-            text += std::to_string(p) + "," + std::to_string(3 * (p % 4)) + "," +
-                    std::to_string(2 * (p / 4)) + "," + std::to_string(k) + "," + std::to_string(500 * k) +
-                    "\n";
+            text += std::to_string(p) + "," + std::to_string(3 * (p % 4)) + "," + std::to_string(2 * (p / 4)) + "," +
+                    std::to_string(k) + "," + std::to_string(500 * k) + "\n";
         }
     }
     return text;
@@ -124,8 +121,8 @@ TEST_CASE("maps import: the JSON has the map, the residual and its shares") {
     CHECK(json["import"]["greatest_force_N"].get<double>() == doctest::Approx(1.25));
     std::set<std::string> keys;
     for (const Json& choice : json["source"]["choices"]) keys.insert(choice["key"].get<std::string>());
-    for (const char* key : {"form", "columns", "grid", "pitch_mm", "depths_mm", "contact",
-                            "outliers_deviations", "tangential", "filled", "noise_N"}) {
+    for (const char* key : {"form", "columns", "grid", "pitch_mm", "depths_mm", "contact", "outliers_deviations",
+                            "tangential", "filled", "noise_N"}) {
         CAPTURE(key);
         CHECK(keys.count(key) == 1);
     }
@@ -136,8 +133,7 @@ TEST_CASE("maps import: matrices, one file per depth") {
     write_text_atomically(folder / "normal_2mm.csv", "0.2,0.3\n0.4,\n");
     write_text_atomically(folder / "normal_4mm.csv", "0.5,0.6\n0.9,1.2\n");
     const Called called = import(
-        folder,
-        "normal_4mm.csv normal_2mm.csv --spacing-mm 0.76,2 --origin-mm 5,6 -o m.map --tangential energy");
+        folder, "normal_4mm.csv normal_2mm.csv --spacing-mm 0.76,2 --origin-mm 5,6 -o m.map --tangential energy");
     CAPTURE(called.err);
     REQUIRE(called.status == 0);
     const Map map = read_map(folder / "m.map");
@@ -185,7 +181,8 @@ TEST_CASE("maps import: hostile recordings end with status 2 and a message that 
         std::string rows;
         for (int p = 0; p < 25; ++p) {
             for (int k = 0; k < 4; ++k)
-                rows += std::to_string(x_mm + 2 * (p % 5)) + "," + std::to_string(2 * (p / 5)) + "," + std::to_string(k) + "," + fn(p, k) + "\n";
+                rows += std::to_string(x_mm + 2 * (p % 5)) + "," + std::to_string(2 * (p / 5)) + "," +
+                        std::to_string(k) + "," + fn(p, k) + "\n";
         }
         return rows;
     };
@@ -221,7 +218,8 @@ TEST_CASE("maps import: hostile recordings end with status 2 and a message that 
     refused("promised.npy --spacing-mm 1 --depths-mm 1", "4000000000000 for the shape (1000000, 1000, 1000)");
     refused("back.csv", "line 202, t: found '1");
     // some rows that are no numbers are only counted
-    write_text_atomically(folder / "some.csv", head + grid(0.0, [&](int p, int k) { return p == 7 ? std::string("nan") : rising(p, k); }));
+    write_text_atomically(folder / "some.csv",
+                          head + grid(0.0, [&](int p, int k) { return p == 7 ? std::string("nan") : rising(p, k); }));
     CHECK(contains(import(folder, "some.csv -o some.map").out, "1 cells missing; 4 of 100 rows and 1 points rejected"));
 }
 
@@ -235,7 +233,8 @@ TEST_CASE("maps import: takes less than four times the file's size in memory") {
     write_npy(folder / "a.npy", array.shape, array.values);
     array = {};
     const auto times = [&](const char* file, const std::string& arguments) {
-        const double share = memory_of_import(folder, arguments) / static_cast<double>(std::filesystem::file_size(folder / file));
+        const double share =
+            memory_of_import(folder, arguments) / static_cast<double>(std::filesystem::file_size(folder / file));
         MESSAGE(std::string(file), ": ", share, " times its size");
         return share;
     };
@@ -243,7 +242,9 @@ TEST_CASE("maps import: takes less than four times the file's size in memory") {
     std::string rows = "x_mm,y_mm,depth_mm,fn_N,fx_N,fy_N\n";
     for (int place = 0; place < 250 * 250; ++place) {
         const std::string at = std::to_string(place % 250) + "," + std::to_string(place / 250) + ",";
-        for (int k = 0; k < 20; ++k) rows += at + std::to_string(0.2 * k) + "," + std::to_string(0.1 * k + 1e-4 * (place % 7)) + ",0.012345,0.023456\n";
+        for (int k = 0; k < 20; ++k)
+            rows += at + std::to_string(0.2 * k) + "," + std::to_string(0.1 * k + 1e-4 * (place % 7)) +
+                    ",0.012345,0.023456\n";
     }
     write_text_atomically(folder / "p.csv", rows);
     rows = {};

@@ -1,11 +1,9 @@
-#include "app/commands/option_checks.h"
-
-#include <doctest/doctest.h>
-
 #include <CLI/CLI.hpp>
 #include <cstdint>
+#include <doctest/doctest.h>
 #include <optional>
 
+#include "app/commands/option_checks.h"
 #include "tests/error_message.h"
 
 using namespace palpa;
@@ -79,7 +77,8 @@ TEST_CASE("option checks: nothing is no value") {
 
 TEST_CASE("option checks: a number from 0 upwards does not begin again at its end") {
     for (const char* value : {"-1", "99999999999999999999", "-99999999999999999999"}) {
-        CHECK(contains(refusal({value, "--seed"}), "--seed: found '" + std::string(value) + "', expected a whole number from 0"));
+        CHECK(contains(refusal({value, "--seed"}),
+                       "--seed: found '" + std::string(value) + "', expected a whole number from 0"));
     }
     CHECK(refusal({"18446744073709551615", "--seed"}).empty());
     CHECK(refusal({"-1", "--count"}).empty());

@@ -1,12 +1,11 @@
 // palpa calibrate record with simulated pens and sensors, end to end.
 
-#include <doctest/doctest.h>
-#include <signal.h>
-#include <sys/wait.h>
-
 #include <cmath>
+#include <doctest/doctest.h>
 #include <filesystem>
+#include <signal.h>
 #include <string>
+#include <sys/wait.h>
 
 #include "files/json.h"
 #include "files/text.h"
@@ -42,9 +41,11 @@ const std::string kPen = PALPA_PEN_SIMULATOR + kHand;
 TEST_CASE("record: pen and Net F/T give points until the curve is known; they fit, and both raw streams are kept") {
     const TemporaryFolder folder;
     const std::string session = (folder / "s").string();
-    SimulatorProcess sensor(PALPA_NETFT_SIMULATOR, {"--rate-Hz", "2000", "--steps", "20", "--greatest-N", "2.6", "--period-s", "4", "--noise-N", "0.002"});
+    SimulatorProcess sensor(PALPA_NETFT_SIMULATOR, {"--rate-Hz", "2000", "--steps", "20", "--greatest-N", "2.6",
+                                                    "--period-s", "4", "--noise-N", "0.002"});
     const std::string netft = " --sensor netft:127.0.0.1:" + sensor.port();
-    const Called record = shell(kPen + "--seconds 60 | " + kRecord + "-o " + session + netft + " --levels - --steady-s 0.1 --seconds 50 --json");
+    const Called record = shell(kPen + "--seconds 60 | " + kRecord + "-o " + session + netft +
+                                " --levels - --steady-s 0.1 --seconds 50 --json");
     CAPTURE(record.err);
     REQUIRE(record.status == 0);
     const Json json = parse_json(record.out, "stdout");
@@ -55,7 +56,8 @@ TEST_CASE("record: pen and Net F/T give points until the curve is known; they fi
     CHECK(std::abs(json["sensor"]["zero_N"].get<double>()) < 0.01);
     CHECK(contains(record.err, "1 of 3 repeats"));
 
-    const Called fit = shell("timeout 60 " PALPA_PROGRAM " calibrate fit " + session + "/points.csv -o " + (folder / "p.json").string() + " --json");
+    const Called fit = shell("timeout 60 " PALPA_PROGRAM " calibrate fit " + session + "/points.csv -o " +
+                             (folder / "p.json").string() + " --json");
     REQUIRE(fit.status == 0);
     const Json fitted = parse_json(fit.out, "stdout");
     // the simulated pen: level = log(F / 0.05) / log(2.5 / 0.05)
@@ -74,8 +76,9 @@ TEST_CASE("record: pen and Net F/T give points until the curve is known; they fi
 TEST_CASE("record: killed in the middle, all that was captured is there, and it is gone on with") {
     const TemporaryFolder folder;
     const std::string session = (folder / "s").string();
-    SimulatorProcess sensor(PALPA_LOAD_CELL_SIMULATOR, {"--rate-Hz", "200", "--steps", "20", "--greatest-N", "2.6", "--period-s", "4", "--silent-from-s", "8",
-                                                        "--silent-s", "1.5", "--link", (folder / "cell").string()});
+    SimulatorProcess sensor(PALPA_LOAD_CELL_SIMULATOR,
+                            {"--rate-Hz", "200", "--steps", "20", "--greatest-N", "2.6", "--period-s", "4",
+                             "--silent-from-s", "8", "--silent-s", "1.5", "--link", (folder / "cell").string()});
     const std::string serial = " --sensor serial:" + sensor.port() + " --N-per-count 2.5e-5 --levels - --steady-s 0.1 ";
     shell(kPen + "--seconds 8 | timeout -s KILL 7 " PALPA_PROGRAM " calibrate record -o " + session + serial);
     std::string before = read_text(session + "/points.csv");
@@ -85,7 +88,8 @@ TEST_CASE("record: killed in the middle, all that was captured is there, and it 
     CHECK(std::count(before.begin(), before.end(), ',') == 4 * (had + 1));
 
     // as if the computer had been started anew since, its clock back near zero
-    for (std::size_t line = before.find('\n'); line + 1 < before.size(); line = before.find('\n', line + 1)) before.insert(line + 1, "9");
+    for (std::size_t line = before.find('\n'); line + 1 < before.size(); line = before.find('\n', line + 1))
+        before.insert(line + 1, "9");
     write_text_atomically(session + "/points.csv", before);
 
     // the cell is unplugged and comes back meanwhile; each run needs one lift (4 s at most) for its zero
@@ -98,7 +102,7 @@ TEST_CASE("record: killed in the middle, all that was captured is there, and it 
     CHECK(json["points"].get<long>() > had + 5);
     const Called fit = shell(PALPA_PROGRAM " calibrate fit " + session + "/points.csv -o " + session + "/p.json");
     CAPTURE(fit.err);
-    CHECK(fit.status == 0);  // times that rise all through
+    CHECK(fit.status == 0);                                                               // times that rise all through
     CHECK(json["sensor"]["zero_N"].get<double>() == doctest::Approx(2.1).epsilon(0.01));  // 84,000 counts without load
     CHECK(json["sensor"]["health"]["stalls"].get<int>() >= 1);
     CHECK(contains(resumed.err, "has stopped"));
@@ -111,9 +115,10 @@ TEST_CASE("record: what a scale shows is typed in while the pen is held still") 
     const std::string session = (folder / "s").string();
     const std::string fifo = (folder / "levels").string();
     // one step: the pen is held at one level for 5 of 6 seconds
-    const Called record = shell("mkfifo " + fifo + "; " PALPA_PEN_SIMULATOR " --steps 1 --period-s 6 --seconds 7 >" + fifo +
-                                " & (echo abc; for i in 1 2 3 4 5 6 7 8 9 10 11 12; do sleep 0.5; echo 12; done; sleep 2) | " + kRecord + "-o " + session +
-                                " --sensor typed --levels " + fifo + " --json");
+    const Called record =
+        shell("mkfifo " + fifo + "; " PALPA_PEN_SIMULATOR " --steps 1 --period-s 6 --seconds 7 >" + fifo +
+              " & (echo abc; for i in 1 2 3 4 5 6 7 8 9 10 11 12; do sleep 0.5; echo 12; done; sleep 2) | " + kRecord +
+              "-o " + session + " --sensor typed --levels " + fifo + " --json");
     CAPTURE(record.err);
     REQUIRE(record.status == 0);
     CHECK(contains(record.err, "found 'abc', expected what the scale shows"));
@@ -138,13 +143,16 @@ TEST_CASE("record: what cannot work is said at once, or after five seconds of si
     refused("--sensor typed --levels -", 2, "standard input is for the typed numbers");
     refused("--sensor typed --resume --levels /dev/null", 2, "the session to resume");
     refused("--sensor typed --level pressure_raw --levels /dev/null", 2, "--level-range");
-    const Called window = shell("env -u DISPLAY -u WAYLAND_DISPLAY " + kRecord + "-o " + session + " --sensor netft:127.0.0.1:9");
+    const Called window =
+        shell("env -u DISPLAY -u WAYLAND_DISPLAY " + kRecord + "-o " + session + " --sensor netft:127.0.0.1:9");
     CHECK(window.status == 1);
     CHECK(contains(window.err, "--levels FILE"));
     CHECK_FALSE(std::filesystem::exists(session));
     write_text_atomically(folder / "levels", "0\n0.5\nhalf\n");
-    refused("--sensor typed --levels " + (folder / "levels").string() + " </dev/null", 2, "line 3: found 'half', expected a level >= 0");
-    const Called silent = shell(PALPA_PEN_SIMULATOR " --seconds 8 | " + kRecord + "-o " + session + "2 --sensor netft:127.0.0.1:9 --levels -");
+    refused("--sensor typed --levels " + (folder / "levels").string() + " </dev/null", 2,
+            "line 3: found 'half', expected a level >= 0");
+    const Called silent = shell(PALPA_PEN_SIMULATOR " --seconds 8 | " + kRecord + "-o " + session +
+                                "2 --sensor netft:127.0.0.1:9 --levels -");
     CHECK(silent.status == 1);
     CHECK(contains(silent.err, "no reading in 5 s"));
 }

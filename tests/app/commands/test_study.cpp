@@ -1,10 +1,9 @@
 // palpa study as a person calls it.
 
-#include <doctest/doctest.h>
-#include <sys/wait.h>
-
 #include <cstdlib>
+#include <doctest/doctest.h>
 #include <filesystem>
+#include <sys/wait.h>
 
 #include "files/json.h"
 #include "files/text.h"
@@ -58,16 +57,25 @@ TEST_CASE("command study watch: who is where, what to present, the marks and the
         std::filesystem::create_directories((folder / name).parent_path());
         write_text_atomically(folder / name, content);
     };
-    text("study.json", R"({"protocol": "n", "version": "1", "sha256": "x", "simulated": false, "simulation_seed": 0, "program": "p"})");
-    text("participants.tsv", "participant_id\tage\tsex\thandedness\tvision\tpalpation_experience\tvr_experience\tgroup\n"
-                             "sub-07\tn/a\tn/a\tn/a\tn/a\tn/a\tn/a\tall\n");
-    text("sub-07/now.json", R"({"participant": "07", "step": "trial", "finished": 0, "of": 4, "trial": 1, "condition": "pen", "practice": false})");
+    text(
+        "study.json",
+        R"({"protocol": "n", "version": "1", "sha256": "x", "simulated": false, "simulation_seed": 0, "program": "p"})");
+    text("participants.tsv",
+         "participant_id\tage\tsex\thandedness\tvision\tpalpation_experience\tvr_experience\tgroup\n"
+         "sub-07\tn/a\tn/a\tn/a\tn/a\tn/a\tn/a\tall\n");
+    text(
+        "sub-07/now.json",
+        R"({"participant": "07", "step": "trial", "finished": 0, "of": 4, "trial": 1, "condition": "pen", "practice": false})");
     const std::string stem = "sub-07/beh/sub-07_task-palpation_run-01_";
-    text(stem + "events.tsv", "onset\ttrial_type\tblock\ttrial\tcondition\n0\tstart\ttest\t1\tpen\n2\tmark\ttest\t1\tpen\n"
-                              "3\tmark\ttest\t1\tpen\n4\tundo\ttest\t1\tpen\n5\tma");  // the last line is being written
+    text(stem + "events.tsv",
+         "onset\ttrial_type\tblock\ttrial\tcondition\n0\tstart\ttest\t1\tpen\n2\tmark\ttest\t1\tpen\n"
+         "3\tmark\ttest\t1\tpen\n4\tundo\ttest\t1\tpen\n5\tma");  // the last line is being written
     text(stem + "samples.tsv", "t_host_s\ttool\tforce_N\n1\tpen\t0.5\n1.1\tpen\t0.75\n1.2\tp");
-    text("sub-09/now.json", R"({"participant": "09", "step": "trial", "finished": 0, "of": 4, "trial": 1, "condition": "pen", "practice": false})");
-    text("sub-09/beh/sub-09_task-palpation_run-01_events.tsv", "onset\ttrial_type\tblock\ttrial\tcondition\n0\tstart\ttest\t1\tpen\n");
+    text(
+        "sub-09/now.json",
+        R"({"participant": "09", "step": "trial", "finished": 0, "of": 4, "trial": 1, "condition": "pen", "practice": false})");
+    text("sub-09/beh/sub-09_task-palpation_run-01_events.tsv",
+         "onset\ttrial_type\tblock\ttrial\tcondition\n0\tstart\ttest\t1\tpen\n");
     const std::filesystem::path samples = "sub-09/beh/sub-09_task-palpation_run-01_samples.tsv";
     const std::string header = "t_host_s\ttool\tx_mm\ty_mm\tpressure\tforce_N\tdepth_mm\n";
     const std::string asked = "3\tmouse\tn/a\tn/a\tn/a\tn/a\tn/a\n";  // a resize, a mark
@@ -77,14 +85,17 @@ TEST_CASE("command study watch: who is where, what to present, the marks and the
     text(samples.string(), header + "1\tpen\t30\t40\t0.5\t2\t3\n" + asked + asked);
     const Called touched = study("watch " + folder.path().string() + " --participant 09");
     CHECK(contains(touched.out, "pen at (30, 40) mm, pressure 0.5, 2 N, 3 mm deep\n"));
-    for (const auto& [now, said] : {std::pair{R"({"step": 3, "finished": 0, "of": 4})", "sub-09/now.json: step: found 3, expected a text"},
-                                    std::pair{R"({"step": "trial", "finished": -1, "of": 4})", "sub-09/now.json: finished: found -1"},
-                                    std::pair{R"({"step": "present", "finished": 0, "of": 4, "present_kPa": []})", "sub-09/now.json: present_kPa"}}) {
+    for (const auto& [now, said] :
+         {std::pair{R"({"step": 3, "finished": 0, "of": 4})", "sub-09/now.json: step: found 3, expected a text"},
+          std::pair{R"({"step": "trial", "finished": -1, "of": 4})", "sub-09/now.json: finished: found -1"},
+          std::pair{R"({"step": "present", "finished": 0, "of": 4, "present_kPa": []})",
+                    "sub-09/now.json: present_kPa"}}) {
         text("sub-09/now.json", now);
         refused("watch " + folder.path().string(), said);
     }
     std::filesystem::remove_all(folder / "sub-09");
-    text("sub-08/now.json", R"({"participant": "08", "step": "present", "finished": 3, "of": 4, "trial": 4, "condition": "by hand",
+    text("sub-08/now.json",
+         R"({"participant": "08", "step": "present", "finished": 3, "of": 4, "trial": 4, "condition": "by hand",
                                 "practice": false, "present_kPa": [1.75, 2], "interval": 1})");
     const Called called = study("watch " + folder.path().string() + " --json");
     REQUIRE(called.status == 0);
@@ -107,7 +118,8 @@ TEST_CASE("command study analyse: counts become tables, JSON and figures") {
     const Json json = parse_json(called.out, "stdout");
     CHECK(json["conditions"]["S-pen"]["se"].get<double>() == doctest::Approx(55.0 / 60.0));
     CHECK(json == read_json(folder / "report/report.json"));
-    for (const char* name : {"sensitivity.tsv", "nodules.tsv", "ppv.tsv", "pairs.tsv", "ppv_pairs.tsv", "report.md", "figures.gp"}) {
+    for (const char* name :
+         {"sensitivity.tsv", "nodules.tsv", "ppv.tsv", "pairs.tsv", "ppv_pairs.tsv", "report.md", "figures.gp"}) {
         CAPTURE(name);
         CHECK(std::filesystem::exists(folder / (std::string("report/") + name)));
     }
@@ -128,7 +140,8 @@ TEST_CASE("command study analyse: counts become tables, JSON and figures") {
 TEST_CASE("command study analyse: bad input ends with status 2 and says what was expected") {
     const TemporaryFolder folder;
     write_text_atomically(folder / "c.tsv", "condition\ttp\tfn\tfp\tn\npen\t61\t0\t0\t60\n");
-    refused("analyse " + (folder / "none.tsv").string(), "none.tsv: found nothing, expected a folder of logs or a table");
+    refused("analyse " + (folder / "none.tsv").string(),
+            "none.tsv: found nothing, expected a folder of logs or a table");
     refused("analyse " + (folder / "c.tsv").string(), "c.tsv: line 2, tp: found '61', expected at most n = 60");
     refused("analyse " + kCounts + " -o " + (folder / "c.tsv").string(), "c.tsv: found no folder");
     refused("analyse " + kCounts + " --level 2", "--level");
@@ -158,7 +171,8 @@ TEST_CASE("command study: a protocol that names a missing scene, map or profile 
     const TemporaryFolder folder;
     const auto with_scene = [&](const std::string& scene, const std::string& more = "") {
         write_text_atomically(folder / "p.json", R"({"name": "n", "version": "1", "seed": 1, "order": "fixed",
-            "conditions": [{"id": "pen", "modality": "pen", "scene": ")" + scene + "\"" + more + "}]}");
+            "conditions": [{"id": "pen", "modality": "pen", "scene": ")" +
+                                                     scene + "\"" + more + "}]}");
         return "order " + (folder / "p.json").string() + " --participants 1";
     };
     write_text_atomically(folder / "s.json", R"({"name": "s", "tissue": {"map": "none.map"}})");
@@ -170,7 +184,8 @@ TEST_CASE("command study: a protocol that names a missing scene, map or profile 
     refused("order " PALPA_SOURCE_DIR "/assets/protocols/paper.json --participants 0", "--participants");
 }
 
-TEST_CASE("command study simulate: simulated people find more with the laws than without, and their logs say what they are") {
+TEST_CASE(
+    "command study simulate: simulated people find more with the laws than without, and their logs say what they are") {
     const TemporaryFolder folder;
     const std::string effects = PALPA_SOURCE_DIR "/assets/protocols/effects.json";
     const std::string log = (folder / "log").string();
@@ -220,15 +235,18 @@ TEST_CASE("command study simulate: simulated people find more with the laws than
     CHECK_FALSE(std::filesystem::exists(lean + "/sub-sim0001/beh/sub-sim0001_task-palpation_run-01_samples.tsv"));
     CHECK(parse_json(study("analyse " + lean + " --json").out, "stdout")["conditions"] == report["conditions"]);
 
-    refused("simulate " + effects + " --participants 24 --seed 2 -o " + log, "seed 1, expected simulated participants of seed 2");
-    refused("simulate " PALPA_SOURCE_DIR "/assets/protocols/paper.json --participants 2 --seed 1 -o " + log, "two versions of a protocol");
+    refused("simulate " + effects + " --participants 24 --seed 2 -o " + log,
+            "seed 1, expected simulated participants of seed 2");
+    refused("simulate " PALPA_SOURCE_DIR "/assets/protocols/paper.json --participants 2 --seed 1 -o " + log,
+            "two versions of a protocol");
     refused("analyse " + folder.path().string(), "found no trial");
 }
 
 TEST_CASE("command study simulate: the paper's protocol leaves hands out; forced choices are logged and analysed") {
     const TemporaryFolder folder;
     const std::string protocols = PALPA_SOURCE_DIR "/assets/protocols/";
-    const Called paper = study("simulate " + protocols + "paper.json --participants 4 -o " + (folder / "p").string() + " --json");
+    const Called paper =
+        study("simulate " + protocols + "paper.json --participants 4 -o " + (folder / "p").string() + " --json");
     REQUIRE(paper.status == 0);
     CHECK(parse_json(paper.out, "stdout")["trials"] == 6);
     CHECK(parse_json(paper.out, "stdout")["left_out"] == 4);
@@ -241,7 +259,9 @@ TEST_CASE("command study simulate: the paper's protocol leaves hands out; forced
     CHECK(choices["choices"].size() == 12);
     CHECK(choices["choices"][0]["n"] == 240);
     CHECK(choices["choices"][0]["t_over_participants"]["df"] == 5.0);
-    const Json again = parse_json(study("simulate " + protocols + "softer.json --participants 6 -o " + (folder / "c").string() + " --json").out, "stdout");
+    const Json again = parse_json(
+        study("simulate " + protocols + "softer.json --participants 6 -o " + (folder / "c").string() + " --json").out,
+        "stdout");
     CHECK(again["trials"] == 0);
     CHECK(again["already_there"] == 480);
 }
@@ -252,16 +272,20 @@ TEST_CASE("command study simulate: a disk that is full or cannot be written stop
         // no file may grow beyond 64 KB, as on a disk that is nearly full: samples do not fit, so no trial is finished
         const TemporaryFolder said;
         const std::string log = (folder / "log").string();
-        const std::string command = "trap '' XFSZ; ulimit -f 128; timeout 60 " PALPA_PROGRAM " study simulate " PALPA_SOURCE_DIR
-                                    "/assets/protocols/effects.json --participants 3 -j 1 -o " + log + " 2>" + (said / "err").string();
+        const std::string command = "trap '' XFSZ; ulimit -f 128; timeout 60 " PALPA_PROGRAM
+                                    " study simulate " PALPA_SOURCE_DIR
+                                    "/assets/protocols/effects.json --participants 3 -j 1 -o " +
+                                    log + " 2>" + (said / "err").string();
         const int status = std::system(command.c_str());
         CHECK(WEXITSTATUS(status) == 1);
-        CHECK(contains(read_text(said / "err"), "could not be written to its end (is the disk full?); the study stops here"));
+        CHECK(contains(read_text(said / "err"),
+                       "could not be written to its end (is the disk full?); the study stops here"));
         const std::string events = read_text(log + "/sub-sim0001/beh/sub-sim0001_task-palpation_run-01_events.tsv");
         CHECK_FALSE(contains(events, "finish"));
         CHECK_FALSE(std::filesystem::exists(log + "/sub-sim0001/beh/sub-sim0001_task-palpation_run-02_events.tsv"));
         // with room again it goes on
-        const Called again = study("simulate " PALPA_SOURCE_DIR "/assets/protocols/effects.json --participants 3 --json -o " + log);
+        const Called again =
+            study("simulate " PALPA_SOURCE_DIR "/assets/protocols/effects.json --participants 3 --json -o " + log);
         CHECK(parse_json(again.out, "stdout")["trials"] == 9);
         CHECK(parse_json(study("analyse " + log + " --json").out, "stdout")["interrupted_trials"] == 1);
     }

@@ -1,12 +1,11 @@
 // Trials begin and end with a press held and a keeper that is busy; the window is off screen.
 
-#include "app/live/live_app.h"
-
 #include <SDL.h>
 #include <doctest/doctest.h>
 
-#include "app/screens/frame.h"
+#include "app/live/live_app.h"
 #include "app/scene_choices.h"
+#include "app/screens/frame.h"
 #include "scene/advance.h"
 
 using namespace palpa;
@@ -20,7 +19,7 @@ using namespace palpa::app;
 namespace {
 
 class BusyKeeper : public TrialKeeper {
- public:
+  public:
     bool busy = true;
     void keep(const RunFiles&, bool) override {}
     void keep_part(const RunFiles&) override {}
@@ -72,7 +71,8 @@ struct Desk {
 
     void show_frame() {
         const Session& s = app.session;
-        draw_frame(s.scene, s.plan, s.trial, app.settings, window.now_s(), 1.0 / 60.0, tissue, gui, app.screens, app.session.state, app.times, app.on_screen);
+        draw_frame(s.scene, s.plan, s.trial, app.settings, window.now_s(), 1.0 / 60.0, tissue, gui, app.screens,
+                   app.session.state, app.times, app.on_screen);
     }
 };
 
@@ -117,7 +117,9 @@ TEST_CASE("live: the tissue of a finished trial is changed while the keeper is b
     act(Action::finish, desk.window.now_s(), desk.app);
     REQUIRE(desk.app.screens.screen == Screen::reveal);
 
-    SUBCASE("for another one") { change_scene(desk.window, desk.gui, PALPA_SOURCE_DIR "/assets/scenes/delay.json", "", desk.app); }
+    SUBCASE("for another one") {
+        change_scene(desk.window, desk.gui, PALPA_SOURCE_DIR "/assets/scenes/delay.json", "", desk.app);
+    }
     SUBCASE("turned") {
         const Mapping before = desk.app.session.scene.mapping;
         turn_tissue(desk.window, desk.app);

@@ -15,14 +15,11 @@ TEST_CASE("ask: everything that ends a trial waits for an answer, a mark of the 
         set(wishes);
         return wishes;
     };
-    const Wishes ending[] = {wish([](Wishes& w) { w.again = true; }),
-                             wish([](Wishes& w) { w.next = true; }),
-                             wish([](Wishes& w) { w.quit = true; }),
-                             wish([](Wishes& w) { w.scene = "delay.json"; }),
-                             wish([](Wishes& w) { w.profile = ""; }),
-                             wish([](Wishes& w) { w.mode = TrialMode::test; }),
-                             wish([](Wishes& w) { w.above_finger = true; }),
-                             wish([](Wishes& w) { w.px_per_mm = kMissing; })};
+    const Wishes ending[] = {
+        wish([](Wishes& w) { w.again = true; }),        wish([](Wishes& w) { w.next = true; }),
+        wish([](Wishes& w) { w.quit = true; }),         wish([](Wishes& w) { w.scene = "delay.json"; }),
+        wish([](Wishes& w) { w.profile = ""; }),        wish([](Wishes& w) { w.mode = TrialMode::test; }),
+        wish([](Wishes& w) { w.above_finger = true; }), wish([](Wishes& w) { w.px_per_mm = kMissing; })};
     for (Wishes wishes : ending) {
         wishes.action = Action::mark;
         Screens screens;

@@ -1,11 +1,9 @@
-#include "app/screens/device_check.h"
-
-#include <doctest/doctest.h>
-
 #include <cmath>
+#include <doctest/doctest.h>
 #include <memory>
 #include <random>
 
+#include "app/screens/device_check.h"
 #include "tests/scene/allocations.h"
 
 using namespace palpa;
@@ -46,7 +44,8 @@ TEST_CASE("device check: a rest is not part of the rate, and host times in a bur
     auto check = std::make_unique<DeviceCheck>();
     for (int i = 0; i < 200; ++i) {
         const double t_s = i / 100.0 + (i >= 100 ? 5.0 : 0.0);
-        Sample sample = pen(std::ceil(t_s * 10.0) / 10.0, i == 0 ? Phase::down : Phase::move, 0.5);  // 10 frames a second
+        Sample sample =
+            pen(std::ceil(t_s * 10.0) / 10.0, i == 0 ? Phase::down : Phase::move, 0.5);  // 10 frames a second
         sample.t_device_s = 77.0 + t_s;
         observe(sample, *check);
     }
@@ -81,7 +80,8 @@ TEST_CASE("device check: fingers count together, each with its own gaps") {
     auto check = std::make_unique<DeviceCheck>();
     for (int i = 0; i < 300; ++i) {
         for (const std::int64_t id : {11, 12, 13}) {
-            Sample sample = pen(0.01 * i + 0.001 * static_cast<double>(id), i == 0 ? Phase::down : Phase::move, 0.001 * i);
+            Sample sample =
+                pen(0.01 * i + 0.001 * static_cast<double>(id), i == 0 ? Phase::down : Phase::move, 0.001 * i);
             sample.tool = Tool::finger;
             sample.pointer_id = id;
             sample.width_px = 9.0;

@@ -1,10 +1,9 @@
 // A frame that would look like what is on the screen is not drawn again; whatever changes is. Off screen.
 
-#include "app/screens/frame.h"
-
 #include <doctest/doctest.h>
 
 #include "app/scene_choices.h"
+#include "app/screens/frame.h"
 #include "scene/advance.h"
 
 using namespace palpa;
@@ -46,7 +45,8 @@ struct Screening {
     }
 
     bool drawn() {
-        draw_frame(session.scene, session.plan, session.trial, settings, now_s, 1.0 / 60.0, tissue, gui, screens, session.state, times, on_screen);
+        draw_frame(session.scene, session.plan, session.trial, settings, now_s, 1.0 / 60.0, tissue, gui, screens,
+                   session.state, times, on_screen);
         return on_screen.drawn;
     }
 

@@ -1,12 +1,11 @@
 // Keys, letters and clicks that come quicker than frames reach the controls, each in its turn. Off screen.
 
-#include "app/screens/gui.h"
-
 #include <SDL.h>
+#include <cstring>
 #include <doctest/doctest.h>
 #include <imgui.h>
 
-#include <cstring>
+#include "app/screens/gui.h"
 
 using namespace palpa;
 using namespace palpa::platform;

@@ -1,11 +1,10 @@
-#include "app/screens/layout.h"
-
-#include <doctest/doctest.h>
-
 #include <algorithm>
 #include <cmath>
+#include <doctest/doctest.h>
 #include <limits>
 #include <utility>
+
+#include "app/screens/layout.h"
 
 using namespace palpa;
 using namespace palpa::app;

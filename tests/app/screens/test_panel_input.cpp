@@ -1,7 +1,6 @@
-#include "app/screens/panel_input.h"
-
 #include <doctest/doctest.h>
 
+#include "app/screens/panel_input.h"
 #include "platform/window_event.h"
 
 using namespace palpa;
@@ -31,7 +30,11 @@ std::string name_of(const PanelInput& input) {
     if (input.kind == Kind::button) return input.down ? "(" : ")";
     if (input.kind == Kind::text) return input.text;
     if (input.kind == Kind::replace) return "[" + input.text + "]";
-    const char* names = input.key == key::backspace ? "bB" : input.key == key::enter ? "eE" : input.key == key::tab ? "tT" : input.key == 'q' ? "qQ" : "sS";
+    const char* names = input.key == key::backspace ? "bB"
+                        : input.key == key::enter   ? "eE"
+                        : input.key == key::tab     ? "tT"
+                        : input.key == 'q'          ? "qQ"
+                                                    : "sS";
     return {names[input.down ? 1 : 0]};
 }
 
@@ -59,14 +62,16 @@ TEST_CASE("panel input: every press of a key gets its frame, and its release ano
 }
 
 TEST_CASE("panel input: letters, Backspace and Enter stay in order") {
-    CHECK(frames_of({text_input("1"), text_input("2"), key_input(B, true), key_input(B, false), text_input("3"), key_input(E, true)}) ==
-          "12B|b3E");
-    CHECK(frames_of({key_input('q', true), text_input("#"), key_input('q', false), key_input('q', true), text_input("#")}) == "Q#|q|Q#");
+    CHECK(frames_of({text_input("1"), text_input("2"), key_input(B, true), key_input(B, false), text_input("3"),
+                     key_input(E, true)}) == "12B|b3E");
+    CHECK(frames_of({key_input('q', true), text_input("#"), key_input('q', false), key_input('q', true),
+                     text_input("#")}) == "Q#|q|Q#");
     CHECK(frames_of({key_input(B, true), text_input("3")}) == "B|3");
 }
 
 TEST_CASE("panel input: a modifier does not leave the key that it goes with") {
-    CHECK(frames_of({key_input(S, true, true), key_input(T, true, true), key_input(S, false), key_input(T, false)}) == "ST|st");
+    CHECK(frames_of({key_input(S, true, true), key_input(T, true, true), key_input(S, false), key_input(T, false)}) ==
+          "ST|st");
 }
 
 TEST_CASE("panel input: each press and release of a button stands alone") {

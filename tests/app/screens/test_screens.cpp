@@ -1,15 +1,14 @@
 // Every screen at the sizes of desks and tablets: nothing blank, nothing that does not fit. Drawn without a display.
 
+#include <algorithm>
 #include <doctest/doctest.h>
+#include <limits>
 #include <png.h>
+#include <set>
 #include <stdlib.h>
 
-#include <algorithm>
-#include <limits>
-#include <set>
-
-#include "app/screens/frame.h"
 #include "app/scene_choices.h"
+#include "app/screens/frame.h"
 #include "app/screens/map_screen.h"
 #include "app/study/study_run.h"
 #include "scene/advance.h"
@@ -81,7 +80,8 @@ struct Case {
     bool above_finger = false;
 };
 
-void check_case(const Session& session, Screens screens, const Case& c, const std::string& name, const TemporaryFolder& folder) {
+void check_case(const Session& session, Screens screens, const Case& c, const std::string& name,
+                const TemporaryFolder& folder) {
     CAPTURE(name);
     CAPTURE(c.width_px);
     CAPTURE(c.height_px);
@@ -91,7 +91,8 @@ void check_case(const Session& session, Screens screens, const Case& c, const st
     screens.px_per_mm = c.px_per_mm;
     State state = session.state;
     const float mm = control_scale(c.px_per_mm, static_cast<float>(c.width_px), static_cast<float>(c.height_px));
-    const Layout layout = layout_of(static_cast<float>(c.width_px), static_cast<float>(c.height_px), mm, c.left_handed, c.above_finger);
+    const Layout layout =
+        layout_of(static_cast<float>(c.width_px), static_cast<float>(c.height_px), mm, c.left_handed, c.above_finger);
     const PanelArea& t = layout.tissue_px;
     Sample resize;
     resize.phase = Phase::ui;
@@ -102,20 +103,22 @@ void check_case(const Session& session, Screens screens, const Case& c, const st
     resize.height_px = static_cast<double>(t.height());
     advance(session.scene, session.plan, resize, state);
     const auto file = folder / "p.png";
-    const std::string overflow = draw_picture(session.scene, session.plan, session.trial, settings, screens, c.width_px, c.height_px, state, file);
+    const std::string overflow = draw_picture(session.scene, session.plan, session.trial, settings, screens, c.width_px,
+                                              c.height_px, state, file);
     CHECK(overflow == "");
     const Picture picture = read_png(file);
     CHECK(picture.width == c.width_px);
     constexpr std::size_t kTextHas = 40;  // colours of smoothed letters
-    const bool covers_all = screens.screen == Screen::scale || screens.screen == Screen::devices || screens.screen == Screen::study ||
-                            screens.screen == Screen::maps || screens.asked;
+    const bool covers_all = screens.screen == Screen::scale || screens.screen == Screen::devices ||
+                            screens.screen == Screen::study || screens.screen == Screen::maps || screens.asked;
     const PanelArea all{0.0f, 0.0f, static_cast<float>(c.width_px), static_cast<float>(c.height_px)};
     if (layout.controls) CHECK(colours_in(picture, covers_all ? all : layout.controls_px) > kTextHas);
     CHECK(colours_in(picture, covers_all ? all : layout.tissue_px) > kTextHas);
     if (const char* keep = ::getenv("PALPA_KEEP_PICTURES")) {
         const std::string size = std::to_string(c.width_px) + "x" + std::to_string(c.height_px);
-        std::filesystem::copy_file(file, std::filesystem::path(keep) / (name + "-" + size + (c.left_handed ? "-left" : "") + ".png"),
-                                   std::filesystem::copy_options::overwrite_existing);
+        std::filesystem::copy_file(
+            file, std::filesystem::path(keep) / (name + "-" + size + (c.left_handed ? "-left" : "") + ".png"),
+            std::filesystem::copy_options::overwrite_existing);
     }
 }
 
@@ -173,9 +176,13 @@ TEST_CASE("screens: every screen fits and is drawn at the sizes of desks and tab
     maps.maps->quantity = MapQuantity::normal;
 
     constexpr double kTablet_px_per_mm = 11.8;  // 10.1 inch with 2560 x 1600
-    const Case cases[] = {{1280, 800, kMissing, false}, {800, 1280, kMissing, false}, {2560, 1600, kMissing, true},
-                          {2560, 1600, kTablet_px_per_mm, false, true}, {1600, 2560, kTablet_px_per_mm, false},
-                          {1024, 600, kMissing, true}, {200, 100, kMissing, false}};
+    const Case cases[] = {{1280, 800, kMissing, false},
+                          {800, 1280, kMissing, false},
+                          {2560, 1600, kMissing, true},
+                          {2560, 1600, kTablet_px_per_mm, false, true},
+                          {1600, 2560, kTablet_px_per_mm, false},
+                          {1024, 600, kMissing, true},
+                          {200, 100, kMissing, false}};
     for (const Case& c : cases) {
         check_case(session, trial, c, "trial", folder);
         if (c.width_px < 600) continue;  // panels need some room
@@ -208,7 +215,10 @@ TEST_CASE("screens: every step of a study fits, and none tells where the nodules
     run->stopped = "log: found 12 MB free, expected 64 MB for a trial; the study stops here";
     Screens screens;
     screens.study = run;
-    const Case cases[] = {{1280, 800, kMissing, false}, {800, 1280, kMissing, false}, {2560, 1600, 11.8, false}, {1024, 600, kMissing, true}};
+    const Case cases[] = {{1280, 800, kMissing, false},
+                          {800, 1280, kMissing, false},
+                          {2560, 1600, 11.8, false},
+                          {1024, 600, kMissing, true}};
     for (const Case& c : cases) {
         for (int step = 0; step <= static_cast<int>(StudyStep::stopped); ++step) {
             run->step = static_cast<StudyStep>(step);
@@ -224,8 +234,10 @@ TEST_CASE("screens: every step of a study fits, and none tells where the nodules
         }
         // on a tablet there is more to do between people, and a step may have to wait
         run->on_tablet = true;
-        run->warnings = {"Trial sub-07_task-palpation_run-03 is not kept: the storage of this browser is full. Menu, Trials, Export saves it "
-                         "to a file; the next trial waits for that."};
+        run->warnings = {
+            "Trial sub-07_task-palpation_run-03 is not kept: the storage of this browser is full. Menu, Trials, Export "
+            "saves it "
+            "to a file; the next trial waits for that."};
         for (const StudyStep step : {StudyStep::code, StudyStep::done, StudyStep::stopped}) {
             run->step = step;
             run->answers.clear();
@@ -244,7 +256,8 @@ TEST_CASE("screens: every step of a study fits, and none tells where the nodules
     }
 }
 
-TEST_CASE("screens: the map browser shows every kind of matrix, cells that were not measured, placed and detected nodules") {
+TEST_CASE(
+    "screens: the map browser shows every kind of matrix, cells that were not measured, placed and detected nodules") {
     const TemporaryFolder folder;
     Session session;
     session.scene = load_scene("");
@@ -255,9 +268,11 @@ TEST_CASE("screens: the map browser shows every kind of matrix, cells that were 
     screens.maps = make_map_browser(session.scene, map_choices());
     Map& map = screens.maps->map;
     for (std::size_t cell = 0; cell < map.n_cells(); ++cell) {
-        if (cell % map.n_x < 20 && cell / map.n_x < 12) screens.maps->stiffness_N_per_m[cell] = std::numeric_limits<double>::quiet_NaN();
+        if (cell % map.n_x < 20 && cell / map.n_x < 12)
+            screens.maps->stiffness_N_per_m[cell] = std::numeric_limits<double>::quiet_NaN();
     }
-    for (std::size_t k = 0; k < map.n_depths(); ++k) map.normal_N[k * map.n_cells() + 700] = std::numeric_limits<float>::quiet_NaN();
+    for (std::size_t k = 0; k < map.n_depths(); ++k)
+        map.normal_N[k * map.n_cells() + 700] = std::numeric_limits<float>::quiet_NaN();
     Nodule found;
     found.id = "D1";
     found.placed = false;

@@ -1,7 +1,6 @@
-#include "app/screens/settings.h"
-
 #include <doctest/doctest.h>
 
+#include "app/screens/settings.h"
 #include "files/text.h"
 #include "tests/error_message.h"
 #include "tests/temporary_folder.h"

@@ -1,15 +1,13 @@
 // app/screens/words.h has all words that screens show, and none that nothing shows.
 
-#include "app/screens/words.h"
-
-#include <doctest/doctest.h>
-
 #include <cctype>
+#include <doctest/doctest.h>
 #include <filesystem>
 #include <regex>
 #include <string>
 #include <vector>
 
+#include "app/screens/words.h"
 #include "files/text.h"
 
 using namespace palpa;
@@ -30,7 +28,8 @@ std::vector<fs::path> sources_of_screens() {
     std::vector<fs::path> out;
     for (const auto& entry : fs::directory_iterator(kApp)) {
         const std::string name = entry.path().filename().string();
-        const bool screen = ends_with(name, "_screen.cpp") || name.rfind("live", 0) == 0 || name == "menu.cpp" || name == "map_drawing.cpp" || name == "look.cpp";
+        const bool screen = ends_with(name, "_screen.cpp") || name.rfind("live", 0) == 0 || name == "menu.cpp" ||
+                            name == "map_drawing.cpp" || name == "look.cpp";
         if (screen && ends_with(name, ".cpp")) out.push_back(entry.path());
     }
     for (const auto& entry : fs::directory_iterator(kApp / "web")) {
@@ -48,7 +47,9 @@ bool is_prose(const std::string& literal) {
 
 // Names of panels, and messages about files, which are with what reports them.
 bool is_other(const std::string& line) {
-    static const std::regex other("_panel\\(|BeginChild\\(|throw |bad_input|catch|console\\.|getElementById|addEventListener|'use strict'|headers|Authorization|\\.key |\\.name ===|json\\[|result\\[");
+    static const std::regex other(
+        "_panel\\(|BeginChild\\(|throw |bad_input|catch|console\\.|getElementById|addEventListener|'use "
+        "strict'|headers|Authorization|\\.key |\\.name ===|json\\[|result\\[");
     return std::regex_search(line, other);
 }
 
@@ -81,7 +82,8 @@ TEST_CASE("words: every word is shown somewhere") {
     std::string all;
     for (const auto& entry : fs::recursive_directory_iterator(kApp)) {
         const std::string name = entry.path().filename().string();
-        if (ends_with(name, ".cpp") || ends_with(name, ".js") || ends_with(name, ".html")) all += read_text(entry.path());
+        if (ends_with(name, ".cpp") || ends_with(name, ".js") || ends_with(name, ".html"))
+            all += read_text(entry.path());
     }
     const std::string words = read_text(kApp / "words.h");
     static const std::regex constant("const char\\* (k|page)([A-Za-z0-9]+) =");

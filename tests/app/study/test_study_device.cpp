@@ -1,6 +1,6 @@
-#include "app/study/study_device.h"
-
 #include <doctest/doctest.h>
+
+#include "app/study/study_device.h"
 
 using namespace palpa;
 using namespace palpa::platform;
@@ -15,5 +15,6 @@ TEST_CASE("study device: a pen's trial needs a pen, a finger's a touch screen, t
     CHECK_FALSE(device_here(Modality::pen, {mouse, touch}));
     CHECK(device_here(Modality::finger, {touch}));
     CHECK_FALSE(device_here(Modality::finger, {mouse, pen}));
-    for (const Modality other : {Modality::mouse, Modality::hand, Modality::shape_display}) CHECK(device_here(other, {}));
+    for (const Modality other : {Modality::mouse, Modality::hand, Modality::shape_display})
+        CHECK(device_here(other, {}));
 }

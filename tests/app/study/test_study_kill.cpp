@@ -1,16 +1,15 @@
 // A simulated study is killed at random moments: no finished trial is lost, every file can be read, and it goes on.
 
-#include <doctest/doctest.h>
-#include <fcntl.h>
-#include <signal.h>
-#include <sys/wait.h>
-#include <unistd.h>
-
 #include <chrono>
 #include <cstdlib>
+#include <doctest/doctest.h>
+#include <fcntl.h>
 #include <filesystem>
 #include <map>
+#include <signal.h>
+#include <sys/wait.h>
 #include <thread>
+#include <unistd.h>
 
 #include "files/json.h"
 #include "files/text.h"
@@ -39,8 +38,8 @@ pid_t start_study(const fs::path& log) {
     const int nowhere = open("/dev/null", O_RDWR);
     for (const int stream : {0, 1, 2}) dup2(nowhere, stream);
     const std::string people = std::to_string(kParticipants);
-    execl(PALPA_PROGRAM, PALPA_PROGRAM, "study", "simulate", kProtocol.c_str(), "--participants", people.c_str(), "--seed", "3",
-          "-o", log.c_str(), "-j", "2", nullptr);
+    execl(PALPA_PROGRAM, PALPA_PROGRAM, "study", "simulate", kProtocol.c_str(), "--participants", people.c_str(),
+          "--seed", "3", "-o", log.c_str(), "-j", "2", nullptr);
     _exit(127);
 }
 

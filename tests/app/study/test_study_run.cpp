@@ -1,11 +1,9 @@
 // The steps of a study with people, without a screen.
 
-#include "app/study/study_run.h"
-
 #include <doctest/doctest.h>
-
 #include <filesystem>
 
+#include "app/study/study_run.h"
 #include "files/input_error.h"
 #include "files/text.h"
 #include "study/ratings.h"
@@ -28,9 +26,11 @@ namespace {
 const std::string kScene = PALPA_SOURCE_DIR "/assets/scenes/default.json";
 
 Protocol find_protocol(const TemporaryFolder& folder) {
-    write_text_atomically(folder / "p.json", R"({"name": "n", "version": "1", "seed": 1, "order": "fixed", "time_limit_s": 60,
+    write_text_atomically(folder / "p.json",
+                          R"({"name": "n", "version": "1", "seed": 1, "order": "fixed", "time_limit_s": 60,
         "practice": {"trials": 1}, "break_every_trials": 1, "instructions": "Find them.",
-        "conditions": [{"id": "pen", "modality": "pen", "scene": ")" + kScene + R"("},
+        "conditions": [{"id": "pen", "modality": "pen", "scene": ")" +
+                              kScene + R"("},
                        {"id": "hand", "modality": "hand", "nodules": ["A", "B"]}],
         "demographics": [{"id": "age", "text": "Age", "from": 0, "to": 100}, {"id": "shoes", "text": "Shoes", "choices": ["a", "b"]}],
         "ratings": [{"id": "effort", "text": "It was tiring.", "from": 1, "to": 7}]})");
@@ -103,7 +103,8 @@ TEST_CASE("study run: from the code to the thanks, everything in the log") {
             rate(run, "6");
         }
     }
-    CHECK(steps == "instructions trial instructions trial ratings instructions typed pause instructions typed ratings ");
+    CHECK(steps ==
+          "instructions trial instructions trial ratings instructions typed pause instructions typed ratings ");
     CHECK(read_text(log / "participants.tsv").find("sub-P7\t33\tn/a\tn/a\tn/a\tn/a\tn/a\tall\n") != std::string::npos);
     const Observations seen = read_study(log);
     CHECK(seen.notes.empty());
@@ -116,7 +117,8 @@ TEST_CASE("study run: from the code to the thanks, everything in the log") {
     CHECK(settings["study"]["map_sha256"].contains("normal_N.npy"));
     CHECK(settings["study"].contains("simulated") == false);
     CHECK(read_json(log / "sub-P7/now.json")["step"] == "done");
-    CHECK(contains(message_of([&] { open_study_run(find_protocol(folder), log, "P7"); }), "found 'P7', who has finished all trials"));
+    CHECK(contains(message_of([&] { open_study_run(find_protocol(folder), log, "P7"); }),
+                   "found 'P7', who has finished all trials"));
     enter_code("P7", run);
     CHECK(contains(run.note, "take a new code"));
     CHECK(free_code(run) == "02");
@@ -184,7 +186,8 @@ TEST_CASE("study run: a crash in the middle of a trial costs that trial, nothing
 TEST_CASE("study run: forced choices, both surfaces harder and softer versions of one tissue") {
     const TemporaryFolder folder;
     write_text_atomically(folder / "p.json", R"({"name": "n", "version": "1", "seed": 4, "order": "fixed",
-        "conditions": [{"id": "pen", "modality": "pen", "scene": ")" + kScene + R"("}],
+        "conditions": [{"id": "pen", "modality": "pen", "scene": ")" +
+                                                 kScene + R"("}],
         "choice": {"reference_kPa": 10, "comparisons_kPa": [5, 20], "repeats": 2}})");
     const Protocol protocol = read_protocol(folder / "p.json");
     StudyRun run = open_study_run(protocol, folder / "log", "01");
@@ -288,7 +291,8 @@ TEST_CASE("study run: a trial waits for its device, and one that the device left
 
 TEST_CASE("study run: forced choices without a scene are presented by the experimenter, who is told what") {
     const TemporaryFolder folder;
-    StudyRun run = open_study_run(read_protocol(PALPA_SOURCE_DIR "/assets/protocols/softer.json"), folder / "log", "01");
+    StudyRun run =
+        open_study_run(read_protocol(PALPA_SOURCE_DIR "/assets/protocols/softer.json"), folder / "log", "01");
     begin_step(run);
     REQUIRE(run.step == StudyStep::present);
     const Json now = read_json(folder / "log/sub-01/now.json");
@@ -310,5 +314,6 @@ TEST_CASE("study run: a folder that cannot be written stops the study in words, 
     enter_code("09", run);
     CHECK(run.step == StudyStep::stopped);
     CHECK_FALSE(run.stopped.empty());
-    CHECK(contains(message_of([&] { open_study_run(find_protocol(folder), log, "a b"); }), "--participant: found 'a b'"));
+    CHECK(
+        contains(message_of([&] { open_study_run(find_protocol(folder), log, "a b"); }), "--participant: found 'a b'"));
 }

@@ -1,8 +1,7 @@
 // The snippets of docs/study.md run as they stand there, on logs of a simulated study.
 
-#include <doctest/doctest.h>
-
 #include <cstdlib>
+#include <doctest/doctest.h>
 #include <filesystem>
 
 #include "files/json.h"
@@ -53,8 +52,8 @@ TEST_CASE("study snippets: pandas reads the logs as the analysis does") {
     for (const ConditionResult& condition : report.conditions) {
         CAPTURE(condition.name);
         CAPTURE(table);
-        CHECK(contains(table, condition.name + "\t" + std::to_string(condition.tp) + ".0\t" + std::to_string(condition.fn) + ".0\t" +
-                                  std::to_string(condition.fp) + ".0\t"));
+        CHECK(contains(table, condition.name + "\t" + std::to_string(condition.tp) + ".0\t" +
+                                  std::to_string(condition.fn) + ".0\t" + std::to_string(condition.fp) + ".0\t"));
     }
 }
 

@@ -98,17 +98,11 @@ InputDevice::InputDevice(const std::string& socket_path) : socket_(connect_to(so
     receive_message<xf86ITResponseServerVersion>(socket_, "no answer (is another client connected?)");
 }
 
-InputDevice::~InputDevice() {
-    ::close(socket_);
-}
+InputDevice::~InputDevice() { ::close(socket_); }
 
-void InputDevice::move_to(Axes axes) {
-    motion(socket_, true, axes);
-}
+void InputDevice::move_to(Axes axes) { motion(socket_, true, axes); }
 
-void InputDevice::move_by(Axes axes) {
-    motion(socket_, false, axes);
-}
+void InputDevice::move_by(Axes axes) { motion(socket_, false, axes); }
 
 void InputDevice::button(int number, bool pressed, Axes axes) {
     auto message = new_message<xf86ITEventButton>(XF86IT_EVENT_BUTTON);
@@ -136,9 +130,7 @@ void InputDevice::proximity(bool in, Axes axes) {
 void InputDevice::touch(std::uint32_t id, Touch what, Axes axes) {
     auto message = new_message<xf86ITEventTouch>(XF86IT_EVENT_TOUCH);
     message.touchid = id;
-    message.touch_type = what == Touch::begin    ? XI_TouchBegin
-                         : what == Touch::update ? XI_TouchUpdate
-                                                 : XI_TouchEnd;
+    message.touch_type = what == Touch::begin ? XI_TouchBegin : what == Touch::update ? XI_TouchUpdate : XI_TouchEnd;
     set_axes(axes, message.valuators);
     send_message(socket_, message);
 }

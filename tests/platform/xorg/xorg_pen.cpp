@@ -85,12 +85,8 @@ InputDevice& device(std::unique_ptr<InputDevice>& slot, const char* variable) {
     return *slot;
 }
 
-double x_counts(const Row& row) {
-    return row.x_px / kScreenWidth_px * kAxisCounts;
-}
-double y_counts(const Row& row) {
-    return row.y_px / kScreenHeight_px * kAxisCounts;
-}
+double x_counts(const Row& row) { return row.x_px / kScreenWidth_px * kAxisCounts; }
+double y_counts(const Row& row) { return row.y_px / kScreenHeight_px * kAxisCounts; }
 
 void play_pen(const Row& row, Devices& devices) {
     InputDevice& pen = device(devices.pen, "XORG_PEN");
@@ -162,7 +158,9 @@ void play(const Row& row, Devices& devices) {
 // start_s: when t_s = 0 is, on the steady clock; 0: now.
 void run(std::istream& in, double start_s) {
     using Clock = std::chrono::steady_clock;
-    const auto seconds = [](double s) { return std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(s)); };
+    const auto seconds = [](double s) {
+        return std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(s));
+    };
     const std::vector<Row> rows = read_script(in);
     Devices devices;
     double late_s = 0.0;
@@ -193,8 +191,7 @@ void set_enabled(const std::string& name, unsigned char enabled) {
     Display* display = XOpenDisplay(nullptr);
     if (display == nullptr) throw std::runtime_error("no X server at DISPLAY");
     const Atom property = XInternAtom(display, "Device Enabled", False);
-    XIChangeProperty(display, device_id(display, name), property, XA_INTEGER, 8, XIPropModeReplace, &enabled,
-                     1);
+    XIChangeProperty(display, device_id(display, name), property, XA_INTEGER, 8, XIPropModeReplace, &enabled, 1);
     XCloseDisplay(display);
 }
 

@@ -1,15 +1,13 @@
 // `palpa maps generate` as it is called: jobs, parts, a kill in the middle, damaged pieces, bad input.
 
-#include "stiffnessmaps/generate/generate.h"
-
 #include <doctest/doctest.h>
+#include <filesystem>
 #include <sys/wait.h>
 
-#include <filesystem>
-
-#include "stiffnessmaps/generate/pieces.h"
 #include "files/text.h"
 #include "stiffnessmaps/field.h"
+#include "stiffnessmaps/generate/generate.h"
+#include "stiffnessmaps/generate/pieces.h"
 #include "stiffnessmaps/map_file.h"
 #include "tests/error_message.h"
 #include "tests/temporary_folder.h"
@@ -42,20 +40,25 @@ struct Called {
 };
 
 class Bench : public TemporaryFolder {
- public:
+  public:
     Bench() { write_text_atomically(*this / "p.json", kPhantom); }
     std::string call(const std::string& map, const std::string& options) const {
-        return " " PALPA_PROGRAM " maps generate " + (*this / "p.json").string() + " --coarseness 4 -o " + (*this / map).string() + " " + options;
+        return " " PALPA_PROGRAM " maps generate " + (*this / "p.json").string() + " --coarseness 4 -o " +
+               (*this / map).string() + " " + options;
     }
     Called shell(const std::string& command) const {
-        const int status = std::system((command + " >" + (*this / "out").string() + " 2>" + (*this / "err").string() + " </dev/null").c_str());
+        const int status = std::system(
+            (command + " >" + (*this / "out").string() + " 2>" + (*this / "err").string() + " </dev/null").c_str());
         return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_text(*this / "err")};
     }
-    Called generate(const std::string& map, const std::string& options) const { return shell("timeout 120" + call(map, options)); }
+    Called generate(const std::string& map, const std::string& options) const {
+        return shell("timeout 120" + call(map, options));
+    }
     // All bytes of a map but its name, which is the phantom's.
     std::string bytes(const std::string& map) const {
         std::string all;
-        for (const char* file : {"map.json", "normal_N.npy", "tangential_x_N.npy", "tangential_y_N.npy"}) all += read_text(*this / map / file);
+        for (const char* file : {"map.json", "normal_N.npy", "tangential_x_N.npy", "tangential_y_N.npy"})
+            all += read_text(*this / map / file);
         return all;
     }
 };
@@ -73,7 +76,10 @@ TEST_CASE("generate: one process, two, parts that are joined, all give the same 
     const Called early = bench.generate("parts.map", "--merge");
     CHECK(early.status == 1);
     CHECK(contains(early.err, "5 of 10 lines are not there yet (first: line 0)"));
-    CHECK(bench.shell("SLURM_ARRAY_TASK_ID=3 SLURM_ARRAY_TASK_MIN=3 SLURM_ARRAY_TASK_COUNT=2 timeout 120" + bench.call("parts.map", "")).status == 0);
+    CHECK(bench
+              .shell("SLURM_ARRAY_TASK_ID=3 SLURM_ARRAY_TASK_MIN=3 SLURM_ARRAY_TASK_COUNT=2 timeout 120" +
+                     bench.call("parts.map", ""))
+              .status == 0);
     CHECK(bench.generate("parts.map", "--merge").status == 0);
     CHECK(bench.bytes("parts.map") == bench.bytes("one.map"));
 
@@ -84,13 +90,16 @@ TEST_CASE("generate: one process, two, parts that are joined, all give the same 
     CHECK(contains(map.source.how, "Estimated error of the meshes: "));
     CHECK(contains(map.source.how, "times coarser"));
     CHECK_FALSE(fs::exists(bench / "one.map.estimate"));
-    const auto at = [&](const std::vector<float>& array, std::size_t i) { return array[map.n_cells() + 4 * map.n_x + i]; };
+    const auto at = [&](const std::vector<float>& array, std::size_t i) {
+        return array[map.n_cells() + 4 * map.n_x + i];
+    };
     CHECK(at(map.normal_N, 10) > 1.1f * at(map.normal_N, 3));  // over the nodule
     CHECK(at(map.tangential_x_N, 8) > 0.01f);                  // before it
     CHECK(at(map.tangential_x_N, 12) < -0.01f);                // behind it
 }
 
-TEST_CASE("generate: killed in the middle, it goes on from what is finished; damaged and foreign pieces are made again") {
+TEST_CASE(
+    "generate: killed in the middle, it goes on from what is finished; damaged and foreign pieces are made again") {
     const Bench bench;
     CHECK(bench.generate("whole.map", "--jobs 2").status == 0);
     const std::string pieces = (bench / "k.map.lines").string();
@@ -118,9 +127,11 @@ TEST_CASE("generate: killed in the middle, it goes on from what is finished; dam
     CHECK(bench.bytes("f.map") != bench.bytes("whole.map"));
 }
 
-TEST_CASE("generate: a cylinder that slides with friction, in one process or two, checked, looked up in both directions") {
+TEST_CASE(
+    "generate: a cylinder that slides with friction, in one process or two, checked, looked up in both directions") {
     const Bench bench;
-    const std::string sliding = replaced(replaced(kPhantom, "rolling\"", "sliding\", \"friction\": 0.3"), "\"sphere\"", "\"cylinder\", \"length_mm\": 6");
+    const std::string sliding = replaced(replaced(kPhantom, "rolling\"", "sliding\", \"friction\": 0.3"), "\"sphere\"",
+                                         "\"cylinder\", \"length_mm\": 6");
     write_text_atomically(bench / "p.json", sliding);
     CHECK(bench.generate("one.map", "--jobs 1").status == 0);
     CHECK(bench.generate("two.map", "--jobs 2").status == 0);
@@ -128,10 +139,13 @@ TEST_CASE("generate: a cylinder that slides with friction, in one process or two
     const Map map = read_map(bench / "one.map");
     CHECK(map.tangential == TangentialKind::recorded);
     CHECK(map.indenter == IndenterShape::cylinder);
-    for (const char* words : {"cylinder 6 mm long", "slides steadily with a friction coefficient of 0.3", "for motion along -x and -y friction has the other sign"}) {
+    for (const char* words : {"cylinder 6 mm long", "slides steadily with a friction coefficient of 0.3",
+                              "for motion along -x and -y friction has the other sign"}) {
         CHECK(contains(map.source.how, words));
     }
-    const auto at = [&](const std::vector<float>& array, std::size_t i) { return array[map.n_cells() + 4 * map.n_x + i]; };
+    const auto at = [&](const std::vector<float>& array, std::size_t i) {
+        return array[map.n_cells() + 4 * map.n_x + i];
+    };
     const auto share = [&](std::size_t i) { return at(map.tangential_x_N, i) / at(map.normal_N, i); };
     CHECK(share(8) > 0.3f);   // friction, and uphill before the nodule
     CHECK(share(12) < 0.3f);  // and downhill behind it
@@ -161,7 +175,8 @@ TEST_CASE("generate: a cylinder that slides with friction, in one process or two
 
 TEST_CASE("generate: bad input ends with status 2 and says what was expected") {
     const Bench bench;
-    const auto refused = [&](const std::string& from, const std::string& to, const std::string& options, const char* words) {
+    const auto refused = [&](const std::string& from, const std::string& to, const std::string& options,
+                             const char* words) {
         write_text_atomically(bench / "p.json", replaced(kPhantom, from, to));
         const Called called = bench.generate("n.map", options);
         CAPTURE(called.err);
@@ -171,8 +186,10 @@ TEST_CASE("generate: bad input ends with status 2 and says what was expected") {
         CHECK_FALSE(fs::exists(bench / "n.map.lines"));  // nothing was computed
     };
     refused("rolling\"", "sliding\", \"friction\": -0.3", "", "indenter.friction: found -0.3");
-    refused("rolling\"", "sliding\", \"friction\": 0.3", "--method analytic", "indenter.friction: found 0.3, expected 0 with --method analytic");
-    refused("\"sphere\"", "\"cylinder\", \"length_mm\": 5", "--method analytic", "indenter.shape: found cylinder, expected sphere with --method analytic");
+    refused("rolling\"", "sliding\", \"friction\": 0.3", "--method analytic",
+            "indenter.friction: found 0.3, expected 0 with --method analytic");
+    refused("\"sphere\"", "\"cylinder\", \"length_mm\": 5", "--method analytic",
+            "indenter.shape: found cylinder, expected sphere with --method analytic");
     refused("\"sphere\"", "\"cylinder\"", "", "length_mm");
     refused("\"sphere\"", "\"cylinder\", \"length_mm\": 0.01", "", "a quarter of the nodes' spacing");
     refused("[1, 2]", "[1, 12]", "", "depths less than the thickness, 12 mm");
@@ -180,20 +197,26 @@ TEST_CASE("generate: bad input ends with status 2 and says what was expected") {
     refused("0.45, \"assumed\"", "0.5, \"assumed\"", "", "poisson");
     refused("40000", "-1", "", "young_Pa");
     refused("[21, 10]", "[9, 10]", "", "p.json: nodules A: found x 20, y 18 mm, expected a place on the map");
-    refused("}],", "}, {\"id\": \"B\", \"centre_mm\": [22, 18, 6], \"diameter_mm\": 6, \"young_Pa\": 2e6, \"poisson\": 0.45}],", "", "overlap");
+    refused(
+        "}],",
+        "}, {\"id\": \"B\", \"centre_mm\": [22, 18, 6], \"diameter_mm\": 6, \"young_Pa\": 2e6, \"poisson\": 0.45}],",
+        "", "overlap");
     // out of reach: told before a mesh is made
     refused("[1, 2]", "[1e-6]", "", "depths_mm: found 1e-06, which needs");
-    refused("[2, 4], \"count\": [21, 10]", "[0.004, 0.003], \"count\": [10000, 10000]", "", "grid.count: found 2e+08 forces");
+    refused("[2, 4], \"count\": [21, 10]", "[0.004, 0.003], \"count\": [10000, 10000]", "",
+            "grid.count: found 2e+08 forces");
     const auto out_of_reach = [&](const std::string& from, const std::string& to, const char* words) {
         write_text_atomically(bench / "p.json", replaced(kPhantom, from, to));
-        const Called called = bench.shell("timeout 60 " PALPA_PROGRAM " maps generate " + (bench / "p.json").string() + " -o " + (bench / "n.map").string());
+        const Called called = bench.shell("timeout 60 " PALPA_PROGRAM " maps generate " + (bench / "p.json").string() +
+                                          " -o " + (bench / "n.map").string());
         CAPTURE(called.err);
         CHECK(called.status == 2);
         CHECK(contains(called.err, words));
         CHECK(contains(called.err, "expected at least 0."));
         CHECK_FALSE(fs::exists(bench / "n.map.lines"));
     };
-    out_of_reach("\"diameter_mm\": 6", "\"diameter_mm\": 0.01", "p.json: nodules[0].diameter_mm: found 0.01, which needs a mesh of");
+    out_of_reach("\"diameter_mm\": 6", "\"diameter_mm\": 0.01",
+                 "p.json: nodules[0].diameter_mm: found 0.01, which needs a mesh of");
     out_of_reach("\"radius_mm\": 3", "\"radius_mm\": 0.001", "indenter.radius_mm: found 0.001, which needs");
     refused("40000", "40000", "--part 3/2", "i/n with 1 <= i <= n");
     CHECK(message_of([] { parse_part("2"); }) != "");
