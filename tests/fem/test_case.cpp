@@ -463,7 +463,7 @@ TEST_CASE("case: far out of the linear range the gauge is red") {
 
 TEST_CASE("case: every bad file is refused with the words of its first line") {
     int files = 0;
-    for (const auto& entry : std::filesystem::directory_iterator(PALPA_SOURCE_DIR "/tests/app/bad_cases")) {
+    for (const auto& entry : std::filesystem::directory_iterator(PALPA_SOURCE_DIR "/tests/fem/bad_cases")) {
         if (entry.path().extension() != ".json") continue;
         ++files;
         const std::string text = read_text(entry.path());

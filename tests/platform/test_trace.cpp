@@ -90,7 +90,7 @@ TEST_CASE("hard case 31: a trace with wrong names, numbers, columns or no sideca
     CHECK(contains(said("tilt_x_deg", "tilt"), "expected a column 'tilt_x_deg'"));
     CHECK(contains(said("\tfinger", ""), "line 2: found 13 fields, expected 14"));
     CHECK(contains(said("1280.0", "0.5", "t.json"), "t.json: screen_px: found 0.5"));
-    CHECK(contains(said("screen_px", "screen", "t.json"), "t.json: screen_px: found nothing"));
+    CHECK(contains(said("screen_px", "screen", "t.json"), "t.json: screen: found an unknown key"));
     const TemporaryFolder folder;
     write_text_atomically(folder / "t.tsv", "t_host_s\n");
     CHECK(contains(message_of([&] { read_trace(folder / "t.tsv"); }), "t.json: cannot be read"));

@@ -101,7 +101,7 @@ TEST_CASE("map file: absurd numbers and unknown keys are refused by key") {
     CHECK(contains(said("\"spacing_mm\": [\n    1.0", "\"spacing_mm\": [\n    -1.0"), "spacing_mm: found -1.0"));
     CHECK(contains(said("\"depths_mm\": [\n    1.0", "\"depths_mm\": [\n    3.0"),
                    "depths_mm: found 2 after 3, expected ascending"));
-    CHECK(contains(said("\"name\"", "\"nome\""), "name: found nothing"));
+    CHECK(contains(said("\"name\"", "\"nome\""), "nome: found an unknown key"));
     CHECK(contains(said("\"name\"", "\"colour\": 1, \"name\""), "colour: found an unknown key"));
     CHECK(contains(said("\"none\"", "\"recorded\""), "tangential: found recorded, expected tangential_x_N.npy"));
     CHECK(contains(said("\"x_mm\": 2.0", "\"x_mm\": 20.0"), "are x and y of the arrays exchanged?"));

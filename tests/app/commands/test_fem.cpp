@@ -165,7 +165,7 @@ TEST_CASE("fem solve: without memory it ends with a message and status 1, and do
 
 TEST_CASE("fem solve: bad input ends with status 2, a disk that takes nothing with 1, and no file is left") {
     const TemporaryFolder folder;
-    const std::string bad = PALPA_SOURCE_DIR "/tests/app/bad_cases/";
+    const std::string bad = PALPA_SOURCE_DIR "/tests/fem/bad_cases/";
     const auto refused = [](const std::string& arguments, const char* word) {
         const Called called = palpa_with(arguments);
         CAPTURE(arguments);

@@ -26,11 +26,13 @@ bool ends_with(const std::string& text, const std::string& end) {
 
 std::vector<fs::path> sources_of_screens() {
     std::vector<fs::path> out;
-    for (const auto& entry : fs::directory_iterator(kApp)) {
-        const std::string name = entry.path().filename().string();
-        const bool screen = ends_with(name, "_screen.cpp") || name.rfind("live", 0) == 0 || name == "menu.cpp" ||
-                            name == "map_drawing.cpp" || name == "look.cpp";
-        if (screen && ends_with(name, ".cpp")) out.push_back(entry.path());
+    for (const char* room : {"screens", "live"}) {
+        for (const auto& entry : fs::directory_iterator(kApp / room)) {
+            const std::string name = entry.path().filename().string();
+            const bool screen = ends_with(name, "_screen.cpp") || std::string(room) == "live" || name == "menu.cpp" ||
+                                name == "map_drawing.cpp" || name == "widgets.cpp";
+            if (screen && ends_with(name, ".cpp")) out.push_back(entry.path());
+        }
     }
     for (const auto& entry : fs::directory_iterator(kApp / "web")) {
         const std::string name = entry.path().filename().string();
@@ -85,7 +87,7 @@ TEST_CASE("words: every word is shown somewhere") {
         if (ends_with(name, ".cpp") || ends_with(name, ".js") || ends_with(name, ".html"))
             all += read_text(entry.path());
     }
-    const std::string words = read_text(kApp / "words.h");
+    const std::string words = read_text(kApp / "screens" / "words.h");
     static const std::regex constant("const char\\* (k|page)([A-Za-z0-9]+) =");
     int found = 0;
     for (std::sregex_iterator it(words.begin(), words.end(), constant), end; it != end; ++it, ++found) {
