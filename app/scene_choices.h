@@ -1,5 +1,5 @@
 #pragma once
-// What a person names on the command line, or chooses in the menu, becomes a scene.
+// Loads the scene that a person names on the command line or chooses in the menu.
 
 #include <filesystem>
 #include <string>
@@ -17,7 +17,7 @@ struct Choice {
 // "" = the default scene; NAME.json = a scene; a folder = a map with default effects.
 scene::Scene load_scene(const std::string& name);
 
-// The files and folders that the scene and the trace (with what stands beside it) are read from: no result goes there.
+// The files and folders that the scene and the trace (with its sidecar) are read from. No result may be written there.
 std::vector<std::filesystem::path> inputs_of(const scene::Scene& scene, const std::filesystem::path& trace = {});
 
 // What the menu offers: the shipped scenes and profiles, and those in the user's data folder

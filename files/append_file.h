@@ -1,6 +1,6 @@
 #pragma once
-// A file that only grows. Data of people are never lost: created only if it does not exist, appended to,
-// synced on request (file and folder).
+// A file that only grows, so that data of people are never lost: it is created only if it does not exist yet, only
+// appended to, and synced on request (file and folder).
 
 #include <filesystem>
 #include <string>
@@ -16,13 +16,13 @@ class AppendFile {
     AppendFile(const AppendFile&) = delete;
     AppendFile& operator=(const AppendFile&) = delete;
 
-    // Buffers up to 64 KiB, so that a row costs no system call. The buffer never grows beyond its reserve.
+    // Appends to a buffer of 64 KiB, so that a row costs no system call. The buffer never grows beyond its reserve.
     void append(std::string_view text);
 
     // Hands the buffer to the system. Returns false once anything could not be written (disk full).
     bool flush();
 
-    // flush() and wait until it is on the disk, the folder's entry included.
+    // Flushes and waits until the file is on the disk, the folder's entry included.
     bool sync();
 
     bool failed() const { return failed_; }
@@ -35,8 +35,8 @@ class AppendFile {
     bool failed_ = false;
 };
 
-// Whole lines at the end of a file that may be there already; after a line that was cut off a new one begins. On the
-// disk when it returns. Throws std::runtime_error.
+// Appends whole lines to a file that may exist already; if the file's last line was cut off, the text begins on a new
+// line. The text is on the disk when the function returns. Throws std::runtime_error.
 void append_synced(const std::filesystem::path& path, std::string_view text);
 
 }  // namespace palpa::files

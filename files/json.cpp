@@ -48,7 +48,7 @@ std::string described(const Json& value) {
 std::string json_text(const Json& value) { return value.dump(2, ' ', false, Json::error_handler_t::replace) + "\n"; }
 
 Json parse_json(std::string_view text, const std::string& file_name) {
-    // nlohmann keeps the last of two equal keys; a person who wrote both must hear of it
+    // nlohmann keeps the last of two equal keys; a person who wrote both must be told
     std::vector<std::set<std::string>> open_objects;
     const auto refuse_repeated_keys = [&](int, nlohmann::json::parse_event_t event, const Json& parsed) {
         using Event = nlohmann::json::parse_event_t;
@@ -145,7 +145,7 @@ std::string JsonReader::text(std::string_view key) {
     const Json& value = need(key, "a text");
     if (!value.is_string()) fail(key, described(value), "a text");
     const auto& text = value.get_ref<const std::string&>();
-    // as a file's name it would end there, and another file be opened than the one that stands here
+    // a zero byte would end the text where it is used as a file's name, and another file would be opened
     if (text.find('\0') != std::string::npos)
         fail(key, described(value) + " with a zero byte (\\u0000)", "a text without it");
     return text;
@@ -208,7 +208,7 @@ const Json& JsonReader::any(std::string_view key) { return need(key, "a value");
 
 namespace {
 
-// Letters to be added, taken away or exchanged until one word is the other (Levenshtein's distance).
+// How many letters must be added, removed or exchanged to turn one word into the other (Levenshtein's distance).
 std::size_t distance(std::string_view a, std::string_view b) {
     std::vector<std::size_t> row(b.size() + 1);
     for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;

@@ -1,6 +1,6 @@
 #pragma once
-// Hand-written JSON files: `//` comments allowed, unknown and repeated keys are errors, and every message
-// names the file and the key.
+// Hand-written JSON files: `//` comments are allowed, unknown and repeated keys are errors, and every message names
+// the file and the key.
 
 #include <filesystem>
 #include <initializer_list>
@@ -14,11 +14,11 @@ namespace palpa::files {
 
 using Json = nlohmann::ordered_json;
 
-// Throws InputError naming file, line and column where the text is not JSON, and the key that stands twice.
+// Throws InputError. The message names file, line and column where the text is not JSON, or the key that stands twice.
 Json read_json(const std::filesystem::path& path);
 Json parse_json(std::string_view text, const std::string& file_name);
 
-// Bounds of a number, as they are told to the person: "> 0", "0 ... 1".
+// Bounds of a number, as messages give them: "> 0", "0 ... 1".
 struct Bounds {
     double lowest;
     double highest;
@@ -28,11 +28,11 @@ inline constexpr Bounds kAnyNumber{-1e300, 1e300};
 inline constexpr Bounds kPositive{0.0, 1e300, true};
 inline constexpr Bounds kNotNegative{0.0, 1e300};
 
-// One JSON object while it is read. Each key is asked for by name and checked; finish() then refuses the
-// keys that nobody asked for. All errors are InputError. A missing key without a default is an error.
+// Reads one JSON object. The caller asks for each key by name, and its value is checked; finish() then refuses the
+// keys that were not asked for. All errors are InputError. A missing key without a default is an error.
 class JsonReader {
   public:
-    // The value outlives its reader.
+    // The value must outlive its reader.
     JsonReader(const Json& value, std::string file, std::string where = "");
     JsonReader(const Json&& value, std::string file, std::string where = "") = delete;
 
@@ -44,16 +44,17 @@ class JsonReader {
     bool boolean(std::string_view key, bool otherwise);
     std::string text(std::string_view key);
     std::string text(std::string_view key, std::string otherwise);
-    // Index of the text in `choices`.
+    // Returns the index of the text in `choices`.
     std::size_t choice(std::string_view key, std::initializer_list<std::string_view> choices);
-    // `count` = 0: any number of them, at least one.
+    // `count` = 0 means any number of values, at least one.
     std::vector<double> numbers(std::string_view key, std::size_t count, Bounds bounds);
     JsonReader object(std::string_view key);
     std::optional<JsonReader> optional_object(std::string_view key);
     std::vector<JsonReader> objects(std::string_view key);  // an array of objects; empty if absent
     const Json& any(std::string_view key);                  // taken as it is
 
-    // Refuses other keys at once, so that a misspelt key (young_kPa) is named, not the one that it stands for.
+    // Refuses all other keys at once, so that the message names a misspelt key (young_kPa) and not the key that it
+    // stands for.
     void only(std::initializer_list<std::string_view> keys) const;
 
     void finish() const;
@@ -71,10 +72,11 @@ class JsonReader {
     std::vector<std::string> asked_;
 };
 
-// As it is written to files and standard output: indented, with a newline; text that is not UTF-8 is mended.
+// The text that is written to files and standard output: indented, with a newline at its end. Bytes that are not UTF-8
+// are replaced.
 std::string json_text(const Json& value);
 
-// How a value is told in a message: "3.5", "'left'", "an array", "nothing".
+// How a message describes a value: "3.5", "'left'", "an array", "nothing".
 std::string described(const Json& value);
 
 }  // namespace palpa::files

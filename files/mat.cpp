@@ -14,7 +14,7 @@
 namespace palpa::files {
 namespace {
 
-// Index in the file (first index fastest) of each value in C order.
+// For each value in C order: its index in the file, where the first index runs fastest.
 template <class Visit>
 void visit_order(const std::vector<std::size_t>& shape, Visit&& visit) {
     std::size_t total = 1;

@@ -1,5 +1,5 @@
 #pragma once
-// MATLAB's array file, version 5, by libmatio: what MATLAB, Octave and scipy.io.loadmat read.
+// MATLAB's array file, version 5, by libmatio. MATLAB, Octave and scipy.io.loadmat read it.
 
 #include <filesystem>
 #include <string>
@@ -13,10 +13,10 @@ struct MatArray {
     std::vector<float> values;       // C order: the last index runs fastest (the file has the first fastest)
 };
 
-// Whole or not at all. Throws std::runtime_error if it cannot be written.
+// Writes the file whole or not at all. Throws std::runtime_error if it cannot be written.
 void write_mat(const std::vector<MatArray>& arrays, const std::filesystem::path& path);
 
-// Throws InputError if the file is none, or has no array of single numbers of that name.
+// Throws InputError if the file is not a MATLAB file, or has no array of single numbers of that name.
 MatArray read_mat(const std::string& name, const std::filesystem::path& path);
 
 }  // namespace palpa::files

@@ -70,7 +70,7 @@ void read_names(Reading& r) {
     }
 }
 
-// Of an entity only its physical tags matter here.
+// Reads an entity, of which only the physical tags matter here.
 void read_entity(int dimension, Reading& r) {
     const int tag = r.in.integer("an entity's tag");
     for (int i = 0; i < (dimension == 0 ? 3 : 6); ++i) r.in.real("a coordinate of an entity");
@@ -181,7 +181,7 @@ CellType type_of(std::int64_t type, const MshCursor& in) {
             "triangles, quads, tetrahedra or hexahedra of first order (types 2 to 5)");
 }
 
-// Nodes of one cell; `next` gives a node's number.
+// Reads the nodes of one cell; `next` gives a node's number.
 template <class Next>
 void add_cell(const CellType& type, std::uint64_t number, const std::vector<int>& groups, Next&& next, Reading& r) {
     if (type.kind < 0) {
@@ -282,7 +282,7 @@ void read_elements_4(Reading& r) {
     }
 }
 
-// Cells with the same corners become the first of them.
+// Keeps only the first of several cells with the same corners.
 void merge_repeated(std::size_t kind, Msh& msh) {
     MshCells& cells = msh.cells[kind];
     const auto corners = static_cast<std::size_t>(kMshCorners[kind]);

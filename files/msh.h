@@ -2,8 +2,8 @@
 // Gmsh meshes: .msh 2.2 and 4.1, ASCII and binary (little-endian), cells of first order.
 // Source: Gmsh reference manual, "MSH file format" and "Legacy formats".
 //
-// Read: nodes, triangles, quads, tetrahedra, hexahedra, physical groups. Points and lines are passed over.
-// Refused: other cells (pyramids, prisms, second order), partitioned meshes, version 4.0, big-endian files.
+// The reader takes nodes, triangles, quads, tetrahedra, hexahedra and physical groups, and ignores points and lines.
+// It refuses other cells (pyramids, prisms, second order), partitioned meshes, version 4.0 and big-endian files.
 
 #include <array>
 #include <cstdint>
@@ -43,9 +43,9 @@ struct Msh {
     std::size_t count(MshKind kind) const { return of(kind).number.size(); }
 };
 
-// Throws InputError naming the line (ASCII) or byte (binary), what was found and what was expected. Nothing
-// is allocated on a header's word alone: counts are held against the size of the file first. A cell that
-// stands in the file several times (2.2 repeats one for each of its groups) is kept once.
+// Throws InputError naming the line (ASCII) or byte (binary), what was found and what was expected. Counts in headers
+// are compared with the size of the file before memory is allocated. A cell that stands in the file several times
+// (version 2.2 repeats a cell for each of its groups) is kept once.
 Msh read_msh(const std::filesystem::path& path);
 Msh parse_msh(std::string_view bytes, const std::string& file_name);
 

@@ -95,7 +95,7 @@ void take_values(const char* from, std::size_t n, float* to) {
     }
 }
 
-// What the header's text says.
+// Reads the header's text.
 struct Layout {
     std::vector<std::size_t> shape;
     bool is_double = false;
@@ -127,7 +127,7 @@ void take_values(const Layout& layout, const char* from, std::size_t n, float* t
     layout.is_double ? take_values<double>(from, n, to) : take_values<float>(from, n, to);
 }
 
-// The same as parse_npy, a part of the file at a time.
+// Does the same as parse_npy(), but reads the file in parts.
 NpyArray read_in_parts(const InputFile& in, const std::string& file) {
     const auto read = [&](std::size_t offset, char* to, std::size_t n) {
         if (in.read_at(offset, to, n) != n) throw InputError(file + ": cannot be read to its end");

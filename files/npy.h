@@ -13,16 +13,16 @@ struct NpyArray {
     std::vector<float> values;  // C order: the last index runs fastest
 };
 
-// float64 files are narrowed. Throws InputError for anything else, and for a size that the file does not
-// have; nothing is allocated on a header's word alone.
+// Values of float64 files are narrowed to float. Throws InputError for other types, and for a header whose shape does
+// not match the file's size; this is checked before memory is allocated.
 NpyArray read_npy(const std::filesystem::path& path);
 NpyArray parse_npy(std::string_view bytes, const std::string& file_name);
 
-// What stands before the values in such a file: '<f4', version 1.0.
+// The header before the values of a float32 file: '<f4', version 1.0.
 std::string npy_header(const std::vector<std::size_t>& shape);
 std::string npy_bytes(const NpyArray& array);  // header and values
 
-// Whole or not at all; `values` are written from where they stand.
+// Writes the file whole or not at all. `values` are written without a copy.
 void write_npy(const std::filesystem::path& path, const std::vector<std::size_t>& shape,
                const std::vector<float>& values);
 

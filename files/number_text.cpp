@@ -1,4 +1,4 @@
-// Numbers to and from text by the standard library.
+// Converts numbers to and from text by the standard library.
 
 #include <array>
 #include <charconv>

@@ -1,5 +1,5 @@
 #pragma once
-// A file of what stands in several places, so that nothing large is copied to write it.
+// Writes a file from several pieces of memory, so that nothing large is copied first.
 
 #include <filesystem>
 #include <initializer_list>
@@ -7,7 +7,7 @@
 
 namespace palpa::files {
 
-// One piece after the other, as write_text_atomically of files/text.h does it with one.
+// Writes one piece after the other, in the way in which write_text_atomically() (files/text.h) writes one text.
 void write_pieces_atomically(const std::filesystem::path& path, std::initializer_list<std::string_view> pieces);
 
 }  // namespace palpa::files

@@ -1,12 +1,13 @@
 #pragma once
-// Messages for a terminal, where they quote what stands in a file.
+// Messages for a terminal that may quote the content of a file.
 
 #include <string>
 #include <string_view>
 
 namespace palpa::files {
 
-// Control characters, which could steer the terminal, become '?' (line ends stay); what is longer than 4,000 bytes is cut.
+// Replaces control characters, which could steer the terminal, by '?' (line ends stay), and cuts a message that is
+// longer than 4,000 bytes.
 std::string printable(std::string_view message);
 
 }  // namespace palpa::files

@@ -1,6 +1,7 @@
 #pragma once
-// Inputs are regular files: a FIFO or a terminal would hold the program up until somebody writes to it, and reading a
-// device node can change the device. So are results: what takes a name by renaming would replace a device node.
+// Inputs must be regular files: a FIFO or a terminal would hold the program up until somebody writes to it, and reading
+// a device node can change the device. Results must be regular files too: a result gets its name by renaming, which
+// would replace a device node.
 
 #include <cstdint>
 #include <filesystem>
@@ -10,10 +11,12 @@
 
 namespace palpa::files {
 
-// "a folder", "a FIFO", "a character device"; empty for a regular file and for a name that is free. Follows links.
+// Returns "a folder", "a FIFO", "a character device" and so on; empty for a regular file and for a free name. Follows
+// links.
 std::string_view irregular_kind(const std::filesystem::path& path);
 
-// A regular file that is open for reading. Throws InputError, at once, if it is none or cannot be read.
+// A regular file that is open for reading. The constructor throws InputError, without waiting, if the file is not a
+// regular one or cannot be read.
 class InputFile {
   public:
     explicit InputFile(const std::filesystem::path& path);
@@ -22,7 +25,7 @@ class InputFile {
     InputFile& operator=(const InputFile&) = delete;
 
     std::uintmax_t bytes() const { return bytes_; }  // 0 for files that are made as they are read (/proc)
-    // How much was read: less than `n` at the file's end only. Throws InputError.
+    // Returns the number of bytes read, which is less than `n` only at the file's end. Throws InputError.
     std::size_t read_at(std::uintmax_t offset, char* to, std::size_t n) const;
 
   private:
@@ -31,19 +34,20 @@ class InputFile {
     std::uintmax_t bytes_ = 0;
 };
 
-// For what is opened by name elsewhere (a library): throws InputError as InputFile does.
+// For a file that other code (a library) opens by its name. Throws InputError as InputFile does.
 void check_input(const std::filesystem::path& path);
 
-// The file that takes the place of `path` when a result is written: what a link leads to, else `path`. Throws
-// InputError for what is there and no regular file.
+// The file that is replaced when a result is written to `path`: the target of a link, else `path` itself. Throws
+// InputError if something is there that is not a regular file.
 std::filesystem::path output_target(const std::filesystem::path& path);
 
-// Before any work: may a result go there? Its folder is there, and `path` is a regular file or a free name, none of
-// `inputs` under whatever name (nor a file in an input that is a folder), and not what standard output or standard
-// error go to. Throws InputError.
+// Checks before any work whether a result may go to `path`: its folder must exist, and `path` must be a regular file or
+// a free name. It must not be one of `inputs` under whatever name (nor a file in an input that is a folder), and not
+// the file that standard output or standard error go to. Throws InputError.
 void check_output(const std::filesystem::path& path, const std::vector<std::filesystem::path>& inputs = {});
 
-// The same for a folder of results: a folder, or a free name. `names`: of the files that it will hold.
+// Does the same for a folder of results, which must be a folder or a free name. `names`: of the files that it will
+// hold.
 void check_output_folder(const std::filesystem::path& folder, const std::vector<std::filesystem::path>& inputs = {},
                          const std::vector<std::string>& names = {});
 

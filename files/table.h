@@ -1,6 +1,6 @@
 #pragma once
-// Tab- or comma-separated tables with one header line. Rows are handed out one after the other, without
-// copies; messages name the file, the line and the column.
+// Tab- or comma-separated tables with one header line. The reader hands out rows one after the other, without copies;
+// its messages name the file, the line and the column.
 
 #include <filesystem>
 #include <string>
@@ -17,16 +17,16 @@ class Table {
     Table& operator=(const Table&) = delete;
 
     const std::vector<std::string>& columns() const { return columns_; }
-    // Throws InputError that lists what there is, if the column is missing.
+    // Throws InputError if the column is missing; the message lists the columns that exist.
     std::size_t column(std::string_view name) const;
     bool has_column(std::string_view name) const;
 
-    // Moves to the next row; false at the end. Blank lines are skipped. Throws InputError where the number of
+    // Moves to the next row; returns false at the end. Blank lines are skipped. Throws InputError where the number of
     // fields differs from the header's.
     bool next();
 
     std::string_view field(std::size_t column) const { return fields_[column]; }
-    // A finite number, or NaN for "n/a", "nan" and an empty field; everything else throws InputError.
+    // Returns a finite number, or NaN for "n/a", "nan" and an empty field; throws InputError for all other fields.
     double number(std::size_t column) const;
     double finite_number(std::size_t column) const;  // NaN throws too
     [[noreturn]] void fail(std::size_t column, std::string_view expected) const;

@@ -18,7 +18,7 @@ namespace palpa::files {
 std::string read_text(const std::filesystem::path& path, std::size_t limit_bytes) {
     const InputFile file(path);
     std::string text;
-    // its size is known for most files: growing would take three times the memory for a moment
+    // memory is reserved for the file's size, which is known for most files: growing would take three times the memory
     if (file.bytes() <= limit_bytes) text.reserve(file.bytes() + 1);
     std::array<char, 1 << 16> buffer;
     while (const std::size_t n = file.read_at(text.size(), buffer.data(), buffer.size())) {

@@ -15,17 +15,18 @@ std::string read_text(const std::filesystem::path& path, std::size_t limit_bytes
 // Throws std::runtime_error with the system's reason.
 void write_text_atomically(const std::filesystem::path& path, std::string_view text);
 
-// The same without waiting for the disk: whole or not at all after a kill, not after a power cut.
+// Does the same without waiting for the disk: after a kill the file is there whole or not at all, but after a power cut
+// it may be damaged.
 void write_text_whole(const std::filesystem::path& path, std::string_view text);
 
-// Waits until a file that is there is on the disk. Throws std::runtime_error.
+// Waits until an existing file is on the disk. Throws std::runtime_error.
 void sync_file(const std::filesystem::path& path);
 
-// What stands between the separators; one field where there is none.
+// Splits a line at its separators; a line without a separator is one field.
 std::vector<std::string_view> fields_of(std::string_view line, char separator);
 
-// The whole of `text` as a finite or non-finite double ("1e-3", "nan"); false if any of it is not a number.
-// A leading '+' is accepted, a decimal comma is not.
+// Reads the whole of `text` as a finite or non-finite double ("1e-3", "nan"); returns false if any part of it is not
+// a number. A leading '+' is accepted, a decimal comma is not.
 bool parse_number(std::string_view text, double& out);
 
 // Shortest text that reads back as the same double; NaN becomes "n/a".

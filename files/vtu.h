@@ -27,7 +27,7 @@ struct VtuGrid {
 // A field whose size does not fit the grid is a bug (assert).
 std::string vtu_text(const VtuGrid& grid);
 
-// Whole or not at all. Throws std::runtime_error with the system's reason.
+// Writes the file whole or not at all. Throws std::runtime_error with the system's reason.
 void write_vtu(const std::filesystem::path& path, const VtuGrid& grid);
 
 }  // namespace palpa::files

@@ -1,6 +1,6 @@
 #pragma once
-// Pressure for what has no sensor: a button, a key, a pen or a finger presses harder the longer it is held, or
-// as hard as a level says that is set in notches.
+// Pressure for devices without a sensor: a button, a key, a pen or a finger presses harder the longer it is held,
+// or with a level that is set in notches.
 
 #include <cstdint>
 
@@ -20,19 +20,19 @@ struct HeldPressure {
 // Share of the hold time that has passed, 0..1. A hold time of 0 or less is full pressure at once.
 double held_share(double held_s, double hold_s);
 
-// What it presses with at `t_host_s`, 0..1. While up: what its level is set to.
+// The pressure at `t_host_s`, 0..1; while nothing is held, the level that is set.
 double pressure_at(const HeldPressure& held, double t_host_s);
 
-// A notch during a press goes on from the pressure that holding has reached. Turned back to zero while up, the
-// time counts again.
+// A notch during a press starts from the pressure that holding has reached. After the level has been turned back to
+// zero while nothing is held, the hold time counts again.
 void turn_level(double t_host_s, double notches, HeldPressure& held);
 
-// The grid: point k is at k / kHoldGrid_Hz. last_grid_point: the last one up to and with `t_s`.
+// Point k of the grid is at the time k / kHoldGrid_Hz. last_grid_point() is the last point at or before `t_s`.
 std::int64_t last_grid_point(double t_s);
 double grid_time_s(std::int64_t point);
 
-// The grid points from here up to `now` have no sample yet if `done` was the last that has one. After a minute
-// or more without a call (the computer slept) only the last minute is made up.
+// The first of the grid points up to `now` that have no sample yet, if `done` was the last point that has one. After
+// a minute or more without a call (the computer slept) only the last minute is made up.
 std::int64_t first_grid_point(std::int64_t done, std::int64_t now);
 
 }  // namespace palpa::platform

@@ -25,7 +25,7 @@ void keep_inside(Keyboard& keyboard) {
     keyboard.y_px = std::clamp(keyboard.y_px, keyboard.area.y0_px, keyboard.area.y1_px);
 }
 
-// To its place at `t_host_s`. Two arrows at once are no faster than one.
+// Moves the cursor to its place at `t_host_s`. Two arrows at once are no faster than one.
 void move_cursor(double t_host_s, Keyboard& keyboard) {
     if (t_host_s <= keyboard.moved_s) return;
     const double x = static_cast<double>(keyboard.held[1]) - static_cast<double>(keyboard.held[0]);

@@ -1,6 +1,6 @@
 #pragma once
-// A pointer moved by keys: arrows move its cursor, a held press key presses harder the longer it is held, or as
-// hard as the level keys say.
+// A pointer moved by keys: arrows move its cursor; the press key presses harder the longer it is held, or with the
+// level that the level keys set.
 
 #include <array>
 #include <cstdint>
@@ -12,7 +12,7 @@
 
 namespace palpa::platform {
 
-// Pens count down from -2 (platform/mouse.h).
+// Pointer numbers of pens count down from -2 (platform/mouse.h).
 inline constexpr std::int64_t kKeyboardPointerId = -1;
 inline constexpr double kSlowShare = 0.2;  // of the speed, with Shift
 
@@ -41,27 +41,27 @@ struct Keyboard {
 bool is_on(const Keyboard& keyboard);
 bool key_held(const Keyboard& keyboard);  // an arrow or the press key: samples come without events
 
-// A new area; the cursor starts in its middle if the pointer was off, else it is moved inside. Turned off, all
-// keys are released; the caller cancels a press that was going on.
+// Sets a new area. The cursor starts in its middle if the pointer was off, else it is moved inside. If the area turns
+// the pointer off, all keys are released; the caller cancels a press that was going on.
 void set_area(const KeyboardArea& area, Keyboard& keyboard);
 
-// Appends one sample for each grid point up to and with `t_host_s` that has none yet, while a key is held: hover,
-// or move while it presses. Call it before any other sample of that time, so that samples stay in order. No
-// sample of a keyboard has a device time.
+// While a key is held: appends one sample for each grid point up to and with `t_host_s` that has none yet, with phase
+// hover, or move while the press key is down. Call it before any other sample of that time, so that samples stay in
+// order. No sample of a keyboard has a device time.
 void hold_keys(double t_host_s, Keyboard& keyboard, std::vector<Sample>& out);
 
-// Those of a held mouse and of held keys, in order of time.
+// The samples of hold_mouse() and hold_keys() together, in order of time.
 void hold_mouse_and_keys(double t_host_s, Mouse& mouse, Keyboard& keyboard, std::vector<Sample>& out);
 
-// Keys as they go down and come up; call hold_keys with the same time first. A sample is appended where one is
-// news: a press, its end, an arrow let go (the cursor has stopped), a level changed during a press. Off, all
-// keys are ignored; one that is held already is too.
+// Take a key that goes down or comes up; call hold_keys() with the same time first. They append a sample where
+// something changes: a press, its end, an arrow let go (the cursor has stopped), a level changed during a press. They
+// ignore all keys while the pointer is off, and a key that is held already.
 void key_down(double t_host_s, PointerKey key, Keyboard& keyboard, std::vector<Sample>& out);
 void key_up(double t_host_s, PointerKey key, Keyboard& keyboard, std::vector<Sample>& out);
 
 void set_slow(double t_host_s, bool slow, Keyboard& keyboard);  // Shift
 
-// Lets all keys go without a word; the caller cancels the press.
+// Lets all keys go without a sample; the caller cancels the press.
 void release_keys(Keyboard& keyboard);
 
 }  // namespace palpa::platform

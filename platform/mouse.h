@@ -1,5 +1,6 @@
 #pragma once
-// A mouse has no pressure. It presses harder the longer its button is held, or as hard as its wheel says.
+// A mouse has no pressure sensor. It presses harder the longer its button is held, or with the level that its wheel
+// sets.
 
 #include <cstdint>
 #include <vector>
@@ -18,12 +19,12 @@ struct Mouse {
     std::int64_t last_tick = 0;  // grid points up to this one have their sample
 };
 
-// Appends one sample for each grid point up to and with `t_host_s` that has none yet, while the button is held.
+// While the button is held: appends one sample for each grid point up to and with `t_host_s` that has none yet.
 // Call it before any other sample of that time, so that samples stay in order. These samples have no device
 // time: no device sent them.
 void hold_mouse(double t_host_s, Mouse& mouse, std::vector<Sample>& out);
 
-// The mouse's own events, each appended as a sample: hover or move, down, up.
+// Append each of the mouse's own events as a sample: hover or move, down, up.
 void move_mouse(double t_host_s, double t_device_s, double x_px, double y_px, Mouse& mouse, std::vector<Sample>& out);
 void press_mouse(double t_host_s, double t_device_s, Mouse& mouse, std::vector<Sample>& out);
 void release_mouse(double t_host_s, double t_device_s, Mouse& mouse, std::vector<Sample>& out);

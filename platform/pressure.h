@@ -1,6 +1,6 @@
 #pragma once
-// Whether a device's pressure is one. A pen or touch screen without a sensor reports a constant (0, 0.5, 1) or
-// nothing at all; the person should hear of it and be offered another way to press.
+// Whether a device really measures pressure. A pen or touch screen without a sensor reports a constant (0, 0.5, 1) or
+// nothing at all; the person should be told, and be offered another way to press.
 
 #include <array>
 #include <cstdint>
@@ -10,13 +10,13 @@
 namespace palpa::platform {
 
 enum class PressureKind : std::uint8_t {
-    unknown,   // not enough of it yet
-    varies,    // a sensor
+    unknown,   // too few samples yet
+    varies,    // the device has a sensor
     constant,  // the same value in each sample of at least 0.5 s and 30 samples
     missing    // samples touch without any pressure
 };
 
-// What has come of one tool, all its pointers together.
+// What one tool has sent, all its pointers together.
 struct ToolPressure {
     std::int64_t without = 0;  // touching samples that had no pressure
     std::int64_t with = 0;     // touching samples after the first of each press, with pressure
@@ -31,7 +31,7 @@ struct PressureWatch {
 };
 
 // Call it with every sample, before press_by_hold() changes its pressure. Allocates nothing. The first sample of
-// a press is not compared, since some pens lie in it (scene/advance.cpp).
+// a press is not compared, since some pens report a wrong pressure in it (scene/advance.cpp).
 void watch(const Sample& sample, PressureWatch& watch);
 
 // The verdict so far; a constant that moves after all corrects it.

@@ -1,6 +1,6 @@
 #pragma once
-// One reading of a pointing device, as it came. Everything downstream starts from this struct; a recorded
-// trace is a list of them (platform/trace.h).
+// One reading of a pointing device, as it came. Everything else is computed from this struct; a recorded trace is a
+// list of samples (platform/trace.h).
 
 #include <cstdint>
 #include <limits>
@@ -16,8 +16,11 @@ inline constexpr int kToolCount = 4;
 enum class Phase : std::uint8_t { hover, down, move, up, cancel, ui };
 
 // What a person asked of the program between samples; only rows of phase `ui` carry one.
-// resize: x_px, y_px, width_px, height_px hold the part of the window that the tissue has now, so that a replay maps
-// positions alike. hidden, shown: the window went out of sight and came back; nothing is sampled in between. mark: x_px, y_px hold its place. confidence_*: how sure the person is of the last mark.
+//   resize        x_px, y_px, width_px, height_px hold the part of the window that the tissue has now, so that a replay
+//                 maps positions alike
+//   mark          x_px, y_px hold the place of the mark
+//   confidence_*  how sure the person is of the last mark
+//   hidden, shown the window went out of sight, or came back; nothing is sampled in between
 enum class Action : std::uint8_t {
     none,
     resize,

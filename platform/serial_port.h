@@ -6,7 +6,7 @@
 
 namespace palpa::platform {
 
-// A serial port, raw 8N1. Blocks for no longer than it is told to; meant for a thread of its own.
+// A serial port, raw 8N1. read() blocks for `wait_s` at most; the class is meant for a thread of its own.
 class SerialPort {
   public:
     // Throws std::runtime_error with the system's reason; InputError for a rate that the system does not know.
@@ -15,7 +15,7 @@ class SerialPort {
     SerialPort(const SerialPort&) = delete;
     SerialPort& operator=(const SerialPort&) = delete;
 
-    // Bytes read, 0 if none came within `wait_s`, -1 once the device is gone (unplugged).
+    // Returns the number of bytes read, 0 if none came within `wait_s`, -1 once the device is gone (unplugged).
     int read(double wait_s, std::uint8_t* bytes, std::size_t room);
     // Writes all of it or returns false.
     bool write(const std::uint8_t* bytes, std::size_t count);

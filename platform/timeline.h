@@ -1,6 +1,6 @@
 #pragma once
-// One time for everything that evolves: the device's clock carried onto the host's. Samples of one frame are
-// stamped by the host almost at once, their own clock tells how far they are apart; it runs at another rate.
+// One time for everything that evolves: the device's clock converted to the host's. The host stamps the samples of
+// one frame at almost the same moment; the device's clock tells how far they are apart, but runs at another rate.
 
 #include <cstdint>
 
@@ -20,9 +20,10 @@ struct Timeline {
     std::int64_t clock_jumps = 0;  // the device's clock was set, or another device took over
 };
 
-// Moves `now_s` to the sample's time and returns true, or leaves it and returns false for a sample from the
-// past (by more than 0.1 s: sources without a clock of their own may run ahead of the others by a frame). The offset follows the smallest delay seen: it falls by at most a tenth of the time that passes, and
-// rises by at most 200 ppm, so that order is kept.
+// Moves `now_s` to the sample's time and returns true. For a sample that is more than 0.1 s in the past it leaves
+// `now_s` as it is and returns false; the limit is 0.1 s because sources without a clock of their own may run ahead of
+// the others by a frame. The offset follows the smallest delay seen: it falls by at most a tenth of the time that
+// passes, and rises by at most 200 ppm, so that order is kept.
 bool move_to(const Sample& sample, Timeline& timeline);
 
 }  // namespace palpa::platform

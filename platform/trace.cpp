@@ -14,10 +14,10 @@
 namespace palpa::platform {
 namespace {
 
-// The keyboard in older traces.
+// The keyboard's pointer number in older traces.
 constexpr std::int64_t kOldKeyboardId = std::numeric_limits<std::int64_t>::min();
 
-// One list of the columns writes the header and every row, and reads them back.
+// One list of the columns serves to write the header and every row, and to read them back.
 template <class Visit>
 void visit_fields(Sample& s, Visit&& visit) {
     visit("t_host_s", s.t_host_s);

@@ -25,11 +25,11 @@ struct Trace {
     std::vector<Sample> samples;
 };
 
-// X.tsv and X.json. Throws InputError with file, line and column.
+// Reads X.tsv and X.json. Throws InputError with file, line and column.
 Trace read_trace(const std::filesystem::path& tsv);
 
-// Writes a trace NAME.tsv and its NAME.json while it happens; nothing is overwritten (throws InputError for a name that
-// will not do, std::runtime_error if the file cannot be made).
+// Writes a trace NAME.tsv and its NAME.json while samples arrive, and overwrites nothing. Throws InputError for a name
+// that cannot be used, std::runtime_error if the file cannot be made.
 class TraceWriter {
   public:
     TraceWriter(const std::filesystem::path& tsv, const TraceInfo& info);

@@ -6,7 +6,7 @@
 
 namespace palpa::platform {
 
-// Datagrams to and from one address. Meant for a thread of its own.
+// Datagrams to and from one address. The class is meant for a thread of its own.
 class UdpPort {
   public:
     // Throws std::runtime_error with the system's reason.
@@ -16,7 +16,8 @@ class UdpPort {
     UdpPort& operator=(const UdpPort&) = delete;
 
     bool send(const std::uint8_t* bytes, std::size_t count);
-    // Bytes of one datagram, 0 if none came within `wait_s` (0: what is there already) or nobody listens over there.
+    // Returns the number of bytes of one datagram; 0 if none came within `wait_s`, or if nobody listens at the address.
+    // With `wait_s` = 0 it takes only what has arrived already.
     int receive(double wait_s, std::uint8_t* bytes, std::size_t room);
 
   private:

@@ -35,7 +35,8 @@ struct PointerDevice {
     std::vector<std::string> axes{};  // as the driver calls them
 };
 
-// One window. Throws std::runtime_error with a message for people if there is no display or no OpenGL ES 3.
+// One window. Its constructor throws std::runtime_error with a message for people if there is no display or no OpenGL
+// ES 3.
 class Window {
   public:
     explicit Window(const WindowOptions& options);
@@ -43,37 +44,38 @@ class Window {
     Window(const Window&) = delete;
     Window& operator=(const Window&) = delete;
 
-    // Appends everything that arrived since the last call, oldest first; none is merged. Waits for input up
-    // to `wait_s` seconds (0: not at all). Samples are in px of the drawing area. A press that is going on
+    // Appends all samples that arrived since the last call, oldest first; no two are merged. Waits for input up
+    // to `wait_s` seconds (0: not at all). Places are in px of the drawing area. A press that is going on
     // when the window loses the focus ends with phase cancel. t_device_s is one clock for all tools (on X11
-    // the server's, in whole ms), and missing where no device sent the sample: a mouse button that is held
-    // still (a sample each 1/240 s), a cancel.
+    // the server's, in whole ms). It is missing where no device sent the sample: for a mouse button that is held
+    // still (a sample each 1/240 s), and for a cancel.
     void poll(double wait_s, std::vector<Sample>& out);
 
     // Called with every event as it arrives, before it becomes a sample (Dear ImGui listens here). If it returns
     // true for button_down or finger_down, that whole press belongs to a panel and none of its samples come out of
-    // poll(); judge by the place in the event, since the pointer may not have been there before. True for wheel: it
-    // sets no pressure. A pen's press comes as button_down too.
+    // poll(). The filter should judge by the place in the event, since the pointer may not have been there before. If
+    // it returns true for wheel, the wheel sets no pressure. A pen's press comes as button_down too.
     void set_event_filter(EventFilter filter, void* user);
 
-    // A pointer moved by keys, in this area (px of the drawing area; an empty one turns it off, as it is at the
-    // start): arrows move it at this speed, slower with Shift; Space presses harder the longer it is held; Page Up
-    // and Page Down set how hard. It starts in the middle of the area; call again when the area changes. It gets
-    // only keys for whose key_down the event filter returned false, and while one is held a sample each
-    // 1/240 s.
+    // Sets the area (px of the drawing area) and the speed of a pointer that is moved by keys. An empty area turns the
+    // pointer off, as it is at the start. Arrows move it, slower with Shift; Space presses harder the longer it is
+    // held; Page Up and Page Down set how hard. The pointer starts in the middle of the area; call again when the area
+    // changes. It takes only keys for whose key_down the event filter returned false. While one of its keys is held,
+    // a sample comes each 1/240 s.
     void set_keyboard(double x0_px, double y0_px, double x1_px, double y1_px, double speed_px_per_s);
 
-    // Whether the last poll() met any event: samples, and whatever else may change the look of panels.
+    // True if the last poll() met any event: a sample, or anything else that may change the look of panels.
     bool stirred() const;
-    // Whether it met a reason to draw again what has not changed: the window was uncovered, sized or shown.
+    // True if the last poll() met a reason to draw an unchanged frame again: the window was uncovered, sized or shown.
     bool uncovered() const;
 
-    // Ends all presses without a sample: what still comes of them, up to the lift, is dropped, and so is what poll()
-    // has not handed over yet.
+    // Ends all presses without a sample: their later samples, up to the lift, are dropped, and so are the samples that
+    // poll() has not handed over yet.
     void end_presses();
 
     bool close_requested() const;
-    // Forgets that the person asked to close it. False if the system itself ends the program: that cannot be refused.
+    // Forgets that the person asked to close the window. Returns false if the system itself ends the program, which
+    // cannot be refused.
     bool stay_open();
     void present();        // shows what was drawn
     double now_s() const;  // steady clock; the same as t_host_s
@@ -89,7 +91,7 @@ class Window {
     bool full_screen() const;
     void set_full_screen(bool full);
     std::string screen_name() const;  // of the screen that the window is on, with its size
-    // px per millimetre as far as the system knows what its screen is touched with; NaN: unknown, as on a desktop
+    // px per millimetre of a screen that is touched, as far as the system knows it; NaN: unknown, as on a desktop
     double touch_px_per_mm() const;
     SDL_Window* sdl() const;  // desktop only
 

@@ -2,8 +2,8 @@
 // From px on the screen to a position on the tissue, and where the tissue is drawn.
 //
 // Direct: the tissue lies under the pen; the avatar is drawn where the pen is. Indirect: the whole pad (screen
-// area) is stretched over the tissue, which is drawn elsewhere. x to the right, y upwards, before rotation
-// (counter-clockwise, as seen) and flip (left and right exchanged, before the rotation).
+// area) is stretched over the tissue, which is drawn elsewhere. On the tissue x points to the right and y upwards,
+// before rotation (counter-clockwise, as seen) and flip (left and right exchanged, before the rotation).
 
 #include <Eigen/Core>
 #include <limits>

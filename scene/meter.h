@@ -1,6 +1,6 @@
 #pragma once
-// How often a stage was called and how long it took: a histogram of fixed size, so that measuring allocates
-// nothing. Buckets are 1/32 octave wide: quantiles are good to about 2 %.
+// Counts how often a stage was called and how long it took, in a histogram of fixed size, so that measuring allocates
+// nothing. Buckets are 1/32 octave wide, so quantiles are good to about 2 %.
 
 #include <array>
 #include <cstdint>

@@ -1,6 +1,6 @@
 #pragma once
-// What was asked for, from one JSON file; constant while it runs. Every effect is optional: what is absent is
-// not simulated.
+// What was asked for, from one JSON file; a scene is constant while it runs. Every effect is optional: an absent effect
+// is not simulated.
 
 #include <cstdint>
 #include <filesystem>
@@ -49,7 +49,7 @@ avatar::PathParameters path_of(const Scene& scene);
 // for among the assets (maps/, profiles/).
 Scene read_scene(const std::filesystem::path& file, const std::filesystem::path& assets);
 
-// A map with the defaults: display ratio `clear`, surface, direct mapping.
+// A scene of a map with the defaults: display ratio `clear`, surface, direct mapping.
 Scene scene_of_map(const std::filesystem::path& map, const std::filesystem::path& assets);
 
 }  // namespace palpa::scene

@@ -37,7 +37,7 @@ bool take(std::string_view word, std::string_view& rest) {
     return true;
 }
 
-// The longest run of such characters; false if there is none, or too many.
+// Takes the longest run of such characters; false if there are none, or too many.
 bool take_all(bool (*wanted)(char), std::size_t longest, std::string_view& out, std::string_view& rest) {
     const auto end = static_cast<std::size_t>(std::find_if_not(rest.begin(), rest.end(), wanted) - rest.begin());
     out = rest.substr(0, end);
@@ -45,7 +45,7 @@ bool take_all(bool (*wanted)(char), std::size_t longest, std::string_view& out, 
     return !out.empty() && out.size() <= longest;
 }
 
-// Of a run, or a participant's ratings.
+// True for the name of a run's file, or of a participant's ratings.
 bool is_trial_file(std::string_view rest) {
     std::string_view subject, again, task, run;
     const bool of_subject = take("sub-", rest) && take_all(is_plain, kLongestLabel, subject, rest) &&
@@ -97,7 +97,7 @@ Bundle read_checked(std::string_view bytes, const std::string& file_name) {
     for (files::JsonReader& json_file : files) {
         BundleFile file = read_file(json_file);
         const auto [it, fresh] = hashes.emplace(file.name, file.sha256);
-        // people are added up, and answers grow: whoever imports them compares their lines
+        // people are added up and answers grow, so their lines are compared at import
         const bool again = !fresh && it->second != file.sha256;
         if (again && file.kind != LogFileKind::people && !grows(file.name)) {
             json_file.fail("name", files::shown(file.name) + " again with other content", "each file once");

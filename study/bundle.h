@@ -4,7 +4,8 @@
 //     {"palpa_bundle": 1, "files": [{"name": "sub-01/beh/sub-01_task-palpation_run-01_events.tsv",
 //                                    "sha256": "64 hex digits of the text's bytes", "text": "..."}, ...]}
 //
-// It comes from elsewhere, so nothing in it is believed: names are of the log's own forms, hashes are checked.
+// A bundle comes from another machine, so nothing in it is trusted: names must have the log's own forms, and hashes are
+// checked.
 
 #include <optional>
 #include <string>
@@ -17,16 +18,16 @@ namespace palpa::study {
 enum class LogFileKind {
     trial,    // sub-XX/beh/sub-XX_task-YY_run-NN_{events,marks,samples}.{tsv,json}, _settings.json, _performance.json;
               // sub-XX/beh/sub-XX_task-ratings_beh.tsv
-    dataset,  // dataset_description.json, .bidsignore, protocol.json, task-..._....json: alike for a whole study
+    dataset,  // dataset_description.json, .bidsignore, protocol.json, task-..._....json: the same for a whole study
     people,   // participants.tsv
     identity  // study.json
 };
 
-// Nothing for every other name: absolute ones, `..`, other folders, other endings.
+// Returns nothing for every other name: absolute names, `..`, other folders, other endings.
 std::optional<LogFileKind> kind_of_log_file(std::string_view name);
 
-// Answers, to which lines are added as long as the participant is there: ratings and choices. A later bundle has more of
-// them than an earlier one.
+// True for files of answers (ratings and choices), to which lines are added while the participant takes part. A later
+// bundle has more of these lines than an earlier one.
 bool grows(std::string_view name);
 
 struct BundleFile {
@@ -42,9 +43,9 @@ struct Bundle {
     std::vector<BundleFile> files;  // at least one
 };
 
-// From bytes, whatever they are. Throws InputError with `file_name`, key, found and expected: no JSON, another version,
-// unknown keys, a name that no log has, two contents for one name, a hash that is not the text's. The message is one line of
-// 400 characters at most, without control characters.
+// Reads a bundle from any bytes. Throws InputError with `file_name`, key, found and expected for: no JSON, another
+// version, unknown keys, a name that no log has, two contents for one name, a hash that is not the text's. The message
+// is one line of 400 characters at most, without control characters.
 Bundle read_bundle(std::string_view bytes, const std::string& file_name);
 
 }  // namespace palpa::study

@@ -1,8 +1,8 @@
 #pragma once
 // What a tablet keeps, sends to the desk and exports, as a bundle (docs/formats.md):
 //     {"palpa_bundle": 1, "files": [{"name": "sub-01/beh/...", "sha256": "64 hex digits", "text": "..."}]}
-// In the folder of a study each bundle can be analysed by itself: it also holds study.json, protocol.json, the participant's
-// line of participants.tsv, and the answers so far.
+// A bundle of a study's run can be analysed by itself: it also holds study.json, protocol.json, the participant's line
+// of participants.tsv, and the answers so far.
 
 #include <filesystem>
 #include <string>
@@ -12,19 +12,20 @@
 
 namespace palpa::study {
 
-// The files of one run, as they are on the disk now. Throws InputError for a file that cannot be read.
+// The bundle of one run's files, as they are on the disk now. Throws InputError for a file that cannot be read.
 std::string bundle_text(const RunFiles& run);
 
-// What a participant of a study has answered, without a run. Throws likewise.
+// The bundle of what a participant of a study has answered, without a run. Throws InputError likewise.
 std::string bundle_of_answers(const std::filesystem::path& directory, const std::string& code);
 
 // The folder of the study that a run belongs to; empty for a single run.
 std::filesystem::path study_of(const RunFiles& run);
 
-// What a study needs to go on from: what it is, its people, a participant's answers. Files that are there, whole.
+// The files that a study needs to go on: its identity, its people, and a participant's answers. The list holds only
+// files that exist, each to be taken whole.
 std::vector<std::filesystem::path> study_files(const std::filesystem::path& directory, const std::string& code);
 
-// The participant of a run's name.
+// The participant's code in a run's name.
 std::string code_of(const RunFiles& run);
 
 }  // namespace palpa::study

@@ -1,5 +1,6 @@
 #pragma once
-// Counts in tables of logs and of results. One that cannot be is refused with its line, before statistics meet it.
+// Counts in tables of logs and of results. An impossible count is refused with its line, before it gets into the
+// statistics.
 
 #include <cmath>
 #include <cstdint>
@@ -9,7 +10,7 @@
 
 namespace palpa::study {
 
-// More than anybody marks or answers; the exact tests go through every count up to this in less than a second.
+// More than anybody marks or answers. The exact tests go through every count up to this number in less than a second.
 inline constexpr std::int64_t kMostCounts = 1'000'000;
 
 inline std::int64_t whole_number(const files::Table& table, std::size_t column, std::int64_t from, std::int64_t to) {

@@ -27,7 +27,7 @@ Bundle read_whole(const fs::path& file) {
     return read_bundle(files::read_text(file, kLargestBundle_bytes), file.string());
 }
 
-// What somebody tried on a tablet before the study: settings that name no protocol.
+// True for a single run that was tried on a tablet outside the study: its settings name no protocol.
 bool is_single_run(const Bundle& bundle) {
     bool single = false;
     for (const BundleFile& file : bundle.files) {
@@ -39,7 +39,7 @@ bool is_single_run(const Bundle& bundle) {
     return single;
 }
 
-// One of two that says all that the other says.
+// True if `text` holds all that `other` holds: files of answers grow only at their end.
 bool begins_with(const std::string& text, const std::string& other) {
     return text.compare(0, other.size(), other) == 0;
 }
@@ -57,7 +57,7 @@ bool has_subjects(const fs::path& directory) {
     return false;
 }
 
-// What all bundles hold together, and what of it is new.
+// The content of all bundles together, and which of it is new.
 class Plan {
   public:
     explicit Plan(const fs::path& directory) : directory_(directory) {
@@ -93,7 +93,7 @@ class Plan {
 
     bool is_study() const { return identity_.has_value(); }
 
-    // Of what grows, the version that says most, if that is more than the folder has.
+    // For a file that grows: the version with most lines, if it has more than the folder's.
     struct Answers {
         std::string text;
         std::string from;
@@ -101,7 +101,7 @@ class Plan {
     };
     std::map<std::string, Answers> answers;
 
-    // Once all bundles were added.
+    // Call it once all bundles are added.
     void settle_answers() {
         for (auto it = answers.begin(); it != answers.end();) {
             const std::string& name = it->first;
@@ -135,7 +135,7 @@ class Plan {
         most = {file.text, from, false};
     }
 
-    // Whether there is a file of that name; throws if something else is.
+    // True if there is a file of that name; throws if there is something else.
     bool is_taken(const std::string& name, const std::string& from) const {
         fs::path path = directory_;
         for (const fs::path& part : fs::path(name)) {
@@ -217,7 +217,7 @@ class Plan {
     bool logs_without_identity_ = false;
 };
 
-// Files of this import; they go again unless keep() is called.
+// Files of this import; the destructor removes them unless keep() was called.
 class NewFiles {
   public:
     explicit NewFiles(const fs::path& directory) : directory_(directory) {}

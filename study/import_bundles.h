@@ -1,5 +1,5 @@
 #pragma once
-// Bundles of study/bundle.h into the folder of a study.
+// Imports bundles (study/bundle.h) into the folder of a study.
 
 #include <filesystem>
 #include <string>
@@ -15,13 +15,13 @@ struct BundleReport {
     int people_added = 0;                    // to participants.tsv
 };
 
-// All is checked before the first byte is written: a file that is there with other content, a link in the way, two
-// bundles that differ in one file, another study's study.json and a participant who is described otherwise throw
-// InputError. Then nothing is written; what a full disk interrupts is taken back, what a kill interrupts is whole or
-// absent file by file, and the same call goes on. Files are on the disk when it returns, events of a trial after
-// its other files. Participants are added to those that are there, and answers (ratings, choices) to those of an earlier
-// bundle; of study.json only what names the study counts. Where a study is imported, bundles of single runs are passed over.
-// Throws std::runtime_error if it cannot write.
+// Everything is checked before the first byte is written. InputError is thrown, and nothing written, for a file that
+// exists with other content, a link in the way, two bundles that differ in one file, another study's study.json and a
+// participant who is described otherwise. An import that a full disk interrupts is taken back. After a kill each file
+// is whole or absent, and the same call goes on. When the function returns, the files are on the disk; the events of a
+// trial get there after its other files. Participants are added to those in the folder, and answers (ratings, choices)
+// to those of an earlier bundle. Of study.json only the keys that name the study are compared. Where a study is
+// imported, bundles of single runs are passed over. Throws std::runtime_error if it cannot write.
 BundleReport import_bundles(const std::vector<std::filesystem::path>& bundles, const std::filesystem::path& directory);
 
 }  // namespace palpa::study

@@ -1,6 +1,6 @@
 #pragma once
-// What a study saw, in one form whether it comes from a table of counts or from logs. Names are kept once; rows hold
-// their indices.
+// The results of a study, in one form whether they come from a table of counts or from logs. Names are kept once; rows
+// hold their indices.
 
 #include <cstdint>
 #include <filesystem>
@@ -10,7 +10,7 @@
 
 namespace palpa::study {
 
-// Hits and misses of one nodule in one trial, or the sums of many. False marks belong to no nodule.
+// Hits and misses of one nodule in one trial, or their sums over many trials. False marks belong to no nodule.
 struct Observation {
     int condition = 0;
     int participant = -1;  // -1: not told
@@ -21,7 +21,7 @@ struct Observation {
     std::int64_t fp = 0;
 };
 
-// One finished trial, as a log tells it. NaN: not told.
+// One finished trial, as its log gives it. NaN: the log does not hold this figure.
 struct TrialFigures {
     int condition = 0;
     int participant = 0;
@@ -62,7 +62,7 @@ struct Observations {
     std::int64_t interrupted_trials = 0;
 };
 
-// Index of the name; it is added if it is new.
+// Returns the index of the name; a new name is added.
 int index_of(std::string_view name, std::vector<std::string>& names);
 
 // COUNTS.tsv: columns condition, tp, fn, fp, optionally n (= tp + fn, checked), nodule, participant; or, for forced

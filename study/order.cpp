@@ -17,7 +17,7 @@ std::vector<std::size_t> counted(std::size_t n) {
     return out;
 }
 
-// Groups come in blocks of one each, so that they never differ by more than one person.
+// Groups come in blocks with each group once, so that their sizes never differ by more than one person.
 std::size_t group_of(const Protocol& protocol, int number) {
     const std::size_t groups = protocol.groups.size();
     const auto index = static_cast<std::size_t>(number - 1);
@@ -28,7 +28,7 @@ std::size_t group_of(const Protocol& protocol, int number) {
     return block[index % groups];
 }
 
-// Which one of its group a participant is, from 0.
+// The participant's number within the group, from 0.
 int place_in_group(const Protocol& protocol, int number) {
     return (number - 1) / static_cast<int>(protocol.groups.size());  // blocks hold each group once
 }
@@ -52,7 +52,7 @@ std::vector<std::size_t> sequence(const Protocol& protocol, const PlannedPartici
             return rows[0];
         }
     }
-    // which row comes first is drawn, once for the study, so that the first comers of two studies differ
+    // the first row is drawn once for the study, so that the first participants of two studies differ
     Random random(derived_seed(protocol.seed, kOrder, 0));
     random.shuffle(rows);
     order_id = place % static_cast<int>(rows.size()) + 1;

@@ -1,6 +1,6 @@
 #pragma once
-// Who gets what, when, turned how: a function of the protocol, its seed and the participant's number, so that a study
-// script, the app and a reviewer see the same order.
+// Which participant gets which condition when, and how the map is turned. This order is a function of the protocol, its
+// seed and the participant's number, so that a study script, the app and a reviewer see the same order.
 
 #include <cstdint>
 #include <string>
@@ -30,12 +30,13 @@ struct PlannedParticipant {
     std::vector<PlannedTrial> trials;
 };
 
-// `number` from 1.
+// The plan of one participant; `number` counts from 1.
 PlannedParticipant plan_participant(const Protocol& protocol, int number);
 
 // Rows of condition numbers 0 ... n - 1.
-// Latin square: every condition once in every row and column (cyclic).
-// Williams design: besides, every condition follows every other equally often; n rows for even n, 2 n for odd n.
+// Latin square: every condition stands once in every row and column (cyclic).
+// Williams design: a Latin square in which every condition also follows every other equally often; it has n rows for
+// even n, 2 n for odd n.
 // Source: Williams, Austral. J. Sci. Res. A 2 (1949) 149.
 std::vector<std::vector<std::size_t>> latin_square(std::size_t n);
 std::vector<std::vector<std::size_t>> williams_design(std::size_t n);

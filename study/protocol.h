@@ -1,5 +1,5 @@
 #pragma once
-// What a study does, from one JSON file (assets/schemas/protocol.schema.json): groups, conditions, tasks, order.
+// The protocol of a study, from one JSON file (assets/schemas/protocol.schema.json): groups, conditions, tasks, order.
 
 #include <cstdint>
 #include <filesystem>
@@ -30,7 +30,7 @@ struct Group {
     std::vector<std::size_t> conditions;  // indices
 };
 
-// Which is softer: the reference against each comparison, in both orders.
+// The forced choice which of two surfaces is softer: the reference against each comparison, in both orders.
 struct ChoiceTask {
     double reference_kPa = 0.0;
     std::vector<double> comparisons_kPa;
@@ -72,7 +72,7 @@ struct Protocol {
     std::vector<Item> ratings;
 };
 
-// Throws InputError: file, key, found, expected.
+// Throws InputError that names file, key, what was found and what was expected.
 Protocol read_protocol(const std::filesystem::path& file);
 
 const char* name_of(Modality modality);

@@ -41,7 +41,8 @@ class Random {
     std::uint64_t state_;
 };
 
-// A seed for one purpose (a participant, a trial) out of the study's, so that no two purposes share a sequence.
+// Derives a seed for one purpose (a participant, a trial) from the study's seed, so that no two purposes share a
+// sequence.
 inline std::uint64_t derived_seed(std::uint64_t seed, std::uint64_t purpose, std::uint64_t index) {
     Random mixed(seed ^ (purpose * 0xd1342543de82ef95u));
     Random again(mixed.bits() ^ (index * 0xaf251af3b0f025b5u));

@@ -1,5 +1,6 @@
 #pragma once
-// Answers of participants to a protocol's questions: before the trials, and after each condition. One table per person,
+// Answers of participants to a protocol's questions before the trials and after each condition, in one table per
+// person:
 //     sub-01/beh/sub-01_task-ratings_beh.tsv   condition item value
 
 #include <filesystem>
@@ -15,14 +16,16 @@ struct Rating {
     std::string value = "n/a";  // n/a: no answer
 };
 
-// Appended, and on the disk when it returns. Tabs and line ends in values become spaces. Throws std::runtime_error.
+// Appends the answers; they are on the disk when the function returns. Tabs and line ends in values become spaces.
+// Throws std::runtime_error.
 void add_ratings(const std::filesystem::path& directory, const std::string& code, const std::vector<Rating>& ratings);
 
-// Of one person; nothing if nobody was asked. A last line that was cut off is left out and noted.
+// Reads the answers of one person; returns nothing if that person was not asked. A last line that was cut off is left
+// out and noted.
 std::vector<Rating> read_ratings(const std::filesystem::path& directory, const std::string& code,
                                  std::vector<std::string>& notes);
 
-// The file's columns in words, once for the whole dataset.
+// Writes what the file's columns mean, once for the whole dataset.
 void explain_ratings_once(const std::filesystem::path& directory);
 
 }  // namespace palpa::study

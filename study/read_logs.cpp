@@ -143,7 +143,7 @@ void add_choices(const RunLog& run, int participant, Observations& out) {
     }
 }
 
-// Everything of one participant, runs in the order of their numbers.
+// Reads everything of one participant, runs in the order of their numbers.
 class Subject {
   public:
     explicit Subject(int index) : index_(index) {}

@@ -1,6 +1,6 @@
 #pragma once
-// Logs back into numbers. Whatever a kill or a power cut left behind can be read: a line that was cut off is left out
-// and noted, a trial without its last row is an interrupted one.
+// Reads logs back. Logs that a kill or a power cut left behind can be read: a line that was cut off is left out and
+// noted, and a trial without its last row counts as interrupted.
 
 #include <filesystem>
 #include <limits>
@@ -12,7 +12,7 @@
 
 namespace palpa::study {
 
-// `text` up to its last newline; what is behind it was cut off and is noted.
+// Returns `text` up to its last newline; a rest behind it was cut off and is noted.
 std::string_view whole_lines(std::string_view text, const std::string& file, std::vector<std::string>& notes);
 
 // One run: ..._events.tsv.
@@ -37,13 +37,13 @@ struct RunLog {
     std::vector<Choice> choices;  // of a run of forced choices, each one finished
 };
 
-// Throws InputError for a line that is not cut off and yet cannot be read.
+// Throws InputError for a line that cannot be read, unless it was cut off.
 RunLog read_run(const std::filesystem::path& events, std::vector<std::string>& notes);
 
-// sub-XX/beh/*_events.tsv, by name; without the intervals of forced choices, whose answers stand in task-softer.
+// Lists sub-XX/beh/*_events.tsv by name, without the intervals of forced choices, whose answers stand in task-softer.
 std::vector<std::filesystem::path> events_files(const std::filesystem::path& subject);
 
-// All runs of all participants. Practice and interrupted trials are counted, not taken. Throws InputError for logs of
+// Reads all runs of all participants. Practice and interrupted trials are only counted. Throws InputError for logs of
 // two versions of a protocol, a participant who stands twice in participants.tsv, and files that are no logs.
 Observations read_study(const std::filesystem::path& directory);
 

@@ -24,7 +24,7 @@ Contribution part_of(const Observation& row, Quantity quantity) {
     return {row.tp, row.tp + (quantity == Quantity::sensitivity ? row.fn : row.fp)};
 }
 
-// Empty if some rows do not tell whose they are.
+// Empty if some rows do not name their participant.
 People by_participant(const Observations& seen, int condition, int nodule, Quantity quantity) {
     People people(seen.participants.size());
     for (const Observation& row : seen.rows) {

@@ -1,6 +1,6 @@
 #pragma once
-// The analysis of a study: the paper's way, and beside it what takes account of people who did several conditions, of
-// the clustering of nodules in people, and of many comparisons.
+// The analysis of a study: the paper's tests, and beside them tests that take account of people who did several
+// conditions, of the clustering of nodules in people, and of many comparisons.
 
 #include <optional>
 #include <string>

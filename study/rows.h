@@ -1,5 +1,5 @@
 #pragma once
-// Tables of a study: one list of fields writes header, explanation (the JSON sidecar) and every row.
+// Tables of a study: one list of fields gives the header, the explanation (the JSON sidecar) and every row.
 //
 // A row type R has a function  visit_fields(const R&, visit)  that calls  visit(name, value, unit, description)
 // for each column.

@@ -11,7 +11,7 @@
 
 namespace palpa::study {
 
-// One list writes header, explanation and every row.
+// One list gives the header, the explanation and every row.
 template <class Visit>
 void visit_fields(const SampleRow& r, Visit&& visit) {
     visit("t_host_s", r.t_host_s, "s", "arrival of the sample, host's steady clock");

@@ -1,7 +1,7 @@
 #pragma once
 // The log of a run: one row per sample, in the BIDS layout
 //     DIR/sub-01/beh/sub-01_task-palpation_run-01_samples.tsv   (and .json, which explains the columns)
-// Rows are only appended; a run never overwrites another, it takes the next number.
+// Rows are only appended; a run never overwrites another, but takes the next number.
 
 #include <cstdint>
 #include <filesystem>
@@ -36,8 +36,8 @@ struct SampleRow {
     std::string_view ft_source = "n/a";
 };
 
-// Where run `run` of participant `participant` goes; the number is the first that is free from `first` on.
-// Creates the folders. Throws std::runtime_error if it cannot.
+// Where a run goes. next_run() takes the first free number from `first` on and creates the folders. It throws
+// std::runtime_error if it cannot.
 struct RunFiles {
     std::filesystem::path folder;
     std::string stem;  // sub-01_task-palpation_run-01
@@ -46,10 +46,10 @@ struct RunFiles {
 RunFiles next_run(const std::filesystem::path& directory, std::string_view participant,
                   std::string_view task = "palpation", int first = 1);
 
-// .bidsignore and dataset_description.json, where they are not there yet.
+// Writes .bidsignore and dataset_description.json where they do not exist yet.
 void prepare_dataset(const std::filesystem::path& directory);
 
-// The columns of samples explained once for a whole dataset.
+// Writes what the columns of samples mean, once for a whole dataset.
 void explain_samples_once(const std::filesystem::path& json);
 
 class SampleLog {

@@ -1,5 +1,5 @@
 #pragma once
-// Marks against the places that were to be found.
+// Scores marks against the places that were to be found.
 
 #include <span>
 #include <string>
@@ -22,7 +22,7 @@ struct MarkedPlace {
     double y_m = 0.0;
 };
 
-// again: on a target that another mark has found already; neither a hit nor a false mark.
+// again: the mark is on a target that another mark has found already; it is neither a hit nor a false mark.
 enum class MarkKind { hit, again, false_mark };
 
 struct MarkScore {
@@ -41,8 +41,9 @@ struct Score {
     double ppv = 0.0;          // TP / (TP + FP); NaN without marks
 };
 
-// How far from a target's axis a mark still finds it: the larger of its diameter and 8 mm. One lesion diameter is
-// the usual rule for marks on images; hands err by 5 to 7 mm however small the lump (Front. Robot. AI 2021, 745234).
+// How far from a target's axis a mark still finds it: the target's diameter or 8 mm, whichever is larger. One lesion
+// diameter is the usual rule for marks on images; hands err by 5 to 7 mm however small the lump (Front. Robot. AI 2021,
+// 745234).
 double acceptance_radius_m(const Target& target);
 
 double distance_m(const Target& target, const MarkedPlace& mark);

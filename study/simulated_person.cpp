@@ -55,7 +55,7 @@ void plan_pass(SimulatedPerson& person) {
     person.way.assign(pass.rbegin(), pass.rend());
 }
 
-// Along the way for `step_m`.
+// Moves the hand along its way by `step_m`.
 void go(double step_m, SimulatedPerson& person) {
     while (step_m > 0.0 && !person.way.empty()) {
         const ScreenPlace& next = person.way.back();
@@ -99,9 +99,8 @@ void add_strokes(bool along_x, SimulatedPerson& person) {
     person.weighted = {};
 }
 
-// First along x, then along y through where x was felt, then on with the search.
-// Along the way it was felt (x or y), then across through where it was felt, and again until the place no longer moves;
-// then on with the search.
+// Begins a check of a place in doubt: strokes along the way on which it was felt (x or y), then across through the
+// place that they gave, and so on until the place no longer moves; then the search goes on.
 void begin_check(SimulatedPerson& person) {
     const ScreenPlace ahead = person.way.empty() ? person.at : person.way.back();
     const bool along_x = std::abs(ahead.x_m - person.at.x_m) >= std::abs(ahead.y_m - person.at.y_m);
@@ -126,7 +125,8 @@ void end_check(bool convinced, SimulatedPerson& person, Move& out) {
     out.confidence = 1 + static_cast<int>(std::clamp(2.5 * surplus, 0.0, 4.0));
 }
 
-// The strokes of one half of the check are done: where along them was it?
+// Call it when the strokes of one half of the check are done: finds the place along them, then begins the next half or
+// ends the check.
 void go_on_with_check(SimulatedPerson& person, Move& out) {
     constexpr double kStill_m = 6e-3;
     constexpr int kMostHalves = 4;
@@ -156,7 +156,8 @@ void look(double input, double dt_s, double memory_s, double& seen, double& nois
     noise = kept * noise + std::sqrt(1.0 - kept * kept) * random.normal();
 }
 
-// How much shallower the dent is than the force that is felt lets expect; learns what plain tissue is.
+// How much shallower the dent is than one would expect from the force that is felt. The function learns what plain
+// tissue is like.
 double missing_depth(const Sight& sight, double dt_s, SimulatedPerson& person) {
     if (!sight.dent_shown || sight.depth_m <= 0.0 || person.felt_N < 0.3) return 0.0;
     const double compliance = std::log(sight.depth_m) - kExponent * std::log(person.felt_N);

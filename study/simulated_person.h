@@ -1,6 +1,6 @@
 #pragma once
-// A person who is not there: a hand that searches a surface and an eye that sees the avatar lag behind the pen and the
-// dent grow shallower. It knows nothing of the tissue: what it sees comes from the same loop that a person sees.
+// A simulated person: a hand that searches a surface and an eye that sees the avatar lag behind the pen and the
+// dent grow shallower. It knows nothing of the tissue: it sees what the loop shows, as a person does.
 //
 // Lengths are metres on the screen, which is taken as large as the tissue; x to the right, y upwards, (0, 0) in the
 // middle of the tissue. All numbers below are choices of ours, tuned to no data of people; they check a protocol and
@@ -37,7 +37,7 @@ struct PersonTraits {
     double criterion = 3.5;  // in noise: what is taken for something
 };
 
-// `deep_N`: the force that the force bar shows as deep; `greatest_N`: the most that the device can tell.
+// `deep_N`: the force that the force bar shows as deep; `greatest_N`: the greatest force that the device can report.
 PersonTraits draw_person(double deep_N, double greatest_N, Random& random);
 
 struct Sight {
@@ -106,7 +106,8 @@ Move move(double dt_s, SimulatedPerson& person);
 // What the person sees of that move.
 void see(const Sight& sight, double dt_s, SimulatedPerson& person);
 
-// Is the answer right? Two stiffnesses, each seen with `weber` of noise (share, standard deviation of the logarithm).
+// Draws whether the answer is right. Each of the two stiffnesses is seen with noise; `weber` is the standard deviation
+// of its logarithm (a share).
 bool answers_right(double reference_kPa, double comparison_kPa, double weber, Random& random);
 
 }  // namespace palpa::study

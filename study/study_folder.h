@@ -1,6 +1,7 @@
 #pragma once
 // The folder of one study: DIR/protocol.json (a copy), DIR/study.json (which version of it, and how), the people, and
-// the runs of study/sample_log.h. Whatever is there is never overwritten; a study that was interrupted goes on in it.
+// the runs of study/sample_log.h. Existing files are never overwritten; a study that was interrupted goes on in its
+// folder.
 
 #include <filesystem>
 #include <optional>
@@ -18,11 +19,12 @@ struct StudyKind {
     std::string program;     // and version
 };
 
-// Makes the folder, or goes on in one of the same protocol and kind. Throws InputError naming both versions if another
-// protocol's logs are there, std::runtime_error if it cannot be written.
+// Makes the folder, or goes on in a folder of the same protocol and kind. Throws InputError naming both versions if
+// another protocol's logs are there, std::runtime_error if it cannot be written.
 void open_study(const std::filesystem::path& directory, const Protocol& protocol, const StudyKind& kind);
 
-// What study.json says; nothing if there is none (logs of single runs). Throws InputError if it cannot be read.
+// The content of study.json; nothing if there is no such file (logs of single runs). Throws InputError if the file
+// cannot be read.
 struct StudyIdentity {
     std::string name;
     std::string version;
@@ -40,19 +42,21 @@ struct Person {
     bool operator==(const Person&) const = default;
 };
 
-// In the order of the file. A last line that was cut off is left out and noted. Throws InputError for a code that
-// stands twice.
+// Reads participants.tsv in the order of the file. A last line that was cut off is left out and noted. Throws
+// InputError for a code that stands twice.
 std::vector<Person> read_people(const std::filesystem::path& directory, std::vector<std::string>& notes);
 std::vector<Person> people_in(std::string_view participants_tsv, const std::string& file_name,
                               std::vector<std::string>& notes);
 
-// Adds those whose codes are not there yet, on the disk when it returns. Throws std::runtime_error if it cannot.
+// Adds the people whose codes are not in the file yet; they are on the disk when the function returns. Throws
+// std::runtime_error if it cannot.
 void add_people(const std::filesystem::path& directory, const std::vector<Person>& people);
 
 // Trials of this participant that are finished and on the disk.
 std::set<int> finished_trials(const std::filesystem::path& directory, const std::string& code);
 
-// The first trial that is not finished yet: where a study goes on after a break, a crash or a power cut. Nothing: done.
+// The first trial that is not finished yet, where a study goes on after a break, a crash or a power cut; nothing if all
+// trials are done.
 std::optional<PlannedTrial> next_trial(const PlannedParticipant& plan, const std::set<int>& finished);
 
 // Where a participant stands: what a screen needs to begin, or to go on after a crash.

@@ -2,8 +2,8 @@
 // What a person did in a trial, beside the samples of study/sample_log.h:
 //     ..._events.tsv   start, each mark, each judgement of how sure, each undo, finish or interrupted; written as it happens
 //     ..._marks.tsv    the marks that stood at the end, with what they found; also of a trial that was broken off
-// both with a JSON file that explains the columns. Rows are only appended, and each is on the disk before the
-// next one begins.
+// Both tables have a JSON file that explains the columns. Rows are only appended, and each row is on the disk before
+// the next one begins.
 
 #include <cstdint>
 #include <limits>
@@ -64,7 +64,7 @@ struct TrialLabel {
     files::Json study;  // for the settings: protocol, version, hash, participant, what is simulated
 };
 
-// One choice between two stimuli; ..._task-softer_..._events.tsv, a row each.
+// One choice between two stimuli: one row of ..._task-softer_..._events.tsv.
 struct ChoiceRow {
     static constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
     double onset_s = 0.0;  // since the run began
@@ -91,7 +91,7 @@ struct LogOptions {
 class TrialLog {
   public:
     explicit TrialLog(const RunFiles& files, const LogOptions& options = {});
-    // Return false once anything could not be written.
+    // These functions return false once anything could not be written.
     bool write(const EventRow& row);
     bool write(const MarkRow& row);
     bool sync_marks() { return marks_.sync(); }
@@ -105,7 +105,7 @@ class TrialLog {
     bool sync_rows_;
 };
 
-// Choices of one participant, each on the disk when write() returns.
+// The choices of one participant; each is on the disk when write() returns.
 class ChoiceLog {
   public:
     explicit ChoiceLog(const RunFiles& files);
@@ -116,8 +116,8 @@ class ChoiceLog {
     std::string line_;
 };
 
-// What every folder of logs has, and the explanations that hold for all its tables (BIDS: a JSON file higher up is
-// inherited). Leaves alone what is there.
+// Writes the files that every folder of logs has, and the explanations that hold for all its tables (BIDS: a JSON file
+// higher up is inherited). Existing files are left as they are.
 void prepare_log_folder(const std::filesystem::path& directory);
 
 }  // namespace palpa::study

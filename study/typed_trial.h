@@ -23,8 +23,9 @@ struct TypedAnswers {
 int found_of(const TypedAnswers& answers);
 int missed_of(const TypedAnswers& answers);
 
-// Settings, marks and events of one run, all on the disk when it returns, the row `finish` last. `nodules`: their names,
-// as many as answers.nodules. Throws std::runtime_error if something cannot be written: the trial is then interrupted.
+// Writes settings, marks and events of one run, the row `finish` last; all are on the disk when the function returns.
+// `nodules` holds the nodules' names, as many as answers.nodules. Throws std::runtime_error if something cannot be
+// written; the trial is then interrupted.
 void write_typed_trial(const RunFiles& files, const TrialLabel& label, bool practice, std::int64_t seed,
                        const std::vector<std::string>& nodules, const TypedAnswers& answers);
 

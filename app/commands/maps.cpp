@@ -1,4 +1,4 @@
-// palpa maps info | sample | import | generate, and those of command_maps.h
+// palpa maps info | sample | import | generate, and those of app/commands/maps.h
 
 #include "app/commands/maps.h"
 

@@ -15,7 +15,7 @@ bool named(const std::vector<platform::PointerDevice>& devices, const std::strin
                        [&](const platform::PointerDevice& d) { return d.name == name; });
 }
 
-// Plugged in or out while the app runs.
+// Notes devices that are plugged in or out while the app runs.
 void note_changes(const std::vector<platform::PointerDevice>& now, Screens& screens) {
     for (const platform::PointerDevice& device : screens.devices) {
         if (!named(now, device.name)) screens.note = words::filled(words::kIsGone, {device.name});
@@ -26,7 +26,7 @@ void note_changes(const std::vector<platform::PointerDevice>& now, Screens& scre
     }
 }
 
-// A pen or finger that touches without a true pressure, and what to do about it.
+// Tells of a pen or finger that touches without a true pressure, and offers another way to press.
 void note_pressure(platform::Tool tool, App& app) {
     const platform::PressureKind kind = platform::pressure_kind(app.pressure, tool);
     const bool held = tool == platform::Tool::pen ? app.hold.pen : app.hold.finger;
@@ -35,7 +35,7 @@ void note_pressure(platform::Tool tool, App& app) {
     if (held || (kind != platform::PressureKind::constant && kind != platform::PressureKind::missing)) return;
     const char* found = kind == platform::PressureKind::missing ? words::kReportsNone : words::kReportsConstant;
     app.screens.device_notes.push_back(words::filled(found, {name}));
-    // a profile of counts or contact areas reads what holding does not make
+    // a profile of counts or contact areas reads fields that pressing by time does not set
     app.screens.offer_hold = app.session.plan.profile.level == calibration::LevelField::pressure;
 }
 

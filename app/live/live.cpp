@@ -27,7 +27,7 @@ void keep_settings(App& app) {
     if (app.keeper != nullptr) app.keeper->keep_settings(app.settings_path);
 }
 
-// What was recorded is on the disk; a profile that was kept can be chosen at once.
+// Puts the recording on the disk; a profile that was kept can be chosen at once.
 void close_calibrate(App& app) {
     stop_recording(*app.screens.calibrate);
     app.screens.calibrate.reset();
@@ -70,7 +70,7 @@ void change_settings(const Wishes& wishes, platform::Window& window, Gui& gui, A
     const bool changed = wishes.left_handed || wishes.above_finger || wishes.mode || wishes.full_screen ||
                          wishes.px_per_mm || wishes.scene || wishes.profile;
     if (changed) keep_settings(app);
-    // what was measured with another scale or shown another way is another trial
+    // another scale or another way of showing the tissue makes another trial
     if (!wishes.px_per_mm && !wishes.mode && !wishes.above_finger) return;
     if (app.settings.test_mode) turn_if_shown(window, app);
     begin_anew(window, gui, app);
@@ -110,7 +110,7 @@ void carry_out(const Wishes& asked_for, platform::Window& window, Gui& gui, App&
     app.save_waits = app.save_waits || wishes.save_picture;
 }
 
-// Rows of the trace that are due, with the trace's own times.
+// Takes the rows of the trace that are due, with the trace's own times.
 void take_due_rows(App& app, double now_s, std::vector<platform::Sample>& out) {
     const auto& rows = app.trace->samples;
     while (app.next_row < rows.size() && rows[app.next_row].t_host_s <= now_s) out.push_back(rows[app.next_row++]);
@@ -124,7 +124,7 @@ void take(const platform::Sample& sample, App& app) {
     app.screens.screen = Screen::reveal;
 }
 
-// A finger that may not hide the avatar indents what lies above it; log and trace hold that place.
+// If a finger may not hide the avatar, it indents the place above it; log and trace hold that place.
 void lift_fingers(float mm, std::vector<platform::Sample>& samples, const App& app) {
     if (!app.settings.above_finger || app.trace || app.screens.screen != Screen::trial) return;
     for (platform::Sample& sample : samples) {
@@ -185,7 +185,8 @@ void note_resize(const platform::Window& window, Gui& gui, App& app) {
     if (!same) take(now, app);
 }
 
-// Samples that changed nothing on the screen have no frame that shows them, and no latency.
+// Counts the frame and the latency of the samples that it shows. Samples that changed nothing on the screen have no
+// frame that shows them, and no latency.
 void note_shown(const platform::Window& window, App& app) {
     const double shown_s = now_of(app, window);
     const double ready_s = 1e-9 * static_cast<double>(app.times.built_ns) - app.trace_shift_s;
@@ -224,14 +225,14 @@ void show(platform::Window& window, App& app, render::TissueDrawer& tissue, Gui&
     carry_out(wishes, window, gui, app);
 }
 
-// The screen changes by itself now, or a step waits for something that says nothing when it comes.
+// True while the screen changes by itself, or while a step waits for something that sends no event when it is ready.
 bool in_motion(const App& app) {
     const bool records = app.screens.screen == Screen::calibrate;
     const bool keeps = app.begin_waits || (app.screens.study && app.screens.study->keeping);
     return app.trace || app.session.state.pointer || !app.hold.held.empty() || records || keeps || app.save_waits;
 }
 
-// A log that can no longer be written stops the trial, in words; what came before is on the disk.
+// A log that can no longer be written stops the trial with a message; earlier rows are on the disk.
 void watch_files(App& app) {
     if (!app.stopped.empty() || session::files_good(app.session)) return;
     close_trial(app);
@@ -242,7 +243,7 @@ void watch_files(App& app) {
     app.screens.problems.push_back(app.stopped);
 }
 
-// What a reload or an empty battery would cost: a second.
+// Gives the keeper the trial so far once a second, so that a reload or an empty battery costs at most a second.
 void keep_part(double now_s, App& app) {
     constexpr double kEvery_s = 1.0;
     if (app.keeper == nullptr || !app.session.files || now_s - app.parted_s < kEvery_s) return;
@@ -285,7 +286,7 @@ struct Live::Impl {
         began_s = frame_s = stirred_s = app.drawn_s = window->now_s();
     }
 
-    // The window's own button is asked about as Ctrl+Q is; a second time it closes.
+    // The window's own button asks first, as Ctrl+Q does; pressed a second time, it closes.
     bool closes() {
         if (app.quit) return true;
         if (!window->close_requested()) return false;
@@ -322,8 +323,8 @@ struct Live::Impl {
         keep_part(window->now_s(), app);
     }
 
-    // When the next frame is built. Nothing happening, that is seldom: often enough for clocks, notices and cursors that
-    // blink; what comes is met at once.
+    // When the next frame is built. While nothing happens, frames are seldom: often enough for clocks, notices and
+    // cursors that blink. Input wakes the loop at once.
     double next_frame_s() const {
         constexpr double kIdle_s = 0.1;
         constexpr double kSettle_s = 0.25;  // panels take some frames to settle, and the log is flushed after 80 ms

@@ -1,5 +1,5 @@
 #pragma once
-// The app on a screen: input, advance, log and drawing on one thread. And pictures without a screen.
+// The app on a screen: input, advance, log and drawing on one thread.
 
 #include <filesystem>
 #include <memory>
@@ -15,7 +15,7 @@ namespace palpa::app {
 // `palpa run`, as typed.
 struct RunOptions {
     std::string scene;
-    std::string trace;  // replayed at its own pace instead of a pen
+    std::string trace;  // replayed at its own pace, instead of input from a pen
     std::string log;    // folder, empty for none
     std::string participant = "01";
     int first_run = 1;          // of the log
@@ -33,10 +33,10 @@ struct RunOptions {
     bool json = false;
 };
 
-// The app while its window is open, a turn at a time: for a system that calls, as a browser does.
+// The app while its window is open, one turn at a time, for a system that calls the program, as a browser does.
 class Live {
   public:
-    // Throws InputError or std::runtime_error before there is anything to see. `keeper` outlives it, or is null.
+    // Throws InputError or std::runtime_error before anything is shown. `keeper` must outlive the object, or be null.
     explicit Live(const RunOptions& options, session::TrialKeeper* keeper = nullptr);
     ~Live();
     Live(const Live&) = delete;
@@ -44,15 +44,16 @@ class Live {
 
     bool ready() const;  // false: the window was closed before the tissue was
 
-    // Reads, simulates, logs, and shows a frame if one is due. `now` and `nothing` do not wait for input.
+    // Reads, simulates, logs, and shows a frame if one is due. With `now` and `nothing` it does not wait for input.
     // Returns false once the app is over.
     enum class Draw : std::uint8_t { when_due, now, nothing };
     bool turn(Draw draw);
 
-    // The window has gone out of sight, or come back: presses end, the gap is logged, what there is is kept.
+    // The window has gone out of sight, or come back: ends the presses, logs the gap, and gives the keeper the trial so
+    // far.
     void out_of_sight(bool hidden);
 
-    // The field that takes letters now, for a screen that brings its own keyboard.
+    // The field that takes letters now, for a screen with an on-screen keyboard.
     std::optional<Gui::TextField> text_field() const;
     void type_instead(const std::string& text);
 
@@ -64,7 +65,8 @@ class Live {
     std::unique_ptr<Impl> impl_;
 };
 
-// Returns what `run --json` prints, or nothing if the window was closed before the tissue was ready. Throws InputError or std::runtime_error before the loop or after it.
+// Returns what `run --json` prints, or nothing if the window was closed before the tissue was ready. Throws InputError
+// or std::runtime_error before the loop or after it.
 std::optional<files::Json> run_live(const RunOptions& options);
 
 }  // namespace palpa::app

@@ -1,5 +1,5 @@
 #pragma once
-// What live.cpp and its neighbours live_*.cpp share: everything that the app has open, and the steps of a trial.
+// What the sources of app/live share: everything that the app has open, and the steps of a trial.
 
 #include <exception>
 #include <filesystem>
@@ -44,9 +44,10 @@ struct App {
     bool quit = false;
 };
 
-inline constexpr double kFrame_s = 1.0 / 60.0;  // of our own: software rendering has no vertical sync
+// The app's own frame time, since software rendering has no vertical sync.
+inline constexpr double kFrame_s = 1.0 / 60.0;
 
-// Takes a problem to the screen instead of out of the program.
+// Shows a problem on the screen, instead of letting its exception end the program.
 template <class Work>
 bool attempt(App& app, const Work& work) {
     try {
@@ -69,20 +70,22 @@ platform::TraceInfo info_of(const App& app, const platform::Window& window);
 double now_of(const App& app, const platform::Window& window);  // of samples
 double finger_offset_mm(const App& app);                        // 0, or kFingerOffset_mm
 files::Json result_of(const App& app);                          // what `run --json` says so far
-// A press belongs to the trial and the screen in which it began: it ends now, and what still comes of it is dropped.
+// Ends all presses and drops their later samples: a press belongs to the trial and the screen in which it began.
 void end_presses(platform::Window& window, App& app);
 // Ends the presses and the trial, then puts the tissue of `scene` under the hand. A trial begins on it with begin().
 void put_scene(scene::Scene scene, scene::Plan plan, platform::Window& window, App& app);
-// False if the window was closed before the plan was ready; a tissue that has to be computed is, while the window shows how far.
+// Makes the plan. If its tissue has to be computed, the window shows the progress. Returns false if the window was
+// closed before the plan was ready.
 bool prepare(platform::Window& window, Gui& gui, const scene::Scene& scene, scene::Plan& plan);
 void begin(const platform::Window& window, const Gui& gui,
            App& app);  // a trial; throws InputError or std::runtime_error
 void begin_anew(platform::Window& window, const Gui& gui,
                 App& app);  // ends the one that goes on; waits for a keeper that is busy
 void begin_when_kept(platform::Window& window, const Gui& gui, App& app);  // what begin_anew() left waiting
-// Another scene or profile; whatever is wrong with it, the present one stays.
+// Changes to another scene or profile. If anything is wrong with it, the present one stays.
 void change_scene(platform::Window& window, Gui& gui, const std::string& file, const std::string& profile, App& app);
-// The eight turns in an order that the seed decides, so that nobody learns where its nodules are. Begin a trial after it.
+// Turns the tissue to the next of eight orientations, in an order that the seed decides, so that nobody learns where
+// its nodules are. Begin a trial after it.
 void turn_tissue(platform::Window& window, App& app);
 void turn_if_shown(platform::Window& window,
                    App& app);         // whoever has seen where the nodules are is tested on them somewhere else

@@ -1,4 +1,4 @@
-// What the app begins with: options, settings, and the first scene.
+// What the app starts with: options, settings, and the first scene.
 
 #include <cmath>
 #include <filesystem>
@@ -50,7 +50,7 @@ void know_screen(const platform::Window& window, App& app) {
 
 namespace {
 
-// False if the window was closed before the tissue was ready.
+// Returns false if the window was closed before the tissue was ready.
 bool prepare_first(scene::Scene scene, platform::Window& window, Gui& gui, App& app) {
     scene::Plan plan;
     if (!prepare(window, gui, scene, plan)) return false;

@@ -1,5 +1,5 @@
-// A study in the app: its trials are begun and ended here. Where a keeper takes them (in a browser), no step comes before the
-// one before it is safe.
+// A study in the app: its trials are begun and ended here. Where a keeper takes them (in a browser), no step begins
+// before the previous one is safe.
 
 #include <exception>
 #include <limits>
@@ -41,7 +41,7 @@ bool is_device_here(const App& app) {
     return device_here(due_condition(*app.screens.study).modality, app.screens.devices);
 }
 
-// A trial that its device has left says nothing of the person: it is interrupted, and comes again.
+// A trial whose device is gone says nothing about the person: it is interrupted, and comes again.
 void interrupt_study_trial(double now_s, App& app) {
     session::note_event("device_gone", now_s, app.session);
     app.screens.screen = Screen::study;
@@ -50,7 +50,7 @@ void interrupt_study_trial(double now_s, App& app) {
     wait_for_device(true, *app.screens.study);
 }
 
-// What was typed and answered goes to the keeper too; `keeping` until that has it.
+// Typed trials and answers go to the keeper too; `keeping` stays set until the keeper has them.
 void follow_keeper(App& app) {
     if (app.keeper == nullptr) return;
     StudyRun& run = *app.screens.study;
@@ -130,7 +130,7 @@ files::Json study_json(const App& app) {
                        {"of", run.progress.plan.trials.size()}};
 }
 
-// A trial that goes on is an interrupted one.
+// A trial that still goes on is logged as interrupted.
 files::Json close_study(const Gui& gui, App& app) {
     const StudyRun& run = *app.screens.study;
     if (app.screens.screen == Screen::trial && !close_trial(app)) throw std::runtime_error(app.stopped);

@@ -1,4 +1,4 @@
-// Before marks are thrown away: one question for everything that would do it.
+// The question before marks are thrown away; it is the same for every action that would do it.
 
 #include <algorithm>
 

@@ -48,7 +48,7 @@ void attempt(CalibrateForm& form, const Work& work) {
     }
 }
 
-// Beside what is there already: NAME, NAME-2, ...
+// A free name beside those that exist already: NAME, NAME-2, ...
 std::filesystem::path free_profile(const CalibrateForm& form) {
     const std::filesystem::path folder = user_folder() / "profiles";
     std::filesystem::create_directories(folder);
@@ -112,7 +112,7 @@ double share_of(const calibration::RecordOptions& options, double level) {
     return (level - options.range.lowest) / (options.range.highest - options.range.lowest);
 }
 
-// Points and curve above, what is left of the points without the curve below; the band to press next is tinted.
+// Draws points and curve above, and the points' residuals below. The band to press next is tinted.
 void draw_plots(const calibration::Recording& recording, const Guide& guide, const PanelArea& area, const Gui& gui,
                 ImDrawList& draw) {
     const calibration::RecordOptions& options = recording.arguments.options;

@@ -1,6 +1,6 @@
 #pragma once
-// The guided calibration: a form to connect a sensor, then what to press next, what was captured so far and how well a
-// curve goes through it; at the end a profile among the user's own.
+// The guided calibration. It shows a form to connect a sensor, then what to press next, what was captured so far and
+// how well a curve fits it; at the end it stores a profile among the user's own.
 
 #include <memory>
 #include <optional>
@@ -14,7 +14,7 @@
 
 namespace palpa::app {
 
-// What the guide has worked out for a recording, and the number that is typed for a scale.
+// What the guide has computed for a recording, and the number that the person types from a scale.
 struct Guide {
     std::optional<calibration::Calibration> fit;  // through the points so far, without intervals
     std::size_t fitted = 0;                       // points that it was made from

@@ -14,7 +14,7 @@ void widen(double value, Range& range) {
     range.highest = std::fmax(range.highest, value);
 }
 
-// Counts are told apart as they are; a pressure without counts in 65535 steps.
+// Notes a distinct value: counts as they are, a pressure without counts in 65535 steps.
 void note_pressure(const platform::Sample& sample, ToolCheck& tool) {
     widen(sample.pressure, tool.pressure);
     widen(sample.pressure_raw, tool.pressure_raw);
@@ -42,7 +42,7 @@ void fit(const platform::Sample& sample, ClockFit& clock) {
     clock.sum_ahead_ahead += ahead_off_s * (ahead_s - clock.mean_ahead_s);
 }
 
-// The pointer's place in the table; when that is full, the one that was quiet for longest.
+// The pointer's place in the table. If the table is full, it takes the place of the pointer that was quiet for longest.
 PointerTime& slot_of(std::int64_t pointer_id, DeviceCheck& check) {
     PointerTime* quiet = check.pointers.data();
     for (PointerTime& pointer : check.pointers) {

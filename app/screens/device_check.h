@@ -1,6 +1,6 @@
 #pragma once
-// What the pointing devices really send, measured from their samples: rate, pressure, clock. Nothing here
-// allocates, so that it can run beside everything else.
+// Measures from samples what the pointing devices really send: rate, pressure, clock. Nothing here allocates, so that
+// the check can run beside everything else.
 
 #include <array>
 #include <bitset>
@@ -13,7 +13,7 @@
 
 namespace palpa::app {
 
-// Straight line of (device - host) over host time, by least squares with running sums.
+// Straight line through (device - host) over host time, by least squares with running sums.
 struct ClockFit {
     std::int64_t count = 0;
     double first_host_s = 0.0;
@@ -70,15 +70,15 @@ struct DeviceCheck {
     std::array<PointerTime, 32> pointers;
 };
 
-// A gap longer than this is a rest, not part of the rate: many devices send nothing while they are held still.
+// A longer gap counts as a rest and not for the rate, since many devices send nothing while they are held still.
 inline constexpr double kRest_s = 0.25;
 
-// Call it with every sample as the device sent it. Rows of phase ui are not looked at.
+// Call it with every sample as the device sent it. Samples of phase ui are ignored.
 void observe(const platform::Sample& sample, DeviceCheck& check);
 
 const ToolCheck& of_tool(platform::Tool tool, const DeviceCheck& check);
 
-// 0 before there are two samples. Gaps by the device's own clock where it has one.
+// The rate is 0 before there are two samples. Gaps are measured by the device's own clock where it has one.
 double rate_Hz(const ToolCheck& tool);
 double median_gap_s(const ToolCheck& tool);  // to 2 %
 double worst_gap_s(const ToolCheck& tool);
@@ -86,13 +86,13 @@ double worst_gap_s(const ToolCheck& tool);
 std::int64_t distinct_pressures(const ToolCheck& tool);
 ClockDrift clock_drift(const ToolCheck& tool);
 
-// Samples that come at once; 1: each by itself.
+// How many samples come in one delivery; 1: each sample comes by itself.
 double samples_per_delivery(const ToolCheck& tool);
 double median_delay_s(const ToolCheck& tool);  // NaN if the clocks cannot be compared
 
 const char* name_of(platform::PressureKind kind);
 
-// What each tool sent, by its name, for files and programs. NaN is null.
+// What each tool sent, by the tool's name, for files and programs. NaN becomes null.
 files::Json check_json(const DeviceCheck& check);
 
 }  // namespace palpa::app

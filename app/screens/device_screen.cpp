@@ -1,4 +1,4 @@
-// What each pointing device says it has, and what it really sends while it is tried in the test area.
+// Shows what each pointing device declares, and what it really sends while it is tried in the test area.
 
 #include <algorithm>
 #include <cmath>

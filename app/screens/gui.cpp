@@ -47,7 +47,7 @@ ImVec4 colour(int r, int g, int b, float alpha = 1.0f) {
     return {static_cast<float>(r) / 255.0f, static_cast<float>(g) / 255.0f, static_cast<float>(b) / 255.0f, alpha};
 }
 
-// Quiet greys, so that only tissue and force have a hue.
+// The panels are grey, so that only tissue and force have a hue.
 void set_colours(ImGuiStyle& style) {
     ImGui::StyleColorsDark(&style);
     ImVec4* c = style.Colors;
@@ -233,7 +233,7 @@ void Gui::hand_over_key(const PanelInput& input) {
     if (!io.WantTextInput) keys_.push_back({input.key, input.ctrl});
 }
 
-// What was typed elsewhere replaces what stands in the field.
+// Replaces the text of the field by a text that was typed on an on-screen keyboard.
 void Gui::replace_text(const std::string& text) {
     ImGuiIO& io = ImGui::GetIO();
     ImGuiInputTextState* state = ImGui::GetInputTextState(ImGui::GetActiveID());

@@ -1,5 +1,6 @@
 #pragma once
-// Dear ImGui on a Window: set up, fed with events, drawn. What is on it: trial_screen.h and its neighbours.
+// Dear ImGui on a Window: sets it up, gives it events, and draws it. The panels themselves are in
+// app/screens/screens.h.
 
 #include <array>
 #include <deque>
@@ -32,7 +33,7 @@ class Gui {
     // keys_to_panels: arrows, Tab and Space move between the controls instead of the indenter.
     void begin_frame(double dt_s, bool keys_to_panels);
     void end_frame();  // closes the panels
-    // Something is held on the panels, or waits for the next frame: frames should come quickly.
+    // True while something is held on the panels, or input waits for the next frame: frames should then come quickly.
     bool in_use() const;
     // Enter is the screen's own key (pressed()) instead of that of the control which has the focus.
     void keep_enter(bool keep) { keep_enter_ = keep; }
@@ -40,11 +41,11 @@ class Gui {
     void draw();                    // hands them to GL
     void renew_drawing();           // all that GL held was lost
 
-    // Presses in a claimed area reach no tissue (from the next event on, until the next frame says anew).
+    // Presses in a claimed area reach no tissue, from the next event on, until the next frame claims its areas.
     void claim(const PanelArea& area) { areas_.push_back(area); }
-    // Whether a key (platform/window_event.h) goes down in this frame. Never while a number is typed.
+    // True if a key (platform/window_event.h) goes down in this frame; always false while a number is typed.
     bool pressed(int key, bool ctrl = false) const;
-    // The field that takes letters now, for a screen that brings its own keyboard; nothing if none does.
+    // The field that takes letters now, for a screen with an on-screen keyboard; nothing if no field does.
     struct TextField {
         std::string text;
         PanelArea area;
@@ -53,7 +54,7 @@ class Gui {
     void note_text_area(const PanelArea& area) { text_area_ = area; }  // of the one that is drawn and takes letters
     void type_instead(const std::string& text);                        // of what stands there
 
-    // A panel that does not fit into its place says so; for tests, and for `run --json`.
+    // Notes the name of a panel that does not fit into its place, for tests and for `run --json`.
     void note_overflow(const std::string& panel) { overflow_ = panel; }
     const std::string& overflow() const { return overflow_; }
 

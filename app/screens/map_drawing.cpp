@@ -1,4 +1,4 @@
-// A map's matrix in colour with its axes, colour bar and nodules; force over depth.
+// Draws a map's matrix in colour with its axes, colour bar and nodules, and the curves of force over depth.
 
 #include <algorithm>
 #include <cmath>
@@ -14,12 +14,12 @@
 namespace palpa::app {
 namespace {
 
-// Okabe and Ito, which colour-blind people can tell apart; numbers say the same again.
+// The colours of Okabe and Ito, which colour-blind people can tell apart; numbers tell the curves apart too.
 constexpr ImU32 kCurves[kPins + 1] = {IM_COL32(230, 159, 0, 255), IM_COL32(86, 180, 233, 255),
                                       IM_COL32(0, 158, 115, 255), IM_COL32(204, 121, 167, 255),
                                       IM_COL32(236, 239, 241, 255)};
 
-// Round steps between two numbers, `about` of them.
+// About `about` round steps between two numbers.
 double tic_step(double range, double about) {
     const double rough = range / std::max(1.0, about);
     const double power = std::pow(10.0, std::floor(std::log10(std::max(rough, 1e-12))));
@@ -59,7 +59,7 @@ struct Values {
     }
 };
 
-// The scale is that of the matrix that is shown: shallow ones would be all one colour on the deepest one's.
+// The colour scale is that of the shown matrix: on the scale of the deepest matrix, shallow ones would have one colour.
 Values values_of(const MapBrowser& browser) {
     Values out{browser.map, browser};
     out.apart = browser.quantity == MapQuantity::tangential_x || browser.quantity == MapQuantity::tangential_y;
@@ -94,7 +94,7 @@ struct Frame {
     }
 };
 
-// As large as it fits, true to shape.
+// The matrix is as large as it fits, true to shape.
 Frame frame_of(const stiffnessmaps::Map& map, ImVec2 low, ImVec2 high) {
     const auto width_m = static_cast<float>(map.spacing_m[0] * static_cast<double>(map.n_x));
     const auto height_m = static_cast<float>(map.spacing_m[1] * static_cast<double>(map.n_y));
@@ -189,7 +189,7 @@ void draw_bar(const Values& values, const Frame& f, ImVec2 low, float width_px, 
     draw.AddText(ImVec2(low.x, f.low.y - ImGui::GetFontSize() - mm), kInk, values.unit);
 }
 
-// A disc, or a capsule along its angle; detected ones dashed.
+// Draws a nodule as a disc, or as a capsule along its angle; detected nodules are dashed.
 void draw_nodule(const stiffnessmaps::Nodule& nodule, const Frame& f, float mm, ImDrawList& draw) {
     const double radius_m = 0.5 * nodule.diameter_m.value_or(4e-3);
     const double half_m = std::max(0.0, 0.5 * nodule.length_m.value_or(0.0) - radius_m);

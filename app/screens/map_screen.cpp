@@ -107,7 +107,7 @@ void map_list(float height_px, const Gui& gui, MapBrowser& browser) {
     if (!wanted.empty()) choose_map(wanted, browser);
 }
 
-// Everything that can be done with keys alone: kind, depth, a point moved by a fortieth of the map, pins.
+// Everything can be done with keys alone: kind, depth, a point moved by a fortieth of the map, pins.
 void take_map_keys(const Gui& gui, MapBrowser& browser) {
     for (int i = 0; i < 4; ++i) {
         const auto quantity = static_cast<MapQuantity>(i);

@@ -1,5 +1,6 @@
 #pragma once
-// The map browser: a matrix of a map in colour, its nodules, force over depth where one points, and what the map is.
+// The map browser: a matrix of a map in colour, its nodules, force over depth at the place that is pointed at, and
+// facts about the map.
 // While a test trial goes on it shows nothing: the tissue under test, turned or not, may be among the maps.
 
 #include <Eigen/Core>
@@ -31,19 +32,19 @@ struct MapBrowser {
 };
 inline constexpr std::size_t kPins = 4;
 
-// Nodules stay hidden until a test is finished; in practice they are shown anyway.
+// False while a test goes on, whose nodules stay hidden until it is finished; in practice they are shown anyway.
 bool may_show_maps(const session::Trial& trial);
 
-// Opens on the scene's own map, or the first of the list. What goes wrong is told in the browser.
+// Opens the browser on the scene's own map, or on the first of the list. Problems are shown in the browser.
 std::shared_ptr<MapBrowser> make_map_browser(const scene::Scene& scene, std::vector<Choice> maps);
 void choose_map(const std::string& file, MapBrowser& browser);
 
 void draw_map_screen(const Shown& shown, Gui& gui, MapBrowser& browser, Wishes& wishes);
 
-// The parts of it, drawn by map_drawing.cpp.
+// The parts of the screen that map_drawing.cpp draws.
 bool has_quantity(const stiffnessmaps::Map& map, MapQuantity quantity);
 void add_pin(const Eigen::Vector2d& p_m, MapBrowser& browser);  // the oldest goes if there are too many
-// Returns the place under the pointer; a press there is told in `pressed`.
+// Returns the place under the pointer; `pressed` says whether it was pressed there.
 std::optional<Eigen::Vector2d> draw_map_matrix(const MapBrowser& browser, ImVec2 size_px, const Gui& gui,
                                                bool& pressed);
 void draw_map_curves(const MapBrowser& browser, const std::optional<Eigen::Vector2d>& pointed_m, ImVec2 size_px,

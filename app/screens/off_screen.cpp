@@ -1,4 +1,4 @@
-// What is on the screen, as a file.
+// Writes what is on the screen to a file, with a window or without a display.
 
 #include "app/screens/frame.h"
 #include "files/text.h"

@@ -18,7 +18,7 @@ bool is_press(const PanelInput& input) {
     return input.kind == Kind::key && input.down && input.key != platform::key::other;
 }
 
-// An emptied field is Dear ImGui's Backspace on a selection: as good as a key that goes down.
+// Emptying a field is done by Dear ImGui's Backspace on a selection, so it counts as a key that goes down.
 bool ends_letters(const PanelInput& input) {
     return (is_press(input) && !types_letter(input.key)) || (input.kind == Kind::replace && input.text.empty());
 }

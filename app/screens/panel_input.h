@@ -1,6 +1,6 @@
 #pragma once
-// What panels are worked with, in the order in which it came. Dear ImGui 1.86 looks once a frame at which keys and
-// buttons are down, so what is quicker than a frame waits here for a frame of its own.
+// Input of the panels, in the order in which it came. Dear ImGui 1.86 looks only once a frame at which keys and buttons
+// are down, so input that is quicker than a frame waits here for a frame of its own.
 
 #include <cstdint>
 #include <deque>
@@ -22,7 +22,7 @@ struct PanelInput {
     std::string text{};       // UTF-8; replace: instead of all that stands in the field
 };
 
-// Appends. A field's new text takes the place of the one that still waits, if nothing came between.
+// Appends `input`. A field's new text takes the place of a text that still waits, if nothing came between them.
 void wait_for_frame(PanelInput input, std::deque<PanelInput>& waiting);
 
 // Takes from the front what one frame can tell apart: a button's press or release by itself; or keys that come up and

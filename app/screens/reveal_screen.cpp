@@ -1,4 +1,4 @@
-// After a trial: what was there, what was found, where the pen was and how deep.
+// The screen after a trial: what was there, what was found, where the pen was and how deep it pressed.
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-// How large a millimetre is on this screen: a bank card held against it, or a number.
+// The screen that measures the screen's scale, by a bank card held against it or by a typed number.
 
 #include <algorithm>
 #include <cmath>

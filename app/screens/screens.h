@@ -1,6 +1,6 @@
 #pragma once
-// What the app shows, screen by screen. The functions draw from what they are given and say what the person asked for
-// in Wishes; the loop (app/live) carries it out. So a picture can be drawn without a window on a screen.
+// What the app shows, screen by screen. The functions draw from their arguments and return what the person asked for in
+// Wishes; the loop (app/live) carries it out. A picture can therefore be drawn without a window on a screen.
 
 #include <memory>
 #include <optional>
@@ -58,7 +58,7 @@ struct Wishes {
     bool sure = false;  // of throwing away the marks of the trial that goes on
 };
 
-// What is open, and what a person has typed so far; means nothing to a replay.
+// What is open, and what a person has typed so far. A replay does not need it.
 struct Screens {
     Screen screen = Screen::trial;
     bool menu = false;
@@ -101,7 +101,7 @@ struct Shown {
     double now_s = 0.0;
 };
 
-// Marks, lag, pen and (in practice) nodules, over the tissue.
+// Draws marks, lag, pen and (in practice) nodules over the tissue.
 void draw_on_tissue(const Shown& shown, const Gui& gui);
 
 void draw_trial_panel(const Shown& shown, const Layout& layout, Gui& gui, Screens& screens, Wishes& wishes);
@@ -114,17 +114,17 @@ void add_dot(const platform::Sample& sample, Screens& screens);
 void draw_study_screen(double now_s, Gui& gui, StudyRun& run, Wishes& wishes);
 void draw_scale_screen(const Shown& shown, Gui& gui, Screens& screens, Wishes& wishes);
 
-// While marks are at stake: what would throw them away goes to screens.asked, and the rest comes back.
+// While marks are at stake: puts wishes that would throw them away into screens.asked, and returns the other wishes.
 Wishes ask_first(Wishes wishes, Screens& screens);
 void draw_ask(const Shown& shown, Gui& gui, Screens& screens, Wishes& wishes);
 
 // Takes the note off the screen when it has been there for a while.
 void age_note(double now_s, Screens& screens);
 
-// The keys that all of this can be done with.
+// Takes the keys; everything on the screens can be done with them.
 void take_keys(const Shown& shown, const Gui& gui, Screens& screens, Wishes& wishes);
 
-// A bar in the middle of the screen, while nothing else can be shown.
+// Draws a progress bar in the middle of the screen, while nothing else can be shown.
 void draw_progress(const std::string& what, double share);
 
 }  // namespace palpa::app

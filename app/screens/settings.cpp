@@ -50,7 +50,7 @@ files::Json json_of(const Settings& s) {
     return json;
 }
 
-// What somebody wrote by hand is kept.
+// A file that somebody wrote by hand and that could not be read is kept.
 void move_broken_aside(const fs::path& file) {
     if (!fs::exists(file)) return;
     std::string problem;

@@ -1,5 +1,5 @@
 #pragma once
-// What a person chose once and keeps: settings.json in the user's configuration folder (XDG).
+// The choices that are kept from run to run: settings.json in the user's configuration folder (XDG).
 
 #include <filesystem>
 #include <map>
@@ -22,11 +22,11 @@ struct Settings {
 // $XDG_CONFIG_HOME/palpa/settings.json, or ~/.config/palpa/settings.json; empty if neither is known.
 std::filesystem::path settings_file();
 
-// What the file says; defaults where there is none. A file that cannot be read says why in `problem` and is moved aside
-// by the next save, not overwritten.
+// Reads the file; without a file the settings are the defaults. If the file cannot be read, `problem` says why, and the
+// next save moves the file aside instead of overwriting it.
 Settings load_settings(const std::filesystem::path& file, std::string& problem);
 
-// Returns why it could not be saved, in words, or nothing.
+// Returns why the settings could not be saved, for people, or nothing.
 std::string save_settings(const Settings& settings, const std::filesystem::path& file);
 
 }  // namespace palpa::app

@@ -17,7 +17,7 @@ bool enter_pressed(const Gui& gui) {
     return gui.pressed(platform::key::enter) || gui.pressed(platform::key::pad_enter);
 }
 
-// The one way on; Enter does it too.
+// The one button that goes on; Enter does the same.
 bool forward(const char* label, const Gui& gui, bool enabled = true) {
     const float width_px = std::min(70.0f * gui.mm(), ImGui::GetContentRegionAvail().x);
     const bool asked = big_button(label, words::kEnter, {width_px, kMark_mm, enabled, false}, gui);
@@ -30,13 +30,13 @@ void title(const std::string& text) {
     ImGui::SetWindowFontScale(1.0f);
 }
 
-// Beside a button, at the height of its word.
+// Puts text beside a button, at the height of the button's word.
 void beside(const std::string& text, const Gui& gui) {
     ImGui::SetCursorPosY(ImGui::GetCursorPosY() + 0.5f * (kTarget_mm * gui.mm() - ImGui::GetFontSize()));
     ImGui::TextUnformatted(text.c_str());
 }
 
-// As high as what is touched.
+// Fields are as high as buttons that are touched.
 bool text_field(const char* label, char* text, std::size_t size, ImGuiInputTextFlags flags, Gui& gui) {
     ImGui::PushStyleVar(ImGuiStyleVar_FramePadding,
                         ImVec2(2.0f * gui.mm(), 0.5f * (kTarget_mm * gui.mm() - ImGui::GetFontSize())));
@@ -50,7 +50,7 @@ bool text_field(const char* label, char* text, std::size_t size, ImGuiInputTextF
 
 void gap(const Gui& gui) { ImGui::Dummy(ImVec2(0.0f, 2.0f * gui.mm())); }
 
-// For the experimenter: pairing, sending, exporting.
+// The experimenter's button for pairing, sending and exporting.
 void trials_button(const Gui& gui, const StudyRun& run, Wishes& wishes) {
     if (!run.on_tablet) return;
     if (big_button(words::kTrialsOnTablet, "",
@@ -58,7 +58,7 @@ void trials_button(const Gui& gui, const StudyRun& run, Wishes& wishes) {
         wishes.trials = true;
 }
 
-// Leaves the study; where there is no window to close, the way to the rest of the app.
+// The button that leaves the study. Where there is no window to close, it leads to the rest of the app.
 void leave_button(const Gui& gui, const StudyRun& run, Wishes& wishes) {
     const char* label = run.on_tablet ? words::kLeaveStudy : words::kClose;
     const char* key = run.on_tablet ? "" : words::kCtrlQ;
@@ -66,7 +66,7 @@ void leave_button(const Gui& gui, const StudyRun& run, Wishes& wishes) {
         wishes.quit = true;
 }
 
-// Where what was done goes: usually for less than a frame.
+// The screen while the keeper stores what was done, usually for less than a frame.
 void draw_keeping(double now_s, Gui& gui, StudyRun& run, Wishes& wishes) {
     constexpr double kSoon_s = 0.5;
     if (run.keeping_began_s == 0.0) run.keeping_began_s = now_s;
@@ -146,7 +146,7 @@ void draw_item(const study::Item& item, Gui& gui, std::string& answer) {
     if (text_field("##text", text, sizeof text, flags, gui)) answer = text;
 }
 
-// A number out of its range is no answer.
+// A number outside its range counts as no answer.
 bool acceptable(const study::Item& item, const std::string& answer) {
     if (answer.empty() || !item.from) return true;
     double value = 0.0;
@@ -336,7 +336,7 @@ void draw_study_screen(double now_s, Gui& gui, StudyRun& run, Wishes& wishes) {
     if (run.step_began_s == 0.0) run.step_began_s = now_s;
     const WindowSize window = gui.size_px();
     ImGui::GetBackgroundDrawList()->AddRectFilled(ImVec2(0.0f, 0.0f), ImVec2(window.width, window.height), kDark);
-    // lines of text that can be read, in the middle of a large window
+    // lines of readable length, in the middle of a large window
     const float width_px = std::min(window.width, 170.0f * gui.mm());
     const float height_px = std::min(window.height, 190.0f * gui.mm());
     const float x0 = 0.5f * (window.width - width_px);

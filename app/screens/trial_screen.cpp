@@ -48,7 +48,7 @@ void draw_force_bar(const Shown& shown, float height_px, const Gui& gui) {
     ImGui::Dummy(ImVec2(width_px, height_px));
 }
 
-// Of a forced choice: there is nothing to mark, and no number may tell how soft it is.
+// The panel of a forced choice: there is nothing to mark, and no number may tell how soft the surface is.
 bool is_interval(const Screens& screens) {
     return screens.study && screens.study->protocol.task == study::TaskKind::choice;
 }
@@ -69,7 +69,7 @@ void draw_numbers(const Shown& shown, const Gui& gui, const Screens& screens) {
     ImGui::EndGroup();
 }
 
-// One line that is always there, so that nothing moves when it fills.
+// Draws one line that always takes its place, so that nothing moves when it fills.
 void draw_contact_note(const Shown& shown) {
     const scene::Contact& contact = shown.state.contact;
     const char* note = "";
@@ -172,7 +172,7 @@ void draw_messages(const Shown& shown, const Gui& gui, Screens& screens, Wishes&
 void column_panel(const Shown& shown, Gui& gui, Screens& screens, Wishes& wishes) {
     draw_header(shown, gui, screens);
     if (!screens.study) one_line(shown.scene.name);
-    // what is left after the rest, within reason
+    // the space that is left after the other parts, within limits
     const float rest_px = 62.0f * gui.mm() + 3.0f * ImGui::GetFontSize();
     const float bar_px = std::clamp(ImGui::GetContentRegionAvail().y - rest_px, 16.0f * gui.mm(), 55.0f * gui.mm());
     const float left_px = ImGui::GetCursorPosX();

@@ -24,8 +24,8 @@ inline constexpr ImU32 kAreaTints[3] = {IM_COL32(58, 76, 107, 150), IM_COL32(148
 inline constexpr float kTarget_mm = 9.0f;  // least size of what is touched
 inline constexpr float kMark_mm = 12.0f;
 
-// A window that is exactly this area, without decoration; claims it. If its content does not fit it can be scrolled, and
-// gui.note_overflow() is told.
+// Begins a panel that fills exactly this area, without decoration, and claims the area. Content that does not fit can
+// be scrolled, and gui.note_overflow() is called.
 void begin_panel(const char* name, const PanelArea& area, Gui& gui, float opacity = 1.0f);
 void end_panel(const char* name, Gui& gui);
 
@@ -54,7 +54,7 @@ ImVec2 on_screen(const render::TissueView& view, double x_m, double y_m);
 
 void cross(ImDrawList& draw, ImVec2 at, float radius_px, ImU32 colour, float width_px);
 void dashed_circle(ImDrawList& draw, ImVec2 at, float radius_px, ImU32 colour, float width_px);
-// With a dark rim, so that it can be read on any tissue.
+// Draws text with a dark rim, so that it can be read on any tissue.
 void rimmed_text(ImDrawList& draw, ImVec2 at, ImU32 colour, const std::string& text);
 
 }  // namespace palpa::app

@@ -1,7 +1,7 @@
 #pragma once
-// All words that screens show, in one place: who wants another language, or other words, changes this file. {} is filled in.
-// Words of the page around the program stand at the end. Messages about files and command lines are with what reports them, and
-// names that also stand in files (tools, findings, sources) with their types.
+// All words that the screens show, in one place: change this file for another language or other words. Each {} is
+// replaced by a value. Words of the page around the program stand at the end. Messages about files and command lines
+// stand in the code that reports them, and names that also stand in files (tools, findings, sources) with their types.
 
 #include <initializer_list>
 #include <string>

@@ -29,7 +29,7 @@ struct SimulateResult {
 };
 
 // Goes on where an earlier call of the same protocol and seed was interrupted. Throws InputError, or
-// std::runtime_error when a trial cannot be written: the study stops there, and what is finished is on the disk.
+// std::runtime_error when a trial cannot be written: the study stops there, and its finished trials are on the disk.
 SimulateResult simulate_study(const study::Protocol& protocol, const SimulateOptions& options);
 
 }  // namespace palpa::app

@@ -1,5 +1,5 @@
 #pragma once
-// What a study's trial is done with: which tools it takes, and whether one of them is connected.
+// The devices of a study's trial: which tools the trial takes, and whether one of them is connected.
 
 #include <vector>
 
@@ -10,7 +10,8 @@ namespace palpa::app {
 
 bool tool_allowed(study::Modality modality, platform::Tool tool);
 
-// Whether one of these devices is what such a trial is done with. A mouse is always there, and other modalities name no tool.
+// True if one of these devices is one that a trial of this modality is done with. It is also true for a mouse, which is
+// always there, and for modalities that name no tool.
 bool device_here(study::Modality modality, const std::vector<platform::PointerDevice>& devices);
 
 }  // namespace palpa::app

@@ -1,6 +1,6 @@
 #pragma once
-// A study with people, in the app: who is here, what comes next, what they answered. Screens draw it
-// (study_screen.h) and the loop runs its trials; everything that counts is on the disk before the next step.
+// A study with people, in the app: who is here, what comes next, what they answered. app/screens/study_screen.cpp draws
+// it, and the loop runs its trials. Everything that counts is on the disk before the next step.
 
 #include <memory>
 #include <optional>
@@ -60,7 +60,7 @@ struct StudyRun {
     double choices_began_s = 0.0;
     double question_began_s = 0.0;
     std::string stopped;
-    // For a keeper (trial_keeper.h): what it has not been given yet, and what it says.
+    // For a keeper (session/keeper.h): what it has not been given yet, and what it reports.
     bool on_tablet = false;
     int first_run = 1;                         // of the log: those before are known to be taken
     std::vector<study::RunFiles> unkept_runs;  // typed trials
@@ -75,10 +75,11 @@ struct StudyRun {
 StudyRun open_study_run(const study::Protocol& protocol, const std::filesystem::path& directory,
                         const std::string& code);
 
-// The next code that is free: 01, 02, ...
+// The next free code: 01, 02, ...
 std::string free_code(const StudyRun& run);
 
-// What a person or the experimenter does; each leads to the next step, or says in run.note why not.
+// What the participant or the experimenter does. Each of these functions leads to the next step, or says in run.note
+// why it does not.
 void enter_code(const std::string& code, StudyRun& run);
 void same_person(bool is, StudyRun& run);
 void submit_answers(StudyRun& run);              // of questions and ratings
@@ -90,7 +91,7 @@ void choose_softer(bool first, double now_s, StudyRun& run);
 void submit_typed(StudyRun& run);
 void stop_study(const std::string& why, StudyRun& run);
 
-// The trial that is due. Only while there is one (instructions to typed).
+// The trial that is due. Call these functions only while there is one (in the steps from instructions to typed).
 const study::PlannedTrial& due_trial(const StudyRun& run);
 const study::Condition& due_condition(const StudyRun& run);
 bool typed_in(const study::Condition& condition);  // this program does not drive it
@@ -101,7 +102,7 @@ double due_limit_s(const StudyRun& run);                         // 0: none
 std::vector<std::string> due_nodules(const StudyRun& run);       // names, for typed answers
 const std::vector<study::Item>& due_items(const StudyRun& run);  // of questions and ratings
 
-// 3 of 8: tests and practice together.
+// For example "3 of 8": the number of the due trial, tests and practice together.
 std::string progress_text(const StudyRun& run);
 
 }  // namespace palpa::app

@@ -10,7 +10,8 @@
 
 namespace palpa::app {
 
-// By condition of the protocol. Empty where there is no scene (by hand, forced choices without one).
+// The scene of a condition. StudyScenes holds one for each condition of the protocol; it is empty where there is no
+// scene (by hand, forced choices without one).
 struct StudyScene {
     scene::Scene scene;
     std::shared_ptr<const scene::Plan> plan;  // turning and flipping do not change it
@@ -20,10 +21,10 @@ using StudyScenes = std::vector<std::optional<StudyScene>>;
 // Throws InputError that names the protocol, the condition and what is wrong with its scene, map or profile.
 StudyScenes load_study_scenes(const study::Protocol& protocol);
 
-// Hashes of what a trial is made from: profile, and map or phantom.
+// Hashes of the files that a trial is made from: profile, and map or phantom.
 files::Json identity_of(const std::optional<StudyScene>& scene);
 
-// Of this trial, for its events and its settings.
+// The label of this trial, for its events and its settings.
 study::TrialLabel label_of(const study::Protocol& protocol, const study::PlannedParticipant& who,
                            const study::PlannedTrial& trial, const files::Json& identity);
 

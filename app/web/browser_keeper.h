@@ -24,17 +24,17 @@ class BrowserKeeper : public session::TrialKeeper {
     std::map<std::string, std::size_t> parts_;  // of the run that is going on: file and how much of it is kept
 };
 
-// Whose trials these are: as the page's address says (?participant=07), else a code of this tablet's own. And the first run
+// The participant's code: from the page's address (?participant=07), else this tablet's own. And the first run number
 // that this tablet has never given to anybody.
 std::string participant_here();
 std::string protocol_here();  // ?protocol=NAME, without its folder and ending; empty: no study
 int next_run_here();
 
-// Puts what earlier pages left of studies, and the desk's files of the study that is asked for, where the app looks for
-// them. A trial that was going on when its page ended is kept as an interrupted one.
+// Puts the files of studies that earlier pages left, and the desk's files of the study that is asked for, where the app
+// looks for them. A trial that was going on when its page ended is kept as interrupted.
 void restore_studies();
 
-// Puts the settings of last time where the app looks for them.
+// Puts the settings of the last run where the app looks for them.
 void restore_settings(const std::filesystem::path& file);
 
 }  // namespace palpa::app

@@ -25,7 +25,7 @@ void admit_made(PressOwner down_owner, Pointers& pointers) {
     pointers.made.clear();
 }
 
-// SDL's event for a pen's tip comes after the pen's own, too late to ask whose the press is.
+// SDL's event for a pen's tip comes after the pen's own event, too late to ask whom the press belongs to.
 bool pen_on_panel(const Sample& sample, const Pointers& pointers) {
     WindowEvent event;
     event.kind = WindowEvent::Kind::button_down;
@@ -119,7 +119,7 @@ void receive_wheel(const SDL_MouseWheelEvent& wheel, double t_host_s, Pointers& 
                pointers.mouse, pointers.made);
 }
 
-// Without XInput2. SDL's finger pressure is always 1 here, so there is none to report.
+// Takes a finger without XInput2. SDL's finger pressure is always 1 here, so no pressure is reported.
 void receive_finger(const SDL_TouchFingerEvent& finger, double t_host_s, Pointers& pointers) {
     int width_px = 0, height_px = 0;
     SDL_GL_GetDrawableSize(pointers.window, &width_px, &height_px);
@@ -206,7 +206,7 @@ bool of_other_window(const SDL_Event& event, const Pointers& pointers) {
     }
 }
 
-// The filter was asked about a pen's press already; it hears of each press once.
+// The filter was asked about a pen's press already; it is asked about each press once.
 bool told_before(const SDL_Event& event, const Pointers& pointers) {
     return event.type == SDL_MOUSEBUTTONDOWN && event.button.button == SDL_BUTTON_LEFT &&
            event.button.which != SDL_TOUCH_MOUSEID && pointers.mover == Tool::pen;

@@ -25,29 +25,30 @@ struct Pointers {
     EventFilter filter = nullptr;
     void* filter_user = nullptr;
 
-    // A device's own event comes right before the one by which it moves the common pointer, so the last one
-    // tells whose mouse event SDL reports.
+    // A device's own event comes right before the event by which it moves the common pointer, so the device that
+    // sent the last one is the device whose mouse event SDL reports.
     Tool mover = Tool::mouse;
     double mover_device_s = kMissing;
-    std::optional<bool> finger_on_panel;  // the filter's word on the touch that is about to begin
+    std::optional<bool> finger_on_panel;  // the filter's answer for the touch that is about to begin
 
     bool close_requested = false;  // by the window's button
     bool quit_requested = false;   // by a signal, or the end of the session
-    bool stirred = false;          // since the last poll(): an event of any kind,
-    bool uncovered = false;        // one after which the window has to be drawn again
+    bool stirred = false;          // any event came since the last poll()
+    bool uncovered = false;        // an event came since then after which the window has to be drawn again
     std::vector<Sample> made;      // scratch
     std::vector<Sample> pending;   // for the next poll()
 };
 
-// Takes one event; call it for each, in order, from an SDL event watch.
+// Takes one event; call it for each event, in order, from an SDL event watch.
 void receive(const SDL_Event& event, double t_host_s, Pointers& pointers);
 
-// Lets a held mouse button or key go on until now.
+// Appends the samples of a mouse button or key that has been held until now.
 void hold(double t_host_s, Pointers& pointers);
 
 void forget_presses(Pointers& pointers);  // as Window::end_presses
 
-// As Window::set_keyboard. A press that is going on when it is turned off ends with phase cancel.
+// Does what Window::set_keyboard() says. A press that is going on when the keyboard is turned off ends with phase
+// cancel.
 void set_keyboard_area(double t_host_s, const KeyboardArea& area, Pointers& pointers);
 
 }  // namespace palpa::platform

@@ -23,7 +23,7 @@ int SDLCALL watch(void* user, SDL_Event* event) {
     return 1;
 }
 
-// Returns as soon as one event came. SDL waits in whole milliseconds.
+// Waits, and returns as soon as one event came. SDL waits in whole milliseconds.
 void wait_for_event(double wait_s, const Pointers& pointers) {
     if (pointers.xinput) return wait_for_server(*pointers.xinput, wait_s);
     SDL_Event event;

@@ -1,5 +1,5 @@
 #pragma once
-// SDL's events as those of platform/window_event.h.
+// Converts SDL's events to those of platform/window_event.h.
 
 #include <optional>
 
@@ -15,10 +15,10 @@ struct Scale {
     double y = 1.0;
 };
 
-// SDL counts in window units; on screens of high density the drawing area has more px than that.
+// SDL's places are in window units; on screens of high density the drawing area has more px than window units.
 Scale px_per_unit(SDL_Window* window);
 
-// Nothing for what no panel is interested in.
+// Returns nothing for an event that no panel uses.
 std::optional<WindowEvent> window_event(const SDL_Event& event, SDL_Window* window);
 
 }  // namespace palpa::platform

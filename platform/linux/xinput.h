@@ -24,18 +24,18 @@ struct XInput {
     XiState state;
 };
 
-// Nothing if the window is not on an X server or that server has no XInput2.
+// Returns nothing if the window is not on an X server, or if that server has no XInput2.
 std::optional<XInput> open_xinput(SDL_Window* window);
 
 enum class XiNews : std::uint8_t { none, event, devices_changed };
 
-// Reads an SDL_SYSWMEVENT. Only valid inside an SDL event watch: X frees the event's data right after it, and
-// `out` points into them.
+// Reads an SDL_SYSWMEVENT. The call is valid only inside an SDL event watch: X frees the event's data right after the
+// watch returns, and `out` points into these data.
 XiNews read_event(const XInput& xinput, const SDL_Event& event, XiEvent& out);
 
-// Waits until the X server has sent something, `wait_s` at most. SDL's own waiting sends our window a message
-// through a second connection for each event that it reads; one that is still on its way when the window is
-// destroyed ends the program with an X error.
+// Waits until the X server has sent something, `wait_s` at most. SDL's own waiting is not used: for each event that it
+// reads, it sends our window a message through a second connection, and a message that is still on its way when the
+// window is destroyed ends the program with an X error.
 void wait_for_server(const XInput& xinput, double wait_s);
 
 // Reads the list of devices and the screen's size anew, and asks for the events of each pen and mouse itself.

@@ -1,5 +1,5 @@
 #pragma once
-// XInput2 events to samples: the part that needs no X server.
+// Converts XInput2 events to samples. This part needs no X server.
 
 #include <cstdint>
 #include <map>
@@ -31,7 +31,8 @@ struct XiDevice {
     std::vector<std::string> axes{};  // labels of all its axes
 };
 
-// "Abs Pressure" makes a pen, a touch class a touch screen (whatever else it has), all else is a mouse.
+// A device with a touch class is a touch screen, whatever else it has; one with "Abs Pressure" is a pen; all others
+// are mice.
 Tool tool_of_device(bool has_touch_class, bool has_pen_pressure);
 
 enum class XiKind : std::uint8_t { motion, press, release, touch_begin, touch_update, touch_end };
@@ -52,8 +53,8 @@ struct XiEvent {
     std::span<const double> values;       // of the set bits, in their order
 };
 
-// Axes that an event does not carry have not changed, so the last values are kept: per device for pens, per
-// touch for fingers.
+// The last values of axes. An axis that an event does not carry has not changed, so its last value is kept: per
+// device for pens, per touch for fingers.
 using AxisValues = std::map<int, double>;
 
 struct XiState {
@@ -71,12 +72,13 @@ const XiDevice* find_device(const XiState& state, int id);
 
 std::int64_t pen_pointer_id(int device_id);
 
-// The sample of one event of a pen or a finger; nothing for mice, for a pen's other buttons, and for the copy
+// Returns the sample of one event of a pen or a finger; nothing for mice, for a pen's other buttons, and for the copy
 // of a pen's event that the master pointer sends.
 //
 //   x_px = (v - lo) / (hi - lo + 1) * screen_width_px - origin_x_px      pressure = (p - lo) / (hi - lo)
 //
-// The first is how the X server itself maps an absolute axis on the screen; axes are finer than event_x_px.
+// The formula of x_px is the one by which the X server itself maps an absolute axis on the screen; axes are finer than
+// event_x_px.
 std::optional<Sample> decode(const XiEvent& event, double t_host_s, XiState& state);
 
 // Replaces the device list. Returns the pointer ids of pens and touches that went with their device.

@@ -31,7 +31,7 @@ EM_JS(void, palpa_set_full_screen, (int full), {
 });
 EM_JS(void, palpa_set_title, (const char* title), { document.title = UTF8ToString(title); });
 
-// One call per sample, oldest first: what a browser collects between frames is taken apart again.
+// Makes one call per sample, oldest first: events that a browser coalesces between frames are taken apart again.
 EM_JS(void, palpa_listen, (), {
     const canvas = Module.canvas;
     const tools = {pen: 0, touch: 1, mouse: 2};

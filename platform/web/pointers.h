@@ -1,5 +1,6 @@
 #pragma once
-// A browser's Pointer Events, keys and wheel: events in, samples out. Knows no browser, so that it can be tested.
+// A browser's Pointer Events, keys and wheel: events in, samples out. The code calls no browser,
+// so that it can be tested.
 
 #include <array>
 #include <cstdint>
@@ -13,7 +14,7 @@
 
 namespace palpa::platform {
 
-// One event as the browser tells it; each one of a coalesced list by itself.
+// One pointer event, as the browser reports it; each coalesced event is one of its own.
 struct BrowserPointer {
     enum class Kind : std::uint8_t { down, move, up, cancel };
     Kind kind = Kind::move;
@@ -47,15 +48,15 @@ void receive(const BrowserPointer& event, double t_host_s, Pointers& pointers);
 void receive_wheel(double notches, double t_device_s, double t_host_s, Pointers& pointers);
 void receive_key(const WindowEvent& event, double t_host_s, Pointers& pointers);
 
-// The window has lost the focus, or is out of sight: what presses is cancelled.
+// Cancels all presses: the window has lost the focus, or is out of sight.
 void release_all(double t_host_s, Pointers& pointers);
 
-// Lets a held mouse button or key go on until now.
+// Appends the samples of a mouse button or key that has been held until now.
 void hold(double t_host_s, Pointers& pointers);
 
 void forget_presses(Pointers& pointers);  // as Window::end_presses
 
-// As Window::set_keyboard.
+// Does what Window::set_keyboard() says.
 void set_keyboard_area(double t_host_s, const KeyboardArea& area, Pointers& pointers);
 
 }  // namespace palpa::platform

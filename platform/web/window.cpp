@@ -1,4 +1,5 @@
-// The browser's window: a canvas with WebGL 2, and what is sent to it. There is one, and it never goes.
+// The browser's window: a canvas with WebGL 2, and the events that are sent to it. There is one such window, and it is
+// never destroyed.
 
 #include "platform/window.h"
 
@@ -93,7 +94,8 @@ double Window::mouse_pressure() const {
     return pressure_at(pointers.mouse.button, browser::now_s());
 }
 
-// A browser lists no devices: what can be here until it is seen to have no sensor (platform/pressure.h).
+// A browser lists no devices. This is the list of those that may be here; each counts as having a sensor until its
+// samples show that it has none (platform/pressure.h).
 std::vector<PointerDevice> Window::devices() const {
     const auto seen = [&](Tool tool) { return impl_->pointers.seen[static_cast<std::size_t>(tool)]; };
     std::vector<PointerDevice> devices;
@@ -129,7 +131,7 @@ double Window::touch_px_per_mm() const {
 
 }  // namespace palpa::platform
 
-// What the page sends (platform/web/browser.cpp).
+// The functions that the page calls (platform/web/browser.cpp).
 extern "C" {
 
 EMSCRIPTEN_KEEPALIVE void palpa_pointer(int kind, double pointer_id, int tool, double x_css, double y_css,
