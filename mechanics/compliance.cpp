@@ -13,15 +13,8 @@ using Eigen::Index;
 
 constexpr std::uint64_t kFormatVersion = 1;
 
-// Component c of a surface node: the mesh dof and the sign that makes it (into the tissue, x, y).
-struct Component {
-    int dof;
-    double sign;
-};
-Component component(int node, int c) {
-    if (c == 0) return {3 * node + 2, -1.0};
-    return {3 * node + c - 1, 1.0};
-}
+// Component c of a surface node: into the tissue, along x, along y.
+NodeWeight component(int node, int c) { return c == 0 ? NodeWeight{node, 2, -1.0} : NodeWeight{node, c - 1, 1.0}; }
 
 Compliance empty_compliance(const Mesh& mesh, const SurfaceRequest& request) {
     Compliance out;
@@ -68,8 +61,7 @@ void store_column(const Reduction& reduction, const Eigen::Ref<const Eigen::Vect
     const int touched = tangential ? column / 3 : column;
     const int direction = tangential ? column % 3 : 0;
     const auto row = [&](int i, int c) {
-        const Component at = component(out.node[static_cast<std::size_t>(i)], c);
-        return at.sign * displacement_m(reduction, at.dof, q);
+        return response(reduction, component(out.node[static_cast<std::size_t>(i)], c), q);
     };
     if (direction == 0) {
         for (int i = 0; i < out.normal_m_per_N.rows(); ++i) out.normal_m_per_N(i, touched) = row(i, 0);
@@ -135,23 +127,14 @@ Compliance surface_compliance(const Mesh& mesh, const Factored& factored, const 
     check_request(mesh, request);
     Compliance out = empty_compliance(mesh, request);
     const int per_node = request.tangential ? 3 : 1;
-    const int total = per_node * out.n_touch;
-    Eigen::MatrixXd block;
-    for (int first = 0; first < total; first += request.block) {
-        if (progress.cancel != nullptr && progress.cancel->load()) {
-            throw Cancelled(text("compliance: stopped after ", first, " of ", total, " columns"));
-        }
-        const int n = std::min(request.block, total - first);
-        block.setZero(factored.reduction.equations, n);
-        for (int k = 0; k < n; ++k) {
-            const int column = first + k;
-            const Component at = component(out.node[static_cast<std::size_t>(column / per_node)], column % per_node);
-            add_force(factored.reduction, at.dof, at.sign, block.col(k));
-        }
-        factored.cholesky.solve(block);
-        for (int k = 0; k < n; ++k) store_column(factored.reduction, block.col(k), first + k, request.tangential, out);
-        if (progress.report) progress.report(first + n, total);
+    std::vector<NodeSum> loads;
+    for (const int node : request.touch_nodes) {
+        for (int c = 0; c < per_node; ++c) loads.push_back({component(node, c)});
     }
+    solve_loads(factored, loads, request.block, progress,
+                [&](int column, const Eigen::Ref<const Eigen::VectorXd>& q_m) {
+                    store_column(factored.reduction, q_m, column, request.tangential, out);
+                });
     out.asymmetry = make_symmetric(out.normal_m_per_N.topRows(out.n_touch));
     if (request.tangential) out.asymmetry = std::max(out.asymmetry, make_symmetric(out.full_m_per_N));
     if (!(out.asymmetry < 1e-9) || !out.normal_m_per_N.allFinite()) {

@@ -1,15 +1,14 @@
 #pragma once
-// What the surface does under unit forces: the precomputed answer that makes contact fast.
+// What the surface does under unit forces: the precomputed answer that makes contact fast. Of the responses in
+// operators.h these are the ones between the surface's nodes.
 //
 // Source: James & Pai, "A unified treatment of elastostatic contact simulation for real time haptics",
 // Haptics-e 2(1), 2001.
 
-#include <atomic>
 #include <cstdint>
-#include <functional>
 #include <vector>
 
-#include "mechanics/statics.h"
+#include "mechanics/operators.h"
 
 namespace palpa::mechanics {
 
@@ -50,11 +49,6 @@ struct Compliance {
 
 // A number that no other content in this process has. May be called from any thread.
 std::uint64_t new_revision();
-
-struct Progress {
-    std::function<void(int done, int total)> report;  // columns, after each block; may be empty
-    const std::atomic<bool>* cancel = nullptr;        // may be null
-};
 
 // Throws Cancelled when asked to stop, SolverError when the result is not symmetric to 1e-9 (a damaged
 // factorisation). May run in a worker thread; MUMPS is locked one block at a time.

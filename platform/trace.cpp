@@ -1,5 +1,6 @@
 #include "platform/trace.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
@@ -69,10 +70,31 @@ const std::filesystem::path& checked_name(const std::filesystem::path& tsv) {
     return tsv;
 }
 
+// Names of device loops become names of files.
+bool is_loop_name(std::string_view name) {
+    const auto plain = [](char c) { return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '-'; };
+    return !name.empty() && name.size() <= 40 && std::all_of(name.begin(), name.end(), plain);
+}
+
+std::vector<std::string> read_loops(files::JsonReader& json) {
+    std::vector<std::string> loops;
+    if (!json.has("device_loops")) return loops;
+    const files::Json& list = json.any("device_loops");
+    constexpr std::string_view kWanted = "a list of different names of a-z, 0-9 and -";
+    if (!list.is_array()) json.fail("device_loops", files::described(list), kWanted);
+    for (const files::Json& entry : list) {
+        const std::string name = entry.is_string() ? entry.get<std::string>() : "";
+        if (!is_loop_name(name) || std::find(loops.begin(), loops.end(), name) != loops.end())
+            json.fail("device_loops", files::described(entry), kWanted);
+        loops.push_back(name);
+    }
+    return loops;
+}
+
 TraceInfo read_info(const std::filesystem::path& path) {
     const files::Json root = files::read_json(path);
     files::JsonReader json(root, path.string());
-    json.only({"screen_px", "screen_mm", "device"});
+    json.only({"screen_px", "screen_mm", "device", "device_loops"});
     constexpr files::Bounds kScreen{1.0, 16384.0};
     TraceInfo info;
     const auto size_px = json.numbers("screen_px", 2, kScreen);
@@ -84,6 +106,7 @@ TraceInfo read_info(const std::filesystem::path& path) {
         info.screen_height_mm = size_mm[1];
     }
     info.device = json.text("device", "n/a");
+    info.device_loops = read_loops(json);
     json.finish();
     return info;
 }
@@ -116,6 +139,7 @@ TraceWriter::TraceWriter(const std::filesystem::path& tsv, const TraceInfo& info
     json["screen_px"] = {info.screen_width_px, info.screen_height_px};
     if (!std::isnan(info.screen_width_mm)) json["screen_mm"] = {info.screen_width_mm, info.screen_height_mm};
     json["device"] = info.device;
+    if (!info.device_loops.empty()) json["device_loops"] = info.device_loops;
     files::AppendFile sidecar(sidecar_of(tsv));  // never over something that is there
     sidecar.append(files::json_text(json));
     if (!sidecar.sync()) throw std::runtime_error(sidecar.path().string() + ": cannot be written to its end");

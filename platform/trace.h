@@ -18,6 +18,8 @@ struct TraceInfo {
     double screen_width_mm = kMissing;
     double screen_height_mm = kMissing;
     std::string device;
+    // Device loops that ran with it. What went into the loop NAME stands in X.NAME.tsv (session/device_rows.h).
+    std::vector<std::string> device_loops{};
 };
 
 struct Trace {

@@ -1,0 +1,151 @@
+#pragma once
+// A device loop while it runs: at a rate of its own in a thread of its own, on the rows of device_rows.h.
+//
+// Two things pass between the threads, each from one writer to one reader: the pen's latest contact goes in
+// (LatestValue), and rows come out to be written (RowRing). The thread reads the device, runs the row, sends the
+// command; it allocates nothing and touches no file.
+//
+// A port P for a device D talks to the wire, or to a simulator:
+//   bool read(D::Feedback&) noexcept;         false: nothing came. May not block for longer than a period.
+//   void send(const D::Command&) noexcept;
+
+#include <algorithm>
+#include <atomic>
+#include <cassert>
+#include <chrono>
+#include <cstdint>
+#include <thread>
+#include <vector>
+
+#include "session/device_rows.h"
+#include "session/latest_value.h"
+
+namespace palpa::session {
+
+// Rows on their way from the loop to the file. Full: the row is refused, nobody waits.
+class RowRing {
+  public:
+    explicit RowRing(std::size_t rows) : row_(rows) {}
+
+    bool put(const DeviceRow& row) noexcept {  // by the loop
+        const std::size_t n = written_.load(std::memory_order_relaxed);
+        if (n - taken_.load(std::memory_order_acquire) == row_.size()) return false;
+        row_[n % row_.size()] = row;
+        written_.store(n + 1, std::memory_order_release);
+        return true;
+    }
+
+    bool take(DeviceRow& out) noexcept {  // by the thread that writes files
+        const std::size_t n = taken_.load(std::memory_order_relaxed);
+        if (n == written_.load(std::memory_order_acquire)) return false;
+        out = row_[n % row_.size()];
+        taken_.store(n + 1, std::memory_order_release);
+        return true;
+    }
+
+  private:
+    std::vector<DeviceRow> row_;
+    std::atomic<std::size_t> written_{0};
+    std::atomic<std::size_t> taken_{0};
+};
+
+// For performance.json. Everything but rows and hand_overs depends on the wall clock or on a fault.
+struct DeviceReport {
+    std::int64_t rows = 0;  // of feedback, that were run
+    std::int64_t hand_overs = 0;
+    std::int64_t silent = 0;            // periods without feedback
+    std::int64_t not_numbers = 0;       // feedback or contacts that are not finite: not run, not recorded
+    std::int64_t refused_commands = 0;  // not finite: not sent
+    std::int64_t missed_periods = 0;
+    double latest_s = 0.0;       // greatest delay of a period's begin
+    std::int64_t lost_rows = 0;  // were run but not recorded: from the first of them on nothing is, so that what is
+                                 // recorded replays
+};
+
+template <Device D>
+struct DeviceLoop {
+    typename D::Plan plan;
+    DeviceMemory<D> memory{};
+    LatestValue<PenContact> pen{};
+    RowRing recorded{8192};  // 8 s at 1 kHz: longer than a disk is ever busy
+    DeviceReport report{};   // the thread's while it runs
+};
+
+// Runs one row and records it.
+template <Device D>
+bool take_row(const DeviceRow& row, DeviceLoop<D>& loop, typename D::Command& command) noexcept {
+    if (loop.report.lost_rows > 0 || !loop.recorded.put(row)) ++loop.report.lost_rows;
+    return run_row<D>(loop.plan, row, loop.memory, command);
+}
+
+// One period. Allocates nothing, throws nothing.
+template <Device D, class Port>
+void run_period(double now_s, Port& port, DeviceLoop<D>& loop) noexcept {
+    typename D::Command command{};
+    PenContact pen;
+    if (loop.pen.take(pen)) {
+        if (all_finite(pen)) {
+            take_row<D>(device_row(DeviceRowKind::hand_over, now_s, pen), loop, command);
+            ++loop.report.hand_overs;
+        } else {
+            ++loop.report.not_numbers;
+        }
+    }
+    typename D::Feedback feedback{};
+    if (!port.read(feedback)) {
+        ++loop.report.silent;
+    } else if (!all_finite(feedback)) {
+        ++loop.report.not_numbers;
+    } else {
+        ++loop.report.rows;
+        if (take_row<D>(device_row(DeviceRowKind::feedback, now_s, feedback), loop, command))
+            port.send(command);
+        else
+            ++loop.report.refused_commands;
+    }
+}
+
+// Writes what was recorded since the last call. By the thread that owns the writer, more often than the ring is long.
+inline void write_recorded(RowRing& recorded, DeviceRowWriter& writer) {
+    for (DeviceRow row; recorded.take(row);) writer.write(row);
+}
+
+// Runs a loop until it is stopped or destroyed. Port and loop outlive it; of the loop only `pen.put` and
+// `recorded.take` may be called meanwhile.
+template <Device D, class Port>
+class DeviceThread {
+  public:
+    DeviceThread(double rate_Hz, Port& port, DeviceLoop<D>& loop)
+        : thread_([this, rate_Hz, &port, &loop] { run(rate_Hz, port, loop); }) {}
+    ~DeviceThread() { stop(); }
+    DeviceThread(const DeviceThread&) = delete;
+    DeviceThread& operator=(const DeviceThread&) = delete;
+
+    void stop() {
+        stopping_ = true;
+        if (thread_.joinable()) thread_.join();
+    }
+
+  private:
+    // Periods that began too late to be caught up on are left out and counted.
+    void run(double rate_Hz, Port& port, DeviceLoop<D>& loop) noexcept {
+        assert(rate_Hz >= 1.0);
+        using Clock = std::chrono::steady_clock;
+        const auto period = std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(1.0 / rate_Hz));
+        auto due = Clock::now();
+        while (!stopping_) {
+            const auto now = Clock::now();
+            const auto missed = (now - due) / period;
+            loop.report.latest_s = std::max(loop.report.latest_s, std::chrono::duration<double>(now - due).count());
+            loop.report.missed_periods += missed;
+            run_period<D>(std::chrono::duration<double>(now.time_since_epoch()).count(), port, loop);
+            due += (missed + 1) * period;
+            std::this_thread::sleep_until(due);
+        }
+    }
+
+    std::atomic<bool> stopping_{false};
+    std::thread thread_;
+};
+
+}  // namespace palpa::session

@@ -1,0 +1,42 @@
+#pragma once
+// The latest value, from one thread to one other. Neither waits for the other; a value that was not taken before the
+// next came is gone.
+
+#include <array>
+#include <atomic>
+#include <cstdint>
+#include <type_traits>
+
+namespace palpa::session {
+
+// Three places: the writer's, the reader's, and one between them that each exchanges for its own.
+template <class T>
+class LatestValue {
+    static_assert(std::is_trivially_copyable_v<T>, "it is copied in a loop that must not allocate");
+
+  public:
+    // By the one thread that writes.
+    void put(const T& value) noexcept {
+        place_[writing_] = value;
+        const auto fresh = static_cast<std::uint8_t>(writing_ | kNew);
+        writing_ = static_cast<std::uint8_t>(between_.exchange(fresh, std::memory_order_acq_rel) & kPlace);
+    }
+
+    // By the one thread that reads. False if nothing came since the last call; `out` then stays as it is.
+    bool take(T& out) noexcept {
+        if ((between_.load(std::memory_order_relaxed) & kNew) == 0) return false;
+        reading_ = static_cast<std::uint8_t>(between_.exchange(reading_, std::memory_order_acq_rel) & kPlace);
+        out = place_[reading_];
+        return true;
+    }
+
+  private:
+    static constexpr std::uint8_t kPlace = 3;
+    static constexpr std::uint8_t kNew = 4;
+    std::array<T, 3> place_{};
+    std::uint8_t writing_ = 0;
+    std::uint8_t reading_ = 1;
+    std::atomic<std::uint8_t> between_{2};
+};
+
+}  // namespace palpa::session
