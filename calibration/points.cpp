@@ -7,6 +7,7 @@
 #include <set>
 
 #include "files/input_error.h"
+#include "files/quantile.h"
 #include "files/text.h"
 
 namespace palpa::calibration {
@@ -21,14 +22,6 @@ std::vector<std::size_t> by_level(const std::vector<double>& level) {
     std::iota(order.begin(), order.end(), std::size_t{0});
     std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return level[a] < level[b]; });
     return order;
-}
-
-double median_of(std::vector<double> values) {
-    const std::size_t half = values.size() / 2;
-    std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(half), values.end());
-    const double upper = values[half];
-    if (values.size() % 2 == 1) return upper;
-    return 0.5 * (upper + *std::max_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(half)));
 }
 
 void check_enough(const CalibrationRows& rows) {
@@ -70,13 +63,13 @@ void check_unit(const CalibrationRows& rows) {
         for (std::size_t j = i > kNear ? i - kNear : 0; j < std::min(order.size(), i + kNear + 1); ++j) {
             if (j != i) near.push_back(rows.force_N[order[j]]);
         }
-        const double factor = rows.force_N[order[i]] / median_of(near);
+        const double factor = rows.force_N[order[i]] / files::median(near);
         const bool gf_here = factor > 50.0 && factor < 200.0;
         const bool N_here = factor < 1.0 / 50.0 && factor > 1.0 / 200.0;
         if (rows.level[order[i]] > 0.0 && (gf_here || N_here)) {
             throw files::bad_input(rows.file, line_of(rows, order[i]) + ", force",
                                    files::short_number(rows.force_N[order[i]]) + " N",
-                                   "about " + files::short_number(median_of(near)) +
+                                   "about " + files::short_number(files::median(near)) +
                                        " N as at levels beside it (gram-force and newtons mixed up?)");
         }
     }
@@ -125,7 +118,7 @@ double noise_N(const std::vector<double>& force_N) {
     std::vector<double> bends;
     for (std::size_t i = 1; i + 1 < force_N.size(); ++i)
         bends.push_back(std::abs(force_N[i] - 0.5 * (force_N[i - 1] + force_N[i + 1])));
-    return 1.4826 * median_of(bends) / std::sqrt(1.5);
+    return 1.4826 * files::median(bends) / std::sqrt(1.5);
 }
 
 // The quarter of the rows next to one end, the rows at the very end not among them.
@@ -154,7 +147,7 @@ double activation(const CalibrationRows& rows, double lowest) {
         if (rows.level[i] > lowest) force_N = std::min(force_N, rows.force_N[i]);
     }
     first.erase(std::remove(first.begin(), first.end(), kInfinity), first.end());
-    return median_of(first);
+    return files::median(first);
 }
 
 }  // namespace

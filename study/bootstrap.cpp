@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "files/quantile.h"
 #include "study/random.h"
 
 namespace palpa::study {
@@ -19,7 +20,7 @@ Interval percentiles(std::vector<double>& values, double level) {
     if (values.empty()) return kUnknown;
     std::sort(values.begin(), values.end());
     const double tail = 0.5 * (1.0 - level);
-    return {quantile(values, tail), quantile(values, 1.0 - tail)};
+    return {files::sorted_quantile(values, tail), files::sorted_quantile(values, 1.0 - tail)};
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include <set>
 #include <utility>
 
+#include "files/quantile.h"
 #include "files/text.h"
 
 namespace palpa::study {
@@ -236,9 +237,9 @@ Spread spread_of(std::vector<double> values) {
     double squares = 0.0;
     for (const double value : values) squares += (value - out.mean) * (value - out.mean);
     out.sd = out.n > 1 ? std::sqrt(squares / (out.n - 1)) : 0.0;
-    out.lower_quartile = quantile(values, 0.25);
-    out.median = quantile(values, 0.5);
-    out.upper_quartile = quantile(values, 0.75);
+    out.lower_quartile = files::sorted_quantile(values, 0.25);
+    out.median = files::sorted_quantile(values, 0.5);
+    out.upper_quartile = files::sorted_quantile(values, 0.75);
     return out;
 }
 

@@ -84,9 +84,6 @@ double student_quantile(double level, double df);
 // Regularised incomplete beta function I_x(a, b), by its continued fraction (DLMF 8.17.22).
 double incomplete_beta(double a, double b, double x);
 
-// Quantile of values in rising order, linear between them (numpy's default).
-double quantile(std::span<const double> sorted, double q);
-
 // Holm's step-down correction (Scand. J. Statist. 6 (1979) 65): adjusted p values in the order given.
 std::vector<double> holm(std::span<const double> p);
 
