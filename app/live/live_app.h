@@ -3,6 +3,7 @@
 
 #include <exception>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -72,9 +73,10 @@ files::Json result_of(const App& app);                          // what `run --j
 // A press belongs to the trial and the screen in which it began: it ends now, and what still comes of it is dropped.
 void end_presses(platform::Window& window, App& app);
 // Ends the presses and the trial, then puts the tissue of `scene` under the hand. A trial begins on it with begin().
-void put_scene(scene::Scene scene, scene::Plan plan, platform::Window& window, App& app);
-// False if the window was closed before the plan was ready; a tissue that has to be computed is, while the window shows how far.
-bool prepare(platform::Window& window, Gui& gui, const scene::Scene& scene, scene::Plan& plan);
+void put_scene(scene::Scene scene, std::shared_ptr<const scene::Plan> plan, platform::Window& window, App& app);
+// Nothing if the window was closed before the plan was ready; a tissue that has to be computed is, while the window
+// shows how far.
+std::shared_ptr<const scene::Plan> prepare(platform::Window& window, Gui& gui, const scene::Scene& scene);
 void begin(const platform::Window& window, const Gui& gui,
            App& app);  // a trial; throws InputError or std::runtime_error
 void begin_anew(platform::Window& window, const Gui& gui,

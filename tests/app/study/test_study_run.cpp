@@ -44,13 +44,13 @@ void run_trial(StudyRun& run) {
     run.start_trial = false;
     Session session;
     session.scene = scene_of(due_scene(run), due_trial(run));
-    session.plan = *due_scene(run).plan;
+    session.plan = due_scene(run).plan;
     const TrialMode mode = due_trial(run).practice ? TrialMode::practice : TrialMode::test;
     begin_trial(due_files(run), {1280.0, 800.0, kMissing, kMissing, "pen"}, mode, session);
     Sample sample;
     sample.phase = Phase::ui;
     sample.action = Action::mark;
-    const Nodule& nodule = session.plan.nodules[0];
+    const Nodule& nodule = session.plan->nodules[0];
     const Eigen::Vector2d px = px_of_tissue(session.state.view, {nodule.x_m, nodule.y_m});
     sample.x_px = px.x();
     sample.y_px = px.y();
@@ -163,7 +163,7 @@ TEST_CASE("study run: a crash in the middle of a trial costs that trial, nothing
         REQUIRE(run.step == StudyStep::trial);
         Session session;  // begun, never finished
         session.scene = scene_of(due_scene(run), due_trial(run));
-        session.plan = *due_scene(run).plan;
+        session.plan = due_scene(run).plan;
         begin_trial(due_files(run), {1280.0, 800.0, kMissing, kMissing, "pen"}, TrialMode::test, session);
     }
     StudyRun again = open_study_run(find_protocol(folder), log, "07");
