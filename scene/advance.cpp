@@ -103,6 +103,8 @@ void sink(const LinearTissue& tissue, double stiffness_scale, State& state) {
 
 void sink(const Scene& scene, const Plan& plan, State& state) {
     state.contact = Contact{};
+    state.contact.time_s = state.timeline.now_s;
+    state.contact.p_m = state.touch.p_m;
     if (!state.touch.down) return;
     state.contact.normal_N = state.touch.force_N;
     std::visit([&](const auto& tissue) { sink(tissue, scene.stiffness_scale, state); }, plan.tissue);
