@@ -17,20 +17,22 @@ constexpr double kUnknownThickness_m = std::numeric_limits<double>::infinity();
 // both look-ups.
 struct RiseOnMap {
     const stiffnessmaps::Field* field;
+    double stiffness_scale;
     double operator()(const Eigen::Vector2d& e_m, const Eigen::Vector2d& u, double force_N, double reference_m) const {
         const stiffnessmaps::Place here = stiffnessmaps::place_at(*field, e_m);
         const stiffnessmaps::Place before = stiffnessmaps::place_at(*field, e_m - reference_m * u);
         if (!here.measured || !before.measured || !here.inside || !before.inside) return 0.0;
-        const double depth_m = stiffnessmaps::depth_at(*field, here, force_N).depth_m;
-        return tangential_rise_N(*field, here, before, u, depth_m);
+        const double depth_m = stiffnessmaps::depth_at(*field, here, force_N / stiffness_scale).depth_m;
+        return stiffness_scale * tangential_rise_N(*field, here, before, u, depth_m);
     }
 };
 
 struct RiseOnLinear {
     const LinearTissue* tissue;
+    double stiffness_scale;
     LinearWork* work;
     double operator()(const Eigen::Vector2d& e_m, const Eigen::Vector2d& u, double force_N, double reference_m) const {
-        return tangential_rise_N(*tissue, e_m, u, force_N, reference_m, *work);
+        return stiffness_scale * tangential_rise_N(*tissue, e_m, u, force_N / stiffness_scale, reference_m, *work);
     }
 };
 
@@ -74,9 +76,12 @@ void place(const platform::Sample& sample, State& state) {
     }
 }
 
-void sink(const MapTissue& tissue, State& state) {
+// The plan's tissue is as stiff as its file says, the scene's stiffness_scale times as stiff. Under a force that one
+// answers as the plan's does under force / stiffness_scale, and its newtons are stiffness_scale times the plan's.
+void sink(const MapTissue& tissue, double stiffness_scale, State& state) {
     const stiffnessmaps::Place& at = state.place = stiffnessmaps::place_at(tissue.field, state.touch.p_m);
-    const stiffnessmaps::DepthAnswer answer = stiffnessmaps::depth_at(tissue.field, at, state.touch.force_N);
+    const stiffnessmaps::DepthAnswer answer =
+        stiffnessmaps::depth_at(tissue.field, at, state.touch.force_N / stiffness_scale);
     state.contact.depth_m = answer.depth_m;
     state.contact.saturated = answer.saturated;
     state.contact.measured = at.measured && at.inside;
@@ -88,18 +93,21 @@ void sink(const MapTissue& tissue, State& state) {
     }
 }
 
-void sink(const LinearTissue& tissue, State& state) {
-    const LinearAnswer answer = press(tissue, state.touch.p_m, state.touch.force_N, *state.linear);
+void sink(const LinearTissue& tissue, double stiffness_scale, State& state) {
+    const double force_N = state.touch.force_N / stiffness_scale;
+    const LinearAnswer answer = press(tissue, state.touch.p_m, force_N, *state.linear);
     state.contact.depth_m = answer.depth_m;
     state.contact.saturated = answer.saturated;
     state.contact.linearity = answer.linearity;
 }
 
-void sink(const Plan& plan, State& state) {
+void sink(const Scene& scene, const Plan& plan, State& state) {
     state.contact = Contact{};
+    state.contact.time_s = state.timeline.now_s;
+    state.contact.p_m = state.touch.p_m;
     if (!state.touch.down) return;
     state.contact.normal_N = state.touch.force_N;
-    std::visit([&](const auto& tissue) { sink(tissue, state); }, plan.tissue);
+    std::visit([&](const auto& tissue) { sink(tissue, scene.stiffness_scale, state); }, plan.tissue);
     state.counters.saturated += state.contact.saturated;
     state.counters.unmeasured += !state.contact.measured;
 }
@@ -135,6 +143,7 @@ void resist(const Scene& scene, const Plan& plan, State& state) {
         state.heading_rope_m = state.touch.p_m - dead_band_m * state.heading;
     }
     state.contact.tangential_N =
+        scene.stiffness_scale *
         std::visit([&](const auto& tissue) { return tangential_N(tissue, state); }, plan.tissue);
 }
 
@@ -163,8 +172,9 @@ void lag(const Scene& scene, const Rise& rise_N, const avatar::StationLimit& lim
 
 void lag(const Scene& scene, const Plan& plan, State& state) {
     if (const auto* map = std::get_if<MapTissue>(&plan.tissue))
-        return lag(scene, RiseOnMap{&map->field}, avatar::StationLimit{}, state);
-    lag(scene, RiseOnLinear{&std::get<LinearTissue>(plan.tissue), &*state.linear}, kStationsOnLinear, state);
+        return lag(scene, RiseOnMap{&map->field, scene.stiffness_scale}, avatar::StationLimit{}, state);
+    const LinearTissue& linear = std::get<LinearTissue>(plan.tissue);
+    lag(scene, RiseOnLinear{&linear, scene.stiffness_scale, &*state.linear}, kStationsOnLinear, state);
 }
 
 void run_stage(StageId id, const Scene& scene, const Plan& plan, const platform::Sample& sample, State& state) {
@@ -174,7 +184,7 @@ void run_stage(StageId id, const Scene& scene, const Plan& plan, const platform:
         case StageId::position:
             return place(sample, state);
         case StageId::depth:
-            return sink(plan, state);
+            return sink(scene, plan, state);
         case StageId::friction:
             return rub(plan, state);
         case StageId::tangential:

@@ -9,6 +9,7 @@
 #include "files/input_error.h"
 #include "files/text.h"
 #include "scene/advance.h"
+#include "scene/tissue.h"
 #include "stiffnessmaps/map_file.h"
 #include "stiffnessmaps/noise.h"
 
@@ -44,12 +45,24 @@ Stage calibration_stage(const Plan& plan) {
     return stage;
 }
 
-Stage depth_stage(const MapTissue& tissue) {
+// Of the scaled forces; a figure that the map itself brings is of its recording and stays as it is.
+double noise_N(const MapTissue& tissue, double stiffness_scale) {
+    return tissue.map.noise_N ? tissue.noise_N : stiffness_scale * tissue.noise_N;
+}
+
+// Noise scales with the forces, the gate of the laws does not: a harder tissue is smoothed more.
+double smoothing_m(const Scene& scene, const MapTissue& tissue) {
+    const double gate_N = scene.display_ratio.value_or(avatar::DisplayRatio{}).gate_N;
+    return scene.tangential.smoothing_m.value_or(stiffnessmaps::default_smoothing_m(
+        tissue.map, noise_N(tissue, scene.stiffness_scale), path_of(scene).reference_m, gate_N));
+}
+
+Stage depth_stage(const MapTissue& tissue, double stiffness_scale) {
     Stage stage{StageId::depth, false, "", "", 0.03};
     stage.fidelity = "map " + tissue.map.name + ", isotonic over depth, bilinear in x and y";
     const double greatest_N = stiffnessmaps::force_range(tissue.map).highest_N;
     if (tissue.map.source.kind == stiffnessmaps::SourceKind::recorded) {
-        stage.error = files::short_number(1e3 * tissue.noise_N) + " mN of noise in the recording";
+        stage.error = files::short_number(1e3 * noise_N(tissue, stiffness_scale)) + " mN of noise in the recording";
     } else {
         stage.error =
             files::short_number(25.0 * stiffnessmaps::coarse_grid_error_N(tissue.map) / std::max(greatest_N, 1e-9)) +
@@ -75,7 +88,7 @@ std::string linear_error(const LinearTissue& tissue) {
            "; four are wanted (a smaller spacing_mm)";
 }
 
-Stage depth_stage(const LinearTissue& tissue) {
+Stage depth_stage(const LinearTissue& tissue, double) {
     Stage stage{StageId::depth, false, "", "", 60.0};
     stage.fidelity = "linear finite elements, " + std::to_string(tissue.mesh_nodes) + " nodes, " +
                      mm_text(tissue.spacing_m[0]) + " on the surface; frictionless contact solved at every sample";
@@ -159,6 +172,12 @@ void add_notes(const LinearTissue& tissue, const Scene&, Plan& plan) {
                          tissue.phantom.name + "; the panel shows when a press leaves the linear range");
 }
 
+bool is_prepared_for(const Scene& scene, const MapTissue& tissue) {
+    return smoothing_m(scene, tissue) == tissue.smoothing_m;
+}
+
+bool is_prepared_for(const Scene&, const LinearTissue&) { return true; }
+
 MapTissue load_map(const Scene& scene) {
     MapTissue tissue;
     tissue.map = stiffnessmaps::read_map(scene.map);
@@ -167,24 +186,9 @@ MapTissue load_map(const Scene& scene) {
         throw files::bad_input(scene.file.string(), "avatar force", "recorded",
                                "energy: the map " + tissue.map.name + " holds no recorded tangential force");
     }
-    for (std::vector<float>* forces_N :
-         {&tissue.map.normal_N, &tissue.map.tangential_x_N, &tissue.map.tangential_y_N}) {
-        for (float& force_N : *forces_N) force_N *= static_cast<float>(scene.stiffness_scale);
-    }
     tissue.noise_N = stiffnessmaps::normal_noise_N(tissue.map);
-    const double gate_N = scene.display_ratio.value_or(avatar::DisplayRatio{}).gate_N;
-    tissue.smoothing_m = scene.tangential.smoothing_m.value_or(
-        stiffnessmaps::default_smoothing_m(tissue.map, tissue.noise_N, path_of(scene).reference_m, gate_N));
+    tissue.smoothing_m = smoothing_m(scene, tissue);
     tissue.field = stiffnessmaps::make_field(tissue.map, {scene.tangential.force, tissue.smoothing_m});
-    return tissue;
-}
-
-LinearTissue load_linear(const Scene& scene, const mechanics::Progress& progress) {
-    LinearTissue tissue = make_linear_tissue(*scene.linear, files::cache_folder(), progress);
-    mechanics::Compliance& c = tissue.compliance;
-    for (Eigen::MatrixXd* m_per_N : {&c.normal_m_per_N, &c.along_x_m_per_N, &c.along_y_m_per_N, &c.full_m_per_N}) {
-        *m_per_N /= scene.stiffness_scale;
-    }
     return tissue;
 }
 
@@ -209,7 +213,7 @@ double median_force_N(const MapTissue& tissue, double depth_m) {
 }
 
 // The same at five places, by bisection: a linear block answers forces with depths.
-double median_force_N(const LinearTissue& tissue, double depth_m) {
+double median_force_N(const LinearTissue& tissue, double stiffness_scale, double depth_m) {
     LinearWork work = make_linear_work(tissue);
     const Eigen::Vector2d size_m(tissue.phantom.size_m[0], tissue.phantom.size_m[1]);
     std::vector<double> forces_N;
@@ -219,7 +223,7 @@ double median_force_N(const LinearTissue& tissue, double depth_m) {
         double high_N = kBarOfLinear_N;
         for (int i = 0; i < 20; ++i) {
             const double force_N = 0.5 * (low_N + high_N);
-            const LinearAnswer answer = press(tissue, size_m.cwiseProduct(share), force_N, work);
+            const LinearAnswer answer = press(tissue, size_m.cwiseProduct(share), force_N / stiffness_scale, work);
             (answer.depth_m < depth_m && !answer.saturated ? low_N : high_N) = force_N;
         }
         forces_N.push_back(high_N);
@@ -239,15 +243,15 @@ std::vector<stiffnessmaps::Nodule> nodules_to_find(const stiffnessmaps::Map& map
     return placed.empty() ? map.nodules : placed;
 }
 
-void describe(const MapTissue& tissue, Plan& plan) {
+void describe(const MapTissue& tissue, double stiffness_scale, Plan& plan) {
     const stiffnessmaps::Map& map = tissue.map;
     plan.tissue_name = map.name;
     plan.source = map.source.kind;
     plan.nodules = nodules_to_find(map);
-    plan.greatest_force_N = stiffnessmaps::force_range(map).highest_N;
+    plan.greatest_force_N = stiffness_scale * stiffnessmaps::force_range(map).highest_N;
     plan.greatest_depth_m = map.depths_m.back();
     for (const int third : {1, 2})
-        plan.zone_N[at(third - 1)] = median_force_N(tissue, third * plan.greatest_depth_m / 3.0);
+        plan.zone_N[at(third - 1)] = stiffness_scale * median_force_N(tissue, third * plan.greatest_depth_m / 3.0);
     plan.indenter_radius_m = map.indenter_radius_m;
     const Eigen::Vector2d first(map.origin_m[0], map.origin_m[1]);
     const Eigen::Vector2d last(map.x_of(map.n_x - 1), map.y_of(map.n_y - 1));
@@ -255,7 +259,7 @@ void describe(const MapTissue& tissue, Plan& plan) {
     plan.area.size_m = last - first + Eigen::Vector2d(map.spacing_m[0], map.spacing_m[1]);
 }
 
-void describe(const LinearTissue& tissue, Plan& plan) {
+void describe(const LinearTissue& tissue, double stiffness_scale, Plan& plan) {
     const stiffnessmaps::Phantom& phantom = tissue.phantom;
     plan.tissue_name = phantom.name;
     plan.source = stiffnessmaps::SourceKind::simulated;
@@ -263,7 +267,7 @@ void describe(const LinearTissue& tissue, Plan& plan) {
     plan.greatest_force_N = kBarOfLinear_N;
     plan.greatest_depth_m = phantom.depths_m.back();
     for (const int third : {1, 2})
-        plan.zone_N[at(third - 1)] = median_force_N(tissue, third * plan.greatest_depth_m / 3.0);
+        plan.zone_N[at(third - 1)] = median_force_N(tissue, stiffness_scale, third * plan.greatest_depth_m / 3.0);
     plan.indenter_radius_m = phantom.indenter_radius_m;
     plan.area.size_m = Eigen::Vector2d(phantom.size_m[0], phantom.size_m[1]);
     plan.area.centre_m = 0.5 * plan.area.size_m;
@@ -273,7 +277,8 @@ void add_stages(const Scene& scene, Plan& plan) {
     const bool direct = scene.mapping.kind == MappingKind::direct;
     plan.sample_stages.push_back(calibration_stage(plan));
     plan.sample_stages.push_back({StageId::position, false, direct ? "direct" : "indirect", "exact", 0.01});
-    std::visit([&](const auto& tissue) { plan.sample_stages.push_back(depth_stage(tissue)); }, plan.tissue);
+    std::visit([&](const auto& tissue) { plan.sample_stages.push_back(depth_stage(tissue, scene.stiffness_scale)); },
+               plan.tissue);
     const auto* linear = std::get_if<LinearTissue>(&plan.tissue);
     if (linear != nullptr && linear->friction) plan.sample_stages.push_back(friction_stage(*linear));
     std::visit([&](const auto& tissue) { plan.sample_stages.push_back(tangential_stage(tissue, scene.tangential)); },
@@ -332,11 +337,11 @@ Plan make_plan(const Scene& scene, const mechanics::Progress& progress) {
     Plan plan;
     plan.profile = calibration::read_profile(scene.profile);
     if (scene.linear) {
-        plan.tissue = load_linear(scene, progress);
+        plan.tissue = make_linear_tissue(*scene.linear, files::cache_folder(), progress);
     } else {
         plan.tissue = load_map(scene);
     }
-    std::visit([&](const auto& tissue) { describe(tissue, plan); }, plan.tissue);
+    std::visit([&](const auto& tissue) { describe(tissue, scene.stiffness_scale, plan); }, plan.tissue);
     if (scene.mapping.tissue_m && scene.linear) {
         throw files::bad_input(scene.file.string(), "mapping.tissue_mm", "a size", "none: a linear block has its own");
     }
@@ -345,14 +350,22 @@ Plan make_plan(const Scene& scene, const mechanics::Progress& progress) {
     add_stages(scene, plan);
     std::visit([&](const auto& tissue) { add_notes(tissue, scene, plan); }, plan.tissue);
     if (const auto* tissue = std::get_if<MapTissue>(&plan.tissue)) add_isotonic_note(*tissue, plan);
+    return plan;
+}
+
+bool serves(const Plan& plan, const Scene& scene) {
+    return std::visit([&](const auto& tissue) { return is_prepared_for(scene, tissue); }, plan.tissue);
+}
+
+std::vector<std::string> notes_of(const Scene& scene, const Plan& plan) {
+    std::vector<std::string> notes = plan.notes;
     if (scene.stiffness_scale != 1.0) {
-        plan.notes.push_back("the tissue's forces are multiplied by " + files::short_number(scene.stiffness_scale));
+        notes.push_back("the tissue's forces are multiplied by " + files::short_number(scene.stiffness_scale));
     }
     if (scene.force_scale != 1.0) {
-        plan.notes.push_back("phantom force: the pen's newtons are multiplied by " +
-                             files::short_number(scene.force_scale));
+        notes.push_back("phantom force: the pen's newtons are multiplied by " + files::short_number(scene.force_scale));
     }
-    return plan;
+    return notes;
 }
 
 }  // namespace palpa::scene

@@ -15,6 +15,8 @@ namespace palpa::scene {
 
 // The tissue's answer to a touch.
 struct Contact {
+    double time_s = 0.0;                            // of the touch, on the timeline
+    Eigen::Vector2d p_m = Eigen::Vector2d::Zero();  // where on the tissue
     double depth_m = 0.0;
     double normal_N = 0.0;
     double tangential_N = 0.0;  // resisting motion along the pen's direction

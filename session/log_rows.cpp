@@ -4,6 +4,7 @@
 
 #include "calibration/profile_file.h"
 #include "files/text.h"
+#include "scene/tissue.h"
 
 namespace palpa::session {
 
@@ -65,7 +66,7 @@ files::Json settings_json(const scene::Scene& scene, const scene::Plan& plan, co
         json["nodules"].push_back({{"id", nodule.id}, {"x_mm", 1e3 * nodule.x_m}, {"y_mm", 1e3 * nodule.y_m}});
         if (nodule.diameter_m) json["nodules"].back()["diameter_mm"] = 1e3 * *nodule.diameter_m;
     }
-    json["notes"] = plan.notes;
+    json["notes"] = scene::notes_of(scene, plan);
     return json;
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "scene/tissue.h"
 #include "session/session.h"
 
 namespace palpa::session {
@@ -99,7 +100,7 @@ files::Json run_json(const scene::Scene& scene, const scene::Plan& plan, const s
                       {"late", state.timeline.late},
                       {"duplicate_times", state.timeline.duplicates},
                       {"clock_jumps", state.timeline.clock_jumps}};
-    json["notes"] = plan.notes;
+    json["notes"] = scene::notes_of(scene, plan);
     return json;
 }
 

@@ -60,12 +60,12 @@ study::EventRow event_row(const Session& session, platform::Action action) {
         row.trial = session.label->trial;
         row.order_id = session.label->order_id;
     }
-    row.calibration_id = session.plan.profile.id;
-    row.map_id = session.plan.tissue_name;
+    row.calibration_id = session.plan->profile.id;
+    row.map_id = session.plan->tissue_name;
     row.map_rotation_deg = scene.mapping.rotate_deg;
     row.map_flip = scene.mapping.flip ? 1 : 0;
     row.seed = scene.seed;
-    row.n_nodules = static_cast<std::int64_t>(session.plan.nodules.size());
+    row.n_nodules = static_cast<std::int64_t>(session.plan->nodules.size());
     return row;
 }
 
@@ -81,7 +81,7 @@ void write_marks(const study::Score& score, Session& session) {
         row.y_mm = 1e3 * mark.p_m.y();
         if (mark.confidence > 0) row.confidence = mark.confidence;
         if (found.target >= 0) {
-            row.nodule = session.plan.nodules[static_cast<std::size_t>(found.target)].id;
+            row.nodule = session.plan->nodules[static_cast<std::size_t>(found.target)].id;
             row.distance_mm = 1e3 * found.distance_m;
         }
         row.hit = found.kind == study::MarkKind::hit ? 1 : 0;
@@ -109,7 +109,7 @@ void write_event(const platform::Sample& sample, std::size_t marks_before, Sessi
         row.y_mm = 1e3 * session.trial.marks.back().p_m.y();
     }
     if (sample.action == platform::Action::finish) {
-        const study::Score score = debrief(session.plan, session.trial).score;
+        const study::Score score = debrief(*session.plan, session.trial).score;
         write_marks(score, session);
         sync_all_but_events(session);  // first the rest, then the row that says that it is complete
         if (!files_good(session)) return;
@@ -128,7 +128,7 @@ void write_event(const platform::Sample& sample, std::size_t marks_before, Sessi
 // What a person did in a trial that ends here, by whatever cause: its places count for nothing, and are not lost.
 void log_interruption(Session& session) {
     if (!session.trial_log || session.trial.finished) return;
-    write_marks(debrief(session.plan, session.trial).score, session);
+    write_marks(debrief(*session.plan, session.trial).score, session);
     session.trial_log->sync_marks();
     note_event("interrupted", session.trial.now_s, session);
     session.trial_log->sync_events();
@@ -142,7 +142,7 @@ std::filesystem::path trace_name(const std::string& first, int trial) {
 }
 
 files::Json settings_of(const Session& session) {
-    files::Json settings = settings_json(session.scene, session.plan, session.state);
+    files::Json settings = settings_json(session.scene, *session.plan, session.state);
     if (session.finger_offset_mm != 0.0) settings["finger_offset_mm"] = session.finger_offset_mm;
     return settings;
 }
@@ -188,9 +188,10 @@ scene::ScreenArea screen_of(const platform::TraceInfo& info) {
     return area;
 }
 
-void change_tissue(scene::Scene scene, scene::Plan plan, const scene::ScreenArea& screen, Session& session) {
-    scene::State state = scene::start(scene, plan, screen);
-    Trial trial = make_trial(plan, session.trial.mode);
+void change_tissue(scene::Scene scene, std::shared_ptr<const scene::Plan> plan, const scene::ScreenArea& screen,
+                   Session& session) {
+    scene::State state = scene::start(scene, *plan, screen);
+    Trial trial = make_trial(*plan, session.trial.mode);
     session.scene = std::move(scene);
     session.plan = std::move(plan);
     session.state = std::move(state);
@@ -199,9 +200,9 @@ void change_tissue(scene::Scene scene, scene::Plan plan, const scene::ScreenArea
 
 void begin_trial(const SessionFiles& files, const platform::TraceInfo& info, TrialMode mode, Session& session) {
     ++session.trials;
-    session.state = scene::start(session.scene, session.plan, screen_of(info));
+    session.state = scene::start(session.scene, *session.plan, screen_of(info));
     session.state.time_every = 16;
-    session.trial = make_trial(session.plan, mode);
+    session.trial = make_trial(*session.plan, mode);
     session.device = info.device;
     session.label = files.label;
     session.sync_rows = files.sync_rows;
@@ -214,18 +215,18 @@ void begin_trial(const SessionFiles& files, const platform::TraceInfo& info, Tri
 void take_sample(const platform::Sample& sample, Session& session) {
     if (session.trial.finished) return;
     if (session.record) session.record->write(sample);
-    scene::advance(session.scene, session.plan, sample, session.state);
+    scene::advance(session.scene, *session.plan, sample, session.state);
     const std::size_t marks_before = session.trial.marks.size();
-    observe(session.plan, sample, session.state, session.trial);
+    observe(*session.plan, sample, session.state, session.trial);
     if (session.log) {
-        study::SampleRow row = row_of(sample, session.plan, session.state);
+        study::SampleRow row = row_of(sample, *session.plan, session.state);
         if (session.label) row.trial = session.label->trial;
         session.log->write(row);
     }
     write_event(sample, marks_before, session);
     flush_if_due(session);
     if (!session.trial.finished) return;
-    session.finished.push_back(trial_json(session.plan, session.trial));
+    session.finished.push_back(trial_json(*session.plan, session.trial));
     if (session.record) session.record->sync();
     if (session.log) session.log->sync();
 }

@@ -6,6 +6,7 @@
 
 #include "app/commands/command_line.h"
 #include "app/scene_choices.h"
+#include "scene/tissue.h"
 #include "session/plan_in_progress.h"
 #include "session/replay.h"
 
@@ -46,7 +47,8 @@ void explain(const ExplainOptions& options) {
         options.trace.empty() ? default_trace() : std::filesystem::path(options.trace);
     if (options.measure) measured = session::replay(scene, plan, platform::read_trace(trace_file), 1);
 
-    files::Json json{{"scene", scene.name}, {"stages", files::Json::array()}, {"notes", plan.notes}};
+    const std::vector<std::string> notes = scene::notes_of(scene, plan);
+    files::Json json{{"scene", scene.name}, {"stages", files::Json::array()}, {"notes", notes}};
     if (!options.json) std::printf("%s\n", scene.name.c_str());
     for (const auto* stages : {&plan.sample_stages, &plan.frame_stages}) {
         for (const scene::Stage& stage : *stages) {
@@ -69,7 +71,7 @@ void explain(const ExplainOptions& options) {
     }
     if (options.measure)
         std::printf("measured on %s; each time includes reading the clock\n", trace_file.string().c_str());
-    for (const std::string& note : plan.notes) std::printf("note: %s\n", note.c_str());
+    for (const std::string& note : notes) std::printf("note: %s\n", note.c_str());
 }
 
 }  // namespace

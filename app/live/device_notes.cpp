@@ -36,7 +36,7 @@ void note_pressure(platform::Tool tool, App& app) {
     const char* found = kind == platform::PressureKind::missing ? words::kReportsNone : words::kReportsConstant;
     app.screens.device_notes.push_back(words::filled(found, {name}));
     // a profile of counts or contact areas reads fields that pressing by time does not set
-    app.screens.offer_hold = app.session.plan.profile.level == calibration::LevelField::pressure;
+    app.screens.offer_hold = app.session.plan->profile.level == calibration::LevelField::pressure;
 }
 
 }  // namespace

@@ -120,7 +120,7 @@ void take(const platform::Sample& sample, App& app) {
     session::take_sample(sample, app.session);
     if (app.waiting_s.size() < app.waiting_s.capacity()) app.waiting_s.push_back(sample.t_host_s);
     if (!app.session.trial.finished || app.screens.screen != Screen::trial) return;
-    app.screens.debrief = session::debrief(app.session.plan, app.session.trial);  // a trace that finishes its trial
+    app.screens.debrief = session::debrief(*app.session.plan, app.session.trial);  // a trace that finishes its trial
     app.screens.screen = Screen::reveal;
 }
 
@@ -210,7 +210,7 @@ void show(platform::Window& window, App& app, render::TissueDrawer& tissue, Gui&
     const session::Session& s = app.session;
     const bool save = std::exchange(app.save_waits, false);
     if (save) app.on_screen.content = 0;  // what the window hands out is only sure while it has just been drawn
-    const Wishes wishes = draw_frame(s.scene, s.plan, s.trial, app.settings, now_of(app, window), dt_s, tissue, gui,
+    const Wishes wishes = draw_frame(s.scene, *s.plan, s.trial, app.settings, now_of(app, window), dt_s, tissue, gui,
                                      app.screens, app.session.state, app.times, app.on_screen);
     if (save) {
         attempt(app, [&] {
@@ -405,8 +405,8 @@ files::Json Live::close() {
     if (!it.app.options.screenshot.empty()) {
         it.app.on_screen.content = 0;
         const session::Session& s = it.app.session;
-        draw_frame(s.scene, s.plan, s.trial, it.app.settings, now_of(it.app, *it.window), kFrame_s, *it.tissue, *it.gui,
-                   it.app.screens, it.app.session.state, it.app.times, it.app.on_screen);
+        draw_frame(s.scene, *s.plan, s.trial, it.app.settings, now_of(it.app, *it.window), kFrame_s, *it.tissue,
+                   *it.gui, it.app.screens, it.app.session.state, it.app.times, it.app.on_screen);
         save_screen(*it.window, it.app.options.screenshot);
     }
     if (it.app.screens.calibrate) stop_recording(*it.app.screens.calibrate);

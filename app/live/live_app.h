@@ -3,6 +3,7 @@
 
 #include <exception>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -73,10 +74,10 @@ files::Json result_of(const App& app);                          // what `run --j
 // Ends all presses and drops their later samples: a press belongs to the trial and the screen in which it began.
 void end_presses(platform::Window& window, App& app);
 // Ends the presses and the trial, then puts the tissue of `scene` under the hand. A trial begins on it with begin().
-void put_scene(scene::Scene scene, scene::Plan plan, platform::Window& window, App& app);
-// Makes the plan. If its tissue has to be computed, the window shows the progress. Returns false if the window was
+void put_scene(scene::Scene scene, std::shared_ptr<const scene::Plan> plan, platform::Window& window, App& app);
+// Makes the plan. If its tissue has to be computed, the window shows the progress. Returns nothing if the window was
 // closed before the plan was ready.
-bool prepare(platform::Window& window, Gui& gui, const scene::Scene& scene, scene::Plan& plan);
+std::shared_ptr<const scene::Plan> prepare(platform::Window& window, Gui& gui, const scene::Scene& scene);
 void begin(const platform::Window& window, const Gui& gui,
            App& app);  // a trial; throws InputError or std::runtime_error
 void begin_anew(platform::Window& window, const Gui& gui,

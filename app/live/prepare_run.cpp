@@ -37,7 +37,7 @@ void load(const RunOptions& options, App& app) {
         app.unprepared = std::move(scene);
         return;
     }
-    scene::Plan plan = scene::make_plan(scene);
+    auto plan = std::make_shared<const scene::Plan>(scene::make_plan(scene));
     session::change_tissue(std::move(scene), std::move(plan), {}, app.session);
 }
 
@@ -52,8 +52,8 @@ namespace {
 
 // Returns false if the window was closed before the tissue was ready.
 bool prepare_first(scene::Scene scene, platform::Window& window, Gui& gui, App& app) {
-    scene::Plan plan;
-    if (!prepare(window, gui, scene, plan)) return false;
+    std::shared_ptr<const scene::Plan> plan = prepare(window, gui, scene);
+    if (!plan) return false;
     session::change_tissue(std::move(scene), std::move(plan), session::screen_of(info_of(app, window)), app.session);
     return true;
 }

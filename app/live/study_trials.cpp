@@ -24,7 +24,7 @@ void begin_study_trial(platform::Window& window, const Gui& gui, App& app) {
         const bool known = trial.practice && run.protocol.task == study::TaskKind::find;
         session::SessionFiles files = due_files(run);
         files.finger_offset_mm = finger_offset_mm(app);
-        put_scene(scene_of(due, trial), *due.plan, window, app);
+        put_scene(scene_of(due, trial), due.plan, window, app);
         app.screens.note.clear();
         session::begin_trial(files, info_of(app, window),
                              known ? session::TrialMode::practice : session::TrialMode::test, app.session);
@@ -79,7 +79,7 @@ void load_study(const RunOptions& options, App& app) {
     app.screens.study = run;
     app.screens.screen = Screen::study;
     scene::Scene scene = load_scene("");  // behind the first screens
-    scene::Plan plan = scene::make_plan(scene);
+    auto plan = std::make_shared<const scene::Plan>(scene::make_plan(scene));
     session::change_tissue(std::move(scene), std::move(plan), {}, app.session);
 }
 

@@ -46,7 +46,7 @@ double now_of(const App& app, const platform::Window& window) { return window.no
 
 files::Json result_of(const App& app) {
     const session::Session& s = app.session;
-    files::Json result = session::run_json(s.scene, s.plan, s.state, app.frames, app.times.latency);
+    files::Json result = session::run_json(s.scene, *s.plan, s.state, app.frames, app.times.latency);
     const auto ms = [](const scene::Meter& meter, double q) { return 1e-6 * meter.quantile_ns(q); };
     result["frame_cpu_ms"] = {{"p50", ms(app.times.cpu, 0.5)}, {"p99", ms(app.times.cpu, 0.99)}};
     result["frame_gl_ms"] = {{"p50", ms(app.times.gl, 0.5)}, {"p99", ms(app.times.gl, 0.99)}};
@@ -54,7 +54,7 @@ files::Json result_of(const App& app) {
     result["problems"] = app.screens.problems;
     if (app.screens.check) result["device_check"] = check_json(*app.screens.check);
     result["trials"] = s.finished;
-    if (!s.trial.finished) result["trials"].push_back(session::trial_json(s.plan, s.trial));
+    if (!s.trial.finished) result["trials"].push_back(session::trial_json(*s.plan, s.trial));
     return result;
 }
 
@@ -98,7 +98,7 @@ bool close_trial(App& app) {
     return false;
 }
 
-void put_scene(scene::Scene scene, scene::Plan plan, platform::Window& window, App& app) {
+void put_scene(scene::Scene scene, std::shared_ptr<const scene::Plan> plan, platform::Window& window, App& app) {
     end_presses(window, app);
     if (!close_trial(app)) app.screens.problems.push_back(app.stopped);
     session::change_tissue(std::move(scene), std::move(plan), session::screen_of(info_of(app, window)), app.session);
@@ -124,16 +124,13 @@ void begin_when_kept(platform::Window& window, const Gui& gui, App& app) {
     if (app.begin_waits && app.keeper->ready()) begin_anew(window, gui, app);
 }
 
-bool prepare(platform::Window& window, Gui& gui, const scene::Scene& scene, scene::Plan& plan) {
-    if (!scene.linear) {
-        plan = scene::make_plan(scene);
-        return true;
-    }
+std::shared_ptr<const scene::Plan> prepare(platform::Window& window, Gui& gui, const scene::Scene& scene) {
+    if (!scene.linear) return std::make_shared<const scene::Plan>(scene::make_plan(scene));
     session::PlanInProgress work(scene);
     std::vector<platform::Sample> ignored;
     while (!work.wait(kFrame_s)) {
         window.poll(0.0, ignored);
-        if (window.close_requested()) return false;
+        if (window.close_requested()) return nullptr;
         gui.begin_frame(kFrame_s, true);
         draw_progress(words::kPreparing, work.share());
         gui.end_frame();
@@ -141,21 +138,19 @@ bool prepare(platform::Window& window, Gui& gui, const scene::Scene& scene, scen
         gui.draw();
         window.present();
     }
-    plan = work.take();
-    return true;
+    return std::make_shared<const scene::Plan>(work.take());
 }
 
 void change_scene(platform::Window& window, Gui& gui, const std::string& file, const std::string& profile, App& app) {
     end_presses(window, app);  // what comes while the tissue is prepared reaches none
     scene::Scene scene;
-    scene::Plan plan;
-    bool ready = false;
+    std::shared_ptr<const scene::Plan> plan;
     const bool good = attempt(app, [&] {
         scene = load_scene(file);
         if (!profile.empty()) scene.profile = profile;
-        ready = prepare(window, gui, scene, plan);
+        plan = prepare(window, gui, scene);
     });
-    if (!good || !ready) return;
+    if (!good || !plan) return;
     put_scene(std::move(scene), std::move(plan), window, app);
     begin_anew(window, gui, app);
 }
@@ -197,7 +192,7 @@ void act(platform::Action action, double now_s, App& app) {
     session::take_sample(sample, app.session);
     if (!app.session.trial.finished) return;
     if (app.screens.study) return finish_study_trial(app);
-    app.screens.debrief = session::debrief(app.session.plan, app.session.trial);
+    app.screens.debrief = session::debrief(*app.session.plan, app.session.trial);
     app.screens.screen = Screen::reveal;
     app.screens.note.clear();
     app.screens.menu = false;

@@ -51,7 +51,7 @@ std::string code_of(int number) {
 class Hand {
   public:
     Hand(const study::Condition& condition, const session::Session& session)
-        : profile_(session.plan.profile),
+        : profile_(session.plan->profile),
           view_(session.state.view),
           force_scale_(session.scene.force_scale),
           tool_(condition.modality == study::Modality::finger ? platform::Tool::finger : platform::Tool::pen) {}
@@ -97,7 +97,7 @@ class Hand {
 
 double greatest_force_N(const session::Session& session) {
     std::int64_t clamped = 0;
-    return session.scene.force_scale * force_N(session.plan.profile, session.plan.profile.level_highest, clamped);
+    return session.scene.force_scale * force_N(session.plan->profile, session.plan->profile.level_highest, clamped);
 }
 
 session::SessionFiles files_of(const Shared& shared, const study::PlannedParticipant& who,
@@ -152,10 +152,11 @@ void run_trial(Shared& shared, const study::PlannedParticipant& who, const study
     session.state.time_every = 0;
     // the same hand and eye in all trials of a person, noise of its own in each
     study::Random of_person(study::derived_seed(shared.options.seed, kTraits, static_cast<std::uint64_t>(who.number)));
-    const study::PersonTraits traits = study::draw_person(session.plan.zone_N[1], greatest_force_N(session), of_person);
+    const study::PersonTraits traits =
+        study::draw_person(session.plan->zone_N[1], greatest_force_N(session), of_person);
     const double asked_s = trial.practice ? protocol.practice_limit_s : protocol.time_limit_s;
     const bool on_side = trial.rotate_deg % 180 != 0;
-    const Eigen::Vector2d& size_m = session.plan.area.size_m;
+    const Eigen::Vector2d& size_m = session.plan->area.size_m;
     const std::uint64_t trials =
         study::derived_seed(shared.options.seed, kTrials, static_cast<std::uint64_t>(who.number));
     study::SimulatedPerson person =
@@ -236,7 +237,7 @@ void run_participant(Shared& shared, int number, std::vector<std::optional<sessi
         std::optional<session::Session>& session = sessions[trial.condition];
         if (!session) {
             session.emplace();
-            session->plan = *shared.scenes[trial.condition]->plan;
+            session->plan = shared.scenes[trial.condition]->plan;
         }
         run_trial(shared, who, trial, *session);
     }

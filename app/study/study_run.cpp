@@ -7,6 +7,7 @@
 
 #include "files/input_error.h"
 #include "files/text.h"
+#include "scene/tissue.h"
 #include "session/plan_in_progress.h"
 #include "study/ratings.h"
 
@@ -17,6 +18,15 @@ namespace fs = std::filesystem;
 
 constexpr double kRoom_MB = 64.0;  // for one trial: ten minutes at 1,000 Hz
 
+// A recorded map's plan for another stiffness, with the force bar of the reference's plan.
+std::shared_ptr<const scene::Plan> smoothed_anew(const scene::Plan& reference, const scene::Scene& scene) {
+    scene::Plan plan = session::make_plan_here(scene);
+    plan.greatest_force_N = reference.greatest_force_N;
+    plan.greatest_depth_m = reference.greatest_depth_m;
+    plan.zone_N = reference.zone_N;
+    return std::make_shared<const scene::Plan>(std::move(plan));
+}
+
 // The same tissue, harder or softer: forces of linear elastic tissue are proportional to its modulus. All look alike
 // to the person: the force bar is the reference's.
 std::vector<StudyScene> stimuli_of(const StudyScene& scene, const study::ChoiceTask& task) {
@@ -24,11 +34,7 @@ std::vector<StudyScene> stimuli_of(const StudyScene& scene, const study::ChoiceT
     for (const double comparison_kPa : task.comparisons_kPa) {
         StudyScene other = scene;
         other.scene.stiffness_scale *= comparison_kPa / task.reference_kPa;
-        scene::Plan plan = session::make_plan_here(other.scene);
-        plan.greatest_force_N = scene.plan->greatest_force_N;
-        plan.greatest_depth_m = scene.plan->greatest_depth_m;
-        plan.zone_N = scene.plan->zone_N;
-        other.plan = std::make_shared<const scene::Plan>(std::move(plan));
+        if (!scene::serves(*scene.plan, other.scene)) other.plan = smoothed_anew(*scene.plan, other.scene);
         out.push_back(std::move(other));
     }
     return out;

@@ -95,6 +95,20 @@ TEST_CASE("advance: a sample allocates nothing, an absent effect allocates nothi
     CHECK(allocations() > before);  // the counter counts
 }
 
+TEST_CASE("advance: a contact says when and where it was") {
+    Run run("default.json");
+    const Eigen::Vector2d px(600, 380);
+    run.feed(pen(2.0, Phase::down, {640, 400}, 0.3));
+    run.feed(pen(2.5, Phase::move, px, 0.3));
+    REQUIRE(run.state.contact.depth_m > 0.0);
+    CHECK(run.state.contact.time_s == run.state.timeline.now_s);
+    CHECK(run.state.contact.p_m == tissue_of_px(run.state.view, px));
+    const double pressed_s = run.state.contact.time_s;
+    run.feed(pen(3.0, Phase::up, px, 0.0));
+    CHECK(run.state.contact.time_s == doctest::Approx(pressed_s + 0.5));
+    CHECK(run.state.contact.p_m == run.state.touch.p_m);
+}
+
 TEST_CASE("hard case 4: force only while touching") {
     Run run("default.json");
     const Eigen::Vector2d middle(640, 400);

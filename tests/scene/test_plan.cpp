@@ -3,6 +3,7 @@
 
 #include "files/text.h"
 #include "scene/plan.h"
+#include "scene/tissue.h"
 #include "stiffnessmaps/map_file.h"
 #include "tests/error_message.h"
 #include "tests/temporary_folder.h"
@@ -45,9 +46,9 @@ TEST_CASE("plan: a person is told what is assumed, derived or scaled") {
     Scene scene = read_scene(kAssets / "scenes/default.json", kAssets);
     scene.force_scale = 2.0;
     const Plan plan = make_plan(scene);
+    const std::vector<std::string> notes = notes_of(scene, plan);
     const auto noted = [&](const char* part) {
-        return std::any_of(plan.notes.begin(), plan.notes.end(),
-                           [&](const std::string& n) { return contains(n, part); });
+        return std::any_of(notes.begin(), notes.end(), [&](const std::string& n) { return contains(n, part); });
     };
     CHECK(noted("simulated, not recorded"));
     CHECK(noted("Young's modulus, 47000 Pa, is ASSUMED"));

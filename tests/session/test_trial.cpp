@@ -28,7 +28,7 @@ struct Person {
 
     explicit Person(const SessionFiles& files = {}) {
         session.scene = load_scene("");
-        session.plan = make_plan(session.scene);
+        session.plan = std::make_shared<const Plan>(make_plan(session.scene));
         begin_trial(files, info, TrialMode::test, session);
     }
     Eigen::Vector2d px(double x_mm, double y_mm) const {
@@ -57,9 +57,23 @@ struct Person {
 
 }  // namespace
 
+TEST_CASE("trial: trials on one tissue share its plan, however it is turned and scaled") {
+    Person person;
+    const auto plan = person.session.plan;
+    Scene turned = person.session.scene;
+    turned.mapping.rotate_deg = 90;
+    turned.stiffness_scale = 2.0;
+    Session other;
+    change_tissue(turned, plan, {1280, 800}, other);
+    begin_trial({}, person.info, TrialMode::test, other);
+    CHECK(other.plan.get() == plan.get());
+    begin_trial({}, person.info, TrialMode::test, person.session);
+    CHECK(person.session.plan.get() == plan.get());
+}
+
 TEST_CASE("trial: found, pressed too lightly, never touched; marks with confidence, undone and false") {
     Person person;
-    const std::vector<Nodule>& nodules = person.session.plan.nodules;
+    const std::vector<Nodule>& nodules = person.session.plan->nodules;
     REQUIRE(nodules.size() == 3);
     const auto at = [&](std::size_t i) { return Eigen::Vector2d(1e3 * nodules[i].x_m, 1e3 * nodules[i].y_m); };
     person.stroke(at(0).x(), at(0).y(), 0.85);
@@ -78,7 +92,7 @@ TEST_CASE("trial: found, pressed too lightly, never touched; marks with confiden
     REQUIRE(trial.marks.size() == 2);
     CHECK(trial.marks[0].confidence == 4);
     CHECK(trial.marks[1].confidence == 0);
-    const Debrief result = debrief(person.session.plan, trial);
+    const Debrief result = debrief(*person.session.plan, trial);
     CHECK(result.findings[0] == Finding::found);
     CHECK(result.findings[1] == Finding::too_light);
     CHECK(result.findings[2] == Finding::not_touched);
@@ -94,9 +108,9 @@ TEST_CASE("trial: found, pressed too lightly, never touched; marks with confiden
 
 TEST_CASE("trial: pressed well but not marked is told apart from pressed too lightly") {
     Person person;
-    const Nodule& nodule = person.session.plan.nodules[1];
+    const Nodule& nodule = person.session.plan->nodules[1];
     person.stroke(1e3 * nodule.x_m, 1e3 * nodule.y_m, 0.85);
-    CHECK(debrief(person.session.plan, person.session.trial).findings[1] == Finding::not_marked);
+    CHECK(debrief(*person.session.plan, person.session.trial).findings[1] == Finding::not_marked);
 }
 
 TEST_CASE("trial: a very long path is thinned, not cut") {
@@ -120,7 +134,7 @@ TEST_CASE("trial: it replays from its trace, and its log holds what happened as 
     {
         SessionFiles files{(folder / "log").string(), "03", (folder / "t.tsv").string()};
         Person person(files);
-        const Nodule& nodule = person.session.plan.nodules[0];
+        const Nodule& nodule = person.session.plan->nodules[0];
         person.stroke(1e3 * nodule.x_m, 1e3 * nodule.y_m, 0.8);
         person.act(Action::mark, 1e3 * nodule.x_m, 1e3 * nodule.y_m);
         person.act(Action::confidence_5);
@@ -141,7 +155,7 @@ TEST_CASE("trial: it replays from its trace, and its log holds what happened as 
     const Trace trace = read_trace(folder / "t.tsv");
     Session again;
     again.scene = load_scene("");
-    again.plan = make_plan(again.scene);
+    again.plan = std::make_shared<const Plan>(make_plan(again.scene));
     begin_trial({}, trace.info, TrialMode::test, again);
     for (const Sample& sample : trace.samples) take_sample(sample, again);
     REQUIRE(again.finished.size() == 1);

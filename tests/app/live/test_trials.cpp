@@ -51,7 +51,7 @@ struct Desk {
     explicit Desk(const std::string& scene) {
         app.keeper = &keeper;
         Scene first = load_scene(scene);
-        Plan plan = make_plan(first);
+        auto plan = std::make_shared<const Plan>(make_plan(first));
         put_scene(std::move(first), std::move(plan), window, app);
         begin(window, gui, app);
     }
@@ -71,7 +71,7 @@ struct Desk {
 
     void show_frame() {
         const Session& s = app.session;
-        draw_frame(s.scene, s.plan, s.trial, app.settings, window.now_s(), 1.0 / 60.0, tissue, gui, app.screens,
+        draw_frame(s.scene, *s.plan, s.trial, app.settings, window.now_s(), 1.0 / 60.0, tissue, gui, app.screens,
                    app.session.state, app.times, app.on_screen);
     }
 };
@@ -81,8 +81,8 @@ void check_whole(const Session& session) {
     const Session& s = session;
     CHECK(s.state.display_ratio.has_value() == s.scene.display_ratio.has_value());
     CHECK(s.state.delay.has_value() == s.scene.delay.has_value());
-    CHECK(s.state.linear.has_value() == std::holds_alternative<LinearTissue>(s.plan.tissue));
-    CHECK(s.state.view.area.centre_m == s.plan.area.centre_m);
+    CHECK(s.state.linear.has_value() == std::holds_alternative<LinearTissue>(s.plan->tissue));
+    CHECK(s.state.view.area.centre_m == s.plan->area.centre_m);
     CHECK_FALSE(s.state.pointer.has_value());
     CHECK_FALSE(s.state.touch.down);
     CHECK(avatar_at(s.scene, s.state, 1e3).p_m.allFinite());
@@ -126,7 +126,7 @@ TEST_CASE("live: the tissue of a finished trial is changed while the keeper is b
         begin_anew(desk.window, desk.gui, desk.app);
         const Mapping& now = desk.app.session.scene.mapping;
         CHECK((now.rotate_deg != before.rotate_deg || now.flip != before.flip));
-        const View view = make_view(now, desk.app.session.plan.area, desk.app.session.state.screen);
+        const View view = make_view(now, desk.app.session.plan->area, desk.app.session.state.screen);
         CHECK(desk.app.session.state.view.axes == view.axes);
     }
     CHECK(desk.app.screens.screen == Screen::trial);  // the verdict was on the tissue before

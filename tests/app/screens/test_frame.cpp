@@ -37,7 +37,7 @@ struct Screening {
 
     explicit Screening(const std::string& scene) {
         Scene first = load_scene(scene);
-        Plan plan = make_plan(first);
+        auto plan = std::make_shared<const Plan>(make_plan(first));
         change_tissue(std::move(first), std::move(plan), {}, session);
         begin_trial({}, {640, 400, kMissing, kMissing, "test"}, TrialMode::practice, session);
         take_sample(resize_sample(window, gui, settings, now_s), session);
@@ -45,7 +45,7 @@ struct Screening {
     }
 
     bool drawn() {
-        draw_frame(session.scene, session.plan, session.trial, settings, now_s, 1.0 / 60.0, tissue, gui, screens,
+        draw_frame(session.scene, *session.plan, session.trial, settings, now_s, 1.0 / 60.0, tissue, gui, screens,
                    session.state, times, on_screen);
         return on_screen.drawn;
     }
@@ -93,7 +93,7 @@ TEST_CASE("frame: nothing is drawn while nothing changes, and everything that do
 TEST_CASE("frame: an avatar that catches up while the pen rests is drawn") {
     Screening s(PALPA_SOURCE_DIR "/assets/scenes/delay.json");
     // over the first nodule, until the avatar moves without the pen
-    const Nodule& nodule = s.session.plan.nodules.front();
+    const Nodule& nodule = s.session.plan->nodules.front();
     int caught_up = 0;
     for (int i = 0; i < 100; ++i) {
         s.now_s += 0.005;

@@ -101,10 +101,10 @@ void check_case(const Session& session, Screens screens, const Case& c, const st
     resize.y_px = static_cast<double>(t.y0);
     resize.width_px = static_cast<double>(t.width());
     resize.height_px = static_cast<double>(t.height());
-    advance(session.scene, session.plan, resize, state);
+    advance(session.scene, *session.plan, resize, state);
     const auto file = folder / "p.png";
-    const std::string overflow = draw_picture(session.scene, session.plan, session.trial, settings, screens, c.width_px,
-                                              c.height_px, state, file);
+    const std::string overflow = draw_picture(session.scene, *session.plan, session.trial, settings, screens,
+                                              c.width_px, c.height_px, state, file);
     CHECK(overflow == "");
     const Picture picture = read_png(file);
     CHECK(picture.width == c.width_px);
@@ -128,7 +128,7 @@ TEST_CASE("screens: every screen fits and is drawn at the sizes of desks and tab
     const TemporaryFolder folder;
     Session session;
     session.scene = load_scene("");
-    session.plan = make_plan(session.scene);
+    session.plan = std::make_shared<const Plan>(make_plan(session.scene));
     const Trace whole = read_trace(default_trace());
     begin_trial({}, whole.info, TrialMode::practice, session);
     for (std::size_t i = 0; i < 400; ++i) take_sample(whole.samples[i], session);  // in the middle of a stroke
@@ -159,12 +159,12 @@ TEST_CASE("screens: every screen fits and is drawn at the sizes of desks and tab
     done.scene = session.scene;
     done.plan = session.plan;
     begin_trial({}, whole.info, TrialMode::test, done);
-    for (const Sample& sample : finished_trace(done.plan, done.state).samples) take_sample(sample, done);
+    for (const Sample& sample : finished_trace(*done.plan, done.state).samples) take_sample(sample, done);
     REQUIRE(done.trial.finished);
     Screens reveal = trial;
     reveal.screen = Screen::reveal;
     reveal.problems.clear();
-    reveal.debrief = debrief(done.plan, done.trial);
+    reveal.debrief = debrief(*done.plan, done.trial);
 
     Screens maps = trial;
     maps.screen = Screen::maps;
@@ -200,7 +200,7 @@ TEST_CASE("screens: every step of a study fits, and none tells where the nodules
     const TemporaryFolder folder;
     Session session;
     session.scene = load_scene("");
-    session.plan = make_plan(session.scene);
+    session.plan = std::make_shared<const Plan>(make_plan(session.scene));
     const Trace whole = read_trace(default_trace());
     begin_trial({}, whole.info, TrialMode::test, session);
     for (std::size_t i = 0; i < 400; ++i) take_sample(whole.samples[i], session);
@@ -261,7 +261,7 @@ TEST_CASE(
     const TemporaryFolder folder;
     Session session;
     session.scene = load_scene("");
-    session.plan = make_plan(session.scene);
+    session.plan = std::make_shared<const Plan>(make_plan(session.scene));
     begin_trial({}, read_trace(default_trace()).info, TrialMode::practice, session);
     Screens screens;
     screens.screen = Screen::maps;
@@ -293,7 +293,7 @@ TEST_CASE("screens: during a test the map browser shows nothing of any map") {
     const TemporaryFolder folder;
     Session session;
     session.scene = load_scene("");
-    session.plan = make_plan(session.scene);
+    session.plan = std::make_shared<const Plan>(make_plan(session.scene));
     const Trace whole = read_trace(default_trace());
     begin_trial({}, whole.info, TrialMode::test, session);
     for (std::size_t i = 0; i < 400; ++i) take_sample(whole.samples[i], session);
@@ -304,7 +304,7 @@ TEST_CASE("screens: during a test the map browser shows nothing of any map") {
     const auto coloured = [&](const Session& of) {
         const auto file = folder / "p.png";
         State state = of.state;
-        draw_picture(of.scene, of.plan, of.trial, {}, screens, 1280, 800, state, file);
+        draw_picture(of.scene, *of.plan, of.trial, {}, screens, 1280, 800, state, file);
         const Picture picture = read_png(file);
         int count = 0;
         for (std::size_t at = 0; at < picture.rgb.size(); at += 3) {
@@ -315,7 +315,7 @@ TEST_CASE("screens: during a test the map browser shows nothing of any map") {
         return count;
     };
     CHECK(coloured(session) < 2000);  // the panels are grey
-    for (const Sample& sample : finished_trace(session.plan, session.state).samples) take_sample(sample, session);
+    for (const Sample& sample : finished_trace(*session.plan, session.state).samples) take_sample(sample, session);
     REQUIRE(session.trial.finished);
     CHECK(may_show_maps(session.trial));
     CHECK(coloured(session) > 100000);

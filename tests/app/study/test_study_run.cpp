@@ -6,6 +6,7 @@
 #include "app/study/study_run.h"
 #include "files/input_error.h"
 #include "files/text.h"
+#include "scene/advance.h"
 #include "study/ratings.h"
 #include "study/read_logs.h"
 #include "tests/error_message.h"
@@ -43,13 +44,13 @@ void run_trial(StudyRun& run) {
     run.start_trial = false;
     Session session;
     session.scene = scene_of(due_scene(run), due_trial(run));
-    session.plan = *due_scene(run).plan;
+    session.plan = due_scene(run).plan;
     const TrialMode mode = due_trial(run).practice ? TrialMode::practice : TrialMode::test;
     begin_trial(due_files(run), {1280.0, 800.0, kMissing, kMissing, "pen"}, mode, session);
     Sample sample;
     sample.phase = Phase::ui;
     sample.action = Action::mark;
-    const Nodule& nodule = session.plan.nodules[0];
+    const Nodule& nodule = session.plan->nodules[0];
     const Eigen::Vector2d px = px_of_tissue(session.state.view, {nodule.x_m, nodule.y_m});
     sample.x_px = px.x();
     sample.y_px = px.y();
@@ -162,7 +163,7 @@ TEST_CASE("study run: a crash in the middle of a trial costs that trial, nothing
         REQUIRE(run.step == StudyStep::trial);
         Session session;  // begun, never finished
         session.scene = scene_of(due_scene(run), due_trial(run));
-        session.plan = *due_scene(run).plan;
+        session.plan = due_scene(run).plan;
         begin_trial(due_files(run), {1280.0, 800.0, kMissing, kMissing, "pen"}, TrialMode::test, session);
     }
     StudyRun again = open_study_run(find_protocol(folder), log, "07");
@@ -192,15 +193,24 @@ TEST_CASE("study run: forced choices, both surfaces harder and softer versions o
     const Protocol protocol = read_protocol(folder / "p.json");
     StudyRun run = open_study_run(protocol, folder / "log", "01");
     REQUIRE(run.stimuli[0].size() == 3);
-    const auto depth_m = [&](std::size_t i) {
-        const Field& field = std::get<MapTissue>(run.stimuli[0][i].plan->tissue).field;
-        return depth_at(field, place_at(field, {0.06, 0.06}), 0.5).depth_m;
+    for (const StudyScene& stimulus : run.stimuli[0]) CHECK(stimulus.plan == run.scenes[0]->plan);  // one for all
+    const auto depth_m = [&](std::size_t i, double force_scale) {
+        Scene scene = run.stimuli[0][i].scene;
+        scene.force_scale = force_scale;
+        State state = start(scene, *run.stimuli[0][i].plan, {1280, 800});
+        Sample press;
+        press.phase = Phase::down;
+        press.x_px = px_of_tissue(state.view, {0.06, 0.06}).x();
+        press.y_px = px_of_tissue(state.view, {0.06, 0.06}).y();
+        press.pressure = 0.1;
+        advance(scene, *run.stimuli[0][i].plan, press, state);
+        return state.contact.depth_m;
     };
-    CHECK(depth_m(1) > 1.2 * depth_m(0));  // half the modulus
-    CHECK(depth_m(2) < depth_m(0) / 1.2);
+    REQUIRE(depth_m(0, 1.0) > 0.0);
+    CHECK(depth_m(1, 1.0) > 1.2 * depth_m(0, 1.0));  // half the modulus
+    CHECK(depth_m(2, 1.0) < depth_m(0, 1.0) / 1.2);
     // half the force on half the modulus: the same depth
-    const Field& soft = std::get<MapTissue>(run.stimuli[0][1].plan->tissue).field;
-    CHECK(depth_at(soft, place_at(soft, {0.06, 0.06}), 0.25).depth_m == doctest::Approx(depth_m(0)).epsilon(1e-5));
+    CHECK(depth_m(1, 0.5) == doctest::Approx(depth_m(0, 1.0)).epsilon(1e-5));
     CHECK(run.stimuli[0][1].plan->zone_N == run.stimuli[0][0].plan->zone_N);  // the force bar tells nothing
     CHECK(run.stimuli[0][1].plan->greatest_force_N == run.stimuli[0][0].plan->greatest_force_N);
 

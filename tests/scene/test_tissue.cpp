@@ -1,0 +1,137 @@
+#include <algorithm>
+#include <cstdlib>
+#include <doctest/doctest.h>
+
+#include "files/text.h"
+#include "scene/advance.h"
+#include "scene/tissue.h"
+#include "stiffnessmaps/noise.h"
+#include "tests/temporary_folder.h"
+
+using namespace palpa;
+using namespace palpa::files;
+using namespace palpa::platform;
+using namespace palpa::avatar;
+using namespace palpa::stiffnessmaps;
+using namespace palpa::scene;
+using namespace palpa::test;
+
+namespace {
+
+const std::filesystem::path kAssets = PALPA_SOURCE_DIR "/assets";
+
+// 60 x 60 x 20 mm with one nodule at (24, 30), coarse enough for a test under sanitizers.
+constexpr const char* kPhantom = R"({
+  "size_mm": [60, 60, 20], "tissue": {"young_Pa": 20000, "poisson": 0.45},
+  "nodules": [{"id": "A", "centre_mm": [24, 30, 9], "diameter_mm": 12, "young_Pa": 2e6, "poisson": 0.45}],
+  "indenter": {"shape": "sphere", "radius_mm": 10, "contact": "rolling"},
+  "depths_mm": [1], "grid": {"origin_mm": [0, 0], "spacing_mm": [1, 1], "count": [2, 2]}})";
+
+Scene map_scene() {
+    Scene scene = read_scene(kAssets / "scenes/default.json", kAssets);
+    scene.delay = delay_clear();
+    return scene;
+}
+
+Scene linear_scene(const TemporaryFolder& folder, std::optional<double> friction) {
+    write_text_atomically(folder / "block.json", kPhantom);
+    ::setenv("XDG_CACHE_HOME", folder.path().c_str(), 1);
+    Scene scene;
+    scene.linear = LinearOptions{folder / "block.json", 4e-3, friction};
+    scene.profile = kAssets / "profiles/s-pen.json";
+    scene.display_ratio = display_ratio_clear();
+    scene.delay = delay_clear();
+    return scene;
+}
+
+// The tissue with every force in its matrices multiplied.
+Plan with_scaled_matrices(Plan plan, double scale) {
+    if (auto* map = std::get_if<MapTissue>(&plan.tissue)) {
+        for (std::vector<float>* forces_N : {&map->map.normal_N, &map->map.tangential_x_N, &map->map.tangential_y_N}) {
+            for (float& force_N : *forces_N) force_N *= static_cast<float>(scale);
+        }
+        map->field = make_field(map->map, map->field.options);
+    }
+    if (auto* linear = std::get_if<LinearTissue>(&plan.tissue)) {
+        linear->compliance.revision = mechanics::new_revision();
+        linear->compliance.normal_m_per_N /= scale;
+        linear->compliance.full_m_per_N /= scale;
+    }
+    return plan;
+}
+
+// The n-th sample of a stroke over the middle, ever deeper.
+Sample stroke(const Scene& scene, const Plan& plan, const State& state, int n) {
+    Sample sample;
+    sample.t_host_s = sample.t_device_s = n / 120.0;
+    sample.phase = n == 0 ? Phase::down : Phase::move;
+    const Eigen::Vector2d along = 0.25 * (n / 100.0 - 0.5) * plan.area.size_m;
+    const Eigen::Vector2d px = px_of_tissue(state.view, plan.area.centre_m + along);
+    sample.x_px = px.x();
+    sample.y_px = px.y();
+    sample.pressure = (0.02 + 0.0002 * n) * scene.force_scale;
+    return sample;
+}
+
+}  // namespace
+
+TEST_CASE("tissue: a scale where forces are answered equals scaled matrices, to rounding") {
+    const TemporaryFolder folder;
+    Scene scene;
+    double rounding = 1e-9;
+    SUBCASE("a map, whose matrices are single precision") {
+        scene = map_scene();
+        rounding = 1e-5;
+    }
+    SUBCASE("linear") { scene = linear_scene(folder, {}); }
+    SUBCASE("linear, rough") { scene = linear_scene(folder, 0.3); }
+    const Plan plan = make_plan(scene);
+    for (const double scale : {0.3, 2.5}) {
+        CAPTURE(scale);
+        const Plan harder = with_scaled_matrices(plan, scale);
+        Scene scaled = scene;
+        scaled.stiffness_scale = scale;
+        REQUIRE(serves(plan, scaled));
+        State a = start(scaled, plan, {600, 600});
+        State b = start(scene, harder, {600, 600});
+        double greatest_N = 0.0;
+        for (int n = 0; n <= 100; ++n) {
+            advance(scaled, plan, stroke(scene, plan, a, n), a);
+            advance(scene, harder, stroke(scene, plan, b, n), b);
+            REQUIRE(a.contact.depth_m > 0.0);
+            CHECK(a.contact.normal_N == b.contact.normal_N);
+            CHECK(a.contact.depth_m == doctest::Approx(b.contact.depth_m).epsilon(rounding));
+            CHECK(std::abs(a.contact.tangential_N - b.contact.tangential_N) <= rounding * b.contact.normal_N);
+            CHECK((a.avatar.lag_m - b.avatar.lag_m).norm() <= 10.0 * rounding * path_of(scene).reference_m);
+            greatest_N = std::max(greatest_N, b.contact.tangential_N);
+        }
+        CHECK(greatest_N > 0.0);
+    }
+}
+
+TEST_CASE("tissue: what is scaled stands in the notes, in the scene's words and not in the plan's") {
+    Scene scene = map_scene();
+    const Plan plan = make_plan(scene);
+    CHECK(notes_of(scene, plan) == plan.notes);
+    scene.stiffness_scale = 2.0;
+    scene.force_scale = 3.0;
+    const std::vector<std::string> notes = notes_of(scene, plan);
+    REQUIRE(notes.size() == plan.notes.size() + 2);
+    CHECK(notes[plan.notes.size()] == "the tissue's forces are multiplied by 2");
+    CHECK(notes.back() == "phantom force: the pen's newtons are multiplied by 3");
+}
+
+TEST_CASE("tissue: a recorded map whose noise was estimated is smoothed for one stiffness") {
+    Scene scene = map_scene();
+    Plan plan = make_plan(scene);
+    MapTissue& tissue = std::get<MapTissue>(plan.tissue);
+    tissue.map.source.kind = SourceKind::recorded;
+    tissue.noise_N = 0.01;
+    CHECK_FALSE(serves(plan, scene));  // it has been smoothed for no noise
+    tissue.smoothing_m = default_smoothing_m(tissue.map, 0.01, path_of(scene).reference_m, scene.display_ratio->gate_N);
+    CHECK(serves(plan, scene));
+    scene.stiffness_scale = 2.0;
+    CHECK_FALSE(serves(plan, scene));
+    scene.tangential.smoothing_m = tissue.smoothing_m;  // asked for, whatever the noise
+    CHECK(serves(plan, scene));
+}
