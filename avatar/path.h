@@ -40,8 +40,8 @@ struct StationLimit {
 // Of `due` stations that fall into dt_s.
 inline std::int64_t allowed_stations(const StationLimit& limit, double dt_s, std::int64_t due) {
     if (due <= limit.least) return due;
-    const double allowed =
-        std::max(limit.per_s * dt_s, static_cast<double>(limit.least));  // 0 * infinity is not chosen
+    const double by_time = std::isinf(limit.per_s) ? limit.per_s : limit.per_s * dt_s;  // 0 * infinity is no number
+    const double allowed = std::max(by_time, static_cast<double>(limit.least));
     return std::min({due, static_cast<std::int64_t>(std::min(allowed, 1e15)), static_cast<std::int64_t>(limit.most)});
 }
 

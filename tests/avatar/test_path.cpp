@@ -119,3 +119,9 @@ TEST_CASE("path: samples of a burst have the least number of stations each, what
     CHECK(allowed_stations({}, 0.01, 100000) == 100000);
     CHECK(allowed_stations({}, 1e300, 100000) == 100000);
 }
+
+TEST_CASE("path: without a limit no station is lost, also between two samples of one time") {
+    CHECK(allowed_stations({}, 0.0, 100) == 100);
+    CHECK(allowed_stations({}, 1e-3, 100) == 100);
+    CHECK(allowed_stations({.per_s = 4000.0, .least = 4, .most = 64}, 0.0, 100) == 4);
+}

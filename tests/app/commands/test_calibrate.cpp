@@ -135,9 +135,9 @@ TEST_CASE("calibrate: bad input ends with status 2, names what is wrong, and lea
     refused(touchpad(), "--model spline", "spline");
     CHECK(calibrate("check " + profile + " " + (folder / "d.csv").string()).status == 2);
     CHECK(calibrate("compare " + profile + " " + profile).status == 2);
-    // a folder that is not there: the run fails, and says where
+    // a folder that is not there is wrong input, and named
     const Called nowhere = calibrate("fit " + (folder / "d.csv").string() + " -o " + (folder / "none/p.json").string());
-    CHECK(nowhere.status == 1);
+    CHECK(nowhere.status == 2);
     CHECK(contains(nowhere.err, "none/p.json"));
 }
 

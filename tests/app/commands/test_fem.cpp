@@ -36,7 +36,7 @@ const std::string kFine =
     R"({"box": {"size_mm": [100, 100, 50], "elements": [12, 12, 7], "grading": {"centre_mm": [50, 50], "finest_mm": 1}}})";
 const std::string kIndented =
     case_text(kFine, "hex8-bbar", kClamped,
-              R"([{"indenter": {"shape": "sphere", "radius_mm": 20, "centre_mm": [50, 50], "depth_mm": 1}}])");
+              R"([{"indenter": {"shape": "sphere", "radius_mm": 20, "centre_mm": [50, 50], "depth_mm": 0.85}}])");
 
 }  // namespace
 
@@ -69,7 +69,7 @@ TEST_CASE("fem solve: help, a table for people, JSON with every key that design 
     CHECK(json["dofs"] == 3 * (1352 - 169));
     CHECK(json["converged"] == true);
     CHECK(json["linear_range"]["gauge"] == "green");
-    CHECK(json["centre_displacement_mm"].get<double>() == doctest::Approx(1.0).epsilon(1e-9));
+    CHECK(json["centre_displacement_mm"].get<double>() == doctest::Approx(0.85).epsilon(1e-9));
     CHECK(json["reaction_N"][0]["support"] == "zmin");
     CHECK(json["reaction_N"][0]["force_N"][2].get<double>() ==
           doctest::Approx(-json["contact"]["force_N"][2].get<double>()).epsilon(1e-9));
@@ -153,6 +153,11 @@ TEST_CASE("fem solve: a force with friction is met where nodes join at once and 
 }
 
 TEST_CASE("fem solve: without memory it ends with a message and status 1, and does not wait for ever") {
+#ifdef __SANITIZE_ADDRESS__
+    MESSAGE(
+        "not tried: AddressSanitizer needs the address space that the test takes away; run it in the preset release");
+    return;
+#endif
     const std::string hertz = PALPA_SOURCE_DIR "/assets/cases/hertz.json";
     for (const char* limit_kB : {"200000", "250000", "350000"}) {
         CAPTURE(limit_kB);

@@ -163,8 +163,8 @@ TEST_CASE("command maps export: every format gives back the same floats") {
     }
     refused("export " + name + " -o " + file("m.xls"), "expected .npy, .csv, .mat");
     refused("export " + name + " -o " + file("arrays"), "nothing is overwritten");
-    refused("export " + name + " -o " + file("no/such/m.csv"), "no/such/m.csv", 1);
-    refused("export " + name + " -o " + file("no/such/m.mat"), "cannot be written", 1);
+    refused("export " + name + " -o " + file("no/such/m.csv"), "no/such/m.csv", 2);
+    refused("export " + name + " -o " + file("no/such/m.mat"), "found no folder", 2);
     refused("export " + name + " -o " + file("no/such/arrays"), "cannot be written", 1);
     Map plain = map;
     plain.tangential = TangentialKind::none;
@@ -212,7 +212,7 @@ TEST_CASE("command maps plot: every figure in every format, whatever the map is 
     CHECK(read_text(folder / "a.pdf").substr(0, 4) == "%PDF");
     refused("plot " + name + " --what curves --at 99,2 -o " + (folder / "b.png").string(),
             "expected a place on the map");
-    refused("plot " + name + " -o " + (folder / "no/such/x.png").string(), "no/such/x.png", 1);
+    refused("plot " + name + " -o " + (folder / "no/such/x.png").string(), "no/such/x.png", 2);
     CHECK_FALSE(std::filesystem::exists(folder / "b.png"));
 }
 
