@@ -140,13 +140,14 @@ MeshReport check_mesh(const Mesh& mesh) {
     std::vector<bool> used(static_cast<std::size_t>(mesh.nodes_m.cols()), false);
     for (Index cell = 0; cell < mesh.cells.cols(); ++cell) {
         const int number = static_cast<int>(cell);
-        const CellQuality q = cell_quality(mesh, cell);
+        CellQuality q = cell_quality(mesh, cell);
+        if (!std::isfinite(q.relative_det)) q.relative_det = 0.0;  // all corners in one place: 0 / 0
         if (q.relative_det < -kFlat)
             inverted.push_back(number);
         else if (!(q.relative_det > kFlat))
             flat.push_back(number);
         if (q.relative_det < kSliver || q.min_dihedral_deg < kSliverAngle_deg) report.slivers.push_back(number);
-        if (q.relative_det < report.worst_relative_det) {
+        if (report.worst_cell < 0 || q.relative_det < report.worst_relative_det) {
             report.worst_relative_det = q.relative_det;
             report.worst_cell = number;
         }

@@ -34,6 +34,10 @@ TEST_CASE("hard case 13: inverted and flat cells are refused by number") {
     flat.cells.col(4).tail<4>() = flat.cells.col(4).head<4>();
     CHECK(bad_cells(flat) == std::vector<int>{4});
 
+    Mesh one_place = good;  // 0 / 0 for a relative volume; the message names a cell all the same
+    one_place.nodes_m.setConstant(0.01);
+    CHECK(bad_cells(one_place).size() == 27);
+
     Mesh tets = split_to_tets(good);
     std::swap(tets.cells(0, 11), tets.cells(1, 11));
     std::swap(tets.cells(2, 30), tets.cells(3, 30));
