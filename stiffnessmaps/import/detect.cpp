@@ -6,6 +6,7 @@
 #include <numbers>
 #include <opencv2/imgproc.hpp>
 
+#include "files/distributions.h"
 #include "files/input_error.h"
 #include "files/text.h"
 #include "stiffnessmaps/import/detect_ground.h"
@@ -262,23 +263,12 @@ double alike_m2(const StiffnessGrid& grid, double clip_N_per_m) {
     return scale(1, 0, grid.n_x) * grid.dx_m * scale(0, 1, grid.n_y) * grid.dy_m;
 }
 
-// The value that a standard normal exceeds with a probability.
-double normal_above(double probability) {
-    double low = 0.0;
-    double high = 40.0;
-    for (int k = 0; k < 100; ++k) {
-        const double z = 0.5 * (low + high);
-        (0.5 * std::erfc(z / std::numbers::sqrt2) > probability ? low : high) = z;
-    }
-    return low;
-}
-
 // contrast_to_noise that the highest of `n` independent areas exceeds once in a thousand maps: Student's t with n - 1
 // degrees of freedom, as the spread comes from the same few areas (Wallace's closed form, Ann. Math. Stat. 30 (1959)
 // 1121), times what it gains as a region is drawn around the highest cells and not laid anywhere.
 double needed_contrast(double n) {
     const double freedom = std::max(1.0, n - 1.0);
-    const double z = normal_above(1e-3 / n) * (8.0 * freedom + 3.0) / (8.0 * freedom + 1.0);
+    const double z = -files::normal_quantile(1e-3 / n) * (8.0 * freedom + 3.0) / (8.0 * freedom + 1.0);
     return kSelection * std::sqrt(freedom * std::expm1(z * z / freedom));
 }
 
