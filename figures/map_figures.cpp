@@ -5,7 +5,9 @@
 #include <limits>
 #include <numbers>
 
+#include "figures/colour_maps.h"
 #include "figures/gnuplot.h"
+#include "figures/tic_step.h"
 #include "files/input_error.h"
 #include "files/text.h"
 #include "stiffnessmaps/field.h"
@@ -14,11 +16,9 @@
 namespace palpa::figures {
 namespace {
 
-// Ten steps of viridis (Smith and van der Walt, BIDS 2015); a diverging scale around white; colours by Okabe and Ito.
+// Colours by Okabe and Ito, which colour-blind people can tell apart.
 constexpr const char* kHead =
-    R"gp(viridis = "defined (0 '#440154', 1 '#482878', 2 '#3e4a89', 3 '#31688e', 4 '#26828e', 5 '#1f9e89', 6 '#35b779', 7 '#6ece58', 8 '#b5de2b', 9 '#fde725')"
-apart = "defined (-1 '#2166ac', -0.5 '#92c5de', 0 '#f7f7f7', 0.5 '#f4a582', 1 '#b2182b')"
-set border lw 0.8
+    R"gp(set border lw 0.8
 set tics out nomirror scale 0.5
 set cbtics scale 0.4
 set style line 1 lc rgb "#D55E00" lw 2 pt 7 ps 0.8
@@ -33,17 +33,8 @@ constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 std::string text_of(double value) { return std::isfinite(value) ? files::number_text(value) : "NaN"; }
 
-// In single quotes, nothing of it taken as markup.
-std::string quoted(const std::string& text) {
-    std::string out = "'";
-    for (const char c : text) {
-        if (c == '\'')
-            out += "''";
-        else if (static_cast<unsigned char>(c) >= ' ')
-            out += c;
-    }
-    return out + "' noenhanced";
-}
+// Nothing of the text is taken as markup.
+std::string quoted(const std::string& text) { return single_quoted(text) + " noenhanced"; }
 
 struct Span {
     double low = 0.0;
@@ -85,16 +76,6 @@ struct Box {
     double x0, x1, y0, y1;  // of the drawing area, shares of the figure, y upwards
 };
 
-// A round step that makes about `count` tics, 3 at least.
-double tic_step(double range, double count) {
-    const double rough = range / std::max(4.0, count);
-    const double power = std::pow(10.0, std::floor(std::log10(rough)));
-    for (const double step : {1.0, 2.0, 5.0}) {
-        if (step * power >= rough) return step * power;
-    }
-    return 10.0 * power;
-}
-
 class Script {
   public:
     Script(const std::string& title, double width_px, double height_px)
@@ -124,7 +105,7 @@ class Script {
         }
         const std::string data = block(rows);
         place(box);
-        text_ += std::string("set palette @") + (im.apart ? "apart" : "viridis") + "\n";
+        text_ += "set palette " + gnuplot_palette(im.apart ? kApart : kViridis) + "\n";
         text_ += "set cbrange [" + text_of(im.span.low) + ":" + text_of(im.span.high) + "]\n";
         text_ += im.bar ? "set colorbox user origin screen " + text_of(box.x1 + 0.008) + ", screen " + text_of(box.y0) +
                               " size screen 0.012, screen " + text_of(box.y1 - box.y0) + "\nset cblabel " +
@@ -148,10 +129,15 @@ class Script {
             "set object 1 rectangle from graph 0,0 to graph 1,1 fc rgb '#9a9a9a' fs pattern 4 noborder behind\nset "
             "grid noxtics noytics\n";
         text_ += "set xtics " +
-                 text_of(tic_step(im.dx * static_cast<double>(im.n_x), (box.x1 - box.x0) * width_px_ / 70.0)) + "\n";
-        text_ += im.down ? "set ytics autofreq\n"
-                         : "set ytics " +
-                               text_of(tic_step(im.dy * static_cast<double>(im.n_y), (box.x1 - box.x0) * 20.0)) + "\n";
+                 text_of(tic_step(im.dx * static_cast<double>(im.n_x),
+                                  std::max(4.0, (box.x1 - box.x0) * width_px_ / 70.0))) +
+                 "\n";
+        text_ +=
+            im.down
+                ? "set ytics autofreq\n"
+                : "set ytics " +
+                      text_of(tic_step(im.dy * static_cast<double>(im.n_y), std::max(4.0, (box.x1 - box.x0) * 20.0))) +
+                      "\n";
         text_ += "plot " + data + " using 1:2:3 with image notitle" + im.over +
                  "\nunset object 1\nunset label\nset key default\nset xtics autofreq\nset ytics autofreq\nset format x "
                  "'% h'\nset format y '% h'\n";
