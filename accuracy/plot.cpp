@@ -1,7 +1,5 @@
 // The work-precision figure, by gnuplot.
 
-#include <cstdlib>
-
 #include "accuracy/accuracy.h"
 #include "figures/gnuplot.h"
 #include "files/text.h"
@@ -107,18 +105,9 @@ unset multiplot
 std::string plot_mechanics(const std::filesystem::path& folder, const Machine& machine) {
     const std::string label = machine.processor + ", " + std::to_string(machine.threads) + " threads, load " +
                               files::short_number(machine.load) + ", " + machine.date;
-    files::write_text_atomically(folder / "mechanics.gp", "machine = \"" + label + "\"\n" + kScript);
-    if (std::system("command -v gnuplot >/dev/null 2>&1") != 0)
-        return "gnuplot is not installed (package gnuplot-nox), so there is no figure; mechanics.csv and "
-               "mechanics.gp "
-               "are kept: run `gnuplot mechanics.gp` where it is";
-    for (const std::string kind : {"png", "svg", "pdf"}) {
-        const std::string command =
-            "cd " + figures::shell_quoted(folder.string()) + " && gnuplot -e \"kind='" + kind + "'\" mechanics.gp";
-        if (std::system(command.c_str()) != 0)
-            return "gnuplot could not draw " + (folder / "mechanics.gp").string() + "; mechanics.csv is kept";
-    }
-    return "";
+    files::write_text_atomically(folder / "mechanics.gp",
+                                 "machine = " + figures::single_quoted(label) + "\n" + kScript);
+    return figures::draw_script(folder / "mechanics.gp", "mechanics.csv is kept");
 }
 
 }  // namespace palpa::accuracy

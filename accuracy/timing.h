@@ -1,11 +1,12 @@
 #pragma once
 // Times of single calls, and the memory that something keeps.
 
-#include <algorithm>
-#include <chrono>
-#include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <vector>
+
+#include "files/clock.h"
+#include "files/quantile.h"
 
 namespace palpa::accuracy {
 
@@ -14,19 +15,14 @@ struct Timing {
 };
 
 inline double quantile_us(const Timing& timing, double share) {
-    std::vector<double> sorted = timing.us;
-    std::sort(sorted.begin(), sorted.end());
-    const auto n = static_cast<double>(sorted.size());
-    const double rank = std::clamp(std::ceil(share * n), 1.0, n);
-    return sorted[static_cast<std::size_t>(rank) - 1];
+    return files::quantile(timing.us, share, files::QuantileType::reached);
 }
 
 template <class Call>
 void time_call(Timing& timing, Call&& call) {
-    const auto start = std::chrono::steady_clock::now();
+    const std::int64_t began_ns = files::steady_ns();
     call();
-    const std::chrono::duration<double, std::micro> took = std::chrono::steady_clock::now() - start;
-    timing.us.push_back(took.count());
+    timing.us.push_back(1e-3 * static_cast<double>(files::steady_ns() - began_ns));
 }
 
 // call(i) until `budget_s` is spent, at least `least` and at most `most` times.

@@ -4,9 +4,10 @@
 
 #include <algorithm>
 #include <benchmark/benchmark.h>
-#include <chrono>
 #include <cmath>
 
+#include "files/clock.h"
+#include "files/quantile.h"
 #include "mechanics/contact.h"
 #include "mechanics/friction.h"
 
@@ -45,15 +46,13 @@ class Percentiles {
   public:
     template <class Call>
     void time(Call&& call) {
-        const auto start = std::chrono::steady_clock::now();
+        const std::int64_t began_ns = files::steady_ns();
         call();
-        us_.push_back(std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - start).count());
+        us_.push_back(1e-3 * static_cast<double>(files::steady_ns() - began_ns));
     }
     void report(benchmark::State& state) {
         std::sort(us_.begin(), us_.end());
-        const auto at = [&](double share) {
-            return us_[static_cast<std::size_t>(share * static_cast<double>(us_.size() - 1))];
-        };
+        const auto at = [&](double share) { return files::sorted_quantile(us_, share, files::QuantileType::lower); };
         state.counters["median_us"] = at(0.5);
         state.counters["p99_us"] = at(0.99);
         state.counters["max_us"] = us_.back();

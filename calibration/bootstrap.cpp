@@ -4,18 +4,18 @@
 #include <cmath>
 #include <random>
 
+#include "files/distributions.h"
+#include "files/quantile.h"
+
 namespace palpa::calibration {
 namespace {
 
-// 97.5 % quantiles of Student's t for 1 ... 30 degrees of freedom.
-constexpr double kStudent[] = {12.706, 4.303, 3.182, 2.776, 2.571, 2.447, 2.365, 2.306, 2.262, 2.228,
-                               2.201,  2.179, 2.160, 2.145, 2.131, 2.120, 2.110, 2.101, 2.093, 2.086,
-                               2.080,  2.074, 2.069, 2.064, 2.060, 2.056, 2.052, 2.048, 2.045, 2.042};
+constexpr double kTail = 0.025;
+constexpr double kLevel = 1.0 - 2.0 * kTail;
 
 double widening(int repeats) {
-    const int freedom = repeats - 1;
-    const double student = freedom <= 30 ? kStudent[freedom - 1] : 1.96 + 2.4 / freedom;
-    return std::sqrt(static_cast<double>(repeats) / freedom) * student / 1.95996;
+    const double freedom = repeats - 1.0;
+    return std::sqrt(repeats / freedom) * files::student_quantile(kLevel, freedom) / -files::normal_quantile(kTail);
 }
 
 int repeats_of(const FitPoints& points) {
@@ -46,13 +46,8 @@ void draw(const FitPoints& points, bool over_repeats, std::mt19937_64& random, E
 }
 
 CurveInterval interval_of(std::vector<double>& values, double estimate, double widened) {
-    const auto at = [&](double share) {
-        const auto i = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1) + 0.5);
-        std::nth_element(values.begin(), values.begin() + i, values.end());
-        return values[static_cast<std::size_t>(i)];
-    };
-    const double low = at(0.025);
-    const double high = at(0.975);
+    const double low = files::reordered_quantile(values, kTail, files::QuantileType::nearest);
+    const double high = files::reordered_quantile(values, 1.0 - kTail, files::QuantileType::nearest);
     return {estimate + widened * (low - estimate), estimate + widened * (high - estimate)};
 }
 

@@ -151,10 +151,7 @@ void print_calibration(const calibration::Calibration& calibration) {
 namespace {
 
 std::string title_of(const calibration::Calibration& calibration) {
-    std::string pen = calibration.profile.device.pen;
-    for (char& c : pen) {
-        if (c == '"' || c == '\\' || static_cast<unsigned char>(c) < 0x20) c = ' ';
-    }
+    const std::string& pen = calibration.profile.device.pen;
     return (pen.empty() || pen == "n/a" ? "" : pen + ": ") + std::string(name_of(calibration.profile.curve.model));
 }
 
@@ -200,8 +197,8 @@ void plot_calibration(const calibration::Calibration& calibration, const std::fi
     const std::string three = shade +
                               "$points using 1:2 with points pt 7 ps 0.5 lc rgb '#000000' title 'measured', "
                               "$curve using 1:2 with lines lw 2 lc rgb '#D55E00' title 'curve'\n";
-    script += "set multiplot layout 3,1 title \"" + title_of(calibration) +
-              "\" noenhanced\nset lmargin 10\nset grid\n" + range;
+    script += "set multiplot layout 3,1 title " + single_quoted(title_of(calibration)) +
+              " noenhanced\nset lmargin 10\nset grid\n" + range;
     script += "set ylabel 'force (N)'\nset yrange [0:*]\nset key top left\nplot " + three;
     script += "unset key\nset logscale y\nset yrange [*:*]\nset ylabel 'force (N), log scale'\nplot " + three;
     script += "unset logscale y\nset ylabel 'error, left out (%)'\nset xlabel '" + std::string(name_of(profile.level)) +

@@ -1,38 +1,51 @@
 #pragma once
-// Colours for numbers, as in the figures: viridis (Smith and van der Walt, BIDS 2015: even steps for the eye, also without
-// colour vision) from 0 to 1; blue, white, red around the middle for what has a sign.
+// Colours for numbers, on the screen and in figures: viridis (Smith and van der Walt, BIDS 2015: even steps for the eye,
+// also without colour vision) from 0 to 1; blue, white, red around the middle for what has a sign.
 
 #include <algorithm>
-#include <imgui.h>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string>
 
 namespace palpa::figures {
 
-struct ColourScale {
-    float stops[10][3];
-    int count;
+struct Colour {
+    std::uint8_t r, g, b;  // sRGB
 };
-inline constexpr ColourScale kViridis{{{68, 1, 84},
-                                       {72, 40, 120},
-                                       {62, 74, 137},
-                                       {49, 104, 142},
-                                       {38, 130, 142},
-                                       {31, 158, 137},
-                                       {53, 183, 121},
-                                       {110, 206, 88},
-                                       {181, 222, 43},
-                                       {253, 231, 37}},
-                                      10};
-inline constexpr ColourScale kApart{{{33, 102, 172}, {146, 197, 222}, {247, 247, 247}, {244, 165, 130}, {178, 24, 43}},
-                                    5};
 
-inline ImU32 colour_at(const ColourScale& scale, float share) {
+struct ColourScale {
+    std::array<Colour, 10> stops;  // evenly spaced, the first `count` of them
+    std::size_t count;
+};
+inline constexpr ColourScale kViridis{{{{68, 1, 84},
+                                        {72, 40, 120},
+                                        {62, 74, 137},
+                                        {49, 104, 142},
+                                        {38, 130, 142},
+                                        {31, 158, 137},
+                                        {53, 183, 121},
+                                        {110, 206, 88},
+                                        {181, 222, 43},
+                                        {253, 231, 37}}},
+                                      10};
+inline constexpr ColourScale kApart{
+    {{{33, 102, 172}, {146, 197, 222}, {247, 247, 247}, {244, 165, 130}, {178, 24, 43}}}, 5};
+
+// Linear between the stops; the ends' colours beyond 0 and 1.
+inline Colour colour_at(const ColourScale& scale, float share) {
     const float at = std::clamp(share, 0.0f, 1.0f) * static_cast<float>(scale.count - 1);
-    const int i = std::min(static_cast<int>(at), scale.count - 2);
+    const std::size_t i = std::min(static_cast<std::size_t>(at), scale.count - 2);
     const float s = at - static_cast<float>(i);
-    const auto mix = [&](int c) {
-        return static_cast<int>(scale.stops[i][c] + s * (scale.stops[i + 1][c] - scale.stops[i][c]) + 0.5f);
+    const Colour& a = scale.stops[i];
+    const Colour& b = scale.stops[i + 1];
+    const auto mix = [s](std::uint8_t from, std::uint8_t to) {
+        return static_cast<std::uint8_t>(from + s * static_cast<float>(to - from) + 0.5f);
     };
-    return IM_COL32(mix(0), mix(1), mix(2), 255);
+    return {mix(a.r, b.r), mix(a.g, b.g), mix(a.b, b.b)};
 }
+
+// What gnuplot's `set palette` takes.
+std::string gnuplot_palette(const ColourScale& scale);
 
 }  // namespace palpa::figures

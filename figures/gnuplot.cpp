@@ -22,18 +22,27 @@ std::string terminal(const std::filesystem::path& file, int width_px, int height
     throw files::bad_input(file.string(), "", "a file name that ends in " + files::shown(kind), ".png, .svg or .pdf");
 }
 
-// gnuplot takes '' for ' inside '...'.
-std::string gnuplot_quoted(const std::string& text) {
-    std::string out = "'";
-    for (const char c : text) out += c == '\'' ? std::string("''") : std::string(1, c);
-    return out + "'";
-}
-
-}  // namespace
-
+// One argument of a shell command, whatever it holds.
 std::string shell_quoted(const std::string& text) {
     std::string out = "'";
     for (const char c : text) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
+    return out + "'";
+}
+
+bool run(const std::string& command) { return std::system(command.c_str()) == 0; }
+
+bool is_installed() { return run("command -v gnuplot >/dev/null 2>&1"); }
+constexpr const char* kMissing = "gnuplot is not installed (package gnuplot-nox)";
+
+bool is_control(char c) { return static_cast<unsigned char>(c) < ' '; }
+
+}  // namespace
+
+std::string single_quoted(const std::string& text) {
+    std::string out = "'";
+    for (const char c : text) {
+        if (!is_control(c)) out += c == '\'' ? std::string("''") : std::string(1, c);
+    }
     return out + "'";
 }
 
@@ -42,25 +51,37 @@ void check_figure(const std::filesystem::path& file) { terminal(file, 1, 1); }
 void draw_figure(const std::string& script, const std::filesystem::path& name, int width_px, int height_px) {
     const std::filesystem::path file = files::output_target(name);
     const std::string set = "set terminal " + terminal(name, width_px, height_px) + "\n";
-    if (std::system("command -v gnuplot >/dev/null 2>&1") != 0) {
-        throw std::runtime_error(file.string() + ": not drawn: gnuplot is not installed (package gnuplot-nox)");
-    }
+    if (!is_installed()) throw std::runtime_error(file.string() + ": not drawn: " + kMissing);
     const std::string aside = file.string() + ".part-" + std::to_string(::getpid());
     const std::string commands = aside + ".gp";
-    files::write_text_atomically(commands, "set encoding utf8\n" + set + "set output " + gnuplot_quoted(aside) + "\n" +
+    files::write_text_atomically(commands, "set encoding utf8\n" + set + "set output " + single_quoted(aside) + "\n" +
                                                script + "\nunset output\n");
-    const int status = std::system(("gnuplot " + shell_quoted(commands)).c_str());
+    const bool drawn = run("gnuplot " + shell_quoted(commands));
     ::unlink(commands.c_str());
-    if (status == 0 && name.extension() == ".svg") {  // else a viewer may blend cells into each other and into gaps
+    if (drawn && name.extension() == ".svg") {  // else a viewer may blend cells into each other and into gaps
         std::string svg = files::read_text(aside);
         for (std::size_t at = svg.find("<image "); at != std::string::npos; at = svg.find("<image ", at + 1))
             svg.insert(at + 6, " style='image-rendering:pixelated'");
         files::write_text_whole(aside, svg);
     }
-    if (status != 0 || ::rename(aside.c_str(), file.c_str()) != 0) {
+    if (!drawn || ::rename(aside.c_str(), file.c_str()) != 0) {
         ::unlink(aside.c_str());
         throw std::runtime_error(file.string() + ": gnuplot could not draw it");
     }
+}
+
+std::string draw_script(const std::filesystem::path& script, const std::string& kept) {
+    const std::string name = script.filename().string();
+    if (!is_installed()) {
+        return std::string(kMissing) + ", so there are no figures; " + kept + ": run `gnuplot " + name +
+               "` where it is";
+    }
+    const std::string there = "cd " + shell_quoted(std::filesystem::absolute(script).parent_path().string());
+    for (const std::string kind : {"png", "svg", "pdf"}) {
+        if (!run(there + " && gnuplot -e \"kind='" + kind + "'\" " + shell_quoted(name)))
+            return "gnuplot could not draw " + script.string() + "; " + kept;
+    }
+    return "";
 }
 
 }  // namespace palpa::figures

@@ -5,8 +5,8 @@
 
 namespace palpa::figures {
 
-// One argument of a shell command, whatever it holds.
-std::string shell_quoted(const std::string& text);
+// Text as gnuplot takes it between single quotes, whatever it holds; line breaks and control characters are left out.
+std::string single_quoted(const std::string& text);
 
 // Draws `script` to a .png, .svg or .pdf file, there whole or not at all. The script finds the terminal and the output
 // set; data belong into it as blocks ($name << EOD). Throws InputError for another ending, std::runtime_error where
@@ -15,5 +15,9 @@ void draw_figure(const std::string& script, const std::filesystem::path& file, i
 
 // What draw_figure would refuse, before anything is computed.
 void check_figure(const std::filesystem::path& file);
+
+// Runs a script that is kept beside its data, in its own folder: once for each `kind` of "png", "svg" and "pdf". Returns
+// what went wrong, which names what is `kept` all the same ("the tables are kept"); empty if nothing did.
+std::string draw_script(const std::filesystem::path& script, const std::string& kept);
 
 }  // namespace palpa::figures

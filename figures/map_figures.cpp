@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <numbers>
 
 #include "figures/gnuplot.h"
+#include "figures/map_images.h"
 #include "files/input_error.h"
+#include "files/quantile.h"
 #include "files/text.h"
 #include "stiffnessmaps/field.h"
 #include "stiffnessmaps/stiffness.h"
@@ -14,266 +14,7 @@
 namespace palpa::figures {
 namespace {
 
-// Ten steps of viridis (Smith and van der Walt, BIDS 2015); a diverging scale around white; colours by Okabe and Ito.
-constexpr const char* kHead =
-    R"gp(viridis = "defined (0 '#440154', 1 '#482878', 2 '#3e4a89', 3 '#31688e', 4 '#26828e', 5 '#1f9e89', 6 '#35b779', 7 '#6ece58', 8 '#b5de2b', 9 '#fde725')"
-apart = "defined (-1 '#2166ac', -0.5 '#92c5de', 0 '#f7f7f7', 0.5 '#f4a582', 1 '#b2182b')"
-set border lw 0.8
-set tics out nomirror scale 0.5
-set cbtics scale 0.4
-set style line 1 lc rgb "#D55E00" lw 2 pt 7 ps 0.8
-set style line 2 lc rgb "#0072B2" lw 2 pt 5 ps 0.8
-set style line 3 lc rgb "#009E73" lw 2 pt 9 ps 0.9
-set style line 4 lc rgb "#CC79A7" lw 2 pt 13 ps 0.9
-set style line 5 lc rgb "#E69F00" lw 2 pt 11 ps 0.9
-set style line 6 lc rgb "#000000" lw 2 pt 4 ps 0.9
-)gp";
 constexpr int kLineStyles = 6;
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-
-std::string text_of(double value) { return std::isfinite(value) ? files::number_text(value) : "NaN"; }
-
-// In single quotes, nothing of it taken as markup.
-std::string quoted(const std::string& text) {
-    std::string out = "'";
-    for (const char c : text) {
-        if (c == '\'')
-            out += "''";
-        else if (static_cast<unsigned char>(c) >= ' ')
-            out += c;
-    }
-    return out + "' noenhanced";
-}
-
-struct Span {
-    double low = 0.0;
-    double high = 1.0;
-};
-
-Span span_of(const std::vector<double>& values) {
-    Span span{INFINITY, -INFINITY};
-    for (const double v : values) {
-        if (!std::isfinite(v)) continue;
-        span.low = std::min(span.low, v);
-        span.high = std::max(span.high, v);
-    }
-    if (!(span.low <= span.high)) return {0.0, 1.0};
-    if (span.low == span.high) span.high = span.low + std::max(1e-6, 0.1 * std::abs(span.low));
-    return span;
-}
-
-// A picture of numbers on a grid; x and y in mm.
-struct Image {
-    std::string title;
-    std::string x_label = "x (mm)";
-    std::string y_label = "y (mm)";
-    std::string unit;
-    double x0 = 0.0, dx = 1.0, y0 = 0.0, dy = 1.0;
-    std::size_t n_x = 1, n_y = 1;
-    std::vector<double> values;  // [n_y][n_x]
-    Span span;
-    bool apart = false;  // around 0
-    bool bar = true;
-    bool small = false;       // of small multiples: numbers at the outer axes only
-    bool title_left = false;  // beside a key
-    bool down = false;        // y grows downwards, and is not to the scale of x
-    std::string over;         // further plot elements, and commands before the plot
-    std::string before;
-};
-
-struct Box {
-    double x0, x1, y0, y1;  // of the drawing area, shares of the figure, y upwards
-};
-
-// A round step that makes about `count` tics, 3 at least.
-double tic_step(double range, double count) {
-    const double rough = range / std::max(4.0, count);
-    const double power = std::pow(10.0, std::floor(std::log10(rough)));
-    for (const double step : {1.0, 2.0, 5.0}) {
-        if (step * power >= rough) return step * power;
-    }
-    return 10.0 * power;
-}
-
-class Script {
-  public:
-    Script(const std::string& title, double width_px, double height_px)
-        : width_px_(width_px),
-          height_px_(height_px),
-          text_(kHead + ("set label 99 " + quoted(title) + " at screen 0.5, screen " + text_of(1.0 - 16.0 / height_px) +
-                         " center font ',13'\n")) {}
-    void add(const std::string& text) { text_ += text; }
-
-    std::string block(const std::string& rows) {
-        const std::string name = "$d" + std::to_string(++blocks_);
-        blocks_text_ += name + " << EOD\n" + rows + "EOD\n";
-        return name;
-    }
-
-    void image(const Image& im, Box box) {
-        // as wide as the picture will be, so that the colour bar stands beside it
-        const double aspect = im.dy * static_cast<double>(im.n_y) / (im.dx * static_cast<double>(im.n_x));
-        if (!im.down) box.x1 = std::min(box.x1, box.x0 + (box.y1 - box.y0) * height_px_ / aspect / width_px_);
-        std::string rows;
-        for (std::size_t j = 0; j < im.n_y; ++j) {
-            for (std::size_t i = 0; i < im.n_x; ++i) {
-                rows += text_of(im.x0 + im.dx * static_cast<double>(i)) + " " +
-                        text_of(im.y0 + im.dy * static_cast<double>(j)) + " " + text_of(im.values[j * im.n_x + i]) +
-                        "\n";
-            }
-        }
-        const std::string data = block(rows);
-        place(box);
-        text_ += std::string("set palette @") + (im.apart ? "apart" : "viridis") + "\n";
-        text_ += "set cbrange [" + text_of(im.span.low) + ":" + text_of(im.span.high) + "]\n";
-        text_ += im.bar ? "set colorbox user origin screen " + text_of(box.x1 + 0.008) + ", screen " + text_of(box.y0) +
-                              " size screen 0.012, screen " + text_of(box.y1 - box.y0) + "\nset cblabel " +
-                              quoted(im.unit) + " offset 0.5,0\n"
-                        : "unset colorbox\n";
-        text_ += im.down ? "set size noratio\n" : "set size ratio -1\n";
-        const double x1 = im.x0 + im.dx * (static_cast<double>(im.n_x) - 0.5);
-        const double y1 = im.y0 + im.dy * (static_cast<double>(im.n_y) - 0.5);
-        text_ += "set xrange [" + text_of(im.x0 - 0.5 * im.dx) + ":" + text_of(x1) + "]\n";
-        const std::string low = text_of(im.y0 - 0.5 * im.dy);
-        text_ += "set yrange [" + (im.down ? text_of(y1) + ":" + low : low + ":" + text_of(y1)) + "]\n";
-        text_ +=
-            "set xlabel " + quoted(im.x_label) + " offset 0,0.5\nset ylabel " + quoted(im.y_label) + " offset 1,0\n";
-        text_ += im.title_left
-                     ? "unset title\nset label 98 " + quoted(im.title) + " at graph 0, graph 1 left offset 0,0.7\n"
-                     : "set title " + quoted(im.title) + " offset 0,-0.6\n";
-        if (im.small && im.y_label.empty()) text_ += "set format y ''\n";
-        if (im.small && im.x_label.empty()) text_ += "set format x ''\n";
-        text_ += im.before;
-        text_ +=
-            "set object 1 rectangle from graph 0,0 to graph 1,1 fc rgb '#9a9a9a' fs pattern 4 noborder behind\nset "
-            "grid noxtics noytics\n";
-        text_ += "set xtics " +
-                 text_of(tic_step(im.dx * static_cast<double>(im.n_x), (box.x1 - box.x0) * width_px_ / 70.0)) + "\n";
-        text_ += im.down ? "set ytics autofreq\n"
-                         : "set ytics " +
-                               text_of(tic_step(im.dy * static_cast<double>(im.n_y), (box.x1 - box.x0) * 20.0)) + "\n";
-        text_ += "plot " + data + " using 1:2:3 with image notitle" + im.over +
-                 "\nunset object 1\nunset label\nset key default\nset xtics autofreq\nset ytics autofreq\nset format x "
-                 "'% h'\nset format y '% h'\n";
-    }
-
-    void place(const Box& box) {
-        text_ += "set lmargin at screen " + text_of(box.x0) + "\nset rmargin at screen " + text_of(box.x1) +
-                 "\nset bmargin at screen " + text_of(box.y0) + "\nset tmargin at screen " + text_of(box.y1) + "\n";
-    }
-
-    std::string whole() const { return blocks_text_ + "set multiplot\n" + text_ + "unset multiplot\n"; }
-
-  private:
-    double width_px_;
-    double height_px_;
-    std::string text_;
-    std::string blocks_text_;
-    int blocks_ = 0;
-};
-
-Image image_of(const stiffnessmaps::Map& map) {
-    Image im;
-    im.x0 = 1e3 * map.x_of(0);
-    im.dx = 1e3 * map.spacing_m[0];
-    im.y0 = 1e3 * map.y_of(0);
-    im.dy = 1e3 * map.spacing_m[1];
-    im.n_x = map.n_x;
-    im.n_y = map.n_y;
-    return im;
-}
-
-// Borders of a set of cells as line pieces, mm.
-std::string outline_rows(const stiffnessmaps::Map& map, const std::vector<std::size_t>& cells) {
-    std::vector<bool> in(map.n_cells(), false);
-    for (const std::size_t cell : cells) in[cell] = true;
-    std::string rows;
-    const auto piece = [&](double i0, double j0, double i1, double j1) {
-        const auto x = [&](double i) { return text_of(1e3 * (map.origin_m[0] + map.spacing_m[0] * i)); };
-        const auto y = [&](double j) { return text_of(1e3 * (map.origin_m[1] + map.spacing_m[1] * j)); };
-        rows += x(i0) + " " + y(j0) + "\n" + x(i1) + " " + y(j1) + "\n\n";
-    };
-    for (const std::size_t cell : cells) {
-        const auto i = static_cast<double>(cell % map.n_x);
-        const auto j = static_cast<double>(cell / map.n_x);
-        const std::size_t column = cell % map.n_x;
-        if (column == 0 || !in[cell - 1]) piece(i - 0.5, j - 0.5, i - 0.5, j + 0.5);
-        if (column + 1 == map.n_x || !in[cell + 1]) piece(i + 0.5, j - 0.5, i + 0.5, j + 0.5);
-        if (cell < map.n_x || !in[cell - map.n_x]) piece(i - 0.5, j - 0.5, i + 0.5, j - 0.5);
-        if (cell + map.n_x >= map.n_cells() || !in[cell + map.n_x]) piece(i - 0.5, j + 0.5, i + 0.5, j + 0.5);
-    }
-    return rows;
-}
-
-// A placed or kept nodule as it stands in the map: a disc, or a capsule along its angle.
-std::string nodule_rows(const stiffnessmaps::Nodule& nodule) {
-    const double radius_m = 0.5 * nodule.diameter_m.value_or(4e-3);
-    const double half_m = std::max(0.0, 0.5 * nodule.length_m.value_or(0.0) - radius_m);
-    const double turn = nodule.angle_deg.value_or(0.0) * std::numbers::pi / 180.0;
-    std::string rows;
-    for (int k = 0; k <= 72; ++k) {
-        const double a = 2.0 * std::numbers::pi * k / 72.0;
-        const double along = radius_m * std::cos(a) + (std::cos(a) >= 0.0 ? half_m : -half_m);
-        const double across = radius_m * std::sin(a);
-        rows += text_of(1e3 * (nodule.x_m + along * std::cos(turn) - across * std::sin(turn))) + " " +
-                text_of(1e3 * (nodule.y_m + along * std::sin(turn) + across * std::cos(turn))) + "\n";
-    }
-    return rows + "\n";
-}
-
-std::string label(const std::string& text, double x_mm, double y_mm) {
-    // a dark rim under a white letter, so that it can be read on any colour
-    std::string out;
-    for (const char* rim : {"-0.09,0", "0.09,0", "0,-0.06", "0,0.06"}) {
-        out += "set label " + quoted(text) + " at " + text_of(x_mm) + "," + text_of(y_mm) +
-               " center front tc rgb '#000000' offset " + rim + "\n";
-    }
-    return out + "set label " + quoted(text) + " at " + text_of(x_mm) + "," + text_of(y_mm) +
-           " center front tc rgb '#ffffff'\n";
-}
-
-// Nodules of the map: placed ones dashed. Found regions: solid if sure, dotted if not.
-void outline(const stiffnessmaps::Map& map, const stiffnessmaps::Detection& detection, Script& script, Image& im) {
-    std::string placed, sure, unsure;
-    for (const stiffnessmaps::Nodule& nodule : map.nodules) {
-        if (nodule.placed) placed += nodule_rows(nodule);
-        if (nodule.placed) im.before += label(nodule.id, 1e3 * nodule.x_m, 1e3 * nodule.y_m);
-    }
-    for (const stiffnessmaps::StiffRegion& region : detection.regions) {
-        (region.sure ? sure : unsure) += outline_rows(map, region.cells);
-        const double up_m = 0.5 * region.width_m + 0.03 * map.spacing_m[1] * static_cast<double>(map.n_y);
-        const bool fits = region.y_m + up_m < map.y_of(map.n_y - 1);
-        im.before +=
-            label(region.id + (region.sure ? "" : "?"), 1e3 * region.x_m, 1e3 * (region.y_m + (fits ? up_m : -up_m)));
-    }
-    const auto line = [&](const std::string& rows, const char* look, const char* title) {
-        if (rows.empty()) return;
-        const std::string data = script.block(rows);
-        im.over += ", " + data + " using 1:2 with lines lc rgb '#000000' lw 3.4 notitle";
-        im.over += ", " + data + " using 1:2 with lines lc rgb '#ffffff' " + look + " title '" + title + "'";
-    };
-    line(placed, "lw 1.6 dt 2", "placed");
-    line(sure, "lw 1.8", "found");
-    line(unsure, "lw 1.6 dt 3", "found, unsure");
-    im.before += "set key at graph 1,1.01 right bottom horizontal samplen 2 opaque fc rgb '#808080' tc rgb '#ffffff'\n";
-    im.title_left = true;
-}
-
-Image stiffness_image(const stiffnessmaps::Map& map) {
-    Image im = image_of(map);
-    im.title = "Stiffness";
-    im.unit = "N/mm";
-    for (const double k : stiffnessmaps::stiffness_N_per_m(map)) im.values.push_back(1e-3 * k);
-    im.span = span_of(im.values);
-    return im;
-}
-
-Image nodules_image(const stiffnessmaps::Map& map, const stiffnessmaps::Detection& detection, Script& script) {
-    Image im = stiffness_image(map);
-    im.title = "Stiffness";
-    outline(map, detection, script, im);
-    return im;
-}
 
 double slice_force_N(const stiffnessmaps::Map& map, const PlotOptions& options) {
     if (options.force_N) return *options.force_N;
@@ -286,44 +27,7 @@ double slice_force_N(const stiffnessmaps::Map& map, const PlotOptions& options) 
             break;
         }
     }
-    return std::max(1e-3, std::round(50.0 * stiffnessmaps::median_of(deepest)) / 100.0);
-}
-
-Image depth_image(const stiffnessmaps::Map& map, const stiffnessmaps::Field& field, double force_N) {
-    Image im = image_of(map);
-    im.title = "Depth at " + files::short_number(force_N) + " N";
-    im.unit = "mm";
-    for (std::size_t cell = 0; cell < map.n_cells(); ++cell) {
-        const stiffnessmaps::DepthAnswer answer = stiffnessmaps::depth_at(
-            field, stiffnessmaps::place_at(field, {map.x_of(cell % map.n_x), map.y_of(cell / map.n_x)}), force_N);
-        // deeper than was measured: not known
-        im.values.push_back(field.measured[cell] > 0.0 && !answer.saturated ? 1e3 * answer.depth_m : kNaN);
-    }
-    im.span = span_of(im.values);
-    return im;
-}
-
-// Along x through a row of cells, down to the deepest matrix.
-Image section_image(const stiffnessmaps::Map& map, const stiffnessmaps::Field& field, std::size_t row) {
-    Image im = image_of(map);
-    constexpr std::size_t kSteps = 60;
-    im.title = "Normal force along x at y = " + files::short_number(1e3 * map.y_of(row)) + " mm";
-    im.y_label = "depth (mm)";
-    im.unit = "N";
-    im.down = true;
-    im.n_y = kSteps;
-    im.dy = 1e3 * map.depths_m.back() / kSteps;
-    im.y0 = 0.5 * im.dy;
-    for (std::size_t k = 0; k < kSteps; ++k) {
-        for (std::size_t i = 0; i < map.n_x; ++i) {
-            const stiffnessmaps::Place place = stiffnessmaps::place_at(field, {map.x_of(i), map.y_of(row)});
-            const double depth_m = 1e-3 * (im.y0 + im.dy * static_cast<double>(k));
-            const bool known = place.measured && depth_m <= stiffnessmaps::greatest_depth_m(field, place);
-            im.values.push_back(known ? stiffnessmaps::normal_force_N(field, place, depth_m) : kNaN);
-        }
-    }
-    im.span = span_of(im.values);
-    return im;
+    return std::max(1e-3, std::round(50.0 * files::upper_median(deepest)) / 100.0);
 }
 
 std::size_t stiffest_cell(const stiffnessmaps::Map& map) {
@@ -348,7 +52,7 @@ std::vector<Eigen::Vector2d> curve_places(const stiffnessmaps::Map& map, const s
     };
     if (out.empty()) out.push_back(place_of(stiffest_cell(map)));
     const std::vector<double> k = stiffnessmaps::stiffness_N_per_m(map);
-    const double middle = stiffnessmaps::median_of(k);
+    const double middle = files::upper_median(k);
     std::size_t best = 0;
     double off = INFINITY;
     for (std::size_t cell = 0; cell < k.size(); ++cell) {

@@ -1,7 +1,6 @@
 #include "figures/study_figures.h"
 
-#include <cstdlib>
-
+#include "figures/gnuplot.h"
 #include "files/text.h"
 
 namespace palpa::figures {
@@ -64,23 +63,6 @@ plot for [i = 1:words(nodules)] "nodules.tsv" using (mine(i)):(percent("share"))
      "" using (place(strcol("condition"), strcol("nodule"))):(percent("share")):(percent("wilson_low")):(percent("wilson_high")) with yerrorbars lc rgb "#000000" lw 2 pt 7 ps 0.5 notitle
 )gp";
 
-std::string shell_quoted(const std::string& text) {
-    std::string out = "'";
-    for (const char c : text) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
-    return out + "'";
-}
-
-// Inside a double-quoted string of gnuplot.
-std::string gnuplot_quoted(const std::string& text) {
-    std::string out;
-    for (const char c : text) {
-        if (c == '"' || c == '\\') out.push_back('\\');
-        if (c == '`' || c == '\n') continue;  // would run a command
-        out.push_back(c);
-    }
-    return out;
-}
-
 // gnuplot's word() keeps "two words" together if they stand in quotes.
 void add_word(const std::string& word, std::string& list) {
     std::string plain;
@@ -96,8 +78,7 @@ std::string script_of(const study::Report& report) {
         for (const study::NoduleResult& nodule : condition.nodules) add_word(nodule.nodule, nodules);
     }
     std::string out = "level = \"" + files::short_number(100.0 * report.options.bootstrap.level) + " %\"\n";
-    const std::string who = report.simulated ? "SIMULATED participants" : "";
-    out += "subtitle = \"" + (who.empty() ? who : "\\n{/*0.8 " + gnuplot_quoted(who) + "}") + "\"\n";
+    out += "subtitle = " + std::string(report.simulated ? R"("\n{/*0.8 SIMULATED participants}")" : "''") + "\n";
     out += kScript;
     if (!nodules.empty()) out += "\nconditions = \"" + conditions + "\"\nnodules = \"" + nodules + "\"" + kNodules;
     return out;
@@ -108,18 +89,7 @@ std::string script_of(const study::Report& report) {
 std::string draw_figures(const study::Report& report, const std::filesystem::path& folder) {
     if (report.conditions.empty()) return "";
     files::write_text_atomically(folder / "figures.gp", script_of(report));
-    if (std::system("command -v gnuplot >/dev/null 2>&1") != 0) {
-        return "gnuplot is not installed (package gnuplot-nox), so there are no figures; the tables are kept: run "
-               "`gnuplot figures.gp` where it is";
-    }
-    for (const std::string kind : {"png", "svg", "pdf"}) {
-        const std::string command =
-            "cd " + shell_quoted(folder.string()) + " && gnuplot -e \"kind='" + kind + "'\" figures.gp";
-        if (std::system(command.c_str()) != 0) {
-            return "gnuplot could not draw " + (folder / "figures.gp").string() + "; the tables are kept";
-        }
-    }
-    return "";
+    return draw_script(folder / "figures.gp", "the tables are kept");
 }
 
 }  // namespace palpa::figures

@@ -19,9 +19,6 @@ struct Interval {
     double high = 0.0;
 };
 
-// x with P(X <= x) = p for a standard normal X, 0 < p < 1. Exact to rounding.
-double normal_quantile(double p);
-
 // Two-sided standard score of a confidence level: 0.95 -> 1.959963984540054.
 double z_of_level(double level);
 
@@ -76,13 +73,6 @@ struct TTest {
     Interval ci;     // of the mean
 };
 TTest t_test(std::span<const double> values, double chance, double level);  // two values at least
-
-// Two-sided p value of Student's t, and the t of a confidence level.
-double student_p(double t, double df);
-double student_quantile(double level, double df);
-
-// Regularised incomplete beta function I_x(a, b), by its continued fraction (DLMF 8.17.22).
-double incomplete_beta(double a, double b, double x);
 
 // Holm's step-down correction (Scand. J. Statist. 6 (1979) 65): adjusted p values in the order given.
 std::vector<double> holm(std::span<const double> p);

@@ -9,6 +9,7 @@
 #include "app/screens/widgets.h"
 #include "app/screens/words.h"
 #include "figures/colour_maps.h"
+#include "figures/tic_step.h"
 #include "files/text.h"
 
 namespace palpa::app {
@@ -18,16 +19,6 @@ namespace {
 constexpr ImU32 kCurves[kPins + 1] = {IM_COL32(230, 159, 0, 255), IM_COL32(86, 180, 233, 255),
                                       IM_COL32(0, 158, 115, 255), IM_COL32(204, 121, 167, 255),
                                       IM_COL32(236, 239, 241, 255)};
-
-// About `about` round steps between two numbers.
-double tic_step(double range, double about) {
-    const double rough = range / std::max(1.0, about);
-    const double power = std::pow(10.0, std::floor(std::log10(std::max(rough, 1e-12))));
-    for (const double step : {1.0, 2.0, 5.0}) {
-        if (step * power >= rough) return step * power;
-    }
-    return 10.0 * power;
-}
 
 std::string tic_text(double value) { return files::short_number(std::abs(value) < 1e-12 ? 0.0 : value); }
 
@@ -55,7 +46,9 @@ struct Values {
     }
     ImU32 colour(double value) const {
         const double share = high > low ? (value - low) / (high - low) : 0.5;
-        return figures::colour_at(apart ? figures::kApart : figures::kViridis, static_cast<float>(share));
+        const figures::Colour c =
+            figures::colour_at(apart ? figures::kApart : figures::kViridis, static_cast<float>(share));
+        return IM_COL32(c.r, c.g, c.b, 255);
     }
 };
 
@@ -148,8 +141,8 @@ void draw_axes(const stiffnessmaps::Map& map, const Frame& f, float mm, ImDrawLi
     draw.AddRect(f.low, f.high, kPale);
     const double width_mm = 1e3 * map.spacing_m[0] * static_cast<double>(map.n_x);
     const double height_mm = 1e3 * map.spacing_m[1] * static_cast<double>(map.n_y);
-    const double step_x = tic_step(width_mm, static_cast<double>((f.high.x - f.low.x) / (6.0f * text_px)));
-    const double step_y = tic_step(height_mm, static_cast<double>((f.high.y - f.low.y) / (5.0f * text_px)));
+    const double step_x = figures::tic_step(width_mm, static_cast<double>((f.high.x - f.low.x) / (6.0f * text_px)));
+    const double step_y = figures::tic_step(height_mm, static_cast<double>((f.high.y - f.low.y) / (5.0f * text_px)));
     const double x0 = 1e3 * map.x_of(0);
     const double y0 = 1e3 * map.y_of(0);
     for (double x = std::ceil((x0 - 1e-6) / step_x) * step_x; x <= 1e3 * map.x_of(map.n_x - 1) + 1e-6; x += step_x) {
@@ -179,7 +172,7 @@ void draw_bar(const Values& values, const Frame& f, ImVec2 low, float width_px, 
     draw.Flags = flags;
     draw.AddRect(ImVec2(low.x, f.low.y), ImVec2(low.x + width_px, f.high.y), kPale);
     const float text_px = 0.8f * ImGui::GetFontSize();
-    const double step = tic_step(values.high - values.low, static_cast<double>(height / (5.0f * text_px)));
+    const double step = figures::tic_step(values.high - values.low, static_cast<double>(height / (5.0f * text_px)));
     for (double v = std::ceil((values.low - 1e-9) / step) * step; v <= values.high + 1e-9; v += step) {
         const float y = f.high.y - height * static_cast<float>((v - values.low) / (values.high - values.low));
         draw.AddLine(ImVec2(low.x + width_px, y), ImVec2(low.x + width_px + mm, y), kPale);
@@ -345,8 +338,8 @@ void draw_map_curves(const MapBrowser& browser, const std::optional<Eigen::Vecto
         return ImVec2(low.x + (high.x - low.x) * x_mm / deepest_mm, high.y - (high.y - low.y) * y_N / (1.08f * most_N));
     };
     draw.AddText(ImVec2(low.x, corner.y), kInk, words::kForceOverDepth);
-    const double step_N =
-        tic_step(1.08 * static_cast<double>(most_N), static_cast<double>((high.y - low.y) / (3.0f * small_px)));
+    const double step_N = figures::tic_step(1.08 * static_cast<double>(most_N),
+                                            static_cast<double>((high.y - low.y) / (3.0f * small_px)));
     for (double v = 0.0; v <= 1.08 * static_cast<double>(most_N); v += step_N) {
         const ImVec2 at = px(0.0f, static_cast<float>(v));
         draw.AddLine(at, ImVec2(high.x, at.y), IM_COL32(70, 76, 82, 255));
@@ -356,7 +349,7 @@ void draw_map_curves(const MapBrowser& browser, const std::optional<Eigen::Vecto
                      text.c_str());
     }
     const double step_mm =
-        tic_step(static_cast<double>(deepest_mm), static_cast<double>((high.x - low.x) / (5.0f * small_px)));
+        figures::tic_step(static_cast<double>(deepest_mm), static_cast<double>((high.x - low.x) / (5.0f * small_px)));
     for (double v = 0.0; v <= static_cast<double>(deepest_mm) * (1.0 + 1e-9); v += step_mm) {
         const ImVec2 at = px(static_cast<float>(v), 0.0f);
         draw.AddLine(at, ImVec2(at.x, at.y + mm), kPale);

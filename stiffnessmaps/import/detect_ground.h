@@ -1,6 +1,6 @@
 #pragma once
 // The stiffness of a map's cells, smoothed, and the background that regions stand out of: steps 1 and 2 of detect.h.
-// Only detect.cpp uses it.
+// Only detect*.cpp use it.
 
 #include <opencv2/core.hpp>
 #include <vector>
@@ -40,7 +40,7 @@ struct TwoSidedSpread {
 };
 TwoSidedSpread two_sided_spread(std::vector<double> values);
 
-double part_of(std::vector<double>& values, double q);  // in another order afterwards
+double part_of(std::vector<double>& values, double share);  // QuantileType::lower; in another order afterwards
 std::vector<double> values_in(const cv::Mat1d& values, const cv::Mat1b& mask);
 cv::Mat1b both(const cv::Mat1b& a, const cv::Mat1b& b);
 cv::Mat1b without(const cv::Mat1b& mask, const cv::Mat1b& left_out);

@@ -1,0 +1,50 @@
+#include "files/distributions.h"
+
+#include <boost/math/distributions/binomial.hpp>
+#include <boost/math/distributions/normal.hpp>
+#include <boost/math/distributions/students_t.hpp>
+#include <cassert>
+#include <cmath>
+
+namespace palpa::files {
+namespace {
+
+namespace policies = boost::math::policies;
+
+// `double` throughout: the long double of x86 would give other digits than that of the web. Results that overflow or
+// lose all digits come back as infinity or 0, not as exceptions.
+using Policy =
+    policies::policy<policies::promote_double<false>, policies::domain_error<policies::ignore_error>,
+                     policies::pole_error<policies::ignore_error>, policies::overflow_error<policies::ignore_error>,
+                     policies::underflow_error<policies::ignore_error>,
+                     policies::rounding_error<policies::ignore_error>,
+                     policies::evaluation_error<policies::ignore_error>>;
+using Normal = boost::math::normal_distribution<double, Policy>;
+using Student = boost::math::students_t_distribution<double, Policy>;
+using Binomial = boost::math::binomial_distribution<double, Policy>;
+
+}  // namespace
+
+double normal_quantile(double p) {
+    assert(p > 0.0 && p < 1.0);
+    return boost::math::quantile(Normal(), p);
+}
+
+double student_p(double t, double df) {
+    assert(df > 0.0);
+    if (std::isnan(t)) return t;
+    if (std::isinf(t)) return 0.0;
+    return 2.0 * boost::math::cdf(boost::math::complement(Student(df), std::abs(t)));
+}
+
+double student_quantile(double level, double df) {
+    assert(level > 0.0 && level < 1.0 && df > 0.0);
+    return boost::math::quantile(boost::math::complement(Student(df), 0.5 * (1.0 - level)));
+}
+
+double binomial_probability(std::int64_t k, std::int64_t n, double chance) {
+    assert(k >= 0 && k <= n && chance > 0.0 && chance < 1.0);
+    return boost::math::pdf(Binomial(static_cast<double>(n), chance), static_cast<double>(k));
+}
+
+}  // namespace palpa::files

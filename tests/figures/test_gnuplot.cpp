@@ -1,0 +1,31 @@
+#include <doctest/doctest.h>
+
+#include "figures/gnuplot.h"
+#include "files/text.h"
+#include "tests/shell.h"
+#include "tests/temporary_folder.h"
+
+using namespace palpa;
+using namespace palpa::figures;
+
+TEST_CASE("gnuplot: quoted text, whatever it holds") {
+    CHECK(single_quoted("it's \"5\" \\n `x`") == "'it''s \"5\" \\n `x`'");
+    CHECK(single_quoted("two\nlines") == "'twolines'");
+}
+
+TEST_CASE("gnuplot: a kept script is drawn in its own folder, once for each kind; one that fails is named") {
+    const test::TemporaryFolder folder;
+    files::write_text_atomically(folder / "a.gp", "set print kind . '.txt'\nprint 'drawn'\n");
+    const std::string trouble = draw_script(folder / "a.gp", "a.csv is kept");
+    if (!test::has_gnuplot()) {
+        CHECK(trouble.find("gnuplot is not installed") == 0);
+        CHECK(trouble.find("a.csv is kept") != std::string::npos);
+        return;
+    }
+    CHECK(trouble.empty());
+    for (const char* kind : {"png", "svg", "pdf"})
+        CHECK(files::read_text(folder / (std::string(kind) + ".txt")) == "drawn\n");
+    files::write_text_atomically(folder / "b.gp", "exit status 3\n");
+    CHECK(draw_script(folder / "b.gp", "b.csv is kept") ==
+          "gnuplot could not draw " + (folder / "b.gp").string() + "; b.csv is kept");
+}

@@ -1,0 +1,58 @@
+#include <cmath>
+#include <doctest/doctest.h>
+#include <initializer_list>
+#include <limits>
+#include <numbers>
+
+#include "files/distributions.h"
+
+using namespace palpa::files;
+
+TEST_CASE("distributions: quantiles of the normal distribution") {
+    CHECK(normal_quantile(0.5) == doctest::Approx(0.0));
+    CHECK(normal_quantile(0.9) == doctest::Approx(1.2815515655446004).epsilon(1e-14));
+    CHECK(normal_quantile(0.025) == doctest::Approx(-1.959963984540054).epsilon(1e-15));
+    for (const double p : {1e-300, 1e-12, 1e-6, 0.01, 0.3, 0.77, 0.999}) {
+        CAPTURE(p);
+        CHECK(0.5 * std::erfc(-normal_quantile(p) / std::sqrt(2.0)) == doctest::Approx(p).epsilon(1e-12));
+    }
+}
+
+TEST_CASE("distributions: Student's t where it has a closed form") {
+    for (const double t : {0.1, 1.0, 2.5, 40.0}) {
+        CAPTURE(t);
+        CHECK(student_p(t, 1.0) == doctest::Approx(1.0 - 2.0 / std::numbers::pi * std::atan(t)).epsilon(1e-11));
+        CHECK(student_p(t, 2.0) == doctest::Approx(1.0 - t / std::sqrt(2.0 + t * t)).epsilon(1e-10));
+        CHECK(student_p(-t, 7.0) == student_p(t, 7.0));
+    }
+    CHECK(student_p(1e200, 1.0) == doctest::Approx(2.0 / std::numbers::pi * 1e-200).epsilon(1e-12));
+    CHECK(student_p(std::numeric_limits<double>::infinity(), 3.0) == 0.0);
+    CHECK(std::isnan(student_p(std::numeric_limits<double>::quiet_NaN(), 3.0)));
+}
+
+TEST_CASE("distributions: quantiles of Student's t as tabulated, and as the inverse of its p value") {
+    // 97.5 %: any table of Student's t
+    CHECK(student_quantile(0.95, 1.0) == doctest::Approx(12.706).epsilon(1e-4));
+    CHECK(student_quantile(0.95, 2.0) == doctest::Approx(4.303).epsilon(1e-4));
+    CHECK(student_quantile(0.95, 30.0) == doctest::Approx(2.042).epsilon(2e-4));
+    CHECK(student_quantile(0.95, 40.0) == doctest::Approx(2.021).epsilon(1e-4));
+    for (const double level : {0.01, 0.9, 0.999999}) {
+        for (const double df : {1.0, 7.0, 1e4}) {
+            CAPTURE(level);
+            CAPTURE(df);
+            CHECK(student_p(student_quantile(level, df), df) == doctest::Approx(1.0 - level).epsilon(1e-10));
+        }
+    }
+}
+
+TEST_CASE("distributions: binomial probabilities by hand, and no exception where they vanish") {
+    CHECK(binomial_probability(8, 10, 0.5) == doctest::Approx(45.0 / 1024.0).epsilon(1e-14));
+    CHECK(binomial_probability(2, 3, 0.25) == doctest::Approx(0.140625).epsilon(1e-14));
+    CHECK(binomial_probability(0, 3, 0.25) == doctest::Approx(0.421875).epsilon(1e-14));
+    CHECK(binomial_probability(3, 3, 0.25) == doctest::Approx(0.015625).epsilon(1e-14));
+    CHECK(binomial_probability(0, 0, 0.25) == 1.0);
+    CHECK(binomial_probability(100000, 100000, 0.1) == 0.0);
+    double sum = 0.0;
+    for (int k = 0; k <= 1000; ++k) sum += binomial_probability(k, 1000, 0.3);
+    CHECK(sum == doctest::Approx(1.0).epsilon(1e-12));
+}
