@@ -149,6 +149,9 @@ Trace read_trace(const std::filesystem::path& tsv) {
     std::vector<std::size_t> columns;
     visit_fields(order, [&](std::string_view name, auto&) { columns.push_back(table.column(name)); });
     while (table.next()) {
+        constexpr std::size_t kFirst = 1000;  // they tell how many there will be; growing by doubling takes more memory
+        if (trace.samples.size() == kFirst)
+            trace.samples.reserve(static_cast<std::size_t>(1.1 * static_cast<double>(kFirst) / table.done()));
         Sample sample;
         std::size_t i = 0;
         visit_fields(sample, [&](std::string_view, auto& field) { read_field(table, columns[i++], field); });

@@ -38,9 +38,10 @@ void show_due(const scene::Scene& scene, const scene::Plan& plan, scene::State& 
         const double behind = std::min(1.0 + std::floor((now_s - display.shown_s) * kVirtualDisplay_Hz), 1e9);
         display.frames += static_cast<std::int64_t>(behind);
         display.shown_s += behind / kVirtualDisplay_Hz;
-        if (scene.surface && scene.linear)
+        const bool computed = display.surface_every > 0 && display.drawn++ % display.surface_every == 0;
+        if (computed && scene.surface && scene.linear)
             scene::surface_now(std::get<scene::LinearTissue>(plan.tissue), state, display.sink_m);
-        if (scene.surface && !scene.linear) scene::surface_now(scene, plan, state);
+        if (computed && scene.surface && !scene.linear) scene::surface_now(scene, plan, state);
     }
     display.latency.count();
     display.latency.add_ns(1e9 * (display.shown_s - now_s));
@@ -68,6 +69,7 @@ void begin_replay(SessionFiles files, const platform::TraceInfo& info, std::opti
 
 ReplayResult replay(const platform::Trace& trace, Session& session, double until_s) {
     ReplayResult result;
+    result.display.surface_every = session.state.time_every;
     for (const stiffnessmaps::Nodule& nodule : session.plan->nodules) result.over.push_back({nodule.id, 0.0});
     for (const platform::Sample& sample : trace.samples) {
         take_sample(sample, session);

@@ -26,10 +26,13 @@ struct VirtualDisplay {
     scene::Meter latency;  // from a sample's time to the frame that shows it, ns
     bool began = false;
     double shown_s = 0.0;  // time of the next frame
+    // Nobody sees the surface, so it is only computed to be timed: for every n-th frame; 0: for none.
+    int surface_every = 1;
+    std::int64_t drawn = 0;
     Eigen::VectorXd sink_m;
 };
 
-// The frames that are due after a sample, with what each computes of the surface.
+// The frames that are due after a sample.
 void show_due(const scene::Scene& scene, const scene::Plan& plan, scene::State& state, VirtualDisplay& display);
 
 struct ReplayResult {
