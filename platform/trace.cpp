@@ -91,10 +91,25 @@ std::vector<std::string> read_loops(files::JsonReader& json) {
     return loops;
 }
 
+// What the recorded trial was, in traces that say so.
+void read_trial(files::JsonReader& json, TraceInfo& info) {
+    constexpr files::Bounds kOffset_mm{0.0, 1000.0};
+    if (json.has("mode")) info.mode = json.choice("mode", {"practice", "test"}) == 0 ? "practice" : "test";
+    info.finger_offset_mm = json.number("finger_offset_mm", kOffset_mm, 0.0);
+    auto mapping = json.optional_object("mapping");
+    if (!mapping) return;
+    TissueTurn turn;
+    turn.rotate_deg = mapping->integer("rotate_deg", 0, 270);
+    if (turn.rotate_deg % 90 != 0) mapping->fail("rotate_deg", std::to_string(turn.rotate_deg), "0, 90, 180 or 270");
+    turn.flip = mapping->boolean("flip", false);
+    mapping->finish();
+    info.turn = turn;
+}
+
 TraceInfo read_info(const std::filesystem::path& path) {
     const files::Json root = files::read_json(path);
     files::JsonReader json(root, path.string());
-    json.only({"screen_px", "screen_mm", "device", "device_loops"});
+    json.only({"screen_px", "screen_mm", "device", "device_loops", "mode", "finger_offset_mm", "mapping"});
     constexpr files::Bounds kScreen{1.0, 16384.0};
     TraceInfo info;
     const auto size_px = json.numbers("screen_px", 2, kScreen);
@@ -107,8 +122,21 @@ TraceInfo read_info(const std::filesystem::path& path) {
     }
     info.device = json.text("device", "n/a");
     info.device_loops = read_loops(json);
+    read_trial(json, info);
     json.finish();
     return info;
+}
+
+files::Json info_json(const TraceInfo& info) {
+    files::Json json;
+    json["screen_px"] = {info.screen_width_px, info.screen_height_px};
+    if (!std::isnan(info.screen_width_mm)) json["screen_mm"] = {info.screen_width_mm, info.screen_height_mm};
+    json["device"] = info.device;
+    if (!info.device_loops.empty()) json["device_loops"] = info.device_loops;
+    if (!info.mode.empty()) json["mode"] = info.mode;
+    if (info.finger_offset_mm != 0.0) json["finger_offset_mm"] = info.finger_offset_mm;
+    if (info.turn) json["mapping"] = {{"rotate_deg", info.turn->rotate_deg}, {"flip", info.turn->flip}};
+    return json;
 }
 
 }  // namespace
@@ -121,6 +149,9 @@ Trace read_trace(const std::filesystem::path& tsv) {
     std::vector<std::size_t> columns;
     visit_fields(order, [&](std::string_view name, auto&) { columns.push_back(table.column(name)); });
     while (table.next()) {
+        constexpr std::size_t kFirst = 1000;  // they tell how many there will be; growing by doubling takes more memory
+        if (trace.samples.size() == kFirst)
+            trace.samples.reserve(static_cast<std::size_t>(1.1 * static_cast<double>(kFirst) / table.done()));
         Sample sample;
         std::size_t i = 0;
         visit_fields(sample, [&](std::string_view, auto& field) { read_field(table, columns[i++], field); });
@@ -135,13 +166,8 @@ Trace read_trace(const std::filesystem::path& tsv) {
 }
 
 TraceWriter::TraceWriter(const std::filesystem::path& tsv, const TraceInfo& info) : file_(checked_name(tsv)) {
-    files::Json json;
-    json["screen_px"] = {info.screen_width_px, info.screen_height_px};
-    if (!std::isnan(info.screen_width_mm)) json["screen_mm"] = {info.screen_width_mm, info.screen_height_mm};
-    json["device"] = info.device;
-    if (!info.device_loops.empty()) json["device_loops"] = info.device_loops;
     files::AppendFile sidecar(sidecar_of(tsv));  // never over something that is there
-    sidecar.append(files::json_text(json));
+    sidecar.append(files::json_text(info_json(info)));
     if (!sidecar.sync()) throw std::runtime_error(sidecar.path().string() + ": cannot be written to its end");
     Sample any;
     visit_fields(any, [&](std::string_view name, auto&) { row_.append(row_.empty() ? "" : "\t").append(name); });

@@ -1,9 +1,10 @@
 #pragma once
 // Recorded input: one tab-separated row per sample, and a JSON sidecar of the same name that says on which
-// screen it was recorded. A whole run replays from its trace.
+// screen, and in what kind of trial, it was recorded. A whole run replays from its trace.
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,6 +12,12 @@
 #include "platform/sample.h"
 
 namespace palpa::platform {
+
+// How the tissue lay on the screen (scene/mapping.h).
+struct TissueTurn {
+    int rotate_deg = 0;  // 0, 90, 180, 270
+    bool flip = false;
+};
 
 struct TraceInfo {
     double screen_width_px = 0.0;
@@ -20,6 +27,11 @@ struct TraceInfo {
     std::string device;
     // Device loops that ran with it. What went into the loop NAME stands in X.NAME.tsv (session/device_rows.h).
     std::vector<std::string> device_loops{};
+    // Of the trial that was recorded, so that a replay logs the same. Traces that no trial made, and older ones, say
+    // nothing of it.
+    std::string mode{};             // practice or test; empty: not said
+    double finger_offset_mm = 0.0;  // positions of fingers were moved up by this
+    std::optional<TissueTurn> turn{};
 };
 
 struct Trace {

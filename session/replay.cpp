@@ -2,15 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
+#include "scene/advance.h"
 #include "scene/tissue.h"
-#include "session/session.h"
 
 namespace palpa::session {
 namespace {
 
-void note_nodules(const scene::Plan& plan, ReplayResult& result) {
-    const scene::State& state = result.state;
+void note_nodules(const scene::Plan& plan, const scene::State& state, ReplayResult& result) {
     if (!state.answered || !state.touch.down) return;
     const double lag_m = state.avatar.lag_m.norm();
     bool beside = true;
@@ -28,36 +28,54 @@ void note_nodules(const scene::Plan& plan, ReplayResult& result) {
 
 }  // namespace
 
-ReplayResult replay(const scene::Scene& scene, const scene::Plan& plan, const platform::Trace& trace, int time_every,
-                    const AfterSample& after_sample, double until_s) {
+void show_due(const scene::Scene& scene, const scene::Plan& plan, scene::State& state, VirtualDisplay& display) {
+    const double now_s = state.timeline.now_s;
+    if (!display.began && state.timeline.started) {
+        display.shown_s = now_s;
+        display.began = true;
+    }
+    if (now_s >= display.shown_s) {
+        const double behind = std::min(1.0 + std::floor((now_s - display.shown_s) * kVirtualDisplay_Hz), 1e9);
+        display.frames += static_cast<std::int64_t>(behind);
+        display.shown_s += behind / kVirtualDisplay_Hz;
+        const bool computed = display.surface_every > 0 && display.drawn++ % display.surface_every == 0;
+        if (computed && scene.surface && scene.linear)
+            scene::surface_now(std::get<scene::LinearTissue>(plan.tissue), state, display.sink_m);
+        if (computed && scene.surface && !scene.linear) scene::surface_now(scene, plan, state);
+    }
+    display.latency.count();
+    display.latency.add_ns(1e9 * (display.shown_s - now_s));
+}
+
+TrialMode mode_of(const platform::TraceInfo& info) {
+    return info.mode == name_of(TrialMode::test) ? TrialMode::test : TrialMode::practice;
+}
+
+void turn_as_recorded(const platform::TraceInfo& info, scene::Scene& scene) {
+    if (!info.turn) return;
+    scene.mapping.rotate_deg = info.turn->rotate_deg;
+    scene.mapping.flip = info.turn->flip;
+}
+
+void begin_replay(SessionFiles files, const platform::TraceInfo& info, std::optional<TrialMode> mode,
+                  Session& session) {
+    scene::Scene scene = session.scene;
+    turn_as_recorded(info, scene);
+    change_tissue(std::move(scene), session.plan, screen_of(info), session);
+    files.finger_offset_mm = info.finger_offset_mm;
+    files.sync_rows = false;  // nothing is lost with a crash: the trace is still there
+    begin_trial(files, info, mode.value_or(mode_of(info)), session);
+}
+
+ReplayResult replay(const platform::Trace& trace, Session& session, double until_s) {
     ReplayResult result;
-    for (const stiffnessmaps::Nodule& nodule : plan.nodules) result.over.push_back({nodule.id, 0.0});
-    scene::State& state = result.state;
-    state = scene::start(scene, plan, screen_of(trace.info));
-    state.time_every = time_every;
-    Eigen::VectorXd sink_m;
-    bool first = true;
-    double shown_s = 0.0;  // time of the next virtual frame
+    result.display.surface_every = session.state.time_every;
+    for (const stiffnessmaps::Nodule& nodule : session.plan->nodules) result.over.push_back({nodule.id, 0.0});
     for (const platform::Sample& sample : trace.samples) {
-        scene::advance(scene, plan, sample, state);
-        if (after_sample) after_sample(sample, state);
-        note_nodules(plan, result);
-        const double now_s = state.timeline.now_s;
-        if (first && state.timeline.started) {
-            shown_s = now_s;
-            first = false;
-        }
-        if (now_s >= shown_s) {
-            const double behind = std::min(1.0 + std::floor((now_s - shown_s) * kVirtualDisplay_Hz), 1e9);
-            result.frames += static_cast<std::int64_t>(behind);
-            shown_s += behind / kVirtualDisplay_Hz;
-            if (scene.surface && scene.linear)
-                scene::surface_now(std::get<scene::LinearTissue>(plan.tissue), state, sink_m);
-            if (scene.surface && !scene.linear) scene::surface_now(scene, plan, state);
-        }
-        result.latency.count();
-        result.latency.add_ns(1e9 * (shown_s - now_s));
-        if (now_s >= until_s) break;
+        take_sample(sample, session);
+        note_nodules(*session.plan, session.state, result);
+        show_due(session.scene, *session.plan, session.state, result.display);
+        if (session.trial.finished || session.state.timeline.now_s >= until_s) break;
     }
     return result;
 }
@@ -104,11 +122,13 @@ files::Json run_json(const scene::Scene& scene, const scene::Plan& plan, const s
     return json;
 }
 
-files::Json result_json(const scene::Scene& scene, const scene::Plan& plan, const ReplayResult& result) {
-    files::Json json = run_json(scene, plan, result.state, result.frames, result.latency);
+files::Json result_json(const Session& session, const ReplayResult& result) {
+    files::Json json =
+        run_json(session.scene, *session.plan, session.state, result.display.frames, result.display.latency);
     json["lag_over_nodules_mm"] = files::Json::object();
     for (const NodulePass& pass : result.over) json["lag_over_nodules_mm"][pass.id] = 1e3 * pass.lag_m;
     json["lag_beside_nodules_mm"] = 1e3 * result.lag_beside_m;
+    json["trials"] = trials_json(session);
     return json;
 }
 

@@ -151,10 +151,20 @@ void drop_files(Session& session) {
     session.files.reset();
 }
 
+// What the log takes from elsewhere than the samples: a replay of the trace logs the same.
+platform::TraceInfo with_trial(platform::TraceInfo info, const Session& session) {
+    info.mode = name_of(session.trial.mode);
+    info.finger_offset_mm = session.finger_offset_mm;
+    info.turn = platform::TissueTurn{session.scene.mapping.rotate_deg, session.scene.mapping.flip};
+    return info;
+}
+
 void open_files(const SessionFiles& files, const platform::TraceInfo& info, Session& session) {
     drop_files(session);
     try {
-        if (!files.record.empty()) session.record.emplace(trace_name(files.record, session.trials), info);
+        if (!files.record.empty()) {
+            session.record.emplace(trace_name(files.record, session.trials), with_trial(info, session));
+        }
         if (files.log.empty()) return;
         session.files = study::next_run(files.log, files.participant, files.task, files.first_run);
         const bool alone = !files.label;  // a study explains its columns once, at the top
@@ -229,6 +239,12 @@ void flush_if_due(Session& session) {
     if (now_ns - session.flushed_ns < kEvery_ns) return;
     session.log->flush();
     session.flushed_ns = now_ns;
+}
+
+files::Json trials_json(const Session& session) {
+    files::Json trials = session.finished;
+    if (!session.trial.finished) trials.push_back(trial_json(*session.plan, session.trial));
+    return trials;
 }
 
 bool files_good(const Session& session) {

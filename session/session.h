@@ -69,6 +69,9 @@ void flush_if_due(Session& session);
 // Advances, observes, writes. After the sample that finishes the trial its results are on the disk.
 void take_sample(const platform::Sample& sample, Session& session);
 
+// trial_json of each finished trial, and of the one that goes on.
+files::Json trials_json(const Session& session);
+
 // False once anything could not be written.
 bool files_good(const Session& session);
 

@@ -3,6 +3,8 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <memory>
+#include <optional>
+#include <utility>
 
 #include "app/commands/command_line.h"
 #include "app/scene_choices.h"
@@ -39,13 +41,23 @@ void print_stage(const scene::Stage& stage, const scene::Meter* meter) {
     std::printf("    %s\n    error: %s\n", stage.fidelity.c_str(), stage.error.c_str());
 }
 
+// Every sample is timed.
+void measure(const platform::Trace& trace, session::Session& session) {
+    session::begin_replay({}, trace.info, std::nullopt, session);
+    session.state.time_every = 1;
+    session::replay(trace, session);
+}
+
 void explain(const ExplainOptions& options) {
-    const scene::Scene scene = load_scene(options.scene);
-    const scene::Plan plan = session::make_plan_here(scene);
-    session::ReplayResult measured;
+    session::Session session;
+    scene::Scene chosen = load_scene(options.scene);
+    auto prepared = std::make_shared<const scene::Plan>(session::make_plan_here(chosen));
+    session::change_tissue(std::move(chosen), std::move(prepared), {}, session);
+    const scene::Scene& scene = session.scene;
+    const scene::Plan& plan = *session.plan;
     const std::filesystem::path trace_file =
         options.trace.empty() ? default_trace() : std::filesystem::path(options.trace);
-    if (options.measure) measured = session::replay(scene, plan, platform::read_trace(trace_file), 1);
+    if (options.measure) measure(platform::read_trace(trace_file), session);
 
     const std::vector<std::string> notes = scene::notes_of(scene, plan);
     files::Json json{{"scene", scene.name}, {"stages", files::Json::array()}, {"notes", notes}};
@@ -53,7 +65,7 @@ void explain(const ExplainOptions& options) {
     for (const auto* stages : {&plan.sample_stages, &plan.frame_stages}) {
         for (const scene::Stage& stage : *stages) {
             const scene::Meter* meter =
-                options.measure ? &measured.state.meters[static_cast<std::size_t>(stage.id)] : nullptr;
+                options.measure ? &session.state.meters[static_cast<std::size_t>(stage.id)] : nullptr;
             files::Json entry = stage_json(stage);
             if (meter != nullptr) {
                 entry["calls"] = meter->calls();

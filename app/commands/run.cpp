@@ -5,7 +5,10 @@
 #include <cstdio>
 #include <map>
 #include <memory>
+#include <optional>
+#include <stdexcept>
 #include <sys/resource.h>
+#include <utility>
 
 #include "app/commands/command_line.h"
 #include "app/commands/option_checks.h"
@@ -15,7 +18,6 @@
 #include "files/input_error.h"
 #include "files/regular_file.h"
 #include "files/text.h"
-#include "session/log_rows.h"
 #include "session/plan_in_progress.h"
 #include "session/replay.h"
 #include "session/session.h"
@@ -46,24 +48,29 @@ void print(const files::Json& result, bool as_json) {
     }
 }
 
-// A finished trial is drawn as what it revealed, another one at its moment of greatest lag or force.
-void draw(const scene::Scene& scene, const scene::Plan& plan, const platform::Trace& trace, const session::Trial& whole,
-          double at_s, const RunOptions& options) {
-    session::Trial trial = session::make_trial(plan, whole.mode);
-    const auto observing = [&](const platform::Sample& sample, const scene::State& state) {
-        observe(plan, sample, state, trial);
-    };
-    session::ReplayResult again = session::replay(scene, plan, trace, 0, observing, whole.finished ? 1e300 : at_s);
+// A finished trial is drawn as what it revealed, another one at its moment of greatest lag or force. The files are closed.
+void draw(const platform::Trace& trace, const RunOptions& options, session::Session& session) {
     Screens screens;
-    if (trial.finished) {
+    if (session.trial.finished) {
         screens.screen = Screen::reveal;
-        screens.debrief = session::debrief(plan, trial);
+        screens.debrief = session::debrief(*session.plan, session.trial);
+    } else {
+        const scene::Extremes extremes = session.state.extremes;
+        session::begin_replay({}, trace.info, session.trial.mode, session);
+        session::replay(trace, session, extremes.lag_m > 0.0 ? extremes.lag_at_s : extremes.force_at_s);
     }
     Settings settings;
     settings.left_handed = options.left_handed;
     const int width_px = options.width_px > 0 ? options.width_px : static_cast<int>(trace.info.screen_width_px);
     const int height_px = options.height_px > 0 ? options.height_px : static_cast<int>(trace.info.screen_height_px);
-    draw_picture(scene, plan, trial, settings, screens, width_px, height_px, again.state, options.screenshot);
+    draw_picture(session.scene, *session.plan, session.trial, settings, screens, width_px, height_px, session.state,
+                 options.screenshot);
+}
+
+std::optional<session::TrialMode> asked_mode(const RunOptions& options) {
+    if (options.test) return session::TrialMode::test;
+    if (options.practice) return session::TrialMode::practice;
+    return std::nullopt;
 }
 
 void run_headless(const RunOptions& options) {
@@ -74,42 +81,23 @@ void run_headless(const RunOptions& options) {
     if (!options.record.empty())
         throw files::InputError("--record: found with --headless, expected a window (a replay has its trace)");
     const auto began = std::chrono::steady_clock::now();
-    const scene::Scene scene = load_scene(options.scene);
+    scene::Scene scene = load_scene(options.scene);
     if (!options.screenshot.empty()) files::check_output(options.screenshot, inputs_of(scene, options.trace));
     if (!options.log.empty()) files::check_output_folder(options.log);
-    const scene::Plan plan = session::make_plan_here(scene);
+    auto plan = std::make_shared<const scene::Plan>(session::make_plan_here(scene));
     const platform::Trace trace = platform::read_trace(options.trace);
-    std::optional<study::RunFiles> files;
-    std::optional<study::SampleLog> log;
-    if (!options.log.empty()) {
-        files = study::next_run(options.log, options.participant);
-        log.emplace(*files);
-    }
-    constexpr int kTimeEvery = 16;
-    session::Trial trial =
-        session::make_trial(plan, options.test ? session::TrialMode::test : session::TrialMode::practice);
-    const session::ReplayResult result =
-        session::replay(scene, plan, trace, kTimeEvery, [&](const platform::Sample& sample, const scene::State& state) {
-            if (log) log->write(session::row_of(sample, plan, state));
-            observe(plan, sample, state, trial);
-        });
-    files::Json json = session::result_json(scene, plan, result);
-    json["trials"] = files::Json::array({session::trial_json(plan, trial)});
+    session::Session session;
+    session::change_tissue(std::move(scene), std::move(plan), {}, session);
+    session::begin_replay({options.log, options.participant, ""}, trace.info, asked_mode(options), session);
+    const session::ReplayResult result = session::replay(trace, session);
+    files::Json json = session::result_json(session, result);
     json["wall_s"] = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
     rusage usage{};
     getrusage(RUSAGE_SELF, &usage);
     json["peak_memory_MB"] = static_cast<double>(usage.ru_maxrss) / 1024.0;
-    if (log) {
-        if (!log->sync()) throw std::runtime_error(options.log + ": the log could not be written to its end");
-        files::write_text_atomically(files->file("_settings.json"),
-                                     files::json_text(session::settings_json(scene, plan, result.state)));
-        files::write_text_atomically(files->file("_performance.json"), files::json_text(json));
-    }
-    if (!options.screenshot.empty()) {
-        const scene::Extremes& extremes = result.state.extremes;
-        const double at_s = extremes.lag_m > 0.0 ? extremes.lag_at_s : extremes.force_at_s;
-        draw(scene, plan, trace, trial, at_s, options);
-    }
+    if (!session::close_files(json, session))
+        throw std::runtime_error(options.log + ": the log could not be written to its end");
+    if (!options.screenshot.empty()) draw(trace, options, session);
     print(json, options.json);
 }
 

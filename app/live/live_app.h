@@ -69,7 +69,7 @@ bool prepare_chosen(platform::Window& window, Gui& gui,
 // trials.cpp
 platform::TraceInfo info_of(const App& app, const platform::Window& window);
 double now_of(const App& app, const platform::Window& window);  // of samples
-double finger_offset_mm(const App& app);                        // 0, or kFingerOffset_mm
+double finger_offset_mm(const App& app);                        // 0, or kFingerOffset_mm; a trace's own
 files::Json result_of(const App& app);                          // what `run --json` says so far
 // Ends all presses and drops their later samples: a press belongs to the trial and the screen in which it began.
 void end_presses(platform::Window& window, App& app);

@@ -6,6 +6,7 @@
 
 #include "app/live/live_app.h"
 #include "app/scene_choices.h"
+#include "session/replay.h"
 
 namespace palpa::app {
 
@@ -27,12 +28,16 @@ void load(const RunOptions& options, App& app) {
         app.trace = platform::read_trace(options.trace);
         app.settings.width_px = static_cast<int>(app.trace->info.screen_width_px);
         app.settings.height_px = static_cast<int>(app.trace->info.screen_height_px);
+        const std::string& mode = app.trace->info.mode;
+        if (!options.test && !options.practice && !mode.empty())
+            app.settings.test_mode = session::mode_of(app.trace->info) == session::TrialMode::test;
     }
     const bool own_choice = options.scene.empty() && !app.trace;  // a replay is the same for everybody
     scene::Scene scene;
     if (own_choice && !app.settings.scene.empty()) attempt(app, [&] { scene = load_scene(app.settings.scene); });
     if (scene.name.empty()) scene = load_scene(options.scene);
     if (own_choice && std::filesystem::exists(app.settings.profile)) scene.profile = app.settings.profile;
+    if (app.trace) session::turn_as_recorded(app.trace->info, scene);
     if (scene.linear) {
         app.unprepared = std::move(scene);
         return;

@@ -39,6 +39,7 @@ platform::TraceInfo info_of(const App& app, const platform::Window& window) {
 }
 
 double finger_offset_mm(const App& app) {
+    if (app.trace) return app.trace->info.finger_offset_mm;
     return app.settings.above_finger ? static_cast<double>(kFingerOffset_mm) : 0.0;
 }
 
@@ -53,8 +54,7 @@ files::Json result_of(const App& app) {
     result["latency_besides_drawing_ms"] = {{"p50", ms(app.times.ready, 0.5)}, {"p99", ms(app.times.ready, 0.99)}};
     result["problems"] = app.screens.problems;
     if (app.screens.check) result["device_check"] = check_json(*app.screens.check);
-    result["trials"] = s.finished;
-    if (!s.trial.finished) result["trials"].push_back(session::trial_json(*s.plan, s.trial));
+    result["trials"] = session::trials_json(s);
     return result;
 }
 

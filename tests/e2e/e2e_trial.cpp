@@ -1,5 +1,5 @@
-// Whole trials on a real X server, in one run of the app: by pen, by two fingers, by keyboard alone; and a device that
-// is unplugged and plugged in again. Run it under tests/platform/xorg/with-xorg.
+// Whole trials on a real X server, in one run of the app: by pen, by two fingers, by keyboard alone; and the same trials
+// without a window, from what was recorded. Run it under tests/platform/xorg/with-xorg.
 
 #include <algorithm>
 #include <doctest/doctest.h>
@@ -60,7 +60,9 @@ enum Key {
 
 class Script {
   public:
-    explicit Script(const std::filesystem::path& file) : out_(file) {
+    // `above_finger`: the tissue is drawn as the setting of that name does it.
+    explicit Script(const std::filesystem::path& file, bool above_finger = false)
+        : out_(file), above_finger_(above_finger) {
         out_ << "t_s\tkind\tid\tphase\tx_px\ty_px\tpressure\n";
     }
     void wait(double seconds) { t_s_ += seconds; }
@@ -78,20 +80,20 @@ class Script {
     }
     // Strokes 6 mm through a place and stays down; `lift` ends it.
     void stroke(const char* kind, int id, double x_mm, double y_mm) {
-        if (kind[0] == 'p') row(kind, id, "hover", place(x_mm - 3, y_mm), 0.0);
+        if (kind[0] == 'p') row(kind, id, "hover", at(x_mm - 3, y_mm), 0.0);
         wait(0.05);
-        row(kind, id, "down", place(x_mm - 3, y_mm), 0.2);
+        row(kind, id, "down", at(x_mm - 3, y_mm), 0.2);
         for (int i = 0; i <= 100; ++i) {
             wait(0.004);
-            row(kind, id, "move", place(x_mm - 3 + 0.06 * i, y_mm), 0.76 + 0.0004 * i);  // no hand is constant
+            row(kind, id, "move", at(x_mm - 3 + 0.06 * i, y_mm), 0.76 + 0.0004 * i);  // no hand is constant
         }
         for (int i = 0; i <= 20; ++i) {
             wait(0.004);
-            row(kind, id, "move", place(x_mm + 3 - 0.15 * i, y_mm), 0.78);
+            row(kind, id, "move", at(x_mm + 3 - 0.15 * i, y_mm), 0.78);
         }
     }
     void lift(const char* kind, int id, double x_mm, double y_mm) {
-        row(kind, id, "up", place(x_mm, y_mm), 0.0);
+        row(kind, id, "up", at(x_mm, y_mm), 0.0);
         wait(0.2);
     }
     void key(int code, double seconds = 0.06) {
@@ -106,7 +108,10 @@ class Script {
     }
 
   private:
+    Point at(double x_mm, double y_mm) const { return place(x_mm, y_mm, above_finger_); }
+
     std::ofstream out_;
+    bool above_finger_;
     double t_s_ = 0.0;
 };
 
@@ -283,4 +288,58 @@ TEST_CASE("asked: marks are thrown away only when the person says so, and are in
     const Json tested = read_json(beh("run-03_settings.json"))["mapping"];
     CHECK(read_text(beh("run-03_events.tsv")).find("\ttest\t") != std::string::npos);
     CHECK(practised != tested);
+}
+
+TEST_CASE("replay: what a pen did in two trials replays without a window to the same log, byte for byte") {
+    const TemporaryFolder folder;
+    const auto path = [&](const char* name) { return (folder / name).string(); };
+    std::filesystem::create_directories(folder / "config/palpa");
+    write_text_whole(folder / "config/palpa/settings.json", R"({"above_finger": true})");
+    Script script(folder / "script.tsv", true);
+    const auto press = [&](double x_mm, double y_mm) {
+        script.stroke("pen", 0, x_mm, y_mm);
+        script.lift("pen", 0, x_mm, y_mm);
+    };
+    press(35, 35);
+    script.tap("pen", 0, kMark);
+    script.tap("pen", 0, kSure4);
+    press(90, 90);
+    script.tap("pen", 0, kMark);
+    press(60, 60);
+    script.key(kM);
+    script.key(kU);
+    script.tap("pen", 0, kFinish);
+    script.wait(0.3);
+    script.key(kN);  // the tissue is turned; this trial is broken off
+    script.wait(0.6);
+    press(50, 70);
+    script.key(kM);
+    script.key(k5);
+    const std::string seconds = std::to_string(script.close() + 5.0);
+    REQUIRE(run_app(folder, "--test --quit-after-s " + seconds + " --log " + path("live"),
+                    [&] { CHECK(play_script(folder) == 0); }) == 0);
+    for (const char* trace : {"t.tsv", "t-2.tsv"}) {
+        const std::string replay = std::string(PALPA_PROGRAM " run --headless --replay ") + path(trace) + " --log " +
+                                   path("again") + " >/dev/null";
+        CHECK(shell(replay) == 0);
+    }
+    const auto beh = [&](const char* log, const std::string& name) {
+        return read_text(folder / (std::string(log) + "/sub-01/beh/sub-01_task-palpation_" + name));
+    };
+    for (const char* run : {"run-01", "run-02"}) {
+        for (const char* file : {"_events.tsv", "_marks.tsv", "_samples.tsv", "_settings.json"}) {
+            CAPTURE(run);
+            CAPTURE(file);
+            CHECK(beh("live", std::string(run) + file) == beh("again", std::string(run) + file));
+        }
+    }
+    const std::string marks = beh("again", "run-01_marks.tsv");
+    CHECK(std::count(marks.begin(), marks.end(), '\n') == 3);
+    CHECK(marks.find("\t4\tA\t") != std::string::npos);
+    CHECK(beh("again", "run-01_events.tsv").find("\tfinish\ttest\t") != std::string::npos);
+    CHECK(beh("again", "run-02_events.tsv").find("\tinterrupted\ttest\t") != std::string::npos);
+    CHECK(beh("again", "run-02_marks.tsv").find("\t5\t") != std::string::npos);
+    const Json first = parse_json(beh("again", "run-01_settings.json"), "run 1");
+    CHECK(first["finger_offset_mm"] == 15.0);
+    CHECK(first["mapping"] != parse_json(beh("again", "run-02_settings.json"), "run 2")["mapping"]);
 }

@@ -78,6 +78,38 @@ TEST_CASE("trace: what is written reads back to the last bit, missing values sta
     CHECK_THROWS_AS(TraceWriter(folder / "only.json", trace.info), InputError);
 }
 
+TEST_CASE("trace: what the recorded trial was reads back; a trace without it says nothing") {
+    const TemporaryFolder folder;
+    TraceInfo info{1280, 800, kMissing, kMissing, "d"};
+    const auto written = [&](const char* name) {
+        TraceWriter(folder / name, info).write(full());
+        return read_trace(folder / name).info;
+    };
+    const TraceInfo none = written("none.tsv");
+    CHECK(none.mode.empty());
+    CHECK(none.finger_offset_mm == 0.0);
+    CHECK_FALSE(none.turn);
+    CHECK(read_text(folder / "none.json").find("mode") == std::string::npos);
+    info.mode = "test";
+    info.finger_offset_mm = 15.0;
+    info.turn = TissueTurn{270, true};
+    const TraceInfo trial = written("trial.tsv");
+    CHECK(trial.mode == "test");
+    CHECK(trial.finger_offset_mm == 15.0);
+    REQUIRE(trial.turn);
+    CHECK(trial.turn->rotate_deg == 270);
+    CHECK(trial.turn->flip);
+    const auto told = [&](const std::string& keys) {
+        write_text_atomically(folder / "trial.json", R"({"screen_px": [1280, 800], )" + keys + "}");
+        return message_of([&] { read_trace(folder / "trial.tsv"); });
+    };
+    CHECK(told(R"("mode": "practice")") == "");
+    CHECK(contains(told(R"("mode": "tets")"), "trial.json: mode: found 'tets', expected"));
+    CHECK(contains(told(R"("finger_offset_mm": -1)"), "trial.json: finger_offset_mm: found -1"));
+    CHECK(contains(told(R"("mapping": {"rotate_deg": 45})"), "rotate_deg: found 45, expected 0, 90, 180 or 270"));
+    CHECK(contains(told(R"("mapping": {"rotate_deg": 90, "kind": "direct"})"), "kind"));
+}
+
 TEST_CASE("hard case 31: a trace with wrong names, numbers, columns or no sidecar is refused") {
     CHECK(said("n/a", "n/a") == "");
     CHECK(contains(said("finger", "toe"), "t.tsv: line 2, tool: found 'toe'"));

@@ -1,37 +1,182 @@
 #include <doctest/doctest.h>
+#include <memory>
 
 #include "app/scene_choices.h"
+#include "files/json.h"
 #include "files/text.h"
-#include "session/log_rows.h"
+#include "scene/mapping.h"
 #include "session/raster_trace.h"
 #include "session/replay.h"
+#include "tests/error_message.h"
 #include "tests/temporary_folder.h"
 
 using namespace palpa;
 using namespace palpa::files;
 using namespace palpa::platform;
 using namespace palpa::scene;
-using namespace palpa::study;
 using namespace palpa::session;
 using namespace palpa::app;
 using namespace palpa::test;
 
 namespace {
 
+constexpr const char* kStem = "sub-01/beh/sub-01_task-palpation_run-01";
+
+// A session on a scene ("": the default one), turned by `rotate_deg` and flipped.
+void put_tissue(const std::string& scene_name, int rotate_deg, bool flip, Session& session) {
+    Scene scene = load_scene(scene_name.empty() ? "" : PALPA_SOURCE_DIR "/assets/scenes/" + scene_name);
+    scene.mapping.rotate_deg = rotate_deg;
+    scene.mapping.flip = flip;
+    auto plan = std::make_shared<const Plan>(make_plan(scene));
+    change_tissue(std::move(scene), std::move(plan), {}, session);
+}
+
+// As `palpa run --headless --log` does it.
+void replay_into(const std::filesystem::path& log, const std::string& scene_name, const Trace& trace) {
+    Session session;
+    put_tissue(scene_name, 0, false, session);
+    begin_replay({log.string(), "01", ""}, trace.info, std::nullopt, session);
+    replay(trace, session);
+    CHECK(close_files({}, session));
+}
+
 std::string log_of(const char* scene_name, const Trace& trace) {
     const TemporaryFolder folder;
-    const Scene scene = load_scene(std::string(PALPA_SOURCE_DIR "/assets/scenes/") + scene_name);
-    const Plan plan = make_plan(scene);
-    const RunFiles files = next_run(folder.path(), "01");
-    {
-        SampleLog log(files);
-        replay(scene, plan, trace, 16,
-               [&](const Sample& sample, const State& state) { log.write(row_of(sample, plan, state)); });
+    replay_into(folder.path(), scene_name, trace);
+    return read_text(folder / (std::string(kStem) + "_samples.tsv"));
+}
+
+// Without a log, and untimed.
+ReplayResult result_of(const Trace& trace, Session& session) {
+    put_tissue("", 0, false, session);
+    begin_replay({}, trace.info, std::nullopt, session);
+    session.state.time_every = 0;
+    return replay(trace, session);
+}
+
+// A hand that presses and marks, while the trial is logged and recorded.
+struct Hand {
+    Session& session;
+    double t_s = 1.0 / 3.0;
+
+    void take(Sample sample) {
+        sample.t_host_s = t_s += 0.0107;
+        take_sample(sample, session);
     }
-    return read_text(files.file("_samples.tsv"));
+    void touch(Phase phase, double x_mm, double y_mm, double pressure) {
+        const Eigen::Vector2d px = px_of_tissue(session.state.view, {1e-3 * x_mm, 1e-3 * y_mm});
+        Sample sample;
+        sample.tool = Tool::pen;
+        sample.pointer_id = -2;
+        sample.phase = phase;
+        sample.x_px = px.x();
+        sample.y_px = px.y();
+        sample.pressure = pressure;
+        take(sample);
+    }
+    void stroke(double x_mm, double y_mm) {
+        touch(Phase::down, x_mm - 4.0, y_mm, 0.1);
+        for (int i = -8; i <= 8; ++i) touch(Phase::move, x_mm + 0.5 * i, y_mm, 0.8 + 0.003 * i);
+        touch(Phase::up, x_mm + 4.0, y_mm, 0.0);
+    }
+    void act(Action action) {
+        Sample sample;
+        sample.phase = Phase::ui;
+        sample.action = action;
+        if (action == Action::mark) {
+            sample.x_px = session.trial.last_px->x();
+            sample.y_px = session.trial.last_px->y();
+        }
+        if (action == Action::resize) {
+            sample.x_px = 242.0 + 1.0 / 3.0;
+            sample.y_px = 0.0;
+            sample.width_px = 1037.7;
+            sample.height_px = 800.0;
+        }
+        take(sample);
+    }
+};
+
+enum class End { finished, interrupted, mid_press };
+
+// A trial in a window of a measured screen, on a turned tissue, with fingers moved up; into FOLDER/live and FOLDER/t.tsv.
+void live_trial(const TemporaryFolder& folder, TrialMode mode, End end) {
+    const float px_per_mm = 4.7f;
+    const TraceInfo info{1280, 800, 1280 / static_cast<double>(px_per_mm), 800 / static_cast<double>(px_per_mm),
+                         "pen \"5\""};
+    Session session;
+    put_tissue("delay.json", 90, true, session);
+    SessionFiles files{(folder / "live").string(), "01", (folder / "t.tsv").string()};
+    files.finger_offset_mm = 15.0;
+    files.sync_rows = false;
+    begin_trial(files, info, mode, session);
+    Hand hand{session};
+    hand.act(Action::resize);
+    const auto nodule = session.plan->nodules[0];
+    hand.stroke(1e3 * nodule.x_m - 4.0, 1e3 * nodule.y_m);
+    hand.act(Action::mark);
+    hand.act(Action::confidence_4);
+    hand.act(Action::hidden);
+    hand.act(Action::shown);
+    hand.stroke(100.0, 20.0);
+    hand.act(Action::mark);
+    hand.stroke(60.0, 60.0);
+    hand.act(Action::mark);
+    hand.act(Action::undo);
+    if (end == End::mid_press) hand.touch(Phase::down, 50.0, 50.0, 0.5);
+    if (end == End::finished) hand.act(Action::finish);
+    hand.act(Action::mark);  // after the end of a finished trial: none
+    CHECK(session.trial.marks.size() == (end == End::finished ? 2u : 3u));
+    CHECK(close_files({{"any", 1}}, session));
 }
 
 }  // namespace
+
+TEST_CASE("replay: a trial's log is that of the live trial, byte for byte, finished or broken off") {
+    const TemporaryFolder folder;
+    End end = End::finished;
+    TrialMode mode = TrialMode::test;
+    SUBCASE("a finished test") {}
+    SUBCASE("an interrupted practice") { end = End::interrupted, mode = TrialMode::practice; }
+    SUBCASE("a test that is closed during a press") { end = End::mid_press; }
+    live_trial(folder, mode, end);
+    Trace trace = read_trace(folder / "t.tsv");
+    if (end == End::finished) trace.samples.push_back(trace.samples.front());  // after the end: not logged
+    replay_into(folder / "again", "delay.json", trace);
+    const auto text = [&](const char* log, const std::string& file) {
+        return read_text(folder / (std::string(log) + "/" + kStem + file));
+    };
+    for (const char* file : {"_events.tsv", "_events.json", "_marks.tsv", "_marks.json", "_samples.tsv",
+                             "_samples.json", "_settings.json"}) {
+        CAPTURE(file);
+        CHECK(text("live", file) == text("again", file));
+    }
+    const std::string events = text("again", "_events.tsv");
+    CHECK(contains(events, end == End::finished ? "\tfinish\t" : "\tinterrupted\t"));
+    CHECK(contains(events, name_of(mode)));
+    CHECK(contains(events, "\t90\t1\t"));
+    Json settings = parse_json(text("again", "_settings.json"), "settings");
+    CHECK(settings["finger_offset_mm"] == 15.0);
+    CHECK(settings["screen_px_per_mm"].get<double>() == doctest::Approx(4.7));
+    CHECK(contains(text("again", "_performance.json"), "began_utc"));
+}
+
+TEST_CASE("replay: a mode that is asked for counts more than the trace's, and practice where there is none") {
+    const TemporaryFolder folder;
+    live_trial(folder, TrialMode::test, End::finished);
+    Trace trace = read_trace(folder / "t.tsv");
+    const auto replayed = [&](std::optional<TrialMode> asked) {
+        Session session;
+        put_tissue("delay.json", 0, false, session);
+        begin_replay({}, trace.info, asked, session);
+        return session.trial.mode;
+    };
+    CHECK(replayed(std::nullopt) == TrialMode::test);
+    CHECK(replayed(TrialMode::practice) == TrialMode::practice);
+    trace.info.mode.clear();
+    CHECK(replayed(std::nullopt) == TrialMode::practice);
+    CHECK(replayed(TrialMode::test) == TrialMode::test);
+}
 
 TEST_CASE("replay: the same trace gives the same log, byte for byte, for every shipped scene") {
     const Trace trace = read_trace(default_trace());
@@ -46,17 +191,16 @@ TEST_CASE("replay: the same trace gives the same log, byte for byte, for every s
 }
 
 TEST_CASE("replay: over the nodules the avatar lags at least 0.5 mm and 5 times more than beside them") {
-    const Scene scene = load_scene("");
-    const Plan plan = make_plan(scene);
-    const ReplayResult result = replay(scene, plan, read_trace(default_trace()), 0);
+    Session session;
+    const ReplayResult result = result_of(read_trace(default_trace()), session);
     CHECK(result.over.size() == 3);
     for (const NodulePass& pass : result.over) {
         CAPTURE(pass.id);
         CHECK(pass.lag_m > 0.5e-3);
         CHECK(pass.lag_m > 5.0 * result.lag_beside_m);
     }
-    CHECK(result.state.counters.dropped_steps == 0);
-    CHECK(result.state.counters.off_tissue == 0);
+    CHECK(session.state.counters.dropped_steps == 0);
+    CHECK(session.state.counters.off_tissue == 0);
 }
 
 TEST_CASE("replay: a trace that was written reads back to the same run") {
@@ -79,7 +223,8 @@ TEST_CASE("replay: a trace made at another rate gives the same lags") {
     double lag_m[2];
     for (int i = 0; i < 2; ++i) {
         options.rate_Hz = i == 0 ? 133.0 : 1000.0;
-        lag_m[i] = replay(scene, plan, raster_trace(scene, plan, options), 0).over[0].lag_m;
+        Session session;
+        lag_m[i] = result_of(raster_trace(scene, plan, options), session).over[0].lag_m;
     }
     CHECK(lag_m[1] == doctest::Approx(lag_m[0]).epsilon(0.03));  // jitter and rounding differ
 }

@@ -8,15 +8,17 @@
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
+#include <memory>
+#include <stdexcept>
 #include <stdlib.h>
+#include <utility>
 
 #include "app/scene_choices.h"
-#include "session/log_rows.h"
+#include "scene/advance.h"
 
 using namespace palpa;
 using namespace palpa::platform;
 using namespace palpa::scene;
-using namespace palpa::study;
 using namespace palpa::session;
 using namespace palpa::app;
 
@@ -24,22 +26,32 @@ namespace {
 
 double seconds() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
-void run(const char* scene_file, const char* trace_file, const char* folder, int repeats) {
-    const Scene scene = load_scene(scene_file);
-    const Plan plan = make_plan(scene);
-    const Trace trace = read_trace(trace_file);
-    {
-        SampleLog log(next_run(folder, "01"));
-        replay(scene, plan, trace, 0,
-               [&](const Sample& sample, const State& state) { log.write(row_of(sample, plan, state)); });
-        if (!log.sync()) throw std::runtime_error("the log could not be written");
+// What a sample and a frame cost without a trial and its log.
+void run_chain(const Scene& scene, const Plan& plan, const Trace& trace) {
+    State state = start(scene, plan, screen_of(trace.info));
+    state.time_every = 0;
+    VirtualDisplay display;
+    for (const Sample& sample : trace.samples) {
+        advance(scene, plan, sample, state);
+        show_due(scene, plan, state, display);
     }
+}
+
+void run(const char* scene_file, const char* trace_file, const char* folder, int repeats) {
+    Session session;
+    Scene chosen = load_scene(scene_file);
+    auto plan = std::make_shared<const Plan>(make_plan(chosen));
+    change_tissue(std::move(chosen), std::move(plan), {}, session);
+    const Trace trace = read_trace(trace_file);
     double best_s = 1e300;
     for (int i = 0; i < repeats; ++i) {
         const double began_s = seconds();
-        replay(scene, plan, trace, 0);
+        run_chain(session.scene, *session.plan, trace);
         best_s = std::min(best_s, seconds() - began_s);
     }
+    begin_replay({folder, "01", ""}, trace.info, std::nullopt, session);
+    replay(trace, session);
+    if (!close_files({}, session)) throw std::runtime_error("the log could not be written");
     std::printf("%zu samples, %.3f us per sample\n", trace.samples.size(),
                 1e6 * best_s / static_cast<double>(trace.samples.size()));
 }

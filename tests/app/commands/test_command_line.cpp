@@ -61,7 +61,8 @@ TEST_CASE("command line: a log is written in the BIDS layout and repeats byte fo
     CHECK(palpa_with(call + (folder / "a").string()).status == 0);
     CHECK(palpa_with(call + (folder / "b").string()).status == 0);
     const std::string stem = "/sub-01/beh/sub-01_task-palpation_run-01";
-    for (const char* suffix : {"_samples.tsv", "_samples.json", "_settings.json"}) {
+    for (const char* suffix : {"_samples.tsv", "_samples.json", "_events.tsv", "_events.json", "_marks.tsv",
+                               "_marks.json", "_settings.json"}) {
         CHECK(read_text(folder / ("a" + stem + suffix)) == read_text(folder / ("b" + stem + suffix)));
     }
     CHECK(std::filesystem::exists(folder / ("a" + stem + "_performance.json")));

@@ -313,7 +313,7 @@ TEST_CASE("files: a reader that went away is told, and ends nothing by a signal"
 TEST_CASE("files: with standard output closed nothing that is printed gets into a result") {
     const TemporaryFolder folder;
     fill(folder);
-    // more than the buffer of standard output holds is printed while the log is still open
+    // more than the buffer of standard output holds is printed, so some of it goes out before the program ends
     write_text_atomically(folder / "long.json",
                           R"({"name": ")" + std::string(6000, 'x') + R"(", "tissue": {"map": "in.map"}})");
     const std::string call = "run long.json --headless --replay trace.tsv --json --log ";
