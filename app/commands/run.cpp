@@ -54,16 +54,15 @@ void draw(const scene::Scene& scene, const scene::Plan& plan, const platform::Tr
         observe(plan, sample, state, trial);
     };
     session::ReplayResult again = session::replay(scene, plan, trace, 0, observing, whole.finished ? 1e300 : at_s);
-    Screens screens;
-    if (trial.finished) {
-        screens.screen = Screen::reveal;
-        screens.debrief = session::debrief(plan, trial);
-    }
+    Doing doing;
+    if (trial.finished) doing = Reviewing{session::debrief(plan, trial)};
     Settings settings;
     settings.left_handed = options.left_handed;
     const int width_px = options.width_px > 0 ? options.width_px : static_cast<int>(trace.info.screen_width_px);
     const int height_px = options.height_px > 0 ? options.height_px : static_cast<int>(trace.info.screen_height_px);
-    draw_picture(scene, plan, trial, settings, screens, width_px, height_px, again.state, options.screenshot);
+    ViewState view;
+    draw_picture({scene, plan, trial, settings, {}, doing, {}, again.state.timeline.now_s},
+                 {width_px, height_px, options.screenshot}, view, again.state);
 }
 
 void run_headless(const RunOptions& options) {
