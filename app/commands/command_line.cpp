@@ -7,10 +7,12 @@
 #include <cstring>
 #include <exception>
 #include <fcntl.h>
+#include <filesystem>
 #include <iostream>
 #include <new>
 #include <signal.h>
 #include <string>
+#include <system_error>
 #include <unistd.h>
 #include <vector>
 
@@ -65,6 +67,12 @@ int call(int argc, char** argv, CLI::App& app) {
         end_without_memory(error.what());
     } catch (const files::InputError& error) {
         return fail(error.what(), 2);
+    } catch (const std::filesystem::filesystem_error& error) {
+        if (error.code() != std::errc::filename_too_long) return fail(error.what(), 1);
+        return fail((files::shown(error.path1().string()) +
+                     ": found a name that is too long, expected one that the system takes")
+                        .c_str(),
+                    2);
     } catch (const std::exception& error) {
         return fail(error.what(), 1);
     }
@@ -86,7 +94,8 @@ int with_all_printed(int status) {
 int run_command_line(int argc, char** argv) {
     keep_standard_streams_apart();
     ::signal(SIGPIPE, SIG_IGN);  // a reader that went away is told as any output that cannot be written
-    CLI::App app("Palpa: feel stiffness on a touch screen. `palpa` alone opens the app on the scene of last time.");
+    CLI::App app("Palpa: feel stiffness on a touch screen. `palpa` alone opens the app on the scene of last time.",
+                 "palpa");
     app.set_version_flag("--version", "palpa " PALPA_VERSION);
     app.require_subcommand(1);
     add_run(app);

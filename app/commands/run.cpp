@@ -50,10 +50,9 @@ void print(const files::Json& result, bool as_json) {
 
 // A finished trial is drawn as what it revealed, another one at its moment of greatest lag or force. The files are closed.
 void draw(const platform::Trace& trace, const RunOptions& options, session::Session& session) {
-    Screens screens;
+    Doing doing;
     if (session.trial.finished) {
-        screens.screen = Screen::reveal;
-        screens.debrief = session::debrief(*session.plan, session.trial);
+        doing = Reviewing{session::debrief(*session.plan, session.trial)};
     } else {
         const scene::Extremes extremes = session.state.extremes;
         session::begin_replay({}, trace.info, session.trial.mode, session);
@@ -63,8 +62,9 @@ void draw(const platform::Trace& trace, const RunOptions& options, session::Sess
     settings.left_handed = options.left_handed;
     const int width_px = options.width_px > 0 ? options.width_px : static_cast<int>(trace.info.screen_width_px);
     const int height_px = options.height_px > 0 ? options.height_px : static_cast<int>(trace.info.screen_height_px);
-    draw_picture(session.scene, *session.plan, session.trial, settings, screens, width_px, height_px, session.state,
-                 options.screenshot);
+    ViewState view;
+    draw_picture({session.scene, *session.plan, session.trial, settings, {}, doing, {}, session.state.timeline.now_s},
+                 {width_px, height_px, options.screenshot}, view, session.state);
 }
 
 std::optional<session::TrialMode> asked_mode(const RunOptions& options) {

@@ -16,13 +16,13 @@ bool named(const std::vector<platform::PointerDevice>& devices, const std::strin
 }
 
 // Notes devices that are plugged in or out while the app runs.
-void note_changes(const std::vector<platform::PointerDevice>& now, Screens& screens) {
-    for (const platform::PointerDevice& device : screens.devices) {
-        if (!named(now, device.name)) screens.note = words::filled(words::kIsGone, {device.name});
+void note_changes(const std::vector<platform::PointerDevice>& now, Notices& notices) {
+    for (const platform::PointerDevice& device : notices.devices) {
+        if (!named(now, device.name)) notices.note = words::filled(words::kIsGone, {device.name});
     }
     for (const platform::PointerDevice& device : now) {
-        if (!screens.devices.empty() && !named(screens.devices, device.name))
-            screens.note = words::filled(words::kIsHere, {device.name});
+        if (!notices.devices.empty() && !named(notices.devices, device.name))
+            notices.note = words::filled(words::kIsHere, {device.name});
     }
 }
 
@@ -31,37 +31,37 @@ void note_pressure(platform::Tool tool, App& app) {
     const platform::PressureKind kind = platform::pressure_kind(app.pressure, tool);
     const bool held = tool == platform::Tool::pen ? app.hold.pen : app.hold.finger;
     const std::string name(name_of(tool));
-    if (held) app.screens.device_notes.push_back(words::filled(words::kHeldPress, {name}));
+    if (held) app.notices.device_notes.push_back(words::filled(words::kHeldPress, {name}));
     if (held || (kind != platform::PressureKind::constant && kind != platform::PressureKind::missing)) return;
     const char* found = kind == platform::PressureKind::missing ? words::kReportsNone : words::kReportsConstant;
-    app.screens.device_notes.push_back(words::filled(found, {name}));
+    app.notices.device_notes.push_back(words::filled(found, {name}));
     // a profile of counts or contact areas reads fields that pressing by time does not set
-    app.screens.offer_hold = app.session.plan->profile.level == calibration::LevelField::pressure;
+    app.notices.offer_hold = app.session.plan->profile.level == calibration::LevelField::pressure;
 }
 
 }  // namespace
 
 void note_devices(const platform::Window& window, App& app) {
-    std::vector<std::string>& notes = app.screens.device_notes;
+    std::vector<std::string>& notes = app.notices.device_notes;
     notes.clear();
     if (app.trace) {
         notes.push_back(words::filled(words::kReplayOf, {app.options.trace}));
         return;
     }
-    app.screens.devices_listed = window.lists_devices();
+    app.notices.devices_listed = window.lists_devices();
     const std::vector<platform::PointerDevice> now = window.devices();
-    if (app.screens.devices_listed) note_changes(now, app.screens);
-    app.screens.devices = now;
-    if (app.screens.study) return;
-    if (app.keeper != nullptr) app.screens.trials_note = app.keeper->note();
+    if (app.notices.devices_listed) note_changes(now, app.notices);
+    app.notices.devices = now;
+    if (study_of(app.doing) != nullptr) return;
+    if (app.keeper != nullptr) app.notices.trials_note = app.keeper->note();
     if (!window.input_note().empty()) notes.push_back(window.input_note());
-    app.screens.offer_hold = false;
+    app.notices.offer_hold = false;
     for (const platform::Tool tool : {platform::Tool::pen, platform::Tool::finger}) note_pressure(tool, app);
-    const auto& devices = app.screens.devices;
+    const auto& devices = app.notices.devices;
     const bool pressure =
         std::any_of(devices.begin(), devices.end(), [](const platform::PointerDevice& d) { return d.has_pressure; });
     if (!pressure) notes.push_back(words::kNoSensorHere);
-    if (!pressure || app.screens.offer_hold) notes.push_back(words::kOtherWays);
+    if (!pressure || app.notices.offer_hold) notes.push_back(words::kOtherWays);
 }
 
 }  // namespace palpa::app

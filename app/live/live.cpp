@@ -20,95 +20,8 @@
 namespace palpa::app {
 namespace {
 
-void keep_settings(App& app) {
-    if (app.settings_path.empty()) return;
-    const std::string problem = save_settings(app.settings, app.settings_path);
-    if (!problem.empty()) app.screens.problems.push_back(problem);
-    if (app.keeper != nullptr) app.keeper->keep_settings(app.settings_path);
-}
-
-// Puts the recording on the disk; a profile that was kept can be chosen at once.
-void close_calibrate(App& app) {
-    stop_recording(*app.screens.calibrate);
-    app.screens.calibrate.reset();
-    app.screens.profiles = profile_choices();
-}
-
-void open_screen(Screen screen, platform::Window& window, App& app) {
-    if (screen == Screen::maps && (app.screens.study || !may_show_maps(app.session.trial))) {
-        app.screens.note = words::kMapsHidden;
-        app.screens.menu = false;
-        return;
-    }
-    if (app.screens.screen != screen) end_presses(window, app);
-    if (screen == Screen::devices) {
-        app.screens.check = std::make_shared<DeviceCheck>();
-        app.screens.dots.clear();
-    }
-    if (screen == Screen::calibrate && !app.screens.calibrate) app.screens.calibrate = make_calibrate_form();
-    if (app.screens.screen == Screen::calibrate && screen != Screen::calibrate) close_calibrate(app);
-    if (screen == Screen::maps && !app.screens.maps)
-        app.screens.maps = make_map_browser(app.session.scene, map_choices());
-    if (screen != Screen::maps) app.screens.maps.reset();
-    app.screens.screen = screen;
-    app.screens.menu = false;
-}
-
-void change_settings(const Wishes& wishes, platform::Window& window, Gui& gui, App& app) {
-    if (wishes.left_handed) app.settings.left_handed = *wishes.left_handed;
-    if (wishes.above_finger) app.settings.above_finger = *wishes.above_finger;
-    if (wishes.mode) app.settings.test_mode = *wishes.mode == session::TrialMode::test;
-    if (wishes.full_screen) {
-        app.settings.full_screen = !window.full_screen();
-        window.set_full_screen(app.settings.full_screen);
-    }
-    if (wishes.px_per_mm) {
-        app.screens.px_per_mm = *wishes.px_per_mm;
-        app.settings.px_per_mm.erase(app.screens.screen_name);
-        if (std::isfinite(*wishes.px_per_mm)) app.settings.px_per_mm[app.screens.screen_name] = *wishes.px_per_mm;
-    }
-    const bool changed = wishes.left_handed || wishes.above_finger || wishes.mode || wishes.full_screen ||
-                         wishes.px_per_mm || wishes.scene || wishes.profile;
-    if (changed) keep_settings(app);
-    // another scale or another way of showing the tissue makes another trial
-    if (!wishes.px_per_mm && !wishes.mode && !wishes.above_finger) return;
-    if (app.settings.test_mode) turn_if_shown(window, app);
-    begin_anew(window, gui, app);
-}
-
-void carry_out(const Wishes& asked_for, platform::Window& window, Gui& gui, App& app) {
-    Wishes wishes = asked_for;
-    if (marks_at_stake(app)) {
-        wishes = ask_first(asked_for, app.screens);
-        if (app.screens.asked) end_presses(window, app);
-    } else {
-        app.screens.asked.reset();
-    }
-    if (wishes.quit) app.quit = true;
-    if (app.screens.study) follow_study(window, gui, app);
-    if (wishes.action && app.screens.screen == Screen::trial && !app.trace)
-        act(*wishes.action, now_of(app, window), app);
-    if (wishes.screen) open_screen(*wishes.screen, window, app);
-    if (wishes.scene) app.settings.scene = *wishes.scene;
-    if (wishes.profile) app.settings.profile = *wishes.profile;
-    if (wishes.scene || wishes.profile) {
-        change_scene(window, gui, wishes.scene.value_or(app.session.scene.file.string()), app.settings.profile, app);
-    }
-    change_settings(wishes, window, gui, app);
-    if (wishes.press_by_hold && app.screens.offer_hold) {
-        const auto lacks = [&](platform::Tool tool) {
-            const platform::PressureKind kind = platform::pressure_kind(app.pressure, tool);
-            return kind == platform::PressureKind::constant || kind == platform::PressureKind::missing;
-        };
-        app.hold.pen = app.hold.pen || lacks(platform::Tool::pen);
-        app.hold.finger = app.hold.finger || lacks(platform::Tool::finger);
-    }
-    if (wishes.trials && app.keeper != nullptr) app.keeper->open();
-    if (wishes.studies && app.keeper != nullptr) app.keeper->open_studies();
-    if (wishes.next) turn_tissue(window, app);
-    if (wishes.again || wishes.next) begin_anew(window, gui, app);
-    app.save_waits = app.save_waits || wishes.save_picture;
-}
+// True where a study shows a screen of its own, and no trial goes on.
+bool between_study_trials(const App& app) { return study_of(app.doing) != nullptr && !palpates(app.doing); }
 
 // Takes the rows of the trace that are due, with the trace's own times.
 void take_due_rows(App& app, double now_s, std::vector<platform::Sample>& out) {
@@ -119,14 +32,13 @@ void take_due_rows(App& app, double now_s, std::vector<platform::Sample>& out) {
 void take(const platform::Sample& sample, App& app) {
     session::take_sample(sample, app.session);
     if (app.waiting_s.size() < app.waiting_s.capacity()) app.waiting_s.push_back(sample.t_host_s);
-    if (!app.session.trial.finished || app.screens.screen != Screen::trial) return;
-    app.screens.debrief = session::debrief(*app.session.plan, app.session.trial);  // a trace that finishes its trial
-    app.screens.screen = Screen::reveal;
+    // a trace that finishes its trial; its presses are its own
+    if (app.session.trial.finished && std::holds_alternative<Palpating>(app.doing)) app.doing = back_to_trial(app);
 }
 
 // If a finger may not hide the avatar, it indents the place above it; log and trace hold that place.
 void lift_fingers(float mm, std::vector<platform::Sample>& samples, const App& app) {
-    if (!app.settings.above_finger || app.trace || app.screens.screen != Screen::trial) return;
+    if (!app.settings.above_finger || app.trace || !palpates(app.doing)) return;
     for (platform::Sample& sample : samples) {
         if (sample.tool == platform::Tool::finger) sample.y_px -= static_cast<double>(kFingerOffset_mm * mm);
     }
@@ -139,18 +51,20 @@ void take_all(double now_s, std::vector<platform::Sample>& samples, App& app) {
         return;
     }
     for (const platform::Sample& sample : samples) platform::watch(sample, app.pressure);
-    if (app.screens.screen == Screen::devices) {
+    if (auto* checking = std::get_if<CheckingDevices>(&app.doing)) {
         for (const platform::Sample& sample : samples) {
-            observe(sample, *app.screens.check);
-            add_dot(sample, app.screens);
+            observe(sample, *checking->check);
+            add_dot(sample, checking->dots);
         }
         return;
     }
-    if (app.screens.screen == Screen::calibrate) return step_calibrate(samples, *app.screens.calibrate);
+    if (const auto* calibrating = std::get_if<Calibrating>(&app.doing))
+        return step_calibrate(samples, *calibrating->form);
     if (app.hold.pen || app.hold.finger) platform::press_by_hold(now_s, app.hold, samples);
-    if (app.screens.screen != Screen::trial || !app.stopped.empty() || app.begin_waits) return;
+    if (!palpates(app.doing) || !std::holds_alternative<GoesOn>(app.course)) return;
+    const bool study = study_of(app.doing) != nullptr;
     for (const platform::Sample& sample : samples) {
-        if (!app.screens.study || allowed(sample, app)) take(sample, app);
+        if (!study || allowed(sample, app)) take(sample, app);
     }
 }
 
@@ -158,9 +72,7 @@ void take_all(double now_s, std::vector<platform::Sample>& samples, App& app) {
 void place_keyboard(platform::Window& window, const App& app) {
     constexpr double kSpeed_m_per_s = 0.03;
     const scene::ScreenArea& a = app.session.state.screen;
-    const bool elsewhere = app.screens.study && app.screens.screen != Screen::trial;
-    if (elsewhere || app.screens.menu || app.screens.asked ||
-        (app.screens.screen != Screen::trial && app.screens.screen != Screen::devices)) {
+    if (app.asked || !keys_move_indenter(app.doing)) {
         window.set_keyboard(0.0, 0.0, 0.0, 0.0, 0.0);
     } else {
         window.set_keyboard(a.x_px, a.y_px, a.x_px + a.width_px, a.y_px + a.height_px,
@@ -169,15 +81,14 @@ void place_keyboard(platform::Window& window, const App& app) {
 }
 
 float scale_now(const App& app, const platform::Window& window) {
-    return control_scale(app.screens.px_per_mm, static_cast<float>(window.width_px()),
+    return control_scale(app.notices.px_per_mm, static_cast<float>(window.width_px()),
                          static_cast<float>(window.height_px()), window.touch_px_per_mm());
 }
 
 // A window that changed its size, or a hand that changed sides, is input too: a replay must map positions alike.
 void note_resize(const platform::Window& window, Gui& gui, App& app) {
     gui.set_scale(scale_now(app, window));
-    const bool none = app.screens.study && app.screens.screen != Screen::trial;
-    if (app.trace || none || app.session.trial.finished) return;
+    if (app.trace || between_study_trials(app) || app.session.trial.finished) return;
     const platform::Sample now = resize_sample(window, gui, app.settings, now_of(app, window));
     const scene::ScreenArea& area = app.session.state.screen;
     const bool same = now.x_px == area.x_px && now.y_px == area.y_px && now.width_px == area.width_px &&
@@ -189,65 +100,76 @@ void note_resize(const platform::Window& window, Gui& gui, App& app) {
 // frame that shows them, and no latency.
 void note_shown(const platform::Window& window, App& app) {
     const double shown_s = now_of(app, window);
-    const double ready_s = 1e-9 * static_cast<double>(app.times.built_ns) - app.trace_shift_s;
+    const double ready_s = 1e-9 * static_cast<double>(app.view.times.built_ns) - app.trace_shift_s;
     for (const double t_s : app.waiting_s) {
-        app.times.latency.add_ns(1e9 * (shown_s - t_s));
-        app.times.ready.add_ns(1e9 * (ready_s - t_s));
+        app.view.times.latency.add_ns(1e9 * (shown_s - t_s));
+        app.view.times.ready.add_ns(1e9 * (ready_s - t_s));
     }
     ++app.frames;
     const double since_s = window.now_s() - app.drawn_s;
-    app.times.frames_per_s += 0.05 * (1.0 / std::max(since_s, 1e-3) - app.times.frames_per_s);
+    app.view.times.frames_per_s += 0.05 * (1.0 / std::max(since_s, 1e-3) - app.view.times.frames_per_s);
     app.drawn_s = window.now_s();
 }
 
-void show(platform::Window& window, App& app, render::TissueDrawer& tissue, Gui& gui, double dt_s) {
+ToShow to_show(const App& app, double now_s, double dt_s) {
+    const session::Session& s = app.session;
+    return {s.scene, *s.plan, s.trial, app.settings, app.notices, app.doing, app.asked, now_s, dt_s};
+}
+
+// A step of a study begins with the frame that shows it first.
+void note_step_shown(double now_s, App& app) {
+    StudyRun* study = study_of(app.doing);
+    if (study != nullptr && study->step_began_s == 0.0) study->step_began_s = now_s;
+}
+
+void show(platform::Window& window, App& app, const Canvas& canvas, double dt_s) {
     constexpr double kDevices_s = 0.5;  // however slowly frames come: a pen that is gone is noticed within a second
     if (window.now_s() - app.devices_noted_s >= kDevices_s) {
         note_devices(window, app);
         app.devices_noted_s = window.now_s();
     }
-    age_note(now_of(app, window), app.screens);
-    const session::Session& s = app.session;
+    const double now_s = now_of(app, window);
+    age_note(now_s, app.notices);
+    note_step_shown(now_s, app);
     const bool save = std::exchange(app.save_waits, false);
-    if (save) app.on_screen.content = 0;  // what the window hands out is only sure while it has just been drawn
-    const Wishes wishes = draw_frame(s.scene, *s.plan, s.trial, app.settings, now_of(app, window), dt_s, tissue, gui,
-                                     app.screens, app.session.state, app.times, app.on_screen);
+    if (save) app.view.on_screen.content = 0;  // what the window hands out is only sure while it has just been drawn
+    const Wishes wishes = draw_frame(to_show(app, now_s, dt_s), canvas, app.view, app.session.state);
     if (save) {
         attempt(app, [&] {
-            app.screens.note = words::filled(words::kSaved, {save_picture(window, app.options.log).string()});
+            app.notices.note = words::filled(words::kSaved, {save_picture(window, app.options.log).string()});
         });
     }
-    if (app.on_screen.drawn) {
+    if (app.view.on_screen.drawn) {
         window.present();
         note_shown(window, app);
     }
     app.waiting_s.clear();
-    carry_out(wishes, window, gui, app);
+    carry_out(wishes, window, canvas.gui, app);
 }
 
 // True while the screen changes by itself, or while a step waits for something that sends no event when it is ready.
 bool in_motion(const App& app) {
-    const bool records = app.screens.screen == Screen::calibrate;
-    const bool keeps = app.begin_waits || (app.screens.study && app.screens.study->keeping);
-    return app.trace || app.session.state.pointer || !app.hold.held.empty() || records || keeps || app.save_waits;
+    const StudyRun* study = study_of(app.doing);
+    const bool records = std::holds_alternative<Calibrating>(app.doing);
+    const bool keeps = waits_for_keeper(app) || (study != nullptr && study->keeping_since_s);
+    const bool presses = palpates(app.doing) && app.session.state.pointer;
+    return app.trace || presses || !app.hold.held.empty() || records || keeps || app.save_waits;
 }
 
 // A log that can no longer be written stops the trial with a message; earlier rows are on the disk.
-void watch_files(App& app) {
-    if (!app.stopped.empty() || session::files_good(app.session)) return;
-    close_trial(app);
-    if (app.screens.study) {
-        app.screens.screen = Screen::study;
-        return stop_study(app.stopped, *app.screens.study);
-    }
-    app.screens.problems.push_back(app.stopped);
+void watch_files(platform::Window& window, App& app) {
+    if (trial_stopped(app) || session::files_good(app.session)) return;
+    const std::string why = close_trial(app);
+    end_presses(window, app);
+    if (StudyRun* study = study_of(app.doing)) return stop_study(why, *study);
+    app.notices.problems.push_back(why);
 }
 
 // Gives the keeper the trial so far once a second, so that a reload or an empty battery costs at most a second.
 void keep_part(double now_s, App& app) {
     constexpr double kEvery_s = 1.0;
     if (app.keeper == nullptr || !app.session.files || now_s - app.parted_s < kEvery_s) return;
-    if (!app.screens.study && !app.session.trial.last_px) return;  // a page that was only looked at
+    if (study_of(app.doing) == nullptr && !app.session.trial.last_px) return;  // a page that was only looked at
     if (app.session.log) app.session.log->flush();
     app.keeper->keep_part(*app.session.files);
     app.parted_s = now_s;
@@ -266,7 +188,7 @@ void remember_window(const platform::Window& window, App& app) {
 struct Live::Impl {
     explicit Impl(const RunOptions& options, session::TrialKeeper* keeper) {
         app.keeper = keeper;
-        app.screens.keeps_trials = keeper != nullptr;
+        app.notices.keeps_trials = keeper != nullptr;
         load(options, app);
         platform::WindowOptions window_options;
         window_options.width_px = app.settings.width_px;
@@ -279,7 +201,7 @@ struct Live::Impl {
         ready = prepare_chosen(*window, *gui, app);
         if (!ready) return;
         if (app.trace) app.trace_shift_s = window->now_s() - app.trace->samples.front().t_host_s;
-        if (!app.screens.study) begin(*window, *gui, app);
+        if (study_of(app.doing) == nullptr) begin(*window, *gui, app);
         if (options.screen != Screen::trial) open_screen(options.screen, *window, app);
         tissue.emplace();
         app.waiting_s.reserve(4096);
@@ -290,7 +212,7 @@ struct Live::Impl {
     bool closes() {
         if (app.quit) return true;
         if (!window->close_requested()) return false;
-        const bool again = app.screens.asked && app.screens.asked->quit;
+        const bool again = app.asked && app.asked->quit;
         if (again || !marks_at_stake(app) || !window->stay_open()) return true;
         Wishes wishes;
         wishes.quit = true;
@@ -308,7 +230,7 @@ struct Live::Impl {
         samples.clear();
         window->poll(wait_s, samples);  // 1. read
         if (window->stirred() || !samples.empty()) stirred_s = window->now_s();
-        if (window->uncovered()) app.on_screen.content = 0;
+        if (window->uncovered()) app.view.on_screen.content = 0;
         if (app.trace) {
             samples.clear();
             take_due_rows(app, now_of(app, *window), samples);
@@ -318,7 +240,7 @@ struct Live::Impl {
         place_keyboard(*window, app);
         lift_fingers(gui->mm(), samples, app);
         take_all(window->now_s(), samples, app);  // 2. simulate, 3. log
-        watch_files(app);
+        watch_files(*window, app);
         session::flush_if_due(app.session);  // also while nothing moves, and nothing is drawn
         keep_part(window->now_s(), app);
     }
@@ -360,7 +282,7 @@ bool Live::turn(Draw draw) {
     // a browser that calls for each frame of its display sets the pace itself while anything moves
     const double early_s = waits ? 0.0 : kFrame_s;
     if (now_s + early_s < it.next_frame_s() && it.app.frames > 0) return true;
-    show(*it.window, it.app, *it.tissue, *it.gui, now_s - it.frame_s);  // 4. show
+    show(*it.window, it.app, {*it.gui, *it.tissue}, now_s - it.frame_s);  // 4. show
     it.frame_s = now_s;
     if (it.app.frames == 1) it.first_frame_s = 1e-9 * static_cast<double>(scene::steady_ns()) - it.asked_s;
     return true;
@@ -370,9 +292,9 @@ void Live::out_of_sight(bool hidden) {
     Impl& it = *impl_;
     it.take_samples(0.0);  // presses that end now
     it.frame_s = it.stirred_s = it.window->now_s();
-    it.app.on_screen.content = 0;
-    const bool between = it.app.screens.study && it.app.screens.screen != Screen::trial;
-    if (it.app.trace || it.app.session.trial.finished || it.app.begin_waits || between) return;
+    it.app.view.on_screen.content = 0;
+    if (it.app.trace || it.app.session.trial.finished || waits_for_keeper(it.app) || between_study_trials(it.app))
+        return;
     platform::Sample sample;
     sample.t_host_s = now_of(it.app, *it.window);
     sample.phase = platform::Phase::ui;
@@ -386,14 +308,14 @@ void Live::out_of_sight(bool hidden) {
 void Live::renew_drawing() {
     impl_->gui->renew_drawing();
     impl_->tissue.emplace();
-    impl_->app.on_screen.content = 0;
+    impl_->app.view.on_screen.content = 0;
     impl_->stirred_s = impl_->window->now_s();
 }
 
 files::Json Live::report() const {
     files::Json result = result_of(impl_->app);
     result["overflow"] = impl_->gui->overflow();
-    if (impl_->app.screens.study) result["study"] = study_json(impl_->app);
+    if (study_of(impl_->app.doing) != nullptr) result["study"] = study_json(impl_->app);
     return result;
 }
 
@@ -403,20 +325,19 @@ void Live::type_instead(const std::string& text) { impl_->gui->type_instead(text
 files::Json Live::close() {
     Impl& it = *impl_;
     if (!it.app.options.screenshot.empty()) {
-        it.app.on_screen.content = 0;
-        const session::Session& s = it.app.session;
-        draw_frame(s.scene, *s.plan, s.trial, it.app.settings, now_of(it.app, *it.window), kFrame_s, *it.tissue,
-                   *it.gui, it.app.screens, it.app.session.state, it.app.times, it.app.on_screen);
+        it.app.view.on_screen.content = 0;
+        draw_frame(to_show(it.app, now_of(it.app, *it.window), kFrame_s), {*it.gui, *it.tissue}, it.app.view,
+                   it.app.session.state);
         save_screen(*it.window, it.app.options.screenshot);
     }
-    if (it.app.screens.calibrate) stop_recording(*it.app.screens.calibrate);
+    if (const auto* calibrating = std::get_if<Calibrating>(&it.app.doing)) stop_recording(*calibrating->form);
     remember_window(*it.window, it.app);
-    if (it.app.screens.study) return close_study(*it.gui, it.app);
+    if (study_of(it.app.doing) != nullptr) return close_study(*it.gui, it.app);
     files::Json result = result_of(it.app);
     result["start_to_first_frame_s"] = it.first_frame_s;
     result["overflow"] = it.gui->overflow();
-    const bool good = close_trial(it.app);
-    if (!good || !it.app.stopped.empty()) throw std::runtime_error(it.app.stopped);
+    close_trial(it.app);
+    if (const auto* stopped = std::get_if<TrialStopped>(&it.app.course)) throw std::runtime_error(stopped->why);
     return result;
 }
 

@@ -15,15 +15,15 @@ void load(const RunOptions& options, App& app) {
     app.settings_path = settings_file();
     std::string problem;
     app.settings = load_settings(app.settings_path, problem);
-    if (!problem.empty()) app.screens.problems.push_back(problem);
+    if (!problem.empty()) app.notices.problems.push_back(problem);
     if (options.test) app.settings.test_mode = true;
     if (options.practice) app.settings.test_mode = false;
     if (options.left_handed) app.settings.left_handed = true;
     if (options.width_px > 0) app.settings.width_px = options.width_px;
     if (options.height_px > 0) app.settings.height_px = options.height_px;
     if (!options.protocol.empty()) return load_study(options, app);
-    app.screens.scenes = scene_choices();
-    app.screens.profiles = profile_choices();
+    app.notices.scenes = scene_choices();
+    app.notices.profiles = profile_choices();
     if (!options.trace.empty()) {
         app.trace = platform::read_trace(options.trace);
         app.settings.width_px = static_cast<int>(app.trace->info.screen_width_px);
@@ -47,10 +47,10 @@ void load(const RunOptions& options, App& app) {
 }
 
 void know_screen(const platform::Window& window, App& app) {
-    app.screens.screen_name = window.screen_name();
-    const auto known = app.settings.px_per_mm.find(app.screens.screen_name);
-    if (std::isfinite(window.touch_px_per_mm())) app.screens.card_px_per_mm = window.touch_px_per_mm();
-    if (known != app.settings.px_per_mm.end()) app.screens.card_px_per_mm = app.screens.px_per_mm = known->second;
+    app.notices.screen_name = window.screen_name();
+    const auto known = app.settings.px_per_mm.find(app.notices.screen_name);
+    if (std::isfinite(window.touch_px_per_mm())) app.view.card_px_per_mm = window.touch_px_per_mm();
+    if (known != app.settings.px_per_mm.end()) app.view.card_px_per_mm = app.notices.px_per_mm = known->second;
 }
 
 namespace {

@@ -16,8 +16,7 @@ namespace palpa::app {
 namespace {
 
 void begin_study_trial(platform::Window& window, const Gui& gui, App& app) {
-    StudyRun& run = *app.screens.study;
-    run.start_trial = false;
+    StudyRun& run = *study_of(app.doing);
     try {
         const StudyScene& due = due_scene(run);
         const study::PlannedTrial& trial = due_trial(run);
@@ -25,44 +24,50 @@ void begin_study_trial(platform::Window& window, const Gui& gui, App& app) {
         session::SessionFiles files = due_files(run);
         files.finger_offset_mm = finger_offset_mm(app);
         put_scene(scene_of(due, trial), due.plan, window, app);
-        app.screens.note.clear();
+        app.notices.note.clear();
         session::begin_trial(files, info_of(app, window),
                              known ? session::TrialMode::practice : session::TrialMode::test, app.session);
         app.parted_s = 0.0;
         session::take_sample(resize_sample(window, gui, app.settings, now_of(app, window)), app.session);
-        app.screens.screen = Screen::trial;
+        std::get<step::Trial>(run.step).begun = true;
     } catch (const std::exception& error) {
         stop_study(error.what(), run);
     }
 }
 
 bool is_device_here(const App& app) {
-    if (!app.screens.devices_listed) return true;
-    return device_here(due_condition(*app.screens.study).modality, app.screens.devices);
+    if (!app.notices.devices_listed) return true;
+    return device_here(due_condition(*study_of(app.doing)).modality, app.notices.devices);
 }
 
 // A trial whose device is gone says nothing about the person: it is interrupted, and comes again.
-void interrupt_study_trial(double now_s, App& app) {
-    session::note_event("device_gone", now_s, app.session);
-    app.screens.screen = Screen::study;
-    app.screens.asked.reset();
-    if (!close_trial(app)) return stop_study(app.stopped, *app.screens.study);
-    wait_for_device(true, *app.screens.study);
+void interrupt_study_trial(platform::Window& window, App& app) {
+    session::note_event("device_gone", now_of(app, window), app.session);
+    app.asked.reset();
+    StudyRun& run = *study_of(app.doing);
+    const std::string why = close_trial(app);
+    end_presses(window, app);
+    if (!why.empty()) return stop_study(why, run);
+    wait_for_device(true, run);
 }
 
 // Typed trials and answers go to the keeper too; `keeping` stays set until the keeper has them.
-void follow_keeper(App& app) {
+void follow_keeper(double now_s, App& app) {
     if (app.keeper == nullptr) return;
-    StudyRun& run = *app.screens.study;
+    StudyRun& run = *study_of(app.doing);
     for (const study::RunFiles& typed : run.unkept_runs) app.keeper->keep(typed, true);
     run.unkept_runs.clear();
     if (run.unkept_answers) app.keeper->keep_answers(run.directory, run.code);
     run.unkept_answers = false;
     app.keeper->participant(run.code);
-    const bool told = run.keeping && run.keeping_began_s > 0.0 && !run.warnings.empty();
-    run.keeping = !app.keeper->ready();
-    if (told && !run.keeping) app.screens.problems.clear();  // it is mended
-    run.warnings = app.screens.problems;
+    const bool told = run.keeping_since_s && !run.warnings.empty();
+    if (!app.keeper->ready()) {
+        if (!run.keeping_since_s) run.keeping_since_s = now_s;
+    } else {
+        run.keeping_since_s.reset();
+        if (told) app.notices.problems.clear();  // it is mended
+    }
+    run.warnings = app.notices.problems;
 }
 
 }  // namespace
@@ -71,37 +76,40 @@ void load_study(const RunOptions& options, App& app) {
     app.settings_path.clear();  // what a study fixes is nobody's choice to keep
     const bool tablet = app.keeper != nullptr;
     // on a tablet a code that has finished is refused on the screen: there is no command line to give another one
-    const auto run = std::make_shared<StudyRun>(
-        open_study_run(study::read_protocol(options.protocol), options.log, tablet ? "" : options.participant));
-    run->on_tablet = tablet;
-    run->first_run = options.first_run;
-    if (tablet && !options.participant.empty()) enter_code(options.participant, *run);
-    app.screens.study = run;
-    app.screens.screen = Screen::study;
+    StudyRun run =
+        open_study_run(study::read_protocol(options.protocol), options.log, tablet ? "" : options.participant);
+    run.on_tablet = tablet;
+    run.first_run = options.first_run;
+    if (tablet && !options.participant.empty()) enter_code(options.participant, run);
+    app.doing = std::move(run);
     scene::Scene scene = load_scene("");  // behind the first screens
     auto plan = std::make_shared<const scene::Plan>(scene::make_plan(scene));
     session::change_tissue(std::move(scene), std::move(plan), {}, app.session);
 }
 
 // Nothing is revealed; the next step comes once the trial is on the disk.
-void finish_study_trial(App& app) {
-    app.screens.screen = Screen::study;
-    if (!close_trial(app)) return stop_study(app.stopped, *app.screens.study);
-    trial_finished(*app.screens.study);
-    follow_keeper(app);
+void finish_study_trial(platform::Window& window, App& app) {
+    StudyRun& run = *study_of(app.doing);
+    const std::string why = close_trial(app);
+    end_presses(window, app);
+    if (!why.empty()) return stop_study(why, run);
+    trial_finished(run);
+    follow_keeper(now_of(app, window), app);
 }
 
 double trial_ends_s(const App& app) {
     constexpr double kNever_s = std::numeric_limits<double>::infinity();
-    if (!app.screens.study || app.screens.screen != Screen::trial) return kNever_s;
-    const double limit_s = due_limit_s(*app.screens.study);
+    const StudyRun* run = study_of(app.doing);
+    if (run == nullptr || !trial_goes_on(*run)) return kNever_s;
+    const double limit_s = due_limit_s(*run);
     return limit_s > 0.0 ? app.session.trial.began_s + limit_s : kNever_s;
 }
 
-void follow_study(platform::Window& window, const Gui& gui, App& app) {
-    StudyRun& run = *app.screens.study;
-    follow_keeper(app);
-    if (run.start_trial && !run.keeping) {
+void follow_study(const std::optional<StudyWish>& wish, platform::Window& window, const Gui& gui, App& app) {
+    StudyRun& run = *study_of(app.doing);
+    if (wish) carry_out(*wish, run);
+    follow_keeper(now_of(app, window), app);
+    if (trial_waits(run) && !run.keeping_since_s) {
         note_devices(window, app);
         if (is_device_here(app)) {
             begin_study_trial(window, gui, app);
@@ -109,21 +117,21 @@ void follow_study(platform::Window& window, const Gui& gui, App& app) {
             wait_for_device(false, run);
         }
     }
-    if (run.step == StudyStep::device) run.device_here = is_device_here(app);
-    if (app.screens.screen != Screen::trial) return;
-    if (!is_device_here(app)) return interrupt_study_trial(now_of(app, window), app);
-    if (now_of(app, window) >= trial_ends_s(app)) act(platform::Action::finish, now_of(app, window), app);
+    if (auto* device = std::get_if<step::Device>(&run.step)) device->here = is_device_here(app);
+    if (!trial_goes_on(run)) return;
+    if (!is_device_here(app)) return interrupt_study_trial(window, app);
+    if (now_of(app, window) >= trial_ends_s(app)) act(platform::Action::finish, window, app);
 }
 
 bool allowed(const platform::Sample& sample, App& app) {
-    const study::Modality modality = due_condition(*app.screens.study).modality;
+    const study::Modality modality = due_condition(*study_of(app.doing)).modality;
     if (sample.phase == platform::Phase::ui || tool_allowed(modality, sample.tool)) return true;
-    if (sample.phase == platform::Phase::down) app.screens.note = words::filled(words::kDoneWith, {name_of(modality)});
+    if (sample.phase == platform::Phase::down) app.notices.note = words::filled(words::kDoneWith, {name_of(modality)});
     return false;
 }
 
 files::Json study_json(const App& app) {
-    const StudyRun& run = *app.screens.study;
+    const StudyRun& run = *study_of(app.doing);
     return files::Json{{"participant", run.code},
                        {"step", name_of(run.step)},
                        {"finished", run.progress.finished.size()},
@@ -132,9 +140,12 @@ files::Json study_json(const App& app) {
 
 // A trial that still goes on is logged as interrupted.
 files::Json close_study(const Gui& gui, App& app) {
-    const StudyRun& run = *app.screens.study;
-    if (app.screens.screen == Screen::trial && !close_trial(app)) throw std::runtime_error(app.stopped);
-    if (!run.stopped.empty()) throw std::runtime_error(run.stopped);
+    const StudyRun& run = *study_of(app.doing);
+    if (trial_goes_on(run)) {
+        const std::string why = close_trial(app);
+        if (!why.empty()) throw std::runtime_error(why);
+    }
+    if (const auto* stopped = std::get_if<step::Stopped>(&run.step)) throw std::runtime_error(stopped->why);
     files::Json json = study_json(app);
     json["overflow"] = gui.overflow();
     return json;

@@ -23,6 +23,11 @@ std::string device_names(const platform::Window& window) {
     return names.empty() ? "mouse" : names;
 }
 
+void close_or_tell(App& app) {
+    const std::string why = close_trial(app);
+    if (!why.empty()) app.notices.problems.push_back(why);
+}
+
 }  // namespace
 
 platform::TraceInfo info_of(const App& app, const platform::Window& window) {
@@ -30,9 +35,9 @@ platform::TraceInfo info_of(const App& app, const platform::Window& window) {
     platform::TraceInfo info;
     info.screen_width_px = window.width_px();
     info.screen_height_px = window.height_px();
-    if (std::isfinite(app.screens.px_per_mm)) {
-        info.screen_width_mm = info.screen_width_px / app.screens.px_per_mm;
-        info.screen_height_mm = info.screen_height_px / app.screens.px_per_mm;
+    if (std::isfinite(app.notices.px_per_mm)) {
+        info.screen_width_mm = info.screen_width_px / app.notices.px_per_mm;
+        info.screen_height_mm = info.screen_height_px / app.notices.px_per_mm;
     }
     info.device = device_names(window);
     return info;
@@ -47,13 +52,14 @@ double now_of(const App& app, const platform::Window& window) { return window.no
 
 files::Json result_of(const App& app) {
     const session::Session& s = app.session;
-    files::Json result = session::run_json(s.scene, *s.plan, s.state, app.frames, app.times.latency);
+    files::Json result = session::run_json(s.scene, *s.plan, s.state, app.frames, app.view.times.latency);
     const auto ms = [](const scene::Meter& meter, double q) { return 1e-6 * meter.quantile_ns(q); };
-    result["frame_cpu_ms"] = {{"p50", ms(app.times.cpu, 0.5)}, {"p99", ms(app.times.cpu, 0.99)}};
-    result["frame_gl_ms"] = {{"p50", ms(app.times.gl, 0.5)}, {"p99", ms(app.times.gl, 0.99)}};
-    result["latency_besides_drawing_ms"] = {{"p50", ms(app.times.ready, 0.5)}, {"p99", ms(app.times.ready, 0.99)}};
-    result["problems"] = app.screens.problems;
-    if (app.screens.check) result["device_check"] = check_json(*app.screens.check);
+    result["frame_cpu_ms"] = {{"p50", ms(app.view.times.cpu, 0.5)}, {"p99", ms(app.view.times.cpu, 0.99)}};
+    result["frame_gl_ms"] = {{"p50", ms(app.view.times.gl, 0.5)}, {"p99", ms(app.view.times.gl, 0.99)}};
+    result["latency_besides_drawing_ms"] = {{"p50", ms(app.view.times.ready, 0.5)},
+                                            {"p99", ms(app.view.times.ready, 0.99)}};
+    result["problems"] = app.notices.problems;
+    if (app.check) result["device_check"] = check_json(*app.check);
     result["trials"] = session::trials_json(s);
     return result;
 }
@@ -72,15 +78,12 @@ void end_presses(platform::Window& window, App& app) {
     session::take_sample(end, app.session);
 }
 
-void begin(const platform::Window& window, const Gui& gui, App& app) {
+void begin(platform::Window& window, const Gui& gui, App& app) {
     const session::TrialMode mode = app.settings.test_mode ? session::TrialMode::test : session::TrialMode::practice;
-    app.screens.screen = Screen::trial;
-    app.screens.maps.reset();
-    app.screens.menu = false;
-    app.screens.note.clear();
-    app.screens.asked.reset();
-    app.stopped.clear();
-    app.begin_waits = false;
+    go_to(Palpating{}, window, app);
+    app.notices.note.clear();
+    app.asked.reset();
+    app.course = GoesOn{};
     session::SessionFiles files{app.options.log, app.options.participant, app.options.record};
     files.first_run = app.options.first_run;
     files.finger_offset_mm = finger_offset_mm(app);
@@ -88,40 +91,41 @@ void begin(const platform::Window& window, const Gui& gui, App& app) {
     if (!app.trace) session::take_sample(resize_sample(window, gui, app.settings, now_of(app, window)), app.session);
 }
 
-bool close_trial(App& app) {
+std::string close_trial(App& app) {
     const std::string where = !app.options.log.empty() ? app.options.log : app.options.record;
     const std::optional<study::RunFiles> files = app.session.files;
     const bool good = session::close_files(result_of(app), app.session);
     if (app.keeper != nullptr && files) app.keeper->keep(*files, true);
-    if (good) return true;
-    app.stopped = words::filled(words::kCannotBeWritten, {where});
-    return false;
+    if (good) return {};
+    const std::string why = words::filled(words::kCannotBeWritten, {where});
+    app.course = TrialStopped{why};
+    return why;
 }
 
 void put_scene(scene::Scene scene, std::shared_ptr<const scene::Plan> plan, platform::Window& window, App& app) {
     end_presses(window, app);
-    if (!close_trial(app)) app.screens.problems.push_back(app.stopped);
+    close_or_tell(app);
     session::change_tissue(std::move(scene), std::move(plan), session::screen_of(info_of(app, window)), app.session);
-    if (app.screens.screen == Screen::reveal)
-        app.screens.screen = Screen::trial;  // what it tells is of the tissue before
+    // what it tells is of the tissue before
+    if (std::holds_alternative<Reviewing>(app.doing)) go_to(Palpating{}, window, app);
 }
 
 void begin_anew(platform::Window& window, const Gui& gui, App& app) {
     end_presses(window, app);
-    if (!close_trial(app)) app.screens.problems.push_back(app.stopped);
+    close_or_tell(app);
     if (app.keeper != nullptr && !app.keeper->ready()) {
-        app.begin_waits = true;  // no trial begins before the last one is safe
+        app.course = WaitsForKeeper{};
         return;
     }
-    if (!attempt(app, [&] { begin(window, gui, app); })) app.stopped = app.screens.problems.back();
+    if (!attempt(app, [&] { begin(window, gui, app); })) app.course = TrialStopped{app.notices.problems.back()};
 }
 
 void begin_when_kept(platform::Window& window, const Gui& gui, App& app) {
     if (app.keeper == nullptr) return;
     for (std::string problem = app.keeper->problem(); !problem.empty(); problem = app.keeper->problem()) {
-        app.screens.problems.push_back(problem);
+        app.notices.problems.push_back(problem);
     }
-    if (app.begin_waits && app.keeper->ready()) begin_anew(window, gui, app);
+    if (waits_for_keeper(app) && app.keeper->ready()) begin_anew(window, gui, app);
 }
 
 std::shared_ptr<const scene::Plan> prepare(platform::Window& window, Gui& gui, const scene::Scene& scene) {
@@ -171,17 +175,18 @@ void turn_if_shown(platform::Window& window, App& app) {
 }
 
 bool marks_at_stake(const App& app) {
-    const bool between = app.screens.study && app.screens.screen != Screen::trial;
+    const bool between = study_of(app.doing) != nullptr && !palpates(app.doing);
     const session::Trial& trial = app.session.trial;
-    return !app.trace && !between && app.stopped.empty() && !trial.finished && !trial.marks.empty();
+    return !app.trace && !between && !trial_stopped(app) && !trial.finished && !trial.marks.empty();
 }
 
-void act(platform::Action action, double now_s, App& app) {
-    const bool choice = app.screens.study && app.screens.study->protocol.task == study::TaskKind::choice;
+void act(platform::Action action, platform::Window& window, App& app) {
+    const StudyRun* study = study_of(app.doing);
+    const bool choice = study != nullptr && study->protocol.task == study::TaskKind::choice;
     if (choice && action != platform::Action::finish) return;  // there is nothing to mark
-    if (app.begin_waits) return;                               // there is no trial to act on yet
+    if (waits_for_keeper(app)) return;                         // there is no trial to act on yet
     platform::Sample sample;
-    sample.t_host_s = now_s;
+    sample.t_host_s = now_of(app, window);
     sample.phase = platform::Phase::ui;
     sample.action = action;
     if (action == platform::Action::mark) {
@@ -191,12 +196,10 @@ void act(platform::Action action, double now_s, App& app) {
     }
     session::take_sample(sample, app.session);
     if (!app.session.trial.finished) return;
-    if (app.screens.study) return finish_study_trial(app);
-    app.screens.debrief = session::debrief(*app.session.plan, app.session.trial);
-    app.screens.screen = Screen::reveal;
-    app.screens.note.clear();
-    app.screens.menu = false;
-    if (!close_trial(app)) app.screens.problems.push_back(app.stopped);
+    if (study != nullptr) return finish_study_trial(window, app);
+    close_or_tell(app);  // before the presses end: the log of a finished trial ends with its last action
+    go_to(back_to_trial(app), window, app);
+    app.notices.note.clear();
 }
 
 }  // namespace palpa::app

@@ -16,16 +16,16 @@ bool ends_trial(const Wishes& wishes) {
 
 }  // namespace
 
-Wishes ask_first(Wishes wishes, Screens& screens) {
+Wishes ask_first(Wishes wishes, std::optional<Wishes>& asked) {
     if (wishes.sure || !ends_trial(wishes)) return wishes;
     Wishes at_once;
     at_once.action = wishes.action;  // a mark of the same frame stays
     wishes.action.reset();
-    screens.asked = std::move(wishes);
+    asked = std::move(wishes);
     return at_once;
 }
 
-void draw_ask(const Shown& shown, Gui& gui, Screens& screens, Wishes& wishes) {
+void draw_ask(const Shown& shown, Gui& gui, Wishes& wishes) {
     const WindowSize window = gui.size_px();
     gui.claim({0.0f, 0.0f, window.width, window.height});  // nothing is palpated meanwhile
     const float width_px = std::min(window.width, 110.0f * gui.mm());
@@ -42,12 +42,9 @@ void draw_ask(const Shown& shown, Gui& gui, Screens& screens, Wishes& wishes) {
     const bool end = big_button(words::kEndTrial, words::kEnter, {0.0f, kTarget_mm, true, false}, gui) ||
                      gui.pressed(platform::key::enter) || gui.pressed(platform::key::pad_enter);
     end_panel("ask", gui);
-    if (!stay && !end) return;
-    if (!stay) {
-        wishes = *screens.asked;
-        wishes.sure = true;
-    }
-    screens.asked.reset();
+    if (end && !stay) wishes = *shown.asked;
+    wishes.sure = end && !stay;
+    wishes.stay = stay;
 }
 
 }  // namespace palpa::app

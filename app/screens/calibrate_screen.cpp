@@ -250,7 +250,7 @@ GuideWishes draw_guide(calibration::Recording& recording, Gui& gui, Guide& guide
 
 std::shared_ptr<CalibrateForm> make_calibrate_form() { return std::make_shared<CalibrateForm>(); }
 
-void draw_calibrate_screen(const Shown& shown, Gui& gui, CalibrateForm& form, Wishes& wishes) {
+void draw_calibrate_screen(const Shown&, Gui& gui, CalibrateForm& form, Wishes& wishes) {
     if (form.recording) {
         refresh_fit(*form.recording, form.guide);
         const GuideWishes asked = draw_guide(*form.recording, gui, form.guide);
@@ -264,7 +264,7 @@ void draw_calibrate_screen(const Shown& shown, Gui& gui, CalibrateForm& form, Wi
     ImGui::BeginChild("form", ImVec2(std::min(110.0f * gui.mm(), ImGui::GetContentRegionAvail().x), 0.0f), false,
                       ImGuiWindowFlags_NavFlattened);
     if (big_button(words::kBack, words::kEscape, {40.0f * gui.mm(), kTarget_mm, true, false}, gui)) {
-        wishes.screen = shown.trial.finished ? Screen::reveal : Screen::trial;
+        wishes.screen = Screen::trial;
     }
     ImGui::TextWrapped("%s", words::kHowToCalibrate);
     form_lines(gui, form);

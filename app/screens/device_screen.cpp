@@ -14,9 +14,9 @@ std::string range_text(const Range& range, int digits) {
     return std::isfinite(range.lowest) ? fixed(range.lowest, digits) + " ... " + fixed(range.highest, digits) : "-";
 }
 
-void said_lines(const Screens& screens) {
+void said_lines(const std::vector<platform::PointerDevice>& devices) {
     ImGui::TextDisabled(words::kSaysItHas);
-    for (const platform::PointerDevice& device : screens.devices) {
+    for (const platform::PointerDevice& device : devices) {
         std::string text = device.name + " (" + std::string(name_of(device.tool)) + "): ";
         text += device.has_pressure ? words::filled(words::kPressureRange,
                                                     {fixed(device.pressure_min, 0), fixed(device.pressure_max, 0)})
@@ -26,7 +26,7 @@ void said_lines(const Screens& screens) {
         if (device.has_contact_size) text += std::string(", ") + words::kContactSize;
         ImGui::TextWrapped("%s", text.c_str());
     }
-    if (screens.devices.empty()) paragraph(words::kNoDevice);
+    if (devices.empty()) paragraph(words::kNoDevice);
 }
 
 std::string verdict(platform::Tool which, const DeviceCheck& check) {
@@ -71,12 +71,12 @@ void seen_lines(platform::Tool which, const DeviceCheck& check, const Gui& gui) 
     value_line(words::kSamples, std::to_string(tool.samples), column_px);
 }
 
-void draw_test_area(const PanelArea& area, const Gui& gui, const Screens& screens) {
+void draw_test_area(const PanelArea& area, const Gui& gui, const std::vector<Dot>& dots) {
     ImDrawList& draw = *ImGui::GetBackgroundDrawList();
     draw.AddRectFilled(ImVec2(area.x0, area.y0), ImVec2(area.x1, area.y1), IM_COL32(40, 44, 48, 255));
     draw.AddRect(ImVec2(area.x0, area.y0), ImVec2(area.x1, area.y1), kPale);
     draw.AddText(ImVec2(area.x0 + 2.0f * gui.mm(), area.y0 + 2.0f * gui.mm()), kInk, words::kTryHere);
-    for (const Dot& dot : screens.dots) {
+    for (const Dot& dot : dots) {
         const float level = std::isfinite(dot.pressure) ? std::clamp(dot.pressure, 0.0f, 1.0f) : 0.0f;
         draw.AddCircle(ImVec2(dot.x_px, dot.y_px), (0.4f + 5.0f * level) * gui.mm(), dot.touching ? kLag : kPale, 16,
                        0.2f * gui.mm());
@@ -85,16 +85,16 @@ void draw_test_area(const PanelArea& area, const Gui& gui, const Screens& screen
 
 }  // namespace
 
-void add_dot(const platform::Sample& sample, Screens& screens) {
+void add_dot(const platform::Sample& sample, std::vector<Dot>& dots) {
     constexpr std::size_t kDots = 400;
     const bool touching = sample.phase == platform::Phase::down || sample.phase == platform::Phase::move;
     if (sample.phase == platform::Phase::ui || !std::isfinite(sample.x_px + sample.y_px)) return;
-    if (screens.dots.size() >= kDots) screens.dots.erase(screens.dots.begin(), screens.dots.begin() + kDots / 4);
-    screens.dots.push_back({static_cast<float>(sample.x_px), static_cast<float>(sample.y_px),
-                            static_cast<float>(sample.pressure), touching});
+    if (dots.size() >= kDots) dots.erase(dots.begin(), dots.begin() + kDots / 4);
+    dots.push_back({static_cast<float>(sample.x_px), static_cast<float>(sample.y_px),
+                    static_cast<float>(sample.pressure), touching});
 }
 
-void draw_device_screen(const Shown& shown, Gui& gui, Screens& screens, Wishes& wishes) {
+void draw_device_screen(const Shown& shown, const CheckingDevices& checking, Gui& gui, Wishes& wishes) {
     const WindowSize window = gui.size_px();
     const bool wide = window.width >= window.height;
     const float share = 0.45f;
@@ -103,19 +103,17 @@ void draw_device_screen(const Shown& shown, Gui& gui, Screens& screens, Wishes& 
     const PanelArea test = wide ? PanelArea{panel.x1, 0.0f, window.width, window.height}
                                 : PanelArea{0.0f, panel.y1, window.width, window.height};
     ImGui::GetBackgroundDrawList()->AddRectFilled(ImVec2(0.0f, 0.0f), ImVec2(window.width, window.height), kDark);
-    draw_test_area(test, gui, screens);
+    draw_test_area(test, gui, checking.dots);
     begin_panel("devices", panel, gui);
     if (big_button(words::kBack, words::kEscape, {40.0f * gui.mm(), kTarget_mm, true, false}, gui)) {
-        wishes.screen = shown.trial.finished ? Screen::reveal : Screen::trial;
+        wishes.screen = Screen::trial;
     }
     ImGui::BeginChild("list");  // as many devices as there are: this part may scroll
-    said_lines(screens);
-    for (const std::string& note : screens.device_notes) warning_paragraph(note);
-    if (screens.check != nullptr) {
-        for (const platform::Tool tool :
-             {platform::Tool::pen, platform::Tool::finger, platform::Tool::mouse, platform::Tool::keyboard})
-            seen_lines(tool, *screens.check, gui);
-    }
+    said_lines(shown.notices.devices);
+    for (const std::string& note : shown.notices.device_notes) warning_paragraph(note);
+    for (const platform::Tool tool :
+         {platform::Tool::pen, platform::Tool::finger, platform::Tool::mouse, platform::Tool::keyboard})
+        seen_lines(tool, *checking.check, gui);
     ImGui::EndChild();
     end_panel("devices", gui);
 }

@@ -34,29 +34,42 @@ Surface surface_of(const scene::Scene& scene, const scene::Plan& plan, const sce
     return surface;
 }
 
-void draw_panels(const Shown& shown, const Layout& layout, Gui& gui, Screens& screens, Wishes& wishes) {
-    if (screens.asked) {
-        draw_on_tissue(shown, gui);
-        return draw_ask(shown, gui, screens, wishes);
+// The screens that cover the tissue. Returns false if none is open.
+bool draw_covering(const Shown& shown, Gui& gui, ViewState& view, Wishes& wishes) {
+    if (const auto* checking = std::get_if<CheckingDevices>(&shown.doing)) {
+        draw_device_screen(shown, *checking, gui, wishes);
+    } else if (std::holds_alternative<MeasuringScreen>(shown.doing)) {
+        draw_scale_screen(shown, gui, view.card_px_per_mm, wishes);
+    } else if (const auto* calibrating = std::get_if<Calibrating>(&shown.doing)) {
+        draw_calibrate_screen(shown, gui, *calibrating->form, wishes);
+    } else if (std::holds_alternative<BrowsingMaps>(shown.doing)) {
+        draw_map_screen(shown, gui, *view.maps, wishes);
+    } else if (const StudyRun* study = study_of(shown.doing); study != nullptr && !trial_goes_on(*study)) {
+        draw_study_screen(*study, shown.now_s, gui, view.study, wishes);
+    } else {
+        return false;
     }
-    take_keys(shown, gui, screens, wishes);
-    if (screens.screen == Screen::devices) return draw_device_screen(shown, gui, screens, wishes);
-    if (screens.screen == Screen::scale) return draw_scale_screen(shown, gui, screens, wishes);
-    if (screens.screen == Screen::calibrate && screens.calibrate)
-        return draw_calibrate_screen(shown, gui, *screens.calibrate, wishes);
-    if (screens.screen == Screen::maps && screens.maps) return draw_map_screen(shown, gui, *screens.maps, wishes);
-    if (screens.screen == Screen::study && screens.study)
-        return draw_study_screen(shown.now_s, gui, *screens.study, wishes);
-    if (screens.screen == Screen::reveal) {
-        draw_reveal_on_tissue(shown, gui, screens.debrief);
-        draw_reveal_panel(shown, layout, gui, screens, wishes);
+    return true;
+}
+
+void draw_panels(const Shown& shown, const Layout& layout, Gui& gui, ViewState& view, Wishes& wishes) {
+    if (shown.asked) {
+        draw_on_tissue(shown, gui);
+        return draw_ask(shown, gui, wishes);
+    }
+    take_keys(shown, gui, view, wishes);
+    if (draw_covering(shown, gui, view, wishes)) return;
+    if (const auto* reviewing = std::get_if<Reviewing>(&shown.doing)) {
+        draw_reveal_on_tissue(shown, gui, reviewing->debrief);
+        draw_reveal_panel(shown, layout, *reviewing, gui, wishes);
     } else {
         draw_on_tissue(shown, gui);
-        draw_trial_panel(shown, layout, gui, screens, wishes);
+        draw_trial_panel(shown, layout, gui, wishes);
     }
-    if (screens.menu) {
-        draw_menu(shown, layout, gui, screens, wishes);
-    } else if (screens.cost) {
+    const bool* menu = menu_of(shown.doing);
+    if (menu != nullptr && *menu) {
+        draw_menu(shown, layout, gui, view, wishes);
+    } else if (view.cost) {
         draw_cost(shown, layout, gui);
     }
 }
@@ -79,35 +92,34 @@ std::uint64_t content_of(const render::TissueView& view, const Surface& surface,
 
 }  // namespace
 
-Wishes draw_frame(const scene::Scene& scene, const scene::Plan& plan, const session::Trial& trial,
-                  const Settings& settings, double now_s, double dt_s, render::TissueDrawer& tissue, Gui& gui,
-                  Screens& screens, scene::State& state, FrameTimes& times, OnScreen& on_screen) {
+Wishes draw_frame(const ToShow& what, const Canvas& canvas, ViewState& view, scene::State& state) {
     const std::int64_t began_ns = scene::steady_ns();
-    const bool keys_to_panels =
-        screens.menu || screens.asked || (screens.screen != Screen::trial && screens.screen != Screen::devices);
-    gui.keep_enter(screens.screen == Screen::study || screens.asked);
-    gui.begin_frame(dt_s, keys_to_panels);
+    Gui& gui = canvas.gui;
+    const StudyRun* study = study_of(what.doing);
+    gui.keep_enter((study != nullptr && !trial_goes_on(*study)) || what.asked);
+    gui.begin_frame(what.dt_s, what.asked || !keys_move_indenter(what.doing));
     const WindowSize window = gui.size_px();
-    Shown shown{scene, plan, state, trial, settings, times, {}, {}, 0.0, now_s};
-    shown.avatar = trial.finished ? scene::Avatar{} : scene::avatar_at(scene, state, now_s);
-    shown.view = tissue_view(scene, state, window.width, window.height);
-    shown.trial_s = trial.finished ? trial.now_s - trial.began_s : std::max(0.0, now_s - trial.began_s);
+    const session::Trial& trial = what.trial;
+    Shown shown{what, state, view.times};
+    shown.avatar = trial.finished ? scene::Avatar{} : scene::avatar_at(what.scene, state, what.now_s);
+    shown.view = tissue_view(what.scene, state, window.width, window.height);
+    shown.trial_s = trial.finished ? trial.now_s - trial.began_s : std::max(0.0, what.now_s - trial.began_s);
     Wishes wishes;
-    draw_panels(shown, layout_now(gui, window.width, window.height, settings), gui, screens, wishes);
-    const Surface surface = trial.finished ? Surface{} : surface_of(scene, plan, shown.avatar, state);
-    render::Ball ball = ball_of(plan, state, shown.avatar);
+    draw_panels(shown, layout_now(gui, window.width, window.height, what.settings), gui, view, wishes);
+    const Surface surface = trial.finished ? Surface{} : surface_of(what.scene, what.plan, shown.avatar, state);
+    render::Ball ball = ball_of(what.plan, state, shown.avatar);
     if (trial.finished) ball.radius_m = 0.0f;
     gui.end_frame();
     const std::int64_t built_ns = scene::steady_ns();
-    times.built_ns = built_ns;
-    times.cpu.add_ns(static_cast<double>(built_ns - began_ns));
+    view.times.built_ns = built_ns;
+    view.times.cpu.add_ns(static_cast<double>(built_ns - began_ns));
     const std::uint64_t content = content_of(shown.view, surface, ball, gui);
-    on_screen.drawn = content != on_screen.content;
-    if (!on_screen.drawn) return wishes;
-    on_screen.content = content;
-    tissue.draw(shown.view, surface.dent, surface.relief, ball);
+    view.on_screen.drawn = content != view.on_screen.content;
+    if (!view.on_screen.drawn) return wishes;
+    view.on_screen.content = content;
+    canvas.tissue.draw(shown.view, surface.dent, surface.relief, ball);
     gui.draw();
-    times.gl.add_ns(static_cast<double>(scene::steady_ns() - built_ns));
+    view.times.gl.add_ns(static_cast<double>(scene::steady_ns() - built_ns));
     return wishes;
 }
 

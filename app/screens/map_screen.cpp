@@ -157,15 +157,15 @@ Areas areas_of(float width, float height, float mm_px) {
     return out;
 }
 
-void back_button(const Shown& shown, const Gui& gui, Wishes& wishes) {
+void back_button(const Gui& gui, Wishes& wishes) {
     if (big_button(words::kBack, words::kEscape, {40.0f * gui.mm(), kTarget_mm, true, false}, gui))
-        wishes.screen = shown.trial.finished ? Screen::reveal : Screen::trial;
+        wishes.screen = Screen::trial;
 }
 
-void draw_controls(const Shown& shown, const Areas& areas, Gui& gui, MapBrowser& browser, Wishes& wishes) {
+void draw_controls(const Areas& areas, Gui& gui, MapBrowser& browser, Wishes& wishes) {
     begin_panel("map controls", areas.controls, gui);
     const bool wide = areas.controls.width() < areas.controls.height();
-    back_button(shown, gui, wishes);
+    back_button(gui, wishes);
     const float line_px = kTarget_mm * gui.mm() + ImGui::GetStyle().ItemSpacing.y;
     if (wide) {
         if (!browser.problem.empty()) warning_paragraph(browser.problem);
@@ -245,14 +245,14 @@ void draw_map_screen(const Shown& shown, Gui& gui, MapBrowser& browser, Wishes& 
     ImGui::GetBackgroundDrawList()->AddRectFilled(ImVec2(0.0f, 0.0f), ImVec2(window.width, window.height), kDark);
     if (!may_show_maps(shown.trial)) {
         begin_panel("map hidden", {0.0f, 0.0f, window.width, window.height}, gui);
-        back_button(shown, gui, wishes);
+        back_button(gui, wishes);
         ImGui::TextWrapped("%s", words::kMapsHidden);
         end_panel("map hidden", gui);
         return;
     }
     const Areas areas = areas_of(window.width, window.height, gui.mm());
     if (browser.map.n_cells() > 0) take_map_keys(gui, browser);
-    draw_controls(shown, areas, gui, browser, wishes);
+    draw_controls(areas, gui, browser, wishes);
     std::optional<Eigen::Vector2d> pointed_m;
     bool pressed = false;
     begin_panel("map matrix", areas.matrix, gui);

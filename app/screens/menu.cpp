@@ -49,7 +49,7 @@ void pair(const char* left, const char* right, bool right_chosen, const Gui& gui
     chose_right = big_button(right, "", {width_px, kTarget_mm, true, right_chosen}, gui);
 }
 
-void right_side(const Shown& shown, const Gui& gui, Screens& screens, Wishes& wishes) {
+void right_side(const Shown& shown, const Gui& gui, ViewState& view, Wishes& wishes) {
     bool left = false;
     bool right = false;
     ImGui::TextDisabled(words::kTrial);
@@ -65,7 +65,7 @@ void right_side(const Shown& shown, const Gui& gui, Screens& screens, Wishes& wi
     pair(words::kUnderIt, words::kAboveIt, shown.settings.above_finger, gui, left, right);
     if (left) wishes.above_finger = false;
     if (right) wishes.above_finger = true;
-    if (screens.keeps_trials) {
+    if (shown.notices.keeps_trials) {
         ImGui::TextDisabled(words::kOnThisTablet);
         left = right = false;
         pair_of_ways(words::kTrials, words::kStudies, gui, left, right);
@@ -78,10 +78,10 @@ void right_side(const Shown& shown, const Gui& gui, Screens& screens, Wishes& wi
     if (big_button(words::kCalibratePressure, "P", {}, gui)) wishes.screen = Screen::calibrate;
     if (big_button(words::kMaps, "B", {0.0f, kTarget_mm, may_show_maps(shown.trial), false}, gui))
         wishes.screen = Screen::maps;
-    if (big_button(words::kCost, "C", {0.0f, kTarget_mm, true, screens.cost}, gui)) screens.cost = !screens.cost;
+    if (big_button(words::kCost, "C", {0.0f, kTarget_mm, true, view.cost}, gui)) view.cost = !view.cost;
     if (big_button(words::kFullScreen, "F11", {0.0f, kTarget_mm, true, shown.settings.full_screen}, gui))
         wishes.full_screen = true;
-    if (!screens.keeps_trials && big_button(words::kQuit, words::kCtrlQ, {}, gui)) wishes.quit = true;
+    if (!shown.notices.keeps_trials && big_button(words::kQuit, words::kCtrlQ, {}, gui)) wishes.quit = true;
 }
 
 void stage_rows(const Shown& shown, const std::vector<scene::Stage>& stages) {
@@ -128,9 +128,21 @@ void trial_keys(const Shown& shown, const Gui& gui, Wishes& wishes) {
     }
 }
 
+// Opens and closes the menu; from a screen without one, Escape leads back to the trial.
+void menu_keys(const Shown& shown, const Gui& gui, Wishes& wishes) {
+    const bool* menu = menu_of(shown.doing);
+    if (menu == nullptr) {
+        if (gui.pressed(platform::key::escape)) wishes.screen = Screen::trial;
+        return;
+    }
+    const bool by_tab = gui.pressed(platform::key::tab) && !*menu && palpates(shown.doing);
+    if (gui.pressed(platform::key::f10) || by_tab) wishes.menu = !*menu;
+    if (gui.pressed(platform::key::escape)) wishes.menu = false;
+}
+
 }  // namespace
 
-void draw_menu(const Shown& shown, const Layout& layout, Gui& gui, Screens& screens, Wishes& wishes) {
+void draw_menu(const Shown& shown, const Layout& layout, Gui& gui, ViewState& view, Wishes& wishes) {
     const PanelArea area = menu_area(layout, gui.mm());
     begin_panel("menu", area, gui);
     if (ImGui::IsWindowAppearing()) ImGui::SetWindowFocus();
@@ -140,13 +152,13 @@ void draw_menu(const Shown& shown, const Layout& layout, Gui& gui, Screens& scre
     ImGui::BeginChild("what", ImVec2(half_px, height_px), false, ImGuiWindowFlags_NavFlattened);
     const float line_px = ImGui::GetFontSize() + 2.0f * ImGui::GetStyle().ItemSpacing.y;
     const float list_px = ImGui::GetContentRegionAvail().y - 2.0f * line_px;
-    choices(words::kScene, screens.scenes, shown.scene.file.string(), 0.62f * list_px, gui, wishes.scene);
-    choices(words::kPressureProfile, screens.profiles, shown.scene.profile.string(), 0.36f * list_px, gui,
+    choices(words::kScene, shown.notices.scenes, shown.scene.file.string(), 0.62f * list_px, gui, wishes.scene);
+    choices(words::kPressureProfile, shown.notices.profiles, shown.scene.profile.string(), 0.36f * list_px, gui,
             wishes.profile);
     ImGui::EndChild();
     if (two_columns) ImGui::SameLine();
     ImGui::BeginChild("how", ImVec2(0.0f, 0.0f), false, ImGuiWindowFlags_NavFlattened);
-    right_side(shown, gui, screens, wishes);
+    right_side(shown, gui, view, wishes);
     ImGui::EndChild();
     end_panel("menu", gui);
 }
@@ -176,47 +188,35 @@ void draw_cost(const Shown& shown, const Layout& layout, Gui& gui) {
     end_panel("cost", gui);
 }
 
-void age_note(double now_s, Screens& screens) {
+void age_note(double now_s, Notices& notices) {
     constexpr double kShown_s = 8.0;  // long enough to read two lines twice
-    if (screens.note != screens.note_seen) {
-        screens.note_seen = screens.note;
-        screens.note_since_s = now_s;
+    if (notices.note != notices.note_seen) {
+        notices.note_seen = notices.note;
+        notices.note_since_s = now_s;
     }
-    if (now_s - screens.note_since_s > kShown_s) screens.note.clear();
+    if (now_s - notices.note_since_s > kShown_s) notices.note.clear();
 }
 
-void take_keys(const Shown& shown, const Gui& gui, Screens& screens, Wishes& wishes) {
-    if (gui.pressed('q', true) && !screens.keeps_trials) wishes.quit = true;
+void take_keys(const Shown& shown, const Gui& gui, ViewState& view, Wishes& wishes) {
+    if (gui.pressed('q', true) && !shown.notices.keeps_trials) wishes.quit = true;
     if (gui.pressed(platform::key::f11)) wishes.full_screen = true;
-    if (screens.study) {  // the rest would change what the protocol says, or tell what it hides
-        if (gui.pressed(platform::key::escape)) screens.problems.clear();
-        if (screens.screen == Screen::trial) trial_keys(shown, gui, wishes);
-        return;
-    }
+    if (gui.pressed(platform::key::escape)) wishes.understood = true;
+    if (palpates(shown.doing)) trial_keys(shown, gui, wishes);
+    if (study_of(shown.doing) != nullptr)
+        return;  // the rest would change what the protocol says, or tell what it hides
     if (gui.pressed('t')) wishes.trials = true;
     if (gui.pressed('y')) wishes.studies = true;
-    if (gui.pressed(platform::key::f10) ||
-        (gui.pressed(platform::key::tab) && !screens.menu && screens.screen == Screen::trial)) {
-        screens.menu = !screens.menu;
-    }
-    if (gui.pressed(platform::key::escape)) {
-        screens.problems.clear();
-        if (screens.screen != Screen::trial && screens.screen != Screen::reveal) {
-            wishes.screen = shown.trial.finished ? Screen::reveal : Screen::trial;
-        } else {
-            screens.menu = false;
-        }
-    }
-    if (gui.pressed('c')) screens.cost = !screens.cost;
+    menu_keys(shown, gui, wishes);
+    if (gui.pressed('c')) view.cost = !view.cost;
     if (gui.pressed('d')) wishes.screen = Screen::devices;
     if (gui.pressed('z')) wishes.screen = Screen::scale;
     if (gui.pressed('p')) wishes.screen = Screen::calibrate;
     if (gui.pressed('b')) wishes.screen = Screen::maps;
     if (gui.pressed('r')) wishes.again = true;
     if (gui.pressed('s', true)) wishes.save_picture = true;
-    if (screens.screen == Screen::trial) trial_keys(shown, gui, wishes);
-    if (screens.screen == Screen::reveal && gui.pressed('n')) wishes.next = true;
-    if (screens.screen == Screen::reveal && gui.pressed('s')) wishes.save_picture = true;
+    if (!std::holds_alternative<Reviewing>(shown.doing)) return;
+    if (gui.pressed('n')) wishes.next = true;
+    if (gui.pressed('s')) wishes.save_picture = true;
 }
 
 }  // namespace palpa::app

@@ -13,28 +13,19 @@ void save_screen(const platform::Window& window, const std::filesystem::path& pn
     files::write_text_whole(png, render::png_bytes(width_px, height_px, render::read_pixels(width_px, height_px)));
 }
 
-std::string draw_picture(const scene::Scene& scene, const scene::Plan& plan, const session::Trial& trial,
-                         const Settings& settings, const Screens& screens, int width_px, int height_px,
-                         scene::State& state, const std::filesystem::path& png) {
+std::string draw_picture(const ToShow& what, const Picture& picture, ViewState& view, scene::State& state) {
     platform::WindowOptions options;
     options.visible = false;
-    options.width_px = width_px;
-    options.height_px = height_px;
+    options.width_px = picture.width_px;
+    options.height_px = picture.height_px;
     platform::Window window(options);
     Gui gui(window);
     render::TissueDrawer tissue;
-    FrameTimes times;
-    Screens open = screens;
-    std::string overflow;
-    OnScreen on_screen;
-    gui.set_scale(control_scale(screens.px_per_mm, static_cast<float>(width_px), static_cast<float>(height_px)));
-    for (int i = 0; i < 3; ++i) {
-        draw_frame(scene, plan, trial, settings, state.timeline.now_s, 1.0 / 60.0, tissue, gui, open, state, times,
-                   on_screen);
-        overflow = gui.overflow();
-    }
-    save_screen(window, png);
-    return overflow;
+    gui.set_scale(control_scale(what.notices.px_per_mm, static_cast<float>(picture.width_px),
+                                static_cast<float>(picture.height_px)));
+    for (int i = 0; i < 3; ++i) draw_frame(what, {gui, tissue}, view, state);
+    save_screen(window, picture.png);
+    return gui.overflow();
 }
 
 }  // namespace palpa::app

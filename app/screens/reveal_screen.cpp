@@ -145,17 +145,15 @@ void legend(const session::Debrief& debrief, const Gui& gui) {
     }
 }
 
-void buttons(const Gui& gui, Screens& screens, Wishes& wishes) {
+void buttons(const Gui& gui, bool menu, Wishes& wishes) {
     const float width_px = share_of_line_px(2);
     if (big_button(words::kAgain, "R", {width_px, kMark_mm, true, false}, gui)) wishes.again = true;
     ImGui::SameLine();
     if (big_button(words::kNext, "N", {width_px, kMark_mm, true, false}, gui)) wishes.next = true;
     if (big_button(words::kSavePicture, "S", {width_px, kTarget_mm, true, false}, gui)) wishes.save_picture = true;
     ImGui::SameLine();
-    if (big_button(screens.menu ? words::kClose : words::kMenu, "F10", {width_px, kTarget_mm, true, screens.menu},
-                   gui)) {
-        screens.menu = !screens.menu;
-    }
+    if (big_button(menu ? words::kClose : words::kMenu, "F10", {width_px, kTarget_mm, true, menu}, gui))
+        wishes.menu = !menu;
 }
 
 }  // namespace
@@ -168,25 +166,25 @@ void draw_reveal_on_tissue(const Shown& shown, const Gui& gui, const session::De
     draw_marks(shown, debrief.score, gui.mm(), draw);
 }
 
-void draw_reveal_panel(const Shown& shown, const Layout& layout, Gui& gui, Screens& screens, Wishes& wishes) {
+void draw_reveal_panel(const Shown& shown, const Layout& layout, const Reviewing& reviewing, Gui& gui, Wishes& wishes) {
     if (!layout.controls) return;
     begin_panel("reveal", layout.controls_px, gui);
     const float half_px = layout.column ? 0.0f : share_of_line_px(2);
     ImGui::BeginGroup();
     if (!layout.column) ImGui::BeginChild("results", ImVec2(half_px, 0.0f), false, ImGuiWindowFlags_NavFlattened);
-    if (layout.column) buttons(gui, screens, wishes);
-    result_lines(shown, screens.debrief, gui);
+    if (layout.column) buttons(gui, reviewing.menu, wishes);
+    result_lines(shown, reviewing.debrief, gui);
     if (!layout.column) ImGui::EndChild();
     ImGui::EndGroup();
     if (!layout.column) {
         ImGui::SameLine();
         ImGui::BeginChild("legend", ImVec2(0.0f, 0.0f), false, ImGuiWindowFlags_NavFlattened);
-        buttons(gui, screens, wishes);
+        buttons(gui, reviewing.menu, wishes);
     }
-    legend(screens.debrief, gui);
-    for (const std::string& problem : screens.problems) warning_paragraph(problem);
-    if (!screens.note.empty()) paragraph(screens.note);
-    if (!screens.trials_note.empty()) paragraph(screens.trials_note);
+    legend(reviewing.debrief, gui);
+    for (const std::string& problem : shown.notices.problems) warning_paragraph(problem);
+    if (!shown.notices.note.empty()) paragraph(shown.notices.note);
+    if (!shown.notices.trials_note.empty()) paragraph(shown.notices.trials_note);
     if (!layout.column) ImGui::EndChild();
     end_panel("reveal", gui);
 }

@@ -47,37 +47,37 @@ void step_buttons(const Gui& gui, double& px_per_mm) {
 
 }  // namespace
 
-void draw_scale_screen(const Shown& shown, Gui& gui, Screens& screens, Wishes& wishes) {
+void draw_scale_screen(const Shown& shown, Gui& gui, double& card_px_per_mm, Wishes& wishes) {
     const ImVec2 screen = ImGui::GetIO().DisplaySize;
     begin_panel("scale", {0.0f, 0.0f, screen.x, screen.y}, gui);
     ImGui::TextWrapped("%s", words::kHoldCard);
-    step_buttons(gui, screens.card_px_per_mm);
+    step_buttons(gui, card_px_per_mm);
     if (!ImGui::GetIO().WantTextInput) {
-        if (gui.pressed('+') || gui.pressed('=') || gui.pressed(platform::key::pad_plus))
-            screens.card_px_per_mm *= 1.002;
-        if (gui.pressed('-') || gui.pressed(platform::key::pad_minus)) screens.card_px_per_mm /= 1.002;
+        if (gui.pressed('+') || gui.pressed('=') || gui.pressed(platform::key::pad_plus)) card_px_per_mm *= 1.002;
+        if (gui.pressed('-') || gui.pressed(platform::key::pad_minus)) card_px_per_mm /= 1.002;
     }
     ImGui::SetNextItemWidth(40.0f * gui.mm());
     ImGui::PushStyleVar(ImGuiStyleVar_FramePadding,
                         ImVec2(2.0f * gui.mm(), 0.5f * (kTarget_mm * gui.mm() - ImGui::GetFontSize())));
-    ImGui::InputDouble(words::kPxPerMm, &screens.card_px_per_mm, 0.0, 0.0, "%.3f");
+    ImGui::InputDouble(words::kPxPerMm, &card_px_per_mm, 0.0, 0.0, "%.3f");
     ImGui::PopStyleVar();
-    if (!std::isfinite(screens.card_px_per_mm)) screens.card_px_per_mm = kLeast_px_per_mm;
-    screens.card_px_per_mm = std::clamp(screens.card_px_per_mm, kLeast_px_per_mm, kMost_px_per_mm);
+    if (!std::isfinite(card_px_per_mm)) card_px_per_mm = kLeast_px_per_mm;
+    card_px_per_mm = std::clamp(card_px_per_mm, kLeast_px_per_mm, kMost_px_per_mm);
     const float width_px = std::min(share_of_line_px(3), 42.0f * gui.mm());
-    if (big_button(words::kKeep, "", {width_px, kMark_mm, true, false}, gui)) wishes.px_per_mm = screens.card_px_per_mm;
+    if (big_button(words::kKeep, "", {width_px, kMark_mm, true, false}, gui)) wishes.px_per_mm = card_px_per_mm;
     ImGui::SameLine();
-    if (big_button(words::kForget, "", {width_px, kMark_mm, std::isfinite(screens.px_per_mm), false}, gui))
+    if (big_button(words::kForget, "", {width_px, kMark_mm, std::isfinite(shown.notices.px_per_mm), false}, gui))
         wishes.px_per_mm = platform::kMissing;
     ImGui::SameLine();
     if (big_button(words::kBack, words::kEscape, {width_px, kMark_mm, true, false}, gui)) {
-        wishes.screen = shown.trial.finished ? Screen::reveal : Screen::trial;
+        wishes.screen = Screen::trial;
     }
-    const std::string kept =
-        std::isfinite(screens.px_per_mm) ? fixed(screens.px_per_mm, 3) + " " + words::kPxPerMm : words::kNotMeasured;
-    paragraph(words::filled(words::kThisScreen, {screens.screen_name, kept}));
+    const std::string kept = std::isfinite(shown.notices.px_per_mm)
+                                 ? fixed(shown.notices.px_per_mm, 3) + " " + words::kPxPerMm
+                                 : words::kNotMeasured;
+    paragraph(words::filled(words::kThisScreen, {shown.notices.screen_name, kept}));
     const float top_px = ImGui::GetCursorScreenPos().y;
-    draw_card({0.0f, top_px, screen.x, screen.y}, static_cast<float>(screens.card_px_per_mm));
+    draw_card({0.0f, top_px, screen.x, screen.y}, static_cast<float>(card_px_per_mm));
     end_panel("scale", gui);
 }
 

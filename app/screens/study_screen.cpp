@@ -67,10 +67,9 @@ void leave_button(const Gui& gui, const StudyRun& run, Wishes& wishes) {
 }
 
 // The screen while the keeper stores what was done, usually for less than a frame.
-void draw_keeping(double now_s, Gui& gui, StudyRun& run, Wishes& wishes) {
+void draw_keeping(double now_s, Gui& gui, const StudyRun& run, Wishes& wishes) {
     constexpr double kSoon_s = 0.5;
-    if (run.keeping_began_s == 0.0) run.keeping_began_s = now_s;
-    if (now_s - run.keeping_began_s < kSoon_s && run.warnings.empty()) return;
+    if (now_s - *run.keeping_since_s < kSoon_s && run.warnings.empty()) return;
     title(words::kOneMoment);
     paragraph(words::kBeingKept);
     for (const std::string& warning : run.warnings) warning_paragraph(warning);
@@ -78,20 +77,18 @@ void draw_keeping(double now_s, Gui& gui, StudyRun& run, Wishes& wishes) {
     if (!run.warnings.empty()) trials_button(gui, run, wishes);
 }
 
-void draw_code(Gui& gui, StudyRun& run, Wishes& wishes) {
+void draw_code(const step::Code& step, const StudyRun& run, Gui& gui, StudyForm& form, Wishes& wishes) {
     title(words::kWhoIsHere);
     paragraph(words::kCodeNoName);
-    const bool fresh = !run.typed_code;
-    if (fresh) run.typed_code = free_code(run);
     char text[24];
-    std::snprintf(text, sizeof text, "%s", run.typed_code->c_str());
+    std::snprintf(text, sizeof text, "%s", form.code.c_str());
     ImGui::SetNextItemWidth(60.0f * gui.mm());
-    if (fresh || run.focus_code || ImGui::IsWindowAppearing()) ImGui::SetKeyboardFocusHere();
-    run.focus_code = false;
+    if (form.refused != step.refused || ImGui::IsWindowAppearing()) ImGui::SetKeyboardFocusHere();
+    form.refused = step.refused;
     const bool entered = text_field(words::kCode, text, sizeof text, ImGuiInputTextFlags_EnterReturnsTrue, gui);
-    run.typed_code = text;
+    form.code = text;
     gap(gui);
-    if (forward(words::kGoOn, gui) || entered) enter_code(text, run);
+    if (forward(words::kGoOn, gui) || entered) wishes.study = EnterCode{text};
     if (!run.note.empty()) warning_paragraph(run.note);
     for (const std::string& warning : run.warnings) warning_paragraph(warning);
     if (!run.on_tablet) return;
@@ -100,13 +97,14 @@ void draw_code(Gui& gui, StudyRun& run, Wishes& wishes) {
     leave_button(gui, run, wishes);
 }
 
-void draw_again(Gui& gui, StudyRun& run) {
+void draw_again(const StudyRun& run, Gui& gui, Wishes& wishes) {
     title(words::filled(words::kHasBeenHere, {run.code}));
     paragraph(words::filled(words::kTrialsDone, {std::to_string(run.progress.finished.size()),
                                                  std::to_string(run.progress.plan.trials.size())}));
     gap(gui);
-    if (forward(words::kGoOnWithStudy, gui)) return same_person(true, run);
-    if (big_button(words::kSomebodyElse, "", {70.0f * gui.mm(), kTarget_mm, true, false}, gui)) same_person(false, run);
+    const bool same = forward(words::kGoOnWithStudy, gui);
+    const bool other = big_button(words::kSomebodyElse, "", {70.0f * gui.mm(), kTarget_mm, true, false}, gui);
+    if (same || other) wishes.study = SamePerson{same};
 }
 
 void draw_choices(const std::vector<std::string>& choices, float least_px, const Gui& gui, std::string& answer) {
@@ -153,11 +151,12 @@ bool acceptable(const study::Item& item, const std::string& answer) {
     return std::sscanf(answer.c_str(), "%lf", &value) == 1 && value >= *item.from && value <= *item.to;
 }
 
-void draw_items(Gui& gui, StudyRun& run) {
+void draw_items(const StudyRun& run, Gui& gui, std::vector<std::string>& answers, Wishes& wishes) {
     const std::vector<study::Item>& items = due_items(run);
-    run.answers.resize(items.size());
-    title(run.step == StudyStep::questions ? words::kQuestionsFirst : words::kHowWasIt);
-    if (run.step == StudyStep::ratings) paragraph(run.protocol.conditions[run.rated].title);
+    answers.resize(items.size());
+    const auto* rated = std::get_if<step::Ratings>(&run.step);
+    title(rated == nullptr ? words::kQuestionsFirst : words::kHowWasIt);
+    if (rated != nullptr) paragraph(run.protocol.conditions[rated->condition].title);
     paragraph(words::kMayLeaveOpen);
     const float below_px = (kMark_mm + 4.0f) * gui.mm();
     ImGui::BeginChild("items", ImVec2(0.0f, ImGui::GetContentRegionAvail().y - below_px), false,
@@ -165,8 +164,8 @@ void draw_items(Gui& gui, StudyRun& run) {
     bool good = true;
     for (std::size_t i = 0; i < items.size(); ++i) {
         ImGui::PushID(static_cast<int>(i));
-        draw_item(items[i], gui, run.answers[i]);
-        if (!acceptable(items[i], run.answers[i])) {
+        draw_item(items[i], gui, answers[i]);
+        if (!acceptable(items[i], answers[i])) {
             good = false;
             warning_paragraph(
                 words::filled(words::kNumberFromTo, {std::to_string(*items[i].from), std::to_string(*items[i].to)}));
@@ -175,10 +174,10 @@ void draw_items(Gui& gui, StudyRun& run) {
         gap(gui);
     }
     ImGui::EndChild();
-    if (forward(words::kGoOn, gui, good)) submit_answers(run);
+    if (forward(words::kGoOn, gui, good)) wishes.study = SubmitAnswers{answers};
 }
 
-void draw_instructions(Gui& gui, StudyRun& run) {
+void draw_instructions(const StudyRun& run, Gui& gui, Wishes& wishes) {
     const study::PlannedTrial& trial = due_trial(run);
     title(words::filled(trial.practice ? words::kPracticeOf : words::kTrialOf, {progress_text(run)}));
     const float below_px = (kMark_mm + 4.0f) * gui.mm();
@@ -190,31 +189,31 @@ void draw_instructions(Gui& gui, StudyRun& run) {
         ImGui::TextWrapped("%s", words::filled(words::kThereAre, {std::to_string(due_nodules(run).size())}).c_str());
     }
     ImGui::EndChild();
-    if (forward(words::kBegin, gui)) begin_step(run);
+    if (forward(words::kBegin, gui)) wishes.study = BeginStep{};
 }
 
-void draw_device(Gui& gui, StudyRun& run, Wishes& wishes) {
+void draw_device(const step::Device& step, const StudyRun& run, Gui& gui, Wishes& wishes) {
     const std::string device = name_of(due_condition(run).modality);
-    title(words::filled(run.device_here ? words::kDeviceIsBack : words::kDeviceMissing, {device}));
-    if (run.device_left) paragraph(words::kTrialBrokenOff);
-    if (!run.device_here) {
+    title(words::filled(step.here ? words::kDeviceIsBack : words::kDeviceMissing, {device}));
+    if (step.left) paragraph(words::kTrialBrokenOff);
+    if (!step.here) {
         warning_paragraph(words::filled(words::kTrialWaits, {device}));
         paragraph(words::kCloseAndGoOn);
     }
     gap(gui);
-    if (forward(words::kBegin, gui, run.device_here)) return begin_step(run);
+    if (forward(words::kBegin, gui, step.here)) wishes.study = BeginStep{};
     trials_button(gui, run, wishes);
     leave_button(gui, run, wishes);
 }
 
-void draw_present(Gui& gui, StudyRun& run) {
+void draw_present(const StudyRun& run, Gui& gui, Wishes& wishes) {
     title(words::filled(words::kPairOf, {progress_text(run)}));
     ImGui::TextWrapped("%s", run.interval == 0 ? words::kFeelFirst : words::kFeelSecond);
     gap(gui);
-    if (forward(words::kFelt, gui)) interval_presented(run);
+    if (forward(words::kFelt, gui)) wishes.study = IntervalPresented{};
 }
 
-void draw_question(double now_s, Gui& gui, StudyRun& run) {
+void draw_question(const StudyRun& run, double now_s, Gui& gui, Wishes& wishes) {
     title(words::kWhichSofter);
     gap(gui);
     const float width_px = std::min(60.0f * gui.mm(), share_of_line_px(2));
@@ -225,7 +224,7 @@ void draw_question(double now_s, Gui& gui, StudyRun& run) {
                         gui.pressed('2') || gui.pressed(platform::key::pad_0 + 2);
     gap(gui);
     paragraph(words::filled(words::kPairOf, {progress_text(run)}));
-    if (first || second) choose_softer(first, now_s, run);
+    if (first || second) wishes.study = ChooseSofter{first, now_s};
 }
 
 void stepper(const char* name, const Gui& gui, int& value) {
@@ -262,15 +261,14 @@ void draw_nodule_line(const std::string& name, const Gui& gui, int& said) {
     ImGui::PopID();
 }
 
-void draw_typed_clock(double now_s, const Gui& gui, StudyRun& run) {
-    study::TypedAnswers& typed = run.typed;
-    const bool runs = run.typed_began_s > 0.0;
-    if (runs) typed.duration_s = now_s - run.typed_began_s;
+void draw_typed_clock(double now_s, double limit_s, const Gui& gui, StudyForm& form) {
+    study::TypedAnswers& typed = form.typed;
+    const bool runs = form.clock_began_s > 0.0;
+    if (runs) typed.duration_s = now_s - form.clock_began_s;
     const char* label = runs ? words::kStopClock : typed.duration_s > 0.0 ? words::kStartClockAnew : words::kStartClock;
     if (big_button(label, "T", {60.0f * gui.mm(), kTarget_mm, true, runs}, gui) || gui.pressed('t'))
-        run.typed_began_s = runs ? 0.0 : now_s;
+        form.clock_began_s = runs ? 0.0 : now_s;
     ImGui::SameLine();
-    const double limit_s = due_limit_s(run);
     std::string text = clock_text(typed.duration_s);
     if (limit_s > 0.0)
         text =
@@ -280,60 +278,84 @@ void draw_typed_clock(double now_s, const Gui& gui, StudyRun& run) {
     ImGui::EndGroup();
 }
 
-void draw_typed(double now_s, Gui& gui, StudyRun& run) {
+void draw_typed(const StudyRun& run, double now_s, Gui& gui, StudyForm& form, Wishes& wishes) {
     const study::Condition& condition = due_condition(run);
     title(words::filled(words::kExperimenter, {progress_text(run), condition.title}));
     paragraph(condition.modality == study::Modality::hand ? words::kTypeWhatWasSaid : words::kNotDriven);
-    draw_typed_clock(now_s, gui, run);
+    draw_typed_clock(now_s, due_limit_s(run), gui, form);
     const float below_px = (kMark_mm + 4.0f) * gui.mm();
     ImGui::BeginChild("answers", ImVec2(0.0f, ImGui::GetContentRegionAvail().y - below_px), false,
                       ImGuiWindowFlags_NavFlattened);
     const std::vector<std::string> names = due_nodules(run);
     if (names.empty()) {
-        stepper(words::kNodulesFound, gui, run.typed.found);
-        stepper(words::kNodulesMissed, gui, run.typed.missed);
+        stepper(words::kNodulesFound, gui, form.typed.found);
+        stepper(words::kNodulesMissed, gui, form.typed.missed);
     } else {
         paragraph(words::kFoundAndSure);
-        for (std::size_t i = 0; i < names.size(); ++i) draw_nodule_line(names[i], gui, run.typed.nodules[i]);
+        for (std::size_t i = 0; i < names.size(); ++i) draw_nodule_line(names[i], gui, form.typed.nodules[i]);
     }
-    stepper(words::kFalseMarkCount, gui, run.typed.false_marks);
+    stepper(words::kFalseMarkCount, gui, form.typed.false_marks);
     ImGui::EndChild();
-    const bool timed = run.typed.duration_s > 0.0 && run.typed_began_s == 0.0;
-    if (forward(words::kKeep, gui, timed)) submit_typed(run);
+    const bool timed = form.typed.duration_s > 0.0 && form.clock_began_s == 0.0;
+    if (forward(words::kKeep, gui, timed)) wishes.study = SubmitTyped{form.typed};
 }
 
-void draw_done(Gui& gui, StudyRun& run, Wishes& wishes) {
+void draw_done(const StudyRun& run, Gui& gui, Wishes& wishes) {
     title(words::kThatWasAll);
     paragraph(words::filled(run.on_tablet ? words::kAllOnTablet : words::kAllOnDisk,
                             {run.code, std::to_string(run.progress.finished.size())}));
     gap(gui);
-    if (forward(words::kNextParticipant, gui)) same_person(false, run);
+    if (forward(words::kNextParticipant, gui)) wishes.study = SamePerson{false};
     trials_button(gui, run, wishes);
     leave_button(gui, run, wishes);
 }
 
-void draw_stopped(Gui& gui, const StudyRun& run, Wishes& wishes) {
+void draw_stopped(const step::Stopped& step, const StudyRun& run, Gui& gui, Wishes& wishes) {
     title(words::kStudyStops);
-    warning_paragraph(run.stopped);
+    warning_paragraph(step.why);
     paragraph(run.on_tablet ? words::kRestKept : words::kRestOnDisk);
     gap(gui);
     trials_button(gui, run, wishes);
     leave_button(gui, run, wishes);
 }
 
-void draw_pause(double now_s, Gui& gui, StudyRun& run) {
+void draw_pause(const StudyRun& run, double now_s, Gui& gui, Wishes& wishes) {
     title(words::kBreak);
     paragraph(words::filled(words::kComesNext, {progress_text(run)}));
     gap(gui);
     ImGui::Text("%s", clock_text(now_s - run.step_began_s).c_str());
     gap(gui);
-    if (forward(words::kGoOn, gui)) begin_step(run);
+    if (forward(words::kGoOn, gui)) wishes.study = BeginStep{};
+}
+
+// An empty form for the step that the study is in.
+StudyForm form_for(const StudyRun& run) {
+    StudyForm form;
+    form.step = run.entered;
+    if (at<step::Code>(run)) form.code = free_code(run);
+    if (at<step::Typed>(run)) form.typed.nodules.assign(due_nodules(run).size(), study::kMissed);
+    return form;
+}
+
+void draw_step(const StudyRun& run, double now_s, Gui& gui, StudyForm& form, Wishes& wishes) {
+    if (const auto* code = std::get_if<step::Code>(&run.step)) return draw_code(*code, run, gui, form, wishes);
+    if (at<step::Again>(run)) return draw_again(run, gui, wishes);
+    if (at<step::Questions>(run) || at<step::Ratings>(run)) return draw_items(run, gui, form.answers, wishes);
+    if (at<step::Instructions>(run)) return draw_instructions(run, gui, wishes);
+    if (const auto* device = std::get_if<step::Device>(&run.step)) return draw_device(*device, run, gui, wishes);
+    if (at<step::Present>(run)) return draw_present(run, gui, wishes);
+    if (at<step::Question>(run)) return draw_question(run, now_s, gui, wishes);
+    if (at<step::Typed>(run)) return draw_typed(run, now_s, gui, form, wishes);
+    if (at<step::Pause>(run)) return draw_pause(run, now_s, gui, wishes);
+    if (at<step::Done>(run)) return draw_done(run, gui, wishes);
+    if (const auto* stopped = std::get_if<step::Stopped>(&run.step)) draw_stopped(*stopped, run, gui, wishes);
+    // the trial is on the tissue
 }
 
 }  // namespace
 
-void draw_study_screen(double now_s, Gui& gui, StudyRun& run, Wishes& wishes) {
-    if (run.step_began_s == 0.0) run.step_began_s = now_s;
+void draw_study_screen(const StudyRun& run, double now_s, Gui& gui, StudyForm& form, Wishes& wishes) {
+    if (form.step != run.entered) form = form_for(run);
     const WindowSize window = gui.size_px();
     ImGui::GetBackgroundDrawList()->AddRectFilled(ImVec2(0.0f, 0.0f), ImVec2(window.width, window.height), kDark);
     // lines of readable length, in the middle of a large window
@@ -342,48 +364,10 @@ void draw_study_screen(double now_s, Gui& gui, StudyRun& run, Wishes& wishes) {
     const float x0 = 0.5f * (window.width - width_px);
     const float y0 = 0.5f * (window.height - height_px);
     begin_panel("study", {x0, y0, x0 + width_px, y0 + height_px}, gui);
-    if (run.keeping) {
+    if (run.keeping_since_s) {
         draw_keeping(now_s, gui, run, wishes);
-        return end_panel("study", gui);
-    }
-    run.keeping_began_s = 0.0;
-    switch (run.step) {
-        case StudyStep::code:
-            draw_code(gui, run, wishes);
-            break;
-        case StudyStep::again:
-            draw_again(gui, run);
-            break;
-        case StudyStep::questions:
-        case StudyStep::ratings:
-            draw_items(gui, run);
-            break;
-        case StudyStep::instructions:
-            draw_instructions(gui, run);
-            break;
-        case StudyStep::trial:
-            break;  // on the tissue
-        case StudyStep::device:
-            draw_device(gui, run, wishes);
-            break;
-        case StudyStep::present:
-            draw_present(gui, run);
-            break;
-        case StudyStep::question:
-            draw_question(now_s, gui, run);
-            break;
-        case StudyStep::typed:
-            draw_typed(now_s, gui, run);
-            break;
-        case StudyStep::pause:
-            draw_pause(now_s, gui, run);
-            break;
-        case StudyStep::done:
-            draw_done(gui, run, wishes);
-            break;
-        case StudyStep::stopped:
-            draw_stopped(gui, run, wishes);
-            break;
+    } else {
+        draw_step(run, now_s, gui, form, wishes);
     }
     end_panel("study", gui);
 }

@@ -6,7 +6,6 @@
 #include "app/screens/screens.h"
 #include "app/screens/widgets.h"
 #include "app/screens/words.h"
-#include "app/study/study_run.h"
 #include "mechanics/linear_range.h"
 
 namespace palpa::app {
@@ -49,16 +48,17 @@ void draw_force_bar(const Shown& shown, float height_px, const Gui& gui) {
 }
 
 // The panel of a forced choice: there is nothing to mark, and no number may tell how soft the surface is.
-bool is_interval(const Screens& screens) {
-    return screens.study && screens.study->protocol.task == study::TaskKind::choice;
+bool is_interval(const Doing& doing) {
+    const StudyRun* study = study_of(doing);
+    return study != nullptr && study->protocol.task == study::TaskKind::choice;
 }
 
-void draw_numbers(const Shown& shown, const Gui& gui, const Screens& screens) {
+void draw_numbers(const Shown& shown, const Gui& gui) {
     const float column_px = 13.5f * gui.mm();
     const scene::Contact& contact = shown.state.contact;
     ImGui::BeginGroup();
     value_line(words::kForce, fixed(contact.normal_N, 2) + " N", column_px);
-    if (!is_interval(screens)) value_line(words::kDepth, fixed(1e3 * contact.depth_m, 2) + " mm", column_px);
+    if (!is_interval(shown.doing)) value_line(words::kDepth, fixed(1e3 * contact.depth_m, 2) + " mm", column_px);
     // in a test the lag is what the eye has to judge, so no number tells it
     if (shown.trial.mode == session::TrialMode::practice) {
         value_line(words::kLag, fixed(1e3 * shown.avatar.lag_m.norm(), 2) + " mm", column_px);
@@ -100,13 +100,13 @@ void draw_study_header(const Shown& shown, const StudyRun& run) {
     }
 }
 
-void draw_header(const Shown& shown, const Gui& gui, Screens& screens) {
-    if (screens.study) return draw_study_header(shown, *screens.study);
+void draw_header(const Shown& shown, const Gui& gui, Wishes& wishes) {
+    if (const StudyRun* study = study_of(shown.doing)) return draw_study_header(shown, *study);
+    const bool* has_menu = menu_of(shown.doing);
+    const bool menu = has_menu != nullptr && *has_menu;
     const float line_px = kTarget_mm * gui.mm();
-    if (big_button(screens.menu ? words::kClose : words::kMenu, "F10",
-                   {26.0f * gui.mm(), kTarget_mm, true, screens.menu}, gui)) {
-        screens.menu = !screens.menu;
-    }
+    if (big_button(menu ? words::kClose : words::kMenu, "F10", {26.0f * gui.mm(), kTarget_mm, true, menu}, gui))
+        wishes.menu = !menu;
     ImGui::SameLine();
     ImGui::BeginGroup();
     ImGui::SetCursorPosY(ImGui::GetCursorPosY() + 0.5f * (line_px - ImGui::GetFontSize()));
@@ -132,8 +132,8 @@ void draw_confidence(const Shown& shown, const Gui& gui, Wishes& wishes) {
     }
 }
 
-void draw_actions(const Shown& shown, const Gui& gui, const Screens& screens, Wishes& wishes) {
-    if (is_interval(screens)) {
+void draw_actions(const Shown& shown, const Gui& gui, Wishes& wishes) {
+    if (is_interval(shown.doing)) {
         if (big_button(words::kFelt, "F", {0.0f, kMark_mm, true, false}, gui)) wishes.action = platform::Action::finish;
         return;
     }
@@ -149,18 +149,19 @@ void draw_actions(const Shown& shown, const Gui& gui, const Screens& screens, Wi
         wishes.action = platform::Action::finish;
 }
 
-void draw_messages(const Shown& shown, const Gui& gui, Screens& screens, Wishes& wishes) {
-    for (const std::string& problem : screens.problems) warning_paragraph(problem);
-    if (!screens.problems.empty() && big_button(words::kUnderstood, "", {}, gui)) screens.problems.clear();
+void draw_messages(const Shown& shown, const Gui& gui, Wishes& wishes) {
+    const Notices& notices = shown.notices;
+    for (const std::string& problem : notices.problems) warning_paragraph(problem);
+    if (!notices.problems.empty() && big_button(words::kUnderstood, "", {}, gui)) wishes.understood = true;
     if (shown.state.without_level) {
         warning_paragraph(words::filled(words::kWithoutLevel,
                                         {std::string(name_of(shown.plan.profile.level)), shown.plan.profile.id}));
     }
-    if (screens.offer_hold && big_button(words::kPressByHolding, "H", {}, gui)) wishes.press_by_hold = true;
-    for (const std::string& note : screens.device_notes) paragraph(note);
-    if (!screens.note.empty()) paragraph(screens.note);
-    if (!screens.trials_note.empty()) paragraph(screens.trials_note);
-    if (screens.study) return;  // what the tissue is made of, the settings tell
+    if (notices.offer_hold && big_button(words::kPressByHolding, "H", {}, gui)) wishes.press_by_hold = true;
+    for (const std::string& note : notices.device_notes) paragraph(note);
+    if (!notices.note.empty()) paragraph(notices.note);
+    if (!notices.trials_note.empty()) paragraph(notices.trials_note);
+    if (study_of(shown.doing) != nullptr) return;  // what the tissue is made of, the settings tell
     if (shown.plan.source == stiffnessmaps::SourceKind::analytic) paragraph(words::kAnalyticTissue);
     if (shown.plan.source == stiffnessmaps::SourceKind::simulated) paragraph(words::kSimulatedTissue);
     if (std::isfinite(shown.state.view.scale) && shown.scene.mapping.kind == scene::MappingKind::direct &&
@@ -169,9 +170,9 @@ void draw_messages(const Shown& shown, const Gui& gui, Screens& screens, Wishes&
     }
 }
 
-void column_panel(const Shown& shown, Gui& gui, Screens& screens, Wishes& wishes) {
-    draw_header(shown, gui, screens);
-    if (!screens.study) one_line(shown.scene.name);
+void column_panel(const Shown& shown, Gui& gui, Wishes& wishes) {
+    draw_header(shown, gui, wishes);
+    if (study_of(shown.doing) == nullptr) one_line(shown.scene.name);
     // the space that is left after the other parts, within limits
     const float rest_px = 62.0f * gui.mm() + 3.0f * ImGui::GetFontSize();
     const float bar_px = std::clamp(ImGui::GetContentRegionAvail().y - rest_px, 16.0f * gui.mm(), 55.0f * gui.mm());
@@ -179,16 +180,16 @@ void column_panel(const Shown& shown, Gui& gui, Screens& screens, Wishes& wishes
     draw_force_bar(shown, bar_px, gui);
     ImGui::SameLine();
     ImGui::SetCursorPosX(left_px + 26.0f * gui.mm());
-    draw_numbers(shown, gui, screens);
-    if (!is_interval(screens)) draw_contact_note(shown);
-    draw_actions(shown, gui, screens, wishes);
+    draw_numbers(shown, gui);
+    if (!is_interval(shown.doing)) draw_contact_note(shown);
+    draw_actions(shown, gui, wishes);
     ImGui::BeginChild("messages", ImVec2(0.0f, 0.0f), false,
                       ImGuiWindowFlags_NavFlattened);  // long ones scroll in what is left
-    draw_messages(shown, gui, screens, wishes);
+    draw_messages(shown, gui, wishes);
     ImGui::EndChild();
 }
 
-void strip_panel(const Shown& shown, Gui& gui, Screens& screens, Wishes& wishes) {
+void strip_panel(const Shown& shown, Gui& gui, Wishes& wishes) {
     const float mm = gui.mm();
     const float right_px = 58.0f * mm;
     const float wide_px = ImGui::GetContentRegionAvail().x;
@@ -197,18 +198,18 @@ void strip_panel(const Shown& shown, Gui& gui, Screens& screens, Wishes& wishes)
     const float top_px = ImGui::GetCursorPosY();
     const float gap_px = ImGui::GetStyle().ItemSpacing.x;
     ImGui::BeginChild("left", ImVec2(wide_px - right_px - gap_px, height_px), false, ImGuiWindowFlags_NoNav);
-    const float rest_px = (screens.problems.empty() ? 12.0f : 30.0f) * mm;
+    const float rest_px = (shown.notices.problems.empty() ? 12.0f : 30.0f) * mm;
     draw_force_bar(shown, std::max(16.0f * mm, height_px - rest_px - 12.0f * mm), gui);
     ImGui::SameLine();
     ImGui::SetCursorPosX(26.0f * mm);
-    draw_numbers(shown, gui, screens);
-    if (!is_interval(screens)) draw_contact_note(shown);
-    draw_messages(shown, gui, screens, wishes);
+    draw_numbers(shown, gui);
+    if (!is_interval(shown.doing)) draw_contact_note(shown);
+    draw_messages(shown, gui, wishes);
     ImGui::EndChild();
     ImGui::SetCursorPos(ImVec2(left_px + wide_px - right_px, top_px));
     ImGui::BeginChild("right", ImVec2(right_px, height_px), false, ImGuiWindowFlags_NavFlattened);
-    draw_header(shown, gui, screens);
-    draw_actions(shown, gui, screens, wishes);
+    draw_header(shown, gui, wishes);
+    draw_actions(shown, gui, wishes);
     if (ImGui::GetScrollMaxY() > 1.0f) gui.note_overflow("actions");
     ImGui::EndChild();
 }
@@ -251,16 +252,16 @@ void draw_on_tissue(const Shown& shown, const Gui& gui) {
     draw_pen(shown, gui, draw);
 }
 
-void draw_trial_panel(const Shown& shown, const Layout& layout, Gui& gui, Screens& screens, Wishes& wishes) {
+void draw_trial_panel(const Shown& shown, const Layout& layout, Gui& gui, Wishes& wishes) {
     if (!layout.controls) {
         rimmed_text(*ImGui::GetForegroundDrawList(), ImVec2(4.0f, 4.0f), kInk, words::kTooSmall);
         return;
     }
     begin_panel("trial", layout.controls_px, gui);
     if (layout.column) {
-        column_panel(shown, gui, screens, wishes);
+        column_panel(shown, gui, wishes);
     } else {
-        strip_panel(shown, gui, screens, wishes);
+        strip_panel(shown, gui, wishes);
     }
     end_panel("trial", gui);
 }

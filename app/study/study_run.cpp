@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cstdio>
 #include <exception>
+#include <iterator>
 #include <stdexcept>
+#include <utility>
 
 #include "files/input_error.h"
 #include "files/text.h"
@@ -52,7 +54,7 @@ files::Json now_json(const StudyRun& run) {
                      {"step", name_of(run.step)},
                      {"finished", run.progress.finished.size()},
                      {"of", run.progress.plan.trials.size()}};
-    if (!run.stopped.empty()) json["stopped"] = run.stopped;
+    if (const auto* stopped = std::get_if<step::Stopped>(&run.step)) json["stopped"] = stopped->why;
     if (!run.progress.next) return json;
     const study::PlannedTrial& trial = *run.progress.next;
     json["trial"] = trial.trial;
@@ -85,10 +87,14 @@ void write_now(const StudyRun& run) {
     files::write_text_atomically(subject / "now.json", files::json_text(now_json(run)));
 }
 
-void enter(StudyStep step, StudyRun& run) {
-    run.step = step;
+void change_step(StudyStep step, StudyRun& run) {
+    run.step = std::move(step);
     run.step_began_s = 0.0;
-    run.answers.clear();
+    ++run.entered;
+}
+
+void enter(StudyStep step, StudyRun& run) {
+    change_step(std::move(step), run);
     kept(run, [&] { write_now(run); });
 }
 
@@ -117,14 +123,14 @@ std::optional<std::size_t> to_rate(const StudyRun& run) {
     return std::nullopt;
 }
 
-void add_person(StudyRun& run) {
+void add_person(const std::vector<std::string>& answers, StudyRun& run) {
     study::Person person;
     person.code = run.code;
     person.group = run.protocol.groups[run.progress.plan.group].id;
     std::vector<study::Rating> others;
     for (std::size_t i = 0; i < run.protocol.demographics.size(); ++i) {
         const std::string& id = run.protocol.demographics[i].id;
-        const std::string value = i < run.answers.size() && !run.answers[i].empty() ? run.answers[i] : "n/a";
+        const std::string value = i < answers.size() && !answers[i].empty() ? answers[i] : "n/a";
         if (id == "age")
             person.age = value;
         else if (id == "sex")
@@ -151,30 +157,28 @@ void begin_trial_step(StudyRun& run) {
     run.told = trial.condition;
     run.told_practice = trial.practice;
     run.interval = 0;
-    run.typed = {};
-    run.typed.nodules.assign(due_nodules(run).size(), study::kMissed);
-    run.typed_began_s = 0.0;
     if (!kept(run, [&] { check_room(run); })) return;
     const bool choice = run.protocol.task == study::TaskKind::choice;
-    if (!shows_tissue(run)) return enter(choice ? StudyStep::present : StudyStep::typed, run);
-    enter(StudyStep::trial, run);
-    run.start_trial = run.step == StudyStep::trial;
+    if (shows_tissue(run)) return enter(step::Trial{}, run);
+    if (choice) return enter(step::Present{}, run);
+    enter(step::Typed{}, run);
 }
 
 void go_on(StudyRun& run) {
-    if (!run.progress.known && !run.asked && !run.protocol.demographics.empty())
-        return enter(StudyStep::questions, run);
-    if (!run.progress.known && !kept(run, [&] { add_person(run); })) return;
-    if (const auto condition = to_rate(run)) {
-        run.rated = *condition;
-        return enter(StudyStep::ratings, run);
-    }
-    if (!run.progress.next) return enter(StudyStep::done, run);
+    if (!run.progress.known && !run.protocol.demographics.empty()) return enter(step::Questions{}, run);
+    if (!run.progress.known && !kept(run, [&] { add_person({}, run); })) return;
+    if (const auto condition = to_rate(run)) return enter(step::Ratings{*condition}, run);
+    if (!run.progress.next) return enter(step::Done{}, run);
     const study::PlannedTrial& trial = *run.progress.next;
-    if (trial.break_before && !run.rested) return enter(StudyStep::pause, run);
+    if (trial.break_before && !run.rested) return enter(step::Pause{}, run);
     const bool told = run.told == trial.condition && run.told_practice == trial.practice;
     if (run.protocol.task == study::TaskKind::choice && told) return begin_trial_step(run);
-    enter(StudyStep::instructions, run);
+    enter(step::Instructions{}, run);
+}
+
+void refuse_code(const std::string& why, StudyRun& run) {
+    run.note = why;
+    if (auto* code = std::get_if<step::Code>(&run.step)) ++code->refused;
 }
 
 void finish_due(StudyRun& run) {
@@ -186,10 +190,21 @@ void finish_due(StudyRun& run) {
 
 }  // namespace
 
-const char* name_of(StudyStep step) {
+const char* name_of(const StudyStep& step) {
     constexpr const char* kNames[] = {"code",     "again", "questions", "instructions", "trial", "device", "present",
                                       "question", "typed", "ratings",   "pause",        "done",  "stopped"};
-    return kNames[static_cast<int>(step)];
+    static_assert(std::size(kNames) == std::variant_size_v<StudyStep>);
+    return kNames[step.index()];
+}
+
+bool trial_waits(const StudyRun& run) {
+    const auto* trial = std::get_if<step::Trial>(&run.step);
+    return trial != nullptr && !trial->begun;
+}
+
+bool trial_goes_on(const StudyRun& run) {
+    const auto* trial = std::get_if<step::Trial>(&run.step);
+    return trial != nullptr && trial->begun;
 }
 
 StudyRun open_study_run(const study::Protocol& protocol, const fs::path& directory, const std::string& code) {
@@ -208,7 +223,7 @@ StudyRun open_study_run(const study::Protocol& protocol, const fs::path& directo
     enter_code(code, run);
     if (!run.note.empty())
         throw files::bad_input("--participant", "", files::shown(code) + ", who has finished all trials", "a new code");
-    if (run.step == StudyStep::stopped) throw std::runtime_error(run.stopped);
+    if (const auto* stopped = std::get_if<step::Stopped>(&run.step)) throw std::runtime_error(stopped->why);
     return run;
 }
 
@@ -223,80 +238,74 @@ std::string free_code(const StudyRun& run) {
     }
 }
 
+void carry_out(const StudyWish& wish, StudyRun& run) {
+    if (const auto* code = std::get_if<EnterCode>(&wish)) return enter_code(code->code, run);
+    if (const auto* person = std::get_if<SamePerson>(&wish)) return same_person(person->is, run);
+    if (const auto* submit = std::get_if<SubmitAnswers>(&wish)) return submit_answers(submit->answers, run);
+    if (std::holds_alternative<BeginStep>(wish)) return begin_step(run);
+    if (std::holds_alternative<IntervalPresented>(wish)) return interval_presented(run);
+    if (const auto* softer = std::get_if<ChooseSofter>(&wish)) return choose_softer(softer->first, softer->at_s, run);
+    submit_typed(std::get<SubmitTyped>(wish).answers, run);
+}
+
 void enter_code(const std::string& code, StudyRun& run) {
     run.note.clear();
-    if (!plain(code)) {
-        run.note = "Up to 20 letters and digits.";
-        run.focus_code = true;
-        return;
-    }
+    if (!plain(code)) return refuse_code("Up to 20 letters and digits.", run);
     if (!kept(run, [&] { run.progress = study::progress_of(run.directory, run.protocol, code); })) return;
     run.code = code;
-    run.asked = run.rested = false;
+    run.rested = false;
     run.told.reset();
     run.choices.reset();  // each person's choices go to files of their own
-    if (run.progress.known && !run.progress.next && !to_rate(run)) {
-        run.note = code + " has finished all trials; take a new code.";
-        run.focus_code = true;
-        return;
-    }
-    if (run.progress.known) return enter(StudyStep::again, run);
+    if (run.progress.known && !run.progress.next && !to_rate(run))
+        return refuse_code(code + " has finished all trials; take a new code.", run);
+    if (run.progress.known) return enter(step::Again{}, run);
     go_on(run);
 }
 
 void same_person(bool is, StudyRun& run) {
     if (is) return go_on(run);
-    run.step = StudyStep::code;
+    change_step(step::Code{}, run);
     run.code.clear();
-    run.typed_code.reset();
 }
 
-void submit_answers(StudyRun& run) {
-    if (run.step == StudyStep::questions) {
-        run.asked = true;
-        if (kept(run, [&] { add_person(run); })) go_on(run);
+void submit_answers(const std::vector<std::string>& answers, StudyRun& run) {
+    const auto* rated = std::get_if<step::Ratings>(&run.step);
+    if (rated == nullptr) {
+        if (kept(run, [&] { add_person(answers, run); })) go_on(run);
         return;
     }
     std::vector<study::Rating> ratings;
     for (std::size_t i = 0; i < run.protocol.ratings.size(); ++i) {
-        const bool answered = i < run.answers.size() && !run.answers[i].empty();
+        const bool answered = i < answers.size() && !answers[i].empty();
         ratings.push_back(
-            {run.protocol.conditions[run.rated].id, run.protocol.ratings[i].id, answered ? run.answers[i] : "n/a"});
+            {run.protocol.conditions[rated->condition].id, run.protocol.ratings[i].id, answered ? answers[i] : "n/a"});
     }
     run.unkept_answers = true;
     if (kept(run, [&] { study::add_ratings(run.directory, run.code, ratings); })) go_on(run);
 }
 
 void begin_step(StudyRun& run) {
-    if (run.step == StudyStep::pause) {
+    if (at<step::Pause>(run)) {
         run.rested = true;
         return go_on(run);
     }
-    if (run.step != StudyStep::device) return begin_trial_step(run);
-    if (!run.device_here) return;
-    run.device_left = false;
-    enter(StudyStep::trial, run);  // of a choice, the same interval
-    run.start_trial = run.step == StudyStep::trial;
+    const auto* device = std::get_if<step::Device>(&run.step);
+    if (device == nullptr) return begin_trial_step(run);
+    if (device->here) enter(step::Trial{}, run);  // of a choice, the same interval
 }
 
-void wait_for_device(bool left, StudyRun& run) {
-    run.start_trial = false;
-    run.device_here = false;
-    run.device_left = left;
-    enter(StudyStep::device, run);
-}
+void wait_for_device(bool left, StudyRun& run) { enter(step::Device{false, left}, run); }
 
 void trial_finished(StudyRun& run) {
     if (run.protocol.task == study::TaskKind::find) return finish_due(run);
     interval_presented(run);
-    run.start_trial = run.step == StudyStep::trial;
 }
 
 void interval_presented(StudyRun& run) {
-    const StudyStep again = shows_tissue(run) ? StudyStep::trial : StudyStep::present;
-    if (run.interval == 1) return enter(StudyStep::question, run);
+    if (run.interval == 1) return enter(step::Question{}, run);
     run.interval = 1;
-    enter(again, run);
+    if (shows_tissue(run)) return enter(step::Trial{}, run);
+    enter(step::Present{}, run);
 }
 
 void choose_softer(bool first, double now_s, StudyRun& run) {
@@ -333,81 +342,25 @@ void choose_softer(bool first, double now_s, StudyRun& run) {
     if (good) finish_due(run);
 }
 
-void submit_typed(StudyRun& run) {
+void submit_typed(const study::TypedAnswers& typed, StudyRun& run) {
     const study::PlannedTrial& trial = due_trial(run);
     const bool good = kept(run, [&] {
         study::TrialLabel label = label_of(run.protocol, run.progress.plan, trial, run.identities[trial.condition]);
         const study::RunFiles files = study::next_run(run.directory, run.code, "palpation", run.first_run);
         run.unkept_runs.push_back(files);
-        study::write_typed_trial(files, label, trial.practice, trial.seed, due_nodules(run), run.typed);
+        study::write_typed_trial(files, label, trial.practice, trial.seed, due_nodules(run), typed);
     });
     if (good) finish_due(run);
 }
 
 void stop_study(const std::string& why, StudyRun& run) {
-    run.stopped = why;
-    run.step = StudyStep::stopped;
-    run.start_trial = false;
+    change_step(step::Stopped{why}, run);
     if (run.code.empty()) return;
     try {
         write_now(run);  // for the experimenter
     } catch (const std::exception&) {
         // the disk is what stopped it; the participant's screen says so
     }
-}
-
-const study::PlannedTrial& due_trial(const StudyRun& run) { return *run.progress.next; }
-const study::Condition& due_condition(const StudyRun& run) { return run.protocol.conditions[due_trial(run).condition]; }
-
-bool typed_in(const study::Condition& condition) {
-    return condition.modality == study::Modality::hand || condition.modality == study::Modality::tangible ||
-           condition.modality == study::Modality::shape_display;
-}
-
-bool shows_tissue(const StudyRun& run) {
-    return !typed_in(due_condition(run)) && run.scenes[due_trial(run).condition].has_value();
-}
-
-const StudyScene& due_scene(const StudyRun& run) {
-    const study::PlannedTrial& trial = due_trial(run);
-    if (run.protocol.task == study::TaskKind::find) return *run.scenes[trial.condition];
-    const bool reference = (run.interval == 0) == trial.reference_first;
-    return run.stimuli[trial.condition][reference ? 0 : 1 + static_cast<std::size_t>(trial.comparison)];
-}
-
-session::SessionFiles due_files(const StudyRun& run) {
-    const study::PlannedTrial& trial = due_trial(run);
-    session::SessionFiles files;
-    files.log = run.directory.string();
-    files.participant = run.code;
-    files.first_run = run.first_run;
-    files.label = label_of(run.protocol, run.progress.plan, trial, run.identities[trial.condition]);
-    if (run.protocol.task == study::TaskKind::choice) {
-        files.task = "interval";
-        files.label->study["interval"] = run.interval + 1;
-    }
-    return files;
-}
-
-double due_limit_s(const StudyRun& run) {
-    return due_trial(run).practice ? run.protocol.practice_limit_s : run.protocol.time_limit_s;
-}
-
-std::vector<std::string> due_nodules(const StudyRun& run) {
-    const auto& scene = run.scenes[due_trial(run).condition];
-    if (!scene) return due_condition(run).nodules;
-    std::vector<std::string> names;
-    for (const stiffnessmaps::Nodule& nodule : scene->plan->nodules) names.push_back(nodule.id);
-    return names;
-}
-
-const std::vector<study::Item>& due_items(const StudyRun& run) {
-    return run.step == StudyStep::questions ? run.protocol.demographics : run.protocol.ratings;
-}
-
-std::string progress_text(const StudyRun& run) {
-    const std::size_t of = run.progress.plan.trials.size();
-    return std::to_string(std::min(of, run.progress.finished.size() + 1)) + " of " + std::to_string(of);
 }
 
 }  // namespace palpa::app

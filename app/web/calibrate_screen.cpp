@@ -14,7 +14,7 @@ void draw_calibrate_screen(const Shown& shown, Gui& gui, CalibrateForm&, Wishes&
     const WindowSize window = gui.size_px();
     begin_panel("calibrate", {0.0f, 0.0f, window.width, window.height}, gui);
     if (big_button(words::kBack, words::kEscape, {40.0f * gui.mm(), kTarget_mm, true, false}, gui)) {
-        wishes.screen = shown.trial.finished ? Screen::reveal : Screen::trial;
+        wishes.screen = Screen::trial;
     }
     ImGui::TextWrapped("%s", words::kCalibratedOnDesk);
     paragraph(words::kHowOnDesk);

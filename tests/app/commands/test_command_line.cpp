@@ -35,6 +35,7 @@ TEST_CASE("command line: help and version exist for every command") {
         const Called help = palpa_with(std::string(command) + " --help");
         CHECK(help.status == 0);
         CHECK(help.out.size() > 100);
+        CHECK(contains(help.out, (std::string("Usage: palpa") + (*command != 0 ? " " : "") + command).c_str()));
     }
     CHECK(contains(palpa_with("--version").out, "palpa 0."));
 }
@@ -161,6 +162,7 @@ TEST_CASE("command line: wrong usage and bad input end with status 2 and say wha
     refused("run --headless --replay " + (folder / "none.tsv").string(), "none.tsv: cannot be read");
     refused("run --headless --replay " + (folder / "bad.tsv").string(), "bad.json");
     refused("maps info " + folder.path().string(), "map.json: cannot be read");
+    refused("maps info " + std::string(5000, 'm'), "found a name that is too long");
     refused("maps import " + (folder / "comma.csv").string() + " -o " + (folder / "n.map").string(),
             "line 2: found 7 fields");
     CHECK_FALSE(std::filesystem::exists(folder / "n.map"));

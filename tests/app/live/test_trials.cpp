@@ -3,11 +3,8 @@
 #include <SDL.h>
 #include <doctest/doctest.h>
 
-#include "app/live/live_app.h"
-#include "app/scene_choices.h"
-#include "app/screens/frame.h"
 #include "scene/advance.h"
-#include "tests/off_screen.h"
+#include "tests/app/live/desk.h"
 
 using namespace palpa;
 using namespace palpa::platform;
@@ -19,56 +16,6 @@ using namespace palpa::app;
 using namespace palpa::test;
 
 namespace {
-
-class BusyKeeper : public TrialKeeper {
-  public:
-    bool busy = true;
-    void keep(const RunFiles&, bool) override {}
-    void keep_part(const RunFiles&) override {}
-    void keep_answers(const std::filesystem::path&, const std::string&) override {}
-    void participant(const std::string&) override {}
-    bool ready() const override { return !busy; }
-    std::string problem() override { return {}; }
-    std::string note() const override { return {}; }
-    void keep_settings(const std::filesystem::path&) override {}
-    void open() override {}
-    void open_studies() override {}
-};
-
-struct Desk {
-    BusyKeeper keeper;
-    Window window{off_screen()};
-    Gui gui{window};
-    TissueDrawer tissue;
-    App app;
-
-    explicit Desk(const std::string& scene) {
-        app.keeper = &keeper;
-        Scene first = load_scene(scene);
-        auto plan = std::make_shared<const Plan>(make_plan(first));
-        put_scene(std::move(first), std::move(plan), window, app);
-        begin(window, gui, app);
-    }
-
-    void sample(Phase phase) {
-        Sample sample;
-        sample.t_host_s = window.now_s();
-        sample.pointer_id = 4;
-        sample.tool = Tool::pen;
-        sample.phase = phase;
-        const ScreenArea& area = app.session.state.screen;
-        sample.x_px = area.x_px + 0.5 * area.width_px;
-        sample.y_px = area.y_px + 0.5 * area.height_px;
-        sample.pressure = 0.5;
-        take_sample(sample, app.session);
-    }
-
-    void show_frame() {
-        const Session& s = app.session;
-        draw_frame(s.scene, *s.plan, s.trial, app.settings, window.now_s(), 1.0 / 60.0, tissue, gui, app.screens,
-                   app.session.state, app.times, app.on_screen);
-    }
-};
 
 // What a frame reads together belongs together.
 void check_whole(const Session& session) {
@@ -92,24 +39,24 @@ TEST_CASE("live: a scene is changed under a press while the keeper is busy") {
     REQUIRE(desk.app.session.state.touch.down);
 
     change_scene(desk.window, desk.gui, PALPA_SOURCE_DIR "/assets/scenes/delay.json", "", desk.app);
-    CHECK(desk.app.begin_waits);
+    CHECK(waits_for_keeper(desk.app));
     CHECK(desk.app.session.scene.delay.has_value());
     check_whole(desk.app.session);
     desk.show_frame();
-    act(Action::finish, desk.window.now_s(), desk.app);  // there is no trial yet that could be finished
+    act(Action::finish, desk.window, desk.app);  // there is no trial yet that could be finished
     CHECK_FALSE(desk.app.session.trial.finished);
 
     desk.keeper.busy = false;
     begin_when_kept(desk.window, desk.gui, desk.app);
-    CHECK_FALSE(desk.app.begin_waits);
+    CHECK_FALSE(waits_for_keeper(desk.app));
     check_whole(desk.app.session);
     desk.show_frame();
 }
 
 TEST_CASE("live: the tissue of a finished trial is changed while the keeper is busy") {
     Desk desk("");
-    act(Action::finish, desk.window.now_s(), desk.app);
-    REQUIRE(desk.app.screens.screen == Screen::reveal);
+    act(Action::finish, desk.window, desk.app);
+    REQUIRE(std::holds_alternative<Reviewing>(desk.app.doing));
 
     SUBCASE("for another one") {
         change_scene(desk.window, desk.gui, PALPA_SOURCE_DIR "/assets/scenes/delay.json", "", desk.app);
@@ -123,7 +70,7 @@ TEST_CASE("live: the tissue of a finished trial is changed while the keeper is b
         const View view = make_view(now, desk.app.session.plan->area, desk.app.session.state.screen);
         CHECK(desk.app.session.state.view.axes == view.axes);
     }
-    CHECK(desk.app.screens.screen == Screen::trial);  // the verdict was on the tissue before
+    CHECK(std::holds_alternative<Palpating>(desk.app.doing));  // the verdict was on the tissue before
     check_whole(desk.app.session);
     desk.show_frame();
 }
@@ -166,6 +113,6 @@ TEST_CASE("live: a scene that cannot be read leaves the present one") {
     const std::string name = desk.app.session.scene.name;
     change_scene(desk.window, desk.gui, "no_such_scene.json", "", desk.app);
     CHECK(desk.app.session.scene.name == name);
-    CHECK(desk.app.screens.problems.size() == 1);
+    CHECK(desk.app.notices.problems.size() == 1);
     check_whole(desk.app.session);
 }

@@ -22,44 +22,44 @@ TEST_CASE("ask: everything that ends a trial waits for an answer, a mark of the 
         wish([](Wishes& w) { w.above_finger = true; }), wish([](Wishes& w) { w.px_per_mm = kMissing; })};
     for (Wishes wishes : ending) {
         wishes.action = Action::mark;
-        Screens screens;
-        const Wishes now = ask_first(wishes, screens);
-        REQUIRE(screens.asked);
+        std::optional<Wishes> asked;
+        const Wishes now = ask_first(wishes, asked);
+        REQUIRE(asked);
         CHECK(now.action == Action::mark);
         const bool nothing_else = !now.again && !now.next && !now.quit && !now.scene && !now.profile && !now.mode &&
                                   !now.above_finger && !now.px_per_mm;
         CHECK(nothing_else);
-        wishes = *screens.asked;
+        wishes = *asked;
         CHECK_FALSE(wishes.action);
         wishes.sure = true;
-        screens.asked.reset();
-        ask_first(wishes, screens);
-        CHECK_FALSE(screens.asked);  // it was answered
+        asked.reset();
+        ask_first(wishes, asked);
+        CHECK_FALSE(asked);  // it was answered
     }
 }
 
 TEST_CASE("ask: what leaves the trial as it is needs no answer") {
-    Screens screens;
+    std::optional<Wishes> asked;
     Wishes wishes;
     wishes.action = Action::finish;
     wishes.screen = Screen::scale;
     wishes.full_screen = true;
     wishes.left_handed = true;
-    const Wishes now = ask_first(wishes, screens);
-    CHECK_FALSE(screens.asked);
+    const Wishes now = ask_first(wishes, asked);
+    CHECK_FALSE(asked);
     CHECK(now.screen == Screen::scale);
     CHECK(now.action == Action::finish);
 }
 
 TEST_CASE("ask: a note goes by itself, and a new one has its time") {
-    Screens screens;
-    screens.note = "first";
-    age_note(10.0, screens);
-    age_note(17.0, screens);
-    CHECK(screens.note == "first");
-    screens.note = "second";
-    age_note(19.0, screens);
-    CHECK(screens.note == "second");
-    age_note(28.0, screens);
-    CHECK(screens.note.empty());
+    Notices notices;
+    notices.note = "first";
+    age_note(10.0, notices);
+    age_note(17.0, notices);
+    CHECK(notices.note == "first");
+    notices.note = "second";
+    age_note(19.0, notices);
+    CHECK(notices.note == "second");
+    age_note(28.0, notices);
+    CHECK(notices.note.empty());
 }

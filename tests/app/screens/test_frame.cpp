@@ -24,9 +24,10 @@ struct Screening {
     TissueDrawer tissue;
     Session session;
     Settings settings;
-    Screens screens;
-    FrameTimes times;
-    OnScreen on_screen;
+    Notices notices;
+    Doing doing;
+    std::optional<Wishes> asked;
+    ViewState view;
     double now_s = 1.0;  // of a clock of the test's own
 
     explicit Screening(const std::string& scene) {
@@ -39,9 +40,9 @@ struct Screening {
     }
 
     bool drawn() {
-        draw_frame(session.scene, *session.plan, session.trial, settings, now_s, 1.0 / 60.0, tissue, gui, screens,
-                   session.state, times, on_screen);
-        return on_screen.drawn;
+        draw_frame({session.scene, *session.plan, session.trial, settings, notices, doing, asked, now_s}, {gui, tissue},
+                   view, session.state);
+        return view.on_screen.drawn;
     }
 
     void press(Phase phase, double share, double pressure) {
@@ -75,11 +76,11 @@ TEST_CASE("frame: nothing is drawn while nothing changes, and everything that do
     s.now_s += 0.01;
     s.press(Phase::move, 0.5, 0.4);  // the force bar, the dent
     CHECK(s.drawn());
-    s.screens.note = "saved";
+    s.notices.note = "saved";
     CHECK(s.drawn());
     s.now_s += 2.0;  // the trial's clock
     CHECK(s.drawn());
-    s.on_screen.content = 0;  // the window was uncovered
+    s.view.on_screen.content = 0;  // the window was uncovered
     CHECK(s.drawn());
     CHECK_FALSE(s.drawn());
 }

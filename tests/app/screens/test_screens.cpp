@@ -25,24 +25,24 @@ using namespace palpa::test;
 
 namespace {
 
-struct Picture {
+struct Pixels {
     int width = 0;
     int height = 0;
     std::vector<unsigned char> rgb;
 };
 
-Picture read_png(const std::filesystem::path& path) {
+Pixels read_png(const std::filesystem::path& path) {
     png_image image{};
     image.version = PNG_IMAGE_VERSION;
     REQUIRE(png_image_begin_read_from_file(&image, path.c_str()));
     image.format = PNG_FORMAT_RGB;
-    Picture out{static_cast<int>(image.width), static_cast<int>(image.height), {}};
+    Pixels out{static_cast<int>(image.width), static_cast<int>(image.height), {}};
     out.rgb.resize(PNG_IMAGE_SIZE(image));
     REQUIRE(png_image_finish_read(&image, nullptr, out.rgb.data(), 0, nullptr));
     return out;
 }
 
-std::size_t colours_in(const Picture& picture, const PanelArea& area) {
+std::size_t colours_in(const Pixels& picture, const PanelArea& area) {
     std::set<int> colours;
     for (int y = static_cast<int>(area.y0); y < static_cast<int>(area.y1); ++y) {
         for (int x = static_cast<int>(area.x0); x < static_cast<int>(area.x1); ++x) {
@@ -80,7 +80,27 @@ struct Case {
     bool above_finger = false;
 };
 
-void check_case(const Session& session, Screens screens, const Case& c, const std::string& name,
+// What is open, and what the app says.
+struct Screens {
+    Notices notices{};
+    Doing doing{};
+    std::optional<Wishes> asked{};
+    ViewState view{};
+};
+
+bool covers_all(const Screens& screens) {
+    return screens.asked || (menu_of(screens.doing) == nullptr && !palpates(screens.doing));
+}
+
+std::string draw(const Session& session, const Settings& settings, const Screens& screens, const Picture& picture,
+                 State& state) {
+    ViewState view = screens.view;
+    return draw_picture({session.scene, *session.plan, session.trial, settings, screens.notices, screens.doing,
+                         screens.asked, state.timeline.now_s},
+                        picture, view, state);
+}
+
+void check_case(const Session& session, Screens& screens, const Case& c, const std::string& name,
                 const TemporaryFolder& folder) {
     CAPTURE(name);
     CAPTURE(c.width_px);
@@ -88,7 +108,7 @@ void check_case(const Session& session, Screens screens, const Case& c, const st
     Settings settings;
     settings.left_handed = c.left_handed;
     settings.above_finger = c.above_finger;
-    screens.px_per_mm = c.px_per_mm;
+    screens.notices.px_per_mm = c.px_per_mm;
     State state = session.state;
     const float mm = control_scale(c.px_per_mm, static_cast<float>(c.width_px), static_cast<float>(c.height_px));
     const Layout layout =
@@ -103,17 +123,13 @@ void check_case(const Session& session, Screens screens, const Case& c, const st
     resize.height_px = static_cast<double>(t.height());
     advance(session.scene, *session.plan, resize, state);
     const auto file = folder / "p.png";
-    const std::string overflow = draw_picture(session.scene, *session.plan, session.trial, settings, screens,
-                                              c.width_px, c.height_px, state, file);
-    CHECK(overflow == "");
-    const Picture picture = read_png(file);
+    CHECK(draw(session, settings, screens, {c.width_px, c.height_px, file}, state) == "");
+    const Pixels picture = read_png(file);
     CHECK(picture.width == c.width_px);
     constexpr std::size_t kTextHas = 40;  // colours of smoothed letters
-    const bool covers_all = screens.screen == Screen::scale || screens.screen == Screen::devices ||
-                            screens.screen == Screen::study || screens.screen == Screen::maps || screens.asked;
     const PanelArea all{0.0f, 0.0f, static_cast<float>(c.width_px), static_cast<float>(c.height_px)};
-    if (layout.controls) CHECK(colours_in(picture, covers_all ? all : layout.controls_px) > kTextHas);
-    CHECK(colours_in(picture, covers_all ? all : layout.tissue_px) > kTextHas);
+    if (layout.controls) CHECK(colours_in(picture, covers_all(screens) ? all : layout.controls_px) > kTextHas);
+    CHECK(colours_in(picture, covers_all(screens) ? all : layout.tissue_px) > kTextHas);
     if (const char* keep = ::getenv("PALPA_KEEP_PICTURES")) {
         const std::string size = std::to_string(c.width_px) + "x" + std::to_string(c.height_px);
         std::filesystem::copy_file(
@@ -134,26 +150,23 @@ TEST_CASE("screens: every screen fits and is drawn at the sizes of desks and tab
     for (std::size_t i = 0; i < 400; ++i) take_sample(whole.samples[i], session);  // in the middle of a stroke
 
     Screens trial;
-    trial.scenes = scene_choices();
-    trial.profiles = profile_choices();
-    trial.screen_name = "DUMMY0, 1280 x 800";
-    trial.problems = {"scene.json: tissue.map: found nothing, expected a map folder"};
-    trial.offer_hold = true;
-    trial.device_notes = {"This pen reports always the same pressure: it has no sensor."};
-    Screens asked = trial;
+    trial.notices.scenes = scene_choices();
+    trial.notices.profiles = profile_choices();
+    trial.notices.screen_name = "DUMMY0, 1280 x 800";
+    trial.notices.problems = {"scene.json: tissue.map: found nothing, expected a map folder"};
+    trial.notices.offer_hold = true;
+    trial.notices.device_notes = {"This pen reports always the same pressure: it has no sensor."};
+    Screens asked{trial.notices};
     asked.asked.emplace().again = true;
-    Screens menu = trial;
-    menu.menu = true;
-    Screens cost = trial;
-    cost.cost = true;
-    Screens scale = trial;
-    scale.screen = Screen::scale;
-    Screens devices = trial;
-    devices.screen = Screen::devices;
-    devices.check = std::make_shared<DeviceCheck>();
-    devices.devices = {{1, "A pen with a long name", Tool::pen, true, 0.0, 8191.0, 8192, true, false, {}}};
-    for (std::size_t i = 0; i < 400; ++i) observe(whole.samples[i], *devices.check);
-    for (std::size_t i = 0; i < 400; ++i) add_dot(whole.samples[i], devices);
+    Screens menu{trial.notices, Palpating{true}};
+    Screens cost{trial.notices};
+    cost.view.cost = true;
+    Screens scale{trial.notices, MeasuringScreen{}};
+    CheckingDevices checking{std::make_shared<DeviceCheck>(), {}};
+    for (std::size_t i = 0; i < 400; ++i) observe(whole.samples[i], *checking.check);
+    for (std::size_t i = 0; i < 400; ++i) add_dot(whole.samples[i], checking.dots);
+    Screens devices{trial.notices, checking};
+    devices.notices.devices = {{1, "A pen with a long name", Tool::pen, true, 0.0, 8191.0, 8192, true, false, {}}};
 
     Session done;
     done.scene = session.scene;
@@ -161,19 +174,16 @@ TEST_CASE("screens: every screen fits and is drawn at the sizes of desks and tab
     begin_trial({}, whole.info, TrialMode::test, done);
     for (const Sample& sample : finished_trace(*done.plan, done.state).samples) take_sample(sample, done);
     REQUIRE(done.trial.finished);
-    Screens reveal = trial;
-    reveal.screen = Screen::reveal;
-    reveal.problems.clear();
-    reveal.debrief = debrief(*done.plan, done.trial);
+    Screens reveal{trial.notices, Reviewing{debrief(*done.plan, done.trial)}};
+    reveal.notices.problems.clear();
 
-    Screens maps = trial;
-    maps.screen = Screen::maps;
-    maps.maps = make_map_browser(session.scene, map_choices());
-    REQUIRE(maps.maps->problem == "");
-    add_pin({0.035, 0.035}, *maps.maps);
-    add_pin({0.100, 0.100}, *maps.maps);
-    maps.maps->pointed_m = Eigen::Vector2d(0.060, 0.088);
-    maps.maps->quantity = MapQuantity::normal;
+    Screens maps{trial.notices, BrowsingMaps{}};
+    maps.view.maps = make_map_browser(session.scene, map_choices());
+    REQUIRE(maps.view.maps->problem == "");
+    add_pin({0.035, 0.035}, *maps.view.maps);
+    add_pin({0.100, 0.100}, *maps.view.maps);
+    maps.view.maps->pointed_m = Eigen::Vector2d(0.060, 0.088);
+    maps.view.maps->quantity = MapQuantity::normal;
 
     constexpr double kTablet_px_per_mm = 11.8;  // 10.1 inch with 2560 x 1600
     const Case cases[] = {{1280, 800, kMissing, false},
@@ -204,7 +214,8 @@ TEST_CASE("screens: every step of a study fits, and none tells where the nodules
     const Trace whole = read_trace(default_trace());
     begin_trial({}, whole.info, TrialMode::test, session);
     for (std::size_t i = 0; i < 400; ++i) take_sample(whole.samples[i], session);
-    const auto run = std::make_shared<StudyRun>();
+    Screens screens;
+    auto* run = &screens.doing.emplace<StudyRun>();
     run->protocol = read_protocol(PALPA_SOURCE_DIR "/assets/protocols/paper.json");
     run->scenes = load_study_scenes(run->protocol);
     run->directory = folder / "log";
@@ -212,24 +223,30 @@ TEST_CASE("screens: every step of a study fits, and none tells where the nodules
     run->code = "07";
     run->progress = progress_of(run->directory, run->protocol, run->code);
     run->progress.next = run->progress.plan.trials.front();
-    run->stopped = "log: found 12 MB free, expected 64 MB for a trial; the study stops here";
-    Screens screens;
-    screens.study = run;
+    const step::Stopped stopped{"log: found 12 MB free, expected 64 MB for a trial; the study stops here"};
+    const StudyStep steps[] = {
+        step::Code{},    step::Again{},    step::Questions{}, step::Instructions{}, step::Trial{true}, step::Device{},
+        step::Present{}, step::Question{}, step::Typed{},     step::Ratings{},      step::Pause{},     step::Done{},
+        stopped};
+    static_assert(std::size(steps) == std::variant_size_v<StudyStep>);
     const Case cases[] = {{1280, 800, kMissing, false},
                           {800, 1280, kMissing, false},
                           {2560, 1600, 11.8, false},
                           {1024, 600, kMissing, true}};
     for (const Case& c : cases) {
-        for (int step = 0; step <= static_cast<int>(StudyStep::stopped); ++step) {
-            run->step = static_cast<StudyStep>(step);
-            const bool by_hand = run->step == StudyStep::typed;
+        for (const StudyStep& step : steps) {
+            run->step = step;
+            ++run->entered;
+            const bool by_hand = at<step::Typed>(*run);
             for (const PlannedTrial& trial : run->progress.plan.trials) {
                 const Modality modality = run->protocol.conditions[trial.condition].modality;
                 if (!trial.practice && (modality == Modality::hand) == by_hand) run->progress.next = trial;
             }
-            run->answers.clear();
-            run->typed.nodules = {4, kMissed, 0};
-            screens.screen = run->step == StudyStep::trial ? Screen::trial : Screen::study;
+            screens.view.study = {};
+            if (by_hand) {
+                screens.view.study.step = run->entered;
+                screens.view.study.typed.nodules = {4, kMissed, 0};
+            }
             check_case(session, screens, c, std::string("study-") + name_of(run->step), folder);
         }
         // on a tablet there is more to do between people, and a step may have to wait
@@ -238,20 +255,17 @@ TEST_CASE("screens: every step of a study fits, and none tells where the nodules
             "Trial sub-07_task-palpation_run-03 is not kept: the storage of this browser is full. Menu, Trials, Export "
             "saves it "
             "to a file; the next trial waits for that."};
-        for (const StudyStep step : {StudyStep::code, StudyStep::done, StudyStep::stopped}) {
+        for (const StudyStep& step : {StudyStep(step::Code{}), StudyStep(step::Done{}), StudyStep(stopped)}) {
             run->step = step;
-            run->answers.clear();
+            ++run->entered;
             check_case(session, screens, c, std::string("study-tablet-") + name_of(step), folder);
         }
-        run->keeping = true;
+        run->keeping_since_s = 0.0;
         check_case(session, screens, c, "study-tablet-keeping", folder);
-        run->keeping = run->on_tablet = false;
-        run->step = StudyStep::device;
-        run->device_here = false;
-        run->device_left = true;
+        run->keeping_since_s.reset();
+        run->on_tablet = false;
+        run->step = step::Device{false, true};
         check_case(session, screens, c, "study-device-gone", folder);
-        run->device_here = true;
-        run->device_left = false;
         run->warnings.clear();
     }
 }
@@ -264,12 +278,12 @@ TEST_CASE(
     session.plan = std::make_shared<const Plan>(make_plan(session.scene));
     begin_trial({}, read_trace(default_trace()).info, TrialMode::practice, session);
     Screens screens;
-    screens.screen = Screen::maps;
-    screens.maps = make_map_browser(session.scene, map_choices());
-    Map& map = screens.maps->map;
+    screens.doing = BrowsingMaps{};
+    screens.view.maps = make_map_browser(session.scene, map_choices());
+    Map& map = screens.view.maps->map;
     for (std::size_t cell = 0; cell < map.n_cells(); ++cell) {
         if (cell % map.n_x < 20 && cell / map.n_x < 12)
-            screens.maps->stiffness_N_per_m[cell] = std::numeric_limits<double>::quiet_NaN();
+            screens.view.maps->stiffness_N_per_m[cell] = std::numeric_limits<double>::quiet_NaN();
     }
     for (std::size_t k = 0; k < map.n_depths(); ++k)
         map.normal_N[k * map.n_cells() + 700] = std::numeric_limits<float>::quiet_NaN();
@@ -284,7 +298,7 @@ TEST_CASE(
     map.nodules.push_back(found);
     constexpr const char* kNames[] = {"maps-normal", "maps-sideways-x", "maps-sideways-y", "maps-stiffness"};
     for (int i = 0; i < 4; ++i) {
-        screens.maps->quantity = static_cast<MapQuantity>(i);
+        screens.view.maps->quantity = static_cast<MapQuantity>(i);
         check_case(session, screens, {1280, 800, kMissing, false}, kNames[i], folder);
     }
 }
@@ -299,13 +313,13 @@ TEST_CASE("screens: during a test the map browser shows nothing of any map") {
     for (std::size_t i = 0; i < 400; ++i) take_sample(whole.samples[i], session);
     REQUIRE_FALSE(may_show_maps(session.trial));
     Screens screens;
-    screens.screen = Screen::maps;
-    screens.maps = make_map_browser(session.scene, map_choices());
+    screens.doing = BrowsingMaps{};
+    screens.view.maps = make_map_browser(session.scene, map_choices());
     const auto coloured = [&](const Session& of) {
         const auto file = folder / "p.png";
         State state = of.state;
-        draw_picture(of.scene, *of.plan, of.trial, {}, screens, 1280, 800, state, file);
-        const Picture picture = read_png(file);
+        draw(of, {}, screens, {1280, 800, file}, state);
+        const Pixels picture = read_png(file);
         int count = 0;
         for (std::size_t at = 0; at < picture.rgb.size(); at += 3) {
             const int high = std::max({picture.rgb[at], picture.rgb[at + 1], picture.rgb[at + 2]});

@@ -40,8 +40,8 @@ Protocol find_protocol(const TemporaryFolder& folder) {
 
 // The trial on the tissue as the loop runs it: a mark on nodule A, then the end.
 void run_trial(StudyRun& run) {
-    REQUIRE(run.start_trial);
-    run.start_trial = false;
+    REQUIRE(trial_waits(run));
+    std::get<step::Trial>(run.step).begun = true;
     Session session;
     session.scene = scene_of(due_scene(run), due_trial(run));
     session.plan = due_scene(run).plan;
@@ -64,15 +64,13 @@ void run_trial(StudyRun& run) {
 }
 
 void answer_questions(StudyRun& run) {
-    REQUIRE(run.step == StudyStep::questions);
-    run.answers = {"33", "b"};
-    submit_answers(run);
+    REQUIRE(at<step::Questions>(run));
+    submit_answers({"33", "b"}, run);
 }
 
 void rate(StudyRun& run, const std::string& effort) {
-    REQUIRE(run.step == StudyStep::ratings);
-    run.answers = {effort};
-    submit_answers(run);
+    REQUIRE(at<step::Ratings>(run));
+    submit_answers({effort}, run);
 }
 
 }  // namespace
@@ -81,25 +79,26 @@ TEST_CASE("study run: from the code to the thanks, everything in the log") {
     const TemporaryFolder folder;
     const auto log = folder / "log";
     StudyRun run = open_study_run(find_protocol(folder), log, "");
-    CHECK(run.step == StudyStep::code);
+    CHECK(at<step::Code>(run));
     CHECK(free_code(run) == "01");
     enter_code("P 7", run);
-    CHECK(run.step == StudyStep::code);
+    CHECK(at<step::Code>(run));
     CHECK(run.note == "Up to 20 letters and digits.");
     enter_code("P7", run);
     answer_questions(run);
     REQUIRE(run.progress.plan.trials.size() == 4);  // practice and test under each condition
     std::string steps;
-    for (int i = 0; run.step != StudyStep::done && i < 30; ++i) {
+    for (int i = 0; !at<step::Done>(run) && i < 30; ++i) {
         steps += name_of(run.step) + std::string(" ");
-        if (run.step == StudyStep::instructions || run.step == StudyStep::pause) {
+        if (at<step::Instructions>(run) || at<step::Pause>(run)) {
             begin_step(run);
-        } else if (run.step == StudyStep::trial) {
+        } else if (at<step::Trial>(run)) {
             run_trial(run);
-        } else if (run.step == StudyStep::typed) {
-            run.typed.nodules = {4, kMissed};
-            run.typed.duration_s = 12.0;
-            submit_typed(run);
+        } else if (at<step::Typed>(run)) {
+            TypedAnswers typed;
+            typed.nodules = {4, kMissed};
+            typed.duration_s = 12.0;
+            submit_typed(typed, run);
         } else {
             rate(run, "6");
         }
@@ -144,9 +143,11 @@ TEST_CASE("study run: what a keeper has to take is told, and run numbers that ar
     CHECK(run.unkept_answers);
     CHECK(run.unkept_runs.empty());
     begin_step(run);
-    REQUIRE(run.step == StudyStep::typed);
-    run.typed.duration_s = 12.0;
-    submit_typed(run);
+    REQUIRE(at<step::Typed>(run));
+    TypedAnswers typed;
+    typed.nodules = {kMissed, kMissed};
+    typed.duration_s = 12.0;
+    submit_typed(typed, run);
     REQUIRE(run.unkept_runs.size() == 1);
     CHECK(run.unkept_runs[0].stem == "sub-P7_task-palpation_run-23");
 }
@@ -160,28 +161,28 @@ TEST_CASE("study run: a crash in the middle of a trial costs that trial, nothing
         begin_step(run);
         run_trial(run);
         begin_step(run);
-        REQUIRE(run.step == StudyStep::trial);
+        REQUIRE(at<step::Trial>(run));
         Session session;  // begun, never finished
         session.scene = scene_of(due_scene(run), due_trial(run));
         session.plan = due_scene(run).plan;
         begin_trial(due_files(run), {1280.0, 800.0, kMissing, kMissing, "pen"}, TrialMode::test, session);
     }
     StudyRun again = open_study_run(find_protocol(folder), log, "07");
-    CHECK(again.step == StudyStep::again);
+    CHECK(at<step::Again>(again));
     CHECK(again.progress.finished == std::set<int>{1});
     same_person(true, again);
-    CHECK(again.step == StudyStep::instructions);
+    CHECK(at<step::Instructions>(again));
     CHECK(due_trial(again).trial == 2);
     begin_step(again);
     run_trial(again);
-    CHECK(again.step == StudyStep::ratings);  // asked once the condition is done
+    CHECK(at<step::Ratings>(again));  // asked once the condition is done
     const Observations seen = read_study(log);
     CHECK(seen.interrupted_trials == 1);
     CHECK(seen.trials.size() == 1);
 
     StudyRun before_rating = open_study_run(find_protocol(folder), log, "07");
     same_person(true, before_rating);
-    CHECK(before_rating.step == StudyStep::ratings);
+    CHECK(at<step::Ratings>(before_rating));
 }
 
 TEST_CASE("study run: forced choices, both surfaces harder and softer versions of one tissue") {
@@ -214,11 +215,11 @@ TEST_CASE("study run: forced choices, both surfaces harder and softer versions o
     CHECK(run.stimuli[0][1].plan->zone_N == run.stimuli[0][0].plan->zone_N);  // the force bar tells nothing
     CHECK(run.stimuli[0][1].plan->greatest_force_N == run.stimuli[0][0].plan->greatest_force_N);
 
-    REQUIRE(run.step == StudyStep::instructions);
+    REQUIRE(at<step::Instructions>(run));
     begin_step(run);
     int pairs = 0;
-    for (; run.step != StudyStep::done && pairs < 10; ++pairs) {
-        REQUIRE(run.step == StudyStep::trial);
+    for (; !at<step::Done>(run) && pairs < 10; ++pairs) {
+        REQUIRE(at<step::Trial>(run));
         const PlannedTrial trial = due_trial(run);
         const bool reference_first = &due_scene(run) == &run.stimuli[0][0];
         CHECK(reference_first == trial.reference_first);
@@ -226,7 +227,7 @@ TEST_CASE("study run: forced choices, both surfaces harder and softer versions o
         CHECK(run.interval == 1);
         CHECK((&due_scene(run) == &run.stimuli[0][0]) != reference_first);
         run_trial(run);
-        REQUIRE(run.step == StudyStep::question);
+        REQUIRE(at<step::Question>(run));
         run.step_began_s = 5.0;
         const bool comparison_softer = trial.comparison == 0;
         choose_softer(comparison_softer != reference_first, 7.5 + pairs, run);  // always right
@@ -239,21 +240,20 @@ TEST_CASE("study run: forced choices, both surfaces harder and softer versions o
     CHECK(std::filesystem::exists(folder / "log/sub-01/beh/sub-01_task-interval_run-08_samples.tsv"));
 }
 
-TEST_CASE("study run: a protocol without questions takes a code, whatever was typed before it") {
+TEST_CASE("study run: a protocol without questions takes a code") {
     const TemporaryFolder folder;
     StudyRun run = open_study_run(read_protocol(PALPA_SOURCE_DIR "/assets/protocols/softer.json"), folder / "log", "");
-    run.answers = {"P7", "left over", "from another step"};
     enter_code("P7", run);
-    CHECK(run.step == StudyStep::instructions);
+    CHECK(at<step::Instructions>(run));
     CHECK(contains(read_text(folder / "log/participants.tsv"), "\nsub-P7\tn/a\tn/a\tn/a\tn/a\tn/a\tn/a\t"));
 }
 
 TEST_CASE("study run: the field has the letters again after a code that is not taken") {
     const TemporaryFolder folder;
     StudyRun run = open_study_run(read_protocol(PALPA_SOURCE_DIR "/assets/protocols/softer.json"), folder / "log", "");
-    CHECK_FALSE(run.focus_code);
+    CHECK(std::get<step::Code>(run.step).refused == 0);
     enter_code("P 7", run);
-    CHECK(run.focus_code);
+    CHECK(std::get<step::Code>(run.step).refused == 1);
 }
 
 TEST_CASE("study run: the choices of the next person go to files of their own") {
@@ -265,7 +265,7 @@ TEST_CASE("study run: the choices of the next person go to files of their own") 
         begin_step(run);
         interval_presented(run);
         interval_presented(run);
-        REQUIRE(run.step == StudyStep::question);
+        REQUIRE(at<step::Question>(run));
         choose_softer(true, 1.0, run);
         same_person(false, run);
     }
@@ -280,19 +280,19 @@ TEST_CASE("study run: a trial waits for its device, and one that the device left
     enter_code("07", run);
     answer_questions(run);
     begin_step(run);
-    REQUIRE(run.start_trial);
+    REQUIRE(trial_waits(run));
     wait_for_device(false, run);
-    CHECK_FALSE(run.start_trial);
+    CHECK_FALSE(trial_waits(run));
     CHECK(read_json(log / "sub-07/now.json")["step"] == "device");
     begin_step(run);  // not here yet
-    CHECK(run.step == StudyStep::device);
-    run.device_here = true;
+    CHECK(at<step::Device>(run));
+    std::get<step::Device>(run.step).here = true;
     begin_step(run);
-    REQUIRE(run.start_trial);
+    REQUIRE(trial_waits(run));
     const int due = due_trial(run).trial;
     wait_for_device(true, run);
-    CHECK(run.device_left);
-    run.device_here = true;
+    CHECK(std::get<step::Device>(run.step).left);
+    std::get<step::Device>(run.step).here = true;
     begin_step(run);
     CHECK(due_trial(run).trial == due);
     run_trial(run);
@@ -304,14 +304,14 @@ TEST_CASE("study run: forced choices without a scene are presented by the experi
     StudyRun run =
         open_study_run(read_protocol(PALPA_SOURCE_DIR "/assets/protocols/softer.json"), folder / "log", "01");
     begin_step(run);
-    REQUIRE(run.step == StudyStep::present);
+    REQUIRE(at<step::Present>(run));
     const Json now = read_json(folder / "log/sub-01/now.json");
     const PlannedTrial trial = due_trial(run);
     CHECK(now["present_kPa"][trial.reference_first ? 0 : 1] == 1.75);
     interval_presented(run);
-    CHECK(run.step == StudyStep::present);
+    CHECK(at<step::Present>(run));
     interval_presented(run);
-    CHECK(run.step == StudyStep::question);
+    CHECK(at<step::Question>(run));
     choose_softer(true, 1.0, run);
     CHECK(run.progress.finished.size() == 1);
 }
@@ -322,8 +322,8 @@ TEST_CASE("study run: a folder that cannot be written stops the study in words, 
     StudyRun run = open_study_run(find_protocol(folder), log, "");
     write_text_atomically(log / "sub-09", "a file where the folder would be");
     enter_code("09", run);
-    CHECK(run.step == StudyStep::stopped);
-    CHECK_FALSE(run.stopped.empty());
+    CHECK(at<step::Stopped>(run));
+    CHECK_FALSE(std::get<step::Stopped>(run.step).why.empty());
     CHECK(
         contains(message_of([&] { open_study_run(find_protocol(folder), log, "a b"); }), "--participant: found 'a b'"));
 }

@@ -1,0 +1,81 @@
+// Does what the person asked for on the screens.
+
+#include <cmath>
+#include <string>
+
+#include "app/live/live_app.h"
+#include "app/screens/settings.h"
+
+namespace palpa::app {
+namespace {
+
+void change_settings(const Wishes& wishes, platform::Window& window, Gui& gui, App& app) {
+    if (wishes.left_handed) app.settings.left_handed = *wishes.left_handed;
+    if (wishes.above_finger) app.settings.above_finger = *wishes.above_finger;
+    if (wishes.mode) app.settings.test_mode = *wishes.mode == session::TrialMode::test;
+    if (wishes.full_screen) {
+        app.settings.full_screen = !window.full_screen();
+        window.set_full_screen(app.settings.full_screen);
+    }
+    if (wishes.px_per_mm) {
+        app.notices.px_per_mm = *wishes.px_per_mm;
+        app.settings.px_per_mm.erase(app.notices.screen_name);
+        if (std::isfinite(*wishes.px_per_mm)) app.settings.px_per_mm[app.notices.screen_name] = *wishes.px_per_mm;
+    }
+    const bool changed = wishes.left_handed || wishes.above_finger || wishes.mode || wishes.full_screen ||
+                         wishes.px_per_mm || wishes.scene || wishes.profile;
+    if (changed) keep_settings(app);
+    // another scale or another way of showing the tissue makes another trial
+    if (!wishes.px_per_mm && !wishes.mode && !wishes.above_finger) return;
+    if (app.settings.test_mode) turn_if_shown(window, app);
+    begin_anew(window, gui, app);
+}
+
+void press_by_hold(App& app) {
+    const auto lacks = [&](platform::Tool tool) {
+        const platform::PressureKind kind = platform::pressure_kind(app.pressure, tool);
+        return kind == platform::PressureKind::constant || kind == platform::PressureKind::missing;
+    };
+    app.hold.pen = app.hold.pen || lacks(platform::Tool::pen);
+    app.hold.finger = app.hold.finger || lacks(platform::Tool::finger);
+}
+
+}  // namespace
+
+void keep_settings(App& app) {
+    if (app.settings_path.empty()) return;
+    const std::string problem = save_settings(app.settings, app.settings_path);
+    if (!problem.empty()) app.notices.problems.push_back(problem);
+    if (app.keeper != nullptr) app.keeper->keep_settings(app.settings_path);
+}
+
+void carry_out(const Wishes& asked_for, platform::Window& window, Gui& gui, App& app) {
+    if (asked_for.sure || asked_for.stay) app.asked.reset();
+    Wishes wishes = asked_for;
+    if (marks_at_stake(app)) {
+        wishes = ask_first(asked_for, app.asked);
+        if (app.asked) end_presses(window, app);
+    } else {
+        app.asked.reset();
+    }
+    if (wishes.quit) app.quit = true;
+    if (wishes.understood) app.notices.problems.clear();
+    if (study_of(app.doing) != nullptr) follow_study(wishes.study, window, gui, app);
+    if (wishes.action && palpates(app.doing) && !app.trace) act(*wishes.action, window, app);
+    if (bool* menu = menu_of(app.doing); menu != nullptr && wishes.menu) *menu = *wishes.menu;
+    if (wishes.screen) open_screen(*wishes.screen, window, app);
+    if (wishes.scene) app.settings.scene = *wishes.scene;
+    if (wishes.profile) app.settings.profile = *wishes.profile;
+    if (wishes.scene || wishes.profile) {
+        change_scene(window, gui, wishes.scene.value_or(app.session.scene.file.string()), app.settings.profile, app);
+    }
+    change_settings(wishes, window, gui, app);
+    if (wishes.press_by_hold && app.notices.offer_hold) press_by_hold(app);
+    if (wishes.trials && app.keeper != nullptr) app.keeper->open();
+    if (wishes.studies && app.keeper != nullptr) app.keeper->open_studies();
+    if (wishes.next) turn_tissue(window, app);
+    if (wishes.again || wishes.next) begin_anew(window, gui, app);
+    app.save_waits = app.save_waits || wishes.save_picture;
+}
+
+}  // namespace palpa::app

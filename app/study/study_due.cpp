@@ -1,0 +1,63 @@
+// The trial of a study that is due: its scene, its files, its limit.
+
+#include <algorithm>
+
+#include "app/study/study_run.h"
+
+namespace palpa::app {
+
+const study::PlannedTrial& due_trial(const StudyRun& run) { return *run.progress.next; }
+const study::Condition& due_condition(const StudyRun& run) { return run.protocol.conditions[due_trial(run).condition]; }
+
+bool typed_in(const study::Condition& condition) {
+    return condition.modality == study::Modality::hand || condition.modality == study::Modality::tangible ||
+           condition.modality == study::Modality::shape_display;
+}
+
+bool shows_tissue(const StudyRun& run) {
+    return !typed_in(due_condition(run)) && run.scenes[due_trial(run).condition].has_value();
+}
+
+const StudyScene& due_scene(const StudyRun& run) {
+    const study::PlannedTrial& trial = due_trial(run);
+    if (run.protocol.task == study::TaskKind::find) return *run.scenes[trial.condition];
+    const bool reference = (run.interval == 0) == trial.reference_first;
+    return run.stimuli[trial.condition][reference ? 0 : 1 + static_cast<std::size_t>(trial.comparison)];
+}
+
+session::SessionFiles due_files(const StudyRun& run) {
+    const study::PlannedTrial& trial = due_trial(run);
+    session::SessionFiles files;
+    files.log = run.directory.string();
+    files.participant = run.code;
+    files.first_run = run.first_run;
+    files.label = label_of(run.protocol, run.progress.plan, trial, run.identities[trial.condition]);
+    if (run.protocol.task == study::TaskKind::choice) {
+        files.task = "interval";
+        files.label->study["interval"] = run.interval + 1;
+    }
+    return files;
+}
+
+double due_limit_s(const StudyRun& run) {
+    return due_trial(run).practice ? run.protocol.practice_limit_s : run.protocol.time_limit_s;
+}
+
+std::vector<std::string> due_nodules(const StudyRun& run) {
+    const auto& scene = run.scenes[due_trial(run).condition];
+    if (!scene) return due_condition(run).nodules;
+    std::vector<std::string> names;
+    for (const stiffnessmaps::Nodule& nodule : scene->plan->nodules) names.push_back(nodule.id);
+    return names;
+}
+
+const std::vector<study::Item>& due_items(const StudyRun& run) {
+    return at<step::Questions>(run) ? run.protocol.demographics : run.protocol.ratings;
+}
+
+std::string progress_text(const StudyRun& run) {
+    const std::size_t of = run.progress.plan.trials.size();
+    return std::to_string(std::min(of, run.progress.finished.size() + 1)) + " of " + std::to_string(of);
+}
+
+}  // namespace palpa::app
