@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <ctime>
@@ -15,6 +14,7 @@
 #include <unistd.h>
 
 #include "accuracy/mechanics.h"
+#include "files/clock.h"
 #include "files/input_error.h"
 #include "files/regular_file.h"
 #include "files/text.h"
@@ -25,8 +25,7 @@ namespace {
 // One line on a terminal, rewritten; nothing elsewhere.
 class ProgressLine {
   public:
-    explicit ProgressLine(double expected_s)
-        : expected_s_(expected_s), on_(::isatty(STDERR_FILENO) == 1), start_(std::chrono::steady_clock::now()) {}
+    explicit ProgressLine(double expected_s) : expected_s_(expected_s), on_(::isatty(STDERR_FILENO) == 1) {}
     ~ProgressLine() {
         if (on_) std::fputs("\r\033[K", stderr);
     }
@@ -34,8 +33,8 @@ class ProgressLine {
     ProgressLine& operator=(const ProgressLine&) = delete;
     void show(std::size_t done, std::size_t total, double done_s, const std::string& what) const {
         if (!on_) return;
-        const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start_;
-        const double pace = done_s > 0.0 ? took.count() / done_s : 1.0;
+        const double took_s = files::steady_s() - began_s_;
+        const double pace = done_s > 0.0 ? took_s / done_s : 1.0;
         std::fprintf(stderr, "\r\033[K%zu of %zu, about %.0f s left: %s", done, total, pace * (expected_s_ - done_s),
                      what.c_str());
         std::fflush(stderr);
@@ -44,7 +43,7 @@ class ProgressLine {
   private:
     double expected_s_;
     bool on_;
-    std::chrono::steady_clock::time_point start_;
+    double began_s_ = files::steady_s();
 };
 
 std::string csv_cell(double value) { return files::number_text(value); }
@@ -148,10 +147,7 @@ Machine this_machine() {
     }
     double load = 0.0;
     if (::getloadavg(&load, 1) == 1) machine.load = load;
-    const std::time_t now = std::time(nullptr);
-    std::array<char, 32> date{};
-    std::strftime(date.data(), date.size(), "%Y-%m-%d", std::gmtime(&now));
-    machine.date = date.data();
+    machine.date = files::utc_now().substr(0, 10);
     return machine;
 }
 

@@ -2,10 +2,12 @@
 // Times of single calls, and the memory that something keeps.
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <vector>
+
+#include "files/clock.h"
 
 namespace palpa::accuracy {
 
@@ -23,10 +25,9 @@ inline double quantile_us(const Timing& timing, double share) {
 
 template <class Call>
 void time_call(Timing& timing, Call&& call) {
-    const auto start = std::chrono::steady_clock::now();
+    const std::int64_t began_ns = files::steady_ns();
     call();
-    const std::chrono::duration<double, std::micro> took = std::chrono::steady_clock::now() - start;
-    timing.us.push_back(took.count());
+    timing.us.push_back(1e-3 * static_cast<double>(files::steady_ns() - began_ns));
 }
 
 // call(i) until `budget_s` is spent, at least `least` and at most `most` times.

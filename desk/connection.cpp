@@ -4,7 +4,6 @@
 #include <arpa/inet.h>
 #include <array>
 #include <cerrno>
-#include <chrono>
 #include <fcntl.h>
 #include <netinet/tcp.h>
 #include <openssl/err.h>
@@ -14,6 +13,7 @@
 #include <unistd.h>
 
 #include "desk/request_head.h"
+#include "files/clock.h"
 #include "files/input_error.h"
 #include "files/regular_file.h"
 
@@ -23,8 +23,6 @@ namespace {
 constexpr double kSlice_s = 0.2;  // how often a waiting connection looks whether the desk is being ended
 constexpr double kLinger_s = 1.0;
 constexpr std::size_t kLinger_bytes = std::size_t{1} << 20;
-
-double now_s() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
 std::string tls_trouble() {
     std::array<char, 256> text{};
@@ -120,7 +118,7 @@ Connection::~Connection() {
 
 void Connection::begin(Phase phase) {
     phase_ = phase;
-    began_s_ = last_s_ = now_s();
+    began_s_ = last_s_ = files::steady_s();
     bytes_ = 0.0;
 }
 
@@ -136,8 +134,8 @@ double Connection::deadline_s() const {
 
 bool Connection::wait(short events) {
     while (true) {
-        if (ending_ && ended_s_ < 0.0) ended_s_ = now_s();
-        const double left_s = deadline_s() - now_s();
+        if (ending_ && ended_s_ < 0.0) ended_s_ = files::steady_s();
+        const double left_s = deadline_s() - files::steady_s();
         if (left_s <= 0.0) return false;
         pollfd what{fd_, events, 0};
         const int ready = ::poll(&what, 1, static_cast<int>(1e3 * std::min(left_s, kSlice_s)) + 1);
@@ -181,7 +179,7 @@ ssize_t Connection::receive(char* out, size_t size) {
                  [&](int fd) { return ::recv(fd, out, size, 0); }, POLLIN);
     if (n > 0) {
         bytes_ += static_cast<double>(n);
-        last_s_ = now_s();
+        last_s_ = files::steady_s();
     }
     return n;
 }
@@ -252,7 +250,7 @@ ssize_t Connection::write(const char* bytes, size_t size) {
                  [&](int fd) { return ::send(fd, bytes, size, MSG_NOSIGNAL); }, POLLOUT);
     if (n > 0) {
         bytes_ += static_cast<double>(n);
-        last_s_ = now_s();
+        last_s_ = files::steady_s();
     }
     return n > 0 ? n : -1;
 }
@@ -264,8 +262,8 @@ void Connection::linger() {
     broken_ = true;  // nothing more is said
     std::array<char, 4096> buffer;
     std::size_t taken = 0;
-    const double until_s = now_s() + kLinger_s;
-    while (taken < kLinger_bytes && now_s() < until_s && !ending_) {
+    const double until_s = files::steady_s() + kLinger_s;
+    while (taken < kLinger_bytes && files::steady_s() < until_s && !ending_) {
         pollfd what{fd_, POLLIN, 0};
         if (::poll(&what, 1, static_cast<int>(1e3 * kSlice_s)) <= 0) continue;
         const ssize_t n = ::recv(fd_, buffer.data(), buffer.size(), 0);

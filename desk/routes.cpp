@@ -8,6 +8,7 @@
 #include <openssl/x509v3.h>
 
 #include "desk/static_files.h"
+#include "files/clock.h"
 #include "files/input_error.h"
 
 namespace palpa::desk {
@@ -21,7 +22,6 @@ constexpr std::size_t kLargestPairing_bytes = 1024;
 constexpr std::size_t kHashDigits = 64;
 constexpr std::array<const char*, 5> kAssetFolders{"scenes", "maps", "profiles", "phantoms", "protocols"};
 
-double steady_s() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 double unix_s() { return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count(); }
 
 std::string dumped(const files::Json& json) {
@@ -126,7 +126,7 @@ void pair(const Request& req, const std::string& body, Desk& desk, Response& res
     const auto code = code_in(body);
     if (!code) return refuse(400, "expected {\"code\": \"123456\"}", res);
     if (desk.pairs) {
-        const CodeGuard::Result result = desk.codes.try_code(*code, req.remote_addr, steady_s());
+        const CodeGuard::Result result = desk.codes.try_code(*code, req.remote_addr, files::steady_s());
         if (result.lock_began) tell_lock(result, req.remote_addr, desk);
         if (result.answer == CodeGuard::Answer::wrong) {
             desk.events.tell_refused("a wrong code from " + req.remote_addr,

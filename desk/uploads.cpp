@@ -4,13 +4,13 @@
 #include <array>
 #include <cerrno>
 #include <cstring>
-#include <ctime>
 #include <fcntl.h>
 #include <openssl/evp.h>
 #include <sys/file.h>
 #include <unistd.h>
 
 #include "files/append_file.h"
+#include "files/clock.h"
 #include "files/durable.h"
 #include "files/input_error.h"
 #include "files/text.h"
@@ -26,15 +26,6 @@ constexpr std::string_view kHeader = "received_utc\tsha256\tbytes\tname\tlabel\t
 constexpr std::size_t kLongestLabel = 64;
 constexpr std::size_t kHashDigits = 64;
 constexpr std::uint64_t kRow_bytes = 512;  // more than a row of the index
-
-std::string utc_now() {
-    const std::time_t now = std::time(nullptr);
-    std::tm utc{};
-    gmtime_r(&now, &utc);
-    std::array<char, 32> text{};
-    std::strftime(text.data(), text.size(), "%Y-%m-%dT%H:%M:%SZ", &utc);
-    return text.data();
-}
 
 bool is_hash(std::string_view text) {
     return text.size() == kHashDigits && std::all_of(text.begin(), text.end(), [](char c) {
@@ -170,7 +161,7 @@ void Uploads::append_row(const std::string& sha256, std::uint64_t bytes, const S
     const std::string device = std::to_string(sender.device);
     const std::string key = row_key(sha256, sender.label, device);
     if (rows_.count(key) != 0) return;
-    const std::string row = utc_now() + "\t" + sha256 + "\t" + std::to_string(bytes) + "\t" + sha256 +
+    const std::string row = files::utc_now() + "\t" + sha256 + "\t" + std::to_string(bytes) + "\t" + sha256 +
                             std::string(kEnding) + "\t" + sender.label + "\t" + device + "\t" + sender.address + "\n";
     files::append_synced(folder_ / "index.tsv", row);
     used_ += row.size();

@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <cassert>
-#include <chrono>
 #include <cmath>
 #include <iterator>
 #include <numbers>
 
 #include "fem/reach.h"
+#include "files/clock.h"
 #include "files/input_error.h"
 #include "files/text.h"
 #include "mechanics/compliance.h"
@@ -321,7 +321,7 @@ std::vector<std::string> contact_warnings(const IndenterContact& contact) {
 
 IndenterContact press_indenter(const FemCase& model, const Factored& factored, const Eigen::Matrix3Xd& before_m,
                                const FemProgress& progress) {
-    const auto start = std::chrono::steady_clock::now();
+    const double began_s = files::steady_s();
     const CaseIndenter& indenter = *model.indenter;
     const double R = indenter.indenter.radius_m;
     const double depth_m = std::min(indenter.depth_m ? *indenter.depth_m : hertz_depth_m(indenter, model), R);
@@ -351,7 +351,7 @@ IndenterContact press_indenter(const FemCase& model, const Factored& factored, c
         }
         IndenterContact out = result_of(c, pressed, model);
         out.columns = c.n_touch;
-        out.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+        out.seconds = files::steady_s() - began_s;
         return out;
     }
 }

@@ -1,7 +1,6 @@
 #include "scene/meter.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 
 namespace palpa::scene {
@@ -22,11 +21,6 @@ double Meter::quantile_ns(double q) const {
         if (seen > wanted) return std::min(worst_ns_, std::exp2((static_cast<double>(i) + 0.5) / kPerOctave));
     }
     return worst_ns_;
-}
-
-std::int64_t steady_ns() {
-    return std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::steady_clock::now().time_since_epoch())
-        .count();
 }
 
 }  // namespace palpa::scene

@@ -5,6 +5,8 @@
 #include <array>
 #include <cstdint>
 
+#include "files/clock.h"
+
 namespace palpa::scene {
 
 class Meter {
@@ -25,6 +27,6 @@ class Meter {
     std::array<std::uint32_t, kPerOctave * kOctaves> buckets_{};
 };
 
-std::int64_t steady_ns();
+using files::steady_ns;
 
 }  // namespace palpa::scene

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <ctime>
 #include <exception>
 #include <utility>
 
+#include "files/clock.h"
 #include "files/text.h"
 #include "scene/advance.h"
 #include "session/log_rows.h"
@@ -37,15 +37,6 @@ const char* event_name(platform::Action action) {
         default:
             return "confidence";
     }
-}
-
-std::string utc_now() {
-    const std::time_t now = std::time(nullptr);
-    std::tm utc{};
-    gmtime_r(&now, &utc);
-    char text[32];
-    std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &utc);
-    return text;
 }
 
 study::EventRow event_row(const Session& session, platform::Action action) {
@@ -207,7 +198,7 @@ void begin_trial(const SessionFiles& files, const platform::TraceInfo& info, Tri
     session.label = files.label;
     session.sync_rows = files.sync_rows;
     session.finger_offset_mm = files.finger_offset_mm;
-    session.began_utc = utc_now();
+    session.began_utc = files::utc_now();
     open_files(files, info, session);
     if (session.trial_log) session.trial_log->write(event_row(session, platform::Action::none));
 }

@@ -2,7 +2,6 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <chrono>
 #include <cstdio>
 #include <memory>
 #include <unistd.h>
@@ -10,6 +9,7 @@
 #include "app/commands/command_line.h"
 #include "fem/locking.h"
 #include "fem/solve.h"
+#include "files/clock.h"
 #include "files/input_error.h"
 #include "files/printable.h"
 #include "files/regular_file.h"
@@ -175,14 +175,12 @@ void print_table(const fem::FemCase& model, const fem::FemResult& result) {
 // On a terminal only: what is done of what, and the time left.
 fem::FemProgress progress_line() {
     if (isatty(STDERR_FILENO) == 0) return [](const char*, int, int) {};
-    const auto start = std::make_shared<std::chrono::steady_clock::time_point>();
-    return [start](const char* what, int done, int total) {
-        const auto now = std::chrono::steady_clock::now();
+    return [began_s = std::optional<double>()](const char* what, int done, int total) mutable {
         if (total == 0) {
             std::fprintf(stderr, "\r\033[K%s ...", what);
         } else {
-            if (start->time_since_epoch().count() == 0) *start = now;
-            const double passed_s = std::chrono::duration<double>(now - *start).count();
+            if (!began_s) began_s = files::steady_s();
+            const double passed_s = files::steady_s() - *began_s;
             const double left_s = done > 0 ? passed_s * (total - done) / done : 0.0;
             std::fprintf(stderr, "\r\033[K%s %d of %d, %.0f s left", what, done, total, left_s);
         }

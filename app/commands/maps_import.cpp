@@ -1,7 +1,6 @@
 // palpa maps import
 
 #include <CLI/CLI.hpp>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <memory>
@@ -10,6 +9,7 @@
 #include "app/commands/command_line.h"
 #include "app/commands/map_info.h"
 #include "app/commands/option_checks.h"
+#include "files/clock.h"
 #include "files/input_error.h"
 #include "files/text.h"
 #include "stiffnessmaps/import/import.h"
@@ -151,9 +151,9 @@ stiffnessmaps::ImportOptions options_of(const Arguments& a) {
 // What is done and how much of it, once a second has passed; on a terminal only.
 std::function<void(const char*, double)> progress_on_terminal() {
     if (::isatty(STDERR_FILENO) == 0) return {};
-    const auto start = std::chrono::steady_clock::now();
-    return [start](const char* what, double done) {
-        const double spent_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    const double began_s = files::steady_s();
+    return [began_s](const char* what, double done) {
+        const double spent_s = files::steady_s() - began_s;
         if (spent_s < 1.0) return;
         std::fprintf(stderr, "\r\033[K%s", what);
         if (done > 0.0) std::fprintf(stderr, " %.0f %%, %.0f s left", 100.0 * done, spent_s * (1.0 - done) / done);

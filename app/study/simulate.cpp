@@ -12,6 +12,7 @@
 #include <unistd.h>
 
 #include "app/assets.h"
+#include "files/clock.h"
 #include "files/text.h"
 #include "scene/mapping.h"
 #include "session/session.h"
@@ -142,7 +143,7 @@ void palpate(study::SimulatedPerson& person, const Hand& hand, double rate_Hz, s
 
 void run_trial(Shared& shared, const study::PlannedParticipant& who, const study::PlannedTrial& trial,
                session::Session& session) {
-    const auto began = std::chrono::steady_clock::now();
+    const double began_s = files::steady_s();
     const study::Protocol& protocol = shared.protocol;
     session.scene = scene_of(*shared.scenes[trial.condition], trial);
     const platform::TraceInfo info{kScreenWidth_px, kScreenHeight_px, platform::kMissing, platform::kMissing,
@@ -169,7 +170,7 @@ void run_trial(Shared& shared, const study::PlannedParticipant& who, const study
     if (session.files && shared.options.samples) {
         written_MB = 1e-6 * static_cast<double>(std::filesystem::file_size(session.files->file("_samples.tsv")));
     }
-    const double wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
+    const double wall_s = files::steady_s() - began_s;
     const std::string stem = session.files->stem;
     session.finished.clear();
     if (!session::close_files({{"wall_s", wall_s}, {"samples", samples}}, session)) {
@@ -281,8 +282,8 @@ void tell(const Shared& shared, double wall_s, bool last) {
 }  // namespace
 
 SimulateResult simulate_study(const study::Protocol& protocol, const SimulateOptions& options) {
-    const auto began = std::chrono::steady_clock::now();
-    const auto wall_s = [&] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count(); };
+    const double began_s = files::steady_s();
+    const auto wall_s = [&] { return files::steady_s() - began_s; };
     const StudyScenes scenes = load_study_scenes(protocol);
     Shared shared{protocol, options, scenes, {}, {}, {}, {}, {}, {}, {}};
     shared.next_participant = 1;

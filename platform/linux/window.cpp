@@ -5,21 +5,19 @@
 
 #include <SDL.h>
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <string_view>
 #include <utility>
 
+#include "files/clock.h"
 #include "platform/linux/gl_window.h"
 #include "platform/linux/pointers.h"
 
 namespace palpa::platform {
 namespace {
 
-double steady_s() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
-
 int SDLCALL watch(void* user, SDL_Event* event) {
-    receive(*event, steady_s(), *static_cast<Pointers*>(user));
+    receive(*event, files::steady_s(), *static_cast<Pointers*>(user));
     return 1;
 }
 
@@ -76,7 +74,7 @@ void Window::poll(double wait_s, std::vector<Sample>& out) {
     if (wait_s > 0.0 && pointers.pending.empty()) wait_for_event(std::min(wait_s, longest_s), pointers);
     SDL_PumpEvents();
     SDL_FlushEvents(SDL_FIRSTEVENT, SDL_LASTEVENT);  // the watch has seen them
-    hold(steady_s(), pointers);
+    hold(files::steady_s(), pointers);
     out.insert(out.end(), pointers.pending.begin(), pointers.pending.end());
     pointers.pending.clear();
     impl_->stirred = std::exchange(pointers.stirred, false);
@@ -95,7 +93,7 @@ void Window::set_event_filter(EventFilter filter, void* user) {
 void Window::end_presses() { forget_presses(impl_->pointers); }
 
 void Window::set_keyboard(double x0_px, double y0_px, double x1_px, double y1_px, double speed_px_per_s) {
-    set_keyboard_area(steady_s(), {x0_px, y0_px, x1_px, y1_px, speed_px_per_s}, impl_->pointers);
+    set_keyboard_area(files::steady_s(), {x0_px, y0_px, x1_px, y1_px, speed_px_per_s}, impl_->pointers);
 }
 
 double Window::keyboard_x_px() const { return impl_->pointers.keyboard.x_px; }
@@ -111,7 +109,7 @@ bool Window::stay_open() {
 
 void Window::present() { SDL_GL_SwapWindow(sdl()); }
 
-double Window::now_s() const { return steady_s(); }
+double Window::now_s() const { return files::steady_s(); }
 
 int Window::width_px() const {
     int width_px = 0;
@@ -129,7 +127,7 @@ double Window::mouse_pressure() const {
     const Pointers& pointers = impl_->pointers;
     const bool pressing = presses_tissue(pointers.presses, kMousePointerId);
     if (pointers.mouse.button.down && !pressing) return 0.0;  // the press is a panel's
-    return pressure_at(pointers.mouse.button, steady_s());
+    return pressure_at(pointers.mouse.button, files::steady_s());
 }
 
 std::vector<PointerDevice> Window::devices() const {

@@ -1,12 +1,12 @@
 #include "stiffnessmaps/generate/generate.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <stdexcept>
 #include <unistd.h>
 
+#include "files/clock.h"
 #include "files/input_error.h"
 #include "files/json.h"
 #include "files/text.h"
@@ -51,7 +51,7 @@ class Progress {
     void show(double done) {
         if (!shown_) return;
         if (first_ < 0.0) first_ = done;
-        const double spent_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+        const double spent_s = files::steady_s() - began_s_;
         const int bars = static_cast<int>(30.0 * done / total_);
         std::fprintf(stderr, "\r\033[K%s [%.*s%*s] %.0f %%", what_, bars, "##############################", 30 - bars,
                      "", 100.0 * done / total_);
@@ -64,7 +64,7 @@ class Progress {
     double total_;
     bool shown_;
     double first_ = -1.0;
-    std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+    double began_s_ = files::steady_s();
 };
 
 Arguments call_of(const GenerateOptions& options) {
