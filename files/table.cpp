@@ -8,6 +8,31 @@
 #include "files/text.h"
 
 namespace palpa::files {
+namespace {
+
+// Takes a field in double quotes from the front of `line`, which lies in `text`: up to the next quote, but for two in a row,
+// which are one of the field's own. Closes the gaps that this leaves inside the text. False if nothing closes it.
+bool take_quoted(std::string& text, std::string_view& line, std::string_view& field) {
+    char* const begin = text.data() + (line.data() - text.data()) + 1;
+    const char* const end = line.data() + line.size();
+    const char* from = begin;
+    char* to = begin;
+    for (; from != end; ++from) {
+        if (*from == '"') {
+            const bool doubled = from + 1 != end && from[1] == '"';
+            if (!doubled) {
+                field = {begin, static_cast<std::size_t>(to - begin)};
+                line.remove_prefix(static_cast<std::size_t>(from + 1 - line.data()));
+                return true;
+            }
+            ++from;
+        }
+        *to++ = *from;
+    }
+    return false;
+}
+
+}  // namespace
 
 Table::Table(std::string text, std::string file_name, char separator)
     : text_(std::move(text)), file_(std::move(file_name)), separator_(separator) {
@@ -46,13 +71,22 @@ bool Table::next_line(std::string_view& out) {
     return true;
 }
 
+// Quotes mean nothing in tables that are separated by tabs, whose fields hold no tab.
 void Table::split(std::string_view line) {
     fields_.clear();
     while (true) {
-        const auto end = line.find(separator_);
-        fields_.push_back(line.substr(0, end));
-        if (end == std::string_view::npos) return;
-        line.remove_prefix(end + 1);
+        std::string_view field = line.substr(0, line.find(separator_));
+        if (separator_ != '\t' && line.starts_with('"')) {
+            if (!take_quoted(text_, line, field) || !(line.empty() || line.front() == separator_)) {
+                throw bad_input(file_, "line " + std::to_string(line_), "a quote that opens the field " + shown(field),
+                                "one that closes it, at the end of the field");
+            }
+        } else {
+            line.remove_prefix(field.size());
+        }
+        fields_.push_back(field);
+        if (line.empty()) return;
+        line.remove_prefix(1);
     }
 }
 

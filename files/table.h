@@ -1,6 +1,7 @@
 #pragma once
 // Tab- or comma-separated tables with one header line. The reader hands out rows one after the other, without copies;
-// its messages name the file, the line and the column.
+// its messages name the file, the line and the column. Fields between commas or semicolons may stand in double quotes
+// (RFC 4180), but not run over several lines.
 
 #include <filesystem>
 #include <string>

@@ -23,6 +23,38 @@ TEST_CASE("table: rows, missing values, CRLF, byte order mark, blank lines, no n
     CHECK_FALSE(table.next());
 }
 
+TEST_CASE("table: fields in quotes hold separators and quotes, and are numbers without them") {
+    Table table("\"x, mm\",\"a \"\"b\"\"\",note\r\n\"1.5\",\"\",\"left, \"\"soft\"\"\"\r\n2,5\" pen,\"\"\n", "t.csv",
+                ',');
+    CHECK(table.columns() == std::vector<std::string>{"x, mm", "a \"b\"", "note"});
+    REQUIRE(table.next());
+    CHECK(table.number(0) == 1.5);
+    CHECK(table.field(1) == "");
+    CHECK(table.field(2) == "left, \"soft\"");
+    REQUIRE(table.next());
+    CHECK(table.field(1) == "5\" pen");  // a quote inside is one
+    CHECK(table.field(2) == "");
+    CHECK_FALSE(table.next());
+
+    Table tabs("x\ty\n\"1\t2\"\n", "t.tsv", '\t');
+    REQUIRE(tabs.next());
+    CHECK(tabs.field(0) == "\"1");
+}
+
+TEST_CASE("table: a quote that nothing closes, or that closes too early, is refused by line") {
+    const auto said = [](const char* text) {
+        return message_of([&] {
+            Table table(text, "t.csv", ',');
+            while (table.next()) {
+            }
+        });
+    };
+    CHECK(said("x,y\n1,\"2\"\n") == "");
+    CHECK(contains(said("x,y\n1,\"2\n3\",4\n"), "t.csv: line 2: found a quote that opens the field '\"2'"));
+    CHECK(contains(said("x,y\n1,\"2\"3\n"), "expected one that closes it, at the end of the field"));
+    CHECK(contains(said("\"x,y\n1,2\n"), "line 1: found a quote that opens the field"));
+}
+
 TEST_CASE("table: it stays where it is, as its fields point into its own text") {
     static_assert(!std::is_copy_constructible_v<Table> && !std::is_move_constructible_v<Table>);
     static_assert(!std::is_copy_assignable_v<Table> && !std::is_move_assignable_v<Table>);
