@@ -1,13 +1,12 @@
 #pragma once
 // Times of single calls, and the memory that something keeps.
 
-#include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
 
 #include "files/clock.h"
+#include "files/quantile.h"
 
 namespace palpa::accuracy {
 
@@ -16,11 +15,7 @@ struct Timing {
 };
 
 inline double quantile_us(const Timing& timing, double share) {
-    std::vector<double> sorted = timing.us;
-    std::sort(sorted.begin(), sorted.end());
-    const auto n = static_cast<double>(sorted.size());
-    const double rank = std::clamp(std::ceil(share * n), 1.0, n);
-    return sorted[static_cast<std::size_t>(rank) - 1];
+    return files::quantile(timing.us, share, files::QuantileType::reached);
 }
 
 template <class Call>

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "files/clock.h"
+#include "files/quantile.h"
 #include "mechanics/contact.h"
 #include "mechanics/friction.h"
 
@@ -52,7 +53,7 @@ class Percentiles {
     void report(benchmark::State& state) {
         std::sort(us_.begin(), us_.end());
         const auto at = [&](double share) {
-            return us_[static_cast<std::size_t>(share * static_cast<double>(us_.size() - 1))];
+            return palpa::files::sorted_quantile(us_, share, palpa::files::QuantileType::lower);
         };
         state.counters["median_us"] = at(0.5);
         state.counters["p99_us"] = at(0.99);

@@ -5,12 +5,13 @@
 #include <random>
 
 #include "files/distributions.h"
+#include "files/quantile.h"
 
 namespace palpa::calibration {
 namespace {
 
-constexpr double kLevel = 0.95;
-constexpr double kTail = 0.5 * (1.0 - kLevel);
+constexpr double kTail = 0.025;
+constexpr double kLevel = 1.0 - 2.0 * kTail;
 
 double widening(int repeats) {
     const double freedom = repeats - 1.0;
@@ -45,13 +46,8 @@ void draw(const FitPoints& points, bool over_repeats, std::mt19937_64& random, E
 }
 
 CurveInterval interval_of(std::vector<double>& values, double estimate, double widened) {
-    const auto at = [&](double share) {
-        const auto i = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1) + 0.5);
-        std::nth_element(values.begin(), values.begin() + i, values.end());
-        return values[static_cast<std::size_t>(i)];
-    };
-    const double low = at(kTail);
-    const double high = at(1.0 - kTail);
+    const double low = files::reordered_quantile(values, kTail, files::QuantileType::nearest);
+    const double high = files::reordered_quantile(values, 1.0 - kTail, files::QuantileType::nearest);
     return {estimate + widened * (low - estimate), estimate + widened * (high - estimate)};
 }
 

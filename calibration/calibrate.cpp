@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "files/input_error.h"
+#include "files/quantile.h"
 #include "files/text.h"
 
 namespace palpa::calibration {
@@ -67,7 +68,7 @@ std::size_t slips_in(const Calibration& calibration) {
         if (log_error && !(measured_N > 0.0 && predicted_N > 0.0)) continue;
         off.push_back(std::abs(log_error ? std::log(measured_N / predicted_N) : measured_N - predicted_N));
     }
-    const double scale = 1.4826 * quantile(off, 0.5);
+    const double scale = 1.4826 * files::median(off);
     const double least = log_error ? 0.05 : 0.01 * calibration.force_at_full_N;  // too small to call a slip
     // 8 scales: a curve between sparse points is off by 5 here and there without any slip
     return static_cast<std::size_t>(

@@ -6,6 +6,7 @@
 
 #include "calibration/fit.h"
 #include "calibration/quality.h"
+#include "files/quantile.h"
 
 namespace palpa::calibration {
 namespace {
@@ -21,7 +22,7 @@ double median_step_s(const CalibrationRows& rows) {
     for (std::size_t i = 1; i < rows.time_s.size(); ++i) {
         if (rows.time_s[i] > rows.time_s[i - 1]) steps.push_back(rows.time_s[i] - rows.time_s[i - 1]);
     }
-    return quantile(steps, 0.5);
+    return files::median(steps);
 }
 
 std::vector<Run> runs_of(const CalibrationRows& rows, double step_s) {
@@ -183,7 +184,7 @@ std::optional<Hysteresis> hysteresis_of(const CalibrationRows& rows, LevelRange 
         out.greatest_N = up_N - down_N;
         out.at_level = level;
     }
-    out.median_relative = quantile(relative, 0.5);
+    out.median_relative = files::median(relative);
     return out;
 }
 
@@ -196,7 +197,7 @@ std::optional<Drift> drift_of(const FitPoints& points, const Curve& curve) {
     }
     if (offsets.size() < 2) return std::nullopt;
     Drift drift;
-    for (auto& [repeat, values] : offsets) drift.repeat_offset.push_back(quantile(values, 0.5));
+    for (auto& [repeat, values] : offsets) drift.repeat_offset.push_back(files::median(values));
     const auto n = static_cast<double>(drift.repeat_offset.size());
     double sum = 0.0;
     for (std::size_t i = 0; i < drift.repeat_offset.size(); ++i)

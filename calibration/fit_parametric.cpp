@@ -11,8 +11,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 
 #include "calibration/fit.h"
+#include "files/quantile.h"
 
 namespace palpa::calibration {
 namespace {
@@ -193,8 +195,9 @@ double residual_scale(FitWorkspace& work, double force_scale_N, ErrorModel error
         if (work.weight(i) > 0.0) work.sorted(n++) = std::abs(work.residual(i));
     }
     if (n == 0) return 1.0;
-    std::nth_element(work.sorted.data(), work.sorted.data() + n / 2, work.sorted.data() + n);
-    return std::max(1.4826 * work.sorted(n / 2), 1e-9 * (error == ErrorModel::newton ? force_scale_N : 1.0));
+    const std::span<double> sizes(work.sorted.data(), static_cast<std::size_t>(n));
+    const double median = files::reordered_quantile(sizes, 0.5, files::QuantileType::nearest);
+    return std::max(1.4826 * median, 1e-9 * (error == ErrorModel::newton ? force_scale_N : 1.0));
 }
 
 // Huber: full weight up to 1.345 scales, then as 1/|r| (95 % efficient). Tukey: none beyond 4.685 scales.

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "files/quantile.h"
+
 namespace palpa::calibration {
 namespace {
 
@@ -24,15 +26,6 @@ std::vector<double> relative_errors(const Eigen::ArrayXd& level, const Eigen::Ar
 }
 
 }  // namespace
-
-double quantile(std::vector<double>& values, double share) {
-    if (values.empty()) return platform::kMissing;
-    std::sort(values.begin(), values.end());
-    const double at = share * static_cast<double>(values.size() - 1);
-    const auto i = static_cast<std::size_t>(at);
-    if (i + 1 >= values.size()) return values.back();
-    return values[i] + (at - static_cast<double>(i)) * (values[i + 1] - values[i]);
-}
 
 FitQuality fit_quality(const Eigen::ArrayXd& measured_N, const Eigen::ArrayXd& predicted_N) {
     FitQuality quality;
@@ -62,8 +55,8 @@ std::vector<ErrorBand> error_bands(const Eigen::ArrayXd& level, const Eigen::Arr
         auto errors = relative_errors(level, measured_N, predicted_N, range.lowest, band.from,
                                       last ? std::numeric_limits<double>::infinity() : band.to);
         band.n = errors.size();
-        band.median = quantile(errors, 0.5);
-        band.p90 = quantile(errors, 0.9);
+        band.median = files::median(errors);
+        band.p90 = files::quantile(errors, 0.9);
         bands.push_back(band);
     }
     return bands;
@@ -73,7 +66,7 @@ double median_relative_error(const Eigen::ArrayXd& level, const Eigen::ArrayXd& 
                              const Eigen::ArrayXd& predicted_N, LevelRange range) {
     auto errors = relative_errors(level, measured_N, predicted_N, range.lowest, range.lowest,
                                   std::numeric_limits<double>::infinity());
-    return quantile(errors, 0.5);
+    return files::median(errors);
 }
 
 }  // namespace palpa::calibration

@@ -33,7 +33,4 @@ std::vector<ErrorBand> error_bands(const Eigen::ArrayXd& level, const Eigen::Arr
 double median_relative_error(const Eigen::ArrayXd& level, const Eigen::ArrayXd& measured_N,
                              const Eigen::ArrayXd& predicted_N, LevelRange range);
 
-// Linear between the order statistics; NaN for no values. Changes the order of `values`.
-double quantile(std::vector<double>& values, double share);
-
 }  // namespace palpa::calibration

@@ -5,6 +5,7 @@
 
 #include "calibration/calibrate.h"
 #include "files/input_error.h"
+#include "files/quantile.h"
 #include "files/table.h"
 #include "files/text.h"
 
@@ -28,7 +29,7 @@ bool level_in(const std::deque<RecordSession::Timed>& levels, double from_s, dou
     }
     const auto [lowest, highest] = std::minmax_element(inside.begin(), inside.end());
     moved = *highest - *lowest;
-    median = quantile(inside, 0.5);
+    median = files::median(inside);
     return true;
 }
 

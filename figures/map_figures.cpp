@@ -9,6 +9,7 @@
 #include "figures/gnuplot.h"
 #include "figures/tic_step.h"
 #include "files/input_error.h"
+#include "files/quantile.h"
 #include "files/text.h"
 #include "stiffnessmaps/field.h"
 #include "stiffnessmaps/stiffness.h"
@@ -272,7 +273,7 @@ double slice_force_N(const stiffnessmaps::Map& map, const PlotOptions& options) 
             break;
         }
     }
-    return std::max(1e-3, std::round(50.0 * stiffnessmaps::median_of(deepest)) / 100.0);
+    return std::max(1e-3, std::round(50.0 * files::upper_median(deepest)) / 100.0);
 }
 
 Image depth_image(const stiffnessmaps::Map& map, const stiffnessmaps::Field& field, double force_N) {
@@ -334,7 +335,7 @@ std::vector<Eigen::Vector2d> curve_places(const stiffnessmaps::Map& map, const s
     };
     if (out.empty()) out.push_back(place_of(stiffest_cell(map)));
     const std::vector<double> k = stiffnessmaps::stiffness_N_per_m(map);
-    const double middle = stiffnessmaps::median_of(k);
+    const double middle = files::upper_median(k);
     std::size_t best = 0;
     double off = INFINITY;
     for (std::size_t cell = 0; cell < k.size(); ++cell) {

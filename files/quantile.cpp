@@ -6,22 +6,53 @@
 #include <limits>
 
 namespace palpa::files {
+namespace {
 
-double sorted_quantile(std::span<const double> sorted, double share) {
-    assert(!sorted.empty() && share >= 0.0 && share <= 1.0);
-    const double at = share * static_cast<double>(sorted.size() - 1);
-    const auto below = static_cast<std::size_t>(at);
-    const std::size_t above = std::min(below + 1, sorted.size() - 1);
-    return sorted[below] + (at - static_cast<double>(below)) * (sorted[above] - sorted[below]);
+// The value that stands `below` the quantile, and the share of the way from it to the next.
+struct Rank {
+    std::size_t below = 0;
+    double rest = 0.0;
+};
+
+Rank rank_of(std::size_t n, double share, QuantileType type) {
+    assert(n > 0 && share >= 0.0 && share <= 1.0);
+    const double at = share * static_cast<double>(n - 1);
+    const auto floor = [](double rank) { return static_cast<std::size_t>(rank); };
+    switch (type) {
+        case QuantileType::between:
+            return {floor(at), at - std::floor(at)};
+        case QuantileType::nearest:
+            return {floor(at + 0.5)};
+        case QuantileType::lower:
+            return {floor(at)};
+        case QuantileType::reached:
+            return {floor(std::max(1.0, std::ceil(share * static_cast<double>(n)))) - 1};
+    }
+    return {};
 }
 
-double quantile(std::vector<double> values, double share) {
+}  // namespace
+
+double sorted_quantile(std::span<const double> sorted, double share, QuantileType type) {
+    const Rank rank = rank_of(sorted.size(), share, type);
+    const double value = sorted[rank.below];
+    return rank.rest > 0.0 ? value + rank.rest * (sorted[rank.below + 1] - value) : value;
+}
+
+double reordered_quantile(std::span<double> values, double share, QuantileType type) {
+    const Rank rank = rank_of(values.size(), share, type);
+    const auto at = values.begin() + static_cast<std::ptrdiff_t>(rank.below);
+    std::nth_element(values.begin(), at, values.end());
+    return rank.rest > 0.0 ? *at + rank.rest * (*std::min_element(at + 1, values.end()) - *at) : *at;
+}
+
+double quantile(std::vector<double> values, double share, QuantileType type) {
     std::erase_if(values, [](double v) { return !std::isfinite(v); });
-    if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
-    std::sort(values.begin(), values.end());
-    return sorted_quantile(values, share);
+    return values.empty() ? std::numeric_limits<double>::quiet_NaN() : reordered_quantile(values, share, type);
 }
 
 double median(std::vector<double> values) { return quantile(std::move(values), 0.5); }
+
+double upper_median(std::vector<double> values) { return quantile(std::move(values), 0.5, QuantileType::nearest); }
 
 }  // namespace palpa::files

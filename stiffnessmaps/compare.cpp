@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "files/input_error.h"
+#include "files/quantile.h"
 #include "files/text.h"
 #include "stiffnessmaps/field.h"
 #include "stiffnessmaps/stiffness.h"
@@ -69,7 +70,7 @@ DepthDifference difference(const MapDifference& d, std::size_t first, std::size_
     out.mean_a_N /= n;
     out.bias_N /= n;
     out.rms_N = std::sqrt(out.rms_N / n);
-    out.median_N = median_of(sizes);
+    out.median_N = files::upper_median(sizes);
     return out;
 }
 

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "files/quantile.h"
+
 namespace palpa::stiffnessmaps {
 namespace {
 
@@ -30,9 +32,7 @@ double second_difference_N(const Map& map, double q) {
     second_differences(map, 1, map.n_x, 1, differences);
     second_differences(map, map.n_x, map.n_y, map.n_x, differences);
     if (differences.size() < 8) return 0.0;
-    const auto at = static_cast<std::ptrdiff_t>(q * static_cast<double>(differences.size() - 1));
-    std::nth_element(differences.begin(), differences.begin() + at, differences.end());
-    return differences[static_cast<std::size_t>(at)];
+    return files::reordered_quantile(differences, q, files::QuantileType::lower);
 }
 
 }  // namespace

@@ -14,7 +14,4 @@ namespace palpa::stiffnessmaps {
 // what it has; where the force bends upwards that is a little too soft, never too stiff.
 std::vector<double> stiffness_N_per_m(const Map& map, double deepest_m = std::numeric_limits<double>::infinity());
 
-// Middle value of what is finite; NaN if nothing is.
-double median_of(std::vector<double> values);
-
 }  // namespace palpa::stiffnessmaps

@@ -11,6 +11,7 @@
 #include "calibration/quality.h"
 #include "files/input_error.h"
 #include "files/json.h"
+#include "files/quantile.h"
 #include "files/table.h"
 #include "files/text.h"
 
@@ -108,11 +109,11 @@ void judge(const Contestant& contestant, const Session& session, std::size_t fir
 files::Json row_json(const char* name, Errors& errors) {
     return {{"curve", name},
             {"n_light", errors.light.size()},
-            {"median_light", calibration::quantile(errors.light, 0.5)},
-            {"p90_light", calibration::quantile(errors.light, 0.9)},
+            {"median_light", files::median(errors.light)},
+            {"p90_light", files::quantile(errors.light, 0.9)},
             {"n_firm", errors.firm.size()},
-            {"median_firm", calibration::quantile(errors.firm, 0.5)},
-            {"p90_firm", calibration::quantile(errors.firm, 0.9)},
+            {"median_firm", files::median(errors.firm)},
+            {"p90_firm", files::quantile(errors.firm, 0.9)},
             {"failed", errors.failed}};
 }
 

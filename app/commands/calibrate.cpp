@@ -13,6 +13,7 @@
 #include "figures/calibration_report.h"
 #include "figures/gnuplot.h"
 #include "files/input_error.h"
+#include "files/quantile.h"
 #include "files/regular_file.h"
 #include "files/text.h"
 
@@ -269,7 +270,7 @@ void compare(const CompareArguments& arguments) {
         greatest = apart.back();
         at = s;
     }
-    const double median = calibration::quantile(apart, 0.5);
+    const double median = files::median(apart);
     if (arguments.json) {
         const files::Json json{{"a", a.id},
                                {"b", b.id},

@@ -9,6 +9,7 @@
 #include "files/clock.h"
 #include "files/input_error.h"
 #include "files/json.h"
+#include "files/quantile.h"
 #include "files/text.h"
 #include "mechanics/error.h"
 #include "stiffnessmaps/analytic.h"
@@ -232,9 +233,8 @@ files::Json convergence_json(const MapTask& task, const MapTask& refined, const 
                           {"map_N", in_map},
                           {"refined_N", refined_N}});
     }
-    std::sort(differences.begin(), differences.end());
-    found.largest = differences.back();
-    found.median = differences[differences.size() / 2];
+    found.largest = *std::max_element(differences.begin(), differences.end());
+    found.median = files::upper_median(std::move(differences));
     const auto mesh_json = [](const MapTask& t) {
         return files::Json{{"contact_spacing_mm", 1e3 * t.mesh.contact_m},
                            {"side_spacing_mm", {1e3 * t.mesh.surface_m[0], 1e3 * t.mesh.surface_m[1]}},

@@ -8,6 +8,7 @@
 
 #include "files/distributions.h"
 #include "files/input_error.h"
+#include "files/quantile.h"
 #include "files/text.h"
 #include "stiffnessmaps/import/detect_ground.h"
 #include "stiffnessmaps/stiffness.h"
@@ -373,7 +374,7 @@ void note_ground(const StiffnessGrid& grid, Detection& d) {
             if (there) ratio.push_back(1.0 + threshold_at(grid, d, j, i) / grid.background(j, i));
         }
     }
-    d.threshold = d.options.threshold.value_or(median_of(std::move(ratio)));
+    d.threshold = d.options.threshold.value_or(files::upper_median(std::move(ratio)));
 }
 
 void check_options(const DetectOptions& o) {

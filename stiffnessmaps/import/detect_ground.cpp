@@ -5,14 +5,13 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
+#include "files/quantile.h"
 #include "stiffnessmaps/stiffness.h"
 
 namespace palpa::stiffnessmaps {
 
-double part_of(std::vector<double>& values, double q) {
-    const auto at = static_cast<std::ptrdiff_t>(q * static_cast<double>(values.size() - 1));
-    std::nth_element(values.begin(), values.begin() + at, values.end());
-    return values[static_cast<std::size_t>(at)];
+double part_of(std::vector<double>& values, double share) {
+    return files::reordered_quantile(values, share, files::QuantileType::lower);
 }
 
 TwoSidedSpread two_sided_spread(std::vector<double> values) {
@@ -65,7 +64,7 @@ cv::Mat1d smoothed(const cv::Mat1d& values, const cv::Mat1b& there, double sigma
 cv::Mat1d robust_plane(const StiffnessGrid& grid) {
     const auto u_of = [&](int i) { return (2.0 * i - (grid.n_x - 1)) / std::max(1, grid.n_x); };
     const auto v_of = [&](int j) { return (2.0 * j - (grid.n_y - 1)) / std::max(1, grid.n_y); };
-    Eigen::Vector3d plane(median_of(values_in(grid.stiffness, without(grid.there, grid.known))), 0.0, 0.0);
+    Eigen::Vector3d plane(files::upper_median(values_in(grid.stiffness, without(grid.there, grid.known))), 0.0, 0.0);
     for (int round = 0; round < 20; ++round) {
         std::vector<double> off;
         for (int j = 0; j < grid.n_y; ++j) {
@@ -74,7 +73,7 @@ cv::Mat1d robust_plane(const StiffnessGrid& grid) {
                     off.push_back(std::abs(grid.stiffness(j, i) - plane.dot(Eigen::Vector3d(1.0, u_of(i), v_of(j)))));
             }
         }
-        const double reach = 4.685 * median_of(off) / kOfNormal;
+        const double reach = 4.685 * files::upper_median(off) / kOfNormal;
         if (!(reach > 0.0)) break;
         Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
         Eigen::Vector3d right = Eigen::Vector3d::Zero();

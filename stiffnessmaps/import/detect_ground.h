@@ -40,7 +40,7 @@ struct TwoSidedSpread {
 };
 TwoSidedSpread two_sided_spread(std::vector<double> values);
 
-double part_of(std::vector<double>& values, double q);  // in another order afterwards
+double part_of(std::vector<double>& values, double share);  // QuantileType::lower; in another order afterwards
 std::vector<double> values_in(const cv::Mat1d& values, const cv::Mat1b& mask);
 cv::Mat1b both(const cv::Mat1b& a, const cv::Mat1b& b);
 cv::Mat1b without(const cv::Mat1b& mask, const cv::Mat1b& left_out);

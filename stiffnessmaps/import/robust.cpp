@@ -3,17 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "files/quantile.h"
 #include "stiffnessmaps/import/choices.h"
 
 namespace palpa::stiffnessmaps {
 
 double quantile(std::vector<double> values, double q) {
-    std::erase_if(values, [](double v) { return !std::isfinite(v); });  // what has no order
-    if (values.empty()) return 0.0;
-    const double last = static_cast<double>(values.size() - 1);
-    const auto at = values.begin() + static_cast<std::ptrdiff_t>(std::clamp(q, 0.0, 1.0) * last + 0.5);
-    std::nth_element(values.begin(), at, values.end());
-    return *at;
+    const double value = files::quantile(std::move(values), q, files::QuantileType::nearest);
+    return std::isnan(value) ? 0.0 : value;
 }
 
 double robust_deviation(std::vector<double> values) {

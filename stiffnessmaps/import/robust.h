@@ -1,11 +1,12 @@
 #pragma once
-// Medians and spreads that a few wild values do not move. By value: they reorder what they are given.
+// Medians and spreads that a few wild values do not move.
 
 #include <vector>
 
 namespace palpa::stiffnessmaps {
 
-double quantile(std::vector<double> values, double q);  // q 0 ... 1, of the finite ones; 0 if there are none
+// Of the finite values the one nearest to the share q (QuantileType::nearest); 0 if there are none.
+double quantile(std::vector<double> values, double q);
 inline double median(std::vector<double> values) { return quantile(std::move(values), 0.5); }
 
 // 1.4826 times the median distance from the median: the standard deviation of what is normal among the
