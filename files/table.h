@@ -1,7 +1,6 @@
 #pragma once
-// Tab- or comma-separated tables with one header line. The reader hands out rows one after the other, without copies;
-// its messages name the file, the line and the column. Fields between commas or semicolons may stand in double quotes
-// (RFC 4180), but not run over several lines.
+// Tables with one header line, separated by tabs, commas or semicolons; between the latter two a field may stand in double
+// quotes (RFC 4180). Rows are handed out one after the other; messages name the file, the line and the column.
 
 #include <filesystem>
 #include <string>

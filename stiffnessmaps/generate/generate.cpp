@@ -4,18 +4,16 @@
 #include <cmath>
 #include <cstdio>
 #include <stdexcept>
-#include <unistd.h>
 
-#include "files/clock.h"
 #include "files/input_error.h"
 #include "files/json.h"
 #include "files/quantile.h"
 #include "files/text.h"
 #include "mechanics/error.h"
 #include "stiffnessmaps/analytic.h"
+#include "stiffnessmaps/generate/jobs.h"
 #include "stiffnessmaps/generate/pieces.h"
 #include "stiffnessmaps/generate/provenance.h"
-#include "stiffnessmaps/generate/worker_processes.h"
 #include "stiffnessmaps/grid.h"
 #include "stiffnessmaps/map_file.h"
 
@@ -40,117 +38,6 @@ fs::path pieces_folder(const fs::path& output, MeshSet meshes) {
 MapTask task_of(const GenerateOptions& options, MeshSet meshes) {
     const double times = meshes == MeshSet::refined ? 0.5 : meshes == MeshSet::coarser ? kCoarser : 1.0;
     return make_map_task(options.phantom, pieces_folder(options.output, meshes), options.coarseness * times);
-}
-
-// Done of total on one line of a terminal, with the time left; silent elsewhere.
-class Progress {
-  public:
-    Progress(const char* what, double total) : what_(what), total_(total), shown_(::isatty(STDERR_FILENO) == 1) {}
-    ~Progress() {
-        if (shown_) std::fprintf(stderr, "\r\033[K");
-    }
-    void show(double done) {
-        if (!shown_) return;
-        if (first_ < 0.0) first_ = done;
-        const double spent_s = files::steady_s() - began_s_;
-        const int bars = static_cast<int>(30.0 * done / total_);
-        std::fprintf(stderr, "\r\033[K%s [%.*s%*s] %.0f %%", what_, bars, "##############################", 30 - bars,
-                     "", 100.0 * done / total_);
-        if (done > first_) std::fprintf(stderr, ", %.0f s left", spent_s * (total_ - done) / (done - first_));
-        std::fflush(stderr);
-    }
-
-  private:
-    const char* what_;
-    double total_;
-    bool shown_;
-    double first_ = -1.0;
-    double began_s_ = files::steady_s();
-};
-
-Arguments call_of(const GenerateOptions& options) {
-    Arguments out{"maps",
-                  "generate",
-                  options.phantom.string(),
-                  "-o",
-                  options.output.string(),
-                  "--coarseness",
-                  files::number_text(options.coarseness)};
-    return out;
-}
-
-std::vector<std::size_t> missing(const MapTask& task, std::size_t count, std::string (*name)(std::size_t)) {
-    std::vector<std::size_t> out;
-    for (std::size_t i = 0; i < count; ++i) {
-        if (!read_piece(task, name(i))) out.push_back(i);
-    }
-    return out;
-}
-
-std::size_t files_there(const MapTask& task, std::size_t count, std::string (*name)(std::size_t)) {
-    std::size_t there = 0;
-    for (std::size_t i = 0; i < count; ++i) there += fs::exists(task.folder / name(i)) ? 1u : 0u;
-    return there;
-}
-
-// Pieces that are wrong are taken away, so that counting files is counting pieces.
-void drop_wrong(const MapTask& task, const std::vector<std::size_t>& wrong, std::string (*name)(std::size_t)) {
-    for (const std::size_t i : wrong) fs::remove(task.folder / name(i));
-}
-
-std::string window_of(std::size_t window) { return window_name(static_cast<int>(window)); }
-
-std::vector<Arguments> window_calls(const GenerateOptions& options, const std::vector<std::size_t>& windows,
-                                    MeshSet meshes) {
-    std::vector<Arguments> calls;
-    for (const std::size_t window : windows) {
-        calls.push_back(call_of(options));
-        calls.back().insert(calls.back().end(), {"--window", std::to_string(window)});
-        if (meshes == MeshSet::refined) calls.back().emplace_back("--refined");
-        if (meshes == MeshSet::coarser) calls.back().emplace_back("--coarser");
-    }
-    return calls;
-}
-
-void compute_with_jobs(const GenerateOptions& options, const MapTask& task) {
-    constexpr double kWindowWeight = 30.0;  // of one window in lines
-    const auto n_windows = static_cast<std::size_t>(window_count(task));
-    const std::size_t n_lines = task.phantom.n_y;
-    const auto windows = missing(task, n_windows, window_of);
-    const auto lines = missing(task, n_lines, line_name);
-    drop_wrong(task, windows, window_of);
-    drop_wrong(task, lines, line_name);
-    if (lines.empty()) return;
-    Progress progress("generating", kWindowWeight * static_cast<double>(n_windows) + static_cast<double>(n_lines));
-    const auto show = [&] {
-        progress.show(kWindowWeight * static_cast<double>(files_there(task, n_windows, window_of)) +
-                      static_cast<double>(files_there(task, n_lines, line_name)));
-    };
-    run_jobs(window_calls(options, windows, MeshSet::own), options.jobs, show);
-    std::vector<Arguments> calls;
-    for (int i = 1; i <= options.jobs; ++i) {
-        calls.push_back(call_of(options));
-        calls.back().insert(calls.back().end(), {"--part", std::to_string(i) + "/" + std::to_string(options.jobs)});
-    }
-    run_jobs(calls, options.jobs, show);
-}
-
-// One share of the lines; windows that nobody has made yet are made on the way, whoever comes first.
-void compute_part(const MapTask& task, const Part& part) {
-    const auto n_windows = static_cast<std::size_t>(window_count(task));
-    for (const bool wait : {false, true}) {
-        for (std::size_t k = 0; k < n_windows; ++k) {
-            const std::size_t window = (k + static_cast<std::size_t>(part.index) - 1) % n_windows;
-            if (read_piece(task, window_of(window))) continue;
-            const FolderLock lock(task.folder / (window_of(window) + ".lock"), wait);
-            if (lock.held() && !read_piece(task, window_of(window))) compute_window(task, static_cast<int>(window));
-        }
-    }
-    const mechanics::RollingTables tables = read_windows(task);
-    const auto step = static_cast<std::size_t>(part.count);
-    for (std::size_t j = static_cast<std::size_t>(part.index) - 1; j < task.phantom.n_y; j += step) {
-        if (!read_piece(task, line_name(j))) compute_line(task, tables, j);
-    }
 }
 
 // Joins the finished lines; throws std::runtime_error when some are missing.
@@ -251,17 +138,6 @@ files::Json convergence_json(const MapTask& task, const MapTask& refined, const 
                        {"points", points}};
     if (is_rough(task)) report["max_tangential_difference"] = found.largest_tangential;
     return report;
-}
-
-// Those of another set of meshes, all of them.
-void compute_windows(const GenerateOptions& options, const MapTask& task, MeshSet meshes, const char* what) {
-    fs::create_directories(task.folder);
-    const auto n_windows = static_cast<std::size_t>(window_count(task));
-    const auto windows = missing(task, n_windows, window_of);
-    drop_wrong(task, windows, window_of);
-    Progress progress(what, static_cast<double>(n_windows));
-    run_jobs(window_calls(options, windows, meshes), options.jobs,
-             [&] { progress.show(static_cast<double>(files_there(task, n_windows, window_of))); });
 }
 
 // What a map says of its own error when it is made.

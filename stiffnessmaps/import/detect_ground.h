@@ -1,6 +1,6 @@
 #pragma once
 // The stiffness of a map's cells, smoothed, and the background that regions stand out of: steps 1 and 2 of detect.h.
-// Only detect.cpp uses it.
+// Only detect*.cpp use it.
 
 #include <opencv2/core.hpp>
 #include <vector>
