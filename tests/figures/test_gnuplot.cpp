@@ -1,8 +1,8 @@
-#include <cstdlib>
 #include <doctest/doctest.h>
 
 #include "figures/gnuplot.h"
 #include "files/text.h"
+#include "tests/shell.h"
 #include "tests/temporary_folder.h"
 
 using namespace palpa;
@@ -17,7 +17,7 @@ TEST_CASE("gnuplot: a kept script is drawn in its own folder, once for each kind
     const test::TemporaryFolder folder;
     files::write_text_atomically(folder / "a.gp", "set print kind . '.txt'\nprint 'drawn'\n");
     const std::string trouble = draw_script(folder / "a.gp", "a.csv is kept");
-    if (std::system("command -v gnuplot >/dev/null 2>&1") != 0) {
+    if (!test::has_gnuplot()) {
         CHECK(trouble.find("gnuplot is not installed") == 0);
         CHECK(trouble.find("a.csv is kept") != std::string::npos);
         return;

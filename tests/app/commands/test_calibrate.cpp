@@ -4,11 +4,11 @@
 #include <doctest/doctest.h>
 #include <filesystem>
 #include <random>
-#include <sys/wait.h>
 
 #include "files/json.h"
 #include "files/text.h"
 #include "tests/error_message.h"
+#include "tests/shell.h"
 #include "tests/temporary_folder.h"
 
 using namespace palpa;
@@ -19,18 +19,8 @@ namespace {
 
 const std::string kPens = PALPA_RECORDINGS "/pens/pressure_response.csv";
 
-struct Called {
-    int status = 0;
-    std::string out;
-    std::string err;
-};
-
 Called calibrate(const std::string& arguments, const std::string& command_before = "calibrate ") {
-    const TemporaryFolder folder;
-    const std::string command = "timeout 100 " PALPA_PROGRAM " " + command_before + arguments + " >" +
-                                (folder / "out").string() + " 2>" + (folder / "err").string() + " </dev/null";
-    const int status = std::system(command.c_str());
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_text(folder / "out"), read_text(folder / "err")};
+    return shell("timeout 100 " PALPA_PROGRAM " " + command_before + arguments);
 }
 
 // 57 points of the paper's touchpad, exact.

@@ -4,11 +4,11 @@
 #include <doctest/doctest.h>
 #include <filesystem>
 #include <string>
-#include <sys/wait.h>
 
 #include "files/json.h"
 #include "files/text.h"
 #include "tests/error_message.h"
+#include "tests/shell.h"
 #include "tests/temporary_folder.h"
 
 using namespace palpa;
@@ -20,18 +20,8 @@ namespace {
 const std::string kAssets = PALPA_SOURCE_DIR "/assets/";
 const std::string kTrace = kAssets + "traces/raster.tsv";
 
-struct Called {
-    int status = 0;
-    std::string out;
-    std::string err;
-};
-
 Called palpa_with(const std::string& arguments, const std::string& before = "") {
-    const TemporaryFolder folder;
-    const std::string command = before + " timeout 60 " PALPA_PROGRAM " " + arguments + " >" +
-                                (folder / "out").string() + " 2>" + (folder / "err").string() + " </dev/null";
-    const int status = std::system(command.c_str());
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_text(folder / "out"), read_text(folder / "err")};
+    return shell(before + " timeout 60 " PALPA_PROGRAM " " + arguments);
 }
 
 }  // namespace

@@ -1,13 +1,13 @@
 // `palpa fem solve` as a person calls it.
 
 #include <doctest/doctest.h>
-#include <sys/wait.h>
 
 #include "files/json.h"
 #include "files/text.h"
 #include "tests/error_message.h"
 #include "tests/fem/fem_cases.h"
 #include "tests/files/vtu_reader.h"
+#include "tests/shell.h"
 #include "tests/temporary_folder.h"
 
 using namespace palpa;
@@ -17,18 +17,8 @@ using namespace palpa::test;
 
 namespace {
 
-struct Called {
-    int status = 0;
-    std::string out;
-    std::string err;
-};
-
 Called palpa_with(const std::string& arguments, const std::string& before = "") {
-    const TemporaryFolder folder;
-    const std::string command = before + " timeout 60 " PALPA_PROGRAM " " + arguments + " >" +
-                                (folder / "out").string() + " 2>" + (folder / "err").string() + " </dev/null";
-    const int status = std::system(command.c_str());
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_text(folder / "out"), read_text(folder / "err")};
+    return shell(before + " timeout 60 " PALPA_PROGRAM " " + arguments);
 }
 
 // four cells across the contact's radius

@@ -6,7 +6,6 @@
 #include <doctest/doctest.h>
 #include <filesystem>
 #include <limits>
-#include <sys/wait.h>
 
 #include "files/json.h"
 #include "files/mat.h"
@@ -15,6 +14,7 @@
 #include "files/text.h"
 #include "stiffnessmaps/map_file.h"
 #include "tests/error_message.h"
+#include "tests/shell.h"
 #include "tests/study/python.h"
 #include "tests/temporary_folder.h"
 
@@ -27,18 +27,8 @@ namespace {
 
 const std::string kSilicone = PALPA_SOURCE_DIR "/assets/maps/silicone.map";
 
-struct Called {
-    int status = 0;
-    std::string out;
-    std::string err;
-};
-
 Called maps(const std::string& arguments, const std::string& before = "") {
-    const TemporaryFolder folder;
-    const std::string command = before + " timeout 120 " PALPA_PROGRAM " maps " + arguments + " >" +
-                                (folder / "out").string() + " 2>" + (folder / "err").string() + " </dev/null";
-    const int status = std::system(command.c_str());
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_text(folder / "out"), read_text(folder / "err")};
+    return shell(before + " timeout 120 " PALPA_PROGRAM " maps " + arguments);
 }
 
 void refused(const std::string& arguments, const std::string& word, int status = 2, const std::string& before = "") {
@@ -75,8 +65,6 @@ bool same(const std::vector<float>& a, const std::vector<float>& b) {
     }
     return true;
 }
-
-bool has_gnuplot() { return std::system("command -v gnuplot >/dev/null 2>&1") == 0; }
 
 }  // namespace
 

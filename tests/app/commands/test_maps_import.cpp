@@ -14,6 +14,7 @@
 #include "files/text.h"
 #include "stiffnessmaps/map_file.h"
 #include "tests/error_message.h"
+#include "tests/shell.h"
 #include "tests/temporary_folder.h"
 
 using namespace palpa;
@@ -23,17 +24,8 @@ using namespace palpa::test;
 
 namespace {
 
-struct Called {
-    int status = 0;
-    std::string out;
-    std::string err;
-};
-
 Called import(const TemporaryFolder& folder, const std::string& arguments) {
-    const std::string command = "cd " + folder.path().string() + " && timeout 60 " PALPA_PROGRAM " maps import " +
-                                arguments + " >out 2>err </dev/null";
-    const int status = std::system(command.c_str());
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_text(folder / "out"), read_text(folder / "err")};
+    return shell("cd " + folder.path().string() + " && timeout 60 " PALPA_PROGRAM " maps import " + arguments);
 }
 
 // 4 x 3 places, 0.5 N/mm, with columns that nobody could guess.
@@ -81,10 +73,7 @@ TEST_CASE(
     const Map map = read_map(folder / "x.map");
     CHECK(map.normal_N.back() == doctest::Approx(2.0f));
     CHECK(map.noise_N.has_value());
-    const std::string help = [&] {
-        import(folder, "--help");
-        return read_text(folder / "out");
-    }();
+    const std::string help = import(folder, "--help").out;
     CHECK(map.source.choices.size() > 8);
     for (const SourceChoice& choice : map.source.choices) {
         CAPTURE(choice.key);

@@ -5,12 +5,12 @@
 #include <filesystem>
 #include <signal.h>
 #include <string>
-#include <sys/wait.h>
 
 #include "files/json.h"
 #include "files/text.h"
 #include "tests/devices/simulator_process.h"
 #include "tests/error_message.h"
+#include "tests/shell.h"
 #include "tests/temporary_folder.h"
 
 using namespace palpa;
@@ -18,19 +18,6 @@ using namespace palpa::files;
 using namespace palpa::test;
 
 namespace {
-
-struct Called {
-    int status = 0;
-    std::string out;
-    std::string err;
-};
-
-Called shell(const std::string& script) {
-    const TemporaryFolder folder;
-    const std::string command = "( " + script + " ) >" + (folder / "out").string() + " 2>" + (folder / "err").string();
-    const int status = std::system(command.c_str());
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_text(folder / "out"), read_text(folder / "err")};
-}
 
 const std::string kRecord = "timeout 100 " PALPA_PROGRAM " calibrate record ";
 const std::string kHand = " --steps 20 --greatest-N 2.6 --period-s 4 ";

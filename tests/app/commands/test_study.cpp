@@ -8,6 +8,7 @@
 #include "files/json.h"
 #include "files/text.h"
 #include "tests/error_message.h"
+#include "tests/shell.h"
 #include "tests/temporary_folder.h"
 
 using namespace palpa;
@@ -18,19 +19,7 @@ namespace {
 
 const std::string kCounts = PALPA_SOURCE_DIR "/assets/counts/paper.tsv";
 
-struct Called {
-    int status = 0;
-    std::string out;
-    std::string err;
-};
-
-Called study(const std::string& arguments) {
-    const TemporaryFolder folder;
-    const std::string command = "timeout 120 " PALPA_PROGRAM " study " + arguments + " >" + (folder / "out").string() +
-                                " 2>" + (folder / "err").string() + " </dev/null";
-    const int status = std::system(command.c_str());
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_text(folder / "out"), read_text(folder / "err")};
-}
+Called study(const std::string& arguments) { return shell("timeout 120 " PALPA_PROGRAM " study " + arguments); }
 
 void refused(const std::string& arguments, const std::string& word) {
     const Called called = study(arguments);
@@ -123,7 +112,7 @@ TEST_CASE("command study analyse: counts become tables, JSON and figures") {
         CAPTURE(name);
         CHECK(std::filesystem::exists(folder / (std::string("report/") + name)));
     }
-    if (std::system("command -v gnuplot >/dev/null 2>&1") != 0) {
+    if (!has_gnuplot()) {
         MESSAGE("not checked: gnuplot is not installed");
         CHECK(contains(called.err, "gnuplot is not installed"));
         return;

@@ -7,6 +7,7 @@
 #include "app/scene_choices.h"
 #include "app/screens/frame.h"
 #include "scene/advance.h"
+#include "tests/off_screen.h"
 
 using namespace palpa;
 using namespace palpa::platform;
@@ -15,6 +16,7 @@ using namespace palpa::render;
 using namespace palpa::study;
 using namespace palpa::session;
 using namespace palpa::app;
+using namespace palpa::test;
 
 namespace {
 
@@ -32,14 +34,6 @@ class BusyKeeper : public TrialKeeper {
     void open() override {}
     void open_studies() override {}
 };
-
-WindowOptions off_screen() {
-    WindowOptions options;
-    options.visible = false;
-    options.width_px = 640;
-    options.height_px = 400;
-    return options;
-}
 
 struct Desk {
     BusyKeeper keeper;

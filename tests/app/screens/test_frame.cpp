@@ -5,6 +5,7 @@
 #include "app/scene_choices.h"
 #include "app/screens/frame.h"
 #include "scene/advance.h"
+#include "tests/off_screen.h"
 
 using namespace palpa;
 using namespace palpa::platform;
@@ -13,16 +14,9 @@ using namespace palpa::scene;
 using namespace palpa::render;
 using namespace palpa::session;
 using namespace palpa::app;
+using namespace palpa::test;
 
 namespace {
-
-WindowOptions off_screen() {
-    WindowOptions options;
-    options.visible = false;
-    options.width_px = 640;
-    options.height_px = 400;
-    return options;
-}
 
 struct Screening {
     Window window{off_screen()};

@@ -6,20 +6,14 @@
 #include <imgui.h>
 
 #include "app/screens/gui.h"
+#include "tests/off_screen.h"
 
 using namespace palpa;
 using namespace palpa::platform;
 using namespace palpa::app;
+using namespace palpa::test;
 
 namespace {
-
-WindowOptions off_screen() {
-    WindowOptions options;
-    options.visible = false;
-    options.width_px = 640;
-    options.height_px = 400;
-    return options;
-}
 
 // A field for letters and a button, as screens have them.
 struct Form {

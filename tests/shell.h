@@ -1,0 +1,31 @@
+#pragma once
+// Calls a program as a person does, and keeps what it says.
+
+#include <cstdlib>
+#include <string>
+#include <sys/wait.h>
+
+#include "files/text.h"
+#include "tests/temporary_folder.h"
+
+namespace palpa::test {
+
+struct Called {
+    int status = 0;  // -1 if a signal ended it
+    std::string out;
+    std::string err;
+};
+
+// A command line of the shell, without input.
+inline Called shell(const std::string& command) {
+    const TemporaryFolder folder;
+    const std::string whole =
+        "( " + command + " ) >" + (folder / "out").string() + " 2>" + (folder / "err").string() + " </dev/null";
+    const int status = std::system(whole.c_str());
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, files::read_text(folder / "out"),
+            files::read_text(folder / "err")};
+}
+
+inline bool has_gnuplot() { return shell("command -v gnuplot").status == 0; }
+
+}  // namespace palpa::test
