@@ -46,13 +46,15 @@ class Percentiles {
   public:
     template <class Call>
     void time(Call&& call) {
-        const std::int64_t began_ns = files::steady_ns();
+        const std::int64_t began_ns = palpa::files::steady_ns();
         call();
-        us_.push_back(1e-3 * static_cast<double>(files::steady_ns() - began_ns));
+        us_.push_back(1e-3 * static_cast<double>(palpa::files::steady_ns() - began_ns));
     }
     void report(benchmark::State& state) {
         std::sort(us_.begin(), us_.end());
-        const auto at = [&](double share) { return files::sorted_quantile(us_, share, files::QuantileType::lower); };
+        const auto at = [&](double share) {
+            return palpa::files::sorted_quantile(us_, share, palpa::files::QuantileType::lower);
+        };
         state.counters["median_us"] = at(0.5);
         state.counters["p99_us"] = at(0.99);
         state.counters["max_us"] = us_.back();
