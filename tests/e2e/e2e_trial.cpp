@@ -311,9 +311,11 @@ TEST_CASE("replay: what a pen did in two trials replays without a window to the 
     script.tap("pen", 0, kFinish);
     script.wait(0.3);
     script.key(kN);  // the tissue is turned; this trial is broken off
-    script.wait(0.6);
+    script.wait(1.5);
     press(50, 70);
+    script.wait(0.3);
     script.key(kM);
+    script.wait(0.3);
     script.key(k5);
     const std::string seconds = std::to_string(script.close() + 5.0);
     REQUIRE(run_app(folder, "--test --quit-after-s " + seconds + " --log " + path("live"),

@@ -190,6 +190,22 @@ TEST_CASE("replay: the same trace gives the same log, byte for byte, for every s
     }
 }
 
+TEST_CASE("replay: the surface, which nobody sees, is computed only for the frames that are timed") {
+    Trace trace = read_trace(default_trace());
+    trace.samples.resize(500);
+    for (const int every : {0, 1, 16}) {
+        CAPTURE(every);
+        Session session;
+        put_tissue("", 0, false, session);
+        begin_replay({}, trace.info, std::nullopt, session);
+        session.state.time_every = every;
+        const ReplayResult result = replay(trace, session);
+        CHECK(result.display.frames > 32);
+        const std::int64_t due = every == 0 ? 0 : (result.display.drawn + every - 1) / every;
+        CHECK(session.state.meters[static_cast<std::size_t>(StageId::surface)].calls() == due);
+    }
+}
+
 TEST_CASE("replay: over the nodules the avatar lags at least 0.5 mm and 5 times more than beside them") {
     Session session;
     const ReplayResult result = result_of(read_trace(default_trace()), session);
