@@ -4,6 +4,7 @@
 
 #include "app/scene_choices.h"
 #include "app/screens/frame.h"
+#include "render/gl.h"
 #include "scene/advance.h"
 
 using namespace palpa;
@@ -70,6 +71,27 @@ struct Screening {
 };
 
 }  // namespace
+
+TEST_CASE("frame: a tissue that stays as it was is shown from a copy that looks the same") {
+    Screening s("");
+    s.press(Phase::down, 0.5, 0.3);
+    const auto pixels = [&](const char* note) {
+        s.notices.note = note;
+        REQUIRE(s.drawn());
+        return read_pixels(640, 400);
+    };
+    const auto first = pixels("a");
+    pixels("b");                  // the copy is made here
+    CHECK(pixels("a") == first);  // and drawn here
+    s.now_s += 0.01;
+    s.press(Phase::move, 0.5, 0.9);
+    const auto deeper = pixels("a");
+    CHECK(deeper != first);
+    pixels("b");
+    CHECK(pixels("a") == deeper);
+    s.view.on_screen = {};
+    CHECK(pixels("a") == deeper);  // without a copy
+}
 
 TEST_CASE("frame: nothing is drawn while nothing changes, and everything that does is") {
     Screening s("");
