@@ -76,6 +76,35 @@ void Mesh::draw() const {
     glBindVertexArray(0);
 }
 
+AreaCopy::AreaCopy() {
+    glGenTextures(1, &texture_);
+    glGenFramebuffers(1, &framebuffer_);
+}
+
+AreaCopy::~AreaCopy() {
+    glDeleteFramebuffers(1, &framebuffer_);
+    glDeleteTextures(1, &texture_);
+}
+
+bool AreaCopy::take(int width_px, int height_px) {
+    width_px_ = width_px;
+    height_px_ = height_px;
+    glBindTexture(GL_TEXTURE_2D, texture_);
+    glCopyTexImage2D(GL_TEXTURE_2D, 0, GL_RGB, 0, 0, width_px, height_px, 0);
+    glBindTexture(GL_TEXTURE_2D, 0);
+    glBindFramebuffer(GL_READ_FRAMEBUFFER, framebuffer_);
+    glFramebufferTexture2D(GL_READ_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, texture_, 0);
+    const bool good = glCheckFramebufferStatus(GL_READ_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE;
+    glBindFramebuffer(GL_READ_FRAMEBUFFER, 0);
+    return good && glGetError() == GL_NO_ERROR;
+}
+
+void AreaCopy::put() const {
+    glBindFramebuffer(GL_READ_FRAMEBUFFER, framebuffer_);
+    glBlitFramebuffer(0, 0, width_px_, height_px_, 0, 0, width_px_, height_px_, GL_COLOR_BUFFER_BIT, GL_NEAREST);
+    glBindFramebuffer(GL_READ_FRAMEBUFFER, 0);
+}
+
 void clear_screen(int width_px, int height_px) {
     glViewport(0, 0, width_px, height_px);
     glClearColor(0.11f, 0.12f, 0.13f, 1.0f);

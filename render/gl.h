@@ -39,6 +39,23 @@ class Mesh {
     GLsizei count_ = 0;
 };
 
+// A copy of the drawing area, to be drawn again without its shaders.
+class AreaCopy {
+  public:
+    AreaCopy();
+    ~AreaCopy();
+    AreaCopy(const AreaCopy&) = delete;
+    AreaCopy& operator=(const AreaCopy&) = delete;
+    bool take(int width_px, int height_px);  // of what was drawn last; false: this driver cannot
+    void put() const;
+
+  private:
+    GLuint texture_ = 0;
+    GLuint framebuffer_ = 0;
+    int width_px_ = 0;
+    int height_px_ = 0;
+};
+
 void clear_screen(int width_px, int height_px);
 
 // RGB rows from the top downwards, of what was drawn last.

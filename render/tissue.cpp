@@ -143,6 +143,8 @@ void set_view(const Program& program, const TissueView& view) {
 }  // namespace
 
 struct TissueDrawer::Gpu {
+    void draw(const TissueView& view, const Dent& dent, const Relief& sunk, const Ball& indenter);
+
     Program surface{kSurfaceVertex, kSurfaceFragment};
     Program ball{kBallVertex, kBallFragment};
     SurfaceMesh fine = unit_grid(kCells);
@@ -150,36 +152,48 @@ struct TissueDrawer::Gpu {
     Mesh tissue{fine.points, fine.triangles};
     Mesh quad{single.points, single.triangles};
     std::vector<float> relief;
+    AreaCopy copy;
+    bool copied = false;  // what the last call got
 };
 
 TissueDrawer::TissueDrawer() : gpu_(std::make_unique<Gpu>()) {}
 TissueDrawer::~TissueDrawer() = default;
 
-void TissueDrawer::draw(const TissueView& view, const Dent& dent, const Relief& relief, const Ball& ball) {
+void TissueDrawer::draw(const TissueView& view, const Dent& dent, const Relief& relief, const Ball& ball,
+                        bool as_before) {
+    if (as_before && gpu_->copied) return gpu_->copy.put();
+    gpu_->draw(view, dent, relief, ball);
+    // something that moves is never shown twice, so it is not copied either
+    const auto width_px = static_cast<int>(view.area_px.x);
+    const auto height_px = static_cast<int>(view.area_px.y);
+    gpu_->copied = as_before && gpu_->copy.take(width_px, height_px);
+}
+
+void TissueDrawer::Gpu::draw(const TissueView& view, const Dent& dent, const Relief& sunk, const Ball& indenter) {
     clear_screen(static_cast<int>(view.area_px.x), static_cast<int>(view.area_px.y));
     glEnable(GL_DEPTH_TEST);
     glDisable(GL_CULL_FACE);
     glDisable(GL_BLEND);
-    set_view(gpu_->surface, view);
-    glUniform2fv(gpu_->surface.uniform("dent_m"), 1, glm::value_ptr(dent.centre_m));
-    glUniform1f(gpu_->surface.uniform("reach_m"), dent.reach_m);
-    glUniform1fv(gpu_->surface.uniform("sink_m"), kSinkPoints, dent.sink_m.data());
-    glUniform1f(gpu_->surface.uniform("has_relief"), relief.n_x >= 2 ? 1.0f : 0.0f);
-    if (relief.n_x >= 2) {
-        refine(relief, view.size_m, kCells, gpu_->relief);
-        gpu_->tissue.set_second(gpu_->relief);
+    set_view(surface, view);
+    glUniform2fv(surface.uniform("dent_m"), 1, glm::value_ptr(dent.centre_m));
+    glUniform1f(surface.uniform("reach_m"), dent.reach_m);
+    glUniform1fv(surface.uniform("sink_m"), kSinkPoints, dent.sink_m.data());
+    glUniform1f(surface.uniform("has_relief"), sunk.n_x >= 2 ? 1.0f : 0.0f);
+    if (sunk.n_x >= 2) {
+        refine(sunk, view.size_m, kCells, relief);
+        tissue.set_second(relief);
     }
-    gpu_->tissue.draw();
+    tissue.draw();
 
     glDisable(GL_DEPTH_TEST);
-    if (ball.radius_m <= 0.0f) return;
+    if (indenter.radius_m <= 0.0f) return;
     glEnable(GL_BLEND);
     glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
-    set_view(gpu_->ball, view);
-    glUniform3f(gpu_->ball.uniform("ball_m"), ball.centre_m.x, ball.centre_m.y, ball.height_m);
-    glUniform1f(gpu_->ball.uniform("radius_m"), ball.radius_m);
-    glUniform1f(gpu_->ball.uniform("opacity"), ball.opacity);
-    gpu_->quad.draw();
+    set_view(ball, view);
+    glUniform3f(ball.uniform("ball_m"), indenter.centre_m.x, indenter.centre_m.y, indenter.height_m);
+    glUniform1f(ball.uniform("radius_m"), indenter.radius_m);
+    glUniform1f(ball.uniform("opacity"), indenter.opacity);
+    quad.draw();
     glDisable(GL_BLEND);
 }
 

@@ -54,8 +54,10 @@ class TissueDrawer {
     TissueDrawer(const TissueDrawer&) = delete;
     TissueDrawer& operator=(const TissueDrawer&) = delete;
 
-    // Clears the drawing area and draws.
-    void draw(const TissueView& view, const Dent& dent, const Relief& relief, const Ball& ball);
+    // Clears the drawing area and draws. `as_before`: all of it is what the last call got. A copy of what was drawn is
+    // then shown, which costs a fraction of the shaders; with software drawing they are nearly all that an idle app
+    // computes, since its clock changes every second.
+    void draw(const TissueView& view, const Dent& dent, const Relief& relief, const Ball& ball, bool as_before);
 
   private:
     struct Gpu;

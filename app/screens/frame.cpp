@@ -1,6 +1,7 @@
 #include "app/screens/frame.h"
 
 #include <type_traits>
+#include <utility>
 
 #include "app/screens/calibrate_form.h"
 #include "app/screens/content_hash.h"
@@ -80,11 +81,10 @@ std::uint64_t hash_of(std::uint64_t hash, const Numbers& numbers) {
     return hash_more(hash, &numbers, sizeof numbers);
 }
 
-std::uint64_t content_of(const render::TissueView& view, const Surface& surface, const render::Ball& ball,
-                         const Gui& gui) {
+std::uint64_t content_of(const render::TissueView& view, const Surface& surface, const render::Ball& ball) {
     static_assert(sizeof(render::TissueView) == 14 * sizeof(float) && sizeof(render::Ball) == 5 * sizeof(float));
     static_assert(sizeof(render::Dent) == (3 + render::kSinkPoints) * sizeof(float));
-    std::uint64_t hash = hash_of(hash_of(hash_of(gui.content(), view), surface.dent), ball);
+    std::uint64_t hash = hash_of(hash_of(hash_of(1, view), surface.dent), ball);
     const render::Relief& relief = surface.relief;
     hash = hash_of(hash_of(hash_of(hash, relief.n_x), relief.n_y), relief.shift_m);
     return hash_more(hash, relief.sink_m.data(), relief.sink_m.size() * sizeof(float));
@@ -113,11 +113,13 @@ Wishes draw_frame(const ToShow& what, const Canvas& canvas, ViewState& view, sce
     const std::int64_t built_ns = scene::steady_ns();
     view.times.built_ns = built_ns;
     view.times.cpu.add_ns(static_cast<double>(built_ns - began_ns));
-    const std::uint64_t content = content_of(shown.view, surface, ball, gui);
+    const std::uint64_t tissue = content_of(shown.view, surface, ball);
+    const std::uint64_t content = hash_of(gui.content(), tissue);
     view.on_screen.drawn = content != view.on_screen.content;
     if (!view.on_screen.drawn) return wishes;
     view.on_screen.content = content;
-    canvas.tissue.draw(shown.view, surface.dent, surface.relief, ball);
+    const bool tissue_as_before = tissue == std::exchange(view.on_screen.tissue, tissue);
+    canvas.tissue.draw(shown.view, surface.dent, surface.relief, ball, tissue_as_before);
     gui.draw();
     view.times.gl.add_ns(static_cast<double>(scene::steady_ns() - built_ns));
     return wishes;

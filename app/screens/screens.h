@@ -76,6 +76,7 @@ struct OnScreen {
     std::uint64_t content =
         0;               // what it was drawn from (content_hash.h); 0: nobody knows, so that the next frame is drawn
     bool drawn = false;  // by the last draw_frame()
+    std::uint64_t tissue = 0;  // the same of the tissue alone, without panels
 };
 
 // What is being typed in the step of a study that is shown.

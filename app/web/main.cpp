@@ -51,10 +51,10 @@ void stop(const char* message) {
 
 // A tablet shows its keyboard for fields of the page only.
 void follow_typing() {
-    if (!browser::has_touch_screen()) return;
+    if (!platform::browser::has_touch_screen()) return;
     const auto field = page.live->text_field();
     if (field) {
-        const double scale = 1.0 / browser::px_per_css_px();
+        const double scale = 1.0 / platform::browser::px_per_css_px();
         const PanelArea& area = field->area;
         const auto css = [&](float px) { return scale * static_cast<double>(px); };
         palpa_page_type(field->text.c_str(), css(area.x0), css(area.y0), css(area.width()), css(area.height()));

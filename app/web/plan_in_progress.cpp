@@ -4,7 +4,7 @@
 
 #include "files/input_error.h"
 
-namespace palpa::app {
+namespace palpa::session {
 
 struct PlanInProgress::Work {};
 
@@ -25,4 +25,4 @@ scene::Plan make_plan_here(const scene::Scene& scene) {
     return scene::make_plan(scene);
 }
 
-}  // namespace palpa::app
+}  // namespace palpa::session

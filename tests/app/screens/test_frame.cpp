@@ -1,9 +1,11 @@
 // A frame that would look like what is on the screen is not drawn again; whatever changes is. Off screen.
 
 #include <doctest/doctest.h>
+#include <optional>
 
 #include "app/scene_choices.h"
 #include "app/screens/frame.h"
+#include "render/gl.h"
 #include "scene/advance.h"
 #include "tests/off_screen.h"
 
@@ -21,7 +23,7 @@ namespace {
 struct Screening {
     Window window{off_screen()};
     Gui gui{window};
-    TissueDrawer tissue;
+    std::optional<TissueDrawer> tissue;
     Session session;
     Settings settings;
     Notices notices;
@@ -31,6 +33,7 @@ struct Screening {
     double now_s = 1.0;  // of a clock of the test's own
 
     explicit Screening(const std::string& scene) {
+        tissue.emplace();
         Scene first = load_scene(scene);
         auto plan = std::make_shared<const Plan>(make_plan(first));
         change_tissue(std::move(first), std::move(plan), {}, session);
@@ -40,8 +43,8 @@ struct Screening {
     }
 
     bool drawn() {
-        draw_frame({session.scene, *session.plan, session.trial, settings, notices, doing, asked, now_s}, {gui, tissue},
-                   view, session.state);
+        draw_frame({session.scene, *session.plan, session.trial, settings, notices, doing, asked, now_s},
+                   {gui, *tissue}, view, session.state);
         return view.on_screen.drawn;
     }
 
@@ -64,6 +67,28 @@ struct Screening {
 };
 
 }  // namespace
+
+TEST_CASE("frame: a tissue that stays as it was is shown from a copy that looks the same") {
+    Screening s("");
+    s.press(Phase::down, 0.5, 0.3);
+    const auto pixels = [&](const char* note) {
+        s.notices.note = note;
+        REQUIRE(s.drawn());
+        return read_pixels(640, 400);
+    };
+    const auto first = pixels("a");
+    pixels("b");                  // the copy is made here
+    CHECK(pixels("a") == first);  // and drawn here
+    s.now_s += 0.01;
+    s.press(Phase::move, 0.5, 0.9);
+    const auto deeper = pixels("a");
+    CHECK(deeper != first);
+    pixels("b");
+    CHECK(pixels("a") == deeper);
+    s.tissue.emplace();  // has no copy
+    s.view.on_screen = {};
+    CHECK(pixels("a") == deeper);
+}
 
 TEST_CASE("frame: nothing is drawn while nothing changes, and everything that does is") {
     Screening s("");
