@@ -16,33 +16,21 @@
 namespace palpa::scene {
 namespace {
 
-constexpr double kBarOfLinear_N = 5.0;  // no greatest force: as the shipped maps
-constexpr const char* kLinearError =
-    "1.3 % of the depth (median, worst 2.4 %) against 1.2 mm on the shipped block at 2 mm; a contact radius below two "
-    "spacings is worse";
+constexpr double kBarOfLinear_N = 5.0;   // no greatest force: as the shipped maps
 constexpr double kFewestSpacings = 4.0;  // across the contact's radius: docs/fem.md
 constexpr double kTooFewSpacings = 2.0;
-
-constexpr const char* kFrictionError =
-    "tangential force 0.2 % of mu F (median, worst 4 %) against 1.5 mm on the shipped block at 2 mm, raster trace, mu "
-    "0.3";
-constexpr double kFriction_us = 75.0;  // p99 145
 
 std::string mm_text(double metres) { return files::short_number(1e3 * metres) + " mm"; }
 
 Stage calibration_stage(const Plan& plan) {
-    Stage stage{StageId::calibration, false, "", "", 0.03};
-    stage.fidelity = std::string(name_of(plan.profile.curve.model)) + " curve " + plan.profile.id + " from " +
-                     name_of(plan.profile.level);
-    if (!std::isnan(plan.profile.median_relative_error)) {
-        stage.error = files::short_number(100.0 * plan.profile.median_relative_error) +
-                      " % of the force (median over points left out of the fit)";
-    } else {
-        stage.error = plan.profile.points.empty()
-                          ? "not known: the profile brings no points"
-                          : std::to_string(plan.profile.points.size()) + " points in the profile";
-    }
-    return stage;
+    const calibration::Profile& profile = plan.profile;
+    const std::string fidelity =
+        std::string(name_of(profile.curve.model)) + " curve " + profile.id + " from " + name_of(profile.level);
+    if (!std::isnan(profile.median_relative_error))
+        return stage_of(StageForm::calibration_fitted, fidelity,
+                        {files::short_number(100.0 * profile.median_relative_error)});
+    if (profile.points.empty()) return stage_of(StageForm::calibration_bare, fidelity);
+    return stage_of(StageForm::calibration_with_points, fidelity, {std::to_string(profile.points.size())});
 }
 
 // Of the scaled forces; a figure that the map itself brings is of its recording and stays as it is.
@@ -58,17 +46,13 @@ double smoothing_m(const Scene& scene, const MapTissue& tissue) {
 }
 
 Stage depth_stage(const MapTissue& tissue, double stiffness_scale) {
-    Stage stage{StageId::depth, false, "", "", 0.03};
-    stage.fidelity = "map " + tissue.map.name + ", isotonic over depth, bilinear in x and y";
-    const double greatest_N = stiffnessmaps::force_range(tissue.map).highest_N;
-    if (tissue.map.source.kind == stiffnessmaps::SourceKind::recorded) {
-        stage.error = files::short_number(1e3 * noise_N(tissue, stiffness_scale)) + " mN of noise in the recording";
-    } else {
-        stage.error =
-            files::short_number(25.0 * stiffnessmaps::coarse_grid_error_N(tissue.map) / std::max(greatest_N, 1e-9)) +
-            " % of the greatest force (95th percentile, from twice the pitch)";
-    }
-    return stage;
+    const std::string fidelity = "map " + tissue.map.name + ", isotonic over depth, bilinear in x and y";
+    if (tissue.map.source.kind == stiffnessmaps::SourceKind::recorded)
+        return stage_of(StageForm::depth_recorded_map, fidelity,
+                        {files::short_number(1e3 * noise_N(tissue, stiffness_scale))});
+    const double greatest_N = std::max(stiffnessmaps::force_range(tissue.map).highest_N, 1e-9);
+    return stage_of(StageForm::depth_made_map, fidelity,
+                    {files::short_number(25.0 * stiffnessmaps::coarse_grid_error_N(tissue.map) / greatest_N)});
 }
 
 // How many spacings the contact's radius, sqrt(R d), spans at the greatest depth.
@@ -78,55 +62,38 @@ double spacings_across(const LinearTissue& tissue) {
     return std::sqrt(R * depth_m) / std::max(tissue.spacing_m[0], tissue.spacing_m[1]);
 }
 
-std::string linear_error(const LinearTissue& tissue) {
-    const double spacings = spacings_across(tissue);
-    if (spacings >= kFewestSpacings) return kLinearError;
-    const std::string here = "at " + mm_text(tissue.phantom.depths_m.back()) + " the contact's radius spans " +
-                             files::short_number(spacings) + " spacings here, fewer where it is shallower";
-    if (spacings >= kTooFewSpacings) return std::string(kLinearError) + "; " + here;
-    return "not known, the force can be several times too large: even " + here +
-           "; four are wanted (a smaller spacing_mm)";
-}
-
 Stage depth_stage(const LinearTissue& tissue, double) {
-    Stage stage{StageId::depth, false, "", "", 60.0};
-    stage.fidelity = "linear finite elements, " + std::to_string(tissue.mesh_nodes) + " nodes, " +
-                     mm_text(tissue.spacing_m[0]) + " on the surface; frictionless contact solved at every sample";
-    stage.error = linear_error(tissue);
-    return stage;
+    const std::string fidelity = "linear finite elements, " + std::to_string(tissue.mesh_nodes) + " nodes, " +
+                                 mm_text(tissue.spacing_m[0]) +
+                                 " on the surface; frictionless contact solved at every sample";
+    const double spacings = spacings_across(tissue);
+    if (spacings >= kFewestSpacings) return stage_of(StageForm::depth_linear, fidelity);
+    return stage_of(spacings >= kTooFewSpacings ? StageForm::depth_linear_coarse : StageForm::depth_linear_too_coarse,
+                    fidelity,
+                    {files::short_number(1e3 * tissue.phantom.depths_m.back()), files::short_number(spacings)});
 }
 
 Stage tangential_stage(const MapTissue& tissue, const TangentialOptions& options) {
-    Stage stage{StageId::tangential, false, "", "", 0.03};
-    if (options.force == stiffnessmaps::TangentialForce::recorded) {
-        stage.fidelity = "matrices as recorded along +x";
-        stage.error = "wrong in any other direction than +x";
-        return stage;
-    }
+    if (options.force == stiffnessmaps::TangentialForce::recorded)
+        return stage_of(StageForm::tangential_as_recorded, "matrices as recorded along +x");
     const bool recorded = tissue.map.tangential == stiffnessmaps::TangentialKind::recorded;
     const bool slid = recorded && tissue.map.source.kind == stiffnessmaps::SourceKind::simulated;
-    stage.fidelity = slid ? "energy gradient + friction of the simulated slide along +x"
-                          : (recorded ? "energy gradient + recorded resistance" : "energy gradient");
-    stage.error = "derived from the normal force (work argument), not measured";
-    if (tissue.smoothing_m > 0.0) {
-        stage.fidelity += ", smoothed by " + mm_text(tissue.smoothing_m);
-        stage.error += "; smoothing lowers lag by about a fifth, delay by about a half";
-    }
-    return stage;
+    const std::string fidelity = slid ? "energy gradient + friction of the simulated slide along +x"
+                                      : (recorded ? "energy gradient + recorded resistance" : "energy gradient");
+    if (!(tissue.smoothing_m > 0.0)) return stage_of(StageForm::tangential_energy, fidelity);
+    return stage_of(StageForm::tangential_energy_smoothed, fidelity + ", smoothed by " + mm_text(tissue.smoothing_m));
 }
 
 Stage friction_stage(const LinearTissue& tissue) {
-    return {StageId::friction, false,
-            "Coulomb friction " + files::short_number(*tissue.friction) +
-                ", stick and slip of every node, in steps of at most " + mm_text(0.5 * tissue.spacing_m[0]),
-            kFrictionError, kFriction_us};
+    return stage_of(StageForm::friction_linear, "Coulomb friction " + files::short_number(*tissue.friction) +
+                                                    ", stick and slip of every node, in steps of at most " +
+                                                    mm_text(0.5 * tissue.spacing_m[0]));
 }
 
 Stage tangential_stage(const LinearTissue& tissue, const TangentialOptions&) {
-    return {StageId::tangential, false,
-            "slope of the elastic energy over " + mm_text(tissue.spacing_m[0]) + ", two contact solves" +
-                (tissue.friction ? ", and friction" : ""),
-            "detail below one node spacing is averaged away", 70.0};
+    return stage_of(StageForm::tangential_linear, "slope of the elastic energy over " + mm_text(tissue.spacing_m[0]) +
+                                                      ", two contact solves" +
+                                                      (tissue.friction ? ", and friction" : ""));
 }
 
 void add_notes(const MapTissue& tissue, const Scene& scene, Plan& plan) {
@@ -161,7 +128,8 @@ void add_isotonic_note(const MapTissue& tissue, Plan& plan) {
 void add_notes(const LinearTissue& tissue, const Scene&, Plan& plan) {
     if (!tissue.cache_warning.empty()) plan.notes.push_back(tissue.cache_warning);
     if (spacings_across(tissue) < kTooFewSpacings) {
-        plan.notes.push_back("the surface nodes are too far apart for this indenter: " + linear_error(tissue));
+        plan.notes.push_back("the surface nodes are too far apart for this indenter: " +
+                             depth_stage(tissue, 1.0).error);
     }
     if (tissue.friction) {
         plan.notes.push_back(
@@ -276,7 +244,7 @@ void describe(const LinearTissue& tissue, double stiffness_scale, Plan& plan) {
 void add_stages(const Scene& scene, Plan& plan) {
     const bool direct = scene.mapping.kind == MappingKind::direct;
     plan.sample_stages.push_back(calibration_stage(plan));
-    plan.sample_stages.push_back({StageId::position, false, direct ? "direct" : "indirect", "exact", 0.01});
+    plan.sample_stages.push_back(stage_of(StageForm::position, direct ? "direct" : "indirect"));
     std::visit([&](const auto& tissue) { plan.sample_stages.push_back(depth_stage(tissue, scene.stiffness_scale)); },
                plan.tissue);
     const auto* linear = std::get_if<LinearTissue>(&plan.tissue);
@@ -290,48 +258,19 @@ void add_stages(const Scene& scene, Plan& plan) {
         stations += ", fewer in strokes faster than " +
                     files::short_number(1e3 * kStationsOnLinear.per_s * path.station_m) + " mm/s";
     }
-    const double cost_us = scene.linear ? 250.0 : 0.15;
-    if (scene.display_ratio) {
+    if (scene.display_ratio)
         plan.sample_stages.push_back(
-            {StageId::display_ratio, false, stations, "0.0002 mm against 5 times as many stations", cost_us});
-    }
-    if (scene.delay) {
-        plan.sample_stages.push_back({StageId::delay, false, stations, "exact at the stations", cost_us});
-    }
+            stage_of(scene.linear ? StageForm::display_ratio_on_linear : StageForm::display_ratio_on_map, stations));
+    if (scene.delay)
+        plan.sample_stages.push_back(
+            stage_of(scene.linear ? StageForm::delay_on_linear : StageForm::delay_on_map, stations));
     if (!scene.surface) return;
-    if (scene.linear) {
-        plan.frame_stages.push_back(
-            {StageId::surface, true, "surface nodes of the finite elements", "that of depth", 30.0});
-    } else {
-        plan.frame_stages.push_back({StageId::surface, true, "sphere on a half-space, tapered",
-                                     "7 % of the depth at worst against the exact bonded layer (25 mm, depth to 2 mm)",
-                                     7.0});
-    }
+    plan.frame_stages.push_back(scene.linear
+                                    ? stage_of(StageForm::surface_nodes, "surface nodes of the finite elements")
+                                    : stage_of(StageForm::surface_sphere, "sphere on a half-space, tapered"));
 }
 
 }  // namespace
-
-const char* name_of(StageId id) {
-    switch (id) {
-        case StageId::calibration:
-            return "calibration";
-        case StageId::position:
-            return "position";
-        case StageId::depth:
-            return "depth";
-        case StageId::friction:
-            return "friction";
-        case StageId::tangential:
-            return "tangential";
-        case StageId::display_ratio:
-            return "display_ratio";
-        case StageId::delay:
-            return "delay";
-        case StageId::surface:
-            return "surface";
-    }
-    return "";
-}
 
 Plan make_plan(const Scene& scene, const mechanics::Progress& progress) {
     Plan plan;

@@ -10,21 +10,11 @@
 #include "avatar/surface.h"
 #include "calibration/profile.h"
 #include "scene/scene.h"
+#include "scene/stages.h"
 #include "stiffnessmaps/field.h"
 #include "stiffnessmaps/map.h"
 
 namespace palpa::scene {
-
-enum class StageId : std::size_t { calibration, position, depth, friction, tangential, display_ratio, delay, surface };
-inline constexpr std::size_t kStageCount = 8;
-
-struct Stage {
-    StageId id;
-    bool per_frame = false;  // else per sample
-    std::string fidelity;    // which of its forms is used
-    std::string error;       // against what reference
-    double cost_us = 0.0;    // median, as measured on the machine and day that docs/performance.md names
-};
 
 // A recorded or generated map, prepared for look-up.
 struct MapTissue {
@@ -54,7 +44,5 @@ struct Plan {
 // Reads the map and the profile, or computes the linear tissue, which takes seconds: `progress` tells and may stop
 // it. Throws InputError, and mechanics' errors for a block that cannot be solved.
 Plan make_plan(const Scene& scene, const mechanics::Progress& progress = {});
-
-const char* name_of(StageId id);
 
 }  // namespace palpa::scene
