@@ -6,6 +6,9 @@
 #include <initializer_list>
 #include <string>
 #include <string_view>
+#include <vector>
+
+#include "avatar/path.h"
 
 namespace palpa::scene {
 
@@ -102,7 +105,13 @@ static_assert(each_form_stands_at_its_place());
 
 constexpr const StageFigures& figures_of(StageForm form) { return kStageFigures[static_cast<std::size_t>(form)]; }
 
+struct Scene;
+
 // The stage with its row of the table, whose gaps `figures` fills.
 Stage stage_of(StageForm form, std::string fidelity, std::initializer_list<std::string_view> figures = {});
+
+// The stages of the scene's laws on a tissue that can answer at so many stations of the path.
+void add_law_stages(const Scene& scene, const avatar::StationLimit& limit, StageForm display_ratio, StageForm delay,
+                    std::vector<Stage>& out);
 
 }  // namespace palpa::scene

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "scene/tissue.h"
+#include "scene/plan.h"
 #include "session/session.h"
 
 namespace palpa::session {
@@ -35,7 +35,7 @@ ReplayResult replay(const scene::Scene& scene, const scene::Plan& plan, const pl
     scene::State& state = result.state;
     state = scene::start(scene, plan, screen_of(trace.info));
     state.time_every = time_every;
-    Eigen::VectorXd sink_m;
+    scene::SurfaceShape surface;
     bool first = true;
     double shown_s = 0.0;  // time of the next virtual frame
     for (const platform::Sample& sample : trace.samples) {
@@ -51,9 +51,7 @@ ReplayResult replay(const scene::Scene& scene, const scene::Plan& plan, const pl
             const double behind = std::min(1.0 + std::floor((now_s - shown_s) * kVirtualDisplay_Hz), 1e9);
             result.frames += static_cast<std::int64_t>(behind);
             shown_s += behind / kVirtualDisplay_Hz;
-            if (scene.surface && scene.linear)
-                scene::surface_now(std::get<scene::LinearTissue>(plan.tissue), state, sink_m);
-            if (scene.surface && !scene.linear) scene::surface_now(scene, plan, state);
+            if (scene.surface) scene::surface_now(scene, plan, state, surface);
         }
         result.latency.count();
         result.latency.add_ns(1e9 * (shown_s - now_s));

@@ -33,7 +33,7 @@ void load(const RunOptions& options, App& app) {
     if (own_choice && !app.settings.scene.empty()) attempt(app, [&] { scene = load_scene(app.settings.scene); });
     if (scene.name.empty()) scene = load_scene(options.scene);
     if (own_choice && std::filesystem::exists(app.settings.profile)) scene.profile = app.settings.profile;
-    if (scene.linear) {
+    if (takes_seconds(scene.tissue)) {
         app.unprepared = std::move(scene);
         return;
     }

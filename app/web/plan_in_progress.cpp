@@ -4,7 +4,7 @@
 
 #include "files/input_error.h"
 
-namespace palpa::app {
+namespace palpa::session {
 
 struct PlanInProgress::Work {};
 
@@ -21,8 +21,8 @@ void PlanInProgress::cancel() {}
 scene::Plan PlanInProgress::take() { return {}; }
 
 scene::Plan make_plan_here(const scene::Scene& scene) {
-    if (scene.linear) return PlanInProgress(scene).take();
+    if (takes_seconds(scene.tissue)) return PlanInProgress(scene).take();
     return scene::make_plan(scene);
 }
 
-}  // namespace palpa::app
+}  // namespace palpa::session

@@ -79,10 +79,11 @@ TEST_CASE("advance: a sample allocates nothing, an absent effect allocates nothi
     for (const char* name : {"off.json", "default.json", "delay.json"}) {
         CAPTURE(name);
         Run run(name);
+        SurfaceShape surface;
         run.state.time_every = 1;
         const std::int64_t before = allocations();
         stroke(run, 1000, [](const State&) {});
-        if (run.scene.surface) surface_now(run.scene, run.plan, run.state);
+        if (run.scene.surface) surface_now(run.scene, run.plan, run.state, surface);
         avatar_at(run.scene, run.state, 3.0);
         CHECK(allocations() == before);
     }
