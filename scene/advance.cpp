@@ -146,20 +146,25 @@ void note_extremes(const Avatar& avatar, double t_s, State& state) {
     }
 }
 
-// Grid points since the touch began, up to (not including) the sample's time.
-void walk_grid(const Scene& scene, double to_s, State& state) {
+// The laws are exact at any time, so what is left to do on the grid is to note how far the avatar lags.
+void run_grid_stage(StageId id, const Scene& scene, double t_s, State& state) {
+    if (id == StageId::display_ratio || id == StageId::delay) note_extremes(avatar_at(scene, state, t_s), t_s, state);
+}
+
+// Grid points since the last sample, up to (not including) this time, whether or not something touches.
+void walk_grid(const Scene& scene, const Plan& plan, double to_s, State& state) {
     constexpr double kMostSteps = 1e15;
-    const auto last = static_cast<std::int64_t>(std::min((to_s - state.touch_began_s) * kGrid_Hz, kMostSteps));
+    const auto last = static_cast<std::int64_t>(std::min((to_s - state.grid_began_s) * kGrid_Hz, kMostSteps));
     constexpr auto kMost = static_cast<std::int64_t>(kLongestGap_s * kGrid_Hz);
     const std::int64_t due = last - state.grid_step;
     const std::int64_t skipped = std::max<std::int64_t>(0, due - kMost);
     state.counters.dropped_steps += skipped;
-    for (state.grid_step += skipped; state.grid_step < last;) {
-        ++state.grid_step;
-        ++state.counters.steps;
-        const double t_s = state.touch_began_s + static_cast<double>(state.grid_step) / kGrid_Hz;
-        note_extremes(avatar_at(scene, state, t_s), t_s, state);
+    state.counters.steps += due - skipped;
+    for (std::int64_t step = state.grid_step + skipped + 1; step <= last && !plan.grid_stages.empty(); ++step) {
+        const double t_s = state.grid_began_s + static_cast<double>(step) / kGrid_Hz;
+        for (const StageId id : plan.grid_stages) run_grid_stage(id, scene, t_s, state);
     }
+    state.grid_step = last;
 }
 
 void run_stages(const Scene& scene, const Plan& plan, const platform::Sample& sample, State& state) {
@@ -223,8 +228,6 @@ void follow_pointer(const Scene& scene, const Plan& plan, const platform::Sample
     if (touching && !state.pointer) {
         state.pointer = sample.pointer_id;
         state.pointer_tool = sample.tool;
-        state.touch_began_s = state.timeline.now_s;
-        state.grid_step = 0;
     }
     state.answered = !state.pointer || *state.pointer == sample.pointer_id;
     if (state.answered && !touching) state.pointer.reset();
@@ -265,11 +268,12 @@ void advance(const Scene& scene, const Plan& plan, const platform::Sample& sampl
         ++state.counters.not_numbers;
         if (is_touching(sample.phase)) return;  // a lift is a lift wherever it is
     }
+    const bool first = !state.timeline.started;
     const bool in_order = platform::move_to(sample, state.timeline);
     // a lift from the past is still a lift, now
     if (!in_order && is_touching(sample.phase)) return;
-    const bool was_touching = state.pointer.has_value();
-    if (was_touching) walk_grid(scene, state.timeline.now_s, state);
+    if (first) state.grid_began_s = state.timeline.now_s;
+    walk_grid(scene, plan, state.timeline.now_s, state);
     follow_pointer(scene, plan, sample, state);
     if (!state.answered) return;
     run_stages(scene, plan, sample, state);

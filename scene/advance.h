@@ -11,8 +11,9 @@ inline constexpr double kGrid_Hz = 240.0;
 // `screen`: where the tissue is drawn and pressed. A sample of action `resize` changes it.
 State start(const Scene& scene, const Plan& plan, const ScreenArea& screen);
 
-// Goes exactly to the sample's time. The gap since the last sample is walked on the 240 Hz grid of the touch;
-// gaps of more than a minute are cut and the steps counted as dropped.
+// Goes exactly to the sample's time. The gap since the last sample is walked on the 240 Hz grid, which begins with the
+// first sample and goes on whether or not something touches; gaps of more than a minute are cut and the steps counted
+// as dropped.
 void advance(const Scene& scene, const Plan& plan, const platform::Sample& sample, State& state);
 
 // What to draw at a time after the last sample (the avatar goes on moving while the pen rests).

@@ -25,6 +25,8 @@ void add_stages(const Scene& scene, Plan& plan) {
     plan.sample_stages.push_back(stage_of(StageForm::position, direct ? "direct" : "indirect"));
     for (const Stage& stage : stages(plan.tissue, scene))
         (stage.per_frame ? plan.frame_stages : plan.sample_stages).push_back(stage);
+    if (scene.display_ratio) plan.grid_stages.push_back(StageId::display_ratio);
+    if (scene.delay) plan.grid_stages.push_back(StageId::delay);
 }
 
 }  // namespace

@@ -15,6 +15,7 @@ namespace palpa::scene {
 
 struct Plan {
     std::vector<Stage> sample_stages;
+    std::vector<StageId> grid_stages;  // of these, what goes on between samples too, on the 240 Hz grid
     std::vector<Stage> frame_stages;
     std::vector<std::string> notes;  // what a person should know about this scene
     calibration::Profile profile;

@@ -66,8 +66,8 @@ struct State {
     Eigen::Vector2d heading_rope_m = Eigen::Vector2d::Zero();
     std::optional<avatar::DisplayRatioState> display_ratio;
     std::optional<avatar::DelayState> delay;
-    std::int64_t grid_step = 0;  // index of the last grid point of this touch
-    double touch_began_s = 0.0;
+    double grid_began_s = 0.0;   // with the first sample
+    std::int64_t grid_step = 0;  // index of the last grid point
     Counters counters;
     Extremes extremes;
     // Measurements mean nothing to a replay: every `time_every`-th sample is timed, 0 for none.
