@@ -7,6 +7,7 @@
 #include "app/assets.h"
 #include "files/input_error.h"
 #include "files/json.h"
+#include "scene/tissue.h"
 
 namespace palpa::app {
 namespace {
@@ -59,8 +60,8 @@ scene::Scene load_scene(const std::string& name) {
 }
 
 std::vector<fs::path> inputs_of(const scene::Scene& scene, const fs::path& trace) {
-    std::vector<fs::path> inputs{scene.file, scene.map, scene.profile};
-    if (scene.linear) inputs.push_back(scene.linear->phantom);
+    std::vector<fs::path> inputs{scene.file, scene.profile};
+    for (const fs::path& file : scene::input_files(scene.tissue)) inputs.push_back(file);
     if (!trace.empty()) inputs.insert(inputs.end(), {trace, fs::path(trace).replace_extension(".json")});
     return inputs;
 }

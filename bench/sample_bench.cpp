@@ -9,6 +9,7 @@
 #include "app/screens/tissue_drawing.h"
 #include "scene/advance.h"
 #include "session/raster_trace.h"
+#include "stiffnessmaps/map_file.h"
 
 namespace {
 
@@ -59,9 +60,10 @@ void samples(benchmark::State& bench, const char* name) {
     bench.counters["worst_ns"] = single.worst_ns();
 }
 
+Field shipped_field() { return make_field(read_map(PALPA_SOURCE_DIR "/assets/maps/silicone.map"), {}); }
+
 void depth_look_up(benchmark::State& bench) {
-    const Loaded loaded("default.json");
-    const Field& field = std::get<MapTissue>(loaded.plan.tissue).field;
+    const Field field = shipped_field();
     double x = 0.0;
     for (auto _ : bench) {
         x = x < 0.11 ? x + 3e-5 : 0.01;
@@ -71,8 +73,7 @@ void depth_look_up(benchmark::State& bench) {
 }
 
 void tangential_look_up(benchmark::State& bench) {
-    const Loaded loaded("default.json");
-    const Field& field = std::get<MapTissue>(loaded.plan.tissue).field;
+    const Field field = shipped_field();
     double x = 0.0;
     for (auto _ : bench) {
         x = x < 0.11 ? x + 3e-5 : 0.01;

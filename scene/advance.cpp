@@ -3,39 +3,11 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <limits>
-
-#include "mechanics/linear_range.h"
 
 namespace palpa::scene {
 namespace {
 
 constexpr double kLongestGap_s = 60.0;
-constexpr double kUnknownThickness_m = std::numeric_limits<double>::infinity();
-
-// Rise of the resisting tangential force over the reference distance, as the laws ask for it; the same depth in
-// both look-ups.
-struct RiseOnMap {
-    const stiffnessmaps::Field* field;
-    double stiffness_scale;
-    double operator()(const Eigen::Vector2d& e_m, const Eigen::Vector2d& u, double force_N, double reference_m) const {
-        const stiffnessmaps::Place here = stiffnessmaps::place_at(*field, e_m);
-        const stiffnessmaps::Place before = stiffnessmaps::place_at(*field, e_m - reference_m * u);
-        if (!here.measured || !before.measured || !here.inside || !before.inside) return 0.0;
-        const double depth_m = stiffnessmaps::depth_at(*field, here, force_N / stiffness_scale).depth_m;
-        return stiffness_scale * tangential_rise_N(*field, here, before, u, depth_m);
-    }
-};
-
-struct RiseOnLinear {
-    const LinearTissue* tissue;
-    double stiffness_scale;
-    LinearWork* work;
-    double operator()(const Eigen::Vector2d& e_m, const Eigen::Vector2d& u, double force_N, double reference_m) const {
-        return stiffness_scale * tangential_rise_N(*tissue, e_m, u, force_N / stiffness_scale, reference_m, *work);
-    }
-};
-
 constexpr double kUnbelievable = 0.9;  // share of the profile's range; no hand begins a touch there within one sample
 
 bool has_sensor(platform::Tool tool) { return tool == platform::Tool::pen || tool == platform::Tool::finger; }
@@ -76,60 +48,27 @@ void place(const platform::Sample& sample, State& state) {
     }
 }
 
-// The plan's tissue is as stiff as its file says, the scene's stiffness_scale times as stiff. Under a force that one
-// answers as the plan's does under force / stiffness_scale, and its newtons are stiffness_scale times the plan's.
-void sink(const MapTissue& tissue, double stiffness_scale, State& state) {
-    const stiffnessmaps::Place& at = state.place = stiffnessmaps::place_at(tissue.field, state.touch.p_m);
-    const stiffnessmaps::DepthAnswer answer =
-        stiffnessmaps::depth_at(tissue.field, at, state.touch.force_N / stiffness_scale);
-    state.contact.depth_m = answer.depth_m;
-    state.contact.saturated = answer.saturated;
-    state.contact.measured = at.measured && at.inside;
-    if (tissue.map.source.kind == stiffnessmaps::SourceKind::simulated) {
-        // the simulation was linear: how far this depth is from where that holds
-        const double a_m =
-            std::sqrt(tissue.map.indenter_radius_m * std::min(answer.depth_m, tissue.map.indenter_radius_m));
-        state.contact.linearity = mechanics::linearity_ratio(answer.depth_m, kUnknownThickness_m, 2.0 * a_m);
-    }
-}
-
-void sink(const LinearTissue& tissue, double stiffness_scale, State& state) {
-    const double force_N = state.touch.force_N / stiffness_scale;
-    const LinearAnswer answer = press(tissue, state.touch.p_m, force_N, *state.linear);
-    state.contact.depth_m = answer.depth_m;
-    state.contact.saturated = answer.saturated;
-    state.contact.linearity = answer.linearity;
+void ask(StageId stage, const Scene& scene, const Plan& plan, State& state) {
+    const Press press{state.touch.p_m, state.touch.force_N, state.heading, state.touch.down, scene.stiffness_scale};
+    answer(plan.tissue, stage, press, state.tissue, state.contact);
 }
 
 void sink(const Scene& scene, const Plan& plan, State& state) {
     state.contact = Contact{};
     state.contact.time_s = state.timeline.now_s;
     state.contact.p_m = state.touch.p_m;
-    if (!state.touch.down) return;
-    state.contact.normal_N = state.touch.force_N;
-    std::visit([&](const auto& tissue) { sink(tissue, scene.stiffness_scale, state); }, plan.tissue);
+    if (state.touch.down) state.contact.normal_N = state.touch.force_N;
+    ask(StageId::depth, scene, plan, state);
     state.counters.saturated += state.contact.saturated;
     state.counters.unmeasured += !state.contact.measured;
 }
 
-void rub(const Plan& plan, State& state) {
-    if (!state.touch.down) return let_go(*state.linear);
-    drag(std::get<LinearTissue>(plan.tissue), state.touch.p_m, state.contact.depth_m, *state.linear);
-    state.counters.skipped_slides = state.linear->skipped_slides;
+void rub(const Scene& scene, const Plan& plan, State& state) {
+    ask(StageId::friction, scene, plan, state);
+    state.counters.skipped_slides += state.contact.skipped_slides;
 }
 
-double tangential_N(const MapTissue& tissue, State& state) {
-    return tangential_force_N(tissue.field, state.place, state.heading, state.contact.depth_m);
-}
-
-double tangential_N(const LinearTissue& tissue, State& state) {
-    const double depth_m = state.contact.depth_m;
-    if (tissue.friction)
-        return rough_tangential_force_N(tissue, state.touch.p_m, state.heading, depth_m, *state.linear);
-    return tangential_force_N(tissue, state.touch.p_m, state.heading, depth_m, *state.linear);
-}
-
-void resist(const Scene& scene, const Plan& plan, State& state) {
+void turn(const Scene& scene, State& state) {
     if (!state.touch.down) {
         state.heading.setZero();
         state.heading_rope_m = state.touch.p_m;
@@ -138,13 +77,14 @@ void resist(const Scene& scene, const Plan& plan, State& state) {
     const double dead_band_m = path_of(scene).dead_band_m;  // jitter has no direction
     const Eigen::Vector2d v = state.touch.p_m - state.heading_rope_m;
     const double length_m = v.norm();
-    if (length_m > dead_band_m) {
-        state.heading = v / length_m;
-        state.heading_rope_m = state.touch.p_m - dead_band_m * state.heading;
-    }
-    state.contact.tangential_N =
-        scene.stiffness_scale *
-        std::visit([&](const auto& tissue) { return tangential_N(tissue, state); }, plan.tissue);
+    if (!(length_m > dead_band_m)) return;
+    state.heading = v / length_m;
+    state.heading_rope_m = state.touch.p_m - dead_band_m * state.heading;
+}
+
+void resist(const Scene& scene, const Plan& plan, State& state) {
+    turn(scene, state);
+    ask(StageId::tangential, scene, plan, state);
 }
 
 avatar::Touch timed(const State& state) {
@@ -153,28 +93,24 @@ avatar::Touch timed(const State& state) {
     return touch;
 }
 
-template <class Rise>
-void lag(const Scene& scene, const Rise& rise_N, const avatar::StationLimit& limit, State& state) {
+void lag(const Scene& scene, const Plan& plan, State& state) {
+    const auto rise = [&](const Eigen::Vector2d& p_m, const Eigen::Vector2d& u, double force_N, double reference_m) {
+        return rise_N(plan.tissue, {p_m, u, force_N, reference_m, scene.stiffness_scale}, state.tissue);
+    };
     std::int64_t& skipped = state.counters.skipped_stations;
     skipped = 0;
     if (state.display_ratio) {
         state.avatar.lag_m =
-            avatar::advance_lag(*scene.display_ratio, timed(state), rise_N, *state.display_ratio, limit);
+            avatar::advance_lag(*scene.display_ratio, timed(state), rise, *state.display_ratio, plan.stations);
         skipped += state.display_ratio->path.skipped_stations;
     }
     if (state.delay) {
-        const avatar::Delayed delayed = avatar::advance_lag(*scene.delay, timed(state), rise_N, *state.delay, limit);
+        const avatar::Delayed delayed =
+            avatar::advance_lag(*scene.delay, timed(state), rise, *state.delay, plan.stations);
         state.avatar.lag_m = delayed.lag_m;
         state.avatar.delay_s = delayed.tau_s;
         skipped += state.delay->path.skipped_stations;
     }
-}
-
-void lag(const Scene& scene, const Plan& plan, State& state) {
-    if (const auto* map = std::get_if<MapTissue>(&plan.tissue))
-        return lag(scene, RiseOnMap{&map->field, scene.stiffness_scale}, avatar::StationLimit{}, state);
-    const LinearTissue& linear = std::get<LinearTissue>(plan.tissue);
-    lag(scene, RiseOnLinear{&linear, scene.stiffness_scale, &*state.linear}, kStationsOnLinear, state);
 }
 
 void run_stage(StageId id, const Scene& scene, const Plan& plan, const platform::Sample& sample, State& state) {
@@ -186,7 +122,7 @@ void run_stage(StageId id, const Scene& scene, const Plan& plan, const platform:
         case StageId::depth:
             return sink(scene, plan, state);
         case StageId::friction:
-            return rub(plan, state);
+            return rub(scene, plan, state);
         case StageId::tangential:
             return resist(scene, plan, state);
         case StageId::display_ratio:
@@ -210,20 +146,25 @@ void note_extremes(const Avatar& avatar, double t_s, State& state) {
     }
 }
 
-// Grid points since the touch began, up to (not including) the sample's time.
-void walk_grid(const Scene& scene, double to_s, State& state) {
+// The laws are exact at any time, so what is left to do on the grid is to note how far the avatar lags.
+void run_grid_stage(StageId id, const Scene& scene, double t_s, State& state) {
+    if (id == StageId::display_ratio || id == StageId::delay) note_extremes(avatar_at(scene, state, t_s), t_s, state);
+}
+
+// Grid points since the last sample, up to (not including) this time, whether or not something touches.
+void walk_grid(const Scene& scene, const Plan& plan, double to_s, State& state) {
     constexpr double kMostSteps = 1e15;
-    const auto last = static_cast<std::int64_t>(std::min((to_s - state.touch_began_s) * kGrid_Hz, kMostSteps));
+    const auto last = static_cast<std::int64_t>(std::min((to_s - state.grid_began_s) * kGrid_Hz, kMostSteps));
     constexpr auto kMost = static_cast<std::int64_t>(kLongestGap_s * kGrid_Hz);
     const std::int64_t due = last - state.grid_step;
     const std::int64_t skipped = std::max<std::int64_t>(0, due - kMost);
     state.counters.dropped_steps += skipped;
-    for (state.grid_step += skipped; state.grid_step < last;) {
-        ++state.grid_step;
-        ++state.counters.steps;
-        const double t_s = state.touch_began_s + static_cast<double>(state.grid_step) / kGrid_Hz;
-        note_extremes(avatar_at(scene, state, t_s), t_s, state);
+    state.counters.steps += due - skipped;
+    for (std::int64_t step = state.grid_step + skipped + 1; step <= last && !plan.grid_stages.empty(); ++step) {
+        const double t_s = state.grid_began_s + static_cast<double>(step) / kGrid_Hz;
+        for (const StageId id : plan.grid_stages) run_grid_stage(id, scene, t_s, state);
     }
+    state.grid_step = last;
 }
 
 void run_stages(const Scene& scene, const Plan& plan, const platform::Sample& sample, State& state) {
@@ -287,8 +228,6 @@ void follow_pointer(const Scene& scene, const Plan& plan, const platform::Sample
     if (touching && !state.pointer) {
         state.pointer = sample.pointer_id;
         state.pointer_tool = sample.tool;
-        state.touch_began_s = state.timeline.now_s;
-        state.grid_step = 0;
     }
     state.answered = !state.pointer || *state.pointer == sample.pointer_id;
     if (state.answered && !touching) state.pointer.reset();
@@ -314,7 +253,7 @@ State start(const Scene& scene, const Plan& plan, const ScreenArea& screen) {
     resize(scene, plan, screen, state);
     if (scene.display_ratio) state.display_ratio.emplace();
     if (scene.delay) state.delay.emplace();
-    if (const auto* linear = std::get_if<LinearTissue>(&plan.tissue)) state.linear = make_linear_work(*linear);
+    state.tissue = make_work(plan.tissue);
     return state;
 }
 
@@ -329,11 +268,12 @@ void advance(const Scene& scene, const Plan& plan, const platform::Sample& sampl
         ++state.counters.not_numbers;
         if (is_touching(sample.phase)) return;  // a lift is a lift wherever it is
     }
+    const bool first = !state.timeline.started;
     const bool in_order = platform::move_to(sample, state.timeline);
     // a lift from the past is still a lift, now
     if (!in_order && is_touching(sample.phase)) return;
-    const bool was_touching = state.pointer.has_value();
-    if (was_touching) walk_grid(scene, state.timeline.now_s, state);
+    if (first) state.grid_began_s = state.timeline.now_s;
+    walk_grid(scene, plan, state.timeline.now_s, state);
     follow_pointer(scene, plan, sample, state);
     if (!state.answered) return;
     run_stages(scene, plan, sample, state);
@@ -356,33 +296,14 @@ Avatar avatar_at(const Scene& scene, const State& state, double t_s) {
     return avatar;
 }
 
-namespace {
-
-template <class Call>
-void metered(StageId id, const Call& call, State& state) {
+void surface_now(const Scene& scene, const Plan& plan, State& state, SurfaceShape& shape) {
+    assert(scene.surface);
     const std::int64_t before_ns = steady_ns();
-    call();
-    Meter& meter = state.meters[static_cast<std::size_t>(id)];
+    sample_surface(plan.tissue, *scene.surface, state.contact, state.tissue, shape);
+    if (!state.touch.down) shape.sink_m.setZero();
+    Meter& meter = state.meters[static_cast<std::size_t>(StageId::surface)];
     meter.count();
     meter.add_ns(static_cast<double>(steady_ns() - before_ns));
-}
-
-}  // namespace
-
-avatar::SurfaceCurve surface_now(const Scene& scene, const Plan& plan, State& state) {
-    assert(scene.surface);
-    avatar::SurfaceCurve curve;
-    const auto find = [&] {
-        curve = avatar::surface_curve(state.contact.depth_m, plan.indenter_radius_m, scene.surface->thickness_m);
-    };
-    metered(StageId::surface, find, state);
-    return curve;
-}
-
-void surface_now(const LinearTissue& tissue, State& state, Eigen::VectorXd& sink_m) {
-    metered(
-        StageId::surface, [&] { surface_sink_m(tissue, *state.linear, sink_m); }, state);
-    if (!state.touch.down) sink_m.setZero();
 }
 
 }  // namespace palpa::scene

@@ -160,7 +160,7 @@ LinearTissue make_linear_tissue(const LinearOptions& options, const std::filesys
     return tissue;
 }
 
-LinearWork make_linear_work(const LinearTissue& tissue) {
+LinearWork make_work(const LinearTissue& tissue) {
     LinearWork out;
     for (mechanics::ContactWork* work :
          {&out.work, &out.slope.ahead, &out.slope.behind, &out.station, &out.station_slope.ahead,
@@ -261,6 +261,44 @@ void drag(const LinearTissue& tissue, const Eigen::Vector2d& p_m, double depth_m
 
 void surface_sink_m(const LinearTissue& tissue, const LinearWork& work, Eigen::VectorXd& out_m) {
     mechanics::surface_depression_m(tissue.compliance, work.contact, out_m);
+}
+
+namespace {
+
+void rub(const LinearTissue& tissue, const Press& press, LinearWork& work, Contact& contact) {
+    if (!press.down) return let_go(work);
+    const std::int64_t before = work.skipped_slides;
+    drag(tissue, press.p_m, contact.depth_m, work);
+    contact.skipped_slides = work.skipped_slides - before;
+}
+
+}  // namespace
+
+void answer(const LinearTissue& tissue, StageId stage, const Press& press, LinearWork& work, Contact& contact) {
+    if (stage == StageId::friction) return rub(tissue, press, work, contact);
+    if (!press.down) return;
+    if (stage == StageId::depth) {
+        const LinearAnswer found = scene::press(tissue, press.p_m, press.force_N / press.stiffness_scale, work);
+        contact.depth_m = found.depth_m;
+        contact.saturated = found.saturated;
+        contact.linearity = found.linearity;
+        return;
+    }
+    const auto force_N = tissue.friction ? rough_tangential_force_N : tangential_force_N;
+    contact.tangential_N = press.stiffness_scale * force_N(tissue, press.p_m, press.heading, contact.depth_m, work);
+}
+
+double rise_N(const LinearTissue& tissue, const Station& at, LinearWork& work) {
+    return at.stiffness_scale *
+           tangential_rise_N(tissue, at.p_m, at.u, at.force_N / at.stiffness_scale, at.reference_m, work);
+}
+
+void sample_surface(const LinearTissue& tissue, const SurfaceEffect&, const Contact&, const LinearWork& work,
+                    SurfaceShape& shape) {
+    shape.n_x = static_cast<Eigen::Index>(tissue.n_x);
+    shape.n_y = static_cast<Eigen::Index>(tissue.n_y);
+    shape.spacing_m = {tissue.spacing_m[0], tissue.spacing_m[1]};
+    surface_sink_m(tissue, work, shape.sink_m);
 }
 
 }  // namespace palpa::scene

@@ -5,22 +5,22 @@
 
 #include <Eigen/Core>
 #include <filesystem>
-#include <functional>
 #include <optional>
 #include <string>
 
+#include "files/json.h"
 #include "mechanics/compliance.h"
 #include "mechanics/contact.h"
 #include "mechanics/friction.h"
+#include "scene/contact.h"
+#include "scene/scene.h"
+#include "scene/stages.h"
+#include "scene/surface.h"
 #include "stiffnessmaps/phantom.h"
 
 namespace palpa::scene {
 
-struct LinearOptions {
-    std::filesystem::path phantom;
-    double spacing_m = 2e-3;         // of the surface nodes; cost of the precomputation grows with its power -6
-    std::optional<double> friction;  // coefficient, > 0; absent: frictionless
-};
+struct Plan;
 
 // Plain data, constant while it runs. Positions are the phantom's: its corner at the origin.
 struct LinearTissue {
@@ -68,7 +68,7 @@ struct LinearWork {
 LinearTissue make_linear_tissue(const LinearOptions& options, const std::filesystem::path& cache,
                                 const mechanics::Progress& progress);
 
-LinearWork make_linear_work(const LinearTissue& tissue);
+LinearWork make_work(const LinearTissue& tissue);
 
 // Depth for a normal force.
 struct LinearAnswer {
@@ -100,5 +100,22 @@ double rough_tangential_force_N(const LinearTissue& tissue, const Eigen::Vector2
 
 // Sink of the surface nodes under the contact last pressed, n_x * n_y, metres downwards.
 void surface_sink_m(const LinearTissue& tissue, const LinearWork& work, Eigen::VectorXd& out_m);
+
+// As a tissue: scene/tissue.h says what each of these is for.
+bool takes_seconds(const LinearOptions& options);
+std::vector<std::filesystem::path> input_files(const LinearOptions& options);
+files::Json file_hashes(const LinearOptions& options);
+std::filesystem::path map_folder(const LinearOptions& options);
+
+LinearTissue prepare(const LinearOptions& options, const Scene& scene, const mechanics::Progress& progress);
+bool serves(const LinearTissue& tissue, const Scene& scene);
+void describe(const LinearTissue& tissue, const Scene& scene, Plan& plan);
+std::vector<Stage> stages(const LinearTissue& tissue, const Scene& scene);
+files::Json identity(const LinearTissue& tissue);
+
+void answer(const LinearTissue& tissue, StageId stage, const Press& press, LinearWork& work, Contact& contact);
+double rise_N(const LinearTissue& tissue, const Station& station, LinearWork& work);
+void sample_surface(const LinearTissue& tissue, const SurfaceEffect& effect, const Contact& contact,
+                    const LinearWork& work, SurfaceShape& shape);
 
 }  // namespace palpa::scene

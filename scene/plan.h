@@ -4,42 +4,23 @@
 
 #include <array>
 #include <string>
-#include <variant>
 #include <vector>
 
-#include "avatar/surface.h"
 #include "calibration/profile.h"
 #include "scene/scene.h"
-#include "stiffnessmaps/field.h"
+#include "scene/tissue.h"
 #include "stiffnessmaps/map.h"
 
 namespace palpa::scene {
 
-enum class StageId : std::size_t { calibration, position, depth, friction, tangential, display_ratio, delay, surface };
-inline constexpr std::size_t kStageCount = 8;
-
-struct Stage {
-    StageId id;
-    bool per_frame = false;  // else per sample
-    std::string fidelity;    // which of its forms is used
-    std::string error;       // against what reference
-    double cost_us = 0.0;    // median, as measured on the machine and day that docs/performance.md names
-};
-
-// A recorded or generated map, prepared for look-up.
-struct MapTissue {
-    stiffnessmaps::Map map;
-    stiffnessmaps::Field field;
-    double noise_N = 0.0;      // of the map
-    double smoothing_m = 0.0;  // of the tangential force
-};
-
 struct Plan {
     std::vector<Stage> sample_stages;
+    std::vector<StageId> grid_stages;  // of these, what goes on between samples too, on the 240 Hz grid
     std::vector<Stage> frame_stages;
     std::vector<std::string> notes;  // what a person should know about this scene
     calibration::Profile profile;
-    std::variant<MapTissue, LinearTissue> tissue;
+    Tissue tissue;
+    // What the tissue says of itself:
     std::string tissue_name;
     stiffnessmaps::SourceKind source = stiffnessmaps::SourceKind::recorded;
     std::vector<stiffnessmaps::Nodule> nodules;
@@ -49,12 +30,20 @@ struct Plan {
     std::array<double, 2> zone_N{0.0, 0.0};
     TissueArea area;
     double indenter_radius_m = 4e-3;
+    const char* tangential_source = "energy";  // or recorded: the laws use both then (stiffnessmaps/field.h)
+    avatar::StationLimit stations;             // of the path that it can answer at
 };
 
-// Reads the map and the profile, or computes the linear tissue, which takes seconds: `progress` tells and may stop
-// it. Throws InputError, and mechanics' errors for a block that cannot be solved.
+// Reads the profile and prepares the tissue, which may take seconds: `progress` tells and may stop it. Throws
+// InputError, and mechanics' errors for a block that cannot be solved.
 Plan make_plan(const Scene& scene, const mechanics::Progress& progress = {});
 
-const char* name_of(StageId id);
+// Whether a plan that was made for one stiffness_scale is right for this scene, which is the same but for that. Forces
+// are scaled where they are answered; only the smoothing of a recorded map, which follows from its noise, is fixed
+// in the plan.
+bool serves(const Plan& plan, const Scene& scene);
+
+// plan.notes, and what the scene scales.
+std::vector<std::string> notes_of(const Scene& scene, const Plan& plan);
 
 }  // namespace palpa::scene

@@ -6,16 +6,27 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <variant>
 
 #include "avatar/delay.h"
 #include "avatar/display_ratio.h"
-#include "scene/linear_tissue.h"
 #include "scene/mapping.h"
 #include "stiffnessmaps/field.h"
 
 namespace palpa::scene {
 
-// How the avatar's laws read the map.
+// The tissue that was asked for. scene/tissue.h says what every tissue answers.
+struct MapOptions {
+    std::filesystem::path folder;
+};
+struct LinearOptions {
+    std::filesystem::path phantom;
+    double spacing_m = 2e-3;         // of the surface nodes; cost of the precomputation grows with its power -6
+    std::optional<double> friction;  // coefficient, > 0; absent: frictionless
+};
+using TissueOptions = std::variant<MapOptions, LinearOptions>;
+
+// How the avatar's laws read a map.
 struct TangentialOptions {
     stiffnessmaps::TangentialForce force = stiffnessmaps::TangentialForce::energy;
     std::optional<double> smoothing_m;  // absent: from the map's own noise (stiffnessmaps/noise.h)
@@ -28,9 +39,8 @@ struct SurfaceEffect {
 
 struct Scene {
     std::string name;
-    std::filesystem::path file;           // where it was read; empty if made up from a map
-    std::filesystem::path map;            // either a map
-    std::optional<LinearOptions> linear;  // or a block that is computed live
+    std::filesystem::path file;  // where it was read; empty if made up from a map
+    TissueOptions tissue;
     double stiffness_scale = 1.0;  // multiplies the tissue's forces: linear elastic tissue of so many times the modulus
     std::filesystem::path profile;
     Mapping mapping;

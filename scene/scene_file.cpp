@@ -88,7 +88,7 @@ void read_tissue(files::JsonReader json, const fs::path& file, const fs::path& a
     if (linear == json.has("map")) json.fail("", linear ? "two tissues" : "no tissue", "either map or linear");
     scene.stiffness_scale = json.number("stiffness_scale", {0.0, 1e3, true}, scene.stiffness_scale);
     if (!linear) {
-        scene.map = find_file(json.text("map"), file, assets / "maps");
+        scene.tissue = MapOptions{find_file(json.text("map"), file, assets / "maps")};
         return json.finish();
     }
     files::JsonReader block = json.object("linear");
@@ -98,7 +98,7 @@ void read_tissue(files::JsonReader json, const fs::path& file, const fs::path& a
     options.spacing_m = 1e-3 * block.number("spacing_mm", {0.2, 100.0}, 1e3 * options.spacing_m);
     if (block.has("friction")) options.friction = block.number("friction", {0.0, 10.0, true});
     block.finish();
-    scene.linear = options;
+    scene.tissue = options;
     json.finish();
 }
 
@@ -161,7 +161,7 @@ Scene scene_of_map(const fs::path& map, const fs::path& assets) {
     fs::path folder = map;
     if (!folder.has_filename()) folder = folder.parent_path();
     scene.name = folder.stem().string();
-    scene.map = map;
+    scene.tissue = MapOptions{map};
     scene.profile = assets / "profiles" / kDefaultProfile;
     scene.display_ratio = avatar::display_ratio_clear();
     scene.surface = SurfaceEffect{};

@@ -6,24 +6,11 @@
 
 #include "avatar/delay.h"
 #include "avatar/display_ratio.h"
-#include "avatar/surface.h"
 #include "platform/timeline.h"
 #include "scene/meter.h"
 #include "scene/plan.h"
 
 namespace palpa::scene {
-
-// The tissue's answer to a touch.
-struct Contact {
-    double time_s = 0.0;                            // of the touch, on the timeline
-    Eigen::Vector2d p_m = Eigen::Vector2d::Zero();  // where on the tissue
-    double depth_m = 0.0;
-    double normal_N = 0.0;
-    double tangential_N = 0.0;  // resisting motion along the pen's direction
-    bool saturated = false;     // pressed deeper than the tissue is known
-    bool measured = true;       // false: between or beside the measured cells
-    double linearity = 0.0;     // of a simulated tissue: amber above 0.10, red above 0.25 (mechanics/linear_range.h)
-};
 
 // What is shown of the indenter. lag = pen - avatar.
 struct Avatar {
@@ -72,16 +59,15 @@ struct State {
     bool without_level = false;  // the device of this touch does not report what the profile reads
     bool answered = false;       // the last sample belonged to it (or nothing touches)
     avatar::Touch touch;
-    stiffnessmaps::Place place;        // of the touch in the map; between the stages of one sample
-    std::optional<LinearWork> linear;  // of a linear tissue
+    TissueWork tissue;  // of the plan's tissue
     Contact contact;
     Avatar avatar;
     Eigen::Vector2d heading = Eigen::Vector2d::Zero();  // direction of motion, length 1 once moving
     Eigen::Vector2d heading_rope_m = Eigen::Vector2d::Zero();
     std::optional<avatar::DisplayRatioState> display_ratio;
     std::optional<avatar::DelayState> delay;
-    std::int64_t grid_step = 0;  // index of the last grid point of this touch
-    double touch_began_s = 0.0;
+    double grid_began_s = 0.0;   // with the first sample
+    std::int64_t grid_step = 0;  // index of the last grid point
     Counters counters;
     Extremes extremes;
     // Measurements mean nothing to a replay: every `time_every`-th sample is timed, 0 for none.

@@ -4,15 +4,9 @@
 
 #include "calibration/profile_file.h"
 #include "files/text.h"
-#include "scene/tissue.h"
+#include "scene/plan.h"
 
 namespace palpa::session {
-
-const char* tangential_source(const scene::Plan& plan) {
-    const auto* tissue = std::get_if<scene::MapTissue>(&plan.tissue);
-    const bool recorded = tissue != nullptr && tissue->map.tangential == stiffnessmaps::TangentialKind::recorded;
-    return recorded ? "recorded" : "energy";  // on a recording the laws use both (stiffnessmaps/field.h)
-}
 
 study::SampleRow row_of(const platform::Sample& sample, const scene::Plan& plan, const scene::State& state) {
     study::SampleRow row;
@@ -33,7 +27,7 @@ study::SampleRow row_of(const platform::Sample& sample, const scene::Plan& plan,
     row.lag_mm = 1e3 * state.avatar.lag_m.norm();
     row.delay_ms = 1e3 * state.avatar.delay_s;
     row.saturated = state.contact.saturated;
-    row.ft_source = state.contact.measured ? tangential_source(plan) : "none";
+    row.ft_source = state.contact.measured ? plan.tangential_source : "none";
     return row;
 }
 
@@ -46,10 +40,7 @@ files::Json settings_json(const scene::Scene& scene, const scene::Plan& plan, co
     json["scene"]["stiffness_scale"] = scene.stiffness_scale;
     json["scene"]["seed"] = scene.seed;
     json["tissue"] = {{"name", plan.tissue_name}, {"source", name_of(plan.source)}};
-    if (const auto* tissue = std::get_if<scene::MapTissue>(&plan.tissue)) {
-        json["tissue"]["count"] = {tissue->map.n_x, tissue->map.n_y};
-        json["tissue"]["smoothing_mm"] = 1e3 * tissue->smoothing_m;
-    }
+    json["tissue"].update(scene::identity(plan.tissue));
     json["profile"] = {{"id", plan.profile.id}, {"model", name_of(plan.profile.curve.model)}};
     json["profile"].update(calibration::parameters_json(plan.profile.curve));
     json["tissue_area_px"] = {state.screen.x_px, state.screen.y_px, state.screen.width_px, state.screen.height_px};

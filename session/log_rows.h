@@ -17,6 +17,4 @@ study::SampleRow row_of(const platform::Sample& sample, const scene::Plan& plan,
 // What a replay needs to know and a reader wants to: scene, map, profile, screen. The same for every replay.
 files::Json settings_json(const scene::Scene& scene, const scene::Plan& plan, const scene::State& state);
 
-const char* tangential_source(const scene::Plan& plan);  // recorded | energy | none
-
 }  // namespace palpa::session

@@ -46,7 +46,7 @@ void PlanInProgress::cancel() { work_->cancel = true; }
 scene::Plan PlanInProgress::take() { return work_->result.get(); }
 
 scene::Plan make_plan_here(const scene::Scene& scene) {
-    if (!scene.linear || !isatty(STDERR_FILENO)) return scene::make_plan(scene);
+    if (!takes_seconds(scene.tissue) || !isatty(STDERR_FILENO)) return scene::make_plan(scene);
     PlanInProgress work(scene);
     const auto began = std::chrono::steady_clock::now();
     while (!work.wait(0.25)) {

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "scene/advance.h"
-#include "scene/tissue.h"
+#include "scene/plan.h"
 
 namespace palpa::session {
 namespace {
@@ -39,9 +39,7 @@ void show_due(const scene::Scene& scene, const scene::Plan& plan, scene::State& 
         display.frames += static_cast<std::int64_t>(behind);
         display.shown_s += behind / kVirtualDisplay_Hz;
         const bool computed = display.surface_every > 0 && display.drawn++ % display.surface_every == 0;
-        if (computed && scene.surface && scene.linear)
-            scene::surface_now(std::get<scene::LinearTissue>(plan.tissue), state, display.sink_m);
-        if (computed && scene.surface && !scene.linear) scene::surface_now(scene, plan, state);
+        if (computed && scene.surface) scene::surface_now(scene, plan, state, display.surface);
     }
     display.latency.count();
     display.latency.add_ns(1e9 * (display.shown_s - now_s));

@@ -2,12 +2,12 @@
 // A recorded trace, run as fast as it goes, without a window. It goes the way of a live trial (session.h), so its log is
 // the log of the trial that was recorded.
 
-#include <Eigen/Core>
 #include <optional>
 #include <vector>
 
 #include "files/json.h"
 #include "platform/trace.h"
+#include "scene/surface.h"
 #include "session/session.h"
 
 namespace palpa::session {
@@ -29,7 +29,7 @@ struct VirtualDisplay {
     // Nobody sees the surface, so it is only computed to be timed: for every n-th frame; 0: for none.
     int surface_every = 1;
     std::int64_t drawn = 0;
-    Eigen::VectorXd sink_m;
+    scene::SurfaceShape surface;
 };
 
 // The frames that are due after a sample.

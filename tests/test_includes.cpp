@@ -130,6 +130,28 @@ TEST_CASE("includes: the table refuses what it must") {
     CHECK_FALSE(allowed("calibration", "calibration/record/acquisition.h"));
 }
 
+// Everything that depends on the kind of tissue is an overload behind scene/tissue.h.
+bool asks_for_tissue(const std::string& line) {
+    static const std::regex asks(
+        "(get_if|std::get|holds_alternative)<[a-z:]*(Map|Linear)(Tissue|Options|Work)>|std::visit");
+    return std::regex_search(line, asks);
+}
+
+TEST_CASE("tissues: only scene/tissue asks which tissue it is") {
+    CHECK(asks_for_tissue("if (const auto* map = std::get_if<scene::MapTissue>(&plan.tissue)) {"));
+    CHECK_FALSE(asks_for_tissue("if (const auto* text = std::get_if<std::string>(&choice.value)) return *text;"));
+    for_each_source([](const fs::path& source, const std::string& row) {
+        if (row == "scene" && source.stem() == "tissue") return;
+        if (!allowed(row, "scene/tissue.h")) return;  // knows no tissues
+        std::ifstream file(source);
+        for (std::string line; std::getline(file, line);) {
+            CAPTURE(source.string());
+            CAPTURE(line);
+            CHECK_FALSE(asks_for_tissue(line));
+        }
+    });
+}
+
 // Two types of one name link without a word, and one of them gets the other's functions.
 TEST_CASE("names: no two headers define the same type") {
     static const std::regex opens("namespace ([a-z:]+) \\{"),

@@ -8,7 +8,7 @@
 
 #include "app/commands/command_line.h"
 #include "app/scene_choices.h"
-#include "scene/tissue.h"
+#include "scene/plan.h"
 #include "session/plan_in_progress.h"
 #include "session/replay.h"
 

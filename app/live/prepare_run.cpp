@@ -38,7 +38,7 @@ void load(const RunOptions& options, App& app) {
     if (scene.name.empty()) scene = load_scene(options.scene);
     if (own_choice && std::filesystem::exists(app.settings.profile)) scene.profile = app.settings.profile;
     if (app.trace) session::turn_as_recorded(app.trace->info, scene);
-    if (scene.linear) {
+    if (takes_seconds(scene.tissue)) {
         app.unprepared = std::move(scene);
         return;
     }

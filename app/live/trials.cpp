@@ -129,7 +129,7 @@ void begin_when_kept(platform::Window& window, const Gui& gui, App& app) {
 }
 
 std::shared_ptr<const scene::Plan> prepare(platform::Window& window, Gui& gui, const scene::Scene& scene) {
-    if (!scene.linear) return std::make_shared<const scene::Plan>(scene::make_plan(scene));
+    if (!takes_seconds(scene.tissue)) return std::make_shared<const scene::Plan>(scene::make_plan(scene));
     session::PlanInProgress work(scene);
     std::vector<platform::Sample> ignored;
     while (!work.wait(kFrame_s)) {

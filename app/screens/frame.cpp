@@ -25,13 +25,10 @@ Surface surface_of(const scene::Scene& scene, const scene::Plan& plan, const sce
                    scene::State& state) {
     Surface surface;
     if (!scene.surface) return surface;
-    if (const auto* linear = std::get_if<scene::LinearTissue>(&plan.tissue)) {
-        Eigen::VectorXd sink_m;
-        scene::surface_now(*linear, state, sink_m);
-        surface.relief = relief_of(*linear, sink_m, avatar);
-    } else {
-        surface.dent = dent_of(scene::surface_now(scene, plan, state), avatar);
-    }
+    scene::SurfaceShape shape;
+    scene::surface_now(scene, plan, state, shape);
+    if (shape.curve) surface.dent = dent_of(*shape.curve, avatar);
+    if (shape.n_x > 0) surface.relief = relief_of(shape, avatar);
     return surface;
 }
 

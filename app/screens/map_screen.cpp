@@ -219,14 +219,15 @@ void choose_map(const std::string& file, MapBrowser& browser) {
 std::shared_ptr<MapBrowser> make_map_browser(const scene::Scene& scene, std::vector<Choice> maps) {
     auto browser = std::make_shared<MapBrowser>();
     browser->maps = std::move(maps);
-    std::string first = scene.map.string();
+    const std::filesystem::path of_scene = scene::map_folder(scene.tissue);
+    std::string first = of_scene.string();
     if (first.empty() && !browser->maps.empty()) first = browser->maps.front().file;
     const auto listed = std::find_if(browser->maps.begin(), browser->maps.end(),
                                      [&](const Choice& c) { return same_file(c.file, first); });
     if (listed != browser->maps.end()) {
         first = listed->file;
     } else if (!first.empty()) {
-        browser->maps.insert(browser->maps.begin(), {scene.map.stem().string(), first});
+        browser->maps.insert(browser->maps.begin(), {of_scene.stem().string(), first});
     }
     if (first.empty())
         browser->problem = words::kNoMap;

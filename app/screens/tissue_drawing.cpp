@@ -34,15 +34,14 @@ render::Dent dent_of(const avatar::SurfaceCurve& curve, const scene::Avatar& ava
     return dent;
 }
 
-render::Relief relief_of(const scene::LinearTissue& tissue, const Eigen::VectorXd& sink_m,
-                         const scene::Avatar& avatar) {
+render::Relief relief_of(const scene::SurfaceShape& shape, const scene::Avatar& avatar) {
     render::Relief relief;
-    relief.n_x = static_cast<int>(tissue.n_x);
-    relief.n_y = static_cast<int>(tissue.n_y);
+    relief.n_x = static_cast<int>(shape.n_x);
+    relief.n_y = static_cast<int>(shape.n_y);
     const auto at = [&](int i, int j) {
         const int x = std::clamp(i, 0, relief.n_x - 1);
         const int y = std::clamp(j, 0, relief.n_y - 1);
-        return sink_m[y * relief.n_x + x];
+        return shape.sink_m[y * relief.n_x + x];
     };
     const auto along_x = [&](int i, int j) { return 0.25 * at(i - 1, j) + 0.5 * at(i, j) + 0.25 * at(i + 1, j); };
     for (int j = 0; j < relief.n_y; ++j) {

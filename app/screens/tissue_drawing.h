@@ -13,9 +13,9 @@ render::TissueView tissue_view(const scene::Scene& scene, const scene::State& st
 
 render::Dent dent_of(const avatar::SurfaceCurve& curve, const scene::Avatar& avatar);
 
-// The surface of a linear tissue, moved with the avatar. It is smoothed by 1-2-1 over the nodes, which takes out the
+// A surface of nodes, moved with the avatar. It is smoothed by 1-2-1 over the nodes, which takes out the
 // zig-zag that forces on single nodes leave in it.
-render::Relief relief_of(const scene::LinearTissue& tissue, const Eigen::VectorXd& sink_m, const scene::Avatar& avatar);
+render::Relief relief_of(const scene::SurfaceShape& shape, const scene::Avatar& avatar);
 
 // The indenter at the avatar's place. While nothing touches, it hovers and is half transparent.
 render::Ball ball_of(const scene::Plan& plan, const scene::State& state, const scene::Avatar& avatar);

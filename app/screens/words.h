@@ -3,14 +3,11 @@
 // replaced by a value. Words of the page around the program stand at the end. Messages about files and command lines
 // stand in the code that reports them, and names that also stand in files (tools, findings, sources) with their types.
 
-#include <initializer_list>
-#include <string>
-#include <string_view>
+#include "files/filled.h"
 
 namespace palpa::app::words {
 
-// Each {} of the pattern in turn replaced by a value. One value per {}.
-std::string filled(std::string_view pattern, std::initializer_list<std::string_view> values);
+using files::filled;
 
 // buttons of several screens
 inline constexpr const char* kBack = "Back";

@@ -9,7 +9,7 @@
 
 #include "files/input_error.h"
 #include "files/text.h"
-#include "scene/tissue.h"
+#include "scene/plan.h"
 #include "session/plan_in_progress.h"
 #include "study/ratings.h"
 

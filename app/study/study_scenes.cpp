@@ -3,7 +3,6 @@
 #include "app/assets.h"
 #include "files/input_error.h"
 #include "files/sha256.h"
-#include "files/text.h"
 #include "session/plan_in_progress.h"
 
 namespace palpa::app {
@@ -18,11 +17,6 @@ fs::path find_beside(const study::Protocol& protocol, const std::string& name, c
     const fs::path beside = (protocol.file.parent_path() / given).lexically_normal();
     if (fs::exists(beside) || given.has_parent_path()) return beside;
     return assets_folder() / kind / given;
-}
-
-std::string hash_of_file(const fs::path& file) {
-    std::error_code error;
-    return fs::is_regular_file(file, error) ? files::sha256_hex(files::read_text(file)) : "n/a";
 }
 
 StudyScene load(const study::Protocol& protocol, const study::Condition& condition) {
@@ -55,15 +49,8 @@ StudyScenes load_study_scenes(const study::Protocol& protocol) {
 files::Json identity_of(const std::optional<StudyScene>& scene) {
     files::Json json = files::Json::object();
     if (!scene) return json;
-    json["profile_sha256"] = hash_of_file(scene->scene.profile);
-    if (scene->scene.linear) {
-        json["phantom_sha256"] = hash_of_file(scene->scene.linear->phantom);
-        return json;
-    }
-    for (const char* name : {"map.json", "normal_N.npy", "tangential_x_N.npy", "tangential_y_N.npy"}) {
-        const std::string hash = hash_of_file(scene->scene.map / name);
-        if (hash != "n/a") json["map_sha256"][name] = hash;
-    }
+    json["profile_sha256"] = files::sha256_of_file(scene->scene.profile);
+    json.update(scene::file_hashes(scene->scene.tissue));
     return json;
 }
 

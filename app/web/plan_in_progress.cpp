@@ -21,7 +21,7 @@ void PlanInProgress::cancel() {}
 scene::Plan PlanInProgress::take() { return {}; }
 
 scene::Plan make_plan_here(const scene::Scene& scene) {
-    if (scene.linear) return PlanInProgress(scene).take();
+    if (takes_seconds(scene.tissue)) return PlanInProgress(scene).take();
     return scene::make_plan(scene);
 }
 

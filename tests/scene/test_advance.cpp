@@ -79,10 +79,11 @@ TEST_CASE("advance: a sample allocates nothing, an absent effect allocates nothi
     for (const char* name : {"off.json", "default.json", "delay.json"}) {
         CAPTURE(name);
         Run run(name);
+        SurfaceShape surface;
         run.state.time_every = 1;
         const std::int64_t before = allocations();
         stroke(run, 1000, [](const State&) {});
-        if (run.scene.surface) surface_now(run.scene, run.plan, run.state);
+        if (run.scene.surface) surface_now(run.scene, run.plan, run.state, surface);
         avatar_at(run.scene, run.state, 3.0);
         CHECK(allocations() == before);
     }
@@ -178,8 +179,31 @@ TEST_CASE("hard case 11: a gap is walked on the grid; what is cut of a long one 
     CHECK(run.state.counters.steps == 2400 + 60 * 240);
     CHECK(run.state.counters.dropped_steps > 1e11);
     run.feed(pen(1e9 + 1, Phase::up, middle));
-    run.feed(pen(1e9 + 1000, Phase::hover, middle));
-    CHECK(run.state.counters.steps == 2400 + 61 * 240);  // nothing evolves while nothing touches
+    CHECK(run.state.counters.steps == 2400 + 61 * 240);
+    const std::int64_t dropped = run.state.counters.dropped_steps;
+    run.feed(pen(1e9 + 1000, Phase::hover, middle));  // nothing touches
+    CHECK(run.state.counters.steps == 2400 + 121 * 240);
+    CHECK(run.state.counters.dropped_steps == dropped + (999 - 60) * 240);
+}
+
+TEST_CASE("advance: the grid begins with the first sample and goes on at one pace, touched or not, at any rate") {
+    for (const char* name : {"off.json", "default.json", "delay.json"}) {
+        for (const double rate_Hz : {30.0, 1000.0}) {
+            CAPTURE(name);
+            CAPTURE(rate_Hz);
+            Run run(name);
+            const Eigen::Vector2d middle(640, 400);
+            const int second = static_cast<int>(rate_Hz);
+            for (int i = 0; i <= 4 * second; ++i) {
+                const bool presses = i > second && i <= 2 * second;
+                const Phase phase = presses ? (i == second + 1 ? Phase::down : Phase::move)
+                                            : (i == 2 * second + 1 ? Phase::up : Phase::hover);
+                run.feed(pen(7.0 + i / rate_Hz, phase, middle));
+                if (i % second == 0) CHECK(run.state.counters.steps == 240 * (i / second));
+            }
+            CHECK(run.state.counters.dropped_steps == 0);
+        }
+    }
 }
 
 TEST_CASE("advance: not-a-number, a second finger, a pen beside the tissue") {

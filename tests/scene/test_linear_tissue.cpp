@@ -37,7 +37,7 @@ struct Block {
         options.phantom = folder / "block.json";
         options.spacing_m = 4e-3;
         tissue = make_linear_tissue(options, folder / "cache", {});
-        work = make_linear_work(tissue);
+        work = make_work(tissue);
     }
 };
 
@@ -146,9 +146,9 @@ TEST_CASE(
     leap_to(x_m);
     CHECK(leap.work.drag_N.x() == doctest::Approx(slid_N).epsilon(0.02));
     // a long way in one call is walked in half spacings
-    LinearWork walked = make_linear_work(block.tissue);
+    LinearWork walked = make_work(block.tissue);
     for (const double at_m : {0.022, 0.024, 0.026, 0.028}) drag(block.tissue, {at_m, y_m}, 2e-3, walked);
-    LinearWork at_once = make_linear_work(block.tissue);
+    LinearWork at_once = make_work(block.tissue);
     for (const double at_m : {0.022, 0.028}) drag(block.tissue, {at_m, y_m}, 2e-3, at_once);
     REQUIRE(at_once.friction.touch == walked.friction.touch);
     for (std::size_t i = 0; i < walked.friction.force_N.size(); ++i) {
@@ -198,7 +198,7 @@ TEST_CASE("linear tissue: a fast stroke skips stations and counts them, alike in
     SUBCASE("with friction") { friction = 0.3; }
     Block block(friction);
     Scene scene;
-    scene.linear = block.options;
+    scene.tissue = block.options;
     scene.profile = PALPA_SOURCE_DIR "/assets/profiles/s-pen.json";
     scene.display_ratio = display_ratio_clear();
     scene.delay = delay_clear();
@@ -223,13 +223,19 @@ TEST_CASE("linear tissue: a fast stroke skips stations and counts them, alike in
     CHECK((leap.counters.skipped_slides > 0) == friction.has_value());  // 20 half spacings, 16 walked
 }
 
+namespace {
+
+const LinearWork& work_of(const State& state) { return std::get<LinearWork>(state.tissue); }
+
+}  // namespace
+
 TEST_CASE("linear tissue: palpated live a sample allocates nothing and two runs agree to the last bit") {
     std::optional<double> friction;
     SUBCASE("frictionless") {}
     SUBCASE("with friction") { friction = 0.3; }
     Block block(friction);
     Scene scene;
-    scene.linear = block.options;
+    scene.tissue = block.options;
     scene.profile = PALPA_SOURCE_DIR "/assets/profiles/s-pen.json";
     scene.display_ratio = display_ratio_clear();
     Plan plan;
@@ -267,14 +273,14 @@ TEST_CASE("linear tissue: palpated live a sample allocates nothing and two runs 
     CHECK(states[0].contact.depth_m == states[1].contact.depth_m);
     for (const State* other : {&states[1], &states[2]}) {
         CHECK(states[0].contact.tangential_N == other->contact.tangential_N);
-        CHECK(states[0].linear->drag_N == other->linear->drag_N);
-        CHECK(states[0].linear->friction.force_N == other->linear->friction.force_N);
+        CHECK(work_of(states[0]).drag_N == work_of(*other).drag_N);
+        CHECK(work_of(states[0]).friction.force_N == work_of(*other).friction.force_N);
     }
-    CHECK((states[0].linear->drag_N.x() > 0.1) == friction.has_value());
+    CHECK((work_of(states[0]).drag_N.x() > 0.1) == friction.has_value());
     Sample lift;
     lift.t_host_s = 2.0;
     lift.phase = Phase::up;
     lift.x_px = lift.y_px = 300.0;
     advance(scene, plan, lift, states[0]);
-    CHECK(states[0].linear->drag_N.isZero(0.0));
+    CHECK(work_of(states[0]).drag_N.isZero(0.0));
 }

@@ -70,21 +70,21 @@ TEST_CASE("plan: a nodule that was placed and detected is asked for once; detect
     map.nodules = {again};
     write_map(map, folder / "detected.map");
     Scene scene = read_scene(kAssets / "scenes/default.json", kAssets);
-    scene.map = folder / "both.map";
+    scene.tissue = MapOptions{folder / "both.map"};
     const Plan both = make_plan(scene);
     CHECK(both.nodules.size() == placed);
     CHECK(std::all_of(both.nodules.begin(), both.nodules.end(), [](const Nodule& n) { return n.placed; }));
     CHECK(std::any_of(both.notes.begin(), both.notes.end(), [](const std::string& note) {
         return contains(note, "detected nodules of the map are not asked for");
     }));
-    scene.map = folder / "detected.map";
+    scene.tissue = MapOptions{folder / "detected.map"};
     REQUIRE(make_plan(scene).nodules.size() == 1);
     CHECK(make_plan(scene).nodules[0].id == "D1");
 }
 
 TEST_CASE("plan: a map or profile that is not there is named") {
     Scene scene = read_scene(kAssets / "scenes/default.json", kAssets);
-    scene.map = "none.map";
+    scene.tissue = MapOptions{"none.map"};
     CHECK(contains(message_of([&] { make_plan(scene); }), "none.map: found nothing, expected a map folder"));
     scene.profile = "none.json";
     CHECK(contains(message_of([&] { make_plan(scene); }), "none.json: cannot be read"));

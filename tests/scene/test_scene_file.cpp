@@ -1,7 +1,7 @@
 #include <doctest/doctest.h>
 
 #include "files/text.h"
-#include "scene/scene.h"
+#include "scene/tissue.h"
 #include "tests/error_message.h"
 #include "tests/temporary_folder.h"
 
@@ -46,7 +46,7 @@ TEST_CASE("scene file: what is absent is not asked for, defaults are the documen
     CHECK(scene.force_scale == 1.0);
     CHECK(scene.mapping.kind == MappingKind::direct);
     CHECK(scene.profile.filename() == "s-pen.json");
-    CHECK(scene.map == kAssets / "maps" / "silicone.map");  // a bare name is found among the assets
+    CHECK(map_folder(scene.tissue) == kAssets / "maps" / "silicone.map");  // a bare name is found among the assets
 }
 
 TEST_CASE("scene file: presets and what overrides them") {

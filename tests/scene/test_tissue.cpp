@@ -37,7 +37,7 @@ Scene linear_scene(const TemporaryFolder& folder, std::optional<double> friction
     write_text_atomically(folder / "block.json", kPhantom);
     ::setenv("XDG_CACHE_HOME", folder.path().c_str(), 1);
     Scene scene;
-    scene.linear = LinearOptions{folder / "block.json", 4e-3, friction};
+    scene.tissue = LinearOptions{folder / "block.json", 4e-3, friction};
     scene.profile = kAssets / "profiles/s-pen.json";
     scene.display_ratio = display_ratio_clear();
     scene.delay = delay_clear();
@@ -107,6 +107,47 @@ TEST_CASE("tissue: a scale where forces are answered equals scaled matrices, to 
         }
         CHECK(greatest_N > 0.0);
     }
+}
+
+TEST_CASE("tissue: the surface sinks by the depth where it is pressed, and is flat once nothing touches") {
+    const TemporaryFolder folder;
+    Scene scene;
+    SUBCASE("a map") { scene = map_scene(); }
+    SUBCASE("linear") { scene = linear_scene(folder, {}); }
+    scene.surface = SurfaceEffect{};
+    const Plan plan = make_plan(scene);
+    CHECK(plan.frame_stages.size() == 1);
+    State state = start(scene, plan, {600, 600});
+    for (int n = 0; n <= 50; ++n) advance(scene, plan, stroke(scene, plan, state, n), state);
+    SurfaceShape shape;
+    surface_now(scene, plan, state, shape);
+    // linear: the nodes are 4 mm apart, and the middle of the stroke lies between four of them
+    CHECK(sink_at_m(shape, state.contact.p_m) == doctest::Approx(state.contact.depth_m).epsilon(0.1));
+    const Eigen::Vector2d beside_m = state.contact.p_m + Eigen::Vector2d(0.02, 0.0);
+    CHECK(sink_at_m(shape, beside_m) < 0.5 * state.contact.depth_m);
+    Sample lift = stroke(scene, plan, state, 51);
+    lift.phase = Phase::up;
+    advance(scene, plan, lift, state);
+    surface_now(scene, plan, state, shape);
+    CHECK(sink_at_m(shape, state.contact.p_m) == 0.0);
+}
+
+TEST_CASE("tissue: logs and settings name what it is made from") {
+    const TemporaryFolder folder;
+    const Scene map = map_scene();
+    const Scene linear = linear_scene(folder, {});
+    CHECK(file_hashes(map.tissue)["map_sha256"]["normal_N.npy"].get<std::string>().size() == 64);
+    CHECK(file_hashes(linear.tissue)["phantom_sha256"].get<std::string>().size() == 64);
+    CHECK(file_hashes(LinearOptions{"none.json", 1e-3, {}})["phantom_sha256"] == "n/a");
+    CHECK(file_hashes(MapOptions{"none.map"}).empty());
+    CHECK(input_files(linear.tissue) == std::vector<std::filesystem::path>{folder / "block.json"});
+    CHECK(map_folder(linear.tissue).empty());
+    CHECK(takes_seconds(linear.tissue));
+    CHECK_FALSE(takes_seconds(map.tissue));
+    const Plan plan = make_plan(map);
+    CHECK(identity(plan.tissue)["count"].size() == 2);
+    CHECK(identity(plan.tissue)["smoothing_mm"] == 0.0);
+    CHECK(identity(make_plan(linear).tissue).empty());
 }
 
 TEST_CASE("tissue: what is scaled stands in the notes, in the scene's words and not in the plan's") {

@@ -25,7 +25,7 @@ struct SmallBlock {
             "tissue": {"young_Pa": 20000, "poisson": 0.45},
             "indenter": {"shape": "sphere", "radius_mm": 10, "contact": "rolling"},
             "depths_mm": [1], "grid": {"origin_mm": [0, 0], "spacing_mm": [1, 1], "count": [2, 2]}})");
-        scene.linear = LinearOptions{folder / "b.json", 4e-3, std::nullopt};
+        scene.tissue = LinearOptions{folder / "b.json", 4e-3, std::nullopt};
         scene.profile = PALPA_SOURCE_DIR "/assets/profiles/s-pen.json";
     }
 };

@@ -22,7 +22,7 @@ void check_whole(const Session& session) {
     const Session& s = session;
     CHECK(s.state.display_ratio.has_value() == s.scene.display_ratio.has_value());
     CHECK(s.state.delay.has_value() == s.scene.delay.has_value());
-    CHECK(s.state.linear.has_value() == std::holds_alternative<LinearTissue>(s.plan->tissue));
+    CHECK(s.state.tissue.index() == s.plan->tissue.index());
     CHECK(s.state.view.area.centre_m == s.plan->area.centre_m);
     CHECK_FALSE(s.state.pointer.has_value());
     CHECK_FALSE(s.state.touch.down);

@@ -100,10 +100,3 @@ TEST_CASE("words: every word is shown somewhere") {
     }
     CHECK(found > 150);
 }
-
-TEST_CASE("words: patterns are filled in order, each gap once") {
-    CHECK(words::filled("{} of {}", {"3", "8"}) == "3 of 8");
-    CHECK(words::filled("{}", {"{}"}) == "{}");
-    CHECK(words::filled("nothing", {}) == "nothing");
-    CHECK(words::filled("", {}).empty());
-}

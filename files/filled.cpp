@@ -1,8 +1,8 @@
-#include "app/screens/words.h"
+#include "files/filled.h"
 
 #include <cassert>
 
-namespace palpa::app::words {
+namespace palpa::files {
 
 std::string filled(std::string_view pattern, std::initializer_list<std::string_view> values) {
     std::string out;
@@ -19,4 +19,4 @@ std::string filled(std::string_view pattern, std::initializer_list<std::string_v
     return out;
 }
 
-}  // namespace palpa::app::words
+}  // namespace palpa::files

@@ -1,0 +1,117 @@
+#pragma once
+// The stages that a plan can consist of, and what each form of them costs and how wrong it is: all such figures stand
+// in the table below, which `palpa explain` and the cost panel show.
+
+#include <array>
+#include <initializer_list>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "avatar/path.h"
+
+namespace palpa::scene {
+
+enum class StageId : std::size_t { calibration, position, depth, friction, tangential, display_ratio, delay, surface };
+inline constexpr std::size_t kStageCount = 8;
+
+const char* name_of(StageId id);
+
+struct Stage {
+    StageId id;
+    bool per_frame = false;  // else per sample
+    std::string fidelity;    // which of its forms is used
+    std::string error;       // against what reference
+    double cost_us = 0.0;    // median, as measured on the machine and day that docs/performance.md names
+};
+
+enum class StageForm : std::size_t {
+    calibration_fitted,
+    calibration_with_points,
+    calibration_bare,
+    position,
+    depth_recorded_map,
+    depth_made_map,
+    depth_linear,
+    depth_linear_coarse,
+    depth_linear_too_coarse,
+    friction_linear,
+    tangential_as_recorded,
+    tangential_energy,
+    tangential_energy_smoothed,
+    tangential_linear,
+    display_ratio_on_map,
+    display_ratio_on_linear,
+    delay_on_map,
+    delay_on_linear,
+    surface_sphere,
+    surface_nodes,
+};
+inline constexpr std::size_t kStageFormCount = static_cast<std::size_t>(StageForm::surface_nodes) + 1;
+
+struct StageFigures {
+    StageForm form;
+    StageId id;
+    bool per_frame;
+    double cost_us;          // as in Stage
+    std::string_view error;  // each {} is a figure of the tissue or the profile
+};
+
+inline constexpr std::array<StageFigures, kStageFormCount> kStageFigures{{
+    {StageForm::calibration_fitted, StageId::calibration, false, 0.03,
+     "{} % of the force (median over points left out of the fit)"},
+    {StageForm::calibration_with_points, StageId::calibration, false, 0.03, "{} points in the profile"},
+    {StageForm::calibration_bare, StageId::calibration, false, 0.03, "not known: the profile brings no points"},
+    {StageForm::position, StageId::position, false, 0.01, "exact"},
+    {StageForm::depth_recorded_map, StageId::depth, false, 0.03, "{} mN of noise in the recording"},
+    {StageForm::depth_made_map, StageId::depth, false, 0.03,
+     "{} % of the greatest force (95th percentile, from twice the pitch)"},
+    {StageForm::depth_linear, StageId::depth, false, 60.0,
+     "1.3 % of the depth (median, worst 2.4 %) against 1.2 mm on the shipped block at 2 mm; a contact radius below two "
+     "spacings is worse"},
+    {StageForm::depth_linear_coarse, StageId::depth, false, 60.0,
+     "1.3 % of the depth (median, worst 2.4 %) against 1.2 mm on the shipped block at 2 mm; a contact radius below two "
+     "spacings is worse; at {} mm the contact's radius spans {} spacings here, fewer where it is shallower"},
+    {StageForm::depth_linear_too_coarse, StageId::depth, false, 60.0,
+     "not known, the force can be several times too large: even at {} mm the contact's radius spans {} spacings here, "
+     "fewer where it is shallower; four are wanted (a smaller spacing_mm)"},
+    {StageForm::friction_linear, StageId::friction, false, 75.0,  // p99 145
+     "tangential force 0.2 % of mu F (median, worst 4 %) against 1.5 mm on the shipped block at 2 mm, raster trace, mu "
+     "0.3"},
+    {StageForm::tangential_as_recorded, StageId::tangential, false, 0.03, "wrong in any other direction than +x"},
+    {StageForm::tangential_energy, StageId::tangential, false, 0.03,
+     "derived from the normal force (work argument), not measured"},
+    {StageForm::tangential_energy_smoothed, StageId::tangential, false, 0.03,
+     "derived from the normal force (work argument), not measured; smoothing lowers lag by about a fifth, delay by "
+     "about a half"},
+    {StageForm::tangential_linear, StageId::tangential, false, 70.0, "detail below one node spacing is averaged away"},
+    {StageForm::display_ratio_on_map, StageId::display_ratio, false, 0.15,
+     "0.0002 mm against 5 times as many stations"},
+    {StageForm::display_ratio_on_linear, StageId::display_ratio, false, 250.0,
+     "0.0002 mm against 5 times as many stations"},
+    {StageForm::delay_on_map, StageId::delay, false, 0.15, "exact at the stations"},
+    {StageForm::delay_on_linear, StageId::delay, false, 250.0, "exact at the stations"},
+    {StageForm::surface_sphere, StageId::surface, true, 7.0,
+     "7 % of the depth at worst against the exact bonded layer (25 mm, depth to 2 mm)"},
+    {StageForm::surface_nodes, StageId::surface, true, 30.0, "that of depth"},
+}};
+
+constexpr bool each_form_stands_at_its_place() {
+    for (std::size_t i = 0; i < kStageFigures.size(); ++i)
+        if (static_cast<std::size_t>(kStageFigures[i].form) != i) return false;
+    return true;
+}
+static_assert(each_form_stands_at_its_place());
+
+constexpr const StageFigures& figures_of(StageForm form) { return kStageFigures[static_cast<std::size_t>(form)]; }
+
+struct Scene;
+
+// The stage with its row of the table, whose gaps `figures` fills.
+Stage stage_of(StageForm form, std::string fidelity, std::initializer_list<std::string_view> figures = {});
+
+// The stages of the scene's laws on a tissue that can answer at so many stations of the path.
+void add_law_stages(const Scene& scene, const avatar::StationLimit& limit, StageForm display_ratio, StageForm delay,
+                    std::vector<Stage>& out);
+
+}  // namespace palpa::scene

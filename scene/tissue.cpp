@@ -1,0 +1,79 @@
+#include "scene/tissue.h"
+
+#include <cassert>
+
+namespace palpa::scene {
+namespace {
+
+// Calls call(tissue, work) with both as what they are. The work is of the tissue that made it.
+template <class Work, class Call>
+auto with_work(const Tissue& tissue, Work& work, const Call& call) {
+    return std::visit(
+        [&](const auto& of_kind) {
+            auto* const its_work = std::get_if<decltype(make_work(of_kind))>(&work);
+            assert(its_work != nullptr);
+            return call(of_kind, *its_work);
+        },
+        tissue);
+}
+
+}  // namespace
+
+bool takes_seconds(const TissueOptions& options) {
+    return std::visit([](const auto& of_kind) { return takes_seconds(of_kind); }, options);
+}
+
+std::vector<std::filesystem::path> input_files(const TissueOptions& options) {
+    return std::visit([](const auto& of_kind) { return input_files(of_kind); }, options);
+}
+
+files::Json file_hashes(const TissueOptions& options) {
+    return std::visit([](const auto& of_kind) { return file_hashes(of_kind); }, options);
+}
+
+std::filesystem::path map_folder(const TissueOptions& options) {
+    return std::visit([](const auto& of_kind) { return map_folder(of_kind); }, options);
+}
+
+Tissue prepare(const TissueOptions& options, const Scene& scene, const mechanics::Progress& progress) {
+    return std::visit([&](const auto& of_kind) { return Tissue(prepare(of_kind, scene, progress)); }, options);
+}
+
+bool serves(const Tissue& tissue, const Scene& scene) {
+    return std::visit([&](const auto& of_kind) { return serves(of_kind, scene); }, tissue);
+}
+
+void describe(const Tissue& tissue, const Scene& scene, Plan& plan) {
+    std::visit([&](const auto& of_kind) { describe(of_kind, scene, plan); }, tissue);
+}
+
+std::vector<Stage> stages(const Tissue& tissue, const Scene& scene) {
+    return std::visit([&](const auto& of_kind) { return stages(of_kind, scene); }, tissue);
+}
+
+files::Json identity(const Tissue& tissue) {
+    return std::visit([](const auto& of_kind) { return identity(of_kind); }, tissue);
+}
+
+TissueWork make_work(const Tissue& tissue) {
+    return std::visit([](const auto& of_kind) { return TissueWork(make_work(of_kind)); }, tissue);
+}
+
+void answer(const Tissue& tissue, StageId stage, const Press& press, TissueWork& work, Contact& contact) {
+    with_work(tissue, work,
+              [&](const auto& of_kind, auto& its_work) { answer(of_kind, stage, press, its_work, contact); });
+}
+
+double rise_N(const Tissue& tissue, const Station& station, TissueWork& work) {
+    return with_work(tissue, work,
+                     [&](const auto& of_kind, auto& its_work) { return rise_N(of_kind, station, its_work); });
+}
+
+void sample_surface(const Tissue& tissue, const SurfaceEffect& effect, const Contact& contact, const TissueWork& work,
+                    SurfaceShape& shape) {
+    with_work(tissue, work, [&](const auto& of_kind, const auto& its_work) {
+        sample_surface(of_kind, effect, contact, its_work, shape);
+    });
+}
+
+}  // namespace palpa::scene
