@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "fem/mesh_file.h"
 #include "files/input_error.h"
 #include "files/text.h"
 
@@ -11,144 +10,6 @@ namespace {
 
 using namespace mechanics;
 using Eigen::Index;
-
-Material read_material(files::JsonReader json) {
-    if (json.has("law")) {
-        constexpr std::array kLaws{"linear", "neo-hookean", "stable-neo-hookean", "corotational"};
-        const auto law = json.choice("law", {"linear", "neo-hookean", "stable-neo-hookean", "corotational"});
-        if (law != 0) {
-            json.fail("law", files::shown(kLaws[law]),
-                      "linear (young_Pa and poisson): `fem solve` does not have the nonlinear laws yet");
-        }
-    }
-    json.only({"law", "young_Pa", "poisson"});
-    Material material;
-    material.young_Pa = json.number("young_Pa", {0.0, 1e15, true});
-    material.poisson = json.number("poisson", files::kAnyNumber);
-    // at 0.5 - 1e-10 a block sinks as at 0.4999999 to six digits, at 0.5 - 1e-12 only to five, and a few
-    // roundings below 0.5 the matrix can no longer be factored (2026-11)
-    constexpr double kMostPoisson = 0.5 - 1e-10;
-    if (!(material.poisson > -1.0 && material.poisson <= kMostPoisson)) {
-        json.fail("poisson", files::number_text(material.poisson),
-                  "a number > -1 and < 0.5 by at least 1e-10 (0.4999 stands for an incompressible tissue)");
-    }
-    return material;
-}
-
-std::vector<Material> read_materials(files::JsonReader& json, std::vector<std::string>& names) {
-    const files::Json& list = json.any("materials");
-    if (!list.is_object() || list.empty()) {
-        json.fail("materials", files::described(list),
-                  "an object with at least one material: {\"gel\": {\"young_Pa\": 2500, \"poisson\": 0.45}}");
-    }
-    std::vector<Material> materials;
-    for (const auto& item : list.items()) {
-        names.push_back(item.key());
-        materials.push_back(read_material(files::JsonReader(item.value(), json.file(), "materials." + item.key())));
-    }
-    return materials;
-}
-
-Eigen::Matrix3Xd centroids_m(const Mesh& mesh) {
-    Eigen::Matrix3Xd out(3, mesh.cells.cols());
-    for (Index cell = 0; cell < mesh.cells.cols(); ++cell) {
-        out.col(cell).setZero();
-        for (Index k = 0; k < mesh.cells.rows(); ++k) out.col(cell) += mesh.nodes_m.col(mesh.cells(k, cell));
-        out.col(cell) /= static_cast<double>(mesh.cells.rows());
-    }
-    return out;
-}
-
-Eigen::Vector3d vector_of(const std::vector<double>& v) { return {v[0], v[1], v[2]}; }
-
-// Cells that one region takes: those whose centre is inside.
-std::vector<int> cells_of_region(files::JsonReader& entry, const CaseMesh& mesh, const Eigen::Matrix3Xd& centre_m) {
-    if (entry.has("physical")) return cells_of_group(entry, mesh);
-    std::vector<int> cells;
-    const auto take_if = [&](auto&& inside) {
-        for (Index cell = 0; cell < centre_m.cols(); ++cell) {
-            if (inside(Eigen::Vector3d(centre_m.col(cell)))) cells.push_back(static_cast<int>(cell));
-        }
-    };
-    if (entry.has("all")) {
-        if (!entry.boolean("all", true)) entry.fail("all", "false", "true");
-        take_if([](const Eigen::Vector3d&) { return true; });
-    } else if (entry.has("sphere")) {
-        files::JsonReader sphere = entry.object("sphere");
-        sphere.only({"centre_mm", "radius_mm"});
-        const Eigen::Vector3d middle = 1e-3 * vector_of(sphere.numbers("centre_mm", 3, files::kAnyNumber));
-        const double radius_m = 1e-3 * sphere.number("radius_mm", files::kPositive);
-        take_if([&](const Eigen::Vector3d& x) { return (x - middle).norm() <= radius_m; });
-    } else {
-        files::JsonReader box = entry.object("box");
-        box.only({"min_mm", "max_mm"});
-        const Eigen::Vector3d low = 1e-3 * vector_of(box.numbers("min_mm", 3, files::kAnyNumber));
-        const Eigen::Vector3d high = 1e-3 * vector_of(box.numbers("max_mm", 3, files::kAnyNumber));
-        if (!(low.array() < high.array()).all())
-            box.fail("max_mm", "a corner that is not above min_mm", "max_mm > min_mm in x, y and z");
-        take_if([&](const Eigen::Vector3d& x) {
-            return (x.array() >= low.array()).all() && (x.array() <= high.array()).all();
-        });
-    }
-    return cells;
-}
-
-void read_regions(files::JsonReader& json, const std::vector<std::string>& materials, CaseMesh& mesh) {
-    auto entries = json.objects("regions");
-    if (entries.empty() && materials.size() == 1) return;  // one material: it is everywhere
-    mesh.mesh.region.setConstant(-1);
-    const Eigen::Matrix3Xd centre_m = centroids_m(mesh.mesh);
-    for (files::JsonReader& entry : entries) {
-        entry.only({"all", "box", "sphere", "physical", "material"});
-        const int kinds =
-            int{entry.has("all")} + int{entry.has("box")} + int{entry.has("sphere")} + int{entry.has("physical")};
-        if (kinds != 1) entry.fail("", std::to_string(kinds) + " shapes", "one of all, box, sphere, physical");
-        const std::string name = entry.text("material");
-        const auto it = std::find(materials.begin(), materials.end(), name);
-        if (it == materials.end()) {
-            std::string known;
-            for (const auto& material : materials) known += (known.empty() ? "" : ", ") + material;
-            entry.fail("material", files::shown(name), "one of the materials: " + known);
-        }
-        const std::vector<int> cells = cells_of_region(entry, mesh, centre_m);
-        if (cells.empty())
-            entry.fail("", "no cell whose centre is inside", "at least one (a finer mesh, a larger region)");
-        for (const int cell : cells) mesh.mesh.region(cell) = static_cast<int>(it - materials.begin());
-    }
-    const auto bare = (mesh.mesh.region.array() < 0).count();
-    if (bare > 0) {
-        Index first = 0;
-        while (mesh.mesh.region(first) >= 0) ++first;
-        json.fail("regions",
-                  std::to_string(bare) + " of " + std::to_string(mesh.mesh.region.size()) +
-                      " cells without a material, the first is cell " +
-                      std::to_string(number_of_cell(mesh.mesh, first)),
-                  "a region for each: begin with {\"all\": true, \"material\": ...}");
-    }
-}
-
-void read_supports(files::JsonReader& json, const CaseMesh& mesh, FemCase& out) {
-    for (files::JsonReader& entry : json.objects("supports")) {
-        entry.only({"face", "physical", "fix", "value_mm"});
-        CaseSupport support;
-        support.nodes = nodes_named(entry, mesh, support.name);
-        support.axes = entry.text("fix");
-        std::string sorted = support.axes;
-        std::sort(sorted.begin(), sorted.end());
-        const bool once = std::adjacent_find(sorted.begin(), sorted.end()) == sorted.end();
-        if (sorted.empty() || !once || sorted.find_first_not_of("xyz") != std::string::npos) {
-            entry.fail("fix", files::shown(support.axes), "some of x, y and z, each once: \"xyz\", \"z\"");
-        }
-        support.value_m = 1e-3 * entry.number("value_mm", files::kAnyNumber, 0.0);
-        fix(support.nodes, support.axes, support.value_m, out.problem.supports);
-        out.supports.push_back(std::move(support));
-    }
-    const std::string held = "supports that hold every part, each displacement given once";
-    with_key(json.file(), "supports", held, [&] {
-        check_supported(out.problem.mesh, out.problem.supports);
-        make_reduction(out.problem.mesh, out.problem.supports, {});
-    });
-}
 
 ParabolicPressure read_pressure(files::JsonReader json, const CaseMesh& mesh) {
     json.only({"face", "centre_mm", "diameter_mm", "force_N"});
@@ -255,16 +116,15 @@ FemCase parse_case(const files::Json& json, const std::string& file_name, const 
     reader.text("name", "");
     FemCase out;
     out.file = file_name;
-    const std::vector<Material> materials = read_materials(reader, out.materials);
-    CaseMesh mesh = read_case_mesh(reader, folder, out.problem.element);
-    read_regions(reader, out.materials, mesh);
-    out.problem.mesh = mesh.mesh;
-    out.problem.materials = materials_of_cells(mesh.mesh.region, materials);
+    BodyFile body = read_body(reader, folder);
+    const CaseMesh& mesh = body.mesh;
+    out.problem = problem_of(std::move(body.body), body.element);
+    out.materials = body.materials;
     out.mesh_file = mesh.file;
     out.outer = mesh.outer;
     out.report = mesh.report;
     out.warnings = mesh.warnings;
-    read_supports(reader, mesh, out);
+    out.supports = read_supports(reader, mesh, out.problem.supports);
     read_loads(reader, mesh, out);
     return out;
 }

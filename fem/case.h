@@ -6,18 +6,11 @@
 #include <string>
 #include <vector>
 
-#include "files/json.h"
+#include "fem/body_file.h"
 #include "mechanics/contact.h"
 #include "mechanics/loads.h"
 
 namespace palpa::fem {
-
-struct CaseSupport {
-    std::string name;        // "zmin", or the name of a physical group
-    std::vector<int> nodes;  // ascending
-    std::string axes;        // "xyz", "z", ...
-    double value_m = 0.0;
-};
 
 // Force per area on faces: a pressure into the body, or a vector in x, y, z.
 struct CaseTraction {

@@ -8,6 +8,7 @@
 #include "files/cache.h"
 #include "files/input_error.h"
 #include "files/text.h"
+#include "mechanics/body.h"
 #include "mechanics/linear_range.h"
 #include "mechanics/material.h"
 #include "mechanics/statics.h"
@@ -24,27 +25,25 @@ constexpr int kMostInContact = 256;          // nodes; more would be a tool of 1
 
 mechanics::Material material_of(const stiffnessmaps::Elastic& elastic) { return {elastic.young_Pa, elastic.poisson}; }
 
-mechanics::Problem problem_of(const stiffnessmaps::Phantom& phantom, std::size_t n_x, std::size_t n_y) {
+mechanics::Body body_of(const stiffnessmaps::Phantom& phantom, std::size_t n_x, std::size_t n_y) {
     using namespace mechanics;
     const auto even = [](double length_m, std::size_t n) {
         return Eigen::VectorXd(Eigen::VectorXd::LinSpaced(static_cast<Eigen::Index>(n), 0.0, length_m));
     };
     const double thickness_m = phantom.size_m[2];
     const double finest_m = 0.5 * thickness_m / kLayers;
-    Problem problem;
-    problem.mesh = hex_box(even(phantom.size_m[0], n_x), even(phantom.size_m[1], n_y),
-                           graded_coordinates_m(thickness_m, kLayers, thickness_m, finest_m));
-    problem.materials.assign(static_cast<std::size_t>(problem.mesh.cells.cols()), material_of(phantom.tissue));
+    Body body;
+    body.mesh = hex_box(even(phantom.size_m[0], n_x), even(phantom.size_m[1], n_y),
+                        graded_coordinates_m(thickness_m, kLayers, thickness_m, finest_m));
+    body.materials.assign(static_cast<std::size_t>(body.mesh.cells.cols()), material_of(phantom.tissue));
     constexpr int kSubdivisions = 4;
     for (const stiffnessmaps::PhantomNodule& nodule : phantom.nodules) {
         const Sphere sphere{{nodule.centre_m[0], nodule.centre_m[1], thickness_m - nodule.centre_m[2]},
                             0.5 * nodule.diameter_m};
-        mix_in(sphere_share(problem.mesh, sphere, kSubdivisions), material_of(nodule.material), Mixing::between,
-               problem.materials);
+        mix_in(sphere_share(body.mesh, sphere, kSubdivisions), material_of(nodule.material), Mixing::between,
+               body.materials);
     }
-    const Faces bottom = faces_on(problem.mesh, boundary_faces(problem.mesh), Side::zmin);
-    fix(nodes_of(bottom), "xyz", 0.0, problem.supports);
-    return problem;
+    return body;
 }
 
 mechanics::ContactOptions contact_options(const LinearTissue& tissue) {
@@ -142,9 +141,11 @@ LinearTissue make_linear_tissue(const LinearOptions& options, const std::filesys
     tissue.spacing_m[0] = tissue.phantom.size_m[0] / static_cast<double>(tissue.n_x - 1);
     tissue.spacing_m[1] = tissue.phantom.size_m[1] / static_cast<double>(tissue.n_y - 1);
 
-    const mechanics::Problem problem = problem_of(tissue.phantom, tissue.n_x, tissue.n_y);
+    mechanics::Problem problem = mechanics::problem_of(body_of(tissue.phantom, tissue.n_x, tissue.n_y));
     tissue.mesh_nodes = static_cast<int>(problem.mesh.nodes_m.cols());
     const mechanics::Faces outer = mechanics::boundary_faces(problem.mesh);
+    const mechanics::Faces bottom = mechanics::faces_on(problem.mesh, outer, mechanics::Side::zmin);
+    mechanics::fix(mechanics::nodes_of(bottom), "xyz", 0.0, problem.supports);
     mechanics::SurfaceRequest request = mechanics::request_rectangle(
         problem.mesh, outer, {0.0, tissue.phantom.size_m[0], 0.0, tissue.phantom.size_m[1]});
     request.tangential = options.friction.has_value();

@@ -30,7 +30,9 @@ const std::map<std::string, std::set<std::string>> kMayInclude{
     {"study", {"files"}},
     {"session",
      {"files", "platform/sample.h", "platform/timeline.h", "platform/trace.h", "calibration", "scene", "study"}},
-    {"fem", {"files", "mechanics"}},
+    {"fem", {"files", "mechanics", "fem/body_file", "fem/mesh_file"}},
+    {"fem/body_file", {"files", "mechanics", "fem/mesh_file"}},
+    {"fem/mesh_file", {"files", "mechanics"}},
     {"figures", {"files", "stiffnessmaps", "calibration", "study"}},
     {"accuracy",
      {"files", "platform", "calibration", "stiffnessmaps", "mechanics", "avatar", "scene", "devices", "study",
@@ -56,8 +58,10 @@ std::string parent(const std::string& path) {
     return slash == std::string::npos ? "" : path.substr(0, slash);
 }
 
-// The row of a file: its folder's, or the nearest above that has one.
+// The row of a file: its own (without .h or .cpp), its folder's, or that of the nearest folder above that has one.
 std::string row_of(const std::string& file) {
+    const std::string own = file.substr(0, file.rfind('.'));
+    if (kMayInclude.count(own) > 0) return own;
     std::string folder = parent(file);
     while (!folder.empty() && kMayInclude.count(folder) == 0) folder = parent(folder);
     return folder;
@@ -128,6 +132,11 @@ TEST_CASE("includes: the table refuses what it must") {
     CHECK(allowed("app/commands", "app/live/live.h"));
     CHECK(allowed("calibration/record", "calibration/profile.h"));
     CHECK_FALSE(allowed("calibration", "calibration/record/acquisition.h"));
+    CHECK(row_of("fem/body_file.h") == "fem/body_file");
+    CHECK(allowed("fem", "fem/body_file.h"));
+    CHECK(allowed("accuracy", "fem/mesh_file.h"));
+    CHECK_FALSE(allowed("fem/body_file", "fem/case.h"));
+    CHECK_FALSE(allowed("scene", "fem/body_file.h"));
 }
 
 // Everything that depends on the kind of tissue is an overload behind scene/tissue.h.
