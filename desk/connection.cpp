@@ -112,7 +112,7 @@ Connection::Connection(int fd, SSL_CTX* tls, const Patience& patience, const std
 
 Connection::~Connection() {
     if (ssl_ && !broken_) SSL_shutdown(ssl_.get());
-    ERR_clear_error();  // errors of this client must not be read as those of the thread's next one
+    ERR_clear_error();  // else the next client of this thread would see the errors of this one
     ::close(fd_);
 }
 
@@ -229,7 +229,7 @@ ssize_t Connection::read(char* out, size_t size) {
     }
     const ssize_t n = receive(out, size);
     if (n > 0) body_left_ -= static_cast<std::uint64_t>(n);
-    if (n == 0) broken_ = true;  // gone in the middle of its body
+    if (n == 0) broken_ = true;  // the client left in the middle of its body
     return n;
 }
 
@@ -259,7 +259,7 @@ void Connection::linger() {
     if (broken_) return;
     if (ssl_) SSL_shutdown(ssl_.get());
     ::shutdown(fd_, SHUT_WR);
-    broken_ = true;  // nothing more is said
+    broken_ = true;  // nothing more is sent
     std::array<char, 4096> buffer;
     std::size_t taken = 0;
     const double until_s = files::steady_s() + kLinger_s;

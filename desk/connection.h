@@ -1,6 +1,6 @@
 #pragma once
-// One connection of a client, with or without TLS, which nobody can hold for long: a request's head must be there in
-// time, a body must come on and answers must be taken at a lowest rate.
+// One connection of a client, with or without TLS. No client can hold it for long: the head of a request must arrive in
+// time, and bodies and answers must move at a lowest rate.
 
 #include <atomic>
 #include <cstdint>
@@ -18,36 +18,36 @@ struct FreeTls {
 };
 using TlsContext = std::unique_ptr<SSL_CTX, FreeTls>;
 
-// Certificate (chain) and key, TLS 1.2 or later. Throws InputError naming the file that cannot be used.
+// Loads the certificate (chain) and the key, for TLS 1.2 or later. Throws InputError naming the file that cannot be used.
 TlsContext make_tls(const std::string& cert_file, const std::string& key_file);
 
-// SHA-256 of the certificate, "AB:CD:...", as browsers show it.
+// Returns the SHA-256 of the certificate as browsers show it, "AB:CD:...".
 std::string fingerprint(const SSL_CTX& tls);
 
 inline constexpr std::uint64_t kSkipped_bytes = 64 * 1024;
 
 class Connection : public httplib::Stream {
   public:
-    // Takes over the socket. tls: null for none. `ending`: set when the desk is being ended.
+    // Takes over the socket. tls is null for none; `ending` becomes true when the desk is being ended.
     Connection(int fd, SSL_CTX* tls, const Patience& patience, const std::atomic<bool>& ending);
     ~Connection() override;
     Connection(const Connection&) = delete;
     Connection& operator=(const Connection&) = delete;
 
     bool shake_hands();
-    // Waits for the next request's head. 0: it is there and fine; an HTTP status to refuse it with; -1: the client
-    // went, or said nothing for too long.
+    // Waits for the head of the next request. Returns 0 if it is there and fine, the HTTP status to refuse it with, or -1
+    // if the client went away or sent nothing for too long.
     int read_head();
     void refuse(int status);
-    // Reads over what nobody took of a body, so that the next request can come; false if that is more than kSkipped_bytes
-    // or does not come. The connection cannot go on then.
+    // Skips the rest of a body that was not read, so that the next request can follow. Returns false if the rest is more
+    // than kSkipped_bytes or does not arrive: the connection must then be closed.
     bool skip_body();
-    // Takes what a client is still sending for a moment: closed at once, it would never see the answer.
+    // Reads for a moment what a client is still sending: if the socket closed at once, the client would not see the answer.
     void linger();
 
     bool is_readable() const override { return true; }
     bool is_writable() const override { return !broken_; }
-    ssize_t read(char* out, size_t size) override;  // of the head, then the body; never beyond it
+    ssize_t read(char* out, size_t size) override;  // the head, then the body; never what follows it
     ssize_t write(const char* bytes, size_t size) override;
     void get_remote_ip_and_port(std::string& ip, int& port) const override;
     void get_local_ip_and_port(std::string& ip, int& port) const override;
@@ -58,7 +58,7 @@ class Connection : public httplib::Stream {
     void begin(Phase phase);
     double deadline_s() const;
     bool wait(short events);
-    // What OpenSSL or the socket said: more than 0 bytes, 0 at the end, -1 if broken or too slow.
+    // Returns the number of bytes, 0 at the end, -1 if the connection is broken or too slow.
     template <class Tls, class Plain>
     ssize_t transfer(Tls&& tls, Plain&& plain, short events);
     ssize_t receive(char* out, size_t size);
@@ -71,15 +71,15 @@ class Connection : public httplib::Stream {
     double began_s_ = 0.0;
     double last_s_ = 0.0;
     double ended_s_ = -1.0;  // when `ending` was first seen
-    double bytes_ = 0.0;     // of this phase
+    double bytes_ = 0.0;     // moved in this phase
     bool broken_ = false;
-    std::string received_;  // of the next requests, not looked at yet
+    std::string received_;  // bytes of the next requests, not looked at yet
     std::string head_;      // checked, for the HTTP library
     std::size_t head_read_ = 0;
     std::uint64_t body_left_ = 0;
 };
 
-// The client's address as text; IPv4 in IPv6 as IPv4.
+// Returns the address of the client as text; an IPv4 address inside IPv6 as IPv4.
 std::string peer_address(int fd);
 
 }  // namespace palpa::desk

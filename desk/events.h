@@ -9,12 +9,13 @@
 
 namespace palpa::desk {
 
-// May be called by many threads. Refusals over 60 in a minute are counted, not printed: nobody fills the terminal.
+// May be called by many threads. More than 60 refusals in a minute are counted, not printed, so that no client can fill
+// the terminal.
 class DeskEvents {
   public:
     explicit DeskEvents(bool json) : json_(json) {}
 
-    // "15:40:02 paired: tablet 1 at 192.168.1.7", or one JSON object {"event": "paired", ...} in a line.
+    // Prints "15:40:02 paired: tablet 1 at 192.168.1.7", or one JSON object {"event": "paired", ...} per line.
     void tell(const std::string& event, const std::string& line, files::Json fields = files::Json::object());
     void tell_refused(const std::string& line, files::Json fields);
 

@@ -34,7 +34,8 @@ bool equal_in_constant_time(std::string_view a, std::string_view b) {
 }  // namespace
 
 std::string random_code() {
-    constexpr std::uint32_t kWhole = UINT32_MAX - UINT32_MAX % kCodes;  // above it the first codes would be likelier
+    constexpr std::uint32_t kWhole =
+        UINT32_MAX - UINT32_MAX % kCodes;  // from here on the first codes would be likelier
     while (true) {
         const auto bytes = random_bytes<4>();
         std::uint32_t value = 0;
@@ -73,7 +74,7 @@ bool CodeGuard::count_wrong(double now_s, int allowed, Tries& tries) const {
 
 CodeGuard::Tries& CodeGuard::tries_of(const std::string& address) {
     if (by_address_.count(address) == 0 && by_address_.size() >= limits_.most_addresses) {
-        // whoever comes with that many addresses meets the lock of all
+        // a client with that many addresses runs into the lock-out of all addresses
         by_address_.erase(std::min_element(by_address_.begin(), by_address_.end(), [](const auto& a, const auto& b) {
             return std::max(a.second.last_s, a.second.locked_until_s) <
                    std::max(b.second.last_s, b.second.locked_until_s);

@@ -12,12 +12,12 @@ namespace palpa::desk {
 inline constexpr std::size_t kLongestHead_bytes = 16 * 1024;
 
 struct CheckedHead {
-    int refused = 0;                  // HTTP status; 0: fine
-    std::string text;                 // what the library gets, the blank line included
-    std::uint64_t content_bytes = 0;  // announced
+    int refused = 0;                  // the HTTP status to refuse it with; 0 if it is fine
+    std::string text;                 // the head as the library gets it, with the blank line
+    std::uint64_t content_bytes = 0;  // length of the body, as announced
 };
 
-// `head`: from the request line to the blank line. Refused: control characters, folded and nameless lines, over 100
+// `head` runs from the request line to the blank line. Refused are control characters, folded and nameless lines, over 100
 // lines (431), a target over 1024 bytes (414), two lengths or one that is no number (400), PUT or POST without length
 // and chunked bodies (411), encoded and multipart bodies (415). Lines that ask for ranges and compression are left out.
 CheckedHead check_head(std::string_view head);

@@ -37,7 +37,7 @@ void refuse(int status, const std::string& why, Response& res) { answer(status, 
 
 bool changes_state(const Request& req) { return req.method != "GET" && req.method != "HEAD"; }
 
-// Refused for everybody, before anything is looked at.
+// What is refused for every client, before anything else is checked.
 bool refused_outright(const Request& req, const Desk& desk, Response& res) {
     const std::string host = req.get_header_value("Host");
     if (req.get_header_value_count("Host") != 1 || !own_host(host, desk.certificate)) {
@@ -54,7 +54,7 @@ bool refused_outright(const Request& req, const Desk& desk, Response& res) {
     return true;
 }
 
-// The tablet that asks: its number, 0 where no code is asked for, nothing if it has to pair first.
+// Returns the number of the tablet that asks, 0 if the desk asks for no code, nothing if the tablet has to pair first.
 std::optional<int> device_of(const Request& req, const Desk& desk) {
     constexpr std::string_view kBearer = "Bearer ";
     const std::string header = req.get_header_value("Authorization");
@@ -84,7 +84,7 @@ bool is_hash(const std::string& text) {
 
 std::uint64_t announced_bytes(const Request& req) { return req.get_header_value<std::uint64_t>("Content-Length"); }
 
-// Before a body is read: whether its upload has a chance.
+// Checks before a body is read whether its upload can be taken.
 bool upload_refused(const Request& req, Desk& desk, Response& res) {
     if (!device_of(req, desk)) {
         ask_to_pair(res);
@@ -102,7 +102,7 @@ bool upload_refused(const Request& req, Desk& desk, Response& res) {
 
 // ---- pairing
 
-// The code in {"code": "123456"}; nothing if it is something else.
+// Returns the code in {"code": "123456"}, or nothing if the text is not of this form.
 std::optional<std::string> code_in(const std::string& body) {
     try {
         const files::Json root = files::parse_json(body, "pair");
@@ -186,7 +186,7 @@ void hand_out(const Request& req, const fs::path& folder, const std::vector<std:
     auto file = std::make_shared<StaticFile>(open_static(folder, names));
     if (!file->is_open()) return refuse(404, "no such file", res);
     res.set_header("ETag", file->etag());
-    res.set_header("Cache-Control", "no-cache");  // may be kept, is asked for anew: names say nothing about versions
+    res.set_header("Cache-Control", "no-cache");  // browsers may keep it but must ask again: names carry no version
     if (req.get_header_value("If-None-Match") == file->etag()) {
         res.status = 304;
         return;
@@ -304,7 +304,7 @@ void set_routes(Desk& desk, DeskServer& server) {
         }
         return refused ? httplib::Server::HandlerResponse::Handled : httplib::Server::HandlerResponse::Unhandled;
     });
-    // refused before the body is sent, where the client waits for that
+    // refuses before the body is sent if the client waits for "100 Continue"
     server.set_expect_100_continue_handler([&desk](const Request& req, Response& res) {
         const bool refused =
             refused_outright(req, desk, res) || (req.method == "PUT" && upload_refused(req, desk, res));
@@ -326,7 +326,7 @@ void set_routes(Desk& desk, DeskServer& server) {
     });
     server.set_post_routing_handler([](const Request& req, Response& res) {
         if (!res.has_header("Cache-Control")) res.set_header("Cache-Control", "no-store");
-        // what is left of a large body is not waited for
+        // does not wait for the rest of a large body
         const bool closes = res.status >= 400 && announced_bytes(req) > kSkipped_bytes;
         if (closes && !res.has_header("Connection")) res.set_header("Connection", "close");
     });

@@ -16,22 +16,22 @@ namespace palpa::desk {
 
 struct Desk {
     const ServeOptions& options;
-    bool pairs = false;           // a code is asked for
-    X509* certificate = nullptr;  // whose names the desk answers to; nullptr without TLS
+    bool pairs = false;           // whether tablets must type a code
+    X509* certificate = nullptr;  // the desk answers to its names; nullptr without TLS
     CodeGuard codes;
     Sessions sessions;
-    std::optional<Uploads> uploads;  // nothing: takes no logs
+    std::optional<Uploads> uploads;  // empty if the desk takes no logs
     DeskEvents events;
 };
 
-// Sets all handlers. `desk` must outlive the server.
+// Sets all handlers of the server. `desk` must outlive the server.
 void set_routes(Desk& desk, DeskServer& server);
 
-// A host as it stands in the header Host is the desk's own: an IP address, localhost, or a name of its certificate.
-// Other names are how foreign pages reach a desk by a name service that lies.
+// Whether the text of the header Host names this desk: an IP address, localhost, or a name of its certificate. Any other
+// name may come from a foreign page that reaches the desk by DNS rebinding.
 bool own_host(std::string_view host, X509* certificate);
 
-// {"scenes": [{"path": "/files/scenes/default.json", "bytes": 1}], "maps": [{"name": "silicone.map", "files": [...]}],
+// Returns {"scenes": [{"path": "/files/scenes/default.json", "bytes": 1}], "maps": [{"name": "silicone.map", "files": [...]}],
 // "profiles": ..., "phantoms": ..., "protocols": ...}; links and hidden files are left out.
 files::Json files_json(const std::filesystem::path& assets);
 

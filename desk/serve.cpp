@@ -23,7 +23,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Address families differ in what is loopback and what is any address.
+// The addresses for "this machine only" and "all networks" differ between IPv4 and IPv6.
 struct Binding {
     bool six = false;
     bool loopback = false;
@@ -56,7 +56,7 @@ void check_options(const ServeOptions& options, const Binding& binding) {
     }
 }
 
-// Where tablets find the desk.
+// The addresses under which tablets find the desk.
 std::vector<std::string> addresses(const std::string& bind, const Binding& binding) {
     if (!binding.any) return {bind};
     std::vector<std::string> out;
@@ -137,8 +137,8 @@ void mask_end_signals(int how) {
     ::pthread_sigmask(how, &set, nullptr);
 }
 
-// What asks for the end goes through a pipe. To block the signals and to wait for them is not enough: libraries start
-// threads of their own before main(), which block nothing, and one of them would take the signal and end the program.
+// A signal that ends the desk is passed on through a pipe. Blocking the signals and waiting for them is not enough:
+// libraries start threads before main() that block no signal, and one of them would take it and end the program.
 class EndNotes {
   public:
     EndNotes() {
@@ -155,7 +155,7 @@ class EndNotes {
     EndNotes& operator=(const EndNotes&) = delete;
 
     void tell_ended() const { [[maybe_unused]] const ssize_t n = ::write(ends_[1], &kEnded, 1); }
-    // Waits for the first note: was the end asked for?
+    // Waits for the first note. Returns whether it asks for the end.
     bool wait_for_asked() const {
         pollfd waiting{ends_[0], POLLIN, 0};
         char note = 0;
@@ -171,7 +171,7 @@ class EndNotes {
 
 fs::path web_folder_beside(const fs::path& assets) {
     const fs::path root = assets.parent_path();
-    // as built in the sources, and as installed beside the assets
+    // the place in a build of the sources, then the place of an installation, beside the assets
     for (const fs::path& place : {root / "build/web/site", root / "web"}) {
         std::error_code none;
         if (fs::is_regular_file(place / "index.html", none)) return place;
@@ -209,14 +209,14 @@ void serve(const ServeOptions& options) {
     if (!trouble.empty()) desk.events.tell("note", trouble, {{"what", trouble}});
     for (const std::string& note : notes) desk.events.tell("note", note, {{"what", note}});
 
-    mask_end_signals(SIG_BLOCK);  // threads of the server inherit it: they are never interrupted
+    mask_end_signals(SIG_BLOCK);  // the threads of the server inherit this and are never interrupted
     std::thread serving([&] {
         server.serve();
         notes_of_end.tell_ended();
     });
     mask_end_signals(SIG_UNBLOCK);
     const bool asked = notes_of_end.wait_for_asked();
-    set_end_handler(SIG_DFL);  // who asks again does not want to wait for what is under way
+    set_end_handler(SIG_DFL);  // a second signal ends the program at once
     server.end();
     serving.join();
     if (!asked) throw std::runtime_error("the port cannot be listened on any longer");

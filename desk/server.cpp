@@ -20,8 +20,8 @@ namespace {
 
 constexpr int kBacklog = 128;
 
-// Threads as they are needed, up to a number. When as many connections wait, the one who accepts them waits too, and
-// further clients wait in the system's queue.
+// Starts threads as they are needed, up to a number. When as many connections wait, the accepting thread waits too, and
+// further clients wait in the queue of the system.
 class ConnectionQueue : public httplib::TaskQueue {
   public:
     explicit ConnectionQueue(std::size_t most) : most_(most) {}
@@ -76,7 +76,7 @@ DeskServer::DeskServer(TlsContext tls, const Patience& patience, const Places& p
     new_task_queue = [this] { return new ConnectionQueue(places_.in_all); };
     set_keep_alive_max_count(static_cast<std::size_t>(places_.requests));
     set_keep_alive_timeout(static_cast<time_t>(patience_.idle_s));
-    // not SO_REUSEPORT, the library's own: two desks on one port would share the tablets by chance
+    // not SO_REUSEPORT, the library's default: two desks on one port would share the tablets at random
     set_socket_options([](socket_t socket) {
         const int yes = 1;
         ::setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
@@ -90,14 +90,14 @@ int DeskServer::bind(const std::string& address, int port) {
         throw std::runtime_error(address + ", port " + std::to_string(port < 0 ? 0 : port) + ": cannot be listened on" +
                                  (errno != 0 ? std::string(": ") + std::strerror(errno) : std::string()));
     }
-    ::listen(svr_sock_, kBacklog);  // the library's queue has five places
+    ::listen(svr_sock_, kBacklog);  // the queue that the library asks for has five places
     listening_ = ::fcntl(svr_sock_, F_DUPFD_CLOEXEC, 0);
     if (listening_ < 0) throw std::runtime_error(address + ": cannot be listened on: " + std::strerror(errno));
     return port;
 }
 
-// The library's stop() does nothing to a server that does not accept yet. A socket that was shut down accepts nothing
-// any more, whether it is waited on at the moment or only later.
+// The library's stop() has no effect on a server that does not accept yet. A socket that was shut down accepts nothing,
+// whether the server waits on it already or only later.
 void DeskServer::end() {
     ending_ = true;
     ::shutdown(listening_, SHUT_RDWR);

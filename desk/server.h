@@ -1,6 +1,6 @@
 #pragma once
-// cpp-httplib's server on connections of desk/connection.h: it parses requests and writes answers, and this says
-// who is listened to, how long, and how many at a time.
+// The server of cpp-httplib on the connections of desk/connection.h. The library parses requests and writes answers; this
+// file limits who is served, for how long, and how many at a time.
 
 #include <atomic>
 #include <httplib.h>
@@ -14,8 +14,8 @@ namespace palpa::desk {
 
 struct Places {
     std::size_t in_all = 128;         // connections served at a time, a thread each; as many again may wait
-    std::size_t of_one_address = 64;  // so that one client never takes all
-    int requests = 100;               // of one connection
+    std::size_t of_one_address = 64;  // so that one client cannot take all
+    int requests = 100;               // on one connection
 };
 
 class DeskServer : public httplib::Server {
@@ -23,12 +23,12 @@ class DeskServer : public httplib::Server {
     DeskServer(TlsContext tls, const Patience& patience, const Places& places);
     ~DeskServer() override;
 
-    // Port 0: any that is free. Returns the port. Throws std::runtime_error with the system's reason.
+    // Port 0 chooses any free port. Returns the port. Throws std::runtime_error with the system's reason.
     int bind(const std::string& address, int port);
-    // Serves until end() is called, by another thread, before or after; then what is under way is let come to its end,
-    // for a moment.
+    // Serves until another thread calls end(), which may come first. Requests that are under way then have a moment to
+    // finish.
     void serve() { listen_after_bind(); }
-    // Once, after bind().
+    // Call it once, after bind().
     void end();
 
   private:
@@ -38,10 +38,10 @@ class DeskServer : public httplib::Server {
     Patience patience_;
     Places places_;
     int listening_ =
-        -1;  // the socket a second time, so that it can be shut down whatever the library has done with its own
+        -1;  // a second descriptor of the socket, which can be shut down whatever the library has done with its own
     std::atomic<bool> ending_ = false;
     std::mutex mutex_;
-    std::map<std::string, std::size_t> connections_;  // by address
+    std::map<std::string, std::size_t> connections_;  // number of connections by address
 };
 
 }  // namespace palpa::desk

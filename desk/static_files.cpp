@@ -19,7 +19,7 @@ int hex_digit(char c) {
     return -1;
 }
 
-// One name with its escapes undone; false if it is not plain.
+// Decodes the escapes of one name. Returns false if the name is not allowed.
 bool plain_name(std::string_view escaped, std::string& out) {
     out.clear();
     for (std::size_t i = 0; i < escaped.size(); ++i) {
@@ -92,7 +92,7 @@ long StaticFile::read(std::uint64_t offset, char* out, std::size_t size) const {
 
 StaticFile open_static(const std::filesystem::path& folder, const std::vector<std::string>& names) {
     if (names.empty()) return {};
-    // the folder itself may be named by a link, as its owner chose it
+    // the folder itself may be a link, since its owner chose it
     int at = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
     for (std::size_t i = 0; i < names.size() && at >= 0; ++i) {
         const bool last = i + 1 == names.size();

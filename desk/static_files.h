@@ -1,5 +1,5 @@
 #pragma once
-// Files of a folder as a web server hands them out: from a request's path to an open file, and nothing outside.
+// Files of a folder as a web server hands them out: from the path of a request to an open file, never outside the folder.
 
 #include <cstdint>
 #include <filesystem>
@@ -10,9 +10,9 @@
 
 namespace palpa::desk {
 
-// The names in the path of a request ("/a/b%20c?x" gives a, "b c"); what ends with '/' gets index.html. Nothing for
-// a path that is not plain: not from '/', bad or forbidden escapes (NUL, other control characters, '/', '\'), empty
-// names, names that begin with a dot (so no `..`), what is not UTF-8 or longer than 1024 bytes.
+// Returns the names in the path of a request ("/a/b%20c?x" gives a, "b c"); a path that ends with '/' gets index.html.
+// Returns nothing for a path that does not begin with '/', has bad or forbidden escapes (NUL, other control characters,
+// '/', '\'), empty names or names that begin with a dot (so no `..`), is not UTF-8, or is longer than 1024 bytes.
 std::optional<std::vector<std::string>> names_of_path(std::string_view target);
 
 // A regular file, open for reading.
@@ -26,9 +26,9 @@ class StaticFile {
 
     bool is_open() const { return fd_ >= 0; }
     std::uint64_t bytes() const { return bytes_; }
-    // Changes whenever the file does: made of size, time of change and inode.
+    // An ETag that changes whenever the file does, made of its size, time of change and inode.
     const std::string& etag() const { return etag_; }
-    // Up to `size` bytes from `offset` on; 0 at the end, -1 if it cannot be read.
+    // Reads up to `size` bytes from `offset` on. Returns 0 at the end, -1 if the file cannot be read.
     long read(std::uint64_t offset, char* out, std::size_t size) const;
 
   private:
@@ -37,10 +37,10 @@ class StaticFile {
     std::string etag_;
 };
 
-// Not open if there is no such regular file. Links are not followed, at no place of the way below `folder`.
+// Returns a file that is not open if there is no such regular file. Links below `folder` are not followed.
 StaticFile open_static(const std::filesystem::path& folder, const std::vector<std::string>& names);
 
-// By the name's ending: "application/wasm"; "application/octet-stream" for unknown ones.
+// Returns the media type by the ending of the name, such as "application/wasm"; "application/octet-stream" if unknown.
 std::string mime_type(std::string_view name);
 
 }  // namespace palpa::desk

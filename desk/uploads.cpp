@@ -33,7 +33,7 @@ bool is_hash(std::string_view text) {
            });
 }
 
-// The hash in the name of an upload, or "".
+// Returns the hash in the name of an upload, or "".
 std::string hash_of_name(const fs::path& file) {
     const std::string name = file.filename().string();
     if (name.size() != kHashDigits + kEnding.size() || name.substr(kHashDigits) != kEnding) return "";
@@ -139,7 +139,7 @@ void Uploads::read_index(std::vector<std::string>& notes) {
     }
 }
 
-// A kill can come between a file's name and its row.
+// The program can be killed after a file got its name and before its row is written.
 void Uploads::adopt(const fs::path& file, std::vector<std::string>& notes) {
     Incoming::Hash hash;
     const int fd = ::open(file.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
@@ -228,7 +228,7 @@ Uploads::Incoming::Stored Uploads::Incoming::finish(std::string_view expected_sh
         throw UploadRefused(507, std::string("the desk's disk takes no more: ") + std::strerror(errno));
     const fs::path target = uploads_.folder_ / stored.name;
     stored.fresh = files::rename_to_new(aside_, target);
-    if (stored.fresh) announced_ = 0;  // counted for good
+    if (stored.fresh) announced_ = 0;  // these bytes stay counted as used
     if (!stored.fresh && fs::file_size(target) != received_) {
         throw std::runtime_error(target.string() + ": is there with another content than its name says");
     }

@@ -50,7 +50,7 @@ class LoadCell : public ForceSensor {
     std::string name() const override { return "load cell at " + options_.path; }
 
   private:
-    // Unplugged: tries again twice a second.
+    // After the port was unplugged, tries to open it twice a second.
     int reopen(double wait_s) {
         constexpr double kAgain_s = 0.5;
         const double due_s = tried_s_ + kAgain_s - steady_s();
@@ -127,10 +127,10 @@ bool take_time(std::uint32_t t_us, LoadCellClock& clock, SensorHealth& health) {
         constexpr std::int32_t kRestart_us = -2'000'000;
         if (step_us > kRestart_us) {
             ++health.reordered;
-            if (health.lost > 0) --health.lost;  // its gap was counted before
+            if (health.lost > 0) --health.lost;  // it had been counted as lost
             return false;
         }
-        clock.total_us += 1;  // the board was reset: its clock began anew
+        clock.total_us += 1;  // the board was reset and its clock restarted
         clock.last_us = t_us;
         return true;
     }

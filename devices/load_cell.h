@@ -1,9 +1,9 @@
 #pragma once
 // A load cell behind an HX711 and an Arduino: lines "t_us,raw\n", micros() and the signed 24-bit reading.
 //
-// Supported: lines cut in half when the port is opened, garbled lines (skipped to the next newline), micros() that
-// starts anew every 71.6 minutes, loss by the clock's gaps, lines that come twice or out of order, a port that is
-// unplugged and comes back. Not yet: other line formats. Tried against devices/simulators only.
+// Supported: a first line cut off by opening the port, garbled lines (skipped to the next newline), the wrap-around of
+// micros() every 71.6 minutes, losses (seen as gaps of the clock), lines that come twice or out of order, a port that is
+// unplugged and comes back. Not supported yet: other line formats. Tried with devices/simulators only.
 
 #include <cstddef>
 #include <cstdint>
@@ -19,23 +19,23 @@ struct LoadCellLine {
     std::int32_t raw = 0;  // -2^23 ... 2^23 - 1
 };
 
-// Lines out of bytes, as they come.
+// Builds lines from bytes as they arrive.
 struct LineParser {
     std::string line;
-    bool skipping = true;  // until the first newline: the port was opened amid a line
+    bool skipping = true;  // until the first newline, since the port was opened within a line
 };
-// True when `byte` ends a good line. Garbled lines are counted.
+// Returns true when `byte` ends a good line. Counts garbled lines.
 bool feed(std::uint8_t byte, LineParser& parser, SensorHealth& health, LoadCellLine& out);
 
-// The clock's readings, and what they say about the stream.
+// The readings of the sensor's clock, and what they say about the stream.
 struct LoadCellClock {
     bool started = false;
     std::uint32_t last_us = 0;
     std::int64_t total_us = 0;
-    double period_us = 0.0;  // learned: the shortest usual step
+    double period_us = 0.0;  // shortest usual step, learned from the stream
     std::int64_t steps = 0;
 };
-// False for a line that came twice or late. Counts loss once the period is known (after 16 steps).
+// Returns false for a line that came twice or late. Counts losses once the period is known (after 16 steps).
 bool take_time(std::uint32_t t_us, LoadCellClock& clock, SensorHealth& health);
 
 struct LoadCellOptions {

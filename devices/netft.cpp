@@ -25,7 +25,7 @@ class NetFt : public ForceSensor {
 
     void read(double wait_s, std::vector<ForceReading>& out) override {
         std::array<std::uint8_t, 2048> bytes;
-        constexpr int kMost = 512;  // then let the reader hand them on
+        constexpr int kMost = 512;  // records per call, so that the reader can hand them on
         double wait = wait_s;
         for (int i = 0; i < kMost; ++i) {
             const int n = port_.receive(wait, bytes.data(), bytes.size());
@@ -68,7 +68,8 @@ class NetFt : public ForceSensor {
         ++health_.received;
     }
 
-    // A stream has one owner and no end of its own: after a silence it is asked for again, once a second.
+    // The sensor sends to whoever asked last and never ends by itself: after a silence the stream is requested again, once
+    // a second.
     void watch() {
         constexpr double kSilence_s = 0.5;
         constexpr double kAgain_s = 1.0;

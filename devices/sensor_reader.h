@@ -1,5 +1,5 @@
 #pragma once
-// A sensor in a thread of its own, behind poll().
+// Reads a sensor in a thread of its own; the caller takes the readings by poll(), which never waits.
 
 #include <atomic>
 #include <memory>
@@ -27,10 +27,10 @@ class SensorReader {
   private:
     void run();
 
-    std::unique_ptr<ForceSensor> sensor_;  // the thread's alone, once it runs
+    std::unique_ptr<ForceSensor> sensor_;  // used by the thread alone once it runs
     std::string name_;
     SpscRing<ForceReading, 1 << 16> ring_;  // nine seconds at 7 kHz
-    mutable std::mutex health_guard_;       // of the copy below; taken a hundred times a second
+    mutable std::mutex health_guard_;       // guards the copy below; locked a hundred times a second
     SensorHealth health_;
     std::atomic<bool> stop_{false};
     std::thread thread_;

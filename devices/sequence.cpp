@@ -30,7 +30,7 @@ Arrival track(std::uint32_t number, Sequence& sequence, SensorHealth& health) {
         ++health.reordered;
         return Arrival::late;
     }
-    // too old to know whether it came before: twice is likelier than so late
+    // too old to know whether it came before; a duplicate is likelier than a record so late
     ++health.duplicate;
     return Arrival::duplicate;
 }

@@ -1,5 +1,5 @@
 #pragma once
-// Values from one thread to one other, without a lock and without waiting.
+// Passes values from one thread to another, without locks and without waiting.
 
 #include <array>
 #include <atomic>
@@ -7,13 +7,13 @@
 
 namespace palpa::devices {
 
-// One thread pushes, one pops. N must be a power of two; N values fit.
+// One thread pushes, one pops. The ring holds N values; N must be a power of two.
 template <class T, std::size_t N>
 class SpscRing {
     static_assert((N & (N - 1)) == 0, "the indices wrap around with their type");
 
   public:
-    // False if it is full: the value is not taken.
+    // Returns false if the ring is full: the value is then not taken.
     bool push(const T& value) {
         const std::size_t head = head_.load(std::memory_order_relaxed);
         if (head - tail_.load(std::memory_order_acquire) == N) return false;
@@ -32,7 +32,8 @@ class SpscRing {
 
   private:
     std::array<T, N> values_{};
-    alignas(64) std::atomic<std::size_t> head_{0};  // apart, so that the threads do not fight for one cache line
+    alignas(64) std::atomic<std::size_t> head_{
+        0};  // on cache lines of their own, so that the threads do not slow each other down
     alignas(64) std::atomic<std::size_t> tail_{0};
 };
 

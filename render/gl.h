@@ -1,6 +1,6 @@
 #pragma once
-// The few GL objects that drawing needs, freed when they go. OpenGL ES 3.0 subset: the same shaders run on
-// the desktop and in a browser.
+// The few OpenGL objects that drawing needs, freed by their destructors. They use OpenGL ES 3.0, so that the same shaders
+// run on the desktop and in a browser.
 
 #include <GLES3/gl3.h>
 #include <string>
@@ -10,7 +10,7 @@ namespace palpa::render {
 
 class Program {
   public:
-    // Throws std::runtime_error with the compiler's own words.
+    // Throws std::runtime_error with the message of the shader compiler.
     Program(const char* vertex_source, const char* fragment_source);
     ~Program();
     Program(const Program&) = delete;
@@ -22,8 +22,8 @@ class Program {
     GLuint id_ = 0;
 };
 
-// Vertices with a 2-float attribute at location 0 and, if it was set, a changing 3-float one at location 1; drawn by
-// index.
+// Indexed vertices with two floats at location 0 and, if they were set, three floats at location 1 that change from frame
+// to frame.
 class Mesh {
   public:
     Mesh(const std::vector<float>& points, const std::vector<unsigned>& triangles);
@@ -58,7 +58,7 @@ class AreaCopy {
 
 void clear_screen(int width_px, int height_px);
 
-// RGB rows from the top downwards, of what was drawn last.
+// Returns the picture that was drawn last as rows of RGB, from the top downwards.
 std::vector<unsigned char> read_pixels(int width_px, int height_px);
 
 }  // namespace palpa::render

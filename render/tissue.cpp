@@ -50,7 +50,7 @@ void main() {
 }
 )";
 
-// Light comes from the upper left of the screen, low enough that a shallow dent shows; lines every 10 mm.
+// The light comes from the upper left of the screen, low enough that a shallow dent shows. Grid lines are 10 mm apart.
 constexpr const char* kSurfaceFragment = R"(#version 300 es
 precision highp float;
 in vec2 place_m; in vec3 normal; in float sunk_m;

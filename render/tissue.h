@@ -1,5 +1,5 @@
 #pragma once
-// The tissue's surface with its dent, and the indenter: plain numbers in, pixels out.
+// Draws the surface of the tissue with its dent, and the indenter.
 
 #include <array>
 #include <glm/mat2x2.hpp>
@@ -22,28 +22,28 @@ struct TissueView {
     glm::vec2 size_m{0.1f};
     glm::mat2 axes{1.0f};
     float px_per_m = 1.0f;
-    float tilt_rad = 0.0f;  // 0: from straight above
+    float tilt_rad = 0.0f;  // 0 looks straight down
 };
 
-// Dent around (x, y): sink at r_i = reach (i / 63)^2, metres downwards; reach 0: no dent.
+// Dent around (x, y): the sink at r_i = reach (i / 63)^2, in metres downwards. Without a dent, reach is 0.
 struct Dent {
     glm::vec2 centre_m{0.0f};
     float reach_m = 0.0f;
     std::array<float, kSinkPoints> sink_m{};
 };
 
-// Sink of the whole surface on a grid over the view's area, instead of a dent: n_x * n_y values, x fastest.
+// Sink of the whole surface, instead of a dent: n_x * n_y values on a grid over the area of the view, x fastest.
 struct Relief {
-    int n_x = 0;  // 0: no relief
+    int n_x = 0;  // 0 without a relief
     int n_y = 0;
     std::vector<float> sink_m;
-    glm::vec2 shift_m{0.0f};  // drawn moved by this, as the avatar lags
+    glm::vec2 shift_m{0.0f};  // the relief is drawn moved by this, since the avatar lags
 };
 
 struct Ball {
     glm::vec2 centre_m{0.0f};
-    float height_m = 0.0f;  // of its centre above the undisturbed surface
-    float radius_m = 0.0f;  // 0: not drawn
+    float height_m = 0.0f;  // height of the centre above the undisturbed surface
+    float radius_m = 0.0f;  // 0 if no indenter is drawn
     float opacity = 1.0f;
 };
 
@@ -64,11 +64,11 @@ class TissueDrawer {
     std::unique_ptr<Gpu> gpu_;
 };
 
-// Vertices of the drawn surface, (cells + 1)^2 of (sink, d sink/dx, d sink/dy), by Catmull-Rom interpolation;
-// the border is continued. relief.n_x and n_y >= 2.
+// Returns the vertices of the drawn surface, (cells + 1)^2 of (sink, d sink/dx, d sink/dy), by Catmull-Rom interpolation
+// that continues the values at the border. Needs relief.n_x and n_y >= 2.
 void refine(const Relief& relief, const glm::vec2& size_m, int cells, std::vector<float>& out);
 
-// Where a point lands on the screen, the same as in the shader; for marks drawn on top.
+// Returns where a point lands on the screen, by the formula of the shader, for marks that are drawn on top.
 glm::vec2 project_px(const TissueView& view, const glm::vec3& p_m);
 
 }  // namespace palpa::render

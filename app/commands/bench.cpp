@@ -1,4 +1,4 @@
-// palpa bench trace: a simulated pen's trace, to measure with.
+// palpa bench trace: the trace of a simulated pen, for measurements.
 
 #include <CLI/CLI.hpp>
 #include <cstdio>

@@ -21,7 +21,7 @@ struct Options {
     bool json = false;
 };
 
-// Before the minutes of measuring, not after them.
+// Checked before the minutes of measuring, not after them.
 void make_folder(const std::filesystem::path& folder) {
     std::error_code error;
     std::filesystem::create_directories(folder, error);

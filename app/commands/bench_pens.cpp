@@ -18,7 +18,7 @@
 namespace palpa::app {
 namespace {
 
-// One pen on one tablet on one day, rows as recorded.
+// One pen on one tablet on one day, with the rows as recorded.
 struct Session {
     std::vector<double> level;
     std::vector<double> force_N;
@@ -48,7 +48,7 @@ struct Contestant {
     std::optional<calibration::CurveModel> model;
     std::optional<calibration::ErrorModel> error;
     calibration::Robust robust = calibration::Robust::huber;
-    bool all_rows = false;  // nothing is left out at the ends, and a cubic has a knot for each level
+    bool all_rows = false;  // leaves out nothing at the ends, and gives a cubic a knot for each level
 };
 
 const Contestant kContestants[] = {
@@ -84,7 +84,7 @@ std::optional<calibration::Curve> fitted(const Contestant& contestant, const cal
     return calibration::fit_curve(points, best.options);
 }
 
-// Fits to the rows 2, 4, ... of a session (or 1, 3, ...), and judges on the others.
+// Fits to the rows 2, 4, ... of a session (or 1, 3, ...) and measures the error on the others.
 void judge(const Contestant& contestant, const Session& session, std::size_t first_fitted, bool silent_too,
            Errors& errors) {
     calibration::CalibrationRows rows;

@@ -1,4 +1,4 @@
-// palpa bench speed: what a sample costs, beside the machine's unit.
+// palpa bench speed: what a sample costs, in microseconds and in units of the machine.
 
 #include <CLI/CLI.hpp>
 #include <cstdio>

@@ -86,7 +86,7 @@ calibration::CalibrateOptions fit_options(const FitArguments& arguments) {
     return options;
 }
 
-// What the person says about the device wins over the columns of the file.
+// What the options say about the device takes precedence over the columns of the file.
 void name_device(const calibration::DeviceNames& given, calibration::DeviceNames& device) {
     for (const auto field :
          {&calibration::DeviceNames::pen, &calibration::DeviceNames::tablet, &calibration::DeviceNames::driver,
@@ -256,7 +256,7 @@ void compare(const CompareArguments& arguments) {
     double at = 0.0;
     std::int64_t ignored = 0;
     for (int i = 0; i <= kPlaces; ++i) {
-        // each over its own range, so that counts and 0 ... 1 can be compared
+        // each profile over its own range, so that counts can be compared with levels of 0 to 1
         const double s = static_cast<double>(i) / kPlaces;
         const double F_a = calibration::force_N(a, a.level_lowest + s * (a.level_highest - a.level_lowest), ignored);
         const double F_b = calibration::force_N(b, b.level_lowest + s * (b.level_highest - b.level_lowest), ignored);

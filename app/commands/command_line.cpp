@@ -30,7 +30,7 @@ std::vector<std::string> with_default_command(int argc, char** argv, CLI::App& a
     bool known = first == "-h" || first == "--help" || first == "--version";
     for (const CLI::App* command : app.get_subcommands({})) known = known || command->get_name() == first;
     if (!known) arguments.insert(arguments.begin(), "run");
-    return {arguments.rbegin(), arguments.rend()};  // CLI11 takes them from the back
+    return {arguments.rbegin(), arguments.rend()};  // CLI11 reads the vector from its end
 }
 
 int fail(const char* message, int status) {
@@ -38,8 +38,8 @@ int fail(const char* message, int status) {
     return status;
 }
 
-// A descriptor below 3 that nobody opened would be given to the next file, and what is printed would end up in it.
-// Opened the wrong way round, it fails to be read or written, as if it were still closed.
+// If standard input, output or error is closed, the next file to be opened would take its descriptor, and printed text
+// would end up in that file. Each is therefore opened the wrong way round, so that using it fails as if it were closed.
 void keep_standard_streams_apart() {
     for (const int fd : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
         if (::fcntl(fd, F_GETFD) >= 0) continue;
@@ -48,7 +48,7 @@ void keep_standard_streams_apart() {
     }
 }
 
-// Ends here and now: OpenBLAS, whose threads could not be started, waits for them for ever in its destructor.
+// Ends the process at once: if OpenBLAS could not start its threads, its destructor would wait for them for ever.
 [[noreturn]] void end_without_memory(const char* message) {
     fail(message, 1);
     std::fflush(nullptr);
@@ -78,7 +78,7 @@ int call(int argc, char** argv, CLI::App& app) {
     }
 }
 
-// What was printed counts as done only once all of it has been taken.
+// Output counts as printed only once all of it has been written.
 int with_all_printed(int status) {
     errno = 0;
     std::cout.flush();
@@ -93,7 +93,7 @@ int with_all_printed(int status) {
 
 int run_command_line(int argc, char** argv) {
     keep_standard_streams_apart();
-    ::signal(SIGPIPE, SIG_IGN);  // a reader that went away is told as any output that cannot be written
+    ::signal(SIGPIPE, SIG_IGN);  // a closed pipe is reported as any output that cannot be written
     CLI::App app("Palpa: feel stiffness on a touch screen. `palpa` alone opens the app on the scene of last time.",
                  "palpa");
     app.set_version_flag("--version", "palpa " PALPA_VERSION);

@@ -9,7 +9,7 @@ namespace palpa::app {
 // Exit status: 0 done, 1 the run failed, 2 wrong usage or bad input.
 int run_command_line(int argc, char** argv);
 
-// Each adds its subcommand; what it does runs as the subcommand's callback and throws to fail.
+// Each function adds a subcommand, whose work runs as a callback of CLI11 and throws on failure.
 void add_run(CLI::App& app);
 void add_explain(CLI::App& app);
 void add_devices(CLI::App& app);

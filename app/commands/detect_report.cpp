@@ -7,7 +7,7 @@
 namespace palpa::app {
 namespace {
 
-// The placed nodule that a region lies over, if any: its centre within the region's half length.
+// Returns the placed nodule that a region covers, if any: its centre lies within half the length of the region.
 std::string placed_at(const stiffnessmaps::Map& map, const stiffnessmaps::StiffRegion& region) {
     for (const stiffnessmaps::Nodule& nodule : map.nodules) {
         const double away_m = std::hypot(nodule.x_m - region.x_m, nodule.y_m - region.y_m);

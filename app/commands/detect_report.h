@@ -1,5 +1,5 @@
 #pragma once
-// What `palpa maps detect` says.
+// The report of `palpa maps detect`.
 
 #include "files/json.h"
 #include "stiffnessmaps/import/detect.h"

@@ -1,4 +1,4 @@
-// palpa devices: the pens, touch screens and mice that are there, and what they really send.
+// palpa devices: the connected pens, touch screens and mice, and what they really send.
 
 #include <CLI/CLI.hpp>
 #include <cmath>
@@ -34,7 +34,7 @@ void tell_time_left(double left_s, platform::Window& window) {
         std::fprintf(stderr, "\rpress in the window with pen and fingers: %s s left ", left.c_str());
 }
 
-// `check` is large, so it lives with the caller.
+// The caller owns `check`, which is large.
 void watch_devices(double seconds, platform::Window& window, DeviceCheck& check) {
     std::vector<platform::Sample> samples;
     window.set_keyboard(0.0, 0.0, window.width_px(), window.height_px(), 200.0);

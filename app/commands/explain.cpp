@@ -1,4 +1,4 @@
-// palpa explain SCENE [--measure]: the plan, stage by stage, with what each costs and how wrong it is.
+// palpa explain SCENE [--measure]: the plan, stage by stage, with the cost and the error of each stage.
 
 #include <CLI/CLI.hpp>
 #include <cstdio>

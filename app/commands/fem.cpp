@@ -50,7 +50,7 @@ files::Json in_mm(const std::optional<double>& value_m) {
 
 double max_von_mises_Pa(const fem::FemResult& result) {
     double largest = 0.0;
-    for (const double value : result.von_mises_Pa) largest = std::max(largest, value);  // NaN is passed over
+    for (const double value : result.von_mises_Pa) largest = std::max(largest, value);  // NaN leaves it as it is
     return largest;
 }
 
@@ -172,7 +172,7 @@ void print_table(const fem::FemCase& model, const fem::FemResult& result) {
     row("time", times + " s");
 }
 
-// On a terminal only: what is done of what, and the time left.
+// Shows how much is done and the time left, on a terminal only.
 fem::FemProgress progress_line() {
     if (isatty(STDERR_FILENO) == 0) return [](const char*, int, int) {};
     return [began_s = std::optional<double>()](const char* what, int done, int total) mutable {
@@ -197,7 +197,7 @@ struct SolveOptions {
 void solve_file(const SolveOptions& options) {
     const fem::FemCase model = fem::read_case(options.file);
     if (!options.output.empty())
-        files::check_output(options.output, {options.file, model.mesh_file});  // before the long part
+        files::check_output(options.output, {options.file, model.mesh_file});  // checked before the long computation
     const fem::FemResult result = fem::solve_case(model, progress_line());
     if (isatty(STDERR_FILENO) != 0) std::fprintf(stderr, "\r\033[K");
     if (!options.output.empty()) files::write_vtu(options.output, fem::vtu_of(model, result));

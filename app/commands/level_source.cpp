@@ -20,7 +20,7 @@
 namespace palpa::app {
 namespace {
 
-// One number a line, as it comes; a level of 0 is a pen that does not touch.
+// Reads one number per line as it arrives; a level of 0 means that the pen does not touch.
 class LevelStream : public LevelSource {
   public:
     explicit LevelStream(const std::string& path) : path_(path) {
@@ -71,7 +71,7 @@ class LevelStream : public LevelSource {
     int fd_ = -1;
 };
 
-// A window to press on, with the same guide as the app's screen.
+// A window to press on, with the guide that the app's screen shows.
 class LevelWindow : public LevelSource {
   public:
     LevelWindow() : window_(options()), gui_(window_) {}

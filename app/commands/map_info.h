@@ -6,7 +6,7 @@
 
 namespace palpa::app {
 
-// map.json with shape, missing, force_range_N, noise and smoothing added.
+// Returns map.json with shape, missing, force_range_N, noise and smoothing added.
 files::Json map_info(const stiffnessmaps::Map& map, const stiffnessmaps::Field& field);
 
 }  // namespace palpa::app

@@ -1,4 +1,4 @@
-// palpa maps info | sample | import | generate, and those of app/commands/maps.h
+// palpa maps info | sample | import | generate, and the subcommands of app/commands/maps.h
 
 #include "app/commands/maps.h"
 
@@ -39,7 +39,7 @@ void print_info(const stiffnessmaps::Map& map, const files::Json& info) {
         const double r = agreement["correlation"].get<double>();
         const double slope = agreement["slope"].get<double>();
         std::printf("  recorded tangential force against the energy's slope: correlation %.2f, slope %.2f\n", r, slope);
-        // a simulated slide differs from the slope by its friction, which is no mistake of a recording
+        // in a simulated slide, friction makes the force differ from the slope; that is no error of a recording
         if (map.source.kind == stiffnessmaps::SourceKind::recorded && (r < 0.5 || slope < 0.5 || slope > 2.0)) {
             std::fprintf(stderr, "palpa: warning: recorded tangential force and the work argument disagree\n");
         }

@@ -37,7 +37,7 @@ struct Arguments {
     bool json = false;
 };
 
-// "2,3.5,5" as metres; `count` numbers, 0: any.
+// Reads "2,3.5,5" (mm) as metres: `count` numbers, any number of them if it is 0.
 std::vector<double> lengths_m(const std::string& text, const char* option, std::size_t count) {
     std::vector<double> out;
     std::string_view rest = text;
@@ -70,7 +70,7 @@ std::vector<double> depths_m(const std::string& text, const char* option, bool a
     return out;
 }
 
-// Index of `text` in `names`; empty for an empty text or "auto". CLI11 has checked that it is one of them.
+// Returns the index of `text` in `names`, or nothing for an empty text or "auto". CLI11 has checked the other texts.
 template <class Enum>
 std::optional<Enum> choice(const std::string& text, std::initializer_list<const char*> names) {
     int i = 0;
@@ -148,7 +148,7 @@ stiffnessmaps::ImportOptions options_of(const Arguments& a) {
     return options;
 }
 
-// What is done and how much of it, once a second has passed; on a terminal only.
+// Shows what is being done and how much of it is finished, once a second has passed; on a terminal only.
 std::function<void(const char*, double)> progress_on_terminal() {
     if (::isatty(STDERR_FILENO) == 0) return {};
     const double began_s = files::steady_s();
@@ -225,7 +225,7 @@ void import_map(const Arguments& a) {
     if (a.output.empty() && !a.explain)
         throw files::bad_input("maps import", "", "no output",
                                "-o NAME.map (or --explain, to see what would be chosen)");
-    if (std::filesystem::exists(a.output)) {  // before a long import, not after it
+    if (std::filesystem::exists(a.output)) {  // checked before a long import, not after it
         throw files::bad_input(a.output, "", "something of that name", "a new name (nothing is overwritten)");
     }
     stiffnessmaps::ImportReport report;

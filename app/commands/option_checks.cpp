@@ -22,12 +22,12 @@ std::string listed(const std::vector<std::string>& words) {
 }
 
 std::string refuse_infinite(std::string& text) {
-    // what is no number at all, the option itself tells
+    // CLI11 itself reports a text that is no number
     if (std::isfinite(std::strtod(text.c_str(), nullptr))) return {};
     return "found " + files::shown(text) + ", expected a finite number";
 }
 
-// CLI11 takes -1 for the largest number of all, and so what is larger.
+// CLI11 reads -1, and every number that is too large, as the largest unsigned number.
 std::string refuse_wrapped(std::string& text) {
     errno = 0;
     const bool negative = text.find('-') != std::string::npos;
@@ -54,7 +54,7 @@ void refuse_what_is_no_value(CLI::App& command) {
         const std::string type = option->get_type_name();
         if (type.rfind("FLOAT", 0) == 0) option->check(CLI::Validator(refuse_infinite, ""));
         if (type.rfind("UINT", 0) == 0) option->check(CLI::Validator(refuse_wrapped, ""));
-        if (!type.empty()) option->check(CLI::Validator(refuse_empty, ""));  // flags have none
+        if (!type.empty()) option->check(CLI::Validator(refuse_empty, ""));  // flags have no value
     }
     for (CLI::App* below : command.get_subcommands({})) refuse_what_is_no_value(*below);
 }

@@ -1,5 +1,5 @@
 #pragma once
-// What an option may be, told in words that a person reads.
+// Checks of the values of options, with messages in plain words.
 
 #include <string>
 #include <vector>
@@ -11,13 +11,13 @@ class Validator;
 
 namespace palpa::app {
 
-// One of these words: the help and the message list them as "a, b or c".
+// Accepts one of these words; the help and the message list them as "a, b or c".
 CLI::Validator one_of(const std::vector<std::string>& words);
 
-// Every option of the command, and of its subcommands, refuses what is no value: of numbers "nan" and "inf" (CLI11's own
-// check of a range lets "nan" pass, as it is neither below nor above), of numbers from 0 upwards what CLI11 would wrap
-// around (-1), and of all what is empty: that is most often a variable of a script that was not set, and must count
-// neither as 0 nor as an option that was left out.
+// Makes every option of the command and its subcommands refuse values that mean nothing. Numbers refuse "nan" and "inf"
+// (CLI11's check of a range lets "nan" pass, since it is neither below nor above). Unsigned numbers refuse -1, which CLI11
+// would wrap around. All options refuse an empty text: most often it is an unset variable of a script, and must count
+// neither as 0 nor as an option left out.
 void refuse_what_is_no_value(CLI::App& command);
 
 }  // namespace palpa::app

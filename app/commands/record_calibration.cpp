@@ -16,7 +16,7 @@ namespace {
 
 volatile std::sig_atomic_t interrupted = 0;
 
-// A number on standard input and Enter: what the scale shows now, while the pen is held still. False at its end.
+// Reads a number from standard input: what the scale shows while the pen is held still. Returns false at the end of input.
 bool take_typed(std::string& typed, calibration::Recording& recording) {
     pollfd waiting{0, POLLIN, 0};
     if (::poll(&waiting, 1, 0) <= 0) return true;

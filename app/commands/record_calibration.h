@@ -1,5 +1,6 @@
 #pragma once
-// A calibration session from the command line: levels from a window or a stream, forces from a sensor, points on disk.
+// A calibration session from the command line: levels come from a window or a stream, forces from a sensor, and points
+// go to the disk.
 
 #include <memory>
 #include <string>
@@ -11,19 +12,19 @@
 
 namespace palpa::app {
 
-// Where levels come from.
+// A source of pressure levels: a window or a stream.
 class LevelSource {
   public:
     virtual ~LevelSource() = default;
-    // Appends what arrived; waits up to `wait_s`. False once there will be no more.
+    // Appends the samples that arrived and waits up to `wait_s` for them. Returns false once no more will come.
     virtual bool poll(double wait_s, std::vector<platform::Sample>& out) = 0;
-    // A window shows what to press next; a stream has nobody to show it to.
+    // Shows what to press next; only a window does anything here.
     virtual void show(calibration::Recording&) {}
 };
 std::unique_ptr<LevelSource> open_level_stream(const std::string& path);  // level in Sample::pressure
 std::unique_ptr<LevelSource> open_level_window();
 
-// Runs the session; what came of it. Throws std::runtime_error when the sensor gives nothing.
+// Runs the session and returns its result. Throws std::runtime_error if the sensor gives nothing.
 files::Json record_calibration(const calibration::RecordArguments& arguments);
 
 }  // namespace palpa::app

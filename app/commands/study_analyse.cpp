@@ -53,7 +53,7 @@ study::Observations read_observations(const std::string& input) {
 void analyse(const AnalyseOptions& options) {
     if (!options.output.empty()) files::check_output_folder(options.output);
     const study::Report report = study::make_report(read_observations(options.input), options.report);
-    // logs of a study have names of their own; a table of counts may have any
+    // the logs of a study have fixed names; a table of counts may have any name
     if (!options.output.empty() && !fs::is_directory(options.input))
         files::check_output_folder(options.output, {options.input}, names_of(report));
     if (!options.output.empty()) write_report(report, options.output);

@@ -85,7 +85,7 @@ void print_imbalance(const study::Protocol& protocol, const std::vector<study::P
 
 void print_order(const OrderOptions& options) {
     const study::Protocol protocol = study::read_protocol(options.protocol);
-    load_study_scenes(protocol);  // a missing map is better found now
+    load_study_scenes(protocol);  // finds a missing map now rather than during the study
     std::vector<study::PlannedParticipant> people;
     for (int number = 1; number <= options.participants; ++number)
         people.push_back(study::plan_participant(protocol, number));

@@ -29,7 +29,7 @@ void simulate(const Arguments& arguments) {
     options.output = arguments.output;
     options.samples = arguments.samples == "all";
     const auto cores = static_cast<int>(std::thread::hardware_concurrency());
-    // twice the cores: a participant who waits for the disk leaves the core to another
+    // twice as many threads as cores, since a participant that waits for the disk leaves its core to another
     options.jobs = std::min(options.participants, arguments.jobs > 0 ? arguments.jobs : 2 * std::max(1, cores));
     files::check_output_folder(arguments.output);
     const study::Protocol protocol = study::read_protocol(arguments.protocol);

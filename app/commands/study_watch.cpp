@@ -1,5 +1,5 @@
-// palpa study watch DIR: the experimenter's view of a study that runs elsewhere, on another screen or over ssh. It
-// reads what the study writes, and changes nothing.
+// palpa study watch DIR: the experimenter's view of a study that runs on another screen or machine. It reads the files
+// that the study writes and changes nothing.
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -30,7 +30,7 @@ struct Arguments {
     bool json = false;
 };
 
-// What a person did last in a file of events: seconds since the trial began, marks that stand, tp once it is finished.
+// Reads the last state from a file of events: seconds since the trial began, marks not undone, and hits once it has ended.
 files::Json last_events(const fs::path& file, std::vector<std::string>& notes) {
     const std::string text = files::read_text(file);
     const std::string_view whole = study::whole_lines(text, file.string(), notes);
@@ -56,7 +56,7 @@ files::Json last_events(const fs::path& file, std::vector<std::string>& notes) {
     return json;
 }
 
-// The last whole row with a place of a table of samples, by column; what a person asks of the program in between has none.
+// Returns the last complete row of a table of samples that has a position, by column. Rows of commands have no position.
 files::Json last_sample(const fs::path& file) {
     constexpr std::uintmax_t kTail_bytes = 65536;  // some seconds
     std::error_code error;
@@ -81,7 +81,7 @@ files::Json last_sample(const fs::path& file) {
     return {};
 }
 
-// Where a person stands, as the study wrote it. Throws InputError naming the key that is not as it writes them.
+// Reads the progress of a person as the study wrote it. Throws InputError naming the key that has an unexpected value.
 files::Json read_now(const fs::path& file) {
     constexpr int kMost = 1'000'000;
     const files::Json root = files::read_json(file);

@@ -1,5 +1,5 @@
-// An Arduino with an HX711 on a pseudo-terminal: lines "t_us,raw". Prints "port PATH" first, and at its end what it
-// sent. Unplugged, the terminal is closed; plugged in again, it is a new one behind the same --link.
+// Simulates an Arduino with an HX711 on a pseudo-terminal, which sends lines "t_us,raw". Prints "port PATH" first, and at
+// its end what it sent. To unplug it closes the terminal; plugged in again, a new one stands behind the same --link.
 
 #include <fcntl.h>
 #include <filesystem>
@@ -21,7 +21,7 @@ namespace {
 
 struct Terminal {
     int master = -1;
-    int slave = -1;  // kept open, so that a reader may come and go
+    int slave = -1;  // stays open, so that readers may come and go
     std::string path;
 };
 
@@ -78,7 +78,7 @@ int main(int argc, char** argv) {
     const auto send = [&](const LoadCellLine& reading) {
         std::string text = std::to_string(reading.t_us) + "," + std::to_string(reading.raw) + "\r\n";
         if (std::uniform_real_distribution<double>()(line.random) < garble) text[text.size() / 2] = '?';
-        const ssize_t n = ::write(terminal.master, text.data(), text.size());  // full: nobody reads; the text is gone
+        const ssize_t n = ::write(terminal.master, text.data(), text.size());  // without a reader the text is lost
         static_cast<void>(n);
     };
     const double began_s = steady_s();
@@ -97,7 +97,7 @@ int main(int argc, char** argv) {
         line.pass(reading, send);
     }
     print_sent(line.sent);
-    // what was sent stays readable until the reader has taken it
+    // keeps the terminal until the reader has taken what was sent
     for (int i = 0; i < 20 && ended == 0; ++i) std::this_thread::sleep_for(std::chrono::milliseconds(50));
     if (!link.empty()) std::filesystem::remove(link);
     return 0;

@@ -1,5 +1,5 @@
-// An ATI Net F/T on loopback UDP: answers requests for a stream, one owner at a time. Prints "port N" first, and at its
-// end what it sent.
+// Simulates an ATI Net F/T on loopback UDP: it answers requests for a stream, for one receiver at a time. Prints "port N"
+// first, and at its end what it sent.
 
 #include <arpa/inet.h>
 #include <optional>
@@ -28,7 +28,7 @@ int open_socket(int& port) {
     return fd;
 }
 
-// The newest request decides who gets the stream.
+// The newest request decides which address gets the stream.
 void take_requests(int fd, std::optional<sockaddr_in>& owner) {
     std::uint8_t bytes[64];
     sockaddr_in from{};

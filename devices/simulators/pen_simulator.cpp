@@ -1,5 +1,5 @@
-// A pen under the same hand as the simulated sensors: prints its level, one line a sample, as `palpa calibrate record
-// --levels` reads them. Level = log(F / first) / log(full / first), 0 below `first`, 1 above `full`.
+// Simulates a pen under the same hand as the simulated sensors. Prints its level, one line per sample, as `palpa calibrate
+// record --levels` reads it. Level = log(F / first) / log(full / first), 0 below `first`, 1 above `full`.
 
 #include <algorithm>
 
