@@ -239,7 +239,7 @@ struct Live::Impl {
         note_resize(*window, *gui, app);
         place_keyboard(*window, app);
         lift_fingers(gui->mm(), samples, app);
-        take_all(window->now_s(), samples, app);  // 2. simulate, 3. log
+        take_all(window->now_s(), samples, app);  // 2. simulate and log
         watch_files(*window, app);
         session::flush_if_due(app.session);  // also while nothing moves, and nothing is drawn
         keep_part(window->now_s(), app);
@@ -282,7 +282,7 @@ bool Live::turn(Draw draw) {
     // a browser that calls for each frame of its display sets the pace itself while anything moves
     const double early_s = waits ? 0.0 : kFrame_s;
     if (now_s + early_s < it.next_frame_s() && it.app.frames > 0) return true;
-    show(*it.window, it.app, {*it.gui, *it.tissue}, now_s - it.frame_s);  // 4. show
+    show(*it.window, it.app, {*it.gui, *it.tissue}, now_s - it.frame_s);  // 3. show
     it.frame_s = now_s;
     if (it.app.frames == 1) it.first_frame_s = 1e-9 * static_cast<double>(scene::steady_ns()) - it.asked_s;
     return true;

@@ -33,7 +33,7 @@ struct App {
     RunOptions options;
     Settings settings;
     std::filesystem::path settings_path;  // empty: this run keeps none
-    Doing doing;                          // go_to() changes it; a study changes its own step
+    Doing doing;                          // while the window is open, go_to() changes it; a study changes its own step
     std::optional<Wishes> asked;          // would throw away marks: done once the person is sure
     Notices notices;
     ViewState view;
