@@ -56,13 +56,19 @@ void draw_scale_screen(const Shown& shown, Gui& gui, double& card_px_per_mm, Wis
         if (gui.pressed('+') || gui.pressed('=') || gui.pressed(platform::key::pad_plus)) card_px_per_mm *= 1.002;
         if (gui.pressed('-') || gui.pressed(platform::key::pad_minus)) card_px_per_mm /= 1.002;
     }
+    card_px_per_mm = std::clamp(card_px_per_mm, kLeast_px_per_mm, kMost_px_per_mm);
     ImGui::SetNextItemWidth(40.0f * gui.mm());
     ImGui::PushStyleVar(ImGuiStyleVar_FramePadding,
                         ImVec2(2.0f * gui.mm(), 0.5f * (kTarget_mm * gui.mm() - ImGui::GetFontSize())));
-    ImGui::InputDouble(words::kPxPerMm, &card_px_per_mm, 0.0, 0.0, "%.3f");
+    double typed_px_per_mm = card_px_per_mm;
+    ImGui::InputDouble(words::kPxPerMm, &typed_px_per_mm, 0.0, 0.0, "%.3f");
     ImGui::PopStyleVar();
-    if (!std::isfinite(card_px_per_mm)) card_px_per_mm = kLeast_px_per_mm;
-    card_px_per_mm = std::clamp(card_px_per_mm, kLeast_px_per_mm, kMost_px_per_mm);
+    const bool good = typed_px_per_mm >= kLeast_px_per_mm && typed_px_per_mm <= kMost_px_per_mm;
+    if (good) card_px_per_mm = typed_px_per_mm;  // else the card stays as it was
+    if (!good) {
+        ImGui::SameLine();
+        warning_paragraph(words::filled(words::kNumberFromTo, {fixed(kLeast_px_per_mm, 0), fixed(kMost_px_per_mm, 0)}));
+    }
     const float width_px = std::min(share_of_line_px(3), 42.0f * gui.mm());
     if (big_button(words::kKeep, "", {width_px, kMark_mm, true, false}, gui)) wishes.px_per_mm = card_px_per_mm;
     ImGui::SameLine();

@@ -87,6 +87,8 @@ void draw_code(const step::Code& step, const StudyRun& run, Gui& gui, StudyForm&
     form.refused = step.refused;
     const bool entered = text_field(words::kCode, text, sizeof text, ImGuiInputTextFlags_EnterReturnsTrue, gui);
     form.code = text;
+    // Escape takes the letters from the field; there is no other one that they could go to
+    if (ImGui::IsItemDeactivated() && ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape))) form.refused = -1;
     gap(gui);
     if (forward(words::kGoOn, gui) || entered) wishes.study = EnterCode{text};
     if (!run.note.empty()) warning_paragraph(run.note);
