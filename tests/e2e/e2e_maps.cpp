@@ -68,6 +68,8 @@ class Script {
     double t_s_ = 0.5;
 };
 
+constexpr unsigned long kColours = 0xffffff;  // of 32 bits; what the fourth byte holds no display shows
+
 // What stood for a while in a part of the screen, one after the other; a hash of the pixels.
 class Watcher {
   public:
@@ -78,7 +80,7 @@ class Watcher {
               int same = 0;
               while (display != nullptr && !over_) {
                   XImage* image = ::XGetImage(display, DefaultRootWindow(display), x, y, static_cast<unsigned>(width),
-                                              static_cast<unsigned>(height), AllPlanes, ZPixmap);
+                                              static_cast<unsigned>(height), kColours, ZPixmap);
                   if (image == nullptr) break;
                   const std::string_view pixels(
                       image->data, static_cast<std::size_t>(image->bytes_per_line) * static_cast<std::size_t>(height));
