@@ -151,14 +151,15 @@ void run_grid_stage(StageId id, const Scene& scene, double t_s, State& state) {
     if (id == StageId::display_ratio || id == StageId::delay) note_extremes(avatar_at(scene, state, t_s), t_s, state);
 }
 
-// Grid points since the last sample, up to (not including) this time, whether or not something touches.
+// Grid points since the last sample, up to (not including) this time, whether or not something touches. Points that are left
+// out while nothing touches were not dropped: no tissue moved.
 void walk_grid(const Scene& scene, const Plan& plan, double to_s, State& state) {
     constexpr double kMostSteps = 1e15;
     const auto last = static_cast<std::int64_t>(std::min((to_s - state.grid_began_s) * kGrid_Hz, kMostSteps));
     constexpr auto kMost = static_cast<std::int64_t>(kLongestGap_s * kGrid_Hz);
     const std::int64_t due = last - state.grid_step;
     const std::int64_t skipped = std::max<std::int64_t>(0, due - kMost);
-    state.counters.dropped_steps += skipped;
+    if (state.touch.down) state.counters.dropped_steps += skipped;
     state.counters.steps += due - skipped;
     for (std::int64_t step = state.grid_step + skipped + 1; step <= last && !plan.grid_stages.empty(); ++step) {
         const double t_s = state.grid_began_s + static_cast<double>(step) / kGrid_Hz;

@@ -6,6 +6,8 @@
 #include <future>
 #include <unistd.h>
 
+#include "files/clock.h"
+
 namespace palpa::session {
 
 struct PlanInProgress::Work {
@@ -48,10 +50,10 @@ scene::Plan PlanInProgress::take() { return work_->result.get(); }
 scene::Plan make_plan_here(const scene::Scene& scene) {
     if (!takes_seconds(scene.tissue) || !isatty(STDERR_FILENO)) return scene::make_plan(scene);
     PlanInProgress work(scene);
-    const auto began = std::chrono::steady_clock::now();
+    const double began_s = files::steady_s();
     while (!work.wait(0.25)) {
         const double share = work.share();
-        const double passed_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
+        const double passed_s = files::steady_s() - began_s;
         const double left_s = share > 0.0 ? passed_s / share - passed_s : 0.0;
         std::fprintf(stderr, "\rpreparing the tissue: %3.0f %%, %.0f s left ", 100.0 * share, left_s);
     }

@@ -1,7 +1,6 @@
 // palpa run: the app, or a trace without a window.
 
 #include <CLI/CLI.hpp>
-#include <chrono>
 #include <cstdio>
 #include <map>
 #include <memory>
@@ -15,6 +14,7 @@
 #include "app/live/live.h"
 #include "app/scene_choices.h"
 #include "app/screens/frame.h"
+#include "files/clock.h"
 #include "files/input_error.h"
 #include "files/regular_file.h"
 #include "files/text.h"
@@ -80,7 +80,7 @@ void run_headless(const RunOptions& options) {
     }
     if (!options.record.empty())
         throw files::InputError("--record: found with --headless, expected a window (a replay has its trace)");
-    const auto began = std::chrono::steady_clock::now();
+    const double began_s = files::steady_s();
     scene::Scene scene = load_scene(options.scene);
     if (!options.screenshot.empty()) files::check_output(options.screenshot, inputs_of(scene, options.trace));
     if (!options.log.empty()) files::check_output_folder(options.log);
@@ -91,7 +91,7 @@ void run_headless(const RunOptions& options) {
     session::begin_replay({options.log, options.participant, ""}, trace.info, asked_mode(options), session);
     const session::ReplayResult result = session::replay(trace, session);
     files::Json json = session::result_json(session, result);
-    json["wall_s"] = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
+    json["wall_s"] = files::steady_s() - began_s;
     rusage usage{};
     getrusage(RUSAGE_SELF, &usage);
     json["peak_memory_MB"] = static_cast<double>(usage.ru_maxrss) / 1024.0;

@@ -183,7 +183,7 @@ TEST_CASE("hard case 11: a gap is walked on the grid; what is cut of a long one 
     const std::int64_t dropped = run.state.counters.dropped_steps;
     run.feed(pen(1e9 + 1000, Phase::hover, middle));  // nothing touches
     CHECK(run.state.counters.steps == 2400 + 121 * 240);
-    CHECK(run.state.counters.dropped_steps == dropped + (999 - 60) * 240);
+    CHECK(run.state.counters.dropped_steps == dropped);
 }
 
 TEST_CASE("advance: the grid begins with the first sample and goes on at one pace, touched or not, at any rate") {
