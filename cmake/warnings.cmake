@@ -14,8 +14,6 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_L
 endif()
 # Messages of assert name files as they lie in the project, not where this machine keeps it.
 target_compile_options(palpa_flags INTERFACE -fmacro-prefix-map=${PROJECT_SOURCE_DIR}/=)
-# One set of macros for all sources, whatever they link: a precompiled header serves those alone.
-target_compile_definitions(palpa_flags INTERFACE _REENTRANT)
 # Sizes have 32 bits on the web: what is read as 64 is compared with what is there before it is used.
 if(EMSCRIPTEN)
     target_compile_options(palpa_flags INTERFACE -Wno-shorten-64-to-32)
