@@ -1,10 +1,9 @@
-// Converts numbers to and from text, as the standard library does it.
+// Converts numbers to and from text by the standard library.
 
 #include <array>
 #include <charconv>
 #include <cmath>
 
-#include "files/shortest_decimal.h"
 #include "files/text.h"
 
 namespace palpa::files {
@@ -21,9 +20,9 @@ void append_number(double value, std::string& out) {
         out.append("n/a");
         return;
     }
-    std::array<char, kShortestDecimal> buffer;
-    char* end = write_shortest(value, buffer.data());
-    if (end == nullptr) end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value).ptr;  // there is room
+    std::array<char, 32> buffer;
+    const auto [end, error] = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value);
+    static_cast<void>(error);  // 32 characters hold every double
     out.append(buffer.data(), end);
 }
 
