@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "app/live/live_app.h"
 #include "app/scene_choices.h"
@@ -60,5 +61,14 @@ struct Desk {
                         {gui, tissue}, app.view, app.session.state);
     }
 };
+
+// Takes the events that wait, and shows a frame, so many times.
+inline void frames(Desk& desk, int count) {
+    std::vector<platform::Sample> samples;
+    for (int i = 0; i < count; ++i) {
+        desk.window.poll(0.0, samples);
+        desk.show_frame();
+    }
+}
 
 }  // namespace palpa::test

@@ -10,18 +10,6 @@ using namespace palpa::platform;
 using namespace palpa::app;
 using namespace palpa::test;
 
-namespace {
-
-void frames(Desk& desk, int count) {
-    std::vector<Sample> samples;
-    for (int i = 0; i < count; ++i) {
-        desk.window.poll(0.0, samples);
-        desk.show_frame();
-    }
-}
-
-}  // namespace
-
 TEST_CASE("scale screen: what is typed counts while it is a scale that a screen can have") {
     Desk desk("");
     open_screen(Screen::scale, desk.window, desk.app);

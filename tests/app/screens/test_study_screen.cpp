@@ -12,18 +12,6 @@ using namespace palpa::study;
 using namespace palpa::app;
 using namespace palpa::test;
 
-namespace {
-
-void frames(Desk& desk, int count) {
-    std::vector<Sample> samples;
-    for (int i = 0; i < count; ++i) {
-        desk.window.poll(0.0, samples);
-        desk.show_frame();
-    }
-}
-
-}  // namespace
-
 TEST_CASE("study screen: the code's field has the letters again after Escape") {
     const TemporaryFolder folder;
     Desk desk("");
