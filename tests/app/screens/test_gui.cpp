@@ -6,6 +6,7 @@
 #include <imgui.h>
 
 #include "app/screens/gui.h"
+#include "tests/app/screens/typing.h"
 #include "tests/off_screen.h"
 
 using namespace palpa;
@@ -50,39 +51,10 @@ struct Form {
         for (int i = 0; i < count; ++i) frame();
     }
 
-    void send_key(Uint32 type, SDL_Keycode code) const {
-        SDL_Event event{};
-        event.type = type;
-        event.key.windowID = SDL_GetWindowID(window.sdl());
-        event.key.state = type == SDL_KEYDOWN ? SDL_PRESSED : SDL_RELEASED;
-        event.key.keysym.sym = code;
-        SDL_PushEvent(&event);
-    }
-    void tap(SDL_Keycode code) const {
-        send_key(SDL_KEYDOWN, code);
-        send_key(SDL_KEYUP, code);
-    }
-    void type(char letter) const {
-        send_key(SDL_KEYDOWN, letter);
-        SDL_Event event{};
-        event.type = SDL_TEXTINPUT;
-        event.text.windowID = SDL_GetWindowID(window.sdl());
-        event.text.text[0] = letter;
-        SDL_PushEvent(&event);
-        send_key(SDL_KEYUP, letter);
-    }
-    void click() const {
-        for (const Uint32 type : {SDL_MOUSEBUTTONDOWN, SDL_MOUSEBUTTONUP}) {
-            SDL_Event event{};
-            event.type = type;
-            event.button.windowID = SDL_GetWindowID(window.sdl());
-            event.button.button = SDL_BUTTON_LEFT;
-            event.button.state = type == SDL_MOUSEBUTTONDOWN ? SDL_PRESSED : SDL_RELEASED;
-            event.button.x = static_cast<int>(button.x);
-            event.button.y = static_cast<int>(button.y);
-            SDL_PushEvent(&event);
-        }
-    }
+    void send_key(Uint32 type, SDL_Keycode code) const { test::send_key(window, type, code); }
+    void tap(SDL_Keycode code) const { test::tap(window, code); }
+    void type(char letter) const { test::type(window, letter); }
+    void click() const { test::click(window, static_cast<int>(button.x), static_cast<int>(button.y)); }
 };
 
 }  // namespace
