@@ -8,8 +8,6 @@
 namespace palpa::calibration {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
 // Of the first or the last knot, from the two chords next to it (h: their widths, d: their slopes).
 double end_slope(double h0, double h1, double d0, double d1) {
     const double three_point = ((2.0 * h0 + h1) * d0 - h0 * d1) / (h0 + h1);

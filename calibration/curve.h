@@ -2,10 +2,13 @@
 // Curves from pressure level to force: value, slope and inverse. Evaluated for every sample: nothing here allocates.
 
 #include <cstdint>
+#include <limits>
 #include <string_view>
 #include <vector>
 
 namespace palpa::calibration {
+
+inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 enum class CurveModel : std::uint8_t { exponential, exponential_offset, power, monotone_cubic };
 

@@ -19,8 +19,6 @@
 namespace palpa::calibration {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
 bool has_offset(const FitOptions& options) { return options.model == CurveModel::exponential_offset; }
 
 // In log space without an offset the model is log F = p0 + theta z, and p0 = log A is the parameter.

@@ -6,14 +6,13 @@
 #include <numeric>
 #include <set>
 
+#include "calibration/curve.h"
 #include "files/input_error.h"
 #include "files/quantile.h"
 #include "files/text.h"
 
 namespace palpa::calibration {
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 std::string line_of(const CalibrationRows& rows, std::size_t i) { return "line " + std::to_string(rows.line[i]); }
 

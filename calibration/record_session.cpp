@@ -51,7 +51,7 @@ bool force_in(const std::deque<RecordSession::Timed>& forces, double from_s, dou
     return true;
 }
 
-std::string percent(double share) {
+std::string whole_percent(double share) {
     if (share > 1.0) return "over 100 %";
     return files::short_number(std::round(100.0 * share)) + " %";
 }
@@ -184,14 +184,15 @@ Knowledge knowledge_of(const RecordOptions& options, const std::vector<CapturedP
     for (int band = 0; band < options.bands; ++band) {
         const double error = out.band_error[static_cast<std::size_t>(band)];
         if (error <= options.goal) continue;
-        places += (places.empty() ? "" : ", ") + percent(static_cast<double>(band) / options.bands) + " to " +
-                  percent((band + 1.0) / options.bands) +
-                  (std::isnan(error) ? " (no point)" : " (" + percent(error) + ")");
+        places += (places.empty() ? "" : ", ") + whole_percent(static_cast<double>(band) / options.bands) + " to " +
+                  whole_percent((band + 1.0) / options.bands) +
+                  (std::isnan(error) ? " (no point)" : " (" + whole_percent(error) + ")");
     }
     if (out.repeats < options.least_repeats)
         out.missing = std::to_string(out.repeats) + " of " + std::to_string(options.least_repeats) + " repeats";
     if (!places.empty())
-        out.missing += (out.missing.empty() ? "" : "; ") + ("not known to " + percent(options.goal) + ": " + places);
+        out.missing +=
+            (out.missing.empty() ? "" : "; ") + ("not known to " + whole_percent(options.goal) + ": " + places);
     out.done = out.missing.empty();
     return out;
 }

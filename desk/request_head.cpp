@@ -6,7 +6,6 @@
 namespace palpa::desk {
 namespace {
 
-constexpr std::size_t kLongestTarget = 1024;
 constexpr int kMostLines = 100;
 constexpr std::size_t kMostDigits = 15;
 

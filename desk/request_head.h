@@ -10,6 +10,7 @@
 namespace palpa::desk {
 
 inline constexpr std::size_t kLongestHead_bytes = 16 * 1024;
+inline constexpr std::size_t kLongestTarget = 1024;  // characters
 
 struct CheckedHead {
     int refused = 0;                  // the HTTP status to refuse it with; 0 if it is fine

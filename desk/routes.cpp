@@ -10,6 +10,7 @@
 #include "desk/static_files.h"
 #include "files/clock.h"
 #include "files/input_error.h"
+#include "files/sha256.h"
 
 namespace palpa::desk {
 namespace {
@@ -19,7 +20,6 @@ using httplib::Request;
 using httplib::Response;
 
 constexpr std::size_t kLargestPairing_bytes = 1024;
-constexpr std::size_t kHashDigits = 64;
 constexpr std::array<const char*, 5> kAssetFolders{"scenes", "maps", "profiles", "phantoms", "protocols"};
 
 double unix_s() { return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count(); }
@@ -76,12 +76,6 @@ std::string lower_case(std::string text) {
     return text;
 }
 
-bool is_hash(const std::string& text) {
-    return text.size() == kHashDigits && std::all_of(text.begin(), text.end(), [](char c) {
-               return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'f');
-           });
-}
-
 std::uint64_t announced_bytes(const Request& req) { return req.get_header_value<std::uint64_t>("Content-Length"); }
 
 // Checks before a body is read whether its upload can be taken.
@@ -90,7 +84,7 @@ bool upload_refused(const Request& req, Desk& desk, Response& res) {
         ask_to_pair(res);
     } else if (!desk.uploads) {
         refuse(503, "this desk takes no logs: it was started without --collect", res);
-    } else if (!is_hash(lower_case(req.get_header_value("X-Content-SHA256")))) {
+    } else if (!files::is_sha256_hex(lower_case(req.get_header_value("X-Content-SHA256")))) {
         refuse(400, "X-Content-SHA256: expected 64 hexadecimal digits", res);
     } else if (announced_bytes(req) > desk.options.uploads.upload_bytes) {
         refuse(413, "at most " + std::to_string(desk.options.uploads.upload_bytes) + " bytes in one upload", res);

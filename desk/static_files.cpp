@@ -7,10 +7,10 @@
 #include <unistd.h>
 #include <utility>
 
+#include "desk/request_head.h"
+
 namespace palpa::desk {
 namespace {
-
-constexpr std::size_t kLongestTarget = 1024;
 
 int hex_digit(char c) {
     if (c >= '0' && c <= '9') return c - '0';

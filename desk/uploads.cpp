@@ -13,6 +13,7 @@
 #include "files/clock.h"
 #include "files/durable.h"
 #include "files/input_error.h"
+#include "files/sha256.h"
 #include "files/text.h"
 #include "study/read_logs.h"
 
@@ -24,28 +25,18 @@ namespace fs = std::filesystem;
 constexpr std::string_view kEnding = ".upload";
 constexpr std::string_view kHeader = "received_utc\tsha256\tbytes\tname\tlabel\tdevice\taddress\n";
 constexpr std::size_t kLongestLabel = 64;
-constexpr std::size_t kHashDigits = 64;
 constexpr std::uint64_t kRow_bytes = 512;  // more than a row of the index
-
-bool is_hash(std::string_view text) {
-    return text.size() == kHashDigits && std::all_of(text.begin(), text.end(), [](char c) {
-               return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'f');
-           });
-}
 
 // Returns the hash in the name of an upload, or "".
 std::string hash_of_name(const fs::path& file) {
     const std::string name = file.filename().string();
-    if (name.size() != kHashDigits + kEnding.size() || name.substr(kHashDigits) != kEnding) return "";
-    return is_hash(name.substr(0, kHashDigits)) ? name.substr(0, kHashDigits) : "";
+    if (!std::string_view(name).ends_with(kEnding)) return "";
+    const std::string hash = name.substr(0, name.size() - kEnding.size());
+    return files::is_sha256_hex(hash) ? hash : "";
 }
 
 std::string row_key(std::string_view sha256, std::string_view label, std::string_view device) {
     return std::string(sha256).append("\t").append(label).append("\t").append(device);
-}
-
-[[noreturn]] void fail(const fs::path& path) {
-    throw std::runtime_error(path.string() + ": cannot be written: " + std::strerror(errno));
 }
 
 }  // namespace
@@ -110,7 +101,7 @@ Uploads::~Uploads() {
 
 void Uploads::lock_folder() {
     lock_fd_ = ::open((folder_ / "aside").c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-    if (lock_fd_ < 0) fail(folder_ / "aside");
+    if (lock_fd_ < 0) files::fail_writing(folder_ / "aside");
     if (::flock(lock_fd_, LOCK_EX | LOCK_NB) == 0) return;
     const bool taken = errno == EWOULDBLOCK;
     ::close(lock_fd_);
@@ -129,7 +120,7 @@ void Uploads::read_index(std::vector<std::string>& notes) {
         rest.remove_prefix(row.size() + 1);
         if (line == 1 || row.empty()) continue;
         const auto fields = files::fields_of(row, '\t');
-        if (fields.size() != 7 || !is_hash(fields[1])) {
+        if (fields.size() != 7 || !files::is_sha256_hex(fields[1])) {
             notes.push_back(file.string() + ": line " + std::to_string(line) + " is left out: " + files::shown(row) +
                             " is not an upload with 7 fields");
             continue;
@@ -197,7 +188,7 @@ Uploads::Incoming::Incoming(Uploads& uploads, std::uint64_t bytes)
     }
     aside_ = uploads_.folder_ / "aside" / name;
     fd_ = ::open(aside_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0644);
-    if (fd_ < 0) fail(aside_);
+    if (fd_ < 0) files::fail_writing(aside_);
 }
 
 Uploads::Incoming::~Incoming() {

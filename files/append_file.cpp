@@ -6,6 +6,8 @@
 #include <stdexcept>
 #include <unistd.h>
 
+#include "files/text.h"
+
 namespace palpa::files {
 namespace {
 
@@ -63,9 +65,8 @@ bool AppendFile::sync() {
 }
 
 void append_synced(const std::filesystem::path& path, std::string_view text) {
-    const auto fail = [&] { throw std::runtime_error(path.string() + ": cannot be written: " + std::strerror(errno)); };
     const int fd = ::open(path.c_str(), O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC, 0644);
-    if (fd < 0) fail();
+    if (fd < 0) fail_writing(path);
     char last = '\n';
     const off_t size = ::lseek(fd, 0, SEEK_END);
     std::string whole(text);
@@ -74,7 +75,7 @@ void append_synced(const std::filesystem::path& path, std::string_view text) {
     const int error = errno;
     ::close(fd);
     errno = error;
-    if (!good || !sync_folder_of(path)) fail();
+    if (!good || !sync_folder_of(path)) fail_writing(path);
 }
 
 }  // namespace palpa::files

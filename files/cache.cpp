@@ -14,7 +14,7 @@ namespace {
 static_assert(std::endian::native == std::endian::little, "words are read as they lie in the file");
 static_assert(sizeof(double) == sizeof(std::uint64_t));
 
-constexpr std::uint64_t kMagic = 0x4548434141504c41ull;
+constexpr std::uint64_t kCacheMagic = 0x4548434141504c41ull;
 constexpr std::uint64_t kVersion = 1;
 constexpr std::size_t kWord = sizeof(std::uint64_t);
 constexpr std::size_t kHeaderWords = 4;  // magic, version, fingerprint, number of arrays
@@ -45,7 +45,7 @@ std::uint64_t checksum(std::string_view bytes, std::size_t n_words) {
 std::optional<CachedArrays> parse(std::string_view bytes, std::uint64_t fingerprint) {
     const std::size_t words = bytes.size() / kWord;
     if (bytes.size() % kWord != 0 || words < kHeaderWords + 1) return std::nullopt;
-    if (word_at(bytes, 0) != kMagic || word_at(bytes, 1) != kVersion || word_at(bytes, 2) != fingerprint) {
+    if (word_at(bytes, 0) != kCacheMagic || word_at(bytes, 1) != kVersion || word_at(bytes, 2) != fingerprint) {
         return std::nullopt;
     }
     if (checksum(bytes, words - 1) != word_at(bytes, words - 1)) return std::nullopt;
@@ -97,7 +97,7 @@ std::optional<CachedArrays> read_cache(const std::filesystem::path& folder, std:
 std::string write_cache(const std::filesystem::path& folder, std::uint64_t fingerprint, const CachedArrays& arrays) {
     if (folder.empty()) return "cache: neither XDG_CACHE_HOME nor HOME names a folder; nothing is kept";
     std::string bytes;
-    for (const std::uint64_t word : {kMagic, kVersion, fingerprint, std::uint64_t{arrays.size()}})
+    for (const std::uint64_t word : {kCacheMagic, kVersion, fingerprint, std::uint64_t{arrays.size()}})
         append_word(word, bytes);
     for (const auto& array : arrays) append_word(array.size(), bytes);
     for (const auto& array : arrays) bytes.append(reinterpret_cast<const char*>(array.data()), array.size() * kWord);

@@ -11,14 +11,6 @@
 #include "files/text.h"
 
 namespace palpa::files {
-namespace {
-
-[[noreturn]] void fail_writing(const std::filesystem::path& path) {
-    throw std::runtime_error(path.string() + ": cannot be written: " + std::strerror(errno));
-}
-
-}  // namespace
-
 void sync_folder(const std::filesystem::path& folder) {
     const int fd = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
     const bool synced = fd >= 0 && ::fsync(fd) == 0;

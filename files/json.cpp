@@ -37,6 +37,8 @@ bool inside(double value, Bounds bounds) {
 
 }  // namespace
 
+Json number_or_null(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+
 std::string described(const Json& value) {
     if (value.is_null()) return "null";
     if (value.is_array()) return "an array of " + std::to_string(value.size());

@@ -18,6 +18,9 @@ using Json = nlohmann::ordered_json;
 Json read_json(const std::filesystem::path& path);
 Json parse_json(std::string_view text, const std::string& file_name);
 
+// Numbers that are not finite become null.
+Json number_or_null(double value);
+
 // Bounds of a number, as messages give them: "> 0", "0 ... 1".
 struct Bounds {
     double lowest;

@@ -14,7 +14,7 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "arrays are read as they lie in the file");
 
-constexpr std::string_view kMagic("\x93NUMPY", 6);
+constexpr std::string_view kNpyMagic("\x93NUMPY", 6);
 
 struct Header {
     std::size_t from = 0;  // of its text
@@ -24,7 +24,7 @@ struct Header {
 
 // `start`: at least the first 12 bytes of a file of `file_bytes`, or all of it.
 Header find_header(std::string_view start, std::size_t file_bytes, const std::string& file) {
-    if (start.size() < 10 || start.substr(0, 6) != kMagic) {
+    if (start.size() < 10 || start.substr(0, 6) != kNpyMagic) {
         throw bad_input(file, "", "no NumPy magic number", "an .npy file");
     }
     const auto byte = [&](std::size_t i) { return static_cast<std::size_t>(static_cast<unsigned char>(start[i])); };
@@ -175,7 +175,7 @@ std::string npy_header(const std::vector<std::size_t>& shape) {
     while ((kPreamble + header.size() + 1) % kAlignment != 0) header.push_back(' ');
     header.push_back('\n');
 
-    std::string out(kMagic);
+    std::string out(kNpyMagic);
     out.append({'\x01', '\x00', static_cast<char>(header.size() & 0xff), static_cast<char>(header.size() >> 8)});
     return out + header;
 }

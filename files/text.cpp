@@ -32,10 +32,6 @@ std::string read_text(const std::filesystem::path& path, std::size_t limit_bytes
 
 namespace {
 
-[[noreturn]] void fail_writing(const std::filesystem::path& path) {
-    throw std::runtime_error(path.string() + ": cannot be written: " + std::strerror(errno));
-}
-
 using Pieces = std::initializer_list<std::string_view>;
 
 void write_new(const std::filesystem::path& path, Pieces pieces, bool sync) {
@@ -72,6 +68,10 @@ void write_and_rename(const std::filesystem::path& name, Pieces pieces, bool syn
 }
 
 }  // namespace
+
+void fail_writing(const std::filesystem::path& path) {
+    throw std::runtime_error(path.string() + ": cannot be written: " + std::strerror(errno));
+}
 
 void write_text_atomically(const std::filesystem::path& path, std::string_view text) {
     write_and_rename(path, {text}, true);

@@ -22,6 +22,9 @@ void write_text_whole(const std::filesystem::path& path, std::string_view text);
 // Waits until an existing file is on the disk. Throws std::runtime_error.
 void sync_file(const std::filesystem::path& path);
 
+// Throws std::runtime_error that names the path and the reason in errno.
+[[noreturn]] void fail_writing(const std::filesystem::path& path);
+
 // Splits a line at its separators; a line without a separator is one field.
 std::vector<std::string_view> fields_of(std::string_view line, char separator);
 

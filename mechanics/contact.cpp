@@ -5,19 +5,17 @@
 #include <cmath>
 
 #include "mechanics/contact_geometry.h"
+#include "mechanics/index.h"
 
 namespace palpa::mechanics {
 namespace {
 
 using Eigen::Index;
 
-constexpr double kGapTolerance = 1e-10;    // of the greatest penetration; round-off of C p is 1e-13 of it
 constexpr double kRegularisation = 1e-12;  // of the mean diagonal: keeps doubled nodes apart
 constexpr double kForceTolerance = 1e-9;
 constexpr double kDepthRoundOff = 1e-15;  // of the depth: a narrower bracket cannot be halved
 constexpr int kMostSearchSteps = 60;
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 double compliance_of(const Compliance& c, const ContactWork& w, int i, int j) {
     return c.normal_m_per_N(w.candidate[at(i)], w.candidate[at(j)]);

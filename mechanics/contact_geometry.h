@@ -20,6 +20,9 @@ Reach reach(const Tool& tool, double x_m, double y_m);
 // Touch nodes that follow each other lie side by side in most meshes: runs of them are passed over at once.
 inline constexpr int kRunLength = 16;
 
+// A gap below this share of the greatest penetration counts as closed; the round-off of C p is 1e-13 of that penetration.
+inline constexpr double kGapTolerance = 1e-10;
+
 // Fills the candidate lists with the touch nodes whose delta exceeds -margin times their tool's depth.
 void find_candidates(const Compliance& compliance, std::span<const Tool> tools, double margin, ContactWork& work);
 

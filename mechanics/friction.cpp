@@ -5,13 +5,12 @@
 
 #include "mechanics/contact_geometry.h"
 #include "mechanics/error.h"
+#include "mechanics/index.h"
 
 namespace palpa::mechanics {
 namespace {
 
 using Eigen::Index;
-
-std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
 void make_room(Index n, FrictionWork& w) {
     if (w.C.rows() >= 3 * n) return;

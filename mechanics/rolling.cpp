@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "mechanics/error.h"
+#include "mechanics/index.h"
 #include "mechanics/rolling_mesh.h"
 #include "mechanics/text.h"
 
@@ -11,8 +12,6 @@ namespace palpa::mechanics {
 namespace {
 
 constexpr double kWorstViolation = 1e-6;  // of the depth, when a slide does not settle
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 // Four sample lines around a point and Lagrange's weights on them; the outermost four at the ends.
 struct Stencil {

@@ -6,16 +6,13 @@
 
 #include "mechanics/contact_geometry.h"
 #include "mechanics/error.h"
+#include "mechanics/index.h"
 #include "mechanics/text.h"
 
 namespace palpa::mechanics {
 namespace {
 
 using Eigen::Index;
-
-constexpr double kGapTolerance = 1e-10;  // of the greatest penetration, as in contact.cpp
-
-std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
 void gather(const Compliance& c, const SteadySlide& slide, SteadyWork& w) {
     const std::vector<int>& touch = w.contact.candidate;

@@ -7,6 +7,12 @@
 #include "render/gl.h"
 
 namespace palpa::render {
+
+struct SurfaceMesh {
+    std::vector<float> points;
+    std::vector<unsigned> triangles;
+};
+
 namespace {
 
 constexpr int kCells = 160;  // 0.75 mm on the 120 mm phantom
@@ -105,11 +111,6 @@ void main() {
   colour = vec4(mixed, cover * opacity);
 }
 )";
-
-struct SurfaceMesh {
-    std::vector<float> points;
-    std::vector<unsigned> triangles;
-};
 
 SurfaceMesh unit_grid(int cells) {
     SurfaceMesh mesh;

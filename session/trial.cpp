@@ -97,8 +97,6 @@ Finding finding_of(const study::Coverage& coverage, bool found, double deepest_m
     return Finding::not_marked;
 }
 
-files::Json number_or_null(double value) { return std::isfinite(value) ? files::Json(value) : files::Json(nullptr); }
-
 }  // namespace
 
 Trial make_trial(const scene::Plan& plan, TrialMode mode) {
@@ -148,10 +146,10 @@ files::Json trial_json(const scene::Plan& plan, const Trial& trial) {
     json["tp"] = result.score.true_positives;
     json["fp"] = result.score.false_positives;
     json["fn"] = result.score.false_negatives;
-    json["sensitivity"] = number_or_null(result.score.sensitivity);
-    json["ppv"] = number_or_null(result.score.ppv);
+    json["sensitivity"] = files::number_or_null(result.score.sensitivity);
+    json["ppv"] = files::number_or_null(result.score.ppv);
     json["path_mm"] = 1e3 * trial.pressed_m;
-    json["mean_force_N"] = number_or_null(mean_force_N(trial));
+    json["mean_force_N"] = files::number_or_null(mean_force_N(trial));
     json["marks"] = files::Json::array();
     for (std::size_t i = 0; i < trial.marks.size(); ++i) {
         const Mark& mark = trial.marks[i];

@@ -9,8 +9,6 @@
 namespace palpa::stiffnessmaps {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-
 GridShape shape_of(const Map& map) { return {map.n_x, map.n_y, map.spacing_m[0], map.spacing_m[1]}; }
 
 // One cell's curve over depth from its measured forces: isotonic, >= 0, gaps interpolated, continued beyond
@@ -43,8 +41,8 @@ std::size_t fill_column(const std::vector<double>& depths_m, std::vector<double>
 
 void fill_normal(const Map& map, Field& field) {
     const std::size_t n_layers = field.n_layers();
-    field.normal_N.assign(map.n_cells() * n_layers, kNaN);
-    field.greatest_m.assign(map.n_cells(), kNaN);
+    field.normal_N.assign(map.n_cells() * n_layers, kMissing);
+    field.greatest_m.assign(map.n_cells(), kMissing);
     field.measured.assign(map.n_cells(), 0.0);
     std::vector<double> column(n_layers);
     for (std::size_t cell = 0; cell < map.n_cells(); ++cell) {

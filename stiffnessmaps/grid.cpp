@@ -7,8 +7,6 @@
 namespace palpa::stiffnessmaps {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-
 // One pass along x (stride 1) or y (stride n_x), weights and weighted values at once.
 void blur_line(std::vector<double>& values, std::vector<double>& weights, std::size_t start, std::size_t stride,
                std::size_t n, const std::vector<double>& kernel) {
@@ -58,7 +56,7 @@ std::vector<double> smooth(const std::vector<double>& values, const GridShape& s
     for (std::size_t j = 0; j < shape.n_y; ++j) blur_line(sums, weights, j * shape.n_x, 1, shape.n_x, along_x);
     for (std::size_t i = 0; i < shape.n_x; ++i) blur_line(sums, weights, i, shape.n_x, shape.n_y, along_y);
     for (std::size_t i = 0; i < values.size(); ++i) {
-        sums[i] = std::isnan(values[i]) ? kNaN : sums[i] / weights[i];
+        sums[i] = std::isnan(values[i]) ? kMissing : sums[i] / weights[i];
     }
     return sums;
 }

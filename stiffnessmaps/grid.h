@@ -2,9 +2,12 @@
 // Small operations on one row-major grid of n_y rows by n_x cells, NaN = missing.
 
 #include <cstddef>
+#include <limits>
 #include <vector>
 
 namespace palpa::stiffnessmaps {
+
+inline constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 
 struct GridShape {
     std::size_t n_x = 0;

@@ -26,7 +26,7 @@ bool holds(const Coverage& c, int i, int j, double x_m, double y_m, double radiu
     return inside_cell || dx * dx + dy * dy <= radius_m * radius_m;
 }
 
-std::size_t index_of(const Coverage& c, int i, int j) { return static_cast<std::size_t>(j * c.n_x + i); }
+std::size_t cell_index(const Coverage& c, int i, int j) { return static_cast<std::size_t>(j * c.n_x + i); }
 
 }  // namespace
 
@@ -49,7 +49,7 @@ void cover(double x_m, double y_m, double radius_m, double depth_m, Coverage& c)
     const auto depth = static_cast<float>(depth_m);
     for (int j = range.low_y; j <= range.high_y; ++j) {
         for (int i = range.low_x; i <= range.high_x; ++i) {
-            float& deepest = c.depth_m[index_of(c, i, j)];
+            float& deepest = c.depth_m[cell_index(c, i, j)];
             if (deepest >= depth || !holds(c, i, j, x_m, y_m, radius_m)) continue;  // most were as deep a sample ago
             deepest = depth;
         }
@@ -78,7 +78,7 @@ double deepest_near(const Coverage& c, double x_m, double y_m, double radius_m) 
     const CellRange range = cells_near(c, x_m, y_m, radius_m);
     for (int j = range.low_y; j <= range.high_y; ++j) {
         for (int i = range.low_x; i <= range.high_x; ++i) {
-            if (holds(c, i, j, x_m, y_m, radius_m)) deepest_m = std::max(deepest_m, c.depth_m[index_of(c, i, j)]);
+            if (holds(c, i, j, x_m, y_m, radius_m)) deepest_m = std::max(deepest_m, c.depth_m[cell_index(c, i, j)]);
         }
     }
     return static_cast<double>(deepest_m);

@@ -7,8 +7,6 @@ namespace {
 
 files::Json interval(const Interval& ci) { return {ci.low, ci.high}; }
 
-files::Json number(double value) { return std::isfinite(value) ? files::Json(value) : files::Json(nullptr); }
-
 void add_share(const std::string& key, const std::optional<Share>& share, files::Json& json) {
     json[key] = share ? files::Json(share->x.p()) : files::Json(nullptr);
     json[key + "_ci"] = share ? interval(share->wilson) : files::Json(nullptr);
@@ -64,7 +62,11 @@ files::Json pair_json(const PairResult& pair) {
 }
 
 files::Json t_json(const TTest& test) {
-    return {{"mean", test.mean}, {"t", number(test.t)}, {"df", test.df}, {"p", test.p}, {"ci", interval(test.ci)}};
+    return {{"mean", test.mean},
+            {"t", files::number_or_null(test.t)},
+            {"df", test.df},
+            {"p", test.p},
+            {"ci", interval(test.ci)}};
 }
 
 files::Json choice_json(const ChoiceResult& choice) {
@@ -84,7 +86,7 @@ files::Json rating_json(const RatingResult& rating) {
     files::Json json{{"condition", rating.condition}, {"item", rating.item}, {"n", rating.n}};
     if (rating.spread) {
         json["mean"] = rating.spread->mean;
-        json["sd"] = number(rating.spread->sd);
+        json["sd"] = files::number_or_null(rating.spread->sd);
         json["median"] = rating.spread->median;
         json["quartiles"] = {rating.spread->lower_quartile, rating.spread->upper_quartile};
     } else {

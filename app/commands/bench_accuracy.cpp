@@ -15,7 +15,7 @@
 namespace palpa::app {
 namespace {
 
-struct Options {
+struct AccuracyOptions {
     std::string folder;
     bool quick = false;
     bool json = false;
@@ -30,7 +30,7 @@ void make_folder(const std::filesystem::path& folder) {
                                 ", expected a folder or a name for one");
 }
 
-void run_accuracy(const Options& options) {
+void run_accuracy(const AccuracyOptions& options) {
     if (!options.folder.empty()) {
         files::check_output_folder(options.folder);
         make_folder(options.folder);
@@ -60,7 +60,7 @@ void run_accuracy(const Options& options) {
 }  // namespace
 
 void add_bench_accuracy(CLI::App& bench) {
-    auto options = std::make_shared<Options>();
+    auto options = std::make_shared<AccuracyOptions>();
     CLI::App* accuracy = bench.add_subcommand("accuracy", "Measure what accuracy costs in time");
     accuracy->require_subcommand(1);
     CLI::App* mechanics = accuracy->add_subcommand(

@@ -16,14 +16,14 @@
 namespace palpa::app {
 namespace {
 
-struct Options {
+struct SpeedOptions {
     std::vector<std::string> scenes;
     double seconds = 10.0;
     int repetitions = 5;
     bool json = false;
 };
 
-void run_speed(const Options& options) {
+void run_speed(const SpeedOptions& options) {
     std::vector<std::string> scenes = options.scenes;
     if (scenes.empty()) {
         for (const char* name : {"default", "delay", "off", "linear"}) {
@@ -50,7 +50,7 @@ void run_speed(const Options& options) {
 }  // namespace
 
 void add_bench_speed(CLI::App& bench) {
-    auto options = std::make_shared<Options>();
+    auto options = std::make_shared<SpeedOptions>();
     CLI::App* speed = bench.add_subcommand("speed", "What a sample costs, pressure to avatar, at 1,000 Hz");
     speed->add_option("SCENES", options->scenes, "scene JSON or map folder (default: four that ship)");
     speed->add_option("--seconds", options->seconds, "of input, in each repetition (default 10)")

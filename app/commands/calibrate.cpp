@@ -240,13 +240,13 @@ void add_check(CLI::App& calibrate) {
     command->callback([arguments] { check(*arguments); });
 }
 
-struct CompareArguments {
+struct CompareProfilesArguments {
     std::string a;
     std::string b;
     bool json = false;
 };
 
-void compare(const CompareArguments& arguments) {
+void compare(const CompareProfilesArguments& arguments) {
     const calibration::Profile a = calibration::read_profile(arguments.a);
     const calibration::Profile b = calibration::read_profile(arguments.b);
     constexpr int kPlaces = 20;
@@ -301,7 +301,7 @@ void compare(const CompareArguments& arguments) {
 }
 
 void add_compare(CLI::App& calibrate) {
-    auto arguments = std::make_shared<CompareArguments>();
+    auto arguments = std::make_shared<CompareProfilesArguments>();
     CLI::App* command = calibrate.add_subcommand("compare", "Compare two profiles, each over its own range of levels");
     command->add_option("A", arguments->a, "profile JSON")->required();
     command->add_option("B", arguments->b, "profile JSON")->required();

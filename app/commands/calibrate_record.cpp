@@ -14,14 +14,14 @@
 namespace palpa::app {
 namespace {
 
-struct Arguments {
+struct RecordArguments {
     calibration::RecordArguments record;
     std::string level = "pressure";
     std::vector<double> range;
     bool json = false;
 };
 
-void record(Arguments& arguments) {
+void record(RecordArguments& arguments) {
     calibration::RecordArguments& record = arguments.record;
     files::check_output_folder(record.folder);
     record.level.level = arguments.level == "pressure"       ? calibration::LevelField::pressure
@@ -57,7 +57,7 @@ void record(Arguments& arguments) {
 }  // namespace
 
 void add_calibrate_record(CLI::App& calibrate) {
-    auto arguments = std::make_shared<Arguments>();
+    auto arguments = std::make_shared<RecordArguments>();
     calibration::RecordArguments& options = arguments->record;
     options.level.full_contact_area_px2 = 8000.0;
     CLI::App* command = calibrate.add_subcommand(

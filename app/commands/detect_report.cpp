@@ -18,8 +18,6 @@ std::string placed_at(const stiffnessmaps::Map& map, const stiffnessmaps::StiffR
 
 std::string mm(double metres) { return files::short_number(1e3 * metres); }
 
-files::Json number_or_null(double value) { return std::isfinite(value) ? files::Json(value) : files::Json(nullptr); }
-
 files::Json region_json(const stiffnessmaps::Map& map, const stiffnessmaps::StiffRegion& r) {
     const std::string placed = placed_at(map, r);
     return {{"id", r.id},
@@ -35,11 +33,11 @@ files::Json region_json(const stiffnessmaps::Map& map, const stiffnessmaps::Stif
             {"peak_y_mm", 1e3 * r.peak_y_m},
             {"peak_N_per_mm", 1e-3 * r.peak_N_per_m},
             {"background_N_per_mm", 1e-3 * r.background_N_per_m},
-            {"contrast", number_or_null(r.contrast)},
+            {"contrast", files::number_or_null(r.contrast)},
             {"mean_excess_N_per_mm", 1e-3 * r.mean_excess_N_per_m},
-            {"noise_N_per_mm", number_or_null(1e-3 * r.noise_N_per_m)},
+            {"noise_N_per_mm", files::number_or_null(1e-3 * r.noise_N_per_m)},
             {"noise_from", r.against_edge ? "edge" : "all"},
-            {"contrast_to_noise", number_or_null(r.contrast_to_noise)},
+            {"contrast_to_noise", files::number_or_null(r.contrast_to_noise)},
             {"contrast_to_noise_needed", r.needed},
             {"independent_areas", r.areas},
             {"at_edge", r.at_edge},
@@ -71,10 +69,10 @@ files::Json detection_json(const stiffnessmaps::Map& map, const stiffnessmaps::D
     files::Json json;
     json["map"] = map.name;
     json["rule"] = {
-        {"threshold", number_or_null(d.threshold)},     {"threshold_from", d.options.threshold ? "given" : "spread"},
-        {"spread_N_per_mm", 1e-3 * d.spread_N_per_m},   {"window_mm", 1e3 * d.options.window_m},
-        {"smoothing_mm", 1e3 * *d.options.smoothing_m}, {"smallest_mm", 1e3 * *d.options.smallest_m},
-        {"deepest_mm", 1e3 * *d.options.deepest_m},     {"least_independent_areas", stiffnessmaps::kLeastAreas}};
+        {"threshold", files::number_or_null(d.threshold)}, {"threshold_from", d.options.threshold ? "given" : "spread"},
+        {"spread_N_per_mm", 1e-3 * d.spread_N_per_m},      {"window_mm", 1e3 * d.options.window_m},
+        {"smoothing_mm", 1e3 * *d.options.smoothing_m},    {"smallest_mm", 1e3 * *d.options.smallest_m},
+        {"deepest_mm", 1e3 * *d.options.deepest_m},        {"least_independent_areas", stiffnessmaps::kLeastAreas}};
     json["sure"] = d.sure();
     json["regions"] = files::Json::array();
     for (const stiffnessmaps::StiffRegion& region : d.regions) json["regions"].push_back(region_json(map, region));

@@ -20,7 +20,7 @@ struct DevicesOptions {
     bool json = false;
 };
 
-constexpr double kFrame_s = 1.0 / 60.0;
+constexpr double kDrawEvery_s = 1.0 / 60.0;
 
 void show(platform::Window& window) {
     render::clear_screen(window.width_px(), window.height_px());
@@ -46,9 +46,9 @@ void watch_devices(double seconds, platform::Window& window, DeviceCheck& check)
         if (left_s <= 0.0) break;
         if (told_s - left_s >= 1.0) tell_time_left(told_s = std::ceil(left_s), window);
         samples.clear();
-        window.poll(std::min(left_s, std::max(0.0, frame_s + kFrame_s - now_s)), samples);
+        window.poll(std::min(left_s, std::max(0.0, frame_s + kDrawEvery_s - now_s)), samples);
         for (const platform::Sample& sample : samples) observe(sample, check);
-        if (window.now_s() - frame_s < kFrame_s) continue;
+        if (window.now_s() - frame_s < kDrawEvery_s) continue;
         frame_s = window.now_s();
         show(window);
     }

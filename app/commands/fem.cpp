@@ -20,7 +20,7 @@ namespace {
 
 using mechanics::LinearRange;
 
-const char* name_of(LinearRange range) {
+const char* range_name(LinearRange range) {
     switch (range) {
         case LinearRange::fine:
             return "green";
@@ -32,7 +32,7 @@ const char* name_of(LinearRange range) {
     return "";
 }
 
-const char* name_of(mechanics::Element element) {
+const char* element_name(mechanics::Element element) {
     switch (element) {
         case mechanics::Element::hex8_bbar:
             return "hex8-bbar";
@@ -80,7 +80,7 @@ std::vector<std::string> warnings_of(const fem::FemCase& model, const fem::FemRe
 files::Json json_of(const fem::FemCase& model, const fem::FemResult& result) {
     files::Json json;
     json["case"] = model.file;
-    json["element"] = name_of(model.problem.element);
+    json["element"] = element_name(model.problem.element);
     json["nodes"] = model.problem.mesh.nodes_m.cols();
     json["elements"] = model.problem.mesh.cells.cols();
     json["dofs"] = result.equations;
@@ -112,7 +112,7 @@ files::Json json_of(const fem::FemCase& model, const fem::FemResult& result) {
     json["energy_J"] = result.solution.energy_J;
     json["max_strain"] = result.max_strain;
     json["max_von_mises_Pa"] = max_von_mises_Pa(result);
-    json["linear_range"] = {{"gauge", name_of(result.linear)}, {"ratio", result.linear_ratio}};
+    json["linear_range"] = {{"gauge", range_name(result.linear)}, {"ratio", result.linear_ratio}};
     json["residual"] = result.residual;
     json["backward_error"] = result.solution.backward_error;
     json["converged"] = result.converged;
@@ -141,7 +141,7 @@ void print_table(const fem::FemCase& model, const fem::FemResult& result) {
         return value_m ? six_digits(1e3 * *value_m) + " mm" : std::string("-");
     };
     std::printf("%s: %s, %td nodes, %td elements, %d equations\n", files::printable(model.file).c_str(),
-                name_of(model.problem.element), model.problem.mesh.nodes_m.cols(), model.problem.mesh.cells.cols(),
+                element_name(model.problem.element), model.problem.mesh.nodes_m.cols(), model.problem.mesh.cells.cols(),
                 result.equations);
     row("applied", files::short_number(result.applied_N) + " N");
     row("centre displacement", mm(result.centre_m));
@@ -161,7 +161,7 @@ void print_table(const fem::FemCase& model, const fem::FemResult& result) {
     row("largest strain", files::short_number(100.0 * result.max_strain) + " %, von Mises " +
                               files::short_number(max_von_mises_Pa(result)) + " Pa");
     row("linear range",
-        std::string(name_of(result.linear)) + ", " + files::short_number(100.0 * result.linear_ratio) + " %");
+        std::string(range_name(result.linear)) + ", " + files::short_number(100.0 * result.linear_ratio) + " %");
     row("residual", files::short_number(result.residual) + ", backward error " +
                         files::short_number(result.solution.backward_error) +
                         (result.converged ? ", converged" : ", NOT converged"));

@@ -82,9 +82,9 @@ class LevelWindow : public LevelSource {
     }
 
     void show(calibration::Recording& recording) override {
-        constexpr double kFrame_s = 1.0 / 60.0;
+        constexpr double kShowEvery_s = 1.0 / 60.0;
         const double now_s = window_.now_s();
-        if (now_s - shown_s_ < kFrame_s) return;
+        if (now_s - shown_s_ < kShowEvery_s) return;
         gui_.begin_frame(now_s - shown_s_, true);
         shown_s_ = now_s;
         refresh_fit(recording, guide_);

@@ -23,8 +23,6 @@ struct CompareArguments {
     bool json = false;
 };
 
-files::Json number_or_null(double value) { return std::isfinite(value) ? files::Json(value) : files::Json(nullptr); }
-
 files::Json depth_json(const stiffnessmaps::DepthDifference& d) {
     if (d.n == 0) return {{"depth_mm", 1e3 * d.depth_m}, {"n", 0}};
     return {{"depth_mm", 1e3 * d.depth_m}, {"n", d.n},
@@ -39,8 +37,8 @@ files::Json difference_json(const stiffnessmaps::MapDifference& d) {
     json["origin_mm"] = {1e3 * d.a.origin_m[0], 1e3 * d.a.origin_m[1]};
     json["spacing_mm"] = {1e3 * d.a.spacing_m[0], 1e3 * d.a.spacing_m[1]};
     json["all"] = depth_json(d.all);
-    json["relative"] = number_or_null(d.relative);
-    json["correlation"] = number_or_null(d.correlation);
+    json["relative"] = files::number_or_null(d.relative);
+    json["correlation"] = files::number_or_null(d.correlation);
     json["depths"] = files::Json::array();
     for (const stiffnessmaps::DepthDifference& depth : d.depths) json["depths"].push_back(depth_json(depth));
     return json;

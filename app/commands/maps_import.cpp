@@ -18,7 +18,7 @@
 namespace palpa::app {
 namespace {
 
-struct Arguments {
+struct ImportArguments {
     std::vector<std::string> files;
     std::string output;
     std::string form, grid, contact, tangential, tilt, quantity, indenter, length_unit, depth_unit, force_unit, axes;
@@ -85,7 +85,7 @@ std::optional<double> metres(const std::optional<double>& mm) {
     return mm ? std::optional<double>(1e-3 * *mm) : std::nullopt;
 }
 
-void set_array_options(const Arguments& a, stiffnessmaps::ImportOptions& options) {
+void set_array_options(const ImportArguments& a, stiffnessmaps::ImportOptions& options) {
     const std::vector<double> spacing = a.spacing.find(',') == std::string::npos
                                             ? lengths_m(a.spacing, "--spacing-mm", 1)
                                             : lengths_m(a.spacing, "--spacing-mm", 2);
@@ -108,7 +108,7 @@ void set_array_options(const Arguments& a, stiffnessmaps::ImportOptions& options
     options.tangential_y.assign(a.tangential_y.begin(), a.tangential_y.end());
 }
 
-stiffnessmaps::ImportOptions options_of(const Arguments& a) {
+stiffnessmaps::ImportOptions options_of(const ImportArguments& a) {
     stiffnessmaps::ImportOptions options;
     options.form = choice<stiffnessmaps::RecordingForm>(a.form, {"probing", "sliding", "matrices"});
     options.name = a.name;
@@ -218,7 +218,7 @@ void print_report(const std::string& name, const stiffnessmaps::Map& map, const 
         100.0 * residual.worst_share(), map.noise_N.value_or(0.0));
 }
 
-void import_map(const Arguments& a) {
+void import_map(const ImportArguments& a) {
     stiffnessmaps::ImportOptions options = options_of(a);
     options.progress = progress_on_terminal();
     options.depths_m = depths_m(a.depths, "--depths-mm", false);
@@ -243,7 +243,7 @@ void import_map(const Arguments& a) {
     if (a.explain) print_choices(map);
 }
 
-void add_table_options(CLI::App& command, Arguments& a) {
+void add_table_options(CLI::App& command, ImportArguments& a) {
     const auto number = [&](const char* name, std::optional<double>& value, const char* help, double lowest,
                             double highest) {
         command.add_option(name, value, help)->check(CLI::Range(lowest, highest))->group("Tables");
@@ -282,7 +282,7 @@ void add_table_options(CLI::App& command, Arguments& a) {
     text("--at-depth-mm", a.at_depths, "sliding at constant depth: the depth of each file");
 }
 
-void add_array_options(CLI::App& command, Arguments& a) {
+void add_array_options(CLI::App& command, ImportArguments& a) {
     const auto text = [&](const char* name, std::string& value, const char* help) {
         return command.add_option(name, value, help)->group("Arrays");
     };
@@ -319,7 +319,7 @@ void add_array_options(CLI::App& command, Arguments& a) {
 }  // namespace
 
 void add_maps_import(CLI::App& maps) {
-    auto a = std::make_shared<Arguments>();
+    auto a = std::make_shared<ImportArguments>();
     CLI::App* command = maps.add_subcommand(
         "import", "Turn a recording into a map: probing, sliding, matrices of force, slices of stiffness");
     command

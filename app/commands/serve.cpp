@@ -12,7 +12,7 @@
 namespace palpa::app {
 namespace {
 
-struct Arguments {
+struct ServeArguments {
     desk::ServeOptions options;
     std::string web;
     double hours = 12.0;
@@ -20,7 +20,7 @@ struct Arguments {
     double total_MB = 16384.0;
 };
 
-void start(const Arguments& arguments) {
+void start(const ServeArguments& arguments) {
     desk::ServeOptions options = arguments.options;
     options.assets = assets_folder();
     options.web =
@@ -35,7 +35,7 @@ void start(const Arguments& arguments) {
 }  // namespace
 
 void add_serve(CLI::App& app) {
-    auto arguments = std::make_shared<Arguments>();
+    auto arguments = std::make_shared<ServeArguments>();
     desk::ServeOptions& options = arguments->options;
     CLI::App* command =
         app.add_subcommand("serve", "Serve the web app and its files to tablets and collect their logs");

@@ -15,7 +15,7 @@
 namespace palpa::app {
 namespace {
 
-struct Arguments {
+struct SimulateArguments {
     SimulateOptions options;
     std::string protocol;
     std::string output;
@@ -24,7 +24,7 @@ struct Arguments {
     bool json = false;
 };
 
-void simulate(const Arguments& arguments) {
+void simulate(const SimulateArguments& arguments) {
     SimulateOptions options = arguments.options;
     options.output = arguments.output;
     options.samples = arguments.samples == "all";
@@ -61,7 +61,7 @@ void simulate(const Arguments& arguments) {
 }  // namespace
 
 void add_study_simulate(CLI::App& study) {
-    auto arguments = std::make_shared<Arguments>();
+    auto arguments = std::make_shared<SimulateArguments>();
     CLI::App* command =
         study.add_subcommand("simulate", "Run a study with simulated participants, through the real loop and logs");
     command->add_option("PROTOCOL", arguments->protocol, "protocol JSON")->required();

@@ -23,7 +23,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Arguments {
+struct WatchArguments {
     std::string directory;
     std::string participant;
     bool once = false;
@@ -120,7 +120,7 @@ files::Json state_of(const fs::path& directory, const study::Person& person, std
     return json;
 }
 
-files::Json look(const Arguments& arguments) {
+files::Json look(const WatchArguments& arguments) {
     if (!study::read_identity(arguments.directory)) {
         throw files::bad_input(arguments.directory, "", "no study.json",
                                "the folder of a study (--log of palpa study run)");
@@ -179,7 +179,7 @@ void print(const files::Json& state) {
     if (state.contains("events")) std::printf("\n");
 }
 
-void watch(const Arguments& arguments) {
+void watch(const WatchArguments& arguments) {
     const bool again = !arguments.once && !arguments.json && isatty(STDOUT_FILENO) != 0;
     while (true) {
         const files::Json json = look(arguments);
@@ -199,7 +199,7 @@ void watch(const Arguments& arguments) {
 }  // namespace
 
 void add_study_watch(CLI::App& study) {
-    auto arguments = std::make_shared<Arguments>();
+    auto arguments = std::make_shared<WatchArguments>();
     CLI::App* command = study.add_subcommand(
         "watch", "Show the experimenter a running study: participants, their progress, what to present");
     command->add_option("DIR", arguments->directory, "the study's folder")->required();

@@ -72,8 +72,9 @@ void note_gap(const platform::Sample& sample, PointerTime& pointer, ToolCheck& t
 }
 
 // n/a of traces is null here
-files::Json number(double value) { return std::isfinite(value) ? files::Json(value) : files::Json(nullptr); }
-files::Json range_json(const Range& range) { return {number(range.lowest), number(range.highest)}; }
+files::Json range_json(const Range& range) {
+    return {files::number_or_null(range.lowest), files::number_or_null(range.highest)};
+}
 
 files::Json seen_json(platform::Tool which, const DeviceCheck& check) {
     const ToolCheck& tool = of_tool(which, check);
@@ -86,10 +87,10 @@ files::Json seen_json(platform::Tool which, const DeviceCheck& check) {
     json["distinct_pressures"] = distinct_pressures(tool);
     json["tilt"] = tool.tilt;
     json["contact_size"] = tool.contact_size;
-    json["clock_drift_ppm"] = number(drift.ppm);
-    json["clock_drift_standard_error_ppm"] = number(drift.standard_error_ppm);
-    json["samples_per_delivery"] = number(samples_per_delivery(tool));
-    json["delay_ms"] = number(1e3 * median_delay_s(tool));
+    json["clock_drift_ppm"] = files::number_or_null(drift.ppm);
+    json["clock_drift_standard_error_ppm"] = files::number_or_null(drift.standard_error_ppm);
+    json["samples_per_delivery"] = files::number_or_null(samples_per_delivery(tool));
+    json["delay_ms"] = files::number_or_null(1e3 * median_delay_s(tool));
     json["x_px"] = range_json(tool.x_px);
     json["y_px"] = range_json(tool.y_px);
     return json;

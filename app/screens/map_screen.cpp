@@ -14,15 +14,15 @@
 namespace palpa::app {
 namespace {
 
-std::string mm(double metres) { return files::short_number(1e3 * metres); }
+std::string in_mm(double metres) { return files::short_number(1e3 * metres); }
 
 std::vector<std::string> facts_of(const stiffnessmaps::Map& map, const stiffnessmaps::Field& field) {
     const stiffnessmaps::ForceRange range = stiffnessmaps::force_range(map);
     std::vector<std::string> out;
     out.push_back(words::filled(words::kCellsOf, {std::to_string(map.n_x), std::to_string(map.n_y),
-                                                  mm(map.spacing_m[0]), mm(map.spacing_m[1])}));
-    out.push_back(words::filled(words::kDepthsFromTo,
-                                {std::to_string(map.n_depths()), mm(map.depths_m.front()), mm(map.depths_m.back())}));
+                                                  in_mm(map.spacing_m[0]), in_mm(map.spacing_m[1])}));
+    out.push_back(words::filled(words::kDepthsFromTo, {std::to_string(map.n_depths()), in_mm(map.depths_m.front()),
+                                                       in_mm(map.depths_m.back())}));
     out.push_back(words::filled(words::kForceFromTo,
                                 {files::short_number(range.lowest_N), files::short_number(range.highest_N)}));
     const double missing =
@@ -32,14 +32,14 @@ std::vector<std::string> facts_of(const stiffnessmaps::Map& map, const stiffness
     out.push_back(words::filled(
         words::kNoise, {files::short_number(1e3 * normal_noise_N(map)), std::to_string(field.isotonic_changed)}));
     out.push_back(words::filled(words::kTangential, {name_of(map.tangential)}));
-    out.push_back(words::filled(words::kIndenter, {name_of(map.indenter), mm(map.indenter_radius_m)}));
+    out.push_back(words::filled(words::kIndenter, {name_of(map.indenter), in_mm(map.indenter_radius_m)}));
     for (const stiffnessmaps::Nodule& nodule : map.nodules) {
         std::string text = words::filled(nodule.placed ? words::kPlacedNodule : words::kDetectedNodule,
-                                         {nodule.id, mm(nodule.x_m), mm(nodule.y_m)});
+                                         {nodule.id, in_mm(nodule.x_m), in_mm(nodule.y_m)});
         if (nodule.length_m)
-            text += words::filled(words::kMmLong, {mm(*nodule.length_m)});
+            text += words::filled(words::kMmLong, {in_mm(*nodule.length_m)});
         else if (nodule.diameter_m)
-            text += words::filled(words::kMmWide, {mm(*nodule.diameter_m)});
+            text += words::filled(words::kMmWide, {in_mm(*nodule.diameter_m)});
         out.push_back(text);
     }
     out.push_back(std::string(name_of(map.source.kind)) + ": " + map.source.how);
@@ -79,7 +79,7 @@ void depth_controls(const Gui& gui, MapBrowser& browser) {
     ImGui::PushStyleVar(ImGuiStyleVar_GrabMinSize, 5.0f * gui.mm());
     ImGui::SetNextItemWidth(slider_px);
     const std::string text =
-        words::filled(words::kMmDeep, {mm(browser.map.depths_m[static_cast<std::size_t>(browser.depth)])});
+        words::filled(words::kMmDeep, {in_mm(browser.map.depths_m[static_cast<std::size_t>(browser.depth)])});
     std::string format;
     for (const char c : text) format += c == '%' ? std::string("%%") : std::string(1, c);
     ImGui::SliderInt("##depth", &browser.depth, 0, std::max(last, 1), format.c_str(), ImGuiSliderFlags_NoInput);

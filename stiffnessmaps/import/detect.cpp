@@ -9,13 +9,13 @@
 #include "files/input_error.h"
 #include "files/quantile.h"
 #include "files/text.h"
+#include "stiffnessmaps/grid.h"
 #include "stiffnessmaps/import/detect_verdicts.h"
 #include "stiffnessmaps/stiffness.h"
 
 namespace palpa::stiffnessmaps {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr int kMostLooks = 5;
 constexpr std::ptrdiff_t kFewCells = 30;  // fewer cannot tell a background from a region
 
@@ -59,8 +59,8 @@ void note_ground(const StiffnessGrid& grid, Detection& d) {
     for (int j = 0; j < grid.n_y; ++j) {
         for (int i = 0; i < grid.n_x; ++i) {
             const bool there = grid.there(j, i) != 0;
-            d.stiffness_N_per_m.push_back(there ? grid.stiffness(j, i) : kNaN);
-            d.background_N_per_m.push_back(there ? grid.background(j, i) : kNaN);
+            d.stiffness_N_per_m.push_back(there ? grid.stiffness(j, i) : kMissing);
+            d.background_N_per_m.push_back(there ? grid.background(j, i) : kMissing);
             if (there) ratio.push_back(1.0 + threshold_at(grid, d, j, i) / grid.background(j, i));
         }
     }

@@ -6,10 +6,11 @@
 #include <numbers>
 #include <opencv2/imgproc.hpp>
 
+#include "stiffnessmaps/grid.h"
+
 namespace palpa::stiffnessmaps {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kLeastShare = 0.03;  // of the background
 
 // Local maxima that reach the threshold, the highest first.
@@ -93,7 +94,7 @@ StiffRegion measure(const StiffnessGrid& grid, const Map& map, const cv::Mat1b& 
     region.peak_y_m = map.y_of(static_cast<std::size_t>(peak.y));
     region.peak_N_per_m = grid.stiffness(peak);
     region.background_N_per_m = grid.background(peak);
-    region.contrast = region.background_N_per_m > 0.0 ? region.peak_N_per_m / region.background_N_per_m : kNaN;
+    region.contrast = region.background_N_per_m > 0.0 ? region.peak_N_per_m / region.background_N_per_m : kMissing;
     region.at_edge = cv::countNonZero(mask & grid.edge) > 0;
     return region;
 }

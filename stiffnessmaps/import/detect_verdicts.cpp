@@ -7,11 +7,11 @@
 
 #include "files/distributions.h"
 #include "files/text.h"
+#include "stiffnessmaps/grid.h"
 
 namespace palpa::stiffnessmaps {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kOfNormal95 = 1.645;
 constexpr double kSelection = 1.5;
 constexpr double kClip = 1.5;
@@ -69,7 +69,7 @@ std::vector<double> means_elsewhere(const StiffnessGrid& grid, const cv::Mat1b& 
 
 // Fills in noise_N_per_m, against_edge and contrast_to_noise; NaN where nothing can be said.
 void compare_with_rest(const StiffnessGrid& grid, const cv::Mat1b& mask, const cv::Mat1b& rest, StiffRegion& region) {
-    region.noise_N_per_m = region.contrast_to_noise = kNaN;
+    region.noise_N_per_m = region.contrast_to_noise = kMissing;
     for (const bool at_edge : {false, true}) {
         if (at_edge && !region.at_edge) continue;
         std::vector<double> means = means_elsewhere(grid, mask, rest, at_edge);

@@ -16,8 +16,6 @@
 namespace palpa::stiffnessmaps {
 namespace {
 
-constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
-
 // Force at the deepest layer that each cell has; of many cells every so many.
 std::vector<double> deepest_forces(const Map& map, std::size_t step) {
     std::vector<double> out;
@@ -72,8 +70,8 @@ void derive_tangential(Map& map) {
     FieldOptions options;
     options.sigma_m = std::max(map.spacing_m[0], map.spacing_m[1]);
     const Field field = make_field(map, options);
-    map.tangential_x_N.assign(map.normal_N.size(), kNaN);
-    map.tangential_y_N.assign(map.normal_N.size(), kNaN);
+    map.tangential_x_N.assign(map.normal_N.size(), kMissing);
+    map.tangential_y_N.assign(map.normal_N.size(), kMissing);
     for (std::size_t k = 0; k < map.n_depths(); ++k) {
         for (std::size_t cell = 0; cell < map.n_cells(); ++cell) {
             const std::size_t at = k * map.n_cells() + cell;

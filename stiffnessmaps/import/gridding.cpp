@@ -11,6 +11,7 @@
 
 #include "files/input_error.h"
 #include "files/text.h"
+#include "stiffnessmaps/grid.h"
 #include "stiffnessmaps/import/robust.h"
 
 namespace palpa::stiffnessmaps {
@@ -18,7 +19,6 @@ namespace {
 
 constexpr double kOffGrid = 0.1;  // of the pitch
 constexpr double kMostPositions = 10000.0;
-constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 
 // Squares of a plane, found by their position.
 struct SquareIndex {
@@ -290,7 +290,8 @@ void weighted_means(const Samples& samples, const GridPlan& plan, const std::vec
             });
         }
         for (const MeanSums& sum : sums) {
-            out.push_back(sum.weight > kEnough ? static_cast<float>(sum.force / sum.weight) : kNaN);
+            out.push_back(sum.weight > kEnough ? static_cast<float>(sum.force / sum.weight)
+                                               : static_cast<float>(kMissing));
         }
     }
 }
@@ -347,7 +348,7 @@ std::vector<float> by_medians(const Samples& samples, const GridPlan& plan) {
     std::sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) {
         return a.slot != b.slot ? a.slot < b.slot : a.force_N < b.force_N;
     });
-    std::vector<float> out(plan.n_cells() * plan.depths_m.size(), kNaN);
+    std::vector<float> out(plan.n_cells() * plan.depths_m.size(), kMissing);
     for (std::size_t i = 0; i < entries.size();) {
         std::size_t end = i;
         while (end < entries.size() && entries[end].slot == entries[i].slot) ++end;

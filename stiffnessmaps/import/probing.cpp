@@ -11,6 +11,7 @@
 #include "files/input_error.h"
 #include "files/table.h"
 #include "files/text.h"
+#include "stiffnessmaps/grid.h"
 #include "stiffnessmaps/import/choices.h"
 #include "stiffnessmaps/import/columns.h"
 #include "stiffnessmaps/import/finish.h"
@@ -23,7 +24,6 @@ namespace {
 
 constexpr double kOffCommand_m = 1e-3;
 constexpr double kSamePlace_m = 0.2e-3;
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 // Finds the place that a row belongs to.
 class Places {
@@ -233,7 +233,7 @@ GridChoice choose_grid(const Probing& probing, const ImportOptions& options, con
 }
 
 void fill_on_grid(const Probing& probing, const GridPlan& plan, Map& map, const std::string& file) {
-    map.normal_N.assign(map.n_depths() * map.n_cells(), static_cast<float>(kNaN));
+    map.normal_N.assign(map.n_depths() * map.n_cells(), kMissing);
     std::vector<std::size_t> line(map.n_cells(), 0);
     for (const ProbedPoint& p : probing.points) {
         const std::size_t cell = *index_on(plan.y, p.y_m) * map.n_x + *index_on(plan.x, p.x_m);

@@ -5,12 +5,11 @@
 #include <limits>
 
 #include "files/text.h"
+#include "stiffnessmaps/grid.h"
 #include "stiffnessmaps/import/robust.h"
 
 namespace palpa::stiffnessmaps {
 namespace {
-
-constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 
 // Direction of sample i's motion, from 0.1 s before to 0.1 s after it; 0 where it stands still.
 struct Motion {
@@ -22,7 +21,7 @@ std::vector<float> against(const Sliding& sliding, const Surface& surface, bool 
                            const std::vector<Motion>& motion) {
     const SurfaceSamples& s = sliding.samples;
     constexpr double kAlong = 0.8;  // cosine
-    std::vector<float> out(s.size(), kNaN);
+    std::vector<float> out(s.size(), kMissing);
     for (std::size_t i = 0; i < s.size(); ++i) {
         if ((along_y ? motion[i].y : motion[i].x) < kAlong) continue;
         const SurfacePoint p = surface_at(surface, s.x_m[i], s.y_m[i]);

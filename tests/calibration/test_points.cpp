@@ -19,7 +19,7 @@ CalibrationRows read(const std::string& text, const ReadOptions& options = {}) {
     return read_points(folder / "d.csv", options);
 }
 
-std::string said(const std::string& text, const ReadOptions& options = {}) {
+std::string refusal_of_points(const std::string& text, const ReadOptions& options = {}) {
     return message_of([&] { read(text, options); });
 }
 
@@ -42,44 +42,53 @@ TEST_CASE("points: columns by name, gram-force becomes newtons") {
 
 TEST_CASE("hard case 3: every kind of bad points has a message that names it") {
     const std::string head = "level,force_N\n";
-    CHECK(contains(said(head + "0,0.1\n0.5,1\n0,0.2\n0.5,1.1\n"), "2 distinct levels in 4 rows, expected 3 at least"));
-    CHECK(contains(said(head), "no rows"));
-    CHECK(contains(said(head + "0,1\n0.5,1\n1,1\n"), "the same force, 1 N, in every row"));
-    CHECK(contains(said(head + "0,0.1\n0.5,-0.01\n1,2\n"), "line 3, force_N: found '-0.01', expected a force >= 0"));
-    CHECK(contains(said(head + "0,0.1\n0.5,nan\n1,2\n"), "line 3, force_N: found 'nan', expected a finite number"));
-    CHECK(contains(said(head + "0,0.1\n0.5,\n1,2\n"), "line 3, force_N: found '', expected a finite number"));
-    CHECK(contains(said(head + "0,0.1\n-0.5,1\n1,2\n"), "line 3, level: found '-0.5', expected a level >= 0"));
-    CHECK(contains(said(head + "0,0.1\n0.5,inf\n1,2\n"), "finite number"));
-    CHECK(contains(said("level,weight\n0,0.1\n"), "expected a column 'force_N'"));
-    CHECK(contains(said("pressure,force_N\n0,0.1\n"), "expected a column 'level'"));
-    CHECK(contains(said("level,force_N,phase\n0,0.1,down\n"), "expected press or release"));
-    CHECK(contains(said(head + "0,0.1\n0.5,1\n1,2\n", {{{"level", "7"}}, false, true}), "no row with level=7"));
-    CHECK(contains(said(head + "0,0.1\n0.5,1\n1,2\n", {{{"pen", "7"}}, false, true}), "expected a column 'pen'"));
+    CHECK(contains(refusal_of_points(head + "0,0.1\n0.5,1\n0,0.2\n0.5,1.1\n"),
+                   "2 distinct levels in 4 rows, expected 3 at least"));
+    CHECK(contains(refusal_of_points(head), "no rows"));
+    CHECK(contains(refusal_of_points(head + "0,1\n0.5,1\n1,1\n"), "the same force, 1 N, in every row"));
+    CHECK(contains(refusal_of_points(head + "0,0.1\n0.5,-0.01\n1,2\n"),
+                   "line 3, force_N: found '-0.01', expected a force >= 0"));
+    CHECK(contains(refusal_of_points(head + "0,0.1\n0.5,nan\n1,2\n"),
+                   "line 3, force_N: found 'nan', expected a finite number"));
+    CHECK(contains(refusal_of_points(head + "0,0.1\n0.5,\n1,2\n"),
+                   "line 3, force_N: found '', expected a finite number"));
+    CHECK(contains(refusal_of_points(head + "0,0.1\n-0.5,1\n1,2\n"),
+                   "line 3, level: found '-0.5', expected a level >= 0"));
+    CHECK(contains(refusal_of_points(head + "0,0.1\n0.5,inf\n1,2\n"), "finite number"));
+    CHECK(contains(refusal_of_points("level,weight\n0,0.1\n"), "expected a column 'force_N'"));
+    CHECK(contains(refusal_of_points("pressure,force_N\n0,0.1\n"), "expected a column 'level'"));
+    CHECK(contains(refusal_of_points("level,force_N,phase\n0,0.1,down\n"), "expected press or release"));
+    CHECK(contains(refusal_of_points(head + "0,0.1\n0.5,1\n1,2\n", {{{"level", "7"}}, false, true}),
+                   "no row with level=7"));
+    CHECK(contains(refusal_of_points(head + "0,0.1\n0.5,1\n1,2\n", {{{"pen", "7"}}, false, true}),
+                   "expected a column 'pen'"));
 }
 
 TEST_CASE("hard case 3: gram-force and newtons mixed up are seen") {
-    CHECK(contains(said("level,force_N\n0,5\n0.5,80\n1,250\n"), "forces up to 250 N, expected less than 60 N"));
-    CHECK(said("level,force_N\n0,5\n0.5,80\n1,250\n", {{}, true, true}) == "");
-    CHECK(contains(said("level,force_gf\n0,0.05\n0.5,0.8\n1,2.5\n"), "(2.5 gf), expected more than 0.15 N"));
-    CHECK(contains(said("level,force_N,force_gf\n0,0.1,10.2\n0.5,1,102\n1,2,2\n"),
+    CHECK(contains(refusal_of_points("level,force_N\n0,5\n0.5,80\n1,250\n"),
+                   "forces up to 250 N, expected less than 60 N"));
+    CHECK(refusal_of_points("level,force_N\n0,5\n0.5,80\n1,250\n", {{}, true, true}) == "");
+    CHECK(
+        contains(refusal_of_points("level,force_gf\n0,0.05\n0.5,0.8\n1,2.5\n"), "(2.5 gf), expected more than 0.15 N"));
+    CHECK(contains(refusal_of_points("level,force_N,force_gf\n0,0.1,10.2\n0.5,1,102\n1,2,2\n"),
                    "line 4, force_gf: found '2', expected 203.9 gf"));
     std::string mixed = "level,force_N\n";
     for (int i = 1; i <= 12; ++i)
         mixed += number_text(i / 12.0) + "," + number_text(i == 7 ? 0.4 * 101.97 : 0.05 * i) + "\n";
-    CHECK(contains(said(mixed), "line 8, force: found 40.79 N, expected about"));
+    CHECK(contains(refusal_of_points(mixed), "line 8, force: found 40.79 N, expected about"));
 }
 
 TEST_CASE("hard case 3: times that do not rise, and a sensor that stands still") {
     const std::string head = "time_s,level,force_N\n";
-    CHECK(contains(said(head + "0,0,0.1\n2,0.5,1\n1,1,2\n"),
+    CHECK(contains(refusal_of_points(head + "0,0,0.1\n2,0.5,1\n1,1,2\n"),
                    "line 4, time_s: found 1 after 2, expected times that rise"));
-    CHECK(contains(said(head + "0,0,0.1\n1,0.5,1\n1,1,2\n"), "line 4, time_s: found 1 after 1"));
-    CHECK(said("time_s,repeat,level,force_N\n0,1,0,0.1\n1,1,0.5,1\n0,2,1,2\n") == "");
+    CHECK(contains(refusal_of_points(head + "0,0,0.1\n1,0.5,1\n1,1,2\n"), "line 4, time_s: found 1 after 1"));
+    CHECK(refusal_of_points("time_s,repeat,level,force_N\n0,1,0,0.1\n1,1,0.5,1\n0,2,1,2\n") == "");
     std::string stopped = head;
     for (int i = 0; i < 40; ++i)
         stopped += number_text(0.1 * i) + "," + number_text(i / 40.0) + "," +
                    number_text(i < 20 ? 0.1 + 0.05 * i : 1.05) + "\n";
-    CHECK(contains(said(stopped),
+    CHECK(contains(refusal_of_points(stopped),
                    "lines 21 to 41, force: found 1.05 N all the time while the level goes from 0.475 to 0.975"));
 }
 

@@ -19,7 +19,7 @@ std::string with(const std::string& from, const std::string& to) {
     return text;
 }
 
-std::string said(const std::string& text) {
+std::string refusal_of_profile(const std::string& text) {
     const TemporaryFolder folder;
     write_text_atomically(folder / "p.json", text);
     return message_of([&] { read_profile(folder / "p.json"); });
@@ -28,23 +28,24 @@ std::string said(const std::string& text) {
 }  // namespace
 
 TEST_CASE("hard case 3: profiles that are no usable curve are refused by key") {
-    CHECK(said(with("", "")) == "");
-    CHECK(contains(said(with("0.1", "-0.1")), "p.json: parameters.a_N: found -0.1"));
-    CHECK(contains(said(with("4.2", "0")), "parameters.b: found 0"));
-    CHECK(contains(said(with("4.2", "null")), "parameters.b: found null"));
-    CHECK(contains(said(with("[0, 1]", "[1, 0]")), "expected the lower level first"));
-    CHECK(contains(said(with("[0, 1]", "[0, 0]")), "expected the lower level first"));
-    CHECK(contains(said(with("[0, 1]", "[0, 1023]")), "N at the highest level"));
-    CHECK(contains(said(with("exponential", "linear")), "model: found 'linear'"));
-    CHECK(contains(said(with("\"pressure\"", "\"force\"")), "level: found 'force'"));
-    CHECK(contains(said(with("\"pressure\"", "\"contact_area\"")), "full_contact_area_px2: found nothing"));
-    CHECK(contains(said(with("4.2}", "4.2")), "p.json"));
-    CHECK(contains(said(with("\"model\"", "\"modle\": 1, \"model\"")), "modle: found an unknown key"));
+    CHECK(refusal_of_profile(with("", "")) == "");
+    CHECK(contains(refusal_of_profile(with("0.1", "-0.1")), "p.json: parameters.a_N: found -0.1"));
+    CHECK(contains(refusal_of_profile(with("4.2", "0")), "parameters.b: found 0"));
+    CHECK(contains(refusal_of_profile(with("4.2", "null")), "parameters.b: found null"));
+    CHECK(contains(refusal_of_profile(with("[0, 1]", "[1, 0]")), "expected the lower level first"));
+    CHECK(contains(refusal_of_profile(with("[0, 1]", "[0, 0]")), "expected the lower level first"));
+    CHECK(contains(refusal_of_profile(with("[0, 1]", "[0, 1023]")), "N at the highest level"));
+    CHECK(contains(refusal_of_profile(with("exponential", "linear")), "model: found 'linear'"));
+    CHECK(contains(refusal_of_profile(with("\"pressure\"", "\"force\"")), "level: found 'force'"));
+    CHECK(
+        contains(refusal_of_profile(with("\"pressure\"", "\"contact_area\"")), "full_contact_area_px2: found nothing"));
+    CHECK(contains(refusal_of_profile(with("4.2}", "4.2")), "p.json"));
+    CHECK(contains(refusal_of_profile(with("\"model\"", "\"modle\": 1, \"model\"")), "modle: found an unknown key"));
 }
 
 TEST_CASE("profile file: points need as many levels as forces") {
     const std::string points = R"("points": {"level": [0, 0.5], "force_N": [0.1]}, "model")";
-    CHECK(contains(said(with("\"model\"", points)),
+    CHECK(contains(refusal_of_profile(with("\"model\"", points)),
                    "points.force_N: found an array of 1, expected an array of 2 numbers"));
 }
 
@@ -84,18 +85,20 @@ TEST_CASE("profile file: every model is written and read back to the last bit") 
 }
 
 TEST_CASE("profile file: parameters of every model are checked by key") {
-    CHECK(contains(said(of_model("power", R"({"a_N": 2, "b": -1})")), "parameters.b: found -1"));
-    CHECK(contains(said(of_model("power", R"({"a_N": 2})")), "parameters.b: found nothing"));
-    CHECK(
-        contains(said(of_model("exponential_offset", R"({"a_N": -2, "b": 1, "offset_N": 3})")), "the curve must rise"));
-    CHECK(contains(said(of_model("exponential_offset", R"({"a_N": 2, "b": 1, "offset_N": -30})")),
+    CHECK(contains(refusal_of_profile(of_model("power", R"({"a_N": 2, "b": -1})")), "parameters.b: found -1"));
+    CHECK(contains(refusal_of_profile(of_model("power", R"({"a_N": 2})")), "parameters.b: found nothing"));
+    CHECK(contains(refusal_of_profile(of_model("exponential_offset", R"({"a_N": -2, "b": 1, "offset_N": 3})")),
+                   "the curve must rise"));
+    CHECK(contains(refusal_of_profile(of_model("exponential_offset", R"({"a_N": 2, "b": 1, "offset_N": -30})")),
                    "a force that rises above 0"));
-    CHECK(contains(said(of_model("monotone_cubic", R"({"level": [0, 0], "force_N": [1, 2]})")),
+    CHECK(contains(refusal_of_profile(of_model("monotone_cubic", R"({"level": [0, 0], "force_N": [1, 2]})")),
                    "parameters.level: found 0 after 0"));
-    CHECK(contains(said(of_model("monotone_cubic", R"({"level": [0, 1], "force_N": [2, 1]})")),
+    CHECK(contains(refusal_of_profile(of_model("monotone_cubic", R"({"level": [0, 1], "force_N": [2, 1]})")),
                    "parameters.force_N: found 1 after 2"));
-    CHECK(contains(said(of_model("monotone_cubic", R"({"level": [0, 1], "force_N": [2]})")), "an array of 2 numbers"));
-    CHECK(contains(said(of_model("monotone_cubic", R"({"level": [0], "force_N": [2]})")), "two at least"));
-    CHECK(contains(said(of_model("monotone_cubic", R"({"level": [0, 1], "force_N": [0, 1]})")), "> 0"));
-    CHECK(said(of_model("monotone_cubic", R"({"level": [0.1, 0.9], "force_N": [0.1, 1]})")) == "");
+    CHECK(contains(refusal_of_profile(of_model("monotone_cubic", R"({"level": [0, 1], "force_N": [2]})")),
+                   "an array of 2 numbers"));
+    CHECK(
+        contains(refusal_of_profile(of_model("monotone_cubic", R"({"level": [0], "force_N": [2]})")), "two at least"));
+    CHECK(contains(refusal_of_profile(of_model("monotone_cubic", R"({"level": [0, 1], "force_N": [0, 1]})")), "> 0"));
+    CHECK(refusal_of_profile(of_model("monotone_cubic", R"({"level": [0.1, 0.9], "force_N": [0.1, 1]})")) == "");
 }

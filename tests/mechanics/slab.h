@@ -2,6 +2,7 @@
 // The slabs that several tests press on.
 
 #include "mechanics/compliance.h"
+#include "mechanics/contact.h"
 #include "mechanics/loads.h"
 
 namespace palpa::mechanics {
@@ -11,6 +12,8 @@ inline constexpr bool kSlow = true;  // instrumented: the largest meshes are lef
 #else
 inline constexpr bool kSlow = false;
 #endif
+
+inline constexpr Indenter kBall{IndenterShape::sphere, 0.008};
 
 inline Box graded_box(double width_m, double thickness_m, int n, int nz, double finest_m) {
     return {{width_m, width_m, thickness_m}, {n, n, nz}, Grading{{0.5 * width_m, 0.5 * width_m}, finest_m}};

@@ -13,7 +13,6 @@ using namespace palpa::mechanics;
 
 namespace {
 
-constexpr Indenter kBall{IndenterShape::sphere, 0.008};
 constexpr double kYoung_Pa = 2500.0;
 constexpr double kPoisson = 0.45;
 

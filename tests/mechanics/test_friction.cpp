@@ -9,9 +9,7 @@ using namespace palpa::mechanics;
 
 namespace {
 
-constexpr Indenter kBall{IndenterShape::sphere, 0.008};
-
-const Compliance& slab() {
+const Compliance& friction_slab() {
     static const Compliance made =
         slab_compliance(slab_problem(hex_box(graded_box(0.1, 0.05, 20, 6, 0.0015)), Element::hex8_bbar, {2500.0, 0.45}),
                         {0.035, 0.065, 0.035, 0.065}, true);
@@ -25,7 +23,7 @@ struct Slide {
     void to(double x_m, double y_m, double depth_m, double mu) {
         FrictionOptions options;
         options.coefficient = mu;
-        slide_to(slab(), {kBall, {x_m, y_m, depth_m}}, options, work, state, contact);
+        slide_to(friction_slab(), {kBall, {x_m, y_m, depth_m}}, options, work, state, contact);
         CHECK(!contact.flags.not_settled);
         for (std::size_t i = 0; i < state.touch.size(); ++i) {
             const double t = std::hypot(state.force_N[3 * i + 1], state.force_N[3 * i + 2]);
@@ -45,7 +43,7 @@ TEST_CASE("friction: a coefficient of zero is the frictionless contact") {
     for (const double x_m : {0.0487, 0.049, 0.0502}) {
         const Tool tool{kBall, {x_m, 0.0507, 0.003}};
         slide.to(x_m, 0.0507, 0.003, 0.0);
-        press_to_depth(slab(), {&tool, 1}, {}, work, smooth);
+        press_to_depth(friction_slab(), {&tool, 1}, {}, work, smooth);
         CHECK(slide.contact.tool[0].normal_N == doctest::Approx(smooth.tool[0].normal_N).epsilon(1e-6));
         CHECK(std::abs(slide.contact.tool[0].tangential_x_N - smooth.tool[0].tangential_x_N) <
               1e-6 * smooth.tool[0].normal_N);
@@ -104,10 +102,10 @@ TEST_CASE("friction: bad poses hold, a compliance without tangential part is ref
     Slide slide;
     slide.to(0.05, 0.05, 0.002, 0.3);
     const double force = slide.contact.tool[0].normal_N;
-    slide_to(slab(), {kBall, {std::nan(""), 0.05, 0.002}}, {}, slide.work, slide.state, slide.contact);
+    slide_to(friction_slab(), {kBall, {std::nan(""), 0.05, 0.002}}, {}, slide.work, slide.state, slide.contact);
     CHECK(slide.contact.flags.held);
     CHECK(slide.contact.tool[0].normal_N == force);
-    Compliance normal_only = slab();
+    Compliance normal_only = friction_slab();
     normal_only.full_m_per_N.resize(0, 0);
     CHECK_THROWS_AS(slide_to(normal_only, {kBall, {0.05, 0.05, 0.002}}, {}, slide.work, slide.state, slide.contact),
                     LoadError);

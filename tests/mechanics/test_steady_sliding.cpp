@@ -10,10 +10,8 @@ using namespace palpa::mechanics;
 
 namespace {
 
-constexpr Indenter kBall{IndenterShape::sphere, 0.008};
-
 // With all three components, so that the step-by-step solver works on it too.
-const Compliance& slab() {
+const Compliance& sliding_slab() {
     static const Compliance made = [] {
         const Problem problem =
             slab_problem(hex_box(graded_box(0.1, 0.05, 24, 6, 0.0012)), Element::hex8_bbar, {2500.0, 0.40});
@@ -29,7 +27,7 @@ const Compliance& slab() {
 Contact steady(const Tool& tool, const Eigen::Vector2d& direction, double mu, int max_changes = 40, int sweeps = 300) {
     SteadyWork work;
     Contact contact;
-    slide_steadily(slab(), tool, {direction, mu, max_changes, sweeps}, work, contact);
+    slide_steadily(sliding_slab(), tool, {direction, mu, max_changes, sweeps}, work, contact);
     return contact;
 }
 
@@ -40,7 +38,7 @@ TEST_CASE("steady sliding: without friction it is the frictionless contact") {
         const Tool tool{kBall, {0.0493, 0.0507, depth_m}};
         ContactWork work;
         Contact smooth;
-        press_to_depth(slab(), {&tool, 1}, {}, work, smooth);
+        press_to_depth(sliding_slab(), {&tool, 1}, {}, work, smooth);
         const Contact slid = steady(tool, {1.0, 0.0}, 0.0);
         CHECK(slid.touch == smooth.touch);
         CHECK(slid.tool[0].normal_N == doctest::Approx(smooth.tool[0].normal_N).epsilon(1e-9));
@@ -61,17 +59,17 @@ TEST_CASE(
             const Contact contact = steady(tool, e, mu);
             CHECK(!contact.flags.not_settled);
             REQUIRE(contact.touch.size() > 20);
-            Eigen::VectorXd f_N = Eigen::VectorXd::Zero(3 * slab().n_touch);
+            Eigen::VectorXd f_N = Eigen::VectorXd::Zero(3 * sliding_slab().n_touch);
             for (std::size_t i = 0; i < contact.touch.size(); ++i) {
                 CHECK(contact.force_N[i] >= 0.0);
                 f_N.segment<3>(3 * contact.touch[i]) =
                     contact.force_N[i] * Eigen::Vector3d(1.0, mu * e.x(), mu * e.y());
             }
             // the columns of tangential unit forces were solved by themselves: an independent check of Maxwell-Betti
-            const Eigen::VectorXd u_m = slab().full_m_per_N * f_N;
-            for (int i = 0; i < slab().n_touch; ++i) {
-                const double dx = slab().position_m(0, i) - tool.pose.x_m;
-                const double dy = slab().position_m(1, i) - tool.pose.y_m;
+            const Eigen::VectorXd u_m = sliding_slab().full_m_per_N * f_N;
+            for (int i = 0; i < sliding_slab().n_touch; ++i) {
+                const double dx = sliding_slab().position_m(0, i) - tool.pose.x_m;
+                const double dy = sliding_slab().position_m(1, i) - tool.pose.y_m;
                 const double r2 = dx * dx + dy * dy;
                 if (r2 >= kBall.radius_m * kBall.radius_m) continue;
                 const double R = kBall.radius_m;
@@ -92,7 +90,7 @@ TEST_CASE(
     const ToolForce& f = contact.tool[0];
     double slope_N = 0.0;
     for (std::size_t i = 0; i < contact.touch.size(); ++i) {
-        const Eigen::Vector3d at = slab().position_m.col(contact.touch[i]);
+        const Eigen::Vector3d at = sliding_slab().position_m.col(contact.touch[i]);
         const double dx = at.x() - tool.pose.x_m;
         const double dy = at.y() - tool.pose.y_m;
         slope_N += contact.force_N[i] * dx / std::sqrt(kBall.radius_m * kBall.radius_m - dx * dx - dy * dy);
@@ -122,7 +120,7 @@ TEST_CASE("steady sliding: what a slide of two contact radii, step by step, ends
         Tool tool{kBall, {0.0440, 0.05, 0.002}};  // contact radius 4 mm at most
         for (int i = 0; i <= 32; ++i) {
             tool.pose.x_m = 0.0440 + 2.5e-4 * i;
-            slide_to(slab(), tool, options, work, state, contact);
+            slide_to(sliding_slab(), tool, options, work, state, contact);
             REQUIRE(!contact.flags.not_settled);
         }
         const ToolForce& stepped = contact.tool[0];
@@ -150,7 +148,7 @@ TEST_CASE("steady sliding: no depth is no force; a pose that is not finite and a
     CHECK(lifted.tool[0].normal_N == 0.0);
     CHECK(lifted.touch.empty());
     CHECK_THROWS_AS(steady({kBall, {std::nan(""), 0.05, 0.001}}, {1.0, 0.0}, 0.3), LoadError);
-    Compliance plain = slab();
+    Compliance plain = sliding_slab();
     plain.along_x_m_per_N.resize(0, 0);
     SteadyWork work;
     Contact contact;

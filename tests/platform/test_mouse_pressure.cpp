@@ -9,7 +9,7 @@ using palpa::platform::Sample;
 
 namespace {
 
-constexpr double kTick_s = 1.0 / palpa::platform::kHoldGrid_Hz;
+constexpr double kHoldTick_s = 1.0 / palpa::platform::kHoldGrid_Hz;
 constexpr double kRounding = 1e-9;  // of sums of seconds near 1000
 
 }  // namespace
@@ -53,7 +53,7 @@ TEST_CASE("mouse pressure: a still button gives one sample per grid point, on th
     REQUIRE(out.size() == 240);  // grid points in (1000.001, 1001.001]
     for (std::size_t i = 0; i < out.size(); ++i) {
         CAPTURE(i);
-        CHECK(out[i].t_host_s == doctest::Approx(1000.0 + static_cast<double>(i + 1) * kTick_s).epsilon(1e-12));
+        CHECK(out[i].t_host_s == doctest::Approx(1000.0 + static_cast<double>(i + 1) * kHoldTick_s).epsilon(1e-12));
         CHECK(out[i].phase == Phase::move);
         CHECK(out[i].pressure == doctest::Approx((out[i].t_host_s - 1000.001) / 2.0).epsilon(kRounding));
         CHECK(std::isnan(out[i].t_device_s));

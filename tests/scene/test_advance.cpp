@@ -2,6 +2,7 @@
 #include <doctest/doctest.h>
 
 #include "scene/advance.h"
+#include "tests/assets.h"
 #include "tests/scene/allocations.h"
 
 using namespace palpa;
@@ -11,8 +12,6 @@ using namespace palpa::scene;
 using namespace palpa::test;
 
 namespace {
-
-const std::filesystem::path kAssets = PALPA_SOURCE_DIR "/assets";
 
 struct Run {
     Scene scene;

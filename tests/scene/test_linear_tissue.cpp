@@ -8,6 +8,7 @@
 #include "scene/advance.h"
 #include "scene/linear_tissue.h"
 #include "tests/scene/allocations.h"
+#include "tests/scene/block_phantom.h"
 #include "tests/temporary_folder.h"
 
 using namespace palpa;
@@ -19,13 +20,6 @@ using namespace palpa::test;
 
 namespace {
 
-// 60 x 60 x 20 mm with one nodule at (24, 30), coarse enough for a test under sanitizers.
-constexpr const char* kPhantom = R"({
-  "size_mm": [60, 60, 20], "tissue": {"young_Pa": 20000, "poisson": 0.45},
-  "nodules": [{"id": "A", "centre_mm": [24, 30, 9], "diameter_mm": 12, "young_Pa": 2e6, "poisson": 0.45}],
-  "indenter": {"shape": "sphere", "radius_mm": 10, "contact": "rolling"},
-  "depths_mm": [1], "grid": {"origin_mm": [0, 0], "spacing_mm": [1, 1], "count": [2, 2]}})";
-
 struct Block {
     TemporaryFolder folder;
     LinearOptions options;
@@ -33,7 +27,7 @@ struct Block {
     LinearWork work;
     explicit Block(std::optional<double> friction = {}) {
         options.friction = friction;
-        write_text_atomically(folder / "block.json", kPhantom);
+        write_text_atomically(folder / "block.json", kBlockPhantom);
         options.phantom = folder / "block.json";
         options.spacing_m = 4e-3;
         tissue = make_linear_tissue(options, folder / "cache", {});

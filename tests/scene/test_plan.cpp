@@ -5,6 +5,7 @@
 #include "scene/plan.h"
 #include "scene/tissue.h"
 #include "stiffnessmaps/map_file.h"
+#include "tests/assets.h"
 #include "tests/error_message.h"
 #include "tests/temporary_folder.h"
 
@@ -15,8 +16,6 @@ using namespace palpa::scene;
 using namespace palpa::test;
 
 namespace {
-
-const std::filesystem::path kAssets = PALPA_SOURCE_DIR "/assets";
 
 std::vector<std::string> stages_of(const char* scene) {
     const Plan plan = make_plan(read_scene(kAssets / "scenes" / scene, kAssets));

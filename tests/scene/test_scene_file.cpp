@@ -2,6 +2,7 @@
 
 #include "files/text.h"
 #include "scene/tissue.h"
+#include "tests/assets.h"
 #include "tests/error_message.h"
 #include "tests/temporary_folder.h"
 
@@ -12,8 +13,6 @@ using namespace palpa::scene;
 using namespace palpa::test;
 
 namespace {
-
-const std::filesystem::path kAssets = PALPA_SOURCE_DIR "/assets";
 
 Scene read(const std::string& text) {
     const TemporaryFolder folder;

@@ -6,6 +6,8 @@
 #include "scene/advance.h"
 #include "scene/tissue.h"
 #include "stiffnessmaps/noise.h"
+#include "tests/assets.h"
+#include "tests/scene/block_phantom.h"
 #include "tests/temporary_folder.h"
 
 using namespace palpa;
@@ -18,15 +20,6 @@ using namespace palpa::test;
 
 namespace {
 
-const std::filesystem::path kAssets = PALPA_SOURCE_DIR "/assets";
-
-// 60 x 60 x 20 mm with one nodule at (24, 30), coarse enough for a test under sanitizers.
-constexpr const char* kPhantom = R"({
-  "size_mm": [60, 60, 20], "tissue": {"young_Pa": 20000, "poisson": 0.45},
-  "nodules": [{"id": "A", "centre_mm": [24, 30, 9], "diameter_mm": 12, "young_Pa": 2e6, "poisson": 0.45}],
-  "indenter": {"shape": "sphere", "radius_mm": 10, "contact": "rolling"},
-  "depths_mm": [1], "grid": {"origin_mm": [0, 0], "spacing_mm": [1, 1], "count": [2, 2]}})";
-
 Scene map_scene() {
     Scene scene = read_scene(kAssets / "scenes/default.json", kAssets);
     scene.delay = delay_clear();
@@ -34,7 +27,7 @@ Scene map_scene() {
 }
 
 Scene linear_scene(const TemporaryFolder& folder, std::optional<double> friction) {
-    write_text_atomically(folder / "block.json", kPhantom);
+    write_text_atomically(folder / "block.json", kBlockPhantom);
     ::setenv("XDG_CACHE_HOME", folder.path().c_str(), 1);
     Scene scene;
     scene.tissue = LinearOptions{folder / "block.json", 4e-3, friction};

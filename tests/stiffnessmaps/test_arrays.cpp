@@ -35,7 +35,7 @@ void check_counted(const NpyArray& array, const std::vector<std::size_t>& shape,
         REQUIRE(array.values[i] == doctest::Approx(step * static_cast<double>(i)));
 }
 
-std::string said(const std::filesystem::path& path, const std::string& dataset = "") {
+std::string refusal_of_array(const std::filesystem::path& path, const std::string& dataset = "") {
     return message_of([&] { read_array(path, dataset); });
 }
 
@@ -96,10 +96,10 @@ TEST_CASE("arrays: of several in one file one must be named") {
     write_hdf5(folder / "a.h5", "shear", {2, 3}, counted<float>(6, 2.0));
     for (const char* name : {"a.mat", "a.h5"}) {
         CAPTURE(name);
-        CHECK(contains(said(folder / name),
+        CHECK(contains(refusal_of_array(folder / name),
                        "the arrays 'normal' (2, 3) 'shear' (2, 3), expected one of them named by --dataset"));
         check_counted(read_array(folder / name, "shear"), {2, 3}, 2.0);
-        CHECK(contains(said(folder / name, "other"), "expected an array 'other'"));
+        CHECK(contains(refusal_of_array(folder / name, "other"), "expected an array 'other'"));
     }
 }
 
@@ -107,31 +107,34 @@ TEST_CASE("arrays: 10^12 cells in a header are refused before anything is alloca
     const TemporaryFolder folder;
     write_text_whole(folder / "a.npy", npy_bytes({{2, 3}, counted<float>(6)}));
     patch(folder / "a.npy", "(2, 3), }        ", "(1000000,1000000)");
-    CHECK(contains(said(folder / "a.npy"), "for the shape (1000000, 1000000)"));
+    CHECK(contains(refusal_of_array(folder / "a.npy"), "for the shape (1000000, 1000000)"));
 
     // uncompressed: the dimensions stand in the file as two int32
     write_mat(folder / "a.mat", "F", {7, 11}, counted<double>(77));
     patch(folder / "a.mat", std::string("\7\0\0\0\13\0\0\0", 8), std::string("\x40\x42\x0f\0\x40\x42\x0f\0", 8));
-    CHECK(contains(said(folder / "a.mat"), "found (1000000, 1000000), expected at most 20 million numbers"));
+    CHECK(
+        contains(refusal_of_array(folder / "a.mat"), "found (1000000, 1000000), expected at most 20 million numbers"));
     write_mat(folder / "b.mat", "F", {7, 11}, counted<double>(77));
     patch(folder / "b.mat", std::string("\7\0\0\0\13\0\0\0", 8), std::string("\x00\x08\0\0\x00\x08\0\0", 8));
-    CHECK(contains(said(folder / "b.mat"), "found (2048, 2048), expected numbers that fit into its"));
+    CHECK(contains(refusal_of_array(folder / "b.mat"), "found (2048, 2048), expected numbers that fit into its"));
 
     write_hdf5(folder / "a.h5", "F", {1000000, 1000000}, {}, 100);
-    CHECK(contains(said(folder / "a.h5"), "found (1000000, 1000000), expected at most 20 million numbers"));
+    CHECK(contains(refusal_of_array(folder / "a.h5"), "found (1000000, 1000000), expected at most 20 million numbers"));
     write_hdf5(folder / "b.h5", "F", {3000, 3000}, {}, 100);
-    CHECK(contains(said(folder / "b.h5"), "found (3000, 3000), expected numbers that fit into its"));
+    CHECK(contains(refusal_of_array(folder / "b.h5"), "found (3000, 3000), expected numbers that fit into its"));
 
     write_png(folder / "a.png", 4, 3, counted<std::uint16_t>(12));
     patch(folder / "a.png", std::string("\0\0\0\4\0\0\0\3", 8), std::string("\0\x0f\x42\x40\0\x0f\x42\x40", 8));
-    CHECK(contains(said(folder / "a.png"), "found (1000000, 1000000), expected at most 20 million numbers"));
+    CHECK(
+        contains(refusal_of_array(folder / "a.png"), "found (1000000, 1000000), expected at most 20 million numbers"));
     write_tiff(folder / "a.tif", 1234, 3, counted<std::uint16_t>(3702), 0, COMPRESSION_NONE);
     patch(folder / "a.tif", std::string("\0\1\3\0\1\0\0\0\xd2\4\0\0", 12),
           std::string("\0\1\4\0\1\0\0\0\x40\x42\x0f\0", 12));
-    CHECK(contains(said(folder / "a.tif"), "found (3, 1000000), expected numbers that fit into its"));
+    CHECK(contains(refusal_of_array(folder / "a.tif"), "found (3, 1000000), expected numbers that fit into its"));
     patch(folder / "a.tif", std::string("\1\1\3\0\1\0\0\0\3\0\0\0", 12),
           std::string("\1\1\4\0\1\0\0\0\x40\x42\x0f\0", 12));
-    CHECK(contains(said(folder / "a.tif"), "found (1000000, 1000000), expected at most 20 million numbers"));
+    CHECK(
+        contains(refusal_of_array(folder / "a.tif"), "found (1000000, 1000000), expected at most 20 million numbers"));
 }
 
 TEST_CASE("arrays: cut files are refused by name") {
@@ -150,13 +153,13 @@ TEST_CASE("arrays: cut files are refused by name") {
     write_tiff(folder / "a.tif", 100, 40, counts);
     for (const std::string name : {"a.npy", "a.mat", "packed.mat", "a.h5", "packed.h5", "a.png", "a.tif"}) {
         CAPTURE(name);
-        CHECK(said(folder / name) == "");
+        CHECK(refusal_of_array(folder / name) == "");
         const std::string bytes = read_text(folder / name);
         for (const double share : {0.02, 0.3, 0.6, 0.95}) {
             CAPTURE(share);
             write_text_whole(folder / name,
                              bytes.substr(0, static_cast<std::size_t>(share * static_cast<double>(bytes.size()))));
-            const std::string message = said(folder / name);
+            const std::string message = refusal_of_array(folder / name);
             CAPTURE(message);
             CHECK(contains(message, name));
             CHECK(contains(message, "expected"));
@@ -168,7 +171,7 @@ TEST_CASE("arrays: what is no array is refused") {
     const TemporaryFolder folder;
     const auto said_of = [&](const std::string& bytes) {
         write_text_whole(folder / "a", bytes);
-        return said(folder / "a");
+        return refusal_of_array(folder / "a");
     };
     CHECK(contains(said_of(""), "another kind of file"));
     CHECK(contains(said_of("x,y\n1,2\n"), "another kind of file"));
@@ -176,12 +179,12 @@ TEST_CASE("arrays: what is no array is refused") {
     CHECK(contains(said_of("1,2\n3,four\n"), "line 2, number 2: found 'four'"));
     CHECK(contains(said_of("MATLAB 5.0 MAT-file, and then nothing"), "expected"));
     CHECK(contains(said_of("\x89HDF\r\n\x1a\n"), "expected"));
-    CHECK(contains(said(folder.path()), "a folder"));
-    CHECK(contains(said(folder / "none"), "cannot be read"));
+    CHECK(contains(refusal_of_array(folder.path()), "a folder"));
+    CHECK(contains(refusal_of_array(folder / "none"), "cannot be read"));
     write_png(folder / "rgb.png", 4, 3, counted<std::uint16_t>(12), 8, PNG_COLOR_TYPE_RGB);
-    CHECK(contains(said(folder / "rgb.png"), "grey values of 8 or 16 bits"));
+    CHECK(contains(refusal_of_array(folder / "rgb.png"), "grey values of 8 or 16 bits"));
     write_mat(folder / "scalar.mat", "a", {1, 1}, {3.0});
-    CHECK(contains(said(folder / "scalar.mat"), "no array of real numbers"));
+    CHECK(contains(refusal_of_array(folder / "scalar.mat"), "no array of real numbers"));
 }
 
 TEST_CASE("arrays: files with bytes changed at random never end in anything but numbers or a message") {

@@ -24,7 +24,7 @@ Map small() {
 }
 
 // What reading says after one text in map.json was replaced by another.
-std::string said(const std::string& from, const std::string& to) {
+std::string refusal_of_map(const std::string& from, const std::string& to) {
     const TemporaryFolder folder;
     write_map(small(), folder / "x.map");
     std::string text = read_text(folder / "x.map/map.json");
@@ -94,18 +94,21 @@ TEST_CASE("hard case 7: a transposed or otherwise wrong array is an error, not a
     CHECK(contains(replaced({{2, 3, 4}, std::vector<float>(24, NAN)}), "no force that was measured"));
     CHECK(contains(replaced({{2, 3, 4}, std::vector<float>(24, INFINITY)}), "expected forces in newtons"));
     // without a count the nodules still tell: they would lie beside the map
-    CHECK(contains(said("\"count\": [\n    4,\n    3\n  ],", "\"count\": [\n 3,\n 4\n],"), "expected (2, 4, 3)"));
+    CHECK(contains(refusal_of_map("\"count\": [\n    4,\n    3\n  ],", "\"count\": [\n 3,\n 4\n],"),
+                   "expected (2, 4, 3)"));
 }
 
 TEST_CASE("map file: absurd numbers and unknown keys are refused by key") {
-    CHECK(contains(said("\"spacing_mm\": [\n    1.0", "\"spacing_mm\": [\n    -1.0"), "spacing_mm: found -1.0"));
-    CHECK(contains(said("\"depths_mm\": [\n    1.0", "\"depths_mm\": [\n    3.0"),
+    CHECK(contains(refusal_of_map("\"spacing_mm\": [\n    1.0", "\"spacing_mm\": [\n    -1.0"),
+                   "spacing_mm: found -1.0"));
+    CHECK(contains(refusal_of_map("\"depths_mm\": [\n    1.0", "\"depths_mm\": [\n    3.0"),
                    "depths_mm: found 2 after 3, expected ascending"));
-    CHECK(contains(said("\"name\"", "\"nome\""), "nome: found an unknown key"));
-    CHECK(contains(said("\"name\"", "\"colour\": 1, \"name\""), "colour: found an unknown key"));
-    CHECK(contains(said("\"none\"", "\"recorded\""), "tangential: found recorded, expected tangential_x_N.npy"));
-    CHECK(contains(said("\"x_mm\": 2.0", "\"x_mm\": 20.0"), "are x and y of the arrays exchanged?"));
-    CHECK(contains(said("}", ""), "map.json: line"));
+    CHECK(contains(refusal_of_map("\"name\"", "\"nome\""), "nome: found an unknown key"));
+    CHECK(contains(refusal_of_map("\"name\"", "\"colour\": 1, \"name\""), "colour: found an unknown key"));
+    CHECK(contains(refusal_of_map("\"none\"", "\"recorded\""),
+                   "tangential: found recorded, expected tangential_x_N.npy"));
+    CHECK(contains(refusal_of_map("\"x_mm\": 2.0", "\"x_mm\": 20.0"), "are x and y of the arrays exchanged?"));
+    CHECK(contains(refusal_of_map("}", ""), "map.json: line"));
 }
 
 TEST_CASE("map file: no folder, a file instead, an empty folder") {

@@ -12,7 +12,7 @@ using namespace palpa::test;
 
 namespace {
 
-std::string said(const std::string& from, const std::string& to) {
+std::string refusal_of_phantom(const std::string& from, const std::string& to) {
     std::string text = read_text(PALPA_SOURCE_DIR "/assets/phantoms/silicone.json");
     const auto at = text.find(from);
     REQUIRE(at != std::string::npos);
@@ -25,18 +25,19 @@ std::string said(const std::string& from, const std::string& to) {
 }  // namespace
 
 TEST_CASE("phantom: absurd blocks are refused by key") {
-    CHECK(said("120, 120, 25", "120, 120, 25") == "");
-    CHECK(contains(said("120, 120, 25", "120, 120"), "size_mm: found an array of 2"));
-    CHECK(contains(said("0.49, ", "0.5, "), "tissue.poisson: found 0.5"));
-    CHECK(contains(said("47000", "-1"), "tissue.young_Pa: found -1"));
-    CHECK(contains(said("35, 35, 11", "35, 35, 24"), "nodules[0].centre_mm: found 24 with a radius of 5"));
-    CHECK(contains(said("[2, 3, 4, 5, 6, 7]", "[2, 3, 40]"), "depths_mm: found 40"));
-    CHECK(contains(said("[2, 3, 4, 5, 6, 7]", "[3, 2]"), "expected ascending depths"));
-    CHECK(contains(said("159, 59", "159.5, 59"), "grid.count: found 159.5"));
-    CHECK(contains(said("rolling", "jumping"), "indenter.contact: found 'jumping'"));
-    CHECK(contains(said("\"sphere\"", "\"cylinder\""), "length_mm"));
-    CHECK(said("\"sphere\"", "\"cylinder\", \"length_mm\": 20") == "");
-    CHECK(contains(said("\"sphere\"", "\"cylinder\", \"length_mm\": 0"), "indenter.length_mm: found 0"));
-    CHECK(contains(said("\"sphere\"", "\"sphere\", \"length_mm\": 20"),
+    CHECK(refusal_of_phantom("120, 120, 25", "120, 120, 25") == "");
+    CHECK(contains(refusal_of_phantom("120, 120, 25", "120, 120"), "size_mm: found an array of 2"));
+    CHECK(contains(refusal_of_phantom("0.49, ", "0.5, "), "tissue.poisson: found 0.5"));
+    CHECK(contains(refusal_of_phantom("47000", "-1"), "tissue.young_Pa: found -1"));
+    CHECK(
+        contains(refusal_of_phantom("35, 35, 11", "35, 35, 24"), "nodules[0].centre_mm: found 24 with a radius of 5"));
+    CHECK(contains(refusal_of_phantom("[2, 3, 4, 5, 6, 7]", "[2, 3, 40]"), "depths_mm: found 40"));
+    CHECK(contains(refusal_of_phantom("[2, 3, 4, 5, 6, 7]", "[3, 2]"), "expected ascending depths"));
+    CHECK(contains(refusal_of_phantom("159, 59", "159.5, 59"), "grid.count: found 159.5"));
+    CHECK(contains(refusal_of_phantom("rolling", "jumping"), "indenter.contact: found 'jumping'"));
+    CHECK(contains(refusal_of_phantom("\"sphere\"", "\"cylinder\""), "length_mm"));
+    CHECK(refusal_of_phantom("\"sphere\"", "\"cylinder\", \"length_mm\": 20") == "");
+    CHECK(contains(refusal_of_phantom("\"sphere\"", "\"cylinder\", \"length_mm\": 0"), "indenter.length_mm: found 0"));
+    CHECK(contains(refusal_of_phantom("\"sphere\"", "\"sphere\", \"length_mm\": 20"),
                    "indenter.length_mm: found 20, expected none: a sphere has no length"));
 }

@@ -18,7 +18,7 @@ Observations counts(const std::string& text) {
     return read_counts(folder / "counts.tsv");
 }
 
-std::string refused(const std::string& text) {
+std::string refusal_of_counts(const std::string& text) {
     return message_of([&] { counts(text); });
 }
 
@@ -45,23 +45,23 @@ TEST_CASE("observations: forced choices") {
 }
 
 TEST_CASE("observations: bad counts are refused with line and column") {
-    CHECK(contains(refused("condition\ttp\tfn\n"),
+    CHECK(contains(refusal_of_counts("condition\ttp\tfn\n"),
                    "line 1: found the columns 'condition' 'tp' 'fn', expected a column 'fp'"));
-    CHECK(contains(refused("condition\ttp\tfn\tfp\ttn\n"), "the column 'tn'"));
-    CHECK(contains(refused("condition\ttp\tfn\tfp\n"), "no rows"));
-    CHECK(
-        contains(refused("condition\ttp\tfn\tfp\npen\t-1\t0\t0\n"), "line 2, tp: found '-1', expected a whole number"));
-    CHECK(contains(refused("condition\ttp\tfn\tfp\npen\t1.5\t0\t0\n"), "line 2, tp: found '1.5'"));
-    CHECK(contains(refused("condition\ttp\tfn\tfp\npen\t1\t0\tn/a\n"), "line 2, fp: found 'n/a'"));
-    CHECK(contains(refused("condition\ttp\tfn\tfp\n\t1\t0\t0\n"), "condition: found '', expected a name"));
-    CHECK(contains(refused("condition\ttp\tfn\tfp\tn\npen\t21\t0\t0\t20\n"),
+    CHECK(contains(refusal_of_counts("condition\ttp\tfn\tfp\ttn\n"), "the column 'tn'"));
+    CHECK(contains(refusal_of_counts("condition\ttp\tfn\tfp\n"), "no rows"));
+    CHECK(contains(refusal_of_counts("condition\ttp\tfn\tfp\npen\t-1\t0\t0\n"),
+                   "line 2, tp: found '-1', expected a whole number"));
+    CHECK(contains(refusal_of_counts("condition\ttp\tfn\tfp\npen\t1.5\t0\t0\n"), "line 2, tp: found '1.5'"));
+    CHECK(contains(refusal_of_counts("condition\ttp\tfn\tfp\npen\t1\t0\tn/a\n"), "line 2, fp: found 'n/a'"));
+    CHECK(contains(refusal_of_counts("condition\ttp\tfn\tfp\n\t1\t0\t0\n"), "condition: found '', expected a name"));
+    CHECK(contains(refusal_of_counts("condition\ttp\tfn\tfp\tn\npen\t21\t0\t0\t20\n"),
                    "line 2, tp: found '21', expected at most n = 20"));
-    CHECK(contains(refused("condition\ttp\tfn\tfp\tn\npen\t10\t5\t0\t20\n"),
+    CHECK(contains(refusal_of_counts("condition\ttp\tfn\tfp\tn\npen\t10\t5\t0\t20\n"),
                    "line 2, n: found '20', expected tp + fn = 15"));
-    CHECK(contains(refused("condition\tcorrect\tn\npen\t11\t10\n"),
+    CHECK(contains(refusal_of_counts("condition\tcorrect\tn\npen\t11\t10\n"),
                    "line 2, correct: found '11', expected at most n = 10"));
-    CHECK(contains(refused("condition\tparticipant\ttp\tfn\tfp\npen\tp1\t1\t0\t0\npen\tp1\t1\t0\t0\n"),
+    CHECK(contains(refusal_of_counts("condition\tparticipant\ttp\tfn\tfp\npen\tp1\t1\t0\t0\npen\tp1\t1\t0\t0\n"),
                    "line 3, condition: found 'pen', expected it once: line 2 has the same"));
-    CHECK(contains(refused("condition\ttp\tfn\tfp\npen\t1\t0"),
+    CHECK(contains(refusal_of_counts("condition\ttp\tfn\tfp\npen\t1\t0"),
                    "line 2: found 3 fields, expected 4"));  // cut in the middle
 }

@@ -15,7 +15,7 @@ namespace {
 
 const std::string kProtocols = PALPA_SOURCE_DIR "/assets/protocols/";
 
-std::string refused(const std::string& text) {
+std::string refusal_of_protocol(const std::string& text) {
     const TemporaryFolder folder;
     write_text_atomically(folder / "p.json", text);
     return message_of([&] { read_protocol(folder / "p.json"); });
@@ -49,23 +49,24 @@ TEST_CASE("protocol: the shipped ones read as they are meant") {
 }
 
 TEST_CASE("protocol: what is wrong is named with its key") {
-    CHECK(refused(with(kPen)).empty());
-    CHECK(contains(refused(with("")), "conditions: found nothing, expected one condition"));
-    CHECK(contains(refused(with(kPen + "," + kPen)), "conditions[1].id: found 'pen' a second time"));
-    CHECK(contains(refused(with(R"({"id": "x", "modality": "nose", "scene": "s"})")),
+    CHECK(refusal_of_protocol(with(kPen)).empty());
+    CHECK(contains(refusal_of_protocol(with("")), "conditions: found nothing, expected one condition"));
+    CHECK(contains(refusal_of_protocol(with(kPen + "," + kPen)), "conditions[1].id: found 'pen' a second time"));
+    CHECK(contains(refusal_of_protocol(with(R"({"id": "x", "modality": "nose", "scene": "s"})")),
                    "conditions[0].modality: found 'nose'"));
-    CHECK(contains(refused(with(R"({"id": "x", "modality": "pen"})")), "conditions[0].scene: found nothing"));
-    CHECK(contains(refused(with(R"({"id": "x", "modality": "hand", "scene": "s.json"})")),
+    CHECK(
+        contains(refusal_of_protocol(with(R"({"id": "x", "modality": "pen"})")), "conditions[0].scene: found nothing"));
+    CHECK(contains(refusal_of_protocol(with(R"({"id": "x", "modality": "hand", "scene": "s.json"})")),
                    "a real phantom has no scene"));
-    CHECK(contains(refused(with(kPen, R"(, "groups": [{"id": "g", "conditions": ["pin"]}])")),
+    CHECK(contains(refusal_of_protocol(with(kPen, R"(, "groups": [{"id": "g", "conditions": ["pin"]}])")),
                    "groups[0].conditions: found 'pin'"));
-    CHECK(contains(refused(with(kPen, R"(, "groups": [{"id": "g", "conditions": ["pen", "pen"]}])")),
+    CHECK(contains(refusal_of_protocol(with(kPen, R"(, "groups": [{"id": "g", "conditions": ["pen", "pen"]}])")),
                    "found 'pen' a second time"));
-    CHECK(contains(refused(with(kPen, R"(, "time_limit": 3)")), "time_limit: found an unknown key"));
-    CHECK(contains(refused(with(kPen, R"(, "seed": 2)")), "seed: found the key twice"));
-    CHECK(contains(refused(with(kPen, R"(, "choice": {"reference_kPa": 1, "comparisons_kPa": [1]})")),
+    CHECK(contains(refusal_of_protocol(with(kPen, R"(, "time_limit": 3)")), "time_limit: found an unknown key"));
+    CHECK(contains(refusal_of_protocol(with(kPen, R"(, "seed": 2)")), "seed: found the key twice"));
+    CHECK(contains(refusal_of_protocol(with(kPen, R"(, "choice": {"reference_kPa": 1, "comparisons_kPa": [1]})")),
                    "values unlike the reference"));
-    CHECK(contains(refused(with(kPen, R"(, "ratings": [{"id": "a", "text": "t", "from": 5, "to": 1}])")),
+    CHECK(contains(refusal_of_protocol(with(kPen, R"(, "ratings": [{"id": "a", "text": "t", "from": 5, "to": 1}])")),
                    "ratings[0].to: found 1"));
-    CHECK(contains(refused("{"), "line 1, column"));
+    CHECK(contains(refusal_of_protocol("{"), "line 1, column"));
 }

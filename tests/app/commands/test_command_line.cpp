@@ -7,8 +7,8 @@
 
 #include "files/json.h"
 #include "files/text.h"
+#include "tests/app/palpa_with.h"
 #include "tests/error_message.h"
-#include "tests/shell.h"
 #include "tests/temporary_folder.h"
 
 using namespace palpa;
@@ -19,10 +19,6 @@ namespace {
 
 const std::string kAssets = PALPA_SOURCE_DIR "/assets/";
 const std::string kTrace = kAssets + "traces/raster.tsv";
-
-Called palpa_with(const std::string& arguments, const std::string& before = "") {
-    return shell(before + " timeout 60 " PALPA_PROGRAM " " + arguments);
-}
 
 }  // namespace
 

@@ -4,10 +4,10 @@
 
 #include "files/json.h"
 #include "files/text.h"
+#include "tests/app/palpa_with.h"
 #include "tests/error_message.h"
 #include "tests/fem/fem_cases.h"
 #include "tests/files/vtu_reader.h"
-#include "tests/shell.h"
 #include "tests/temporary_folder.h"
 
 using namespace palpa;
@@ -16,10 +16,6 @@ using namespace palpa::fem;
 using namespace palpa::test;
 
 namespace {
-
-Called palpa_with(const std::string& arguments, const std::string& before = "") {
-    return shell(before + " timeout 60 " PALPA_PROGRAM " " + arguments);
-}
 
 // four cells across the contact's radius
 const std::string kFine =

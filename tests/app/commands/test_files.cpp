@@ -14,6 +14,7 @@
 
 #include "files/text.h"
 #include "tests/error_message.h"
+#include "tests/shell.h"
 #include "tests/temporary_folder.h"
 
 using namespace palpa;
@@ -24,20 +25,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const std::string kAssets = PALPA_SOURCE_DIR "/assets/";
-const std::string kMap = kAssets + "maps/silicone.map";
-
-struct Called {
-    int status = 0;
-    std::string err;
-};
+const std::string kShipped = PALPA_SOURCE_DIR "/assets/";
+const std::string kMap = kShipped + "maps/silicone.map";
 
 // In the folder; `after` is what the shell does with the output.
 Called palpa_in(const TemporaryFolder& folder, const std::string& arguments, const std::string& after = ">/dev/null") {
-    const std::string command = "cd " + folder.path().string() + " && timeout 60 " PALPA_PROGRAM " " + arguments +
-                                " 2>" + (folder / "err").string() + " </dev/null " + after;
-    const int status = std::system(command.c_str());
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_text(folder / "err")};
+    return shell("cd " + folder.path().string() + " && timeout 60 " PALPA_PROGRAM " " + arguments + " " + after);
 }
 
 void make_fifo(const fs::path& path) {
@@ -52,9 +45,9 @@ void replace_all(const std::string& what, const std::string& by, std::string& te
 // Inputs under their names; copies, so that a result that replaced one would be seen.
 void fill(const TemporaryFolder& folder) {
     fs::copy(kMap, folder / "in.map");
-    fs::copy_file(kAssets + "phantoms/silicone.json", folder / "phantom.json");
-    fs::copy_file(kAssets + "traces/raster.tsv", folder / "trace.tsv");
-    fs::copy_file(kAssets + "traces/raster.json", folder / "trace.json");
+    fs::copy_file(kShipped + "phantoms/silicone.json", folder / "phantom.json");
+    fs::copy_file(kShipped + "traces/raster.tsv", folder / "trace.tsv");
+    fs::copy_file(kShipped + "traces/raster.json", folder / "trace.json");
     write_text_atomically(folder / "points.csv",
                           "level,force_N\n0.1,0.2\n0.2,0.45\n0.4,1.1\n0.6,2\n0.8,3.1\n0.9,3.9\n1,4.4\n");
     write_text_atomically(folder / "case.json", R"({"mesh": {"box": {"size_mm": [10, 10, 10], "elements": [2, 2, 2]}},
@@ -273,7 +266,7 @@ TEST_CASE("files: tables of counts are analysed beside themselves only where no 
 TEST_CASE("files: what cannot be printed is told, by every command that prints") {
     const TemporaryFolder folder;
     fill(folder);
-    const std::string profile = kAssets + "profiles/s-pen.json";
+    const std::string profile = kShipped + "profiles/s-pen.json";
     for (const std::string& arguments : std::vector<std::string>{
              "--help", "--version", "run --help", "maps --help", "maps info in.map", "maps info in.map --json",
              "maps sample in.map --x-mm 1 --y-mm 1 --force-N 1", "maps detect in.map", "maps compare in.map in.map",
