@@ -5,7 +5,7 @@
 namespace palpa::avatar {
 namespace {
 
-// tau after dt with a constant goal: exact, whatever dt is.
+// Returns tau after dt with a constant goal; exact for any dt.
 double slew(const Delay& law, double tau_s, double goal_s, double dt_s) {
     return std::min(std::max(goal_s, tau_s - law.fall * dt_s), tau_s + law.rise * dt_s);
 }

@@ -6,17 +6,18 @@
 namespace palpa::avatar {
 namespace {
 
+// w of the header.
 double resistance(const DisplayRatio& law, double df_N) {
     const double x = std::max(df_N, 0.0);
     return x / (law.f_0_N + x);
 }
 
-// A: what is left after the pen has stood still for still_s.
+// Returns the share of the lag that is left after the pen has stood still for still_s.
 double left_after(const DisplayRatio& law, double still_s) {
     return still_s > law.hold_s ? std::exp(-(still_s - law.hold_s) / law.pause_decay_s) : 1.0;
 }
 
-// B: towards cap * u, exactly for a constant w; then C: release.
+// Moves the lag towards cap * u, exactly for a constant w, and then releases.
 void drag(const DisplayRatio& law, const Pull& pull, Eigen::Vector2d& lag_m) {
     const double w = resistance(law, pull.df_N);
     if (w > 0.0 && law.cap_m) {

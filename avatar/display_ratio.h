@@ -1,11 +1,13 @@
 #pragma once
-// Law R: over a stiffer place the avatar moves less than the pen (touchpad version of Li et al., eq. 4).
+// Law R, display ratio: over a stiffer place the avatar moves less than the pen. Source: the touchpad version of Li et
+// al. ("Pseudo-haptics for rigid tool / soft object interaction"), eq. (4).
 //
 // Per metre of path, with x = max(df, 0) and u the direction of motion, the lag l = pen - avatar obeys
 //     dl/ds = w (u - l/cap) - c b(df) l/|l|,    w = x / (f_0 + x),    b = clamp(1 - df/df_on, 0, 1)
-// so that the avatar's gain is g = 1/(1 + x/f_0) = 1 - w while the force rises, as in the paper. Ours, not the
-// paper's: cap, release (the paper snaps back in one step), gate and the decay on a pause. The printed
-// eq. (4) reads R_o/(f_i + 1) with the raw level f_i; we read the force difference in newtons over f_0 = 1 N.
+// so that, far below the cap, the avatar's gain is g = 1/(1 + x/f_0) = 1 - w while the force rises, as in the paper.
+// The cap, the release (in the paper the avatar snaps back in one step), the gate and the decay in a pause are ours.
+// The printed eq. (4) reads R_o/(f_i + 1) with the raw level f_i; it is read here as the force difference in newtons
+// over f_0 = 1 N.
 
 #include <optional>
 
@@ -15,16 +17,16 @@ namespace palpa::avatar {
 
 struct DisplayRatio {
     double f_0_N = 0.02;
-    std::optional<double> cap_m = 3e-3;  // none: the lag is not bounded
+    std::optional<double> cap_m = 3e-3;  // absent: the lag is not bounded
     double release = 1.0;                // c, metres of lag given back per metre of path
-    double gate_N = 2e-3;                // df_on
-    double hold_s = 0.15;                // T_hold: standing still for longer lets the lag decay
-    double pause_decay_s = 0.1;          // tau_p
+    double gate_N = 2e-3;                // df_on: from this rise on nothing is released
+    double hold_s = 0.15;                // T_hold: after standing still for longer the lag decays
+    double pause_decay_s = 0.1;          // tau_p, time constant of that decay
     PathParameters path;
 };
 
-DisplayRatio display_ratio_paper();  // f_0 = 1 N, no cap: at or below one pixel on common screens
-DisplayRatio display_ratio_clear();  // f_0 = 0.02 N, cap 3 mm: visible
+DisplayRatio display_ratio_paper();  // f_0 = 1 N, no cap: a lag of at most one pixel on common screens
+DisplayRatio display_ratio_clear();  // f_0 = 0.02 N, cap 3 mm: a visible lag
 
 struct DisplayRatioState {
     PathState path;
@@ -32,19 +34,21 @@ struct DisplayRatioState {
     double moved_s = 0.0;                             // time of the last station with ds > 0
 };
 
-// Gain of the avatar along the motion, 1 - w. Source: eq. (4) as read above.
+// Returns the avatar's gain along the motion without a cap, 1 - w, for a rise of df_N. Source: eq. (4) as read above.
 double display_gain(const DisplayRatio& law, double df_N);
 
-// One station, in place.
+// Commits one station; a pull inside the dead band (ds = 0) changes nothing.
 void apply_pull(const DisplayRatio& law, const Pull& pull, DisplayRatioState& state);
 
-// The lag at time t_s with an uncommitted pull to the pen on top; changes nothing.
+// Returns the lag at time t_s, in metres: that of the last station, and on top of it the pull of the piece of path from
+// there to the pen, which is not committed.
 Eigen::Vector2d lag_at(const DisplayRatio& law, const DisplayRatioState& state, const Pull& partial, double t_s);
 
-// What is left, from `from_s` to `to_s`, of a lag shown at `from_s` while the pen has not moved since.
+// Returns the share, 0 ... 1, that is left at `to_s` of the lag shown at `from_s`, if the pen has not moved in between.
 double pause_factor(const DisplayRatio& law, const DisplayRatioState& state, double from_s, double to_s);
 
-// Goes to the sample and returns the lag there. Lifting or a jump of the pen sets it to 0 at once.
+// Goes to the sample and returns the lag there, in metres. `rise_N` as for pull_rope() (path.h). When the pen is lifted
+// or jumps (is_teleport), the lag is 0 at once.
 template <class Rise>
 Eigen::Vector2d advance_lag(const DisplayRatio& law, const Touch& pen, const Rise& rise_N, DisplayRatioState& state,
                             const StationLimit& limit = {}) {

@@ -1,11 +1,11 @@
 #pragma once
-// The pen's path, cut into stations of equal length, so that what the avatar does depends on the line that
-// was drawn and not on how often it was sampled.
+// The pen's path with stations at equal distances, so that the avatar depends on the line that was drawn and not on how
+// often it was sampled.
 //
-// Both pseudo-haptic laws of Li et al. ("pseudo-haptics for rigid tool / soft object") compare the tangential
-// force now with that of the sample before; as printed their effect depends on the sampling rate. Here the
-// difference is taken over a fixed distance at stations every `station_m` of arc length. Ours, not the
-// paper's: stations, and the dead band ("rope") against jitter.
+// Both laws of Li et al. ("Pseudo-haptics for rigid tool / soft object interaction") compare the tangential force now
+// with that of the sample before, so that as printed their effect depends on the sampling rate. Here the difference is
+// taken over a fixed distance, at stations every `station_m` of arc length. The stations, and the dead band ("rope")
+// against jitter, are ours.
 
 #include <Eigen/Core>
 #include <algorithm>
@@ -16,9 +16,9 @@
 namespace palpa::avatar {
 
 struct PathParameters {
-    double station_m = 5e-5;    // converged: 0.05 mm against 0.01 mm changes the lag by less than 2e-4 mm
-    double dead_band_m = 2e-4;  // swallows 0.02 mm rms of jitter at 1,000 Hz
-    double reference_m = 3e-4;  // s_ref: 30 mm/s at 100 Hz, the paper's recording
+    double station_m = 5e-5;    // converged: with 0.01 mm instead of 0.05 mm the lag changes by less than 2e-4 mm
+    double dead_band_m = 2e-4;  // absorbs 0.02 mm rms of jitter at 1,000 Hz
+    double reference_m = 3e-4;  // s_ref: 30 mm/s at 100 Hz, as in the paper's recording
 };
 
 // A calibrated sample: time, position on the tissue, normal force.
@@ -29,15 +29,16 @@ struct Touch {
     bool down = false;
 };
 
-// How many stations one sample may ask the tissue for, where asking is expensive. As many as the time since the sample
-// before allows, so that a stroke below per_s * station_m never loses one, at whatever rate it is sampled.
+// At how many stations one sample may ask the tissue, where an answer is expensive. Their number follows from the time
+// since the sample before, so that a stroke slower than per_s * station_m loses none at any sampling rate from
+// per_s / most upwards.
 struct StationLimit {
     double per_s = std::numeric_limits<double>::infinity();
-    int least = 4;  // samples that arrive in a burst have little time between them
-    int most = std::numeric_limits<int>::max();
+    int least = 4;                               // allowed in any case, since samples of a burst are close in time
+    int most = std::numeric_limits<int>::max();  // allowed for one sample
 };
 
-// Of `due` stations that fall into dt_s.
+// Returns how many of the `due` stations since the sample before, dt_s ago, are allowed.
 inline std::int64_t allowed_stations(const StationLimit& limit, double dt_s, std::int64_t due) {
     if (due <= limit.least) return due;
     const double by_time = std::isinf(limit.per_s) ? limit.per_s : limit.per_s * dt_s;  // 0 * infinity is no number
@@ -47,24 +48,25 @@ inline std::int64_t allowed_stations(const StationLimit& limit, double dt_s, std
 
 struct PathState {
     Touch last{-std::numeric_limits<double>::infinity(), Eigen::Vector2d::Zero(), 0.0, false};
-    double carry_m = 0.0;                              // length walked since the last station
-    Eigen::Vector2d rope_m = Eigen::Vector2d::Zero();  // the end that is dragged along
-    std::int64_t ignored = 0;                          // samples that were not numbers, or went back in time
-    std::int64_t skipped_stations = 0;                 // beyond the limit
+    double carry_m = 0.0;                              // arc length since the last station
+    Eigen::Vector2d rope_m = Eigen::Vector2d::Zero();  // the end of the rope that is dragged along
+    std::int64_t ignored = 0;                          // samples that were not finite, or went back in time
+    std::int64_t skipped_stations = 0;                 // left out because of StationLimit
 };
 
-// The pull of one piece of path on the rope.
+// What one piece of path does to the rope.
 struct Pull {
     double t_s = 0.0;
-    Eigen::Vector2d u = Eigen::Vector2d::Zero();  // direction of motion, length 1 (0 while inside the dead band)
-    double ds_m = 0.0;                            // path travelled
-    double df_N = 0.0;                            // rise of the resisting force over reference_m, along u
+    Eigen::Vector2d u = Eigen::Vector2d::Zero();  // direction of motion, length 1; 0 inside the dead band
+    double ds_m = 0.0;                            // how far the end of the rope is dragged
+    double df_N = 0.0;                            // rise of the resisting force along u over reference_m
 };
 
 enum class PathEvent { ignored, lifted, started, moved };
 
-// Drags the rope to `pen_m`. `rise_N(e, u, force_N, reference_m)` asks the tissue for the rise of its resisting
-// tangential force along u, f(e, u, d) - f(e - reference_m u, u, d), both at the depth d of `force_N` at e.
+// Drags the rope to the pen. `rise_N(e, u, force_N, reference_m)` asks the tissue for the rise of its resisting
+// tangential force along u, f(e, u, d) - f(e - reference_m u, u, d), in newtons; both forces are taken at the depth d
+// to which `force_N` presses at e.
 template <class Rise>
 Pull pull_rope(const PathParameters& path, const Touch& pen, const Rise& rise_N, Eigen::Vector2d& rope_m) {
     Pull pull;
@@ -84,16 +86,16 @@ inline bool is_finite(const Touch& touch) {
     return std::isfinite(touch.t_s) && touch.p_m.allFinite() && std::isfinite(touch.force_N);
 }
 
-// A jump that no hand makes: the device lost the pen and found it elsewhere.
+// Returns whether the pen jumped farther than a hand can move it: the device lost the pen and found it elsewhere.
 inline bool is_teleport(const Touch& from, const Touch& to) {
     constexpr double kJump_m = 5e-3;
     constexpr double kFastest_m_per_s = 3.0;
     return (to.p_m - from.p_m).norm() > kJump_m + kFastest_m_per_s * (to.t_s - from.t_s);
 }
 
-// Walks the path to `pen` and hands every station's Pull to `at_station`. Beyond the limit the stations are thinned out
-// evenly, the last one stays, and those left out are counted. Samples that are not finite or go back in time change
-// nothing but the counter.
+// Walks the path to `pen` and hands the Pull of every station to `at_station`. Beyond the limit the stations are
+// thinned out evenly: the last one stays, and those left out are counted. A sample that is not finite or goes back in
+// time only changes `ignored`.
 template <class Rise, class AtStation>
 PathEvent walk_to(const PathParameters& path, const StationLimit& limit, const Touch& pen, const Rise& rise_N,
                   const AtStation& at_station, PathState& state) {
@@ -119,7 +121,7 @@ PathEvent walk_to(const PathParameters& path, const StationLimit& limit, const T
     state.carry_m = length_m - (at_m - path.station_m);
     at_m = first_m;
     for (std::int64_t k = 1, taken = 0; k <= due; ++k, at_m += path.station_m) {
-        if (k * allowed / due == taken) continue;  // of every due / allowed the last
+        if (k * allowed / due == taken) continue;  // takes the last of every due / allowed stations
         ++taken;
         const double s = at_m / length_m;
         Touch station;

@@ -7,6 +7,7 @@
 namespace palpa::avatar {
 namespace {
 
+// (t/2) ln((R + t)/(R - t)): the depth at which the contact radius is t.
 double punch_term(double t_m, double radius_m) { return 0.5 * t_m * std::log((radius_m + t_m) / (radius_m - t_m)); }
 
 }  // namespace
@@ -30,7 +31,7 @@ double sphere_contact_radius_m(double depth_m, double radius_m) {
 double half_space_sink_m(double r_m, double depth_m, double contact_radius_m, double radius_m) {
     const double a = contact_radius_m;
     if (r_m <= a) return depth_m - (radius_m - std::sqrt(radius_m * radius_m - r_m * r_m));
-    // t = r sin(theta) removes the root at t = r = a; Gauss-Legendre with 8 points, mapped to (0, asin(a/r))
+    // t = r sin(theta) removes the singularity at t = r; Gauss-Legendre with 8 points on (0, asin(a/r))
     static constexpr std::array<double, 4> kNode{0.1834346424956498, 0.5255324099163290, 0.7966664774136267,
                                                  0.9602898564975363};
     static constexpr std::array<double, 4> kWeight{0.3626837833783620, 0.3137066458778873, 0.2223810344533745,

@@ -25,8 +25,8 @@ Material read_material(files::JsonReader json) {
     Material material;
     material.young_Pa = json.number("young_Pa", {0.0, 1e15, true});
     material.poisson = json.number("poisson", files::kAnyNumber);
-    // at 0.5 - 1e-10 a block sinks as at 0.4999999 to six digits, at 0.5 - 1e-12 only to five, and a few
-    // roundings below 0.5 the matrix can no longer be factored (2026-11)
+    // at 0.5 - 1e-10 a block sinks as much as at 0.4999999 to six digits, at 0.5 - 1e-12 only to five; a few units of
+    // round-off below 0.5 the matrix can no longer be factored (2026-11)
     constexpr double kMostPoisson = 0.5 - 1e-10;
     if (!(material.poisson > -1.0 && material.poisson <= kMostPoisson)) {
         json.fail("poisson", files::number_text(material.poisson),
@@ -61,7 +61,7 @@ Eigen::Matrix3Xd centroids_m(const Mesh& mesh) {
 
 Eigen::Vector3d vector_of(const std::vector<double>& v) { return {v[0], v[1], v[2]}; }
 
-// Cells that one region takes: those whose centre is inside.
+// Returns the cells of one region: those whose centre is inside, or those of its physical group.
 std::vector<int> cells_of_region(files::JsonReader& entry, const CaseMesh& mesh, const Eigen::Matrix3Xd& centre_m) {
     if (entry.has("physical")) return cells_of_group(entry, mesh);
     std::vector<int> cells;
@@ -95,7 +95,7 @@ std::vector<int> cells_of_region(files::JsonReader& entry, const CaseMesh& mesh,
 
 void read_regions(files::JsonReader& json, const std::vector<std::string>& materials, CaseMesh& mesh) {
     auto entries = json.objects("regions");
-    if (entries.empty() && materials.size() == 1) return;  // one material: it is everywhere
+    if (entries.empty() && materials.size() == 1) return;  // a single material is everywhere
     mesh.mesh.region.setConstant(-1);
     const Eigen::Matrix3Xd centre_m = centroids_m(mesh.mesh);
     for (files::JsonReader& entry : entries) {

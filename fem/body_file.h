@@ -1,6 +1,6 @@
 #pragma once
-// A body as files spell it: mesh, element, materials, regions and supports. Format: docs/fem.md. Apart from the rest of
-// this folder, so that whatever else is made of a mesh with materials is read alike.
+// A body as files describe it: mesh, element, materials, regions and supports. Format: docs/fem.md. It is read apart
+// from the rest of a case, so that other kinds of files can describe bodies in the same way.
 
 #include <filesystem>
 #include <string>
@@ -15,22 +15,23 @@ namespace palpa::fem {
 struct BodyFile {
     mechanics::Body body;  // mesh.region: position in `materials`
     mechanics::Element element = mechanics::Element::hex8_bbar;
-    std::vector<std::string> materials;  // their names
+    std::vector<std::string> materials;  // names, in the order of the file
     CaseMesh mesh;                       // the same mesh, with the names of its parts
 };
 
-// Reads "mesh", "element", "materials" and "regions". Everything that is wrong is an InputError with file, key, what
-// was found and what was expected. `folder`: where relative names of meshes start.
+// Reads "mesh", "element", "materials" and "regions". Throws InputError with file, key, what was found and what was
+// expected. `folder`: the one that relative names of meshes refer to.
 BodyFile read_body(files::JsonReader& json, const std::filesystem::path& folder);
 
 struct CaseSupport {
     std::string name;        // "zmin", or the name of a physical group
     std::vector<int> nodes;  // ascending
     std::string axes;        // "xyz", "z", ...
-    double value_m = 0.0;
+    double value_m = 0.0;    // displacement along each of them
 };
 
-// Reads "supports" and adds them to the problem's; they hold every part of the mesh.
+// Reads "supports" and adds them to `supports`. Throws InputError also if they leave a part of the mesh free to move,
+// or give one displacement two values.
 std::vector<CaseSupport> read_supports(files::JsonReader& json, const CaseMesh& mesh, mechanics::Supports& supports);
 
 }  // namespace palpa::fem

@@ -12,22 +12,22 @@
 
 namespace palpa::fem {
 
-// Force per area on faces: a pressure into the body, or a vector in x, y, z.
+// Force per area on faces: a pressure into the body, or a vector.
 struct CaseTraction {
     mechanics::Faces faces;
-    std::optional<double> pressure_Pa;
-    std::array<double, 3> vector_Pa{};
+    std::optional<double> pressure_Pa;  // square to the faces; absent: vector_Pa
+    std::array<double, 3> vector_Pa{};  // x, y, z
 };
 
 struct CaseIndenter {
     mechanics::Indenter indenter;
-    std::array<double, 2> centre_m{};
-    std::optional<double> depth_m;  // either this
-    double force_N = 0.0;           // or this
-    double friction = 0.0;
+    std::array<double, 2> centre_m{};  // x, y on zmax
+    std::optional<double> depth_m;     // below the surface at rest; absent: force_N
+    double force_N = 0.0;
+    double friction = 0.0;  // coefficient
 };
 
-// Checked as a whole: materials, mesh and supports are ones that can be solved.
+// A case whose parts were checked: materials, mesh and supports can be solved together.
 struct FemCase {
     std::string file;
     std::string mesh_file;       // empty for a box
@@ -42,9 +42,9 @@ struct FemCase {
     std::optional<CaseIndenter> indenter;
 };
 
-// Everything that is wrong is an InputError with file, key, what was found and what was expected.
+// Reads a case. Throws InputError with file, key, what was found and what was expected.
 FemCase read_case(const std::filesystem::path& path);
-// `folder`: where relative names of meshes start.
+// The same from JSON that was read already. `folder`: the one that relative names of meshes refer to.
 FemCase parse_case(const files::Json& json, const std::string& file_name, const std::filesystem::path& folder);
 
 }  // namespace palpa::fem

@@ -26,16 +26,16 @@ constexpr double kMostCompliance_bytes = 6e8;
 // 0.004 % from the force with 64 steps: assets/cases/hertz.json on 24 x 24 x 10 cells, friction 0.3, 2026-11
 constexpr int kFrictionSteps = 16;
 constexpr int kFrictionSweeps = 4000;
-constexpr double kForceTolerance = 1e-6;  // with friction; its sweeps leave 1e-7 of the largest nodal force
+constexpr double kForceTolerance = 1e-6;  // with friction, whose sweeps leave an error of 1e-7 of the largest force
 constexpr int kMostPresses = 40;
-constexpr double kNarrowest = 1e-10;  // of the depth: the force jumps there
-constexpr double kFewestCells = 4.0;  // across the contact's radius: docs/fem.md
+constexpr double kNarrowest = 1e-10;  // of the depth: if the bracket is narrower, the force jumps within it
+constexpr double kFewestCells = 4.0;  // across the contact's radius, as docs/fem.md asks for
 
 struct Pressed {
     Contact contact;
     std::vector<int> touch;       // touch nodes under load
     std::vector<double> force_N;  // three per node: pressing, x, y
-    std::string unsettled;        // why; empty: it settled
+    std::string unsettled;        // why the contact did not settle; empty if it did
 };
 
 Tool tool_at(const CaseIndenter& indenter, double depth_m) {
@@ -94,14 +94,14 @@ Pressed press_rough_to(const Compliance& c, const CaseIndenter& indenter, double
     return out;
 }
 
-// A depth on one side of the wanted force, and by how much: log(force / wanted).
+// One end of the bracket: a depth, and by how much its force misses the wanted one.
 struct Bound {
     double depth_m = 0.0;
-    double miss = 0.0;
+    double miss = 0.0;  // log(force / wanted); infinite before the depth was pressed, or without contact
 };
 
-// Next depth inside the bracket. Force rises with a power of the depth, so the line between the bounds is drawn
-// through logarithms; before both are known Hertz's power, 3/2, stands in.
+// Returns the next depth inside the bracket. The force rises with a power of the depth, so it interpolates between the
+// logarithms of both; before both ends are known it takes Hertz's power, 3/2.
 double next_depth_m(const Bound& low, const Bound& high) {
     const bool open = !std::isfinite(high.miss);
     if (!(low.depth_m > 0.0) && open) return 0.5 * high.depth_m;
@@ -113,8 +113,9 @@ double next_depth_m(const Bound& low, const Bound& high) {
     return low.depth_m * std::pow(high.depth_m / low.depth_m, share);
 }
 
-// The depth for a force. Nodes that join make kinks and jumps of the force, so a bracket holds the search
-// (regula falsi, the stale bound's miss halved each time: Illinois).
+// Presses to the indenter's depth, or searches for the depth of its force. The force has kinks and jumps where nodes
+// join the contact, so the search keeps a bracket (regula falsi by the Illinois rule, which halves the miss of an end
+// that stays).
 Pressed press_rough(const Compliance& c, const CaseIndenter& indenter, const FemCase& model) {
     if (indenter.depth_m) return press_rough_to(c, indenter, *indenter.depth_m);
     Pressed out = press_smooth(c, indenter, model);
@@ -127,7 +128,7 @@ Pressed press_rough(const Compliance& c, const CaseIndenter& indenter, const Fem
     for (int i = 0; i < kMostPresses && high.depth_m - low.depth_m > kNarrowest * high.depth_m; ++i) {
         out = press_rough_to(c, indenter, depth_m);
         if (!out.unsettled.empty()) return out;
-        const double miss = std::log(out.contact.tool[0].normal_N / indenter.force_N);  // -infinity: no contact
+        const double miss = std::log(out.contact.tool[0].normal_N / indenter.force_N);  // -infinity without contact
         if (std::abs(miss) <= kForceTolerance) return out;
         const int now = miss < 0.0 ? -1 : 1;
         (now < 0 ? low : high) = {depth_m, miss};
@@ -140,7 +141,7 @@ Pressed press_rough(const Compliance& c, const CaseIndenter& indenter, const Fem
     return out;
 }
 
-// Where the tool is lowest the tissue has this material: a first guess of how far it must go in.
+// Returns Hertz's depth for the wanted force, on the material under the tool's lowest point: a first guess.
 double hertz_depth_m(const CaseIndenter& indenter, const FemCase& model) {
     const Faces top = faces_on(model.problem.mesh, model.outer, Side::zmax);
     double nearest = std::numeric_limits<double>::infinity();
@@ -162,8 +163,8 @@ double hertz_depth_m(const CaseIndenter& indenter, const FemCase& model) {
 struct Rectangle {
     SurfaceRequest request;
     std::array<double, 4> box_m{};  // of the touch nodes
-    bool whole = false;             // the whole surface
-    std::vector<int> held;          // nodes in it that a support holds
+    bool whole = false;             // it holds the whole surface
+    std::vector<int> held;          // nodes in it that a support holds along z
 };
 
 Rectangle rectangle_around(const FemCase& model, const CaseIndenter& indenter, double half_x_m, double half_y_m) {
@@ -172,7 +173,7 @@ Rectangle rectangle_around(const FemCase& model, const CaseIndenter& indenter, d
     out.request =
         request_rectangle(model.problem.mesh, model.outer, {x - half_x_m, x + half_x_m, y - half_y_m, y + half_y_m});
     out.whole = out.request.other_nodes.empty();
-    out.request.other_nodes.clear();  // the full field is solved for afterwards
+    out.request.other_nodes.clear();  // a solution with the contact's forces gives the full field afterwards
     out.request.tangential = indenter.friction > 0.0;
     constexpr double kFar = std::numeric_limits<double>::infinity();
     out.box_m = {kFar, -kFar, kFar, -kFar};
@@ -217,7 +218,8 @@ double at_mm(const FemCase& model, int node, Index axis) { return 1e3 * model.pr
                            expected);
 }
 
-// Nodes that a support holds do not give way and are not solved for: they leave the list of touch nodes.
+// Takes the nodes that a support holds out of the touch nodes, since they have no compliance. Throws InputError if no
+// touch node is left, or if friction cannot move one.
 void set_held_aside(const FemCase& model, const Factored& factored, Rectangle& rectangle) {
     const auto prescribed = [&](int node, int axis) {
         return factored.reduction.equation[static_cast<std::size_t>(3 * node + axis)] == kPrescribed;
@@ -235,7 +237,7 @@ void set_held_aside(const FemCase& model, const Factored& factored, Rectangle& r
     }
 }
 
-// The tool must stay clear of them: the tissue at rest is as high there as it will ever be.
+// Throws InputError if the tool reaches a node that a support holds, since no contact is computed there.
 void check_held(const FemCase& model, const Rectangle& rectangle, double depth_m) {
     const Indenter& tool = model.indenter->indenter;
     const double d = std::min(depth_m, tool.radius_m);
@@ -254,7 +256,7 @@ double reach_m(const Indenter& tool, double depth_m) {
     return std::sqrt(tool.radius_m * std::min(depth_m, tool.radius_m));
 }
 
-// Least distance between touch nodes, one of them in contact; across its axis under a cylinder.
+// Returns the least distance between a node in contact and another touch node; under a cylinder, only along x.
 double spacing_m(const Compliance& c, const Pressed& pressed, IndenterShape shape) {
     double least_m = std::numeric_limits<double>::infinity();
     for (const int i : pressed.touch) {
@@ -268,7 +270,8 @@ double spacing_m(const Compliance& c, const Pressed& pressed, IndenterShape shap
     return least_m;
 }
 
-// Where the mesh cannot tell how large the contact is, it is at most what the tool has below the surface.
+// Sets area and cells across the radius. Where the mesh is too coarse to tell a sphere's area, it is limited to the
+// section of the sphere at the surface.
 void set_area(const Compliance& c, const Pressed& pressed, const FemCase& model, IndenterContact& out) {
     const Indenter& tool = model.indenter->indenter;
     std::vector<int> nodes;
@@ -336,7 +339,7 @@ IndenterContact press_indenter(const FemCase& model, const Factored& factored, c
         check_size(rectangle, model);
         set_held_aside(model, factored, rectangle);
         Compliance c = surface_compliance(model.problem.mesh, factored, rectangle.request, columns);
-        for (int touch = 0; touch < c.n_touch; ++touch) {  // the surface that the tool meets
+        for (int touch = 0; touch < c.n_touch; ++touch) {  // moves the surface to where the tool meets it
             c.position_m(2, touch) += before_m(2, c.node[static_cast<std::size_t>(touch)]);
         }
         const Pressed pressed =

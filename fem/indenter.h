@@ -1,5 +1,5 @@
 #pragma once
-// The indenter of a case: from its depth or force to forces on the nodes of the surface.
+// The indenter of a case: its depth or force becomes forces on the nodes of the surface.
 
 #include <functional>
 
@@ -8,32 +8,34 @@
 
 namespace palpa::fem {
 
-// What is being done, and how much of how much (total 0: not known).
+// Is told what is being done, and how much of it is done; total is 0 if it is not known.
 using FemProgress = std::function<void(const char* what, int done, int total)>;
 
 struct IndenterContact {
-    Eigen::Matrix3Xd force_N;  // on the tissue, per node of the mesh
-    double normal_N = 0.0;     // pressing
-    double area_m2 = 0.0;      // mechanics/contact_area.h
+    Eigen::Matrix3Xd force_N;  // on the tissue, 3 x n_nodes
+    double normal_N = 0.0;     // pressing is positive
+    double area_m2 = 0.0;      // see mechanics/contact_area.h
     double depth_m = 0.0;
-    double lateral_N[2] = {0.0, 0.0};  // resists motion of the tool along +x, +y (contact.h)
-    int nodes = 0;
-    int columns = 0;  // of the compliance that was needed
-    double seconds = 0.0;
+    double lateral_N[2] = {0.0, 0.0};  // resists motion of the tool along +x, +y (mechanics/contact.h)
+    int nodes = 0;                     // in contact
+    int columns = 0;                   // of the compliance that was computed: its touch nodes
+    double seconds = 0.0;              // that compliance and contact took
     double cells_across_radius = 0.0;  // sqrt(R depth) over the spacing of the nodes in contact
     bool settled = true;
-    std::string why_not_settled;
-    bool over_edge = false;  // part of the tool is beside the tissue
+    std::string why_not_settled;  // for people; empty if it settled
+    bool over_edge = false;       // part of the tool is beside the tissue
 };
 
-// `before_m`: how the other loads and supports move every node, 3 x nodes; the tool then comes down to its depth below
-// the surface as it was at rest. Compliance of a rectangle around the tool, enlarged until the contact lies inside; then the contact.
-// Friction: the tool goes straight down in equal steps, so that what sticks first stays. Throws InputError
-// for a force that the tissue cannot take and for a tool on supported nodes.
+// Solves the contact on the surface compliance of a rectangle around the tool, which grows until it holds the contact.
+// With friction the tool goes straight down in equal steps, so that nodes that stick early stay where they stuck.
+//
+// before_m: displacement of every node by the other loads and supports, 3 x n_nodes. The tool meets the surface that
+// they leave; its depth counts from the surface at rest. Throws InputError for a force that the tissue cannot take, a
+// tool that touches no node, reaches supported nodes or a lower part of the surface, or needs too large a compliance.
 IndenterContact press_indenter(const FemCase& model, const mechanics::Factored& factored,
                                const Eigen::Matrix3Xd& before_m, const FemProgress& progress);
 
-// What a person must know of it: a contact that the mesh cannot resolve, one that did not settle.
+// Returns warnings for people: of a contact that the mesh cannot resolve, and of one that did not settle.
 std::vector<std::string> contact_warnings(const IndenterContact& contact);
 
 }  // namespace palpa::fem

@@ -10,10 +10,10 @@ namespace {
 
 using namespace mechanics;
 
-// The paper's slab on 20 x 20 x 10 bricks (docs/fem.md): stiffness under the load over that of hex8-bbar on
-// the same nodes, 2026-11. The list begins where locking is more than the mesh's own error: at 0.30 tet4 is
-// 1.09 and hex8 1.02 times too stiff, at 0.45 (the default tissue) 1.16 and 1.05; at 0.47 the excess of tet4
-// is more than twice, that of hex8 four times what it is at 0.30, and it grows with lambda / mu from there.
+// Stiffness under the load relative to that of hex8-bbar on the same nodes, for the slab of docs/fem.md on 20 x 20 x 10
+// bricks, 2026-11. The list begins where locking clearly exceeds the error of the mesh. At Poisson's ratio 0.30 tet4 is
+// 1.09 and hex8 1.02 times too stiff, at 0.45 (the default tissue) 1.16 and 1.05 times. At 0.47 the excess is more than
+// twice that at 0.30 for tet4 and more than three times for hex8; from there on it grows with lambda / mu.
 struct Locking {
     double poisson;
     double tet4;

@@ -1,5 +1,5 @@
 #pragma once
-// Elements that cannot keep their volume and bend at once are too stiff in nearly incompressible tissue.
+// Locking: elements that cannot bend without changing their volume are too stiff in nearly incompressible tissue.
 
 #include <string>
 
@@ -7,8 +7,9 @@
 
 namespace palpa::fem {
 
-// Empty unless tet4 or hex8 is asked to carry a material from poisson 0.47 on. Names the greatest Poisson's
-// ratio, what it cost on the slab of docs/fem.md, and the element that does not lock.
+// Returns "" unless the element is tet4 or hex8 and a material's Poisson's ratio is 0.47 or more. The warning names the
+// greatest ratio, how many times too stiff the element is on the slab of docs/fem.md, and the element that does not
+// lock.
 std::string locking_warning(const mechanics::Problem& problem);
 
 }  // namespace palpa::fem

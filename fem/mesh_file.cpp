@@ -15,7 +15,7 @@ namespace {
 using namespace mechanics;
 using Eigen::Index;
 
-constexpr double kMostNodes = 400'000;  // 161,000 take 4.9 GB to factor (numerics.md, issue 8)
+constexpr double kMostNodes = 400'000;  // 161,000 nodes take 4.9 GB to factor
 
 Box read_box(files::JsonReader box) {
     box.only({"size_mm", "elements", "grading"});
@@ -50,7 +50,7 @@ Box read_box(files::JsonReader box) {
 
 files::MshKind kind_of(Element element) { return element == Element::tet4 ? files::MshKind::tet : files::MshKind::hex; }
 
-// Nodes of none of these cells go; what stood on them keeps -1 there.
+// Removes the nodes that no cell of this kind uses; other cells get -1 in their place.
 void drop_loose_nodes(files::MshKind kind, files::Msh& msh) {
     std::vector<int> kept_as(msh.n_nodes(), -1);
     for (const int node : msh.of(kind).nodes) kept_as[static_cast<std::size_t>(node)] = 0;
@@ -109,7 +109,8 @@ void check_cells(CaseMesh& mesh, const files::JsonReader& json) {
     }
 }
 
-// Across a seam the two sides move apart or into each other, and nothing in the answer would show it.
+// Refuses or warns of seams, since the two sides of a seam move apart or into each other, and no figure of the result
+// would show it.
 void check_seams(CaseMesh& mesh) {
     const Seams seams = find_seams(mesh.mesh, mesh.outer);
     if (!seams.hanging.empty()) {
@@ -164,7 +165,8 @@ std::size_t count_in(const files::MshGroup& group, files::MshKind kind) {
     return group.cells[static_cast<std::size_t>(kind)].size();
 }
 
-// Refuses a group that would load nothing, or only in part.
+// Refuses a group whose faces are not all of the kind that the mesh's cells have, or that has none: part of it or all
+// of it would be left unloaded.
 void check_faces_of(files::JsonReader& entry, const CaseMesh& mesh, const files::MshGroup& group) {
     const bool hex = is_hex(mesh.mesh);
     const std::size_t triangles = count_in(group, files::MshKind::triangle);
@@ -184,7 +186,8 @@ std::array<int, 4> sorted_corners(const int* nodes, int corners) {
     return key;
 }
 
-// The outer faces with the corners of a group's triangles or quads: oriented, and surely on the outside.
+// Returns the outer faces that have the corners of a group's triangles or quads. Unlike those, outer faces are
+// oriented. Refuses a group with a face that is not on the outside.
 Faces faces_of_group(files::JsonReader& entry, const CaseMesh& mesh) {
     const files::MshGroup& group = find_group(entry, mesh, 2);
     check_faces_of(entry, mesh, group);
@@ -228,7 +231,7 @@ void with_key(const std::string& file, const std::string& key, const std::string
               const std::function<void()>& call) {
     try {
         call();
-    } catch (const SolverError& error) {  // the run failed, the input is not known to be wrong
+    } catch (const SolverError& error) {  // the run failed; the input may be right
         throw SolverError(file + ": " + error.what(), error.code);
     } catch (const MechanicsError& error) {
         throw files::bad_input(file, key, error.what(), expected);
@@ -275,7 +278,7 @@ Faces faces_named(files::JsonReader& entry, const CaseMesh& mesh, std::string& n
 
 std::vector<int> nodes_named(files::JsonReader& entry, const CaseMesh& mesh, std::string& name) {
     if (entry.has("face") || !entry.has("physical")) return nodes_of(faces_named(entry, mesh, name));
-    const files::MshGroup& group = find_group(entry, mesh, 2);  // may lie inside the body as well
+    const files::MshGroup& group = find_group(entry, mesh, 2);  // its faces may also lie inside the body
     name = entry.text("physical");
     std::vector<int> nodes;
     for (const files::MshKind kind : {files::MshKind::triangle, files::MshKind::quad}) {

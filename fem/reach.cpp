@@ -15,7 +15,7 @@ using namespace mechanics;
 using Eigen::Index;
 using Eigen::Vector3d;
 
-// Height of the tool's lower side over a place, infinite beside it.
+// Returns the height z of the tool's lower side over a place (m); infinity beside the tool.
 double tool_m(const CaseIndenter& tool, double tip_z_m, double x_m, double y_m) {
     const double dx = x_m - tool.centre_m[0];
     const double dy = y_m - tool.centre_m[1];
@@ -30,7 +30,7 @@ double tool_m(const CaseIndenter& tool, double tip_z_m, double x_m, double y_m) 
 bool looks_up(const Eigen::Matrix3Xd& x) {
     const Vector3d n = x.cols() == 4 ? (x.col(2) - x.col(0)).cross(x.col(3) - x.col(1))
                                      : (x.col(1) - x.col(0)).cross(x.col(2) - x.col(0));
-    return n.z() > 1e-6 * n.norm();  // the sides of a box are upright to rounding
+    return n.z() > 1e-6 * n.norm();  // beyond rounding, with which the sides of a box are upright
 }
 
 }  // namespace

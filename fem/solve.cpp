@@ -19,11 +19,11 @@ using Eigen::Index;
 using Eigen::Matrix3Xd;
 using Eigen::Vector3d;
 
-// The first load's centre, and the faces that it acts on.
+// The centre of a load, and the faces that the load acts on.
 struct LoadCentre {
     Vector3d at_m;
     Faces faces;
-    double width_m = 0.0;  // of the loaded patch, 0 = not known
+    double width_m = 0.0;  // of the loaded patch; 0 if not known
 };
 
 struct Loads {
@@ -109,7 +109,8 @@ void sum_reactions(const FemCase& model, FemResult& result) {
     }
 }
 
-// Of the reduced equations A q = b, against the larger of b and the reactions (b may be 0).
+// Returns the largest residual of the reduced equations, over the largest nodal load or reaction: with prescribed
+// displacements alone the loads are 0.
 double relative_residual(const Factored& factored, const Matrix3Xd& load_N, const Solution& solution) {
     const auto K = factored.K_N_per_m.selfadjointView<Eigen::Lower>();
     const Eigen::VectorXd out_of_balance = load_N.reshaped() - K * solution.u_m.reshaped();
@@ -128,7 +129,7 @@ Eigen::VectorXd von_mises_of(const CellFields& fields) {
     return out;
 }
 
-// Cells that were eliminated as rigid carry stress, but none that their strain of round-off could tell.
+// Sets the stress of cells that move as rigid bodies to NaN: they carry stress, but their strain is only round-off.
 void blank_rigid_cells(const Problem& problem, FemResult& result) {
     double softest = std::numeric_limits<double>::infinity();
     for (const Material& m : problem.materials) softest = std::min(softest, m.young_Pa);
@@ -156,7 +157,7 @@ FemResult solve_loads(const FemCase& model, const Factored& factored, const FemP
     add_pressures(model, loads);
     add_tractions(model, loads);
     if (model.indenter) {
-        // everything is linear, so the tool finds the tissue as the other loads and supports leave it
+        // the other loads act first: since the problem is linear, the contact can be solved on top of them
         const Matrix3Xd before_m = solve(factored, loads.force_N).u_m;
         result.contact = press_indenter(model, factored, before_m, progress);
         loads.force_N += result.contact->force_N;
@@ -196,7 +197,7 @@ FemResult solve_loads(const FemCase& model, const Factored& factored, const FemP
 FemResult solve_case(const FemCase& model, const FemProgress& progress) {
     std::optional<Factored> factored;
     progress("factor", 0, 0);
-    // whatever else supports can have wrong was refused when the case was read
+    // all other faults of supports were refused when the case was read
     with_key(model.file, "supports",
              "a rigid inclusion held completely, by fixing xyz where it meets the support, or a material at "
              "most 1e8 times as stiff as the softest, which the program lets deform",

@@ -1,5 +1,5 @@
 #pragma once
-// A case, solved: what `palpa fem solve` reports and writes.
+// Solves a case: what `palpa fem solve` reports and writes.
 
 #include "fem/indenter.h"
 #include "files/vtu.h"
@@ -7,42 +7,46 @@
 
 namespace palpa::fem {
 
-inline constexpr double kMostBackwardError = 1e-12;  // of a solution that counts as converged
+inline constexpr double kMostBackwardError = 1e-12;  // that a converged solution may have
 
 struct FemResult {
     mechanics::Solution solution;
     mechanics::CellFields fields;
     Eigen::VectorXd von_mises_Pa;  // per cell; NaN in cells that move as rigid bodies
     int equations = 0;
-    // Of the tissue on each support's side: force of the support on the body. A displacement that two
-    // supports give counts for the first of them.
+    // Force of each support on the body, at the dofs that the support itself fixes. A displacement that two supports
+    // give counts for the first of them.
     std::vector<Eigen::Vector3d> reaction_N;
-    Eigen::Vector3d body_reaction_N = Eigen::Vector3d::Zero();  // on rigid bodies, beside the supports' own nodes
+    // What supports carry through rigid bodies that they hold, at the other nodes of these bodies.
+    Eigen::Vector3d body_reaction_N = Eigen::Vector3d::Zero();
     std::optional<IndenterContact> contact;
 
-    double applied_N = 0.0;          // sum of the loads' sizes
-    bool partial = false;            // part of a pressure fell beside the body
-    std::optional<double> centre_m;  // displacement under the first load's centre, into the tissue positive
-    std::optional<double> skel_m;    // work-conjugate mean, sum f . u / applied
+    double applied_N = 0.0;  // sum of the loads' sizes that fell on the body
+    bool partial = false;    // part of a pressure fell beside the body
+    // Displacement into the body under the centre of the indenter, else of the first pressure, else of the first
+    // traction; absent without loads.
+    std::optional<double> centre_m;
+    std::optional<double> skel_m;  // work-conjugate mean displacement, sum f . u / applied_N
     double max_displacement_m = 0.0;
 
-    double residual = 0.0;  // |b - A q| / |b|, maximum norm; see also solution.backward_error
-    bool converged = false;
+    // Largest out-of-balance force over the largest nodal load or reaction; see also solution.backward_error.
+    double residual = 0.0;
+    bool converged = false;  // backward error below kMostBackwardError, and the contact settled
 
-    double max_strain = 0.0;  // largest magnitude of a principal strain
-    double linear_ratio = 0.0;
+    double max_strain = 0.0;    // largest magnitude of a principal strain
+    double linear_ratio = 0.0;  // mechanics/linear_range.h
     mechanics::LinearRange linear = mechanics::LinearRange::fine;
 
     double assemble_s = 0.0;
     double factor_s = 0.0;
 };
 
-// Throws InputError for what only solving shows to be wrong, SolverError when the factorisation failed, and
-// std::runtime_error when an answer is not finite.
+// Throws InputError for what only solving shows to be wrong, SolverError if the factorisation failed, and
+// std::runtime_error if the displacement is not finite.
 FemResult solve_case(const FemCase& model, const FemProgress& progress);
 
-// In mm: displacement_mm and reaction_N on points; strain (tensor components), stress_Pa, von_mises_Pa and
-// material (position in FemCase::materials) in cells.
+// Returns the whole field, with points in mm: displacement_mm and reaction_N on points; strain (tensor components),
+// stress_Pa, von_mises_Pa and material (position in FemCase::materials) in cells.
 files::VtuGrid vtu_of(const FemCase& model, const FemResult& result);
 
 }  // namespace palpa::fem

@@ -1,5 +1,5 @@
 #pragma once
-// What tissues, phantoms, devices and parts are made of.
+// A mesh with its materials: what tissues, phantoms, devices and parts are made of.
 
 #include <utility>
 #include <vector>
@@ -15,7 +15,7 @@ struct Body {
     std::vector<Material> materials;  // one per cell
 };
 
-// The linear static problem of a body; its supports are still to be given.
+// Returns the linear static problem of a body, without supports: the caller adds them.
 inline Problem problem_of(Body body, Element element = Element::hex8_bbar) {
     Problem problem;
     problem.mesh = std::move(body.mesh);

@@ -13,7 +13,7 @@ using Eigen::Index;
 
 constexpr std::uint64_t kFormatVersion = 1;
 
-// Component c of a surface node: into the tissue, along x, along y.
+// Component c of a surface node: 0 into the tissue, 1 along x, 2 along y.
 NodeWeight component(int node, int c) { return c == 0 ? NodeWeight{node, 2, -1.0} : NodeWeight{node, c - 1, 1.0}; }
 
 Compliance empty_compliance(const Mesh& mesh, const SurfaceRequest& request) {
@@ -55,7 +55,7 @@ void check_request(const Mesh& mesh, const SurfaceRequest& request) {
     }
 }
 
-// Reads the wanted rows of one solved column into the matrices.
+// Stores the requested rows of one solved column in the matrices.
 void store_column(const Reduction& reduction, const Eigen::Ref<const Eigen::VectorXd>& q, int column, bool tangential,
                   Compliance& out) {
     const int touched = tangential ? column / 3 : column;

@@ -12,17 +12,17 @@ namespace {
 
 using Eigen::Index;
 
-constexpr double kRegularisation = 1e-12;  // of the mean diagonal: keeps doubled nodes apart
-constexpr double kForceTolerance = 1e-9;
-constexpr double kDepthRoundOff = 1e-15;  // of the depth: a narrower bracket cannot be halved
+constexpr double kRegularisation = 1e-12;  // of the mean diagonal; factors C also if two nodes are at one place
+constexpr double kForceTolerance = 1e-9;   // of the force
+constexpr double kDepthRoundOff = 1e-15;   // of the depth: a narrower bracket cannot be halved
 constexpr int kMostSearchSteps = 60;
 
 double compliance_of(const Compliance& c, const ContactWork& w, int i, int j) {
     return c.normal_m_per_N(w.candidate[at(i)], w.candidate[at(j)]);
 }
 
-// Starts from the last set, which w.active still lists, where at least half of it is still within reach, else from
-// Hertz's guess: on a half-space the nodes whose penetration exceeds half the depth.
+// Starts from the last active set, which w.active still lists, if at least half of it is within reach. Otherwise starts
+// from Hertz's contact: on a half-space it holds the nodes whose penetration exceeds half the depth.
 void first_guess(std::span<const Tool> tools, ContactWork& w) {
     std::size_t kept = 0;
     for (std::size_t i = 0; i < w.candidate.size(); ++i) {
@@ -42,7 +42,8 @@ void list_active(ContactWork& w) {
     }
 }
 
-// Cholesky factor of C on the active nodes, unless it is the one at hand. False: not positive definite there.
+// Factors C on the active nodes (Cholesky), unless w.factor is of these nodes already. Returns false if C is not
+// positive definite there.
 bool factor_active(const Compliance& c, ContactWork& w) {
     const bool same = w.factored.size() == w.active.size() &&
                       std::equal(w.active.begin(), w.active.end(), w.factored.begin(),
@@ -64,13 +65,13 @@ bool factor_active(const Compliance& c, ContactWork& w) {
     Eigen::Ref<Eigen::MatrixXd> block = w.factor.topLeftCorner(n, n);
     Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>> in_place(block);
     w.factored.clear();
-    // a NaN passes the factorisation without a word
+    // the factorisation does not report a NaN
     if (in_place.info() != Eigen::Success || !block.diagonal().allFinite()) return false;
     for (const int i : w.active) w.factored.push_back(w.candidate[at(i)]);
     return true;
 }
 
-// p on the active nodes from C_AA p = delta_A, 0 elsewhere. False: C_AA cannot be factored.
+// Solves C_AA p = delta_A on the active nodes; p is 0 elsewhere. Returns false if C_AA cannot be factored.
 bool solve_active(const Compliance& c, ContactWork& w) {
     if (!factor_active(c, w)) return false;
     const auto n = static_cast<Index>(w.active.size());
@@ -83,7 +84,7 @@ bool solve_active(const Compliance& c, ContactWork& w) {
     return true;
 }
 
-// g = C p - delta at every candidate.
+// Computes g = C p - delta at every candidate.
 void compute_gaps(const Compliance& c, ContactWork& w) {
     const int n = static_cast<int>(w.candidate.size());
     for (int i = 0; i < n; ++i) w.gap_m[at(i)] = -w.delta_m[at(i)];
@@ -98,7 +99,7 @@ double gap_tolerance(const ContactWork& w) {
     return w.delta_m.empty() ? 0.0 : kGapTolerance * *std::max_element(w.delta_m.begin(), w.delta_m.end());
 }
 
-// Lets go of nodes that pull, takes in nodes that are penetrated. Returns whether anything changed.
+// Releases nodes that pull and adds nodes that are penetrated. Returns whether the set changed.
 bool change_set(double tolerance_m, ContactWork& w) {
     bool changed = false;
     for (std::size_t i = 0; i < w.candidate.size(); ++i) {
@@ -110,6 +111,7 @@ bool change_set(double tolerance_m, ContactWork& w) {
     return changed;
 }
 
+// Changes the active set until it settles. Returns false if it does not, or cannot be solved.
 bool settle(const Compliance& c, int max_changes, ContactWork& w, int& changes) {
     const double tolerance_m = gap_tolerance(w);
     for (int k = 0; k < max_changes; ++k) {
@@ -122,8 +124,8 @@ bool settle(const Compliance& c, int max_changes, ContactWork& w, int& changes) 
     return false;
 }
 
-// Projected Gauss-Seidel: p_i <- max(0, p_i - g_i / C_ii), then one direct solve on the nodes it left
-// pressing.
+// Projected Gauss-Seidel: p_i <- max(0, p_i - g_i / C_ii), then one direct solve on the nodes that it left pressing. If
+// that does not settle, the answer is that of the sweeps. Returns whether it settled.
 bool settle_by_sweeps(const Compliance& c, int sweeps, ContactWork& w, int& changes) {
     const int n = static_cast<int>(w.candidate.size());
     std::fill(w.p_N.begin(), w.p_N.end(), 0.0);
@@ -131,7 +133,7 @@ bool settle_by_sweeps(const Compliance& c, int sweeps, ContactWork& w, int& chan
     for (int sweep = 0; sweep < sweeps; ++sweep) {
         for (int i = 0; i < n; ++i) {
             const double own_m_per_N = compliance_of(c, w, i, i);
-            if (!(own_m_per_N > 0.0)) continue;  // a damaged row: it stays free, and the contact is not settled
+            if (!(own_m_per_N > 0.0)) continue;  // a damaged row stays free, so that the contact does not settle
             const double p = std::max(0.0, w.p_N[at(i)] - w.gap_m[at(i)] / own_m_per_N);
             const double dp = p - w.p_N[at(i)];
             if (dp == 0.0) continue;
@@ -180,7 +182,7 @@ void collect(const Compliance& c, std::span<const Tool> tools, const ContactWork
     out.violation_m = std::max(0.0, -least);
 }
 
-// d(normal force)/d(depth) = 1^T C_AA^-1 1 while the set stays as it is.
+// Returns d(normal force)/d(depth) = 1^T C_AA^-1 1, which holds while the set stays as it is.
 double stiffness_of_set(const Compliance& c, ContactWork& w) {
     const auto n = static_cast<Index>(w.active.size());
     if (n == 0 || !factor_active(c, w)) return 0.0;
@@ -199,8 +201,8 @@ bool all_finite(std::span<const Tool> tools) {
     });
 }
 
-// Solves for the tools in work.tools. Nodes beyond the geometric reach count too, as soft thin layers bulge
-// up to the tool: the margin grows until no node in contact lies near its rim.
+// Solves for the tools in w.tools. Nodes beyond the tool's geometric reach are candidates too, since thin soft layers
+// bulge up to the tool: the margin grows until no node in contact lies near the rim of the candidates.
 void solve_contact(const Compliance& c, const ContactOptions& options, ContactWork& w, Contact& out) {
     out.changes = 0;
     for (double margin = 0.25;; margin *= 2.0) {
@@ -242,13 +244,13 @@ void prepare(const Compliance& c, ContactWork& w) {
 
 void hold(std::size_t n_tools, Contact& contact) {
     contact.flags.held = true;
-    if (contact.tool.size() != n_tools) contact.tool.assign(n_tools, {});  // nothing valid yet: no force
+    if (contact.tool.size() != n_tools) contact.tool.assign(n_tools, {});  // no force if there is no valid answer yet
 }
 
 ContactWork make_contact_work(const Compliance& compliance, int most_in_contact) {
     ContactWork work;
     prepare(compliance, work);
-    work.tools.reserve(1);  // more are asked for only outside the loop
+    work.tools.reserve(1);  // the loop has one tool
     work.factor.resize(most_in_contact, most_in_contact);
     work.rhs.resize(most_in_contact);
     return work;
@@ -277,8 +279,8 @@ void press_to_depth(const Compliance& compliance, std::span<const Tool> tools, c
 
 void press_with_force(const Compliance& compliance, const Tool& tool, double force_N, const ContactOptions& options,
                       ContactWork& work, Contact& contact) {
-    // F(d) is convex and rising, linear while the set stays: Newton from above reaches the root in a few
-    // steps, and the bracket holds it where nodes join and leave.
+    // F(d) is convex and rising, and linear while the set stays as it is: Newton's method reaches the root from above
+    // in a few steps, and the bracket keeps it from leaving where nodes join and leave the contact.
     Tool trial = tool;
     const bool valid = std::isfinite(force_N) && all_finite({&trial, 1});
     if (!valid) {
@@ -302,11 +304,10 @@ void press_with_force(const Compliance& compliance, const Tool& tool, double for
             return;
         }
         (miss < 0.0 ? low : high) = depth;
-        contact.flags.force_missed = true;  // unless a later step meets it
+        contact.flags.force_missed = true;  // holds if no later step meets the force
         if (high - low <= kDepthRoundOff * high) return;
         double next = contact.stiffness_N_per_m > 0.0 ? depth - miss / contact.stiffness_N_per_m : 2.0 * depth + 1e-6;
-        // shallow starts overshoot by Newton, as F rises faster than linearly: at most four times deeper at
-        // once
+        // Newton overshoots from a shallow start, since F rises faster than linearly: at most four times deeper at once
         if (miss < 0.0) next = std::min(next, std::max(4.0 * depth, 1e-6));
         if (!(next > low && next < high)) next = next >= high && high >= limit_m ? limit_m : 0.5 * (low + high);
         depth = next;

@@ -8,7 +8,7 @@ namespace {
 
 using Eigen::Index;
 
-constexpr double kLeast = 1.0 / 3.0;  // found against Hertz on hexahedra, three to five across the radius, 2026-11
+constexpr double kLeast = 1.0 / 3.0;  // fitted to Hertz on hexahedra, 3 to 5 spacings across the radius, 2026-11
 
 struct RimNode {
     bool at_rim = false;

@@ -11,7 +11,7 @@
 namespace palpa::mechanics {
 namespace {
 
-// Radius of the circle (half width of the strip) in which the tool is below the surface plane.
+// Returns the radius of the circle, or half the width of the strip, in which the tool is below the surface plane.
 double reach_radius_m(const Tool& tool) {
     const double R = tool.indenter.radius_m;
     const double d = std::min(tool.pose.depth_m, R);
@@ -36,10 +36,10 @@ namespace {
 
 using Rectangle = std::array<double, 4>;  // x_min, x_max, y_min, y_max
 
-// Holds every node whose delta can exceed -margin times its tool's depth. Nodes lie at the surface plane or below it, so
-// that only those under the tool's lowest (1 + margin) depth can.
+// Returns a rectangle that holds every node whose delta can exceed -margin times its tool's depth. It assumes that
+// nodes lie at the surface plane or below it, so that only nodes under the lowest (1 + margin) depth of a tool can.
 Rectangle box_of_reach(std::span<const Tool> tools, double margin) {
-    constexpr double kRoundOff = 1.0 + 1e-9;  // a node that is looked at in vain costs nothing
+    constexpr double kRoundOff = 1.0 + 1e-9;  // widens the rectangle a little, since a node too many costs nothing
     constexpr double kFar_m = std::numeric_limits<double>::infinity();
     Rectangle box_m{kFar_m, -kFar_m, kFar_m, -kFar_m};
     for (const Tool& tool : tools) {
@@ -60,7 +60,8 @@ bool overlap(const Rectangle& a, const Rectangle& b) {
     return a[0] <= b[1] && a[1] >= b[0] && a[2] <= b[3] && a[3] >= b[2];
 }
 
-// The deepest tool that reaches the node takes it.
+// Adds the node to the candidates if a tool is near it. If several are, the node belongs to the one that reaches
+// deepest.
 void add_if_near(const Compliance& compliance, std::span<const Tool> tools, double margin, int touch,
                  ContactWork& work) {
     const double x_m = compliance.position_m(0, touch);

@@ -1,15 +1,15 @@
 #pragma once
-// How far a rigid tool reaches below the surface; inside of the contact solvers only.
+// How far a rigid tool reaches below the surface. Only the contact solvers include this.
 
 #include "mechanics/contact.h"
 
 namespace palpa::mechanics {
 
-// Penetration of an undeformed point at (x, y) on the surface plane, and its slope when the tool moves along
-// x or y:
+// The penetration delta of an undeformed point at (x_i, y_i) on the surface plane, and its slope when the tool, whose
+// lowest point is at (x, y) and at depth d, moves along x or y:
 //   delta = d - (R - sqrt(R^2 - r^2)),   d(delta)/dx = (x_i - x)/sqrt(R^2 - r^2)
-// r^2 = dx^2 + dy^2 (sphere) or dx^2 (cylinder). Beside the tool (r >= R, or past a cylinder's end):
-// -infinity.
+// r is the distance of the point from (x, y) for a sphere, and along x for a cylinder. Beside the tool (r >= R, or past
+// a cylinder's end) delta is -infinity.
 struct Reach {
     double delta_m = -std::numeric_limits<double>::infinity();
     double slope_x = 0.0;
@@ -17,7 +17,7 @@ struct Reach {
 };
 Reach reach(const Tool& tool, double x_m, double y_m);
 
-// Touch nodes that follow each other lie side by side in most meshes: runs of them are passed over at once.
+// Touch nodes with consecutive numbers lie side by side in most meshes, so that whole runs of them can be skipped.
 inline constexpr int kRunLength = 16;
 
 // A gap below this share of the greatest penetration counts as closed; the round-off of C p is 1e-13 of that penetration.
@@ -26,13 +26,14 @@ inline constexpr double kGapTolerance = 1e-10;
 // Fills the candidate lists with the touch nodes whose delta exceeds -margin times their tool's depth.
 void find_candidates(const Compliance& compliance, std::span<const Tool> tools, double margin, ContactWork& work);
 
-// First use of `work`, or with another compliance: every list at its full size once.
+// Reserves every list of `work` at its full size and forgets the last contact, unless `work` was prepared for this
+// compliance already.
 void prepare(const Compliance& compliance, ContactWork& work);
 
-// Marks the answer as held; it stays as it is, with an entry for each tool.
+// Marks the answer as held; otherwise it stays as it is, with an entry for each tool.
 void hold(std::size_t n_tools, Contact& contact);
 
-// Does the part of the tool under the surface plane leave the box (x_min, x_max, y_min, y_max)?
+// Returns whether the part of the tool under the surface plane leaves the box (x_min, x_max, y_min, y_max).
 bool reaches_beyond(const Tool& tool, const std::array<double, 4>& box_m);
 
 }  // namespace palpa::mechanics

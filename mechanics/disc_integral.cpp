@@ -11,6 +11,7 @@ using Eigen::Vector2d;
 
 double cross(const Vector2d& a, const Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
 
+// Adds the integrals over the triangle (0, p, q) of a piece p -> q inside the disc.
 void add_fan(const Vector2d& p, const Vector2d& q, double radius_m, DiscMoments& sum) {
     const double root = std::sqrt(15.0);
     const std::array<double, 2> outer{(6.0 + root) / 21.0, (6.0 - root) / 21.0};
@@ -32,6 +33,7 @@ void add_fan(const Vector2d& p, const Vector2d& q, double radius_m, DiscMoments&
     }
 }
 
+// Adds the integrals over the sector of a piece p -> q outside the disc.
 void add_sector(const Vector2d& p, const Vector2d& q, double R, DiscMoments& sum) {
     const double theta = std::atan2(cross(p, q), p.dot(q));
     const double t = std::atan2(p.y(), p.x());
@@ -51,6 +53,7 @@ void add_sector(const Vector2d& p, const Vector2d& q, double R, DiscMoments& sum
     sum += m;
 }
 
+// Cuts the edge a -> b where it crosses the circle and adds its pieces.
 void add_edge(const Vector2d& a, const Vector2d& b, double R, DiscMoments& sum) {
     // |a + s d|^2 = R^2 for s in (0, 1); the discriminant A R^2 - (a x d)^2 has no cancellation near tangency
     const Vector2d d = b - a;

@@ -14,7 +14,7 @@ using Eigen::Vector3d;
 constexpr std::array<std::array<double, 3>, 8> kCorner{
     {{-1, -1, -1}, {1, -1, -1}, {1, 1, -1}, {-1, 1, -1}, {-1, -1, 1}, {1, -1, 1}, {1, 1, 1}, {-1, 1, 1}}};
 
-// dN_a/d(r, s, t) at the Gauss point that lies towards corner g.
+// Returns dN_a/d(r, s, t) at the Gauss point that lies towards corner g, one column per node a.
 Hex reference_gradient(int g) {
     const double at = 1.0 / std::sqrt(3.0);
     const auto& point = kCorner[static_cast<std::size_t>(g)];
@@ -38,7 +38,7 @@ const std::array<Hex, 8>& reference_gradients() {
     return all;
 }
 
-// From M_ab = sum w g_a g_b^T (3 x 3 blocks) to the stiffness without the mean-dilatation term.
+// Computes the stiffness without the mean-dilatation term from M_ab = sum_g w g_a g_b^T (3 x 3 blocks).
 template <class Matrix>
 void stiffness_from_products(const Matrix& M, double mu, double lambda, Matrix& K) {
     const int n = static_cast<int>(M.rows()) / 3;
@@ -50,7 +50,7 @@ void stiffness_from_products(const Matrix& M, double mu, double lambda, Matrix& 
     }
 }
 
-// Sums over the eight points: the products of gradients, the mean gradient and the volume.
+// Sums over the eight Gauss points: the products of gradients, the mean gradient and the volume.
 struct HexSums {
     HexMatrix products = HexMatrix::Zero();
     Hex mean_gradient = Hex::Zero();

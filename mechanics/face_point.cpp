@@ -22,7 +22,7 @@ OnFace nearest_on_face(const Matrix3Xd& x, const Vector3d& place) {
     };
     double r = quad ? 0.5 : 1.0 / 3.0;
     double s = r;
-    for (int i = 0; i < 12; ++i) {  // Gauss-Newton on |X(r, s) - place|, held inside
+    for (int i = 0; i < 12; ++i) {  // Gauss-Newton on |X(r, s) - place|, clamped to the face
         Eigen::Matrix<double, 3, 2> J;
         J.col(0) = quad ? Vector3d((1.0 - s) * (x.col(1) - x.col(0)) + s * (x.col(2) - x.col(3)))
                         : Vector3d(x.col(1) - x.col(0));

@@ -1,5 +1,5 @@
 #pragma once
-// The place of a face, a triangle or a bilinear quad, that is nearest to a given one.
+// The point of a face, a triangle or a bilinear quad, that is nearest to a given place.
 
 #include <Eigen/Core>
 
@@ -8,14 +8,16 @@
 namespace palpa::mechanics {
 
 struct OnFace {
-    Eigen::VectorXd weight;  // on the face's corners, each 0..1, their sum 1
-    double away_m = 0.0;
+    Eigen::VectorXd weight;  // of the face's corners, each 0..1, with sum 1
+    double away_m = 0.0;     // distance of the point from the place
 };
 
-// corners_m: 3 x 3 or 3 x 4, in the order of Faces. Exact on faces that are flat; on warped quads as far as
-// twelve steps of Gauss-Newton go.
+// corners_m: 3 x 3 or 3 x 4, in the order of Faces. Exact where the nearest point lies inside a triangle or a
+// parallelogram; on other quads as exact as twelve steps of Gauss-Newton. Where it lies on an edge, each of the two
+// coordinates on the face is clamped by itself, so that the point found may be farther away than the nearest one.
 OnFace nearest_on_face(const Eigen::Matrix3Xd& corners_m, const Eigen::Vector3d& place_m);
 
+// Returns the corners of a face, 3 x 3 or 3 x 4.
 Eigen::Matrix3Xd corners_of_face_m(const Mesh& mesh, const Faces& faces, Eigen::Index face);
 
 }  // namespace palpa::mechanics

@@ -21,7 +21,8 @@ void make_room(Index n, FrictionWork& w) {
     w.u_before_m.resize(room);
 }
 
-// Compliance between candidates, the forces they carried before, and the displacements at the last step.
+// Gathers the compliance between the candidates, the forces that they carried before, and their displacements at the
+// last step.
 void gather(const Compliance& c, const FrictionState& state, FrictionWork& w) {
     const auto n = static_cast<Index>(w.contact.candidate.size());
     make_room(n, w);
@@ -44,6 +45,7 @@ void gather(const Compliance& c, const FrictionState& state, FrictionWork& w) {
     w.u_m.head(3 * n).noalias() = w.C.topLeftCorner(3 * n, 3 * n) * w.f_N.head(3 * n);
 }
 
+// Returns the force of candidate i after one step of block Gauss-Seidel: pressing, x, y.
 Eigen::Vector3d updated_force_N(const FrictionWork& w, Index i, const Eigen::Vector2d& move_m, double friction) {
     const Eigen::Vector3d f = w.f_N.segment<3>(3 * i);
     const Eigen::Vector3d u = w.u_m.segment<3>(3 * i);

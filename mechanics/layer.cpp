@@ -15,7 +15,7 @@ double peak_pressure_Pa(const ParabolicPatch& patch) {
     return 2.0 * patch.force_N / (kPi * patch.radius_m * patch.radius_m);
 }
 
-// Gauss's hypergeometric series; here c - a - b = 2, so that it converges up to z = 1.
+// Gauss's hypergeometric series. Wherever it is used c - a - b = 2, so that it converges up to z = 1.
 double hypergeometric(double a, double b, double c, double z) {
     double term = 1.0;
     double sum = 1.0;
@@ -26,7 +26,7 @@ double hypergeometric(double a, double b, double c, double z) {
     return sum;
 }
 
-// W(x) - 1 with all exponentials scaled by exp(-2x).
+// W(x) - 1, with all exponentials scaled by exp(-2x) so that they do not overflow.
 double layer_factor_minus_1(double x, double poisson) {
     const double kap = 3.0 - 4.0 * poisson;
     const double e2 = std::exp(-2.0 * x);
@@ -36,10 +36,10 @@ double layer_factor_minus_1(double x, double poisson) {
     return (top - bottom) / bottom;
 }
 
-// J2(t)/t^2, 1/8 at 0.
+// J2(t)/t^2, which is 1/8 at 0.
 double j2_over_square(double t) { return t < 1e-3 ? 0.125 - t * t / 96.0 : ::jn(2, t) / (t * t); }
 
-// int_0^(40/h) f(k) dk, eight-point Gauss on panels short against 1/h, a and r.
+// int_0^(40/h) f(k) dk by eight-point Gauss, on panels no longer than 1/(4 h) and than 1/longest_m.
 template <class Function>
 double integrate_wavenumbers(double thickness_m, double longest_m, Function&& f) {
     constexpr std::array<double, 4> kPoint{0.1834346424956498, 0.5255324099163290, 0.7966664774136267,

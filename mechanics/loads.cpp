@@ -17,7 +17,7 @@ using Eigen::Matrix2Xd;
 using Eigen::Vector2d;
 using Eigen::VectorXd;
 
-// Integrals of p N_i over a triangle: N_i = al + be x + ga y.
+// Integrals over a triangle of the shape functions N_i = al + be x + ga y times the pressure whose moments are m.
 Eigen::Vector3d triangle_shares(const Matrix2Xd& x, const DiscMoments& m) {
     Eigen::Matrix3d basis;
     basis << Eigen::RowVector3d::Ones(), x;  // rows 1, x, y; columns corners
@@ -29,8 +29,8 @@ bool is_parallelogram(const Matrix2Xd& x) {
     return skew.norm() < 1e-10 * (x.col(2) - x.col(0)).norm();
 }
 
-// Bilinear shape functions of a parallelogram, with r = a . (X - x0) and s = b . (X - x0) running 0..1 along
-// its edges: (1-r)(1-s), r(1-s), r s, (1-r) s, all polynomials of the second degree in X.
+// The same over a parallelogram. With r = a . (X - x0) and s = b . (X - x0) from 0 to 1 along its edges, the bilinear
+// shape functions (1-r)(1-s), r(1-s), r s, (1-r) s are polynomials of the second degree in X.
 Eigen::Vector4d parallelogram_shares(const Matrix2Xd& x, const DiscMoments& m) {
     Eigen::Matrix2d edges;
     edges << x.col(1) - x.col(0), x.col(3) - x.col(0);
@@ -46,7 +46,7 @@ Eigen::Vector4d parallelogram_shares(const Matrix2Xd& x, const DiscMoments& m) {
     return {m(0) - r - s + rs, r - rs, rs, s - rs};
 }
 
-// Integral of (1 - r^2/R^2) N_i over the face's part of the disc; x relative to the disc's centre.
+// Integrals of (1 - r^2/R^2) N_i over the part of the face inside the disc; x is relative to the disc's centre.
 VectorXd face_shares(const Matrix2Xd& x, double R, LoadShare share) {
     const DiscMoments m = disc_moments(x, R);
     const Index n = x.cols();
@@ -92,7 +92,7 @@ PressureLoad parabolic_load(const Mesh& mesh, const Faces& outer, const Paraboli
         if ((x.row(0).minCoeff() > R) || (x.row(0).maxCoeff() < -R) || (x.row(1).minCoeff() > R) ||
             (x.row(1).maxCoeff() < -R))
             continue;
-        // seen along the axis some sides run clockwise: the sign of the area comes off again
+        // projected along the axis, the corners on some sides run clockwise: `sign` undoes the negative area
         const Vector2d a = x.col(1) - x.col(0);
         const Vector2d b = x.col(2) - x.col(0);
         const double sign = a.x() * b.y() - a.y() * b.x() < 0.0 ? -1.0 : 1.0;

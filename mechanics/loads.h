@@ -8,9 +8,9 @@
 
 namespace palpa::mechanics {
 
-// A finger pad's pressure, pushing into one side of the body:
+// The pressure of a finger pad that presses on one side of the body:
 //   p(r) = Pmax (1 - 4 r^2/d0^2) for r <= d0/2,   Pmax = 8 F / (pi d0^2)
-// Source: the paper's equation (1); numerics.md section 6.6.
+// Source: "Integrating Tactile and Force Feedback with Finite Element Models", equation (1).
 struct ParabolicPressure {
     Side side = Side::zmax;
     std::array<double, 2> centre_m{0.0, 0.0};  // the two other axes in the order x, y, z
@@ -18,28 +18,29 @@ struct ParabolicPressure {
     double force_N = 0.025;
 };
 
-// consistent: F_i = int p N_i dA, exact on triangles and parallelograms (others: mean of both ways to halve
-// them,
-//             which keeps the total and the first moment exact).
-// thirds:     each corner of a face gets an equal share of the face's force, as in the paper; total right,
-// moment not.
+// consistent  F_i = int p N_i dA, exact on triangles and parallelograms. Other quads are split into triangles in both
+//             ways, and the mean is taken, which keeps the total and the first moment exact.
+// thirds      each corner of a face gets an equal share of the face's force, as in equation (2) of the same paper: the
+//             total is right, the first moment is not.
 enum class LoadShare { consistent, thirds };
 
 struct PressureLoad {
-    Eigen::Matrix3Xd force_N;
-    double applied_N = 0.0;  // what fell on the side
-    bool partial = false;    // part of the disc is beside the body
+    Eigen::Matrix3Xd force_N;  // 3 x n_nodes
+    double applied_N = 0.0;    // the part of the force that falls on the side
+    bool partial = false;      // part of the disc is beside the body
 };
-// Throws LoadError for a diameter that is not > 0 or numbers that are not finite.
+// Throws LoadError for a diameter that is not > 0 and for numbers that are not finite.
 PressureLoad parabolic_load(const Mesh& mesh, const Faces& outer, const ParabolicPressure& pressure, LoadShare share);
 
-// Constant traction on faces, Pa in x, y, z: F_i = A_i t.
+// Constant traction t on faces, x, y, z: F_i = A_i t, with the tributary area A_i. Throws LoadError if it is not
+// finite.
 Eigen::Matrix3Xd traction_load(const Mesh& mesh, const Faces& faces, const std::array<double, 3>& traction_Pa);
 
-// Constant pressure into the body on faces that may be bent: F_i = -p int N_i n dA (2 x 2 Gauss on quads).
+// Constant pressure into the body on faces that may be bent: F_i = -p int N_i n dA (2 x 2 Gauss points on quads).
+// Throws LoadError if it is not finite.
 Eigen::Matrix3Xd pressure_load(const Mesh& mesh, const Faces& faces, double pressure_Pa);
 
-// Work-conjugate mean displacement of a load: sum f . u / F, metres, positive along the load.
+// Returns the work-conjugate mean displacement of a load: sum f . u / applied_N, metres, positive along the load.
 double mean_displacement_m(const PressureLoad& load, const Eigen::Matrix3Xd& u_m);
 
 }  // namespace palpa::mechanics

@@ -39,7 +39,7 @@ void check_materials(std::span<const Material> materials) {
 
 Voigt stress_Pa(const Material& material, const Voigt& strain) {
     const double mu = mu_Pa(material);
-    Voigt stress = mu * strain;  // engineering shear: sigma_xy = mu gamma_xy
+    Voigt stress = mu * strain;  // complete for engineering shear, sigma_xy = mu gamma_xy
     stress.head<3>() += mu * strain.head<3>();
     stress.head<3>().array() += lambda_Pa(material) * strain.head<3>().sum();
     return stress;

@@ -12,8 +12,8 @@ struct Material {
     double poisson = 0.45;
 };
 
-// Throws MaterialError naming the entries unless young_Pa > 0 and finite and -1 < poisson < 0.5. Exactly 0.5
-// has no displacement formulation; 0.4999 differs from it by 0.02 % in the indentation of a slab.
+// Throws MaterialError with the entries unless young_Pa is > 0 and finite and -1 < poisson < 0.5. At exactly 0.5 there
+// is no displacement formulation; the indentation of a slab at 0.4999 differs by 0.02 % from that at 0.5.
 void check_materials(std::span<const Material> materials);
 
 // Lame constants and bulk modulus:
@@ -24,23 +24,23 @@ inline double lambda_Pa(const Material& m) {
 }
 inline double kappa_Pa(const Material& m) { return m.young_Pa / (3.0 * (1.0 - 2.0 * m.poisson)); }
 
-// Strain and stress are 6-vectors in VTK order xx yy zz xy yz xz; shear strains are engineering ones (2
-// eps_xy).
+// Strain and stress are 6-vectors in VTK order, xx yy zz xy yz xz. Shear strains are engineering strains, 2 eps_xy.
 using Voigt = Eigen::Matrix<double, 6, 1>;
 Voigt stress_Pa(const Material& material, const Voigt& strain);
 
-// One material per cell from a list by region. Throws MaterialError for a region that the list does not hold.
+// Returns the material of each cell, from a list by region. Throws MaterialError for a region that the list does not
+// hold, and as check_materials() does.
 std::vector<Material> materials_of_cells(const Eigen::VectorXi& region, std::span<const Material> list);
 
-// How two materials share a cell. The shear and the bulk modulus are mixed by volume:
+// How two materials share a cell. The shear and the bulk modulus are mixed by the share of volume v:
 //   stiff: v a + (1 - v) b      soft: 1 / (v/a + (1 - v)/b)      between: a^v b^(1-v)
-// stiff and soft bracket the answer. Ball of 8 mm, 800 times stiffer, 6 mm deep, pressed 3 mm by an 8 mm
-// sphere: at 2 mm cells +10 %, -6 %, +2 % of the force extrapolated to fine cells; at 1 mm +6 %, -3 %, +2 %;
-// by centroid alone -1 %, +1 % with scatter (measured 2026-11).
+// stiff and soft bracket the true answer. For a ball of 8 mm, 800 times stiffer, 6 mm deep, pressed 3 mm by a sphere of
+// 8 mm, the force differs from that extrapolated to fine cells by +10 %, -6 %, +2 % at cells of 2 mm and by +6 %, -3 %,
+// +2 % at 1 mm. Without mixing, by centroids, it differs by -1 % and +1 %, but with scatter (measured 2026-11).
 enum class Mixing { stiff, soft, between };
 Material mix(const Material& inside, const Material& outside, double share_inside, Mixing rule);
 
-// Mixes `inside` into each cell by its share (sphere_share in mesh.h); cells with share 0 stay as they are.
+// Mixes `inside` into each cell by the cell's share (sphere_share in mesh.h); cells with share 0 stay as they are.
 void mix_in(const Eigen::VectorXd& share, const Material& inside, Mixing rule, std::vector<Material>& of_cells);
 
 }  // namespace palpa::mechanics

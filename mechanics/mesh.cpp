@@ -18,7 +18,7 @@ constexpr std::array<std::array<int, 4>, 6> kHexFaces{
 constexpr std::array<std::array<int, 3>, 4> kTetFaces{{{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}}};
 
 struct FaceKey {
-    std::array<int, 4> sorted{-1, -1, -1, -1};  // tets leave one -1
+    std::array<int, 4> sorted{-1, -1, -1, -1};  // node numbers, ascending; a triangle leaves one -1
     int cell = 0;
     int local = 0;
 };
@@ -29,7 +29,7 @@ int local_corner(bool hex, int face, int k) {
     return hex ? kHexFaces[f][c] : kTetFaces[f][c];
 }
 
-// All faces of all cells, equal ones side by side, lower cells first.
+// Returns all faces of all cells, sorted so that equal faces are side by side, the lower cell first.
 std::vector<FaceKey> sorted_faces(const Mesh& mesh) {
     const bool hex = is_hex(mesh);
     const int n_faces = hex ? 6 : 4;
@@ -53,8 +53,8 @@ std::vector<FaceKey> sorted_faces(const Mesh& mesh) {
     return keys;
 }
 
-// The ratio q >= 1 with first * (q^n - 1)/(q - 1) = length, by bisection; 1 when n first-size cells overfill
-// it.
+// Returns the ratio q >= 1 for which first * (q^n - 1)/(q - 1) = length, by bisection; 1 if n cells of the first size
+// fill the length or more.
 double growth_ratio(double length_m, int n, double first_m) {
     const auto filled = [&](double q) {
         double sum = 0.0;
@@ -72,7 +72,7 @@ double growth_ratio(double length_m, int n, double first_m) {
     return 0.5 * (low + high);
 }
 
-// Distances from the centre to the n nodes of one side, the last one exactly `length`.
+// Returns the distances from the centre to the n nodes of one side; the last one is `length`.
 Eigen::VectorXd one_side_m(double length_m, int n, double first_m) {
     const double q = growth_ratio(length_m, n, first_m);
     Eigen::VectorXd distance(n);
@@ -82,8 +82,8 @@ Eigen::VectorXd one_side_m(double length_m, int n, double first_m) {
     return distance * (length_m / sum);
 }
 
-// How many of n cells stand on the left: the proportional share first, then only what lowers the larger
-// ratio.
+// Returns how many of n cells stand on the left: those in proportion to its length, unless another number makes the
+// larger ratio smaller.
 int cells_left_of_centre(double left_m, double right_m, int n, double finest_m) {
     const double length_m = left_m + right_m;
     if (left_m <= 1e-12 * length_m) return 0;
@@ -111,8 +111,8 @@ Vector3d point_in_cell(const Mesh& mesh, Index cell, double r, double s, double 
     return (1 - t) * bottom + t * top;
 }
 
-// Sample points of the reference cell, 3 x m: centres of n^3 sub-cubes; for tets those of a symmetric
-// lattice.
+// Returns sample points of the reference cell, 3 x m: the centres of n^3 sub-cubes of a hexahedron, or the points of a
+// symmetric lattice in a tetrahedron.
 Eigen::Matrix3Xd sample_points(bool hex, int n) {
     std::vector<Vector3d> points;
     for (int i = 0; i < n; ++i) {
@@ -223,7 +223,7 @@ Eigen::VectorXd graded_coordinates_m(double length_m, int n, double centre_m, do
                              finest_m, " m; wanted length > 0, cells >= 1, 0 <= centre <= length, finest > 0"),
                         {});
     }
-    const double left = n == 1 ? length_m : centre_m;  // one cell has no room for a node inside
+    const double left = n == 1 ? length_m : centre_m;  // a single cell has no node inside
     const double right = length_m - left;
     const int n_left = cells_left_of_centre(left, right, n, finest_m);
     Eigen::VectorXd x(n + 1);

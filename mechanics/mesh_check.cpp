@@ -74,7 +74,7 @@ CellQuality hex_quality(const Hex& x) {
     constexpr std::array<std::array<int, 3>, 8> kNext{
         {{1, 3, 4}, {2, 0, 5}, {3, 1, 6}, {0, 2, 7}, {7, 5, 0}, {4, 6, 1}, {5, 7, 2}, {6, 4, 3}}};
     double worst = std::numeric_limits<double>::infinity();
-    double bricks = 0.0;  // mean of the bricks that the corners' edges would span
+    double bricks = 0.0;  // mean volume of the bricks with the edge lengths of each corner
     for (int k = 0; k < 8; ++k) {
         const auto& next = kNext[static_cast<std::size_t>(k)];
         const Vector3d a = x.col(next[0]) - x.col(k);
@@ -96,7 +96,7 @@ CellQuality tet_quality(const Tet& x) {
     const Vector3d c = x.col(3) - x.col(0);
     const double det = det_of(a, b, c);
 
-    // outward normals, length twice the face; the angle at an edge is that between the two faces on it
+    // outward normals, each as long as twice its face's area; they give the angles between faces
     Eigen::Matrix<double, 3, 4> n;
     n.col(0) = (x.col(2) - x.col(1)).cross(x.col(3) - x.col(1));
     n.col(1) = c.cross(b);
@@ -116,6 +116,7 @@ CellQuality tet_quality(const Tet& x) {
     return {det / std::pow(longest, 3), min_angle * 180.0 / std::numbers::pi, det == 0.0 ? 0.0 : 3.0 * r_in / r_out};
 }
 
+// Union-find: returns the root of cell i, and shortens the way there.
 int root_of(std::vector<int>& parent, int i) {
     while (parent[static_cast<std::size_t>(i)] != i) {
         int& up = parent[static_cast<std::size_t>(i)];
@@ -141,7 +142,7 @@ MeshReport check_mesh(const Mesh& mesh) {
     for (Index cell = 0; cell < mesh.cells.cols(); ++cell) {
         const int number = static_cast<int>(cell);
         CellQuality q = cell_quality(mesh, cell);
-        if (!std::isfinite(q.relative_det)) q.relative_det = 0.0;  // all corners in one place: 0 / 0
+        if (!std::isfinite(q.relative_det)) q.relative_det = 0.0;  // 0 / 0 if all corners are in one place
         if (q.relative_det < -kFlat)
             inverted.push_back(number);
         else if (!(q.relative_det > kFlat))

@@ -13,7 +13,7 @@ using Eigen::Index;
 using Eigen::Matrix3Xd;
 using Eigen::Vector3d;
 
-// Nodes by the cube of a grid that they are in; cubes are as wide as a face on average.
+// Outer nodes, sorted into the cubes of a grid. A cube is as wide as the mean face.
 struct Grid {
     Vector3d low_m;
     double width_m = 1.0;
@@ -46,7 +46,8 @@ Grid grid_of(const Mesh& mesh, const Faces& outer) {
     return grid;
 }
 
-// Calls for every node that may be in the box. A face over more cubes than there are nodes asks them all.
+// Calls `call` for every node that may be in the box. If the box covers more cubes than there are nodes, it calls it
+// for all nodes.
 template <class Call>
 void each_near(const Grid& grid, const Vector3d& low_m, const Vector3d& high_m, Call&& call) {
     const Eigen::Array3d first = cube_of(grid, low_m);
@@ -97,7 +98,7 @@ Seams find_seams(const Mesh& mesh, const Faces& outer) {
             const Vector3d place = mesh.nodes_m.col(node);
             if (((place - low).array() < -reach_m).any() || ((place - high).array() > reach_m).any()) return;
             const int cell = outer.cell(f);
-            if (has_corner(mesh, cell, node)) return;  // a flat cell's corner lies near its other faces
+            if (has_corner(mesh, cell, node)) return;  // corners of a flat cell lie near its other faces
             const int corner = corner_at(mesh, outer, f, node, reach_m);
             if (corner >= 0) {
                 out.doubled.push_back({node, cell, corner});

@@ -1,19 +1,19 @@
 #pragma once
-// What any nodes do under any unit loads, of one factored problem: observation and load operators.
+// Responses of a factored problem: how any nodes move under any unit loads, by observation and load operators.
 //
 //   W = P K^-1 B
 //
 // P: observations, one row each: the sum of weight * displacement over its dofs (m, with weights that are ratios).
 // B: loads, one column each: unit load k puts weight newtons on each of its dofs.
-// W: rows x loads, in metres per unit load: what observation i moves when load k is 1. Supports are held at 0 for
-//    it, whatever displacement they give: W is the change by the load alone.
+// W: rows x loads, in metres per unit load: how far observation i moves when load k is 1. Supports are held at 0 for W,
+//    whatever displacement they prescribe, so that W is the change by the load alone.
 //
-// By Maxwell-Betti W of (P, B) is the transpose of W of (B, P): whoever asks for few rows of many loads swaps them,
-// since the cost is one solution a column. The surface compliance (compliance.h) is the case in which P and B are the
-// surface's nodes.
+// By Maxwell-Betti W of (P, B) is the transpose of W of (B, P). The cost is one solution per column, so for few
+// observations of many loads it is cheaper to exchange P and B. The surface compliance (compliance.h) is the case in
+// which both are nodes of the surface.
 //
 // Source: James & Pai, "A unified treatment of elastostatic contact simulation for real time haptics",
-// Haptics-e 2(1), 2001. There the rows and columns are nodes of the boundary; here any dofs, with weights.
+// Haptics-e 2(1), 2001. There the rows and columns are nodes of the boundary; here they are any dofs, with weights.
 
 #include <atomic>
 #include <functional>
@@ -34,8 +34,8 @@ struct NodeWeight {
 using NodeSum = std::vector<NodeWeight>;
 
 struct Progress {
-    std::function<void(int done, int total)> report;  // columns, after each block; may be empty
-    const std::atomic<bool>* cancel = nullptr;        // may be null
+    std::function<void(int done, int total)> report;  // called with numbers of columns after each block; may be empty
+    const std::atomic<bool>* cancel = nullptr;        // looked at before each block; may be null
 };
 
 // W, as above. block: right-hand sides solved at once. Throws LoadError for a node, axis or weight that the problem
@@ -44,8 +44,8 @@ struct Progress {
 Eigen::MatrixXd responses(const Factored& factored, const std::vector<NodeSum>& observations,
                           const std::vector<NodeSum>& loads, int block = 64, const Progress& progress = {});
 
-// The same a column at a time, for who keeps only part of it: take(k, q) gets the reduced solution of load k, valid
-// until it returns, of which response() reads observations.
+// The same one column at a time, for callers that keep only part of W. take(k, q) gets the reduced solution of load k,
+// which is valid until take returns; response() reads observations from it.
 using TakeColumn = std::function<void(int load, const Eigen::Ref<const Eigen::VectorXd>& q_m)>;
 void solve_loads(const Factored& factored, const std::vector<NodeSum>& loads, int block, const Progress& progress,
                  const TakeColumn& take);

@@ -11,9 +11,9 @@
 namespace palpa::mechanics {
 namespace {
 
-constexpr double kWorstViolation = 1e-6;  // of the depth, when a slide does not settle
+constexpr double kWorstViolation = 1e-6;  // of the depth: accepted from a slide that does not settle
 
-// Four sample lines around a point and Lagrange's weights on them; the outermost four at the ends.
+// The four sample lines around a point, or the outermost four at the ends, with Lagrange's weights on them.
 struct Stencil {
     int first = 0;
     double weight[4] = {0.0, 0.0, 0.0, 0.0};
@@ -38,7 +38,7 @@ Stencil stencil_at(const std::vector<double>& lines_m, double x_m) {
     return out;
 }
 
-// The patch's stencils in one table, and the window of sample lines that they touch.
+// The stencils of the patch's nodes in one table, and the window of sample lines that they use.
 struct Window {
     std::vector<Stencil> sx, sy;
     int low_x = 1 << 20, high_x = -1, low_y = 1 << 20, high_y = -1;
@@ -57,9 +57,9 @@ Window window_of(const PairTable& table, const RollingWork& work) {
     return out;
 }
 
-// Adds one list of a smooth part to a matrix of the patch: P D P^T, D between the sample nodes around the patch, P
-// the interpolation from them to the patch's nodes. The list's first point is the matrix's row; of a symmetric
-// matrix only the lower triangle is filled.
+// Adds one list of a smooth part to a matrix of the patch, as P D P^T: D holds the values between the sample nodes
+// around the patch, P interpolates from them to the patch's nodes. The first point of the list is the row of the
+// matrix; of a symmetric matrix only the lower triangle is filled.
 void add_part(const PairTable& table, const std::vector<double>& values, const Window& window, bool symmetric,
               RollingWork& work, Eigen::MatrixXd& out) {
     const auto n = static_cast<int>(work.lattice_x.size());
@@ -83,7 +83,7 @@ void add_part(const PairTable& table, const std::vector<double>& values, const W
             }
         }
     }
-    // D P^T column by column, then P of that; P has 16 entries a row
+    // first D P^T, column by column, then P times that; P has 16 entries per row
     work.half.setZero(n_x * n_y, n);
     const auto for_entries = [&](int p, auto&& f) {
         const Stencil& x = window.sx[at(p)];
@@ -113,8 +113,8 @@ void place_node(const RollingModel& model, double x_m, double y_m, int i, int j,
     work.lattice_j.push_back(j);
 }
 
-// Nodes of the lattice under the tool that lie on the block. Along a cylinder they stand in the middle of equal
-// cells, so that their areas end where it does.
+// Lists the nodes of the lattice under the tool that lie on the block. Along a cylinder they stand in the middle of
+// equal cells, so that their areas end where the cylinder ends.
 void place_lattice(const RollingModel& model, double h, double x_m, double y_m, RollingWork& work) {
     for (auto* list : {&work.lattice_x, &work.lattice_y}) list->clear();
     for (auto* list : {&work.lattice_i, &work.lattice_j}) list->clear();
@@ -137,7 +137,8 @@ void place_lattice(const RollingModel& model, double h, double x_m, double y_m, 
     }
 }
 
-// How pressing one node of the lattice moves the others sideways on the plain layer: odd in the offset.
+// Fills in how pressing one node of the lattice moves the others sideways on the plain layer, an odd function of the
+// offset.
 void fill_along(const LayerKernel& kernel, RollingWork& work) {
     const auto n = static_cast<int>(work.lattice_x.size());
     Compliance& patch = work.patch;
@@ -157,7 +158,7 @@ void fill_along(const LayerKernel& kernel, RollingWork& work) {
 void fill_patch(const RollingModel& model, const RollingMesh& mesh, const RollingTables& tables, RollingWork& work) {
     const auto n = static_cast<int>(work.lattice_x.size());
     Compliance& patch = work.patch;
-    patch.revision = new_revision();  // a cold start, so that the order of places cannot matter
+    patch.revision = new_revision();  // makes a cold start, so that results do not depend on the order of places
     patch.n_touch = n;
     patch.node.resize(at(n));
     patch.position_m.resize(3, n);
@@ -196,7 +197,7 @@ RollingForce force_at(const RollingModel& model, const Compliance& compliance, c
         return {f.normal_N, f.tangential_x_N, f.tangential_y_N, work.answer.energy_J, f.area_m2};
     }
     RollingForce out;
-    for (const bool along_y : {true, false}) {  // x last: the rest of the answer is its
+    for (const bool along_y : {true, false}) {  // along x last, since the rest of the answer belongs to that slide
         const SteadySlide slide{along_y ? Eigen::Vector2d(0.0, 1.0) : Eigen::Vector2d(1.0, 0.0), model.friction};
         slide_steadily(compliance, tool, slide, work.slide, work.answer);
         if (work.answer.flags.not_settled && work.answer.violation_m > kWorstViolation * tool.pose.depth_m) {

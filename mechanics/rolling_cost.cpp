@@ -11,13 +11,13 @@ namespace palpa::mechanics {
 namespace {
 
 constexpr double kNever = std::numeric_limits<double>::infinity();
-constexpr double kMostLines = 1e5;  // along one axis; more is out of reach in any case
+constexpr double kMostLines = 1e5;  // along one axis; a mesh with more is never affordable
 
-// Sparse Cholesky of N equations of a compact mesh: entries grow with N^(4/3), work with N^2.
-constexpr double kFactorEntries = 13.0;      // times N^(4/3)
-constexpr double kFactorBytes = 2.2 * 8.0;   // an entry, with the solver's work space
-constexpr double kFactorWork_s = 1.7e-9;     // times N^2
-constexpr double kEntriesPerSecond = 1.4e9;  // of a solve, one right-hand side
+// Sparse Cholesky of N equations of a compact mesh: the factor's entries grow with N^(4/3), the work with N^2.
+constexpr double kFactorEntries = 13.0;      // entries of the factor over N^(4/3)
+constexpr double kFactorBytes = 2.2 * 8.0;   // per entry, with the solver's work space
+constexpr double kFactorWork_s = 1.7e-9;     // time to factor over N^2
+constexpr double kEntriesPerSecond = 1.4e9;  // of the factor, in a solve with one right-hand side
 
 RollingCost mesh_cost(const GridLines& lines, double columns, double dense) {
     RollingCost out;
@@ -30,13 +30,14 @@ RollingCost mesh_cost(const GridLines& lines, double columns, double dense) {
     return out;
 }
 
+// Returns how many values a table holds for each pair of points.
 double lists(const RollingModel& model) { return model.friction > 0.0 ? 3.0 : 1.0; }
 
 RollingCost larger(const RollingCost& a, const RollingCost& b) {
     return {std::max(a.unknowns, b.unknowns), std::max(a.memory_bytes, b.memory_bytes), a.time_s + b.time_s};
 }
 
-// Sample lines that the tool can cover, of n that are `spacing` apart.
+// Returns how many of n sample lines, `spacing` apart, the tool can cover.
 double covered(double width_m, double spacing_m, double n) { return std::min(n, width_m / spacing_m + 4.0); }
 
 }  // namespace
@@ -71,7 +72,7 @@ RollingCost inclusion_cost(const RollingModel& model, const RollingMesh& mesh, c
     const double n_x = static_cast<double>(inclusion_samples(model, mesh, group, 0, lines.x_m).size());
     const double n_y = static_cast<double>(inclusion_samples(model, mesh, group, 1, lines.y_m).size());
     const double columns = n_x * n_y;
-    // with the inclusions and without: the factors come one after the other, the compliances stay
+    // with and without the inclusions: the two factors exist one after the other, the two compliances at once
     RollingCost out = mesh_cost(lines, columns, 4.0 * lists(model) * columns * columns);
     out.time_s *= 2.0;
     return out;

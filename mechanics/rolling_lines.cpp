@@ -1,4 +1,4 @@
-// The lines of the meshes of rolling.h.
+// The coordinates of the mesh lines that the tables of rolling.h are computed on.
 
 #include <algorithm>
 #include <cmath>
@@ -13,9 +13,10 @@ using Eigen::VectorXd;
 
 constexpr double kGrowth = 1.2;        // of cells below a load
 constexpr double kWindowGrowth = 1.3;  // of cells away from inclusions
-constexpr double kFarOut = 6.0;        // thicknesses of layer around a load: its effect has died away
+constexpr double kFarOut = 6.0;        // thicknesses of layer around a load, beyond which it has no effect
 
-// A quarter of the layer under a load at its corner. uniform: cells of the wanted spacing along x and y.
+// Returns the lines of a quarter of the layer with the load at its corner. uniform: numbers of cells of the given
+// spacing along x and y, next to the load.
 GridLines layer_lines(const RollingModel& model, const std::array<double, 2>& spacing_m,
                       const std::array<int, 2>& uniform, VectorXd z_m) {
     const double far_m =
@@ -24,7 +25,8 @@ GridLines layer_lines(const RollingModel& model, const std::array<double, 2>& sp
             outward_coordinates_m(spacing_m[1], uniform[1], 1.3, far_m), std::move(z_m)};
 }
 
-// Fine over every inclusion of the group; `centre_m` along the axis.
+// Returns lines along one axis that are fine over every inclusion of the group. centre_m(sphere): the sphere's centre
+// along the axis.
 template <class Centre>
 VectorXd group_lines_m(const RollingModel& model, const RollingMesh& mesh, const std::vector<int>& group,
                        double length_m, double most_m, Centre&& centre_m) {
@@ -37,8 +39,8 @@ VectorXd group_lines_m(const RollingModel& model, const RollingMesh& mesh, const
     return zoned_coordinates_m(length_m, zones, kWindowGrowth, most_m);
 }
 
-// Lines of the mesh over the window, not closer than `least_m`; counted from its middle to both sides, so that a
-// mirrored window has mirrored lines.
+// Returns which lines of the mesh are sample lines over the window, not closer than `least_m`. They are chosen from the
+// middle to both sides, so that a mirrored window has mirrored lines.
 std::vector<int> sample_lines(const VectorXd& lines_m, double low_m, double high_m, double least_m) {
     int first = 0;
     int last = static_cast<int>(lines_m.size()) - 1;

@@ -6,8 +6,8 @@
 namespace palpa::mechanics {
 namespace {
 
-// Cells of a gap between two fine zones: growing from `first` at its left end and `last` at its right end (0:
-// free end), none larger than `most`, stretched to fill it exactly.
+// Appends the cells of a gap between two fine zones. They grow from `first` at the left end and `last` at the right end
+// (0 for an end without a zone) up to `most`, and are scaled to fill the gap exactly.
 void fill_gap(double low_m, double high_m, double first_m, double last_m, double growth, double most_m,
               std::vector<double>& out) {
     std::vector<double> left, right;
@@ -32,7 +32,7 @@ void fill_gap(double low_m, double high_m, double first_m, double last_m, double
 }  // namespace
 
 Eigen::VectorXd zoned_coordinates_m(double length_m, std::vector<FineZone> zones, double growth, double most_m) {
-    // cut into pieces at all ends; each piece takes the finest zone that covers it
+    // the interval is cut at the ends of all zones; each piece takes the finest zone that covers it
     const double least_m = 1e-6 * length_m;
     std::vector<double> ends{0.0, length_m};
     for (const FineZone& zone : zones) {

@@ -1,4 +1,4 @@
-// What can be computed, and how fine: the checks and choices of rolling.h.
+// Checks whether a model of rolling.h can be computed, and chooses how fine its meshes are.
 
 #include <algorithm>
 #include <cmath>
@@ -12,15 +12,15 @@ namespace palpa::mechanics {
 namespace {
 
 constexpr int kMostInPatch = 600;   // contact nodes under the tool
-constexpr int kMostSideCells = 60;  // of S over half the block
-constexpr double kShortest = 0.25;  // cylinder, in spacings
+constexpr int kMostSideCells = 60;  // of the mesh of S, over half the block
+constexpr double kShortest = 0.25;  // length of a cylinder, in spacings
 
 double tool_reach_m(const RollingModel& model) {
     const double d = std::min(model.greatest_depth_m, model.radius_m);
     return std::sqrt(d * (2.0 * model.radius_m - d));
 }
 
-// Spacing at which about kMostInPatch nodes are under the tool.
+// Returns the spacing at which about kMostInPatch nodes are under the tool.
 double least_spacing_m(const RollingModel& model) {
     if (model.shape == IndenterShape::sphere) return tool_reach_m(model) * std::sqrt(std::numbers::pi / kMostInPatch);
     const std::array<double, 2> half_m = footprint_m(model);
@@ -84,7 +84,7 @@ RollingMesh choose_rolling_mesh(const RollingModel& model, double coarseness) {
     const double least_m = std::min(1.0, coarseness) * least_spacing_m(model);
     mesh.contact_m = std::max(contact_radius_m / 4.35 * coarseness, least_m);
     if (model.shape == IndenterShape::cylinder) {
-        // each node stands for one cell of the cylinder's length
+        // so that each row of nodes stands for one of equal cells along the cylinder
         const double cells = std::ceil(model.length_m / mesh.contact_m - 1e-9);
         if (model.length_m < kShortest * mesh.contact_m) {
             throw LoadError(text("rolling: cylinder of ", model.length_m, " m length; must be at least ",

@@ -21,9 +21,9 @@ std::vector<RollingForce> press_on_one_mesh(const RollingModel& model, double sp
     const std::array<double, 2> half_m = footprint_m(model);
     std::array<double, 2> reach_m{};
     for (std::size_t c = 0; c < 2; ++c) reach_m[c] = std::ceil(half_m[c] / spacing_m - 1e-9) * spacing_m;
-    // a cylinder ends between two nodes, as on the lattice
+    // a cylinder ends in the middle between two nodes, as on the lattice
     if (model.shape == IndenterShape::cylinder) reach_m[1] = half_m[1] + 0.5 * spacing_m;
-    constexpr double kNear = 0.5;  // of the thickness: inclusions farther to the side stay coarse
+    constexpr double kNear = 0.5;  // of the thickness; inclusions farther to the side stay coarse
     VectorXd lines_m[2];
     std::vector<FineZone> deep{{0.0, 0.75 * spacing_m, 0.75 * spacing_m}};
     std::vector<FineZone> zones[2] = {{{x_m - reach_m[0], x_m + reach_m[0], spacing_m}},

@@ -1,4 +1,4 @@
-// The finite element part of rolling.h: one column or one window of columns each.
+// The finite element part of rolling.h: each table is one column of a surface compliance, or a window of columns.
 
 #include <algorithm>
 #include <cmath>
@@ -14,8 +14,8 @@ using Eigen::VectorXd;
 
 constexpr double kFadeFrom = 0.65;  // of the reach
 
-// What pressing at one surface point does at another. The lists of a table and the matrices of a compliance
-// hold one each, the last two with friction only.
+// What pressing at one surface point does at another. Each has a list in a table and a matrix in a compliance; along_x
+// and along_y exist only with friction.
 enum class Response { normal, along_x, along_y };
 
 std::vector<Response> responses(const RollingModel& model) {
@@ -34,7 +34,7 @@ const Eigen::MatrixXd& matrix_of(const Compliance& compliance, Response response
     return response == Response::along_x ? compliance.along_x_m_per_N : compliance.along_y_m_per_N;
 }
 
-// Sideways motion changes its sign where its axis is mirrored.
+// Returns the sign of a response after mirroring: sideways motion along a mirrored axis changes its sign.
 double mirrored(Response response, bool along_x, bool along_y) {
     return (response == Response::along_x && along_x) || (response == Response::along_y && along_y) ? -1.0 : 1.0;
 }
@@ -46,7 +46,7 @@ Compliance compliance_of(const RollingModel& model, const Problem& problem, std:
     return surface_compliance(problem.mesh, factorise(problem, best_solver()), request);
 }
 
-// Nodes of the plane at the far end of an axis.
+// Returns the nodes of the plane at the far end of an axis.
 std::vector<int> end_plane(const Problem& problem, int axis) {
     std::vector<int> nodes;
     const double end_m = problem.mesh.nodes_m.row(axis).maxCoeff();
@@ -56,8 +56,8 @@ std::vector<int> end_plane(const Problem& problem, int axis) {
     return nodes;
 }
 
-// The layer under a load at the corner of its quarter, where both planes of symmetry meet.
-// n: offsets along x and y.
+// Computes the kernel of the layer on a quarter of it; the load is at the corner, where both planes of symmetry meet.
+// n: numbers of offsets along x and y.
 LayerKernel layer_kernel(const RollingModel& model, const std::array<double, 2>& spacing_m, const std::array<int, 2>& n,
                          const GridLines& lines) {
     const auto& [x_m, y_m, z_m] = lines;
@@ -80,7 +80,7 @@ LayerKernel layer_kernel(const RollingModel& model, const std::array<double, 2>&
     }
     const Compliance column = surface_compliance(problem.mesh, factored, request);
     LayerKernel kernel{spacing_m, n[0], n[1], {}, {}, {}};
-    // a quarter of the load stands on this quarter of the layer
+    // one newton on the whole layer is a quarter of a newton on this quarter
     for (const Response response : responses(model)) {
         const Eigen::MatrixXd& moved = matrix_of(column, response);
         for (Index i = 0; i < moved.rows(); ++i) list_of(kernel, response).push_back(0.25 * moved(i, 0));
@@ -88,8 +88,8 @@ LayerKernel layer_kernel(const RollingModel& model, const std::array<double, 2>&
     return kernel;
 }
 
-// Surface compliance of a quarter of the block between all its surface nodes; mirrored planes either
-// symmetric or antisymmetric.
+// Returns the surface compliance of a quarter of the block between all its surface nodes; each of the two mirror planes
+// is symmetric or antisymmetric.
 Compliance quarter_compliance(const RollingModel& model, const VectorXd& x_m, const VectorXd& y_m, const VectorXd& z_m,
                               const std::array<bool, 2>& antisymmetric) {
     Problem problem = block_problem(x_m, y_m, z_m, model.tissue, {});
@@ -104,7 +104,8 @@ Compliance quarter_compliance(const RollingModel& model, const VectorXd& x_m, co
     return compliance_of(model, problem, std::move(nodes));
 }
 
-// Sample lines needed so that all stencils of two points under one tool are stored.
+// Returns how many sample lines the reach of a table must be, so that it holds all stencils of two points under one
+// tool.
 int reach_in_lines(const std::vector<double>& lines_m, double width_m) {
     std::size_t most = 0;
     for (std::size_t i = 0, end = 0; i < lines_m.size(); ++i) {
@@ -114,7 +115,7 @@ int reach_in_lines(const std::vector<double>& lines_m, double width_m) {
     return std::min(static_cast<int>(most) + 3, static_cast<int>(lines_m.size()) - 1);
 }
 
-// Calls f(ix, iy, jx, jy, value) for every pair that the table stores; `values` as the table's lists.
+// Sizes `values` as a list of the table and calls f(ix, iy, jx, jy, value) for every pair that the table stores.
 template <class F>
 void for_each_pair(const PairTable& table, std::vector<double>& values, F&& f) {
     const int n_x = static_cast<int>(table.x_m.size());
@@ -134,7 +135,8 @@ void for_each_pair(const PairTable& table, std::vector<double>& values, F&& f) {
     }
 }
 
-// 1 near the inclusions, 0 from `reach` on; where the window is cut by a side of the block it stays 1.
+// Returns 1 over the inclusions (low_m to high_m) and up to kFadeFrom of the distance `reach_m` from them; from there
+// on it falls smoothly to 0 at reach_m.
 double fade(double at_m, double low_m, double high_m, double reach_m) {
     const double beyond_m = std::max({0.0, low_m - at_m, at_m - high_m});
     const double s = std::clamp((beyond_m / reach_m - kFadeFrom) / (1.0 - kFadeFrom), 0.0, 1.0);
@@ -167,7 +169,7 @@ PairTable side_table(const RollingModel& model, const RollingMesh& mesh) {
             value = -mirrored(response, ix < jx, iy < jy) * layer[offset];
         });
     }
-    // a load is a quarter of the sum of its four mirrored patterns
+    // a load is a quarter of the sum of its four patterns, symmetric or antisymmetric in each mirror plane
     std::vector<double> pattern;
     for (const bool anti_x : {false, true}) {
         for (const bool anti_y : {false, true}) {

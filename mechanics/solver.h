@@ -1,12 +1,11 @@
 #pragma once
-// Sparse Cholesky behind one interface: analyse the pattern, factor the values, solve blocks of right-hand
+// Sparse Cholesky behind one interface: analyses the pattern, factors the values, and solves blocks of right-hand
 // sides.
 //
-// mumps: multifrontal, some 15 times faster here. Not thread-safe, so every call takes one lock for the
-// process; more
-//        speed comes from more processes. OpenBLAS is set to one thread: a second one gains nothing and
-//        spins.
-// eigen: SimplicialLDLT, where MUMPS is missing (web).
+// mumps  multifrontal; factors some twelve times as fast as eigen (docs/performance.md). It is not thread-safe, so
+//        every call takes one lock of the process; only more processes give more speed. OpenBLAS is set to one thread,
+//        since a second one gains nothing and spins.
+// eigen  SimplicialLDLT, for builds without MUMPS (web).
 
 #include <memory>
 
@@ -22,8 +21,8 @@ inline SolverKind best_solver() { return mumps_built_in() ? SolverKind::mumps : 
 struct MumpsFactor;
 struct EigenFactor;
 
-// Owns one factorisation. Errors throw SolverError with the solver's code: a matrix that is not positive
-// definite, memory, MUMPS asked for but not built in.
+// Owns one factorisation. Throws SolverError with the solver's code for a matrix that is not positive definite and for
+// MUMPS in a build without it, and OutOfMemory if there is not enough memory.
 class SparseCholesky {
   public:
     explicit SparseCholesky(SolverKind kind);
@@ -32,8 +31,8 @@ class SparseCholesky {
     SparseCholesky& operator=(SparseCholesky&&) noexcept;
 
     void analyse(const LowerMatrix& A);
-    void factor(const LowerMatrix& A);  // same pattern as analysed
-    // Right-hand sides in, solutions out; one per column, columns contiguous.
+    void factor(const LowerMatrix& A);  // with the pattern that was analysed
+    // Replaces right-hand sides by solutions, one per column; the elements of a column are contiguous.
     void solve(Eigen::Ref<Eigen::MatrixXd> block) const;
 
     SolverKind kind() const { return kind_; }
@@ -44,10 +43,10 @@ class SparseCholesky {
     std::unique_ptr<EigenFactor> eigen_;
 };
 
-// How far A would have to be changed for x to be exact, relative to its size:
+// Returns the smallest relative change of A and b for which x is the exact solution:
 //   |b - A x| / ( |A| |x| + |b| ),  all in the maximum norm
-// Source: Higham, Accuracy and Stability of Numerical Algorithms, theorem 7.1. |b - A x| / |b| alone misleads
-// when stiffnesses differ much (1.5e-9 at a contrast of 1e6 while this is 1e-17).
+// Source: Higham, Accuracy and Stability of Numerical Algorithms, theorem 7.1. The relative residual |b - A x| / |b|
+// alone misleads if stiffnesses differ much (1.5e-9 at a contrast of 1e6, where the backward error is 1e-17).
 double backward_error(const LowerMatrix& A, const Eigen::VectorXd& x, const Eigen::VectorXd& b);
 
 }  // namespace palpa::mechanics

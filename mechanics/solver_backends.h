@@ -1,5 +1,5 @@
 #pragma once
-// The two factorisations behind SparseCholesky; only the solver's own sources include this.
+// The two factorisations behind SparseCholesky. Only the solver's own sources include this.
 
 #include <Eigen/SparseCholesky>
 #include <vector>

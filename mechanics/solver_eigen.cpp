@@ -17,7 +17,7 @@ void refactor(const LowerMatrix& A, EigenFactor& factor) {
 }
 
 void solve_in_place(const EigenFactor& factor, Eigen::Ref<Eigen::MatrixXd> block) {
-    // column by column: the vector path needs no copy of the block
+    // column by column, since solving a block at once would copy it
     for (Eigen::Index k = 0; k < block.cols(); ++k) block.col(k) = factor.ldlt.solve(Eigen::VectorXd(block.col(k)));
 }
 

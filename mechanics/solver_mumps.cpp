@@ -1,4 +1,4 @@
-// MUMPS 5.5, sequential build (libmumps-seq). sym = 1: positive definite, lower triangle, no pivoting.
+// MUMPS 5.5, sequential build (libmumps-seq), used with sym = 1: positive definite, lower triangle, no pivoting.
 
 #include "mechanics/solver_mumps.h"
 
@@ -20,18 +20,19 @@ constexpr int kFactor = 2;
 constexpr int kSolve = 3;
 constexpr int kErrorNoMemory = -9;
 
-// Its integer or real work space could not be had, or outgrew what the analysis promised.
+// Returns whether the code means that work space could not be allocated, or that more was needed than the analysis
+// estimated.
 bool is_memory(int code) { return code == -7 || code == -8 || code == kErrorNoMemory || code == -13; }
 
-// Orderings that give the same factor, to the last bit, at every call. Scotch, which MUMPS would choose for the larger
-// systems, depends on the race of its threads and on the calls before; PORD factors as fast at 30 000 equations and a
-// quarter slower at 70 000. It ends the process where all equations touch each other, so the small systems, where that
-// can be, are left to minimum fill.
+// Orderings that give the same factor, to the last bit, at every call. The result of Scotch, which MUMPS would choose
+// for larger systems, depends on the timing of its threads and on earlier calls. With PORD factoring is as fast at
+// 30,000 equations and a quarter slower at 70,000. PORD ends the process if all equations are coupled with each other,
+// so small systems, where that can happen, are ordered by minimum fill.
 constexpr int kMinimumFill = 2;
 constexpr int kPord = 4;
 constexpr int kSmall = 10000;  // equations
 
-// icntl as the users' guide numbers it, from 1
+// Returns ICNTL(i), numbered from 1 as in the users' guide.
 MUMPS_INT& icntl(DMUMPS_STRUC_C& id, int i) { return id.icntl[i - 1]; }
 
 void call(DMUMPS_STRUC_C& id, int job) {
@@ -106,7 +107,7 @@ void refactor(const LowerMatrix& A, MumpsFactor& factor) {
         call(id, kFactor);
     }
     check(id, "factorisation");
-    const int negative = id.infog[11];  // counted, but no error by itself
+    const int negative = id.infog[11];  // negative pivots, which MUMPS counts without failing
     if (negative > 0) {
         throw SolverError(text("Cholesky: the matrix of ", id.n, " equations is not positive definite, ", negative,
                                " negative pivots"),

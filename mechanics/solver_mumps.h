@@ -1,5 +1,5 @@
 #pragma once
-// One MUMPS instance and the arrays it points into; only the solver's own sources include this.
+// One instance of MUMPS and the arrays that it points into. Only the solver's own sources include this.
 
 #include <dmumps_c.h>
 #include <mutex>

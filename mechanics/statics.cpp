@@ -26,7 +26,7 @@ std::vector<bool> rigid_cells(const Problem& problem) {
     return rigid;
 }
 
-// Solves A q = b, then repeats on the residual while that still helps.
+// Solves A q = b, then refines q with the residual while that lowers the backward error. Returns the backward error.
 double solve_refined(const Factored& factored, const Eigen::VectorXd& b, Eigen::VectorXd& q) {
     Eigen::MatrixXd block = b;
     factored.cholesky.solve(block);

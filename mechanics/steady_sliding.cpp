@@ -38,7 +38,7 @@ void list_active(SteadyWork& w) {
     }
 }
 
-// p on the active nodes from A_AA p = delta_A, 0 elsewhere; g everywhere.
+// Solves A_AA p = delta_A on the active nodes; p is 0 elsewhere. Computes g at every candidate.
 void solve_active(SteadyWork& w) {
     w.p_N.setZero(w.delta_m.size());
     if (!w.active.empty()) {
@@ -50,7 +50,7 @@ void solve_active(SteadyWork& w) {
     w.gap_m.noalias() = w.A * w.p_N - w.delta_m;
 }
 
-// Lets go of nodes that pull, takes in nodes that are penetrated, until nothing changes.
+// Releases nodes that pull and adds nodes that are penetrated until the set settles. Returns false if it does not.
 bool settle(int max_changes, SteadyWork& w, int& changes) {
     const double tolerance_m = kGapTolerance * w.delta_m.maxCoeff();
     for (int k = 0; k < max_changes; ++k) {
@@ -69,7 +69,8 @@ bool settle(int max_changes, SteadyWork& w, int& changes) {
     return false;
 }
 
-// p_i <- max(0, p_i - g_i / A_ii), then one direct solve on the nodes it left pressing.
+// Projected Gauss-Seidel: p_i <- max(0, p_i - g_i / A_ii), then one direct solve on the nodes that it left pressing. If
+// that does not settle, the answer is that of the sweeps. Returns whether it settled.
 bool settle_by_sweeps(int sweeps, SteadyWork& w, int& changes) {
     w.p_N.setZero(w.delta_m.size());
     w.gap_m = -w.delta_m;
@@ -118,7 +119,8 @@ void collect(const Compliance& c, const Tool& tool, const SteadySlide& slide, co
     }
 }
 
-// From Hertz's guess, as in contact.cpp: on a half-space the nodes whose penetration exceeds half the depth.
+// Solves from Hertz's contact, as in contact.cpp: on a half-space it holds the nodes whose penetration exceeds half the
+// depth.
 bool solve_with(const Compliance& c, const SteadySlide& slide, double depth_m, SteadyWork& w, int& changes) {
     gather(c, slide, w);
     for (Index i = 0; i < w.delta_m.size(); ++i) {
@@ -153,7 +155,7 @@ void slide_steadily(const Compliance& compliance, const Tool& tool, const Steady
     contact.changes = 0;
     work.active.clear();
     work.gap_m.resize(0);
-    // nodes beyond the geometric reach count too: the tissue bulges up before the tool
+    // nodes beyond the tool's geometric reach are candidates too, since the tissue bulges up in front of the tool
     for (double margin = 0.25;; margin *= 2.0) {
         find_candidates(compliance, work.contact.tools, margin, work.contact);
         if (work.contact.candidate.empty()) break;

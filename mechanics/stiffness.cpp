@@ -12,7 +12,7 @@ namespace {
 
 using Eigen::Index;
 
-// For each node the nodes >= it that share a cell with it, ascending, as one list with starts.
+// For each node i the nodes >= i that share a cell with it, ascending: node[start[i]] to node[start[i + 1] - 1].
 struct Neighbours {
     std::vector<int> start;
     std::vector<int> node;
@@ -34,7 +34,7 @@ Neighbours neighbours_of(const Mesh& mesh) {
     out.start.assign(1, 0);
     std::vector<int> near;
     for (std::size_t node = 0; node < n_nodes; ++node) {
-        near.assign(1, static_cast<int>(node));  // a node in no cell keeps its empty diagonal
+        near.assign(1, static_cast<int>(node));  // a node of no cell has a diagonal too, which stays 0
         for (int i = cell_start[node]; i < cell_start[node + 1]; ++i) {
             const int cell = cell_of[static_cast<std::size_t>(i)];
             for (Index k = 0; k < mesh.cells.rows(); ++k) {
@@ -49,8 +49,8 @@ Neighbours neighbours_of(const Mesh& mesh) {
     return out;
 }
 
-// The empty matrix. Column 3 j + c holds the diagonal block's rows c..2 and then three rows per later
-// neighbour.
+// Returns the matrix with all values 0. Column 3 j + c holds rows c..2 of the diagonal block, and then three rows for
+// each later neighbour.
 LowerMatrix pattern_of(const Neighbours& near) {
     const auto n_nodes = static_cast<Index>(near.start.size()) - 1;
     LowerMatrix K(3 * n_nodes, 3 * n_nodes);
@@ -73,6 +73,7 @@ LowerMatrix pattern_of(const Neighbours& near) {
     return K;
 }
 
+// Adds the stiffness Ke of a cell to the stored triangle of K.
 template <int Corners>
 void add_cell(const Neighbours& near, const Eigen::Matrix<int, Corners, 1>& nodes,
               const Eigen::Matrix<double, 3 * Corners, 3 * Corners>& Ke, LowerMatrix& K) {

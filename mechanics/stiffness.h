@@ -1,5 +1,5 @@
 #pragma once
-// The stiffness matrix of a mesh and what is read off a displacement field cell by cell.
+// The stiffness matrix of a mesh, and the strain and stress of its cells.
 
 #include <Eigen/SparseCore>
 #include <span>
@@ -10,23 +10,24 @@
 
 namespace palpa::mechanics {
 
-// Only the lower triangle is stored, columns compressed, rows ascending. Row 3 i + c is node i, axis c.
+// Only the lower triangle is stored, by compressed columns with ascending rows. Row 3 i + c belongs to node i, axis c.
 using LowerMatrix = Eigen::SparseMatrix<double>;
 
-// Sum of the cell stiffnesses, 3 n_nodes squared. Cells marked in `skip` (empty = none) add nothing. Summed
-// in the order of the cells: the same bits every time. materials: one per cell.
+// Returns the sum of the cells' stiffnesses, 3 n_nodes x 3 n_nodes. Cells marked in `skip` (empty for none) add
+// nothing. The sum runs in the order of the cells, so that it is the same to the last bit every time. materials: one
+// per cell. Throws MeshError if the cells do not fit the element, and MaterialError if there is not one material per
+// cell.
 LowerMatrix stiffness_N_per_m(const Mesh& mesh, Element element, std::span<const Material> materials,
                               const std::vector<bool>& skip = {});
 
-// Mean strain and stress of each cell, 6 x n_cells, xx yy zz xy yz xz.
+// Mean strain and stress of each cell, 6 x n_cells, xx yy zz xy yz xz (material.h).
 struct CellFields {
     Eigen::Matrix<double, 6, Eigen::Dynamic> strain;
     Eigen::Matrix<double, 6, Eigen::Dynamic> stress_Pa;
 };
 CellFields cell_fields(const Mesh& mesh, std::span<const Material> materials, const Eigen::Matrix3Xd& u_m);
 
-// Largest magnitude of a principal strain over all cells: the figure that says whether small strains still
-// hold.
+// Returns the largest magnitude of a principal strain over all cells, which shows whether strains are still small.
 double max_principal_strain(const CellFields& fields);
 
 }  // namespace palpa::mechanics

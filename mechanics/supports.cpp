@@ -17,7 +17,7 @@ using Eigen::Index;
 using Eigen::Vector3d;
 using Rigid = Eigen::Matrix<double, 3, 6>;  // displacement of a point per unit of each rigid motion
 
-// u = t + w x r / L: columns t_x t_y t_z w_x w_y w_z.
+// u = t + w x r / L, with the columns t_x t_y t_z w_x w_y w_z.
 Rigid rigid_motions(const Vector3d& x, const Vector3d& centre, double length) {
     const Vector3d r = (x - centre) / length;
     Rigid m;
@@ -53,7 +53,7 @@ std::vector<std::vector<int>> nodes_by_part(const Mesh& mesh, const Parts& parts
     return nodes;
 }
 
-// Conditions on the rigid motions of all parts, as their Gram matrix A^T A (6 per part).
+// Returns the Gram matrix A^T A of the conditions A on the rigid motions of all parts, six per part.
 Eigen::MatrixXd motion_conditions(const Mesh& mesh, const Supports& supports,
                                   const std::vector<std::vector<int>>& nodes, const std::vector<Frame>& frames) {
     std::vector<std::vector<int>> parts_of_node(static_cast<std::size_t>(mesh.nodes_m.cols()));
@@ -98,7 +98,7 @@ std::string motion_names(const Eigen::Matrix<double, 6, 1>& motion) {
     return out;
 }
 
-// Names the rigid motions that these conditions, one a row, leave.
+// Returns the names of the rigid motions that these conditions, one per row, leave free.
 std::string free_motions(const Eigen::MatrixXd& conditions) {
     const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(conditions.transpose() * conditions);
     std::string names;
@@ -107,8 +107,9 @@ std::string free_motions(const Eigen::MatrixXd& conditions) {
     return names;
 }
 
-// All dofs of a body that a support holds must fit one rigid motion, which then holds for its other nodes
-// too.
+// Prescribes the rigid motion of a body that a support touches. The prescribed dofs must determine one motion, else it
+// throws SupportError; the motion then holds for the body's other nodes too. Returns false if no support touches the
+// body.
 bool prescribe_body(const Mesh& mesh, const std::vector<int>& nodes, const Frame& frame, Reduction& reduction) {
     Eigen::MatrixXd rows(0, 6);
     Eigen::VectorXd values(0);
@@ -147,13 +148,13 @@ bool prescribe_body(const Mesh& mesh, const std::vector<int>& nodes, const Frame
     return true;
 }
 
-// Node lists of the rigid bodies, by shared nodes.
+// Returns the nodes of each rigid body; rigid cells that share a node are one body.
 std::vector<std::vector<int>> rigid_bodies(const Mesh& mesh, const std::vector<bool>& rigid_cell) {
     std::vector<int> label(static_cast<std::size_t>(mesh.nodes_m.cols()), -1);
     const auto label_at = [&](Index k, Index cell) -> int& {
         return label[static_cast<std::size_t>(mesh.cells(k, cell))];
     };
-    for (bool changed = true; changed;) {  // spreads the lowest node number over each body
+    for (bool changed = true; changed;) {  // spreads the lowest node number over each body until it covers the body
         changed = false;
         for (Index cell = 0; cell < mesh.cells.cols(); ++cell) {
             if (!rigid_cell[static_cast<std::size_t>(cell)]) continue;
@@ -197,7 +198,7 @@ void fix(const std::vector<int>& nodes, std::string_view axes, double value_m, S
 }
 
 void check_supported(const Mesh& mesh, const Supports& supports) {
-    constexpr int kMostParts = 200;  // 1200 x 1200 eigenvalues: seconds
+    constexpr int kMostParts = 200;  // the eigenvalues of a 1200 x 1200 matrix take seconds
     const Parts parts = parts_of(mesh);
     if (parts.count > kMostParts) {
         throw SupportError(text("mesh falls into ", parts.count, " parts that share no faces, at most ", kMostParts,
@@ -213,7 +214,7 @@ void check_supported(const Mesh& mesh, const Supports& supports) {
     while (free < eigen.eigenvalues().size() && eigen.eigenvalues()(free) < 1e-10 * largest) ++free;
     if (free == 0) return;
 
-    // the part that takes most of the free motion
+    // the part that has most of the free motion
     const Eigen::MatrixXd motions = eigen.eigenvectors().leftCols(free);
     int part = 0;
     for (int p = 1; p < parts.count; ++p) {

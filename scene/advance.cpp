@@ -7,8 +7,9 @@
 namespace palpa::scene {
 namespace {
 
-constexpr double kLongestGap_s = 60.0;
-constexpr double kUnbelievable = 0.9;  // share of the profile's range; no hand begins a touch there within one sample
+constexpr double kLongestGap_s = 60.0;  // of which every grid step is taken
+// As a share of the profile's range: no hand presses that hard by the first sample of a touch.
+constexpr double kUnbelievable = 0.9;
 
 bool has_sensor(platform::Tool tool) { return tool == platform::Tool::pen || tool == platform::Tool::finger; }
 
@@ -19,7 +20,7 @@ void calibrate(const Scene& scene, const Plan& plan, const platform::Sample& sam
     if (!is_touching(sample.phase)) return;
     double level = calibration::level_of(plan.profile, sample);
     if (std::isnan(level) && !has_sensor(sample.tool)) {
-        // the made-up 0 ... 1 is a share of the profile's range
+        // a mouse and keys have a simulated pressure, 0 ... 1, which stands for a share of the profile's range
         level = plan.profile.level_lowest + sample.pressure * (plan.profile.level_highest - plan.profile.level_lowest);
     }
     state.without_level = std::isnan(level);
@@ -74,7 +75,7 @@ void turn(const Scene& scene, State& state) {
         state.heading_rope_m = state.touch.p_m;
         return;
     }
-    const double dead_band_m = path_of(scene).dead_band_m;  // jitter has no direction
+    const double dead_band_m = path_of(scene).dead_band_m;  // so that jitter does not turn the heading
     const Eigen::Vector2d v = state.touch.p_m - state.heading_rope_m;
     const double length_m = v.norm();
     if (!(length_m > dead_band_m)) return;
@@ -129,7 +130,7 @@ void run_stage(StageId id, const Scene& scene, const Plan& plan, const platform:
         case StageId::delay:
             return lag(scene, plan, state);
         case StageId::surface:
-            return;  // once a frame, surface_now()
+            return;  // runs once per frame, in surface_now()
     }
 }
 
@@ -146,13 +147,13 @@ void note_extremes(const Avatar& avatar, double t_s, State& state) {
     }
 }
 
-// The laws are exact at any time, so what is left to do on the grid is to note how far the avatar lags.
+// The avatar's laws are exact at any time, so a grid step only has to note how far the avatar lags.
 void run_grid_stage(StageId id, const Scene& scene, double t_s, State& state) {
     if (id == StageId::display_ratio || id == StageId::delay) note_extremes(avatar_at(scene, state, t_s), t_s, state);
 }
 
-// Grid points since the last sample, up to (not including) this time, whether or not something touches. Points that are left
-// out while nothing touches were not dropped: no tissue moved.
+// Takes the grid steps since the last sample, up to and including `to_s`, whether or not something touches. Steps that
+// are left out while nothing touches do not count as dropped, since no tissue moved.
 void walk_grid(const Scene& scene, const Plan& plan, double to_s, State& state) {
     constexpr double kMostSteps = 1e15;
     const auto last = static_cast<std::int64_t>(std::min((to_s - state.grid_began_s) * kGrid_Hz, kMostSteps));
@@ -194,7 +195,8 @@ void note_palm(std::int64_t pointer_id, Palms& palms) {
     palms.pointers[palms.count++] = pointer_id;
 }
 
-// Is the pointer one of them? With its lift it is for the last time; one that comes down anew is not.
+// Returns whether the sample belongs to a noted palm. The lift of a palm still does and ends the note; a new touch of
+// the same pointer ends the note and does not.
 bool is_palm(const platform::Sample& sample, Palms& palms) {
     for (std::size_t i = 0; i < palms.count; ++i) {
         if (palms.pointers[i] != sample.pointer_id) continue;
@@ -204,20 +206,20 @@ bool is_palm(const platform::Sample& sample, Palms& palms) {
     return false;
 }
 
-// A pen takes over from a finger, which may be the hand that holds it; the finger's touch ends here.
+// Ends the touch of a finger because a pen comes down: the finger may be of the hand that holds the pen.
 void take_over(const Scene& scene, const Plan& plan, State& state) {
     platform::Sample end;
     end.pointer_id = *state.pointer;
     end.tool = platform::Tool::finger;
     end.phase = platform::Phase::cancel;
-    end.x_px = end.y_px = platform::kMissing;  // where it was
+    end.x_px = end.y_px = platform::kMissing;  // the touch ends where it was last
     run_stages(scene, plan, end, state);
     note_palm(*state.pointer, state.palms);
     ++state.counters.palms;
     state.pointer.reset();
 }
 
-// Whose sample is it? Sets state.answered.
+// Decides whether the stages run for this sample, and says so in state.answered: only one pointer presses at a time.
 void follow_pointer(const Scene& scene, const Plan& plan, const platform::Sample& sample, State& state) {
     const bool touching = is_touching(sample.phase);
     const bool finger_presses = state.pointer && state.pointer_tool == platform::Tool::finger;
@@ -267,11 +269,11 @@ void advance(const Scene& scene, const Plan& plan, const platform::Sample& sampl
     }
     if (!std::isfinite(sample.x_px) || !std::isfinite(sample.y_px)) {
         ++state.counters.not_numbers;
-        if (is_touching(sample.phase)) return;  // a lift is a lift wherever it is
+        if (is_touching(sample.phase)) return;  // a lift counts without a position
     }
     const bool first = !state.timeline.started;
     const bool in_order = platform::move_to(sample, state.timeline);
-    // a lift from the past is still a lift, now
+    // a lift from the past counts, as one at the present time
     if (!in_order && is_touching(sample.phase)) return;
     if (first) state.grid_began_s = state.timeline.now_s;
     walk_grid(scene, plan, state.timeline.now_s, state);

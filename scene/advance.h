@@ -1,5 +1,6 @@
 #pragma once
-// The road from a sample to the avatar. None of these allocates or throws.
+// From a sample to the avatar: runs the stages of a plan. start() allocates the state; after that nothing here throws,
+// and nothing allocates once `shape` has its size.
 
 #include "scene/scene.h"
 #include "scene/state.h"
@@ -8,18 +9,20 @@ namespace palpa::scene {
 
 inline constexpr double kGrid_Hz = 240.0;
 
-// `screen`: where the tissue is drawn and pressed. A sample of action `resize` changes it.
+// Returns a state at rest. `screen`: where the tissue is drawn and pressed, until a sample of action `resize` changes
+// it.
 State start(const Scene& scene, const Plan& plan, const ScreenArea& screen);
 
-// Goes exactly to the sample's time. The gap since the last sample is walked on the 240 Hz grid, which begins with the
-// first sample and goes on whether or not something touches; gaps of more than a minute are cut and the steps counted
-// as dropped.
+// Takes one sample and moves the state to its time. Before that, the steps of the 240 Hz grid since the last sample are
+// taken; the grid begins with the first sample and goes on whether or not something touches. Of a gap longer than a
+// minute only the last minute is stepped through; the steps before it count as dropped if something touched meanwhile.
 void advance(const Scene& scene, const Plan& plan, const platform::Sample& sample, State& state);
 
-// What to draw at a time after the last sample (the avatar goes on moving while the pen rests).
+// Returns the avatar at a time after the last sample; it goes on moving while the pen rests.
 Avatar avatar_at(const Scene& scene, const State& state, double t_s);
 
-// The frame stage of the scene's surface, which must be there. `shape` may be used again for the next frame.
+// Runs the stage that a frame needs: the surface under the last contact. The scene must have a surface (assert).
+// `shape` may be used again for the next frame.
 void surface_now(const Scene& scene, const Plan& plan, State& state, SurfaceShape& shape);
 
 }  // namespace palpa::scene

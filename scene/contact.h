@@ -1,42 +1,42 @@
 #pragma once
-// What a tissue is asked, and what it answers.
+// What the stages ask a tissue, and what it answers.
 
 #include <Eigen/Core>
 #include <cstdint>
 
 namespace palpa::scene {
 
-// What a sample asks. The prepared tissue is as stiff as its file says, the scene's stiffness_scale times as stiff:
-// under a force that one answers as the prepared one does under force / stiffness_scale, and its newtons are
-// stiffness_scale times as many.
+// What a sample asks. A tissue is prepared with the stiffness of its file, whereas the scene's tissue is
+// stiffness_scale times as stiff. Under a force the scene's tissue is as deep as the prepared one under force /
+// stiffness_scale, and its tangential force is stiffness_scale times that of the prepared one.
 struct Press {
-    Eigen::Vector2d p_m = Eigen::Vector2d::Zero();  // where on the tissue
+    Eigen::Vector2d p_m = Eigen::Vector2d::Zero();  // place on the tissue
     double force_N = 0.0;
-    Eigen::Vector2d heading = Eigen::Vector2d::Zero();  // direction of motion, length 1 once moving
+    Eigen::Vector2d heading = Eigen::Vector2d::Zero();  // direction of motion, length 1; 0 before the first motion
     bool down = false;
     double stiffness_scale = 1.0;
 };
 
-// The same at a place of the pen's path: by how much does the resisting force rise along u up to there?
+// What a station of the pen's path asks: how much the resisting tangential force rises from p - reference_m u to p.
 struct Station {
     Eigen::Vector2d p_m = Eigen::Vector2d::Zero();
-    Eigen::Vector2d u = Eigen::Vector2d::Zero();  // length 1
-    double force_N = 0.0;                         // both forces are taken at the depth of this one at p
-    double reference_m = 0.0;                     // between the two places
-    double stiffness_scale = 1.0;
+    Eigen::Vector2d u = Eigen::Vector2d::Zero();  // direction of motion, length 1
+    double force_N = 0.0;                         // normal force; its depth at p is the depth at both places
+    double reference_m = 0.0;
+    double stiffness_scale = 1.0;  // as in Press
 };
 
 // The tissue's answer to a touch.
 struct Contact {
-    double time_s = 0.0;                            // of the touch, on the timeline
-    Eigen::Vector2d p_m = Eigen::Vector2d::Zero();  // where on the tissue
+    double time_s = 0.0;                            // time of the touch on the timeline
+    Eigen::Vector2d p_m = Eigen::Vector2d::Zero();  // place on the tissue
     double depth_m = 0.0;
     double normal_N = 0.0;
-    double tangential_N = 0.0;  // resisting motion along the pen's direction
-    bool saturated = false;     // pressed deeper than the tissue is known
-    bool measured = true;       // false: between or beside the measured cells
+    double tangential_N = 0.0;  // resists motion along Press::heading
+    bool saturated = false;     // the force is not reached at the greatest known depth; the depth stays there
+    bool measured = true;       // false where a map has no measured cells or ends
     double linearity = 0.0;     // of a simulated tissue: amber above 0.10, red above 0.25 (mechanics/linear_range.h)
-    std::int64_t skipped_slides = 0;  // of friction, on the way to this touch
+    std::int64_t skipped_slides = 0;  // friction steps left out on the way to this touch
 };
 
 }  // namespace palpa::scene

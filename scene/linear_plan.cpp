@@ -1,4 +1,4 @@
-// What a plan holds and says of a linear tissue.
+// What a plan says about a linear tissue.
 
 #include <algorithm>
 #include <cmath>
@@ -13,17 +13,17 @@
 namespace palpa::scene {
 namespace {
 
-constexpr double kBarOfLinear_N = 5.0;   // no greatest force: as the shipped maps
-constexpr double kFewestSpacings = 4.0;  // across the contact's radius: docs/fem.md
+constexpr double kBarOfLinear_N = 5.0;   // full scale of the force bar, since a linear block has no greatest force
+constexpr double kFewestSpacings = 4.0;  // across the contact's radius, as docs/fem.md asks for
 constexpr double kTooFewSpacings = 2.0;
 
-// A station of the path costs five contact solves, and 0.1 us on a map, which has room for a few thousand at most and
-// needs no limit. 4,000 a second are a stroke of 200 mm/s.
+// A station of the path costs five contact solves here, so their number is limited; on a map it costs 0.1 us and needs
+// no limit. 4,000 a second are enough for strokes up to 200 mm/s.
 constexpr avatar::StationLimit kStations{4000.0, 4, 64};
 
 std::string mm_text(double metres) { return files::short_number(1e3 * metres) + " mm"; }
 
-// How many spacings the contact's radius, sqrt(R d), spans at the greatest depth.
+// Returns how many spacings the contact's radius, sqrt(R d), spans at the greatest depth.
 double spacings_across(const LinearTissue& tissue) {
     const double R = tissue.indenter.radius_m;
     const double depth_m = std::min(tissue.phantom.depths_m.back(), R);
@@ -67,8 +67,8 @@ void add_notes(const LinearTissue& tissue, Plan& plan) {
                          tissue.phantom.name + "; the panel shows when a press leaves the linear range");
 }
 
-// What reaches a depth at the median of five places, so that few nodules do not count. By bisection: a linear block
-// answers forces with depths.
+// Returns the force (N) that reaches a depth: the median of five places, so that a few nodules do not matter. It is
+// searched for by bisection, since press() gives depths for forces. At most kBarOfLinear_N.
 double median_force_N(const LinearTissue& tissue, double stiffness_scale, double depth_m) {
     LinearWork work = make_work(tissue);
     const Eigen::Vector2d size_m(tissue.phantom.size_m[0], tissue.phantom.size_m[1]);

@@ -17,11 +17,11 @@ namespace palpa::scene {
 namespace {
 
 constexpr int kLayers = 9;                  // over the thickness, finer towards the surface
-constexpr double kDeepestShare = 0.45;      // of the thickness: deeper poses stop here, far beyond the linear range
-constexpr double kMostCompliance_GB = 1.0;  // with friction: nine times the frictionless one
-constexpr int kMostSlides = 16;  // half spacings a sample: more than two contact radii, friction is steady by then
+constexpr double kDeepestShare = 0.45;      // of the thickness; no pose goes deeper, far beyond the linear range
+constexpr double kMostCompliance_GB = 1.0;  // with friction: ten times the frictionless compliance
+constexpr int kMostSlides = 16;  // half spacings per sample: over two contact radii, after which friction is steady
 constexpr double kFrictionTolerance = 1e-5;  // of the largest force: 2e-6 from the converged one (docs/performance.md)
-constexpr int kMostInContact = 256;          // nodes; more would be a tool of 16 spacings
+constexpr int kMostInContact = 256;          // nodes that memory is reserved for: a contact 16 spacings wide
 
 mechanics::Material material_of(const stiffnessmaps::Elastic& elastic) { return {elastic.young_Pa, elastic.poisson}; }
 
@@ -63,7 +63,7 @@ files::CachedArrays arrays_of(const mechanics::Compliance& c) {
     return out;
 }
 
-// True if the cache holds a whole compliance of these nodes.
+// Fills `out` from the cache. Returns false if the cache does not hold a complete compliance of these nodes.
 bool restore(const std::filesystem::path& cache, std::uint64_t number, const mechanics::SurfaceRequest& request,
              mechanics::Compliance& out) {
     if (cache.empty()) return false;
@@ -94,7 +94,7 @@ void press_to(const LinearTissue& tissue, const Eigen::Vector2d& p_m, double dep
     mechanics::press_to_depth(tissue.compliance, {&tool, 1}, contact_options(tissue), work, contact);
 }
 
-// Of the frictionless contact, both signs.
+// Slope of the frictionless contact's energy along u at a depth, N: positive uphill, negative downhill.
 double energy_slope_N(const LinearTissue& tissue, const Eigen::Vector2d& p_m, const Eigen::Vector2d& u, double depth_m,
                       SlopeWork& work, mechanics::Contact& probe) {
     if (u.isZero() || !(depth_m > 0.0)) return 0.0;
@@ -153,7 +153,7 @@ LinearTissue make_linear_tissue(const LinearOptions& options, const std::filesys
     tissue.from_cache = restore(cache, number, request, tissue.compliance);
     if (tissue.from_cache) return tissue;
     {
-        // the factor is gone before the cache copies the compliance
+        // this scope frees the factor before the cache copies the compliance
         const mechanics::Factored factored = mechanics::factorise(problem, mechanics::best_solver());
         tissue.compliance = mechanics::surface_compliance(problem.mesh, factored, request, progress);
     }

@@ -1,7 +1,7 @@
 #pragma once
 // A block of linear elastic tissue with stiff nodules, palpated live: the frictionless contact of the indenter is
-// solved anew at every sample on a precomputed surface compliance; where asked for, Coulomb friction drags along from
-// sample to sample. Shapes and materials come from a phantom.
+// solved anew at every sample, on a precomputed surface compliance. If the scene asks for Coulomb friction, a second
+// contact with friction is carried from sample to sample. Shapes and materials come from a phantom.
 
 #include <Eigen/Core>
 #include <filesystem>
@@ -22,22 +22,22 @@ namespace palpa::scene {
 
 struct Plan;
 
-// Plain data, constant while it runs. Positions are the phantom's: its corner at the origin.
+// The prepared block; constant while it runs. Positions are in the phantom's frame, whose origin is the block's corner.
 struct LinearTissue {
     stiffnessmaps::Phantom phantom;
     mechanics::Compliance compliance;
     mechanics::Indenter indenter;
-    std::size_t n_x = 0;  // surface nodes, x fastest; height field of the picture
+    std::size_t n_x = 0;  // surface nodes along x and y, numbered x fastest
     std::size_t n_y = 0;
-    double spacing_m[2] = {0.0, 0.0};
-    std::optional<double> friction;
-    int mesh_nodes = 0;
+    double spacing_m[2] = {0.0, 0.0};  // between them
+    std::optional<double> friction;    // coefficient; absent: frictionless
+    int mesh_nodes = 0;                // of the whole mesh
     bool from_cache = false;
-    std::string cache_warning;  // why it could not be stored, for people; empty if it was
+    std::string cache_warning;  // why the compliance could not be stored, for people; else empty
 };
 
-// Contacts half a node spacing before and behind a place. Each place asked for at every sample has a work of its own:
-// it hardly moves from one sample to the next, so its set of nodes and their factor stay.
+// Scratch memory of the contacts half a node spacing ahead of and behind a place. Each place that is asked at every
+// sample has its own: it hardly moves from one sample to the next, so that its active set and factor can be used again.
 struct SlopeWork {
     mechanics::ContactWork ahead;
     mechanics::ContactWork behind;
@@ -46,62 +46,64 @@ struct SlopeWork {
 // What a sample changes.
 struct LinearWork {
     mechanics::ContactWork work;
-    mechanics::Contact contact;  // of the touch
-    mechanics::Contact probe;    // of places beside it
-    double depth_m = 0.0;        // where the search for the depth starts
-    SlopeWork slope;             // of the touch
-    // At the path's stations.
+    mechanics::Contact contact;  // at the touch
+    mechanics::Contact probe;    // at other places, overwritten by each
+    double depth_m = 0.0;        // where the search for the touch's depth starts
+    SlopeWork slope;             // at the touch
+    // At the path's stations, and the reference distance before them.
     mechanics::ContactWork station;
     SlopeWork station_slope;
     SlopeWork reference_slope;
-    // With friction only. What the next sample starts from is `friction`.
+    // With friction only. The next sample starts from `friction`.
     mechanics::FrictionState friction;
     mechanics::FrictionWork friction_work;
     mechanics::Contact sliding;
     Eigen::Vector2d drag_N = Eigen::Vector2d::Zero();  // Coulomb force; positive opposes motion along +x (+y)
-    std::int64_t skipped_slides = 0;                   // half spacings that a leap of the pen left out
+    std::int64_t skipped_slides = 0;                   // half spacings that drag() has left out since the start
 };
 
-// Builds the mesh, factors it and computes the compliance: seconds to minutes, unless `cache` (a folder; empty: none)
-// holds it from an earlier run. May run in a worker thread. Throws InputError for the phantom, mechanics' errors for
-// what cannot be solved, and mechanics::Cancelled.
+// Builds the mesh, factors it and computes the compliance, which takes seconds to minutes unless `cache` (a folder;
+// empty for none) holds the compliance of an earlier run. May run in a worker thread. Throws InputError for a phantom
+// that is wrong or needs too much memory, mechanics' errors for what cannot be solved, and mechanics::Cancelled.
 LinearTissue make_linear_tissue(const LinearOptions& options, const std::filesystem::path& cache,
                                 const mechanics::Progress& progress);
 
 LinearWork make_work(const LinearTissue& tissue);
 
-// Depth for a normal force.
+// The depth for a normal force.
 struct LinearAnswer {
     double depth_m = 0.0;
-    bool saturated = false;  // the force is not reached at the depth limit
+    bool saturated = false;  // the force is not reached at the greatest depth allowed; the depth stays there
     double linearity = 0.0;  // mechanics/linear_range.h: amber above 0.10, red above 0.25
 };
 LinearAnswer press(const LinearTissue& tissue, const Eigen::Vector2d& p_m, double force_N, LinearWork& work);
 
-// Force that resists motion along u at a depth: slope of the elastic energy, averaged over one node spacing, which
-// takes out the ripple of the node-wise contact. Never negative. Two contact solves.
+// Returns the force (N) that resists motion along u at a depth: the slope of the elastic energy, averaged over one node
+// spacing, so that it does not ripple as nodes join and leave the contact. Never negative. Costs two contact solves.
 double tangential_force_N(const LinearTissue& tissue, const Eigen::Vector2d& p_m, const Eigen::Vector2d& u,
                           double depth_m, LinearWork& work);
 
-// Rise of that force over reference_m along u up to e, at the depth of `force_N` at e; the touch stays as it is. Five
-// places.
+// Returns how much that force (N) rises from e - reference_m u to e, both at the depth to which `force_N` presses at e.
+// The contact of the touch stays as it is. Costs five contact solves.
 double tangential_rise_N(const LinearTissue& tissue, const Eigen::Vector2d& e_m, const Eigen::Vector2d& u,
                          double force_N, double reference_m, LinearWork& work);
 
-// Drags the rough tool from where it was to p at a depth, in steps of at most half a node spacing (after a jump the
-// last 16 of them; what came before has worn off and is counted) and leaves the Coulomb force in work.drag_N. The contact on the way
-// has friction in its pressure too, so its normal force differs a little from the one that was pressed with.
+// Drags the rough tool from where it was to p at a depth and leaves the Coulomb force in work.drag_N. The steps are at
+// most half a node spacing. After a jump only the last 16 steps are taken, since the effect of those before has worn
+// off; they are counted in work.skipped_slides. In this contact the pressure depends on friction too, so its normal
+// force differs a little from the one that was pressed with.
 void drag(const LinearTissue& tissue, const Eigen::Vector2d& p_m, double depth_m, LinearWork& work);
-// Lifted: forgets.
+// Forgets the friction of a touch that has ended.
 void let_go(LinearWork& work);
-// tangential_force_N and the Coulomb force along u; what goes downhill lowers the sum, which is never negative.
+// Returns the energy slope of tangential_force_N, here of either sign, plus the Coulomb force along u (N). The sum is
+// never negative.
 double rough_tangential_force_N(const LinearTissue& tissue, const Eigen::Vector2d& p_m, const Eigen::Vector2d& u,
                                 double depth_m, LinearWork& work);
 
-// Sink of the surface nodes under the contact last pressed, n_x * n_y, metres downwards.
+// Computes the sink of the surface nodes under the last touch: n_x * n_y values, metres downwards.
 void surface_sink_m(const LinearTissue& tissue, const LinearWork& work, Eigen::VectorXd& out_m);
 
-// As a tissue: scene/tissue.h says what each of these is for.
+// The functions that every tissue has; scene/tissue.h describes them.
 bool takes_seconds(const LinearOptions& options);
 std::vector<std::filesystem::path> input_files(const LinearOptions& options);
 files::Json file_hashes(const LinearOptions& options);

@@ -18,12 +18,12 @@ namespace {
 
 constexpr double kUnknownThickness_m = std::numeric_limits<double>::infinity();
 
-// Of the scaled forces; a figure that the map itself brings is of its recording and stays as it is.
+// Returns the noise of the scaled forces. A figure that the map's file states is not scaled.
 double noise_N(const MapTissue& tissue, double stiffness_scale) {
     return tissue.map.noise_N ? tissue.noise_N : stiffness_scale * tissue.noise_N;
 }
 
-// Noise scales with the forces, the gate of the laws does not: a harder tissue is smoothed more.
+// Estimated noise scales with the forces, whereas the gate of the laws does not: a stiffer tissue is smoothed more.
 double smoothing_m(const Scene& scene, const MapTissue& tissue) {
     const double gate_N = scene.display_ratio.value_or(avatar::DisplayRatio{}).gate_N;
     return scene.tangential.smoothing_m.value_or(stiffnessmaps::default_smoothing_m(
@@ -81,7 +81,7 @@ void add_isotonic_note(const MapTissue& tissue, Plan& plan) {
     }
 }
 
-// What reaches a depth at the median place, so that few nodules do not count.
+// Returns the force (N) that reaches a depth: the median of all cells, so that a few nodules do not matter.
 double median_force_N(const MapTissue& tissue, double depth_m) {
     const stiffnessmaps::Map& map = tissue.map;
     const auto above = std::upper_bound(map.depths_m.begin(), map.depths_m.end(), depth_m) - map.depths_m.begin();
@@ -101,8 +101,8 @@ double median_force_N(const MapTissue& tissue, double depth_m) {
     return *middle;
 }
 
-// What a person is to find: the placed nodules, which are the truth; the detected ones where none was placed. A placed
-// nodule that was detected too must not count twice.
+// Returns the nodules that a person is to find: the placed ones, which are the truth, or the detected ones where none
+// was placed. A placed nodule that was detected too does not count twice.
 std::vector<stiffnessmaps::Nodule> nodules_to_find(const stiffnessmaps::Map& map) {
     std::vector<stiffnessmaps::Nodule> placed;
     std::copy_if(map.nodules.begin(), map.nodules.end(), std::back_inserter(placed),
@@ -118,7 +118,7 @@ void sink(const MapTissue& tissue, const Press& press, MapWork& work, Contact& c
     contact.saturated = answer.saturated;
     contact.measured = at.measured && at.inside;
     if (tissue.map.source.kind == stiffnessmaps::SourceKind::simulated) {
-        // the simulation was linear: how far this depth is from where that holds
+        // the map comes from a linear simulation, so the depth may be beyond the linear range
         const double a_m =
             std::sqrt(tissue.map.indenter_radius_m * std::min(answer.depth_m, tissue.map.indenter_radius_m));
         contact.linearity = mechanics::linearity_ratio(answer.depth_m, kUnknownThickness_m, 2.0 * a_m);

@@ -1,5 +1,5 @@
 #pragma once
-// A recorded or generated map as a tissue: tables, which answer at once. scene/tissue.h says what each of these is for.
+// A recorded or generated map as a tissue, which answers from tables. scene/tissue.h describes the functions.
 
 #include "files/json.h"
 #include "mechanics/operators.h"
@@ -14,17 +14,17 @@ namespace palpa::scene {
 
 struct Plan;
 
-// A map, prepared for look-up.
+// A map prepared for look-up.
 struct MapTissue {
     stiffnessmaps::Map map;
     stiffnessmaps::Field field;
-    double noise_N = 0.0;      // of the map
-    double smoothing_m = 0.0;  // of the tangential force
+    double noise_N = 0.0;      // standard deviation in the map's normal force, before stiffness_scale
+    double smoothing_m = 0.0;  // Gaussian sigma of the tangential force's smoothing
 };
 
 // What a sample changes.
 struct MapWork {
-    stiffnessmaps::Place place;  // of the touch; between the stages of one sample
+    stiffnessmaps::Place place;  // of the touch: found by the depth stage, used by the tangential stage
 };
 
 bool takes_seconds(const MapOptions& options);

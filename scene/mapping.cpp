@@ -6,7 +6,7 @@
 namespace palpa::scene {
 namespace {
 
-constexpr double kShareOfScreen = 0.94;  // the tissue's longer side against the screen's shorter one
+constexpr double kShareOfScreen = 0.94;  // of the area's width or height, whichever the tissue would fill first
 
 }  // namespace
 

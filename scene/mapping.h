@@ -1,9 +1,9 @@
 #pragma once
 // From px on the screen to a position on the tissue, and where the tissue is drawn.
 //
-// Direct: the tissue lies under the pen; the avatar is drawn where the pen is. Indirect: the whole pad (screen
-// area) is stretched over the tissue, which is drawn elsewhere. On the tissue x points to the right and y upwards,
-// before rotation (counter-clockwise, as seen) and flip (left and right exchanged, before the rotation).
+// Direct mapping: the tissue lies under the pen, and the avatar is drawn at the pen. Indirect mapping: the whole screen
+// area acts as a touchpad that is stretched over the tissue. On the tissue x points to the right and y upwards; it is
+// first flipped (left and right exchanged) and then rotated (counter-clockwise as seen).
 
 #include <Eigen/Core>
 #include <limits>
@@ -17,17 +17,17 @@ struct Mapping {
     MappingKind kind = MappingKind::direct;
     int rotate_deg = 0;  // 0, 90, 180, 270: how the tissue is turned on the screen
     bool flip = false;
-    std::optional<Eigen::Vector2d> tissue_m;  // width, height; absent: as large as the map
-    bool true_size = true;  // direct: as large as it is, where the screen's scale is known and it fits
+    std::optional<Eigen::Vector2d> tissue_m;  // width and height of the tissue; absent: those of the map
+    bool true_size = true;  // direct mapping: draws in true size if the screen's scale is known and the tissue fits
 };
 
-// Where on the screen the tissue may be (the rest belongs to panels), in px of the window.
+// The part of the window that the tissue may use, in px; the rest belongs to panels.
 struct ScreenArea {
     double width_px = 0.0;
     double height_px = 0.0;
     double x_px = 0.0;                                           // of the left edge
     double y_px = 0.0;                                           // of the top edge
-    double px_per_m = std::numeric_limits<double>::quiet_NaN();  // of the screen itself; NaN: nobody measured it
+    double px_per_m = std::numeric_limits<double>::quiet_NaN();  // of the screen itself; NaN if nobody measured it
 };
 
 // The block of tissue in the map's own frame.
@@ -36,21 +36,21 @@ struct TissueArea {
     Eigen::Vector2d size_m = Eigen::Vector2d::Zero();
 };
 
-// Screen px = centre_px + px_per_m * axes * (tissue position - tissue centre), and its inverse for input,
-// which has a scale of its own along both screen axes when the mapping is indirect.
+// Drawing: screen px = centre_px + px_per_m * axes * (tissue position - tissue centre). Input is the inverse with
+// input_px_per_m instead, which differs between the screen's axes when the mapping is indirect.
 struct View {
     TissueArea area;
     Eigen::Vector2d centre_px = Eigen::Vector2d::Zero();
-    Eigen::Matrix2d axes = Eigen::Matrix2d::Identity();       // orthogonal; screen y points down
-    double px_per_m = 1.0;                                    // as drawn
-    double scale = std::numeric_limits<double>::quiet_NaN();  // drawn size / true size; NaN: not known
-    Eigen::Vector2d input_px_per_m = Eigen::Vector2d::Ones();
+    Eigen::Matrix2d axes = Eigen::Matrix2d::Identity();        // orthogonal; screen y points down
+    double px_per_m = 1.0;                                     // of the drawing
+    double scale = std::numeric_limits<double>::quiet_NaN();   // drawn size / true size; NaN if not known
+    Eigen::Vector2d input_px_per_m = Eigen::Vector2d::Ones();  // along the screen's x and y
 };
 
 View make_view(const Mapping& mapping, const TissueArea& area, const ScreenArea& screen);
 
 Eigen::Vector2d tissue_of_px(const View& view, const Eigen::Vector2d& px);   // input
 Eigen::Vector2d px_of_tissue(const View& view, const Eigen::Vector2d& p_m);  // drawing
-bool on_tissue(const View& view, const Eigen::Vector2d& p_m);
+bool on_tissue(const View& view, const Eigen::Vector2d& p_m);                // inside the area, its edges included
 
 }  // namespace palpa::scene

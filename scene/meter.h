@@ -1,6 +1,6 @@
 #pragma once
-// Counts how often a stage was called and how long it took, in a histogram of fixed size, so that measuring allocates
-// nothing. Buckets are 1/32 octave wide, so quantiles are good to about 2 %.
+// Counts how often a stage was called and how long it took. The times go into a histogram of fixed size, so that
+// measuring allocates nothing; its buckets are 1/32 octave wide, so that quantiles are accurate to about 2 %.
 
 #include <array>
 #include <cstdint>
@@ -15,7 +15,7 @@ class Meter {
     void add_ns(double ns);
     std::int64_t calls() const { return calls_; }
     std::int64_t timed() const { return timed_; }
-    double quantile_ns(double q) const;  // 0 if nothing was timed
+    double quantile_ns(double q) const;  // q in 0 ... 1; 0 ns if nothing was timed
     double worst_ns() const { return worst_ns_; }
 
   private:

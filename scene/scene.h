@@ -1,6 +1,6 @@
 #pragma once
-// What was asked for, from one JSON file; a scene is constant while it runs. Every effect is optional: an absent effect
-// is not simulated.
+// What is to be simulated, as one JSON file asks for it; a scene is constant while it runs. Every effect is optional:
+// an absent effect is not simulated.
 
 #include <cstdint>
 #include <filesystem>
@@ -15,33 +15,33 @@
 
 namespace palpa::scene {
 
-// The tissue that was asked for. scene/tissue.h says what every tissue answers.
+// The tissue that is asked for. scene/tissue.h lists what every tissue answers.
 struct MapOptions {
     std::filesystem::path folder;
 };
 struct LinearOptions {
     std::filesystem::path phantom;
-    double spacing_m = 2e-3;         // of the surface nodes; cost of the precomputation grows with its power -6
+    double spacing_m = 2e-3;         // of the surface nodes; memory grows with its power -4, preparation time faster
     std::optional<double> friction;  // coefficient, > 0; absent: frictionless
 };
 using TissueOptions = std::variant<MapOptions, LinearOptions>;
 
-// How the avatar's laws read a map.
+// How the avatar's laws take the tangential force from a map.
 struct TangentialOptions {
     stiffnessmaps::TangentialForce force = stiffnessmaps::TangentialForce::energy;
-    std::optional<double> smoothing_m;  // absent: from the map's own noise (stiffnessmaps/noise.h)
+    std::optional<double> smoothing_m;  // Gaussian sigma; absent: from the map's own noise (stiffnessmaps/noise.h)
 };
 
 struct SurfaceEffect {
-    std::optional<double> indenter_radius_m;  // absent: the map's indenter
-    double thickness_m = 25e-3;               // of the tissue, bonded to its base
+    std::optional<double> indenter_radius_m;  // absent: that of the map or the phantom
+    double thickness_m = 25e-3;               // of a map's tissue, bonded to its base
 };
 
 struct Scene {
     std::string name;
-    std::filesystem::path file;  // where it was read; empty if made up from a map
+    std::filesystem::path file;  // the file it was read from; empty for scene_of_map()
     TissueOptions tissue;
-    double stiffness_scale = 1.0;  // multiplies the tissue's forces: linear elastic tissue of so many times the modulus
+    double stiffness_scale = 1.0;  // multiplies the tissue's forces, as so many times its Young's modulus would
     std::filesystem::path profile;
     Mapping mapping;
     double force_scale = 1.0;  // phantom force: multiplies the pen's newtons
@@ -52,14 +52,14 @@ struct Scene {
     std::int64_t seed = 1;
 };
 
-// The path parameters of the law in force, or the defaults.
+// Returns the path parameters of the scene's law, or the defaults if it has none.
 avatar::PathParameters path_of(const Scene& scene);
 
-// Throws InputError. Paths inside are relative to the scene's file; a name without a folder is also looked
-// for among the assets (maps/, profiles/).
+// Reads a scene. Paths in it are relative to the file; a name without a folder that is not beside the file is looked
+// for among the assets (maps/, phantoms/, profiles/). Throws InputError.
 Scene read_scene(const std::filesystem::path& file, const std::filesystem::path& assets);
 
-// A scene of a map with the defaults: display ratio `clear`, surface, direct mapping.
+// Returns a scene of a map with the defaults: display ratio `clear`, surface, direct mapping.
 Scene scene_of_map(const std::filesystem::path& map, const std::filesystem::path& assets);
 
 }  // namespace palpa::scene

@@ -72,7 +72,7 @@ avatar::Delay read_delay(files::JsonReader json, TangentialOptions& tangential) 
     const bool paper = json.choice("preset", {"clear", "paper"}) == 1;
     avatar::Delay law = paper ? avatar::delay_paper() : avatar::delay_clear();
     law.m_s_per_N = 1e-3 * json.number("m_ms_per_N", files::kNotNegative, 1e3 * law.m_s_per_N);
-    // the ring of remembered samples covers half a second at 2,000 Hz
+    // at most as long as the ring of remembered samples is at 2,000 Hz (avatar/delay.h)
     law.cap_s = 1e-3 * json.number("cap_ms", {0.0, 500.0}, 1e3 * law.cap_s);
     law.rise = json.number("rise", {0.0, 0.999, true}, law.rise);
     law.fall = json.number("fall", {0.0, 100.0, true}, law.fall);

@@ -1,6 +1,6 @@
 #pragma once
-// The stages that a plan can consist of, and what each form of them costs and how wrong it is: all such figures stand
-// in the table below, which `palpa explain` and the cost panel show.
+// The stages that a plan can consist of. Each stage has one or more forms; the table below states what each form costs
+// and how large its error is. `palpa explain` and the cost panel show these figures.
 
 #include <array>
 #include <initializer_list>
@@ -19,10 +19,10 @@ const char* name_of(StageId id);
 
 struct Stage {
     StageId id;
-    bool per_frame = false;  // else per sample
-    std::string fidelity;    // which of its forms is used
-    std::string error;       // against what reference
-    double cost_us = 0.0;    // median over the shipped trace (`palpa explain --measure`), docs/performance.md
+    bool per_frame = false;  // runs once per frame instead of once per sample
+    std::string fidelity;    // how it is computed here
+    std::string error;       // how large its error is, and against what reference
+    double cost_us = 0.0;    // median over the shipped trace (`palpa explain --measure`, docs/performance.md)
 };
 
 enum class StageForm : std::size_t {
@@ -54,7 +54,7 @@ struct StageFigures {
     StageId id;
     bool per_frame;
     double cost_us;          // as in Stage
-    std::string_view error;  // each {} is a figure of the tissue or the profile
+    std::string_view error;  // each {} stands for a figure of the tissue or the profile
 };
 
 inline constexpr std::array<StageFigures, kStageFormCount> kStageFigures{{
@@ -106,10 +106,10 @@ constexpr const StageFigures& figures_of(StageForm form) { return kStageFigures[
 
 struct Scene;
 
-// The stage with its row of the table, whose gaps `figures` fills.
+// Returns a stage by its row of the table; `figures` replace each {} of the error, in order.
 Stage stage_of(StageForm form, std::string fidelity, std::initializer_list<std::string_view> figures = {});
 
-// The stages of the scene's laws on a tissue that can answer at so many stations of the path.
+// Appends the stages of the scene's laws, on a tissue that can answer at `limit` stations of the path.
 void add_law_stages(const Scene& scene, const avatar::StationLimit& limit, StageForm display_ratio, StageForm delay,
                     std::vector<Stage>& out);
 

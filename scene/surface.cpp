@@ -5,7 +5,7 @@
 namespace palpa::scene {
 namespace {
 
-// The node before a place along one axis, and how far on to the next one it is, 0 ... 1.
+// A place along one axis: the node before it, and how far it is on the way to the next one, 0 ... 1.
 struct Between {
     Eigen::Index node = 0;
     double share = 0.0;

@@ -5,7 +5,8 @@
 namespace palpa::scene {
 namespace {
 
-// Calls call(tissue, work) with both as what they are. The work is of the tissue that made it.
+// Calls call(tissue, work) with the alternatives that both hold. The work must be one that make_work() of this tissue
+// made (assert).
 template <class Work, class Call>
 auto with_work(const Tissue& tissue, Work& work, const Call& call) {
     return std::visit(

@@ -1,6 +1,6 @@
 #pragma once
-// The tissues. A new one is an alternative in TissueOptions (scene/scene.h), Tissue and TissueWork, and an overload of
-// each function below for its own types; no other place asks which tissue it is.
+// What every tissue answers. A new tissue is an alternative of TissueOptions (scene/scene.h), Tissue and TissueWork,
+// and an overload of each function below for its own types; no other code asks which tissue it is.
 
 #include <variant>
 #include <vector>
@@ -10,41 +10,43 @@
 
 namespace palpa::scene {
 
-using Tissue = std::variant<MapTissue, LinearTissue>;  // prepared, in a plan
-using TissueWork = std::variant<MapWork, LinearWork>;  // what a touch changes, in a state
+using Tissue = std::variant<MapTissue, LinearTissue>;  // prepared; part of a plan
+using TissueWork = std::variant<MapWork, LinearWork>;  // what a touch changes; part of a state
 
-// Of what was asked for:
-bool takes_seconds(const TissueOptions& options);  // to prepare: somebody must be told
+// Of a tissue that is asked for:
+bool takes_seconds(const TissueOptions& options);  // true if preparing it takes so long that progress must be shown
 std::vector<std::filesystem::path> input_files(const TissueOptions& options);
-files::Json file_hashes(const TissueOptions& options);           // SHA-256 of what it is made from, for logs
-std::filesystem::path map_folder(const TissueOptions& options);  // empty if it is made from no map
+files::Json file_hashes(const TissueOptions& options);           // SHA-256 of its input files, for logs
+std::filesystem::path map_folder(const TissueOptions& options);  // empty for a tissue that is not made from a map
 
-// Reads or computes it, in seconds: `progress` tells and may stop it. Throws InputError, and mechanics' errors for a
-// block that cannot be solved.
+// Reads or computes the tissue, which may take seconds to minutes: `progress` reports and may cancel. Throws
+// InputError, mechanics' errors for a block that cannot be solved, and mechanics::Cancelled.
 Tissue prepare(const TissueOptions& options, const Scene& scene, const mechanics::Progress& progress);
 
-// Whether it was prepared for this scene, see the function of the same name for plans.
+// Returns whether a prepared tissue can be used for this scene; see serves() of plans (scene/plan.h).
 bool serves(const Tissue& tissue, const Scene& scene);
 
-// Fills what the plan says of its tissue, from its name to the notes.
+// Fills what the plan says about its tissue, from tissue_name on, and adds to its notes.
 void describe(const Tissue& tissue, const Scene& scene, Plan& plan);
 
-// The stages that depend on the tissue, in order; those per frame last. Each of depth, friction and tangential that is
-// among them goes to answer() at every sample.
+// Returns the stages that depend on the tissue, in order, those per frame last. For each of depth, friction and
+// tangential among them, answer() is called at every sample.
 std::vector<Stage> stages(const Tissue& tissue, const Scene& scene);
 
-files::Json identity(const Tissue& tissue);  // what a run's settings say of it besides name and source
+files::Json identity(const Tissue& tissue);  // what a run's settings say about the tissue besides name and source
 
 TissueWork make_work(const Tissue& tissue);
 
-// From a touch to the contact, stage by stage; also while nothing touches (press.down), so that it can let go.
-// Allocates nothing and does not throw, nor do the next two once `shape` has its size.
+// Fills the part of the contact that belongs to the stage. Is also called while nothing touches (press.down is false),
+// so that a tissue can end a touch. Allocates nothing and does not throw; nor do the next two, once `shape` has its
+// size.
 void answer(const Tissue& tissue, StageId stage, const Press& press, TissueWork& work, Contact& contact);
 
-// Rise of the resisting tangential force up to a station, as the laws ask for it. The touch stays as it is.
+// Returns the rise of the resisting tangential force up to a station (N), for the avatar's laws. The contact of the
+// touch stays as it is.
 double rise_N(const Tissue& tissue, const Station& station, TissueWork& work);
 
-// The surface under the last contact.
+// Computes the surface under the last contact.
 void sample_surface(const Tissue& tissue, const SurfaceEffect& effect, const Contact& contact, const TissueWork& work,
                     SurfaceShape& shape);
 

@@ -1,12 +1,12 @@
 #pragma once
-// A device loop while it runs: at a rate of its own in a thread of its own, on the rows of device_rows.h.
+// A device loop while it runs: it has a rate and a thread of its own, and works on the rows of device_rows.h.
 //
 // Two things pass between the threads, each from one writer to one reader: the pen's latest contact goes in
-// (LatestValue), and rows come out to be written (RowRing). The thread reads the device, runs the row, sends the
-// command; it allocates nothing and touches no file.
+// (LatestValue), and rows come out to be written to a file (RowRing). In each period the loop's thread reads the
+// device, runs the row and sends the command; it allocates nothing and touches no file.
 //
-// A port P for a device D talks to the wire, or to a simulator:
-//   bool read(D::Feedback&) noexcept;         false: nothing came. May not block for longer than a period.
+// A port P talks to a device D, or to its simulator:
+//   bool read(D::Feedback&) noexcept;         returns false if nothing came; may not block for longer than a period
 //   void send(const D::Command&) noexcept;
 
 #include <algorithm>
@@ -22,12 +22,13 @@
 
 namespace palpa::session {
 
-// Rows on their way from the loop to the file. Full: the row is refused, nobody waits.
+// Rows on their way from the loop to the file. A full ring refuses the row, so that neither thread waits.
 class RowRing {
   public:
     explicit RowRing(std::size_t rows) : row_(rows) {}
 
-    bool put(const DeviceRow& row) noexcept {  // by the loop
+    // Called by the loop's thread. Returns false if the ring is full.
+    bool put(const DeviceRow& row) noexcept {
         const std::size_t n = written_.load(std::memory_order_relaxed);
         if (n - taken_.load(std::memory_order_acquire) == row_.size()) return false;
         row_[n % row_.size()] = row;
@@ -35,7 +36,8 @@ class RowRing {
         return true;
     }
 
-    bool take(DeviceRow& out) noexcept {  // by the thread that writes files
+    // Called by the thread that writes files. Returns false if the ring is empty.
+    bool take(DeviceRow& out) noexcept {
         const std::size_t n = taken_.load(std::memory_order_relaxed);
         if (n == written_.load(std::memory_order_acquire)) return false;
         out = row_[n % row_.size()];
@@ -49,17 +51,18 @@ class RowRing {
     std::atomic<std::size_t> taken_{0};
 };
 
-// For performance.json. Everything but rows and hand_overs depends on the wall clock or on a fault.
+// Health of a loop, for performance.json. All but rows and hand_overs depends on the wall clock or counts faults.
 struct DeviceReport {
-    std::int64_t rows = 0;  // of feedback, that were run
-    std::int64_t hand_overs = 0;
+    std::int64_t rows = 0;              // feedback rows that were run
+    std::int64_t hand_overs = 0;        // contacts that were run
     std::int64_t silent = 0;            // periods without feedback
-    std::int64_t not_numbers = 0;       // feedback or contacts that are not finite: not run, not recorded
-    std::int64_t refused_commands = 0;  // not finite: not sent
-    std::int64_t missed_periods = 0;
-    double latest_s = 0.0;       // greatest delay of a period's begin
-    std::int64_t lost_rows = 0;  // were run but not recorded: from the first of them on nothing is, so that what is
-                                 // recorded replays
+    std::int64_t not_numbers = 0;       // feedback or contacts that are not finite; they are neither run nor recorded
+    std::int64_t refused_commands = 0;  // commands that are not finite; they are not sent
+    std::int64_t missed_periods = 0;    // left out because they could not be caught up on
+    double latest_s = 0.0;              // greatest delay with which a period began
+    // Rows that were run but not recorded because the ring was full. Once a row is lost no later one is recorded, so
+    // that the recorded rows replay.
+    std::int64_t lost_rows = 0;
 };
 
 template <Device D>
@@ -67,18 +70,19 @@ struct DeviceLoop {
     typename D::Plan plan;
     DeviceMemory<D> memory{};
     LatestValue<PenContact> pen{};
-    RowRing recorded{8192};  // 8 s at 1 kHz: longer than a disk is ever busy
-    DeviceReport report{};   // the thread's while it runs
+    RowRing recorded{8192};  // 8 s of feedback at 1 kHz, longer than a disk is expected to stall
+    DeviceReport report{};   // belongs to the loop's thread while it runs
 };
 
-// Runs one row and records it.
+// Records one row and runs it. Returns whether `command` is to be sent, as run_row().
 template <Device D>
 bool take_row(const DeviceRow& row, DeviceLoop<D>& loop, typename D::Command& command) noexcept {
     if (loop.report.lost_rows > 0 || !loop.recorded.put(row)) ++loop.report.lost_rows;
     return run_row<D>(loop.plan, row, loop.memory, command);
 }
 
-// One period. Allocates nothing, throws nothing.
+// Runs one period: takes over the pen's latest contact, reads the device and sends the command. now_s: time on the
+// host's clock. Allocates nothing.
 template <Device D, class Port>
 void run_period(double now_s, Port& port, DeviceLoop<D>& loop) noexcept {
     typename D::Command command{};
@@ -105,13 +109,13 @@ void run_period(double now_s, Port& port, DeviceLoop<D>& loop) noexcept {
     }
 }
 
-// Writes what was recorded since the last call. By the thread that owns the writer, more often than the ring is long.
+// Writes the rows recorded since the last call. The thread that owns the writer calls it before the ring is full.
 inline void write_recorded(RowRing& recorded, DeviceRowWriter& writer) {
     for (DeviceRow row; recorded.take(row);) writer.write(row);
 }
 
-// Runs a loop until it is stopped or destroyed. Port and loop outlive it; of the loop only `pen.put` and
-// `recorded.take` may be called meanwhile.
+// Runs a loop in a thread until stop() or the destructor. `port` and `loop` must outlive it; meanwhile other threads
+// may only call `loop.pen.put` and `loop.recorded.take`. rate_Hz: at least 1 (assert).
 template <Device D, class Port>
 class DeviceThread {
   public:
@@ -127,7 +131,7 @@ class DeviceThread {
     }
 
   private:
-    // Periods that began too late to be caught up on are left out and counted.
+    // Leaves out and counts the periods that it is too late for.
     void run(double rate_Hz, Port& port, DeviceLoop<D>& loop) noexcept {
         assert(rate_Hz >= 1.0);
         using Clock = std::chrono::steady_clock;

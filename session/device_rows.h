@@ -1,16 +1,17 @@
 #pragma once
-// What goes into a device loop (an arm, pins, a soft device), row by row, and the one path that turns it into commands.
+// The input rows of a device loop (a force arm, a pin display, a soft device), and the one function that turns them
+// into commands.
 //
-// A device D brings plain structs and one function:
+// A device D has plain structs and one function:
 //
 //   D::Plan                                        made once, constant while the loop runs
 //   D::Feedback, D::Command                        doubles; visit_fields(row, visit) calls visit(name, field) for each
 //   D::State                                       what a row changes
 //   static D::Command command(const D::Plan&, const DeviceInput<D::Feedback>&, D::State&) noexcept;
 //
-// It allocates nothing, reads no clock and asks nobody: its commands are a function of the plan and of the rows. Live
-// and replay both go through run_row(), so the same rows give the same commands, to the last bit on one machine and
-// build.
+// command() allocates nothing and reads neither a clock nor anything else: its result depends only on the plan and on
+// the rows so far. Live and replayed rows both go through run_row(), so that the same rows give the same commands, to
+// the last bit on one machine and build.
 
 #include <array>
 #include <cassert>
@@ -27,15 +28,15 @@
 
 namespace palpa::session {
 
-// The pen's latest contact, as it is handed over to a device loop. Read it together with the loop's time: it may be old.
+// The pen's latest contact as it is handed over to a device loop. It may be old: compare time_s with the loop's time.
 struct PenContact {
-    double time_s = 0.0;  // of its sample, on the timeline of the trace
-    double x_m = 0.0;     // on the tissue
+    double time_s = 0.0;  // of the contact's sample, on the timeline of the trace
+    double x_m = 0.0;     // place on the tissue
     double y_m = 0.0;
     double depth_m = 0.0;
     double normal_N = 0.0;
-    double tangential_N = 0.0;  // resisting motion along the pen's direction
-    double down = 0.0;          // 1: the pen presses, 0: it does not
+    double tangential_N = 0.0;  // resists motion along the pen's direction
+    double down = 0.0;          // 1 while the pen presses, else 0
 };
 
 template <class Contact, class Visit>
@@ -54,7 +55,7 @@ template <class Feedback>
 struct DeviceInput {
     double time_s = 0.0;  // of the feedback, on the host's clock
     Feedback feedback{};
-    PenContact pen;  // the last that was handed over; of time 0 until the first
+    PenContact pen;  // the last contact that was handed over; all zeros before the first
 };
 
 template <class D>
@@ -67,11 +68,12 @@ concept Device = std::is_trivially_copyable_v<typename D::Feedback> &&
 
 enum class DeviceRowKind : std::uint8_t { feedback, hand_over };
 
-// One row in. `value` holds the fields of the feedback, or those of the contact.
-inline constexpr std::size_t kDeviceFields = 64;
+inline constexpr std::size_t kDeviceFields = 64;  // at most
+
+// One row of input. `value` holds the fields of the feedback or, in a hand-over, those of the contact.
 struct DeviceRow {
     DeviceRowKind kind = DeviceRowKind::feedback;
-    double time_s = 0.0;  // when the loop took it, on the host's clock
+    double time_s = 0.0;  // when the loop took the row, on the host's clock
     std::array<double, kDeviceFields> value{};
 };
 
@@ -107,14 +109,15 @@ std::vector<std::string> field_names() {
     return names;
 }
 
-// All that a row changes.
+// All that a row changes, and so all that a replay must reproduce.
 template <Device D>
 struct DeviceMemory {
     typename D::State state{};
     DeviceInput<typename D::Feedback> in{};
 };
 
-// Runs one row. True if it gives a command: a hand-over gives none, and one that is not finite is not to be sent.
+// Runs one row. Returns whether `command` is to be sent: a hand-over gives no command, and one that is not finite must
+// not be sent.
 template <Device D>
 bool run_row(const typename D::Plan& plan, const DeviceRow& row, DeviceMemory<D>& memory,
              typename D::Command& command) noexcept {
@@ -128,7 +131,7 @@ bool run_row(const typename D::Plan& plan, const DeviceRow& row, DeviceMemory<D>
     return all_finite(command);
 }
 
-// Calls take(command, time_s) for every command that the rows give.
+// Runs recorded rows and calls take(command, time_s) for every command that is to be sent.
 template <Device D, class Take>
 void replay_device(const typename D::Plan& plan, const std::vector<DeviceRow>& rows, DeviceMemory<D>& memory,
                    Take&& take) {
@@ -138,11 +141,13 @@ void replay_device(const typename D::Plan& plan, const std::vector<DeviceRow>& r
     }
 }
 
-// The rows of a device beside the trace: NAME.tsv and "arm" give NAME.arm.tsv.
+// Returns the file of a device's rows beside a trace: for NAME.tsv and "arm", NAME.arm.tsv.
 std::filesystem::path device_rows_of(const std::filesystem::path& trace, std::string_view device);
 
-// Writes them: first `row` and `time_s`, then the contact's columns, then the feedback's; those of the other kind are
-// n/a. Nothing is overwritten (std::runtime_error). Not for the loop's own thread: a full buffer waits for the disk.
+// Writes rows to a table. Its columns are `row`, `time_s`, the contact's fields and the feedback's fields; the fields
+// that a row's kind does not have are n/a. The constructor throws std::runtime_error if the file exists or cannot be
+// created, and std::invalid_argument for more than kDeviceFields fields. Not for the loop's own thread, since a full
+// buffer waits for the disk.
 class DeviceRowWriter {
   public:
     DeviceRowWriter(const std::filesystem::path& tsv, const std::vector<std::string>& feedback_fields);
@@ -157,8 +162,8 @@ class DeviceRowWriter {
     std::string text_;
 };
 
-// Throws InputError with file, line and column: unknown or missing columns, a number that is none, a time that goes
-// back.
+// Reads what DeviceRowWriter wrote. Throws InputError with file, line and column for unknown, missing or exchanged
+// columns, for a value that is not a finite number, and for a time before that of the row above.
 std::vector<DeviceRow> read_device_rows(const std::filesystem::path& tsv,
                                         const std::vector<std::string>& feedback_fields);
 

@@ -1,5 +1,6 @@
 #pragma once
-// Where trials go besides the folder that they are written to. In a browser that folder is memory, and this keeps them.
+// Keeps trials in a second place besides the folder that they are written to, since in a browser that folder is only in
+// memory.
 
 #include <filesystem>
 #include <string>
@@ -12,19 +13,19 @@ class TrialKeeper {
   public:
     virtual ~TrialKeeper() = default;
 
-    // Copies the files of a run as they are now. finished: no more will be written to them.
+    // Copies the files of a run as they are now. finished: nothing more will be written to them.
     virtual void keep(const study::RunFiles& files, bool finished) = 0;
-    // The same for a trial that is going on; only what is new since the last call is copied. Cheap: for every second.
+    // Copies what was written since the last call, for a trial that is going on. Cheap enough to call every second.
     virtual void keep_part(const study::RunFiles& files) = 0;
-    // Of a study in `directory`: who takes part, and what they have answered so far.
+    // Copies the list of participants of the study in `directory`, and what participant `code` has answered so far.
     virtual void keep_answers(const std::filesystem::path& directory, const std::string& code) = 0;
-    virtual void participant(const std::string& code) = 0;  // who is here now; "": nobody
-    virtual bool ready() const = 0;                         // all that was given is safe
-    virtual std::string problem() = 0;                      // why something is not, for people; each once, then ""
-    virtual std::string note() const = 0;                   // what is kept, for people
-    virtual void keep_settings(const std::filesystem::path& file) = 0;
-    virtual void open() = 0;          // shows the person all that is kept
-    virtual void open_studies() = 0;  // lets the person choose one
+    virtual void participant(const std::string& code) = 0;  // says who is here now; "" for nobody
+    virtual bool ready() const = 0;                         // true if everything that was handed over is stored
+    virtual std::string problem() = 0;     // why something could not be stored, for people; each problem once, then ""
+    virtual std::string note() const = 0;  // what is kept, for people
+    virtual void keep_settings(const std::filesystem::path& file) = 0;  // copies the file of the app's settings
+    virtual void open() = 0;                                            // shows the person all that is kept
+    virtual void open_studies() = 0;                                    // lets the person choose a study
 };
 
 }  // namespace palpa::session

@@ -1,6 +1,6 @@
 #pragma once
-// The latest value, from one thread to one other. Neither waits for the other; a value that was not taken before the
-// next came is gone.
+// Passes the latest value from one thread to one other without either waiting. A value that was not taken before the
+// next one is put is lost.
 
 #include <array>
 #include <atomic>
@@ -9,20 +9,21 @@
 
 namespace palpa::session {
 
-// Three places: the writer's, the reader's, and one between them that each exchanges for its own.
+// There are three places: the writer's, the reader's, and one between them, which either thread exchanges for its own.
 template <class T>
 class LatestValue {
     static_assert(std::is_trivially_copyable_v<T>, "it is copied in a loop that must not allocate");
 
   public:
-    // By the one thread that writes.
+    // Called by the one thread that writes.
     void put(const T& value) noexcept {
         place_[writing_] = value;
         const auto fresh = static_cast<std::uint8_t>(writing_ | kNew);
         writing_ = static_cast<std::uint8_t>(between_.exchange(fresh, std::memory_order_acq_rel) & kPlace);
     }
 
-    // By the one thread that reads. False if nothing came since the last call; `out` then stays as it is.
+    // Called by the one thread that reads. Returns false, and leaves `out` as it is, if nothing came since the last
+    // call.
     bool take(T& out) noexcept {
         if ((between_.load(std::memory_order_relaxed) & kNew) == 0) return false;
         reading_ = static_cast<std::uint8_t>(between_.exchange(reading_, std::memory_order_acq_rel) & kPlace);

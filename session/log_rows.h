@@ -1,5 +1,5 @@
 #pragma once
-// A run's state as a row of the log, and the files that stand beside it.
+// The state of a run as a row of its log, and as the settings beside it.
 
 #include <filesystem>
 #include <string>
@@ -12,9 +12,11 @@
 
 namespace palpa::session {
 
+// Returns the row of a sample, after advance() with it. Where the stages did not run for the sample, only what the
+// device reported is filled.
 study::SampleRow row_of(const platform::Sample& sample, const scene::Plan& plan, const scene::State& state);
 
-// What a replay needs to know and a reader wants to: scene, map, profile, screen. The same for every replay.
+// Returns what readers of the log need to know of the run: scene, map, profile, screen. Every replay gives the same.
 files::Json settings_json(const scene::Scene& scene, const scene::Plan& plan, const scene::State& state);
 
 }  // namespace palpa::session

@@ -1,5 +1,5 @@
 #pragma once
-// Making a plan that takes seconds, in a worker thread, while somebody is told how far it is.
+// A plan that takes seconds to minutes is made in a worker thread, while the person is shown how far it has come.
 
 #include <memory>
 
@@ -14,17 +14,17 @@ class PlanInProgress {
     PlanInProgress(const PlanInProgress&) = delete;
     PlanInProgress& operator=(const PlanInProgress&) = delete;
 
-    double share() const;       // done, 0 ... 1
-    bool wait(double seconds);  // true once it is ready
-    void cancel();
-    scene::Plan take();  // once; throws what make_plan threw
+    double share() const;       // of the work that is done, 0 ... 1
+    bool wait(double seconds);  // waits for at most so long; true once the plan is ready or has failed
+    void cancel();              // stops the work soon; take() then throws mechanics::Cancelled
+    scene::Plan take();         // waits and hands over the plan, once; throws what make_plan() threw
 
   private:
     struct Work;
     std::unique_ptr<Work> work_;
 };
 
-// make_plan on the command line: what is done of what, on a terminal.
+// make_plan() for the command line: if stderr is a terminal, it shows the share that is done and the time that is left.
 scene::Plan make_plan_here(const scene::Scene& scene);
 
 }  // namespace palpa::session

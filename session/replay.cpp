@@ -61,7 +61,7 @@ void begin_replay(SessionFiles files, const platform::TraceInfo& info, std::opti
     turn_as_recorded(info, scene);
     change_tissue(std::move(scene), session.plan, screen_of(info), session);
     files.finger_offset_mm = info.finger_offset_mm;
-    files.sync_rows = false;  // nothing is lost with a crash: the trace is still there
+    files.sync_rows = false;  // a crash loses nothing, since the trace is still there
     begin_trial(files, info, mode.value_or(mode_of(info)), session);
 }
 

@@ -102,7 +102,7 @@ void write_event(const platform::Sample& sample, std::size_t marks_before, Sessi
     if (sample.action == platform::Action::finish) {
         const study::Score score = debrief(*session.plan, session.trial).score;
         write_marks(score, session);
-        sync_all_but_events(session);  // first the rest, then the row that says that it is complete
+        sync_all_but_events(session);  // before the row that tells readers that the trial is complete
         if (!files_good(session)) return;
         row.duration_s = row.onset_s;
         row.true_positives = score.true_positives;
@@ -116,7 +116,8 @@ void write_event(const platform::Sample& sample, std::size_t marks_before, Sessi
     if (sample.action == platform::Action::finish) session.trial_log->sync_events();
 }
 
-// What a person did in a trial that ends here, by whatever cause: its places count for nothing, and are not lost.
+// Logs the marks of a trial that ends without being finished, whatever the cause: they count for no result, but are
+// kept.
 void log_interruption(Session& session) {
     if (!session.trial_log || session.trial.finished) return;
     write_marks(debrief(*session.plan, session.trial).score, session);
@@ -151,7 +152,7 @@ void drop_files(Session& session) {
     session.files.reset();
 }
 
-// What the log takes from elsewhere than the samples: a replay of the trace logs the same.
+// Adds to the trace's description what the log depends on besides the samples, so that a replay logs the same.
 platform::TraceInfo with_trial(platform::TraceInfo info, const Session& session) {
     info.mode = name_of(session.trial.mode);
     info.finger_offset_mm = session.finger_offset_mm;
@@ -167,7 +168,7 @@ void open_files(const SessionFiles& files, const platform::TraceInfo& info, Sess
         }
         if (files.log.empty()) return;
         session.files = study::next_run(files.log, files.participant, files.task, files.first_run);
-        const bool alone = !files.label;  // a study explains its columns once, at the top
+        const bool alone = !files.label;  // a study explains the columns once, in its top folder
         if (files.label) {
             files::Json settings = settings_of(session);
             settings["study"] = files.label->study;

@@ -1,5 +1,6 @@
 #pragma once
-// The scene that is palpated now, the trial on it, and the files that it is written to: one run of the log per trial.
+// A session: the scene that is palpated now, the trial on it, and the files that the trial is written to. Each trial is
+// a run of its own in the log.
 
 #include <memory>
 #include <optional>
@@ -15,71 +16,73 @@
 
 namespace palpa::session {
 
-// What a session writes; empty: nothing.
+// What a session writes.
 struct SessionFiles {
-    std::string log;  // folder
+    std::string log;  // folder; empty for no log
     std::string participant = "01";
-    std::string record;                        // TRACE.tsv; later trials get TRACE-2.tsv and so on
-    bool samples = true;                       // false: events, marks and settings only
-    bool sync_rows = true;                     // false: rows are on the disk when the trial ends, for simulations
+    std::string record;                        // TRACE.tsv, later trials get TRACE-2.tsv and so on; empty for no trace
+    bool samples = true;                       // false: only events, marks and settings
+    bool sync_rows = true;                     // false: rows are on the disk only once the trial ends, for simulations
     std::optional<study::TrialLabel> label{};  // of a study's trial
     std::string task = "palpation";
-    double finger_offset_mm = 0.0;  // positions of fingers were moved up by this, for the settings
-    int first_run = 1;              // runs before it are known to be taken, elsewhere
+    double finger_offset_mm = 0.0;  // by which positions of fingers were moved up; goes into the settings and the trace
+    int first_run = 1;              // lower run numbers are taken, elsewhere
 };
 
 struct Session {
     scene::Scene scene;
-    // Never null. Shared with whoever made it: that of a linear tissue takes 23 to 226 MB, and trials copy none of it.
+    // Never null. Shared, so that trials do not copy it: the plan of a linear tissue can take hundreds of megabytes.
     std::shared_ptr<const scene::Plan> plan = std::make_shared<const scene::Plan>();
     scene::State state;
     Trial trial;
     std::string device;  // for the log
-    int trials = 0;      // begun
+    int trials = 0;      // that have begun
     std::optional<study::RunFiles> files;
     std::optional<study::SampleLog> log;
     std::optional<study::TrialLog> trial_log;
     std::optional<study::TrialLabel> label;
     bool sync_rows = true;
     double finger_offset_mm = 0.0;
-    bool failed = false;  // settings could not be put on the disk
+    bool failed = false;  // the settings could not be put on the disk
     std::string began_utc;
-    std::int64_t flushed_ns = 0;  // steady clock
+    std::int64_t flushed_ns = 0;  // when the log was last flushed, steady clock
     std::optional<platform::TraceWriter> record;
-    files::Json finished = files::Json::array();  // trial_json of each finished trial
+    files::Json finished = files::Json::array();  // trial_json() of each finished trial
 };
 
-// A trace's screen as the area of the tissue, until a sample of action resize says otherwise.
+// Returns a trace's screen as the area of the tissue; it holds until a sample of action resize.
 scene::ScreenArea screen_of(const platform::TraceInfo& info);
 
-// Puts another tissue under the hand: scene, plan and a state at rest on them, all three together, since no frame and
-// no sample may meet one of them with another's. The only function that changes session.scene and session.plan. No
-// trial has begun then; the files of the last one must be closed.
+// Puts another tissue into the session: the scene, its plan and a state at rest on them change together, since no frame
+// and no sample may see a mixture of old and new. No other function changes session.scene or session.plan. The files of
+// the last trial must be closed; no trial has begun afterwards.
 void change_tissue(scene::Scene scene, std::shared_ptr<const scene::Plan> plan, const scene::ScreenArea& screen,
                    Session& session);
 
-// Begins a trial on session.scene and session.plan: a new state, new files. `info`: the window, as it goes into the
-// trace. Throws InputError or std::runtime_error if a file cannot be made; the session then has no files.
+// Begins a trial on session.scene and session.plan, with a new state and new files. `info` describes the window and the
+// device and goes into the trace. Throws InputError or std::runtime_error if a file cannot be made; the session then
+// has no files.
 void begin_trial(const SessionFiles& files, const platform::TraceInfo& info, TrialMode mode, Session& session);
 
-// Hands what was logged to the system if that was last done 80 ms ago: what a killed process loses. take_sample() calls
-// it; a loop that waits for samples may too.
+// Hands the log's rows to the system if that was last done at least 80 ms ago, so that a killed process loses little.
+// take_sample() calls it; a loop that waits for samples may call it too.
 void flush_if_due(Session& session);
 
-// Advances, observes, writes. After the sample that finishes the trial its results are on the disk.
+// Records the sample, advances the scene, observes the trial and writes the log. After the sample that finishes the
+// trial its results are on the disk. Does nothing once the trial is finished.
 void take_sample(const platform::Sample& sample, Session& session);
 
-// trial_json of each finished trial, and of the one that goes on.
+// Returns trial_json() of each finished trial, and of the one that is going on.
 files::Json trials_json(const Session& session);
 
-// False once anything could not be written.
+// Returns false once anything could not be written.
 bool files_good(const Session& session);
 
-// A row of the events that no sample brings, such as that a device has gone.
+// Logs an event that no sample brings, such as the loss of a device. now_s: host time, as Sample::t_host_s.
 void note_event(std::string_view trial_type, double now_s, Session& session);
 
-// Puts everything on the disk, `performance` included, and closes the files. A trial that is not finished is logged as
-// interrupted, with the marks that stand. Returns false if some of it failed.
+// Puts everything on the disk, with `performance` as the file of that name, and closes the files. A trial that is not
+// finished is logged as interrupted, with its marks so far. Returns false if anything could not be written.
 bool close_files(const files::Json& performance, Session& session);
 
 }  // namespace palpa::session

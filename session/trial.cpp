@@ -24,7 +24,7 @@ void add_to_path(const scene::State& state, Trial& trial) {
         trial.path.back().depth_m = std::max(trial.path.back().depth_m, static_cast<float>(state.contact.depth_m));
         return;
     }
-    if (trial.path.size() == kPathPoints) {  // every second point of a very long path
+    if (trial.path.size() == kPathPoints) {  // keeps every second point, and where presses begin
         std::size_t kept = 0;
         for (std::size_t i = 0; i < trial.path.size(); ++i) {
             if (i % 2 == 0 || trial.path[i].begins) trial.path[kept++] = trial.path[i];
@@ -35,7 +35,8 @@ void add_to_path(const scene::State& state, Trial& trial) {
     trial.path.push_back({p_m, static_cast<float>(state.contact.depth_m), begins});
 }
 
-// Way and force while pressing. A jitter below the dead band is no way, so the sampling rate does not matter.
+// Adds to the way and the impulse while pressing. Motion inside the dead band does not count as way, so that jitter and
+// the sampling rate hardly matter.
 void measure_press(const scene::State& state, double now_s, Trial& trial) {
     constexpr double kDeadBand_m = 0.5e-3;
     if (!trial.pressing) {
@@ -56,7 +57,7 @@ void measure_press(const scene::State& state, double now_s, Trial& trial) {
 }
 
 void observe_press(const scene::Plan& plan, const platform::Sample& sample, const scene::State& state, Trial& trial) {
-    if (!state.answered) return;  // another finger's, or from the past
+    if (!state.answered) return;  // another pointer's sample, or one from the past
     const bool pressing = state.touch.down && state.touch.force_N > 0.0;
     if (!state.touch.down) {
         trial.pressing = false;
@@ -65,7 +66,7 @@ void observe_press(const scene::Plan& plan, const platform::Sample& sample, cons
     trial.last_px = Eigen::Vector2d(sample.x_px, sample.y_px);
     if (!pressing) return;
     const double R_m = plan.indenter_radius_m;
-    const double footprint_m = std::sqrt(R_m * std::min(state.contact.depth_m, R_m));  // Hertz
+    const double footprint_m = std::sqrt(R_m * std::min(state.contact.depth_m, R_m));  // contact radius by Hertz
     study::cover(state.touch.p_m.x(), state.touch.p_m.y(), footprint_m, state.contact.depth_m, trial.coverage);
     measure_press(state, trial.now_s, trial);
     add_to_path(state, trial);
