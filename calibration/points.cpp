@@ -78,8 +78,8 @@ void check_unit(const CalibrationRows& rows) {
 void check_times(const CalibrationRows& rows) {
     for (std::size_t i = 1; i < rows.time_s.size(); ++i) {
         if (rows.time_s[i] > rows.time_s[i - 1]) continue;
-        if (!rows.repeat.empty() && rows.repeat[i] != rows.repeat[i - 1])
-            continue;  // each repeat may have its own zero
+        // the clock may begin anew with each repeat
+        if (!rows.repeat.empty() && rows.repeat[i] != rows.repeat[i - 1]) continue;
         throw files::bad_input(rows.file, line_of(rows, i) + ", time_s",
                                files::number_text(rows.time_s[i]) + " after " + files::number_text(rows.time_s[i - 1]),
                                "times that rise (sorted, none twice)");

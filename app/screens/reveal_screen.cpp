@@ -72,8 +72,8 @@ void draw_nodules(const Shown& shown, const session::Debrief& debrief, float mm,
             draw.AddCircle(at, radius_px, kDark, 48, 1.3f * mm);
             dashed_circle(draw, at, radius_px, kInk, 0.8f * mm);
         }
-        const std::string text =
-            words::filled(found ? words::kFoundNodule : words::kMissedNodule, {nodule.id});  // why: in the panel
+        // the panel says why a nodule was missed
+        const std::string text = words::filled(found ? words::kFoundNodule : words::kMissedNodule, {nodule.id});
         const float width_px = ImGui::CalcTextSize(text.c_str()).x;
         const bool fits = at.x + radius_px + mm + width_px < ImGui::GetIO().DisplaySize.x;
         rimmed_text(

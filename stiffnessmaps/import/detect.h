@@ -5,9 +5,8 @@
 // 1. Stiffness of each cell (stiffness.h), smoothed by a Gaussian of half the indenter's radius: the tool cannot feel
 //    anything finer.
 // 2. Background: a robust plane (Tukey's biweight) plus the median of the residuals within a window. The median is
-// taken
-//    three times; cells that are softer than the background by 3 spreads are left out of the next one. A region may
-//    cover up to half of the window. Excess = smoothed stiffness - background.
+//    computed three times; cells that are softer than the background by 3 spreads are left out from the next time on.
+//    A region may cover up to half of the window. Excess = smoothed stiffness - background.
 // 3. A region grows around each local maximum whose excess reaches the threshold: the connected cells (8 neighbours)
 //    above half of its peak's excess, and above the threshold. Two maxima are two regions if the excess between them
 //    falls below half of the lower one's. Left out are regions smaller than `smallest_m` or than kLeastCells cells, and

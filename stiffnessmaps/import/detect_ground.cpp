@@ -164,8 +164,8 @@ void take_background(const DetectOptions& options, StiffnessGrid& grid) {
         return std::min(both.lower, both.upper);
     };
     grid.plain = without(grid.there, grid.known);
-    for (int pass = 0; pass < 3;
-         ++pass) {  // soft outliers leave the windows, as a free edge would pull them down for a window's width
+    for (int pass = 0; pass < 3; ++pass) {
+        // soft outliers leave the windows, since a free edge would lower the median over a window's width
         cv::add(plane, window_median(rest, grid, options.window_m), grid.background);
         cv::subtract(grid.stiffness, grid.background, grid.excess);
         grid.excess.setTo(0.0, grid.there == 0);

@@ -160,8 +160,8 @@ void judge_all(const StiffnessGrid& grid, const Detection& d, std::vector<Candid
     const auto settled = [&](const Candidate& c) {
         return std::find(outstanding.begin(), outstanding.end(), &c) != outstanding.end();
     };
-    for (std::size_t before = found.size() + 1;
-         before != outstanding.size();) {  // what turns out sure is no background either
+    // a region that turns out sure is no background for the others, so they are judged again
+    for (std::size_t before = found.size() + 1; before != outstanding.size();) {
         before = outstanding.size();
         for (Candidate& c : found) {
             if (c.region.sure) continue;
