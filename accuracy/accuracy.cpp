@@ -1,4 +1,4 @@
-// Runs a list of measurements, with their progress, and makes tables of the rows.
+// Runs a list of measurements, shows their progress, and makes tables of the rows.
 
 #include "accuracy/accuracy.h"
 
@@ -22,7 +22,7 @@
 namespace palpa::accuracy {
 namespace {
 
-// One line on a terminal, rewritten; nothing elsewhere.
+// One line on a terminal that is rewritten; nothing elsewhere.
 class ProgressLine {
   public:
     explicit ProgressLine(double expected_s) : expected_s_(expected_s), on_(::isatty(STDERR_FILENO) == 1) {}
@@ -49,7 +49,7 @@ class ProgressLine {
 std::string csv_cell(double value) { return files::number_text(value); }
 std::string csv_cell(int value) { return std::to_string(value); }
 std::string csv_cell(std::string value) {
-    std::replace(value.begin(), value.end(), ',', ';');  // no quotes, so that gnuplot and awk read it too
+    std::replace(value.begin(), value.end(), ',', ';');  // no quotes, so that gnuplot and awk can read it too
     return value.empty() ? "n/a" : value;
 }
 

@@ -1,5 +1,5 @@
 #pragma once
-// What accuracy costs in time: measured pairs of error and cost for every choice that a library offers.
+// What accuracy costs in time: the measured error and cost of every choice that a library offers.
 
 #include <filesystem>
 #include <functional>
@@ -13,23 +13,23 @@ namespace palpa::accuracy {
 
 inline constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
-// One choice. What is not known is NaN ("n/a").
+// One choice. NaN ("n/a"): not known.
 struct AccuracyRow {
-    std::string group{};   // what is chosen between
-    std::string series{};  // the line of the plot it belongs to
+    std::string group{};   // the alternatives it belongs to
+    std::string series{};  // its line in the plot
     std::string choice{};
     int nodes = 0;
-    int dofs = 0;                     // equations that are solved
-    double error_percent = kUnknown;  // signed where it is one number, else root mean square over steps
+    int dofs = 0;                     // degrees of freedom: equations that are solved
+    double error_percent = kUnknown;  // signed if it is a single number, else root mean square over steps
     double worst_error_percent = kUnknown;
     std::string reference{};                    // what the error is measured against
-    double reference_error_percent = kUnknown;  // how uncertain that is
-    double offline_s = kUnknown;                // before the first step: least of the repetitions
+    double reference_error_percent = kUnknown;  // uncertainty of the reference
+    double offline_s = kUnknown;                // preparation before the first step: least of the repetitions
     int offline_repetitions = 0;
     double per_step_us = kUnknown;  // median
     double per_step_p99_us = kUnknown;
-    int steps = 0;                // that were timed
-    double memory_MB = kUnknown;  // kept between steps
+    int steps = 0;                // number of steps that were timed
+    double memory_MB = kUnknown;  // that is kept between steps
     std::string note{};
 };
 
@@ -56,36 +56,36 @@ void visit_fields(const AccuracyRow& row, Visit&& visit) {
 // How long to measure.
 struct Effort {
     bool quick = false;      // small meshes only
-    double offline_s = 1.0;  // repetitions of the offline part stop here; at least one, at most 20
-    double steps_s = 1.0;    // steps stop here; at least the few that a percentile needs
+    double offline_s = 1.0;  // budget for repetitions of the preparation; at least one, at most 20
+    double steps_s = 1.0;    // budget for steps; at least the few that a percentile needs
 };
 
-// One measurement of the list; `expected_s` only shares out the progress bar.
+// One measurement of the list; `expected_s` is only used for the progress and the time left.
 struct Measurement {
     std::string what;
     double expected_s = 1.0;
     std::function<void(std::vector<AccuracyRow>& rows)> run;
 };
 
-// A measurement that throws leaves a row that says why. Progress goes to a terminal on stderr, if it is one.
+// Runs all measurements. One that throws leaves a row that says why. Progress is shown on stderr if it is a terminal.
 std::vector<AccuracyRow> run_measurements(const std::vector<Measurement>& list);
 
 std::string accuracy_csv(const std::vector<AccuracyRow>& rows);
 std::string accuracy_table(const std::vector<AccuracyRow>& rows);
 
-// Processor, threads, load and date: without them a time says nothing.
+// Processor, threads, load and date, without which a time has no meaning.
 struct Machine {
     std::string processor;
     unsigned threads = 0;
-    double load = kUnknown;  // mean of the last minute
+    double load = kUnknown;  // mean over the last minute
     std::string date;
 };
 Machine this_machine();
 
 files::Json accuracy_json(const std::vector<AccuracyRow>& rows, const Machine& machine);
 
-// Writes mechanics.gp beside mechanics.csv in `folder` and runs gnuplot on it: mechanics.png, .svg, .pdf.
-// Returns what went wrong, in words; empty when the figures are there.
+// Writes mechanics.gp beside mechanics.csv in `folder` and runs gnuplot on it: mechanics.png, .svg, .pdf. Returns in
+// words what went wrong; empty on success. Throws std::runtime_error if mechanics.gp cannot be written.
 std::string plot_mechanics(const std::filesystem::path& folder, const Machine& machine);
 
 }  // namespace palpa::accuracy

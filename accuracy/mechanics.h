@@ -10,19 +10,19 @@
 
 namespace palpa::accuracy {
 
-// The paper's slab, 100 x 100 x 50 mm, E = 2.5 kPa, bottom clamped, under 25 mN spread as a parabola of
-// 16 mm. Its answer is the mean depression, weighted by the pressure: the work of the load.
+// A slab of 100 x 100 x 50 mm, E = 2.5 kPa, bottom clamped, under 25 mN spread as a parabola of 16 mm diameter. Its
+// answer is the mean depression, weighted by the pressure: the work of the load.
 struct SlabReference {
-    double mean_m = 0.0;
+    double mean_m = 0.0;  // mean depression
     double uncertainty_percent = 0.0;
 };
 
-// Richardson's limit of B-bar on a quarter mesh, refined towards the load, and its nested half. `finest`:
-// cells along each edge, even; the first gives the limit, the others, each with its half, how far limits
-// disagree.
+// Returns Richardson's limit of B-bar elements on a quarter mesh, refined towards the load, and on the nested mesh of
+// half as many cells. `finest`: cells along each edge, even. The first entry gives the limit; the differences of the
+// other limits from it give the uncertainty.
 SlabReference slab_reference(double poisson, std::span<const int> finest);
 
-// One element on one mesh: uniform, or graded to cells 0.4 times as wide under the load.
+// Measures one element type on one mesh: uniform, or graded to cells 0.4 times as wide under the load.
 AccuracyRow slab_row(mechanics::Element element, const std::array<int, 3>& cells, bool graded, double poisson,
                      const SlabReference& reference, const Effort& effort);
 

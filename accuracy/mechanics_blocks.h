@@ -1,5 +1,6 @@
 #pragma once
-// The blocks that the mechanics measurements press on, and how a tool moves over them; theirs alone.
+// The blocks that the measurements of mechanics press on, and the path of a tool over them; only those measurements use
+// this header.
 
 #include <string>
 
@@ -9,33 +10,34 @@
 
 namespace palpa::accuracy {
 
-inline constexpr mechanics::Material kBenchTissue{2500.0, 0.45};
-inline constexpr mechanics::Indenter kBenchBall{mechanics::IndenterShape::sphere, 0.008};
+inline constexpr mechanics::Material kBenchTissue{2500.0, 0.45};                           // Pa, Poisson's ratio
+inline constexpr mechanics::Indenter kBenchBall{mechanics::IndenterShape::sphere, 0.008};  // radius 8 mm
 
 const char* name_of(mechanics::Element element);
 
-// One material, bottom clamped; tetrahedra by splitting the hexahedra.
+// Returns a block of one material with its bottom clamped; tetrahedra come from splitting the hexahedra.
 mechanics::Problem block(const mechanics::Mesh& hexes, mechanics::Element element, const mechanics::Material& material);
-// The same as the quarter x >= 0, y >= 0 of a block that is symmetric about both planes.
+// Returns the quarter x >= 0, y >= 0 of such a block that is symmetric about both planes.
 mechanics::Problem quarter_block(const mechanics::Mesh& hexes, mechanics::Element element,
                                  const mechanics::Material& material);
 
-// 100 x 100 x 50 mm with cells of `finest_m` under the middle of the surface.
+// Returns a slab of 100 x 100 x 50 mm with cells of `finest_m` under the middle of the surface.
 mechanics::Mesh graded_slab(const std::array<int, 3>& cells, double finest_m);
 
-// n + 1 coordinates 0..length, finest at 0: x = length (exp(2.5 i/n) - 1)/(exp(2.5) - 1). Doubling n halves
-// every cell, so that the meshes of a series are nested.
+// Returns n + 1 coordinates from 0 to length, finest at 0: x = length (exp(2.5 i/n) - 1)/(exp(2.5) - 1). Doubling n
+// divides every cell into two, so that the meshes of a series are nested.
 Eigen::VectorXd nested_coordinates_m(double length_m, int n);
 
-// A hand's path over a patch of +-2 mm about (x, y), sampled at 1 kHz, at depth 2 mm +- 10 %.
+// Returns the tool at sample i of a hand's path over a patch of +-2 mm about (x, y), at 1 kHz and at a depth of 2 mm +-
+// 10 %.
 mechanics::Tool tool_on_path(int i, double x_m, double y_m);
 
-// Fills nodes and equations, and the offline cost: the least of the repetitions of `prepare`.
+// Fill a row: nodes and equations; the least time of the preparation; median and 99th percentile of the steps.
 void set_size(const mechanics::Problem& problem, const mechanics::Factored& factored, AccuracyRow& row);
 void set_offline(const Timing& timing, AccuracyRow& row);
 void set_steps(const Timing& timing, AccuracyRow& row);
 
-// Root mean square and greatest magnitude, in per cent.
+// Sums for the root mean square and the greatest size of errors, which set_error() writes in per cent.
 struct ErrorSum {
     double squares = 0.0;
     double worst = 0.0;

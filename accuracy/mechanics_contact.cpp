@@ -1,4 +1,5 @@
-// A ball of 8 mm pressed 2 mm deep: the mesh's spacing against a much finer mesh, and against Hertz.
+// A ball of 8 mm radius pressed 2 mm deep: the error of the mesh's spacing, against a much finer mesh and against
+// Hertz.
 
 #include <cmath>
 #include <memory>
@@ -23,7 +24,7 @@ struct ContactMesh {
     double finest_m;
 };
 
-// Factor and surface compliance, timed together; only the compliance stays.
+// Times factorisation and surface compliance together, and keeps only the compliance.
 Compliance prepare(const Problem& problem, const std::array<double, 4>& touch_m, const Effort& effort,
                    AccuracyRow& row) {
     std::optional<Compliance> made;
@@ -38,7 +39,8 @@ Compliance prepare(const Problem& problem, const std::array<double, 4>& touch_m,
     return std::move(*made);
 }
 
-// Depths at which forces are compared: single ones would hit or miss a jump of the contact area by luck.
+// The number of depths at which forces are compared: at a single depth, the error would depend on whether a node has
+// just come into contact.
 constexpr int kDepths = 9;
 double depth_m(double middle_m, int k) { return middle_m * (0.9 + 0.2 * k / (kDepths - 1)); }
 
@@ -56,7 +58,7 @@ Mesh quarter_mesh(double width_m, double height_m, int n, double fine_m) {
     return hex_box(x, x, (height_m - z.reverse().array()).matrix());
 }
 
-// Forces of a quarter of the slab, times four.
+// Returns the forces of a quarter of the slab, times four.
 std::array<double, kDepths> quarter_forces_N(int n, double fine_m) {
     const Problem problem = quarter_block(quarter_mesh(0.05, 0.05, n, fine_m), Element::hex8_bbar, kBenchTissue);
     const SurfaceRequest request =
@@ -105,7 +107,7 @@ AccuracyRow contact_row(const ContactMesh& mesh, const ContactReference& referen
     const Compliance c = prepare(problem, {0.0415, 0.0585, 0.0415, 0.0585}, effort, row);
     ErrorSum sum;
     for (int k = 0; k < kDepths; ++k) {
-        for (const double share : {0.0, 0.25, 0.5}) {  // where between two nodes the ball stands
+        for (const double share : {0.0, 0.25, 0.5}) {  // where the ball stands between two nodes
             const double at_m = 0.05 + share * mesh.finest_m;
             add_error(force_N(c, at_m, at_m, depth_m(0.002, k)) / reference.force_N[static_cast<std::size_t>(k)] - 1.0,
                       sum);
@@ -116,7 +118,7 @@ AccuracyRow contact_row(const ContactMesh& mesh, const ContactReference& referen
     return row;
 }
 
-// On a block so large that Hertz's half-space holds.
+// Measures a ball on a block so large that Hertz's half-space is a good reference.
 AccuracyRow hertz_row(double fine_m, int n, const Effort& effort) {
     const Problem problem =
         quarter_block(quarter_mesh(kHertzBlock_m, kHertzBlock_m, n, fine_m), Element::hex8_bbar, kBenchTissue);

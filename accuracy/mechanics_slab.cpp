@@ -1,4 +1,4 @@
-// Element x mesh x poisson on the paper's slab, and on a wide slab against the exact bonded layer.
+// Element, mesh and Poisson's ratio on the slab of mechanics.h, and on a wide slab against the exact bonded layer.
 
 #include <algorithm>
 #include <cmath>
@@ -38,7 +38,7 @@ double quarter_mean_m(double poisson, int n) {
     return mean_displacement_m(load, solve(factorise(problem, best_solver()), load.force_N).u_m);
 }
 
-// Assembles and factors until the budget is spent; keeps the last factor and what it holds in memory.
+// Assembles and factors until the budget is spent; keeps the last factor and notes the memory that it holds.
 Factored repeat_factorise(const Problem& problem, const Effort& effort, AccuracyRow& row) {
     std::optional<Factored> factored;
     double before_MB = 0.0;
@@ -53,7 +53,7 @@ Factored repeat_factorise(const Problem& problem, const Effort& effort, Accuracy
     return std::move(*factored);
 }
 
-// One right-hand side after another.
+// Times the solution of single right-hand sides.
 void time_solves(const Factored& factored, const PressureLoad& load, const Effort& effort, AccuracyRow& row) {
     const Eigen::VectorXd b = reduce_load(factored.reduction, load.force_N.reshaped());
     Eigen::MatrixXd q = b;
@@ -69,7 +69,7 @@ std::string slab_series(Element element, double poisson) {
     return std::string(name_of(element)) + " nu " + files::short_number(poisson);
 }
 
-// A quarter of a slab 400 mm wide, by symmetry the whole one.
+// Measures a slab 400 mm wide, of which symmetry allows to compute a quarter.
 AccuracyRow layer_row(Element element, double poisson, const Effort& effort) {
     const int n = effort.quick ? 12 : 20;
     const int nz = effort.quick ? 8 : 12;
@@ -94,7 +94,7 @@ AccuracyRow layer_row(Element element, double poisson, const Effort& effort) {
     return row;
 }
 
-// Seconds on two cores of a shared EPYC, 2026-11.
+// Returns the expected time in seconds, as on two cores of a shared EPYC, 2026-11.
 double expected_s(int nodes, const Effort& effort) {
     const double factor_s = 2.5e-6 * std::pow(nodes, 1.4);
     return std::max(factor_s, std::min(effort.offline_s, 20.0 * factor_s)) + effort.steps_s;
@@ -105,7 +105,7 @@ double expected_s(int nodes, const Effort& effort) {
 SlabReference slab_reference(double poisson, std::span<const int> finest) {
     SlabReference out;
     for (const int n : finest) {
-        // the error falls with the square of the cell size
+        // the error is proportional to the square of the cell size
         const double limit_m = (4.0 * quarter_mean_m(poisson, n) - quarter_mean_m(poisson, n / 2)) / 3.0;
         if (out.mean_m == 0.0) out.mean_m = limit_m;
         out.uncertainty_percent = std::max(out.uncertainty_percent, 100.0 * std::abs(limit_m / out.mean_m - 1.0));

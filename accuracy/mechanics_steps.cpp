@@ -1,4 +1,4 @@
-// What one step of a live tissue costs: contact algorithms, friction, sparse solvers, precomputed or not.
+// The cost of one step of a live tissue: contact algorithms, friction, sparse solvers, and what is precomputed.
 
 #include <algorithm>
 #include <cmath>
@@ -19,7 +19,7 @@ namespace {
 constexpr double kMiddle_m = 0.05;
 constexpr std::array<double, 4> kTouch_m{0.042, 0.058, 0.042, 0.058};
 
-// One slab for all of them, with the compliance that friction needs as well.
+// One slab for all rows, with the compliance that friction needs as well.
 struct Bench {
     Problem problem;
     Compliance compliance;
@@ -50,7 +50,7 @@ AccuracyRow bench_row(const Bench& bench, std::string group, std::string choice)
     return row;
 }
 
-// Pressing forces of all touch nodes.
+// Returns the pressing forces of all touch nodes, N.
 Eigen::VectorXd pressed_N(const Compliance& c, const Contact& contact) {
     Eigen::VectorXd p = Eigen::VectorXd::Zero(c.n_touch);
     for (std::size_t k = 0; k < contact.touch.size(); ++k) p(contact.touch[k]) = contact.force_N[k];
@@ -99,7 +99,7 @@ Eigen::Vector3d tool_force_N(const Contact& contact) {
     return {contact.tool[0].normal_N, contact.tool[0].tangential_x_N, contact.tool[0].tangential_y_N};
 }
 
-// Forces along one slide; 0.1 mm a step at most.
+// Returns the forces along one slide, whose steps are at most 0.1 mm.
 std::vector<Eigen::Vector3d> slide(const Bench& bench, const FrictionOptions& options, int steps, Timing& timing,
                                    int& unsettled) {
     FrictionWork work;
@@ -169,7 +169,7 @@ void friction_rows(const Bench& bench, const Effort& effort, std::vector<Accurac
     rows.push_back(zero);
 }
 
-// b - A x with products and sums in extended precision.
+// Returns b - A x, with products and sums in extended precision.
 Eigen::VectorXd residual(const LowerMatrix& A, const Eigen::VectorXd& x, const Eigen::VectorXd& b) {
     std::vector<long double> r(b.begin(), b.end());
     const auto entry = [](Eigen::Index i) { return static_cast<std::size_t>(i); };
@@ -184,7 +184,7 @@ Eigen::VectorXd residual(const LowerMatrix& A, const Eigen::VectorXd& x, const E
     return out;
 }
 
-// Solution of A x = b to the last bit or so: corrections until they no longer matter.
+// Returns the solution of A x = b to almost the last bit: iterative refinement, five times.
 Eigen::VectorXd refined(const Factored& factored, const Eigen::VectorXd& b) {
     Eigen::VectorXd x = Eigen::VectorXd::Zero(b.size());
     for (int i = 0; i < 5; ++i) {
@@ -238,7 +238,7 @@ void sparse_solver_rows(const Bench& bench, const Effort& effort, std::vector<Ac
     }
 }
 
-// Touch nodes that the tool can reach now, all others as rows.
+// Requests touch nodes where the tool can reach now, and the rest of the surface as rows only.
 SurfaceRequest request_under(const Mesh& mesh, const Faces& outer, const Tool& tool) {
     const double reach_m = std::sqrt(2.0 * tool.indenter.radius_m * 1.3 * tool.pose.depth_m);
     return request_rectangle(
@@ -246,8 +246,8 @@ SurfaceRequest request_under(const Mesh& mesh, const Faces& outer, const Tool& t
         {tool.pose.x_m - reach_m, tool.pose.x_m + reach_m, tool.pose.y_m - reach_m, tool.pose.y_m + reach_m});
 }
 
-// Depression of the touch nodes, from the contact's forces by one full solve: what all three are held
-// against.
+// Returns the depression of the surface nodes under the contact's forces by one full solve, the reference of all three
+// rows.
 Eigen::VectorXd full_depression_m(const Bench& bench, const Factored& factored, const Compliance& c,
                                   const Contact& contact) {
     Eigen::Matrix3Xd load_N = Eigen::Matrix3Xd::Zero(3, bench.problem.mesh.nodes_m.cols());
@@ -273,7 +273,7 @@ const char* name_of(Kept kept) {
     return "";
 }
 
-// One step: contact at depth and the whole surface, with what is kept from before.
+// Measures one step: contact at a depth and the depression of the whole surface, with what is kept from before.
 AccuracyRow live_row(const Bench& bench, Kept kept, const Effort& effort) {
     AccuracyRow row = bench_row(bench, "live step", name_of(kept));
     const Faces outer = boundary_faces(bench.problem.mesh);

@@ -7,7 +7,7 @@
 namespace palpa::accuracy {
 namespace {
 
-// Colours by Okabe and Ito, which colour-blind people can tell apart; the marker says the same again.
+// Colours by Okabe and Ito, which colour-blind people can distinguish; the markers repeat the distinction.
 constexpr const char* kScript =
     R"gp(# gnuplot mechanics.gp draws mechanics.csv as mechanics.png; gnuplot -e "kind='svg'" mechanics.gp: or svg, pdf
 if (!exists("kind")) kind = "png"

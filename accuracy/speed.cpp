@@ -30,7 +30,7 @@ Eigen::SparseMatrix<double> laplacian(int n) {
     return out;
 }
 
-// All samples in one go: mean per sample, without the clock's own cost.
+// Times all samples together: the mean per sample, without the clock's own cost.
 double mean_us(const scene::Scene& scene, const scene::Plan& plan, const platform::Trace& trace, scene::State& state) {
     Timing timing;
     time_call(timing, [&] {

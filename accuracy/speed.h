@@ -1,6 +1,6 @@
 #pragma once
-// What a sample costs on this machine, from pressure to avatar, with the program that people run. Beside every time
-// stands its ratio to a unit that any machine can measure: one factorisation of a known matrix by Eigen.
+// The cost of a sample on this machine, from pressure to avatar, in the program that people run. Every time is also
+// given as its ratio to a unit that any machine can measure: one factorisation of a known matrix by Eigen.
 
 #include <string>
 #include <vector>
@@ -10,20 +10,21 @@
 
 namespace palpa::accuracy {
 
-// Of several repetitions in one run; the least is what a busy machine disturbs least.
+// Times over several repetitions in one run; the least is disturbed least by other programs.
 struct SpeedRow {
     std::string what;
     double least_us = kUnknown;
     double median_us = kUnknown;
-    double p99_us = kUnknown;  // of single samples, clock included, in the repetition with the least
+    double p99_us = kUnknown;  // of single samples, clock included; least over the repetitions
     int repetitions = 0;
 };
 
-// Eigen's SimplicialLDLT, factorisation alone, of the 7-point Laplacian on 16 x 16 x 16 points (6 on the diagonal, -1
-// beside it).
+// Times Eigen's SimplicialLDLT, factorisation alone, of the 7-point Laplacian on 16 x 16 x 16 points (6 on the
+// diagonal, -1 for each neighbour).
 SpeedRow machine_unit(int repetitions);
 
-// A simulated pen at 1,000 Hz over the scene for `seconds`, each repetition from a fresh start. Times are per sample.
+// Times a simulated pen at 1,000 Hz over the scene for `seconds`, with a fresh start in each repetition. Times are per
+// sample.
 SpeedRow sample_speed(const scene::Scene& scene, const scene::Plan& plan, double seconds, int repetitions);
 
 files::Json speed_json(const SpeedRow& unit, const std::vector<SpeedRow>& rows, const Machine& machine);

@@ -1,5 +1,5 @@
 #pragma once
-// Times of single calls, and the memory that something keeps.
+// Times of single calls, and the memory in use.
 
 #include <cstddef>
 #include <cstdint>
@@ -25,7 +25,7 @@ void time_call(Timing& timing, Call&& call) {
     timing.us.push_back(1e-3 * static_cast<double>(files::steady_ns() - began_ns));
 }
 
-// call(i) until `budget_s` is spent, at least `least` and at most `most` times.
+// Times call(i) until `budget_s` is spent, at least `least` and at most `most` times.
 template <class Call>
 Timing time_calls(int least, int most, double budget_s, Call&& call) {
     Timing timing;
@@ -37,7 +37,7 @@ Timing time_calls(int least, int most, double budget_s, Call&& call) {
     return timing;
 }
 
-// Bytes of the heap in use, in MB; NaN where the allocator does not tell (sanitizers, other C libraries).
+// Returns the heap in use, MB; NaN if the allocator does not report it (sanitizers, other C libraries).
 double heap_MB();
 
 }  // namespace palpa::accuracy

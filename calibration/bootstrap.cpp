@@ -24,7 +24,7 @@ int repeats_of(const FitPoints& points) {
     return static_cast<int>(std::unique(seen.begin(), seen.end()) - seen.begin());
 }
 
-// A whole number below n, evenly but for n / 2^32.
+// Returns a whole number below n. The probabilities differ by a relative n / 2^32 at most.
 Eigen::Index below(Eigen::Index n, std::uint32_t random) {
     return static_cast<Eigen::Index>((static_cast<std::uint64_t>(random) * static_cast<std::uint64_t>(n)) >> 32);
 }
@@ -68,7 +68,7 @@ Bootstrap bootstrap(const FitPoints& points, const FitOptions& options, const Cu
     } else if (!start_fit(points, options, work, start)) {
         return out;
     }
-    // `repeat` may have gaps where a press has no usable point: every number up to the greatest is a unit
+    // `repeat` may have gaps where a press has no usable point, so every number up to the greatest counts as a unit
     const auto units = out.over_repeats
                            ? Eigen::Index{1} + *std::max_element(points.repeat.begin(), points.repeat.end())
                            : points.level.size();

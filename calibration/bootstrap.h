@@ -1,5 +1,5 @@
 #pragma once
-// How far a fitted curve can be trusted: the same fit on resampled points.
+// How far a fitted curve can be trusted: the same fit is repeated on resampled points.
 
 #include <cstdint>
 #include <string>
@@ -15,17 +15,18 @@ struct CurveInterval {
 };
 
 struct Bootstrap {
-    int fits = 0;                    // of those asked for, how many gave a curve
-    bool over_repeats = false;       // whole presses were drawn, not single points
-    CurveInterval a_N, b, offset_N;  // 95 %; parametric models only
-    std::vector<double> level;       // the curve's band, 95 % at each level
+    int fits = 0;                    // number of fits that gave a curve, of those asked for
+    bool over_repeats = false;       // whole repeats were drawn, not single points
+    CurveInterval a_N, b, offset_N;  // 95 % intervals; parametric models only
+    std::vector<double> level;       // levels of the 95 % band, whose limits follow
     std::vector<double> low_N;
     std::vector<double> high_N;
 };
 
-// With three repeats or more, repeats are drawn: the points of one press err together, and drawing them one by one
-// would promise too much. Few repeats spread too little, so that the interval is widened by sqrt(R/(R-1)) and by the
-// ratio of Student's to the normal quantile (R repeats, R - 1 degrees of freedom). Else points are drawn.
+// Fits the curve to `fits` resamples. With three repeats or more, repeats are drawn: the errors of the points of one
+// press are correlated, so that drawing single points would give intervals that are too narrow. A few repeats vary too
+// little, so each interval is widened by sqrt(R/(R-1)) and by the ratio of Student's to the normal quantile (R repeats,
+// R - 1 degrees of freedom). With fewer repeats, points are drawn.
 Bootstrap bootstrap(const FitPoints& points, const FitOptions& options, const Curve& fitted,
                     const std::vector<double>& level, int fits, std::uint64_t seed);
 

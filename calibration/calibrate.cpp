@@ -11,7 +11,7 @@
 namespace palpa::calibration {
 namespace {
 
-// Spearman's rank correlation of level and force.
+// Returns Spearman's rank correlation of level and force.
 double rank_correlation(const FitPoints& points) {
     const auto n = static_cast<std::size_t>(points.level.size());
     std::vector<std::size_t> order(n);
@@ -19,7 +19,7 @@ double rank_correlation(const FitPoints& points) {
     std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
         return points.force_N(static_cast<Eigen::Index>(a)) < points.force_N(static_cast<Eigen::Index>(b));
     });
-    // the points are in order of level, so their index is their rank there
+    // the points are in order of level, so their index is their rank by level
     double squares = 0.0;
     for (std::size_t rank = 0; rank < n; ++rank) {
         const double apart = static_cast<double>(rank) - static_cast<double>(order[rank]);
@@ -69,8 +69,8 @@ std::size_t slips_in(const Calibration& calibration) {
         off.push_back(std::abs(log_error ? std::log(measured_N / predicted_N) : measured_N - predicted_N));
     }
     const double scale = 1.4826 * files::median(off);
-    const double least = log_error ? 0.05 : 0.01 * calibration.force_at_full_N;  // too small to call a slip
-    // 8 scales: a curve between sparse points is off by 5 here and there without any slip
+    const double least = log_error ? 0.05 : 0.01 * calibration.force_at_full_N;  // smaller residuals are no slips
+    // 8 scales, since between sparse points a curve is off by 5 here and there without any slip
     return static_cast<std::size_t>(
         std::count_if(off.begin(), off.end(), [&](double v) { return v > 8.0 * scale && v > least; }));
 }

@@ -1,5 +1,5 @@
 #pragma once
-// From measured points to a profile, and everything that should be known about it.
+// From measured points to a profile, with everything that should be known about it.
 
 #include <optional>
 #include <string>
@@ -18,7 +18,7 @@ struct CalibrateOptions {
     std::optional<CurveModel> model;  // none: chosen by cross-validation
     std::optional<ErrorModel> error;
     Robust robust = Robust::huber;
-    std::optional<LevelField> level;  // none: pressure, or pressure_raw where levels exceed 1
+    std::optional<LevelField> level;  // none: pressure, or pressure_raw if levels exceed 1
     std::optional<LevelRange> range;  // none: level_range_of()
     double full_contact_area_px2 = 8000.0;
     bool remove_lag = true;
@@ -29,35 +29,35 @@ struct CalibrateOptions {
 struct LevelsDelivered {
     std::size_t distinct = 0;
     double smallest_step = platform::kMissing;
-    double widest_gap = platform::kMissing;  // between neighbours, inside the measured range
+    double widest_gap = platform::kMissing;  // between neighbours within the device's range
     double gap_from = platform::kMissing;
 };
 
 struct Calibration {
     Profile profile;
-    Candidate chosen;          // its predictions are of points left out of the fit
-    FitPoints points;          // what was fitted
+    Candidate chosen;          // with predictions of each point by a fit without its fold
+    FitPoints points;          // the points that the curve was fitted to
     Eigen::ArrayXd fitted_N;   // the curve at these points
     std::size_t n_points = 0;  // rows read
     Ends ends;
     FitQuality quality;
-    std::vector<ErrorBand> bands;                       // on points left out
-    double median_relative_error = platform::kMissing;  // on points left out
+    std::vector<ErrorBand> bands;                       // of the predictions in `chosen`
+    double median_relative_error = platform::kMissing;  // of the predictions in `chosen`
     double force_at_full_N = 0.0;
-    bool by_repeats = false;  // how points were left out
+    bool by_repeats = false;  // the folds are the repeats
     Bootstrap bootstrap;
     std::optional<double> lag_s;
     std::optional<Hysteresis> hysteresis;
     std::optional<Drift> drift;
     LevelsDelivered levels;
-    std::size_t slips = 0;              // points that the robust fit believed least
-    std::vector<std::string> warnings;  // in plain words, worst first
+    std::size_t slips = 0;              // points whose prediction is off by more than 8 robust scales
+    std::vector<std::string> warnings;  // in plain words: notes, ends of the range, errors, data
 };
 
-// Throws InputError if no curve that rises can be fitted; every number of the profile is finite.
+// Fits a profile. Throws InputError if no curve that rises can be fitted; every number of the curve is finite.
 Calibration calibrate(const CalibrationRows& rows, const CalibrateOptions& options);
 
-// What a person must know before trusting it.
+// Returns what a person must know before trusting the profile; `notes` come first.
 std::vector<std::string> warnings_of(const Calibration& calibration, const std::vector<std::string>& notes);
 
 }  // namespace palpa::calibration

@@ -23,7 +23,7 @@ FitPoints part(const FitPoints& points, const std::vector<int>& fold, int left_o
     return out;
 }
 
-// Scores under both error models; a floor keeps exact data finite.
+// Scores under the two error models; a floor keeps those of exact data finite.
 double newton_score(const FitPoints& points, const Eigen::ArrayXd& predicted_N) {
     const double floor_N = 1e-12 * points.force_N.maxCoeff();
     return -std::log(2.0 * std::max((points.force_N - predicted_N).abs().mean(), floor_N)) - 1.0;
@@ -35,7 +35,7 @@ double log_score(const FitPoints& points, const Eigen::ArrayXd& predicted_N) {
     Eigen::Index n = 0;
     for (Eigen::Index i = 0; i < points.level.size(); ++i) {
         if (!(points.force_N(i) > 0.0)) continue;
-        // a curve that is not above 0 where a force was measured is wrong by e^10, not by infinity
+        // a curve that is not above 0 where a force was measured counts as off by a factor e^10, not an infinite one
         const double off = predicted_N(i) > 0.0 ? std::abs(std::log(points.force_N(i) / predicted_N(i))) : 10.0;
         sum += std::min(off, 10.0);
         log_sum += std::log(points.force_N(i));
@@ -118,7 +118,7 @@ Candidate choose(const FitPoints& points, const std::vector<FitOptions>& options
         cross_validate(points, fold, error, candidate);
         const bool closest = option.model == CurveModel::monotone_cubic && option.knots == 0;
         const double score = candidate.score + (closest ? uncertain : 0.0);
-        // simpler models come first: a later one must be better by more than rounding
+        // simpler models come first, so a later one must be better by more than rounding
         if (candidate.predicted_N.size() == 0 || !(score > best_score + 1e-6)) continue;
         best_score = score;
         best = std::move(candidate);

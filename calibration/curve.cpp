@@ -8,7 +8,7 @@
 namespace palpa::calibration {
 namespace {
 
-// Of the first or the last knot, from the two chords next to it (h: their widths, d: their slopes).
+// Returns the slope at the first or the last knot, from the two chords next to it (h: their widths, d: their slopes).
 double end_slope(double h0, double h1, double d0, double d1) {
     const double three_point = ((2.0 * h0 + h1) * d0 - h0 * d1) / (h0 + h1);
     return std::clamp(three_point, 0.1 * d0, 3.0 * d0);
@@ -65,7 +65,7 @@ double cubic_level(const Curve& curve, double force_N) {
     if (force_N > curve.knot_N.back()) {
         return curve.knot_level.back() + (force_N - curve.knot_N.back()) / curve.knot_N_per_level.back();
     }
-    // Newton inside a bracket that shrinks: the piece rises, so it cannot leave it
+    // Newton's method inside a shrinking bracket; the piece rises, so the root stays in it
     const std::size_t i = piece_of(curve.knot_N, force_N);
     const Piece p = piece(curve, i);
     double low = 0.0;
@@ -139,7 +139,7 @@ double slope_N_per_level(const Curve& curve, double level) {
 }
 
 double level_at(const Curve& curve, double force_N) {
-    const double above_N = force_N - curve.offset_N;  // the other models have none
+    const double above_N = force_N - curve.offset_N;  // offset_N is 0 for the other models
     switch (curve.model) {
         case CurveModel::exponential:
             return force_N > 0.0 ? std::log(force_N / curve.a_N) / curve.b : -kInfinity;

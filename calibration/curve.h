@@ -1,5 +1,6 @@
 #pragma once
-// Curves from pressure level to force: value, slope and inverse. Evaluated for every sample: nothing here allocates.
+// Curves from pressure level to force: value, slope and inverse. They are evaluated for every sample, so these three
+// allocate nothing.
 
 #include <cstdint>
 #include <limits>
@@ -19,27 +20,28 @@ enum class CurveModel : std::uint8_t { exponential, exponential_offset, power, m
 //   power               a x^b
 //   monotone_cubic      cubic pieces through knots that rise in level and in force
 //
-// The cubic's slopes are those of Fritsch & Butland (SIAM J. Sci. Stat. Comput. 5, 1984): the weighted harmonic mean
-// of the neighbouring chords, so that the curve rises wherever the knots do. We differ at the two ends, where the
-// slope is kept at a tenth of the chord at least, so that the inverse stays well conditioned. Below its first knot
-// the curve goes on as an exponential with the same value and slope (it never reaches zero), above its last one as a
-// straight line.
+// The cubic's slopes are those of Fritsch & Butland (SIAM J. Sci. Stat. Comput. 5, 1984): the weighted harmonic mean of
+// the neighbouring chords, so that the curve rises wherever the knots do. We differ at the two ends, where the slope is
+// at least a tenth of the chord's, so that the inverse stays well conditioned. Below its first knot the curve continues
+// as an exponential with the same value and slope (it never reaches zero), above its last one as a straight line.
 struct Curve {
     CurveModel model = CurveModel::exponential;
     double a_N = 0.0;
-    double b = 0.0;                  // per level; of `power` the exponent
+    double b = 0.0;                  // per level; the exponent of `power`
     double offset_N = 0.0;           // exponential_offset only
     std::vector<double> knot_level;  // monotone_cubic only: at least 2
     std::vector<double> knot_N;
     std::vector<double> knot_N_per_level;  // set by monotone_cubic()
 };
 
-// Levels and forces must rise strictly, at least 2 of each, the first force > 0.
+// Makes a cubic through knots. Levels and forces must rise strictly; needs at least two of each, and a first force > 0
+// (assert).
 Curve monotone_cubic(std::vector<double> level, std::vector<double> force_N);
 
 double value_N(const Curve& curve, double level);
 double slope_N_per_level(const Curve& curve, double level);
-// The level at which the curve has this force; the nearest end where it never has it (-inf, or 0 for a power).
+// Returns the level at which the curve has this force. If it never has it, returns the end that is nearest in force:
+// -infinity or infinity, or 0 for a power.
 double level_at(const Curve& curve, double force_N);
 
 std::string_view name_of(CurveModel model);

@@ -11,7 +11,7 @@
 namespace palpa::calibration {
 namespace {
 
-// Rows [from, to) sampled without a gap.
+// Rows [from, to) of one repeat, sampled without a gap.
 struct Run {
     std::size_t from;
     std::size_t to;
@@ -40,7 +40,8 @@ std::vector<Run> runs_of(const CalibrationRows& rows, double step_s) {
     return runs;
 }
 
-// Linear between the samples of a run; `at` moves along with rising times. NaN outside.
+// Returns `value` at a time, linear between the samples of a run; NaN outside. `at` is kept between calls with rising
+// times.
 double force_at(const CalibrationRows& rows, const Run& run, double t_s, std::size_t& at,
                 const std::vector<double>& value) {
     while (at > run.from && rows.time_s[at] > t_s) --at;
@@ -50,7 +51,8 @@ double force_at(const CalibrationRows& rows, const Run& run, double t_s, std::si
     return value[at] + share * (value[at + 1] - value[at]);
 }
 
-// Correlation at one lag over the samples that have a partner at every lag that is tried.
+// Returns the correlation at one lag, over the samples that have a partner at every lag that is tried; NaN if there are
+// too few.
 double correlation(const CalibrationRows& rows, const std::vector<Run>& runs, const std::vector<double>& expected_level,
                    double tau_s, double most_s) {
     double n = 0.0, x = 0.0, y = 0.0, xx = 0.0, yy = 0.0, xy = 0.0;
@@ -73,7 +75,8 @@ double correlation(const CalibrationRows& rows, const std::vector<Run>& runs, co
     return spread > 0.0 ? (xy - x * y / n) / std::sqrt(spread) : platform::kMissing;
 }
 
-// +1 pressing, -1 releasing, 0 neither: the force half a hundredth of its range up or down within `reach` samples.
+// Returns +1 for pressing, -1 for releasing, 0 for neither: whether the force rises or falls by 0.5 % of its range from
+// `reach` samples before to `reach` samples after.
 std::vector<int> directions(const CalibrationRows& rows) {
     std::vector<int> direction(rows.level.size(), 0);
     if (!rows.phase.empty()) {
@@ -120,7 +123,7 @@ std::optional<double> lag_s(const CalibrationRows& rows, const Curve& curve, Lev
     for (std::size_t i = 0; i < expected.size(); ++i)
         expected[i] = std::clamp(level_at(curve, rows.force_N[i]), range.lowest, range.highest);
 
-    constexpr int kHalf = 100;  // 5 ms apart, then finer around the best
+    constexpr int kHalf = 100;  // steps of 5 ms to each side; a parabola then refines the best
     double best_s = 0.0;
     double width_s = kMost_s / kHalf;
     double best = -2.0;

@@ -1,6 +1,6 @@
 #pragma once
-// What time does to a calibration: the pen's lag behind the sensor, the loop between pressing and releasing, the drift
-// from one repeat to the next.
+// Effects of time on a calibration: the pen's lag behind the sensor, the hysteresis between pressing and releasing, and
+// the drift from one repeat to the next.
 
 #include <optional>
 #include <vector>
@@ -10,33 +10,34 @@
 
 namespace palpa::calibration {
 
-// The pen's level behind the sensor's force, seconds: level(t) = g(F(t - lag)). Found where the correlation between
-// the level and the level that `curve` gives for the force, shifted by the lag, is highest:
+// Returns the lag of the pen's level behind the sensor's force, seconds: level(t) = g(F(t - lag)). It maximises the
+// correlation between the level and the level g that `curve` gives for the shifted force:
 //
 //   lag = argmax over tau of corr( level(t_i), g(F(t_i - tau)) ),   |tau| <= 0.5 s, the peak by a parabola
 //
-// Nothing where it cannot be told: no times, no release (a steady ramp fits any lag), too few samples, or a best
-// place at the edge. A loop that depends on direction alone, not on speed, looks like a lag at one speed: press at
-// two speeds to tell them apart.
+// Returns nothing if it cannot be determined: no times, no release (a steady ramp fits any lag), too few samples, or a
+// maximum at the edge. Hysteresis that depends on direction alone, not on speed, looks like a lag at one speed: press
+// at two speeds to tell them apart.
 std::optional<double> lag_s(const CalibrationRows& rows, const Curve& curve, LevelRange range);
 
-// The rows with the force that acted when the level was formed, F(t - lag), linear between samples. Rows at the
-// ends of a press that have none are left out.
+// Returns the rows with the force that acted when the level was formed, F(t - lag), linear between samples. Rows at the
+// ends of a press for which there is none are left out.
 CalibrationRows without_lag(const CalibrationRows& rows, double lag_s);
 
 struct Hysteresis {
-    double median_relative = 0.0;  // (F pressing - F releasing) / F at one level, median over the range
-    double greatest_N = 0.0;       // greatest difference, with its sign
-    double at_level = 0.0;
+    double median_relative = 0.0;  // (F pressing - F releasing) / F at equal levels, median over the range
+    double greatest_N = 0.0;       // F pressing - F releasing where it is greatest in size
+    double at_level = 0.0;         // where that is
 };
-// Nothing unless both directions are there, from the phases or, without them, from the times.
+// Returns nothing unless both directions occur, by the phases or, without them, by the times.
 std::optional<Hysteresis> hysteresis_of(const CalibrationRows& rows, LevelRange range);
 
 struct Drift {
-    std::vector<double> repeat_offset;  // median of F measured / F curve - 1, of each repeat
-    double per_repeat = 0.0;            // slope of these
+    std::vector<double> repeat_offset;  // of each repeat: median of F measured / F curve - 1
+    double per_repeat = 0.0;            // slope of these over the repeats
     double spread = 0.0;                // greatest minus least
 };
+// Returns nothing with fewer than two repeats.
 std::optional<Drift> drift_of(const FitPoints& points, const Curve& curve);
 
 }  // namespace palpa::calibration

@@ -15,8 +15,8 @@ struct Knot {
 
 double count_of(const Eigen::ArrayXd& count, Eigen::Index i) { return count.size() > 0 ? count(i) : 1.0; }
 
-// The value with half of the weight below it, where `at(i)` gives the points of the bin in order of `value`; between two
-// values where the half falls between them.
+// Returns the weighted median, with at(i) giving the points of the bin in order of `value`: the value with half of the
+// weight below it, or the mean of two values if the half falls between them.
 template <class At>
 double median(const Eigen::ArrayXd& value, const Eigen::ArrayXd& count, Eigen::Index from, Eigen::Index to,
               double weight, const At& at) {
@@ -33,7 +33,7 @@ double median(const Eigen::ArrayXd& value, const Eigen::ArrayXd& count, Eigen::I
     return value(at(to - 1));
 }
 
-// Pool adjacent violators: neighbours that do not rise become one knot between them.
+// Pool adjacent violators: neighbouring knots that do not rise are merged into their weighted mean.
 void make_rise(std::vector<Knot>& knots) {
     std::vector<Knot> out;
     for (const Knot& knot : knots) {

@@ -1,11 +1,12 @@
-// Exponential, exponential with offset, power. All three are F = A exp(theta z) + c with
+// Fits of exponential, exponential with offset, and power. All three are F = A exp(theta z) + c with
 //
 //   exponential, exponential_offset   z = x / scale - 1   (0 at full scale: nothing overflows)
 //   power                             z = log(x / scale)
 //
-// and c = 0 but for the offset. For a given theta, A and c are a linear problem: variable projection (Golub & Pereyra,
-// SIAM J. Numer. Anal. 10, 1973). theta is searched over its whole sensible range, so that no start can miss it, then
-// all parameters are polished together by damped Gauss-Newton, whose fixed point does not depend on where it began.
+// and c = 0 except for the offset. For a given theta, A and c are a linear problem: variable projection (Golub &
+// Pereyra, SIAM J. Numer. Anal. 10, 1973). theta is searched over its whole sensible range, so that no start can miss
+// it. Then all parameters are refined together by damped Gauss-Newton, whose fixed point does not depend on where it
+// began.
 
 #include <Eigen/Cholesky>
 #include <algorithm>
@@ -24,7 +25,8 @@ bool has_offset(const FitOptions& options) { return options.model == CurveModel:
 // In log space without an offset the model is log F = p0 + theta z, and p0 = log A is the parameter.
 bool log_line(const FitOptions& options) { return options.error == ErrorModel::log && !has_offset(options); }
 
-// Residuals at p = (A or log A, theta, c) into work.residual, and the cost with the present weights.
+// Writes the residuals at p = (A or log A, theta, c) into work.residual and returns the cost with the present weights;
+// infinity if the logarithm of the model does not exist.
 double residuals(const FitPoints& points, const FitOptions& options, const Eigen::Vector3d& p, FitWorkspace& work) {
     if (log_line(options)) {
         work.residual = work.log_force - p(0) - p(1) * work.z;
@@ -32,7 +34,7 @@ double residuals(const FitPoints& points, const FitOptions& options, const Eigen
         work.wave = (p(1) * work.z).exp();
         work.residual = points.force_N - p(0) * work.wave - p(2);
         if (options.error == ErrorModel::log) {
-            // F = f - r must be above 0 wherever a point counts
+            // F = f - r must be above 0 at every point that counts
             work.jacobian.col(2) = (points.force_N - work.residual).matrix();
             if (((work.jacobian.col(2).array() <= 0.0) && (work.weight > 0.0)).any()) return kInfinity;
             work.residual = work.log_force - work.jacobian.col(2).array().max(1e-300).log();
@@ -41,7 +43,7 @@ double residuals(const FitPoints& points, const FitOptions& options, const Eigen
     return (work.weight * work.residual.square()).sum();
 }
 
-// d(model)/dp after residuals() at the same p.
+// Computes d(model)/dp; to be called after residuals() at the same p.
 void jacobian(const FitOptions& options, const Eigen::Vector3d& p, FitWorkspace& work) {
     if (log_line(options)) {
         work.jacobian.col(0).setOnes();
@@ -58,7 +60,7 @@ void jacobian(const FitOptions& options, const Eigen::Vector3d& p, FitWorkspace&
     work.jacobian.col(1) = (p(0) * work.z * work.jacobian.col(0).array()).matrix();
 }
 
-// Damped Gauss-Newton on all parameters with fixed weights. False if it leaves what a rising curve can be.
+// Damped Gauss-Newton on all parameters with fixed weights. Returns false if the result is no rising curve.
 bool polish(const FitPoints& points, const FitOptions& options, int steps, FitWorkspace& work, Eigen::Vector3d& p) {
     const Eigen::Index k = has_offset(options) ? 3 : 2;
     double cost = residuals(points, options, p, work);
@@ -99,7 +101,8 @@ bool polish(const FitPoints& points, const FitOptions& options, int steps, FitWo
     return std::isfinite(cost) && p.allFinite() && A * p(1) > 0.0;
 }
 
-// Best A (and c) for one theta, and the cost. Under a log error the weights 1/f^2 stand in for the logarithm.
+// Computes the best A (and c) for one theta and returns the cost. With a log error, weights 1/f^2 replace the
+// logarithm.
 double project(const FitPoints& points, const FitOptions& options, double theta, const Eigen::ArrayXd& w,
                FitWorkspace& work, Eigen::Vector3d& p) {
     work.wave = (theta * work.z).exp();
@@ -118,12 +121,12 @@ double project(const FitPoints& points, const FitOptions& options, double theta,
     return (w * (points.force_N - p(0) * work.wave - p(2)).square()).sum();
 }
 
-// theta over its whole range: a grid and the start, then golden sections between the neighbours of the best.
+// Searches theta over its whole range: a grid and the start, then golden sections between the neighbours of the best.
 bool search(const FitPoints& points, const FitOptions& options, FitWorkspace& work, Eigen::Vector3d& best) {
     Eigen::ArrayXd w = work.weight;
     if (options.error == ErrorModel::log) w = (w > 0.0).select(w / points.force_N.max(1e-300).square(), 0.0);
     std::vector<double> thetas;
-    constexpr int kGrid = 40;  // a factor of 1.27 between neighbours, from nearly straight to 1 : e^60
+    constexpr int kGrid = 40;  // a factor of 1.26 between neighbours, from nearly straight to 1 : e^60
     for (int i = 0; i <= kGrid; ++i) thetas.push_back(5e-3 * std::pow(60.0 / 5e-3, static_cast<double>(i) / kGrid));
     if (std::isfinite(options.start_b) && std::abs(options.start_b * options.level_scale) < 60.0) {
         thetas.push_back(options.start_b * (options.model == CurveModel::power ? 1.0 : options.level_scale));
@@ -161,7 +164,7 @@ bool search(const FitPoints& points, const FitOptions& options, FitWorkspace& wo
     return true;
 }
 
-// Every k-th of many points: enough to find the right valley.
+// Returns every k-th of many points, which suffice to find the right valley.
 FitPoints thinned(const FitPoints& points, Eigen::Index every) {
     const Eigen::Index n = (points.level.size() + every - 1) / every;
     FitPoints few;
@@ -179,13 +182,13 @@ void prepare(const FitPoints& points, const FitOptions& options, FitWorkspace& w
         work.z = points.level / options.level_scale - 1.0;
     }
     work.jacobian.resize(n, 3);
-    // what cannot be in the fit counts 0: no logarithm of 0, no power law at level 0
+    // points that cannot enter the fit have weight 0: no logarithm of 0, no power law at level 0
     work.weight = Eigen::ArrayXd::Ones(n);
     if (options.error == ErrorModel::log) work.weight = (points.force_N > 0.0).select(work.weight, 0.0);
     if (options.model == CurveModel::power) work.weight = (points.level > 0.0).select(work.weight, 0.0);
 }
 
-// 1.4826 x the median of |residual|: the standard deviation of a normal distribution, blind to slips.
+// Returns 1.4826 times the median of |residual|: the standard deviation for normal residuals, not affected by slips.
 double residual_scale(FitWorkspace& work, double force_scale_N, ErrorModel error) {
     Eigen::Index n = 0;
     work.sorted.resize(work.residual.size());
@@ -198,7 +201,8 @@ double residual_scale(FitWorkspace& work, double force_scale_N, ErrorModel error
     return std::max(1.4826 * median, 1e-9 * (error == ErrorModel::newton ? force_scale_N : 1.0));
 }
 
-// Huber: full weight up to 1.345 scales, then as 1/|r| (95 % efficient). Tukey: none beyond 4.685 scales.
+// Applies robust weights. Huber: full weight up to 1.345 scales, then as 1/|r| (95 % efficient). Tukey: none beyond
+// 4.685 scales.
 void believe(const FitOptions& options, double scale, FitWorkspace& work) {
     if (options.robust == Robust::huber) {
         work.weight *= (1.345 * scale / work.residual.abs().max(1e-300)).min(1.0);
@@ -207,8 +211,8 @@ void believe(const FitOptions& options, double scale, FitWorkspace& work) {
     }
 }
 
-// One Gauss-Newton step with the weights of the present residuals, in one pass over the points, block by block: what
-// repeats on resampled points spend their time in. Returns the greatest relative change, infinity if there is none.
+// One Gauss-Newton step with the weights of the present residuals, in one pass over the points, block by block: refits
+// to resampled points spend most of their time here. Returns the greatest relative change, infinity if the step fails.
 double reweighted_step(const FitPoints& points, const FitOptions& options, const Eigen::ArrayXd& count, double scale,
                        FitWorkspace& work, Eigen::Vector3d& p) {
     constexpr Eigen::Index kBlock = 512;
@@ -270,9 +274,9 @@ double reweighted_step(const FitPoints& points, const FitOptions& options, const
     return (change.array().abs() / p.array().abs().max(1e-300)).maxCoeff();
 }
 
-// Reweighted least squares until the parameters stand still.
+// Reweighted least squares until the parameters no longer change.
 bool reweighted(const FitPoints& points, const FitOptions& options, FitWorkspace& work, FitStart& start) {
-    constexpr int kScaleRounds = 8;  // then it is kept, or the two would chase each other
+    constexpr int kScaleRounds = 8;  // then the scale is kept, or it and the weights might alternate for ever
     constexpr int kMostRounds = 200;
     const FitStart before = start;
     for (int round = 0; round < kMostRounds; ++round) {
@@ -284,7 +288,7 @@ bool reweighted(const FitPoints& points, const FitOptions& options, FitWorkspace
         if (!std::isfinite(change)) break;
         if (round >= kScaleRounds && change < 1e-13) return true;
     }
-    // Not settled: the plain fit's parameters with weights that shrink in damped steps.
+    // Not converged: start again from the parameters before, with damped steps for each set of weights.
     start = before;
     const Eigen::ArrayXd count = work.weight;
     for (int round = 0; round < kMostRounds; ++round) {
@@ -330,7 +334,7 @@ bool start_fit(const FitPoints& points, const FitOptions& options, FitWorkspace&
     if (log_line(options)) start.p(0) = std::log(std::max(start.p(0), 1e-300));
     if (!polish(points, options, 100, work, start.p)) return false;
     if (options.robust == Robust::none) return true;
-    FitOptions huber = options;  // convex, and where Tukey's weights must begin
+    FitOptions huber = options;  // convex, and a safe start for Tukey's weights
     huber.robust = Robust::huber;
     if (!reweighted(points, huber, work, start)) return false;
     return options.robust == Robust::huber || reweighted(points, options, work, start);
@@ -340,7 +344,7 @@ std::optional<Curve> curve_at(const FitOptions& options, const FitStart& start) 
 
 std::optional<Curve> refit(const FitPoints& points, const FitOptions& options, const Eigen::ArrayXd& count,
                            const FitStart& start, FitWorkspace& work) {
-    // From so near, three steps leave less than a hundredth of the spread that is asked for.
+    // So close to the solution, three steps leave less than a hundredth of the spread that is estimated.
     FitStart here = start;
     for (int step = 0; step < 3; ++step) {
         if (!std::isfinite(reweighted_step(points, options, count, start.scale, work, here.p))) return std::nullopt;

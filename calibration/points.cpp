@@ -39,7 +39,7 @@ void check_enough(const CalibrationRows& rows) {
     }
 }
 
-// A pen's full scale is 1 to 10 N, 100 to 1,000 gf.
+// Throws InputError for forces in a wrong unit. A pen's full scale is 1 to 10 N, 100 to 1,000 gf.
 void check_unit(const CalibrationRows& rows) {
     const double highest_N = *std::max_element(rows.force_N.begin(), rows.force_N.end());
     if (highest_N > 60.0) {
@@ -54,7 +54,7 @@ void check_unit(const CalibrationRows& rows) {
                 " gf)",
             "more than 0.15 N at the highest level (newtons? name the column force_N; --any-force if it is right)");
     }
-    // rows in another unit than their neighbours in level are off by 102
+    // rows in another unit than their neighbours in level are off by a factor of 102
     const auto order = by_level(rows.level);
     for (std::size_t i = 0; i < order.size(); ++i) {
         constexpr std::size_t kNear = 3;
@@ -77,15 +77,15 @@ void check_unit(const CalibrationRows& rows) {
 void check_times(const CalibrationRows& rows) {
     for (std::size_t i = 1; i < rows.time_s.size(); ++i) {
         if (rows.time_s[i] > rows.time_s[i - 1]) continue;
-        if (!rows.repeat.empty() && rows.repeat[i] != rows.repeat[i - 1])
-            continue;  // each repeat may have its own zero
+        // the clock may begin anew with each repeat
+        if (!rows.repeat.empty() && rows.repeat[i] != rows.repeat[i - 1]) continue;
         throw files::bad_input(rows.file, line_of(rows, i) + ", time_s",
                                files::number_text(rows.time_s[i]) + " after " + files::number_text(rows.time_s[i - 1]),
                                "times that rise (sorted, none twice)");
     }
 }
 
-// The same force again and again while the level moves on: the sensor stopped, or its line was cut.
+// Throws InputError if the force stays the same while the level changes: the sensor stopped, or its cable was cut.
 void check_running(const CalibrationRows& rows) {
     if (rows.time_s.empty()) return;
     const auto [lowest, highest] = std::minmax_element(rows.level.begin(), rows.level.end());
@@ -111,7 +111,7 @@ void check_running(const CalibrationRows& rows) {
     }
 }
 
-// Noise of the force near one end: second differences of neighbours in level, robustly. `rows` are in order of level.
+// Returns the noise of the forces near one end, given in order of level: robust, from second differences.
 double noise_N(const std::vector<double>& force_N) {
     if (force_N.size() < 3) return 0.0;
     std::vector<double> bends;
@@ -120,7 +120,7 @@ double noise_N(const std::vector<double>& force_N) {
     return 1.4826 * files::median(bends) / std::sqrt(1.5);
 }
 
-// The quarter of the rows next to one end, the rows at the very end not among them.
+// Returns the forces of the quarter of the rows next to one end (at least five), without the rows at the very end.
 std::vector<double> quarter(const CalibrationRows& rows, const std::vector<std::size_t>& order, double lowest,
                             double highest, bool top) {
     std::vector<double> inside;
@@ -171,7 +171,7 @@ Ends ends_of(const CalibrationRows& rows, LevelRange range) {
     ends.activation_N = activation(rows, range.lowest);
     const auto order = by_level(rows.level);
     const double top = rows.level[order.back()];
-    // Rows in the last 2 % of the levels: on a curve that rises to its end they differ by a tenth in force.
+    // Rows in the last 2 % of the levels: on a curve that rises to its end, their forces differ by a tenth.
     const double plateau = top >= range.highest ? range.highest : top - 0.02 * (range.highest - range.lowest);
     double lowest_N = kInfinity;
     double highest_N = 0.0;

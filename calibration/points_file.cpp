@@ -17,7 +17,7 @@ struct Columns {
     std::size_t level = 0;
     std::optional<std::size_t> force_N, force_gf, time_s, repeat, phase;
     std::vector<std::size_t> where;
-    std::vector<std::size_t> session;  // columns that tell one session from another
+    std::vector<std::size_t> session;  // columns that distinguish sessions
     std::optional<std::size_t> pen, tablet, driver, os, date;
 };
 
@@ -30,7 +30,7 @@ Columns find_columns(const files::Table& table, const ReadOptions& options) {
         table.column(!table.has_column("level") && table.has_column("pressure_norm") ? "pressure_norm" : "level");
     columns.force_N = optional("force_N");
     columns.force_gf = optional("force_gf");
-    if (!columns.force_N && !columns.force_gf) table.column("force_N");  // says what there is
+    if (!columns.force_N && !columns.force_gf) table.column("force_N");  // throws, listing the columns
     columns.time_s = optional("time_s");
     columns.repeat = optional("repeat");
     columns.phase = optional("phase");
@@ -53,7 +53,7 @@ double force_of(const files::Table& table, const Columns& columns) {
     if (!columns.force_N) return given * kN_per_gf;
     if (columns.force_gf) {
         const double gf = table.finite_number(*columns.force_gf);
-        // 1 % and half a unit of the last digit that scales show
+        // within 1 % and half a unit of the last digit that scales show
         if (std::abs(gf * kN_per_gf - given) > 0.01 * given + 0.5 * kN_per_gf) {
             table.fail(*columns.force_gf, files::short_number(given / kN_per_gf) + " gf, as force_N in this line says");
         }
@@ -68,7 +68,7 @@ PressPhase phase_of(const files::Table& table, std::size_t column) {
     return PressPhase::release;
 }
 
-// The field of all rows if they agree, else "several".
+// Keeps the field in `name` if all rows so far agree, else "several".
 void agree(const files::Table& table, std::optional<std::size_t> column, std::string& name) {
     if (!column) return;
     const auto text = table.field(*column);

@@ -1,5 +1,5 @@
 #pragma once
-// Pressure level -> normal force of one device, evaluated.
+// The profile of one device: from pressure level to normal force.
 
 #include <cstdint>
 #include <string>
@@ -26,29 +26,29 @@ struct CalibrationPoint {
 };
 
 struct Profile {
-    std::string id;  // of the file
+    std::string id;  // file name without its ending
     DeviceNames device;
     Curve curve;
     LevelField level = LevelField::pressure;
-    double level_lowest = 0.0;  // what the device can report; levels are clamped to this range
+    double level_lowest = 0.0;  // the range that the device can report; levels are clamped to it
     double level_highest = 1.0;
-    double fitted_lowest =
-        platform::kMissing;  // the part of it that the points cover; beyond, the curve is extrapolated
+    // The part of the range that the points cover; beyond it the curve is extrapolated.
+    double fitted_lowest = platform::kMissing;
     double fitted_highest = platform::kMissing;
-    double median_relative_error = platform::kMissing;  // on points left out of the fit, where known
-    double full_contact_area_px2 = 0.0;                 // contact_area only: the ellipse whose level is 1
-    std::vector<CalibrationPoint> points;               // what the curve was fitted to, where known
+    double median_relative_error = platform::kMissing;  // on points left out of the fit; NaN if not known
+    double full_contact_area_px2 = 0.0;                 // contact_area only: area of the ellipse whose level is 1
+    std::vector<CalibrationPoint> points;               // the points that the curve was fitted to, if known
 };
 
-// The field of the sample that the profile reads; NaN if the device did not report it.
-// contact_area: pi/4 width height / full_contact_area_px2.
+// Returns the sample's level by the field that the profile reads; NaN if the device did not report it. contact_area:
+// pi/4 width height / full_contact_area_px2.
 double level_of(const Profile& profile, const platform::Sample& sample);
 
-// Force at a level. Levels outside the range are clamped, and `clamped` is counted up. No curve reaches down to the
-// force zero of a pen that does not touch: that is known by the sample's phase. Never below zero.
+// Returns the force at a level, N, never below zero. Levels outside the range are clamped, and counted in `clamped`.
+// Not every curve reaches zero force, so whether a pen touches is known from the sample's phase, not from the level.
 double force_N(const Profile& profile, double level, std::int64_t& clamped);
 
-// Level at a force, clamped to the range: the inverse of force_N inside it.
+// Returns the level at a force, clamped to the range: the inverse of force_N within it.
 double level_at_force(const Profile& profile, double force_N);
 
 const char* name_of(LevelField level);

@@ -70,7 +70,7 @@ Curve read_curve(CurveModel model, files::JsonReader json) {
             break;
         case CurveModel::power:
             json.only({"a_N", "b"});
-            curve.a_N = json.number("a_N", {0.0, 1e300, true});  // N per level^b, tiny or huge where levels are counts
+            curve.a_N = json.number("a_N", {0.0, 1e300, true});  // N per level^b, tiny or huge if levels are counts
             curve.b = json.number("b", {0.0, 1e2, true});
             break;
         case CurveModel::monotone_cubic:
@@ -92,7 +92,7 @@ void read_range(files::JsonReader& json, std::string_view key, double& lowest, d
     highest = range[1];
 }
 
-// "1000 N" would be a mistake of units, and a curve without a slope has no inverse.
+// Throws InputError for a curve of 1000 N or more, which is a mistake of units, and for one that does not rise above 0.
 void check_values(const files::JsonReader& json, const Profile& profile) {
     constexpr double kAbsurd_N = 1000.0;
     const double lowest_N = value_N(profile.curve, profile.level_lowest);

@@ -7,13 +7,15 @@
 
 namespace palpa::calibration {
 
-// Throws InputError for anything that is not a usable curve: it must rise over level_range, and stay below 1,000 N.
+// Reads a profile. Throws InputError for anything that is not a usable curve: it must rise over level_range, and stay
+// below 1,000 N.
 Profile read_profile(const std::filesystem::path& path);
 
-// `parameters` of the file, by the model's own keys.
+// Returns `parameters` of the file, with the keys of the curve's model.
 files::Json parameters_json(const Curve& curve);
 
-// The whole file; `quality` is kept for people and for `palpa explain`. Written at once or not at all.
+// Returns the content of the file; `quality` is kept for people and for `palpa explain`. write_profile() writes it
+// whole or not at all, and throws std::runtime_error if it cannot.
 files::Json profile_json(const Profile& profile, const files::Json& quality);
 void write_profile(const Profile& profile, const files::Json& quality, const std::filesystem::path& path);
 

@@ -1,5 +1,5 @@
 #pragma once
-// How good a curve is on given points.
+// How well a curve predicts given points.
 
 #include <vector>
 
@@ -8,7 +8,7 @@
 
 namespace palpa::calibration {
 
-// Errors relative to the measured force, of the points with a level inside [from, to).
+// Errors relative to the measured force, of the points with a level in [from, to); NaN without points.
 struct ErrorBand {
     double from = 0.0;
     double to = 0.0;
@@ -19,15 +19,15 @@ struct ErrorBand {
 
 struct FitQuality {
     double r2_newton = platform::kMissing;
-    double r2_log = platform::kMissing;  // of log F, points with a force above 0
+    double r2_log = platform::kMissing;  // of log F, over points with forces above 0
     double rmse_N = platform::kMissing;
 };
 
-// `predicted_N[i]` belongs to `measured_N[i]`.
+// Compares `predicted_N[i]` with `measured_N[i]`.
 FitQuality fit_quality(const Eigen::ArrayXd& measured_N, const Eigen::ArrayXd& predicted_N);
 
-// Five bands of equal width over the range, the lightest first. Points without a level or a force above 0 are in none
-// of them: a device that reports 0 says nothing about the force. The range's highest level is in the last band.
+// Returns five bands of equal width over the range, the lightest first. Points whose level or force is not above 0 are
+// in no band: a device that reports 0 says nothing about the force. The range's highest level belongs to the last band.
 std::vector<ErrorBand> error_bands(const Eigen::ArrayXd& level, const Eigen::ArrayXd& measured_N,
                                    const Eigen::ArrayXd& predicted_N, LevelRange range);
 double median_relative_error(const Eigen::ArrayXd& level, const Eigen::ArrayXd& measured_N,

@@ -18,8 +18,8 @@ void drop_before(double t_s, std::deque<RecordSession::Timed>& values) {
     while (values.size() > 1 && values[1].t_s < t_s) values.pop_front();  // one stays: it holds until the next
 }
 
-// Median of what held between from_s and to_s, and how far it moved. The value before from_s counts: a device that is
-// held still may send nothing.
+// Computes the median of the values that held from from_s on, and their range. The value before from_s counts: a device
+// that is held still may send nothing.
 bool level_in(const std::deque<RecordSession::Timed>& levels, double from_s, double& median, double& moved) {
     if (levels.empty() || levels.front().t_s > from_s) return false;
     std::vector<double> inside;
@@ -33,7 +33,8 @@ bool level_in(const std::deque<RecordSession::Timed>& levels, double from_s, dou
     return true;
 }
 
-// Mean force, and the difference of the means of its two halves: noise does not hide a hand that holds still.
+// Computes the mean force, and the difference between the means of its two halves, in which noise does not hide that a
+// hand holds still. Returns false if a half has no reading.
 bool force_in(const std::deque<RecordSession::Timed>& forces, double from_s, double to_s, double& mean_N,
               double& moved_N) {
     double sum[2] = {0.0, 0.0};
@@ -76,7 +77,7 @@ int band_of(const RecordOptions& options, double level) {
 }
 
 void take_level(const RecordOptions& options, double t_s, double level, bool touching, RecordSession& session) {
-    constexpr double kLifted_s = 0.25;  // shorter gaps are a pen that bounces
+    constexpr double kLifted_s = 0.25;  // in shorter gaps the pen bounces
     if (touching && !session.touching) {
         session.levels.clear();
         if (session.captured_in_repeat && t_s - session.lifted_s > kLifted_s) {
@@ -119,7 +120,7 @@ bool capture(const RecordOptions& options, double now_s, RecordSession& session)
     if (force_moved_N > std::max(options.force_tolerance * force_N, options.least_tolerance_N) || !(force_N > 0.0))
         return false;
     const double apart = 0.5 * width(options) / options.bands;
-    // at full level the force may still rise: that shows the saturation, and is captured too
+    // at full level the force may still rise: this shows the saturation, and is captured too
     const bool same_place = std::abs(level - session.last_level) < apart &&
                             std::abs(force_N - session.last_force_N) < 0.1 * session.last_force_N;
     if (same_place) return false;

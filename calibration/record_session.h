@@ -1,6 +1,6 @@
 #pragma once
-// Recording a calibration: what a session knows, when a point is captured, and when it is enough. No window, no
-// device: samples go in, points and advice come out.
+// Recording a calibration: the state of a session, when a point is captured, and when the curve is known well enough.
+// It has no window and no device: samples go in, points and advice come out.
 
 #include <deque>
 #include <string>
@@ -12,17 +12,17 @@ namespace palpa::calibration {
 
 struct RecordOptions {
     LevelRange range;
-    double steady_s = 0.3;          // how long both signals must hold still
-    double level_tolerance = 0.01;  // of the range
-    double force_tolerance = 0.02;  // of the force, or
-    double least_tolerance_N = 0.01;
-    int bands = 20;  // of equal width, over the range
+    double steady_s = 0.3;            // time for which both signals must hold still
+    double level_tolerance = 0.01;    // as a share of the range
+    double force_tolerance = 0.02;    // as a share of the force, or
+    double least_tolerance_N = 0.01;  // this, if it is more
+    int bands = 20;                   // of equal width over the range
     int least_repeats = 3;
-    double goal = 0.05;  // half of the 95 % interval, of the force
+    double goal = 0.05;  // half of the 95 % interval, as a share of the force
 };
 
 struct CapturedPoint {
-    double time_s = 0.0;  // the end of the still moment, host clock + the session's clock_shift_s
+    double time_s = 0.0;  // end of the still time, host clock + the session's clock_shift_s
     double level = 0.0;
     double force_N = 0.0;
     int repeat = 0;
@@ -34,34 +34,35 @@ struct RecordSession {
         double t_s;
         double value;
     };
-    std::deque<Timed> levels;  // the last second or so, and one before the still moment
+    std::deque<Timed> levels;  // of the last 2 steady_s, and one before
     std::deque<Timed> forces;
-    std::deque<Timed> rest;              // what the sensor shows while nothing touches
-    double zero_N = platform::kMissing;  // to be subtracted from what it shows
+    std::deque<Timed> rest;              // readings of the sensor while nothing touches
+    double zero_N = platform::kMissing;  // subtracted from the readings
     bool touching = false;
-    double lifted_s = 0.0;  // since when not
-    int repeat = 0;         // 0, 1, ...; one press and release is one
+    double lifted_s = 0.0;  // when the pen was lifted last
+    int repeat = 0;         // 0, 1, ...; one press with its release is one repeat
     bool captured_in_repeat = false;
-    double last_level = platform::kMissing;  // captured last in this repeat
+    double last_level = platform::kMissing;  // of the last point in this repeat
     double last_force_N = 0.0;
-    double clock_shift_s = 0.0;  // so that times rise when the computer was started anew in between
+    // Keeps times rising in a resumed session if the computer was restarted in between.
+    double clock_shift_s = 0.0;
     std::vector<CapturedPoint> points;
 };
 
-// Every sample as it arrives, each stream in order of time. A pen that does not touch has level 0.
+// Take every sample as it arrives, each stream in order of time. A pen that does not touch has level 0.
 void take_level(const RecordOptions& options, double t_s, double level, bool touching, RecordSession& session);
 void take_force(const RecordOptions& options, double t_s, double force_N, RecordSession& session);
 
-// What the sensor shows while the pen does not touch. 0.4 s without movement are the zero, the latest count:
-// a hand that already leans on the sensor does not hold so still.
+// Takes a reading of the sensor while the pen does not touch. The mean of 0.4 s without movement is the zero, and the
+// latest one counts: a hand that already leans on the sensor does not hold so still.
 void take_rest(const RecordOptions& options, double t_s, double shown_N, RecordSession& session);
 
 // Captures a point if both signals have held still up to `now_s`: the mean force and the median level of that time.
-// One place is captured once in a press: the next must be half a band away.
+// Within a press the next point must be half a band away, or differ by a tenth in force.
 bool capture(const RecordOptions& options, double now_s, RecordSession& session);
 
-// The band to press next: the lightest without a point in this press; when all have one, the one that is known least.
-// -1: lift the pen.
+// Returns the band to press next: the lightest one from the last point upwards that has no point in this press; if all
+// have one, the band that is known least. -1: lift the pen.
 int target_band(const RecordOptions& options, const RecordSession& session, const std::vector<double>& band_error);
 int band_of(const RecordOptions& options, double level);
 
@@ -69,15 +70,15 @@ int band_of(const RecordOptions& options, double level);
 struct Knowledge {
     std::vector<double> band_error;  // half of the 95 % interval / force; NaN: not measured
     int repeats = 0;
-    bool done = false;    // `goal` is met in every band, by enough repeats
+    bool done = false;    // `goal` is met in every band, with enough repeats
     std::string missing;  // what is not known, in plain words; empty when done
 };
 Knowledge knowledge_of(const RecordOptions& options, const std::vector<CapturedPoint>& points);
 
-// Levels, forces and repeats, for a fit. Not the times: a session that was gone on with may have two clocks.
+// Returns levels, forces and repeats for a fit, without the times: a resumed session may have two clocks.
 CalibrationRows rows_of(const std::vector<CapturedPoint>& points);
 
-// The file that a session is kept in: columns time_s, level, force_N, repeat, phase. Read back to resume; throws
+// The file of a session: columns time_s, level, force_N, repeat, phase. read_session() reads it to resume, and throws
 // InputError for a file that is none.
 std::string points_csv(const std::vector<CapturedPoint>& points);
 std::vector<CapturedPoint> read_session(const std::filesystem::path& file);

@@ -8,7 +8,8 @@
 
 namespace palpa::figures {
 
-// What is kept in the profile as `quality`; with the model and its parameters, what `calibrate fit --json` prints.
+// quality_json() is what the profile keeps as `quality`; calibration_json() adds the model and its parameters, and is
+// what `calibrate fit --json` prints.
 files::Json quality_json(const calibration::Calibration& calibration);
 files::Json calibration_json(const calibration::Calibration& calibration);
 files::Json bands_json(const std::vector<calibration::ErrorBand>& bands);
@@ -16,7 +17,8 @@ files::Json bands_json(const std::vector<calibration::ErrorBand>& bands);
 void print_calibration(const calibration::Calibration& calibration);
 void print_bands(const std::vector<calibration::ErrorBand>& bands, const char* of_what);
 
-// Points, curve, its 95 % band, and the relative residuals of points left out of the fit. .png, .svg or .pdf.
+// Draws points, curve, its 95 % band, and the relative residuals of points left out of the fit, to .png, .svg or .pdf.
+// Throws as draw_figure() does.
 void plot_calibration(const calibration::Calibration& calibration, const std::filesystem::path& file);
 
 }  // namespace palpa::figures

@@ -1,6 +1,6 @@
 #pragma once
-// Colours for numbers, on the screen and in figures: viridis (Smith and van der Walt, BIDS 2015: even steps for the eye,
-// also without colour vision) from 0 to 1; blue, white, red around the middle for what has a sign.
+// Colours for numbers, on the screen and in figures: viridis (Smith and van der Walt, BIDS 2015: perceptually uniform,
+// also for colour-blind people) from 0 to 1; blue, white and red for signed numbers, with 0 in the middle.
 
 #include <algorithm>
 #include <array>
@@ -32,7 +32,7 @@ inline constexpr ColourScale kViridis{{{{68, 1, 84},
 inline constexpr ColourScale kApart{
     {{{33, 102, 172}, {146, 197, 222}, {247, 247, 247}, {244, 165, 130}, {178, 24, 43}}}, 5};
 
-// Linear between the stops; the ends' colours beyond 0 and 1.
+// Returns the colour of a share, linear between the stops; beyond 0 and 1 the colours of the ends.
 inline Colour colour_at(const ColourScale& scale, float share) {
     const float at = std::clamp(share, 0.0f, 1.0f) * static_cast<float>(scale.count - 1);
     const std::size_t i = std::min(static_cast<std::size_t>(at), scale.count - 2);
@@ -45,7 +45,7 @@ inline Colour colour_at(const ColourScale& scale, float share) {
     return {mix(a.r, b.r), mix(a.g, b.g), mix(a.b, b.b)};
 }
 
-// What gnuplot's `set palette` takes.
+// Returns the scale as an argument of gnuplot's `set palette`.
 std::string gnuplot_palette(const ColourScale& scale);
 
 }  // namespace palpa::figures

@@ -22,7 +22,7 @@ std::string terminal(const std::filesystem::path& file, int width_px, int height
     throw files::bad_input(file.string(), "", "a file name that ends in " + files::shown(kind), ".png, .svg or .pdf");
 }
 
-// One argument of a shell command, whatever it holds.
+// Returns any text as one argument of a shell command.
 std::string shell_quoted(const std::string& text) {
     std::string out = "'";
     for (const char c : text) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
@@ -58,7 +58,8 @@ void draw_figure(const std::string& script, const std::filesystem::path& name, i
                                                script + "\nunset output\n");
     const bool drawn = run("gnuplot " + shell_quoted(commands));
     ::unlink(commands.c_str());
-    if (drawn && name.extension() == ".svg") {  // else a viewer may blend cells into each other and into gaps
+    // without this, a viewer may blend cells with each other and with gaps
+    if (drawn && name.extension() == ".svg") {
         std::string svg = files::read_text(aside);
         for (std::size_t at = svg.find("<image "); at != std::string::npos; at = svg.find("<image ", at + 1))
             svg.insert(at + 6, " style='image-rendering:pixelated'");

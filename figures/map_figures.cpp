@@ -39,7 +39,8 @@ std::size_t stiffest_cell(const stiffnessmaps::Map& map) {
     return best;
 }
 
-// Where curves are drawn if nobody says where.
+// Returns the places of the curves: those asked for, or up to three regions (without any, the stiffest cell) and a cell
+// of median stiffness.
 std::vector<Eigen::Vector2d> curve_places(const stiffnessmaps::Map& map, const stiffnessmaps::Detection& detection,
                                           const PlotOptions& options) {
     if (!options.at_m.empty()) return options.at_m;
@@ -101,14 +102,14 @@ std::vector<Kind> kinds_of(const stiffnessmaps::Map& map) {
     return kinds;
 }
 
-// Of small multiples.
+// Columns and rows of the small multiples.
 std::size_t columns_of(const stiffnessmaps::Map& map) { return map.n_depths() <= 6 ? map.n_depths() : 5; }
 
 std::size_t matrix_rows(const stiffnessmaps::Map& map) {
     return kinds_of(map).size() * ((map.n_depths() + columns_of(map) - 1) / columns_of(map));
 }
 
-// Small multiples in the strip from y0 to y1 of the figure; one scale for each kind of force.
+// Draws small multiples in the strip from y0 to y1 of the figure; each kind of force has one scale.
 void matrices(const stiffnessmaps::Map& map, double y0, double y1, double height_px, Script& script) {
     const std::size_t columns = columns_of(map);
     const std::size_t rows_of_kind = (map.n_depths() + columns - 1) / columns;

@@ -1,6 +1,6 @@
 #pragma once
-// Figures of maps, by gnuplot: forces in viridis (perceptually uniform, readable without colour vision), differences in
-// blue to red around white, axes in mm to one scale, hatching where nothing was measured.
+// Figures of maps, by gnuplot: forces in viridis (perceptually uniform, readable for colour-blind people), differences
+// in blue to red around white, both axes in mm and to the same scale, hatching where nothing was measured.
 
 #include <Eigen/Core>
 #include <filesystem>
@@ -16,16 +16,19 @@ enum class PlotWhat { all, matrices, stiffness, slice, curves, nodules };
 
 struct PlotOptions {
     PlotWhat what = PlotWhat::all;
-    std::vector<Eigen::Vector2d> at_m;  // of the curves; empty: the stiffest cell and one of middling stiffness
-    std::optional<double> force_N;      // of the depth slice; empty: half of the middling force at the deepest matrix
+    // Places of the curves; empty: the peaks of the first three regions (the stiffest cell without any), and a cell of
+    // median stiffness.
+    std::vector<Eigen::Vector2d> at_m;
+    // Force of the depth slice; empty: half of the median force at the deepest layers.
+    std::optional<double> force_N;
 };
 
-// Throws InputError for another ending than .png, .svg, .pdf and for a place beside the map; std::runtime_error if gnuplot
-// is missing or cannot write.
+// Throws InputError for another ending than .png, .svg, .pdf and for a place off the map; std::runtime_error if gnuplot
+// is missing or fails.
 void plot_map(const stiffnessmaps::Map& map, const stiffnessmaps::Detection& detection, const PlotOptions& options,
               const std::filesystem::path& file);
 
-// Both maps at the deepest common depth, and their difference.
+// Draws both maps at their deepest common depth, and their difference. Throws as plot_map() does.
 void plot_difference(const stiffnessmaps::MapDifference& difference, const std::filesystem::path& file);
 
 }  // namespace palpa::figures

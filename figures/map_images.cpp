@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
-// Borders of a set of cells as line pieces, mm.
+// Returns the borders of a set of cells as line segments, in mm.
 std::string outline_rows(const stiffnessmaps::Map& map, const std::vector<std::size_t>& cells) {
     std::vector<bool> in(map.n_cells(), false);
     for (const std::size_t cell : cells) in[cell] = true;
@@ -35,7 +35,7 @@ std::string outline_rows(const stiffnessmaps::Map& map, const std::vector<std::s
     return rows;
 }
 
-// A placed or kept nodule as it stands in the map: a disc, or a capsule along its angle.
+// Returns the outline of a nodule of the map, in mm: a disc, or a capsule along its angle.
 std::string nodule_rows(const stiffnessmaps::Nodule& nodule) {
     const double radius_m = 0.5 * nodule.diameter_m.value_or(4e-3);
     const double half_m = std::max(0.0, 0.5 * nodule.length_m.value_or(0.0) - radius_m);
@@ -52,7 +52,7 @@ std::string nodule_rows(const stiffnessmaps::Nodule& nodule) {
 }
 
 std::string label(const std::string& text, double x_mm, double y_mm) {
-    // a dark rim under a white letter, so that it can be read on any colour
+    // a dark rim around white letters makes them readable on any colour
     std::string out;
     for (const char* rim : {"-0.09,0", "0.09,0", "0,-0.06", "0,0.06"}) {
         out += "set label " + quoted(text) + " at " + text_of(x_mm) + "," + text_of(y_mm) +
@@ -62,7 +62,7 @@ std::string label(const std::string& text, double x_mm, double y_mm) {
            " center front tc rgb '#ffffff'\n";
 }
 
-// Nodules of the map: placed ones dashed. Found regions: solid if sure, dotted if not.
+// Draws the outlines of placed nodules (dashed) and of found regions (solid if sure, dotted if not).
 void outline(const stiffnessmaps::Map& map, const stiffnessmaps::Detection& detection, Script& script, Image& im) {
     std::string placed, sure, unsure;
     for (const stiffnessmaps::Nodule& nodule : map.nodules) {
@@ -125,7 +125,7 @@ Image depth_image(const stiffnessmaps::Map& map, const stiffnessmaps::Field& fie
     for (std::size_t cell = 0; cell < map.n_cells(); ++cell) {
         const stiffnessmaps::DepthAnswer answer = stiffnessmaps::depth_at(
             field, stiffnessmaps::place_at(field, {map.x_of(cell % map.n_x), map.y_of(cell / map.n_x)}), force_N);
-        // deeper than was measured: not known
+        // a depth beyond what was measured is not known
         im.values.push_back(field.measured[cell] > 0.0 && !answer.saturated ? 1e3 * answer.depth_m : kNaN);
     }
     im.span = span_of(im.values);

@@ -1,5 +1,5 @@
 #pragma once
-// What figures show of a map, as pictures of numbers.
+// The pictures of numbers that figures show of a map.
 
 #include "figures/map_script.h"
 #include "stiffnessmaps/field.h"
@@ -7,18 +7,18 @@
 
 namespace palpa::figures {
 
-// The grid of the map's cells, without values.
+// Returns a picture with the grid of the map's cells, without values.
 Image image_of(const stiffnessmaps::Map& map);
 
 Image stiffness_image(const stiffnessmaps::Map& map);
 
-// Stiffness with the map's nodules and the regions found drawn over it.
+// Returns the stiffness, with the map's nodules and the found regions drawn over it.
 Image nodules_image(const stiffnessmaps::Map& map, const stiffnessmaps::Detection& detection, Script& script);
 
-// How deep a force goes.
+// Returns the depth that a force reaches in each cell.
 Image depth_image(const stiffnessmaps::Map& map, const stiffnessmaps::Field& field, double force_N);
 
-// Force along x through a row of cells, down to the deepest matrix.
+// Returns the force along x through a row of cells, down to the deepest layer.
 Image section_image(const stiffnessmaps::Map& map, const stiffnessmaps::Field& field, std::size_t row);
 
 }  // namespace palpa::figures

@@ -11,7 +11,7 @@
 namespace palpa::figures {
 namespace {
 
-// Colours by Okabe and Ito, which colour-blind people can tell apart.
+// Colours by Okabe and Ito, which colour-blind people can distinguish.
 constexpr const char* kHead =
     R"gp(set border lw 0.8
 set tics out nomirror scale 0.5
@@ -66,7 +66,7 @@ std::string Script::block(const std::string& rows) {
 }
 
 void Script::image(const Image& im, Box box) {
-    // as wide as the picture will be, so that the colour bar stands beside it
+    // the box is made as wide as the picture will be, so that the colour bar stands beside it
     const double aspect = im.dy * static_cast<double>(im.n_y) / (im.dx * static_cast<double>(im.n_x));
     if (!im.down) box.x1 = std::min(box.x1, box.x0 + (box.y1 - box.y0) * height_px_ / aspect / width_px_);
     const std::string data = block(rows_of(im));

@@ -7,9 +7,9 @@
 
 namespace palpa::figures {
 
-std::string text_of(double value);  // "NaN" for what is not finite
+std::string text_of(double value);  // "NaN" if not finite
 
-// Between single quotes; nothing of the text is taken as markup.
+// Returns the text in single quotes, none of it interpreted as markup.
 std::string quoted(const std::string& text);
 
 struct Span {
@@ -17,10 +17,10 @@ struct Span {
     double high = 1.0;
 };
 
-// From the least to the greatest finite value, of some width; 0 to 1 if there is none.
+// Returns the span from the least to the greatest finite value, widened if they are equal; 0 to 1 if there is none.
 Span span_of(const std::vector<double>& values);
 
-// A picture of numbers on a grid; x and y in mm.
+// A picture of numbers on a grid; x and y in mm, (x0, y0) is the centre of the first cell.
 struct Image {
     std::string title;
     std::string x_label = "x (mm)";
@@ -30,17 +30,17 @@ struct Image {
     std::size_t n_x = 1, n_y = 1;
     std::vector<double> values;  // [n_y][n_x]
     Span span;
-    bool apart = false;  // around 0
+    bool apart = false;  // signed: colours blue to red around 0
     bool bar = true;
-    bool small = false;       // of small multiples: numbers at the outer axes only
-    bool title_left = false;  // beside a key
-    bool down = false;        // y grows downwards, and is not to the scale of x
-    std::string over;         // further plot elements, and commands before the plot
-    std::string before;
+    bool small = false;       // one of small multiples: numbers at the outer axes only
+    bool title_left = false;  // leaves room for a key
+    bool down = false;        // y grows downwards, on a scale of its own
+    std::string over;         // further plot elements
+    std::string before;       // commands before the plot
 };
 
 struct Box {
-    double x0, x1, y0, y1;  // of the drawing area, shares of the figure, y upwards
+    double x0, x1, y0, y1;  // of the drawing area, as shares of the figure, y upwards
 };
 
 class Script {
@@ -48,7 +48,7 @@ class Script {
     Script(const std::string& title, double width_px, double height_px);
     void add(const std::string& text) { text_ += text; }
 
-    // Keeps the rows as a block of data and returns its name.
+    // Adds the rows as a block of data and returns its name.
     std::string block(const std::string& rows);
 
     void image(const Image& im, Box box);

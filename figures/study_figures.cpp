@@ -6,7 +6,7 @@
 namespace palpa::figures {
 namespace {
 
-// Colours by Okabe and Ito, which colour-blind people can tell apart; hatching says the same again.
+// Colours by Okabe and Ito, which colour-blind people can distinguish; hatching repeats the distinction.
 constexpr const char* kScript =
     R"gp(# gnuplot figures.gp draws sensitivity.tsv, nodules.tsv and ppv.tsv; gnuplot -e "kind='svg'" figures.gp: or svg, pdf
 if (!exists("kind")) kind = "png"
@@ -41,7 +41,7 @@ plot "ppv.tsv" using 0:(percent("share")):xtic(1) with boxes lc rgb "#009E73", \
      "" using 0:(percent("share")):(percent("wilson_low")):(percent("wilson_high")) with yerrorbars lc rgb "#000000" lw 2 pt 7 ps 0.5
 )gp";
 
-// One cluster of bars for each condition that names nodules, one bar for each nodule in it.
+// One cluster of bars for each condition with named nodules, one bar for each nodule in it.
 constexpr const char* kNodules =
     R"gp(
 set ylabel "Sensitivity (%)"
@@ -63,7 +63,7 @@ plot for [i = 1:words(nodules)] "nodules.tsv" using (mine(i)):(percent("share"))
      "" using (place(strcol("condition"), strcol("nodule"))):(percent("share")):(percent("wilson_low")):(percent("wilson_high")) with yerrorbars lc rgb "#000000" lw 2 pt 7 ps 0.5 notitle
 )gp";
 
-// gnuplot's word() keeps "two words" together if they stand in quotes.
+// gnuplot's word() takes several words as one if they are in quotes.
 void add_word(const std::string& word, std::string& list) {
     std::string plain;
     for (const char c : word) plain += c == '"' || c == '\'' || c == '\\' || c == '`' ? '_' : c;

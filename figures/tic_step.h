@@ -5,8 +5,8 @@
 
 namespace palpa::figures {
 
-// The round step between the tics of an axis (1, 2 or 5 times a power of ten) that cuts `range` into `about` pieces, or
-// fewer.
+// Returns a round step between the tics of an axis (1, 2 or 5 times a power of ten) that divides `range` into at most
+// `about` pieces.
 inline double tic_step(double range, double about) {
     const double rough = std::max(range / std::max(1.0, about), 1e-12);
     const double power = std::pow(10.0, std::floor(std::log10(rough)));

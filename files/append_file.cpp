@@ -22,7 +22,7 @@ bool write_all(int fd, std::string_view rest) {
     return true;
 }
 
-// A new file survives a power cut only once its folder is on the disk too.
+// A new file survives a power cut only once the entry in its folder is on the disk too.
 bool sync_folder_of(const std::filesystem::path& path) {
     const auto folder = path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");
     const int fd = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);

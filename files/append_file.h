@@ -1,5 +1,5 @@
 #pragma once
-// A file that only grows, so that data of people are never lost: it is created only if it does not exist yet, only
+// A file that only grows, so that participants' data are never lost: it is created only if it does not exist yet, only
 // appended to, and synced on request (file and folder).
 
 #include <filesystem>
@@ -16,15 +16,17 @@ class AppendFile {
     AppendFile(const AppendFile&) = delete;
     AppendFile& operator=(const AppendFile&) = delete;
 
-    // Appends to a buffer of 64 KiB, so that a row costs no system call. The buffer never grows beyond its reserve.
+    // Appends to a buffer of 64 KiB, which is flushed when it is full, so that a row seldom costs a system call. The
+    // buffer allocates nothing for rows up to its size.
     void append(std::string_view text);
 
     // Hands the buffer to the system. Returns false once anything could not be written (disk full).
     bool flush();
 
-    // Flushes and waits until the file is on the disk, the folder's entry included.
+    // Flushes, and waits until the file and the entry in its folder are on the disk. Returns false as flush() does.
     bool sync();
 
+    // True once anything could not be written or synced.
     bool failed() const { return failed_; }
     const std::filesystem::path& path() const { return path_; }
 
@@ -36,7 +38,7 @@ class AppendFile {
 };
 
 // Appends whole lines to a file that may exist already; if the file's last line was cut off, the text begins on a new
-// line. The text is on the disk when the function returns. Throws std::runtime_error.
+// line. The text is on the disk when the function returns. Throws std::runtime_error with the system's reason.
 void append_synced(const std::filesystem::path& path, std::string_view text);
 
 }  // namespace palpa::files

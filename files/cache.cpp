@@ -31,8 +31,8 @@ void append_word(std::uint64_t word, std::string& out) {
     out.append(bytes, kWord);
 }
 
-// FNV-1a by words, with the upper half folded down after each: every step is one-to-one, so that one changed
-// word always changes the sum.
+// FNV-1a by words, with the upper half folded down after each: every step is one-to-one, so that a single changed word
+// always changes the sum.
 std::uint64_t checksum(std::string_view bytes, std::size_t n_words) {
     std::uint64_t hash = 14695981039346656037ull;
     for (std::size_t i = 0; i < n_words; ++i) {
@@ -89,7 +89,7 @@ std::optional<CachedArrays> read_cache(const std::filesystem::path& folder, std:
     if (folder.empty()) return std::nullopt;
     try {
         return parse(read_text(cache_file(folder, fingerprint)), fingerprint);
-    } catch (const std::exception&) {  // not there, a folder, too large, not readable
+    } catch (const std::exception&) {  // missing, a folder, too large or unreadable
         return std::nullopt;
     }
 }

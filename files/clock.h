@@ -7,11 +7,11 @@
 
 namespace palpa::files {
 
-// The steady clock, which the samples' t_host_s is on too. Only differences mean something.
+// The steady clock, which the samples' t_host_s uses too. Only differences have a meaning.
 std::int64_t steady_ns();
 double steady_s();
 
-// "2026-11-21T09:30:00Z"; the first ten characters are the date.
+// Returns UTC as "2026-11-21T09:30:00Z"; the first ten characters are the date.
 std::string utc_text(std::time_t time);
 std::string utc_now();
 

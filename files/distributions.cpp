@@ -12,7 +12,7 @@ namespace {
 namespace policies = boost::math::policies;
 
 // `double` throughout: the long double of x86 would give other digits than that of the web. Results that overflow or
-// lose all digits come back as infinity or 0, not as exceptions.
+// lose all digits are infinity or 0, not exceptions.
 using Policy =
     policies::policy<policies::promote_double<false>, policies::domain_error<policies::ignore_error>,
                      policies::pole_error<policies::ignore_error>, policies::overflow_error<policies::ignore_error>,

@@ -1,21 +1,22 @@
 #pragma once
 // Probabilities and quantiles of the distributions that intervals and tests use, by Boost.Math. Its headers are slow to
-// compile, so that one source includes them for all. A wrong argument is a bug (assert); nothing throws.
+// compile, so only one source includes them. A wrong argument is a bug (assert); nothing throws.
 
 #include <cstdint>
 
 namespace palpa::files {
 
-// x with P(X <= x) = p for a standard normal X, 0 < p < 1.
+// Returns x with P(X <= x) = p for a standard normal X, 0 < p < 1.
 double normal_quantile(double p);
 
-// Two-sided p value of Student's t with df degrees of freedom, P(|T| >= |t|); 0 for an infinite t, NaN for NaN.
+// Returns the two-sided p value of Student's t with df degrees of freedom, P(|T| >= |t|); 0 for an infinite t, NaN for
+// NaN.
 double student_p(double t, double df);
 
-// The t that |T| exceeds with probability 1 - level, 0 < level < 1.
+// Returns the t that |T| exceeds with probability 1 - level, 0 < level < 1.
 double student_quantile(double level, double df);
 
-// Probability of k hits in n trials that hit by `chance`, 0 < chance < 1.
+// Returns the probability of k hits in n trials that each hit with probability `chance`, 0 < chance < 1.
 double binomial_probability(std::int64_t k, std::int64_t n, double chance);
 
 }  // namespace palpa::files

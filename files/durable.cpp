@@ -21,7 +21,7 @@ void sync_folder(const std::filesystem::path& folder) {
 bool rename_to_new(const std::filesystem::path& from, const std::filesystem::path& to) {
     if (::renameat2(AT_FDCWD, from.c_str(), AT_FDCWD, to.c_str(), RENAME_NOREPLACE) == 0) return true;
     if (errno == EEXIST) return false;
-    // file systems that do not know this kind of renaming know hard links
+    // file systems without this kind of renaming have hard links
     if (errno != EINVAL && errno != ENOSYS) fail_writing(to);
     if (::link(from.c_str(), to.c_str()) != 0) {
         if (errno == EEXIST) return false;

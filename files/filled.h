@@ -1,5 +1,5 @@
 #pragma once
-// Sentences with gaps.
+// Sentences with gaps for values.
 
 #include <initializer_list>
 #include <string>
@@ -7,7 +7,7 @@
 
 namespace palpa::files {
 
-// Each {} of the pattern in turn replaced by a value. One value per {}.
+// Returns the pattern with each {} replaced by a value, in order. The pattern needs one {} per value (assert).
 std::string filled(std::string_view pattern, std::initializer_list<std::string_view> values);
 
 }  // namespace palpa::files

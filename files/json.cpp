@@ -50,7 +50,7 @@ std::string described(const Json& value) {
 std::string json_text(const Json& value) { return value.dump(2, ' ', false, Json::error_handler_t::replace) + "\n"; }
 
 Json parse_json(std::string_view text, const std::string& file_name) {
-    // nlohmann keeps the last of two equal keys; a person who wrote both must be told
+    // nlohmann silently keeps the last of two equal keys; here they are an error
     std::vector<std::set<std::string>> open_objects;
     const auto refuse_repeated_keys = [&](int, nlohmann::json::parse_event_t event, const Json& parsed) {
         using Event = nlohmann::json::parse_event_t;
@@ -147,7 +147,7 @@ std::string JsonReader::text(std::string_view key) {
     const Json& value = need(key, "a text");
     if (!value.is_string()) fail(key, described(value), "a text");
     const auto& text = value.get_ref<const std::string&>();
-    // a zero byte would end the text where it is used as a file's name, and another file would be opened
+    // a zero byte would end the text if it is used as a file's name, so that another file would be opened
     if (text.find('\0') != std::string::npos)
         fail(key, described(value) + " with a zero byte (\\u0000)", "a text without it");
     return text;
@@ -210,12 +210,13 @@ const Json& JsonReader::any(std::string_view key) { return need(key, "a value");
 
 namespace {
 
-// How many letters must be added, removed or exchanged to turn one word into the other (Levenshtein's distance).
+// Returns how many letters must be added, removed or exchanged to turn one word into the other (Levenshtein's
+// distance).
 std::size_t distance(std::string_view a, std::string_view b) {
     std::vector<std::size_t> row(b.size() + 1);
     for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
     for (std::size_t i = 0; i < a.size(); ++i) {
-        std::size_t before = row[0]++;  // of the row above, one to the left
+        std::size_t before = row[0]++;  // the entry above and to the left
         for (std::size_t j = 0; j < b.size(); ++j) {
             const std::size_t exchanged = before + (a[i] == b[j] ? 0 : 1);
             before = row[j + 1];
@@ -232,7 +233,7 @@ void refuse_unknown(const Json& object, const Keys& keys, const std::string& fil
         if (std::find(keys.begin(), keys.end(), found) != keys.end()) continue;
         std::string expected = "one of";
         std::string_view nearest;
-        std::size_t least = std::min<std::size_t>(found.size(), 40) / 3 + 1;  // further apart is another word
+        std::size_t least = std::min<std::size_t>(found.size(), 40) / 3 + 1;  // a greater distance is another word
         for (const auto& key : keys) {
             expected.append(" ").append(key);
             const std::size_t apart = found.size() <= 40 ? distance(found, key) : least + 1;

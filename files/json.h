@@ -14,14 +14,15 @@ namespace palpa::files {
 
 using Json = nlohmann::ordered_json;
 
-// Throws InputError. The message names file, line and column where the text is not JSON, or the key that stands twice.
+// Read JSON. Throw InputError, which names file, line and column where the text is not JSON, or the key that appears
+// twice; read_json() also for a file above 64 MiB.
 Json read_json(const std::filesystem::path& path);
 Json parse_json(std::string_view text, const std::string& file_name);
 
-// Numbers that are not finite become null.
+// A number that is not finite becomes null.
 Json number_or_null(double value);
 
-// Bounds of a number, as messages give them: "> 0", "0 ... 1".
+// The range of a number. Messages give it as "> 0" or "from 0 to 1".
 struct Bounds {
     double lowest;
     double highest;
@@ -31,8 +32,8 @@ inline constexpr Bounds kAnyNumber{-1e300, 1e300};
 inline constexpr Bounds kPositive{0.0, 1e300, true};
 inline constexpr Bounds kNotNegative{0.0, 1e300};
 
-// Reads one JSON object. The caller asks for each key by name, and its value is checked; finish() then refuses the
-// keys that were not asked for. All errors are InputError. A missing key without a default is an error.
+// Reads one JSON object. The caller asks for each key by name, and its value is checked; finish() then refuses the keys
+// that were not asked for. All errors are InputError. A missing key without a default is an error.
 class JsonReader {
   public:
     // The value must outlive its reader.
@@ -54,10 +55,10 @@ class JsonReader {
     JsonReader object(std::string_view key);
     std::optional<JsonReader> optional_object(std::string_view key);
     std::vector<JsonReader> objects(std::string_view key);  // an array of objects; empty if absent
-    const Json& any(std::string_view key);                  // taken as it is
+    const Json& any(std::string_view key);                  // the value, unchecked
 
-    // Refuses all other keys at once, so that the message names a misspelt key (young_kPa) and not the key that it
-    // stands for.
+    // Refuses all other keys at once, so that the message names a misspelt key (young_kPa), and not the required key
+    // that is then missing.
     void only(std::initializer_list<std::string_view> keys) const;
 
     void finish() const;
@@ -75,11 +76,11 @@ class JsonReader {
     std::vector<std::string> asked_;
 };
 
-// The text that is written to files and standard output: indented, with a newline at its end. Bytes that are not UTF-8
-// are replaced.
+// Returns the text for files and standard output: indented, with a newline at its end. Bytes that are not UTF-8 are
+// replaced.
 std::string json_text(const Json& value);
 
-// How a message describes a value: "3.5", "'left'", "an array", "nothing".
+// Returns how a message describes a value: "3.5", "'left'", "an array of 3", "null".
 std::string described(const Json& value);
 
 }  // namespace palpa::files

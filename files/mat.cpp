@@ -14,7 +14,8 @@
 namespace palpa::files {
 namespace {
 
-// For each value in C order: its index in the file, where the first index runs fastest.
+// Calls visit(c, in_file) for each value: its index in C order, and that in the file, where the first index runs
+// fastest.
 template <class Visit>
 void visit_order(const std::vector<std::size_t>& shape, Visit&& visit) {
     std::size_t total = 1;

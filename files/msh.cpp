@@ -52,7 +52,7 @@ MshGroup& group_of(int dimension, int tag, Reading& r) {
 void read_names(Reading& r) {
     const auto count = r.in.word_integer("the number of physical names");
     if (count < 0) r.in.fail(std::to_string(count), "a number of physical names");
-    for (std::int64_t i = 0; i < count; ++i) {  // each takes a line: ends with the file at the latest
+    for (std::int64_t i = 0; i < count; ++i) {  // each takes a line, so the loop ends with the file
         const auto dimension = r.in.word_integer("a dimension 0 to 3");
         if (dimension < 0 || dimension > 3) r.in.fail(std::to_string(dimension), "a dimension 0 to 3");
         const auto tag = r.in.word_integer("a physical tag");
@@ -77,7 +77,7 @@ void read_entity(int dimension, Reading& r) {
     const auto physical = r.in.size("the number of physical tags");
     r.in.check_count(physical, 2, 4, "physical tags");
     for (std::uint64_t i = 0; i < physical; ++i) {
-        const int group = r.in.integer("a physical tag");  // negative: with its orientation turned round
+        const int group = r.in.integer("a physical tag");  // negative: with reversed orientation
         if (group == 0 || group == INT32_MIN) r.in.fail(std::to_string(group), "a physical tag other than 0");
         r.groups_of_entity[{dimension, tag}].push_back(std::abs(group));
     }
@@ -152,7 +152,7 @@ void read_nodes_4(Reading& r) {
 
 struct CellType {
     int corners = 0;
-    int kind = -1;  // of MshKind, -1: passed over
+    int kind = -1;  // a MshKind; -1: ignored
     int dimension = 0;
 };
 
@@ -205,7 +205,7 @@ void add_cell(const CellType& type, std::uint64_t number, const std::vector<int>
     }
 }
 
-// number, tags, nodes: the order of both encodings once the type and the number of tags are known
+// Reads number, tags and nodes; both encodings have this order once the type and the number of tags are known.
 void read_cell_2(const CellType& type, int n_tags, std::uint64_t number, Reading& r) {
     std::vector<int> groups;
     for (int k = 0; k < n_tags; ++k) {

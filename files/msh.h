@@ -2,8 +2,8 @@
 // Gmsh meshes: .msh 2.2 and 4.1, ASCII and binary (little-endian), cells of first order.
 // Source: Gmsh reference manual, "MSH file format" and "Legacy formats".
 //
-// The reader takes nodes, triangles, quads, tetrahedra, hexahedra and physical groups, and ignores points and lines.
-// It refuses other cells (pyramids, prisms, second order), partitioned meshes, version 4.0 and big-endian files.
+// The reader reads nodes, triangles, quads, tetrahedra, hexahedra and physical groups, and ignores points and lines. It
+// refuses other cells (pyramids, prisms, second order), partitioned meshes, version 4.0 and big-endian files.
 
 #include <array>
 #include <cstdint>
@@ -19,11 +19,12 @@ inline constexpr std::size_t kMshKinds = 4;
 inline constexpr std::array<int, kMshKinds> kMshCorners{3, 4, 4, 8};
 
 struct MshCells {
-    std::vector<int> nodes;             // positions in the list of nodes; as many as corners for each cell
-    std::vector<std::uint64_t> number;  // of each cell, as in the file, for messages
+    std::vector<int> nodes;             // indices into Msh::nodes; as many as corners for each cell
+    std::vector<std::uint64_t> number;  // of each cell in the file, for messages
 };
 
-// A physical group: its cells by position. A cell may be in several groups; a group without a name has "".
+// A physical group: the indices of its cells by kind. A cell may be in several groups; the name is empty if the file
+// has none.
 struct MshGroup {
     int dimension = 0;
     int tag = 0;
@@ -33,8 +34,8 @@ struct MshGroup {
 
 // Plain arrays. Corners are in Gmsh's order, which is VTK's. Lengths are in the file's own unit.
 struct Msh {
-    std::vector<double> nodes;               // x y z of each
-    std::vector<std::uint64_t> node_number;  // of each node, as in the file, for messages
+    std::vector<double> nodes;               // 3 * n_nodes: x y z of each
+    std::vector<std::uint64_t> node_number;  // of each node in the file, for messages
     std::array<MshCells, kMshKinds> cells;
     std::vector<MshGroup> groups;
 
@@ -43,9 +44,9 @@ struct Msh {
     std::size_t count(MshKind kind) const { return of(kind).number.size(); }
 };
 
-// Throws InputError naming the line (ASCII) or byte (binary), what was found and what was expected. Counts in headers
-// are compared with the size of the file before memory is allocated. A cell that stands in the file several times
-// (version 2.2 repeats a cell for each of its groups) is kept once.
+// Read a mesh. Throw InputError naming the line (ASCII) or byte (binary), what was found and what was expected. Counts
+// in headers are compared with the size of the file before memory is allocated. A cell that the file holds several
+// times (version 2.2 repeats a cell for each of its groups) is kept once.
 Msh read_msh(const std::filesystem::path& path);
 Msh parse_msh(std::string_view bytes, const std::string& file_name);
 

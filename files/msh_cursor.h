@@ -1,5 +1,5 @@
 #pragma once
-// The place in a .msh file while it is read; for msh.cpp only.
+// The position in a .msh file while it is read; for msh.cpp only.
 
 #include <algorithm>
 #include <bit>
@@ -19,7 +19,7 @@ static_assert(std::endian::native == std::endian::little, "numbers are read as t
 
 inline constexpr std::string_view kMshBlank = " \t\r\n";
 
-// The place in the file. Numbers are read as text or as bytes, whichever the file's header says.
+// The position in the file. Numbers are read as text or as bytes, as the file's header says.
 class MshCursor {
   public:
     MshCursor(std::string_view bytes, const std::string& file) : bytes_(bytes), file_(file) {}
@@ -61,7 +61,7 @@ class MshCursor {
 
     std::int64_t word_integer(std::string_view expected) { return from_word<std::int64_t>(expected); }
 
-    // The format's types int, size_t and double.
+    // Read the format's types int, size_t and double. Throw InputError naming what was `expected`.
     int integer(std::string_view expected) {
         return binary ? from_bytes<std::int32_t>(expected) : from_word<std::int32_t>(expected);
     }
@@ -79,7 +79,8 @@ class MshCursor {
         return value;
     }
 
-    // Refuses a count of things that the rest of the file cannot hold; each thing takes at least so many bytes.
+    // Throws InputError for a count of things that the rest of the file cannot hold; each thing takes at least this
+    // many bytes.
     void check_count(std::uint64_t count, std::size_t text_bytes, std::size_t binary_bytes, std::string_view things) {
         const std::size_t each = binary ? binary_bytes : text_bytes;
         const std::size_t left = bytes_.size() - at_;

@@ -17,7 +17,7 @@ static_assert(std::endian::native == std::endian::little, "arrays are read as th
 constexpr std::string_view kNpyMagic("\x93NUMPY", 6);
 
 struct Header {
-    std::size_t from = 0;  // of its text
+    std::size_t from = 0;  // position of its text
     std::size_t length = 0;
     std::size_t data_offset() const { return from + length; }
 };
@@ -47,7 +47,7 @@ Header find_header(std::string_view start, std::size_t file_bytes, const std::st
     return header;
 }
 
-// The text after "'key':", leading blanks removed.
+// Returns the text after "'key':" without leading blanks.
 std::string_view after_key(std::string_view header, std::string_view key, const std::string& file) {
     const auto at = header.find("'" + std::string(key) + "':");
     if (at == std::string_view::npos) throw bad_input(file, key, "nothing", "the key in the .npy header");
@@ -95,7 +95,7 @@ void take_values(const char* from, std::size_t n, float* to) {
     }
 }
 
-// Reads the header's text.
+// What the header says of the array.
 struct Layout {
     std::vector<std::size_t> shape;
     bool is_double = false;
@@ -139,7 +139,7 @@ NpyArray read_in_parts(const InputFile& in, const std::string& file) {
     read(header.from, text.data(), text.size());
     const Layout layout = layout_of(text, in.bytes() - header.data_offset(), file);
     NpyArray array{layout.shape, std::vector<float>(layout.count)};
-    constexpr std::size_t kPart = 1 << 16;  // numbers
+    constexpr std::size_t kPart = 1 << 16;  // in numbers
     std::vector<char> part(std::min(kPart, layout.count) * layout.value_bytes());
     for (std::size_t at = 0; at < layout.count; at += kPart) {
         const std::size_t n = std::min(kPart, layout.count - at);

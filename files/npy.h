@@ -13,16 +13,17 @@ struct NpyArray {
     std::vector<float> values;  // C order: the last index runs fastest
 };
 
-// Values of float64 files are narrowed to float. Throws InputError for other types, and for a header whose shape does
-// not match the file's size; this is checked before memory is allocated.
+// Read an array. Values of float64 files are narrowed to float. Throw InputError for other types and for Fortran order,
+// and for a header whose shape does not match the file's size, which is checked before memory is allocated.
 NpyArray read_npy(const std::filesystem::path& path);
 NpyArray parse_npy(std::string_view bytes, const std::string& file_name);
 
-// The header before the values of a float32 file: '<f4', version 1.0.
+// Returns the header that precedes the values of a float32 file: '<f4', version 1.0.
 std::string npy_header(const std::vector<std::size_t>& shape);
 std::string npy_bytes(const NpyArray& array);  // header and values
 
-// Writes the file whole or not at all. `values` are written without a copy.
+// Writes the file whole or not at all. `values` are written without a copy. Throws std::runtime_error if it cannot be
+// written.
 void write_npy(const std::filesystem::path& path, const std::vector<std::size_t>& shape,
                const std::vector<float>& values);
 

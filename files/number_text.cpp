@@ -1,4 +1,4 @@
-// Converts numbers to and from text by the standard library.
+// Converts numbers to and from text with the standard library.
 
 #include <array>
 #include <charconv>

@@ -7,7 +7,7 @@
 
 namespace palpa::files {
 
-// Writes one piece after the other, in the way in which write_text_atomically() (files/text.h) writes one text.
+// Writes one piece after the other, as write_text_atomically() (files/text.h) writes one text.
 void write_pieces_atomically(const std::filesystem::path& path, std::initializer_list<std::string_view> pieces);
 
 }  // namespace palpa::files

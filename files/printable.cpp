@@ -7,7 +7,7 @@ std::string printable(std::string_view message) {
     std::string out;
     for (const char c : message.substr(0, kLongest)) {
         const auto byte = static_cast<unsigned char>(c);
-        // U+0080 to U+009F in UTF-8, which terminals obey too
+        // U+0080 to U+009F in UTF-8, which terminals interpret too
         const bool second = !out.empty() && out.back() == '\xc2' && byte >= 0x80 && byte < 0xa0;
         if (second) out.pop_back();
         const bool control = (byte < 0x20 && c != '\n') || byte == 0x7f;

@@ -8,7 +8,7 @@
 namespace palpa::files {
 namespace {
 
-// The value that stands `below` the quantile, and the share of the way from it to the next.
+// The index of the value just below the quantile, and the share of the way from that value to the next.
 struct Rank {
     std::size_t below = 0;
     double rest = 0.0;

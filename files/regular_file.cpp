@@ -59,11 +59,11 @@ std::string_view irregular_kind(const fs::path& path) {
 }
 
 InputFile::InputFile(const fs::path& path) : path_(path) {
-    // such a file is not even opened: opening alone can rewind a tape or reset a board
+    // an irregular file is not even opened: opening alone can rewind a tape or reset a board
     if (const auto kind = irregular_kind(path); !kind.empty()) refuse_input(path, kind);
     fd_ = ::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
     if (fd_ < 0) throw InputError(path.string() + ": cannot be read: " + std::strerror(errno));
-    // the name may now stand for another file than a moment ago, so the opened file is checked
+    // the name may stand for another file than a moment ago, so the opened file is checked too
     struct stat status {};
     const bool known = ::fstat(fd_, &status) == 0;
     if (known && S_ISREG(status.st_mode)) {

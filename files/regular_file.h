@@ -1,7 +1,7 @@
 #pragma once
-// Inputs must be regular files: a FIFO or a terminal would hold the program up until somebody writes to it, and reading
-// a device node can change the device. Results must be regular files too: a result gets its name by renaming, which
-// would replace a device node.
+// Inputs must be regular files: a FIFO or a terminal would block the program until somebody writes to it, and reading a
+// device node can change the device. Results must be regular files too: a result gets its name by renaming, which would
+// replace a device node.
 
 #include <cstdint>
 #include <filesystem>
@@ -15,8 +15,8 @@ namespace palpa::files {
 // links.
 std::string_view irregular_kind(const std::filesystem::path& path);
 
-// A regular file that is open for reading. The constructor throws InputError, without waiting, if the file is not a
-// regular one or cannot be read.
+// A regular file, open for reading. The constructor throws InputError, without waiting, if the file is not a regular
+// one or cannot be read.
 class InputFile {
   public:
     explicit InputFile(const std::filesystem::path& path);
@@ -24,8 +24,8 @@ class InputFile {
     InputFile(const InputFile&) = delete;
     InputFile& operator=(const InputFile&) = delete;
 
-    std::uintmax_t bytes() const { return bytes_; }  // 0 for files that are made as they are read (/proc)
-    // Returns the number of bytes read, which is less than `n` only at the file's end. Throws InputError.
+    std::uintmax_t bytes() const { return bytes_; }  // 0 for files that are generated as they are read (/proc)
+    // Reads up to `n` bytes. Returns their number, which is less than `n` only at the file's end. Throws InputError.
     std::size_t read_at(std::uintmax_t offset, char* to, std::size_t n) const;
 
   private:
@@ -34,20 +34,19 @@ class InputFile {
     std::uintmax_t bytes_ = 0;
 };
 
-// For a file that other code (a library) opens by its name. Throws InputError as InputFile does.
+// Checks a file that other code (a library) opens by its name. Throws InputError as InputFile does.
 void check_input(const std::filesystem::path& path);
 
-// The file that is replaced when a result is written to `path`: the target of a link, else `path` itself. Throws
-// InputError if something is there that is not a regular file.
+// Returns the file that is replaced when a result is written to `path`: the target of a link, else `path` itself.
+// Throws InputError if it exists and is not a regular file.
 std::filesystem::path output_target(const std::filesystem::path& path);
 
-// Checks before any work whether a result may go to `path`: its folder must exist, and `path` must be a regular file or
-// a free name. It must not be one of `inputs` under whatever name (nor a file in an input that is a folder), and not
-// the file that standard output or standard error go to. Throws InputError.
+// Checks, before any work, whether a result may go to `path`: its folder must exist, and `path` must be a regular file
+// or a free name. It must not be one of `inputs` under any name (nor a file in an input that is a folder), and not the
+// file to which standard output or standard error go. Throws InputError.
 void check_output(const std::filesystem::path& path, const std::vector<std::filesystem::path>& inputs = {});
 
-// Does the same for a folder of results, which must be a folder or a free name. `names`: of the files that it will
-// hold.
+// Checks the same for a folder of results, which must be a folder or a free name. `names`: the files that it will hold.
 void check_output_folder(const std::filesystem::path& folder, const std::vector<std::filesystem::path>& inputs = {},
                          const std::vector<std::string>& names = {});
 

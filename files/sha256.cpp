@@ -1,4 +1,4 @@
-// By OpenSSL, which uses the processor's own instructions; files/web/sha256.cpp does the same for browsers.
+// Uses OpenSSL, which has the processor's own instructions; files/web/sha256.cpp does the same for browsers.
 
 #include "files/sha256.h"
 

@@ -1,5 +1,5 @@
 #pragma once
-// SHA-256 (FIPS 180-4): what a log names so that anybody can check with `sha256sum` which file it was made with.
+// SHA-256 (FIPS 180-4). Logs hold it, so that anybody can check with `sha256sum` which files they were made with.
 
 #include <filesystem>
 #include <string>
@@ -9,10 +9,10 @@ namespace palpa::files {
 
 std::string sha256_hex(std::string_view bytes);
 
-// 64 digits, 0 to 9 and a to f.
+// Says whether the text is 64 digits, 0 to 9 and a to f.
 bool is_sha256_hex(std::string_view text);
 
-// "n/a" where there is no file. Throws InputError if it cannot be read.
+// Returns "n/a" if there is no regular file. Throws InputError if it cannot be read.
 std::string sha256_of_file(const std::filesystem::path& file);
 
 }  // namespace palpa::files

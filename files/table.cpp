@@ -10,8 +10,9 @@
 namespace palpa::files {
 namespace {
 
-// Takes a field in double quotes from the front of `line`, which lies in `text`: up to the next quote, but for two in a row,
-// which are one of the field's own. Closes the gaps that this leaves inside the text. False if nothing closes it.
+// Takes a field in double quotes from the front of `line`, which lies in `text`. It ends at the next single quote; two
+// in a row stand for one in the field, and the gap that this leaves is closed inside `text`. Returns false if no quote
+// closes the field.
 bool take_quoted(std::string& text, std::string_view& line, std::string_view& field) {
     char* const begin = text.data() + (line.data() - text.data()) + 1;
     const char* const end = line.data() + line.size();
@@ -71,7 +72,7 @@ bool Table::next_line(std::string_view& out) {
     return true;
 }
 
-// Quotes mean nothing in tables that are separated by tabs, whose fields hold no tab.
+// Quotes have no meaning in tables that are separated by tabs, whose fields hold no tab.
 void Table::split(std::string_view line) {
     fields_.clear();
     while (true) {

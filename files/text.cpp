@@ -18,7 +18,7 @@ namespace palpa::files {
 std::string read_text(const std::filesystem::path& path, std::size_t limit_bytes) {
     const InputFile file(path);
     std::string text;
-    // memory is reserved for the file's size, which is known for most files: growing would take three times the memory
+    // memory is reserved for the file's size, if that is known: growing would take three times the memory
     if (file.bytes() <= limit_bytes) text.reserve(file.bytes() + 1);
     std::array<char, 1 << 16> buffer;
     while (const std::size_t n = file.read_at(text.size(), buffer.data(), buffer.size())) {
@@ -35,7 +35,7 @@ namespace {
 using Pieces = std::initializer_list<std::string_view>;
 
 void write_new(const std::filesystem::path& path, Pieces pieces, bool sync) {
-    ::unlink(path.c_str());  // what a kill has left, or a FIFO that somebody put there
+    ::unlink(path.c_str());  // left by a killed run, or a FIFO that somebody put there
     const int fd = ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0644);
     if (fd < 0) fail_writing(path);
     for (std::string_view text : pieces) {

@@ -8,11 +8,11 @@
 
 namespace palpa::files {
 
-// Throws InputError if the file cannot be read, is a folder, or is larger than `limit_bytes`.
+// Reads a whole file. Throws InputError if it cannot be read, is not a regular file, or is larger than `limit_bytes`.
 std::string read_text(const std::filesystem::path& path, std::size_t limit_bytes = std::size_t{1} << 31);
 
-// Writes beside the target, syncs, then renames: the file is there whole or not at all.
-// Throws std::runtime_error with the system's reason.
+// Writes beside the target, syncs, then renames: the file is there whole or not at all. Throws std::runtime_error with
+// the system's reason, InputError if `path` exists and is not a regular file.
 void write_text_atomically(const std::filesystem::path& path, std::string_view text);
 
 // Does the same without waiting for the disk: after a kill the file is there whole or not at all, but after a power cut

@@ -14,7 +14,7 @@ namespace palpa::platform {
 
 // Pointer numbers of pens count down from -2 (platform/mouse.h).
 inline constexpr std::int64_t kKeyboardPointerId = -1;
-inline constexpr double kSlowShare = 0.2;  // of the speed, with Shift
+inline constexpr double kSlowShare = 0.2;  // share of the speed while Shift is held
 
 enum class PointerKey : std::uint8_t { left, right, up, down, press, harder, softer };
 
@@ -39,29 +39,29 @@ struct Keyboard {
 };
 
 bool is_on(const Keyboard& keyboard);
-bool key_held(const Keyboard& keyboard);  // an arrow or the press key: samples come without events
+bool key_held(const Keyboard& keyboard);  // an arrow or the press key is held: samples come without events
 
 // Sets a new area. The cursor starts in its middle if the pointer was off, else it is moved inside. If the area turns
-// the pointer off, all keys are released; the caller cancels a press that was going on.
+// the pointer off, all keys are released; the caller cancels a press in progress.
 void set_area(const KeyboardArea& area, Keyboard& keyboard);
 
-// While a key is held: appends one sample for each grid point up to and with `t_host_s` that has none yet, with phase
-// hover, or move while the press key is down. Call it before any other sample of that time, so that samples stay in
-// order. No sample of a keyboard has a device time.
+// While a key is held: appends one sample for each grid point up to and including `t_host_s` that has none yet, with
+// phase hover, or move while the press key is down. To be called before any other sample of that time, so that samples
+// stay in order. No sample of a keyboard has a device time.
 void hold_keys(double t_host_s, Keyboard& keyboard, std::vector<Sample>& out);
 
-// The samples of hold_mouse() and hold_keys() together, in order of time.
+// Appends the samples of hold_mouse() and hold_keys() in order of time.
 void hold_mouse_and_keys(double t_host_s, Mouse& mouse, Keyboard& keyboard, std::vector<Sample>& out);
 
-// Take a key that goes down or comes up; call hold_keys() with the same time first. They append a sample where
-// something changes: a press, its end, an arrow let go (the cursor has stopped), a level changed during a press. They
-// ignore all keys while the pointer is off, and a key that is held already.
+// Take a key that goes down or comes up; hold_keys() must be called with the same time first. They append a sample if
+// something changes: a press begins or ends, an arrow is released (the cursor stops), or the level changes during a
+// press. They ignore all keys while the pointer is off, and a key that is held already.
 void key_down(double t_host_s, PointerKey key, Keyboard& keyboard, std::vector<Sample>& out);
 void key_up(double t_host_s, PointerKey key, Keyboard& keyboard, std::vector<Sample>& out);
 
 void set_slow(double t_host_s, bool slow, Keyboard& keyboard);  // Shift
 
-// Lets all keys go without a sample; the caller cancels the press.
+// Releases all keys without a sample; the caller cancels the press.
 void release_keys(Keyboard& keyboard);
 
 }  // namespace palpa::platform

@@ -19,17 +19,17 @@ struct Mouse {
     std::int64_t last_tick = 0;  // grid points up to this one have their sample
 };
 
-// While the button is held: appends one sample for each grid point up to and with `t_host_s` that has none yet.
-// Call it before any other sample of that time, so that samples stay in order. These samples have no device
-// time: no device sent them.
+// While the button is held: appends one sample for each grid point up to and including `t_host_s` that has none yet. To
+// be called before any other sample of that time, so that samples stay in order. These samples have no device time,
+// since no device sent them.
 void hold_mouse(double t_host_s, Mouse& mouse, std::vector<Sample>& out);
 
-// Append each of the mouse's own events as a sample: hover or move, down, up.
+// Append a sample for each event of the mouse: hover or move, down, up.
 void move_mouse(double t_host_s, double t_device_s, double x_px, double y_px, Mouse& mouse, std::vector<Sample>& out);
 void press_mouse(double t_host_s, double t_device_s, Mouse& mouse, std::vector<Sample>& out);
 void release_mouse(double t_host_s, double t_device_s, Mouse& mouse, std::vector<Sample>& out);
 
-// Notches away from the person press harder. Appends a sample if the button is down.
+// Turns the wheel; notches away from the person press harder. Appends a sample if the button is down.
 void turn_wheel(double t_host_s, double t_device_s, double notches, Mouse& mouse, std::vector<Sample>& out);
 
 }  // namespace palpa::platform

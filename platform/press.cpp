@@ -14,7 +14,7 @@ void cancel(double t_host_s, Press& press, std::vector<Sample>& out) {
     if (press.owner == PressOwner::tissue) {
         Sample sample = press.last;
         sample.t_host_s = t_host_s;
-        sample.t_device_s = kMissing;  // no device said so
+        sample.t_device_s = kMissing;  // no device sent it
         sample.phase = Phase::cancel;
         out.push_back(sample);
     }

@@ -1,6 +1,6 @@
 #pragma once
-// Whether a device really measures pressure. A pen or touch screen without a sensor reports a constant (0, 0.5, 1) or
-// nothing at all; the person should be told, and be offered another way to press.
+// Detects whether a device really measures pressure. A pen or touch screen without a sensor reports a constant (0, 0.5,
+// 1) or nothing at all; the person should then be told, and be offered another way to press.
 
 #include <array>
 #include <cstdint>
@@ -13,16 +13,16 @@ enum class PressureKind : std::uint8_t {
     unknown,   // too few samples yet
     varies,    // the device has a sensor
     constant,  // the same value in each sample of at least 0.5 s and 30 samples
-    missing    // samples touch without any pressure
+    missing    // touching samples come without pressure
 };
 
 // What one tool has sent, all its pointers together.
 struct ToolPressure {
-    std::int64_t without = 0;  // touching samples that had no pressure
-    std::int64_t with = 0;     // touching samples after the first of each press, with pressure
-    double first = kMissing;   // pressure of the first of these
+    std::int64_t without = 0;  // touching samples without pressure
+    std::int64_t with = 0;     // touching samples with pressure, without the first of each press
+    double first = kMissing;   // pressure of the first such sample
     bool changed = false;
-    double touching_s = 0.0;   // between samples of a touch
+    double touching_s = 0.0;   // time between samples of a touch, summed
     double last_s = kMissing;  // time of the sample before; missing while nothing touches
 };
 
@@ -30,14 +30,14 @@ struct PressureWatch {
     std::array<ToolPressure, kToolCount> tools;
 };
 
-// Call it with every sample, before press_by_hold() changes its pressure. Allocates nothing. The first sample of
-// a press is not compared, since some pens report a wrong pressure in it (scene/advance.cpp).
+// Takes every sample, before press_by_hold() changes its pressure. Allocates nothing. The first sample of a press is
+// not compared, since some pens report a wrong pressure in it (scene/advance.cpp).
 void watch(const Sample& sample, PressureWatch& watch);
 
-// The verdict so far; a constant that moves after all corrects it.
+// Returns the verdict so far; if a constant changes later, so does the verdict.
 PressureKind pressure_kind(const PressureWatch& watch, Tool tool);
 
-// The value that never changed, NaN unless the kind is constant.
+// Returns the value that never changed; NaN unless the kind is constant.
 double constant_pressure(const PressureWatch& watch, Tool tool);
 
 }  // namespace palpa::platform

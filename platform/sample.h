@@ -1,5 +1,5 @@
 #pragma once
-// One reading of a pointing device, as it came. Everything else is computed from this struct; a recorded trace is a
+// One reading of a pointing device, as it arrived. Everything else is computed from this struct; a recorded trace is a
 // list of samples (platform/trace.h).
 
 #include <cstdint>
@@ -15,10 +15,10 @@ enum class Tool : std::uint8_t { pen, finger, mouse, keyboard };
 inline constexpr int kToolCount = 4;
 enum class Phase : std::uint8_t { hover, down, move, up, cancel, ui };
 
-// What a person asked of the program between samples; only rows of phase `ui` carry one.
+// What a person asked of the program between samples; only samples of phase `ui` carry an action.
 //   resize        x_px, y_px, width_px, height_px hold the part of the window that the tissue has now, so that a replay
-//                 maps positions alike
-//   mark          x_px, y_px hold the place of the mark
+//                 maps positions in the same way
+//   mark          x_px, y_px hold the position of the mark
 //   confidence_*  how sure the person is of the last mark
 //   hidden, shown the window went out of sight, or came back; nothing is sampled in between
 enum class Action : std::uint8_t {
@@ -44,7 +44,7 @@ struct Sample {
     Phase phase = Phase::hover;
     double x_px = 0.0;               // from the left edge of the window's drawing area
     double y_px = 0.0;               // from its top edge, downwards
-    double pressure = kMissing;      // 0..1 of the device's range; above 1 on some tablets
+    double pressure = kMissing;      // 0..1 over the device's range; above 1 on some tablets
     double pressure_raw = kMissing;  // counts, as the device reports them
     double tilt_x_deg = kMissing;
     double tilt_y_deg = kMissing;
@@ -53,7 +53,7 @@ struct Sample {
     Action action = Action::none;
 };
 
-// Names as they stand in traces and logs. parse_* return false and leave `out` alone for an unknown name.
+// Names in traces and logs. parse_name() returns false and leaves `out` as it is for an unknown name.
 std::string_view name_of(Tool tool);
 std::string_view name_of(Phase phase);
 std::string_view name_of(Action action);

@@ -1,5 +1,5 @@
 #pragma once
-// Device clocks that count milliseconds in 32 bits start again from 0 every 49.7 days.
+// Undoes the wrap-arounds of device clocks, which count milliseconds in 32 bits and start again from 0 every 49.7 days.
 
 #include <cstdint>
 
@@ -11,12 +11,12 @@ struct UnwrapState {
     std::int64_t total_ms = 0;  // last_ms with all wrap-arounds undone
 };
 
-// The clock's reading with its wrap-arounds undone, in ms; the first reading is returned as it is.
+// Returns the clock's reading with its wrap-arounds undone, in ms; the first reading is returned as it is.
 //
 //   total += d,   d = now - last as a signed 32-bit difference
 //
-// Readings that repeat give the same time again, readings out of order a time that much earlier. A gap of
-// more than 2^31 ms (24.8 days) between two readings cannot be told from a step backwards.
+// Repeated readings give the same time again, and readings out of order a correspondingly earlier time. A gap of more
+// than 2^31 ms (24.8 days) between two readings cannot be told from a step backwards.
 inline double unwrap_ms(std::uint32_t now_ms, UnwrapState& state) {
     if (state.started) {
         state.total_ms += static_cast<std::int32_t>(now_ms - state.last_ms);

@@ -9,7 +9,7 @@ namespace palpa::platform {
 // A serial port, raw 8N1. read() blocks for `wait_s` at most; the class is meant for a thread of its own.
 class SerialPort {
   public:
-    // Throws std::runtime_error with the system's reason; InputError for a rate that the system does not know.
+    // Throws std::runtime_error with the system's reason, InputError for a baud rate that is not supported.
     SerialPort(const std::string& path, int baud);
     ~SerialPort();
     SerialPort(const SerialPort&) = delete;
@@ -17,7 +17,7 @@ class SerialPort {
 
     // Returns the number of bytes read, 0 if none came within `wait_s`, -1 once the device is gone (unplugged).
     int read(double wait_s, std::uint8_t* bytes, std::size_t room);
-    // Writes all of it or returns false.
+    // Writes all bytes, or returns false.
     bool write(const std::uint8_t* bytes, std::size_t count);
 
   private:

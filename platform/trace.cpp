@@ -47,7 +47,8 @@ void append_field(Name value, std::string& row) {
 void read_field(const files::Table& table, std::size_t column, double& out) { out = table.number(column); }
 void read_field(const files::Table& table, std::size_t column, std::int64_t& out) {
     const double value = table.finite_number(column);
-    const bool old_keyboard = value == static_cast<double>(kOldKeyboardId);  // a power of two: no digit is lost
+    // a power of two, so double holds it exactly
+    const bool old_keyboard = value == static_cast<double>(kOldKeyboardId);
     if (!old_keyboard && (value != std::floor(value) || std::abs(value) > 9e15)) table.fail(column, "a whole number");
     out = static_cast<std::int64_t>(value);
 }
@@ -70,7 +71,7 @@ const std::filesystem::path& checked_name(const std::filesystem::path& tsv) {
     return tsv;
 }
 
-// Names of device loops become names of files.
+// True for a name that can be part of a file's name.
 bool is_loop_name(std::string_view name) {
     const auto plain = [](char c) { return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '-'; };
     return !name.empty() && name.size() <= 40 && std::all_of(name.begin(), name.end(), plain);
@@ -91,7 +92,7 @@ std::vector<std::string> read_loops(files::JsonReader& json) {
     return loops;
 }
 
-// What the recorded trial was, in traces that say so.
+// Reads what the sidecar says of the recorded trial, if anything.
 void read_trial(files::JsonReader& json, TraceInfo& info) {
     constexpr files::Bounds kOffset_mm{0.0, 1000.0};
     if (json.has("mode")) info.mode = json.choice("mode", {"practice", "test"}) == 0 ? "practice" : "test";
@@ -149,7 +150,8 @@ Trace read_trace(const std::filesystem::path& tsv) {
     std::vector<std::size_t> columns;
     visit_fields(order, [&](std::string_view name, auto&) { columns.push_back(table.column(name)); });
     while (table.next()) {
-        constexpr std::size_t kFirst = 1000;  // they tell how many there will be; growing by doubling takes more memory
+        // the first rows tell how many there will be; growing by doubling would take more memory
+        constexpr std::size_t kFirst = 1000;
         if (trace.samples.size() == kFirst)
             trace.samples.reserve(static_cast<std::size_t>(1.1 * static_cast<double>(kFirst) / table.done()));
         Sample sample;
@@ -166,7 +168,7 @@ Trace read_trace(const std::filesystem::path& tsv) {
 }
 
 TraceWriter::TraceWriter(const std::filesystem::path& tsv, const TraceInfo& info) : file_(checked_name(tsv)) {
-    files::AppendFile sidecar(sidecar_of(tsv));  // never over something that is there
+    files::AppendFile sidecar(sidecar_of(tsv));  // refuses to overwrite a file
     sidecar.append(files::json_text(info_json(info)));
     if (!sidecar.sync()) throw std::runtime_error(sidecar.path().string() + ": cannot be written to its end");
     Sample any;

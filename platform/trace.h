@@ -1,6 +1,6 @@
 #pragma once
-// Recorded input: one tab-separated row per sample, and a JSON sidecar of the same name that says on which
-// screen, and in what kind of trial, it was recorded. A whole run replays from its trace.
+// Recorded input: one tab-separated row per sample, and a JSON sidecar of the same name that says on which screen, and
+// in what kind of trial, it was recorded. A whole run can be replayed from its trace.
 
 #include <filesystem>
 #include <memory>
@@ -13,7 +13,7 @@
 
 namespace palpa::platform {
 
-// How the tissue lay on the screen (scene/mapping.h).
+// How the tissue was turned on the screen (scene/mapping.h).
 struct TissueTurn {
     int rotate_deg = 0;  // 0, 90, 180, 270
     bool flip = false;
@@ -25,12 +25,11 @@ struct TraceInfo {
     double screen_width_mm = kMissing;
     double screen_height_mm = kMissing;
     std::string device;
-    // Device loops that ran with it. What went into the loop NAME stands in X.NAME.tsv (session/device_rows.h).
+    // Device loops that ran with it. The input of the loop NAME is in X.NAME.tsv (session/device_rows.h).
     std::vector<std::string> device_loops{};
-    // Of the trial that was recorded, so that a replay logs the same. Traces that no trial made, and older ones, say
-    // nothing of it.
-    std::string mode{};             // practice or test; empty: not said
-    double finger_offset_mm = 0.0;  // positions of fingers were moved up by this
+    // The recorded trial, so that a replay logs the same. Traces without a trial, and older ones, lack these.
+    std::string mode{};             // practice or test; empty: not recorded
+    double finger_offset_mm = 0.0;  // by which positions of fingers were moved up
     std::optional<TissueTurn> turn{};
 };
 
@@ -42,8 +41,8 @@ struct Trace {
 // Reads X.tsv and X.json. Throws InputError with file, line and column.
 Trace read_trace(const std::filesystem::path& tsv);
 
-// Writes a trace NAME.tsv and its NAME.json while samples arrive, and overwrites nothing. Throws InputError for a name
-// that cannot be used, std::runtime_error if the file cannot be made.
+// Writes a trace NAME.tsv and its NAME.json while samples arrive, and overwrites nothing. The constructor throws
+// InputError for a name that cannot be used, std::runtime_error if a file cannot be written.
 class TraceWriter {
   public:
     TraceWriter(const std::filesystem::path& tsv, const TraceInfo& info);

@@ -15,9 +15,10 @@ class UdpPort {
     UdpPort(const UdpPort&) = delete;
     UdpPort& operator=(const UdpPort&) = delete;
 
+    // Sends one datagram; returns false if the system did not take all of it.
     bool send(const std::uint8_t* bytes, std::size_t count);
-    // Returns the number of bytes of one datagram; 0 if none came within `wait_s`, or if nobody listens at the address.
-    // With `wait_s` = 0 it takes only what has arrived already.
+    // Receives one datagram. Returns its number of bytes; 0 if none came within `wait_s`, or if nobody listens at the
+    // address. With `wait_s` = 0 it takes only what has arrived already.
     int receive(double wait_s, std::uint8_t* bytes, std::size_t room);
 
   private:

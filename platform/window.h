@@ -29,10 +29,10 @@ struct PointerDevice {
     bool has_pressure = false;
     double pressure_min = 0.0;  // counts
     double pressure_max = 0.0;  // counts
-    std::int64_t levels = 0;    // how many counts there are from the one to the other; 0 without pressure
+    std::int64_t levels = 0;    // number of counts from pressure_min to pressure_max; 0 without pressure
     bool has_tilt = false;
     bool has_contact_size = false;
-    std::vector<std::string> axes{};  // as the driver calls them
+    std::vector<std::string> axes{};  // names as the driver gives them
 };
 
 // One window. Its constructor throws std::runtime_error with a message for people if there is no display or no OpenGL
@@ -44,24 +44,25 @@ class Window {
     Window(const Window&) = delete;
     Window& operator=(const Window&) = delete;
 
-    // Appends all samples that arrived since the last call, oldest first; no two are merged. Waits for input up
-    // to `wait_s` seconds (0: not at all). Places are in px of the drawing area. A press that is going on
-    // when the window loses the focus ends with phase cancel. t_device_s is one clock for all tools (on X11
-    // the server's, in whole ms). It is missing where no device sent the sample: for a mouse button that is held
-    // still (a sample each 1/240 s), and for a cancel.
+    // Appends all samples that arrived since the last call, oldest first; no two are merged. Waits for input up to
+    // `wait_s` seconds (0: not at all). Positions are in px of the drawing area. A press in progress when the window
+    // loses the focus ends with phase cancel. t_device_s is one clock for all tools (on X11 the server's, in whole ms).
+    // It is missing if no device sent the sample: while a mouse button is held still (a sample each 1/240 s), and for a
+    // cancel.
     void poll(double wait_s, std::vector<Sample>& out);
 
-    // Called with every event as it arrives, before it becomes a sample (Dear ImGui listens here). If it returns
-    // true for button_down or finger_down, that whole press belongs to a panel and none of its samples come out of
-    // poll(). The filter should judge by the place in the event, since the pointer may not have been there before. If
-    // it returns true for wheel, the wheel sets no pressure. A pen's press comes as button_down too.
+    // Sets a filter that is called with every event as it arrives, before it becomes a sample (Dear ImGui listens
+    // here). If it returns true for button_down or finger_down, that whole press belongs to a panel and none of its
+    // samples come out of poll(). The filter should judge by the position in the event, since the pointer may not have
+    // been there before. If it returns true for wheel, the wheel sets no pressure. A pen's press comes as button_down
+    // too.
     void set_event_filter(EventFilter filter, void* user);
 
-    // Sets the area (px of the drawing area) and the speed of a pointer that is moved by keys. An empty area turns the
-    // pointer off, as it is at the start. Arrows move it, slower with Shift; Space presses harder the longer it is
-    // held; Page Up and Page Down set how hard. The pointer starts in the middle of the area; call again when the area
-    // changes. It takes only keys for whose key_down the event filter returned false. While one of its keys is held,
-    // a sample comes each 1/240 s.
+    // Sets the area (px of the drawing area) and the speed of a pointer that keys move. An empty area turns the pointer
+    // off, as it is at the start. Arrows move it, slower with Shift; Space presses harder the longer it is held; Page
+    // Up and Page Down set how hard. The pointer starts in the middle of the area; to be called again when the area
+    // changes. It takes only keys for whose key_down the event filter returned false. While one of its keys is held, a
+    // sample comes each 1/240 s.
     void set_keyboard(double x0_px, double y0_px, double x1_px, double y1_px, double speed_px_per_s);
 
     // True if the last poll() met any event: a sample, or anything else that may change the look of panels.
@@ -70,7 +71,7 @@ class Window {
     bool uncovered() const;
 
     // Ends all presses without a sample: their later samples, up to the lift, are dropped, and so are the samples that
-    // poll() has not handed over yet.
+    // poll() has not returned yet.
     void end_presses();
 
     bool close_requested() const;
@@ -81,17 +82,17 @@ class Window {
     double now_s() const;  // steady clock; the same as t_host_s
     int width_px() const;  // drawing area
     int height_px() const;
-    double keyboard_x_px() const;  // the cursor that keys move
+    double keyboard_x_px() const;  // position of the cursor that keys move
     double keyboard_y_px() const;
-    double mouse_pressure() const;  // what the mouse presses with now (wheel or hold), or its wheel is set to
+    double mouse_pressure() const;  // present pressure of the mouse (by wheel or hold), or the level of its wheel
     std::vector<PointerDevice> devices() const;
-    bool lists_devices() const;      // false, in a browser: only those are known that have sent something
-    std::string input_note() const;  // why no pen or finger has pressure here, for people; empty if they may
+    bool lists_devices() const;      // false in a browser, where only devices that sent something are known
+    std::string input_note() const;  // why pens and fingers have no pressure here, for people; or empty
     void set_title(const std::string& title);
     bool full_screen() const;
     void set_full_screen(bool full);
-    std::string screen_name() const;  // of the screen that the window is on, with its size
-    // px per millimetre of a screen that is touched, as far as the system knows it; NaN: unknown, as on a desktop
+    std::string screen_name() const;  // of the screen that shows the window, with its size
+    // Returns px per millimetre of a touch screen, as far as the system knows it; NaN if unknown, as on a desktop.
     double touch_px_per_mm() const;
     SDL_Window* sdl() const;  // desktop only
 

@@ -1,12 +1,12 @@
 #pragma once
-// Events of a window that panels take: pointer, wheel, keys and text. Places are in px of the drawing area.
+// Events of a window for its panels: pointer, wheel, keys and text. Positions are in px of the drawing area.
 
 #include <cstdint>
 #include <string>
 
 namespace palpa::platform {
 
-// The number of a key: the ASCII code of what it types (small letters), or one of these constants.
+// The number of a key: the ASCII code of what it types (lower-case letters), or one of these constants.
 namespace key {
 inline constexpr int backspace = 8, tab = 9, enter = 13, escape = 27, space = 32, del = 127;
 inline constexpr int left = 256, right = 257, up = 258, down = 259, page_up = 260, page_down = 261, home = 262,
@@ -34,7 +34,7 @@ struct WindowEvent {
     Kind kind = Kind::pointer_move;
     double x_px = 0.0;
     double y_px = 0.0;
-    bool made_from_touch = false;  // a mouse event that the system makes of a finger's event
+    bool made_from_touch = false;  // a mouse event that the system derives from a finger's event
     std::int64_t finger_id = 0;
     double notches = 0.0;  // of a wheel, away from the person
     int key = key::other;

@@ -19,7 +19,7 @@ std::string span_text(const Map& map) {
            mm(map.y_of(map.n_y - 1)) + " mm";
 }
 
-// First and last index of the places of `grid` along an axis that lie on `other`, or none.
+// The indices along an axis of the places of `grid` that lie on `other`; count 0: none.
 struct Range {
     std::size_t first = 0;
     std::size_t count = 0;
@@ -27,7 +27,7 @@ struct Range {
 Range shared(const Map& grid, const Map& other, int axis) {
     const std::size_t n = axis == 0 ? grid.n_x : grid.n_y;
     const std::size_t n_other = axis == 0 ? other.n_x : other.n_y;
-    const double half_m = 0.5 * other.spacing_m[axis] * (1.0 + 1e-9);  // a cell speaks for what is around its point
+    const double half_m = 0.5 * other.spacing_m[axis] * (1.0 + 1e-9);  // a cell covers half a pitch around its point
     const double low = other.origin_m[axis] - half_m;
     const double high = other.origin_m[axis] + other.spacing_m[axis] * static_cast<double>(n_other - 1) + half_m;
     Range out;

@@ -28,7 +28,7 @@ std::vector<float> depths_mm(const Map& map) {
     return out;
 }
 
-// Everything, by name.
+// Returns all arrays of the map with their names.
 std::vector<files::MatArray> arrays_of(const Map& map) {
     const std::vector<std::size_t> shape{map.n_depths(), map.n_y, map.n_x};
     std::vector<files::MatArray> out{{"normal_N", shape, map.normal_N}};
@@ -40,7 +40,7 @@ std::vector<files::MatArray> arrays_of(const Map& map) {
     return out;
 }
 
-// Shortest text that reads back as the same float.
+// Appends the shortest text that reads back as the same float.
 void append_force(const std::vector<float>& forces, std::size_t at, std::string& out) {
     out += ',';
     if (forces.empty() || std::isnan(forces[at])) {
@@ -76,7 +76,7 @@ void write_folder(const Map& map, fs::path folder) {
         fs::create_directory(aside);
         for (files::MatArray& array : arrays_of(map)) {
             std::vector<std::size_t> shape = array.shape;
-            if (shape.size() == 2) shape.erase(shape.begin());  // a row for MATLAB, a vector for NumPy
+            if (shape.size() == 2) shape.erase(shape.begin());  // MATLAB gets a row, NumPy a vector
             files::write_npy(aside / (array.name + ".npy"), shape, array.values);
         }
         fs::rename(aside, folder);

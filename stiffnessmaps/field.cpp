@@ -11,8 +11,9 @@ namespace {
 
 GridShape shape_of(const Map& map) { return {map.n_x, map.n_y, map.spacing_m[0], map.spacing_m[1]}; }
 
-// One cell's curve over depth from its measured forces: isotonic, >= 0, gaps interpolated, continued beyond
-// its last depth with its last slope. Returns the layer of its last measurement, 0 if there is none.
+// Completes one cell's forces over depth: isotonic, >= 0, gaps interpolated, extrapolated beyond the last measurement
+// with its last slope. Counts the forces that isotonic regression changed. Returns the layer of the last measurement, 0
+// if there is none.
 std::size_t fill_column(const std::vector<double>& depths_m, std::vector<double>& column, std::size_t& changed) {
     std::vector<std::size_t> layer{0};
     std::vector<double> force{0.0};
@@ -56,7 +57,8 @@ void fill_normal(const Map& map, Field& field) {
         field.greatest_m[cell] = field.depths_m[last];
         field.measured[cell] = 1.0;
     }
-    // cells without any measurement: from their neighbours, so that look-ups stay continuous; flagged
+    // cells without any measurement are filled from their neighbours, so that look-ups stay continuous, and stay
+    // flagged
     std::vector<double> layer(map.n_cells());
     for (std::size_t k = 0; k < n_layers; ++k) {
         for (std::size_t cell = 0; cell < map.n_cells(); ++cell) layer[cell] = field.normal_N[cell * n_layers + k];
@@ -120,7 +122,8 @@ void fill_rest(const Map& map, Field& field) {
     }
 }
 
-// The layer above `depth_m`, so that depths_m[layer] <= depth < depths_m[layer + 1] (clamped to the last one).
+// Returns the last layer that is not deeper than `depth_m`: depths_m[layer] <= depth < depths_m[layer + 1] (clamped to
+// the last pair of layers).
 std::size_t layer_above(const Field& field, double depth_m) {
     std::size_t layer = 0;
     while (layer + 2 < field.n_layers() && field.depths_m[layer + 1] <= depth_m) ++layer;
@@ -158,9 +161,9 @@ Place place_at(const Field& field, const Eigen::Vector2d& p_m) {
     const auto split = [&](int axis, std::size_t n, std::size_t& low, double& s) {
         double at = (p_m[axis] - field.origin_m[axis]) * field.cells_per_m[axis];
         const double last = static_cast<double>(n - 1);
-        constexpr double kHalfCell = 0.5 + 1e-9;  // a cell speaks for what is around its point
+        constexpr double kHalfCell = 0.5 + 1e-9;  // a cell covers half a pitch around its point
         if (!(at >= -kHalfCell && at <= last + kHalfCell)) place.inside = false;
-        at = at > 0.0 ? std::min(at, last) : 0.0;  // NaN goes to 0
+        at = at > 0.0 ? std::min(at, last) : 0.0;  // NaN becomes 0
         low = std::min(static_cast<std::size_t>(at), n > 1 ? n - 2 : 0);
         s = at - static_cast<double>(low);
     };
@@ -226,12 +229,12 @@ DepthAnswer depth_at(const Field& field, const Place& place, double force_N) {
 
 namespace {
 
-// Weights of the two layers around a depth.
+// A depth between two layers, with the weights of both.
 struct LayerSpot {
     std::size_t layer = 0;
-    double energy_above = 0.0;  // of the upper layer's force in the energy: z - z^2/(2 D)
-    double energy_below = 0.0;  // of the lower layer's: z^2/(2 D)
-    double s = 0.0;             // linear interpolation
+    double energy_above = 0.0;  // weight of the upper layer's force in the energy, m: z - z^2/(2 D)
+    double energy_below = 0.0;  // weight of the lower layer's force, m: z^2/(2 D)
+    double s = 0.0;             // weight of the lower layer in linear interpolation
 };
 
 LayerSpot spot_at(const Field& field, double depth_m) {
@@ -245,7 +248,7 @@ LayerSpot spot_at(const Field& field, double depth_m) {
     return spot;
 }
 
-// u . G at one place.
+// Returns u . G at one place, N.
 double uphill_N(const Field& field, const Place& place, const Eigen::Vector2d& u, const LayerSpot& spot) {
     double sum = 0.0;
     for (std::size_t c = 0; c < 4; ++c) {

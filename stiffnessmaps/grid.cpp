@@ -7,7 +7,7 @@
 namespace palpa::stiffnessmaps {
 namespace {
 
-// One pass along x (stride 1) or y (stride n_x), weights and weighted values at once.
+// Blurs one line along x (stride 1) or y (stride n_x): weighted values and weights alike.
 void blur_line(std::vector<double>& values, std::vector<double>& weights, std::size_t start, std::size_t stride,
                std::size_t n, const std::vector<double>& kernel) {
     const auto reach = static_cast<std::ptrdiff_t>(kernel.size()) - 1;
@@ -29,7 +29,7 @@ void blur_line(std::vector<double>& values, std::vector<double>& weights, std::s
     }
 }
 
-// Four sigmas, but no farther than the line is long.
+// Returns half of the kernel, out to four sigmas but no farther than the line is long.
 std::vector<double> gaussian(double sigma_in_cells, std::size_t n) {
     const double reach = std::min(std::ceil(4.0 * sigma_in_cells), static_cast<double>(n - 1));
     std::vector<double> kernel(1 + static_cast<std::size_t>(reach));

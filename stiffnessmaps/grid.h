@@ -1,5 +1,5 @@
 #pragma once
-// Small operations on one row-major grid of n_y rows by n_x cells, NaN = missing.
+// Operations on a row-major grid of n_y rows of n_x cells; NaN = missing.
 
 #include <cstddef>
 #include <limits>
@@ -17,21 +17,22 @@ struct GridShape {
     std::size_t size() const { return n_x * n_y; }
 };
 
-// Gaussian smoothing, normalised over the cells that are there; missing cells stay missing. sigma 0: a copy.
+// Gaussian smoothing, normalised over the cells that are not missing; missing cells stay missing. With sigma 0, returns
+// a copy.
 std::vector<double> smooth(const std::vector<double>& values, const GridShape& shape, double sigma_m);
 
-// Every missing cell becomes the mean of its neighbours, from the measured ones outwards. At least one cell
-// must be there.
+// Replaces every missing cell by the mean of its neighbours, from the measured cells outwards. A grid without any value
+// stays as it is.
 void fill_missing(std::vector<double>& values, const GridShape& shape);
 
-// Central differences, one-sided at the borders, 0 along an axis of one cell. Per metre.
+// Central differences per metre, one-sided at the borders, 0 along an axis of one cell.
 struct Gradient {
     std::vector<double> x;
     std::vector<double> y;
 };
 Gradient gradient(const std::vector<double>& values, const GridShape& shape);
 
-// Least-squares non-decreasing sequence (pool adjacent violators; Barlow et al. 1972). In place.
+// Replaces the values by the least-squares non-decreasing sequence (pool adjacent violators; Barlow et al. 1972).
 void make_isotonic(std::vector<double>& values);
 
 }  // namespace palpa::stiffnessmaps

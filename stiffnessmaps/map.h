@@ -1,6 +1,6 @@
 #pragma once
-// A stiffness map: forces on an indenter, recorded or computed on a grid of positions at several depths.
-// This is the raw data as it stands in a map folder; field.h prepares it for look-up.
+// A stiffness map: forces on an indenter, recorded or computed on a grid of positions at several depths. This is the
+// raw data of a map folder; field.h prepares it for look-up.
 
 #include <optional>
 #include <string>
@@ -24,12 +24,12 @@ struct Nodule {
     std::optional<double> angle_deg;
 };
 
-// One thing that was chosen, by the program or by a person, when a recording became this map.
+// One choice that the program or a person made when a recording became this map.
 struct SourceChoice {
     std::string key;  // "pitch_mm"
     std::variant<double, std::string, std::vector<double>> value;
     std::string how;     // why this value
-    std::string option;  // what chooses another one: "--pitch-mm"
+    std::string option;  // the option that changes it: "--pitch-mm"
 };
 
 struct MapSource {
@@ -42,19 +42,19 @@ struct MapSource {
 
 struct Map {
     std::string name;
-    double origin_m[2] = {0.0, 0.0};  // position of cell (0, 0), in the recording's own frame
+    double origin_m[2] = {0.0, 0.0};  // position of cell (0, 0), in the frame of the recording
     double spacing_m[2] = {1e-3, 1e-3};
     std::size_t n_x = 0;
     std::size_t n_y = 0;
     std::vector<double> depths_m;  // ascending, > 0
-    // [n_depth][n_y][n_x]; NaN = not measured. The tangential arrays may be empty. Tangential force that
-    // opposes motion along +x (+y) is positive.
+    // [n_depth][n_y][n_x]; NaN = not measured. The tangential arrays may be empty. Tangential force that opposes motion
+    // along +x (+y) is positive.
     std::vector<float> normal_N;
     std::vector<float> tangential_x_N;
     std::vector<float> tangential_y_N;
-    // Empty, or normal_N with every gap closed, for programs that cannot do with NaN; look-up does not read it.
+    // Empty, or normal_N with every gap closed, for programs that cannot read NaN; look-up does not use it.
     std::vector<float> filled_normal_N;
-    std::optional<double> noise_N;  // standard deviation of the normal force, where it was estimated at import
+    std::optional<double> noise_N;  // standard deviation of the normal force, if estimated at import
     TangentialKind tangential = TangentialKind::none;
     IndenterShape indenter = IndenterShape::sphere;
     double indenter_radius_m = 4e-3;

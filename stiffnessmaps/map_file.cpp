@@ -20,7 +20,7 @@ constexpr double kDeepest_m = 10.0;
 constexpr files::Bounds kSpacing_mm{1e-3, 1e4};
 
 double mm(double metres) {
-    // 0.004 m is written as 4 mm, not 4.000000000000001
+    // rounded, so that 0.004 m is written as 4 mm, not 4.000000000000001
     return std::round(metres * 1e12) / 1e9;
 }
 

@@ -11,7 +11,7 @@ namespace {
 
 void second_differences(const Map& map, std::size_t along, std::size_t n, std::size_t stride,
                         std::vector<double>& out) {
-    constexpr std::size_t kEnough = 1'000'000;  // forces; a quantile of every so many is as good
+    constexpr std::size_t kEnough = 1'000'000;  // forces; beyond that a part of them gives the same quantile
     const std::size_t step = 1 + map.normal_N.size() / kEnough;
     for (std::size_t k = 0; k < map.n_depths(); ++k) {
         for (std::size_t cell = 0; cell < map.n_cells(); cell += step) {
@@ -26,7 +26,7 @@ void second_differences(const Map& map, std::size_t along, std::size_t n, std::s
     }
 }
 
-// Quantile of |F(i-1) - 2 F(i) + F(i+1)| along x and y; 0 if there are too few.
+// Returns the q quantile of |F(i-1) - 2 F(i) + F(i+1)| along x and y; 0 if there are fewer than 8 differences.
 double second_difference_N(const Map& map, double q) {
     std::vector<double> differences;
     second_differences(map, 1, map.n_x, 1, differences);

@@ -10,7 +10,7 @@ namespace palpa::stiffnessmaps {
 struct Elastic {
     double young_Pa = 0.0;
     double poisson = 0.0;
-    bool assumed = false;  // the modulus is a guess; a map made from it says so
+    bool assumed = false;  // the modulus is a guess, and a map made from it says so
 };
 
 struct PhantomNodule {
@@ -29,7 +29,7 @@ struct Phantom {
     double indenter_radius_m = 0.0;
     double indenter_length_m = 0.0;  // of a cylinder, whose axis lies along y
     bool rolling = true;
-    double friction = 0.0;  // coefficient; counts when it slides
+    double friction = 0.0;  // coefficient; used only if the tool slides
     std::vector<double> depths_m;
     double origin_m[2] = {0.0, 0.0};
     double spacing_m[2] = {0.0, 0.0};
@@ -37,13 +37,13 @@ struct Phantom {
     std::size_t n_y = 0;
 };
 
-// The nodules as marks on a map, seen from above.
+// Returns the nodules as placed nodules of a map.
 std::vector<Nodule> placed_nodules(const Phantom& phantom);
 
-// Throws InputError.
+// Reads a phantom from its JSON file. Throws InputError.
 Phantom read_phantom(const std::filesystem::path& path);
 
-// Grid, depths, indenter and nodules of the phantom's map; no forces yet.
+// Returns a map with the grid, depths, indenter and nodules of the phantom, and no forces yet.
 Map map_of_phantom(const Phantom& phantom);
 
 }  // namespace palpa::stiffnessmaps

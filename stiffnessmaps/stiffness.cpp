@@ -7,7 +7,7 @@ namespace palpa::stiffnessmaps {
 
 std::vector<double> stiffness_N_per_m(const Map& map, double deepest_m) {
     std::vector<double> out(map.n_cells(), std::numeric_limits<double>::quiet_NaN());
-    constexpr double kSame = 1.0 + 1e-9;  // a depth that was typed in mm
+    constexpr double kSame = 1.0 + 1e-9;  // for a depth typed in millimetres
     for (std::size_t cell = 0; cell < map.n_cells(); ++cell) {
         double moment = 0.0;
         double square = 0.0;

@@ -15,7 +15,7 @@ struct BootstrapOptions {
     double level = 0.95;
 };
 
-// What one participant contributed to a condition: k of n. n = 0: the participant was not in it.
+// What one participant contributed to a condition: k of n. n is 0 for a participant who did not take part in it.
 struct Contribution {
     std::int64_t k = 0;
     std::int64_t n = 0;
@@ -25,9 +25,9 @@ struct Contribution {
 // out. The limits are NaN if fewer than two participants contributed.
 Interval bootstrap_share(std::span<const Contribution> people, const BootstrapOptions& options);
 
-// The same interval of the difference a - b; entry i of both belongs to the same participant. People who were in both
-// conditions, only in a and only in b are drawn each from among themselves, so that a resample has the design of the
-// study.
+// Percentile interval of the difference a - b of two such shares; entry i of both spans belongs to the same
+// participant. Participants of both conditions, of a only and of b only are resampled separately, so that every
+// resample has the design of the study. The limits are NaN if either condition has fewer than two participants.
 Interval bootstrap_difference(std::span<const Contribution> a, std::span<const Contribution> b,
                               const BootstrapOptions& options);
 

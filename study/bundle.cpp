@@ -37,7 +37,8 @@ bool take(std::string_view word, std::string_view& rest) {
     return true;
 }
 
-// Takes the longest run of such characters; false if there are none, or too many.
+// Takes the leading characters for which `wanted` is true from `rest`. Returns false if there are none, or more than
+// `longest`.
 bool take_all(bool (*wanted)(char), std::size_t longest, std::string_view& out, std::string_view& rest) {
     const auto end = static_cast<std::size_t>(std::find_if_not(rest.begin(), rest.end(), wanted) - rest.begin());
     out = rest.substr(0, end);
@@ -45,7 +46,7 @@ bool take_all(bool (*wanted)(char), std::size_t longest, std::string_view& out, 
     return !out.empty() && out.size() <= longest;
 }
 
-// True for the name of a run's file, or of a participant's ratings.
+// True for the name of a file of one run, or of a participant's ratings.
 bool is_trial_file(std::string_view rest) {
     std::string_view subject, again, task, run;
     const bool of_subject = take("sub-", rest) && take_all(is_plain, kLongestLabel, subject, rest) &&
@@ -60,7 +61,7 @@ bool is_trial_file(std::string_view rest) {
 std::string one_line(std::string_view text) {
     std::string out(text.substr(0, kLongestMessage));
     for (char& c : out) {
-        // bytes beyond ASCII too: some of them are control characters of terminals
+        // bytes beyond ASCII are replaced too, since some of them are control characters of terminals
         if (static_cast<unsigned char>(c) < 0x20 || static_cast<unsigned char>(c) >= 0x7f) c = '?';
     }
     return text.size() > kLongestMessage ? out.substr(0, kLongestMessage - 3) + "..." : out;
@@ -97,7 +98,7 @@ Bundle read_checked(std::string_view bytes, const std::string& file_name) {
     for (files::JsonReader& json_file : files) {
         BundleFile file = read_file(json_file);
         const auto [it, fresh] = hashes.emplace(file.name, file.sha256);
-        // people are added up and answers grow, so their lines are compared at import
+        // participants of several bundles are merged, and answers grow, so their lines are compared at import
         const bool again = !fresh && it->second != file.sha256;
         if (again && file.kind != LogFileKind::people && !grows(file.name)) {
             json_file.fail("name", files::shown(file.name) + " again with other content", "each file once");

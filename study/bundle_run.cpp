@@ -16,7 +16,8 @@ void add(const std::string& name, const std::string& text, files::Json& files) {
     files.push_back({{"name", name}, {"sha256", files::sha256_hex(text)}, {"text", text}});
 }
 
-// Other participants on this tablet are in bundles of their own.
+// Returns the header of participants.tsv and one participant's line; the other participants on this tablet go into
+// bundles of their own.
 std::string line_of_person(const std::string& people, const std::string& code) {
     std::string out = people.substr(0, people.find('\n') + 1);
     const std::string wanted = "\nsub-" + code + "\t";

@@ -1,8 +1,7 @@
 #pragma once
-// What a tablet keeps, sends to the desk and exports, as a bundle (docs/formats.md):
-//     {"palpa_bundle": 1, "files": [{"name": "sub-01/beh/...", "sha256": "64 hex digits", "text": "..."}]}
-// A bundle of a study's run can be analysed by itself: it also holds study.json, protocol.json, the participant's line
-// of participants.tsv, and the answers so far.
+// Makes the bundles (study/bundle.h) that a tablet keeps, sends to the desk and exports. The bundle of one run of a
+// study can be analysed by itself: it also holds study.json, protocol.json, the participant's line of participants.tsv,
+// and the answers given so far.
 
 #include <filesystem>
 #include <string>
@@ -12,20 +11,21 @@
 
 namespace palpa::study {
 
-// The bundle of one run's files, as they are on the disk now. Throws InputError for a file that cannot be read.
+// Returns the bundle of one run from its files on the disk. Throws InputError for a file that cannot be read.
 std::string bundle_text(const RunFiles& run);
 
-// The bundle of what a participant of a study has answered, without a run. Throws InputError likewise.
+// Returns the bundle of a participant's answers in a study, without a run. Throws InputError for a file that cannot be
+// read.
 std::string bundle_of_answers(const std::filesystem::path& directory, const std::string& code);
 
-// The folder of the study that a run belongs to; empty for a single run.
+// Returns the folder of the study that a run belongs to, or an empty path for a run outside a study.
 std::filesystem::path study_of(const RunFiles& run);
 
-// The files that a study needs to go on: its identity, its people, and a participant's answers. The list holds only
-// files that exist, each to be taken whole.
+// Returns the files that a study needs to continue: its identity, its protocol, its participants, and the answers of
+// participant `code`. The list holds only files that exist, participants.tsv with all its lines.
 std::vector<std::filesystem::path> study_files(const std::filesystem::path& directory, const std::string& code);
 
-// The participant's code in a run's name.
+// Returns the participant's code from the name of a run.
 std::string code_of(const RunFiles& run);
 
 }  // namespace palpa::study

@@ -1,5 +1,5 @@
 #pragma once
-// Counts in tables of logs and of results. An impossible count is refused with its line, before it gets into the
+// Counts in tables of logs and of results. An impossible count is refused with its line before it reaches the
 // statistics.
 
 #include <cmath>
@@ -10,9 +10,12 @@
 
 namespace palpa::study {
 
-// More than anybody marks or answers. The exact tests go through every count up to this number in less than a second.
+// The largest count that is accepted, more than anybody marks or answers. The exact tests sum over all counts up to
+// this one in less than a second.
 inline constexpr std::int64_t kMostCounts = 1'000'000;
 
+// Returns the field of the current row as a whole number. Throws InputError with file, line and column if it is none,
+// or is outside `from` to `to`.
 inline std::int64_t whole_number(const files::Table& table, std::size_t column, std::int64_t from, std::int64_t to) {
     const double value = table.number(column);
     if (!(value >= static_cast<double>(from) && value <= static_cast<double>(to)) || value != std::floor(value)) {

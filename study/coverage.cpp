@@ -21,7 +21,7 @@ CellRange cells_near(const Coverage& c, double x_m, double y_m, double radius_m)
 bool holds(const Coverage& c, int i, int j, double x_m, double y_m, double radius_m) {
     const double dx = x_m - (c.x_m + (i + 0.5) * c.cell_m);
     const double dy = y_m - (c.y_m + (j + 0.5) * c.cell_m);
-    constexpr double kRounding = 1.0 + 1e-9;  // a place on the border belongs to all cells around it
+    constexpr double kRounding = 1.0 + 1e-9;  // a place on the border belongs to all cells beside it
     const bool inside_cell = std::max(std::abs(dx), std::abs(dy)) <= 0.5 * kRounding * c.cell_m;
     return inside_cell || dx * dx + dy * dy <= radius_m * radius_m;
 }
@@ -50,7 +50,8 @@ void cover(double x_m, double y_m, double radius_m, double depth_m, Coverage& c)
     for (int j = range.low_y; j <= range.high_y; ++j) {
         for (int i = range.low_x; i <= range.high_x; ++i) {
             float& deepest = c.depth_m[cell_index(c, i, j)];
-            if (deepest >= depth || !holds(c, i, j, x_m, y_m, radius_m)) continue;  // most were as deep a sample ago
+            // most cells were as deep at the last sample
+            if (deepest >= depth || !holds(c, i, j, x_m, y_m, radius_m)) continue;
             deepest = depth;
         }
     }

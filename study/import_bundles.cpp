@@ -27,7 +27,8 @@ Bundle read_whole(const fs::path& file) {
     return read_bundle(files::read_text(file, kLargestBundle_bytes), file.string());
 }
 
-// True for a single run that was tried on a tablet outside the study: its settings name no protocol.
+// True for runs on a tablet outside the study: the bundle has no study.json, and the settings of a run name no
+// protocol.
 bool is_single_run(const Bundle& bundle) {
     bool single = false;
     for (const BundleFile& file : bundle.files) {
@@ -39,7 +40,7 @@ bool is_single_run(const Bundle& bundle) {
     return single;
 }
 
-// True if `text` holds all that `other` holds: files of answers grow only at their end.
+// True if `text` holds all of `other`: files of answers grow only at their end.
 bool begins_with(const std::string& text, const std::string& other) {
     return text.compare(0, other.size(), other) == 0;
 }
@@ -57,7 +58,7 @@ bool has_subjects(const fs::path& directory) {
     return false;
 }
 
-// The content of all bundles together, and which of it is new.
+// The content of all bundles together, and which part of it is new.
 class Plan {
   public:
     explicit Plan(const fs::path& directory) : directory_(directory) {
@@ -93,15 +94,16 @@ class Plan {
 
     bool is_study() const { return identity_.has_value(); }
 
-    // For a file that grows: the version with most lines, if it has more than the folder's.
+    // The longest version of a file that grows, if it is longer than the folder's.
     struct Answers {
         std::string text;
         std::string from;
-        bool there = false;  // an earlier version of it
+        bool there = false;  // the folder has an earlier version
     };
     std::map<std::string, Answers> answers;
 
-    // Call it once all bundles are added.
+    // To be called once all bundles are added: keeps only the answers that are new to the folder. Throws InputError if
+    // the folder's answers differ from them.
     void settle_answers() {
         for (auto it = answers.begin(); it != answers.end();) {
             const std::string& name = it->first;
@@ -120,8 +122,8 @@ class Plan {
     }
 
     BundleReport report;
-    std::vector<Person> people;                // new ones
-    std::optional<std::string> identity_text;  // of a study.json that is not there yet
+    std::vector<Person> people;                // that the folder does not have yet
+    std::optional<std::string> identity_text;  // of a study.json that the folder does not have yet
 
   private:
     void add_answers(const BundleFile& file, const std::string& from) {
@@ -217,7 +219,7 @@ class Plan {
     bool logs_without_identity_ = false;
 };
 
-// Files of this import; the destructor removes them unless keep() was called.
+// The files that this import has written. The destructor removes them unless keep() was called.
 class NewFiles {
   public:
     explicit NewFiles(const fs::path& directory) : directory_(directory) {}
@@ -257,7 +259,7 @@ bool is_events(const BundleFile& file) { return file.name.find("_events.tsv") !=
 
 BundleReport import_bundles(const std::vector<fs::path>& bundles, const fs::path& directory) {
     Plan plan(directory);
-    // twice from the disk, so that only one bundle is in memory at a time
+    // each bundle is read twice, so that only one is in memory at a time
     std::vector<fs::path> taken, singles;
     for (const fs::path& path : bundles) {
         const Bundle bundle = read_whole(path);
@@ -279,7 +281,7 @@ BundleReport import_bundles(const std::vector<fs::path>& bundles, const fs::path
     NewFiles written(directory);
     for (const fs::path& path : taken) {
         Bundle bundle = read_whole(path);
-        // a trial counts when its events end with `finish`, so they come after all else
+        // the events are written last, since a trial counts as done once they end with `finish`
         std::stable_sort(bundle.files.begin(), bundle.files.end(),
                          [](const BundleFile& a, const BundleFile& b) { return is_events(a) < is_events(b); });
         for (const BundleFile& file : bundle.files) {
@@ -287,7 +289,7 @@ BundleReport import_bundles(const std::vector<fs::path>& bundles, const fs::path
             const bool later =
                 file.kind == LogFileKind::people || file.kind == LogFileKind::identity || grows(file.name);
             if (later || !plan.is_new(file, path.string())) continue;
-            if (std::find(done.begin(), done.end(), file.name) != done.end()) continue;  // in two bundles alike
+            if (std::find(done.begin(), done.end(), file.name) != done.end()) continue;  // alike in two bundles
             written.write(file.name, file.text);
             plan.report.written.push_back(file.name);
         }

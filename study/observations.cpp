@@ -29,7 +29,7 @@ int condition_index(const files::Table& table, std::size_t column, Observations&
     return index;
 }
 
-// Refuses the same participant, condition and item in two rows, which would be counted twice.
+// Refuses two rows with the same participant, condition and item, which would be counted twice.
 class Unique {
   public:
     void add(const files::Table& table, std::size_t column, const std::array<int, 3>& key) {

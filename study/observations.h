@@ -1,6 +1,5 @@
 #pragma once
-// The results of a study, in one form whether they come from a table of counts or from logs. Names are kept once; rows
-// hold their indices.
+// The results of a study, in one form for tables of counts and for logs. Names are kept once; rows hold their indices.
 
 #include <cstdint>
 #include <filesystem>
@@ -13,15 +12,15 @@ namespace palpa::study {
 // Hits and misses of one nodule in one trial, or their sums over many trials. False marks belong to no nodule.
 struct Observation {
     int condition = 0;
-    int participant = -1;  // -1: not told
-    int nodule = -1;       // -1: not told, or all
-    int repeat = 0;        // which trial of this participant under this condition: matches pairs
+    int participant = -1;  // -1: not given
+    int nodule = -1;       // -1: not given, or all nodules
+    int repeat = 0;        // index of this participant's trial under this condition, to match pairs
     std::int64_t tp = 0;
     std::int64_t fn = 0;
     std::int64_t fp = 0;
 };
 
-// One finished trial, as its log gives it. NaN: the log does not hold this figure.
+// One finished trial, as its log gives it. NaN: the log does not hold this value.
 struct TrialFigures {
     int condition = 0;
     int participant = 0;
@@ -31,16 +30,16 @@ struct TrialFigures {
     double max_force_N = 0.0;
 };
 
-// Forced choices: `correct` of `n`.
+// Forced choices: `correct` of `n` answers were right.
 struct Choices {
     int condition = 0;
     int participant = -1;
-    int comparison = -1;  // which stimulus against the reference; -1: not told, or all
+    int comparison = -1;  // which stimulus was compared with the reference; -1: not given, or all
     std::int64_t correct = 0;
     std::int64_t n = 0;
 };
 
-// An answer to one of the protocol's questions; a number, or one of its choices as it was written.
+// An answer to one of the protocol's questions: a number, or the text that was chosen or typed.
 struct Answer {
     std::string condition;  // n/a: asked before the trials
     std::string item;
@@ -56,19 +55,20 @@ struct Observations {
     std::vector<TrialFigures> trials;
     std::vector<Choices> choices;
     std::vector<Answer> answers;
-    std::vector<std::string> notes;  // what a reader must know: interrupted trials, lines cut off, clocks set back
-    bool simulated = false;          // some of it, at least
+    std::vector<std::string> notes;  // for the reader of a report: interrupted trials, cut lines, clocks set back
+    bool simulated = false;          // at least one trial is simulated
     std::int64_t practice_trials = 0;
     std::int64_t interrupted_trials = 0;
 };
 
-// Returns the index of the name; a new name is added.
+// Returns the index of `name`, which is added if it is new.
 int index_of(std::string_view name, std::vector<std::string>& names);
 
-// COUNTS.tsv: columns condition, tp, fn, fp, optionally n (= tp + fn, checked), nodule, participant; or, for forced
-// choices, condition, correct, n, optionally participant, comparison. `fp` may be n/a in rows that name a nodule.
-// Throws InputError with file, line and column: counts that are negative or not whole, tp + fn that is not n,
-// correct > n, the same condition, nodule and participant twice.
+// Reads a table of counts. Its columns are condition, tp, fn, fp and optionally n (= tp + fn, checked), nodule,
+// participant; or, for forced choices, condition, correct, n and optionally participant, comparison. `fp` may be n/a in
+// rows that name a nodule. Throws InputError with file, line and column for an unknown column, a count that is negative
+// or not whole, n other than tp + fn, correct > n, and two rows with the same condition, participant and nodule or
+// comparison.
 Observations read_counts(const std::filesystem::path& tsv);
 
 }  // namespace palpa::study

@@ -64,8 +64,8 @@ struct View {
     bool flip = false;
 };
 
-// All views in an order of the participant's own; trials take them in turn, practice included, so that none repeats
-// before all were seen.
+// Returns all views in a random order of the participant's own. Trials, practice included, use them in turn, so that no
+// view repeats before all were shown.
 std::vector<View> views_of(const Protocol& protocol, int number) {
     std::vector<View> views{{0, false}};
     if (protocol.turn_maps) views = {{0, false}, {90, false}, {180, false}, {270, false}};
@@ -83,7 +83,7 @@ void add_trial(const Protocol& protocol, PlannedTrial trial, const std::vector<V
     trial.trial = static_cast<int>(index) + 1;
     trial.rotate_deg = views[index % views.size()].rotate_deg;
     trial.flip = views[index % views.size()].flip;
-    constexpr std::uint64_t kSeeds = 2000000000;  // what a scene's seed may be
+    constexpr std::uint64_t kSeeds = 2000000000;  // seeds of scenes are smaller
     const std::uint64_t of_person = derived_seed(protocol.seed, kTrial, static_cast<std::uint64_t>(who.number));
     trial.seed = static_cast<std::uint32_t>(derived_seed(of_person, kTrial, index) % kSeeds);
     const auto tests =
@@ -93,7 +93,8 @@ void add_trial(const Protocol& protocol, PlannedTrial trial, const std::vector<V
     who.trials.push_back(trial);
 }
 
-// All pairs of one condition, `repeats` times, in an order of the participant's own; which comes first takes turns.
+// Returns all pairs of one condition, `repeats` times, in a random order of the participant's own. Whether the
+// reference comes first alternates from repeat to repeat.
 std::vector<PlannedTrial> choices_of(const Protocol& protocol, std::size_t condition, int number) {
     std::vector<PlannedTrial> out;
     Random random(derived_seed(protocol.seed, kChoices + condition, static_cast<std::uint64_t>(number)));
@@ -103,7 +104,7 @@ std::vector<PlannedTrial> choices_of(const Protocol& protocol, std::size_t condi
             trial.condition = condition;
             trial.repeat = repeat;
             trial.comparison = static_cast<int>(c);
-            // an odd last one is drawn
+            // with an odd number of repeats, the order of the last pair is drawn
             const bool odd_one = repeat + 1 == protocol.choice.repeats && repeat % 2 == 0;
             trial.reference_first = odd_one ? random.below(2) == 0 : repeat % 2 == 0;
             out.push_back(trial);
@@ -139,7 +140,7 @@ int spread(const std::map<Key, int>& counts) {
     return counts.empty() ? 0 : most - least;
 }
 
-// The conditions of the tests in the order in which they first come.
+// Returns the conditions of the tests in the order of their first trials.
 std::vector<std::size_t> conditions_of(const PlannedParticipant& who) {
     std::vector<std::size_t> out;
     for (const PlannedTrial& trial : who.trials) {

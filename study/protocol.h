@@ -18,24 +18,24 @@ struct Condition {
     std::string id;
     std::string title;  // as the experimenter sees it
     Modality modality = Modality::pen;
-    std::string scene;    // file, relative to the protocol, or among the assets' scenes; empty: by hand
-    std::string profile;  // instead of the scene's; empty: the scene's
+    std::string scene;    // file relative to the protocol or among the assets' scenes; empty: by hand
+    std::string profile;  // file that replaces the scene's profile; empty: the scene's
     std::string device;   // free text, for the log
     std::string instructions;
-    std::vector<std::string> nodules;  // by hand: names of the phantom's, for the answers that are typed in
+    std::vector<std::string> nodules;  // by hand only: names of the phantom's nodules, for answers typed in
 };
 
 struct Group {
     std::string id;
-    std::vector<std::size_t> conditions;  // indices
+    std::vector<std::size_t> conditions;  // indices into Protocol::conditions
 };
 
-// The forced choice which of two surfaces is softer: the reference against each comparison, in both orders.
+// A forced choice: which of two surfaces is softer, the reference or a comparison? Pairs are shown in both orders.
 struct ChoiceTask {
     double reference_kPa = 0.0;
     std::vector<double> comparisons_kPa;
-    int repeats = 2;                    // of each pair under each condition; even: both orders alike often
-    bool alternate_conditions = false;  // trial by trial, else one condition after the other
+    int repeats = 2;  // of each pair under each condition; an even number gives both orders equally often
+    bool alternate_conditions = false;  // conditions alternate trial by trial; else one is completed before the next
 };
 
 // A question to the participant, before the trials or after each condition.
@@ -48,7 +48,7 @@ struct Item {
 
 struct Protocol {
     std::filesystem::path file;
-    std::string text;    // of the file, as it is copied beside the logs
+    std::string text;    // content of the file, which is copied beside the logs
     std::string sha256;  // of the text
     std::string name;
     std::string version;
@@ -60,13 +60,13 @@ struct Protocol {
     Assignment assignment = Assignment::alternate;
     OrderKind order = OrderKind::random;
     int repeats = 1;            // trials of each condition, one after the other
-    bool turn_maps = true;      // a quarter turn of its own for each trial of a participant, as far as there are enough
-    bool flip_maps = false;     // left and right exchanged too: eight views instead of four
+    bool turn_maps = true;      // successive trials of a participant show the map under different quarter turns
+    bool flip_maps = false;     // also with left and right exchanged: eight views instead of four
     double time_limit_s = 0.0;  // 0: none
     int practice_trials = 0;    // before the first trial of each condition, with known positions
     double practice_limit_s = 0.0;
     int break_every_trials = 0;
-    bool count_told = false;  // is the participant told how many nodules there are
+    bool count_told = false;  // whether the participant is told the number of nodules
     std::string instructions;
     std::vector<Item> demographics;
     std::vector<Item> ratings;

@@ -10,7 +10,7 @@
 
 namespace palpa::study {
 
-// SplitMix64 (Steele, Lea & Flood, OOPSLA 2014): one word of state; passes BigCrush.
+// SplitMix64 (Steele, Lea & Flood, OOPSLA 2014): one 64-bit word of state; passes BigCrush.
 class Random {
   public:
     explicit Random(std::uint64_t seed) : state_(seed) {}
@@ -21,12 +21,12 @@ class Random {
         z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
         return z ^ (z >> 31);
     }
-    // [0, 1)
+    // Returns a number in [0, 1).
     double uniform() { return static_cast<double>(bits() >> 11) * 0x1.0p-53; }
     double uniform(double low, double high) { return low + (high - low) * uniform(); }
-    // 0 ... n - 1, all alike to 2^-32 for n below 2^32
+    // Returns one of 0 ... n - 1. Their probabilities differ by at most 2^-32.
     std::uint32_t below(std::uint32_t n) { return static_cast<std::uint32_t>(((bits() >> 32) * n) >> 32); }
-    // Standard normal, by Box and Muller.
+    // Returns a standard normal number, by the method of Box and Muller.
     double normal() {
         const double radius = std::sqrt(-2.0 * std::log(1.0 - uniform()));
         return radius * std::cos(2.0 * std::numbers::pi * uniform());

@@ -51,7 +51,7 @@ std::vector<Rating> read_ratings(const fs::path& directory, const std::string& c
         ++line;
         const auto fields = files::fields_of(row, '\t');
         if (line == 1 || row.empty()) continue;
-        if (fields.size() != 3) {  // cut off, and gone on after
+        if (fields.size() != 3) {  // a line that was cut off, and to which a later one was appended
             notes.push_back(file.string() + ": line " + std::to_string(line) + " is left out: " + files::shown(row) +
                             " is not an answer with 3 fields");
             continue;

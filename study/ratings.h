@@ -17,10 +17,10 @@ struct Rating {
 };
 
 // Appends the answers; they are on the disk when the function returns. Tabs and line ends in values become spaces.
-// Throws std::runtime_error.
+// Throws std::runtime_error if they cannot be written.
 void add_ratings(const std::filesystem::path& directory, const std::string& code, const std::vector<Rating>& ratings);
 
-// Reads the answers of one person; returns nothing if that person was not asked. A last line that was cut off is left
+// Reads the answers of one participant; returns nothing if there is no file of them. A line that was cut off is left
 // out and noted.
 std::vector<Rating> read_ratings(const std::filesystem::path& directory, const std::string& code,
                                  std::vector<std::string>& notes);

@@ -18,21 +18,22 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// ..._events.tsv -> ..._marks.tsv and so on
+// Returns the file of the same run with another ending: ..._events.tsv -> ..._marks.tsv.
 fs::path beside(const fs::path& events, std::string_view suffix) {
     constexpr std::string_view kEvents = "_events.tsv";
     std::string name = events.string();
     return name.substr(0, name.size() - kEvents.size()) + std::string(suffix);
 }
 
-// Seconds, millimetres or newtons: never below zero; n/a where there was nothing to measure.
+// Returns a value in seconds, millimetres or newtons, which cannot be negative; NaN for n/a, where nothing was
+// measured.
 double amount(const files::Table& table, std::size_t column) {
     const double value = table.number(column);
     if (value < 0.0) table.fail(column, "a number from 0 up, or n/a");
     return value;
 }
 
-// Columns that came later than version 0.1 may be missing.
+// As amount(), for columns that logs of version 0.1 do not have: NaN if the column is missing.
 double amount_or_missing(const files::Table& table, std::string_view column) {
     if (!table.has_column(column)) return std::numeric_limits<double>::quiet_NaN();
     return amount(table, table.column(column));
@@ -59,7 +60,7 @@ void take_choice(const files::Table& table, RunLog& run) {
 }
 
 struct Settings {
-    std::string sha256;  // of the protocol; "" for a single run
+    std::string sha256;  // of the protocol; empty for a single run
     std::vector<std::string> nodules;
     bool simulated = false;
 };
@@ -96,7 +97,7 @@ std::set<std::string> read_hits(const fs::path& file, std::vector<std::string>& 
 }
 
 std::string began_utc(const fs::path& file) {
-    if (!fs::exists(file)) return "";  // written last: an interrupted trial has none
+    if (!fs::exists(file)) return "";  // written last, so an interrupted trial has none
     const files::Json json = files::read_json(file);
     return json.contains("began_utc") && json["began_utc"].is_string() ? json["began_utc"].get<std::string>() : "";
 }
@@ -143,7 +144,7 @@ void add_choices(const RunLog& run, int participant, Observations& out) {
     }
 }
 
-// Reads everything of one participant, runs in the order of their numbers.
+// Reads all runs of one participant, in the order of their numbers.
 class Subject {
   public:
     explicit Subject(int index) : index_(index) {}
@@ -183,7 +184,7 @@ class Subject {
                                    " as in study.json: two versions of a protocol in one folder");
     }
 
-    // UTC in ISO 8601 sorts as text.
+    // Notes a run that began before the one with the number before. Times are UTC in ISO 8601, which sorts as text.
     void note_clock(const fs::path& events, std::vector<std::string>& notes) {
         const std::string began = began_utc(beside(events, "_performance.json"));
         if (began.empty()) return;
@@ -252,7 +253,7 @@ std::vector<fs::path> events_files(const fs::path& subject) {
         if (name.size() > kEnd.size() && name.compare(name.size() - kEnd.size(), kEnd.size(), kEnd) == 0)
             files.push_back(entry.path());
     }
-    // run-100 comes after run-99
+    // by length first, so that run-100 comes after run-99
     std::sort(files.begin(), files.end(), [](const fs::path& a, const fs::path& b) {
         const std::string x = a.filename().string(), y = b.filename().string();
         return x.size() != y.size() ? x.size() < y.size() : x < y;
@@ -264,7 +265,7 @@ Observations read_study(const fs::path& directory) {
     Observations out;
     const auto identity = read_identity(directory);
     if (identity) out.simulated = identity->kind.simulated;
-    read_people(directory, out.notes);  // refuses a code that stands twice
+    read_people(directory, out.notes);  // refuses a code that appears twice
     std::vector<fs::path> subjects;
     for (const auto& entry : fs::directory_iterator(directory)) {
         if (entry.path().filename().string().rfind("sub-", 0) == 0) subjects.push_back(entry.path());

@@ -1,6 +1,6 @@
 #pragma once
-// Reads logs back. Logs that a kill or a power cut left behind can be read: a line that was cut off is left out and
-// noted, and a trial without its last row counts as interrupted.
+// Reads logs back, also those that a kill or a power cut left behind: a line that was cut off is left out and noted,
+// and a trial without its last row counts as interrupted.
 
 #include <filesystem>
 #include <limits>
@@ -12,10 +12,10 @@
 
 namespace palpa::study {
 
-// Returns `text` up to its last newline; a rest behind it was cut off and is noted.
+// Returns `text` up to its last newline. What follows was cut off and is noted.
 std::string_view whole_lines(std::string_view text, const std::string& file, std::vector<std::string>& notes);
 
-// One run: ..._events.tsv.
+// The log of one run, from its ..._events.tsv. NaN: not in the log.
 struct RunLog {
     std::filesystem::path events;
     bool finished = false;
@@ -34,17 +34,19 @@ struct RunLog {
         bool correct = false;
         bool practice = false;
     };
-    std::vector<Choice> choices;  // of a run of forced choices, each one finished
+    std::vector<Choice> choices;  // of a run of forced choices; each of them is finished
 };
 
-// Throws InputError for a line that cannot be read, unless it was cut off.
+// Reads the events of one run. Throws InputError for a line that cannot be read, unless it was cut off.
 RunLog read_run(const std::filesystem::path& events, std::vector<std::string>& notes);
 
-// Lists sub-XX/beh/*_events.tsv by name, without the intervals of forced choices, whose answers stand in task-softer.
+// Lists sub-XX/beh/*_events.tsv in the order of their runs. The intervals of forced choices are left out, since their
+// answers are in task-softer.
 std::vector<std::filesystem::path> events_files(const std::filesystem::path& subject);
 
 // Reads all runs of all participants. Practice and interrupted trials are only counted. Throws InputError for logs of
-// two versions of a protocol, a participant who stands twice in participants.tsv, and files that are no logs.
+// two versions of a protocol, a participant who appears twice in participants.tsv, a trial that was finished twice,
+// files that are no logs, and a folder without any trial.
 Observations read_study(const std::filesystem::path& directory);
 
 }  // namespace palpa::study

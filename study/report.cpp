@@ -14,18 +14,19 @@
 namespace palpa::study {
 namespace {
 
-using People = std::vector<Contribution>;  // by participant
+using People = std::vector<Contribution>;  // index: participant
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
-// Sums of the rows that `take` picks, as sensitivity (fn) or PPV (fp).
+// Both count hits, as a share of the nodules (sensitivity) or of the marks (PPV).
 enum class Quantity { sensitivity, ppv };
 
 Contribution part_of(const Observation& row, Quantity quantity) {
     return {row.tp, row.tp + (quantity == Quantity::sensitivity ? row.fn : row.fp)};
 }
 
-// Empty if some rows do not name their participant.
+// Sums the rows of each participant; `nodule` -1 takes all nodules. Empty if some of the rows do not name their
+// participant.
 People by_participant(const Observations& seen, int condition, int nodule, Quantity quantity) {
     People people(seen.participants.size());
     for (const Observation& row : seen.rows) {
@@ -90,12 +91,12 @@ ConditionResult condition_result(const Observations& seen, int condition, const 
     return out;
 }
 
-// Nodules that one participant judged once under each condition; matched by participant, nodule and repeat.
+// Counts the nodules that a participant judged once under each condition, matched by participant, nodule and repeat.
 std::optional<PairedCounts> paired_counts(const Observations& seen, int a, int b) {
     std::map<std::array<int, 3>, std::array<int, 2>> found;  // -1: not judged
     for (const Observation& row : seen.rows) {
         if ((row.condition != a && row.condition != b) || row.participant < 0 || row.nodule < 0) continue;
-        if (row.tp + row.fn != 1) continue;  // sums of several cannot be matched
+        if (row.tp + row.fn != 1) continue;  // sums of several judgements cannot be matched
         auto [it, fresh] = found.try_emplace({row.participant, row.nodule, row.repeat}, std::array<int, 2>{-1, -1});
         it->second[row.condition == a ? 0 : 1] = static_cast<int>(row.tp);
     }
@@ -200,7 +201,7 @@ std::optional<ChoiceResult> choice_result(const Observations& seen, int conditio
     return out;
 }
 
-// One row of a scale, or one for each text that was chosen.
+// Adds one row for answers on a scale, or one row for each text that was given.
 void add_ratings(const Answer& like, const std::vector<Answer>& answers, Report& report) {
     std::vector<double> numbers;
     std::map<std::string, int> texts;

@@ -1,6 +1,6 @@
 #pragma once
-// The analysis of a study: the paper's tests, and beside them tests that take account of people who did several
-// conditions, of the clustering of nodules in people, and of many comparisons.
+// The analysis of a study: the tests of Li et al., and beside them tests that take account of participants who took
+// part in several conditions, of the clustering of nodules in participants, and of multiple comparisons.
 
 #include <optional>
 #include <string>
@@ -17,7 +17,7 @@ namespace palpa::study {
 struct Share {
     Proportion x;
     Interval wilson;
-    std::optional<Interval> bootstrap;  // over participants; absent with fewer than two
+    std::optional<Interval> bootstrap;  // over participants; absent if fewer than two are named
 };
 
 struct NoduleResult {
@@ -25,11 +25,11 @@ struct NoduleResult {
     Share se;
 };
 
-// Of one quantity over trials.
+// The distribution of one quantity over trials or answers, in the quantity's unit.
 struct Spread {
     int n = 0;
     double mean = 0.0;
-    double sd = 0.0;
+    double sd = 0.0;  // of the sample (n - 1); 0 for a single value
     double lower_quartile = 0.0;
     double median = 0.0;
     double upper_quartile = 0.0;
@@ -43,7 +43,7 @@ struct ConditionResult {
     std::optional<Share> se;   // absent: there was nothing to find
     std::optional<Share> ppv;  // absent: nobody marked anything
     std::vector<NoduleResult> nodules;
-    int participants = 0;  // 0: not told
+    int participants = 0;  // 0: not given
     std::optional<Spread> duration_s, path_m, mean_force_N, max_force_N;
 };
 
@@ -53,33 +53,33 @@ struct PairResult {
     std::string higher;  // a, b or "" if equal
     double delta = 0.0;  // |p_a - p_b|
     double combined_interval = 0.0;
-    bool significant = false;            // delta > combined_interval: the paper's test, without any correction
-    Interval newcombe;                   // of p_a - p_b, as if independent
+    bool significant = false;            // delta > combined_interval: the paper's test, uncorrected
+    Interval newcombe;                   // of p_a - p_b, both taken as independent
     double p = 1.0;                      // of the paper's test
     double p_holm = 1.0;                 // corrected for all pairs of the table
-    std::optional<PairedCounts> paired;  // nodules that the same people judged under both conditions
-    Interval newcombe_paired;            // of p_a - p_b; with `paired`
-    double mcnemar_p = 1.0;
-    std::optional<Interval> bootstrap;  // of p_a - p_b, over participants
+    std::optional<PairedCounts> paired;  // nodules that the same participants judged under both conditions
+    Interval newcombe_paired;            // of p_a - p_b; only with `paired`
+    double mcnemar_p = 1.0;              // only with `paired`
+    std::optional<Interval> bootstrap;   // of p_a - p_b, over participants
     int participants_in_both = 0;
 };
 
 struct ChoiceResult {
     std::string condition;
-    std::string comparison;  // "": all
+    std::string comparison;  // empty: all comparisons
     Share correct;
     double binomial_p = 1.0;
-    std::optional<TTest> over_people;   // their shares against one half
-    std::optional<TTest> over_answers;  // 0 and 1 against one half, as the paper's t(239); not independent
+    std::optional<TTest> over_people;   // the participants' shares against one half
+    std::optional<TTest> over_answers;  // answers (0 or 1) against one half, as the paper's t(239); not independent
 };
 
 // Answers to one question about one condition.
 struct RatingResult {
     std::string condition;
     std::string item;
-    std::optional<Spread> spread;  // of a scale; else
-    std::string value;             // one of the texts that were chosen
-    int n = 0;                     // who chose it, or who answered at all
+    std::optional<Spread> spread;  // of answers on a scale; absent for texts
+    std::string value;             // the text that was chosen; empty for a scale
+    int n = 0;                     // how many chose this text, or answered on the scale
 };
 
 struct ReportOptions {

@@ -1,8 +1,8 @@
 #pragma once
 // Tables of a study: one list of fields gives the header, the explanation (the JSON sidecar) and every row.
 //
-// A row type R has a function  visit_fields(const R&, visit)  that calls  visit(name, value, unit, description)
-// for each column.
+// A row type R has a function  visit_fields(const R&, visit)  that calls  visit(name, value, unit, description) for
+// each column.
 
 #include <charconv>
 #include <cstdint>
@@ -31,7 +31,7 @@ std::string header_of() {
     return header + "\n";
 }
 
-// Replaces `line`; allocates nothing once `line` is long enough.
+// Writes `row` into `line`, replacing its content. Allocates nothing once `line` is long enough.
 template <class Row>
 void line_of(const Row& row, std::string& line) {
     line.clear();

@@ -36,8 +36,9 @@ struct SampleRow {
     std::string_view ft_source = "n/a";
 };
 
-// Where a run goes. next_run() takes the first free number from `first` on and creates the folders. It throws
-// std::runtime_error if it cannot.
+// The files of one run. next_run() takes the first free number from `first` on and creates the folders. Throws
+// InputError if `participant` is not made of ASCII letters and digits, std::runtime_error if a folder cannot be
+// created.
 struct RunFiles {
     std::filesystem::path folder;
     std::string stem;  // sub-01_task-palpation_run-01
@@ -49,7 +50,7 @@ RunFiles next_run(const std::filesystem::path& directory, std::string_view parti
 // Writes .bidsignore and dataset_description.json where they do not exist yet.
 void prepare_dataset(const std::filesystem::path& directory);
 
-// Writes what the columns of samples mean, once for a whole dataset.
+// Writes the explanation of the columns of samples, once for a whole dataset.
 void explain_samples_once(const std::filesystem::path& json);
 
 class SampleLog {

@@ -7,10 +7,11 @@
 namespace palpa::study {
 namespace {
 
-constexpr double kNoMark_m = 1e6;  // the price of a missed target: above any sum of distances
+constexpr double kNoMark_m = 1e6;  // the cost of a missed target, above any sum of distances
 
-// Cheapest column for each row, each column once; rows <= columns. Shortest augmenting paths with potentials
-// (Jonker & Volgenant, Computing 38 (1987) 325); row and column 0 are not used.
+// Returns the column of each row such that the sum of the costs is least and no column is used twice; needs rows <=
+// columns. Shortest augmenting paths with potentials (Jonker & Volgenant, Computing 38 (1987) 325); row and column 0
+// are not used.
 std::vector<int> cheapest_columns(const std::vector<std::vector<double>>& cost) {
     const std::size_t rows = cost.size();
     const std::size_t columns = rows == 0 ? 0 : cost.front().size();

@@ -8,13 +8,13 @@ namespace palpa::study {
 namespace {
 
 constexpr double kMargin = 0.92;       // share of the surface that the search covers
-constexpr double kCheck_m = 12e-3;     // strokes over a place in doubt go so far to each side
-constexpr double kMarked_m = 14e-3;    // no second look so near a mark
-constexpr double kDismissed_m = 6e-3;  // nor so near a place that was looked at in vain
+constexpr double kCheck_m = 12e-3;     // strokes over a place in doubt extend this far to each side
+constexpr double kMarked_m = 14e-3;    // radius around a mark in which nothing is checked again
+constexpr double kDismissed_m = 6e-3;  // radius around a dismissed place in which nothing is checked again
 constexpr double kMoreForce = 1.15;    // on a place in doubt, as masters of palpation do (Laufer 2024)
-constexpr double kPressing_s = 0.25;   // until a press has its full force
+constexpr double kPressing_s = 0.25;   // time until a press has its full force
 constexpr double kExponent = 0.6;      // depth ~ force^0.6: between a flat punch and a sphere
-constexpr double kCompliance_s = 3.0;  // what is plain tissue is learned over so long
+constexpr double kCompliance_s = 3.0;  // time constant of learning what plain tissue is like
 
 double distance_m(const ScreenPlace& a, const ScreenPlace& b) { return std::hypot(a.x_m - b.x_m, a.y_m - b.y_m); }
 
@@ -34,7 +34,7 @@ std::vector<ScreenPlace> strips(const SimulatedPerson& person, bool along_x) {
     return out;
 }
 
-// From the middle outwards, corners cut off at the edge.
+// Returns a spiral from the middle outwards, clamped to the searched surface.
 std::vector<ScreenPlace> spiral(const SimulatedPerson& person) {
     const double reach_m = std::hypot(person.half_x_m, person.half_y_m);
     std::vector<ScreenPlace> out;
@@ -99,8 +99,9 @@ void add_strokes(bool along_x, SimulatedPerson& person) {
     person.weighted = {};
 }
 
-// Begins a check of a place in doubt: strokes along the way on which it was felt (x or y), then across through the
-// place that they gave, and so on until the place no longer moves; then the search goes on.
+// Begins a check of a place in doubt. The hand strokes over it along the direction in which it was felt (x or y), then
+// across, through the place that the strokes gave, and so on until the place no longer moves; then the search
+// continues.
 void begin_check(SimulatedPerson& person) {
     const ScreenPlace ahead = person.way.empty() ? person.at : person.way.back();
     const bool along_x = std::abs(ahead.x_m - person.at.x_m) >= std::abs(ahead.y_m - person.at.y_m);
@@ -125,12 +126,12 @@ void end_check(bool convinced, SimulatedPerson& person, Move& out) {
     out.confidence = 1 + static_cast<int>(std::clamp(2.5 * surplus, 0.0, 4.0));
 }
 
-// Call it when the strokes of one half of the check are done: finds the place along them, then begins the next half or
-// ends the check.
+// To be called when the strokes of one half of the check are done. Computes the place along them, then begins the next
+// half or ends the check.
 void go_on_with_check(SimulatedPerson& person, Move& out) {
     constexpr double kStill_m = 6e-3;
     constexpr int kMostHalves = 4;
-    constexpr int kTimes = 2;  // of the six strokes of two halves
+    constexpr int kTimes = 2;  // least number of the six strokes of two halves that must show something
     if (person.weight == 0.0) return end_check(false, person, out);
     const bool was_x = person.check == SimulatedPerson::Check::along_x;
     double& place_m = was_x ? person.doubt.x_m : person.doubt.y_m;
@@ -149,15 +150,15 @@ void go_on_with_check(SimulatedPerson& person, Move& out) {
     add_strokes(!was_x, person);
 }
 
-// A first-order memory of `memory_s` moves towards its input; its noise is remembered as long.
+// A first-order low-pass of time constant `memory_s`; its noise is standard normal and correlated over the same time.
 void look(double input, double dt_s, double memory_s, double& seen, double& noise, Random& random) {
     const double kept = std::exp(-dt_s / memory_s);
     seen = kept * seen + (1.0 - kept) * input;
     noise = kept * noise + std::sqrt(1.0 - kept * kept) * random.normal();
 }
 
-// How much shallower the dent is than one would expect from the force that is felt. The function learns what plain
-// tissue is like.
+// Returns how much shallower the dent is than the force that is felt lets expect, as a difference of logarithms. The
+// expectation is learned from the tissue pressed so far.
 double missing_depth(const Sight& sight, double dt_s, SimulatedPerson& person) {
     if (!sight.dent_shown || sight.depth_m <= 0.0 || person.felt_N < 0.3) return 0.0;
     const double compliance = std::log(sight.depth_m) - kExponent * std::log(person.felt_N);
@@ -221,7 +222,8 @@ void see(const Sight& sight, double dt_s, SimulatedPerson& person) {
     const double weight_of_dent = sight.dent_shown ? traits.dent_weight : 0.0;
     const double by_lag = person.lag_seen_m / traits.lag_noise_m + person.lag_noise;
     const double by_dent = person.dent_seen / traits.dent_noise + person.dent_noise;
-    const double evidence = (by_lag + weight_of_dent * by_dent) / std::hypot(1.0, weight_of_dent);  // noise of 1
+    // its noise has a standard deviation of 1
+    const double evidence = (by_lag + weight_of_dent * by_dent) / std::hypot(1.0, weight_of_dent);
     if (person.check == SimulatedPerson::Check::none) {
         if (evidence > traits.criterion && !is_settled(person.at, person)) begin_check(person);
         return;
@@ -230,7 +232,8 @@ void see(const Sight& sight, double dt_s, SimulatedPerson& person) {
         ++person.passes_over;
         person.above = true;
     }
-    if (evidence < 0.4 * traits.criterion) person.above = false;  // noise flickers around any one border
+    // hysteresis, since noise would cross a single threshold again and again
+    if (evidence < 0.4 * traits.criterion) person.above = false;
     person.best = std::max(person.best, evidence);
     const double weight = std::max(0.0, evidence - 0.5 * traits.criterion);
     person.weight += weight;

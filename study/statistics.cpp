@@ -17,7 +17,7 @@ bool possible(const Proportion& x) { return x.n >= 1 && x.k >= 0 && x.k <= x.n; 
 
 double two_sided_p(double z) { return std::erfc(z / std::numbers::sqrt2); }
 
-// The least x in [low, high] with not below(x), by bisection to the last bit.
+// Returns the least x in [low, high] for which below(x) is false, by bisection to the last bit.
 template <class Below>
 double bisect(double low, double high, const Below& below) {
     for (int i = 0; i < 200; ++i) {
@@ -60,7 +60,7 @@ double combined_interval(const Proportion& a, const Proportion& b, double z) {
 double combined_p(const Proportion& a, const Proportion& b) {
     const double delta = std::abs(a.p() - b.p());
     if (delta == 0.0) return 1.0;
-    constexpr double kBeyond = 1e3;  // of such a z, p is 0
+    constexpr double kBeyond = 1e3;  // z for which p is 0
     // the interval widens with z
     return two_sided_p(bisect(0.0, kBeyond, [&](double z) { return combined_interval(a, b, z) < delta; }));
 }
@@ -107,7 +107,7 @@ TTest t_test(std::span<const double> values, double chance, double level) {
     for (const double value : values) squares += square(value - test.mean);
     const double error = std::sqrt(squares / test.df / n);
     const double off = test.mean - chance;
-    test.t = off == 0.0 ? 0.0 : off / error;  // all alike: infinite
+    test.t = off == 0.0 ? 0.0 : off / error;  // infinite if all values are alike
     test.p = files::student_p(test.t, test.df);
     const double arm = files::student_quantile(level, test.df) * error;
     test.ci = {test.mean - arm, test.mean + arm};

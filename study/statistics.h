@@ -19,7 +19,7 @@ struct Interval {
     double high = 0.0;
 };
 
-// Two-sided standard score of a confidence level: 0.95 -> 1.959963984540054.
+// Returns the two-sided standard score of a confidence level: 0.95 -> 1.959963984540054.
 double z_of_level(double level);
 
 // Wilson's score interval (1927), as in Li et al., section 4:
@@ -33,11 +33,11 @@ Interval wilson(const Proportion& x, double z);
 //
 //     CI = sqrt((U1 - p1)^2 + (L2 - p2)^2)          U1, L2: Wilson's limits that face each other
 //
-// The paper calls p2 - p1 significant where it is greater than CI. It is the lower arm of newcombe().
+// The paper calls p2 - p1 significant where it is greater than CI. CI is the arm of newcombe() that faces zero.
 double combined_interval(const Proportion& a, const Proportion& b, double z);
 
-// Newcombe's hybrid score interval of p_a - p_b, independent samples. Source: Newcombe, Statistics in Medicine
-// 17 (1998) 873, method 10 (without continuity correction).
+// Newcombe's hybrid score interval of p_a - p_b for independent samples. Source: Newcombe, Statistics in Medicine 17
+// (1998) 873, method 10 (without continuity correction).
 Interval newcombe(const Proportion& a, const Proportion& b, double z);
 
 // The p value that belongs to the combined interval: 2 P(X > z) for the z at which |p_a - p_b| equals it. So
@@ -54,27 +54,28 @@ struct PairedCounts {
 };
 
 // Newcombe's interval of p_a - p_b for pairs, square-and-add with the correlation of the two. Source: Newcombe,
-// Statistics in Medicine 17 (1998) 2635, method 10: the correlation's numerator is drawn towards 0 by n/2.
+// Statistics in Medicine 17 (1998) 2635, method 10: a positive numerator of the correlation is reduced by n/2, to 0 at
+// least.
 Interval newcombe_paired(const PairedCounts& counts, double z);
 
-// McNemar's exact test: the pairs that differ, against one half.
+// Two-sided p value of McNemar's exact test: the pairs that differ, against one half. 1 if none differ.
 double mcnemar_p(const PairedCounts& counts);
 
-// Exact binomial test, two-sided: all outcomes that are no likelier than the one seen (to 1e-7 of its
-// probability, so that ties are not split by rounding).
+// Two-sided p value of the exact binomial test: the probability of all outcomes that are at most as likely as the
+// observed one (to 1e-7 of its probability, so that rounding does not split ties). Needs 0 < chance < 1.
 double exact_binomial_p(const Proportion& x, double chance);
 
-// Student's t against a mean that chance would give.
+// Student's t test of the mean of `values` against `chance`. Needs at least two values.
 struct TTest {
     double mean = 0.0;
-    double t = 0.0;  // infinite where all values are the same and not `chance`
+    double t = 0.0;  // infinite if all values are equal and not `chance`
     double df = 0.0;
     double p = 1.0;  // two-sided
     Interval ci;     // of the mean
 };
-TTest t_test(std::span<const double> values, double chance, double level);  // two values at least
+TTest t_test(std::span<const double> values, double chance, double level);  // `level`: of the interval
 
-// Holm's step-down correction (Scand. J. Statist. 6 (1979) 65): adjusted p values in the order given.
+// Holm's step-down correction (Scand. J. Statist. 6 (1979) 65): returns the adjusted p values in the order of `p`.
 std::vector<double> holm(std::span<const double> p);
 
 }  // namespace palpa::study

@@ -76,7 +76,7 @@ void open_study(const fs::path& directory, const Protocol& protocol, const Study
     files::write_text_atomically(directory / "protocol.json", protocol.text);
     files::Json json{{"protocol", protocol.name},   {"version", protocol.version},  {"sha256", protocol.sha256},
                      {"simulated", kind.simulated}, {"simulation_seed", kind.seed}, {"program", kind.program}};
-    files::write_text_atomically(file, files::json_text(json));  // last: from here on the folder is a study
+    files::write_text_atomically(file, files::json_text(json));  // last: it makes the folder a study
 }
 
 std::optional<StudyIdentity> read_identity(const fs::path& directory) {

@@ -1,7 +1,7 @@
 #pragma once
-// The folder of one study: DIR/protocol.json (a copy), DIR/study.json (which version of it, and how), the people, and
-// the runs of study/sample_log.h. Existing files are never overwritten; a study that was interrupted goes on in its
-// folder.
+// The folder of one study: DIR/protocol.json (a copy), DIR/study.json (the version of the protocol, and whether
+// participants are simulated), the participants, and the runs of study/sample_log.h. Existing files are never
+// overwritten; an interrupted study continues in its folder.
 
 #include <filesystem>
 #include <optional>
@@ -16,15 +16,16 @@ namespace palpa::study {
 struct StudyKind {
     bool simulated = false;
     std::uint64_t seed = 0;  // of the simulation
-    std::string program;     // and version
+    std::string program;     // name and version
 };
 
-// Makes the folder, or goes on in a folder of the same protocol and kind. Throws InputError naming both versions if
-// another protocol's logs are there, std::runtime_error if it cannot be written.
+// Creates the folder, or continues in a folder of the same protocol and kind. Throws InputError if the folder holds
+// another protocol's logs (naming both versions), logs of another kind, or logs without study.json; std::runtime_error
+// if it cannot be written.
 void open_study(const std::filesystem::path& directory, const Protocol& protocol, const StudyKind& kind);
 
-// The content of study.json; nothing if there is no such file (logs of single runs). Throws InputError if the file
-// cannot be read.
+// The content of study.json. read_identity() returns nothing if there is no such file (logs of single runs). Throws
+// InputError if the file cannot be read.
 struct StudyIdentity {
     std::string name;
     std::string version;
@@ -34,7 +35,7 @@ struct StudyIdentity {
 std::optional<StudyIdentity> read_identity(const std::filesystem::path& directory);
 StudyIdentity identity_in(std::string_view study_json, const std::string& file_name);
 
-// One line of participants.tsv; unknown is n/a.
+// One line of participants.tsv; what is not known is n/a.
 struct Person {
     std::string code;  // without "sub-"
     std::string age = "n/a", sex = "n/a", handedness = "n/a", vision = "n/a";
@@ -42,33 +43,33 @@ struct Person {
     bool operator==(const Person&) const = default;
 };
 
-// Reads participants.tsv in the order of the file. A last line that was cut off is left out and noted. Throws
-// InputError for a code that stands twice.
+// Reads participants.tsv in the order of the file. A line that was cut off is left out and noted. Throws InputError for
+// a code that appears twice.
 std::vector<Person> read_people(const std::filesystem::path& directory, std::vector<std::string>& notes);
 std::vector<Person> people_in(std::string_view participants_tsv, const std::string& file_name,
                               std::vector<std::string>& notes);
 
-// Adds the people whose codes are not in the file yet; they are on the disk when the function returns. Throws
-// std::runtime_error if it cannot.
+// Appends the participants whose codes are not in the file yet; they are on the disk when the function returns. Throws
+// std::runtime_error if they cannot be written.
 void add_people(const std::filesystem::path& directory, const std::vector<Person>& people);
 
-// Trials of this participant that are finished and on the disk.
+// Returns the numbers of this participant's trials that are finished and on the disk.
 std::set<int> finished_trials(const std::filesystem::path& directory, const std::string& code);
 
-// The first trial that is not finished yet, where a study goes on after a break, a crash or a power cut; nothing if all
-// trials are done.
+// Returns the first trial that is not finished, with which a study continues after a break, a crash or a power cut;
+// nothing if all trials are finished.
 std::optional<PlannedTrial> next_trial(const PlannedParticipant& plan, const std::set<int>& finished);
 
-// Where a participant stands: what a screen needs to begin, or to go on after a crash.
+// The progress of a participant: what a screen needs to begin, or to continue after a crash.
 struct StudyProgress {
     bool known = false;       // the code is in participants.tsv already
-    PlannedParticipant plan;  // of the place that the code has there, or of the next free one
+    PlannedParticipant plan;  // for the participant's line in participants.tsv, or for the next free one
     std::set<int> finished;
-    std::optional<PlannedTrial> next;  // nothing: everything is done
+    std::optional<PlannedTrial> next;  // nothing: all trials are finished
 };
 StudyProgress progress_of(const std::filesystem::path& directory, const Protocol& protocol, const std::string& code);
 
-// What the participant reads before this trial.
+// Returns the instructions that the participant reads before this trial.
 std::string instructions_for(const Protocol& protocol, const PlannedTrial& trial);
 
 }  // namespace palpa::study

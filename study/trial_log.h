@@ -1,9 +1,8 @@
 #pragma once
 // What a person did in a trial, beside the samples of study/sample_log.h:
-//     ..._events.tsv   start, each mark, each judgement of how sure, each undo, finish or interrupted; written as it happens
+//     ..._events.tsv   start, each mark, each confidence, each undo, finish or interrupted; written as it happens
 //     ..._marks.tsv    the marks that stood at the end, with what they found; also of a trial that was broken off
-// Both tables have a JSON file that explains the columns. Rows are only appended, and each row is on the disk before
-// the next one begins.
+// A JSON file explains the columns of each table. Rows are only appended. LogOptions say when they are on the disk.
 
 #include <cstdint>
 #include <limits>
@@ -35,10 +34,10 @@ struct EventRow {
     double true_positives = kMissing;
     double false_positives = kMissing;
     double false_negatives = kMissing;
-    double path_mm = kMissing;  // these three on the row finish: of the pen while it presses
+    double path_mm = kMissing;  // this and the two forces: on the row finish, over the time that the pen presses
     double mean_force_N = kMissing;
     double max_force_N = kMissing;
-    double x_mm = kMissing;  // of a mark, so that a trial that is broken off has its places too
+    double x_mm = kMissing;  // of a mark, so that the log of a trial that is broken off has its places too
     double y_mm = kMissing;
 };
 
@@ -55,13 +54,13 @@ struct MarkRow {
     std::int64_t hit = 0;
 };
 
-// One of a study's trials, as its protocol plans it.
+// The labels of a trial of a study, as its protocol plans it.
 struct TrialLabel {
     std::string condition;
     std::string device;
     int trial = 1;
     int order_id = 0;
-    files::Json study;  // for the settings: protocol, version, hash, participant, what is simulated
+    files::Json study;  // for the settings: protocol, version, hash, participant, whether simulated
 };
 
 // One choice between two stimuli: one row of ..._task-softer_..._events.tsv.
@@ -78,20 +77,20 @@ struct ChoiceRow {
     std::int64_t seed = 0;
     double reference_kPa = 0.0;
     double comparison_kPa = 0.0;
-    std::string_view first = "reference";   // or comparison
-    std::string_view answer = "reference";  // which was called softer
+    std::string_view first = "reference";   // reference or comparison
+    std::string_view answer = "reference";  // the one that was called softer: reference or comparison
     std::int64_t correct = 0;
 };
 
 struct LogOptions {
     bool sync_rows = true;  // each row is on the disk when write() returns; false: when sync() returns
-    bool sidecars = true;   // a JSON file beside each table; false: they stand once at the top of the dataset
+    bool sidecars = true;   // a JSON file beside each table; false: one at the top of the dataset explains all
 };
 
 class TrialLog {
   public:
     explicit TrialLog(const RunFiles& files, const LogOptions& options = {});
-    // These functions return false once anything could not be written.
+    // Append a row. They return false once anything could not be written.
     bool write(const EventRow& row);
     bool write(const MarkRow& row);
     bool sync_marks() { return marks_.sync(); }
@@ -116,8 +115,8 @@ class ChoiceLog {
     std::string line_;
 };
 
-// Writes the files that every folder of logs has, and the explanations that hold for all its tables (BIDS: a JSON file
-// higher up is inherited). Existing files are left as they are.
+// Writes the files that every folder of logs has, and the explanations of all its tables (in BIDS, a JSON file higher
+// up is inherited). Existing files are left as they are.
 void prepare_log_folder(const std::filesystem::path& directory);
 
 }  // namespace palpa::study

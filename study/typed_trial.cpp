@@ -18,7 +18,7 @@ files::Json settings_of(const TrialLabel& label, const std::vector<std::string>&
 bool write_marks(const TrialLabel& label, const std::vector<std::string>& nodules, const TypedAnswers& answers,
                  TrialLog& log) {
     MarkRow row;
-    row.onset_s = answers.duration_s;  // when each was said is not known
+    row.onset_s = answers.duration_s;  // the log does not know when each answer was given
     row.trial = label.trial;
     row.mark = 0;
     row.x_mm = row.y_mm = MarkRow::kMissing;
@@ -73,7 +73,7 @@ void write_typed_trial(const RunFiles& files, const TrialLabel& label, bool prac
     row.true_positives = found_of(answers);
     row.false_negatives = missed_of(answers);
     row.false_positives = answers.false_marks;
-    good = good && log.write(row);  // last: it says that the rest is there
+    good = good && log.write(row);  // last, since it says that all else was written
     if (!good) throw std::runtime_error(files.stem + ": the typed answers could not be written (is the disk full?)");
 }
 

@@ -1,4 +1,4 @@
-// What the app says of pens, fingers and mice, while it runs.
+// What the app tells the person about pens, fingers and mice while it runs.
 
 #include <algorithm>
 #include <string>
@@ -26,7 +26,7 @@ void note_changes(const std::vector<platform::PointerDevice>& now, Notices& noti
     }
 }
 
-// Tells of a pen or finger that touches without a true pressure, and offers another way to press.
+// Notes a pen or finger that touches without a true pressure, and offers another way to press.
 void note_pressure(platform::Tool tool, App& app) {
     const platform::PressureKind kind = platform::pressure_kind(app.pressure, tool);
     const bool held = tool == platform::Tool::pen ? app.hold.pen : app.hold.finger;

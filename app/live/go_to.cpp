@@ -1,4 +1,4 @@
-// What the app does, and how it comes from one thing to another.
+// Changes what the app is doing.
 
 #include <utility>
 
@@ -11,7 +11,7 @@
 namespace palpa::app {
 namespace {
 
-// Puts the recording on the disk; a profile that was kept can be chosen at once.
+// Writes the recording to the disk. A profile that was saved can be chosen at once.
 void close_calibrate(CalibrateForm& form, App& app) {
     stop_recording(form);
     app.notices.profiles = profile_choices();

@@ -20,7 +20,7 @@
 namespace palpa::app {
 namespace {
 
-// True where a study shows a screen of its own, and no trial goes on.
+// True while a study shows a screen of its own, between its trials.
 bool between_study_trials(const App& app) { return study_of(app.doing) != nullptr && !palpates(app.doing); }
 
 // Takes the rows of the trace that are due, with the trace's own times.
@@ -32,11 +32,11 @@ void take_due_rows(App& app, double now_s, std::vector<platform::Sample>& out) {
 void take(const platform::Sample& sample, App& app) {
     session::take_sample(sample, app.session);
     if (app.waiting_s.size() < app.waiting_s.capacity()) app.waiting_s.push_back(sample.t_host_s);
-    // a trace that finishes its trial; its presses are its own
+    // a trace has finished its trial; its presses are its own, so go_to() is not needed
     if (app.session.trial.finished && std::holds_alternative<Palpating>(app.doing)) app.doing = back_to_trial(app);
 }
 
-// If a finger may not hide the avatar, it indents the place above it; log and trace hold that place.
+// If a finger must not hide the avatar, it indents the place above it; log and trace hold that place.
 void lift_fingers(float mm, std::vector<platform::Sample>& samples, const App& app) {
     if (!app.settings.above_finger || app.trace || !palpates(app.doing)) return;
     for (platform::Sample& sample : samples) {
@@ -44,7 +44,7 @@ void lift_fingers(float mm, std::vector<platform::Sample>& samples, const App& a
     }
 }
 
-// Where the samples of one turn of the loop go: to the tissue, or to the device check.
+// Hands the samples of one turn of the loop to the tissue, to the device check or to the calibration.
 void take_all(double now_s, std::vector<platform::Sample>& samples, App& app) {
     if (app.trace) {
         for (const platform::Sample& sample : samples) take(sample, app);
@@ -68,7 +68,7 @@ void take_all(double now_s, std::vector<platform::Sample>& samples, App& app) {
     }
 }
 
-// The keys move the indenter over the tissue, 30 mm/s, as long as no panel wants them.
+// Lets the keys move the indenter over the tissue, at 30 mm/s, as long as no panel needs them.
 void place_keyboard(platform::Window& window, const App& app) {
     constexpr double kSpeed_m_per_s = 0.03;
     const scene::ScreenArea& a = app.session.state.screen;
@@ -85,7 +85,7 @@ float scale_now(const App& app, const platform::Window& window) {
                          static_cast<float>(window.height_px()), window.touch_px_per_mm());
 }
 
-// A window that changed its size, or a hand that changed sides, is input too: a replay must map positions alike.
+// Takes a change of the window's size, or of the hand's side, as a sample: a replay must map positions in the same way.
 void note_resize(const platform::Window& window, Gui& gui, App& app) {
     gui.set_scale(scale_now(app, window));
     if (app.trace || between_study_trials(app) || app.session.trial.finished) return;
@@ -96,8 +96,8 @@ void note_resize(const platform::Window& window, Gui& gui, App& app) {
     if (!same) take(now, app);
 }
 
-// Counts the frame and the latency of the samples that it shows. Samples that changed nothing on the screen have no
-// frame that shows them, and no latency.
+// Counts the frame and the latency of the samples that it shows. Samples that change nothing on the screen have no
+// frame, and no latency.
 void note_shown(const platform::Window& window, App& app) {
     const double shown_s = now_of(app, window);
     const double ready_s = 1e-9 * static_cast<double>(app.view.times.built_ns) - app.trace_shift_s;
@@ -116,14 +116,15 @@ ToShow to_show(const App& app, double now_s, double dt_s) {
     return {s.scene, *s.plan, s.trial, app.settings, app.notices, app.doing, app.asked, now_s, dt_s};
 }
 
-// A step of a study begins with the frame that shows it first.
+// Notes when a step of a study is shown first, which is when it begins.
 void note_step_shown(double now_s, App& app) {
     StudyRun* study = study_of(app.doing);
     if (study != nullptr && study->step_began_s == 0.0) study->step_began_s = now_s;
 }
 
 void show(platform::Window& window, App& app, const Canvas& canvas, double dt_s) {
-    constexpr double kDevices_s = 0.5;  // however slowly frames come: a pen that is gone is noticed within a second
+    // with any frame rate, a pen that is gone is noticed within a second
+    constexpr double kDevices_s = 0.5;
     if (window.now_s() - app.devices_noted_s >= kDevices_s) {
         note_devices(window, app);
         app.devices_noted_s = window.now_s();
@@ -132,7 +133,8 @@ void show(platform::Window& window, App& app, const Canvas& canvas, double dt_s)
     age_note(now_s, app.notices);
     note_step_shown(now_s, app);
     const bool save = std::exchange(app.save_waits, false);
-    if (save) app.view.on_screen.content = 0;  // what the window hands out is only sure while it has just been drawn
+    // forces a drawing, since the content of the window is only certain right after it
+    if (save) app.view.on_screen.content = 0;
     const Wishes wishes = draw_frame(to_show(app, now_s, dt_s), canvas, app.view, app.session.state);
     if (save) {
         attempt(app, [&] {
@@ -156,7 +158,7 @@ bool in_motion(const App& app) {
     return app.trace || presses || !app.hold.held.empty() || records || keeps || app.save_waits;
 }
 
-// A log that can no longer be written stops the trial with a message; earlier rows are on the disk.
+// Stops the trial with a message if a log can no longer be written; earlier rows are on the disk.
 void watch_files(platform::Window& window, App& app) {
     if (trial_stopped(app) || session::files_good(app.session)) return;
     const std::string why = close_trial(app);
@@ -169,7 +171,7 @@ void watch_files(platform::Window& window, App& app) {
 void keep_part(double now_s, App& app) {
     constexpr double kEvery_s = 1.0;
     if (app.keeper == nullptr || !app.session.files || now_s - app.parted_s < kEvery_s) return;
-    if (study_of(app.doing) == nullptr && !app.session.trial.last_px) return;  // a page that was only looked at
+    if (study_of(app.doing) == nullptr && !app.session.trial.last_px) return;  // nobody has pressed yet
     if (app.session.log) app.session.log->flush();
     app.keeper->keep_part(*app.session.files);
     app.parted_s = now_s;
@@ -208,7 +210,7 @@ struct Live::Impl {
         began_s = frame_s = stirred_s = app.drawn_s = window->now_s();
     }
 
-    // The window's own button asks first, as Ctrl+Q does; pressed a second time, it closes.
+    // The window's close button asks first, as Ctrl+Q does; pressed a second time, it closes.
     bool closes() {
         if (app.quit) return true;
         if (!window->close_requested()) return false;
@@ -241,12 +243,12 @@ struct Live::Impl {
         lift_fingers(gui->mm(), samples, app);
         take_all(window->now_s(), samples, app);  // 2. simulate and log
         watch_files(*window, app);
-        session::flush_if_due(app.session);  // also while nothing moves, and nothing is drawn
+        session::flush_if_due(app.session);  // also while nothing moves and nothing is drawn
         keep_part(window->now_s(), app);
     }
 
-    // When the next frame is built. While nothing happens, frames are seldom: often enough for clocks, notices and
-    // cursors that blink. Input wakes the loop at once.
+    // Returns when the next frame is built. While nothing happens, frames are rare: often enough for clocks, notices
+    // and cursors that blink. Input wakes the loop at once.
     double next_frame_s() const {
         constexpr double kIdle_s = 0.1;
         constexpr double kSettle_s = 0.25;  // panels take some frames to settle, and the log is flushed after 80 ms
@@ -257,12 +259,12 @@ struct Live::Impl {
     App app;
     std::optional<platform::Window> window;
     std::optional<Gui> gui;
-    std::optional<render::TissueDrawer> tissue;  // goes before the window
+    std::optional<render::TissueDrawer> tissue;  // destroyed before the window
     bool ready = false;
     double asked_s = 1e-9 * static_cast<double>(scene::steady_ns());
     double began_s = 0.0;
-    double frame_s = 0.0;    // when a frame was built last
-    double stirred_s = 0.0;  // when anything came last
+    double frame_s = 0.0;    // when the last frame was built
+    double stirred_s = 0.0;  // when the last event or sample arrived
     double first_frame_s = 0.0;
     std::vector<platform::Sample> samples;
 };
@@ -290,7 +292,7 @@ bool Live::turn(Draw draw) {
 
 void Live::out_of_sight(bool hidden) {
     Impl& it = *impl_;
-    it.take_samples(0.0);  // presses that end now
+    it.take_samples(0.0);  // of presses that end now
     it.frame_s = it.stirred_s = it.window->now_s();
     it.app.view.on_screen.content = 0;
     if (it.app.trace || it.app.session.trial.finished || waits_for_keeper(it.app) || between_study_trials(it.app))

@@ -1,5 +1,5 @@
 #pragma once
-// The app on a screen: input, advance, log and drawing on one thread.
+// The app on a screen: input, simulation, log and drawing on one thread.
 
 #include <filesystem>
 #include <memory>
@@ -12,7 +12,7 @@
 
 namespace palpa::app {
 
-// `palpa run`, as typed.
+// The options of `palpa run`.
 struct RunOptions {
     std::string scene;
     std::string trace;  // replayed at its own pace, instead of input from a pen
@@ -20,20 +20,22 @@ struct RunOptions {
     std::string participant = "01";
     int first_run = 1;          // of the log
     std::string record;         // TRACE.tsv, empty for none
-    std::string screenshot;     // of the last frame
+    std::string screenshot;     // PNG of the last frame; empty for none
     double quit_after_s = 0.0;  // 0: until the window is closed
     int width_px = 0;           // 0: as last time
     int height_px = 0;
-    bool test = false;      // nodules hidden until the end; neither: as last time
+    bool test = false;      // nodules hidden until the end; without this and `practice`: as last time
     bool practice = false;  // nodules shown
     bool left_handed = false;
-    Screen screen = Screen::trial;  // that is open first
-    std::string protocol;           // of a study: its trials, instead of a scene; `log` is its folder
+    Screen screen = Screen::trial;  // the screen that is open first
+    // A study's protocol: its trials replace the scene, and `log` is its folder.
+    std::string protocol;
     bool headless = false;
     bool json = false;
 };
 
-// The app while its window is open, one turn at a time, for a system that calls the program, as a browser does.
+// The app while its window is open, one turn of its loop at a time, for a system that calls the program, as a browser
+// does.
 class Live {
   public:
     // Throws InputError or std::runtime_error before anything is shown. `keeper` must outlive the object, or be null.
@@ -42,24 +44,25 @@ class Live {
     Live(const Live&) = delete;
     Live& operator=(const Live&) = delete;
 
-    bool ready() const;  // false: the window was closed before the tissue was
+    bool ready() const;  // false: the window was closed before the tissue was ready
 
-    // Reads, simulates, logs, and shows a frame if one is due. With `now` and `nothing` it does not wait for input.
-    // Returns false once the app is over.
+    // Reads, simulates, logs, and shows a frame if one is due. With `now` and `nothing` it does not wait for input, and
+    // with `nothing` it shows no frame. Returns false once the app is over.
     enum class Draw : std::uint8_t { when_due, now, nothing };
     bool turn(Draw draw);
 
-    // The window has gone out of sight, or come back: ends the presses, logs the gap, and gives the keeper the trial so
-    // far.
+    // To be called when the window goes out of sight, or comes back: ends the presses, logs the gap, and gives the
+    // keeper the trial so far.
     void out_of_sight(bool hidden);
 
-    // The field that takes letters now, for a screen with an on-screen keyboard.
+    // Returns the field that takes letters now, for a screen with an on-screen keyboard; type_instead() replaces its
+    // text.
     std::optional<Gui::TextField> text_field() const;
     void type_instead(const std::string& text);
 
-    void renew_drawing();        // the GL context was lost, and is back
-    files::Json report() const;  // as `run --json` so far
-    files::Json close();         // throws std::runtime_error if a file could not be written
+    void renew_drawing();        // after the GL context was lost and restored
+    files::Json report() const;  // what `run --json` would print now
+    files::Json close();         // the final report; throws std::runtime_error if a file could not be written
   private:
     struct Impl;
     std::unique_ptr<Impl> impl_;

@@ -20,46 +20,47 @@
 
 namespace palpa::app {
 
-// How it stands with the trial, whatever screen is open.
+// The state of the trial, whatever screen is open.
 struct GoesOn {};
-struct WaitsForKeeper {};  // which has not stored the last one yet; no trial begins before
-struct TrialStopped {      // its files can no longer be written
+struct WaitsForKeeper {};  // the keeper is still storing the last trial; no trial begins before
+struct TrialStopped {      // the trial's files can no longer be written
     std::string why;
 };
 using Course = std::variant<GoesOn, WaitsForKeeper, TrialStopped>;
 
-// Everything that the app has open while its window is.
+// Everything that the app has open while its window is open.
 struct App {
     RunOptions options;
     Settings settings;
     std::filesystem::path settings_path;  // empty: this run keeps none
     Doing doing;                          // while the window is open, go_to() changes it; a study changes its own step
-    std::optional<Wishes> asked;          // would throw away marks: done once the person is sure
+    std::optional<Wishes> asked;          // would throw away marks: done once the person has confirmed
     Notices notices;
     ViewState view;
-    std::shared_ptr<DeviceCheck> check;  // the last one
+    std::shared_ptr<DeviceCheck> check;  // the last device check
     session::Session session;
-    std::optional<scene::Scene> unprepared;  // its tissue is computed once there is a window that can say so
+    std::optional<scene::Scene> unprepared;  // its tissue is computed once a window can show the progress
     std::optional<platform::Trace> trace;    // replayed
     std::size_t next_row = 0;
     double trace_shift_s = 0.0;     // window's clock - trace's clock
-    std::int64_t frames = 0;        // drawn
-    double drawn_s = 0.0;           // window's clock, at the last frame that was drawn
-    double devices_noted_s = -1e9;  // when devices were listed last
-    bool save_waits = false;        // a picture of the next frame is wanted
+    std::int64_t frames = 0;        // number of frames drawn
+    double drawn_s = 0.0;           // window's clock when the last frame was drawn
+    double devices_noted_s = -1e9;  // window's clock when the devices were last listed
+    bool save_waits = false;        // a picture of the next frame is to be saved
     platform::PressureWatch pressure;
     platform::HoldPress hold;
     std::vector<double> waiting_s;  // host times of the samples that no frame has shown yet
     Course course;
     session::TrialKeeper* keeper = nullptr;  // may be null
-    double parted_s = 0.0;                   // when the keeper last had the trial so far
+    double parted_s = 0.0;                   // when the keeper was last given the trial so far
     bool quit = false;
 };
 
 // The app's own frame time, since software rendering has no vertical sync.
 inline constexpr double kFrame_s = 1.0 / 60.0;
 
-// Shows a problem on the screen, instead of letting its exception end the program.
+// Runs `work`. Shows its exception as a problem on the screen, instead of letting it end the program, and returns
+// false.
 template <class Work>
 bool attempt(App& app, const Work& work) {
     try {
@@ -72,16 +73,18 @@ bool attempt(App& app, const Work& work) {
 }
 
 // prepare_run.cpp
-void load(const RunOptions& options, App& app);  // everything that bad input can refuse, before a window is there
-void know_screen(const platform::Window& window, App& app);  // how large the settings say that it is
-bool prepare_chosen(platform::Window& window, Gui& gui,
-                    App& app);  // what load() left unprepared; false: the window was closed
+// Does everything that bad input can make fail, before there is a window. Throws InputError or std::runtime_error.
+void load(const RunOptions& options, App& app);
+// Reads the scale of the window's screen from the settings.
+void know_screen(const platform::Window& window, App& app);
+// Prepares the tissue that load() left unprepared. Returns false if the window was closed.
+bool prepare_chosen(platform::Window& window, Gui& gui, App& app);
 
 // go_to.cpp
-// Leaves what the app is doing, and does `next` instead: a press or a recording of the screen before ends.
+// Ends what the app is doing, with any press or recording of its screen, and does `next` instead.
 void go_to(Doing next, platform::Window& window, App& app);
 void open_screen(Screen screen, platform::Window& window, App& app);
-Doing back_to_trial(const App& app);  // or to what it revealed
+Doing back_to_trial(const App& app);  // Palpating, or Reviewing if the trial is finished
 bool trial_stopped(const App& app);
 bool waits_for_keeper(const App& app);
 
@@ -91,44 +94,46 @@ void carry_out(const Wishes& asked_for, platform::Window& window, Gui& gui, App&
 
 // trials.cpp
 platform::TraceInfo info_of(const App& app, const platform::Window& window);
-double now_of(const App& app, const platform::Window& window);  // of samples
-double finger_offset_mm(const App& app);                        // 0, or kFingerOffset_mm; a trace's own
-files::Json result_of(const App& app);                          // what `run --json` says so far
+double now_of(const App& app, const platform::Window& window);  // on the clock of the samples
+double finger_offset_mm(const App& app);                        // 0 or kFingerOffset_mm; in a replay, that of the trace
+files::Json result_of(const App& app);                          // what `run --json` would print now
 // Ends all presses and drops their later samples: a press belongs to the trial and the screen in which it began.
 void end_presses(platform::Window& window, App& app);
-// Ends the presses and the trial, then puts the tissue of `scene` under the hand. A trial begins on it with begin().
+// Ends the presses and the trial, then replaces the tissue by that of `scene`. begin() begins a trial on it.
 void put_scene(scene::Scene scene, std::shared_ptr<const scene::Plan> plan, platform::Window& window, App& app);
 // Makes the plan. If its tissue has to be computed, the window shows the progress. Returns nothing if the window was
 // closed before the plan was ready.
 std::shared_ptr<const scene::Plan> prepare(platform::Window& window, Gui& gui, const scene::Scene& scene);
-void begin(platform::Window& window, const Gui& gui,
-           App& app);  // a trial; throws InputError or std::runtime_error
-void begin_anew(platform::Window& window, const Gui& gui,
-                App& app);  // ends the one that goes on; waits for a keeper that is busy
-void begin_when_kept(platform::Window& window, const Gui& gui, App& app);  // what begin_anew() left waiting
-// Changes to another scene or profile. If anything is wrong with it, the present one stays.
+// Begins a trial. Throws InputError or std::runtime_error.
+void begin(platform::Window& window, const Gui& gui, App& app);
+// Ends the present trial and begins a new one, or leaves it waiting for a keeper that is busy.
+void begin_anew(platform::Window& window, const Gui& gui, App& app);
+void begin_when_kept(platform::Window& window, const Gui& gui, App& app);  // begins what begin_anew() left waiting
+// Changes to another scene or profile. If it cannot be prepared, the present one stays.
 void change_scene(platform::Window& window, Gui& gui, const std::string& file, const std::string& profile, App& app);
 // Turns the tissue to the next of eight orientations, in an order that the seed decides, so that nobody learns where
-// its nodules are. Begin a trial after it.
+// its nodules are. A trial must be begun after it.
 void turn_tissue(platform::Window& window, App& app);
-void turn_if_shown(platform::Window& window,
-                   App& app);         // whoever has seen where the nodules are is tested on them somewhere else
-bool marks_at_stake(const App& app);  // that nobody has scored yet, in a trial that goes on
-// Its files whole on the disk, and with the keeper. Returns why not, or nothing; the trial is stopped then.
+// Turns the tissue if the person has seen where the nodules are, so that the next test has them somewhere else.
+void turn_if_shown(platform::Window& window, App& app);
+bool marks_at_stake(const App& app);  // the present trial has marks that are not scored yet
+// Closes the files of the trial and hands them to the keeper. If they could not be written, stops the trial and returns
+// why, else "".
 std::string close_trial(App& app);
 void act(platform::Action action, platform::Window& window, App& app);
 
 // device_notes.cpp
 void note_devices(const platform::Window& window, App& app);  // into app.notices
 
-// study_trials.cpp: a study's trials instead of a scene that was chosen. app.doing is a StudyRun.
+// study_trials.cpp: the trials of a study; app.doing is a StudyRun.
 void load_study(const RunOptions& options, App& app);  // throws InputError or std::runtime_error
-// What was asked for in a step, what that has led to, the end of a trial's time.
+// Carries out what was asked for in a step and its consequences, and ends a trial whose time is over.
 void follow_study(const std::optional<StudyWish>& wish, platform::Window& window, const Gui& gui, App& app);
 void finish_study_trial(platform::Window& window, App& app);
-double trial_ends_s(const App& app);  // at this time its limit ends the trial that goes on; infinity: never
-bool allowed(const platform::Sample& sample, App& app);  // its condition names the device
-files::Json study_json(const App& app);                  // how far it is
+// Returns when the time limit ends the present trial; infinity: never.
+double trial_ends_s(const App& app);
+bool allowed(const platform::Sample& sample, App& app);  // the due condition allows the sample's device
+files::Json study_json(const App& app);                  // the progress
 files::Json close_study(const Gui& gui, App& app);       // throws std::runtime_error if the study had to stop
 
 }  // namespace palpa::app

@@ -1,4 +1,4 @@
-// What the app starts with: options, settings, and the first scene.
+// Prepares what the app starts with: options, settings, and the first scene.
 
 #include <cmath>
 #include <filesystem>
@@ -65,7 +65,8 @@ bool prepare_first(scene::Scene scene, platform::Window& window, Gui& gui, App& 
 
 }  // namespace
 
-// A choice of last time that can no longer be prepared must not lock the person out.
+// If a scene chosen last time can no longer be prepared, the default scene replaces it, so that the person can still
+// use the app.
 bool prepare_chosen(platform::Window& window, Gui& gui, App& app) {
     if (!app.unprepared) return true;
     const scene::Scene scene = *std::exchange(app.unprepared, std::nullopt);

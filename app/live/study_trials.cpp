@@ -1,5 +1,5 @@
-// A study in the app: its trials are begun and ended here. Where a keeper takes them (in a browser), no step begins
-// before the previous one is safe.
+// A study in the app: begins and ends its trials. With a keeper (in a browser), no step begins before the previous one
+// is stored.
 
 #include <exception>
 #include <limits>
@@ -40,7 +40,7 @@ bool is_device_here(const App& app) {
     return device_here(due_condition(*study_of(app.doing)).modality, app.notices.devices);
 }
 
-// A trial whose device is gone says nothing about the person: it is interrupted, and comes again.
+// Interrupts a trial whose device is gone, since it says nothing about the person; the trial is repeated.
 void interrupt_study_trial(platform::Window& window, App& app) {
     session::note_event("device_gone", now_of(app, window), app.session);
     app.asked.reset();
@@ -51,7 +51,7 @@ void interrupt_study_trial(platform::Window& window, App& app) {
     wait_for_device(true, run);
 }
 
-// Typed trials and answers go to the keeper too; `keeping` stays set until the keeper has them.
+// Gives the keeper typed trials and answers too; `keeping_since_s` stays set until it has stored them.
 void follow_keeper(double now_s, App& app) {
     if (app.keeper == nullptr) return;
     StudyRun& run = *study_of(app.doing);
@@ -65,7 +65,7 @@ void follow_keeper(double now_s, App& app) {
         if (!run.keeping_since_s) run.keeping_since_s = now_s;
     } else {
         run.keeping_since_s.reset();
-        if (told) app.notices.problems.clear();  // it is mended
+        if (told) app.notices.problems.clear();  // the problem is solved
     }
     run.warnings = app.notices.problems;
 }
@@ -73,21 +73,21 @@ void follow_keeper(double now_s, App& app) {
 }  // namespace
 
 void load_study(const RunOptions& options, App& app) {
-    app.settings_path.clear();  // what a study fixes is nobody's choice to keep
+    app.settings_path.clear();  // what a study fixes is not kept as a person's choice
     const bool tablet = app.keeper != nullptr;
-    // on a tablet a code that has finished is refused on the screen: there is no command line to give another one
+    // on a tablet the screen refuses a code that has finished, since there is no command line to give another one
     StudyRun run =
         open_study_run(study::read_protocol(options.protocol), options.log, tablet ? "" : options.participant);
     run.on_tablet = tablet;
     run.first_run = options.first_run;
     if (tablet && !options.participant.empty()) enter_code(options.participant, run);
     app.doing = std::move(run);
-    scene::Scene scene = load_scene("");  // behind the first screens
+    scene::Scene scene = load_scene("");  // shown behind the first screens
     auto plan = std::make_shared<const scene::Plan>(scene::make_plan(scene));
     session::change_tissue(std::move(scene), std::move(plan), {}, app.session);
 }
 
-// Nothing is revealed; the next step comes once the trial is on the disk.
+// Reveals nothing. The next step comes once the trial is on the disk.
 void finish_study_trial(platform::Window& window, App& app) {
     StudyRun& run = *study_of(app.doing);
     const std::string why = close_trial(app);
@@ -138,7 +138,7 @@ files::Json study_json(const App& app) {
                        {"of", run.progress.plan.trials.size()}};
 }
 
-// A trial that still goes on is logged as interrupted.
+// A trial in progress is logged as interrupted.
 files::Json close_study(const Gui& gui, App& app) {
     const StudyRun& run = *study_of(app.doing);
     if (trial_goes_on(run)) {

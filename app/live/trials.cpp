@@ -1,4 +1,4 @@
-// The trials of the app: how one begins on a scene and how it ends. A study's are in study_trials.cpp.
+// The trials of the app: how one begins on a scene and how it ends. Those of a study are in study_trials.cpp.
 
 #include <algorithm>
 #include <cmath>
@@ -74,7 +74,7 @@ void end_presses(platform::Window& window, App& app) {
     end.pointer_id = *state.pointer;
     end.tool = state.pointer_tool;
     end.phase = platform::Phase::cancel;
-    end.x_px = end.y_px = platform::kMissing;  // where it was
+    end.x_px = end.y_px = platform::kMissing;  // the last position
     session::take_sample(end, app.session);
 }
 
@@ -106,7 +106,7 @@ void put_scene(scene::Scene scene, std::shared_ptr<const scene::Plan> plan, plat
     end_presses(window, app);
     close_or_tell(app);
     session::change_tissue(std::move(scene), std::move(plan), session::screen_of(info_of(app, window)), app.session);
-    // what it tells is of the tissue before
+    // the debriefing belongs to the tissue before
     if (std::holds_alternative<Reviewing>(app.doing)) go_to(Palpating{}, window, app);
 }
 
@@ -146,7 +146,7 @@ std::shared_ptr<const scene::Plan> prepare(platform::Window& window, Gui& gui, c
 }
 
 void change_scene(platform::Window& window, Gui& gui, const std::string& file, const std::string& profile, App& app) {
-    end_presses(window, app);  // what comes while the tissue is prepared reaches none
+    end_presses(window, app);  // samples that arrive while the tissue is prepared reach none
     scene::Scene scene;
     std::shared_ptr<const scene::Plan> plan;
     const bool good = attempt(app, [&] {
@@ -163,7 +163,7 @@ void turn_tissue(platform::Window& window, App& app) {
     scene::Scene turned = app.session.scene;
     scene::Mapping& mapping = turned.mapping;
     const int now = mapping.rotate_deg / 90 + (mapping.flip ? 4 : 0);
-    constexpr int kSteps[] = {3, 5};  // both reach all eight before any comes again
+    constexpr int kSteps[] = {3, 5};  // both reach all eight orientations before one is repeated
     const int next = (now + kSteps[turned.seed % 2]) % 8;
     mapping.rotate_deg = 90 * (next % 4);
     mapping.flip = next >= 4;
@@ -183,7 +183,7 @@ bool marks_at_stake(const App& app) {
 void act(platform::Action action, platform::Window& window, App& app) {
     const StudyRun* study = study_of(app.doing);
     const bool choice = study != nullptr && study->protocol.task == study::TaskKind::choice;
-    if (choice && action != platform::Action::finish) return;  // there is nothing to mark
+    if (choice && action != platform::Action::finish) return;  // a forced choice has nothing to mark
     if (waits_for_keeper(app)) return;                         // there is no trial to act on yet
     platform::Sample sample;
     sample.t_host_s = now_of(app, window);

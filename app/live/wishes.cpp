@@ -1,4 +1,4 @@
-// Does what the person asked for on the screens.
+// Carries out what the person asked for on the screens.
 
 #include <cmath>
 #include <string>
@@ -25,7 +25,7 @@ void change_settings(const Wishes& wishes, platform::Window& window, Gui& gui, A
     const bool changed = wishes.left_handed || wishes.above_finger || wishes.mode || wishes.full_screen ||
                          wishes.px_per_mm || wishes.scene || wishes.profile;
     if (changed) keep_settings(app);
-    // another scale or another way of showing the tissue makes another trial
+    // a trial has one scale and one way of showing the tissue, so a change begins another trial
     if (!wishes.px_per_mm && !wishes.mode && !wishes.above_finger) return;
     if (app.settings.test_mode) turn_if_shown(window, app);
     begin_anew(window, gui, app);

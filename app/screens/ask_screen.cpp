@@ -19,7 +19,7 @@ bool ends_trial(const Wishes& wishes) {
 Wishes ask_first(Wishes wishes, std::optional<Wishes>& asked) {
     if (wishes.sure || !ends_trial(wishes)) return wishes;
     Wishes at_once;
-    at_once.action = wishes.action;  // a mark of the same frame stays
+    at_once.action = wishes.action;  // a mark made in the same frame is kept
     wishes.action.reset();
     asked = std::move(wishes);
     return at_once;

@@ -14,7 +14,7 @@ void draw_calibrate_screen(const Shown& shown, Gui& gui, CalibrateForm& form, Wi
 // Takes the samples and readings of one turn of the loop. form.problem says what went wrong.
 void step_calibrate(const std::vector<platform::Sample>& samples, CalibrateForm& form);
 
-// Puts what was recorded on the disk and closes the sensor. A later session of the same name can continue it.
+// Writes what was recorded to the disk and closes the sensor. A later session of the same name can continue it.
 void stop_recording(CalibrateForm& form);
 
 }  // namespace palpa::app

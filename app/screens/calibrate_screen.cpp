@@ -48,7 +48,7 @@ void attempt(CalibrateForm& form, const Work& work) {
     }
 }
 
-// A free name beside those that exist already: NAME, NAME-2, ...
+// Returns a free name beside those that exist already: NAME, NAME-2, ...
 std::filesystem::path free_profile(const CalibrateForm& form) {
     const std::filesystem::path folder = user_folder() / "profiles";
     std::filesystem::create_directories(folder);
@@ -201,10 +201,10 @@ void refresh_fit(const calibration::Recording& recording, Guide& guide) {
         calibration::CalibrateOptions options;
         options.range = recording.arguments.options.range;
         options.bootstrap_fits = 0;
-        options.model = calibration::CurveModel::monotone_cubic;  // choosing among all takes longer than a frame
+        options.model = calibration::CurveModel::monotone_cubic;  // choosing among all models takes longer than a frame
         guide.fit = calibration::calibrate(calibration::rows_of(points), options);
     } catch (const files::InputError&) {
-        // too few points for a curve as yet
+        // too few points for a curve so far
     }
 }
 

@@ -17,23 +17,23 @@ namespace palpa::app {
 // What the guide has computed for a recording, and the number that the person types from a scale.
 struct Guide {
     std::optional<calibration::Calibration> fit;  // through the points so far, without intervals
-    std::size_t fitted = 0;                       // points that it was made from
-    double shown_gf = 0.0;                        // what the scale shows
+    std::size_t fitted = 0;                       // number of points that it was fitted to
+    double shown_gf = 0.0;                        // reading of the scale, as typed
     std::string note;
 };
 
 struct GuideWishes {
     bool stop = false;
-    bool keep = false;  // make a profile of it
+    bool keep = false;  // make a profile of the recording
 };
 
-// Fits again when points have come.
+// Fits the curve again if the number of points has changed.
 void refresh_fit(const calibration::Recording& recording, Guide& guide);
 
 GuideWishes draw_guide(calibration::Recording& recording, Gui& gui, Guide& guide);
 
 struct CalibrateForm {
-    int kind = 0;  // 0 a scale, typed; 1 Net F/T; 2 load cell on a serial port
+    int kind = 0;  // 0: readings of a scale are typed; 1: Net F/T; 2: load cell on a serial port
     char address[128] = "192.168.1.1";
     char port[128] = "/dev/ttyUSB0";
     double counts_per_N = 1e6;

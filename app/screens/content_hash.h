@@ -1,12 +1,12 @@
 #pragma once
-// A hash of the content of a frame: two frames with the same number look the same.
+// A hash of the content of a frame: two frames with the same hash look the same.
 
 #include <cstdint>
 #include <cstring>
 
 namespace palpa::app {
 
-// Adds `size` bytes to `hash`, eight at a time: 100 KB of triangles a frame cost tens of microseconds.
+// Adds `size` bytes to `hash`, eight at a time: 100 KB of triangles per frame cost tens of microseconds.
 inline std::uint64_t hash_more(std::uint64_t hash, const void* data, std::size_t size) {
     const auto* bytes = static_cast<const unsigned char*>(data);
     for (std::size_t i = 0; i < size; i += sizeof(std::uint64_t)) {

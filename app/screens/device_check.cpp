@@ -10,11 +10,11 @@ constexpr double kShortestClock_s = 4.0;
 
 void widen(double value, Range& range) {
     if (!std::isfinite(value)) return;
-    range.lowest = std::fmin(range.lowest, value);  // fmin, fmax: NaN gives way
+    range.lowest = std::fmin(range.lowest, value);  // fmin and fmax ignore NaN
     range.highest = std::fmax(range.highest, value);
 }
 
-// Notes a distinct value: counts as they are, a pressure without counts in 65535 steps.
+// Notes a value of the pressure: counts as they are, a pressure without counts in 65535 steps.
 void note_pressure(const platform::Sample& sample, ToolCheck& tool) {
     widen(sample.pressure, tool.pressure);
     widen(sample.pressure_raw, tool.pressure_raw);
@@ -42,7 +42,7 @@ void fit(const platform::Sample& sample, ClockFit& clock) {
     clock.sum_ahead_ahead += ahead_off_s * (ahead_s - clock.mean_ahead_s);
 }
 
-// The pointer's place in the table. If the table is full, it takes the place of the pointer that was quiet for longest.
+// Returns the pointer's place in the table. If the table is full, it replaces the pointer that was quiet for longest.
 PointerTime& slot_of(std::int64_t pointer_id, DeviceCheck& check) {
     PointerTime* quiet = check.pointers.data();
     for (PointerTime& pointer : check.pointers) {
@@ -57,7 +57,7 @@ PointerTime& slot_of(std::int64_t pointer_id, DeviceCheck& check) {
 void note_gap(const platform::Sample& sample, PointerTime& pointer, ToolCheck& tool) {
     if (!pointer.used || pointer.t_host_s != sample.t_host_s) ++tool.deliveries;
     const double delay_s = sample.t_host_s - sample.t_device_s;
-    constexpr double kSameClock_s = 5.0;  // clocks that differ by more have another beginning
+    constexpr double kSameClock_s = 5.0;  // clocks that differ by more count from different moments
     if (delay_s >= 0.0 && delay_s < kSameClock_s) tool.delays.add_ns(1e9 * delay_s);
     if (pointer.used) {
         const double by_device_s = sample.t_device_s - pointer.t_device_s;
@@ -71,7 +71,7 @@ void note_gap(const platform::Sample& sample, PointerTime& pointer, ToolCheck& t
     pointer = {true, sample.pointer_id, sample.t_host_s, sample.t_device_s};
 }
 
-// n/a of traces is null here
+// NaN, which traces write as n/a, becomes null.
 files::Json range_json(const Range& range) {
     return {files::number_or_null(range.lowest), files::number_or_null(range.highest)};
 }
@@ -133,11 +133,12 @@ double worst_gap_s(const ToolCheck& tool) { return 1e-9 * tool.gaps.worst_ns(); 
 
 std::int64_t distinct_pressures(const ToolCheck& tool) { return static_cast<std::int64_t>(tool.values.count()); }
 
-// slope = S_ha / S_hh,  its variance = (S_aa - slope S_ha) / ((n - 2) S_hh)
+// slope = S_ha / S_hh,  variance of the slope = (S_aa - slope S_ha) / ((n - 2) S_hh)
 ClockDrift clock_drift(const ToolCheck& tool) {
     const ClockFit& clock = tool.clock;
     const double n = static_cast<double>(clock.count);
-    // n samples evenly over T have a variance of T^2 / 12; a delay that changes by 1 ms in 1 s looks like 1000 ppm
+    // n samples evenly over T have a variance of T^2 / 12; over 1 s, a delay that changes by 1 ms would look like 1000
+    // ppm
     if (clock.count < 30 || clock.sum_host_host < n * kShortestClock_s * kShortestClock_s / 12.0) return {};
     const double slope = clock.sum_host_ahead / clock.sum_host_host;
     const double left = std::max(0.0, clock.sum_ahead_ahead - slope * clock.sum_host_ahead);

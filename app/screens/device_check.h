@@ -1,6 +1,6 @@
 #pragma once
-// Measures from samples what the pointing devices really send: rate, pressure, clock. Nothing here allocates, so that
-// the check can run beside everything else.
+// Measures from samples what the pointing devices really send: rate, pressure, clock. Taking a sample allocates
+// nothing, so that the check can run beside everything else.
 
 #include <array>
 #include <bitset>
@@ -13,22 +13,23 @@
 
 namespace palpa::app {
 
-// Straight line through (device - host) over host time, by least squares with running sums.
+// A straight line through (device - host) over host time, by least squares with running sums.
 struct ClockFit {
     std::int64_t count = 0;
     double first_host_s = 0.0;
     double first_device_s = 0.0;
-    double mean_host_s = 0.0;    // since the first
-    double mean_ahead_s = 0.0;   // device - host, since the first
-    double sum_host_host = 0.0;  // of products of differences from the means, s^2
+    double mean_host_s = 0.0;    // since the first sample
+    double mean_ahead_s = 0.0;   // device - host, since the first sample
+    double sum_host_host = 0.0;  // sums of products of deviations from the means, s^2
     double sum_host_ahead = 0.0;
     double sum_ahead_ahead = 0.0;
 };
 
 struct ClockDrift {
-    double ppm = platform::kMissing;  // positive: the device's clock is fast; NaN before 30 samples over some 4 s
-    double standard_error_ppm =
-        platform::kMissing;  // if delays come by chance; a computer that gets busy meanwhile adds to it
+    // Positive: the device's clock is fast. NaN before 30 samples over some 4 s.
+    double ppm = platform::kMissing;
+    // Assumes random delays; a computer that becomes busy during the check adds to the error.
+    double standard_error_ppm = platform::kMissing;
 };
 
 struct Range {
@@ -44,19 +45,19 @@ struct ToolCheck {
     Range x_px, y_px;
     Range pressure;                   // 0..1, while touching
     Range pressure_raw;               // counts, while touching
-    std::bitset<kMostValues> values;  // of the pressure, each count (or 1/65535) that came
+    std::bitset<kMostValues> values;  // the pressures that occurred, as counts (or in 1/65535)
     bool tilt = false;
     bool contact_size = false;
     scene::Meter gaps;  // between samples of one pointer
     std::int64_t gap_count = 0;
-    double gaps_s = 0.0;  // their sum
+    double gaps_s = 0.0;  // sum of the gaps
     ClockFit clock;
-    std::int64_t deliveries =
-        0;                // of samples of one pointer at one moment: fewer than samples where the system collects them
-    scene::Meter delays;  // from the device's clock to the host's, where both count from the same moment
+    // Number of deliveries of samples of one pointer at one moment: fewer than samples if the system collects them.
+    std::int64_t deliveries = 0;
+    scene::Meter delays;  // from the device's clock to the host's, if both count from the same moment
 };
 
-// A pointer that is being followed from sample to sample.
+// The last sample of a pointer.
 struct PointerTime {
     bool used = false;
     std::int64_t pointer_id = 0;
@@ -73,12 +74,12 @@ struct DeviceCheck {
 // A longer gap counts as a rest and not for the rate, since many devices send nothing while they are held still.
 inline constexpr double kRest_s = 0.25;
 
-// Call it with every sample as the device sent it. Samples of phase ui are ignored.
+// Takes every sample as the device sent it; samples of phase ui are ignored.
 void observe(const platform::Sample& sample, DeviceCheck& check);
 
 const ToolCheck& of_tool(platform::Tool tool, const DeviceCheck& check);
 
-// The rate is 0 before there are two samples. Gaps are measured by the device's own clock where it has one.
+// Returns 0 before there are two samples. Gaps are measured by the device's own clock if it has one.
 double rate_Hz(const ToolCheck& tool);
 double median_gap_s(const ToolCheck& tool);  // to 2 %
 double worst_gap_s(const ToolCheck& tool);
@@ -86,13 +87,13 @@ double worst_gap_s(const ToolCheck& tool);
 std::int64_t distinct_pressures(const ToolCheck& tool);
 ClockDrift clock_drift(const ToolCheck& tool);
 
-// How many samples come in one delivery; 1: each sample comes by itself.
+// Returns how many samples arrive in one delivery on average; 1: each arrives by itself.
 double samples_per_delivery(const ToolCheck& tool);
 double median_delay_s(const ToolCheck& tool);  // NaN if the clocks cannot be compared
 
 const char* name_of(platform::PressureKind kind);
 
-// What each tool sent, by the tool's name, for files and programs. NaN becomes null.
+// Returns what each tool sent, by the tool's name, for files and programs. NaN becomes null.
 files::Json check_json(const DeviceCheck& check);
 
 }  // namespace palpa::app

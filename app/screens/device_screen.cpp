@@ -108,7 +108,7 @@ void draw_device_screen(const Shown& shown, const CheckingDevices& checking, Gui
     if (big_button(words::kBack, words::kEscape, {40.0f * gui.mm(), kTarget_mm, true, false}, gui)) {
         wishes.screen = Screen::trial;
     }
-    ImGui::BeginChild("list");  // as many devices as there are: this part may scroll
+    ImGui::BeginChild("list");  // this part may scroll, since there may be any number of devices
     said_lines(shown.notices.devices);
     for (const std::string& note : shown.notices.device_notes) warning_paragraph(note);
     for (const platform::Tool tool :

@@ -1,6 +1,6 @@
 #pragma once
-// What the app is doing: one thing at a time, each with the data that it needs. The loop (app/live) owns it and is the
-// only one to change it; the screens draw it, and ask for a change in Wishes (app/screens/screens.h).
+// What the app is doing: one thing at a time, each with the data that it needs. The loop (app/live) owns it, and only
+// the loop changes it; the screens draw it, and ask for a change in Wishes (app/screens/screens.h).
 
 #include <memory>
 #include <variant>
@@ -14,7 +14,7 @@ namespace palpa::app {
 
 struct CalibrateForm;  // calibrate_form.h
 
-struct Palpating {  // a trial of one's own, practice or test (session::Trial::mode)
+struct Palpating {  // a trial outside a study, practice or test (session::Trial::mode)
     bool menu = false;
 };
 
@@ -29,8 +29,8 @@ struct Dot {
 };
 
 struct CheckingDevices {
-    std::shared_ptr<DeviceCheck> check;  // never null; outlives the screen for `run --json`
-    std::vector<Dot> dots;               // the last places in its test area
+    std::shared_ptr<DeviceCheck> check;  // never null; `run --json` still reports it when the screen is closed
+    std::vector<Dot> dots;               // the last positions in its test area
 };
 
 struct MeasuringScreen {};
@@ -41,21 +41,21 @@ struct Calibrating {
 
 struct BrowsingMaps {};
 
-// A study has steps of its own (app/study/study_step.h), its trials among them. While it runs the app does nothing
-// else: no menu, no truth before the end.
+// A study has steps of its own (app/study/study_step.h), its trials among them. While it runs, the app does nothing
+// else: there is no menu, and nothing is revealed before the end.
 using Doing = std::variant<Palpating, Reviewing, CheckingDevices, MeasuringScreen, Calibrating, BrowsingMaps, StudyRun>;
 
 inline StudyRun* study_of(Doing& doing) { return std::get_if<StudyRun>(&doing); }
 inline const StudyRun* study_of(const Doing& doing) { return std::get_if<StudyRun>(&doing); }
 
-// The menu of what has one: true if it is open. Null: there is no menu here.
+// Returns the menu of what the app is doing, true if it is open; null if it has none.
 const bool* menu_of(const Doing& doing);
 bool* menu_of(Doing& doing);
 
-// True while samples go to the tissue: in a trial of one's own, or of a study.
+// True while samples go to the tissue, in a trial of a study or outside one.
 bool palpates(const Doing& doing);
 
-// True while keys move the indenter over the tissue, or over the test area, and not from control to control.
+// True while keys move the indenter over the tissue or over the test area, and not the focus from control to control.
 bool keys_move_indenter(const Doing& doing);
 
 }  // namespace palpa::app

@@ -4,7 +4,7 @@
 
 namespace palpa::app {
 
-// A readable font file of this system (a TrueType sans-serif). If it is empty, Dear ImGui's own font is used.
+// Returns a readable font file of this system (a TrueType sans-serif). If it is empty, Dear ImGui's own font is used.
 std::string system_font_file();
 
 }  // namespace palpa::app

@@ -32,7 +32,7 @@ Surface surface_of(const scene::Scene& scene, const scene::Plan& plan, const sce
     return surface;
 }
 
-// The screens that cover the tissue. Returns false if none is open.
+// Draws the open screen if it covers the tissue. Returns false if none does.
 bool draw_covering(const Shown& shown, Gui& gui, ViewState& view, Wishes& wishes) {
     if (const auto* checking = std::get_if<CheckingDevices>(&shown.doing)) {
         draw_device_screen(shown, *checking, gui, wishes);
@@ -72,7 +72,8 @@ void draw_panels(const Shown& shown, const Layout& layout, Gui& gui, ViewState& 
     }
 }
 
-template <class Numbers>  // without gaps between them
+// Adds a struct of numbers, which must have no padding, to the hash.
+template <class Numbers>
 std::uint64_t hash_of(std::uint64_t hash, const Numbers& numbers) {
     static_assert(std::is_trivially_copyable_v<Numbers>);
     return hash_more(hash, &numbers, sizeof numbers);

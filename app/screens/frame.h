@@ -14,15 +14,15 @@ struct Canvas {
     render::TissueDrawer& tissue;
 };
 
-// Builds the frame, and draws it unless it would look like what is on the screen. Returns what the person asked for in
+// Builds the frame, and draws it unless it would look like what the window shows. Returns what the person asked for in
 // it. The time of the surface stage is added to its meter in `state`.
 Wishes draw_frame(const ToShow& what, const Canvas& canvas, ViewState& view, scene::State& state);
 
-// The sample that tells which part of the window the tissue has.
+// Returns the sample that says which part of the window the tissue has.
 platform::Sample resize_sample(const platform::Window& window, const Gui& gui, const Settings& settings,
                                double t_host_s);
 
-// Writes what the window shows as a PNG. Throws std::runtime_error if it cannot be written.
+// Writes what the window shows to a PNG file. Throws std::runtime_error if it cannot be written.
 void save_screen(const platform::Window& window, const std::filesystem::path& png);
 
 struct Picture {
@@ -31,8 +31,8 @@ struct Picture {
     std::filesystem::path png;
 };
 
-// Does the same without a display: draws a few frames (panels find their size in the first) and saves the last one.
-// Returns the name of a panel that did not fit, or nothing.
+// Draws a picture without a display: a few frames, since panels find their size in the first, of which it saves the
+// last. Returns the name of a panel that did not fit, or nothing. Throws std::runtime_error as save_screen() does.
 std::string draw_picture(const ToShow& what, const Picture& picture, ViewState& view, scene::State& state);
 
 }  // namespace palpa::app

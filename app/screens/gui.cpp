@@ -180,7 +180,7 @@ bool Gui::receive_finger(const platform::WindowEvent& event) {
     pointer_y_px_ = y;
     if (event.kind == platform::WindowEvent::Kind::finger_up) {
         wait_for_frame({PanelInput::Kind::button, false, x, y}, waiting_);
-        pointer_x_px_ = pointer_y_px_ = kNowhere_px;  // a finger that has left hovers nowhere
+        pointer_x_px_ = pointer_y_px_ = kNowhere_px;  // a lifted finger hovers nowhere
         finger_.reset();
     }
     return owned;
@@ -224,7 +224,7 @@ void Gui::hand_over_key(const PanelInput& input) {
         held_as = kNotHeld;
         return;
     }
-    // Enter presses a button as Space does, except where a number is typed
+    // Enter presses a button as Space does, except where text is typed
     const bool activates = input.key == platform::key::enter && !io.WantTextInput && !keep_enter_;
     if (input.for_panels && keys_to_panels_) {
         held_as = activates ? platform::key::space : input.key;
@@ -233,7 +233,7 @@ void Gui::hand_over_key(const PanelInput& input) {
     if (!io.WantTextInput) keys_.push_back({input.key, input.ctrl});
 }
 
-// Replaces the text of the field by a text that was typed on an on-screen keyboard.
+// Replaces the text of the field by a text typed on an on-screen keyboard.
 void Gui::replace_text(const std::string& text) {
     ImGuiIO& io = ImGui::GetIO();
     ImGuiInputTextState* state = ImGui::GetInputTextState(ImGui::GetActiveID());
@@ -279,7 +279,7 @@ bool Gui::in_use() const {
 WindowSize Gui::size_px() const { return {ImGui::GetIO().DisplaySize.x, ImGui::GetIO().DisplaySize.y}; }
 
 void Gui::renew_drawing() {
-    ImGui_ImplOpenGL3_Shutdown();  // its buffers' sizes are forgotten with them only here
+    ImGui_ImplOpenGL3_Shutdown();  // only this makes it forget the sizes of its buffers
     ImGui_ImplOpenGL3_Init("#version 300 es");
 }
 
@@ -305,7 +305,7 @@ std::uint64_t Gui::content() const {
 void Gui::draw() {
     ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
     while (glGetError() != GL_NO_ERROR) {
-        // the packaged backend asks desktop GL questions that OpenGL ES answers with an error
+        // the packaged backend makes desktop GL queries that OpenGL ES answers with an error
     }
 }
 

@@ -21,40 +21,43 @@ struct WindowSize {
 
 class Gui {
   public:
-    explicit Gui(platform::Window& window);  // also becomes the window's event filter
+    // Becomes the window's event filter; throws std::runtime_error without OpenGL.
+    explicit Gui(platform::Window& window);
     ~Gui();
     Gui(const Gui&) = delete;
     Gui& operator=(const Gui&) = delete;
 
-    void set_scale(float px_per_mm);  // of what is touched and read; takes effect at once, outside of a frame
-    float mm() const { return mm_; }
-    WindowSize size_px() const;  // of the frame
+    void set_scale(float px_per_mm);  // scale of controls and text; takes effect at once, only outside of a frame
+    float mm() const { return mm_; }  // px per millimetre
+    WindowSize size_px() const;       // of the frame
 
-    // keys_to_panels: arrows, Tab and Space move between the controls instead of the indenter.
+    // `keys_to_panels`: arrows, Tab and Space work the controls instead of the indenter.
     void begin_frame(double dt_s, bool keys_to_panels);
     void end_frame();  // closes the panels
-    // True while something is held on the panels, or input waits for the next frame: frames should then come quickly.
+    // True while something is held on the panels, or input waits for the next frame: the next frames should then come
+    // soon.
     bool in_use() const;
-    // Enter is the screen's own key (pressed()) instead of that of the control which has the focus.
+    // If `keep`, Enter is a key of the screen (pressed()) instead of pressing the control that has the focus.
     void keep_enter(bool keep) { keep_enter_ = keep; }
-    std::uint64_t content() const;  // of the panels that were closed last; the same number: the same look
-    void draw();                    // hands them to GL
-    void renew_drawing();           // all that GL held was lost
+    std::uint64_t content() const;  // hash of the panels closed last: equal hashes, equal looks
+    void draw();                    // hands these panels to GL
+    void renew_drawing();           // after GL lost all that it held
 
-    // Presses in a claimed area reach no tissue, from the next event on, until the next frame claims its areas.
+    // Claims an area: presses in it do not reach the tissue, from the next event until the next frame claims its areas.
     void claim(const PanelArea& area) { areas_.push_back(area); }
-    // True if a key (platform/window_event.h) goes down in this frame; always false while a number is typed.
+    // True if a key (platform/window_event.h) goes down in this frame; always false while text is typed.
     bool pressed(int key, bool ctrl = false) const;
-    // The field that takes letters now, for a screen with an on-screen keyboard; nothing if no field does.
+    // Returns the field that takes letters now, for a screen with an on-screen keyboard; nothing if no field does.
     struct TextField {
         std::string text;
         PanelArea area;
     };
     std::optional<TextField> text_field() const;
-    void note_text_area(const PanelArea& area) { text_area_ = area; }  // of the one that is drawn and takes letters
-    void type_instead(const std::string& text);                        // of what stands there
+    // The area of the field that is being drawn and takes letters.
+    void note_text_area(const PanelArea& area) { text_area_ = area; }
+    void type_instead(const std::string& text);  // replaces the text of the field
 
-    // Notes the name of a panel that does not fit into its place, for tests and for `run --json`.
+    // Notes the name of a panel that does not fit into its area, for tests and for `run --json`.
     void note_overflow(const std::string& panel) { overflow_ = panel; }
     const std::string& overflow() const { return overflow_; }
 
@@ -78,16 +81,16 @@ class Gui {
     platform::Window& window_;
     std::vector<PanelArea> areas_;  // of the frame before
     std::deque<PanelInput> waiting_;
-    std::vector<PanelInput> frame_;  // what this frame gets
-    std::vector<Key> keys_;          // that go down in this frame
-    std::array<int, platform::key::count>
-        held_as_;  // what Dear ImGui was told that a key is, while it is held; else kNotHeld
+    std::vector<PanelInput> frame_;  // input of this frame
+    std::vector<Key> keys_;          // keys that go down in this frame
+    // The key that Dear ImGui was given for each key that is held, else kNotHeld.
+    std::array<int, platform::key::count> held_as_;
     PanelArea text_area_{};
-    std::optional<std::int64_t> finger_;  // the one that uses the panels; others may palpate meanwhile
+    std::optional<std::int64_t> finger_;  // the finger on the panels; others may palpate meanwhile
     bool mouse_on_panel_ = false;
     bool keys_to_panels_ = false;
     bool keep_enter_ = false;
-    bool emptied_ = false;  // a field was, by a Backspace that nobody pressed
+    bool emptied_ = false;  // a field was emptied by a Backspace that nobody pressed
     float pointer_x_px_ = -1e6f;
     float pointer_y_px_ = -1e6f;
     float mm_ = 0.0f;

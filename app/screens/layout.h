@@ -1,6 +1,6 @@
 #pragma once
-// The parts of the window. The controls get a column on the side away from the drawing hand, or, on a window that is
-// taller than wide, a strip above the tissue; the tissue gets all the rest.
+// The parts of the window. The controls get a column on the side away from the drawing hand, or, in a window that is
+// taller than wide, a strip above the tissue; the tissue gets the rest.
 
 #include <limits>
 
@@ -16,21 +16,21 @@ struct PanelArea {
 
 struct Layout {
     bool column = true;    // controls beside the tissue; false: above it
-    bool controls = true;  // false: the window is too small for them, keys still work
+    bool controls = true;  // false: the window is too small for them, but keys still work
     PanelArea controls_px;
     PanelArea tissue_px;
 };
 
-// A finger may indent what lies this far above it, so that it does not hide the avatar.
+// A finger may indent the place this far above it, so that it does not hide the avatar.
 constexpr float kFingerOffset_mm = 15.0f;
 
-// `mm`: px per millimetre of what is touched. `above_finger`: the tissue ends kFingerOffset_mm above the window's lower
-// edge, so that all of it can be reached from below.
+// Divides the window. `mm`: px per millimetre for controls. `above_finger`: the tissue ends kFingerOffset_mm above the
+// window's lower edge, so that all of it can be reached from below.
 Layout layout_of(float width_px, float height_px, float mm, bool left_handed, bool above_finger = false);
 
-// px per millimetre for controls: the screen's own scale where it is known, else that of a desktop screen (96 px per
-// inch), and more on larger windows. touch_px_per_mm is the scale that the system gives for a screen that is touched
-// (NaN: none); it is used as far as the controls then fit.
+// Returns px per millimetre for controls: the screen's own scale if it is known, else that of a desktop screen (96 px
+// per inch), and more in larger windows. touch_px_per_mm is the scale that the system gives for a touch screen (NaN:
+// none); it is reduced until the controls fit, if need be.
 float control_scale(double px_per_mm, float width_px, float height_px,
                     double touch_px_per_mm = std::numeric_limits<double>::quiet_NaN());
 

@@ -15,7 +15,7 @@
 namespace palpa::app {
 namespace {
 
-// The colours of Okabe and Ito, which colour-blind people can tell apart; numbers tell the curves apart too.
+// The colours of Okabe and Ito, which colour-blind people can distinguish; numbers distinguish the curves too.
 constexpr ImU32 kCurves[kPins + 1] = {IM_COL32(230, 159, 0, 255), IM_COL32(86, 180, 233, 255),
                                       IM_COL32(0, 158, 115, 255), IM_COL32(204, 121, 167, 255),
                                       IM_COL32(236, 239, 241, 255)};
@@ -52,7 +52,8 @@ struct Values {
     }
 };
 
-// The colour scale is that of the shown matrix: on the scale of the deepest matrix, shallow ones would have one colour.
+// Returns the values of the shown matrix with a colour scale of their own: on the scale of the deepest matrix, shallow
+// ones would have a single colour.
 Values values_of(const MapBrowser& browser) {
     Values out{browser.map, browser};
     out.apart = browser.quantity == MapQuantity::tangential_x || browser.quantity == MapQuantity::tangential_y;
@@ -87,7 +88,7 @@ struct Frame {
     }
 };
 
-// The matrix is as large as it fits, true to shape.
+// Returns the largest frame in which the matrix fits, true to shape.
 Frame frame_of(const stiffnessmaps::Map& map, ImVec2 low, ImVec2 high) {
     const auto width_m = static_cast<float>(map.spacing_m[0] * static_cast<double>(map.n_x));
     const auto height_m = static_cast<float>(map.spacing_m[1] * static_cast<double>(map.n_y));
@@ -111,7 +112,8 @@ void hatch(ImDrawList& draw, ImVec2 low, ImVec2 high, float step_px) {
 
 void draw_cells(const Values& values, const Frame& f, float mm, ImDrawList& draw) {
     const stiffnessmaps::Map& map = values.map;
-    constexpr std::size_t kMostCells = 12000;  // four corners each, and a list takes 65,536; larger maps are thinned
+    // a cell has four corners, and a draw list holds 65,536; larger maps are thinned
+    constexpr std::size_t kMostCells = 12000;
     std::size_t stride = 1;
     while (((map.n_x + stride - 1) / stride) * ((map.n_y + stride - 1) / stride) > kMostCells) ++stride;
     hatch(draw, f.low, f.high, 1.6f * mm);
@@ -187,15 +189,15 @@ void draw_nodule(const stiffnessmaps::Nodule& nodule, const Frame& f, float mm, 
     const double radius_m = 0.5 * nodule.diameter_m.value_or(4e-3);
     const double half_m = std::max(0.0, 0.5 * nodule.length_m.value_or(0.0) - radius_m);
     const double turn = nodule.angle_deg.value_or(0.0) * std::numbers::pi / 180.0;
-    // even steps along the outline, so that dashes are alike on ends and sides
+    // even steps along the outline, so that dashes are alike on its ends and sides
     const double round_m = std::numbers::pi * radius_m;
     const double length_m = 2.0 * (round_m + 2.0 * half_m);
     const auto place_at_share = [&](double share) {
         double s = share * length_m;
         const double side = s < 0.5 * length_m ? 1.0 : -1.0;
         if (side < 0.0) s -= 0.5 * length_m;
-        const double a =
-            s < round_m ? s / radius_m - 0.5 * std::numbers::pi : 0.0;  // the end on that side, then the long side
+        // the end on that side comes first, then the long side
+        const double a = s < round_m ? s / radius_m - 0.5 * std::numbers::pi : 0.0;
         const double along = s < round_m ? half_m + radius_m * std::cos(a) : half_m - (s - round_m);
         const double across = s < round_m ? radius_m * std::sin(a) : radius_m;
         const double x = side * along;
@@ -288,8 +290,8 @@ namespace {
 
 struct DepthCurve {
     std::vector<ImVec2> points;  // mm, N
-    std::string name;            // which one, and its force at the shown depth
-    std::string place;           // left out where there is no room
+    std::string name;            // number of the curve, and its force at the shown depth
+    std::string place;           // left out if there is no room
     ImU32 colour;
 };
 
@@ -361,7 +363,7 @@ void draw_map_curves(const MapBrowser& browser, const std::optional<Eigen::Vecto
     const char* x_name = words::kDepthAxis;
     draw.AddText(ImGui::GetFont(), small_px,
                  ImVec2(high.x - 0.8f * ImGui::CalcTextSize(x_name).x, high.y + 1.2f * mm + small_px), kPale, x_name);
-    if (browser.quantity != MapQuantity::stiffness) {  // where the matrix lies
+    if (browser.quantity != MapQuantity::stiffness) {  // the depth of the matrix
         const auto depth_mm = static_cast<float>(1e3 * browser.map.depths_m[static_cast<std::size_t>(browser.depth)]);
         draw.AddLine(px(depth_mm, 0.0f), ImVec2(px(depth_mm, 0.0f).x, low.y), kLag, 0.3f * mm);
     }

@@ -107,7 +107,7 @@ void map_list(float height_px, const Gui& gui, MapBrowser& browser) {
     if (!wanted.empty()) choose_map(wanted, browser);
 }
 
-// Everything can be done with keys alone: kind, depth, a point moved by a fortieth of the map, pins.
+// Takes the keys, with which everything can be done: quantity, depth, a point moved by a fortieth of the map, pins.
 void take_map_keys(const Gui& gui, MapBrowser& browser) {
     for (int i = 0; i < 4; ++i) {
         const auto quantity = static_cast<MapQuantity>(i);
@@ -260,7 +260,7 @@ void draw_map_screen(const Shown& shown, Gui& gui, MapBrowser& browser, Wishes& 
     if (browser.map.n_cells() > 0) pointed_m = draw_map_matrix(browser, ImGui::GetContentRegionAvail(), gui, pressed);
     end_panel("map matrix", gui);
     if (pressed && pointed_m) add_pin(*pointed_m, browser);
-    if (pointed_m) browser.pointed_m.reset();  // the pointer has taken over from the keys
+    if (pointed_m) browser.pointed_m.reset();  // the pointer replaces the keys
     begin_panel("map curves", areas.curves, gui);
     if (browser.map.n_cells() > 0)
         draw_map_curves(browser, pointed_m ? pointed_m : browser.pointed_m, ImGui::GetContentRegionAvail(), gui);

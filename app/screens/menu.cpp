@@ -128,7 +128,7 @@ void trial_keys(const Shown& shown, const Gui& gui, Wishes& wishes) {
     }
 }
 
-// Opens and closes the menu; from a screen without one, Escape leads back to the trial.
+// Opens and closes the menu. From a screen without one, Escape leads back to the trial.
 void menu_keys(const Shown& shown, const Gui& gui, Wishes& wishes) {
     const bool* menu = menu_of(shown.doing);
     if (menu == nullptr) {
@@ -202,8 +202,8 @@ void take_keys(const Shown& shown, const Gui& gui, ViewState& view, Wishes& wish
     if (gui.pressed(platform::key::f11)) wishes.full_screen = true;
     if (gui.pressed(platform::key::escape)) wishes.understood = true;
     if (palpates(shown.doing)) trial_keys(shown, gui, wishes);
-    if (study_of(shown.doing) != nullptr)
-        return;  // the rest would change what the protocol says, or tell what it hides
+    // in a study the other keys would change what the protocol fixes, or reveal what it hides
+    if (study_of(shown.doing) != nullptr) return;
     if (gui.pressed('t')) wishes.trials = true;
     if (gui.pressed('y')) wishes.studies = true;
     menu_keys(shown, gui, wishes);

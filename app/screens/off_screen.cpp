@@ -1,4 +1,4 @@
-// Writes what is on the screen to a file, with a window or without a display.
+// Writes what the window shows to a file, with or without a display.
 
 #include "app/screens/frame.h"
 #include "files/text.h"

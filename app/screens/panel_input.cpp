@@ -18,7 +18,8 @@ bool is_press(const PanelInput& input) {
     return input.kind == Kind::key && input.down && input.key != platform::key::other;
 }
 
-// Emptying a field is done by Dear ImGui's Backspace on a selection, so it counts as a key that goes down.
+// True for input after which no letters may follow in the same frame: a key that types nothing, or the emptying of a
+// field, which Dear ImGui does by a Backspace on a selection.
 bool ends_letters(const PanelInput& input) {
     return (is_press(input) && !types_letter(input.key)) || (input.kind == Kind::replace && input.text.empty());
 }

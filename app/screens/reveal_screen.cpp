@@ -10,14 +10,14 @@
 namespace palpa::app {
 namespace {
 
-// One run of cells of a row that reached the same level.
+// Draws one run of cells of a row that reached the same level.
 void draw_run(const Shown& shown, const study::Coverage& c, int row, int first, int last, study::PalpationLevel level,
               float mm, ImDrawList& draw) {
     const double x0 = c.x_m + first * c.cell_m;
     const double x1 = c.x_m + (last + 1) * c.cell_m;
     const double y0 = c.y_m + row * c.cell_m;
     const double y1 = y0 + c.cell_m;
-    if (level == study::PalpationLevel::none) {  // hatching, so that "never touched" is not one more colour
+    if (level == study::PalpationLevel::none) {  // hatched, so that "never touched" is not one more colour
         for (int i = first; i <= last; ++i) {
             if ((i + c.n_y - row) % 4 != 0) continue;  // diagonals from cell to cell
             const double x_m = c.x_m + i * c.cell_m;
@@ -72,8 +72,8 @@ void draw_nodules(const Shown& shown, const session::Debrief& debrief, float mm,
             draw.AddCircle(at, radius_px, kDark, 48, 1.3f * mm);
             dashed_circle(draw, at, radius_px, kInk, 0.8f * mm);
         }
-        const std::string text =
-            words::filled(found ? words::kFoundNodule : words::kMissedNodule, {nodule.id});  // why: in the panel
+        // the panel says why a nodule was missed
+        const std::string text = words::filled(found ? words::kFoundNodule : words::kMissedNodule, {nodule.id});
         const float width_px = ImGui::CalcTextSize(text.c_str()).x;
         const bool fits = at.x + radius_px + mm + width_px < ImGui::GetIO().DisplaySize.x;
         rimmed_text(

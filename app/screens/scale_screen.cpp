@@ -1,4 +1,4 @@
-// The screen that measures the screen's scale, by a bank card held against it or by a typed number.
+// The screen on which the person measures the display's scale, by a bank card held against it or by a typed number.
 
 #include <algorithm>
 #include <cmath>

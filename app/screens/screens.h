@@ -1,6 +1,7 @@
 #pragma once
-// What the app shows, screen by screen. The functions draw what the loop (app/live) hands them, and return what the
-// person asked for in Wishes; the loop carries it out. A picture can therefore be drawn without a window on a screen.
+// What the app shows, screen by screen. The functions draw what the loop (app/live) gives them, and return what the
+// person asked for in Wishes, which the loop carries out. A picture can therefore be drawn without a window on a
+// display.
 
 #include <memory>
 #include <optional>
@@ -17,76 +18,79 @@
 
 namespace palpa::app {
 
-enum class Screen : std::uint8_t { trial, devices, scale, calibrate, maps };  // that a person can ask for
+enum class Screen : std::uint8_t { trial, devices, scale, calibrate, maps };  // screens that a person can ask for
 
 struct Wishes {
     std::optional<platform::Action> action;  // mark, confidence, undo, finish
     std::optional<std::string> scene;        // file
     std::optional<std::string> profile;      // file; empty: the scene's own
     std::optional<Screen> screen;            // trial: back to it, or to what it revealed
-    std::optional<bool> menu;                // open
+    std::optional<bool> menu;                // true: open it; false: close it
     std::optional<session::TrialMode> mode;
     std::optional<bool> left_handed;
     std::optional<bool> above_finger;
     std::optional<double> px_per_mm;  // of this screen, measured; NaN: forget it
     std::optional<StudyWish> study;
-    bool again = false;  // the same tissue once more
-    bool next = false;   // turned another way
+    bool again = false;  // another trial on the same tissue
+    bool next = false;   // another trial on the tissue turned another way
     bool save_picture = false;
-    bool full_screen = false;  // the other way round
+    bool full_screen = false;  // enter or leave full screen
     bool press_by_hold = false;
-    bool trials = false;      // show what is kept
-    bool studies = false;     // let the person choose one
-    bool understood = false;  // the problems that are shown
+    bool trials = false;      // show the trials that the keeper holds
+    bool studies = false;     // let the person choose a study
+    bool understood = false;  // dismiss the problems that are shown
     bool quit = false;
-    bool sure = false;  // of throwing away the marks of the trial that goes on,
-    bool stay = false;  // or not
+    bool sure = false;  // confirms that the marks of the present trial may be thrown away,
+    bool stay = false;  // or that they may not
 };
 
-// What the app says beside the tissue, and what there is to choose from.
+// What the app tells beside the tissue, and what there is to choose from.
 struct Notices {
     std::vector<Choice> scenes;
     std::vector<Choice> profiles;
     std::vector<std::string> device_notes;  // about pens, fingers, pressure
-    std::vector<std::string> problems;      // what went wrong, newest last, until it is dismissed
-    std::string note;                       // what went well ("saved ..."), for a while
+    std::vector<std::string> problems;      // the newest last, until they are dismissed
+    std::string note;                       // good news ("saved ..."), shown for a while
     std::string note_seen;                  // the note that is shown,
     double note_since_s = 0.0;              // and since when
-    bool offer_hold = false;                // a pen or finger without pressure: offer to press by time
+    bool offer_hold = false;                // offer to press by time to a pen or finger without pressure
     std::string screen_name;                // key of Settings::px_per_mm
     double px_per_mm = platform::kMissing;  // of this screen; NaN: not measured
-    std::string trials_note;                // what is kept, and what the desk has
-    bool keeps_trials = false;              // in the browser: a screen of its own, no way to quit
+    std::string trials_note;                // what the keeper holds, and what the desk has
+    bool keeps_trials = false;              // in the browser: a screen of its own for trials, and no way to quit
     std::vector<platform::PointerDevice> devices;
-    bool devices_listed = false;  // those are all; false, in a browser: others may come with their first sample
+    // `devices` is complete. False in a browser, where other devices may come with their first sample.
+    bool devices_listed = false;
 };
 
 // Times of the frame loop.
 struct FrameTimes {
-    scene::Meter latency;       // sample to the end of the frame that shows it
-    scene::Meter ready;         // sample to the moment when that frame is ready to be drawn: without the rasteriser
-    std::int64_t built_ns = 0;  // that moment, steady clock
-    scene::Meter cpu;           // a frame up to the calls of GL
-    scene::Meter gl;            // the calls of GL; with software rendering that is where the drawing is done
+    scene::Meter latency;  // from a sample to the end of the frame that shows it
+    // From a sample to the moment when that frame is ready to be drawn, without the rasteriser.
+    scene::Meter ready;
+    std::int64_t built_ns = 0;  // this moment, steady clock
+    scene::Meter cpu;           // of a frame up to the calls of GL
+    scene::Meter gl;            // the calls of GL, which include the drawing with software rendering
     double frames_per_s = 0.0;
 };
 
 // What the window shows.
 struct OnScreen {
-    std::uint64_t content =
-        0;               // what it was drawn from (content_hash.h); 0: nobody knows, so that the next frame is drawn
-    bool drawn = false;  // by the last draw_frame()
+    // Hash of what was drawn (content_hash.h); 0: unknown, so that the next frame is drawn.
+    std::uint64_t content = 0;
+    bool drawn = false;        // by the last draw_frame()
     std::uint64_t tissue = 0;  // the same of the tissue alone, without panels
 };
 
-// What is being typed in the step of a study that is shown.
+// What is being typed in the present step of a study.
 struct StudyForm {
     int step = -1;  // StudyRun::entered; another step begins with an empty form
     std::string code;
-    int refused = -1;                  // codes that the step had refused when the field last got the letters
+    // How many codes the step had refused when the field last got the focus.
+    int refused = -1;
     std::vector<std::string> answers;  // to the items of this step, "" = not answered
     study::TypedAnswers typed;
-    double clock_began_s = 0.0;  // of `typed`; 0: the clock stands
+    double clock_began_s = 0.0;  // of `typed`; 0: the clock is stopped
 };
 
 struct MapBrowser;  // map_screen.h
@@ -94,14 +98,14 @@ struct MapBrowser;  // map_screen.h
 // What the screens themselves keep from frame to frame. A replay does not need it.
 struct ViewState {
     bool cost = false;                 // the cost table is open
-    double card_px_per_mm = 3.78;      // while the screen is being measured
-    std::shared_ptr<MapBrowser> maps;  // while its screen is open
+    double card_px_per_mm = 3.78;      // while the scale of the screen is being measured
+    std::shared_ptr<MapBrowser> maps;  // while its screen is open, else null
     StudyForm study;
     FrameTimes times;
     OnScreen on_screen;
 };
 
-// All that the loop hands over to be drawn.
+// All that the loop gives to be drawn.
 struct ToShow {
     const scene::Scene& scene;
     const scene::Plan& plan;
@@ -109,12 +113,12 @@ struct ToShow {
     const Settings& settings;
     const Notices& notices;
     const Doing& doing;
-    const std::optional<Wishes>& asked;  // would throw away marks: done once the person is sure
-    double now_s = 0.0;                  // of samples
+    const std::optional<Wishes>& asked;  // would throw away marks: done once the person has confirmed
+    double now_s = 0.0;                  // on the clock of the samples
     double dt_s = 1.0 / 60.0;            // since the last frame
 };
 
-// The same while a frame is built, with what follows from it.
+// The same while a frame is built, with what is derived from it.
 struct Shown : ToShow {
     const scene::State& state;
     const FrameTimes& times;
@@ -136,14 +140,14 @@ void add_dot(const platform::Sample& sample, std::vector<Dot>& dots);
 void draw_study_screen(const StudyRun& run, double now_s, Gui& gui, StudyForm& form, Wishes& wishes);
 void draw_scale_screen(const Shown& shown, Gui& gui, double& card_px_per_mm, Wishes& wishes);
 
-// While marks are at stake: puts wishes that would throw them away into `asked`, and returns the other wishes.
+// While marks are at stake: moves wishes that would throw them away into `asked`, and returns the other wishes.
 Wishes ask_first(Wishes wishes, std::optional<Wishes>& asked);
 void draw_ask(const Shown& shown, Gui& gui, Wishes& wishes);
 
-// Takes the note off the screen when it has been there for a while.
+// Removes the note once it has been shown for 8 s.
 void age_note(double now_s, Notices& notices);
 
-// Takes the keys; everything on the screens can be done with them.
+// Takes the keys, with which everything on the screens can be done.
 void take_keys(const Shown& shown, const Gui& gui, ViewState& view, Wishes& wishes);
 
 // Draws a progress bar in the middle of the screen, while nothing else can be shown.

@@ -18,7 +18,8 @@ std::string variable(const char* name) {
     return value != nullptr ? value : "";
 }
 
-// XDG_PICTURES_DIR="$HOME/Pictures" in user-dirs.dirs; the folder's name is in the person's language.
+// Returns the folder of XDG_PICTURES_DIR="$HOME/Pictures" in user-dirs.dirs, whose name depends on the person's
+// language, else ~/Pictures, else the home folder.
 fs::path pictures_folder() {
     const std::string home = variable("HOME");
     if (home.empty()) throw std::runtime_error("the picture is not saved: HOME names no folder");

@@ -50,7 +50,7 @@ files::Json json_of(const Settings& s) {
     return json;
 }
 
-// A file that somebody wrote by hand and that could not be read is kept.
+// Renames a settings file that cannot be read, which may have been written by hand, so that it is not overwritten.
 void move_broken_aside(const fs::path& file) {
     if (!fs::exists(file)) return;
     std::string problem;

@@ -11,7 +11,7 @@ struct Settings {
     std::string scene;    // empty: the default one
     std::string profile;  // empty: the scene's own
     bool left_handed = false;
-    bool above_finger = false;  // a finger indents what lies kFingerOffset_mm above it, and does not hide it
+    bool above_finger = false;  // a finger indents the place kFingerOffset_mm above it, and does not hide it
     bool test_mode = false;
     bool full_screen = false;
     int width_px = 1280;
@@ -19,14 +19,15 @@ struct Settings {
     std::map<std::string, double> px_per_mm;  // by screen (its name and size)
 };
 
-// $XDG_CONFIG_HOME/palpa/settings.json, or ~/.config/palpa/settings.json; empty if neither is known.
+// Returns $XDG_CONFIG_HOME/palpa/settings.json, or ~/.config/palpa/settings.json; empty if neither variable is an
+// absolute path.
 std::filesystem::path settings_file();
 
-// Reads the file; without a file the settings are the defaults. If the file cannot be read, `problem` says why, and the
-// next save moves the file aside instead of overwriting it.
+// Reads the settings; without a file they are the defaults. If the file cannot be read, `problem` says why, the
+// defaults are returned, and the next save moves the file aside instead of overwriting it.
 Settings load_settings(const std::filesystem::path& file, std::string& problem);
 
-// Returns why the settings could not be saved, for people, or nothing.
+// Saves the settings. Returns in words why they could not be saved, or nothing.
 std::string save_settings(const Settings& settings, const std::filesystem::path& file);
 
 }  // namespace palpa::app

@@ -1,5 +1,5 @@
-// What a participant sees between the trials of a study, and where the experimenter types. It tells nothing of what was
-// found or is to be found.
+// The screens of a study between its trials, for the participant and for the experimenter who types. They reveal
+// nothing of what was found or is to be found.
 
 #include <algorithm>
 #include <cmath>
@@ -17,7 +17,7 @@ bool enter_pressed(const Gui& gui) {
     return gui.pressed(platform::key::enter) || gui.pressed(platform::key::pad_enter);
 }
 
-// The one button that goes on; Enter does the same.
+// The button that leads on; Enter does the same.
 bool forward(const char* label, const Gui& gui, bool enabled = true) {
     const float width_px = std::min(70.0f * gui.mm(), ImGui::GetContentRegionAvail().x);
     const bool asked = big_button(label, words::kEnter, {width_px, kMark_mm, enabled, false}, gui);
@@ -36,7 +36,7 @@ void beside(const std::string& text, const Gui& gui) {
     ImGui::TextUnformatted(text.c_str());
 }
 
-// Fields are as high as buttons that are touched.
+// A text field as high as the buttons, so that it can be touched.
 bool text_field(const char* label, char* text, std::size_t size, ImGuiInputTextFlags flags, Gui& gui) {
     ImGui::PushStyleVar(ImGuiStyleVar_FramePadding,
                         ImVec2(2.0f * gui.mm(), 0.5f * (kTarget_mm * gui.mm() - ImGui::GetFontSize())));
@@ -58,7 +58,7 @@ void trials_button(const Gui& gui, const StudyRun& run, Wishes& wishes) {
         wishes.trials = true;
 }
 
-// The button that leaves the study. Where there is no window to close, it leads to the rest of the app.
+// The button that leaves the study. On a tablet, which has no window to close, it leads to the rest of the app.
 void leave_button(const Gui& gui, const StudyRun& run, Wishes& wishes) {
     const char* label = run.on_tablet ? words::kLeaveStudy : words::kClose;
     const char* key = run.on_tablet ? "" : words::kCtrlQ;
@@ -66,7 +66,7 @@ void leave_button(const Gui& gui, const StudyRun& run, Wishes& wishes) {
         wishes.quit = true;
 }
 
-// The screen while the keeper stores what was done, usually for less than a frame.
+// The screen while the keeper stores the last step, usually for less than a frame.
 void draw_keeping(double now_s, Gui& gui, const StudyRun& run, Wishes& wishes) {
     constexpr double kSoon_s = 0.5;
     if (now_s - *run.keeping_since_s < kSoon_s && run.warnings.empty()) return;
@@ -87,7 +87,7 @@ void draw_code(const step::Code& step, const StudyRun& run, Gui& gui, StudyForm&
     form.refused = step.refused;
     const bool entered = text_field(words::kCode, text, sizeof text, ImGuiInputTextFlags_EnterReturnsTrue, gui);
     form.code = text;
-    // Escape takes the letters from the field; there is no other one that they could go to
+    // Escape takes the focus from the field, and there is no other field to give it to
     if (ImGui::IsItemDeactivated() && ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape))) form.refused = -1;
     gap(gui);
     if (forward(words::kGoOn, gui) || entered) wishes.study = EnterCode{text};
@@ -134,7 +134,7 @@ void draw_item(const study::Item& item, Gui& gui, std::string& answer) {
     if (item.from && *item.to - *item.from < kMostButtons) {
         std::vector<std::string> steps;
         for (int i = *item.from; i <= *item.to; ++i) steps.push_back(std::to_string(i));
-        // on one line, if that makes no button too small
+        // on one line, if the buttons do not become too small
         const float share_px = share_of_line_px(static_cast<int>(steps.size()));
         return draw_choices(steps, share_px > 8.0f * gui.mm() ? std::min(11.0f * gui.mm(), share_px) : 11.0f * gui.mm(),
                             gui, answer);
@@ -146,7 +146,7 @@ void draw_item(const study::Item& item, Gui& gui, std::string& answer) {
     if (text_field("##text", text, sizeof text, flags, gui)) answer = text;
 }
 
-// A number outside its range counts as no answer.
+// True if the answer is empty or a number in the item's range.
 bool acceptable(const study::Item& item, const std::string& answer) {
     if (answer.empty() || !item.from) return true;
     double value = 0.0;
@@ -330,7 +330,7 @@ void draw_pause(const StudyRun& run, double now_s, Gui& gui, Wishes& wishes) {
     if (forward(words::kGoOn, gui)) wishes.study = BeginStep{};
 }
 
-// An empty form for the step that the study is in.
+// Returns an empty form for the present step of the study.
 StudyForm form_for(const StudyRun& run) {
     StudyForm form;
     form.step = run.entered;

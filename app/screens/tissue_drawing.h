@@ -7,17 +7,18 @@
 
 namespace palpa::app {
 
-// The view of the tissue as the scene maps it. An indirect scene is drawn tilted, since no pen has to lie on it.
+// Returns the view of the tissue as the scene maps it. An indirect scene is drawn tilted, since no pen has to lie on
+// it.
 render::TissueView tissue_view(const scene::Scene& scene, const scene::State& state, float window_width_px,
                                float window_height_px);
 
 render::Dent dent_of(const avatar::SurfaceCurve& curve, const scene::Avatar& avatar);
 
-// A surface of nodes, moved with the avatar. It is smoothed by 1-2-1 over the nodes, which takes out the
-// zig-zag that forces on single nodes leave in it.
+// Returns a surface of nodes, moved with the avatar and smoothed by 1-2-1 over the nodes, which removes the zig-zag
+// that forces on single nodes leave.
 render::Relief relief_of(const scene::SurfaceShape& shape, const scene::Avatar& avatar);
 
-// The indenter at the avatar's place. While nothing touches, it hovers and is half transparent.
+// Returns the indenter at the avatar's position. While nothing touches, it hovers and is translucent.
 render::Ball ball_of(const scene::Plan& plan, const scene::State& state, const scene::Avatar& avatar);
 
 }  // namespace palpa::app

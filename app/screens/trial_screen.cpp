@@ -11,7 +11,7 @@
 namespace palpa::app {
 namespace {
 
-// Bullet graph: one bar before three tints of one hue, light, medium and deep, named beside it.
+// A bullet graph: one bar before three tints of one hue, light, medium and deep, named beside it.
 void draw_force_bar(const Shown& shown, float height_px, const Gui& gui) {
     const double full_N = std::max(0.1, shown.plan.greatest_force_N);
     const float mm = gui.mm();
@@ -47,7 +47,7 @@ void draw_force_bar(const Shown& shown, float height_px, const Gui& gui) {
     ImGui::Dummy(ImVec2(width_px, height_px));
 }
 
-// The panel of a forced choice: there is nothing to mark, and no number may tell how soft the surface is.
+// True for an interval of a forced choice: there is nothing to mark, and no number may tell how soft the surface is.
 bool is_interval(const Doing& doing) {
     const StudyRun* study = study_of(doing);
     return study != nullptr && study->protocol.task == study::TaskKind::choice;
@@ -59,7 +59,7 @@ void draw_numbers(const Shown& shown, const Gui& gui) {
     ImGui::BeginGroup();
     value_line(words::kForce, fixed(contact.normal_N, 2) + " N", column_px);
     if (!is_interval(shown.doing)) value_line(words::kDepth, fixed(1e3 * contact.depth_m, 2) + " mm", column_px);
-    // in a test the lag is what the eye has to judge, so no number tells it
+    // in a test the eye has to judge the lag, so no number shows it
     if (shown.trial.mode == session::TrialMode::practice) {
         value_line(words::kLag, fixed(1e3 * shown.avatar.lag_m.norm(), 2) + " mm", column_px);
         if (shown.scene.delay) value_line(words::kDelay, fixed(1e3 * shown.avatar.delay_s, 0) + " ms", column_px);
@@ -69,7 +69,7 @@ void draw_numbers(const Shown& shown, const Gui& gui) {
     ImGui::EndGroup();
 }
 
-// Draws one line that always takes its place, so that nothing moves when it fills.
+// Draws one line that takes up its space even if it is empty, so that nothing moves when it fills.
 void draw_contact_note(const Shown& shown) {
     const scene::Contact& contact = shown.state.contact;
     const char* note = "";
@@ -84,7 +84,7 @@ void draw_contact_note(const Shown& shown) {
     ImGui::TextColored(ImVec4(1.0f, 0.84f, 0.35f, 1.0f), "%s", note);
 }
 
-// A participant has no menu, and sees which trial this is and the time that is left.
+// Draws the header for a participant, who has no menu and sees which trial this is and the time that is left.
 void draw_study_header(const Shown& shown, const StudyRun& run) {
     const double limit_s = due_limit_s(run);
     const double left_s = limit_s > 0.0 ? std::max(0.0, std::ceil(limit_s - shown.trial_s)) : shown.trial_s;
@@ -161,7 +161,7 @@ void draw_messages(const Shown& shown, const Gui& gui, Wishes& wishes) {
     for (const std::string& note : notices.device_notes) paragraph(note);
     if (!notices.note.empty()) paragraph(notices.note);
     if (!notices.trials_note.empty()) paragraph(notices.trials_note);
-    if (study_of(shown.doing) != nullptr) return;  // what the tissue is made of, the settings tell
+    if (study_of(shown.doing) != nullptr) return;  // a participant need not know what the tissue is made of
     if (shown.plan.source == stiffnessmaps::SourceKind::analytic) paragraph(words::kAnalyticTissue);
     if (shown.plan.source == stiffnessmaps::SourceKind::simulated) paragraph(words::kSimulatedTissue);
     if (std::isfinite(shown.state.view.scale) && shown.scene.mapping.kind == scene::MappingKind::direct &&
@@ -173,7 +173,7 @@ void draw_messages(const Shown& shown, const Gui& gui, Wishes& wishes) {
 void column_panel(const Shown& shown, Gui& gui, Wishes& wishes) {
     draw_header(shown, gui, wishes);
     if (study_of(shown.doing) == nullptr) one_line(shown.scene.name);
-    // the space that is left after the other parts, within limits
+    // the space that the other parts leave, within limits
     const float rest_px = 62.0f * gui.mm() + 3.0f * ImGui::GetFontSize();
     const float bar_px = std::clamp(ImGui::GetContentRegionAvail().y - rest_px, 16.0f * gui.mm(), 55.0f * gui.mm());
     const float left_px = ImGui::GetCursorPosX();
@@ -184,7 +184,7 @@ void column_panel(const Shown& shown, Gui& gui, Wishes& wishes) {
     if (!is_interval(shown.doing)) draw_contact_note(shown);
     draw_actions(shown, gui, wishes);
     ImGui::BeginChild("messages", ImVec2(0.0f, 0.0f), false,
-                      ImGuiWindowFlags_NavFlattened);  // long ones scroll in what is left
+                      ImGuiWindowFlags_NavFlattened);  // long messages scroll in the rest of the panel
     draw_messages(shown, gui, wishes);
     ImGui::EndChild();
 }
@@ -215,7 +215,7 @@ void strip_panel(const Shown& shown, Gui& gui, Wishes& wishes) {
 }
 
 void draw_pen(const Shown& shown, const Gui& gui, ImDrawList& draw) {
-    if (!shown.state.touch.down) {  // where a mark would go
+    if (!shown.state.touch.down) {  // shows where a mark would go
         if (!shown.trial.last_px) return;
         const Eigen::Vector2d p_m = scene::tissue_of_px(shown.state.view, *shown.trial.last_px);
         const ImVec2 at = on_screen(shown.view, p_m.x(), p_m.y());

@@ -1,5 +1,6 @@
 #pragma once
-// Widgets that all screens share: large targets with their key beside the word, colours that everybody can tell apart.
+// Widgets that all screens share: large targets with their key beside the word, and colours that everybody can
+// distinguish.
 
 #include <imgui.h>
 #include <string>
@@ -14,14 +15,14 @@ inline constexpr ImU32 kPale = IM_COL32(168, 176, 182, 255);
 inline constexpr ImU32 kLag = IM_COL32(255, 214, 90, 255);
 inline constexpr ImU32 kDark = IM_COL32(20, 22, 24, 255);
 
-// Light, medium, deep: three tints of one hue for the force, three steps of cividis (made for eyes that do not tell red
-// from green; PLOS ONE 13 (2018) e0199239) for areas.
+// Light, medium, deep: three tints of one hue for the force, three steps of cividis (made for red-green colour
+// blindness; PLOS ONE 13 (2018) e0199239) for areas.
 inline constexpr ImU32 kForceTints[3] = {IM_COL32(44, 66, 84, 255), IM_COL32(58, 92, 120, 255),
                                          IM_COL32(76, 122, 160, 255)};
 inline constexpr ImU32 kAreaTints[3] = {IM_COL32(58, 76, 107, 150), IM_COL32(148, 142, 119, 150),
                                         IM_COL32(250, 221, 76, 150)};
 
-inline constexpr float kTarget_mm = 9.0f;  // least size of what is touched
+inline constexpr float kTarget_mm = 9.0f;  // least height of a control that is touched
 inline constexpr float kMark_mm = 12.0f;
 
 // Begins a panel that fills exactly this area, without decoration, and claims the area. Content that does not fit can
@@ -33,23 +34,25 @@ struct ButtonLook {
     float width_px = 0.0f;  // 0: the rest of the line
     float height_mm = kTarget_mm;
     bool enabled = true;
-    bool chosen = false;  // filled bright: what is in force now
+    bool chosen = false;  // filled brightly: the present choice
 };
-// `key`: shown small beside the label, for people who use the keyboard; may be empty.
+// Draws a button. Returns true if it is pressed. `key` is shown small beside the label, for people who use the
+// keyboard; it may be empty.
 bool big_button(const char* label, const char* key, const ButtonLook& look, const Gui& gui);
 
-// Width of one of `count` buttons that share the rest of the line.
+// Returns the width of one of `count` buttons that share the rest of the line.
 float share_of_line_px(int count);
 
-void paragraph(const std::string& text);          // wrapped, pale
-void one_line(std::string text);                  // pale; what does not fit is left out, so that nothing below it moves
+void paragraph(const std::string& text);  // wrapped, pale
+// Pale; text that does not fit is cut, so that nothing below it moves.
+void one_line(std::string text);
 void warning_paragraph(const std::string& text);  // wrapped, with a mark in front
 void value_line(const char* name, const std::string& value, float column_px);
 
-std::string clock_text(double seconds);  // 1:07
-std::string fixed(double value, int digits);
+std::string clock_text(double seconds);       // such as 1:07
+std::string fixed(double value, int digits);  // with this many decimals; "-" if not finite
 
-// Where a place on the tissue is drawn.
+// Returns where a place on the tissue is drawn.
 ImVec2 on_screen(const render::TissueView& view, double x_m, double y_m);
 
 void cross(ImDrawList& draw, ImVec2 at, float radius_px, ImU32 colour, float width_px);

@@ -1,7 +1,7 @@
 #pragma once
 // All words that the screens show, in one place: change this file for another language or other words. Each {} is
-// replaced by a value. Words of the page around the program stand at the end. Messages about files and command lines
-// stand in the code that reports them, and names that also stand in files (tools, findings, sources) with their types.
+// replaced by a value. Words of the page around the program are at the end. Messages about files and command lines are
+// in the code that reports them, and names that also occur in files (tools, findings, sources) are with their types.
 
 #include "files/filled.h"
 
@@ -212,7 +212,7 @@ inline constexpr const char* kForceAgainstX = "Force against +x";
 inline constexpr const char* kForceAgainstY = "Force against +y";
 inline constexpr const char* kAtPlace = "  at {}, {} mm";
 
-// trial: what stands in its messages
+// trial: its messages
 inline constexpr const char* kOtherWays =
     "Other ways to press: the mouse (hold its button, or turn the wheel) and the keys (arrows move, Space presses).";
 inline constexpr const char* kIsGone = "{} is gone.";
@@ -227,7 +227,7 @@ inline constexpr const char* kPreparing = "Preparing the tissue (once; later sta
 inline constexpr const char* kSaved = "Saved {}";
 inline constexpr const char* kDoneWith = "This trial is done with the {}.";
 
-// before marks are thrown away
+// the question before marks are thrown away
 inline constexpr const char* kLoseMarks = "End this trial?";
 inline constexpr const char* kLoseMark =
     "1 mark stands on the tissue and nothing is scored yet. This trial cannot be gone on with.";

@@ -26,8 +26,8 @@ enum Purpose : std::uint64_t { kTraits = 11, kTrials = 12, kAnswers = 13 };
 
 constexpr double kScreenWidth_px = 1280.0;
 constexpr double kScreenHeight_px = 800.0;
-constexpr double kNoLimit_s = 60.0;     // how long a simulated person searches where the protocol sets no limit
-constexpr double kSoftnessWeber = 0.2;  // of a simulated answer to "which is softer"; ours, no measurement
+constexpr double kNoLimit_s = 60.0;     // how long a simulated person searches without a limit in the protocol
+constexpr double kSoftnessWeber = 0.2;  // of a simulated answer to "which is softer"; our choice, not measured
 
 struct Shared {
     const study::Protocol& protocol;
@@ -48,7 +48,8 @@ std::string code_of(int number) {
     return code;
 }
 
-// Sample of a hand that presses so hard at a place of the screen: the inverse of calibration and mapping.
+// Makes the samples of a hand that presses with a given force at a place on the screen: the inverse of calibration and
+// mapping.
 class Hand {
   public:
     Hand(const study::Condition& condition, const session::Session& session)
@@ -84,7 +85,7 @@ class Hand {
     }
 
   private:
-    // the person's y points up, the screen's down
+    // the person's y axis points up, the screen's down
     void place(const study::ScreenPlace& at, const Eigen::Vector2d& px_per_m, platform::Sample& out) const {
         out.x_px = view_.centre_px.x() + at.x_m * px_per_m.x();
         out.y_px = view_.centre_px.y() - at.y_m * px_per_m.y();
@@ -107,14 +108,14 @@ session::SessionFiles files_of(const Shared& shared, const study::PlannedPartici
     files.log = shared.options.output.string();
     files.participant = code_of(who.number);
     files.samples = shared.options.samples;
-    files.sync_rows = false;  // nobody waits; the trial is on the disk before the next begins
+    files.sync_rows = false;  // nobody waits, and the trial is on the disk before the next begins
     files.label = label_of(shared.protocol, who, trial, shared.identities[trial.condition]);
     files.label->study["simulated"] = true;
     files.label->study["simulation_seed"] = shared.options.seed;
     return files;
 }
 
-// What a person sees of the present state.
+// Returns what a person sees of the present state.
 study::Sight sight_of(const session::Session& session) {
     return {session.state.avatar.lag_m.norm(), session.state.contact.depth_m, session.scene.surface.has_value()};
 }
@@ -151,7 +152,7 @@ void run_trial(Shared& shared, const study::PlannedParticipant& who, const study
     session::begin_trial(files_of(shared, who, trial), info,
                          trial.practice ? session::TrialMode::practice : session::TrialMode::test, session);
     session.state.time_every = 0;
-    // the same hand and eye in all trials of a person, noise of its own in each
+    // a person has the same traits in all trials, and different noise in each
     study::Random of_person(study::derived_seed(shared.options.seed, kTraits, static_cast<std::uint64_t>(who.number)));
     const study::PersonTraits traits =
         study::draw_person(session.plan->zone_N[1], greatest_force_N(session), of_person);
@@ -183,7 +184,7 @@ void run_trial(Shared& shared, const study::PlannedParticipant& who, const study
     shared.result.written_MB += written_MB;
 }
 
-// Forced choices need no loop: the answer is drawn from two stiffnesses with noise.
+// Answers forced choices without the loop: each answer is drawn from two stiffnesses with noise.
 void run_choices(Shared& shared, const study::PlannedParticipant& who, const std::set<int>& finished) {
     const study::Protocol& protocol = shared.protocol;
     if (!study::next_trial(who, finished)) return;

@@ -13,7 +13,7 @@ bool tool_allowed(study::Modality modality, platform::Tool tool) {
         case study::Modality::mouse:
             return tool == platform::Tool::mouse || tool == platform::Tool::keyboard;
         default:
-            return true;  // a touchpad may speak as any of them
+            return true;  // a touchpad may report any of them
     }
 }
 

@@ -18,9 +18,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kRoom_MB = 64.0;  // for one trial: ten minutes at 1,000 Hz
+constexpr double kRoom_MB = 64.0;  // free disk space for one trial: ten minutes at 1,000 Hz
 
-// A recorded map's plan for another stiffness, with the force bar of the reference's plan.
+// Returns a recorded map's plan for another stiffness, with the force bar of the reference's plan.
 std::shared_ptr<const scene::Plan> smoothed_anew(const scene::Plan& reference, const scene::Scene& scene) {
     scene::Plan plan = session::make_plan_here(scene);
     plan.greatest_force_N = reference.greatest_force_N;
@@ -29,8 +29,8 @@ std::shared_ptr<const scene::Plan> smoothed_anew(const scene::Plan& reference, c
     return std::make_shared<const scene::Plan>(std::move(plan));
 }
 
-// The same tissue, harder or softer: forces of linear elastic tissue are proportional to its modulus. All look alike
-// to the person: the force bar is the reference's.
+// Returns the reference and its comparisons: the same tissue with scaled forces, since forces of linear elastic tissue
+// are proportional to its modulus. All look alike to the participant, with the force bar of the reference.
 std::vector<StudyScene> stimuli_of(const StudyScene& scene, const study::ChoiceTask& task) {
     std::vector<StudyScene> out{scene};
     for (const double comparison_kPa : task.comparisons_kPa) {
@@ -48,7 +48,7 @@ bool plain(const std::string& code) {
     });
 }
 
-// What the experimenter sees from elsewhere (palpa study watch).
+// Returns what the experimenter sees from elsewhere (palpa study watch).
 files::Json now_json(const StudyRun& run) {
     files::Json json{{"participant", run.code},
                      {"step", name_of(run.step)},
@@ -69,7 +69,7 @@ files::Json now_json(const StudyRun& run) {
     return json;
 }
 
-// A problem with the disk stops the study, in words, before a trial is lost.
+// Runs `work`. An exception, such as a problem with the disk, stops the study with a message before a trial is lost.
 template <class Work>
 bool kept(StudyRun& run, const Work& work) {
     try {
@@ -106,7 +106,7 @@ void check_room(const StudyRun& run) {
                              " MB for a trial; the study stops here");
 }
 
-// The first condition whose trials are all done and that was not rated.
+// Returns the first condition whose trials are all finished and which was not rated yet.
 std::optional<std::size_t> to_rate(const StudyRun& run) {
     if (run.protocol.ratings.empty()) return std::nullopt;
     std::vector<std::string> notes;
@@ -291,7 +291,7 @@ void begin_step(StudyRun& run) {
     }
     const auto* device = std::get_if<step::Device>(&run.step);
     if (device == nullptr) return begin_trial_step(run);
-    if (device->here) enter(step::Trial{}, run);  // of a choice, the same interval
+    if (device->here) enter(step::Trial{}, run);  // in a forced choice, the same interval
 }
 
 void wait_for_device(bool left, StudyRun& run) { enter(step::Device{false, left}, run); }
@@ -359,7 +359,7 @@ void stop_study(const std::string& why, StudyRun& run) {
     try {
         write_now(run);  // for the experimenter
     } catch (const std::exception&) {
-        // the disk is what stopped it; the participant's screen says so
+        // the disk itself stopped the study; the participant's screen says so
     }
 }
 

@@ -10,7 +10,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Beside the protocol, else among the assets.
+// Returns the file beside the protocol, else the one among the assets.
 fs::path find_beside(const study::Protocol& protocol, const std::string& name, const char* kind) {
     const fs::path given(name);
     if (given.is_absolute()) return given;

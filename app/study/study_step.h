@@ -12,28 +12,28 @@ namespace palpa::app {
 
 namespace step {
 
-struct Code {  // who is here?
-    int refused = 0;
+struct Code {         // who takes part?
+    int refused = 0;  // number of codes refused so far
 };
-struct Again {};      // a code that is known: is it the same person?
-struct Questions {};  // before the trials
+struct Again {};      // a known code: is it the same person?
+struct Questions {};  // of the protocol, before the trials
 struct Instructions {};
-struct Trial {           // on the tissue; of a choice, one of the two intervals
-    bool begun = false;  // false: the loop is to begin it
+struct Trial {           // on the tissue; in a forced choice, one of the two intervals
+    bool begun = false;  // false: the loop must begin it
 };
-struct Device {         // the trial is due, and what it is done with is not connected
-    bool here = false;  // it is now; the loop looks
-    bool left = false;  // it went in the middle of the trial, which begins anew
+struct Device {         // a trial is due, and its device is not connected
+    bool here = false;  // it is connected now; set by the loop
+    bool left = false;  // it went during the trial, which begins again
 };
 struct Present {};   // an interval that the experimenter presents
 struct Question {};  // which was softer
-struct Typed {};     // the experimenter types what was said
+struct Typed {};     // the experimenter types in the participant's answers
 struct Ratings {     // after a condition
     std::size_t condition = 0;
 };
 struct Pause {};
 struct Done {};
-struct Stopped {  // it cannot go on
+struct Stopped {  // the study cannot continue
     std::string why;
 };
 
@@ -51,10 +51,10 @@ struct EnterCode {
 struct SamePerson {
     bool is = true;
 };
-struct SubmitAnswers {  // of questions and ratings: to the items of this step, "" = not answered
+struct SubmitAnswers {  // answers to the items of this step; "" = not answered
     std::vector<std::string> answers;
 };
-struct BeginStep {};  // from instructions, a pause, or once the device is here
+struct BeginStep {};  // from instructions, a pause, or once the device is connected
 struct IntervalPresented {};
 struct ChooseSofter {
     bool first = true;

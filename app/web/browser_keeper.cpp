@@ -50,8 +50,8 @@ std::string text_of(Text which) {
     return text.get();
 }
 
-// What the browser's storage has is not needed in memory too; the empty file keeps the number of the run, and a study's
-// events tell which trials are done.
+// Empties the files of a run, which need no memory once the browser's storage has them. The empty files keep the number
+// of the run taken, and a study's events stay, since they tell which trials are finished.
 void empty_files(const study::RunFiles& run) {
     const bool study = !study::study_of(run).empty();
     for (const auto& entry : fs::directory_iterator(run.folder)) {
@@ -80,7 +80,7 @@ void keep_run(const study::RunFiles& run, const char* how) {
     }
 }
 
-// From `from` on.
+// Returns the content of the file from byte `from` on.
 std::string rest_of(const fs::path& file, std::size_t from) {
     std::ifstream in(file, std::ios::binary);
     in.seekg(static_cast<std::streamoff>(from));

@@ -1,5 +1,5 @@
 #pragma once
-// Trials and settings in the browser's own storage (app/web/trials.js), from where they go to the desk.
+// Keeps trials and settings in the browser's own storage (app/web/trials.js), from where they go to the desk.
 
 #include <map>
 
@@ -21,17 +21,17 @@ class BrowserKeeper : public session::TrialKeeper {
     void open_studies() override;
 
   private:
-    std::map<std::string, std::size_t> parts_;  // of the run that is going on: file and how much of it is kept
+    std::map<std::string, std::size_t> parts_;  // of the present run: file -> number of bytes kept
 };
 
-// The participant's code: from the page's address (?participant=07), else this tablet's own. And the first run number
-// that this tablet has never given to anybody.
+// participant_here() returns the participant's code from the page's address (?participant=07), else this tablet's own.
+// next_run_here() returns the first run number that this tablet has never given to anybody.
 std::string participant_here();
-std::string protocol_here();  // ?protocol=NAME, without its folder and ending; empty: no study
+std::string protocol_here();  // ?protocol=NAME, without folder and ending; empty: no study
 int next_run_here();
 
-// Puts the files of studies that earlier pages left, and the desk's files of the study that is asked for, where the app
-// looks for them. A trial that was going on when its page ended is kept as interrupted.
+// Puts the files of studies that earlier pages left, and the desk's files of the requested study, where the app looks
+// for them. A trial that was in progress when its page ended is kept as interrupted.
 void restore_studies();
 
 // Puts the settings of the last run where the app looks for them.

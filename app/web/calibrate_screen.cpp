@@ -1,4 +1,4 @@
-// Pressure is calibrated on the desk, where the force sensors are; this says so.
+// Pressure is calibrated on the desk, where the force sensors are; this screen says so.
 
 #include "app/screens/calibrate_form.h"
 #include "app/screens/widgets.h"

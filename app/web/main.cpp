@@ -39,7 +39,7 @@ struct Page {
     std::unique_ptr<Live> live;
     bool gl_lost = false;
     bool started = false;
-    bool types = false;  // the page's own field takes letters
+    bool types = false;  // the page's own text field is open
     std::string report;
 };
 Page page;  // the browser calls functions, not objects
@@ -49,7 +49,7 @@ void stop(const char* message) {
     palpa_page_fail(message);
 }
 
-// A tablet shows its keyboard for fields of the page only.
+// Opens and closes the page's own text field, since a tablet shows its keyboard only for fields of the page.
 void follow_typing() {
     if (!platform::browser::has_touch_screen()) return;
     const auto field = page.live->text_field();
@@ -88,7 +88,7 @@ EM_BOOL visibility(int, const EmscriptenVisibilityChangeEvent* event, void*) {
 
 EM_BOOL gl_lost(int, const void*, void*) {
     page.gl_lost = true;
-    return EM_TRUE;  // it is wanted back
+    return EM_TRUE;  // asks the browser to restore it
 }
 
 EM_BOOL gl_restored(int, const void*, void*) {
@@ -101,7 +101,7 @@ EM_BOOL gl_restored(int, const void*, void*) {
     return EM_TRUE;
 }
 
-// One folder for one version of one protocol; whoever was here before goes on in it.
+// Returns the folder of one version of one protocol, in which earlier participants continue.
 std::string study_folder(const std::string& name, const study::Protocol& protocol) {
     std::string folder = name + "-" + protocol.version;
     std::replace_if(
@@ -109,7 +109,7 @@ std::string study_folder(const std::string& name, const study::Protocol& protoco
     return "/studies/" + folder;
 }
 
-// The study that the page's address asks for; throws InputError if there is none of that name.
+// Chooses the study that the page's address names. Throws InputError if there is none of that name.
 void choose_study(const std::string& name, RunOptions& options) {
     const std::filesystem::path folder = "/assets/protocols";
     const std::filesystem::path file = folder / (name + ".json");
@@ -129,12 +129,12 @@ void choose_study(const std::string& name, RunOptions& options) {
 
 extern "C" {
 
-// What the page's own field holds now.
+// Called by the page with the text of its own field.
 EMSCRIPTEN_KEEPALIVE void palpa_type(const char* text) {
     if (page.live) page.live->type_instead(text);
 }
 
-// What `palpa run --json` would print now; for tests and for the curious.
+// Returns what `palpa run --json` would print now; for tests and for inspection.
 EMSCRIPTEN_KEEPALIVE const char* palpa_report() {
     page.report = page.live ? files::json_text(page.live->report()) : "{}";
     return page.report.c_str();

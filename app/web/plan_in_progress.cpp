@@ -1,4 +1,4 @@
-// The browser's app has one thread, and a linear tissue takes it for minutes.
+// The app in a browser has one thread, which a linear tissue would block for minutes, so such scenes are refused.
 
 #include "session/plan_in_progress.h"
 

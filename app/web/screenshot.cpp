@@ -1,4 +1,5 @@
-// A picture of the screen goes where the browser puts downloads.
+// Saves a picture of the screen as a download of the browser. Must be called right after the frame was drawn, while the
+// canvas still holds it.
 
 #include "app/screens/screenshot.h"
 

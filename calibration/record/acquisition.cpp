@@ -59,7 +59,8 @@ void take_levels(const std::vector<platform::Sample>& samples, Recording& record
     const Profile& profile = recording.arguments.level;
     for (const platform::Sample& sample : samples) {
         if (sample.phase == platform::Phase::ui || sample.tool == platform::Tool::mouse)
-            continue;  // a mouse has no sensor
+            // a mouse has no sensor
+            continue;
         const double level = level_of(profile, sample);
         if (sample.phase != platform::Phase::up && sample.phase != platform::Phase::hover &&
             sample.phase != platform::Phase::cancel && std::isnan(level))
@@ -74,14 +75,14 @@ void take_levels(const std::vector<platform::Sample>& samples, Recording& record
     }
 }
 
-// The zero is taken while nothing touches, and fixed by the first point of the run.
+// Takes the new readings. The zero is measured while nothing touches, until the first point of the run fixes it.
 void take_forces(Recording& recording) {
     std::vector<devices::ForceReading> readings;
     recording.sensor->poll(readings);
     RecordSession& session = recording.session;
     const RecordOptions& options = recording.arguments.options;
-    const bool knows_touch =
-        recording.samples > 0 || recording.arguments.levels.empty();  // a stream may begin amid a press
+    // a stream may begin during a press
+    const bool knows_touch = recording.samples > 0 || recording.arguments.levels.empty();
     for (const devices::ForceReading& reading : readings) {
         ++recording.readings;
         recording.raw->write(reading);
@@ -95,7 +96,8 @@ void take_forces(Recording& recording) {
     }
 }
 
-// A sensor that never says anything is a mistake in the set-up; one that falls silent later is waited for.
+// Throws std::runtime_error for a sensor that never sends a reading, which is a mistake in the set-up; one that falls
+// silent later is waited for.
 void watch_sensor(double now_s, Recording& recording) {
     if (!recording.sensor) return;
     const devices::SensorHealth health = recording.sensor->health();
@@ -107,7 +109,7 @@ void watch_sensor(double now_s, Recording& recording) {
     recording.silent = health.received > 0 && !health.alive;
 }
 
-// After each press: is it enough?
+// Judges after each press whether the curve is known well enough.
 bool enough(Recording& recording) {
     recording.judged = false;
     if (recording.session.touching || recording.session.repeat == recording.known_repeats ||
@@ -145,7 +147,7 @@ files::Json result_of(const Recording& recording) {
     return json;
 }
 
-// Nothing of an earlier session is touched unless it is gone on with.
+// Opens the session of the folder. An earlier one stays as it is unless it is resumed.
 void open_session(const RecordArguments& arguments, RecordSession& session) {
     const auto file = points_file(arguments);
     if (std::filesystem::exists(file)) {

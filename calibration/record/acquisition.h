@@ -1,6 +1,6 @@
 #pragma once
-// A calibration that is being recorded: pen and force sensor in, points and both raw streams on disk. No window and no
-// terminal, so that the command line and the app's screen drive the same session.
+// A calibration that is being recorded: pen and force sensor in, points and both raw streams on disk. It has no window
+// and no terminal, so that the command line and the app's screen drive the same session.
 
 #include <memory>
 #include <optional>
@@ -22,19 +22,19 @@ inline constexpr double kN_per_gf = 9.80665e-3;
 struct RecordArguments {
     std::string folder;
     std::string sensor;         // netft:HOST[:PORT], serial:PATH, typed
-    std::string levels;         // a file or pipe with one level a line, "-" for standard input; empty: a window
+    std::string levels;         // a file or pipe with one level per line, "-" for standard input; empty: a window
     double counts_per_N = 1e6;  // netft
     std::string axis = "-z";    // netft
     double N_per_count = 0.0;   // serial
     int baud = 115200;
-    double seconds = 0.0;  // 0: until it is known, or ended
+    double seconds = 0.0;  // 0: until the curve is known, or the person ends it
     bool resume = false;
     bool newton = false;  // typed numbers are newtons, not gram-force
-    Profile level;        // which field of a sample is the level, and its range
+    Profile level;        // says which field of a sample is the level, and its range
     RecordOptions options;
 };
 
-// Both streams as they came, on disk once a second. A run never touches the files of another.
+// Both streams as they arrived, synced to the disk once a second. Each run has files of its own.
 struct RawFiles {
     files::AppendFile levels;
     files::AppendFile forces;
@@ -48,38 +48,42 @@ struct RawFiles {
 
 struct Recording {
     RecordArguments arguments;
-    std::unique_ptr<devices::SensorReader> sensor;  // none: typed
+    std::unique_ptr<devices::SensorReader> sensor;  // null: forces are typed
     std::optional<RawFiles> raw;
     RecordSession session;
     Knowledge knowledge;
-    platform::Timeline timeline;  // when samples really came: a slow frame holds them up, but not their device's clock
+    // When samples really arrived: a slow frame delays their arrival, but not their device's clock.
+    platform::Timeline timeline;
     double began_s = 0.0;
     double synced_s = 0.0;
-    double touched_s = -1.0;  // ended last
+    double touched_s = -1.0;  // when a touch last ended
     std::int64_t samples = 0;
     std::int64_t readings = 0;
-    std::size_t resumed = 0;  // points of earlier runs
-    int known_repeats = -1;   // the press whose end has been judged
+    std::size_t resumed = 0;  // number of points from earlier runs
+    int known_repeats = -1;   // the repeat whose end was judged last
     bool judged = false;      // a press ended in the last step
-    bool silent = false;      // the sensor has stopped; nothing is captured until it is back
+    bool silent = false;      // the sensor has stopped; nothing is captured until it returns
 };
 
-// Opens sensor, folder and files. Throws InputError for what cannot be, std::runtime_error for what cannot be opened.
+// Opens sensor, folder and files. Throws InputError for impossible arguments, std::runtime_error for what cannot be
+// opened.
 std::unique_ptr<Recording> open_recording(const RecordArguments& arguments);
 
-// One turn: samples in, readings in, points captured and saved. False once the curve is known everywhere or
-// arguments.seconds are over. Throws std::runtime_error when the disk is full or the sensor has never said anything.
+// One turn: takes samples and readings, captures points and saves them. Returns false once the curve is known
+// everywhere or arguments.seconds are over. Throws std::runtime_error if the disk is full or the sensor has never sent
+// anything.
 bool step(const std::vector<platform::Sample>& samples, Recording& recording);
 
-// What a scale shows now, while the pen is held still at a level. False: nothing was taken, since it is not.
+// Takes what a scale shows now, while the pen is held still at a level. Returns false, and takes nothing, if it is not
+// held still.
 bool take_typed_N(double force_N, Recording& recording);
 
-// The band to press next, in words.
+// Returns in words which band to press next.
 std::string advice(const Recording& recording);
 
 std::filesystem::path points_file(const RecordArguments& arguments);
 
-// All that is left goes to the disk. What came of it, as `calibrate record --json` prints it.
+// Writes all that is left to the disk, and returns the result as `calibrate record --json` prints it.
 files::Json close_recording(Recording& recording);
 
 }  // namespace palpa::calibration

@@ -1,5 +1,5 @@
-// Numbers to and from text where the standard library has no from_chars and to_chars for them (libc++ 14). The C
-// library of the web knows no locale but "C", so that strtod is safe here.
+// Converts numbers to and from text where the standard library lacks from_chars and to_chars for them (libc++ 14). The
+// C library of the web knows no locale but "C", so strtod is safe here.
 
 #include <array>
 #include <cmath>
@@ -12,7 +12,7 @@ namespace palpa::files {
 
 bool parse_number(std::string_view text, double& out) {
     if (!text.empty() && text.front() == '+') text.remove_prefix(1);
-    // strtod skips spaces and takes hexadecimal numbers, which no file of ours holds
+    // strtod also skips spaces and reads hexadecimal numbers, neither of which our files hold
     const std::string copy(text);
     if (copy.empty() || copy.find_first_of(" \t\n\v\f\rxX(+") == 0 || copy.find_first_of("xX(") != std::string::npos)
         return false;

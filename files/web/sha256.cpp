@@ -1,4 +1,4 @@
-// For browsers, where there is no OpenSSL.
+// SHA-256 for browsers, which lack OpenSSL.
 
 #include "files/sha256.h"
 
@@ -14,7 +14,7 @@ using Words8 = std::array<std::uint32_t, 8>;
 using Words64 = std::array<std::uint32_t, 64>;
 
 // FIPS 180-4, sections 4.2.2 and 5.3.3: the first 32 bits of the fractions of the cube and square roots of the first
-// primes. A root in long double is good to 64 bits, so 32 bits of its fraction are exact.
+// primes. A root in long double is accurate to 64 bits, so 32 bits of its fraction are exact.
 struct Constants {
     Words64 round{};
     Words8 start{};

@@ -23,10 +23,10 @@ std::string no_gl_message(const std::string& what) {
 
 void init_video(bool visible) {
     if (visible) {
-        // a window's button asks; only signals and the end of the session quit
+        // closing the window only asks to quit; signals and the end of the session do quit
         SDL_SetHint(SDL_HINT_QUIT_ON_LAST_WINDOW_CLOSE, "0");
         if (SDL_InitSubSystem(SDL_INIT_VIDEO) != 0) throw std::runtime_error(no_display_message());
-        // where there is no display SDL falls back to drivers that show nothing
+        // without a display, SDL falls back to drivers that show nothing
         const std::string driver = SDL_GetCurrentVideoDriver();
         if (driver != "offscreen" && driver != "dummy") return;
         SDL_QuitSubSystem(SDL_INIT_VIDEO);
@@ -71,7 +71,7 @@ void GlWindow::create(const WindowOptions& options) {
     if (window_ == nullptr) throw std::runtime_error(no_gl_message("no window with OpenGL ES 3"));
     context_ = SDL_GL_CreateContext(window_);
     if (context_ == nullptr) throw std::runtime_error(no_gl_message("no OpenGL ES 3 context"));
-    SDL_GL_SetSwapInterval(options.visible ? 1 : 0);  // refused by software drawing, which is no harm
+    SDL_GL_SetSwapInterval(options.visible ? 1 : 0);  // software drawing refuses this, which does no harm
 }
 
 void GlWindow::destroy() {

@@ -25,7 +25,8 @@ void admit_made(PressOwner down_owner, Pointers& pointers) {
     pointers.made.clear();
 }
 
-// SDL's event for a pen's tip comes after the pen's own event, too late to ask whom the press belongs to.
+// Asks the filter about a pen's press. SDL's own event for the tip comes after the pen's event, too late to decide to
+// whom the press belongs.
 bool pen_on_panel(const Sample& sample, const Pointers& pointers) {
     WindowEvent event;
     event.kind = WindowEvent::Kind::button_down;
@@ -34,7 +35,8 @@ bool pen_on_panel(const Sample& sample, const Pointers& pointers) {
     return ask_filter(event, pointers);
 }
 
-// SDL reports no finger of a touch screen that was plugged in after the start.
+// Asks the filter about a finger's press, since SDL reports no finger of a touch screen that was plugged in after the
+// start.
 bool finger_on_panel(const Sample& sample, const Pointers& pointers) {
     WindowEvent event;
     event.kind = WindowEvent::Kind::finger_down;
@@ -84,7 +86,7 @@ void receive_xinput(const SDL_Event& event, double t_host_s, Pointers& pointers)
     admit(*sample, owner, pointers.presses, pointers.pending);
 }
 
-// On X the device's own event has the server's clock, which pens and fingers have too.
+// On X11 the device's own event has the time of the server's clock, which pens and fingers use too.
 double mouse_device_s(Uint32 timestamp_ms, const Pointers& pointers) {
     return pointers.xinput ? pointers.mover_device_s : 1e-3 * timestamp_ms;
 }
@@ -119,7 +121,7 @@ void receive_wheel(const SDL_MouseWheelEvent& wheel, double t_host_s, Pointers& 
                pointers.mouse, pointers.made);
 }
 
-// Takes a finger without XInput2. SDL's finger pressure is always 1 here, so no pressure is reported.
+// Takes a finger's event if there is no XInput2. SDL's finger pressure is always 1 here, so no pressure is reported.
 void receive_finger(const SDL_TouchFingerEvent& finger, double t_host_s, Pointers& pointers) {
     int width_px = 0, height_px = 0;
     SDL_GL_GetDrawableSize(pointers.window, &width_px, &height_px);
@@ -172,7 +174,7 @@ void receive_window(const SDL_WindowEvent& event, double t_host_s, Pointers& poi
         pointers.mouse.button.down = false;
         release_keys(pointers.keyboard);
         cancel_all(t_host_s, pointers.presses, pointers.pending);
-        // SDL lets all keys go just before it says that the focus is lost: that was no key coming up
+        // SDL releases all keys just before it reports that the focus is lost, though no key came up
         for (Sample& sample : pointers.pending) {
             if (sample.tool == Tool::keyboard && sample.phase == Phase::up) sample.phase = Phase::cancel;
         }
@@ -206,7 +208,7 @@ bool of_other_window(const SDL_Event& event, const Pointers& pointers) {
     }
 }
 
-// The filter was asked about a pen's press already; it is asked about each press once.
+// True if the filter was asked about this pen's press already; it is asked about each press once.
 bool told_before(const SDL_Event& event, const Pointers& pointers) {
     return event.type == SDL_MOUSEBUTTONDOWN && event.button.button == SDL_BUTTON_LEFT &&
            event.button.which != SDL_TOUCH_MOUSEID && pointers.mover == Tool::pen;
@@ -230,7 +232,7 @@ void receive_sdl(const SDL_Event& event, bool on_panel, double t_host_s, Pointer
             if (!on_panel) receive_wheel(event.wheel, t_host_s, pointers);
             break;
         case SDL_MOUSEBUTTONDOWN:
-            // SDL also makes a first finger move the mouse, just before it reports the finger itself
+            // SDL also lets a first finger move the mouse, just before it reports the finger itself
             if (event.button.which == SDL_TOUCH_MOUSEID) pointers.finger_on_panel = on_panel;
             receive_button(event.button, t_host_s, pointers);
             break;

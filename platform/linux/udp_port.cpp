@@ -26,7 +26,8 @@ UdpPort::UdpPort(const std::string& host, int port) {
         if (fd_ >= 0) ::close(fd_);
         throw std::runtime_error(host + ": cannot be reached: " + why);
     }
-    // a second of a 7 kHz stream (with the kernel's own overhead per datagram), should we not get the processor
+    // holds a second of a 7 kHz stream (with the kernel's own overhead per datagram), in case this process gets no
+    // processor
     const int room_bytes = 8 << 20;
     if (::setsockopt(fd_, SOL_SOCKET, SO_RCVBUFFORCE, &room_bytes, sizeof room_bytes) != 0) {  // root only
         ::setsockopt(fd_, SOL_SOCKET, SO_RCVBUF, &room_bytes, sizeof room_bytes);  // up to net.core.rmem_max

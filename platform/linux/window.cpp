@@ -1,5 +1,5 @@
-// The desktop's window. Supported: X11 (pressure by XInput2), Wayland (no pressure), off screen. Tried on
-// Xorg 21.1 with its inputtest driver and on Mesa's software drawing.
+// The desktop's window. Supported: X11 (pressure by XInput2), Wayland (no pressure), off-screen. Tried on Xorg 21.1
+// with its inputtest driver and on Mesa's software drawing.
 
 #include "platform/window.h"
 
@@ -21,7 +21,7 @@ int SDLCALL watch(void* user, SDL_Event* event) {
     return 1;
 }
 
-// Waits, and returns as soon as one event came. SDL waits in whole milliseconds.
+// Waits, and returns as soon as an event arrives. SDL waits in whole milliseconds.
 void wait_for_event(double wait_s, const Pointers& pointers) {
     if (pointers.xinput) return wait_for_server(*pointers.xinput, wait_s);
     SDL_Event event;
@@ -68,7 +68,7 @@ Window::~Window() = default;
 
 void Window::poll(double wait_s, std::vector<Sample>& out) {
     Pointers& pointers = impl_->pointers;
-    // a held button or key makes a sample per grid point without any event
+    // a held button or key gives a sample at each grid point without any event
     const bool held = pointers.mouse.button.down || key_held(pointers.keyboard);
     const double longest_s = held ? 1.0 / kHoldGrid_Hz : wait_s;
     if (wait_s > 0.0 && pointers.pending.empty()) wait_for_event(std::min(wait_s, longest_s), pointers);

@@ -39,7 +39,7 @@ int key_of(SDL_Keycode code) {
             break;
     }
     if (code >= SDLK_KP_1 && code <= SDLK_KP_9) return key::pad_0 + 1 + (code - SDLK_KP_1);
-    return code > 0 && code <= key::del ? code : key::other;  // SDL's codes of what types are ASCII too
+    return code > 0 && code <= key::del ? code : key::other;  // SDL's codes of keys that type are ASCII too
 }
 
 WindowEvent of_key(const SDL_KeyboardEvent& key) {

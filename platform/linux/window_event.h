@@ -15,7 +15,8 @@ struct Scale {
     double y = 1.0;
 };
 
-// SDL's places are in window units; on screens of high density the drawing area has more px than window units.
+// Returns the scale from SDL's window units to px: on screens of high density the drawing area has more px than window
+// units.
 Scale px_per_unit(SDL_Window* window);
 
 // Returns nothing for an event that no panel uses.

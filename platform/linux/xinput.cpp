@@ -28,7 +28,8 @@ void select_events(const XInput& xinput, int device_id, EventMask mask) {
 
 int ignore_error(Display*, XErrorEvent*) { return 0; }
 
-// A device may be unplugged between the list and the request; Xlib would end the program for that.
+// Selects the events of each pen and mouse. A device may be unplugged between the list and the request, for which Xlib
+// would end the program, so errors are ignored here.
 void select_device_events(const XInput& xinput) {
     EventMask mask{};
     for (const int event : {XI_Motion, XI_ButtonPress, XI_ButtonRelease}) set_bit(mask, event);
@@ -172,7 +173,7 @@ XiNews read_event(const XInput& xinput, const SDL_Event& event, XiEvent& out) {
     }
     if (cookie.evtype == XI_HierarchyChanged) return XiNews::devices_changed;
     if (cookie.evtype == XI_DeviceChanged) {
-        // the master pointer also changes each time another device moves it; that is no news
+        // the master pointer also changes each time another device moves it, which is ignored
         const bool changed = static_cast<const XIDeviceChangedEvent*>(cookie.data)->reason == XIDeviceChange;
         return changed ? XiNews::devices_changed : XiNews::none;
     }

@@ -55,7 +55,7 @@ void fill(const XiDevice& device, const XiEvent& event, const AxisValues& values
     sample.tilt_x_deg = tilt_deg(device.tilt_x, last_value(device.tilt_x, values));
     sample.tilt_y_deg = tilt_deg(device.tilt_y, last_value(device.tilt_y, values));
 
-    // the ellipse has the units of the position axes; a driver that gives no minor axis means a circle
+    // the ellipse is in units of the position axes; without a minor axis it is a circle
     const double px_per_count_x = state.screen_width_px / (device.x.hi - device.x.lo + 1.0);
     const double px_per_count_y = state.screen_height_px / (device.y.hi - device.y.lo + 1.0);
     const double major = last_value(device.touch_major, values);

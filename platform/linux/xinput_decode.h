@@ -25,10 +25,10 @@ struct XiDevice {
     int id = 0;
     std::string name;
     Tool tool = Tool::mouse;
-    Axis x, y;  // absolute ones only
+    Axis x, y;  // absolute axes only
     Axis pressure, tilt_x, tilt_y;
     Axis touch_major, touch_minor;
-    std::vector<std::string> axes{};  // labels of all its axes
+    std::vector<std::string> axes{};  // labels of all axes
 };
 
 // A device with a touch class is a touch screen, whatever else it has; one with "Abs Pressure" is a pen; all others
@@ -40,21 +40,21 @@ enum class XiKind : std::uint8_t { motion, press, release, touch_begin, touch_up
 // An XIDeviceEvent without its X types.
 struct XiEvent {
     XiKind kind = XiKind::motion;
-    int device_id = 0;          // whom it was sent for: the device itself or the master pointer
-    int source_id = 0;          // the device that it came from
+    int device_id = 0;          // the recipient: the device itself or the master pointer
+    int source_id = 0;          // the device that caused it
     int detail = 0;             // button, or touch id
     std::uint32_t time_ms = 0;  // X server clock
-    double origin_x_px = 0.0;   // of the window, on the screen
+    double origin_x_px = 0.0;   // of the window on the screen
     double origin_y_px = 0.0;
-    double event_x_px = 0.0;  // in the window; one sample old in events of the device itself
+    double event_x_px = 0.0;  // in the window; one sample late in events of the device itself
     double event_y_px = 0.0;
     bool tip_held = false;                // button 1 was down before this event
     std::span<const unsigned char> mask;  // bit k set: axis k has a value
     std::span<const double> values;       // of the set bits, in their order
 };
 
-// The last values of axes. An axis that an event does not carry has not changed, so its last value is kept: per
-// device for pens, per touch for fingers.
+// The last values of axes. An axis that an event does not carry has not changed, so its last value is kept: per device
+// for pens, per touch for fingers.
 using AxisValues = std::map<int, double>;
 
 struct XiState {

@@ -5,16 +5,16 @@
 
 namespace palpa::platform::browser {
 
-// Gives the canvas as many px as its place on the screen has. Call it once a frame.
+// Gives the canvas as many px as its area of the screen has. To be called once a frame.
 void fit_canvas();
 int canvas_width_px();
 int canvas_height_px();
 double px_per_css_px();  // of the canvas
 
-double now_s();  // of events too; steady
+double now_s();  // steady; the clock of events too
 bool has_touch_screen();
-bool is_secure();      // https, or this machine; without it the page gets no coalesced events
-int screen_long_px();  // the same however it is turned
+bool is_secure();      // https, or this machine; otherwise the page gets no coalesced events
+int screen_long_px();  // the same in both orientations
 int screen_short_px();
 bool full_screen();
 void set_full_screen(bool full);  // works only shortly after the person has touched something

@@ -35,7 +35,7 @@ std::int64_t number_of(const BrowserPointer& event) {
     return event.tool == Tool::pen ? -2 - event.pointer_id : 1 + event.pointer_id;
 }
 
-// A browser that does not know the contact size reports 1 CSS px or 0.
+// Returns the contact size, or NaN: a browser that does not know it reports 1 CSS px or 0.
 double size_or_missing(double size_px, const BrowserPointer& event) {
     const bool told = event.tool == Tool::finger && (event.width_px > 1.5 || event.height_px > 1.5);
     return told ? size_px : kMissing;
@@ -60,8 +60,8 @@ Sample sample_of(const BrowserPointer& event, Phase phase, double t_host_s) {
     return sample;
 }
 
-// A pen's side button is no contact; a finger that moves touches. The function returns nothing for a finger that was
-// never put down.
+// Returns the phase of an event. A pen's side button is no contact; a finger that moves is. Returns nothing for a
+// finger that was never put down.
 std::optional<Phase> phase_of(const BrowserPointer& event, bool touched) {
     using Kind = BrowserPointer::Kind;
     if (event.kind == Kind::cancel) return touched ? Phase::cancel : Phase::hover;
@@ -73,7 +73,7 @@ std::optional<Phase> phase_of(const BrowserPointer& event, bool touched) {
     return finger ? std::nullopt : std::optional(Phase::hover);
 }
 
-// True if a panel keeps the press.
+// Tells the panels of a sample. Returns true if a panel keeps the press.
 bool tell_panels(const Sample& sample, const Pointers& pointers) {
     using Kind = WindowEvent::Kind;
     const bool finger = sample.tool == Tool::finger;

@@ -1,6 +1,6 @@
 #pragma once
-// A browser's Pointer Events, keys and wheel: events in, samples out. The code calls no browser,
-// so that it can be tested.
+// A browser's Pointer Events, keys and wheel: events come in, samples go out. The code calls no browser, so it can be
+// tested.
 
 #include <array>
 #include <cstdint>
@@ -14,13 +14,13 @@
 
 namespace palpa::platform {
 
-// One pointer event, as the browser reports it; each coalesced event is one of its own.
+// One pointer event, as the browser reports it; each coalesced event becomes one of these.
 struct BrowserPointer {
     enum class Kind : std::uint8_t { down, move, up, cancel };
     Kind kind = Kind::move;
     std::int64_t pointer_id = 0;
     Tool tool = Tool::mouse;
-    double x_px = 0.0;  // of the drawing area
+    double x_px = 0.0;  // in the drawing area
     double y_px = 0.0;
     double pressure = 0.0;  // 0..1
     double tilt_x_deg = 0.0;
@@ -38,8 +38,8 @@ struct Pointers {
     EventFilter filter = nullptr;
     void* filter_user = nullptr;
     std::vector<std::int64_t> touching;   // pens and fingers, by their number in samples
-    std::array<bool, kToolCount> seen{};  // tools that have sent something
-    bool stirred = false;                 // something came since the last poll()
+    std::array<bool, kToolCount> seen{};  // tools that have sent an event
+    bool stirred = false;                 // an event came since the last poll()
     std::vector<Sample> made;             // scratch
     std::vector<Sample> pending;          // for the next poll()
 };
@@ -56,7 +56,7 @@ void hold(double t_host_s, Pointers& pointers);
 
 void forget_presses(Pointers& pointers);  // as Window::end_presses
 
-// Does what Window::set_keyboard() says.
+// As Window::set_keyboard().
 void set_keyboard_area(double t_host_s, const KeyboardArea& area, Pointers& pointers);
 
 }  // namespace palpa::platform

@@ -14,8 +14,8 @@
 namespace palpa::platform {
 namespace {
 
-// CSS px per millimetre of glass that is touched: 160 per inch. Tablets have 120 to 160, so that targets come out
-// larger rather than smaller than asked for.
+// CSS px per millimetre of a touch screen: 160 per inch. Tablets have 120 to 160, so that targets become larger rather
+// than smaller than intended.
 constexpr double kTouch_css_px_per_mm = 160.0 / 25.4;
 
 Pointers* open_pointers = nullptr;  // of the one window; the browser calls functions, not objects
@@ -94,7 +94,7 @@ double Window::mouse_pressure() const {
     return pressure_at(pointers.mouse.button, browser::now_s());
 }
 
-// A browser lists no devices. This is the list of those that may be here; each counts as having a sensor until its
+// A browser lists no devices. This is the list of those that may be present; each counts as having a sensor until its
 // samples show that it has none (platform/pressure.h).
 std::vector<PointerDevice> Window::devices() const {
     const auto seen = [&](Tool tool) { return impl_->pointers.seen[static_cast<std::size_t>(tool)]; };
@@ -174,7 +174,7 @@ EMSCRIPTEN_KEEPALIVE void palpa_key(int down, int code, int typed, int ctrl, int
     event.shift = shift != 0;
     event.repeat = repeat != 0;
     receive_key(event, browser::now_s(), *open_pointers);
-    constexpr int kLatin = 0xff;  // what the font has
+    constexpr int kLatin = 0xff;  // the last character of the font
     if (down == 0 || typed < ' ' || (typed > '~' && typed < 0xa0) || typed > kLatin || open_pointers->filter == nullptr)
         return;
     event.kind = WindowEvent::Kind::text;

@@ -17,7 +17,7 @@ using mechanics::RollingCost;
 using mechanics::RollingMesh;
 using mechanics::RollingModel;
 
-constexpr double kMostForces = 1e8;  // of a map: 1.2 GB of arrays
+constexpr double kMostForces = 1e8;  // in a map: 1.2 GB of arrays
 
 std::string cost_text(const RollingCost& cost) {
     if (!std::isfinite(cost.unknowns)) return "a mesh of more than 10 000 million unknowns";
@@ -32,7 +32,7 @@ std::string limit_text() {
            " h for one mesh; a larger --coarseness makes coarser ones)";
 }
 
-// A model that cannot be computed at all is not a way out.
+// A model that cannot be computed at all is no alternative to suggest.
 bool possible(const std::function<RollingCost()>& cost) {
     try {
         return mechanics::affordable(cost());
@@ -41,7 +41,8 @@ bool possible(const std::function<RollingCost()>& cost) {
     }
 }
 
-// Smallest value above `from` that `affordable` takes, to two digits upwards; nothing below `most`: NaN.
+// Returns the smallest value from `from` to `most` that `affordable` accepts, rounded up to two digits; NaN if there is
+// none.
 double smallest(double from, double most, const std::function<bool(double)>& affordable) {
     double low = from;
     double high = from;

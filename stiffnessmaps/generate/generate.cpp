@@ -23,8 +23,9 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t kProbes = 50;
-constexpr const char* kChecked = " Checked:";  // begins what a check adds to `how`
-// Of the meshes that the error is estimated from: at order 1.7 their difference from the map is the map's own error.
+constexpr const char* kChecked = " Checked:";  // a check writes its result into `how` from here on
+// How much coarser the meshes are from which the error is estimated: at a convergence order of 1.7, the difference
+// between their map and this one equals this map's own error.
 constexpr double kCoarser = 1.5;
 
 fs::path without_slash(const fs::path& path) { return path.has_filename() ? path : path.parent_path(); }
@@ -40,7 +41,7 @@ MapTask task_of(const GenerateOptions& options, MeshSet meshes) {
     return make_map_task(options.phantom, pieces_folder(options.output, meshes), options.coarseness * times);
 }
 
-// Joins the finished lines; throws std::runtime_error when some are missing.
+// Joins the finished lines into a map. Throws std::runtime_error if some are missing.
 Map joined(const MapTask& task) {
     const Phantom& p = task.phantom;
     Map map = map_of_phantom(p);
@@ -56,7 +57,7 @@ Map joined(const MapTask& task) {
     const bool rough = is_rough(task);
     std::vector<std::vector<double>> energy_J(rough ? 0 : n_depths, std::vector<double>(n_cells));
     if (rough) {
-        map.tangential = TangentialKind::recorded;  // as a recording of a sliding tool: friction is in the arrays
+        map.tangential = TangentialKind::recorded;  // as in a recording of a sliding tool, the arrays contain friction
         map.tangential_x_N.resize(n_depths * n_cells);
         map.tangential_y_N.resize(n_depths * n_cells);
     }
@@ -140,7 +141,7 @@ files::Json convergence_json(const MapTask& task, const MapTask& refined, const 
     return report;
 }
 
-// What a map says of its own error when it is made.
+// Returns the sentence with which a new map states its own error.
 std::string error_estimate(const GenerateOptions& options, const MapTask& task, const Map& map) {
     try {
         const MapTask coarser = task_of(options, MeshSet::coarser);

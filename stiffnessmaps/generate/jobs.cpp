@@ -12,7 +12,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Done of total on one line of a terminal, with the time left; silent elsewhere.
+// Shows what share is done and the time left, on one line of a terminal; shows nothing elsewhere.
 class Progress {
   public:
     Progress(const char* what, double total) : what_(what), total_(total), shown_(::isatty(STDERR_FILENO) == 1) {}
@@ -55,7 +55,7 @@ std::size_t files_there(const MapTask& task, std::size_t count, std::string (*na
     return there;
 }
 
-// Pieces that are wrong are taken away, so that counting files is counting pieces.
+// Removes wrong pieces, so that counting files is counting pieces.
 void drop_wrong(const MapTask& task, const std::vector<std::size_t>& wrong, std::string (*name)(std::size_t)) {
     for (const std::size_t i : wrong) fs::remove(task.folder / name(i));
 }
@@ -85,7 +85,7 @@ std::vector<std::size_t> missing(const MapTask& task, std::size_t count, std::st
 }
 
 void compute_with_jobs(const GenerateOptions& options, const MapTask& task) {
-    constexpr double kWindowWeight = 30.0;  // of one window in lines
+    constexpr double kWindowWeight = 30.0;  // the work of one window, in lines
     const auto n_windows = static_cast<std::size_t>(window_count(task));
     const std::size_t n_lines = task.phantom.n_y;
     const auto windows = missing(task, n_windows, window_of);

@@ -15,7 +15,7 @@
 namespace palpa::stiffnessmaps {
 namespace {
 
-constexpr std::uint64_t kVersion = 3;  // of the files and of the numbers in them
+constexpr std::uint64_t kVersion = 3;  // of the format, and of the way the numbers are computed
 constexpr char kMagic[8] = {'p', 'a', 'l', 'p', 'a', 'n', 'u', 'm'};
 
 struct Fnv {
@@ -69,7 +69,8 @@ void write_piece(const MapTask& task, const std::string& name, const Numbers& nu
 }
 
 void check_phantom(const Phantom& phantom, const std::filesystem::path& file) {
-    check_map(map_of_phantom(phantom), file.string());  // what could not be written after all the computing
+    // a map that could not be written is refused before it is computed
+    check_map(map_of_phantom(phantom), file.string());
     if (phantom.depths_m.back() >= phantom.size_m[2]) {
         refuse(file, "depths_mm", files::short_number(1e3 * phantom.depths_m.back()),
                "depths less than the thickness, " + files::short_number(1e3 * phantom.size_m[2]) + " mm");
@@ -78,7 +79,7 @@ void check_phantom(const Phantom& phantom, const std::filesystem::path& file) {
         const auto n = c == 0 ? phantom.n_x : phantom.n_y;
         const double first_m = phantom.origin_m[c];
         const double last_m = first_m + phantom.spacing_m[c] * static_cast<double>(n - 1);
-        const double slack_m = 0.5 * phantom.indenter_radius_m;  // how far the indenter may hang over a side
+        const double slack_m = 0.5 * phantom.indenter_radius_m;  // how far the indenter may extend beyond a side
         if (first_m >= -slack_m && last_m <= phantom.size_m[c] + slack_m) continue;
         refuse(file, "grid",
                std::string(c == 0 ? "x " : "y ") + files::short_number(1e3 * first_m) + " to " +
@@ -89,7 +90,7 @@ void check_phantom(const Phantom& phantom, const std::filesystem::path& file) {
 
 void append(const std::vector<double>& list, Numbers& out) { out.insert(out.end(), list.begin(), list.end()); }
 
-// One list, or with friction three of the same length, from `first` to the end.
+// Reads the table's lists from `first` to the end of `numbers`: one list, or with friction three of the same length.
 template <class Table>
 void take_lists(const MapTask& task, const Numbers& numbers, std::ptrdiff_t first, Table& table) {
     const std::ptrdiff_t n = (static_cast<std::ptrdiff_t>(numbers.size()) - first) / (is_rough(task) ? 3 : 1);
@@ -262,7 +263,7 @@ std::vector<Cell> probe_cells(const Phantom& phantom, std::size_t count) {
         }
     };
     constexpr std::size_t kNodules = 3;  // at most, so that the rest of the grid keeps its share
-    // those that ask most of the meshes: least covered for their size
+    // the nodules that demand most of the meshes: those with the least cover for their size
     std::vector<PhantomNodule> nodules = phantom.nodules;
     const auto cover = [](const PhantomNodule& n) { return n.centre_m[2] / n.diameter_m; };
     std::stable_sort(nodules.begin(), nodules.end(),

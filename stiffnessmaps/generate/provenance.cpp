@@ -9,7 +9,7 @@
 namespace palpa::stiffnessmaps {
 namespace {
 
-// Smallest depth at which the gauge exceeds a limit, the width of the contact by Hertz.
+// Returns the smallest depth at which linearity_ratio() exceeds a limit, with the contact's width by Hertz.
 double depth_at_ratio_m(const Phantom& p, double limit) {
     double low = 0.0;
     double high = p.size_m[2];

@@ -7,7 +7,7 @@
 
 namespace palpa::stiffnessmaps {
 
-// `source.how`: method, meshes, what is assumed, from which depth the linear range is left.
+// Returns `source.how`: the method, the meshes, what is assumed, and the depth from which the linear range is left.
 std::string how_made(const MapTask& task);
 
 }  // namespace palpa::stiffnessmaps

@@ -18,7 +18,7 @@ namespace {
 pid_t start(const Arguments& arguments) {
     std::vector<char*> argv;
     std::string program = "/proc/self/exe";
-    std::vector<std::string> copy = arguments;  // exec wants them writable
+    std::vector<std::string> copy = arguments;  // exec needs writable strings
     argv.push_back(program.data());
     for (std::string& argument : copy) argv.push_back(argument.data());
     argv.push_back(nullptr);

@@ -1,6 +1,6 @@
 #pragma once
-// The program calls itself: a list of calls, so many at a time. A solver that is not thread-safe (MUMPS) gets
-// its second core this way, and memory is given back as each call ends.
+// Runs calls of this program as processes of their own, several at a time. A solver that is not thread-safe (MUMPS)
+// uses a second core this way, and the memory of a call is freed when it ends.
 
 #include <filesystem>
 #include <functional>
@@ -11,12 +11,13 @@ namespace palpa::stiffnessmaps {
 
 using Arguments = std::vector<std::string>;
 
-// `meanwhile` is called some five times a second. Throws std::runtime_error when a call fails, after the others
-// that run have ended; the failed call has said why on stderr. Children end with their parent (Linux).
+// Runs all calls, `at_a_time` at once; `meanwhile` is called about ten times a second. If a call fails, no further one
+// starts, and std::runtime_error is thrown once the running ones have ended; the failed call has reported why on
+// stderr. Children end with their parent (Linux).
 void run_jobs(const std::vector<Arguments>& calls, int at_a_time, const std::function<void()>& meanwhile);
 
-// Held until destroyed; other processes wait, or pass by with `wait` false. Where the file system has no locks,
-// everybody gets it.
+// A lock on a file, held until destroyed. Another process waits for it or, with `wait` false, does not get it. Where
+// the file system has no locks, every process gets it.
 class FolderLock {
   public:
     FolderLock(const std::filesystem::path& file, bool wait);

@@ -17,7 +17,7 @@ namespace {
 
 constexpr rlim_t kMost_s = 60;
 constexpr rlim_t kMost_bytes = rlim_t{4} << 30;
-// AddressSanitizer does, as GCC and as clang tell of it
+// true with AddressSanitizer, which GCC and clang announce in different ways
 #if defined(__SANITIZE_ADDRESS__)
 constexpr bool kReservesTerabytes = true;
 #elif defined(__has_feature)
@@ -26,7 +26,7 @@ constexpr bool kReservesTerabytes = __has_feature(address_sanitizer);
 constexpr bool kReservesTerabytes = false;
 #endif
 
-// What the process says: one of these, then an array (how many axes, the length of each, the numbers) or a message.
+// What the child process writes first; then follows an array (number of axes, length of each, numbers) or a message.
 constexpr char kArray = 'a';
 constexpr char kRefused = 'r';
 
@@ -67,7 +67,7 @@ void say_array(int fd, const files::NpyArray& array) {
     if (!kReservesTerabytes) limit(RLIMIT_AS, kMost_bytes);
     std::string said;
     try {
-        const files::NpyArray array = read();  // what the library held is given back by now
+        const files::NpyArray array = read();  // what the library allocated is freed by now
         say_array(fd, array);
     } catch (const files::InputError& error) {
         said = kRefused + std::string(error.what());
@@ -80,7 +80,7 @@ void say_array(int fd, const files::NpyArray& array) {
     ::_exit(0);
 }
 
-// Up to n bytes; fewer where the other end falls silent.
+// Reads up to n bytes, fewer if the other end closes.
 std::size_t hear(int fd, char* to, std::size_t n) {
     std::size_t heard = 0;
     while (heard < n) {
@@ -92,7 +92,7 @@ std::size_t hear(int fd, char* to, std::size_t n) {
     return heard;
 }
 
-// Whether a whole array came. Nothing is allocated beyond what any array may hold.
+// Returns whether a whole array arrived. Never allocates more than the largest array needs.
 bool hear_array(int fd, files::NpyArray& array) {
     const auto hear_all = [&](auto* to, std::size_t n) {
         return hear(fd, reinterpret_cast<char*>(to), n * sizeof(*to)) == n * sizeof(*to);

@@ -1,6 +1,6 @@
 #pragma once
-// Libraries that read files from strangers run in a process of their own: what crashes them, or makes them
-// run or grow without end, is then a message about the file.
+// Runs libraries that read files from strangers in a process of their own: if a file crashes them, or makes them run or
+// grow without end, that becomes a message about the file.
 
 #include <functional>
 #include <string>
@@ -9,9 +9,9 @@
 
 namespace palpa::stiffnessmaps {
 
-// What `read` returns, or throws as InputError. Throws InputError that names `file` and `library` where the
-// process crashes, takes more than a minute of the processor or some gigabytes of memory. Only for callers
-// with one thread.
+// Returns what `read` returns, or throws its InputError. Throws InputError that names `file` and `library` if the
+// process crashes or needs more than a minute of processor time or 4 GiB of memory; std::runtime_error if it cannot be
+// started. Only for callers with one thread.
 files::NpyArray read_apart(const std::string& file, const char* library, const std::function<files::NpyArray()>& read);
 
 }  // namespace palpa::stiffnessmaps

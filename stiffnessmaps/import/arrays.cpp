@@ -28,14 +28,13 @@ std::string_view without_blanks(std::string_view text) {
     return text;
 }
 
-// Comma, tab or semicolon, and blanks where there is none of these.
+// Returns comma, tab or semicolon, or a blank if the line has none of these.
 char matrix_separator(std::string_view line) {
     const char separator = separator_of(line);
     return line.find(separator) == std::string_view::npos ? ' ' : separator;
 }
 
-// Calls visit(field) for the fields of a line; runs of blanks are one separator. False as soon as visit says
-// so.
+// Calls visit(field) for each field of a line; a run of blanks is one separator. Returns false as soon as visit does.
 template <class Visit>
 bool visit_fields(std::string_view line, char separator, Visit visit) {
     line = separator == '\t' ? line : without_blanks(line);
@@ -109,7 +108,7 @@ std::optional<ArrayKind> array_kind(const fs::path& path) {
     if (text.substr(0, 3) == "\xef\xbb\xbf") text.remove_prefix(3);
     const std::string_view line = text.substr(0, text.find('\n'));
     if (line.find('\0') != std::string_view::npos) return std::nullopt;
-    if (line.size() == bytes.size() && bytes.size() == kEnough) return std::nullopt;  // no line at all
+    if (line.size() == bytes.size() && bytes.size() == kEnough) return std::nullopt;  // no end of a line
     if (is_number_line(line)) return ArrayKind::text;
     return std::nullopt;
 }

@@ -19,7 +19,7 @@ struct KnownRole {
     Names usual;  // without the unit, in lower case, the likeliest first
 };
 
-// In the order of Role.
+// Entries in the order of Role.
 const std::array<KnownRole, kRoles>& known_roles() {
     static const std::array<KnownRole, kRoles> known{{
         {Role::time, "t", {"t", "time", "timestamp"}},
@@ -49,7 +49,7 @@ struct Unit {
     double to_SI;
     char of;  // l length, f force, t time
 };
-// m stands for metres and never for anything else: "fx_m" is a force in no unit
+// "m" always means metres: a column "fx_m" is not taken for a force
 constexpr std::array<Unit, 9> kUnits{{{"mm", 1e-3, 'l'},
                                       {"um", 1e-6, 'l'},
                                       {"cm", 1e-2, 'l'},
@@ -62,7 +62,7 @@ constexpr std::array<Unit, 9> kUnits{{{"mm", 1e-3, 'l'},
 
 struct SplitName {
     std::string bare;            // lower case
-    const Unit* unit = nullptr;  // where the name has one
+    const Unit* unit = nullptr;  // null if the name has none
 };
 
 std::string lower(std::string_view text) {
@@ -71,7 +71,7 @@ std::string lower(std::string_view text) {
     return out;
 }
 
-// "Fz [mN]", "fz_mN", "x (mm)" and "x" in their parts.
+// Splits a name into its bare part and its unit: "Fz [mN]", "fz_mN", "x (mm)", "x".
 SplitName split_name(std::string_view name) {
     const auto blank = [](char c) { return c == ' ' || c == '"' || c == '\''; };
     while (!name.empty() && blank(name.front())) name.remove_prefix(1);
@@ -122,7 +122,7 @@ std::optional<std::size_t> index_of(const std::vector<std::string>& columns, std
     return static_cast<std::size_t>(it - columns.begin());
 }
 
-// By usual name: the first of a role's names that any column has.
+// Returns the column that has the first of the role's usual names that any column has.
 std::optional<std::size_t> usual_index(const KnownRole& known, const std::vector<SplitName>& names) {
     for (const std::string_view usual : known.usual) {
         for (std::size_t i = 0; i < names.size(); ++i) {

@@ -1,6 +1,6 @@
 #pragma once
-// Which column of a table is what, and in which unit: by the person's word, by usual names, by the unit in
-// the name (x_mm, "Fz [N]", force_mN), and by what the numbers can be.
+// Finds out which column of a table is what, and in which unit: from the person's options, the usual names, the unit in
+// the name (x_mm, "Fz [N]", force_mN), and the values that are possible.
 
 #include <array>
 #include <optional>
@@ -34,7 +34,7 @@ const char* name_of(Role role);  // as in --column: "x", "depth_cmd", "fn", ...
 struct Column {
     std::size_t index = 0;
     double to_SI = 1.0;
-    std::string name;  // in the file
+    std::string name;  // as in the file
 };
 
 struct Columns {
@@ -43,26 +43,27 @@ struct Columns {
     const Column& operator[](Role role) const { return *of[static_cast<std::size_t>(role)]; }
 };
 
-// Throws InputError for a role or a column that does not exist, and for units that contradict each other.
+// Throws InputError for a role or a column that does not exist, and for a unit that does not fit its role.
 Columns find_columns(const files::Table& table, const ImportOptions& options);
 
-// Throws InputError that lists what there is, if the column is missing.
+// Throws InputError that lists the columns of the table if one of `roles` is missing.
 void need(const Columns& columns, const files::Table& table, std::initializer_list<Role> roles);
 
-// The form that these columns are of; throws InputError if they are of none.
+// Returns the form of recording that these columns indicate. Throws InputError if they indicate none.
 RecordingForm form_of(const Columns& columns, const files::Table& table);
 
+// Returns a column of the current row in SI units; NaN for n/a.
 inline double value_of(const files::Table& table, const Columns& columns, Role role) {
     const Column& column = columns[role];
     return column.to_SI * table.number(column.index);
 }
 
-// Refuses numbers of another unit than they claim, unless the person has stated the unit.
+// Throw InputError if the largest values are implausible in the unit assumed, unless the person has stated the unit.
 void check_force_size(double greatest_N, const Columns& columns, const ImportOptions& options, const std::string& file);
 void check_length_size(double extent_m, const ImportOptions& options, const std::string& file);
 void check_depth_size(double greatest_m, const ImportOptions& options, const std::string& file);
 
-// The separator of a table: tab, semicolon or comma, whichever stands most often in its first line.
+// Returns the separator of a table: tab, semicolon or comma, whichever is most frequent in its first line.
 char separator_of(std::string_view first_line);
 
 }  // namespace palpa::stiffnessmaps

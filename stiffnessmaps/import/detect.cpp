@@ -17,17 +17,17 @@ namespace palpa::stiffnessmaps {
 namespace {
 
 constexpr int kMostLooks = 5;
-constexpr std::ptrdiff_t kFewCells = 30;  // fewer cannot tell a background from a region
+constexpr std::ptrdiff_t kFewCells = 30;  // fewer cells do not suffice to tell a background from a region
 
-// Candidates and their verdicts against the grid's present background.
+// Finds the candidates and judges them against the grid's present background.
 std::vector<Candidate> look(const StiffnessGrid& grid, const Map& map, const Detection& d) {
     std::vector<Candidate> found = candidates(grid, map, d);
     judge_all(grid, d, found);
     return found;
 }
 
-// What is sure is set aside, slopes and all, so that it raises neither background nor spread, and the rest is looked at
-// again for as long as something else turns out sure.
+// Step 6 of detect.h: sets sure regions and their slopes aside, so that they raise neither background nor spread, and
+// searches the rest again, as long as another region turns out sure, up to kMostLooks times in all.
 void look_again(const Map& map, const Detection& d, StiffnessGrid& grid, std::vector<Candidate>& found) {
     std::vector<Candidate> latest = found;
     for (int number = 2; number <= kMostLooks; ++number) {
@@ -52,7 +52,7 @@ void look_again(const Map& map, const Detection& d, StiffnessGrid& grid, std::ve
     }
 }
 
-// What the map as a whole is told of: the first look's.
+// Stores what the report says of the map as a whole: the background and spread of the first look.
 void note_ground(const StiffnessGrid& grid, Detection& d) {
     d.spread_N_per_m = grid.spread_N_per_m;
     std::vector<double> ratio;
@@ -135,7 +135,7 @@ void keep_regions(const Detection& detection, Map& map) {
         nodule.placed = false;
         nodule.x_m = region.x_m;
         nodule.y_m = region.y_m;
-        constexpr double kLong = 1.5;  // length / width of what is stored as long
+        constexpr double kLong = 1.5;  // length / width from which a region is stored as long
         if (region.length_m >= kLong * region.width_m) {
             nodule.diameter_m = region.width_m;
             nodule.length_m = region.length_m;

@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kLeastShare = 0.03;  // of the background
 
-// Local maxima that reach the threshold, the highest first.
+// Returns the local maxima that reach the threshold, the highest first.
 std::vector<cv::Point> maxima(const StiffnessGrid& grid, const Detection& d) {
     std::vector<cv::Point> out;
     for (int j = 0; j < grid.n_y; ++j) {
@@ -35,7 +35,7 @@ std::vector<cv::Point> maxima(const StiffnessGrid& grid, const Detection& d) {
     return out;
 }
 
-// The cells at or above `level` that hang together with `seed`, as a mask of 255.
+// Returns the cells at or above `level` that are connected with `seed`, as a mask of 255.
 cv::Mat1b hang_together(const StiffnessGrid& grid, const cv::Point& seed, double level) {
     cv::Mat1b above;
     cv::compare(grid.excess, level, above, cv::CMP_GE);
@@ -48,14 +48,14 @@ cv::Mat1b hang_together(const StiffnessGrid& grid, const cv::Point& seed, double
     return above;
 }
 
-// Smallest rectangle around the cells, in metres.
+// Measures the smallest rectangle around the cells, in metres.
 void measure_rectangle(const StiffnessGrid& grid, const cv::Mat1b& mask, StiffRegion& region) {
     std::vector<cv::Point2f> corners;
     for (int j = 0; j < grid.n_y; ++j) {
         for (int i = 0; i < grid.n_x; ++i) {
             if (mask(j, i) == 0) continue;
             for (const double a : {-0.5, 0.5}) {
-                for (const double b : {-0.5, 0.5}) {  // mm, so that float keeps four digits behind the point
+                for (const double b : {-0.5, 0.5}) {  // in mm, so that float keeps four decimals
                     corners.emplace_back(static_cast<float>(1e3 * grid.dx_m * (i + a)),
                                          static_cast<float>(1e3 * grid.dy_m * (j + b)));
                 }
@@ -99,7 +99,7 @@ StiffRegion measure(const StiffnessGrid& grid, const Map& map, const cv::Mat1b& 
     return region;
 }
 
-// With a margin, at least one cell.
+// Returns the mask with a margin of `by_m`, at least one cell.
 cv::Mat1b widened(const StiffnessGrid& grid, const cv::Mat1b& mask, double by_m) {
     const auto cells = [&](double pitch_m) {
         return 2 * std::max(1, static_cast<int>(std::lround(by_m / pitch_m))) + 1;
@@ -109,7 +109,7 @@ cv::Mat1b widened(const StiffnessGrid& grid, const cv::Mat1b& mask, double by_m)
     return out;
 }
 
-// What belongs to a region and its slopes, and says nothing about the background.
+// Returns the region with its slopes, the cells that say nothing about the background.
 cv::Mat1b with_slopes(const StiffnessGrid& grid, const Detection& d, const cv::Mat1b& mask, const cv::Point& peak) {
     const double level = std::max(0.25 * grid.excess(peak), 2.0 * grid.spread_N_per_m);
     cv::Mat1b slopes = hang_together(grid, peak, std::min(level, 0.5 * grid.excess(peak)));
@@ -117,8 +117,9 @@ cv::Mat1b with_slopes(const StiffnessGrid& grid, const Detection& d, const cv::M
     return widened(grid, slopes, *d.options.smoothing_m);
 }
 
-// Whether it stands out on all sides: at most a quarter of the cells around it may be as stiff as it is on average. What
-// is stiffer than its background only because the ground bends (towards a soft edge, say) fails this.
+// Returns whether a region stands out on all sides: at most a quarter of the cells around it are as stiff as it is on
+// average. Cells that are stiffer than their background only because the stiffness bends there (such as towards a soft
+// edge) fail this.
 bool stands_out(const StiffnessGrid& grid, const Detection& d, const cv::Mat1b& mask) {
     cv::Mat1b around = widened(grid, mask, 2.0 * *d.options.smoothing_m);
     around.setTo(0, mask);

@@ -43,7 +43,7 @@ cv::Mat1b without(const cv::Mat1b& mask, const cv::Mat1b& left_out) {
 
 namespace {
 
-// Gaussian, normalised over the cells that are there.
+// Gaussian smoothing, normalised over the measured cells. Sigmas in cells.
 cv::Mat1d smoothed(const cv::Mat1d& values, const cv::Mat1b& there, double sigma_x, double sigma_y) {
     cv::Mat1d weight(values.size(), 0.0);
     weight.setTo(1.0, there);
@@ -59,8 +59,8 @@ cv::Mat1d smoothed(const cv::Mat1d& values, const cv::Mat1b& there, double sigma
     return sum;
 }
 
-// z = a + b u + c v over the measured cells by iteratively reweighted least squares, Tukey's biweight at 4.685 spreads
-// (95 % efficient for normal noise). u and v: cells from the middle of the grid, in halves of its size.
+// Fits z = a + b u + c v to the measured cells by iteratively reweighted least squares, with Tukey's biweight at 4.685
+// spreads (95 % efficient for normal noise). u and v run from about -1 to 1 over the grid.
 cv::Mat1d robust_plane(const StiffnessGrid& grid) {
     const auto u_of = [&](int i) { return (2.0 * i - (grid.n_x - 1)) / std::max(1, grid.n_x); };
     const auto v_of = [&](int j) { return (2.0 * j - (grid.n_y - 1)) / std::max(1, grid.n_y); };
@@ -88,7 +88,7 @@ cv::Mat1d robust_plane(const StiffnessGrid& grid) {
                 right += w * grid.stiffness(j, i) * p;
             }
         }
-        // least norm, so that a single row of cells has a plane too
+        // the solution of least norm, so that a single row of cells has a plane too
         plane = normal.completeOrthogonalDecomposition().solve(right);
     }
     cv::Mat1d out(grid.n_y, grid.n_x);
@@ -98,7 +98,8 @@ cv::Mat1d robust_plane(const StiffnessGrid& grid) {
     return out;
 }
 
-// Median of the plain cells within a disc. Fine grids are read in strides, so that the disc is at most some 40 wide.
+// Returns the median of the plain cells within a disc around each cell. Fine grids are sampled in strides, so that the
+// disc is at most some 40 samples wide.
 cv::Mat1d window_median(const cv::Mat1d& values, const StiffnessGrid& grid, double radius_m) {
     const auto reach = [&](double pitch_m, int n) {
         return static_cast<int>(std::min(radius_m / pitch_m, static_cast<double>(n)));
@@ -163,8 +164,8 @@ void take_background(const DetectOptions& options, StiffnessGrid& grid) {
         return std::min(both.lower, both.upper);
     };
     grid.plain = without(grid.there, grid.known);
-    for (int pass = 0; pass < 3;
-         ++pass) {  // soft outliers leave the windows, as a free edge would pull them down for a window's width
+    for (int pass = 0; pass < 3; ++pass) {
+        // soft outliers leave the windows, since a free edge would lower the median over a window's width
         cv::add(plane, window_median(rest, grid, options.window_m), grid.background);
         cv::subtract(grid.stiffness, grid.background, grid.excess);
         grid.excess.setTo(0.0, grid.there == 0);

@@ -16,7 +16,7 @@ constexpr double kOfNormal95 = 1.645;
 constexpr double kSelection = 1.5;
 constexpr double kClip = 1.5;
 
-// Sum of `values` under `shape` (0 and 1) laid on every cell.
+// Returns the sum of `values` under `shape` (0 and 1) placed on every cell.
 cv::Mat1d laid_everywhere(const cv::Mat1d& values, const cv::Mat1d& shape) {
     cv::Mat1d sum;
     cv::filter2D(values, sum, CV_64F, shape, cv::Point(-1, -1), 0.0, cv::BORDER_CONSTANT);
@@ -29,8 +29,8 @@ cv::Mat1d as_ones(const cv::Mat1b& mask) {
     return ones;
 }
 
-// Appends the mean excess under `shape` wherever at least 3/4 of it fit on the rest of the map with at least
-// `least_on_edge` of its cells along the edge.
+// Appends the mean excess under `shape` for every position with at least 3/4 of its cells on the rest of the map and at
+// least `least_on_edge` of them along the edge.
 void add_means(const StiffnessGrid& grid, const cv::Mat1d& shape, const cv::Mat1b& rest, double least_on_edge,
                std::vector<double>& means) {
     const cv::Mat1d ones = as_ones(rest);
@@ -49,8 +49,9 @@ void add_means(const StiffnessGrid& grid, const cv::Mat1d& shape, const cv::Mat1
     }
 }
 
-// Mean excess under the region's shape wherever it fits on the rest of the map; or along the edge alone, with as much of it
-// there as the region has, turned to each side of the map.
+// Returns the mean excess under the region's shape wherever it fits on the rest of the map; or, with `at_edge`, only
+// where at least 3/4 as many of its cells lie along the edge as the region has there, with the shape turned by quarter
+// turns.
 std::vector<double> means_elsewhere(const StiffnessGrid& grid, const cv::Mat1b& mask, const cv::Mat1b& rest,
                                     bool at_edge) {
     cv::Mat1d shape = as_ones(mask(cv::boundingRect(mask)));
@@ -67,7 +68,7 @@ std::vector<double> means_elsewhere(const StiffnessGrid& grid, const cv::Mat1b& 
     return means;
 }
 
-// Fills in noise_N_per_m, against_edge and contrast_to_noise; NaN where nothing can be said.
+// Fills in noise_N_per_m, against_edge and contrast_to_noise; NaN if there is too little to compare with.
 void compare_with_rest(const StiffnessGrid& grid, const cv::Mat1b& mask, const cv::Mat1b& rest, StiffRegion& region) {
     region.noise_N_per_m = region.contrast_to_noise = kMissing;
     for (const bool at_edge : {false, true}) {
@@ -82,8 +83,8 @@ void compare_with_rest(const StiffnessGrid& grid, const cv::Mat1b& mask, const c
     if (region.noise_N_per_m > 0.0) region.contrast_to_noise = region.mean_excess_N_per_m / region.noise_N_per_m;
 }
 
-// Area over which the excess is alike: product of its integral scales along x and y (to the first zero of each
-// autocorrelation). The regions are part of it: in a map that a region fills there is little to compare with.
+// Returns the area over which the excess is correlated: the product of its integral scales along x and y (up to the
+// first zero of each autocorrelation). Regions are included: a map that a region fills has little to compare it with.
 double alike_m2(const StiffnessGrid& grid, double clip_N_per_m) {
     const auto clipped = [&](int j, int i) { return std::clamp(grid.excess(j, i), -clip_N_per_m, clip_N_per_m); };
     const auto scale = [&](int a, int b, int n) {  // in cells
@@ -109,9 +110,10 @@ double alike_m2(const StiffnessGrid& grid, double clip_N_per_m) {
     return scale(1, 0, grid.n_x) * grid.dx_m * scale(0, 1, grid.n_y) * grid.dy_m;
 }
 
-// contrast_to_noise that the highest of `n` independent areas exceeds once in a thousand maps: Student's t with n - 1
+// Returns the contrast_to_noise that the highest of `n` independent areas exceeds once in a thousand maps, times
+// kSelection, since a region is drawn around the highest cells and not placed anywhere. It is Student's t with n - 1
 // degrees of freedom, as the spread comes from the same few areas (Wallace's closed form, Ann. Math. Stat. 30 (1959)
-// 1121), times what it gains as a region is drawn around the highest cells and not laid anywhere.
+// 1121).
 double needed_contrast(double n) {
     const double freedom = std::max(1.0, n - 1.0);
     const double z = -files::normal_quantile(1e-3 / n) * (8.0 * freedom + 3.0) / (8.0 * freedom + 1.0);
@@ -158,8 +160,8 @@ void judge_all(const StiffnessGrid& grid, const Detection& d, std::vector<Candid
     const auto settled = [&](const Candidate& c) {
         return std::find(outstanding.begin(), outstanding.end(), &c) != outstanding.end();
     };
-    for (std::size_t before = found.size() + 1;
-         before != outstanding.size();) {  // what turns out sure is no background either
+    // a region that turns out sure is no background for the others, so they are judged again
+    for (std::size_t before = found.size() + 1; before != outstanding.size();) {
         before = outstanding.size();
         for (Candidate& c : found) {
             if (c.region.sure) continue;

@@ -16,7 +16,7 @@
 namespace palpa::stiffnessmaps {
 namespace {
 
-// Force at the deepest layer that each cell has; of many cells every so many.
+// Returns the force at the deepest measured layer of every `step`-th cell.
 std::vector<double> deepest_forces(const Map& map, std::size_t step) {
     std::vector<double> out;
     for (std::size_t cell = 0; cell < map.n_cells(); cell += step) {
@@ -44,7 +44,7 @@ void refuse_no_forces(const Map& map, const std::string& file) {
                            "forces that rise with depth (is the sign the other way round? --negate-force)");
 }
 
-// Depth by depth, the cells' gaps between measured layers closed along the cell's own curve.
+// Closes the gaps between a cell's measured layers linearly along the cell's own curve.
 void close_inner_gaps(const Map& map, std::vector<float>& out) {
     for (std::size_t cell = 0; cell < map.n_cells(); ++cell) {
         double from_m = 0.0;
@@ -65,7 +65,7 @@ void close_inner_gaps(const Map& map, std::vector<float>& out) {
     }
 }
 
-// Tangential force from the energy's slope at every cell and depth that was measured.
+// Fills in the tangential force from the slope of the energy at every cell and depth that was measured.
 void derive_tangential(Map& map) {
     FieldOptions options;
     options.sigma_m = std::max(map.spacing_m[0], map.spacing_m[1]);
@@ -178,12 +178,13 @@ ImportResidual residual_of(const Map& map, const RecordedPoints& recorded) {
 ImportResidual residual_of_numbers(const Map& map) {
     ImportResidual out;
     out.greatest_N = force_range(map).highest_N;
-    std::vector<double> residuals;  // every so many, for the median
+    // of a part of the cells, which suffices for the median
+    std::vector<double> residuals;
     const std::size_t step = 1 + map.normal_N.size() / 2'000'000;
     std::vector<double> forces;
     std::vector<std::size_t> layer;
     for (std::size_t cell = 0; cell < map.n_cells(); ++cell) {
-        forces.assign(1, 0.0);  // no force at the surface, as look-up has it
+        forces.assign(1, 0.0);  // no force at the surface, as in look-up
         layer.assign(1, 0);
         for (std::size_t k = 0; k < map.n_depths(); ++k) {
             const float force = map.normal_N[k * map.n_cells() + cell];

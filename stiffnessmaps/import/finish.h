@@ -1,6 +1,6 @@
 #pragma once
-// What every form of recording ends with: checks, the filled copy, noise, tangential force, and how far the
-// map is from what was recorded.
+// The steps with which every form of recording becomes a map: checks, the filled copy, noise, tangential force, and the
+// residual against the recording.
 
 #include <string>
 
@@ -8,7 +8,7 @@
 
 namespace palpa::stiffnessmaps {
 
-// What was recorded, to hold against the map.
+// The recorded points, to be compared with the map.
 struct RecordedPoints {
     std::vector<double> x_m;
     std::vector<double> y_m;
@@ -28,27 +28,28 @@ struct RecordedPoints {
     }
 };
 
-// Grid and depths of a new map.
+// Sets the grid and the depths of a new map.
 void start_map(const GridPlan& plan, Map& map);
 
-// More cells than samples is a pitch that is too fine.
+// Throws InputError if there are over 10000 more cells than samples: the pitch is then too fine.
 void check_enough_samples(const GridPlan& plan, std::size_t n_samples, const std::string& file);
 
-// A map without gaps: between measured depths linear (from (0, 0) on); beyond a cell's deepest measurement,
-// and in cells without any, each layer's step in force is the mean of the neighbours' steps. Layers without
-// any force stay as they are above. [depth][y][x].
+// Returns the normal forces without gaps, [depth][y][x]. Between measured depths they are linear (from (0, 0) on);
+// beyond a cell's deepest measurement, and in cells without any, each layer's step in force is the mean of the
+// neighbours' steps. A layer without any force repeats the layer above.
 std::vector<float> filled_forces(const Map& map);
 
-// Refuses a map without forces, or whose forces fall with depth; then fills, estimates the noise, derives the
-// tangential force where asked for, writes its choices, and measures the residual. `measured_tangential`: the
-// map has arrays of its own. `recorded` empty: the map's numbers are the recording.
+// Throws InputError for a map without forces, or with a median force at the greatest depths that is not above 0. Then
+// derives the tangential force if asked for, fills gaps, estimates the noise, records the choices, and measures the
+// residual. `measured_tangential`: the map has measured tangential arrays. `recorded` empty: the map's numbers are the
+// recording.
 void finish_map(Map& map, const RecordedPoints& recorded, bool measured_tangential, const ImportOptions& options,
                 const std::string& file, ImportReport& report);
 
-// |map - recording| at every recorded point that is not deeper than the map there.
+// Returns |map - recording| over all recorded points that are not deeper than the map there.
 ImportResidual residual_of(const Map& map, const RecordedPoints& recorded);
 
-// The same where the recorded points are the map's own numbers: what making them rise with depth changes.
+// The same if the recorded points are the map's own numbers: how much isotonic regression changes them.
 ImportResidual residual_of_numbers(const Map& map);
 
 }  // namespace palpa::stiffnessmaps

@@ -20,7 +20,7 @@ namespace {
 constexpr double kOffGrid = 0.1;  // of the pitch
 constexpr double kMostPositions = 10000.0;
 
-// Squares of a plane, found by their position.
+// Divides the plane into squares, to find places near each other.
 struct SquareIndex {
     double side_m;
     static std::uint64_t key(std::int32_t i, std::int32_t j) {
@@ -49,7 +49,7 @@ std::optional<AxisFit> fit_axis(const std::vector<double>& places_m) {
     const double extent_m = sorted.back() - sorted.front();
     if (extent_m / pitch_m >= kMostPositions) return std::nullopt;
 
-    // the phase that most places share, so that one place off the grid does not shift it
+    // the phase that most places share, so that single places off the grid do not shift it
     double c = 0.0;
     double s = 0.0;
     for (const double place_m : sorted) {
@@ -59,7 +59,7 @@ std::optional<AxisFit> fit_axis(const std::vector<double>& places_m) {
     }
     const double phase_m = sorted.front() + pitch_m * std::atan2(s, c) / (2.0 * std::numbers::pi);
 
-    // least squares of place against number, over the places near their number
+    // least squares of position against index, over the places within a quarter pitch of theirs
     double n = 0.0;
     double sum_i = 0.0;
     double sum_ii = 0.0;
@@ -79,7 +79,7 @@ std::optional<AxisFit> fit_axis(const std::vector<double>& places_m) {
     if (!(best_m > 0.5 * pitch_m)) return std::nullopt;
     const double zero_m = phase_m + (n > 0.0 ? (sum_p - best_m * sum_i) / n : 0.0);
 
-    // numbered from the first place that lies on it
+    // indices start at the first place that lies on the axis
     double first = std::numeric_limits<double>::infinity();
     double last = -first;
     for (const double place_m : sorted) {
@@ -132,7 +132,7 @@ double neighbour_distance_m(const std::vector<double>& x_m, const std::vector<do
                 std::size_t looked_at = 0;
                 for (const std::uint32_t j : at->second) {
                     if (j == i) continue;
-                    if (++looked_at > 1000) break;  // everything in one spot
+                    if (++looked_at > 1000) break;  // very many places in one square
                     best = std::min(best, std::hypot(x_m[i] - x_m[j], y_m[i] - y_m[j]));
                 }
             }
@@ -144,7 +144,7 @@ double neighbour_distance_m(const std::vector<double>& x_m, const std::vector<do
 
 std::size_t group_count(const std::vector<double>& x_m, const std::vector<double>& y_m, double link_m) {
     const SquareIndex index{std::max(link_m, 1e-7)};
-    std::unordered_map<std::uint64_t, std::size_t> squares;  // how many places
+    std::unordered_map<std::uint64_t, std::size_t> squares;  // number of places in each square
     for (std::size_t i = 0; i < x_m.size(); ++i)
         ++squares[SquareIndex::key(index.square(x_m[i]), index.square(y_m[i]))];
     const std::size_t enough = std::max<std::size_t>(4, x_m.size() / 20);
@@ -195,10 +195,10 @@ void check_grid(const GridAxis& x, const GridAxis& y, std::size_t n_depths, cons
 
 namespace {
 
-// Sums of a weighted linear regression over (1, u, v, w), u and v in radii, w in thicknesses of the thicker
-// layer beside.
+// Sums of a weighted linear regression over (1, u, v, w): u and v in radii, w in thicknesses of the thicker of the two
+// layers beside.
 struct PlaneSums {
-    double a[10] = {};  // upper triangle of sum of weight b b^T
+    double a[10] = {};  // upper triangle of the sum of weight b b^T
     double f[4] = {};   // sum of weight b force
     std::uint32_t n = 0;
 
@@ -214,7 +214,8 @@ struct PlaneSums {
     }
 };
 
-// Value of the plane at u = v = w = 0; NaN where that would be extrapolation.
+// Returns the value of the plane at u = v = w = 0; NaN if that were an extrapolation or there are fewer than `least`
+// samples.
 double plane_value(const PlaneSums& s, std::size_t least) {
     constexpr double kOneSided = 0.5;
     if (s.n < least || !(s.a[0] > 0.0)) return std::numeric_limits<double>::quiet_NaN();
@@ -226,7 +227,7 @@ double plane_value(const PlaneSums& s, std::size_t least) {
     for (int i = 0; i < 4; ++i) {
         for (int j = i; j < 4; ++j) A(i, j) = A(j, i) = s.a[k++];
     }
-    constexpr double kRidge = 1e-3;  // of the weight: too few samples for a slope give their mean
+    constexpr double kRidge = 1e-3;  // of the weight: with too few samples for a slope, their mean results
     for (int i = 1; i < 4; ++i) A(i, i) += kRidge * s.a[0];
     return A.ldlt().solve(Eigen::Vector4d(s.f[0], s.f[1], s.f[2], s.f[3]))(0);
 }
@@ -237,8 +238,8 @@ struct MeanSums {
 };
 
 struct LayerRange {
-    double below_m;  // distance to the layer above the surface side, where the weight ends
-    double above_m;
+    double below_m;  // distance to the next shallower layer, where the weight reaches 0
+    double above_m;  // distance to the next deeper layer
 };
 
 std::vector<LayerRange> layer_ranges(const std::vector<double>& depths_m) {
@@ -250,13 +251,14 @@ std::vector<LayerRange> layer_ranges(const std::vector<double>& depths_m) {
     return out;
 }
 
-// How far a depth lies from a layer, in layers' distances; 1 or more: it does not belong to it.
+// Returns the distance of a depth from a layer as a share of that to the next layer, negative if shallower. Beyond -1
+// and 1 the depth does not count for the layer.
 double layers_off(const std::vector<double>& depths_m, const LayerRange& range, std::size_t layer, double depth_m) {
     const double off_m = depth_m - depths_m[layer];
     return off_m / (off_m < 0.0 ? range.below_m : range.above_m);
 }
 
-// Calls visit(cell, u, v) for every cell within the radius, u and v in radii from the cell to the place.
+// Calls visit(cell, u, v) for every cell within the radius; (u, v) points from the cell to the place, in radii.
 template <class Visit>
 void visit_cells(const GridPlan& plan, double x_m, double y_m, Visit visit) {
     const auto first = [&](const GridAxis& axis, double place_m) {
@@ -276,7 +278,7 @@ void weighted_means(const Samples& samples, const GridPlan& plan, const std::vec
                     std::vector<float>& out) {
     if (values.empty()) return;
     const auto ranges = layer_ranges(plan.depths_m);
-    constexpr double kEnough = 0.5;  // half of one sample in the middle
+    constexpr double kEnough = 0.5;  // half the weight of one sample at the cell itself
     for (std::size_t layer = 0; layer < plan.depths_m.size(); ++layer) {
         std::vector<MeanSums> sums(plan.n_cells());
         for (std::size_t s = 0; s < samples.size(); ++s) {

@@ -1,4 +1,4 @@
-// HDF5 files, and MATLAB 7.3 files, which are HDF5.
+// Reads HDF5 files, and MATLAB 7.3 files, which are HDF5.
 
 #include <algorithm>
 #include <array>
@@ -11,7 +11,7 @@
 namespace palpa::stiffnessmaps {
 namespace {
 
-// An identifier of the library, given back when it is no longer needed.
+// An identifier of the library, closed by the destructor.
 class Handle {
   public:
     Handle(hid_t id, herr_t (*close)(hid_t)) : id_(id), close_(close) {}
@@ -40,7 +40,7 @@ herr_t note_dataset(hid_t, const char* name, const H5O_info_t* info, void* out) 
     return names.size() < kMost ? 0 : 1;
 }
 
-// Dimensions of a dataset of plain numbers; empty for anything else.
+// Returns the dimensions of a dataset of plain numbers; empty for anything else.
 std::vector<std::size_t> grid_shape(hid_t dataset) {
     const Handle type(H5Dget_type(dataset), H5Tclose);
     const Handle space(H5Dget_space(dataset), H5Sclose);
@@ -80,7 +80,7 @@ bool starts_as_matlab(const std::filesystem::path& path) {
     return std::string_view(bytes.data(), bytes.size()) == "MATLAB 7.3";
 }
 
-// MATLAB's index order from what it stores: the axes the other way round.
+// Returns the array in MATLAB's order of indices: MATLAB stores the axes reversed.
 files::NpyArray with_axes_reversed(const files::NpyArray& from) {
     files::NpyArray out;
     out.shape.assign(from.shape.rbegin(), from.shape.rend());

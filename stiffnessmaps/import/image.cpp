@@ -1,4 +1,4 @@
-// Grey images, by libpng and libtiff: a number a pixel, nothing scaled.
+// Reads grey images by libpng and libtiff: one number per pixel, not scaled.
 
 #include <csetjmp>
 #include <cstdio>
@@ -35,7 +35,7 @@ void note_failure(png_structp png, png_const_charp message) {
 
 void keep_quiet(png_structp, png_const_charp) {}
 
-// Rows as they are stored, most significant byte first, no gamma applied; what went wrong, or "".
+// Reads the rows as they are stored, most significant byte first, without gamma. Returns what went wrong, or "".
 std::string decode_png(const std::string& bytes, std::size_t line, std::vector<unsigned char>& rows) {
     PngSource source{bytes, "something else"};
     png_structp png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &source, note_failure, keep_quiet);
@@ -43,7 +43,7 @@ std::string decode_png(const std::string& bytes, std::size_t line, std::vector<u
     if (info == nullptr) return "no memory";
     std::vector<png_bytep> starts;
     for (std::size_t at = 0; at < rows.size(); at += line) starts.push_back(rows.data() + at);
-    if (setjmp(png_jmpbuf(png)) != 0) {  // from note_failure
+    if (setjmp(png_jmpbuf(png)) != 0) {  // longjmp comes from note_failure
         png_destroy_read_struct(&png, &info, nullptr);
         return source.failed;
     }

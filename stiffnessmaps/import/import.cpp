@@ -48,7 +48,7 @@ Map import_tables(const std::vector<fs::path>& files, const ImportOptions& optio
         throw files::bad_input("--depths-mm", "", "depths out of order", "ascending depths");
     }
     Map map;
-    MapSource before;  // what is chosen before the map is there
+    MapSource before;  // choices made before the map exists
     Probing probing;
     Sliding sliding;
     const std::string all = files.size() == 1

@@ -1,5 +1,5 @@
 #pragma once
-// A recording becomes a map, whatever its form.
+// Makes a map of a recording in any of its forms.
 
 #include <filesystem>
 #include <vector>
@@ -8,9 +8,9 @@
 
 namespace palpa::stiffnessmaps {
 
-// The form is what `options.form` says, or is told from the files: tables by their columns (columns.h),
-// arrays by their first bytes or as numbers without a header (arrays.h). Several files are one recording: one
-// array per depth, or one table after the other. Throws InputError.
+// The form is `options.form`, or is determined from the files: tables by their columns (columns.h), arrays by their
+// first bytes or as numbers without a header (arrays.h). Several files are one recording: one array per depth, or one
+// table after the other. Throws InputError.
 Map import_recording(const std::vector<std::filesystem::path>& files, const ImportOptions& options,
                      ImportReport& report);
 

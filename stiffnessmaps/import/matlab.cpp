@@ -1,4 +1,4 @@
-// MATLAB version 5 files, by matio.
+// Reads MATLAB version 5 files by matio.
 
 #include <algorithm>
 #include <cstdint>
@@ -71,7 +71,7 @@ bool is_grid(const matvar_t& variable) {
     if (bytes_of(variable.class_type) == 0 || variable.isComplex != 0 || variable.dims == nullptr) return false;
     if (variable.rank < 2 || variable.rank > 3) return false;
     const auto shape = shape_of(variable);
-    return std::count(shape.begin(), shape.end(), 1u) + 1 < variable.rank;  // two axes longer than one
+    return std::count(shape.begin(), shape.end(), 1u) + 1 < variable.rank;  // at least two axes are longer than one
 }
 
 struct CloseMat {
@@ -83,7 +83,7 @@ struct FreeVariable {
 using Mat = std::unique_ptr<mat_t, CloseMat>;
 using Variable = std::unique_ptr<matvar_t, FreeVariable>;
 
-// The name of the array to read.
+// Returns the name of the array to read.
 std::string choose(mat_t* mat, const std::string& dataset, const std::string& file) {
     std::string grids;
     std::size_t n = 0;
@@ -106,9 +106,9 @@ std::string choose(mat_t* mat, const std::string& dataset, const std::string& fi
     return found;
 }
 
-// matio reads a cut file without a word. Each element of the file says its length: they must end where the
-// file ends. Source: MATLAB MAT-File Format, level 5: 128 bytes of header with the byte order at its end,
-// then elements of type (4 bytes), length (4 bytes), data.
+// Throws InputError for a cut file, which matio reads without an error. Each element of the file holds its length, and
+// the last one must end where the file does. Source: MATLAB MAT-File Format, level 5: 128 bytes of header with the byte
+// order at its end, then elements of type (4 bytes), length (4 bytes), data.
 void refuse_cut(const std::filesystem::path& path) {
     constexpr std::uint64_t kHeader = 128;
     const files::InputFile in(path);

@@ -20,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Matrices of one kind.
+// The matrices of one quantity, one layer per depth.
 struct Stack {
     std::vector<double> depths_m;  // empty: not yet known
     std::size_t n_y = 0;
@@ -45,7 +45,7 @@ bool says_along_y(const fs::path& path) {
     return lower(path.stem().string()).find("tangential_y") != std::string::npos;
 }
 
-// "normal_3.5mm" -> 3.5 mm: the last number in the name that mm follows.
+// Returns the last number in the name that "mm" follows, as metres: "normal_3.5mm" -> 3.5e-3.
 std::optional<double> depth_in_name(const fs::path& path) {
     const std::string name = path.stem().string();
     for (std::size_t unit = name.rfind("mm"); unit != std::string::npos && unit > 0;
@@ -62,7 +62,7 @@ std::optional<double> depth_in_name(const fs::path& path) {
     return std::nullopt;
 }
 
-// A three-dimensional array as [depth][y][x].
+// Reorders a three-dimensional array to [depth][y][x].
 void put_in_order(files::NpyArray& array, const std::string& axes) {
     if (axes == "dyx") return;
     const std::size_t d = axes.find('d');
@@ -136,10 +136,11 @@ std::vector<double> depths_of(const std::vector<fs::path>& files, const Stack& s
                            "the depth of each: --depths-mm, or names such as normal_3mm.csv");
 }
 
-// Layers in ascending depth.
+// Sorts the layers by ascending depth. Throws InputError if two have the same depth.
 void sort_layers(Stack& stack) {
     const auto n = static_cast<std::ptrdiff_t>(stack.n_x * stack.n_y);
-    for (std::size_t k = 0; k + 1 < stack.depths_m.size(); ++k) {  // by selection, so that each is moved once, in place
+    // selection sort moves each layer once, in place
+    for (std::size_t k = 0; k + 1 < stack.depths_m.size(); ++k) {
         const auto from = stack.depths_m.begin() + static_cast<std::ptrdiff_t>(k);
         const auto least = std::min_element(from, stack.depths_m.end());
         if (least == from) continue;
@@ -153,7 +154,7 @@ void sort_layers(Stack& stack) {
                            "each once");
 }
 
-// In SI units of the quantity; NaN where not measured.
+// Converts the numbers to SI units of the quantity; NaN = not measured.
 void scale(Stack& stack, const ImportOptions& options) {
     const double factor = options.scale * (options.negate_force ? -1.0 : 1.0) *
                           (options.quantity == Quantity::force && options.force_unit == ForceUnit::mN ? 1e-3 : 1.0);
@@ -193,7 +194,7 @@ void check_size(const Stack& stack, const ImportOptions& options) {
     }
 }
 
-// One slice becomes forces at each depth.
+// Turns one slice of stiffness or elasticity into forces at each depth.
 void forces_from_slice(Stack& stack, const ImportOptions& options, ImportReport& report) {
     if (options.depths_m.empty())
         throw files::bad_input(stack.first_file, "", "a slice without depths",
@@ -232,7 +233,7 @@ std::vector<float> tangential_of(const std::vector<fs::path>& files, const Stack
     if (stack.depths_m != normal.depths_m)
         throw files::bad_input(stack.first_file, "", "other depths than the normal force has", "the same");
     ImportOptions unsigned_options = options;
-    unsigned_options.negate_force = false;  // the normal force's sign
+    unsigned_options.negate_force = false;  // that sign belongs to the normal force
     scale(stack, unsigned_options);
     return std::move(stack.values);
 }

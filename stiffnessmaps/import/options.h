@@ -1,6 +1,6 @@
 #pragma once
-// How a recording becomes a map: every choice that a person may make otherwise, and what came of it. What is
-// not set is chosen from the recording; either way it stands in the map's source.choices.
+// How a recording becomes a map: every choice that a person may change, and the result. What is not set is chosen from
+// the recording; either way map.source.choices records it.
 
 #include <array>
 #include <filesystem>
@@ -18,54 +18,54 @@ enum class RecordingForm { probing, sliding, matrices };
 enum class Gridding { on_grid, plane, inverse_distance, median };
 enum class ContactStart { first_row, threshold };
 enum class TangentialChoice { measured, energy, none };
-enum class Quantity { force, stiffness, young };  // what an array's numbers are: N, N/m at any depth, Pa
+enum class Quantity { force, stiffness, young };  // meaning of an array's numbers: N, N/m at any depth, Pa
 enum class LengthUnit { mm, m, um };
 enum class ForceUnit { N, mN };
 
 struct ImportOptions {
     std::optional<RecordingForm> form;
-    std::string name;     // of the map; empty: the first file's
+    std::string name;     // of the map; empty: that of the first file
     std::string licence;  // of the recording
     IndenterShape indenter = IndenterShape::sphere;
     double indenter_radius_m = 3e-3;
-    double cylinder_length_m = 20e-3;  // for the contact formula alone
+    double cylinder_length_m = 20e-3;  // only for the contact formula
 
     // tables
-    std::map<std::string, std::string> columns;  // role -> the file's name for it, see columns.h
+    std::map<std::string, std::string> columns;  // role -> name in the file, see columns.h
     std::optional<LengthUnit> length_unit;       // of the positions
     std::optional<LengthUnit> depth_unit;
     std::optional<ForceUnit> force_unit;
     bool negate_force = false;
-    std::optional<std::array<double, 4>> region_m;  // x from, x to, y from, y to: the rest is passed over
+    std::optional<std::array<double, 4>> region_m;  // x from, x to, y from, y to: only this is read
     bool remove_tilt = true;
     std::optional<double> outliers;  // in robust standard deviations, 0: none
 
     // the grid
     std::optional<Gridding> gridding;
     std::optional<double> pitch_m;
-    std::optional<double> radius_m;  // that a cell draws from, where the points do not lie on a grid
-    std::vector<double> depths_m;    // of the map's layers; for matrices those of the files
-    std::optional<int> layers;       // how many, where the depths are chosen
-    bool fill = true;                // store filled_normal_N too
+    std::optional<double> radius_m;  // within which a cell takes samples, if the points lie on no grid
+    std::vector<double> depths_m;    // of the map's layers; for matrices, of the files
+    std::optional<int> layers;       // number of layers, if the depths are chosen
+    bool fill = true;                // stores filled_normal_N as well
     std::optional<TangentialChoice> tangential;
 
     // probing
     std::optional<ContactStart> contact;
-    std::optional<double> contact_force_N;  // where contact begins, for ContactStart::threshold
+    std::optional<double> contact_force_N;  // at which contact begins, with ContactStart::threshold
 
     // sliding
-    std::optional<double> surface_z_m;     // a flat surface that is known, instead of one that is estimated
-    std::vector<double> at_depths_m;       // of each file, recorded at constant depth
+    std::optional<double> surface_z_m;     // height of a flat surface, instead of an estimated one
+    std::vector<double> at_depths_m;       // for each file, if recorded at constant depth
     std::optional<double> surface_node_m;  // spacing of the estimated surface's nodes
 
     // arrays
     std::array<double, 2> spacing_m{0.0, 0.0};  // must be stated
     std::array<double, 2> origin_m{0.0, 0.0};
     Quantity quantity = Quantity::force;
-    double scale = 1.0;             // SI units of `quantity` for one unit of the file
-    bool scale_stated = false;      // counts of an image mean nothing without it
-    double offset = 0.0;            // of the file's numbers, subtracted before the scale
-    std::optional<double> missing;  // the number that stands for "not measured", besides NaN
+    double scale = 1.0;             // SI units of `quantity` per unit of the file
+    bool scale_stated = false;      // required for images, whose counts have no unit
+    double offset = 0.0;            // in the file's units, subtracted before scaling
+    std::optional<double> missing;  // the number that means "not measured", besides NaN
     double poisson = 0.5;
     std::string axes = "dyx";  // order of a three-dimensional array's axes: d depth, y, x
     std::string dataset;       // in MATLAB and HDF5 files; empty: the only array
@@ -80,7 +80,7 @@ struct ImportResidual {
     std::size_t n = 0;
     double median_N = 0.0;
     double worst_N = 0.0;
-    double greatest_N = 0.0;  // force of the map, which the shares are of
+    double greatest_N = 0.0;  // greatest force of the map, to which the shares refer
     double worst_x_m = 0.0;
     double worst_y_m = 0.0;
     double worst_depth_m = 0.0;
@@ -93,11 +93,11 @@ struct ImportReport {
     RecordingForm form = RecordingForm::probing;
     std::size_t rows = 0;
     std::size_t points = 0;           // places probed, samples in contact, or numbers in the arrays
-    std::size_t rejected_rows = 0;    // not numbers, not rising in depth, off their command, or outliers
-    std::size_t rejected_points = 0;  // fewer than two depths left
-    std::size_t outliers = 0;         // of the rejected rows
+    std::size_t rejected_rows = 0;    // not numbers, not deeper than the row before, off their command, or outliers
+    std::size_t rejected_points = 0;  // with fewer than two depths left
+    std::size_t outliers = 0;         // among the rejected rows
     std::size_t missing_cells = 0;    // of the grid
-    double median_offset_N = 0.0;     // force at contact, subtracted point by point
+    double median_offset_N = 0.0;     // force at contact, which is subtracted point by point
     ImportResidual residual;
     std::vector<std::string> notes;  // what a person should know, in plain words
 };

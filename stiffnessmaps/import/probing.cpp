@@ -25,7 +25,7 @@ namespace {
 constexpr double kOffCommand_m = 1e-3;
 constexpr double kSamePlace_m = 0.2e-3;
 
-// Finds the place that a row belongs to.
+// Finds the place that a row belongs to, or adds it.
 class Places {
   public:
     explicit Places(std::vector<ProbedPoint>& points) : points_(points) {}
@@ -66,7 +66,7 @@ class Places {
         return i * 4'000'000'007 + j;
     }
     ProbedPoint& add(double x_m, double y_m, std::size_t line) {
-        if (!points_.empty()) {  // most often that place is complete
+        if (!points_.empty()) {  // that place is usually complete by now
             points_.back().depth_m.shrink_to_fit();
             points_.back().force_N.shrink_to_fit();
         }
@@ -81,7 +81,7 @@ class Places {
     std::unordered_multimap<std::int64_t, std::size_t> by_square_;
 };
 
-// The force along the surface's normal: as recorded, from the recorded normal, or along z.
+// Returns the force along the surface's normal: as recorded, by the recorded normal, or along z.
 double normal_force(const files::Table& table, const Columns& columns) {
     if (columns.has(Role::normal_force)) return value_of(table, columns, Role::normal_force);
     if (!columns.has(Role::normal_z)) return value_of(table, columns, Role::force_z);
@@ -112,7 +112,7 @@ Probing read_probing(files::Table& table, const Columns& columns, const ImportOp
     std::size_t not_numbers = 0;
     constexpr double kFar_m = std::numeric_limits<double>::infinity();
     std::array<double, 4> extent_m{kFar_m, -kFar_m, kFar_m, -kFar_m};
-    std::vector<double> all_depths_m;  // every so many, to see whether the unit can be
+    std::vector<double> all_depths_m;  // of a part of the rows, to see whether the unit is plausible
     std::vector<double> all_forces_N;
     while (table.next()) {
         ++report.rows;
@@ -161,7 +161,7 @@ Probing read_probing(files::Table& table, const Columns& columns, const ImportOp
                                                   : "no row with numbers",
                                "probing at several depths");
     }
-    constexpr double kNearlyAll = 0.99;  // a wild row is no other unit
+    constexpr double kNearlyAll = 0.99;  // so that a single wild row does not suggest another unit
     if (!probing.depth_from_z) check_depth_size(quantile(all_depths_m, kNearlyAll), options, table.file());
     check_force_size(quantile(all_forces_N, kNearlyAll), columns, options, table.file());
     check_length_size(std::max(extent_m[1] - extent_m[0], extent_m[3] - extent_m[2]), options, table.file());
@@ -187,7 +187,7 @@ void refuse_off_grid(const Probing& probing, const GridAxis& axis, bool along_y,
     }
 }
 
-// On the grid that the places lie on, or scattered; throws where they form two grids.
+// Chooses the grid that the places lie on, or one for scattered places. Throws InputError if they form two grids.
 GridChoice choose_grid(const Probing& probing, const ImportOptions& options, const std::string& file) {
     std::vector<double> x_m;
     std::vector<double> y_m;
@@ -345,7 +345,7 @@ Map map_of_probing(Probing& probing, const ImportOptions& options, const std::st
     for (const ProbedPoint& p : probing.points) {
         for (std::size_t i = 1; i < p.depth_m.size(); ++i) recorded.add(p.x_m, p.y_m, p.depth_m[i], p.force_N[i]);
     }
-    probing = {};  // the greater part of the memory, in pieces that the allocator would keep
+    probing = {};  // most of the memory, in small pieces that the allocator would keep
     ::malloc_trim(0);
     finish_map(map, recorded, false, options, file, report);
     return map;

@@ -31,8 +31,8 @@ void reject_outliers(Probing& probing, double deviations, ImportReport& report) 
         add_fourth_differences(p.force_N, differences);
         greatest_N.push_back(*std::max_element(p.force_N.begin(), p.force_N.end()));
     }
-    const double least_N =
-        1e-3 * std::abs(median(std::move(greatest_N)));  // a sensor that counts in steps may have no noise
+    // a sensor that counts in steps may show no noise
+    const double least_N = 1e-3 * std::abs(median(std::move(greatest_N)));
     const double limit_N = deviations * std::max(noise_of_fourth_differences(std::move(differences)), least_N);
     for (ProbedPoint& p : probing.points) {
         const std::vector<bool> outlier = lone_outliers(p.force_N, limit_N);
@@ -45,7 +45,7 @@ void reject_outliers(Probing& probing, double deviations, ImportReport& report) 
     }
 }
 
-// From its first row on.
+// Counts depth and force from the first row. Returns the force of that row.
 double start_at_first_row(ProbedPoint& p) {
     const double depth_m = p.depth_m.front();
     const double force_N = p.force_N.front();
@@ -55,8 +55,8 @@ double start_at_first_row(ProbedPoint& p) {
     return force_N;
 }
 
-// From where the force crosses the threshold; returns the force in the air. A place whose force never crosses
-// is emptied.
+// Counts depth from where the force crosses the threshold. Returns the force in the air. A place whose force never
+// crosses the threshold is emptied.
 double start_at_threshold(ProbedPoint& p, double threshold_N) {
     const std::size_t in_air = std::min<std::size_t>(3, p.force_N.size());
     const double offset_N = median({p.force_N.begin(), p.force_N.begin() + static_cast<std::ptrdiff_t>(in_air)});
@@ -83,7 +83,7 @@ double start_at_threshold(ProbedPoint& p, double threshold_N) {
     return offset_N;
 }
 
-// Plane z = a + b x + c y through the contact heights; (b, c).
+// Returns the slopes (b, c) of the plane z = a + b x + c y through the contact heights.
 Eigen::Vector2d contact_slope(const Probing& probing) {
     Eigen::Matrix3d A = Eigen::Matrix3d::Zero();
     Eigen::Vector3d right = Eigen::Vector3d::Zero();
@@ -95,7 +95,7 @@ Eigen::Vector2d contact_slope(const Probing& probing) {
         A += row * row.transpose();
         right += row * (p.z_m - middle.z());
     }
-    A.diagonal().tail<2>().array() += 1e-12;  // one line of places has no slope across it
+    A.diagonal().tail<2>().array() += 1e-12;  // a single line of places has no slope across it
     return A.ldlt().solve(right).tail<2>();
 }
 
@@ -130,7 +130,7 @@ void clean_curves(Probing& probing, const ImportOptions& options, MapSource& sou
         options.contact.value_or(probing.depth_from_z ? ContactStart::threshold : ContactStart::first_row);
     double threshold_N = options.contact_force_N.value_or(0.0);
     if (contact == ContactStart::threshold && !options.contact_force_N) {
-        std::vector<double> steps_N;  // between the first rows, which are in the air
+        std::vector<double> steps_N;  // between the first two rows, which are in the air
         std::vector<double> greatest_N;
         for (const ProbedPoint& p : probing.points) {
             steps_N.push_back(p.force_N[1] - p.force_N[0]);
@@ -142,7 +142,7 @@ void clean_curves(Probing& probing, const ImportOptions& options, MapSource& sou
     }
     std::vector<double> offsets_N;
     for (ProbedPoint& p : probing.points) {
-        for (auto& lateral : p.lateral_N) {  // its zero, as the normal force's
+        for (auto& lateral : p.lateral_N) {  // the lateral force counts from its first row, too
             for (std::size_t i = lateral.size(); i-- > 0;) lateral[i] -= lateral[0];
         }
         offsets_N.push_back(contact == ContactStart::first_row ? start_at_first_row(p)

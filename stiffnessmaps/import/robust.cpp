@@ -28,7 +28,7 @@ std::vector<bool> lone_outliers(const std::vector<double>& values, double limit)
         const double high = std::max(values[i - 1], values[i + 1]);
         return std::max({0.0, values[i] - high, low - values[i]});
     };
-    // beside a spike on a slope a good value lies outside too, but less
+    // on a slope, the good value beside a spike lies outside too, but less far
     for (std::size_t i = 1; i + 1 < values.size(); ++i) {
         const double here = outside(i);
         out[i] = here > limit && here >= outside(i - 1) && here >= outside(i + 1);

@@ -40,7 +40,7 @@ double length_of_path(const SurfaceSamples& s) {
     return length_m;
 }
 
-// Area of the 2 mm squares that the tool was in.
+// Returns the area of the 2 mm squares that the tool passed.
 double covered_area(const SurfaceSamples& s, const Bounds2& b) {
     constexpr double kSquare_m = 2e-3;
     std::vector<std::uint64_t> squares;
@@ -57,7 +57,8 @@ double covered_area(const SurfaceSamples& s, const Bounds2& b) {
     return kSquare_m * kSquare_m * static_cast<double>(squares.size());
 }
 
-// Two passes a cell, and some four samples a cell and layer; in steps of half a millimetre.
+// Returns a pitch that gives two passes per cell and some four samples per cell and layer (of 8), in steps of half a
+// millimetre.
 double default_pitch_m(const SurfaceSamples& s, const Bounds2& bounds) {
     constexpr double kSamplesInCell = 32.0;
     const double area = covered_area(s, bounds);
@@ -178,7 +179,7 @@ void take_surface(Sliding& sliding, const ImportOptions& options, double pitch_m
         "--tilt", !options.remove_tilt);
 }
 
-// Depths that the recording kept to: groups of depths with empty space between them. Empty if it did not.
+// Returns the depths that the recording kept to: groups of depths with gaps between them. Empty if it kept to none.
 std::vector<double> kept_depths(const std::vector<double>& depth_m) {
     std::vector<double> some;
     const std::size_t step = 1 + depth_m.size() / 50000;
@@ -192,7 +193,7 @@ std::vector<double> kept_depths(const std::vector<double>& depth_m) {
         std::size_t end = i + 1;
         while (end < some.size() && some[end] - some[end - 1] < kGap_m) ++end;
         const bool narrow = some[end - 1] - some[i] < 0.4e-3;
-        const bool rare = (end - i) * 100 < some.size();  // on the way from one depth to the next
+        const bool rare = (end - i) * 100 < some.size();  // between one depth and the next
         if (!rare && !narrow) return {};
         if (!rare) out.push_back(some[(i + end) / 2]);
         i = end;
@@ -255,18 +256,18 @@ Samples indentations(const Sliding& sliding, const Surface& surface, const Impor
 std::vector<bool> outliers(const std::vector<double>& force_N, double deviations) {
     if (deviations <= 0.0) return std::vector<bool>(force_N.size(), false);
     std::vector<double> differences;
-    const std::size_t part = 1000;  // the noise is told from some stretches
+    const std::size_t part = 1000;  // some stretches suffice to estimate the noise
     const std::size_t step = part * (1 + force_N.size() / 100'000);
     for (std::size_t i = 0; i < force_N.size(); i += step) {
         const auto from = force_N.begin() + static_cast<std::ptrdiff_t>(i);
         add_fourth_differences({from, from + static_cast<std::ptrdiff_t>(std::min(part, force_N.size() - i))},
                                differences);
     }
-    const double least_N = 1e-3 * quantile(force_N, 0.95);  // a sensor that counts in steps may have no noise
+    const double least_N = 1e-3 * quantile(force_N, 0.95);  // a sensor that counts in steps may show no noise
     return lone_outliers(force_N, deviations * std::max(noise_of_fourth_differences(std::move(differences)), least_N));
 }
 
-// In place: only samples below the surface that are no outliers.
+// Keeps, in place, only samples below the surface that are no outliers.
 void drop_out_of_contact(const std::vector<bool>& outlier, Samples& samples) {
     std::size_t n = 0;
     for (std::size_t i = 0; i < samples.size(); ++i) {

@@ -11,7 +11,7 @@
 namespace palpa::stiffnessmaps {
 namespace {
 
-// Direction of sample i's motion, from 0.1 s before to 0.1 s after it; 0 where it stands still.
+// Direction of a sample's motion, from 0.1 s before to 0.1 s after it; 0 if the tool stands still.
 struct Motion {
     double x = 0.0;
     double y = 0.0;
@@ -25,7 +25,7 @@ std::vector<float> against(const Sliding& sliding, const Surface& surface, bool 
     for (std::size_t i = 0; i < s.size(); ++i) {
         if ((along_y ? motion[i].y : motion[i].x) < kAlong) continue;
         const SurfacePoint p = surface_at(surface, s.x_m[i], s.y_m[i]);
-        // the axis, laid into the surface
+        // the axis, projected onto the surface
         const std::size_t a = along_y ? 1 : 0;
         double e[3] = {along_y ? 0.0 : 1.0, along_y ? 1.0 : 0.0, 0.0};
         for (std::size_t c = 0; c < 3; ++c) e[c] -= p.normal[a] * p.normal[c];
@@ -33,7 +33,7 @@ std::vector<float> against(const Sliding& sliding, const Surface& surface, bool 
         if (!(length > 1e-6)) continue;
         double force = 0.0;
         for (std::size_t c = 0; c < 3; ++c) force += e[c] / length * static_cast<double>(s.force_N[c][i]);
-        out[i] = static_cast<float>(-force);  // the force on the tool pulls it back
+        out[i] = static_cast<float>(-force);  // the force on the tool points against its motion
     }
     return out;
 }
@@ -46,7 +46,7 @@ std::vector<Motion> motions(const Sliding& sliding) {
     std::size_t from = 0;
     std::size_t to = 0;
     for (std::size_t i = 0; i < s.size(); ++i) {
-        // files follow each other: a clock that goes back is another file
+        // the files follow one another, each with its own clock
         const auto near = [&](std::size_t j) { return std::abs(sliding.time_s[j] - sliding.time_s[i]) <= kWindow_s; };
         from = std::min(from, i);
         while (from < i && !near(from)) ++from;
@@ -60,8 +60,7 @@ std::vector<Motion> motions(const Sliding& sliding) {
     return out;
 }
 
-// Median share of the normal force with which the tool is held back along its motion; below 0 the sign is
-// wrong.
+// Returns the median share of the normal force that holds the tool back along its motion; below 0 the sign is wrong.
 double drag(const Samples& samples) {
     std::vector<double> shares;
     for (std::size_t i = 0; i < samples.size(); ++i) {

@@ -6,10 +6,10 @@
 
 namespace palpa::stiffnessmaps {
 
-// Fills the tangential forces of `pressed`, which has one sample for each of `sliding`'s: along +x from those
-// that move along +x (within 37 degrees), likewise y, along the surface, positive where it opposes the
-// motion. False, with a note, where the recording has no lateral force, where it is not wanted, or where it
-// pushes the tool along instead of holding it back.
+// Fills in the tangential forces of `pressed`, which has one sample for each of those of `sliding`: along x from
+// samples that move along +x (within 37 degrees), along y likewise; along the surface, and positive where the force
+// opposes the motion. Returns false if the recording has no lateral force or none is wanted, and, with a note, if the
+// force pushes the tool along instead of holding it back.
 bool take_tangential(const Sliding& sliding, const Surface& surface, const ImportOptions& options, Samples& pressed,
                      ImportReport& report);
 

@@ -16,7 +16,7 @@ namespace {
 
 using Eigen::Index;
 
-constexpr std::size_t kMostSamples = 100'000;  // the fit needs no more
+constexpr std::size_t kMostSamples = 100'000;  // enough for the fit
 constexpr std::size_t kMostNodes = 4'000;
 
 struct Corner {
@@ -47,7 +47,7 @@ Corner corner_of(const Surface& surface, double x_m, double y_m) {
 
 struct Fit {
     std::vector<double> height_m;
-    std::vector<double> compliance_m;  // for a force of the typical size
+    std::vector<double> compliance_m;  // depth under the typical force
     double deviation_m = 0.0;
 };
 
@@ -82,12 +82,13 @@ void add_smoothness(const Surface& surface, double weight_s, double weight_c,
     }
 }
 
-// One weighted least-squares solution; the residuals' robust deviation with it.
+// Returns one weighted least-squares solution with the robust deviation of its residuals; empty if the matrix cannot be
+// factored.
 Fit solve(const Surface& surface, const SurfaceSamples& samples, const Chosen& chosen,
           std::vector<double>& residual_m) {
     const std::size_t n = surface.n_x * surface.n_y;
     const std::size_t n_m = chosen.sample.size();
-    // sums per square of four nodes, then into the matrix
+    // sums for each square of four nodes, which then go into the matrix
     std::vector<std::array<double, 64>> blocks(n);
     Eigen::VectorXd right = Eigen::VectorXd::Zero(static_cast<Index>(2 * n));
     std::vector<std::size_t> touched(n, 0);
@@ -122,9 +123,9 @@ Fit solve(const Surface& surface, const SurfaceSamples& samples, const Chosen& c
         }
     }
     const double per_node = static_cast<double>(n_m) / static_cast<double>(n);
-    // shares of the samples on a node; found on two recordings and a raster over a lump with a known answer,
-    // 2026-11: the residual changes by a tenth from 0.3 to 0.01, and a compliance held stiffer than the
-    // surface bends the surface instead
+    // weights of the smoothness, as shares of the samples per node; found on two recordings and a raster over a lump
+    // with a known answer, 2026-11: the residual changes by a tenth from 0.3 to 0.01, and a compliance held stiffer
+    // than the surface bends the surface instead
     constexpr double kSurface = 0.1;
     constexpr double kCompliance = 0.03;
     add_smoothness(surface, kSurface * per_node, kCompliance * per_node, entries);
@@ -152,7 +153,7 @@ Fit solve(const Surface& surface, const SurfaceSamples& samples, const Chosen& c
     return fit;
 }
 
-// Interquartile range of the push over its median, square by square: the median of it.
+// Returns the interquartile range of the push over its median in each square, and of these the median.
 double force_variety(const Surface& surface, const SurfaceSamples& samples, const Chosen& chosen) {
     std::vector<std::vector<double>> pushes(surface.n_x * surface.n_y);
     for (std::size_t m = 0; m < chosen.sample.size(); ++m) {
@@ -182,7 +183,7 @@ void take_normals(const Surface& surface, const SurfaceSamples& samples, double 
     }
 }
 
-// Robust least squares, with the normals of the last solution.
+// Robust least squares, repeated with the normals of the last solution.
 Fit fit_robustly(Surface surface, const SurfaceSamples& samples, Chosen chosen, double exponent, double typical_N) {
     Fit fit;
     std::vector<double> residual_m;
@@ -262,7 +263,7 @@ Surface fit_surface(const SurfaceSamples& samples, double node_m, const std::str
     for (std::size_t s = 0; s < samples.size(); s += step)
         forces_N.push_back(static_cast<double>(samples.force_N[2][s]));
     const double great_N = quantile(forces_N, 0.95);
-    constexpr double kTouching = 0.02;  // of a great force: less is no contact
+    constexpr double kTouching = 0.02;  // share of a great force below which there is no contact
     Chosen chosen;
     for (std::size_t s = 0; s < samples.size(); s += step) {
         if (static_cast<double>(samples.force_N[2][s]) > kTouching * great_N) chosen.sample.push_back(s);
