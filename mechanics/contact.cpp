@@ -237,6 +237,7 @@ void prepare(const Compliance& c, ContactWork& w) {
                 touched.row(1).maxCoeff()};
     };
     w.touch_box_m = box_m(0, c.n_touch);
+    w.highest_m = std::max(0.0, c.position_m.row(2).head(c.n_touch).maxCoeff() - c.surface_z_m);
     w.run_box_m.clear();
     for (int first = 0; first < c.n_touch; first += kRunLength)
         w.run_box_m.push_back(box_m(first, std::min(kRunLength, c.n_touch - first)));

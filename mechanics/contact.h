@@ -85,6 +85,7 @@ struct ContactWork {
     std::uint64_t revision = 0;                    // of the compliance; another one, or 0, means a cold start
     std::vector<Tool> tools;                       // with limited depths
     std::array<double, 4> touch_box_m{};           // x_min, x_max, y_min, y_max of the touch nodes
+    double highest_m = 0.0;                        // of the touch nodes, above the surface plane; 0 if all are below it
     std::vector<std::array<double, 4>> run_box_m;  // the same of each run of kRunLength touch nodes
     std::vector<int> candidate;                    // touch nodes within reach, ascending
     std::vector<int> tool_of;                      // per candidate

@@ -36,9 +36,10 @@ namespace {
 
 using Rectangle = std::array<double, 4>;  // x_min, x_max, y_min, y_max
 
-// Returns a rectangle that holds every node whose delta can exceed -margin times its tool's depth. It assumes that
-// nodes lie at the surface plane or below it, so that only nodes under the lowest (1 + margin) depth of a tool can.
-Rectangle box_of_reach(std::span<const Tool> tools, double margin) {
+// Returns a rectangle that holds every node whose delta can exceed -margin times its tool's depth. No node
+// lies more than highest_m above the surface plane, so that only nodes under the lowest (1 + margin) depth + highest_m of
+// a tool can.
+Rectangle box_of_reach(std::span<const Tool> tools, double margin, double highest_m) {
     constexpr double kRoundOff = 1.0 + 1e-9;  // widens the rectangle a little, since a node too many costs nothing
     constexpr double kFar_m = std::numeric_limits<double>::infinity();
     Rectangle box_m{kFar_m, -kFar_m, kFar_m, -kFar_m};
@@ -46,7 +47,7 @@ Rectangle box_of_reach(std::span<const Tool> tools, double margin) {
         const Pose& pose = tool.pose;
         if (!(pose.depth_m > 0.0)) continue;
         const double R = tool.indenter.radius_m;
-        const double below_axis_m = std::max(0.0, R - (1.0 + margin) * pose.depth_m);
+        const double below_axis_m = std::max(0.0, R - (1.0 + margin) * pose.depth_m - highest_m);
         const double rx = std::sqrt(kRoundOff * R * R - below_axis_m * below_axis_m);
         const bool cylinder = tool.indenter.shape == IndenterShape::cylinder;
         const double ry = cylinder ? 0.5 * kRoundOff * tool.indenter.length_m : rx;
@@ -92,7 +93,7 @@ void find_candidates(const Compliance& compliance, std::span<const Tool> tools, 
     for (auto* list : {&work.delta_m, &work.slope_x, &work.slope_y}) list->clear();
     work.candidate.clear();
     work.tool_of.clear();
-    const Rectangle within_m = box_of_reach(tools, margin);
+    const Rectangle within_m = box_of_reach(tools, margin, work.highest_m);
     for (std::size_t run = 0; run < work.run_box_m.size(); ++run) {
         if (!overlap(within_m, work.run_box_m[run])) continue;
         const int first = static_cast<int>(run) * kRunLength;

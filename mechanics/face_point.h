@@ -12,9 +12,8 @@ struct OnFace {
     double away_m = 0.0;     // distance of the point from the place
 };
 
-// corners_m: 3 x 3 or 3 x 4, in the order of Faces. Exact where the nearest point lies inside a triangle or a
-// parallelogram; on other quads as exact as twelve steps of Gauss-Newton. Where it lies on an edge, each of the two
-// coordinates on the face is clamped by itself, so that the point found may be farther away than the nearest one.
+// corners_m: 3 x 3 or 3 x 4, in the order of Faces. Exact on triangles and parallelograms, and where the nearest point
+// lies on an edge; inside other quads as exact as twelve steps of Gauss-Newton.
 OnFace nearest_on_face(const Eigen::Matrix3Xd& corners_m, const Eigen::Vector3d& place_m);
 
 // Returns the corners of a face, 3 x 3 or 3 x 4.

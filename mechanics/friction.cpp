@@ -82,6 +82,14 @@ bool sweep_until_settled(const Eigen::Vector2d& move_m, const FrictionOptions& o
     return false;
 }
 
+// Does a node carry force that lies more than this below the undeformed tool?
+bool touches_beyond(double below_m, const FrictionWork& w) {
+    for (std::size_t i = 0; i < w.contact.candidate.size(); ++i) {
+        if (w.f_N(3 * static_cast<Index>(i)) > 0.0 && w.contact.delta_m[i] < -below_m) return true;
+    }
+    return false;
+}
+
 void collect(const Compliance& c, const Pose& pose, const FrictionWork& w, FrictionState& state, Contact& out) {
     out.touch.clear();
     out.by_tool.clear();
@@ -140,12 +148,16 @@ void slide_to(const Compliance& compliance, const Tool& tool, const FrictionOpti
     contact.tool.assign(1, {});
     contact.tool[0].depth_m = pose.depth_m;
 
-    find_candidates(compliance, work.contact.tools, 0.25, work.contact);
-    gather(compliance, state, work);
     const Eigen::Vector2d move_m = state.touching
                                        ? Eigen::Vector2d(pose.x_m - state.pose.x_m, pose.y_m - state.pose.y_m)
                                        : Eigen::Vector2d(0.0, 0.0);
-    contact.flags.not_settled = !sweep_until_settled(move_m, options, work);
+    // the tissue may bulge up to the tool: the margin grows until no node in contact lies near the rim of the candidates
+    for (double margin = 0.25;; margin *= 2.0) {
+        find_candidates(compliance, work.contact.tools, margin, work.contact);
+        gather(compliance, state, work);
+        contact.flags.not_settled = !sweep_until_settled(move_m, options, work);
+        if (!touches_beyond(0.5 * margin * pose.depth_m, work) || margin > 8.0) break;
+    }
     collect(compliance, pose, work, state, contact);
     state.pose = pose;
     state.touching = !state.touch.empty();

@@ -59,10 +59,8 @@ void measure_press(const scene::State& state, double now_s, Trial& trial) {
 void observe_press(const scene::Plan& plan, const platform::Sample& sample, const scene::State& state, Trial& trial) {
     if (!state.answered) return;  // another pointer's sample, or one from the past
     const bool pressing = state.touch.down && state.touch.force_N > 0.0;
-    if (!state.touch.down) {
-        trial.pressing = false;
-        return;
-    }
+    if (!pressing) trial.pressing = false;
+    if (!state.touch.down) return;
     trial.last_px = Eigen::Vector2d(sample.x_px, sample.y_px);
     if (!pressing) return;
     const double R_m = plan.indenter_radius_m;

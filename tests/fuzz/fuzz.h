@@ -18,7 +18,13 @@
 #include "files/input_error.h"
 #include "tests/temporary_folder.h"
 
+// The entry of a target: libFuzzer's, or one by the target's name for the test that replays the corpora (replay.cpp).
+#ifdef PALPA_FUZZ
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size);
+#define PALPA_FUZZ_ENTRY(name) extern "C" int LLVMFuzzerTestOneInput
+#else
+#define PALPA_FUZZ_ENTRY(name) extern "C" int palpa_fuzz_##name
+#endif
 
 namespace palpa::fuzz {
 
@@ -44,7 +50,7 @@ inline void check_message(std::string_view message) {
     }
 }
 
-// 0, what LLVMFuzzerTestOneInput returns.
+// 0, what the entry of a target returns.
 template <class Read>
 int read_or_refuse(Read&& read) {
     try {

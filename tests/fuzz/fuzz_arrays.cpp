@@ -7,7 +7,7 @@
 using namespace palpa;
 using namespace palpa::stiffnessmaps;
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+PALPA_FUZZ_ENTRY(arrays)(const std::uint8_t* data, std::size_t size) {
     static fuzz::MemoryFile file("arrays");
     file.with(fuzz::text_of(data, size));
     return fuzz::read_or_refuse([&] {

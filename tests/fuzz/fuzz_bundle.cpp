@@ -6,7 +6,7 @@
 using namespace palpa;
 using namespace palpa::study;
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+PALPA_FUZZ_ENTRY(bundle)(const std::uint8_t* data, std::size_t size) {
     const std::string_view bytes = fuzz::text_of(data, size);
     if (kind_of_log_file(bytes) && (bytes.find("..") != std::string_view::npos || bytes.front() == '/'))
         fuzz::finding("a name that leads elsewhere");

@@ -23,7 +23,7 @@ bool is_small(const Json& json) {
 
 }  // namespace
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+PALPA_FUZZ_ENTRY(case)(const std::uint8_t* data, std::size_t size) {
     return fuzz::read_or_refuse([&] {
         const Json json = parse_json(fuzz::text_of(data, size), "case.json");
         if (!is_small(json)) return;

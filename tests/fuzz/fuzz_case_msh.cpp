@@ -7,7 +7,7 @@ using namespace palpa;
 using namespace palpa::files;
 using namespace palpa::fem;
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+PALPA_FUZZ_ENTRY(case_msh)(const std::uint8_t* data, std::size_t size) {
     static fuzz::MemoryFile file("msh");
     file.with(fuzz::text_of(data, size));
     return fuzz::read_or_refuse([&] {

@@ -8,16 +8,16 @@ using namespace palpa::study;
 
 namespace {
 
-struct Folder {
-    Folder() { folder.add("sub-01_task-softer_run-01_events.tsv", events); }
+struct ChoicesFolder {
+    ChoicesFolder() { folder.add("sub-01_task-softer_run-01_events.tsv", events); }
     fuzz::MemoryFile events{"events"};
     fuzz::MemoryFolder folder;
 };
 
 }  // namespace
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-    static Folder folder;
+PALPA_FUZZ_ENTRY(choices)(const std::uint8_t* data, std::size_t size) {
+    static ChoicesFolder folder;
     return fuzz::read_or_refuse([&] {
         folder.events.with(fuzz::text_of(data, size));
         std::vector<std::string> notes;

@@ -19,7 +19,7 @@ std::string_view target_in(std::string_view head) {
 
 }  // namespace
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+PALPA_FUZZ_ENTRY(http)(const std::uint8_t* data, std::size_t size) {
     const std::string_view head = fuzz::text_of(data, size);
     const CheckedHead checked = check_head(head);
     if (checked.refused == 0 && check_head(checked.text).refused != 0)

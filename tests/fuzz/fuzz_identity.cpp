@@ -6,6 +6,6 @@
 using namespace palpa;
 using namespace palpa::study;
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+PALPA_FUZZ_ENTRY(identity)(const std::uint8_t* data, std::size_t size) {
     return fuzz::read_or_refuse([&] { identity_in(fuzz::text_of(data, size), "study.json"); });
 }

@@ -6,7 +6,7 @@
 using namespace palpa;
 using namespace palpa::files;
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+PALPA_FUZZ_ENTRY(json)(const std::uint8_t* data, std::size_t size) {
     return fuzz::read_or_refuse([&] {
         const Json json = parse_json(fuzz::text_of(data, size), "a.json");
         described(json);

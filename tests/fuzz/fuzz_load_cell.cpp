@@ -6,7 +6,7 @@
 using namespace palpa;
 using namespace palpa::devices;
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+PALPA_FUZZ_ENTRY(load_cell)(const std::uint8_t* data, std::size_t size) {
     LineParser parser;
     SensorHealth health;
     LoadCellClock clock;

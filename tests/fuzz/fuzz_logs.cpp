@@ -18,8 +18,8 @@ constexpr std::array<const char*, 6> kNames{"study.json",
                                             "sub-01/beh/sub-01_task-palpation_run-01_settings.json",
                                             "sub-01/beh/sub-01_task-palpation_run-01_performance.json"};
 
-struct Folder {
-    Folder() {
+struct LogsFolder {
+    LogsFolder() {
         for (const char* name : kNames) folder.add(name, files.emplace_back(name));
     }
     std::deque<fuzz::MemoryFile> files;
@@ -28,8 +28,8 @@ struct Folder {
 
 }  // namespace
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-    static Folder folder;
+PALPA_FUZZ_ENTRY(logs)(const std::uint8_t* data, std::size_t size) {
+    static LogsFolder folder;
     const auto parts = fuzz::parts_of(fuzz::text_of(data, size), kNames.size());
     for (std::size_t i = 0; i < kNames.size(); ++i) folder.files[i].with(parts[i]);
     return fuzz::read_or_refuse([&] { read_study(folder.folder.path()); });

@@ -10,8 +10,8 @@ using namespace palpa::stiffnessmaps;
 
 namespace {
 
-struct Folder {
-    Folder() {
+struct MapFolder {
+    MapFolder() {
         folder.add("map.json", json);
         folder.add("normal_N.npy", normal);
     }
@@ -22,8 +22,8 @@ struct Folder {
 
 }  // namespace
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-    static Folder folder;
+PALPA_FUZZ_ENTRY(map)(const std::uint8_t* data, std::size_t size) {
+    static MapFolder folder;
     const std::string_view bytes = fuzz::text_of(data, size);
     const auto array = std::min(bytes.find("\x93NUMPY"), bytes.size());
     folder.json.with(bytes.substr(0, array));

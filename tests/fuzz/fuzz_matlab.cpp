@@ -6,7 +6,7 @@
 using namespace palpa;
 using namespace palpa::stiffnessmaps;
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+PALPA_FUZZ_ENTRY(matlab)(const std::uint8_t* data, std::size_t size) {
     static fuzz::MemoryFile file("matlab");
     return fuzz::read_or_refuse([&] { read_array(file.with(fuzz::text_of(data, size)), std::string()); });
 }

@@ -7,7 +7,7 @@ using namespace palpa;
 using namespace palpa::files;
 using namespace palpa::stiffnessmaps;
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+PALPA_FUZZ_ENTRY(matrix)(const std::uint8_t* data, std::size_t size) {
     return fuzz::read_or_refuse([&] {
         const NpyArray array = parse_number_matrix(fuzz::text_of(data, size), "a.csv");
         if (array.shape.at(0) * array.shape.at(1) != array.values.size())

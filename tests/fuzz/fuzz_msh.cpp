@@ -6,7 +6,7 @@
 using namespace palpa;
 using namespace palpa::files;
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+PALPA_FUZZ_ENTRY(msh)(const std::uint8_t* data, std::size_t size) {
     return fuzz::read_or_refuse([&] {
         const Msh msh = parse_msh(fuzz::text_of(data, size), "a.msh");
         const auto n = static_cast<int>(msh.n_nodes());

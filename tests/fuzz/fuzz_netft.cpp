@@ -9,7 +9,7 @@
 using namespace palpa;
 using namespace palpa::devices;
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+PALPA_FUZZ_ENTRY(netft)(const std::uint8_t* data, std::size_t size) {
     SensorHealth health;
     Sequence sequence;
     for (std::size_t at = 0; at < size; at += kRdtRecord_bytes) {

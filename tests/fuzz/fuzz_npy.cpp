@@ -6,7 +6,7 @@
 using namespace palpa;
 using namespace palpa::files;
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+PALPA_FUZZ_ENTRY(npy)(const std::uint8_t* data, std::size_t size) {
     return fuzz::read_or_refuse([&] {
         const NpyArray array = parse_npy(fuzz::text_of(data, size), "a.npy");
         std::size_t n = 1;

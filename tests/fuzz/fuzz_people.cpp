@@ -6,7 +6,7 @@
 using namespace palpa;
 using namespace palpa::study;
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+PALPA_FUZZ_ENTRY(people)(const std::uint8_t* data, std::size_t size) {
     return fuzz::read_or_refuse([&] {
         std::vector<std::string> notes;
         people_in(fuzz::text_of(data, size), "participants.tsv", notes);

@@ -6,7 +6,7 @@
 using namespace palpa;
 using namespace palpa::stiffnessmaps;
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+PALPA_FUZZ_ENTRY(phantom)(const std::uint8_t* data, std::size_t size) {
     static fuzz::MemoryFile file("phantom");
     return fuzz::read_or_refuse([&] { map_of_phantom(read_phantom(file.with(fuzz::text_of(data, size)))); });
 }

@@ -6,7 +6,7 @@
 using namespace palpa;
 using namespace palpa::stiffnessmaps;
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+PALPA_FUZZ_ENTRY(png)(const std::uint8_t* data, std::size_t size) {
     static fuzz::MemoryFile file("png");
     return fuzz::read_or_refuse([&] { read_png(file.with(fuzz::text_of(data, size))); });
 }

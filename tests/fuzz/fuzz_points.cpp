@@ -6,7 +6,7 @@
 using namespace palpa;
 using namespace palpa::calibration;
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+PALPA_FUZZ_ENTRY(points)(const std::uint8_t* data, std::size_t size) {
     static fuzz::MemoryFile file("points");
     return fuzz::read_or_refuse([&] {
         const CalibrationRows rows = read_points(file.with(fuzz::text_of(data, size)), {});

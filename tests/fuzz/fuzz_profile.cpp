@@ -7,7 +7,7 @@ using namespace palpa;
 using namespace palpa::files;
 using namespace palpa::calibration;
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+PALPA_FUZZ_ENTRY(profile)(const std::uint8_t* data, std::size_t size) {
     static fuzz::MemoryFile file("profile");
     return fuzz::read_or_refuse([&] {
         const Profile profile = read_profile(file.with(fuzz::text_of(data, size)));

@@ -6,7 +6,7 @@
 using namespace palpa;
 using namespace palpa::study;
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+PALPA_FUZZ_ENTRY(protocol)(const std::uint8_t* data, std::size_t size) {
     static fuzz::MemoryFile file("protocol");
     return fuzz::read_or_refuse([&] { plan_participant(read_protocol(file.with(fuzz::text_of(data, size))), 1); });
 }

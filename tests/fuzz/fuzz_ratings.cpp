@@ -8,16 +8,16 @@ using namespace palpa::study;
 
 namespace {
 
-struct Folder {
-    Folder() { folder.add("sub-01/beh/sub-01_task-ratings_beh.tsv", answers); }
+struct RatingsFolder {
+    RatingsFolder() { folder.add("sub-01/beh/sub-01_task-ratings_beh.tsv", answers); }
     fuzz::MemoryFile answers{"answers"};
     fuzz::MemoryFolder folder;
 };
 
 }  // namespace
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-    static Folder folder;
+PALPA_FUZZ_ENTRY(ratings)(const std::uint8_t* data, std::size_t size) {
+    static RatingsFolder folder;
     return fuzz::read_or_refuse([&] {
         folder.answers.with(fuzz::text_of(data, size));
         std::vector<std::string> notes;

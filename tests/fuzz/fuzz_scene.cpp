@@ -6,7 +6,7 @@
 using namespace palpa;
 using namespace palpa::scene;
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+PALPA_FUZZ_ENTRY(scene)(const std::uint8_t* data, std::size_t size) {
     static fuzz::MemoryFile file("scene");
     return fuzz::read_or_refuse([&] { path_of(read_scene(file.with(fuzz::text_of(data, size)), "assets")); });
 }

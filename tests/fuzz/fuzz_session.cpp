@@ -6,7 +6,7 @@
 using namespace palpa;
 using namespace palpa::calibration;
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+PALPA_FUZZ_ENTRY(session)(const std::uint8_t* data, std::size_t size) {
     static fuzz::MemoryFile file("session");
     return fuzz::read_or_refuse([&] { rows_of(read_session(file.with(fuzz::text_of(data, size)))); });
 }

@@ -6,7 +6,7 @@
 using namespace palpa;
 using namespace palpa::desk;
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+PALPA_FUZZ_ENTRY(sessions)(const std::uint8_t* data, std::size_t size) {
     static fuzz::MemoryFile file("sessions");
     std::string trouble;
     const Sessions sessions(file.with(fuzz::text_of(data, size)), {}, trouble);

@@ -6,7 +6,7 @@
 using namespace palpa;
 using namespace palpa::app;
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+PALPA_FUZZ_ENTRY(settings)(const std::uint8_t* data, std::size_t size) {
     static fuzz::MemoryFile file("settings");
     std::string problem;
     load_settings(file.with(fuzz::text_of(data, size)), problem);

@@ -6,7 +6,7 @@
 using namespace palpa;
 using namespace palpa::stiffnessmaps;
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+PALPA_FUZZ_ENTRY(sliding)(const std::uint8_t* data, std::size_t size) {
     static fuzz::MemoryFile file("sliding");
     return fuzz::read_or_refuse([&] {
         ImportOptions options;

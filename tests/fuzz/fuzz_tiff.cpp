@@ -6,7 +6,7 @@
 using namespace palpa;
 using namespace palpa::stiffnessmaps;
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+PALPA_FUZZ_ENTRY(tiff)(const std::uint8_t* data, std::size_t size) {
     static fuzz::MemoryFile file("tiff");
     return fuzz::read_or_refuse([&] { read_tiff(file.with(fuzz::text_of(data, size))); });
 }

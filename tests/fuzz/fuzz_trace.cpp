@@ -8,8 +8,8 @@ using namespace palpa::platform;
 
 namespace {
 
-struct Folder {
-    Folder() {
+struct TraceFolder {
+    TraceFolder() {
         folder.add("trace.tsv", table);
         folder.add("trace.json", sidecar);
     }
@@ -20,8 +20,8 @@ struct Folder {
 
 }  // namespace
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-    static Folder folder;
+PALPA_FUZZ_ENTRY(trace)(const std::uint8_t* data, std::size_t size) {
+    static TraceFolder folder;
     const auto parts = fuzz::parts_of(fuzz::text_of(data, size), 2);
     folder.table.with(parts[0]);
     folder.sidecar.with(parts[1]);

@@ -7,7 +7,7 @@
 #include "files/text.h"
 #include "tests/fuzz/fuzz.h"
 
-// Each target is compiled with its entry under another name, palpa_fuzz_NAME (CMakeLists.txt, which lists them too).
+// The targets' entries (tests/fuzz/fuzz.h); CMakeLists.txt lists them.
 #define TARGET(name) extern "C" int palpa_fuzz_##name(const std::uint8_t* data, std::size_t size);
 #include "fuzz_targets.inc"
 #undef TARGET

@@ -398,6 +398,19 @@ TEST_CASE("contact: a roller, and a thin incompressible layer that bulges up to 
     CHECK(widest > std::sqrt(2.0 * 0.05 * 0.0004) * 1.05);  // beyond where the undeformed ball would cut the plane
 }
 
+TEST_CASE("contact: a surface that other loads have raised is met over its whole width") {
+    const Compliance& flat = slab(false);
+    Compliance raised = flat;
+    raised.revision = flat.revision + 1000;
+    raised.position_m.row(2).array() += 0.001;
+    const Tool shallow{kBall, {0.0502, 0.0499, 0.0001}};
+    const Tool deep{kBall, {0.0502, 0.0499, 0.0011}};
+    const Contact on_raised = press(raised, shallow);
+    const Contact on_flat = press(flat, deep);
+    CHECK(on_raised.touch == on_flat.touch);
+    CHECK(on_raised.tool[0].normal_N == doctest::Approx(on_flat.tool[0].normal_N).epsilon(1e-9));
+}
+
 TEST_CASE("contact: nothing is allocated after the first calls") {
     ContactWork work = make_contact_work(slab(true), 150);
     Contact contact;

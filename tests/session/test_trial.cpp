@@ -113,6 +113,18 @@ TEST_CASE("trial: pressed well but not marked is told apart from pressed too lig
     CHECK(debrief(*person.session.plan, person.session.trial).findings[1] == Finding::not_marked);
 }
 
+TEST_CASE("trial: a pen that lies on the screen without pressure does not press") {
+    Person person;
+    person.sample(Phase::down, 40.0, 40.0, 0.5);
+    for (int i = 0; i < 20; ++i) person.sample(Phase::move, 40.0, 40.0, 0.5);
+    const double pressed_s = person.session.trial.pressed_s;
+    CHECK(pressed_s == doctest::Approx(0.2));
+    for (int i = 0; i < 100; ++i) person.sample(Phase::move, 40.0, 40.0, 0.0);
+    CHECK(person.session.trial.pressed_s == pressed_s);
+    for (int i = 0; i < 11; ++i) person.sample(Phase::move, 40.0, 40.0, 0.5);
+    CHECK(person.session.trial.pressed_s == doctest::Approx(0.3));
+}
+
 TEST_CASE("trial: a very long path is thinned, not cut") {
     Person person;
     for (int i = 0; i < 400; ++i) {
