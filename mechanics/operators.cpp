@@ -49,7 +49,7 @@ void solve_loads(const Factored& factored, const std::vector<NodeSum>& loads, in
     Eigen::MatrixXd columns;
     for (int first = 0; first < total; first += block) {
         if (progress.cancel != nullptr && progress.cancel->load())
-            throw Cancelled(text("compliance: stopped after ", first, " of ", total, " columns"));
+            throw Cancelled(text("operators: stopped after ", first, " of ", total, " columns"));
         const int n = std::min(block, total - first);
         columns.setZero(factored.reduction.equations, n);
         for (int k = 0; k < n; ++k) {

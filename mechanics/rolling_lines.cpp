@@ -21,8 +21,8 @@ GridLines layer_lines(const RollingModel& model, const std::array<double, 2>& sp
                       const std::array<int, 2>& uniform, VectorXd z_m) {
     const double far_m =
         kFarOut * model.size_m[2] + std::max(uniform[0], uniform[1]) * std::max(spacing_m[0], spacing_m[1]);
-    return {outward_coordinates_m(spacing_m[0], uniform[0], 1.3, far_m),
-            outward_coordinates_m(spacing_m[1], uniform[1], 1.3, far_m), std::move(z_m)};
+    return {outward_coordinates_m(spacing_m[0], uniform[0], kWindowGrowth, far_m),
+            outward_coordinates_m(spacing_m[1], uniform[1], kWindowGrowth, far_m), std::move(z_m)};
 }
 
 // Returns lines along one axis that are fine over every inclusion of the group. centre_m(sphere): the sphere's centre

@@ -147,7 +147,7 @@ inline constexpr const char* kThisScreen =
 inline constexpr const char* kPoints = "Points";
 inline constexpr const char* kPress = "Press";
 inline constexpr const char* kMakeProfile = "Make the profile";
-inline constexpr const char* kStopRecording = "Stop (can be gone on with)";
+inline constexpr const char* kStopRecording = "Stop (can be continued)";
 inline constexpr const char* kForceOverPressure = "Force over pressure; tinted: press here next";
 inline constexpr const char* kResiduals = "What is left without the curve, share of the force";
 inline constexpr const char* kHoldStill = "Hold the pen still, type what the scale shows, then take it.";
@@ -230,9 +230,9 @@ inline constexpr const char* kDoneWith = "This trial is done with the {}.";
 // the question before marks are thrown away
 inline constexpr const char* kLoseMarks = "End this trial?";
 inline constexpr const char* kLoseMark =
-    "1 mark stands on the tissue and nothing is scored yet. This trial cannot be gone on with.";
+    "1 mark stands on the tissue and nothing is scored yet. This trial cannot be continued.";
 inline constexpr const char* kLoseManyMarks =
-    "{} marks stand on the tissue and nothing is scored yet. This trial cannot be gone on with.";
+    "{} marks stand on the tissue and nothing is scored yet. This trial cannot be continued.";
 inline constexpr const char* kGoOnWithTrial = "Go on with the trial";
 inline constexpr const char* kEndTrial = "End it";
 

@@ -101,7 +101,7 @@ TEST_CASE("Hertz: within 3 % at contact radius / spacing > 4, on a block that is
     }
 }
 
-TEST_CASE("contact force on the 50 mm slab lies in the band of numerics.md 1.2") {
+TEST_CASE("contact force on the 50 mm slab lies within 9 % of Hertz") {
     // +-9 % scatter of coarse meshes about Hertz's half-space value, a few per cent above it with depth
     for (const double depth : {0.0005, 0.001, 0.002}) {
         CAPTURE(depth);

@@ -7,7 +7,7 @@
 
 using namespace palpa::mechanics;
 
-TEST_CASE("bonded layer and half-space: the numbers of numerics.md 1.4, to their last digit") {
+TEST_CASE("bonded layer and half-space: the reference numbers to their last digit") {
     const double rows[5][5] = {{0.30, 0.88608, 0.67017, 0.96554, 0.74933},
                                {0.45, 0.76401, 0.57488, 0.84617, 0.65669},
                                {0.49, 0.72261, 0.54243, 0.80628, 0.62573},

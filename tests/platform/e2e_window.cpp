@@ -1,5 +1,4 @@
 // The window with real events: a pen, fingers and a mouse of an X server (run it under with-xorg).
-#define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
 #include <SDL.h>
 #include <cmath>
 #include <doctest/doctest.h>
