@@ -85,8 +85,7 @@ TEST_CASE("hard case 15: B-bar does not lock, its error at 0.4999 is within 1 % 
     CHECK(error(Element::tet4, 0.4999) < -0.5);
 }
 
-TEST_CASE(
-    "work-precision table: errors of 2,890 graded nodes, B-bar's the same up to poisson 0.4999") {
+TEST_CASE("work-precision table: errors of 2,890 graded nodes, B-bar's the same up to poisson 0.4999") {
     // 100 x 100 x 50 mm, d0 16 mm, 16 x 16 x 9 cells of which a quarter is computed, 2.5 mm at the load; mean
     // depression relative to the Richardson limit of B-bar from meshes of 1.25 and 2.5 mm. The table's own grading is
     // not written down: each error is within about a tenth of its size, B-bar's within 0.2 %.
