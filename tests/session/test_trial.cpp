@@ -113,6 +113,31 @@ TEST_CASE("trial: pressed well but not marked is told apart from pressed too lig
     CHECK(debrief(*person.session.plan, person.session.trial).findings[1] == Finding::not_marked);
 }
 
+TEST_CASE("trial: a window that changes its size after a press leaves the place of the next mark on the tissue") {
+    Person person;
+    SUBCASE("tissue under the pen") {}
+    SUBCASE("a pad beside the tissue") {
+        Scene pad = person.session.scene;
+        pad.mapping.kind = MappingKind::indirect;
+        change_tissue(pad, person.session.plan, {1280, 800}, person.session);
+        begin_trial({}, person.info, TrialMode::test, person.session);
+    }
+    person.stroke(40.0, 30.0, 0.5);
+    const auto place = [&] { return tissue_of_px(person.session.state.view, *person.session.trial.last_px); };
+    const Eigen::Vector2d pressed_m = place();
+    Sample resize;
+    resize.t_host_s = person.t_s += 0.01;
+    resize.phase = Phase::ui;
+    resize.action = Action::resize;
+    resize.x_px = 300.0;
+    resize.y_px = 0.0;
+    resize.width_px = 500.0;
+    resize.height_px = 420.0;
+    take_sample(resize, person.session);
+    CHECK((place() - pressed_m).norm() < 1e-9);
+    CHECK(on_tissue(person.session.state.view, place()));
+}
+
 TEST_CASE("trial: a very long path is thinned, not cut") {
     Person person;
     for (int i = 0; i < 400; ++i) {
