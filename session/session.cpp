@@ -264,9 +264,9 @@ bool files_good(const Session& session) {
 
 void note_event(std::string_view trial_type, double now_s, Session& session) {
     if (!session.trial_log) return;
+    if (session.trial.began) session.trial.now_s = std::max(session.trial.now_s, now_s);  // what follows is not before
     study::EventRow row = event_row(session, platform::Action::none);
     row.trial_type = trial_type;
-    if (session.trial.began) row.onset_s = std::max(row.onset_s, now_s - session.trial.began_s);
     session.trial_log->write(row);
 }
 

@@ -216,6 +216,11 @@ TEST_CASE("session: a trial that is broken off keeps its marks with their places
     CHECK(events.find("\tdevice_gone\t") != std::string::npos);
     CHECK(events.find("\tinterrupted\t") != std::string::npos);
     CHECK(events.find("\tfinish\t") == std::string::npos);
+    const auto onset_s = [&](const char* type) {
+        return std::stod(events.substr(events.rfind('\n', events.find(type)) + 1));
+    };
+    CHECK(onset_s("\tdevice_gone\t") > 1e8);
+    CHECK(onset_s("\tinterrupted\t") == onset_s("\tdevice_gone\t"));  // never before what came before it
     const Observations seen = read_study(folder / "log");
     CHECK(seen.interrupted_trials == 1);
     CHECK(seen.trials.empty());
