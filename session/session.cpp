@@ -182,6 +182,14 @@ void open_files(const SessionFiles& files, const platform::TraceInfo& info, Sess
     }
 }
 
+// Where the tissue was last pressed stays there, also where the window draws the tissue elsewhere since.
+void keep_last_place(const scene::View& before, const scene::View& now, Trial& trial) {
+    const bool same = before.centre_px == now.centre_px && before.input_px_per_m == now.input_px_per_m;
+    if (same || !trial.last_px) return;
+    const Eigen::Vector2d p_m = scene::tissue_of_px(before, *trial.last_px);
+    trial.last_px = now.centre_px + now.input_px_per_m.cwiseProduct(now.axes * (p_m - now.area.centre_m));
+}
+
 }  // namespace
 
 scene::ScreenArea screen_of(const platform::TraceInfo& info) {
@@ -217,7 +225,9 @@ void begin_trial(const SessionFiles& files, const platform::TraceInfo& info, Tri
 void take_sample(const platform::Sample& sample, Session& session) {
     if (session.trial.finished) return;
     if (session.record) session.record->write(sample);
+    const scene::View before = session.state.view;
     scene::advance(session.scene, *session.plan, sample, session.state);
+    keep_last_place(before, session.state.view, session.trial);
     const std::size_t marks_before = session.trial.marks.size();
     observe(*session.plan, sample, session.state, session.trial);
     if (session.log) {
@@ -255,9 +265,9 @@ bool files_good(const Session& session) {
 
 void note_event(std::string_view trial_type, double now_s, Session& session) {
     if (!session.trial_log) return;
+    if (session.trial.began) session.trial.now_s = std::max(session.trial.now_s, now_s);  // what follows is not before
     study::EventRow row = event_row(session, platform::Action::none);
     row.trial_type = trial_type;
-    if (session.trial.began) row.onset_s = std::max(row.onset_s, now_s - session.trial.began_s);
     session.trial_log->write(row);
 }
 

@@ -23,6 +23,11 @@ std::string device_names(const platform::Window& window) {
     return names.empty() ? "mouse" : names;
 }
 
+bool is_of_last_mark(platform::Action action) {
+    return action == platform::Action::undo ||
+           (action >= platform::Action::confidence_1 && action <= platform::Action::confidence_5);
+}
+
 void close_or_tell(App& app) {
     const std::string why = close_trial(app);
     if (!why.empty()) app.notices.problems.push_back(why);
@@ -189,6 +194,7 @@ void act(platform::Action action, platform::Window& window, App& app) {
     sample.t_host_s = now_of(app, window);
     sample.phase = platform::Phase::ui;
     sample.action = action;
+    if (is_of_last_mark(action) && app.session.trial.marks.empty()) return;
     if (action == platform::Action::mark) {
         if (!app.session.trial.last_px) return;
         sample.x_px = app.session.trial.last_px->x();

@@ -125,6 +125,31 @@ TEST_CASE("trial: a pen that lies on the screen without pressure does not press"
     CHECK(person.session.trial.pressed_s == doctest::Approx(0.3));
 }
 
+TEST_CASE("trial: a window that changes its size after a press leaves the place of the next mark on the tissue") {
+    Person person;
+    SUBCASE("tissue under the pen") {}
+    SUBCASE("a pad beside the tissue") {
+        Scene pad = person.session.scene;
+        pad.mapping.kind = MappingKind::indirect;
+        change_tissue(pad, person.session.plan, {1280, 800}, person.session);
+        begin_trial({}, person.info, TrialMode::test, person.session);
+    }
+    person.stroke(40.0, 30.0, 0.5);
+    const auto place = [&] { return tissue_of_px(person.session.state.view, *person.session.trial.last_px); };
+    const Eigen::Vector2d pressed_m = place();
+    Sample resize;
+    resize.t_host_s = person.t_s += 0.01;
+    resize.phase = Phase::ui;
+    resize.action = Action::resize;
+    resize.x_px = 300.0;
+    resize.y_px = 0.0;
+    resize.width_px = 500.0;
+    resize.height_px = 420.0;
+    take_sample(resize, person.session);
+    CHECK((place() - pressed_m).norm() < 1e-9);
+    CHECK(on_tissue(person.session.state.view, place()));
+}
+
 TEST_CASE("trial: a very long path is thinned, not cut") {
     Person person;
     for (int i = 0; i < 400; ++i) {
@@ -203,6 +228,11 @@ TEST_CASE("session: a trial that is broken off keeps its marks with their places
     CHECK(events.find("\tdevice_gone\t") != std::string::npos);
     CHECK(events.find("\tinterrupted\t") != std::string::npos);
     CHECK(events.find("\tfinish\t") == std::string::npos);
+    const auto onset_s = [&](const char* type) {
+        return std::stod(events.substr(events.rfind('\n', events.find(type)) + 1));
+    };
+    CHECK(onset_s("\tdevice_gone\t") > 1e8);
+    CHECK(onset_s("\tinterrupted\t") == onset_s("\tdevice_gone\t"));  // never before what came before it
     const Observations seen = read_study(folder / "log");
     CHECK(seen.interrupted_trials == 1);
     CHECK(seen.trials.empty());

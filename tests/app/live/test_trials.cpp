@@ -108,6 +108,24 @@ TEST_CASE("live: the press that a trial ends with does not begin the next one") 
     CHECK(desk.app.session.state.pointer.has_value());
 }
 
+TEST_CASE("live: nothing is taken back and nothing is said of a mark while there is none") {
+    Desk desk("");
+    const auto samples = [&] { return desk.app.session.state.counters.samples; };
+    const auto before = samples();
+    act(Action::undo, desk.window, desk.app);
+    act(Action::confidence_3, desk.window, desk.app);
+    act(Action::mark, desk.window, desk.app);
+    CHECK(samples() == before);  // no row, no event
+    desk.sample(Phase::down);
+    desk.sample(Phase::move);
+    act(Action::mark, desk.window, desk.app);
+    act(Action::confidence_3, desk.window, desk.app);
+    REQUIRE(desk.app.session.trial.marks.size() == 1);
+    CHECK(desk.app.session.trial.marks[0].confidence == 3);
+    act(Action::undo, desk.window, desk.app);
+    CHECK(desk.app.session.trial.marks.empty());
+}
+
 TEST_CASE("live: a scene that cannot be read leaves the present one") {
     Desk desk("");
     const std::string name = desk.app.session.scene.name;
