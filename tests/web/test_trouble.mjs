@@ -1,10 +1,10 @@
-// What goes wrong on a tablet: desks that are silent or refuse, a storage that is full or closed, addresses that
+// What goes wrong on a tablet: desks that are silent or refuse, a storage that is full or closed, addresses and keys that
 // nobody meant. No trial is lost by it, and the app does not wait for ever.
 
 import assert from 'node:assert/strict';
 import fs from 'node:fs';
 import test from 'node:test';
-import {frames, report, withPage} from './browser.mjs';
+import {frames, report, rows, withPage} from './browser.mjs';
 import {finishTrial, pairByDialog, stored, until} from './trials.mjs';
 
 const soon = (page) => page.waitForFunction(() => document.getElementById('message').hidden, null, {timeout: 20000});
@@ -111,4 +111,22 @@ test('an address whose participant is no code is told; one with an empty protoco
         assert.equal(await tellsOf(page, `the participant '${odd}', expected`), odd !== null, query);
         assert.match((await page.evaluate(() => FS.readdir('/logs').join())), /sub-tablet[0-9a-f]{8}/);
     }
+}));
+
+test('keys belong to the dialog that is open, wherever in it somebody has clicked; a key that is let go there ends its press', () => withPage({}, async (browser) => {
+    const {page} = browser;
+    await page.evaluate(() => palpaTrials.open());
+    await page.click('#trials-state');
+    await page.keyboard.press('f');
+    await frames(page, 3);
+    assert.ok(!(await rows(page, 1, 'events')).some((row) => row.trial_type === 'finish'));
+    await page.click('#close-trials');
+    await page.keyboard.down('Space');
+    await page.waitForTimeout(300);
+    await page.evaluate(() => palpaTrials.open());
+    await page.keyboard.up('Space');
+    await frames(page, 3);
+    const phases = (await rows(page)).map((row) => row.phase);
+    assert.ok(phases.includes('down'));
+    assert.match(phases.filter((phase) => phase !== 'hover').at(-1), /up|cancel/);
 }));
