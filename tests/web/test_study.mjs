@@ -63,6 +63,11 @@ const answerQuestions = async (browser) => {
     const {page} = browser;
     await at(page, 'questions');
     await tap(browser, 200, 178);
+    await page.keyboard.type('33/');
+    await frames(page, 4);
+    for (let i = 0; i < 2; ++i) await key(page, 'Enter');
+    assert.equal((await report(page)).study.step, 'questions'); // that is no number
+    await tap(browser, 200, 178);
     await page.keyboard.type('33');
     await frames(page, 4);
     await tap(browser, 260, 308);
