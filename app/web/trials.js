@@ -146,8 +146,9 @@ const palpaTrials = (() => {
         await askDesk();
         await pairByAddress();
         window.addEventListener('hashchange', pairByAddress);
-        setInterval(() => { saveAgain(); send(); }, kAgain_ms);
-        window.addEventListener('online', send);
+        const again = async () => { saveAgain(); if (!maySend() && toSend().length > 0) await askDesk(); send(); };
+        setInterval(again, kAgain_ms);
+        window.addEventListener('online', again);
         send();
     };
 

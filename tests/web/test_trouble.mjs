@@ -29,6 +29,19 @@ test('a desk that answers nothing holds up the start for seconds only', () => wi
     await soon(page);
 }));
 
+test('a desk without a code that was away at the start gets the trials when it is back', () => withPage({quiet: true}, async (browser, desk) => {
+    const {page} = browser;
+    desk.pairing = false;
+    desk.silent = true;
+    await page.reload();
+    await soon(page);
+    await finishTrial(browser);
+    await until('stored', async () => (await stored(page)).some(({finished}) => finished));
+    desk.silent = false;
+    await page.evaluate(() => window.dispatchEvent(new Event('online')));
+    await until('at the desk', async () => (await stored(page)).some(({finished, sent}) => finished && sent));
+}));
+
 test('a browser that asks whether the page may stay, and gets no answer, starts all the same', () => withPage({quiet: true}, async ({page}) => {
     await page.addInitScript(() => { StorageManager.prototype.persist = () => new Promise(() => {}); });
     await page.reload();
