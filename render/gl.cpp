@@ -100,6 +100,8 @@ bool AreaCopy::take(int width_px, int height_px) {
 }
 
 void AreaCopy::put() const {
+    // a browser clears what it has shown at the next call that draws, for which Chromium does not take a blit
+    clear_screen(width_px_, height_px_);
     glBindFramebuffer(GL_READ_FRAMEBUFFER, framebuffer_);
     glBlitFramebuffer(0, 0, width_px_, height_px_, 0, 0, width_px_, height_px_, GL_COLOR_BUFFER_BIT, GL_NEAREST);
     glBindFramebuffer(GL_READ_FRAMEBUFFER, 0);

@@ -380,8 +380,8 @@ void draw_map_curves(const MapBrowser& browser, const std::optional<Eigen::Vecto
         line_y += text_px + 0.4f * mm;
     }
     if (curves.empty()) {
-        const char* hint = words::kPointAtMap;
-        draw.AddText(ImVec2(low.x + 2.0f * mm, line_y), kPale, hint);
+        const ImVec2 at(low.x + 2.0f * mm, line_y);
+        draw.AddText(ImGui::GetFont(), ImGui::GetFontSize(), at, kPale, words::kPointAtMap, nullptr, high.x - at.x);
     }
     ImGui::Dummy(size_px);
 }

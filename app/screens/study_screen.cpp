@@ -9,6 +9,7 @@
 #include "app/screens/widgets.h"
 #include "app/screens/words.h"
 #include "app/study/study_run.h"
+#include "files/text.h"
 
 namespace palpa::app {
 namespace {
@@ -146,11 +147,12 @@ void draw_item(const study::Item& item, Gui& gui, std::string& answer) {
     if (text_field("##text", text, sizeof text, flags, gui)) answer = text;
 }
 
-// True if the answer is empty or a number in the item's range.
+// True if the answer is empty or a number in the range of the item. The field takes all signs of arithmetic, but "33/" and
+// "30-40" are no numbers.
 bool acceptable(const study::Item& item, const std::string& answer) {
     if (answer.empty() || !item.from) return true;
     double value = 0.0;
-    return std::sscanf(answer.c_str(), "%lf", &value) == 1 && value >= *item.from && value <= *item.to;
+    return files::parse_number(answer, value) && value >= *item.from && value <= *item.to;
 }
 
 void draw_items(const StudyRun& run, Gui& gui, std::vector<std::string>& answers, Wishes& wishes) {

@@ -336,6 +336,11 @@ inline constexpr const char* pageCannotKeep = "Trials cannot be kept in this bro
 inline constexpr const char* pageTakesNoLogs = "This desk takes no logs (it was started without --collect).";
 inline constexpr const char* pageNotKept =
     "Trial {} is not kept: {}. Menu, Trials, Export saves it to a file; the next trial waits for that.";
+inline constexpr const char* pageCannotRead =
+    "The trials that were kept before cannot be read ({}): the exported file is without them.";
+inline constexpr const char* pageOddParticipant =
+    "The page's address names the participant '{}', expected 1 to 64 letters and digits: trials are kept as those of "
+    "{}.";
 inline constexpr const char* pageStorageFull = "the storage of this browser is full";
 inline constexpr const char* pagePartNotKept =
     "While it is going on this trial is not kept ({}); it will be tried at its end.";

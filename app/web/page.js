@@ -121,6 +121,7 @@ const palpaPage = (() => {
         if (script) fail(palpaWords.notLoaded);
         else if (event.message) fail(event.message);
     }, true);
+    window.addEventListener('unhandledrejection', (event) => palpaTrials.tell(String(event.reason && event.reason.message || event.reason)));
     if ('serviceWorker' in navigator) {
         navigator.serviceWorker.register('service_worker.js').catch(() => {}); // then it needs the desk at every start
     }

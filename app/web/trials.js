@@ -6,10 +6,13 @@
 const palpaTrials = (() => {
     const kStores = {trials: 'name', study: 'path', parts: ['name', 'path', 'offset'], files: 'path'}; // and their keys
     const kAgain_ms = 15000;
-    const kWait_ms = 3000;
+    const kWait_ms = 3000;   // for another tab, and for a desk at the start
+    const kPair_ms = 10000;
+    const kSend_ms = 120000; // for an upload
+    const kOfOneTrial = [400, 411, 413, 415, 422]; // answers that tell nothing about other trials
     const trials = new Map(); // by name, without texts
     const problems = [];
-    const unsaved = new Map(); // what the storage would not take, by name: {trial, files}
+    const unsaved = new Map(); // what the storage would not take, by name: {trial, files}; tried again, also once exported
     const restoring = new Set(); // parts of an earlier page that are not a trial yet
     let studyFiles = [];         // of earlier pages
     let parts = [];
@@ -55,11 +58,12 @@ const palpaTrials = (() => {
     };
     const asked_for = (key) => new URLSearchParams(location.search).get(key);
     const protocol = () => asked_for('protocol') === null ? '' : asked_for('protocol').replace(/\.json$/, '');
+    const kPlain = /^[0-9A-Za-z]{1,64}$/;
     // Who palpates: ?participant=07 in the address, kept; else the tablet itself.
     const participant = () => {
         const asked = asked_for('participant');
-        if (asked_for('protocol') !== null) return asked === null ? '' : asked.slice(0, 64); // a study asks for nobody by itself
-        if (asked !== null && /^[0-9A-Za-z]{1,64}$/.test(asked)) remember('palpa-participant', asked);
+        if (protocol() !== '') return asked === null ? '' : asked.slice(0, 64); // a study asks for nobody by itself
+        if (asked !== null && kPlain.test(asked)) remember('palpa-participant', asked);
         return recall('palpa-participant') || `tablet${tabletName()}`;
     };
     // Names of runs are never given twice, whatever became of their trials.
@@ -126,29 +130,38 @@ const palpaTrials = (() => {
         if (!await isAlone()) throw new Error(palpaWords.secondTab);
         try {
             database = await open();
-            database.onclose = () => tell(palpaWords.storageClosed);
+            database.onclose = () => { database = null; tell(palpaWords.storageClosed); };
             for (const trial of await request('readonly', (store) => store.getAll())) note(trial);
             studyFiles = await request('readonly', (store) => store.getAll(), ['study']);
             parts = await request('readonly', (store) => store.getAll(), ['parts']);
             for (const part of parts) restoring.add(part.name);
             findMissing();
             noteNames();
-            if (navigator.storage && navigator.storage.persist) persistent = await navigator.storage.persist();
         } catch (error) {
             tell(palpaFilled(palpaWords.cannotKeep, error.message));
         }
+        askToStay();
+        const odd = asked_for('participant');
+        if (protocol() === '' && odd !== null && !kPlain.test(odd)) tell(palpaFilled(palpaWords.oddParticipant, odd, participant()));
         await askDesk();
         await pairByAddress();
         window.addEventListener('hashchange', pairByAddress);
-        setInterval(() => { saveAgain(); send(); }, kAgain_ms);
-        window.addEventListener('online', send);
+        const again = async () => { saveAgain(); if (!maySend() && toSend().length > 0) await askDesk(); send(); };
+        setInterval(again, kAgain_ms);
+        window.addEventListener('online', again);
         send();
     };
 
-    // Some desks take logs from everybody, some from nobody.
+    // Some browsers ask the person, who may never answer.
+    const askToStay = async () => {
+        persistent = await navigator.storage?.persist?.().catch(() => false) ?? false;
+        changed();
+    };
+
+    // Some desks take logs from everybody, some from nobody. One that does not answer delays the start no longer.
     const askDesk = async () => {
         try {
-            const answer = await fetch('api/health');
+            const answer = await fetch('api/health', {signal: AbortSignal.timeout(kWait_ms)});
             if (!answer.ok || !(answer.headers.get('Content-Type') || '').includes('json')) return;
             const {pairing, collects} = await answer.json();
             open_to_all = pairing === false && collects === true;
@@ -233,15 +246,15 @@ const palpaTrials = (() => {
         return broken.join('\n');
     };
 
-    const read = (name) => request('readonly', (store) => store.get(name));
-
+    // False: the desk takes no others either, for now.
     const sendOne = async (name) => {
-        const trial = await read(name);
+        const trial = await request('readonly', (store) => store.get(name));
         if (!trial || trial.sent) return true;
         const answer = await fetch(`api/logs/${encodeURIComponent(name)}`, {
             method: 'PUT',
             headers: {'Content-Type': 'application/json', 'X-Content-SHA256': trial.sha256, ...credentials()},
             body: trial.text,
+            signal: AbortSignal.timeout(kSend_ms),
         });
         if (answer.status === 401 || answer.status === 403) {
             remember('palpa-token', null);
@@ -251,13 +264,12 @@ const palpaTrials = (() => {
         const confirmed = answer.ok ? (await answer.json()).sha256 : '';
         if (confirmed !== trial.sha256) {
             lastWord = answer.ok ? palpaFilled(palpaWords.otherBytes, name) : palpaFilled(palpaWords.answered, answer.status, name);
-            return false;
+            return kOfOneTrial.includes(answer.status);
         }
         // the desk has it: from here on only its name is kept
         await request('readwrite', (store) => store.put({...trial, text: '', sent: true}));
         note({...trial, sent: true});
         noteNames();
-        lastWord = '';
         return true;
     };
 
@@ -268,6 +280,7 @@ const palpaTrials = (() => {
     const send = async () => {
         if (sending || !maySend()) return;
         sending = true;
+        if (toSend().length > 0) lastWord = '';
         try {
             for (const {name} of toSend()) {
                 if (!await sendOne(name)) break;
@@ -282,7 +295,8 @@ const palpaTrials = (() => {
 
     const pair = async (code) => {
         try {
-            const answer = await fetch('api/pair', {method: 'POST', headers: {'Content-Type': 'application/json'}, body: JSON.stringify({code})});
+            const answer = await fetch('api/pair', {method: 'POST', headers: {'Content-Type': 'application/json'}, body: JSON.stringify({code}),
+                                                    signal: AbortSignal.timeout(kPair_ms)});
             const token = answer.ok ? (await answer.json()).token : '';
             if (token) remember('palpa-token', token);
             lastWord = token ? palpaWords.paired : palpaFilled(palpaWords.wrongCode, answer.status);
@@ -311,7 +325,10 @@ const palpaTrials = (() => {
 
     // All that the desk does not have, in one file; also what the storage would not take. Studies never share one.
     const exportAll = async () => {
-        const kept = database === null ? [] : (await request('readonly', (store) => store.getAll())).filter((t) => !t.sent);
+        const kept = trials.size === 0 ? [] : (await request('readonly', (store) => store.getAll()).catch((error) => {
+            tell(palpaFilled(palpaWords.cannotRead, error.message));
+            return [];
+        })).filter((t) => !t.sent);
         const all = [...kept.filter((t) => !unsaved.has(t.name)), ...[...unsaved.values()].map(({trial}) => trial)].filter(isOver);
         const studies = new Map(); // by study.json: its name, and its files
         for (const trial of all) {
@@ -325,11 +342,11 @@ const palpaTrials = (() => {
         for (const {title, files} of studies.values()) {
             download(`palpa-trials${title}-${tabletName()}-${day}.json`, JSON.stringify({palpa_bundle: 1, files: [...files.values()]}, null, 1) + '\n');
         }
+        for (const {trial} of unsaved.values()) trial.exported = true;
         for (const trial of kept.filter(isOver)) {
-            await request('readwrite', (store) => store.put({...trial, exported: true}));
             note({...trial, exported: true});
+            await request('readwrite', (store) => store.put({...trial, exported: true})).catch(() => {}); // full: known until the page is left
         }
-        unsaved.clear();
         changed();
     };
 
@@ -340,34 +357,37 @@ const palpaTrials = (() => {
             trials.delete(name);
         }
         noteNames();
-        changed();
+        await saveAgain(); // there may be room now
     };
 
+    const inDanger = () => [...unsaved.values()].filter(({trial}) => !trial.exported).length;
     const words = (trial) => {
+        if (unsaved.has(trial.name) && !trial.exported) return palpaWords.exportIt;
         if (trial.sent) return palpaWords.atDesk;
         if (!isOver(trial)) return palpaWords.goingOn;
         return (trial.finished ? palpaWords.waiting : palpaWords.brokenOff) + (trial.exported ? palpaWords.exported : '');
     };
 
     const state = () => {
-        const waiting = [...trials.values()].filter((t) => !t.sent && isOver(t)).length + unsaved.size;
+        const waiting = toSend().length + unsaved.size;
         const paired = maySend();
         const lines = [palpaFilled(palpaWords.howMany, waiting, [...trials.values()].filter((t) => t.sent).length)];
         lines.push(recall('palpa-token') !== '' ? palpaWords.isPaired : open_to_all ? palpaWords.openToAll : palpaWords.notPaired);
         if (!persistent) lines.push(palpaWords.mayRemove);
         if (lastWord) lines.push(lastWord);
-        return {lines, paired, waiting, trials: [...[...trials.values()].filter((t) => !unsaved.has(t.name)), ...[...unsaved.values()].map(({trial}) => trial)].map((t) => ({...t, words: unsaved.has(t.name) ? palpaWords.exportIt : words(t)}))};
+        const kept = [...trials.values()].filter((t) => !unsaved.has(t.name));
+        return {lines, paired, waiting, trials: [...kept, ...[...unsaved.values()].map(({trial}) => trial)].map((t) => ({...t, words: words(t)}))};
     };
 
     const noteText = () => {
         const {waiting, paired} = state();
-        if (unsaved.size > 0) return palpaFilled(palpaWords.unsaved, unsaved.size);
+        if (inDanger() > 0) return palpaFilled(palpaWords.unsaved, inDanger());
         return waiting === 0 ? palpaWords.allSafe : palpaFilled(paired ? palpaWords.keptUnsent : palpaWords.kept, waiting);
     };
 
     return {
         start, put, putPart, restore, tell, send, pair, exportAll, removeExported, state, request, credentials, protocol, setParticipant,
-        ready: () => writing === 0 && unsaved.size === 0,
+        ready: () => writing === 0 && inDanger() === 0,
         nextProblem: () => problems.shift() || '',
         note: () => trials.size + unsaved.size > 0 ? noteText() : palpaWords.keptHere,
         participant, nextRun,

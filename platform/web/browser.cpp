@@ -79,12 +79,12 @@ EM_JS(void, palpa_listen, (), {
     };
     const key = (event, is_down) => {
         const at = event.target;
-        if (at && at.closest && at.closest('dialog, input, button, a')) return;
         const code = code_of(event);
-        if (event.altKey || event.metaKey || code === 0) return;
-        if (event.ctrlKey && !'qsz'.includes(String.fromCharCode(code))) return; // the browser's own
+        const of_page = document.querySelector('dialog[open]') || (at && at.closest && at.closest('input, button, a'));
+        const of_browser = event.altKey || event.metaKey || (event.ctrlKey && !'qsz'.includes(String.fromCharCode(code)));
+        if (code === 0 || (is_down && (of_page || of_browser))) return; // whatever is let go was perhaps held before
         const typed = event.key.length === 1 && !event.ctrlKey ? event.key.charCodeAt(0) : 0;
-        event.preventDefault();
+        if (!of_page) event.preventDefault();
         _palpa_key(is_down ? 1 : 0, code, typed, event.ctrlKey ? 1 : 0, event.shiftKey ? 1 : 0, event.repeat ? 1 : 0);
     };
     window.addEventListener('keydown', (event) => key(event, true));

@@ -137,7 +137,7 @@ extern "C" {
 EMSCRIPTEN_KEEPALIVE void palpa_pointer(int kind, double pointer_id, int tool, double x_css, double y_css,
                                         double pressure, double tilt_x_deg, double tilt_y_deg, double width_css,
                                         double height_css, double time_ms, int buttons) {
-    using namespace palpa;
+    using namespace palpa::platform;
     if (open_pointers == nullptr) return;
     open_pointers->stirred = true;
     const double scale = browser::px_per_css_px();
@@ -158,13 +158,14 @@ EMSCRIPTEN_KEEPALIVE void palpa_pointer(int kind, double pointer_id, int tool, d
 }
 
 EMSCRIPTEN_KEEPALIVE void palpa_wheel(double notches, double time_ms) {
-    if (palpa::platform::open_pointers == nullptr) return;
-    palpa::platform::open_pointers->stirred = true;
-    receive_wheel(notches, 1e-3 * time_ms, palpa::platform::browser::now_s(), *palpa::platform::open_pointers);
+    using namespace palpa::platform;
+    if (open_pointers == nullptr) return;
+    open_pointers->stirred = true;
+    receive_wheel(notches, 1e-3 * time_ms, browser::now_s(), *open_pointers);
 }
 
 EMSCRIPTEN_KEEPALIVE void palpa_key(int down, int code, int typed, int ctrl, int shift, int repeat) {
-    using namespace palpa;
+    using namespace palpa::platform;
     if (open_pointers == nullptr) return;
     open_pointers->stirred = true;
     WindowEvent event;
@@ -184,8 +185,9 @@ EMSCRIPTEN_KEEPALIVE void palpa_key(int down, int code, int typed, int ctrl, int
 }
 
 EMSCRIPTEN_KEEPALIVE void palpa_focus_lost() {
-    if (palpa::platform::open_pointers == nullptr) return;
-    palpa::platform::open_pointers->stirred = true;
-    release_all(palpa::platform::browser::now_s(), *palpa::platform::open_pointers);
+    using namespace palpa::platform;
+    if (open_pointers == nullptr) return;
+    open_pointers->stirred = true;
+    release_all(browser::now_s(), *open_pointers);
 }
 }

@@ -19,9 +19,10 @@ const strict = {'Content-Security-Policy': "default-src 'self'; script-src 'self
     'Cross-Origin-Opener-Policy': 'same-origin', 'Cross-Origin-Embedder-Policy': 'require-corp', 'Cross-Origin-Resource-Policy': 'same-origin',
     'X-Content-Type-Options': 'nosniff', 'Referrer-Policy': 'no-referrer'};
 
-// The site, and what `palpa serve` answers to tablets. `desk.wrong`: it says that it got other bytes.
+// The site, and what `palpa serve` answers to tablets. `desk.wrong`: it says that it got other bytes; `silent`: it answers
+// nothing, and closes nothing; `too_large`: the logs that it does not take; `pairing`: it asks for a code.
 export async function openDesk() {
-    const desk = {code: '246810', token: 'token-of-the-test', logs: new Map(), wrong: false, bytes: 0, reachable: true};
+    const desk = {code: '246810', token: 'token-of-the-test', logs: new Map(), wrong: false, bytes: 0, reachable: true, silent: false, too_large: () => false, pairing: true};
     const body = (request) => new Promise((resolve) => {
         const parts = [];
         request.on('data', (part) => parts.push(part));
@@ -34,15 +35,17 @@ export async function openDesk() {
     const server = http.createServer(async (request, response) => {
         const url = new URL(request.url, 'http://desk');
         if (!desk.reachable) return response.destroy();
-        if (url.pathname === '/api/health') return answer(response, 200, {ok: true, pairing: true, collects: true});
+        if (desk.silent && url.pathname.startsWith('/api/')) return;
+        if (url.pathname === '/api/health') return answer(response, 200, {ok: true, pairing: desk.pairing, collects: true});
         if (url.pathname === '/api/pair') {
             const {code} = JSON.parse(await body(request));
             return code === desk.code ? answer(response, 200, {token: desk.token}) : answer(response, 401, {error: 'another code'});
         }
         if (url.pathname.startsWith('/api/logs/') && request.method === 'PUT') {
             const bytes = await body(request);
-            if (request.headers.authorization !== `Bearer ${desk.token}`) return answer(response, 401, {error: 'token'});
+            if (desk.pairing && request.headers.authorization !== `Bearer ${desk.token}`) return answer(response, 401, {error: 'token'});
             const sha256 = crypto.createHash('sha256').update(bytes).digest('hex');
+            if (desk.too_large(decodeURIComponent(url.pathname))) return answer(response, 413, {error: 'too large'});
             if (desk.wrong) return answer(response, 200, {sha256: '0'.repeat(64)});
             if (request.headers['x-content-sha256'] !== sha256) return answer(response, 400, {error: 'hash'});
             desk.logs.set(decodeURIComponent(url.pathname.slice('/api/logs/'.length)), bytes);

@@ -4,6 +4,18 @@ import assert from 'node:assert/strict';
 import test from 'node:test';
 import {frames, pen, report, rows, started, touch, withPage} from './browser.mjs';
 
+// What a person sees, pixel by pixel, as 'red,green,blue'.
+const coloursOf = async (page, clip) => page.evaluate(async (png) => {
+    const image = new Image();
+    image.src = `data:image/png;base64,${png}`;
+    await image.decode();
+    const canvas = Object.assign(document.createElement('canvas'), {width: image.width, height: image.height});
+    const context = canvas.getContext('2d');
+    context.drawImage(image, 0, 0);
+    const {data} = context.getImageData(0, 0, image.width, image.height);
+    return Array.from({length: data.length / 4}, (_, i) => data.slice(4 * i, 4 * i + 3).join());
+}, (await page.screenshot({clip})).toString('base64'));
+
 test('the first visit loads less than 3 MB', () => withPage({}, async (browser, desk) => {
     console.log(`${desk.bytes} bytes with the copies that are kept for later`);
     const bytes = await browser.page.evaluate(() => performance.getEntriesByType('resource').concat(performance.getEntriesByType('navigation'))
@@ -37,14 +49,6 @@ test('a lost GL context comes back with the same picture; samples go on meanwhil
     await page.keyboard.press('c'); // text, table, tissue
     await page.keyboard.press('c');
     await frames(page, 4);
-    const pixels = () => page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(() => {
-        const copy = document.createElement('canvas');
-        copy.width = 64;
-        copy.height = 40;
-        const context = copy.getContext('2d');
-        context.drawImage(Module.canvas, 0, 0, 64, 40);
-        done(Array.from(context.getImageData(0, 0, 64, 40).data));
-    }))));
     const shot = async () => (await page.screenshot({clip: {x: 460, y: 0, width: 820, height: 800}})).toString('base64');
     const before = await shot();
     await page.evaluate(() => {
@@ -63,10 +67,21 @@ test('a lost GL context comes back with the same picture; samples go on meanwhil
     await page.waitForTimeout(300);
     await pen(browser, 'mouseMoved', 100, 750, 0); // off the tissue, so that nothing stands on it but the place of a mark
     await frames(page, 4);
-    const colours = new Set();
-    const after = await pixels();
-    for (let i = 0; i < after.length; i += 4) colours.add(after.slice(i, i + 3).join());
+    const colours = new Set(await coloursOf(page, {x: 460, y: 0, width: 820, height: 800}));
     assert.ok(colours.size > 20, `${colours.size} colours after the context came back`);
+}));
+
+test('the tissue is shown as well while nothing moves but the clock', () => withPage({}, async (browser) => {
+    const {page} = browser;
+    await pen(browser, 'mouseMoved', 800, 400, 0);
+    await pen(browser, 'mousePressed', 800, 400, 0.4);
+    await pen(browser, 'mouseReleased', 800, 400, 0);
+    await pen(browser, 'mouseMoved', 100, 750, 0);
+    for (let i = 0; i < 4; ++i) {
+        await page.waitForTimeout(800);
+        const [red, green, blue] = (await coloursOf(page, {x: 1180, y: 60, width: 8, height: 8}))[0].split(',').map(Number);
+        assert.ok(red > 150 && green > 100 && blue > 80, `${red}, ${green}, ${blue} after ${i} looks`);
+    }
 }));
 
 test('turned and made denser: the drawing area follows, positions stay true, no panel overflows', () => withPage({width: 1280, height: 800, scale: 2}, async (browser) => {

@@ -63,6 +63,11 @@ const answerQuestions = async (browser) => {
     const {page} = browser;
     await at(page, 'questions');
     await tap(browser, 200, 178);
+    await page.keyboard.type('33/');
+    await frames(page, 4);
+    for (let i = 0; i < 2; ++i) await key(page, 'Enter');
+    assert.equal((await report(page)).study.step, 'questions'); // that is no number
+    await tap(browser, 200, 178);
     await page.keyboard.type('33');
     await frames(page, 4);
     await tap(browser, 260, 308);
@@ -318,6 +323,12 @@ test('a full storage: the study waits and says so; exporting lets it go on', opt
     assert.deepEqual((await report(page)).problems, []); // mended
     await key(page, 'Enter');
     await at(page, 'trial');
+    // once there is room, the study keeps the exported trial too, and does not ask for it again
+    await page.evaluate(() => { for (const [way, real] of ways) IDBObjectStore.prototype[way] = real; });
+    await until('kept', async () => (await stored(page)).some((trial) => trial.finished && trial.exported));
+    await reload(page);
+    await at(page, 'again');
+    assert.equal((await report(page)).study.finished, 1);
 }, {protocols: {twice: {...tiny, repeats: 2}}}));
 
 test('answers that are typed in, and forced choices: kept one by one, and counted by the desk', options, () => withDesk(async (browser, desk, where) => {
