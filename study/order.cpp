@@ -78,7 +78,9 @@ std::vector<View> views_of(const Protocol& protocol, int number) {
     return views;
 }
 
-void add_trial(const Protocol& protocol, PlannedTrial trial, const std::vector<View>& views, PlannedParticipant& who) {
+// tests: how many of the trials so far are no practice.
+void add_trial(const Protocol& protocol, PlannedTrial trial, const std::vector<View>& views, int& tests,
+               PlannedParticipant& who) {
     const std::size_t index = who.trials.size();
     trial.trial = static_cast<int>(index) + 1;
     trial.rotate_deg = views[index % views.size()].rotate_deg;
@@ -86,10 +88,9 @@ void add_trial(const Protocol& protocol, PlannedTrial trial, const std::vector<V
     constexpr std::uint64_t kSeeds = 2000000000;  // seeds of scenes are smaller
     const std::uint64_t of_person = derived_seed(protocol.seed, kTrial, static_cast<std::uint64_t>(who.number));
     trial.seed = static_cast<std::uint32_t>(derived_seed(of_person, kTrial, index) % kSeeds);
-    const auto tests =
-        std::count_if(who.trials.begin(), who.trials.end(), [](const PlannedTrial& t) { return !t.practice; });
     const int every = protocol.break_every_trials;
     trial.break_before = every > 0 && !trial.practice && tests > 0 && tests % every == 0;
+    tests += trial.practice ? 0 : 1;
     who.trials.push_back(trial);
 }
 
@@ -118,14 +119,15 @@ void add_choices(const Protocol& protocol, const std::vector<std::size_t>& condi
                  PlannedParticipant& who) {
     std::vector<std::vector<PlannedTrial>> lists;
     for (const std::size_t condition : conditions) lists.push_back(choices_of(protocol, condition, who.number));
+    int tests = 0;
     if (!protocol.choice.alternate_conditions) {
         for (const auto& list : lists) {
-            for (const PlannedTrial& trial : list) add_trial(protocol, trial, views, who);
+            for (const PlannedTrial& trial : list) add_trial(protocol, trial, views, tests, who);
         }
         return;
     }
     for (std::size_t i = 0; i < lists[0].size(); ++i) {
-        for (const auto& list : lists) add_trial(protocol, list[i], views, who);
+        for (const auto& list : lists) add_trial(protocol, list[i], views, tests, who);
     }
 }
 
@@ -201,13 +203,14 @@ PlannedParticipant plan_participant(const Protocol& protocol, int number) {
         add_choices(protocol, conditions, views, who);
         return who;
     }
+    int tests = 0;
     for (const std::size_t condition : conditions) {
         for (int i = 0; i < protocol.practice_trials + protocol.repeats; ++i) {
             PlannedTrial trial;
             trial.practice = i < protocol.practice_trials;
             trial.repeat = trial.practice ? i : i - protocol.practice_trials;
             trial.condition = condition;
-            add_trial(protocol, trial, views, who);
+            add_trial(protocol, trial, views, tests, who);
         }
     }
     return who;

@@ -15,6 +15,13 @@ namespace {
 constexpr const char* kModalities[] = {"touchpad", "pen", "finger", "mouse", "tangible", "shape-display", "hand"};
 constexpr const char* kOrders[] = {"fixed", "random", "latin", "williams"};
 
+// What becomes a field of a log: a tab or the end of a line in it would make the row unreadable.
+std::string field_text(files::JsonReader& json, std::string_view key, const std::string& otherwise) {
+    const std::string text = json.text(key, otherwise);
+    if (text.find_first_of("\t\n\r") != std::string::npos) json.fail(key, files::shown(text), "a name without tabs");
+    return text;
+}
+
 std::string new_id(files::JsonReader& json, std::set<std::string>& known) {
     const std::string id = json.text("id");
     if (id.empty() || id.find_first_of("\t\n\r") != std::string::npos)
@@ -47,7 +54,7 @@ Condition read_condition(files::JsonReader json, TaskKind task, std::set<std::st
         json.choice("modality", {"touchpad", "pen", "finger", "mouse", "tangible", "shape-display", "hand"}));
     condition.scene = json.text("scene", "");
     condition.profile = json.text("profile", "");
-    condition.device = json.text("device", "n/a");
+    condition.device = field_text(json, "device", "n/a");
     condition.instructions = json.text("instructions", "");
     if (json.has("nodules")) condition.nodules = read_names(json, "nodules");
     const bool by_hand = condition.modality == Modality::hand;

@@ -151,6 +151,7 @@ class Subject {
 
     void add(const fs::path& events, const std::optional<StudyIdentity>& identity, Observations& out) {
         const RunLog run = read_run(events, out.notes);
+        if (identity) refuse_answered_twice(run);
         add_choices(run, index_, out);
         if (!run.choices.empty()) return;
         const Settings settings =
@@ -175,6 +176,16 @@ class Subject {
     }
 
   private:
+    void refuse_answered_twice(const RunLog& run) {
+        for (const RunLog::Choice& choice : run.choices) {
+            const auto [it, fresh] = answered_.emplace(choice.trial, run.events.string());
+            if (fresh) continue;
+            throw files::bad_input(run.events.string(), "trial",
+                                   std::to_string(choice.trial) + " answered a second time",
+                                   "once: it is in " + it->second + " too");
+        }
+    }
+
     static void check_version(const fs::path& events, const Settings& settings,
                               const std::optional<StudyIdentity>& identity) {
         if (!identity || settings.sha256.empty() || settings.sha256 == identity->sha256) return;
@@ -198,6 +209,7 @@ class Subject {
 
     int index_;
     std::map<int, std::string> finished_;
+    std::map<int, std::string> answered_;  // of forced choices
     std::map<std::pair<int, int>, int> repeats_;
     std::string last_began_;
 };
@@ -261,6 +273,18 @@ std::vector<fs::path> events_files(const fs::path& subject) {
     return files;
 }
 
+namespace {
+
+// A folder that was copied by hand to another code would count its person twice.
+void refuse_copy(const fs::path& subject, const fs::path& events) {
+    const std::string own = subject.filename().string();
+    const std::string name = events.filename().string();
+    if (name.rfind(own + "_", 0) == 0) return;
+    throw files::bad_input(events.string(), "", "a log of " + name.substr(0, name.find('_')), "one of " + own);
+}
+
+}  // namespace
+
 Observations read_study(const fs::path& directory) {
     Observations out;
     const auto identity = read_identity(directory);
@@ -274,11 +298,14 @@ Observations read_study(const fs::path& directory) {
     for (const fs::path& subject : subjects) {
         out.participants.push_back(subject.filename().string().substr(4));
         Subject reader(static_cast<int>(out.participants.size()) - 1);
-        for (const fs::path& events : events_files(subject)) reader.add(events, identity, out);
+        for (const fs::path& events : events_files(subject)) {
+            refuse_copy(subject, events);
+            reader.add(events, identity, out);
+        }
         for (const Rating& r : read_ratings(directory, out.participants.back(), out.notes))
             out.answers.push_back({r.condition, r.item, r.value});
     }
-    if (out.rows.empty() && out.choices.empty() && out.interrupted_trials == 0) {
+    if (out.rows.empty() && out.choices.empty() && out.interrupted_trials + out.practice_trials == 0) {
         throw files::bad_input(directory.string(), "", "no trial", "sub-XX/beh/..._events.tsv of one trial at least");
     }
     return out;

@@ -197,7 +197,8 @@ std::string report_markdown(const Report& report) {
     std::string out = report.simulated ? "# Report on SIMULATED participants\n" : "# Report\n";
     const std::string level = files::short_number(100.0 * report.options.bootstrap.level) + " %";
     if (report.simulated) out += "\nNo person took part: hands and eyes were simulated by `palpa study simulate`.\n";
-    if (report.trials > 0) {
+    const bool none_counts = report.choices.empty() && report.practice_trials + report.interrupted_trials > 0;
+    if (report.trials > 0 || none_counts) {
         out += "\n" + whole(report.participants) + " participants, " + whole(report.trials) + " finished tests, " +
                whole(report.practice_trials) + " practice trials (not in the tables), " +
                whole(report.interrupted_trials) + " interrupted trials (not in the tables).\n";

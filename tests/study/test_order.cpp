@@ -118,6 +118,18 @@ TEST_CASE("order: a participant sees every view before one comes again, and prac
         CHECK((trial.rotate_deg == 0 && !trial.flip));
 }
 
+TEST_CASE("order: the time to plan grows with the trials, not with their square") {
+    Protocol protocol = protocol_of(2, OrderKind::latin);
+    protocol.task = TaskKind::choice;
+    protocol.choice = {1.75, std::vector<double>(300, 2.0), 1000, true};
+    protocol.break_every_trials = 7;
+    const PlannedParticipant who = plan_participant(protocol, 1);  // with the square it would take minutes
+    REQUIRE(who.trials.size() == 600000);
+    CHECK(who.trials[7].break_before);
+    CHECK_FALSE(who.trials[8].break_before);
+    CHECK(who.trials[599998].break_before);
+}
+
 TEST_CASE("order: groups never differ by more than one person; random ones are shuffled in blocks") {
     Protocol protocol = protocol_of(4, OrderKind::random);
     protocol.groups = {{"x", {0, 1}}, {"y", {2, 3}}, {"z", {0, 3}}};

@@ -281,3 +281,44 @@ TEST_CASE("choice log: every answer is on the disk, read back and told from fini
     REQUIRE(seen.choices.size() == 2);
     CHECK(seen.comparisons == std::vector<std::string>{"2.25 kPa"});
 }
+
+TEST_CASE("read logs: an answer that was logged twice is refused, as a trial is") {
+    const TemporaryFolder folder;
+    open_study(folder.path(), protocol_of(folder), {});
+    const auto answer = [&](int trial) {
+        ChoiceLog log(next_run(folder.path(), "01", "softer"));
+        ChoiceRow row;
+        row.trial = trial;
+        row.condition = "a";
+        row.correct = 1;
+        REQUIRE(log.write(row));
+    };
+    answer(1);
+    answer(2);
+    CHECK(read_study(folder.path()).choices.size() == 2);
+    answer(1);
+    CHECK(contains(message_of([&] { read_study(folder.path()); }),
+                   "run-03_events.tsv: trial: found 1 answered a second time, expected once: it is in "));
+}
+
+TEST_CASE("read logs: a folder of logs that was copied to another code is refused") {
+    const TemporaryFolder folder;
+    write_run(folder.path(), "01", 1, "a", 1, true, "x");
+    fs::copy(folder / "sub-01", folder / "sub-02", fs::copy_options::recursive);
+    CHECK(
+        contains(message_of([&] { read_study(folder.path()); }),
+                 "sub-02/beh/sub-01_task-palpation_run-01_events.tsv: found a log of sub-01, expected one of sub-02"));
+}
+
+TEST_CASE("read logs: practice and interrupted trials alone make a report that says so") {
+    const TemporaryFolder folder;
+    const std::string events = write_run(folder.path(), "01", 1, "a", 1, true, "x");
+    std::string text = read_text(events);
+    for (auto at = text.find("\ttest\t"); at != std::string::npos; at = text.find("\ttest\t"))
+        text.replace(at, 6, "\tpractice\t");
+    write_text_atomically(events, text);
+    const Observations seen = read_study(folder.path());
+    CHECK(seen.practice_trials == 1);
+    CHECK(contains(report_markdown(make_report(seen, {})),
+                   "1 participants, 0 finished tests, 1 practice trials (not in the tables), 0 interrupted trials"));
+}
