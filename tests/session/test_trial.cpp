@@ -115,6 +115,9 @@ TEST_CASE("trial: pressed well but not marked is told apart from pressed too lig
 
 TEST_CASE("trial: a pen that lies on the screen without pressure does not press") {
     Person person;
+    Plan plan = *person.session.plan;
+    plan.profile.curve = {calibration::CurveModel::power, 3.0, 1.0, 0.0, {}, {}, {}};  // no force at no pressure
+    person.session.plan = std::make_shared<const Plan>(std::move(plan));
     person.sample(Phase::down, 40.0, 40.0, 0.5);
     for (int i = 0; i < 20; ++i) person.sample(Phase::move, 40.0, 40.0, 0.5);
     const double pressed_s = person.session.trial.pressed_s;
