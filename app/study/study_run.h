@@ -10,6 +10,7 @@
 
 #include "app/study/study_scenes.h"
 #include "app/study/study_step.h"
+#include "files/folder_lock.h"
 #include "session/session.h"
 #include "study/study_folder.h"
 #include "study/typed_trial.h"
@@ -22,11 +23,12 @@ struct StudyRun {
     std::vector<files::Json> identities;           // by condition
     std::vector<std::vector<StudyScene>> stimuli;  // forced choices, by condition: the reference, then each comparison
     std::filesystem::path directory;
-    StudyStep step;             // the functions below change it
-    int entered = 0;            // steps so far: another number, another step
-    double step_began_s = 0.0;  // window's clock, when it was first shown; 0: it was not yet
-    std::string code;           // of the participant
-    std::string note;           // why a code was not taken
+    StudyStep step;                           // the functions below change it
+    int entered = 0;                          // steps so far: another number, another step
+    double step_began_s = 0.0;                // window's clock, when it was first shown; 0: it was not yet
+    std::string code;                         // of the participant
+    std::unique_ptr<files::FolderLock> lock;  // of the participant's folder: the code is at one screen at a time
+    std::string note;                         // why a code was not taken
     study::StudyProgress progress;
     int interval = 0;                 // of a choice: 0 or 1
     bool rested = false;              // the break before this trial is over
@@ -43,8 +45,8 @@ struct StudyRun {
     std::vector<std::string> warnings;
 };
 
-// Loads what the protocol names and opens the folder. Throws InputError (also for a code that has finished), or
-// std::runtime_error if the folder cannot be written. `code` may be empty: then it is asked for.
+// Loads what the protocol names and opens the folder. Throws InputError (also for a code that has finished or is at
+// another screen), or std::runtime_error if the folder cannot be written. `code` may be empty: then it is asked for.
 StudyRun open_study_run(const study::Protocol& protocol, const std::filesystem::path& directory,
                         const std::string& code);
 
@@ -83,6 +85,8 @@ session::SessionFiles due_files(const StudyRun& run);
 double due_limit_s(const StudyRun& run);                         // 0: none
 std::vector<std::string> due_nodules(const StudyRun& run);       // names, for typed answers
 const std::vector<study::Item>& due_items(const StudyRun& run);  // of questions and ratings
+// False: the item asks for a number, and this is none or outside its range. Left open is an answer.
+bool is_answer(const study::Item& item, const std::string& answer);
 
 // For example "3 of 8": the number of the due trial, tests and practice together.
 std::string progress_text(const StudyRun& run);
