@@ -19,6 +19,7 @@ struct Guide {
     std::optional<calibration::Calibration> fit;  // through the points so far, without intervals
     std::size_t fitted = 0;                       // points that it was made from
     double shown_gf = 0.0;                        // what the scale shows
+    bool again = false;                           // the field for it has the keys in the next frame
     std::string note;
 };
 
