@@ -11,6 +11,7 @@
 #include <unistd.h>
 
 #include "app/commands/study.h"
+#include "files/folder_lock.h"
 #include "files/input_error.h"
 #include "files/json.h"
 #include "files/regular_file.h"
@@ -47,7 +48,7 @@ files::Json last_events(const fs::path& file, std::vector<std::string>& notes) {
     for (std::size_t i = 1; i < lines.size(); ++i) {
         const std::string type = field(lines[i], "trial_type");
         if (type == "mark") ++marks;
-        if (type == "undo") --marks;
+        if (type == "undo") marks = std::max(0, marks - 1);  // a person may ask for it while there is none
         json["last"] = type;
         if (type != "finish") continue;
         for (const char* name : {"tp", "fn", "fp"}) json[name] = field(lines[i], name);
@@ -90,6 +91,7 @@ files::Json read_now(const fs::path& file) {
     json.integer("finished", 0, kMost);
     json.integer("of", 0, kMost);
     json.text("stopped", "");
+    json.boolean("locked", false);
     if (json.has("trial")) {
         json.integer("trial", 1, kMost);
         json.text("condition");
@@ -109,6 +111,8 @@ files::Json state_of(const fs::path& directory, const study::Person& person, std
     std::error_code error;
     if (!fs::exists(subject / "now.json", error)) return json;
     json["now"] = read_now(subject / "now.json");
+    // the program held the folder's lock when it wrote this; a step that it does not hold it in any more is over
+    if (json["now"].value("locked", false)) json["running"] = files::is_folder_locked(subject);
     if (json["now"].value("step", "") != "trial") return json;
     const auto files = study::events_files(subject);
     if (files.empty()) return json;
@@ -165,6 +169,10 @@ void print(const files::Json& state) {
     if (now.contains("present_kPa")) {
         std::printf("    first %s kPa, second %s kPa; now interval %s\n", now["present_kPa"][0].dump().c_str(),
                     now["present_kPa"][1].dump().c_str(), now["interval"].dump().c_str());
+    }
+    const bool over = now["step"] == "done" || now["step"] == "stopped";
+    if (!over && !state.value("running", true)) {
+        std::printf("    ! nobody is at this step now: the study was closed, or went on with somebody else\n");
     }
     if (now.contains("stopped")) std::printf("    ! %s\n", now["stopped"].get<std::string>().c_str());
     if (state.contains("events")) std::printf("    %s marks", state["events"]["marks"].dump().c_str());

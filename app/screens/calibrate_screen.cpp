@@ -159,8 +159,15 @@ void draw_plots(const calibration::Recording& recording, const Guide& guide, con
 void draw_typed(calibration::Recording& recording, const Gui& gui, Guide& guide) {
     paragraph(words::kHoldStill);
     ImGui::SetNextItemWidth(share_of_line_px(2));
+    // Enter takes it: while the pen is held down, the display gives a click of the mouse to nobody
+    if (guide.again) ImGui::SetKeyboardFocusHere();
+    guide.again = false;
     ImGui::InputDouble(words::kGramForce, &guide.shown_gf, 0.0, 0.0, "%.2f");
-    if (!big_button(words::kTake, "", {}, gui)) return;
+    const bool entered =
+        ImGui::IsItemDeactivatedAfterEdit() && (ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Enter)) ||
+                                                ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_KeyPadEnter)));
+    if (!big_button(words::kTake, words::kEnter, {}, gui) && !entered) return;
+    guide.again = entered;  // the next number is typed at once
     const bool good = std::isfinite(guide.shown_gf) && guide.shown_gf >= 0.0 && guide.shown_gf < 1e5;
     guide.note = good && calibration::take_typed_N(guide.shown_gf * calibration::kN_per_gf, recording)
                      ? words::kTaken
@@ -238,7 +245,10 @@ GuideWishes draw_guide(calibration::Recording& recording, Gui& gui, Guide& guide
         if (recording.silent) warning_paragraph(words::kSensorStopped);
     }
     if (recording.knowledge.done) ImGui::TextWrapped("%s", words::kCurveKnown);
-    if (!recording.knowledge.done && !recording.knowledge.missing.empty()) paragraph(recording.knowledge.missing);
+    // it is judged after each press, and not known in the middle of the first
+    const bool judged = recording.known_repeats >= 0 || recording.resumed == session.points.size();
+    if (judged && !recording.knowledge.done && !recording.knowledge.missing.empty())
+        paragraph(recording.knowledge.missing);
     if (!guide.note.empty()) paragraph(guide.note);
     ImGui::EndChild();
     end_panel("guide", gui);

@@ -147,14 +147,6 @@ void draw_item(const study::Item& item, Gui& gui, std::string& answer) {
     if (text_field("##text", text, sizeof text, flags, gui)) answer = text;
 }
 
-// True if the answer is empty or a number in the range of the item. The field takes all signs of arithmetic, but "33/" and
-// "30-40" are no numbers.
-bool acceptable(const study::Item& item, const std::string& answer) {
-    if (answer.empty() || !item.from) return true;
-    double value = 0.0;
-    return files::parse_number(answer, value) && value >= *item.from && value <= *item.to;
-}
-
 void draw_items(const StudyRun& run, Gui& gui, std::vector<std::string>& answers, Wishes& wishes) {
     const std::vector<study::Item>& items = due_items(run);
     answers.resize(items.size());
@@ -169,7 +161,7 @@ void draw_items(const StudyRun& run, Gui& gui, std::vector<std::string>& answers
     for (std::size_t i = 0; i < items.size(); ++i) {
         ImGui::PushID(static_cast<int>(i));
         draw_item(items[i], gui, answers[i]);
-        if (!acceptable(items[i], answers[i])) {
+        if (!is_answer(items[i], answers[i])) {
             good = false;
             warning_paragraph(
                 words::filled(words::kNumberFromTo, {std::to_string(*items[i].from), std::to_string(*items[i].to)}));

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "app/study/study_run.h"
+#include "files/text.h"
 
 namespace palpa::app {
 
@@ -53,6 +54,12 @@ std::vector<std::string> due_nodules(const StudyRun& run) {
 
 const std::vector<study::Item>& due_items(const StudyRun& run) {
     return at<step::Questions>(run) ? run.protocol.demographics : run.protocol.ratings;
+}
+
+bool is_answer(const study::Item& item, const std::string& answer) {
+    if (answer.empty() || !item.from) return true;
+    double value = 0.0;
+    return files::parse_number(answer, value) && value >= *item.from && value <= *item.to;
 }
 
 std::string progress_text(const StudyRun& run) {

@@ -53,7 +53,8 @@ files::Json now_json(const StudyRun& run) {
     files::Json json{{"participant", run.code},
                      {"step", name_of(run.step)},
                      {"finished", run.progress.finished.size()},
-                     {"of", run.progress.plan.trials.size()}};
+                     {"of", run.progress.plan.trials.size()},
+                     {"locked", run.lock != nullptr && run.lock->held()}};
     if (const auto* stopped = std::get_if<step::Stopped>(&run.step)) json["stopped"] = stopped->why;
     if (!run.progress.next) return json;
     const study::PlannedTrial& trial = *run.progress.next;
@@ -124,6 +125,8 @@ std::optional<std::size_t> to_rate(const StudyRun& run) {
 }
 
 void add_person(const std::vector<std::string>& answers, StudyRun& run) {
+    // whoever came at another screen meanwhile has this person's place in the order
+    run.progress = study::progress_of(run.directory, run.protocol, run.code);
     study::Person person;
     person.code = run.code;
     person.group = run.protocol.groups[run.progress.plan.group].id;
@@ -165,6 +168,7 @@ void begin_trial_step(StudyRun& run) {
 }
 
 void go_on(StudyRun& run) {
+    run.interval = 0;
     if (!run.progress.known && !run.protocol.demographics.empty()) return enter(step::Questions{}, run);
     if (!run.progress.known && !kept(run, [&] { add_person({}, run); })) return;
     if (const auto condition = to_rate(run)) return enter(step::Ratings{*condition}, run);
@@ -174,6 +178,14 @@ void go_on(StudyRun& run) {
     const bool told = run.told == trial.condition && run.told_practice == trial.practice;
     if (run.protocol.task == study::TaskKind::choice && told) return begin_trial_step(run);
     enter(step::Instructions{}, run);
+}
+
+// Makes the person's folder, and holds it until somebody else's code is asked for.
+void lock_code(const std::string& code, StudyRun& run) {
+    const fs::path subject = run.directory / ("sub-" + code);
+    fs::create_directories(subject);
+    run.lock.reset();  // it may be the same folder
+    run.lock = std::make_unique<files::FolderLock>(subject);
 }
 
 void refuse_code(const std::string& why, StudyRun& run) {
@@ -221,8 +233,10 @@ StudyRun open_study_run(const study::Protocol& protocol, const fs::path& directo
     if (code.empty()) return run;
     if (!plain(code)) throw files::bad_input("--participant", "", files::shown(code), "up to 20 letters and digits");
     enter_code(code, run);
-    if (!run.note.empty())
-        throw files::bad_input("--participant", "", files::shown(code) + ", who has finished all trials", "a new code");
+    if (!run.note.empty()) {
+        const char* why = run.code.empty() ? ", who is at another screen now" : ", who has finished all trials";
+        throw files::bad_input("--participant", "", files::shown(code) + why, "a new code");
+    }
     if (const auto* stopped = std::get_if<step::Stopped>(&run.step)) throw std::runtime_error(stopped->why);
     return run;
 }
@@ -233,8 +247,10 @@ std::string free_code(const StudyRun& run) {
     for (std::size_t number = people.size() + 1;; ++number) {
         char code[24];
         std::snprintf(code, sizeof code, "%02zu", number);
-        if (std::none_of(people.begin(), people.end(), [&](const study::Person& p) { return p.code == code; }))
-            return code;
+        const auto same = [&](const study::Person& p) { return p.code == code; };
+        // whoever answers the first questions is not among the people yet
+        const bool begun = fs::exists(run.directory / (std::string("sub-") + code));
+        if (!begun && std::none_of(people.begin(), people.end(), same)) return code;
     }
 }
 
@@ -251,13 +267,21 @@ void carry_out(const StudyWish& wish, StudyRun& run) {
 void enter_code(const std::string& code, StudyRun& run) {
     run.note.clear();
     if (!plain(code)) return refuse_code("Up to 20 letters and digits.", run);
+    if (!kept(run, [&] { lock_code(code, run); })) return;
+    if (run.lock->held_elsewhere()) {
+        run.lock.reset();
+        run.code.clear();
+        return refuse_code(code + " is at another screen now; close the study there, or take another code.", run);
+    }
     if (!kept(run, [&] { run.progress = study::progress_of(run.directory, run.protocol, code); })) return;
     run.code = code;
     run.rested = false;
     run.told.reset();
     run.choices.reset();  // each person's choices go to files of their own
-    if (run.progress.known && !run.progress.next && !to_rate(run))
+    if (run.progress.known && !run.progress.next && !to_rate(run)) {
+        run.lock.reset();
         return refuse_code(code + " has finished all trials; take a new code.", run);
+    }
     if (run.progress.known) return enter(step::Again{}, run);
     go_on(run);
 }
@@ -266,6 +290,7 @@ void same_person(bool is, StudyRun& run) {
     if (is) return go_on(run);
     change_step(step::Code{}, run);
     run.code.clear();
+    run.lock.reset();
 }
 
 void submit_answers(const std::vector<std::string>& answers, StudyRun& run) {

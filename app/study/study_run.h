@@ -10,6 +10,7 @@
 
 #include "app/study/study_scenes.h"
 #include "app/study/study_step.h"
+#include "files/folder_lock.h"
 #include "session/session.h"
 #include "study/study_folder.h"
 #include "study/typed_trial.h"
@@ -22,11 +23,12 @@ struct StudyRun {
     std::vector<files::Json> identities;           // by condition
     std::vector<std::vector<StudyScene>> stimuli;  // forced choices, by condition: the reference, then each comparison
     std::filesystem::path directory;
-    StudyStep step;             // only the functions below change it
-    int entered = 0;            // number of steps entered so far, which identifies a step
-    double step_began_s = 0.0;  // window's clock when the step was first shown; 0: not yet
-    std::string code;           // of the participant
-    std::string note;           // why a code was refused
+    StudyStep step;                           // only the functions below change it
+    int entered = 0;                          // number of steps entered so far, which identifies a step
+    double step_began_s = 0.0;                // window's clock when the step was first shown; 0: not yet
+    std::string code;                         // of the participant
+    std::unique_ptr<files::FolderLock> lock;  // of the participant's folder: the code is at one screen at a time
+    std::string note;                         // why a code was refused
     study::StudyProgress progress;
     int interval = 0;                 // of a forced choice: 0 or 1
     bool rested = false;              // the break before this trial is over
@@ -43,7 +45,7 @@ struct StudyRun {
     std::vector<std::string> warnings;
 };
 
-// Loads what the protocol names and opens the folder. Throws InputError (also for a code that has finished), and
+// Loads what the protocol names and opens the folder. Throws InputError (also for a code that has finished or is at another screen), and
 // std::runtime_error if the folder cannot be written. If `code` is empty, the first step asks for it.
 StudyRun open_study_run(const study::Protocol& protocol, const std::filesystem::path& directory,
                         const std::string& code);
@@ -83,6 +85,8 @@ session::SessionFiles due_files(const StudyRun& run);
 double due_limit_s(const StudyRun& run);                         // time limit; 0: none
 std::vector<std::string> due_nodules(const StudyRun& run);       // names of its nodules, for typed answers
 const std::vector<study::Item>& due_items(const StudyRun& run);  // of the step of questions or ratings
+// False if the item asks for a number and the answer is none or outside its range. An empty answer is one.
+bool is_answer(const study::Item& item, const std::string& answer);
 
 // Returns, for example, "3 of 8": the number of the due trial, tests and practice together.
 std::string progress_text(const StudyRun& run);

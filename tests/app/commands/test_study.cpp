@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <sys/wait.h>
 
+#include "files/folder_lock.h"
 #include "files/json.h"
 #include "files/text.h"
 #include "tests/error_message.h"
@@ -98,6 +99,37 @@ TEST_CASE("command study watch: who is where, what to present, the marks and the
     CHECK_FALSE(contains(words.out, "07"));
     refused("watch " + folder.path().string() + " --participant 09", "--participant: found '09'");
     refused("watch " + (folder / "sub-07").string(), "no study.json");
+}
+
+TEST_CASE(
+    "command study watch: a step in which the program was closed is not said to go on, and marks are none at least") {
+    const TemporaryFolder folder;
+    const auto text = [&](const std::string& name, const std::string& content) {
+        std::filesystem::create_directories((folder / name).parent_path());
+        write_text_atomically(folder / name, content);
+    };
+    text(
+        "study.json",
+        R"({"protocol": "n", "version": "1", "sha256": "x", "simulated": false, "simulation_seed": 0, "program": "p"})");
+    const auto now = [&](const std::string& locked) {
+        text("sub-07/now.json", R"({"participant": "07", "step": "trial", "finished": 0, "of": 4, "trial": 1,
+                                    "condition": "pen", "practice": false)" +
+                                    locked + "}");
+    };
+    text("sub-07/beh/sub-07_task-palpation_run-01_events.tsv",
+         "onset\ttrial_type\n0\tstart\n1\tundo\n2\tundo\n3\tmark\n4\tundo\n");
+    const std::string closed = "! nobody is at this step now: the study was closed, or went on with somebody else\n";
+    const auto look = [&] { return study("watch " + folder.path().string()).out; };
+    now("");  // written by a program that knew no locks
+    CHECK_FALSE(contains(look(), closed));
+    CHECK(contains(look(), " 0 marks"));
+    now(R"(, "locked": true)");
+    {
+        const FolderLock runs(folder / "sub-07");
+        CHECK_FALSE(contains(look(), closed));
+    }
+    CHECK(contains(look(), closed));
+    CHECK(parse_json(study("watch --json " + folder.path().string()).out, "stdout")["people"][0]["running"] == false);
 }
 
 TEST_CASE("command study analyse: counts become tables, JSON and figures") {

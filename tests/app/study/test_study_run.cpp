@@ -117,6 +117,7 @@ TEST_CASE("study run: from the code to the thanks, everything in the log") {
     CHECK(settings["study"]["map_sha256"].contains("normal_N.npy"));
     CHECK(settings["study"].contains("simulated") == false);
     CHECK(read_json(log / "sub-P7/now.json")["step"] == "done");
+    same_person(false, run);  // the next one
     CHECK(contains(message_of([&] { open_study_run(find_protocol(folder), log, "P7"); }),
                    "found 'P7', who has finished all trials"));
     enter_code("P7", run);
@@ -176,6 +177,7 @@ TEST_CASE("study run: a crash in the middle of a trial costs that trial, nothing
     begin_step(again);
     run_trial(again);
     CHECK(at<step::Ratings>(again));  // asked once the condition is done
+    same_person(false, again);        // left before they are answered
     const Observations seen = read_study(log);
     CHECK(seen.interrupted_trials == 1);
     CHECK(seen.trials.size() == 1);
@@ -183,6 +185,53 @@ TEST_CASE("study run: a crash in the middle of a trial costs that trial, nothing
     StudyRun before_rating = open_study_run(find_protocol(folder), log, "07");
     same_person(true, before_rating);
     CHECK(at<step::Ratings>(before_rating));
+}
+
+TEST_CASE("study run: people at two screens stand in the groups of their own trials, whoever is quicker") {
+    const TemporaryFolder folder;
+    const auto log = folder / "log";
+    const Protocol protocol = read_protocol(PALPA_SOURCE_DIR "/assets/protocols/paper.json");
+    StudyRun here = open_study_run(protocol, log, "");
+    StudyRun there = open_study_run(protocol, log, "");
+    enter_code("01", here);
+    enter_code("02", there);
+    REQUIRE(at<step::Questions>(here));
+    submit_answers({}, there);
+    submit_answers({}, here);
+    std::vector<std::string> notes;
+    const std::vector<Person> people = read_people(log, notes);
+    REQUIRE(people.size() == 2);
+    for (const StudyRun* run : {&there, &here}) {
+        const Person& person = people[static_cast<std::size_t>(run->progress.plan.number) - 1];
+        CHECK(person.code == run->code);
+        CHECK(person.group == protocol.groups[run->progress.plan.group].id);
+    }
+}
+
+TEST_CASE("study run: a code is at one screen at a time, until that screen is closed or takes somebody else") {
+    const TemporaryFolder folder;
+    const auto log = folder / "log";
+    const Protocol protocol = find_protocol(folder);
+    StudyRun here = open_study_run(protocol, log, "");
+    {
+        StudyRun there = open_study_run(protocol, log, "01");
+        CHECK(free_code(here) == "02");  // who answers the questions there is nobody else here
+        enter_code("01", here);
+        REQUIRE(at<step::Code>(here));
+        CHECK(here.note == "01 is at another screen now; close the study there, or take another code.");
+        answer_questions(there);
+        enter_code("01", here);
+        CHECK(at<step::Code>(here));
+        CHECK(contains(message_of([&] { open_study_run(protocol, log, "01"); }),
+                       "--participant: found '01', who is at another screen now"));
+        same_person(false, there);
+        enter_code("01", here);
+        CHECK(at<step::Again>(here));
+        same_person(false, here);
+        enter_code("01", there);
+    }
+    enter_code("01", here);
+    CHECK(at<step::Again>(here));
 }
 
 TEST_CASE("study run: forced choices, both surfaces harder and softer versions of one tissue") {
@@ -299,6 +348,20 @@ TEST_CASE("study run: a trial waits for its device, and one that the device left
     CHECK(run.progress.finished == std::set<int>{due});
 }
 
+TEST_CASE("study run: a number that is asked for is one number in its range, or left open") {
+    Item item;
+    item.from = 0;
+    item.to = 100;
+    for (const char* good : {"", "0", "33", "33.5", "100"}) CHECK(is_answer(item, good));
+    for (const char* bad : {"30-40", "30-4*", "3+4", "-1", "101", ".", "1 2", "nan"}) {
+        CAPTURE(bad);
+        CHECK_FALSE(is_answer(item, bad));
+    }
+    item.from.reset();
+    item.to.reset();
+    CHECK(is_answer(item, "30-40"));  // a text
+}
+
 TEST_CASE("study run: forced choices without a scene are presented by the experimenter, who is told what") {
     const TemporaryFolder folder;
     StudyRun run =
@@ -314,6 +377,7 @@ TEST_CASE("study run: forced choices without a scene are presented by the experi
     CHECK(at<step::Question>(run));
     choose_softer(true, 1.0, run);
     CHECK(run.progress.finished.size() == 1);
+    CHECK(read_json(folder / "log/sub-01/now.json")["interval"] == 1);  // of the next pair
 }
 
 TEST_CASE("study run: a folder that cannot be written stops the study in words, before a trial is lost") {

@@ -1,0 +1,63 @@
+// The numbers of a scale are typed while the pen is held down. Off screen.
+
+#include <doctest/doctest.h>
+
+#include "app/screens/calibrate_screen.h"
+#include "devices/force_sensor.h"
+#include "tests/app/live/desk.h"
+#include "tests/app/screens/typing.h"
+#include "tests/temporary_folder.h"
+
+using namespace palpa;
+using namespace palpa::platform;
+using namespace palpa::app;
+using namespace palpa::test;
+
+namespace {
+
+// A pen that has been held still at this pressure for two seconds.
+void hold(double pressure, calibration::Recording& recording) {
+    std::vector<Sample> samples;
+    const double now_s = devices::steady_s();
+    for (int i = 0; i <= 200; ++i) {
+        Sample sample;
+        sample.t_host_s = now_s - 0.01 * (200 - i);
+        sample.tool = Tool::pen;
+        sample.phase = i == 0 ? Phase::down : Phase::move;
+        sample.pressure = pressure;
+        samples.push_back(sample);
+    }
+    calibration::step(samples, recording);
+}
+
+}  // namespace
+
+TEST_CASE("calibrate screen: Enter takes the number that the scale shows, and the next one can be typed at once") {
+    const TemporaryFolder folder;
+    Desk desk("");
+    open_screen(Screen::calibrate, desk.window, desk.app);
+    CalibrateForm& form = *std::get<Calibrating>(desk.app.doing).form;
+    calibration::RecordArguments arguments;
+    arguments.folder = (folder / "c").string();
+    arguments.sensor = "typed";
+    form.recording = calibration::open_recording(arguments);
+    form.guide.again = true;  // as if the field had been clicked
+    frames(desk, 5);
+    hold(0.02, *form.recording);
+    type(desk.window, '5');
+    tap(desk.window, SDLK_RETURN);
+    frames(desk, 8);
+    REQUIRE(form.recording->session.points.size() == 1);
+    CHECK(form.recording->session.points[0].force_N == doctest::Approx(5.0 * calibration::kN_per_gf));
+    CHECK(form.guide.note == "Taken.");
+    tap(desk.window, SDLK_RETURN);  // twice
+    frames(desk, 8);
+    CHECK(form.recording->session.points.size() == 1);
+    form.guide.again = true;
+    frames(desk, 5);
+    type(desk.window, '7');
+    tap(desk.window, SDLK_RETURN);
+    frames(desk, 8);
+    CHECK(form.guide.shown_gf == 7.0);
+    CHECK(form.recording->session.points.size() == 2);
+}
