@@ -7,6 +7,8 @@
 #include <thread>
 #include <unistd.h>
 
+#include "files/input_error.h"
+
 namespace palpa::files {
 namespace {
 
@@ -26,6 +28,10 @@ FolderLock::FolderLock(const std::filesystem::path& folder) : fd_(open_folder(fo
         if (!held_elsewhere_) return;
         std::this_thread::sleep_for(std::chrono::milliseconds(5));
     }
+}
+
+FolderLock::FolderLock(const std::filesystem::path& folder, const std::string& other) : FolderLock(folder) {
+    if (held_elsewhere_) throw bad_input(folder.string(), "", other, "a folder of its own for each");
 }
 
 FolderLock::~FolderLock() {

@@ -3,6 +3,7 @@
 // however that ends, and leaves no file behind.
 
 #include <filesystem>
+#include <string>
 
 namespace palpa::files {
 
@@ -10,6 +11,8 @@ class FolderLock {
   public:
     // Takes the lock if nobody has it. Waits for nobody but a look of is_folder_locked().
     explicit FolderLock(const std::filesystem::path& folder);
+    // Throws InputError if somebody has it. `other` says who that may be: "another palpa serve that collects here".
+    FolderLock(const std::filesystem::path& folder, const std::string& other);
     ~FolderLock();
     FolderLock(const FolderLock&) = delete;
     FolderLock& operator=(const FolderLock&) = delete;

@@ -108,6 +108,9 @@ void export_map(const Map& map, const std::string& array, const fs::path& file) 
     if (kind == ".npy") return write_array(map, array, file);
     if (kind == ".csv") return files::write_text_atomically(file, csv_of(map));
     if (kind == ".mat") return files::write_mat(arrays_of(map), file);
+    const std::string name = file.filename().string();  // an ending alone is no ending to the library
+    const bool only_ending = name == ".npy" || name == ".csv" || name == ".mat";
+    if (only_ending) throw files::bad_input(file.string(), "", "an ending alone", "a name before it");
     if (kind.empty() && !file.empty()) return write_folder(map, file);
     throw files::bad_input(file.string(), "", "a name that ends in " + files::shown(kind),
                            ".npy, .csv, .mat, or no ending for a folder of arrays");

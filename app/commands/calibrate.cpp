@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
 #include <memory>
 
 #include "app/commands/command_line.h"
@@ -101,6 +102,8 @@ void fit(const FitArguments& arguments) {
     if (!arguments.figure.empty()) {
         figures::check_figure(arguments.figure);
         files::check_output(arguments.figure, {arguments.data});
+        if (std::filesystem::weakly_canonical(arguments.figure) == std::filesystem::weakly_canonical(arguments.output))
+            throw files::bad_input(arguments.figure, "", "the profile's own name", "another one for the figure");
     }
     const calibration::CalibrateOptions options = fit_options(arguments);
     const calibration::CalibrationRows rows =

@@ -21,6 +21,19 @@ struct RecordArguments {
     bool json = false;
 };
 
+// What the fit has to be told of the levels: it cannot read it off the points.
+std::string level_options(const RecordArguments& arguments) {
+    std::string out;
+    if (arguments.level != "pressure") out += " --level " + arguments.level;
+    if (!arguments.range.empty()) {
+        out +=
+            " --level-range " + files::number_text(arguments.range[0]) + " " + files::number_text(arguments.range[1]);
+    }
+    if (arguments.level == "contact_area")
+        out += " --full-contact-area-px2 " + files::number_text(arguments.record.level.full_contact_area_px2);
+    return out;
+}
+
 void record(RecordArguments& arguments) {
     calibration::RecordArguments& record = arguments.record;
     files::check_output_folder(record.folder);
@@ -50,8 +63,7 @@ void record(RecordArguments& arguments) {
                                            : result["missing"].get_ref<const std::string&>().c_str());
     if (result.contains("sensor")) std::printf("  sensor      %s\n", result["sensor"]["health"].dump().c_str());
     std::printf("  next        palpa calibrate fit %s -o PROFILE.json%s\n",
-                result["file"].get_ref<const std::string&>().c_str(),
-                arguments.level == "pressure" ? "" : (" --level " + arguments.level).c_str());
+                result["file"].get_ref<const std::string&>().c_str(), level_options(arguments).c_str());
 }
 
 }  // namespace

@@ -162,7 +162,7 @@ void print(const files::Json& state) {
     std::printf("%s of %s  %s", now["finished"].dump().c_str(), now["of"].dump().c_str(),
                 now["step"].get<std::string>().c_str());
     if (now.contains("trial")) {
-        std::printf(", trial %s%s, %s", now["trial"].dump().c_str(), now["practice"] == true ? " (practice)" : "",
+        std::printf(", trial %s%s, %s", now["trial"].dump().c_str(), now.value("practice", false) ? " (practice)" : "",
                     now["condition"].get<std::string>().c_str());
     }
     std::printf("\n");

@@ -7,12 +7,14 @@
 #include <exception>
 #include <mutex>
 #include <numbers>
+#include <optional>
 #include <stdexcept>
 #include <thread>
 #include <unistd.h>
 
 #include "app/assets.h"
 #include "files/clock.h"
+#include "files/folder_lock.h"
 #include "files/text.h"
 #include "scene/mapping.h"
 #include "session/session.h"
@@ -289,6 +291,10 @@ SimulateResult simulate_study(const study::Protocol& protocol, const SimulateOpt
     Shared shared{protocol, options, scenes, {}, {}, {}, {}, {}, {}, {}};
     shared.next_participant = 1;
     for (const auto& scene : scenes) shared.identities.push_back(identity_of(scene));
+    std::error_code error;  // open_study says why a folder cannot be made
+    std::optional<files::FolderLock> lock;
+    std::filesystem::create_directories(options.output, error);
+    if (!error) lock.emplace(options.output, "another simulation into it");  // both would run the same trials
     study::open_study(options.output, protocol, {true, options.seed, "palpa " PALPA_VERSION});
     add_everybody(protocol, options);
     std::vector<std::thread> workers;

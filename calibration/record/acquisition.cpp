@@ -204,10 +204,12 @@ std::unique_ptr<Recording> open_recording(const RecordArguments& arguments) {
     std::unique_ptr<devices::ForceSensor> device = open_sensor(arguments);
     auto recording = std::make_unique<Recording>();
     recording->arguments = arguments;
+    if (!arguments.resume) std::filesystem::create_directories(arguments.folder);
+    if (std::filesystem::is_directory(arguments.folder))
+        recording->lock.emplace(arguments.folder, "another recording into it");
     open_session(arguments, recording->session);
     recording->resumed = recording->session.points.size();
     recording->knowledge = knowledge_of(arguments.options, recording->session.points);
-    std::filesystem::create_directories(arguments.folder);
     recording->raw.emplace(arguments.folder);
     if (device) recording->sensor = std::make_unique<devices::SensorReader>(std::move(device));
     recording->began_s = recording->synced_s = devices::steady_s();

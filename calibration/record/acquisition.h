@@ -11,6 +11,7 @@
 #include "calibration/record_session.h"
 #include "devices/sensor_reader.h"
 #include "files/append_file.h"
+#include "files/folder_lock.h"
 #include "files/json.h"
 #include "platform/sample.h"
 #include "platform/timeline.h"
@@ -48,6 +49,7 @@ struct RawFiles {
 
 struct Recording {
     RecordArguments arguments;
+    std::optional<files::FolderLock> lock;          // two recordings would replace each other's points
     std::unique_ptr<devices::SensorReader> sensor;  // null: forces are typed
     std::optional<RawFiles> raw;
     RecordSession session;

@@ -174,18 +174,31 @@ void merge(const GenerateOptions& options, const MapTask& task) {
                 files::short_number(range.highest_N).c_str());
 }
 
+// A check speaks of the phantom and of the meshes that the map was made with.
+void refuse_other_maps(const GenerateOptions& options, const MapTask& task, const Map& map) {
+    const std::string expected = "a map made from " + options.phantom.string();
+    const auto refuse = [&](const char* found) {
+        throw files::bad_input(options.output.string(), "", found, expected);
+    };
+    if (is_rough(task) && (map.tangential_x_N.empty() || map.tangential_y_N.empty())) refuse("no tangential arrays");
+    Map made = map;
+    std::erase_if(made.nodules, [](const Nodule& nodule) { return !nodule.placed; });
+    const files::Json its = map_json(made);
+    const files::Json wanted = map_json(map_of_phantom(task.phantom));
+    const auto differs = [&](const char* key) {
+        return its.value(key, files::Json()) != wanted.value(key, files::Json());
+    };
+    if (differs("origin_mm") || differs("spacing_mm") || differs("count") || differs("depths_mm"))
+        refuse("another grid or other depths");
+    if (differs("nodules")) refuse("other nodules");
+    if (differs("indenter")) refuse("another indenter");
+    if (map.source.how.rfind(how_made(task), 0) != 0)
+        refuse("a map of another tissue, of other meshes (--coarseness) or not by finite elements");
+}
+
 void check(const GenerateOptions& options, const MapTask& task, const MapTask& refined) {
     Map map = read_map(options.output);
-    const Map expected = map_of_phantom(task.phantom);
-    if (is_rough(task) && (map.tangential_x_N.empty() || map.tangential_y_N.empty())) {
-        throw files::bad_input(options.output.string(), "", "no tangential arrays",
-                               "a map made from " + options.phantom.string());
-    }
-    if (map.n_x != expected.n_x || map.n_y != expected.n_y ||
-        map_json(map)["depths_mm"] != map_json(expected)["depths_mm"]) {
-        throw files::bad_input(options.output.string(), "", "another grid or other depths",
-                               "a map made from " + options.phantom.string());
-    }
+    refuse_other_maps(options, task, map);
     compute_windows(options, refined, MeshSet::refined, "checking");
     Differences differences;
     const files::Json report = convergence_json(task, refined, map, differences);

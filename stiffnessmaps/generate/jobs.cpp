@@ -113,7 +113,7 @@ void compute_part(const MapTask& task, const Part& part) {
         for (std::size_t k = 0; k < n_windows; ++k) {
             const std::size_t window = (k + static_cast<std::size_t>(part.index) - 1) % n_windows;
             if (read_piece(task, window_of(window))) continue;
-            const FolderLock lock(task.folder / (window_of(window) + ".lock"), wait);
+            const FileLock lock(task.folder / (window_of(window) + ".lock"), wait);
             if (lock.held() && !read_piece(task, window_of(window))) compute_window(task, static_cast<int>(window));
         }
     }

@@ -195,7 +195,7 @@ std::optional<Numbers> read_piece(const MapTask& task, const std::string& name) 
         whole = sum == fnv.hash && count == (bytes.size() - kHead - sizeof sum) / sizeof(double);
     }
     if (!whole || fingerprint != task.fingerprint) {
-        std::fprintf(stderr, "palpa: %s: %s, computed again\n", file.c_str(),
+        std::fprintf(stderr, "palpa: %s: %s, taken as missing\n", file.c_str(),
                      whole ? "of another phantom or mesh" : "damaged");
         return std::nullopt;
     }

@@ -59,13 +59,13 @@ void run_jobs(const std::vector<Arguments>& calls, int at_a_time, const std::fun
         throw std::runtime_error("a job failed; what is finished is kept, and the same command goes on from there");
 }
 
-FolderLock::FolderLock(const std::filesystem::path& file, bool wait) {
+FileLock::FileLock(const std::filesystem::path& file, bool wait) {
     fd_ = ::open(file.c_str(), O_CREAT | O_RDWR | O_CLOEXEC, 0644);
     if (fd_ < 0) return;
     if (::flock(fd_, LOCK_EX | (wait ? 0 : LOCK_NB)) != 0) held_ = errno != EWOULDBLOCK;
 }
 
-FolderLock::~FolderLock() {
+FileLock::~FileLock() {
     if (fd_ >= 0) ::close(fd_);
 }
 

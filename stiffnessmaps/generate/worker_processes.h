@@ -18,12 +18,12 @@ void run_jobs(const std::vector<Arguments>& calls, int at_a_time, const std::fun
 
 // A lock on a file, held until destroyed. Another process waits for it or, with `wait` false, does not get it. Where
 // the file system has no locks, every process gets it.
-class FolderLock {
+class FileLock {
   public:
-    FolderLock(const std::filesystem::path& file, bool wait);
-    ~FolderLock();
-    FolderLock(const FolderLock&) = delete;
-    FolderLock& operator=(const FolderLock&) = delete;
+    FileLock(const std::filesystem::path& file, bool wait);
+    ~FileLock();
+    FileLock(const FileLock&) = delete;
+    FileLock& operator=(const FileLock&) = delete;
     bool held() const { return held_; }
 
   private:

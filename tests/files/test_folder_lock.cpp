@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include "files/folder_lock.h"
+#include "tests/error_message.h"
 #include "tests/temporary_folder.h"
 
 using namespace palpa::files;
@@ -26,6 +27,15 @@ TEST_CASE("folder lock: one holds it, a look changes nothing, and the next takes
     first.reset();
     CHECK_FALSE(is_folder_locked(folder.path()));
     CHECK(FolderLock(folder.path()).held());
+}
+
+TEST_CASE("folder lock: who comes second may be refused in words") {
+    const TemporaryFolder folder;
+    std::optional<FolderLock> first(std::in_place, folder.path(), "another one");
+    CHECK(contains(message_of([&] { FolderLock(folder.path(), "another one"); }),
+                   "found another one, expected a folder of its own for each"));
+    first.reset();
+    CHECK_NOTHROW(FolderLock(folder.path(), "another one"));
 }
 
 TEST_CASE("folder lock: of a program that was killed, nothing is left") {

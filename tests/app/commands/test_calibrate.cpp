@@ -97,6 +97,10 @@ TEST_CASE("calibrate fit: figures are drawn in all three kinds") {
     CHECK(refused.status == 2);
     CHECK(contains(refused.err, "expected .png, .svg or .pdf"));
     CHECK_FALSE(std::filesystem::exists(folder / "q.json"));
+    const Called same = calibrate("fit " + path("d.csv") + " -o " + path("q.png") + " --plot " + path("./q.png"));
+    CHECK(same.status == 2);
+    CHECK(contains(same.err, "q.png: found the profile's own name, expected another one for the figure"));
+    CHECK_FALSE(std::filesystem::exists(folder / "q.png"));
 }
 
 TEST_CASE("calibrate: bad input ends with status 2, names what is wrong, and leaves the old profile alone") {

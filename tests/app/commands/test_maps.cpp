@@ -150,6 +150,7 @@ TEST_CASE("command maps export: every format gives back the same floats") {
                          "assert numpy.isnan(n[0, 1, 3]) and m['depths_mm'].tolist() == [[1.0, 2.5]]\n"));
     }
     refused("export " + name + " -o " + file("m.xls"), "expected .npy, .csv, .mat");
+    refused("export " + name + " -o " + file(".csv"), "found an ending alone, expected a name before it");
     refused("export " + name + " -o " + file("arrays"), "nothing is overwritten");
     refused("export " + name + " -o " + file("no/such/m.csv"), "no/such/m.csv", 2);
     refused("export " + name + " -o " + file("no/such/m.mat"), "found no folder", 2);

@@ -6,6 +6,7 @@
 #include <signal.h>
 #include <string>
 
+#include "files/folder_lock.h"
 #include "files/json.h"
 #include "files/text.h"
 #include "tests/devices/simulator_process.h"
@@ -111,6 +112,36 @@ TEST_CASE("record: what a scale shows is typed in while the pen is held still") 
     CHECK(contains(record.err, "found 'abc', expected what the scale shows"));
     CHECK(parse_json(record.out, "stdout")["points"].get<int>() >= 1);
     CHECK(contains(read_text(session + "/points.csv"), number_text(12 * 9.80665e-3)));
+}
+
+TEST_CASE("record: two recordings at once do not share a folder") {
+    const TemporaryFolder folder;
+    write_text_atomically(folder / "levels", "0\n");
+    const std::string record =
+        kRecord + "-o " + folder.path().string() + " --sensor typed --levels " + (folder / "levels").string();
+    {
+        const FolderLock other(folder.path(), "");
+        const Called refused = shell(record);
+        CHECK(refused.status == 2);
+        CHECK(contains(refused.err, "found another recording into it, expected a folder of its own for each"));
+        CHECK_FALSE(std::filesystem::exists(folder / "levels-01.tsv"));
+    }
+    CHECK(shell(record).status == 0);
+}
+
+TEST_CASE("record: the command that it names for the fit has what was said about the levels") {
+    const TemporaryFolder folder;
+    write_text_atomically(folder / "levels", "0\n");
+    const auto next = [&](const std::string& session, const std::string& levels) {
+        return shell(kRecord + "-o " + (folder / session).string() + " --sensor typed --levels " +
+                     (folder / "levels").string() + levels)
+            .out;
+    };
+    CHECK(contains(next("a", ""), "a/points.csv -o PROFILE.json\n"));
+    CHECK(contains(next("b", " --level pressure_raw --level-range 0 8191"),
+                   "-o PROFILE.json --level pressure_raw --level-range 0 8191\n"));
+    CHECK(contains(next("c", " --level contact_area --full-contact-area-px2 4000"),
+                   "-o PROFILE.json --level contact_area --full-contact-area-px2 4000\n"));
 }
 
 TEST_CASE("record: what cannot work is said at once, or after five seconds of silence") {

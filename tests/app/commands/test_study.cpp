@@ -83,6 +83,10 @@ TEST_CASE("command study watch: who is where, what to present, the marks and the
         text("sub-09/now.json", now);
         refused("watch " + folder.path().string(), said);
     }
+    text("sub-09/now.json", R"({"step": "trial", "finished": 0, "of": 4, "trial": 1, "condition": "pen"})");
+    const Called no_practice = study("watch " + folder.path().string());
+    CHECK(no_practice.status == 0);
+    CHECK(contains(no_practice.out, "0 of 4  trial, trial 1, pen\n"));
     std::filesystem::remove_all(folder / "sub-09");
     text("sub-08/now.json",
          R"({"participant": "08", "step": "present", "finished": 3, "of": 4, "trial": 4, "condition": "by hand",
@@ -261,6 +265,17 @@ TEST_CASE(
     refused("simulate " PALPA_SOURCE_DIR "/assets/protocols/paper.json --participants 2 --seed 1 -o " + log,
             "two versions of a protocol");
     refused("analyse " + folder.path().string(), "found no trial");
+}
+
+TEST_CASE("command study simulate: two at once do not share a folder") {
+    const TemporaryFolder folder;
+    const std::string call =
+        "simulate " PALPA_SOURCE_DIR "/assets/protocols/softer.json --participants 1 -o " + folder.path().string();
+    {
+        const FolderLock other(folder.path(), "");
+        refused(call, "found another simulation into it, expected a folder of its own for each");
+    }
+    CHECK(study(call).status == 0);
 }
 
 TEST_CASE("command study simulate: the paper's protocol leaves hands out; forced choices are logged and analysed") {

@@ -1,5 +1,6 @@
 // `palpa maps generate` as it is called: jobs, parts, a kill in the middle, damaged pieces, bad input.
 
+#include <array>
 #include <doctest/doctest.h>
 #include <filesystem>
 #include <sys/wait.h>
@@ -115,15 +116,15 @@ TEST_CASE(
     fs::copy_file(bench / "k.map.lines/line-2", bench / "k.map.lines/line-4", fs::copy_options::overwrite_existing);
     const Called again = bench.generate("k.map", "--jobs 2");
     CHECK(again.status == 0);
-    CHECK(contains(again.err, "line-0: damaged, computed again"));
-    CHECK(contains(again.err, "line-4: damaged, computed again"));
+    CHECK(contains(again.err, "line-0: damaged, taken as missing"));
+    CHECK(contains(again.err, "line-4: damaged, taken as missing"));
     CHECK(bench.bytes("k.map") == bench.bytes("whole.map"));
 
     CHECK(bench.generate("f.map", "--part 1/1").status == 0);
     write_text_atomically(bench / "p.json", replaced(kPhantom, "40000", "41000"));
     const Called foreign = bench.generate("f.map", "--jobs 2");
     CHECK(foreign.status == 0);
-    CHECK(contains(foreign.err, "window-0: of another phantom or mesh, computed again"));
+    CHECK(contains(foreign.err, "window-0: of another phantom or mesh, taken as missing"));
     CHECK(bench.bytes("f.map") != bench.bytes("whole.map"));
 }
 
@@ -221,6 +222,26 @@ TEST_CASE("generate: bad input ends with status 2 and says what was expected") {
     refused("40000", "40000", "--part 3/2", "i/n with 1 <= i <= n");
     CHECK(message_of([] { parse_part("2"); }) != "");
     CHECK(parse_part("2/8").count == 8);
+}
+
+TEST_CASE("generate: a check is refused for a map of another phantom, which it would say something untrue about") {
+    const Bench bench;
+    const auto refused = [&](const char* words) {
+        const Called called = bench.generate("a.map", "--check");
+        CAPTURE(called.err);
+        CHECK(called.status == 2);
+        CHECK(contains(called.err, words));
+        CHECK_FALSE(fs::exists(bench / "a.map.check"));
+        CHECK_FALSE(contains(read_map(bench / "a.map").source.how, "Checked"));
+    };
+    REQUIRE(bench.generate("a.map", "--method analytic").status == 0);
+    refused("not by finite elements, expected a map made from ");
+    for (const auto& [from, to, words] : {std::array{"[20, 18, 6]", "[24, 18, 6]", "found other nodules"},
+                                          std::array{"\"radius_mm\": 3", "\"radius_mm\": 4", "found another indenter"},
+                                          std::array{"[2, 4]", "[2, 3.5]", "found another grid"}}) {
+        write_text_atomically(bench / "p.json", replaced(kPhantom, from, to));
+        refused(words);
+    }
 }
 
 TEST_CASE("generate: the 50 points of the check lie on the grid, over the nodules and at the edges") {
