@@ -215,7 +215,7 @@ struct Live::Impl {
         if (app.quit) return true;
         if (!window->close_requested()) return false;
         const bool again = app.asked && app.asked->quit;
-        if (again || !marks_at_stake(app) || !window->stay_open()) return true;
+        if (again || !work_at_stake(app) || !window->stay_open()) return true;
         Wishes wishes;
         wishes.quit = true;
         carry_out(wishes, *window, *gui, app);

@@ -34,7 +34,7 @@ struct App {
     Settings settings;
     std::filesystem::path settings_path;  // empty: this run keeps none
     Doing doing;                          // while the window is open, go_to() changes it; a study changes its own step
-    std::optional<Wishes> asked;          // would throw away marks: done once the person has confirmed
+    std::optional<Wishes> asked;          // would throw away marks or answers: done once the person has confirmed
     Notices notices;
     ViewState view;
     std::shared_ptr<DeviceCheck> check;  // the last device check
@@ -116,7 +116,8 @@ void change_scene(platform::Window& window, Gui& gui, const std::string& file, c
 void turn_tissue(platform::Window& window, App& app);
 // Turns the tissue if the person has seen where the nodules are, so that the next test has them somewhere else.
 void turn_if_shown(platform::Window& window, App& app);
-bool marks_at_stake(const App& app);  // the present trial has marks that are not scored yet
+// True if the present trial has marks that are not scored yet, or the study's form answers that are not logged yet.
+bool work_at_stake(const App& app);
 // Closes the files of the trial and hands them to the keeper. If they could not be written, stops the trial and returns
 // why, else "".
 std::string close_trial(App& app);

@@ -179,10 +179,14 @@ void turn_if_shown(platform::Window& window, App& app) {
     if (may_show_maps(app.session.trial)) turn_tissue(window, app);
 }
 
-bool marks_at_stake(const App& app) {
-    const bool between = study_of(app.doing) != nullptr && !palpates(app.doing);
+bool work_at_stake(const App& app) {
+    const StudyRun* study = study_of(app.doing);
     const session::Trial& trial = app.session.trial;
-    return !app.trace && !between && !trial_stopped(app) && !trial.finished && !trial.marks.empty();
+    if (app.trace) return false;
+    if (study != nullptr && !palpates(app.doing)) {
+        return app.view.study.step == study->entered && answers_at_stake(app.view.study);
+    }
+    return !trial_stopped(app) && !trial.finished && !trial.marks.empty();
 }
 
 void act(platform::Action action, platform::Window& window, App& app) {

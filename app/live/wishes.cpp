@@ -52,7 +52,7 @@ void keep_settings(App& app) {
 void carry_out(const Wishes& asked_for, platform::Window& window, Gui& gui, App& app) {
     if (asked_for.sure || asked_for.stay) app.asked.reset();
     Wishes wishes = asked_for;
-    if (marks_at_stake(app)) {
+    if (work_at_stake(app)) {
         wishes = ask_first(asked_for, app.asked);
         if (app.asked) end_presses(window, app);
     } else {

@@ -1,4 +1,4 @@
-// The question before marks are thrown away; it is the same for every action that would do it.
+// The question before marks or answers are thrown away; it is the same for every action that would do it.
 
 #include <algorithm>
 
@@ -32,15 +32,22 @@ void draw_ask(const Shown& shown, Gui& gui, Wishes& wishes) {
     const float height_px = std::min(window.height, 62.0f * gui.mm());
     const float x0 = 0.5f * (window.width - width_px);
     const float y0 = 0.5f * (window.height - height_px);
+    const bool answers = study_of(shown.doing) != nullptr && !palpates(shown.doing);
+    if (answers)
+        ImGui::GetBackgroundDrawList()->AddRectFilled(ImVec2(0.0f, 0.0f), ImVec2(window.width, window.height), kDark);
     begin_panel("ask", {x0, y0, x0 + width_px, y0 + height_px}, gui);
     if (ImGui::IsWindowAppearing()) ImGui::SetWindowFocus();
     const std::size_t marks = shown.trial.marks.size();
-    ImGui::TextUnformatted(words::kLoseMarks);
-    paragraph(marks == 1 ? words::kLoseMark : words::filled(words::kLoseManyMarks, {std::to_string(marks)}));
-    const bool stay = big_button(words::kGoOnWithTrial, words::kEscape, {0.0f, kMark_mm, true, false}, gui) ||
+    ImGui::TextUnformatted(answers ? words::kLeaveAnswers : words::kLoseMarks);
+    paragraph(answers      ? words::kLoseAnswers
+              : marks == 1 ? words::kLoseMark
+                           : words::filled(words::kLoseManyMarks, {std::to_string(marks)}));
+    const bool stay = big_button(answers ? words::kBackToAnswers : words::kGoOnWithTrial, words::kEscape,
+                                 {0.0f, kMark_mm, true, false}, gui) ||
                       gui.pressed(platform::key::escape);
-    const bool end = big_button(words::kEndTrial, words::kEnter, {0.0f, kTarget_mm, true, false}, gui) ||
-                     gui.pressed(platform::key::enter) || gui.pressed(platform::key::pad_enter);
+    const bool end =
+        big_button(answers ? words::kClose : words::kEndTrial, words::kEnter, {0.0f, kTarget_mm, true, false}, gui) ||
+        gui.pressed(platform::key::enter) || gui.pressed(platform::key::pad_enter);
     end_panel("ask", gui);
     if (end && !stay) wishes = *shown.asked;
     wishes.sure = end && !stay;

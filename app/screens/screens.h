@@ -86,6 +86,7 @@ struct OnScreen {
 struct StudyForm {
     int step = -1;  // StudyRun::entered; another step begins with an empty form
     std::string code;
+    std::string offered;  // the code that the field began with
     // How many codes the step had refused when the field last got the focus.
     int refused = -1;
     std::vector<std::string> answers;  // to the items of this step, "" = not answered
@@ -113,7 +114,7 @@ struct ToShow {
     const Settings& settings;
     const Notices& notices;
     const Doing& doing;
-    const std::optional<Wishes>& asked;  // would throw away marks: done once the person has confirmed
+    const std::optional<Wishes>& asked;  // would throw away marks or answers: done once the person has confirmed
     double now_s = 0.0;                  // on the clock of the samples
     double dt_s = 1.0 / 60.0;            // since the last frame
 };
@@ -140,7 +141,10 @@ void add_dot(const platform::Sample& sample, std::vector<Dot>& dots);
 void draw_study_screen(const StudyRun& run, double now_s, Gui& gui, StudyForm& form, Wishes& wishes);
 void draw_scale_screen(const Shown& shown, Gui& gui, double& card_px_per_mm, Wishes& wishes);
 
-// While marks are at stake: moves wishes that would throw them away into `asked`, and returns the other wishes.
+// True if the form holds answers that are not logged yet.
+bool answers_at_stake(const StudyForm& form);
+
+// While marks or answers are at stake: moves wishes that would throw them away into `asked`, and returns the other wishes.
 Wishes ask_first(Wishes wishes, std::optional<Wishes>& asked);
 void draw_ask(const Shown& shown, Gui& gui, Wishes& wishes);
 

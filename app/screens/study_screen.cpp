@@ -78,7 +78,13 @@ void draw_keeping(double now_s, Gui& gui, const StudyRun& run, Wishes& wishes) {
     if (!run.warnings.empty()) trials_button(gui, run, wishes);
 }
 
-void draw_code(const step::Code& step, const StudyRun& run, Gui& gui, StudyForm& form, Wishes& wishes) {
+// A second Enter after the screen before must not make a participant of the code that is only offered.
+bool by_accident(const StudyRun& run, const StudyForm& form, double now_s) {
+    constexpr double kDoubleEnter_s = 1.0;
+    return form.code == form.offered && (run.step_began_s == 0.0 || now_s - run.step_began_s < kDoubleEnter_s);
+}
+
+void draw_code(const step::Code& step, const StudyRun& run, double now_s, Gui& gui, StudyForm& form, Wishes& wishes) {
     title(words::kWhoIsHere);
     paragraph(words::kCodeNoName);
     char text[24];
@@ -91,7 +97,10 @@ void draw_code(const step::Code& step, const StudyRun& run, Gui& gui, StudyForm&
     // Escape takes the focus from the field, and there is no other field to give it to
     if (ImGui::IsItemDeactivated() && ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape))) form.refused = -1;
     gap(gui);
-    if (forward(words::kGoOn, gui) || entered) wishes.study = EnterCode{text};
+    const bool on = forward(words::kGoOn, gui) || entered;
+    const bool accident = by_accident(run, form, now_s);
+    if (on && !accident) wishes.study = EnterCode{text};
+    if (on && accident) form.refused = -1;  // Enter has taken the focus from the field
     if (!run.note.empty()) warning_paragraph(run.note);
     for (const std::string& warning : run.warnings) warning_paragraph(warning);
     if (!run.on_tablet) return;
@@ -328,13 +337,13 @@ void draw_pause(const StudyRun& run, double now_s, Gui& gui, Wishes& wishes) {
 StudyForm form_for(const StudyRun& run) {
     StudyForm form;
     form.step = run.entered;
-    if (at<step::Code>(run)) form.code = free_code(run);
+    if (at<step::Code>(run)) form.code = form.offered = free_code(run);
     if (at<step::Typed>(run)) form.typed.nodules.assign(due_nodules(run).size(), study::kMissed);
     return form;
 }
 
 void draw_step(const StudyRun& run, double now_s, Gui& gui, StudyForm& form, Wishes& wishes) {
-    if (const auto* code = std::get_if<step::Code>(&run.step)) return draw_code(*code, run, gui, form, wishes);
+    if (const auto* code = std::get_if<step::Code>(&run.step)) return draw_code(*code, run, now_s, gui, form, wishes);
     if (at<step::Again>(run)) return draw_again(run, gui, wishes);
     if (at<step::Questions>(run) || at<step::Ratings>(run)) return draw_items(run, gui, form.answers, wishes);
     if (at<step::Instructions>(run)) return draw_instructions(run, gui, wishes);
@@ -349,6 +358,15 @@ void draw_step(const StudyRun& run, double now_s, Gui& gui, StudyForm& form, Wis
 }
 
 }  // namespace
+
+bool answers_at_stake(const StudyForm& form) {
+    const study::TypedAnswers& typed = form.typed;
+    const auto given = [](const std::string& answer) { return !answer.empty(); };
+    const auto seen = [](int nodule) { return nodule != study::kMissed; };
+    return std::any_of(form.answers.begin(), form.answers.end(), given) ||
+           std::any_of(typed.nodules.begin(), typed.nodules.end(), seen) || form.clock_began_s > 0.0 ||
+           typed.found + typed.missed + typed.false_marks > 0 || typed.duration_s > 0.0;
+}
 
 void draw_study_screen(const StudyRun& run, double now_s, Gui& gui, StudyForm& form, Wishes& wishes) {
     if (form.step != run.entered) form = form_for(run);

@@ -172,7 +172,7 @@ inline constexpr const char* kHowToCalibrate =
     "Put a force sensor under the tablet, or the tablet on a scale. Then press slowly, hold still, press harder, "
     "several "
     "times.";
-inline constexpr const char* kPointsIn = "{} points in {}; the same name goes on with them.";
+inline constexpr const char* kPointsIn = "Points: {}, in {}. The same name continues them.";
 inline constexpr const char* kCalibratedOnDesk = "Pressure is calibrated on the desk, which has the force sensors.";
 inline constexpr const char* kHowOnDesk =
     "palpa calibrate record takes the points and palpa calibrate fit makes a profile of them. Profiles that are "
@@ -233,6 +233,9 @@ inline constexpr const char* kLoseMark =
     "1 mark stands on the tissue and nothing is scored yet. This trial cannot be continued.";
 inline constexpr const char* kLoseManyMarks =
     "{} marks stand on the tissue and nothing is scored yet. This trial cannot be continued.";
+inline constexpr const char* kLeaveAnswers = "Close without these answers?";
+inline constexpr const char* kLoseAnswers = "The answers on this page are not kept yet.";
+inline constexpr const char* kBackToAnswers = "Back to the answers";
 inline constexpr const char* kGoOnWithTrial = "Go on with the trial";
 inline constexpr const char* kEndTrial = "End it";
 

@@ -121,7 +121,8 @@ TEST_CASE(
                                     locked + "}");
     };
     text("sub-07/beh/sub-07_task-palpation_run-01_events.tsv",
-         "onset\ttrial_type\n0\tstart\n1\tundo\n2\tundo\n3\tmark\n4\tundo\n");
+         "onset\ttrial_type\tblock\ttrial\tcondition\n0\tstart\ttest\t1\tpen\n1\tundo\ttest\t1\tpen\n"
+         "2\tundo\ttest\t1\tpen\n3\tmark\ttest\t1\tpen\n4\tundo\ttest\t1\tpen\n");
     const std::string closed = "! nobody is at this step now: the study was closed, or went on with somebody else\n";
     const auto look = [&] { return study("watch " + folder.path().string()).out; };
     now("");  // written by a program that knew no locks

@@ -55,10 +55,11 @@ struct Desk {
         session::take_sample(sample, app.session);
     }
 
-    void show_frame() {
+    app::Wishes show_frame() {
         const session::Session& s = app.session;
-        app::draw_frame({s.scene, *s.plan, s.trial, app.settings, app.notices, app.doing, app.asked, window.now_s()},
-                        {gui, tissue}, app.view, app.session.state);
+        return app::draw_frame(
+            {s.scene, *s.plan, s.trial, app.settings, app.notices, app.doing, app.asked, window.now_s()}, {gui, tissue},
+            app.view, app.session.state);
     }
 };
 

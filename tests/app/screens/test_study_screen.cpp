@@ -12,6 +12,19 @@ using namespace palpa::study;
 using namespace palpa::app;
 using namespace palpa::test;
 
+namespace {
+
+// Shows frames as the loop does: what a frame wishes is carried out.
+void live_frames(Desk& desk, int count) {
+    std::vector<Sample> samples;
+    for (int i = 0; i < count; ++i) {
+        desk.window.poll(0.0, samples);
+        carry_out(desk.show_frame(), desk.window, desk.gui, desk.app);
+    }
+}
+
+}  // namespace
+
 TEST_CASE("study screen: the code's field has the letters again after Escape") {
     const TemporaryFolder folder;
     Desk desk("");
@@ -25,4 +38,45 @@ TEST_CASE("study screen: the code's field has the letters again after Escape") {
     type(desk.window, 'x');
     frames(desk, 5);
     CHECK(desk.app.view.study.code.find('x') != std::string::npos);
+}
+
+TEST_CASE("study screen: a second Enter after the screen before does not take the code that is only offered") {
+    const TemporaryFolder folder;
+    Desk desk("");
+    desk.keeper.busy = false;
+    desk.app.doing =
+        open_study_run(read_protocol(PALPA_SOURCE_DIR "/assets/protocols/softer.json"), folder / "log", "");
+    live_frames(desk, 3);
+    tap(desk.window, SDLK_RETURN);
+    live_frames(desk, 5);
+    CHECK(std::holds_alternative<step::Code>(study_of(desk.app.doing)->step));
+    CHECK(study_of(desk.app.doing)->code.empty());
+    tap(desk.window, SDLK_END);
+    type(desk.window, 'x');
+    live_frames(desk, 3);
+    CHECK(desk.app.view.study.code == "01x");
+    tap(desk.window, SDLK_RETURN);
+    live_frames(desk, 5);
+    CHECK(study_of(desk.app.doing)->code == "01x");
+}
+
+TEST_CASE("study screen: answers that are not logged yet are not closed over without a question") {
+    const TemporaryFolder folder;
+    Desk desk("");
+    desk.keeper.busy = false;
+    desk.app.doing =
+        open_study_run(read_protocol(PALPA_SOURCE_DIR "/assets/protocols/paper.json"), folder / "log", "p1");
+    live_frames(desk, 3);
+    REQUIRE(std::holds_alternative<step::Questions>(study_of(desk.app.doing)->step));
+    Wishes close;
+    close.quit = true;
+    desk.app.view.study.answers.at(0) = "30";
+    carry_out(close, desk.window, desk.gui, desk.app);
+    CHECK_FALSE(desk.app.quit);
+    REQUIRE(desk.app.asked);
+    live_frames(desk, 3);
+    CHECK(desk.app.view.study.answers.at(0) == "30");
+    close.sure = true;
+    carry_out(close, desk.window, desk.gui, desk.app);
+    CHECK(desk.app.quit);
 }
