@@ -74,10 +74,11 @@ TEST_CASE(
         double rate_Hz;
         int most;
     };
-    for (const auto& [rate_Hz, most] : {Case{1000.0, 4}, Case{240.0, 16}, Case{60.0, 64}}) {
-        CAPTURE(rate_Hz);
-        const Walk free = sweep(1.5, rate_Hz, {});
-        const Walk limited = sweep(1.5, rate_Hz, kLimit);
+    for (const Case& stroke : {Case{1000.0, 4}, Case{240.0, 16}, Case{60.0, 64}}) {
+        const int most = stroke.most;
+        CAPTURE(stroke.rate_Hz);
+        const Walk free = sweep(1.5, stroke.rate_Hz, {});
+        const Walk limited = sweep(1.5, stroke.rate_Hz, kLimit);
         CHECK(free.asked_most > most);
         CHECK(limited.asked_most <= most);
         CHECK(limited.asked_most > most / 2);
