@@ -216,7 +216,13 @@ Report make_report(const Observations& seen, const ReportOptions& options) {
             part.notes.clear();
             report.groups.push_back(make_report(part, options));
             report.groups.back().group = seen.groups[at(g)];
+            report.groups.back().participants =
+                static_cast<int>(std::count(seen.group_of.begin(), seen.group_of.end(), g));
         }
+    }
+    if (std::max({report.pairs.size(), report.ppv_pairs.size(), report.choice_pairs.size()}) > kMostResampledPairs) {
+        report.notes.push_back("Of more than " + std::to_string(kMostResampledPairs) +
+                               " pairs of conditions the bootstrap and the permutation tests are left out");
     }
     note_few_people(report);
     return report;

@@ -3,10 +3,14 @@
 #include <vector>
 
 #include "files/distributions.h"
+#include "files/table.h"
 #include "study/people_test.h"
+#include "study/random.h"
 #include "tests/error_message.h"
+#include "tests/study/python.h"
 
 using namespace palpa;
+using namespace palpa::files;
 using namespace palpa::study;
 using namespace palpa::test;
 
@@ -99,4 +103,56 @@ TEST_CASE("people test: the interaction of a mixed design is Welch's t of the di
     CHECK(test.people_a == 3);
     CHECK(test.people_b == 2);
     CHECK(test.design == Design::between);
+}
+
+TEST_CASE("people test: paired, Welch's and permutation tests as scipy has them") {
+    const std::string python = python_with("scipy");
+    if (python.empty()) {
+        MESSAGE("not checked: python3-scipy is not installed");
+        return;
+    }
+    constexpr std::uint64_t kSeed = 33;
+    CAPTURE(kSeed);
+    Random random(kSeed);
+    const TemporaryFolder folder;
+    std::string rows = "study\ta\tb\n";
+    std::vector<std::pair<People, People>> studies;
+    for (int study = 0; study < 40; ++study) {
+        auto& [a, b] = studies.emplace_back();
+        for (int i = 0; i < 8; ++i) {
+            for (People* side : {&a, &b}) side->emplace_back(Contribution{random.below(7), 6});
+            rows +=
+                std::to_string(study) + "\t" + std::to_string(a.back()->k) + "\t" + std::to_string(b.back()->k) + "\n";
+        }
+    }
+    write_text_atomically(folder / "studies.tsv", rows);
+    REQUIRE(run_python(python, folder, R"py(
+from math import inf
+from scipy.stats import permutation_test, ttest_ind, ttest_rel
+lines = [[int(x) for x in line.split()] for line in open("studies.tsv").readlines()[1:]]
+mean_difference = lambda x, y: sum(x) / len(x) - sum(y) / len(y)
+with open("expected.tsv", "w") as out:
+    print("t p welch_t welch_p signs groups".replace(" ", "\t"), file=out)
+    for study in range(40):
+        a = [k / 6 for s, k, _ in lines if s == study]
+        b = [k / 6 for s, _, k in lines if s == study]
+        paired, welch = ttest_rel(a, b), ttest_ind(a[:4], b[4:], equal_var=False)
+        signs = permutation_test((a, b), mean_difference, permutation_type="samples", n_resamples=inf).pvalue
+        groups = permutation_test((a[:4], b[4:]), mean_difference, n_resamples=inf).pvalue
+        print(*(repr(float(x)) for x in (*paired, *welch, signs, groups)), sep="\t", file=out)
+)py"));
+    Table expected = read_tsv(folder / "expected.tsv");
+    for (const auto& [a, b] : studies) {
+        REQUIRE(expected.next());
+        const PeopleTest paired = compare_people(a, b, Average::people, {});
+        CHECK(paired.t == doctest::Approx(expected.number(0)).epsilon(1e-9));
+        CHECK(paired.p == doctest::Approx(expected.number(1)).epsilon(1e-9));
+        CHECK(paired.p_permutation == doctest::Approx(expected.number(4)).epsilon(1e-9));
+        People first = a, second = b;
+        for (std::size_t i = 0; i < 8; ++i) (i < 4 ? second : first)[i].reset();
+        const PeopleTest groups = compare_people(first, second, Average::people, {});
+        CHECK(groups.t == doctest::Approx(expected.number(2)).epsilon(1e-9));
+        CHECK(groups.p == doctest::Approx(expected.number(3)).epsilon(1e-9));
+        CHECK(groups.p_permutation == doctest::Approx(expected.number(5)).epsilon(1e-9));
+    }
 }

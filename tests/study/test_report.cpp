@@ -160,6 +160,7 @@ TEST_CASE("report: groups stand in every table, below the rows of all people") {
     seen.answers.push_back({"a", "effort", "3", 1});
     const Report report = make_report(seen, {});
     REQUIRE(report.groups.size() == 2);
+    CHECK(report.groups[0].participants == 10);
     CHECK(report.groups[0].conditions[1].tp == 5 + 10);  // the even ones find the second nodule
     CHECK(report.groups[1].conditions[1].tp == 10);
     for (const ReportTable& table : report_tables(report)) {
