@@ -5,6 +5,7 @@
 #include <boost/math/distributions/students_t.hpp>
 #include <cassert>
 #include <cmath>
+#include <numbers>
 
 namespace palpa::files {
 namespace {
@@ -29,6 +30,8 @@ double normal_quantile(double p) {
     assert(p > 0.0 && p < 1.0);
     return boost::math::quantile(Normal(), p);
 }
+
+double normal_probability(double x) { return 0.5 * std::erfc(-x / std::numbers::sqrt2); }
 
 double student_p(double t, double df) {
     assert(df > 0.0);

@@ -9,6 +9,9 @@ namespace palpa::files {
 // Returns x with P(X <= x) = p for a standard normal X, 0 < p < 1.
 double normal_quantile(double p);
 
+// Returns P(X <= x) of a standard normal X.
+double normal_probability(double x);
+
 // Returns the two-sided p value of Student's t with df degrees of freedom, P(|T| >= |t|); 0 for an infinite t, NaN for
 // NaN.
 double student_p(double t, double df);

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "files/distributions.h"
 #include "files/quantile.h"
 #include "study/random.h"
 
@@ -14,63 +15,98 @@ namespace {
 
 constexpr Interval kUnknown{std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::quiet_NaN()};
 
-double share(double k, double n) { return k / n; }
+// Sums of doubles: the counts are below 2^53, and are converted once.
+struct Sums {
+    double k = 0.0, n = 0.0;
+    void operator+=(const Sums& other) {
+        k += other.k;
+        n += other.n;
+    }
+    double share() const { return k / n; }
+};
 
-Interval percentiles(std::vector<double>& values, double level) {
-    if (values.empty()) return kUnknown;
+Sums sums_of(const std::optional<Contribution>& one) {
+    return one ? Sums{static_cast<double>(one->k), static_cast<double>(one->n)} : Sums{};
+}
+
+// Returns how many have something to count.
+std::size_t counted(const People& people) {
+    return static_cast<std::size_t>(
+        std::count_if(people.begin(), people.end(), [](const auto& one) { return one && one->n > 0; }));
+}
+
+// Efron's acceleration of a share: how skewed the people are, from e_i = k_i - share n_i.
+double acceleration(const std::vector<Sums>& people) {
+    Sums all;
+    for (const Sums& one : people) all += one;
+    double squares = 0.0, cubes = 0.0;
+    for (const Sums& one : people) {
+        const double e = one.k - all.share() * one.n;
+        squares += e * e;
+        cubes += e * e * e;
+    }
+    return squares > 0.0 ? cubes / (6.0 * std::pow(squares, 1.5)) : 0.0;
+}
+
+Interval limits(std::vector<double>& values, std::size_t people, std::size_t strata, double skew, double level) {
+    if (values.empty() || people <= strata) return kUnknown;
     std::sort(values.begin(), values.end());
-    const double tail = 0.5 * (1.0 - level);
-    return {files::sorted_quantile(values, tail), files::sorted_quantile(values, 1.0 - tail)};
+    constexpr double kRounding = 1e-12;
+    if (values.back() - values.front() < kRounding) return kUnknown;
+    const auto m = static_cast<double>(people), df = static_cast<double>(people - strata);
+    const double z = files::student_quantile(level, df) * std::sqrt(m / df);
+    constexpr double kMostSkew = 0.5;  // far from 1, where a limit would run away; reached below four people only
+    const double az = std::clamp(skew * z, -kMostSkew, kMostSkew);
+    return {files::sorted_quantile(values, files::normal_probability(-z / (1.0 + az))),
+            files::sorted_quantile(values, files::normal_probability(z / (1.0 - az)))};
 }
 
 }  // namespace
 
-Interval bootstrap_share(std::span<const Contribution> people, const BootstrapOptions& options) {
-    std::vector<Contribution> in;
-    for (const Contribution& one : people) {
-        if (one.n > 0) in.push_back(one);
+Interval bootstrap_share(const People& people, const BootstrapOptions& options) {
+    if (counted(people) < 2) return kUnknown;
+    std::vector<Sums> in;
+    for (const auto& one : people) {
+        if (one) in.push_back(sums_of(one));
     }
-    if (in.size() < 2) return kUnknown;
     Random random(options.seed);
     std::vector<double> values;
     for (int r = 0; r < options.resamples; ++r) {
-        double k = 0.0, n = 0.0;
-        for (std::size_t i = 0; i < in.size(); ++i) {
-            const Contribution& one = in[random.below(static_cast<std::uint32_t>(in.size()))];
-            k += static_cast<double>(one.k);
-            n += static_cast<double>(one.n);
-        }
-        values.push_back(share(k, n));
+        Sums sums;
+        for (std::size_t i = 0; i < in.size(); ++i) sums += in[random.below(static_cast<std::uint32_t>(in.size()))];
+        if (sums.n > 0.0) values.push_back(sums.share());
     }
-    return percentiles(values, options.level);
+    return limits(values, in.size(), 1, acceleration(in), options.level);
 }
 
-Interval bootstrap_difference(std::span<const Contribution> a, std::span<const Contribution> b,
-                              const BootstrapOptions& options) {
+Interval bootstrap_difference(const People& a, const People& b, const BootstrapOptions& options) {
     assert(a.size() == b.size());
-    std::array<std::vector<std::size_t>, 3> strata;  // both, only a, only b
+    if (counted(a) < 2 || counted(b) < 2) return kUnknown;
+    struct Pair {
+        Sums a, b;
+    };
+    std::array<std::vector<Pair>, 3> strata;  // both, only a, only b
+    std::size_t people = 0;
     for (std::size_t i = 0; i < a.size(); ++i) {
-        if (a[i].n > 0 && b[i].n > 0) strata[0].push_back(i);
-        if (a[i].n > 0 && b[i].n == 0) strata[1].push_back(i);
-        if (a[i].n == 0 && b[i].n > 0) strata[2].push_back(i);
+        if (!a[i] && !b[i]) continue;
+        strata[!b[i] ? 1 : !a[i] ? 2 : 0].push_back({sums_of(a[i]), sums_of(b[i])});
+        ++people;
     }
-    if (strata[0].size() + strata[1].size() < 2 || strata[0].size() + strata[2].size() < 2) return kUnknown;
+    const auto used = std::count_if(strata.begin(), strata.end(), [](const auto& one) { return !one.empty(); });
     Random random(options.seed);
     std::vector<double> values;
     for (int r = 0; r < options.resamples; ++r) {
-        double k_a = 0.0, n_a = 0.0, k_b = 0.0, n_b = 0.0;
+        Sums of_a, of_b;
         for (const auto& stratum : strata) {
             for (std::size_t i = 0; i < stratum.size(); ++i) {
-                const std::size_t one = stratum[random.below(static_cast<std::uint32_t>(stratum.size()))];
-                k_a += static_cast<double>(a[one].k);
-                n_a += static_cast<double>(a[one].n);
-                k_b += static_cast<double>(b[one].k);
-                n_b += static_cast<double>(b[one].n);
+                const Pair& one = stratum[random.below(static_cast<std::uint32_t>(stratum.size()))];
+                of_a += one.a;
+                of_b += one.b;
             }
         }
-        values.push_back(share(k_a, n_a) - share(k_b, n_b));
+        if (of_a.n > 0.0 && of_b.n > 0.0) values.push_back(of_a.share() - of_b.share());
     }
-    return percentiles(values, options.level);
+    return limits(values, people, static_cast<std::size_t>(used), 0.0, options.level);
 }
 
 }  // namespace palpa::study

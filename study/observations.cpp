@@ -44,18 +44,36 @@ class Unique {
     std::map<std::array<int, 3>, std::size_t> first_line_;
 };
 
+// Takes the group of the row's participant, which must be the same in all of that person's rows.
+void take_group(const files::Table& table, std::optional<std::size_t> column, int participant, Observations& out) {
+    if (!column) return;
+    const int group = name_index(table, column, out.groups);
+    if (participant < 0) {
+        if (group >= 0) table.fail(*column, "n/a: the row names no participant");
+        return;
+    }
+    const auto person = static_cast<std::size_t>(participant);
+    if (person == out.group_of.size()) out.group_of.push_back(group);
+    const int before = out.group_of[person];
+    if (group != before) {
+        table.fail(*column, (before < 0 ? "n/a" : out.groups[static_cast<std::size_t>(before)]) +
+                                " as in a row before: a participant is in one group");
+    }
+}
+
 void read_marks(files::Table& table, Observations& out) {
     const std::size_t condition = table.column("condition");
     const std::size_t tp = table.column("tp"), fn = table.column("fn"), fp = table.column("fp");
     const auto n = optional_column(table, "n");
     const auto nodule = optional_column(table, "nodule");
-    const auto participant = optional_column(table, "participant");
+    const auto participant = optional_column(table, "participant"), group = optional_column(table, "group");
     Unique unique;
     while (table.next()) {
         Observation row;
         row.condition = condition_index(table, condition, out);
         row.nodule = name_index(table, nodule, out.nodules);
         row.participant = name_index(table, participant, out.participants);
+        take_group(table, group, row.participant, out);
         row.tp = count(table, tp);
         row.fn = count(table, fn);
         const bool no_marks_told = row.nodule >= 0 && table.field(fp) == "n/a";
@@ -73,13 +91,14 @@ void read_choices(files::Table& table, Observations& out) {
     const std::size_t condition = table.column("condition");
     const std::size_t correct = table.column("correct"), n = table.column("n");
     const auto comparison = optional_column(table, "comparison");
-    const auto participant = optional_column(table, "participant");
+    const auto participant = optional_column(table, "participant"), group = optional_column(table, "group");
     Unique unique;
     while (table.next()) {
         Choices row;
         row.condition = condition_index(table, condition, out);
         row.comparison = name_index(table, comparison, out.comparisons);
         row.participant = name_index(table, participant, out.participants);
+        take_group(table, group, row.participant, out);
         row.correct = count(table, correct);
         row.n = count(table, n);
         if (row.correct > row.n) table.fail(correct, "at most n = " + std::to_string(row.n));
@@ -100,12 +119,13 @@ Observations read_counts(const std::filesystem::path& tsv) {
     files::Table table = files::read_tsv(tsv);
     Observations out;
     for (const std::string& column : table.columns()) {
-        constexpr std::array<std::string_view, 8> kKnown{"condition", "tp",     "fn",          "fp",
-                                                         "n",         "nodule", "participant", "correct"};
+        constexpr std::array<std::string_view, 9> kKnown{"condition", "tp",          "fn",      "fp",   "n",
+                                                         "nodule",    "participant", "correct", "group"};
         if (column != "comparison" && std::find(kKnown.begin(), kKnown.end(), column) == kKnown.end()) {
             throw files::bad_input(
                 tsv.string(), "line 1", "the column " + files::shown(column),
-                "condition tp fn fp [n] [nodule] [participant], or condition correct n [comparison] [participant]");
+                "condition tp fn fp [n] [nodule] [participant] [group], or condition correct n [comparison] "
+                "[participant] [group]");
         }
     }
     if (table.has_column("correct")) {

@@ -3,9 +3,12 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include "study/primary.h"
 
 namespace palpa::study {
 
@@ -44,11 +47,15 @@ struct Answer {
     std::string condition;  // n/a: asked before the trials
     std::string item;
     std::string value;
+    int participant = -1;  // -1: not given
 };
 
 struct Observations {
-    std::vector<std::string> conditions;  // in the order of their first row
+    std::vector<std::string> conditions;  // in the order of the protocol, else of their first row
     std::vector<std::string> participants;
+    std::vector<std::string> groups;
+    std::vector<int> group_of;                 // by participant, -1: none; shorter than participants if nobody has one
+    std::optional<PrimaryComparison> primary;  // as the protocol states it
     std::vector<std::string> nodules;
     std::vector<std::string> comparisons;
     std::vector<Observation> rows;
@@ -65,7 +72,7 @@ struct Observations {
 int index_of(std::string_view name, std::vector<std::string>& names);
 
 // Reads a table of counts. Its columns are condition, tp, fn, fp and optionally n (= tp + fn, checked), nodule,
-// participant; or, for forced choices, condition, correct, n and optionally participant, comparison. `fp` may be n/a in
+// participant, group; or, for forced choices, condition, correct, n and optionally participant, comparison, group. `fp` may be n/a in
 // rows that name a nodule. Throws InputError with file, line and column for an unknown column, a count that is negative
 // or not whole, n other than tp + fn, correct > n, and two rows with the same condition, participant and nodule or
 // comparison.

@@ -152,7 +152,7 @@ Protocol read_protocol(const std::filesystem::path& file) {
     files::JsonReader json(root, file.string());
     json.only({"name", "version", "seed", "choice", "conditions", "groups", "assignment", "order", "repeats",
                "turn_maps", "flip_maps", "time_limit_s", "practice", "break_every_trials", "nodule_count_told",
-               "instructions", "demographics", "ratings"});
+               "instructions", "demographics", "ratings", "analysis"});
     protocol.name = json.text("name");
     protocol.version = json.text("version");
     protocol.seed = static_cast<std::uint32_t>(json.integer("seed", 0, 2000000000));
@@ -184,6 +184,10 @@ Protocol read_protocol(const std::filesystem::path& file) {
     protocol.instructions = json.text("instructions", "");
     protocol.demographics = read_items(json, "demographics");
     protocol.ratings = read_items(json, "ratings");
+    if (auto analysis = json.optional_object("analysis")) {
+        protocol.primary = read_primary(*analysis, {conditions.begin(), conditions.end()},
+                                        {groups.begin(), groups.end()}, protocol.task == TaskKind::choice);
+    }
     json.finish();
     return protocol;
 }

@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "study/primary.h"
+
 namespace palpa::study {
 
 enum class Modality { touchpad, pen, finger, mouse, tangible, shape_display, hand };
@@ -70,6 +72,7 @@ struct Protocol {
     std::string instructions;
     std::vector<Item> demographics;
     std::vector<Item> ratings;
+    std::optional<PrimaryComparison> primary;  // of the analysis
 };
 
 // Throws InputError that names file, key, what was found and what was expected.

@@ -10,6 +10,7 @@
 #include "files/table.h"
 #include "files/text.h"
 #include "study/count.h"
+#include "study/follow_protocol.h"
 #include "study/ratings.h"
 #include "study/study_folder.h"
 
@@ -289,7 +290,7 @@ Observations read_study(const fs::path& directory) {
     Observations out;
     const auto identity = read_identity(directory);
     if (identity) out.simulated = identity->kind.simulated;
-    read_people(directory, out.notes);  // refuses a code that appears twice
+    const std::vector<Person> people = read_people(directory, out.notes);  // refuses a code that appears twice
     std::vector<fs::path> subjects;
     for (const auto& entry : fs::directory_iterator(directory)) {
         if (entry.path().filename().string().rfind("sub-", 0) == 0) subjects.push_back(entry.path());
@@ -303,11 +304,13 @@ Observations read_study(const fs::path& directory) {
             reader.add(events, identity, out);
         }
         for (const Rating& r : read_ratings(directory, out.participants.back(), out.notes))
-            out.answers.push_back({r.condition, r.item, r.value});
+            out.answers.push_back({r.condition, r.item, r.value, static_cast<int>(out.participants.size()) - 1});
     }
     if (out.rows.empty() && out.choices.empty() && out.interrupted_trials + out.practice_trials == 0) {
         throw files::bad_input(directory.string(), "", "no trial", "sub-XX/beh/..._events.tsv of one trial at least");
     }
+    take_groups(people, out);
+    if (fs::exists(directory / "protocol.json")) follow_protocol(read_protocol(directory / "protocol.json"), out);
     return out;
 }
 

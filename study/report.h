@@ -8,6 +8,7 @@
 
 #include "files/json.h"
 #include "study/bootstrap.h"
+#include "study/comparisons.h"
 #include "study/observations.h"
 #include "study/statistics.h"
 
@@ -16,8 +17,9 @@ namespace palpa::study {
 // A proportion with its intervals.
 struct Share {
     Proportion x;
-    Interval wilson;
-    std::optional<Interval> bootstrap;  // over participants; absent if fewer than two are named
+    Interval wilson;                    // ignores clustering, unless `one_each`
+    std::optional<Interval> bootstrap;  // over participants; absent if it cannot be computed, and with `one_each`
+    bool one_each = false;              // nobody counts more than once, so Wilson's interval is over participants
 };
 
 struct NoduleResult {
@@ -47,30 +49,14 @@ struct ConditionResult {
     std::optional<Spread> duration_s, path_m, mean_force_N, max_force_N;
 };
 
-struct PairResult {
-    std::string a;
-    std::string b;
-    std::string higher;  // a, b or "" if equal
-    double delta = 0.0;  // |p_a - p_b|
-    double combined_interval = 0.0;
-    bool significant = false;            // delta > combined_interval: the paper's test, uncorrected
-    Interval newcombe;                   // of p_a - p_b, both taken as independent
-    double p = 1.0;                      // of the paper's test
-    double p_holm = 1.0;                 // corrected for all pairs of the table
-    std::optional<PairedCounts> paired;  // nodules that the same participants judged under both conditions
-    Interval newcombe_paired;            // of p_a - p_b; only with `paired`
-    double mcnemar_p = 1.0;              // only with `paired`
-    std::optional<Interval> bootstrap;   // of p_a - p_b, over participants
-    int participants_in_both = 0;
-};
-
 struct ChoiceResult {
     std::string condition;
     std::string comparison;  // empty: all comparisons
     Share correct;
     double binomial_p = 1.0;
-    std::optional<TTest> over_people;   // the participants' shares against one half
-    std::optional<TTest> over_answers;  // answers (0 or 1) against one half, as the paper's t(239); not independent
+    std::optional<PeopleTest> over_people;  // against one half; absent if some answers name no participant
+    double p_holm = 1.0;                    // of over_people->p: over the conditions, or over all their comparisons
+    std::optional<TTest> over_answers;      // answers (0 or 1) against one half, as the paper's t(239): a replication
 };
 
 // Answers to one question about one condition.
@@ -89,8 +75,11 @@ struct ReportOptions {
 struct Report {
     ReportOptions options;
     std::vector<ConditionResult> conditions;
-    std::vector<PairResult> pairs;  // sensitivity
+    std::optional<PrimaryResult> primary;  // absent: the protocol states none
+    std::vector<PairResult> pairs;         // sensitivity
     std::vector<PairResult> ppv_pairs;
+    std::vector<PairResult> choice_pairs;
+    std::vector<GroupResult> group_comparisons;
     std::vector<ChoiceResult> choices;
     std::vector<RatingResult> ratings;
     std::vector<std::string> notes;
@@ -99,6 +88,8 @@ struct Report {
     std::int64_t practice_trials = 0;
     std::int64_t interrupted_trials = 0;
     bool simulated = false;
+    std::string group;           // empty: everybody
+    std::vector<Report> groups;  // of two groups and more: the same of each, without comparisons of groups
 };
 
 Report make_report(const Observations& seen, const ReportOptions& options);
@@ -107,7 +98,8 @@ Spread spread_of(std::vector<double> values);
 
 files::Json report_json(const Report& report);
 
-// One table of the report, for a .tsv and for Markdown.
+// One table of the report, for a .tsv and for Markdown. With groups the last column is `group`: first come the rows of
+// all people, then those of each group.
 struct ReportTable {
     std::string name;  // of the file
     std::string title;

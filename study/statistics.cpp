@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <numeric>
 
@@ -105,9 +106,14 @@ TTest t_test(std::span<const double> values, double chance, double level) {
     test.mean = std::accumulate(values.begin(), values.end(), 0.0) / n;
     double squares = 0.0;
     for (const double value : values) squares += square(value - test.mean);
+    if (squares <= 1e-24 * n * square(test.mean)) {  // rounding of equal values
+        constexpr double kNotKnown = std::numeric_limits<double>::quiet_NaN();
+        test.t = test.p = kNotKnown;
+        test.ci = {kNotKnown, kNotKnown};
+        return test;
+    }
     const double error = std::sqrt(squares / test.df / n);
-    const double off = test.mean - chance;
-    test.t = off == 0.0 ? 0.0 : off / error;  // infinite if all values are alike
+    test.t = (test.mean - chance) / error;
     test.p = files::student_p(test.t, test.df);
     const double arm = files::student_quantile(level, test.df) * error;
     test.ci = {test.mean - arm, test.mean + arm};

@@ -68,7 +68,7 @@ double exact_binomial_p(const Proportion& x, double chance);
 // Student's t test of the mean of `values` against `chance`. Needs at least two values.
 struct TTest {
     double mean = 0.0;
-    double t = 0.0;  // infinite if all values are equal and not `chance`
+    double t = 0.0;  // NaN, as p and ci, if all values are equal: there is no variance to compare with
     double df = 0.0;
     double p = 1.0;  // two-sided
     Interval ci;     // of the mean

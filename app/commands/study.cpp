@@ -9,13 +9,15 @@
 namespace palpa::app {
 
 void add_study(CLI::App& app) {
-    CLI::App* study = app.add_subcommand("study", "Studies with people: order, run, simulate, import, analyse, watch");
+    CLI::App* study =
+        app.add_subcommand("study", "Studies with people: order, run, simulate, import, analyse, levels, watch");
     study->require_subcommand(1);
     add_study_order(*study);
     add_study_run(*study);
     add_study_simulate(*study);
     add_study_import(*study);
     add_study_analyse(*study);
+    add_study_levels(*study);
     add_study_watch(*study);
 }
 

@@ -70,7 +70,7 @@ void add_study_analyse(CLI::App& study) {
     command
         ->add_option("INPUT", options->input,
                      "folder of a study's logs; or a table COUNTS.tsv with the columns condition tp fn fp (also n, "
-                     "nodule, participant), or condition correct n (also comparison, participant)")
+                     "nodule, participant, group), or condition correct n (also comparison, participant, group)")
         ->required();
     command->add_option("-o,--output", options->output, "folder for report.md, report.json, tables and figures");
     command->add_option("--level", options->report.bootstrap.level, "confidence level of all intervals (default 0.95)")

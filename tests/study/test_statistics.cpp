@@ -128,6 +128,9 @@ TEST_CASE("statistics: Student's t of a few values") {
     CHECK(test.df == 3.0);
     CHECK(test.ci.low < 0.75);
     CHECK(test.ci.low == doctest::Approx(0.75 - 3.182446305284263 * std::sqrt(0.125 / 12.0)).epsilon(1e-9));
+    const double alike[] = {1.0 / 3.0, 1.0 / 3.0, 1.0 / 3.0}, ones[] = {1.0, 1.0};  // no variance, no test
+    CHECK(std::isnan(t_test(alike, 0.5, 0.95).p));
+    CHECK(std::isnan(t_test(ones, 0.5, 0.95).ci.low));
 }
 
 TEST_CASE("statistics: Holm's correction") {

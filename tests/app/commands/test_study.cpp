@@ -241,9 +241,10 @@ TEST_CASE(
     for (const Json& pair : report["pairs"]) {
         if (pair["b"] != "off" && pair["a"] != "off") continue;
         CHECK(pair["higher"] != "off");
-        CHECK(pair["significant"] == true);
+        CHECK(pair["replication"]["significant"] == true);
         CHECK(pair["p_holm"].get<double>() < 0.05);
-        CHECK(pair["paired"]["n"] == 72);
+        CHECK(pair["p_permutation"].get<double>() < 0.05);
+        CHECK(pair["ignores_clustering"]["n"] == 72);
         CHECK(pair["participants_in_both"] == 24);
         ++against_off;
     }
@@ -301,6 +302,17 @@ TEST_CASE("command study simulate: the paper's protocol leaves hands out; forced
         "stdout");
     CHECK(again["trials"] == 0);
     CHECK(again["already_there"] == 480);
+}
+
+TEST_CASE("command study levels: a table of rejections and coverage, theirs labelled") {
+    const TemporaryFolder folder;
+    const std::string file = (folder / "levels.md").string();
+    const Called called = study("levels --people 10 --repeats 2 --slope-sd 1 --studies 10 --resamples 100 -o " + file);
+    REQUIRE(called.status == 0);
+    CHECK(contains(called.out, "| people, repeats, slope SD | 10, 2, 1 |"));
+    CHECK(contains(called.out, "| the paper's interval (replication) |"));
+    CHECK(read_text(file) == called.out);
+    refused("levels --people 1", "--people");
 }
 
 TEST_CASE("command study simulate: a disk that is full or cannot be written stops the study with a message") {
