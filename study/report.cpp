@@ -261,6 +261,8 @@ Report make_report(const Observations& seen, const ReportOptions& options) {
             if (const auto choice = choice_result(seen, c, k, options)) report.choices.push_back(*choice);
         }
     }
+    report.psychometrics = psychometrics_of(seen, options.greatest_lapse, options.bootstrap);
+    report.notes.insert(report.notes.end(), report.psychometrics.notes.begin(), report.psychometrics.notes.end());
     add_ratings(seen.answers, report);
     report.pairs = all_pairs(seen, report.conditions, Quantity::sensitivity, options);
     report.ppv_pairs = all_pairs(seen, report.conditions, Quantity::ppv, options);

@@ -9,6 +9,7 @@
 #include "files/json.h"
 #include "study/bootstrap.h"
 #include "study/observations.h"
+#include "study/psychometric_report.h"
 #include "study/statistics.h"
 
 namespace palpa::study {
@@ -83,7 +84,8 @@ struct RatingResult {
 };
 
 struct ReportOptions {
-    BootstrapOptions bootstrap;  // its level is that of every interval
+    BootstrapOptions bootstrap;    // its level is that of every interval
+    double greatest_lapse = 0.05;  // of psychometric functions
 };
 
 struct Report {
@@ -92,6 +94,7 @@ struct Report {
     std::vector<PairResult> pairs;  // sensitivity
     std::vector<PairResult> ppv_pairs;
     std::vector<ChoiceResult> choices;
+    Psychometrics psychometrics;
     std::vector<RatingResult> ratings;
     std::vector<std::string> notes;
     int participants = 0;

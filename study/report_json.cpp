@@ -122,6 +122,7 @@ files::Json report_json(const Report& report) {
     for (const PairResult& pair : report.ppv_pairs) json["ppv_pairs"].push_back(pair_json(pair));
     if (!report.choices.empty()) json["choices"] = files::Json::array();
     for (const ChoiceResult& choice : report.choices) json["choices"].push_back(choice_json(choice));
+    add_psychometrics(report.psychometrics, json);
     for (const RatingResult& rating : report.ratings) json["ratings"].push_back(rating_json(rating));
     json["notes"] = report.notes;
     return json;

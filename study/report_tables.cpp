@@ -182,6 +182,7 @@ std::vector<ReportTable> report_tables(const Report& report) {
     add(pair_table("ppv_pairs", "Positive predictive value: all pairs of conditions", report.ppv_pairs));
     add(trial_table(report));
     add(choice_table(report));
+    for (ReportTable& table : psychometric_tables(report.psychometrics)) add(std::move(table));
     add(rating_table(report));
     return tables;
 }
@@ -210,6 +211,7 @@ std::string report_markdown(const Report& report) {
            "independent. paired = Newcombe's interval (1998, method 10) and McNemar's exact test over nodules that the "
            "same people judged under both conditions; bootstrap of a pair resamples people within the design. Paired "
            "and bootstrap columns are of a - b.\n";
+    out += psychometric_methods(report.psychometrics);
     for (const std::string& note : report.notes) out += "\n- " + note;
     if (!report.notes.empty()) out += "\n";
     for (const ReportTable& table : report_tables(report)) {

@@ -9,7 +9,8 @@
 namespace palpa::app {
 
 void add_study(CLI::App& app) {
-    CLI::App* study = app.add_subcommand("study", "Studies with people: order, run, simulate, import, analyse, watch");
+    CLI::App* study =
+        app.add_subcommand("study", "Studies with people: order, run, simulate, import, analyse, watch, observers");
     study->require_subcommand(1);
     add_study_order(*study);
     add_study_run(*study);
@@ -17,6 +18,7 @@ void add_study(CLI::App& app) {
     add_study_import(*study);
     add_study_analyse(*study);
     add_study_watch(*study);
+    add_study_observers(*study);
 }
 
 }  // namespace palpa::app
