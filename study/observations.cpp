@@ -9,6 +9,7 @@
 #include "files/table.h"
 #include "files/text.h"
 #include "study/count.h"
+#include "study/stiffer_counts.h"
 
 namespace palpa::study {
 namespace {
@@ -117,6 +118,7 @@ int index_of(std::string_view name, std::vector<std::string>& names) {
 
 Observations read_counts(const std::filesystem::path& tsv) {
     files::Table table = files::read_tsv(tsv);
+    if (table.has_column("stiffer")) return read_stiffer_counts(table);
     Observations out;
     for (const std::string& column : table.columns()) {
         constexpr std::array<std::string_view, 9> kKnown{"condition", "tp",          "fn",      "fp",   "n",
@@ -125,7 +127,7 @@ Observations read_counts(const std::filesystem::path& tsv) {
             throw files::bad_input(
                 tsv.string(), "line 1", "the column " + files::shown(column),
                 "condition tp fn fp [n] [nodule] [participant] [group], or condition correct n [comparison] "
-                "[participant] [group]");
+                "[participant] [group], or condition reference_kPa comparison_kPa stiffer n [participant]");
         }
     }
     if (table.has_column("correct")) {

@@ -42,6 +42,20 @@ struct Choices {
     std::int64_t n = 0;
 };
 
+// What the stiffness of forced choices is compared with: x = ln(second / first), or ln(comparison / reference) where the
+// reference stays under one condition and in tables of counts.
+enum class StiffnessAxis { second_first, comparison_reference };
+
+// Forced choices at one level: how often the second surface, or the comparison, was called the stiffer one.
+struct StifferAnswers {
+    int condition = 0;
+    int participant = -1;  // -1: not given
+    StiffnessAxis axis = StiffnessAxis::second_first;
+    double x = 0.0;
+    std::int64_t stiffer = 0;
+    std::int64_t n = 0;
+};
+
 // An answer to one of the protocol's questions: a number, or the text that was chosen or typed.
 struct Answer {
     std::string condition;  // n/a: asked before the trials
@@ -61,6 +75,7 @@ struct Observations {
     std::vector<Observation> rows;
     std::vector<TrialFigures> trials;
     std::vector<Choices> choices;
+    std::vector<StifferAnswers> stiffer;  // the same choices, for psychometric functions
     std::vector<Answer> answers;
     std::vector<std::string> notes;  // for the reader of a report: interrupted trials, cut lines, clocks set back
     bool simulated = false;          // at least one trial is simulated
@@ -75,7 +90,7 @@ int index_of(std::string_view name, std::vector<std::string>& names);
 // participant, group; or, for forced choices, condition, correct, n and optionally participant, comparison, group. `fp` may be n/a in
 // rows that name a nodule. Throws InputError with file, line and column for an unknown column, a count that is negative
 // or not whole, n other than tp + fn, correct > n, and two rows with the same condition, participant and nodule or
-// comparison.
+// comparison. A table with a column stiffer is read by study/stiffer_counts.h.
 Observations read_counts(const std::filesystem::path& tsv);
 
 }  // namespace palpa::study

@@ -119,8 +119,9 @@ std::vector<Item> read_items(files::JsonReader& json, std::string_view key) {
     return items;
 }
 
-ChoiceTask read_choice(files::JsonReader json) {
-    json.only({"reference_kPa", "comparisons_kPa", "repeats", "alternate_conditions"});
+// `conditions` are read already.
+ChoiceTask read_choice(files::JsonReader json, const std::vector<Condition>& conditions) {
+    json.only({"reference_kPa", "comparisons_kPa", "repeats", "alternate_conditions", "reference_on"});
     ChoiceTask task;
     task.reference_kPa = json.number("reference_kPa", {0.0, 1e6, true});
     task.comparisons_kPa = json.numbers("comparisons_kPa", 0, {0.0, 1e6, true});
@@ -130,6 +131,14 @@ ChoiceTask read_choice(files::JsonReader json) {
     }
     task.repeats = json.integer("repeats", 1, 1000, task.repeats);
     task.alternate_conditions = json.boolean("alternate_conditions", false);
+    if (json.has("reference_on")) {
+        const std::string id = json.text("reference_on");
+        const auto it =
+            std::find_if(conditions.begin(), conditions.end(), [&](const auto& one) { return one.id == id; });
+        if (it == conditions.end())
+            json.fail("reference_on", files::shown(id), "the id of a condition of this protocol");
+        task.reference_on = static_cast<std::size_t>(it - conditions.begin());
+    }
     json.finish();
     return task;
 }
@@ -156,15 +165,13 @@ Protocol read_protocol(const std::filesystem::path& file) {
     protocol.name = json.text("name");
     protocol.version = json.text("version");
     protocol.seed = static_cast<std::uint32_t>(json.integer("seed", 0, 2000000000));
-    if (auto choice = json.optional_object("choice")) {
-        protocol.task = TaskKind::choice;
-        protocol.choice = read_choice(*choice);
-    }
+    if (json.has("choice")) protocol.task = TaskKind::choice;
     std::set<std::string> conditions, groups;
     for (files::JsonReader& entry : json.objects("conditions")) {
         protocol.conditions.push_back(read_condition(entry, protocol.task, conditions));
     }
     if (protocol.conditions.empty()) json.fail("conditions", "nothing", "one condition at least");
+    if (auto choice = json.optional_object("choice")) protocol.choice = read_choice(*choice, protocol.conditions);
     for (files::JsonReader& entry : json.objects("groups"))
         protocol.groups.push_back(read_group(entry, protocol.conditions, groups));
     if (protocol.groups.empty()) {

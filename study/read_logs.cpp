@@ -1,6 +1,7 @@
 #include "study/read_logs.h"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <optional>
 #include <set>
@@ -12,6 +13,7 @@
 #include "study/count.h"
 #include "study/follow_protocol.h"
 #include "study/ratings.h"
+#include "study/stiffer_counts.h"
 #include "study/study_folder.h"
 
 namespace palpa::study {
@@ -58,6 +60,10 @@ void take_choice(const files::Table& table, RunLog& run) {
     const bool correct = whole_number(table, table.column("correct"), 0, 1) == 1;
     run.choices.push_back(
         {run.trial, run.condition, std::string(table.field(table.column("comparison_kPa"))), correct, run.practice});
+    const StifferAnswers level = stiffer_choice(table);
+    run.choices.back().axis = level.axis;
+    run.choices.back().x = level.x;
+    run.choices.back().stiffer = level.stiffer == 1;
 }
 
 struct Settings {
@@ -142,6 +148,8 @@ void add_choices(const RunLog& run, int participant, Observations& out) {
         row.correct = choice.correct ? 1 : 0;
         row.n = 1;
         out.choices.push_back(row);
+        if (!std::isnan(choice.x))
+            out.stiffer.push_back({row.condition, participant, choice.axis, choice.x, choice.stiffer ? 1 : 0, 1});
     }
 }
 

@@ -33,6 +33,9 @@ struct RunLog {
         std::string comparison;
         bool correct = false;
         bool practice = false;
+        StiffnessAxis axis = StiffnessAxis::second_first;
+        double x = std::numeric_limits<double>::quiet_NaN();  // NaN: the log does not tell the level
+        bool stiffer = false;                                 // the second, or the comparison, was called stiffer
     };
     std::vector<Choice> choices;  // of a run of forced choices; each of them is finished
 };

@@ -202,6 +202,8 @@ Report make_report(const Observations& seen, const ReportOptions& options) {
         }
     }
     correct_choices(report.choices);
+    report.psychometrics = psychometrics_of(seen, options.greatest_lapse, options.bootstrap);
+    report.notes.insert(report.notes.end(), report.psychometrics.notes.begin(), report.psychometrics.notes.end());
     add_ratings(seen.answers, report);
     report.primary = primary_result(seen, options.bootstrap);
     report.pairs = compare_conditions(seen, Quantity::sensitivity, options.bootstrap);

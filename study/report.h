@@ -10,6 +10,7 @@
 #include "study/bootstrap.h"
 #include "study/comparisons.h"
 #include "study/observations.h"
+#include "study/psychometric_report.h"
 #include "study/statistics.h"
 
 namespace palpa::study {
@@ -69,7 +70,8 @@ struct RatingResult {
 };
 
 struct ReportOptions {
-    BootstrapOptions bootstrap;  // its level is that of every interval
+    BootstrapOptions bootstrap;    // its level is that of every interval
+    double greatest_lapse = 0.05;  // of psychometric functions
 };
 
 struct Report {
@@ -81,6 +83,7 @@ struct Report {
     std::vector<PairResult> choice_pairs;
     std::vector<GroupResult> group_comparisons;
     std::vector<ChoiceResult> choices;
+    Psychometrics psychometrics;
     std::vector<RatingResult> ratings;
     std::vector<std::string> notes;
     int participants = 0;

@@ -117,6 +117,7 @@ files::Json report_json(const Report& report) {
     add_comparisons(report, json);
     if (!report.choices.empty()) json["choices"] = files::Json::array();
     for (const ChoiceResult& choice : report.choices) json["choices"].push_back(choice_json(choice));
+    add_psychometrics(report.psychometrics, json);
     for (const RatingResult& rating : report.ratings) json["ratings"].push_back(rating_json(rating));
     for (const Report& group : report.groups) json["groups"][group.group] = report_json(group);
     json["notes"] = report.notes;

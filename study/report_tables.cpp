@@ -158,7 +158,9 @@ void add_groups(const Report& report, std::vector<ReportTable>& tables) {
 std::vector<ReportTable> report_tables(const Report& report) {
     std::vector<ReportTable> tables{sensitivity_table(report), nodule_table(report), ppv_table(report)};
     for (ReportTable& table : comparison_tables(report)) tables.push_back(std::move(table));
-    for (const auto make : {trial_table, choice_table, rating_table}) tables.push_back(make(report));
+    for (const auto make : {trial_table, choice_table}) tables.push_back(make(report));
+    for (ReportTable& table : psychometric_tables(report.psychometrics)) tables.push_back(std::move(table));
+    tables.push_back(rating_table(report));
     std::erase_if(tables, [](const ReportTable& table) { return table.rows.empty(); });
     if (!report.groups.empty()) add_groups(report, tables);
     return tables;
@@ -193,6 +195,7 @@ std::string report_markdown(const Report& report) {
         "of tables take the nodules of one person as independent and reject too often: *replication* is the test of "
         "Li et al. (significant = the difference is larger than the combined interval, each pair alone), *ignores "
         "clustering* is McNemar's exact test with Newcombe's interval (1998, method 10).\n";
+    out += psychometric_methods(report.psychometrics);
     for (const std::string& note : report.notes) out += "\n- " + note;
     if (!report.notes.empty()) out += "\n";
     for (const ReportTable& table : report_tables(report)) {

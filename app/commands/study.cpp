@@ -9,8 +9,8 @@
 namespace palpa::app {
 
 void add_study(CLI::App& app) {
-    CLI::App* study =
-        app.add_subcommand("study", "Studies with people: order, run, simulate, import, analyse, levels, watch");
+    CLI::App* study = app.add_subcommand(
+        "study", "Studies with people: order, run, simulate, import, analyse, levels, observers, watch");
     study->require_subcommand(1);
     add_study_order(*study);
     add_study_run(*study);
@@ -19,6 +19,7 @@ void add_study(CLI::App& app) {
     add_study_analyse(*study);
     add_study_levels(*study);
     add_study_watch(*study);
+    add_study_observers(*study);
 }
 
 }  // namespace palpa::app

@@ -10,6 +10,7 @@ namespace palpa::app {
 void add_study_analyse(CLI::App& study);
 void add_study_import(CLI::App& study);
 void add_study_levels(CLI::App& study);
+void add_study_observers(CLI::App& study);
 void add_study_order(CLI::App& study);
 void add_study_run(CLI::App& study);
 void add_study_simulate(CLI::App& study);

@@ -67,6 +67,7 @@ files::Json now_json(const StudyRun& run) {
     json["present_kPa"] = {trial.reference_first ? task.reference_kPa : comparison_kPa,
                            trial.reference_first ? comparison_kPa : task.reference_kPa};
     json["interval"] = run.interval + 1;
+    json["condition"] = due_condition(run).id;  // that of the interval
     return json;
 }
 
@@ -197,6 +198,7 @@ void finish_due(StudyRun& run) {
     run.progress.finished.insert(due_trial(run).trial);
     run.progress.next = study::next_trial(run.progress.plan, run.progress.finished);
     run.rested = false;
+    run.interval = 0;
     go_on(run);
 }
 
@@ -336,7 +338,7 @@ void interval_presented(StudyRun& run) {
 void choose_softer(bool first, double now_s, StudyRun& run) {
     const study::PlannedTrial& trial = due_trial(run);
     const study::ChoiceTask& task = run.protocol.choice;
-    const study::Condition& condition = due_condition(run);
+    const study::Condition& condition = run.protocol.conditions[trial.condition];
     const bool reference = first == trial.reference_first;
     study::ChoiceRow row;
     const std::string block = trial.practice ? "practice" : "test";
@@ -349,6 +351,7 @@ void choose_softer(bool first, double now_s, StudyRun& run) {
     row.seed = trial.seed;
     row.reference_kPa = task.reference_kPa;
     row.comparison_kPa = task.comparisons_kPa[static_cast<std::size_t>(trial.comparison)];
+    if (task.reference_on) row.reference_on = run.protocol.conditions[*task.reference_on].id;
     row.first = trial.reference_first ? "reference" : "comparison";
     row.answer = reference ? "reference" : "comparison";
     row.correct = reference == (row.reference_kPa < row.comparison_kPa) ? 1 : 0;

@@ -269,6 +269,7 @@ TEST_CASE("choice log: every answer is on the disk, read back and told from fini
         ChoiceLog log(next_run(folder.path(), "01", "softer"));
         ChoiceRow row;
         row.condition = "with";
+        row.reference_kPa = 1.75;
         row.comparison_kPa = 2.25;
         row.correct = 1;
         REQUIRE(log.write(row));
