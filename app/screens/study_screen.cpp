@@ -78,10 +78,10 @@ void draw_keeping(double now_s, Gui& gui, const StudyRun& run, Wishes& wishes) {
     if (!run.warnings.empty()) trials_button(gui, run, wishes);
 }
 
-// A second Enter after the screen before must not make a participant of the code that is only offered.
-bool by_accident(const StudyRun& run, const StudyForm& form, double now_s) {
+// A second Enter that was meant for the screen before must not take a code that is only offered, or leave questions open.
+bool is_double_enter(const StudyRun& run, double now_s) {
     constexpr double kDoubleEnter_s = 1.0;
-    return form.code == form.offered && (run.step_began_s == 0.0 || now_s - run.step_began_s < kDoubleEnter_s);
+    return run.step_began_s == 0.0 || now_s - run.step_began_s < kDoubleEnter_s;
 }
 
 void draw_code(const step::Code& step, const StudyRun& run, double now_s, Gui& gui, StudyForm& form, Wishes& wishes) {
@@ -98,7 +98,7 @@ void draw_code(const step::Code& step, const StudyRun& run, double now_s, Gui& g
     if (ImGui::IsItemDeactivated() && ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape))) form.refused = -1;
     gap(gui);
     const bool on = forward(words::kGoOn, gui) || entered;
-    const bool accident = by_accident(run, form, now_s);
+    const bool accident = form.code == form.offered && is_double_enter(run, now_s);
     if (on && !accident) wishes.study = EnterCode{text};
     if (on && accident) form.refused = -1;  // Enter has taken the focus from the field
     if (!run.note.empty()) warning_paragraph(run.note);
@@ -156,7 +156,7 @@ void draw_item(const study::Item& item, Gui& gui, std::string& answer) {
     if (text_field("##text", text, sizeof text, flags, gui)) answer = text;
 }
 
-void draw_items(const StudyRun& run, Gui& gui, std::vector<std::string>& answers, Wishes& wishes) {
+void draw_items(const StudyRun& run, double now_s, Gui& gui, std::vector<std::string>& answers, Wishes& wishes) {
     const std::vector<study::Item>& items = due_items(run);
     answers.resize(items.size());
     const auto* rated = std::get_if<step::Ratings>(&run.step);
@@ -179,7 +179,9 @@ void draw_items(const StudyRun& run, Gui& gui, std::vector<std::string>& answers
         gap(gui);
     }
     ImGui::EndChild();
-    if (forward(words::kGoOn, gui, good)) wishes.study = SubmitAnswers{answers};
+    const bool open = std::all_of(answers.begin(), answers.end(), [](const std::string& a) { return a.empty(); });
+    const bool accident = open && is_double_enter(run, now_s);
+    if (forward(words::kGoOn, gui, good) && !accident) wishes.study = SubmitAnswers{answers};
 }
 
 void draw_instructions(const StudyRun& run, Gui& gui, Wishes& wishes) {
@@ -345,7 +347,7 @@ StudyForm form_for(const StudyRun& run) {
 void draw_step(const StudyRun& run, double now_s, Gui& gui, StudyForm& form, Wishes& wishes) {
     if (const auto* code = std::get_if<step::Code>(&run.step)) return draw_code(*code, run, now_s, gui, form, wishes);
     if (at<step::Again>(run)) return draw_again(run, gui, wishes);
-    if (at<step::Questions>(run) || at<step::Ratings>(run)) return draw_items(run, gui, form.answers, wishes);
+    if (at<step::Questions>(run) || at<step::Ratings>(run)) return draw_items(run, now_s, gui, form.answers, wishes);
     if (at<step::Instructions>(run)) return draw_instructions(run, gui, wishes);
     if (const auto* device = std::get_if<step::Device>(&run.step)) return draw_device(*device, run, gui, wishes);
     if (at<step::Present>(run)) return draw_present(run, gui, wishes);

@@ -60,6 +60,23 @@ TEST_CASE("study screen: a second Enter after the screen before does not take th
     CHECK(study_of(desk.app.doing)->code == "01x");
 }
 
+TEST_CASE("study screen: a second Enter after the code does not leave the questions open for good") {
+    const TemporaryFolder folder;
+    Desk desk("");
+    desk.keeper.busy = false;
+    desk.app.doing =
+        open_study_run(read_protocol(PALPA_SOURCE_DIR "/assets/protocols/paper.json"), folder / "log", "p1");
+    live_frames(desk, 3);
+    REQUIRE(std::holds_alternative<step::Questions>(study_of(desk.app.doing)->step));
+    tap(desk.window, SDLK_RETURN);
+    live_frames(desk, 5);
+    CHECK(std::holds_alternative<step::Questions>(study_of(desk.app.doing)->step));
+    desk.app.view.study.answers.at(0) = "30";
+    tap(desk.window, SDLK_RETURN);
+    live_frames(desk, 5);
+    CHECK_FALSE(std::holds_alternative<step::Questions>(study_of(desk.app.doing)->step));
+}
+
 TEST_CASE("study screen: answers that are not logged yet are not closed over without a question") {
     const TemporaryFolder folder;
     Desk desk("");
