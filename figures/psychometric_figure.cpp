@@ -15,19 +15,21 @@ using study::PsychometricResult;
 constexpr int kPanelsInRow = 3;
 constexpr std::size_t kMostPanels = 24;  // more cannot be read on one page
 
-constexpr const char* kHead =
+constexpr const char* kPsychometricHead =
     R"gp(# gnuplot psychometric.gp draws psychometric.png; gnuplot -e "kind='svg'" psychometric.gp: or svg, pdf
 # Points: answers of all people, their area in proportion to the number of answers. Thick: curve of all, thin: of each person.
 if (!exists("kind")) kind = "png"
 )gp";
 
-constexpr const char* kStyle =
+constexpr const char* kPsychometricStyle =
     R"gp(set output "psychometric." . kind
 set border 3
 set tics nomirror
 set yrange [-0.02:1.02]
 set ytics 0.25
-set xtics (log(0.1) log(0.1), "1/4" log(0.25), "1/2" log(0.5), "1/1.5" -log(1.5), "1" 0, "1.5" log(1.5), "2" log(2.0), "4" log(4.0))
+set xtics ("1/4" -log(4.0), "1/2" -log(2.0), "1/1.5" -log(1.5), "1" 0, "1.5" log(1.5), "2" log(2.0), "4" log(4.0))
+set lmargin 9
+set rmargin 3
 set grid ytics lc rgb "#BBBBBB" dt 3
 unset key
 curve(x, pse, sd, lapse) = lapse + (1 - 2 * lapse) * norm((x - pse) / sd)
@@ -87,12 +89,12 @@ std::string psychometric_script(const study::Report& report) {
     const std::string px = std::to_string(width_px) + "," + std::to_string(height_px);
     const std::string inches =
         files::number_text(width_px / 100.0) + "in," + files::number_text(height_px / 100.0) + "in";
-    std::string out = kHead;
+    std::string out = kPsychometricHead;
     out += "set encoding utf8\n";
     out += "if (kind eq 'png') set terminal pngcairo size " + px + " font 'DejaVu Sans,12'\n";
     out += "if (kind eq 'svg') set terminal svg size " + px + " font 'DejaVu Sans,14' background rgb 'white'\n";
     out += "if (kind eq 'pdf') set terminal pdfcairo size " + inches + " font 'DejaVu Sans,14'\n";
-    out += kStyle;
+    out += kPsychometricStyle;
     out += "set multiplot layout " + std::to_string(rows) + "," + std::to_string(columns) +
            (report.simulated ? " title 'SIMULATED participants'\n" : "\n");
     for (std::size_t i = 0; i < panels.size(); ++i) out += panel(*panels[i], curves, i, from - margin, to + margin);

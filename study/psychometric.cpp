@@ -51,11 +51,11 @@ CurvePoint best_climb(const CurveSearch& search, const auto& starts) {
     return best;
 }
 
-std::array<double, 3> lapses_of(double greatest) { return {0.2 * greatest, 0.5 * greatest, greatest}; }
+std::array<double, 2> lapses_of(double greatest) { return {0.2 * greatest, greatest}; }
 
 constexpr double kSteepest = 40.0;  // 1 / sd of a start, per range of x
 constexpr double kFlattest = 0.2;
-constexpr int kSlopes = 8;  // in a geometric row between them
+constexpr int kSlopes = 6;  // in a geometric row between them
 double slope_of_row(int i) {
     return kFlattest * std::pow(kSteepest / kFlattest, static_cast<double>(i) / (kSlopes - 1));
 }
@@ -71,9 +71,9 @@ CurvePoint likeliest(std::span<const LevelAnswers> levels, double greatest_lapse
     } else {
         for (int i = 0; i < kSlopes; ++i) {
             const double slope = slope_of_row(i) / range;
-            for (int place = -4; place <= 4; ++place) {
+            for (int place = -3; place <= 3; ++place) {
                 for (const double lapse : lapses_of(greatest_lapse))
-                    offer(search, {-slope * 0.15 * place * range, slope, lapse}, starts);
+                    offer(search, {-slope * 0.18 * place * range, slope, lapse}, starts);
             }
         }
     }

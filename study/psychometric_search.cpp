@@ -125,6 +125,9 @@ double log_likelihood(const CurveSearch& search, const CurvePoint& point) {
 CurvePoint climb(const CurveSearch& search, const CurvePoint& start) {
     constexpr int kMostSteps = 200;
     constexpr double kNoGain = 1e-20, kRounding = 1e-15;  // of the log likelihood, relative to it
+    constexpr double kLittle = 1e-13;
+    constexpr int kMostLittle = 4;  // gains in a row: enough to converge, and no endless way to a step
+    int little = 0;
     CurvePoint at = start;
     at.log_likelihood = log_likelihood(search, at);
     for (int step = 0; step < kMostSteps; ++step) {
@@ -140,7 +143,9 @@ CurvePoint climb(const CurveSearch& search, const CurvePoint& start) {
         CurvePoint next = moved(search, at, d, share);
         while (!(next.log_likelihood >= least) && share > 1e-9) next = moved(search, at, d, share *= 0.5);
         if (!(next.log_likelihood >= least)) break;
+        little = next.log_likelihood - at.log_likelihood < kLittle * (1.0 - at.log_likelihood) ? little + 1 : 0;
         at = next;
+        if (little == kMostLittle) break;
     }
     return at;
 }

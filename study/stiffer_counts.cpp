@@ -7,6 +7,7 @@
 #include <map>
 #include <string>
 #include <tuple>
+#include <unordered_map>
 #include <vector>
 
 #include "files/input_error.h"
@@ -29,6 +30,21 @@ bool is_reference(const files::Table& table, std::size_t column) {
     if (name != "reference" && name != "comparison") table.fail(column, "reference or comparison");
     return name == "reference";
 }
+
+// The indices of names, found without a walk through all of them.
+class Names {
+  public:
+    explicit Names(std::vector<std::string>& names) : names_(names) {}
+    int index_of(std::string_view name) {
+        const auto [it, fresh] = known_.try_emplace(std::string(name), static_cast<int>(names_.size()));
+        if (fresh) names_.emplace_back(name);
+        return it->second;
+    }
+
+  private:
+    std::vector<std::string>& names_;
+    std::unordered_map<std::string, int> known_;
+};
 
 void check_columns(const files::Table& table) {
     constexpr std::array<std::string_view, 6> kKnown{"condition", "reference_kPa", "comparison_kPa", "stiffer",
@@ -61,13 +77,14 @@ Observations read_stiffer_counts(files::Table& table) {
     const bool has_people = table.has_column("participant");
     const std::size_t participant = has_people ? table.column("participant") : condition;
     Observations out;
+    Names conditions(out.conditions), participants(out.participants);
     std::map<std::tuple<int, int, double, double>, std::size_t> first_line;
     while (table.next()) {
         if (table.field(condition).empty() || table.field(condition) == "n/a") table.fail(condition, "a name");
         StifferAnswers row;
-        row.condition = index_of(table.field(condition), out.conditions);
+        row.condition = conditions.index_of(table.field(condition));
         if (has_people && !table.field(participant).empty() && table.field(participant) != "n/a")
-            row.participant = index_of(table.field(participant), out.participants);
+            row.participant = participants.index_of(table.field(participant));
         row.axis = StiffnessAxis::comparison_reference;
         const double reference_kPa = stiffness_kPa(table, reference);
         const double comparison_kPa = stiffness_kPa(table, comparison);
