@@ -4,6 +4,7 @@
 #include <cassert>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 
 #include "study/bootstrap.h"
 #include "study/people_test.h"
@@ -116,6 +117,12 @@ Proportion total(const People& people) {
         x.n += one ? one->n : 0;
     }
     return x;
+}
+
+// NaN where there is nothing to count.
+Interval wilson_of(const Proportion& x, double z) {
+    constexpr double kNotKnown = std::numeric_limits<double>::quiet_NaN();
+    return x.n > 0 ? wilson(x, z) : Interval{kNotKnown, kNotKnown};
 }
 
 People draw_choices(const LevelCase& the_case, double logit, Random& random) {
@@ -236,7 +243,7 @@ void cover(const LevelCase& the_case, const Truth& truth, const LevelOptions& op
     rates.covers("choices: t", compare_with_chance(choices, 0.5, how).ci, truth.choices - 0.5);
     rates.covers("choices: bootstrap", bootstrap_share(choices, boot), truth.choices);
     rates.covers("Se: Wilson", wilson(seen.all[0], z), truth.se[0], kIgnores);
-    rates.covers("PPV: Wilson", wilson(total(marked_a), z), truth.ppv[0], kIgnores);
+    rates.covers("PPV: Wilson", wilson_of(total(marked_a), z), truth.ppv[0], kIgnores);
     rates.covers("choices: Wilson", wilson(total(choices), z), truth.choices, kIgnores);
     rates.covers("Se a - b: Newcombe, paired", newcombe_paired(seen.pairs, z), se, kIgnores);
     rates.covers("Se a - b: Newcombe", newcombe(seen.all[0], seen.all[1], z), se, kReplication);

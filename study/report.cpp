@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <numeric>
 #include <set>
@@ -177,7 +178,7 @@ Spread spread_of(std::vector<double> values) {
     out.mean = std::accumulate(values.begin(), values.end(), 0.0) / out.n;
     double squares = 0.0;
     for (const double value : values) squares += (value - out.mean) * (value - out.mean);
-    out.sd = out.n > 1 ? std::sqrt(squares / (out.n - 1)) : 0.0;
+    out.sd = out.n > 1 ? std::sqrt(squares / (out.n - 1)) : std::numeric_limits<double>::quiet_NaN();
     out.lower_quartile = files::sorted_quantile(values, 0.25);
     out.median = files::sorted_quantile(values, 0.5);
     out.upper_quartile = files::sorted_quantile(values, 0.75);

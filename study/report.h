@@ -32,7 +32,7 @@ struct NoduleResult {
 struct Spread {
     int n = 0;
     double mean = 0.0;
-    double sd = 0.0;  // of the sample (n - 1); 0 for a single value
+    double sd = 0.0;  // of the sample (n - 1); NaN for a single value
     double lower_quartile = 0.0;
     double median = 0.0;
     double upper_quartile = 0.0;

@@ -22,7 +22,7 @@ void add_spread(const char* key, double scale, const std::optional<Spread>& spre
     json[key] = {
         {"n", spread->n},
         {"mean", scale * spread->mean},
-        {"sd", scale * spread->sd},
+        {"sd", files::number_or_null(scale * spread->sd)},
         {"quartiles", {scale * spread->lower_quartile, scale * spread->median, scale * spread->upper_quartile}}};
 }
 

@@ -39,6 +39,19 @@ TEST_CASE("levels: tests over people keep their level and their intervals cover;
     CHECK(contains(text, "| McNemar (ignores clustering) |"));
 }
 
+TEST_CASE("levels: three people who find and mark nothing in some studies are counted where they can be") {
+    LevelOptions options;
+    options.studies = 400;
+    options.resamples = 100;
+    options.seed = 42;
+    CAPTURE(options.seed);
+    for (const Rate& rate : measure_levels({3, 1, 1.0}, options).coverage) {
+        CAPTURE(rate.name);
+        CHECK(rate.n > 200);
+        if (rate.name == "Se: bootstrap") CHECK(rate.n < options.studies);
+    }
+}
+
 TEST_CASE("levels: repeat from their seed") {
     LevelOptions options;
     options.studies = 20;

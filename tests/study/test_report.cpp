@@ -153,6 +153,16 @@ TEST_CASE("report: two people with one right answer each give no number without 
     CHECK(contains(report_markdown(make_report(seen, {})), "WARNING: fewer than 10 people: with (2)"));
 }
 
+TEST_CASE("report: a single trial has no standard deviation") {
+    Observations seen;
+    index_of("a", seen.conditions);
+    seen.rows.push_back({0, -1, -1, 0, 1, 0, 0});
+    seen.trials.push_back({0, 0, 30.0, 1.0, 2.0, 3.0});
+    const Report report = make_report(seen, {});
+    CHECK(report_json(report)["conditions"]["a"]["time_s"]["sd"].is_null());
+    CHECK(contains(report_markdown(report), "| a | time_s | 1 | 30.000 | n/a |"));
+}
+
 TEST_CASE("report: groups stand in every table, below the rows of all people") {
     Observations seen = paired_study();
     for (const char* name : {"I", "II"}) index_of(name, seen.groups);
