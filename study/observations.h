@@ -7,6 +7,9 @@
 #include <string_view>
 #include <vector>
 
+#include "study/exclusions.h"
+#include "study/planned.h"
+
 namespace palpa::study {
 
 // Hits and misses of one nodule in one trial, or their sums over many trials. False marks belong to no nodule.
@@ -59,6 +62,10 @@ struct Observations {
     bool simulated = false;          // at least one trial is simulated
     std::int64_t practice_trials = 0;
     std::int64_t interrupted_trials = 0;
+    std::int64_t excluded_trials = 0;       // finished tests that are left out
+    std::vector<Progress> progress;         // logs against the plan; empty if the plan is not known
+    std::vector<Exclusion> exclusions;      // as the experimenter decided
+    std::vector<Replacement> replacements;  // whose trials are all excluded
 };
 
 // Returns the index of `name`, which is added if it is new.
@@ -67,8 +74,9 @@ int index_of(std::string_view name, std::vector<std::string>& names);
 // Reads a table of counts. Its columns are condition, tp, fn, fp and optionally n (= tp + fn, checked), nodule,
 // participant; or, for forced choices, condition, correct, n and optionally participant, comparison. `fp` may be n/a in
 // rows that name a nodule. Throws InputError with file, line and column for an unknown column, a count that is negative
-// or not whole, n other than tp + fn, correct > n, and two rows with the same condition, participant and nodule or
-// comparison.
+// or not whole, n other than tp + fn, correct > n, a name that is none (study/names.h), and rows that would be counted
+// twice: with the same condition, participant and nodule or comparison, or rows of nodules (comparisons, participants)
+// beside a row for all of them.
 Observations read_counts(const std::filesystem::path& tsv);
 
 }  // namespace palpa::study

@@ -1,20 +1,24 @@
 #include "study/report.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <map>
 #include <numeric>
 #include <set>
+#include <tuple>
 #include <utility>
 
 #include "files/quantile.h"
 #include "files/text.h"
+#include "study/rows_by_condition.h"
 
 namespace palpa::study {
 namespace {
 
-using People = std::vector<Contribution>;  // index: participant
+using People = std::map<int, Contribution>;  // by participant, those who took part
+
+// Above this number of conditions all pairs are too many to compute or to read: 32 conditions make 496.
+constexpr std::size_t kMostCompared = 32;
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
@@ -28,15 +32,21 @@ Contribution part_of(const Observation& row, Quantity quantity) {
 // Sums the rows of each participant; `nodule` -1 takes all nodules. Empty if some of the rows do not name their
 // participant.
 People by_participant(const Observations& seen, int condition, int nodule, Quantity quantity) {
-    People people(seen.participants.size());
-    for (const Observation& row : seen.rows) {
-        if (row.condition != condition || (nodule >= 0 && row.nodule != nodule)) continue;
+    People people;
+    for (const Observation& row : rows_of(seen, condition, nodule)) {
         if (row.participant < 0) return {};
         const Contribution part = part_of(row, quantity);
-        people[at(row.participant)].k += part.k;
-        people[at(row.participant)].n += part.n;
+        Contribution& sum = people[row.participant];
+        sum.k += part.k;
+        sum.n += part.n;
     }
     return people;
+}
+
+std::vector<Contribution> contributions(const People& people) {
+    std::vector<Contribution> out;
+    for (const auto& [participant, sum] : people) out.push_back(sum);
+    return out;
 }
 
 std::optional<Interval> known(const Interval& ci) {
@@ -47,13 +57,12 @@ std::optional<Interval> known(const Interval& ci) {
 std::optional<Share> share_of(const Observations& seen, int condition, int nodule, Quantity quantity,
                               const ReportOptions& options) {
     Proportion x{0, 0};
-    for (const Observation& row : seen.rows) {
-        if (row.condition != condition || (nodule >= 0 && row.nodule != nodule)) continue;
+    for (const Observation& row : rows_of(seen, condition, nodule)) {
         x.k += part_of(row, quantity).k;
         x.n += part_of(row, quantity).n;
     }
     if (x.n == 0) return std::nullopt;
-    const People people = by_participant(seen, condition, nodule, quantity);
+    const auto people = contributions(by_participant(seen, condition, nodule, quantity));
     return Share{x, wilson(x, z_of_level(options.bootstrap.level)), known(bootstrap_share(people, options.bootstrap))};
 }
 
@@ -69,18 +78,20 @@ std::optional<Spread> spread_over(const Observations& seen, int condition, doubl
 ConditionResult condition_result(const Observations& seen, int condition, const ReportOptions& options) {
     ConditionResult out;
     out.name = seen.conditions[at(condition)];
-    std::vector<bool> took_part(seen.participants.size(), false);
-    for (const Observation& row : seen.rows) {
-        if (row.condition != condition) continue;
+    std::set<int> took_part;
+    for (const Observation& row : rows_of(seen, condition)) {
         out.tp += row.tp;
         out.fn += row.fn;
         out.fp += row.fp;
-        if (row.participant >= 0) took_part[at(row.participant)] = true;
+        if (row.participant >= 0) took_part.insert(row.participant);
     }
-    out.participants = static_cast<int>(std::count(took_part.begin(), took_part.end(), true));
+    out.participants = static_cast<int>(took_part.size());
     out.se = share_of(seen, condition, -1, Quantity::sensitivity, options);
     out.ppv = share_of(seen, condition, -1, Quantity::ppv, options);
-    for (int nodule = 0; nodule < static_cast<int>(seen.nodules.size()); ++nodule) {
+    std::set<int> nodules;
+    for (const Observation& row : rows_of(seen, condition)) nodules.insert(row.nodule);
+    for (const int nodule : nodules) {
+        if (nodule < 0) continue;
         const auto se = share_of(seen, condition, nodule, Quantity::sensitivity, options);
         if (se) out.nodules.push_back({seen.nodules[at(nodule)], *se});
     }
@@ -93,26 +104,48 @@ ConditionResult condition_result(const Observations& seen, int condition, const 
 
 // Counts the nodules that a participant judged once under each condition, matched by participant, nodule and repeat.
 std::optional<PairedCounts> paired_counts(const Observations& seen, int a, int b) {
-    std::map<std::array<int, 3>, std::array<int, 2>> found;  // -1: not judged
-    for (const Observation& row : seen.rows) {
-        if ((row.condition != a && row.condition != b) || row.participant < 0 || row.nodule < 0) continue;
-        if (row.tp + row.fn != 1) continue;  // sums of several judgements cannot be matched
-        auto [it, fresh] = found.try_emplace({row.participant, row.nodule, row.repeat}, std::array<int, 2>{-1, -1});
-        it->second[row.condition == a ? 0 : 1] = static_cast<int>(row.tp);
-    }
+    const auto key = [](const Observation& row) { return std::tuple(row.nodule, row.participant, row.repeat); };
+    const auto judged = [](const Observation& row) {  // sums of several judgements cannot be matched
+        return row.participant >= 0 && row.nodule >= 0 && row.tp + row.fn == 1;
+    };
     PairedCounts counts;
-    for (const auto& [key, hit] : found) {
-        if (hit[0] < 0 || hit[1] < 0) continue;
-        std::int64_t& cell =
-            hit[0] == 1 ? (hit[1] == 1 ? counts.both : counts.only_a) : (hit[1] == 1 ? counts.only_b : counts.neither);
+    const auto under_b = rows_of(seen, b);
+    auto other = under_b.begin();
+    for (const Observation& row : rows_of(seen, a)) {  // both are sorted by their keys
+        while (other != under_b.end() && key(*other) < key(row)) ++other;
+        if (other == under_b.end() || key(*other) != key(row) || !judged(row) || !judged(*other)) continue;
+        std::int64_t& cell = row.tp == 1 ? (other->tp == 1 ? counts.both : counts.only_a)
+                                         : (other->tp == 1 ? counts.only_b : counts.neither);
         ++cell;
     }
     if (counts.n() == 0) return std::nullopt;
     return counts;
 }
 
-PairResult pair_result(const Observations& seen, int a, int b, const Share& of_a, const Share& of_b, Quantity quantity,
+// What a pair needs of one condition, made once for all its pairs.
+struct Compared {
+    int condition = 0;
+    Share share;
+    People people;
+};
+
+// Puts two conditions' participants side by side; who took part in one only has n = 0 in the other.
+std::pair<std::vector<Contribution>, std::vector<Contribution>> side_by_side(const People& a, const People& b) {
+    std::map<int, std::pair<Contribution, Contribution>> both;
+    for (const auto& [participant, sum] : a) both[participant].first = sum;
+    for (const auto& [participant, sum] : b) both[participant].second = sum;
+    std::pair<std::vector<Contribution>, std::vector<Contribution>> out;
+    for (const auto& [participant, sums] : both) {
+        out.first.push_back(sums.first);
+        out.second.push_back(sums.second);
+    }
+    return out;
+}
+
+PairResult pair_result(const Observations& seen, const Compared& one, const Compared& other, Quantity quantity,
                        const ReportOptions& options) {
+    const int a = one.condition, b = other.condition;
+    const Share &of_a = one.share, &of_b = other.share;
     const double z = z_of_level(options.bootstrap.level);
     const double difference = of_a.x.p() - of_b.x.p();
     PairResult pair;
@@ -129,9 +162,8 @@ PairResult pair_result(const Observations& seen, int a, int b, const Share& of_a
         pair.newcombe_paired = newcombe_paired(*pair.paired, z);
         pair.mcnemar_p = mcnemar_p(*pair.paired);
     }
-    const People people_a = by_participant(seen, a, -1, quantity);
-    const People people_b = by_participant(seen, b, -1, quantity);
-    if (people_a.empty() || people_b.empty()) return pair;
+    if (one.people.empty() || other.people.empty()) return pair;
+    const auto [people_a, people_b] = side_by_side(one.people, other.people);
     pair.bootstrap = known(bootstrap_difference(people_a, people_b, options.bootstrap));
     for (std::size_t i = 0; i < people_a.size(); ++i) {
         pair.participants_in_both += people_a[i].n > 0 && people_b[i].n > 0 ? 1 : 0;
@@ -147,15 +179,16 @@ int place_of(const Observations& seen, const ConditionResult& condition) {
 std::vector<PairResult> all_pairs(const Observations& seen, const std::vector<ConditionResult>& conditions,
                                   Quantity quantity, const ReportOptions& options) {
     std::vector<PairResult> pairs;
-    const auto share = [&](std::size_t i) {
-        return quantity == Quantity::sensitivity ? conditions[i].se : conditions[i].ppv;
-    };
-    for (std::size_t a = 0; a < conditions.size(); ++a) {
-        for (std::size_t b = a + 1; b < conditions.size(); ++b) {
-            if (!share(a) || !share(b)) continue;
-            pairs.push_back(pair_result(seen, place_of(seen, conditions[a]), place_of(seen, conditions[b]), *share(a),
-                                        *share(b), quantity, options));
-        }
+    if (conditions.size() > kMostCompared) return pairs;
+    std::vector<Compared> compared;
+    for (const ConditionResult& condition : conditions) {
+        const auto& share = quantity == Quantity::sensitivity ? condition.se : condition.ppv;
+        const int place = place_of(seen, condition);
+        if (share) compared.push_back({place, *share, by_participant(seen, place, -1, quantity)});
+    }
+    for (std::size_t a = 0; a < compared.size(); ++a) {
+        for (std::size_t b = a + 1; b < compared.size(); ++b)
+            pairs.push_back(pair_result(seen, compared[a], compared[b], quantity, options));
     }
     std::vector<double> p;
     for (const PairResult& pair : pairs) p.push_back(pair.p);
@@ -170,31 +203,26 @@ std::optional<ChoiceResult> choice_result(const Observations& seen, int conditio
     out.condition = seen.conditions[at(condition)];
     if (comparison >= 0) out.comparison = seen.comparisons[at(comparison)];
     Proportion& x = out.correct.x = {0, 0};
-    People people(seen.participants.size());
+    People people;
     bool all_told = true;
-    for (const Choices& row : seen.choices) {
-        if (row.condition != condition || (comparison >= 0 && row.comparison != comparison)) continue;
+    for (const Choices& row : choice_rows_of(seen, condition, comparison)) {
         x.k += row.correct;
         x.n += row.n;
         all_told = all_told && row.participant >= 0;
         if (row.participant < 0) continue;
-        people[at(row.participant)].k += row.correct;
-        people[at(row.participant)].n += row.n;
+        people[row.participant].k += row.correct;
+        people[row.participant].n += row.n;
     }
     if (x.n == 0) return std::nullopt;
     constexpr double kChance = 0.5;
     const double level = options.bootstrap.level;
     out.correct.wilson = wilson(x, z_of_level(level));
     out.binomial_p = exact_binomial_p(x, kChance);
-    if (x.n >= 2) {
-        std::vector<double> answers(at(static_cast<int>(x.n)), 0.0);
-        std::fill(answers.begin(), answers.begin() + x.k, 1.0);
-        out.over_answers = t_test(answers, kChance, level);
-    }
+    if (x.n >= 2) out.over_answers = t_test_of_answers(x, kChance, level);
     if (!all_told) return out;
-    out.correct.bootstrap = known(bootstrap_share(people, options.bootstrap));
+    out.correct.bootstrap = known(bootstrap_share(contributions(people), options.bootstrap));
     std::vector<double> shares;
-    for (const Contribution& one : people) {
+    for (const auto& [participant, one] : people) {
         if (one.n > 0) shares.push_back(static_cast<double>(one.k) / static_cast<double>(one.n));
     }
     if (shares.size() >= 2) out.over_people = t_test(shares, kChance, level);
@@ -244,7 +272,9 @@ Spread spread_of(std::vector<double> values) {
     return out;
 }
 
-Report make_report(const Observations& seen, const ReportOptions& options) {
+Report make_report(const Observations& given, const ReportOptions& options) {
+    Observations seen = given;
+    sort_rows(seen);
     Report report;
     report.options = options;
     report.notes = seen.notes;
@@ -252,14 +282,22 @@ Report make_report(const Observations& seen, const ReportOptions& options) {
     report.trials = static_cast<std::int64_t>(seen.trials.size());
     report.practice_trials = seen.practice_trials;
     report.interrupted_trials = seen.interrupted_trials;
+    report.excluded_trials = seen.excluded_trials;
+    report.progress = seen.progress;
+    report.exclusions = seen.exclusions;
+    report.replacements = seen.replacements;
     report.simulated = seen.simulated;
     for (int c = 0; c < static_cast<int>(seen.conditions.size()); ++c) {
-        const auto here = [&](const Observation& row) { return row.condition == c; };
-        const bool marked = std::any_of(seen.rows.begin(), seen.rows.end(), here);
-        if (marked) report.conditions.push_back(condition_result(seen, c, options));
-        for (int k = -1; k < static_cast<int>(seen.comparisons.size()); ++k) {
+        if (!rows_of(seen, c).empty()) report.conditions.push_back(condition_result(seen, c, options));
+        std::set<int> comparisons{-1};
+        for (const Choices& row : choice_rows_of(seen, c)) comparisons.insert(row.comparison);
+        for (const int k : comparisons) {
             if (const auto choice = choice_result(seen, c, k, options)) report.choices.push_back(*choice);
         }
+    }
+    if (report.conditions.size() > kMostCompared) {
+        report.notes.push_back("all pairs of " + std::to_string(report.conditions.size()) +
+                               " conditions are not compared: that is done for up to " + std::to_string(kMostCompared));
     }
     add_ratings(seen.answers, report);
     report.pairs = all_pairs(seen, report.conditions, Quantity::sensitivity, options);

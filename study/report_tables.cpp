@@ -183,6 +183,7 @@ std::vector<ReportTable> report_tables(const Report& report) {
     add(trial_table(report));
     add(choice_table(report));
     add(rating_table(report));
+    for (ReportTable& table : plan_tables(report)) add(std::move(table));
     return tables;
 }
 
@@ -202,6 +203,7 @@ std::string report_markdown(const Report& report) {
                whole(report.practice_trials) + " practice trials (not in the tables), " +
                whole(report.interrupted_trials) + " interrupted trials (not in the tables).\n";
     }
+    out += plan_summary(report);
     out += "\nIntervals at " + level + ": wilson = Wilson's score interval; bootstrap = percentiles of " +
            whole(report.options.bootstrap.resamples) + " resamples of participants (seed " +
            std::to_string(report.options.bootstrap.seed) +

@@ -24,6 +24,9 @@ struct StudyKind {
 // if it cannot be written.
 void open_study(const std::filesystem::path& directory, const Protocol& protocol, const StudyKind& kind);
 
+// Throws InputError if the folder is a study's: single runs never share it.
+void check_no_study(const std::filesystem::path& directory);
+
 // The content of study.json. read_identity() returns nothing if there is no such file (logs of single runs). Throws
 // InputError if the file cannot be read.
 struct StudyIdentity {
@@ -63,7 +66,7 @@ std::optional<PlannedTrial> next_trial(const PlannedParticipant& plan, const std
 // The progress of a participant: what a screen needs to begin, or to continue after a crash.
 struct StudyProgress {
     bool known = false;       // the code is in participants.tsv already
-    PlannedParticipant plan;  // for the participant's line in participants.tsv, or for the next free one
+    PlannedParticipant plan;  // of the participant's number (study/exclusions.h), or of the next free one
     std::set<int> finished;
     std::optional<PlannedTrial> next;  // nothing: all trials are finished
 };

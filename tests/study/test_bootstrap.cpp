@@ -70,3 +70,22 @@ TEST_CASE("bootstrap: one participant says nothing") {
     CHECK(std::isnan(bootstrap_share(one, {}).low));
     CHECK(std::isnan(bootstrap_difference(one, one, {}).high));
 }
+
+TEST_CASE("bootstrap: many people, drawn by kinds, have the interval of the normal approximation") {
+    const auto all = people(20000, 3, 0.0, 11);
+    double mean = 0.0, square = 0.0;
+    for (const Contribution& one : all) {
+        const double share = static_cast<double>(one.k) / 3.0;
+        mean += share / 20000.0;
+        square += share * share / 20000.0;
+    }
+    const double arm = 1.96 * std::sqrt((square - mean * mean) / 20000.0);
+    const Interval ci = bootstrap_share(all, {4000, 1, 0.95});
+    // 4,000 resamples: quantiles good to some 3 % of the arm
+    CHECK(ci.low == doctest::Approx(mean - arm).epsilon(0.1 * arm / mean));
+    CHECK(ci.high == doctest::Approx(mean + arm).epsilon(0.1 * arm / mean));
+    // the same people twice: every difference is 0
+    const Interval none = bootstrap_difference(all, all, {200, 1, 0.95});
+    CHECK(none.low == 0.0);
+    CHECK(none.high == 0.0);
+}
