@@ -76,8 +76,11 @@ void load_study(const RunOptions& options, App& app) {
     app.settings_path.clear();  // what a study fixes is not kept as a person's choice
     const bool tablet = app.keeper != nullptr;
     // on a tablet the screen refuses a code that has finished, since there is no command line to give another one
-    StudyRun run =
-        open_study_run(study::read_protocol(options.protocol), options.log, tablet ? "" : options.participant);
+    const study::Protocol protocol = study::read_protocol(options.protocol);
+    std::shared_ptr<const files::FolderLock> lock;
+    if (std::filesystem::is_directory(options.log)) lock = std::make_shared<files::FolderLock>(options.log);
+    StudyRun run = open_study_run(protocol, options.log, tablet ? "" : options.participant);
+    run.lock = lock ? lock : std::make_shared<files::FolderLock>(options.log);
     run.on_tablet = tablet;
     run.first_run = options.first_run;
     if (tablet && !options.participant.empty()) enter_code(options.participant, run);

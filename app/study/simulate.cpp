@@ -13,6 +13,7 @@
 
 #include "app/assets.h"
 #include "files/clock.h"
+#include "files/folder_lock.h"
 #include "files/text.h"
 #include "scene/mapping.h"
 #include "session/session.h"
@@ -288,7 +289,10 @@ SimulateResult simulate_study(const study::Protocol& protocol, const SimulateOpt
     const StudyScenes scenes = load_study_scenes(protocol);
     Shared shared{protocol, options, scenes, {}, {}, {}, {}, {}, {}, {}};
     shared.next_participant = 1;
-    for (const auto& scene : scenes) shared.identities.push_back(identity_of(scene));
+    shared.identities = identities_of(scenes);
+    std::error_code error;
+    std::filesystem::create_directories(options.output, error);
+    const files::FolderLock lock(options.output);
     study::open_study(options.output, protocol, {true, options.seed, "palpa " PALPA_VERSION});
     add_everybody(protocol, options);
     std::vector<std::thread> workers;

@@ -10,6 +10,7 @@
 
 #include "app/study/study_scenes.h"
 #include "app/study/study_step.h"
+#include "files/folder_lock.h"
 #include "session/session.h"
 #include "study/study_folder.h"
 #include "study/typed_trial.h"
@@ -22,11 +23,12 @@ struct StudyRun {
     std::vector<files::Json> identities;           // by condition
     std::vector<std::vector<StudyScene>> stimuli;  // forced choices, by condition: the reference, then each comparison
     std::filesystem::path directory;
-    StudyStep step;             // only the functions below change it
-    int entered = 0;            // number of steps entered so far, which identifies a step
-    double step_began_s = 0.0;  // window's clock when the step was first shown; 0: not yet
-    std::string code;           // of the participant
-    std::string note;           // why a code was refused
+    std::shared_ptr<const files::FolderLock> lock;  // of the directory, while the app is open
+    StudyStep step;                                 // only the functions below change it
+    int entered = 0;                                // number of steps entered so far, which identifies a step
+    double step_began_s = 0.0;                      // window's clock when the step was first shown; 0: not yet
+    std::string code;                               // of the participant
+    std::string note;                               // why a code was refused
     study::StudyProgress progress;
     int interval = 0;                 // of a forced choice: 0 or 1
     bool rested = false;              // the break before this trial is over
