@@ -1,5 +1,8 @@
 #include "figures/study_figures.h"
 
+#include <algorithm>
+#include <set>
+
 #include "figures/gnuplot.h"
 #include "files/text.h"
 
@@ -89,10 +92,25 @@ std::string script_of(const study::Report& report) {
     return out;
 }
 
+// Returns why figures of so many bars are not drawn; empty if they are.
+std::string too_many(const study::Report& report) {
+    constexpr std::size_t kMostBars = 200;
+    std::set<std::string> nodules;
+    for (const study::ConditionResult& condition : report.conditions) {
+        for (const study::NoduleResult& nodule : condition.nodules) nodules.insert(nodule.nodule);
+    }
+    const std::size_t bars = report.conditions.size() * std::max<std::size_t>(1, nodules.size());
+    if (bars <= kMostBars) return "";
+    return "no figures: " + std::to_string(report.conditions.size()) + " conditions of " +
+           std::to_string(nodules.size()) + " nodules make more than " + std::to_string(kMostBars) +
+           " bars; the tables are kept";
+}
+
 }  // namespace
 
 std::string draw_figures(const study::Report& report, const std::filesystem::path& folder) {
     if (report.conditions.empty()) return "";
+    if (const std::string why = too_many(report); !why.empty()) return why;
     files::write_text_atomically(folder / "figures.gp", script_of(report));
     return draw_script(folder / "figures.gp", "the tables are kept");
 }

@@ -50,4 +50,9 @@ double binomial_probability(std::int64_t k, std::int64_t n, double chance) {
     return boost::math::pdf(Binomial(static_cast<double>(n), chance), static_cast<double>(k));
 }
 
+double binomial_at_most(std::int64_t k, std::int64_t n, double chance) {
+    assert(k >= 0 && k <= n && chance > 0.0 && chance < 1.0);
+    return boost::math::cdf(Binomial(static_cast<double>(n), chance), static_cast<double>(k));
+}
+
 }  // namespace palpa::files

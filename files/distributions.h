@@ -22,4 +22,7 @@ double student_quantile(double level, double df);
 // Returns the probability of k hits in n trials that each hit with probability `chance`, 0 < chance < 1.
 double binomial_probability(std::int64_t k, std::int64_t n, double chance);
 
+// Returns the probability of k hits or fewer, 0 <= k <= n.
+double binomial_at_most(std::int64_t k, std::int64_t n, double chance);
+
 }  // namespace palpa::files

@@ -216,6 +216,8 @@ std::vector<PairResult> compare_conditions(const Observations& seen, Quantity qu
                                            const BootstrapOptions& options) {
     const double z = z_of_level(options.level);
     const std::vector<Proportion> shares = pooled_shares(seen, quantity);
+    const auto counted = std::count_if(shares.begin(), shares.end(), [](const Proportion& x) { return x.n > 0; });
+    if (static_cast<std::size_t>(counted) > kMostCompared) return {};
     const std::vector<People> people = people_by_condition(seen, quantity);
     const auto judgements =
         quantity == Quantity::sensitivity ? judgements_by_condition(seen) : std::vector<std::vector<Judgement>>();
@@ -248,7 +250,7 @@ std::vector<PairResult> compare_conditions(const Observations& seen, Quantity qu
 
 std::vector<GroupResult> compare_groups(const Observations& seen, const BootstrapOptions& options) {
     std::vector<GroupResult> all;
-    if (seen.groups.size() < 2) return all;
+    if (seen.groups.size() < 2 || seen.conditions.size() > kMostCompared) return all;
     const PeopleTestOptions how = people_options(options, true);
     for (const Quantity quantity : {Quantity::sensitivity, Quantity::ppv, Quantity::correct}) {
         const PeopleOfGroups people = split(seen, quantity);

@@ -42,6 +42,8 @@ struct PairResult {
 // Compares all conditions that have a share, in the order of seen.conditions. Above kMostResampledPairs pairs, what
 // resamples people (bootstrap, permutation) is left out.
 inline constexpr std::size_t kMostResampledPairs = 1000;
+// Above this number of conditions (100 make 4,950 pairs) no pair is compared: nobody reads so many.
+inline constexpr std::size_t kMostCompared = 100;
 std::vector<PairResult> compare_conditions(const Observations& seen, Quantity quantity,
                                            const BootstrapOptions& options);
 
@@ -56,6 +58,7 @@ struct GroupResult {
     PeopleTest people;
     double p_holm = 1.0;  // over all comparisons of groups of this quantity, with interactions apart
 };
+// None above kMostCompared conditions.
 std::vector<GroupResult> compare_groups(const Observations& seen, const BootstrapOptions& options);
 
 // The comparison that the protocol states, uncorrected.

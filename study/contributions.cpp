@@ -1,6 +1,13 @@
 #include "study/contributions.h"
 
 #include <algorithm>
+#include <map>
+#include <set>
+#include <span>
+#include <string>
+#include <utility>
+
+#include "study/rows_by_condition.h"
 
 namespace palpa::study {
 namespace {
@@ -26,18 +33,36 @@ struct Adding {
     People result() && { return all_named ? std::move(people) : People{}; }
 };
 
+Contribution part_of(const Observation& row, Quantity quantity) {
+    return {row.tp, row.tp + (quantity == Quantity::sensitivity ? row.fn : row.fp)};
+}
+
+Contribution part_of(const Choices& row, Quantity) { return {row.correct, row.n}; }
+
 // Calls take(condition, item, participant, contribution) for each row.
 template <class Take>
 void each_row(const Observations& seen, Quantity quantity, const Take& take) {
     if (quantity == Quantity::correct) {
         for (const Choices& row : seen.choices)
-            take(row.condition, row.comparison, row.participant, Contribution{row.correct, row.n});
+            take(row.condition, row.comparison, row.participant, part_of(row, quantity));
         return;
     }
-    for (const Observation& row : seen.rows) {
-        const std::int64_t others = quantity == Quantity::sensitivity ? row.fn : row.fp;
-        take(row.condition, row.nodule, row.participant, Contribution{row.tp, row.tp + others});
+    for (const Observation& row : seen.rows) take(row.condition, row.nodule, row.participant, part_of(row, quantity));
+}
+
+template <class Row>
+People sums_of(std::span<const Row> rows, Quantity quantity) {
+    std::map<int, Contribution> sums;  // by participant
+    for (const Row& row : rows) {
+        if (row.participant < 0) return {};
+        const Contribution part = part_of(row, quantity);
+        Contribution& sum = sums[row.participant];
+        sum.k += part.k;
+        sum.n += part.n;
     }
+    People people;
+    for (const auto& [participant, sum] : sums) people.emplace_back(sum);
+    return people;
 }
 
 }  // namespace
@@ -48,6 +73,11 @@ People people_of(const Observations& seen, int condition, Quantity quantity, int
         if (c == condition && (item < 0 || i == item)) adding.add(seen.participants.size(), participant, part);
     });
     return std::move(adding).result();
+}
+
+People people_who_took_part(const Observations& sorted, int condition, Quantity quantity, int item) {
+    if (quantity == Quantity::correct) return sums_of(choice_rows_of(sorted, condition, item), quantity);
+    return sums_of(rows_of(sorted, condition, item), quantity);
 }
 
 std::vector<People> people_by_condition(const Observations& seen, Quantity quantity) {
@@ -68,7 +98,16 @@ Observations only_group(const Observations& seen, int group) {
     std::erase_if(out.rows, other);
     std::erase_if(out.trials, other);
     std::erase_if(out.choices, other);
+    std::erase_if(out.stiffer, other);
     std::erase_if(out.answers, other);
+    std::set<std::string> codes;
+    for (std::size_t i = 0; i < seen.participants.size(); ++i) {
+        if (seen.group_of[i] == group) codes.insert(seen.participants[i]);
+    }
+    const auto elsewhere = [&](const auto& one) { return codes.count(one.participant) == 0; };
+    std::erase_if(out.progress, elsewhere);
+    std::erase_if(out.exclusions, elsewhere);
+    std::erase_if(out.replacements, elsewhere);
     return out;
 }
 

@@ -8,6 +8,8 @@
 #include <string_view>
 #include <vector>
 
+#include "study/exclusions.h"
+#include "study/planned.h"
 #include "study/primary.h"
 
 namespace palpa::study {
@@ -81,6 +83,10 @@ struct Observations {
     bool simulated = false;          // at least one trial is simulated
     std::int64_t practice_trials = 0;
     std::int64_t interrupted_trials = 0;
+    std::int64_t excluded_trials = 0;       // finished tests that are left out
+    std::vector<Progress> progress;         // logs against the plan; empty if the plan is not known
+    std::vector<Exclusion> exclusions;      // as the experimenter decided
+    std::vector<Replacement> replacements;  // whose trials are all excluded
 };
 
 // Returns the index of `name`, which is added if it is new.
@@ -89,8 +95,9 @@ int index_of(std::string_view name, std::vector<std::string>& names);
 // Reads a table of counts. Its columns are condition, tp, fn, fp and optionally n (= tp + fn, checked), nodule,
 // participant, group; or, for forced choices, condition, correct, n and optionally participant, comparison, group. `fp` may be n/a in
 // rows that name a nodule. Throws InputError with file, line and column for an unknown column, a count that is negative
-// or not whole, n other than tp + fn, correct > n, and two rows with the same condition, participant and nodule or
-// comparison. A table with a column stiffer is read by study/stiffer_counts.h.
+// or not whole, n other than tp + fn, correct > n, a name that is none (study/names.h), and rows that would be counted
+// twice: with the same condition, participant and nodule or comparison, or rows of nodules (comparisons, participants)
+// beside a row for all of them. A table with a column stiffer is read by study/stiffer_counts.h.
 Observations read_counts(const std::filesystem::path& tsv);
 
 }  // namespace palpa::study

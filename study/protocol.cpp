@@ -8,6 +8,7 @@
 #include "files/json.h"
 #include "files/sha256.h"
 #include "files/text.h"
+#include "study/names.h"
 
 namespace palpa::study {
 namespace {
@@ -15,17 +16,9 @@ namespace {
 constexpr const char* kModalities[] = {"touchpad", "pen", "finger", "mouse", "tangible", "shape-display", "hand"};
 constexpr const char* kOrders[] = {"fixed", "random", "latin", "williams"};
 
-// What becomes a field of a log: a tab or the end of a line in it would make the row unreadable.
-std::string field_text(files::JsonReader& json, std::string_view key, const std::string& otherwise) {
-    const std::string text = json.text(key, otherwise);
-    if (text.find_first_of("\t\n\r") != std::string::npos) json.fail(key, files::shown(text), "a name without tabs");
-    return text;
-}
-
 std::string new_id(files::JsonReader& json, std::set<std::string>& known) {
     const std::string id = json.text("id");
-    if (id.empty() || id.find_first_of("\t\n\r") != std::string::npos)
-        json.fail("id", files::shown(id), "a name without tabs");
+    if (!is_name(id)) json.fail("id", files::shown(id), kNameRule);
     if (!known.insert(id).second) json.fail("id", files::shown(id) + " a second time", "each name once");
     return id;
 }
@@ -36,8 +29,7 @@ std::vector<std::string> read_names(files::JsonReader& json, std::string_view ke
     if (!list.is_array() || list.empty()) json.fail(key, files::described(list), "an array of names");
     for (const files::Json& entry : list) {
         const std::string name = entry.is_string() ? entry.get<std::string>() : "";
-        if (name.empty() || name.find_first_of("\t\n\r") != std::string::npos)
-            json.fail(key, files::described(entry), "a name without tabs");
+        if (!is_name(name)) json.fail(key, files::described(entry), kNameRule);
         if (std::count(names.begin(), names.end(), name) > 0)
             json.fail(key, files::shown(name) + " a second time", "each name once");
         names.push_back(name);
@@ -54,7 +46,9 @@ Condition read_condition(files::JsonReader json, TaskKind task, std::set<std::st
         json.choice("modality", {"touchpad", "pen", "finger", "mouse", "tangible", "shape-display", "hand"}));
     condition.scene = json.text("scene", "");
     condition.profile = json.text("profile", "");
-    condition.device = field_text(json, "device", "n/a");
+    condition.device = json.text("device", "n/a");
+    if (condition.device != "n/a" && !is_name(condition.device))
+        json.fail("device", files::shown(condition.device), kNameRule);
     condition.instructions = json.text("instructions", "");
     if (json.has("nodules")) condition.nodules = read_names(json, "nodules");
     const bool by_hand = condition.modality == Modality::hand;

@@ -223,6 +223,12 @@ Psychometrics psychometrics_of(const Observations& seen, double greatest_lapse, 
             add(std::move(curve));
         }
     }
+    if (of_all.size() > kMostCompared) {
+        found.notes.push_back("JNDs of " + std::to_string(of_all.size()) +
+                              " conditions are not compared in pairs: that is done for up to " +
+                              std::to_string(kMostCompared));
+        return found;
+    }
     for (std::size_t i = 0; i < of_all.size(); ++i) {
         for (std::size_t j = i + 1; j < of_all.size(); ++j) {
             if (axes[i] != axes[j]) continue;

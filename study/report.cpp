@@ -11,6 +11,7 @@
 #include "files/quantile.h"
 #include "files/text.h"
 #include "study/contributions.h"
+#include "study/rows_by_condition.h"
 
 namespace palpa::study {
 namespace {
@@ -34,13 +35,12 @@ Share share_of(const Proportion& x, const People& people, const BootstrapOptions
 std::optional<Share> share_of(const Observations& seen, int condition, int nodule, Quantity quantity,
                               const ReportOptions& options) {
     Proportion x{0, 0};
-    for (const Observation& row : seen.rows) {
-        if (row.condition != condition || (nodule >= 0 && row.nodule != nodule)) continue;
+    for (const Observation& row : rows_of(seen, condition, nodule)) {
         x.k += row.tp;
         x.n += row.tp + (quantity == Quantity::sensitivity ? row.fn : row.fp);
     }
     if (x.n == 0) return std::nullopt;
-    return share_of(x, people_of(seen, condition, quantity, nodule), options.bootstrap);
+    return share_of(x, people_who_took_part(seen, condition, quantity, nodule), options.bootstrap);
 }
 
 std::optional<Spread> spread_over(const Observations& seen, int condition, double TrialFigures::*field) {
@@ -55,18 +55,20 @@ std::optional<Spread> spread_over(const Observations& seen, int condition, doubl
 ConditionResult condition_result(const Observations& seen, int condition, const ReportOptions& options) {
     ConditionResult out;
     out.name = seen.conditions[at(condition)];
-    std::vector<bool> took_part(seen.participants.size(), false);
-    for (const Observation& row : seen.rows) {
-        if (row.condition != condition) continue;
+    std::set<int> took_part;
+    for (const Observation& row : rows_of(seen, condition)) {
         out.tp += row.tp;
         out.fn += row.fn;
         out.fp += row.fp;
-        if (row.participant >= 0) took_part[at(row.participant)] = true;
+        if (row.participant >= 0) took_part.insert(row.participant);
     }
-    out.participants = static_cast<int>(std::count(took_part.begin(), took_part.end(), true));
+    out.participants = static_cast<int>(took_part.size());
     out.se = share_of(seen, condition, -1, Quantity::sensitivity, options);
     out.ppv = share_of(seen, condition, -1, Quantity::ppv, options);
-    for (int nodule = 0; nodule < static_cast<int>(seen.nodules.size()); ++nodule) {
+    std::set<int> nodules;
+    for (const Observation& row : rows_of(seen, condition)) nodules.insert(row.nodule);
+    for (const int nodule : nodules) {
+        if (nodule < 0) continue;
         const auto se = share_of(seen, condition, nodule, Quantity::sensitivity, options);
         if (se) out.nodules.push_back({seen.nodules[at(nodule)], *se});
     }
@@ -83,22 +85,17 @@ std::optional<ChoiceResult> choice_result(const Observations& seen, int conditio
     out.condition = seen.conditions[at(condition)];
     if (comparison >= 0) out.comparison = seen.comparisons[at(comparison)];
     Proportion x{0, 0};
-    for (const Choices& row : seen.choices) {
-        if (row.condition != condition || (comparison >= 0 && row.comparison != comparison)) continue;
+    for (const Choices& row : choice_rows_of(seen, condition, comparison)) {
         x.k += row.correct;
         x.n += row.n;
     }
     if (x.n == 0) return std::nullopt;
     constexpr double kChance = 0.5;
     const double level = options.bootstrap.level;
-    const People people = people_of(seen, condition, Quantity::correct, comparison);
+    const People people = people_who_took_part(seen, condition, Quantity::correct, comparison);
     out.correct = share_of(x, people, options.bootstrap);
     out.binomial_p = exact_binomial_p(x, kChance);
-    if (x.n >= 2) {
-        std::vector<double> answers(at(static_cast<int>(x.n)), 0.0);
-        std::fill(answers.begin(), answers.begin() + x.k, 1.0);
-        out.over_answers = t_test(answers, kChance, level);
-    }
+    if (x.n >= 2) out.over_answers = t_test_of_answers(x, kChance, level);
     if (!people.empty()) out.over_people = compare_with_chance(people, kChance, {level, options.bootstrap.seed, true});
     return out;
 }
@@ -118,12 +115,24 @@ void correct_choices(std::vector<ChoiceResult>& choices) {
     }
 }
 
+// Says that the pairs of very many conditions are not compared.
+void note_many_conditions(Report& report) {
+    const auto choices = std::count_if(report.choices.begin(), report.choices.end(),
+                                       [](const ChoiceResult& one) { return one.comparison.empty(); });
+    const std::size_t most = std::max(report.conditions.size(), static_cast<std::size_t>(choices));
+    if (most <= kMostCompared) return;
+    report.notes.push_back("all pairs of " + std::to_string(most) +
+                           " conditions are not compared: that is done for up to " + std::to_string(kMostCompared));
+}
+
 // Names the conditions with so few people that intervals over people cover too seldom.
 void note_few_people(Report& report) {
     constexpr int kFew = 10;
+    constexpr int kMostNamed = 20;
     std::string few;
+    int number = 0;
     const auto add = [&](const std::string& name, int people) {
-        if (people == 0 || people >= kFew) return;
+        if (people == 0 || people >= kFew || ++number > kMostNamed) return;
         few += (few.empty() ? "" : ", ") + name + " (" + std::to_string(people) + ")";
     };
     for (const ConditionResult& one : report.conditions) add(one.name, one.participants);
@@ -138,6 +147,7 @@ void note_few_people(Report& report) {
         add("group " + group.group, people);
     }
     if (few.empty()) return;
+    if (number > kMostNamed) few += " and " + std::to_string(number - kMostNamed) + " others";
     report.notes.push_back("WARNING: fewer than " + std::to_string(kFew) + " people: " + few +
                            ". Bootstrap intervals of so few cover less than they say, and no test can show much");
 }
@@ -185,7 +195,9 @@ Spread spread_of(std::vector<double> values) {
     return out;
 }
 
-Report make_report(const Observations& seen, const ReportOptions& options) {
+Report make_report(const Observations& given, const ReportOptions& options) {
+    Observations seen = given;
+    sort_rows(seen);
     Report report;
     report.options = options;
     report.notes = seen.notes;
@@ -193,18 +205,23 @@ Report make_report(const Observations& seen, const ReportOptions& options) {
     report.trials = static_cast<std::int64_t>(seen.trials.size());
     report.practice_trials = seen.practice_trials;
     report.interrupted_trials = seen.interrupted_trials;
+    report.excluded_trials = seen.excluded_trials;
+    report.progress = seen.progress;
+    report.exclusions = seen.exclusions;
+    report.replacements = seen.replacements;
     report.simulated = seen.simulated;
     for (int c = 0; c < static_cast<int>(seen.conditions.size()); ++c) {
-        const auto here = [&](const Observation& row) { return row.condition == c; };
-        const bool marked = std::any_of(seen.rows.begin(), seen.rows.end(), here);
-        if (marked) report.conditions.push_back(condition_result(seen, c, options));
-        for (int k = -1; k < static_cast<int>(seen.comparisons.size()); ++k) {
+        if (!rows_of(seen, c).empty()) report.conditions.push_back(condition_result(seen, c, options));
+        std::set<int> comparisons{-1};
+        for (const Choices& row : choice_rows_of(seen, c)) comparisons.insert(row.comparison);
+        for (const int k : comparisons) {
             if (const auto choice = choice_result(seen, c, k, options)) report.choices.push_back(*choice);
         }
     }
     correct_choices(report.choices);
     report.psychometrics = psychometrics_of(seen, options.greatest_lapse, options.bootstrap);
     report.notes.insert(report.notes.end(), report.psychometrics.notes.begin(), report.psychometrics.notes.end());
+    note_many_conditions(report);
     add_ratings(seen.answers, report);
     report.primary = primary_result(seen, options.bootstrap);
     report.pairs = compare_conditions(seen, Quantity::sensitivity, options.bootstrap);

@@ -90,6 +90,10 @@ struct Report {
     std::int64_t trials = 0;  // finished tests; 0 for a table of counts
     std::int64_t practice_trials = 0;
     std::int64_t interrupted_trials = 0;
+    std::int64_t excluded_trials = 0;
+    std::vector<Progress> progress;  // logs against the plan; empty if the plan is not known
+    std::vector<Exclusion> exclusions;
+    std::vector<Replacement> replacements;
     bool simulated = false;
     std::string group;           // empty: everybody
     std::vector<Report> groups;  // of two groups and more: the same of each, without comparisons of groups
@@ -112,5 +116,10 @@ struct ReportTable {
 std::vector<ReportTable> report_tables(const Report& report);
 std::string tsv_text(const ReportTable& table);
 std::string report_markdown(const Report& report);  // all tables, with methods and notes
+
+// report_plan.cpp: logs against the plan, exclusions and dropouts.
+void add_plan_json(const Report& report, files::Json& json);
+std::vector<ReportTable> plan_tables(const Report& report);
+std::string plan_summary(const Report& report);  // one paragraph; empty if there is nothing to say
 
 }  // namespace palpa::study

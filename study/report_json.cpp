@@ -111,6 +111,7 @@ files::Json report_json(const Report& report) {
     json["trials"] = report.trials;
     json["practice_trials"] = report.practice_trials;
     json["interrupted_trials"] = report.interrupted_trials;
+    add_plan_json(report, json);
     json["conditions"] = files::Json::object();
     for (const ConditionResult& condition : report.conditions)
         json["conditions"][condition.name] = condition_json(condition);

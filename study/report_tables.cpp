@@ -163,6 +163,9 @@ std::vector<ReportTable> report_tables(const Report& report) {
     tables.push_back(rating_table(report));
     std::erase_if(tables, [](const ReportTable& table) { return table.rows.empty(); });
     if (!report.groups.empty()) add_groups(report, tables);
+    for (ReportTable& table : plan_tables(report)) {
+        if (!table.rows.empty()) tables.push_back(std::move(table));
+    }
     return tables;
 }
 
@@ -183,6 +186,7 @@ std::string report_markdown(const Report& report) {
                whole(report.practice_trials) + " practice trials (not in the tables), " +
                whole(report.interrupted_trials) + " interrupted trials (not in the tables).\n";
     }
+    out += plan_summary(report);
     out +=
         "\nTests are over participants: design within = Student's t of each person's difference a - b, design "
         "between = Welch's t of two groups; p_permutation = exact permutation of signs, or of groups (drawn above " +

@@ -10,14 +10,14 @@ bool holds(const OpenInterval& ci, double truth) {
     return !(ci.low && *ci.low > truth) && !(ci.high && *ci.high < truth);
 }
 
-PsychometricCurve someone(const PsychometricCurve& average, const People& people, Random& random) {
+PsychometricCurve someone(const PsychometricCurve& average, const ObservedPeople& people, Random& random) {
     return {average.pse + people.pse_spread * random.normal(),
             average.sd * std::exp(people.log_sd_spread * random.normal()), average.lapse};
 }
 
 // The curve through the expected answers of 20,000 people.
 PsychometricCurve curve_of_all(const std::vector<double>& levels, const ObserverOptions& options,
-                               const People& people) {
+                               const ObservedPeople& people) {
     constexpr int kMany = 20000;
     constexpr double kAnswers = 1e9;  // at each level, so that expected shares are counts
     Random random(derived_seed(options.seed, 2, 0));
@@ -77,7 +77,7 @@ Held coverage_of_profiles(const ObserverOptions& options) {
     return held;
 }
 
-Held coverage_of_bootstrap(const ObserverOptions& options, const People& people, int resamples) {
+Held coverage_of_bootstrap(const ObserverOptions& options, const ObservedPeople& people, int resamples) {
     const std::vector<double> levels = paper_levels();
     const PsychometricCurve truth = curve_of_all(levels, options, people);
     Held held;

@@ -20,7 +20,7 @@ std::vector<LevelAnswers> draw_answers(const std::vector<double>& levels, int tr
                                        Random& random);
 
 // People differ: their PSE by a normal distribution, the logarithm of sd too. All have the lapse of the average person.
-struct People {
+struct ObservedPeople {
     int n = 10;
     double pse_spread = 0.1;
     double log_sd_spread = 0.3;
@@ -47,6 +47,6 @@ Held coverage_of_profiles(const ObserverOptions& options);
 
 // Groups of people, each of whom does two conditions with one curve: intervals by bootstrap over people. The true PSE
 // and sd of the group are those of the curve through the expected answers of very many people.
-Held coverage_of_bootstrap(const ObserverOptions& options, const People& people, int resamples);
+Held coverage_of_bootstrap(const ObserverOptions& options, const ObservedPeople& people, int resamples);
 
 }  // namespace palpa::study

@@ -3,48 +3,20 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <string>
 #include <tuple>
-#include <unordered_map>
 #include <vector>
 
 #include "files/input_error.h"
 #include "files/text.h"
 #include "study/count.h"
+#include "study/name_index.h"
+#include "study/names.h"
 #include "study/psychometric.h"
 
 namespace palpa::study {
 namespace {
-
-double stiffness_kPa(const files::Table& table, std::size_t column) {
-    const double value = table.number(column);
-    if (!std::isfinite(value) || value <= 0.0) table.fail(column, "a stiffness in kPa, a number above 0");
-    return value;
-}
-
-// Is it the reference, or the comparison?
-bool is_reference(const files::Table& table, std::size_t column) {
-    const std::string_view name = table.field(column);
-    if (name != "reference" && name != "comparison") table.fail(column, "reference or comparison");
-    return name == "reference";
-}
-
-// The indices of names, found without a walk through all of them.
-class Names {
-  public:
-    explicit Names(std::vector<std::string>& names) : names_(names) {}
-    int index_of(std::string_view name) {
-        const auto [it, fresh] = known_.try_emplace(std::string(name), static_cast<int>(names_.size()));
-        if (fresh) names_.emplace_back(name);
-        return it->second;
-    }
-
-  private:
-    std::vector<std::string>& names_;
-    std::unordered_map<std::string, int> known_;
-};
 
 void check_columns(const files::Table& table) {
     constexpr std::array<std::string_view, 6> kKnown{"condition", "reference_kPa", "comparison_kPa", "stiffer",
@@ -69,6 +41,12 @@ void check_levels(const files::Table& table, const Observations& out) {
 
 }  // namespace
 
+double stiffness_kPa(const files::Table& table, std::size_t column) {
+    const double value = table.number(column);
+    if (!std::isfinite(value) || value <= 0.0) table.fail(column, "a stiffness in kPa, a number above 0");
+    return value;
+}
+
 Observations read_stiffer_counts(files::Table& table) {
     check_columns(table);
     const std::size_t condition = table.column("condition"), reference = table.column("reference_kPa");
@@ -77,14 +55,18 @@ Observations read_stiffer_counts(files::Table& table) {
     const bool has_people = table.has_column("participant");
     const std::size_t participant = has_people ? table.column("participant") : condition;
     Observations out;
-    Names conditions(out.conditions), participants(out.participants);
+    NameIndex conditions(out.conditions), participants(out.participants);
     std::map<std::tuple<int, int, double, double>, std::size_t> first_line;
+    std::map<int, std::array<std::size_t, 2>> lines;  // by condition: the last that names nobody, and somebody
     while (table.next()) {
-        if (table.field(condition).empty() || table.field(condition) == "n/a") table.fail(condition, "a name");
+        if (!is_name(table.field(condition))) table.fail(condition, kNameRule);
         StifferAnswers row;
-        row.condition = conditions.index_of(table.field(condition));
-        if (has_people && !table.field(participant).empty() && table.field(participant) != "n/a")
-            row.participant = participants.index_of(table.field(participant));
+        row.condition = conditions.of(table.field(condition));
+        if (has_people && !table.field(participant).empty() && table.field(participant) != "n/a") {
+            if (!is_name(table.field(participant)))
+                table.fail(participant, std::string(kNameRule) + ", or n/a if it is not given");
+            row.participant = participants.of(table.field(participant));
+        }
         row.axis = StiffnessAxis::comparison_reference;
         const double reference_kPa = stiffness_kPa(table, reference);
         const double comparison_kPa = stiffness_kPa(table, comparison);
@@ -101,6 +83,12 @@ Observations read_stiffer_counts(files::Table& table) {
             table.fail(condition, "it once: line " + std::to_string(it->second) +
                                       " has the same condition, participant, reference_kPa and comparison_kPa");
         }
+        auto& here = lines[row.condition];
+        here[row.participant < 0 ? 0 : 1] = table.line();
+        if (here[0] > 0 && here[1] > 0) {
+            table.fail(participant, "rows of participants or rows for all of them, not both: line " +
+                                        std::to_string(std::min(here[0], here[1])) + " counts the same");
+        }
         out.stiffer.push_back(row);
     }
     if (out.stiffer.empty()) throw files::bad_input(table.file(), "", "no rows", "one row of counts at least");
@@ -108,26 +96,17 @@ Observations read_stiffer_counts(files::Table& table) {
     return out;
 }
 
-StifferAnswers stiffer_choice(const files::Table& table) {
+StifferAnswers stiffer_choice(const StifferQuestion& question, bool reference_softer) {
     StifferAnswers out;
-    out.x = std::numeric_limits<double>::quiet_NaN();
     out.n = 1;
-    for (const char* column : {"reference_kPa", "first", "answer"}) {
-        if (!table.has_column(column)) return out;
-    }
-    const double reference_kPa = stiffness_kPa(table, table.column("reference_kPa"));
-    const double comparison_kPa = stiffness_kPa(table, table.column("comparison_kPa"));
-    const bool reference_first = is_reference(table, table.column("first"));
-    const bool reference_softer = is_reference(table, table.column("answer"));
-    const double x = std::log(comparison_kPa / reference_kPa);
-    const bool stays = table.has_column("reference_on") && table.field(table.column("reference_on")) != "n/a";
-    if (stays) {
+    const double x = std::log(question.comparison_kPa / question.reference_kPa);
+    if (question.reference_stays) {
         out.axis = StiffnessAxis::comparison_reference;
         out.x = x;
         out.stiffer = reference_softer ? 1 : 0;
     } else {
-        out.x = reference_first ? x : -x;
-        out.stiffer = reference_softer == reference_first ? 1 : 0;  // the first was called softer
+        out.x = question.reference_first ? x : -x;
+        out.stiffer = reference_softer == question.reference_first ? 1 : 0;  // the first was called softer
     }
     return out;
 }

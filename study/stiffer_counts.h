@@ -1,6 +1,6 @@
 #pragma once
-// Reads how often which of two surfaces was called the stiffer one: from a table of counts, and from a row of a log of
-// forced choices.
+// How often which of two surfaces was called the stiffer one: from a table of counts, and from the answers of forced
+// choices.
 
 #include "files/table.h"
 #include "study/observations.h"
@@ -13,8 +13,18 @@ namespace palpa::study {
 // a condition with one level only, through which no curve can be put.
 Observations read_stiffer_counts(files::Table& table);
 
-// The current row of a log of forced choices as one answer; x is NaN if the log lacks the columns that tell it. Throws
-// InputError for a stiffness that is no number above 0, and for an answer or order with another name.
-StifferAnswers stiffer_choice(const files::Table& table);
+// A stiffness in kPa. Throws InputError if it is no number above 0.
+double stiffness_kPa(const files::Table& table, std::size_t column);
+
+// One forced choice between a reference and a comparison.
+struct StifferQuestion {
+    double reference_kPa = 0.0;
+    double comparison_kPa = 0.0;
+    bool reference_first = false;
+    bool reference_stays = false;  // under one condition: the axis is comparison / reference
+};
+
+// The answer to it at its level; its condition and participant are left open.
+StifferAnswers stiffer_choice(const StifferQuestion& question, bool reference_softer);
 
 }  // namespace palpa::study

@@ -15,7 +15,7 @@ namespace {
 
 struct ObserversOptions {
     study::ObserverOptions observer;
-    study::People people{0};
+    study::ObservedPeople people{0};
     std::vector<int> trials{40, 80, 240};
     int resamples = 500;
     bool json = false;

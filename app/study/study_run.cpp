@@ -11,6 +11,7 @@
 #include "files/text.h"
 #include "scene/plan.h"
 #include "session/plan_in_progress.h"
+#include "study/names.h"
 #include "study/ratings.h"
 
 namespace palpa::app {
@@ -42,11 +43,7 @@ std::vector<StudyScene> stimuli_of(const StudyScene& scene, const study::ChoiceT
     return out;
 }
 
-bool plain(const std::string& code) {
-    return !code.empty() && code.size() <= 20 && std::all_of(code.begin(), code.end(), [](char c) {
-        return (c >= '0' && c <= '9') || (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z');
-    });
-}
+bool plain(const std::string& code) { return code.size() <= 20 && study::is_code(code); }
 
 // Returns what the experimenter sees from elsewhere (palpa study watch).
 files::Json now_json(const StudyRun& run) {
@@ -226,8 +223,8 @@ StudyRun open_study_run(const study::Protocol& protocol, const fs::path& directo
     run.protocol = protocol;
     run.directory = directory;
     run.scenes = load_study_scenes(protocol);
+    run.identities = identities_of(run.scenes);
     for (const auto& scene : run.scenes) {
-        run.identities.push_back(identity_of(scene));
         run.stimuli.emplace_back();
         if (protocol.task == study::TaskKind::choice && scene) run.stimuli.back() = stimuli_of(*scene, protocol.choice);
     }

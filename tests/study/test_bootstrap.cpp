@@ -92,3 +92,27 @@ TEST_CASE("bootstrap: few people have wider intervals than plain percentiles") {
     const double error = std::sqrt((0.09 + 0.0225) * 2.0 / 4.0 / 5.0);
     CHECK(width(bootstrap_share(five, {20000, 1, 0.95})) > 2.0 * 2.2 * error);
 }
+
+TEST_CASE("bootstrap: many people, drawn by kinds, have the interval of the normal approximation") {
+    const auto all = people(20000, 3, 0.0, 11);
+    double mean = 0.0, square = 0.0;
+    for (const auto& one : all) {
+        const double share = static_cast<double>(one->k) / 3.0;
+        mean += share / 20000.0;
+        square += share * share / 20000.0;
+    }
+    const double arm = 1.96 * std::sqrt((square - mean * mean) / 20000.0);
+    const Interval ci = bootstrap_share(all, {4000, 1, 0.95});
+    // 4,000 resamples: quantiles good to some 3 % of the arm
+    CHECK(ci.low == doctest::Approx(mean - arm).epsilon(0.1 * arm / mean));
+    CHECK(ci.high == doctest::Approx(mean + arm).epsilon(0.1 * arm / mean));
+    // the same people twice: every difference is 0, which says nothing about others
+    CHECK(std::isnan(bootstrap_difference(all, all, {200, 1, 0.95}).low));
+    // other people: the difference has both variances
+    const auto others = people(20000, 3, 0.0, 12);
+    People a(all), b(20000);
+    a.resize(40000);
+    b.insert(b.end(), others.begin(), others.end());
+    const Interval between = bootstrap_difference(a, b, {4000, 1, 0.95});
+    CHECK(0.5 * (between.high - between.low) == doctest::Approx(std::sqrt(2.0) * arm).epsilon(0.1));
+}

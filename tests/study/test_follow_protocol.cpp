@@ -13,6 +13,7 @@ TEST_CASE("follow protocol: signs of a - b follow its order of conditions, not t
         seen.rows.push_back({0, person, -1, 0, person, 2 - person, 0});
         seen.rows.push_back({2, person, -1, 0, 2, 0, 0});
     }
+    seen.stiffer.push_back({0, 0, StiffnessAxis::second_first, 0.5, 1, 1});
     Protocol protocol;
     for (const char* id : {"law", "unused", "off"}) {
         protocol.conditions.emplace_back();
@@ -28,6 +29,7 @@ TEST_CASE("follow protocol: signs of a - b follow its order of conditions, not t
     CHECK(seen.groups == std::vector<std::string>{"II", "I"});
     follow_protocol(protocol, seen);
     CHECK(seen.conditions == std::vector<std::string>{"law", "off", "other"});
+    CHECK(seen.stiffer[0].condition == 1);
     CHECK(seen.groups == std::vector<std::string>{"I", "II"});
     CHECK(seen.group_of == std::vector<int>{1, 0});
     const auto pairs = compare_conditions(seen, Quantity::sensitivity, {});

@@ -87,3 +87,23 @@ TEST_CASE("protocol: what is wrong is named with its key") {
         "conditions[0].device: found 'S-pen?of 2014', expected a name without tabs"));
     CHECK(contains(refusal_of_protocol("{"), "line 1, column"));
 }
+
+TEST_CASE("protocol: names that tables take for a missing value, or that break their fields, are refused") {
+    for (const char* name : {"NA", "n/a", "nan", "null", "a\\\"b", "a\\tb"}) {
+        CAPTURE(name);
+        const std::string id = name;
+        CHECK(contains(refusal_of_protocol(with(R"({"id": ")" + id + R"(", "modality": "pen", "scene": "s.json"})")),
+                       "conditions[0].id: found '"));
+        CHECK(
+            contains(refusal_of_protocol(with(kPen, R"(, "groups": [{"id": ")" + id + R"(", "conditions": ["pen"]}])")),
+                     "groups[0].id: found '"));
+        CHECK(contains(refusal_of_protocol(with(R"({"id": "x", "modality": "hand", "nodules": [")" + id + R"("]})")),
+                       "conditions[0].nodules: found '"));
+        CHECK(contains(refusal_of_protocol(with(kPen, R"(, "ratings": [{"id": ")" + id + R"(", "text": "t"}])")),
+                       "ratings[0].id: found '"));
+    }
+    CHECK(contains(refusal_of_protocol(with(R"({"id": "x", "modality": "pen", "scene": "s.json", "device": "a\tb"})")),
+                   "conditions[0].device: found '"));
+    CHECK(
+        refusal_of_protocol(with(R"({"id": "none", "modality": "pen", "scene": "s.json", "device": "n/a"})")).empty());
+}

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <doctest/doctest.h>
 
@@ -197,4 +198,28 @@ TEST_CASE("report: tables have a value in every column, and Markdown keeps its b
     CHECK(contains(report_markdown(report), "a\\|b"));
     CHECK(contains(report_markdown(report), "SIMULATED"));
     CHECK(report_json(report)["simulated"] == true);
+}
+
+TEST_CASE("report: pairs of very many conditions are not compared, and the report says so") {
+    Observations seen;
+    for (int condition = 0; condition < 300; ++condition) {
+        index_of("c" + std::to_string(condition), seen.conditions);
+        for (int person = 0; person < 3; ++person) {
+            if (condition == 0) index_of("p" + std::to_string(person), seen.participants);
+            seen.rows.push_back({condition, person, -1, 0, person, 3 - person, 0});
+        }
+    }
+    const Report report = make_report(seen, {});
+    CHECK(report.conditions.size() == 300);
+    CHECK(report.pairs.empty());
+    REQUIRE(report.notes.size() == 2);
+    CHECK(contains(report.notes[0], "all pairs of 300 conditions are not compared"));
+    CHECK(contains(report.notes[1], "c19 (3) and 280 others"));
+}
+
+TEST_CASE("report: rows in any order give the same report") {
+    Observations seen = paired_study();
+    const Json expected = report_json(make_report(seen, {}));
+    std::reverse(seen.rows.begin(), seen.rows.end());
+    CHECK(report_json(make_report(seen, {})) == expected);
 }

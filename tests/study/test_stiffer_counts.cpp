@@ -72,6 +72,16 @@ TEST_CASE("stiffer counts: what is wrong is named with line and column") {
         contains(message_of([&] { stiffer_counts("condition\tstiffer\tn\n"); }), "expected a column 'reference_kPa'"));
 }
 
+TEST_CASE("stiffer counts: names that are none, and answers that would count twice, are refused") {
+    const std::string head = "condition\tparticipant\treference_kPa\tcomparison_kPa\tstiffer\tn\n";
+    const auto refusal = [&](const std::string& rows) { return message_of([&] { stiffer_counts(head + rows); }); };
+    CHECK(
+        contains(refusal("pen\tp1\t1\t2\t3\t4\npen\tn/a\t2\t1\t1\t4\n"),
+                 "line 3, participant: found 'n/a', expected rows of participants or rows for all of them, not both"));
+    CHECK(contains(refusal("NA\tp1\t1\t2\t3\t4\n"), "line 2, condition: found 'NA'"));
+    CHECK(contains(refusal("pen\tnull\t1\t2\t3\t4\n"), "line 2, participant: found 'null'"));
+}
+
 TEST_CASE("stiffer counts: a log tells the order, and where the reference stayed") {
     ChoiceRow row;
     row.condition = "on";
@@ -94,6 +104,7 @@ TEST_CASE("stiffer counts: a log tells the order, and where the reference stayed
         row.first = one.first;
         row.answer = one.answer;
         row.reference_on = one.reference_on;
+        row.correct = row.answer == "reference" ? 1 : 0;
         const Observations seen = logged(row);
         REQUIRE(seen.stiffer.size() == 1);
         CHECK(seen.stiffer[0].x == doctest::Approx(one.x));
@@ -113,6 +124,7 @@ TEST_CASE("stiffer counts: practice is left out") {
     row.condition = "on";
     row.reference_kPa = 1.0;
     row.comparison_kPa = 2.0;
+    row.correct = 1;
     row.block = "practice";
     const TemporaryFolder folder;
     ChoiceLog log(next_run(folder.path(), "01", "softer"));
