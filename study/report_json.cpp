@@ -1,4 +1,5 @@
 #include <cmath>
+#include <utility>
 
 #include "study/comparison_report.h"
 #include "study/report.h"
@@ -31,11 +32,13 @@ files::Json condition_json(const ConditionResult& condition) {
     add_share("se", condition.se, json);
     add_share("ppv", condition.ppv, json);
     if (condition.participants > 0) json["participants"] = condition.participants;
+    files::Json::object_t nodules;  // names are not looked up as they are added: there may be very many
     for (const NoduleResult& nodule : condition.nodules) {
-        files::Json& entry = json["nodules"][nodule.nodule];
-        entry = {{"tp", nodule.se.x.k}, {"fn", nodule.se.x.n - nodule.se.x.k}};
+        files::Json entry{{"tp", nodule.se.x.k}, {"fn", nodule.se.x.n - nodule.se.x.k}};
         add_share("se", nodule.se, entry);
+        nodules.emplace_back(nodule.nodule, std::move(entry));
     }
+    if (!nodules.empty()) json["nodules"] = std::move(nodules);
     add_spread("time_s", 1.0, condition.duration_s, json);
     add_spread("path_mm", 1e3, condition.path_m, json);
     add_spread("mean_force_N", 1.0, condition.mean_force_N, json);
@@ -112,9 +115,10 @@ files::Json report_json(const Report& report) {
     json["practice_trials"] = report.practice_trials;
     json["interrupted_trials"] = report.interrupted_trials;
     add_plan_json(report, json);
-    json["conditions"] = files::Json::object();
+    files::Json::object_t conditions;
     for (const ConditionResult& condition : report.conditions)
-        json["conditions"][condition.name] = condition_json(condition);
+        conditions.emplace_back(condition.name, condition_json(condition));
+    json["conditions"] = std::move(conditions);
     add_comparisons(report, json);
     if (!report.choices.empty()) json["choices"] = files::Json::array();
     for (const ChoiceResult& choice : report.choices) json["choices"].push_back(choice_json(choice));
