@@ -5,6 +5,7 @@
 #include <boost/math/distributions/students_t.hpp>
 #include <cassert>
 #include <cmath>
+#include <numbers>
 
 namespace palpa::files {
 namespace {
@@ -30,6 +31,8 @@ double normal_quantile(double p) {
     return boost::math::quantile(Normal(), p);
 }
 
+double normal_probability(double x) { return 0.5 * std::erfc(-x / std::numbers::sqrt2); }
+
 double student_p(double t, double df) {
     assert(df > 0.0);
     if (std::isnan(t)) return t;
@@ -45,6 +48,11 @@ double student_quantile(double level, double df) {
 double binomial_probability(std::int64_t k, std::int64_t n, double chance) {
     assert(k >= 0 && k <= n && chance > 0.0 && chance < 1.0);
     return boost::math::pdf(Binomial(static_cast<double>(n), chance), static_cast<double>(k));
+}
+
+double binomial_at_most(std::int64_t k, std::int64_t n, double chance) {
+    assert(k >= 0 && k <= n && chance > 0.0 && chance < 1.0);
+    return boost::math::cdf(Binomial(static_cast<double>(n), chance), static_cast<double>(k));
 }
 
 }  // namespace palpa::files

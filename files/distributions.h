@@ -9,6 +9,9 @@ namespace palpa::files {
 // Returns x with P(X <= x) = p for a standard normal X, 0 < p < 1.
 double normal_quantile(double p);
 
+// Returns P(X <= x) of a standard normal X.
+double normal_probability(double x);
+
 // Returns the two-sided p value of Student's t with df degrees of freedom, P(|T| >= |t|); 0 for an infinite t, NaN for
 // NaN.
 double student_p(double t, double df);
@@ -18,5 +21,8 @@ double student_quantile(double level, double df);
 
 // Returns the probability of k hits in n trials that each hit with probability `chance`, 0 < chance < 1.
 double binomial_probability(std::int64_t k, std::int64_t n, double chance);
+
+// Returns the probability of k hits or fewer, 0 <= k <= n.
+double binomial_at_most(std::int64_t k, std::int64_t n, double chance);
 
 }  // namespace palpa::files

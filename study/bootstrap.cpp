@@ -5,9 +5,11 @@
 #include <cassert>
 #include <cmath>
 #include <limits>
+#include <map>
 
+#include "files/distributions.h"
 #include "files/quantile.h"
-#include "study/random.h"
+#include "study/binomial_draw.h"
 
 namespace palpa::study {
 namespace {
@@ -16,61 +18,135 @@ constexpr Interval kUnknown{std::numeric_limits<double>::quiet_NaN(), std::numer
 
 double share(double k, double n) { return k / n; }
 
-Interval percentiles(std::vector<double>& values, double level) {
-    if (values.empty()) return kUnknown;
-    std::sort(values.begin(), values.end());
-    const double tail = 0.5 * (1.0 - level);
-    return {files::sorted_quantile(values, tail), files::sorted_quantile(values, 1.0 - tail)};
+Contribution counts_of(const std::optional<Contribution>& one) { return one.value_or(Contribution{0, 0}); }
+
+// Returns how many have something to count.
+std::size_t counted(const People& people) {
+    return static_cast<std::size_t>(
+        std::count_if(people.begin(), people.end(), [](const auto& one) { return one && one->n > 0; }));
 }
+
+Interval limits(std::vector<double>& values, std::size_t people, std::size_t strata, double skew, double level) {
+    if (values.empty() || people <= strata) return kUnknown;
+    const auto [least, most] = std::minmax_element(values.begin(), values.end());
+    constexpr double kRounding = 1e-12;
+    if (*most - *least < kRounding) return kUnknown;
+    const auto m = static_cast<double>(people), df = static_cast<double>(people - strata);
+    const double z = files::student_quantile(level, df) * std::sqrt(m / df);
+    constexpr double kMostSkew = 0.5;  // far from 1, where a limit would run away; reached below four people only
+    const double az = std::clamp(skew * z, -kMostSkew, kMostSkew);
+    return {files::reordered_quantile(values, files::normal_probability(-z / (1.0 + az))),
+            files::reordered_quantile(values, files::normal_probability(z / (1.0 - az)))};
+}
+
+// What one participant contributed to two conditions.
+struct Both {
+    Contribution a, b;
+    bool operator<(const Both& other) const {
+        return std::array{a.k, a.n, b.k, b.n} < std::array{other.a.k, other.a.n, other.b.k, other.b.n};
+    }
+};
+
+// Sums of contributions over a resample.
+struct Sums {
+    double k_a = 0.0, n_a = 0.0, k_b = 0.0, n_b = 0.0;
+    void add(const Both& one, double times) {
+        k_a += times * static_cast<double>(one.a.k);
+        n_a += times * static_cast<double>(one.a.n);
+        k_b += times * static_cast<double>(one.b.k);
+        n_b += times * static_cast<double>(one.b.n);
+    }
+};
+
+// Efron's acceleration of a's share: how skewed the people are, from e_i = k_i - share n_i.
+double acceleration(const std::vector<Both>& people) {
+    Sums all;
+    for (const Both& one : people) all.add(one, 1.0);
+    const double pooled = share(all.k_a, all.n_a);
+    double squares = 0.0, cubes = 0.0;
+    for (const Both& one : people) {
+        const double e = static_cast<double>(one.a.k) - pooled * static_cast<double>(one.a.n);
+        squares += e * e;
+        cubes += e * e * e;
+    }
+    return squares > 0.0 ? cubes / (6.0 * std::pow(squares, 1.5)) : 0.0;
+}
+
+// People drawn with replacement from one stratum. Of many people most contribute the same as others; then how often each
+// kind of contribution is drawn follows from one binomial draw for each kind, with the same distribution of the sums.
+class Stratum {
+  public:
+    explicit Stratum(std::vector<Both> people) : people_(std::move(people)) {
+        constexpr std::size_t kMany = 2000, kAlike = 20;
+        if (people_.size() < kMany) return;
+        std::map<Both, std::int64_t> kinds;
+        for (const Both& one : people_) ++kinds[one];
+        if (kAlike * kinds.size() < people_.size()) kinds_.assign(kinds.begin(), kinds.end());
+    }
+
+    void draw(Random& random, Sums& sums) const {
+        const auto n = static_cast<std::int64_t>(people_.size());
+        if (kinds_.empty()) {
+            for (std::int64_t i = 0; i < n; ++i) sums.add(people_[random.below(static_cast<std::uint32_t>(n))], 1.0);
+            return;
+        }
+        std::int64_t left = n, undrawn = n;  // people to draw, people of the kinds that are still to come
+        for (const auto& [kind, count] : kinds_) {
+            const double chance = static_cast<double>(count) / static_cast<double>(undrawn);
+            const std::int64_t times = count == undrawn ? left : binomial_draw(left, chance, random);
+            sums.add(kind, static_cast<double>(times));
+            left -= times;
+            undrawn -= count;
+        }
+    }
+
+  private:
+    std::vector<Both> people_;
+    std::vector<std::pair<Both, std::int64_t>> kinds_;  // with their numbers of people; empty: drawn one by one
+};
 
 }  // namespace
 
-Interval bootstrap_share(std::span<const Contribution> people, const BootstrapOptions& options) {
-    std::vector<Contribution> in;
-    for (const Contribution& one : people) {
-        if (one.n > 0) in.push_back(one);
+Interval bootstrap_share(const People& people, const BootstrapOptions& options) {
+    if (counted(people) < 2) return kUnknown;
+    std::vector<Both> in;
+    for (const auto& one : people) {
+        if (one) in.push_back({*one, {}});
     }
-    if (in.size() < 2) return kUnknown;
+    const std::size_t m = in.size();
+    const double skew = acceleration(in);
+    const Stratum stratum(std::move(in));
     Random random(options.seed);
     std::vector<double> values;
     for (int r = 0; r < options.resamples; ++r) {
-        double k = 0.0, n = 0.0;
-        for (std::size_t i = 0; i < in.size(); ++i) {
-            const Contribution& one = in[random.below(static_cast<std::uint32_t>(in.size()))];
-            k += static_cast<double>(one.k);
-            n += static_cast<double>(one.n);
-        }
-        values.push_back(share(k, n));
+        Sums sums;
+        stratum.draw(random, sums);
+        if (sums.n_a > 0.0) values.push_back(share(sums.k_a, sums.n_a));
     }
-    return percentiles(values, options.level);
+    return limits(values, m, 1, skew, options.level);
 }
 
-Interval bootstrap_difference(std::span<const Contribution> a, std::span<const Contribution> b,
-                              const BootstrapOptions& options) {
+Interval bootstrap_difference(const People& a, const People& b, const BootstrapOptions& options) {
     assert(a.size() == b.size());
-    std::array<std::vector<std::size_t>, 3> strata;  // both, only a, only b
+    if (counted(a) < 2 || counted(b) < 2) return kUnknown;
+    std::array<std::vector<Both>, 3> people;  // both, only a, only b
+    std::size_t m = 0;
     for (std::size_t i = 0; i < a.size(); ++i) {
-        if (a[i].n > 0 && b[i].n > 0) strata[0].push_back(i);
-        if (a[i].n > 0 && b[i].n == 0) strata[1].push_back(i);
-        if (a[i].n == 0 && b[i].n > 0) strata[2].push_back(i);
+        if (!a[i] && !b[i]) continue;
+        people[!b[i] ? 1 : !a[i] ? 2 : 0].push_back({counts_of(a[i]), counts_of(b[i])});
+        ++m;
     }
-    if (strata[0].size() + strata[1].size() < 2 || strata[0].size() + strata[2].size() < 2) return kUnknown;
+    const auto used = std::count_if(people.begin(), people.end(), [](const auto& one) { return !one.empty(); });
+    std::vector<Stratum> strata;
+    for (auto& stratum : people) strata.emplace_back(std::move(stratum));
     Random random(options.seed);
     std::vector<double> values;
     for (int r = 0; r < options.resamples; ++r) {
-        double k_a = 0.0, n_a = 0.0, k_b = 0.0, n_b = 0.0;
-        for (const auto& stratum : strata) {
-            for (std::size_t i = 0; i < stratum.size(); ++i) {
-                const std::size_t one = stratum[random.below(static_cast<std::uint32_t>(stratum.size()))];
-                k_a += static_cast<double>(a[one].k);
-                n_a += static_cast<double>(a[one].n);
-                k_b += static_cast<double>(b[one].k);
-                n_b += static_cast<double>(b[one].n);
-            }
-        }
-        values.push_back(share(k_a, n_a) - share(k_b, n_b));
+        Sums sums;
+        for (const Stratum& stratum : strata) stratum.draw(random, sums);
+        if (sums.n_a > 0.0 && sums.n_b > 0.0) values.push_back(share(sums.k_a, sums.n_a) - share(sums.k_b, sums.n_b));
     }
-    return percentiles(values, options.level);
+    return limits(values, m, static_cast<std::size_t>(used), 0.0, options.level);
 }
 
 }  // namespace palpa::study

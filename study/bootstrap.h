@@ -2,9 +2,8 @@
 // Bootstrap over participants, since people are independent, but the nodules and trials of one person are not.
 
 #include <cstdint>
-#include <span>
-#include <vector>
 
+#include "study/people.h"
 #include "study/statistics.h"
 
 namespace palpa::study {
@@ -15,20 +14,24 @@ struct BootstrapOptions {
     double level = 0.95;
 };
 
-// What one participant contributed to a condition: k of n. n is 0 for a participant who did not take part in it.
-struct Contribution {
-    std::int64_t k = 0;
-    std::int64_t n = 0;
-};
+// Interval of sum k / sum n over participants drawn with replacement, from all who took part, also those whose n is 0.
+// Resamples whose sum of n is 0 are left out. The limits are NaN if fewer than two people have an n above 0, or if the
+// resamples do not vary.
+//
+// The limits are the quantiles of the resamples at
+//
+//     Phi(-z / (1 + a z)) and Phi(z / (1 - a z))      z = t sqrt(m / (m - S)),  a = sum e_i^3 / (6 (sum e_i^2)^1.5)
+//
+// for m people in S strata (here 1), with t: Student's quantile of the level with m - S degrees of freedom, and
+// e_i = k_i - share n_i. z is further out than the normal quantile, as Student's interval of a mean is wider than the
+// plain one (Hesterberg, The American Statistician 69 (2015) 371, section 4.2); a corrects for skewed people (the
+// acceleration of Efron, J. Amer. Statist. Assoc. 82 (1987) 171, without his correction of bias). Plain percentiles
+// cover too seldom with few people.
+Interval bootstrap_share(const People& people, const BootstrapOptions& options);
 
-// Percentile interval of sum k / sum n over participants drawn with replacement. Resamples whose sum of n is 0 are left
-// out. The limits are NaN if fewer than two participants contributed.
-Interval bootstrap_share(std::span<const Contribution> people, const BootstrapOptions& options);
-
-// Percentile interval of the difference a - b of two such shares; entry i of both spans belongs to the same
-// participant. Participants of both conditions, of a only and of b only are resampled separately, so that every
-// resample has the design of the study. The limits are NaN if either condition has fewer than two participants.
-Interval bootstrap_difference(std::span<const Contribution> a, std::span<const Contribution> b,
-                              const BootstrapOptions& options);
+// The same, with a = 0, of the difference a - b of two such shares; entry i of both belongs to the same participant. Participants
+// of both conditions, of a only and of b only are resampled separately, so that every resample has the design of the
+// study.
+Interval bootstrap_difference(const People& a, const People& b, const BootstrapOptions& options);
 
 }  // namespace palpa::study

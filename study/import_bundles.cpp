@@ -1,18 +1,19 @@
 #include "study/import_bundles.h"
 
 #include <algorithm>
-#include <cctype>
 #include <map>
 #include <optional>
 #include <set>
 #include <stdexcept>
 
 #include "files/durable.h"
+#include "files/folder_lock.h"
 #include "files/input_error.h"
 #include "files/json.h"
 #include "files/sha256.h"
 #include "files/text.h"
 #include "study/bundle.h"
+#include "study/names.h"
 #include "study/study_folder.h"
 #include "study/trial_log.h"
 
@@ -167,10 +168,9 @@ class Plan {
         refuse_link(file, from);
         std::vector<std::string> notes;
         for (const Person& one : people_in(file.text, from + ": " + file.name, notes)) {
-            if (one.code.empty() || !std::all_of(one.code.begin(), one.code.end(),
-                                                 [](unsigned char c) { return c < 128 && std::isalnum(c) != 0; })) {
+            if (!is_code(one.code)) {
                 throw files::bad_input(from, file.name, files::shown("sub-" + one.code),
-                                       "a code of letters and digits");
+                                       "a code of " + std::string(kCodeRule));
             }
             const auto [it, fresh] = known_.emplace(one.code, one);
             if (fresh) {
@@ -259,6 +259,8 @@ bool is_events(const BundleFile& file) { return file.name.find("_events.tsv") !=
 
 BundleReport import_bundles(const std::vector<fs::path>& bundles, const fs::path& directory) {
     Plan plan(directory);
+    std::optional<files::FolderLock> lock;
+    if (fs::exists(directory)) lock.emplace(directory, kOtherWriter);
     // each bundle is read twice, so that only one is in memory at a time
     std::vector<fs::path> taken, singles;
     for (const fs::path& path : bundles) {
@@ -278,6 +280,7 @@ BundleReport import_bundles(const std::vector<fs::path>& bundles, const fs::path
     }
     plan.settle_answers();
     fs::create_directories(directory);
+    if (!lock) lock.emplace(directory, kOtherWriter);
     NewFiles written(directory);
     for (const fs::path& path : taken) {
         Bundle bundle = read_whole(path);

@@ -9,6 +9,9 @@
 #include "files/table.h"
 #include "files/text.h"
 #include "study/count.h"
+#include "study/name_index.h"
+#include "study/names.h"
+#include "study/stiffer_counts.h"
 
 namespace palpa::study {
 namespace {
@@ -18,16 +21,76 @@ std::optional<std::size_t> optional_column(const files::Table& table, std::strin
     return table.column(name);
 }
 
-int name_index(const files::Table& table, std::optional<std::size_t> column, std::vector<std::string>& names) {
-    if (!column || table.field(*column) == "n/a" || table.field(*column).empty()) return -1;
-    return index_of(table.field(*column), names);
-}
+// The names of a column that may be missing, or n/a in a row.
+class NameColumn {
+  public:
+    NameColumn(const files::Table& table, std::string_view name, std::vector<std::string>& names)
+        : column_(optional_column(table, name)), index_(names) {}
 
-int condition_index(const files::Table& table, std::size_t column, Observations& out) {
-    const int index = name_index(table, column, out.conditions);
-    if (index < 0) table.fail(column, "a name");
-    return index;
-}
+    // Returns the index of the name in this row, -1 if it is not given.
+    int of(const files::Table& table) {
+        if (!column_) return -1;
+        const std::string_view name = table.field(*column_);
+        if (name == "n/a" || name.empty()) return -1;
+        for (const std::string_view sum : {"all", "total", "sum", "overall"}) {
+            if (lower_case(name) == sum) table.fail(*column_, "one name, or n/a in a row for all of them");
+        }
+        if (!is_name(name)) table.fail(*column_, std::string(kNameRule) + ", or n/a if it is not given");
+        return index_.of(name);
+    }
+
+    std::optional<std::size_t> column() const { return column_; }
+
+  private:
+    static std::string lower_case(std::string_view name) {
+        std::string out(name);
+        for (char& c : out) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+        return out;
+    }
+
+    std::optional<std::size_t> column_;
+    NameIndex index_;
+};
+
+// The conditions, one in each row.
+class ConditionColumn {
+  public:
+    ConditionColumn(const files::Table& table, Observations& out)
+        : column_(table.column("condition")), index_(out.conditions) {}
+
+    int of(const files::Table& table) {
+        if (!is_name(table.field(column_))) table.fail(column_, kNameRule);
+        return index_.of(table.field(column_));
+    }
+    std::size_t column() const { return column_; }
+
+  private:
+    std::size_t column_;
+    NameIndex index_;
+};
+
+// Refuses a row for all items (nodules, comparisons or participants) beside rows of single ones, since the sums would
+// count both.
+class WholeOrParts {
+  public:
+    explicit WholeOrParts(const char* items) : items_(items) {}
+
+    void add(const files::Table& table, std::size_t column, const std::pair<int, int>& group, bool whole) {
+        Lines& lines = lines_[group];
+        (whole ? lines.whole : lines.part) = table.line();
+        if (lines.whole == 0 || lines.part == 0) return;
+        const std::size_t other = whole ? lines.part : lines.whole;
+        table.fail(column, std::string("rows of ") + items_ + " or one row for all of them, not both: line " +
+                               std::to_string(other) + " counts the same");
+    }
+
+  private:
+    struct Lines {
+        std::size_t whole = 0, part = 0;
+    };
+    const char* items_;
+    std::map<std::pair<int, int>, Lines> lines_;
+};
 
 // Refuses two rows with the same participant, condition and item, which would be counted twice.
 class Unique {
@@ -44,18 +107,38 @@ class Unique {
     std::map<std::array<int, 3>, std::size_t> first_line_;
 };
 
+// Takes the group of the row's participant, which must be the same in all of that person's rows.
+void take_group(const files::Table& table, NameColumn& groups, int participant, Observations& out) {
+    const auto column = groups.column();
+    if (!column) return;
+    const int group = groups.of(table);
+    if (participant < 0) {
+        if (group >= 0) table.fail(*column, "n/a: the row names no participant");
+        return;
+    }
+    const auto person = static_cast<std::size_t>(participant);
+    if (person == out.group_of.size()) out.group_of.push_back(group);
+    const int before = out.group_of[person];
+    if (group != before) {
+        table.fail(*column, (before < 0 ? "n/a" : out.groups[static_cast<std::size_t>(before)]) +
+                                " as in a row before: a participant is in one group");
+    }
+}
+
 void read_marks(files::Table& table, Observations& out) {
-    const std::size_t condition = table.column("condition");
+    ConditionColumn condition(table, out);
     const std::size_t tp = table.column("tp"), fn = table.column("fn"), fp = table.column("fp");
     const auto n = optional_column(table, "n");
-    const auto nodule = optional_column(table, "nodule");
-    const auto participant = optional_column(table, "participant");
+    NameColumn nodule(table, "nodule", out.nodules), participant(table, "participant", out.participants);
+    NameColumn group(table, "group", out.groups);
     Unique unique;
+    WholeOrParts nodules("nodules"), false_marks("nodules"), people("participants");
     while (table.next()) {
         Observation row;
-        row.condition = condition_index(table, condition, out);
-        row.nodule = name_index(table, nodule, out.nodules);
-        row.participant = name_index(table, participant, out.participants);
+        row.condition = condition.of(table);
+        row.nodule = nodule.of(table);
+        row.participant = participant.of(table);
+        take_group(table, group, row.participant, out);
         row.tp = count(table, tp);
         row.fn = count(table, fn);
         const bool no_marks_told = row.nodule >= 0 && table.field(fp) == "n/a";
@@ -64,26 +147,36 @@ void read_marks(files::Table& table, Observations& out) {
             table.fail(tp, "at most n = " + std::string(table.field(*n)) + ": no more can be found than there are");
         }
         if (n && row.tp + row.fn != count(table, *n)) table.fail(*n, "tp + fn = " + std::to_string(row.tp + row.fn));
-        unique.add(table, condition, {row.condition, row.nodule, row.participant});
+        unique.add(table, condition.column(), {row.condition, row.nodule, row.participant});
+        const std::pair person(row.condition, row.participant);
+        const bool whole = row.nodule < 0;
+        if (nodule.column() && (!whole || row.tp + row.fn > 0)) nodules.add(table, *nodule.column(), person, whole);
+        if (nodule.column() && row.fp > 0) false_marks.add(table, fp, person, whole);
+        if (participant.column()) people.add(table, *participant.column(), {row.condition, 0}, row.participant < 0);
         out.rows.push_back(row);
     }
 }
 
 void read_choices(files::Table& table, Observations& out) {
-    const std::size_t condition = table.column("condition");
+    ConditionColumn condition(table, out);
     const std::size_t correct = table.column("correct"), n = table.column("n");
-    const auto comparison = optional_column(table, "comparison");
-    const auto participant = optional_column(table, "participant");
+    NameColumn comparison(table, "comparison", out.comparisons), participant(table, "participant", out.participants);
+    NameColumn group(table, "group", out.groups);
     Unique unique;
+    WholeOrParts comparisons("comparisons"), people("participants");
     while (table.next()) {
         Choices row;
-        row.condition = condition_index(table, condition, out);
-        row.comparison = name_index(table, comparison, out.comparisons);
-        row.participant = name_index(table, participant, out.participants);
+        row.condition = condition.of(table);
+        row.comparison = comparison.of(table);
+        row.participant = participant.of(table);
+        take_group(table, group, row.participant, out);
         row.correct = count(table, correct);
         row.n = count(table, n);
         if (row.correct > row.n) table.fail(correct, "at most n = " + std::to_string(row.n));
-        unique.add(table, condition, {row.condition, row.comparison, row.participant});
+        unique.add(table, condition.column(), {row.condition, row.comparison, row.participant});
+        if (comparison.column())
+            comparisons.add(table, *comparison.column(), {row.condition, row.participant}, row.comparison < 0);
+        if (participant.column()) people.add(table, *participant.column(), {row.condition, 0}, row.participant < 0);
         out.choices.push_back(row);
     }
 }
@@ -98,14 +191,16 @@ int index_of(std::string_view name, std::vector<std::string>& names) {
 
 Observations read_counts(const std::filesystem::path& tsv) {
     files::Table table = files::read_tsv(tsv);
+    if (table.has_column("stiffer")) return read_stiffer_counts(table);
     Observations out;
     for (const std::string& column : table.columns()) {
-        constexpr std::array<std::string_view, 8> kKnown{"condition", "tp",     "fn",          "fp",
-                                                         "n",         "nodule", "participant", "correct"};
+        constexpr std::array<std::string_view, 9> kKnown{"condition", "tp",          "fn",      "fp",   "n",
+                                                         "nodule",    "participant", "correct", "group"};
         if (column != "comparison" && std::find(kKnown.begin(), kKnown.end(), column) == kKnown.end()) {
             throw files::bad_input(
                 tsv.string(), "line 1", "the column " + files::shown(column),
-                "condition tp fn fp [n] [nodule] [participant], or condition correct n [comparison] [participant]");
+                "condition tp fn fp [n] [nodule] [participant] [group], or condition correct n [comparison] "
+                "[participant] [group], or condition reference_kPa comparison_kPa stiffer n [participant]");
         }
     }
     if (table.has_column("correct")) {

@@ -3,9 +3,14 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include "study/exclusions.h"
+#include "study/planned.h"
+#include "study/primary.h"
 
 namespace palpa::study {
 
@@ -39,36 +44,60 @@ struct Choices {
     std::int64_t n = 0;
 };
 
+// What the stiffness of forced choices is compared with: x = ln(second / first), or ln(comparison / reference) where the
+// reference stays under one condition and in tables of counts.
+enum class StiffnessAxis { second_first, comparison_reference };
+
+// Forced choices at one level: how often the second surface, or the comparison, was called the stiffer one.
+struct StifferAnswers {
+    int condition = 0;
+    int participant = -1;  // -1: not given
+    StiffnessAxis axis = StiffnessAxis::second_first;
+    double x = 0.0;
+    std::int64_t stiffer = 0;
+    std::int64_t n = 0;
+};
+
 // An answer to one of the protocol's questions: a number, or the text that was chosen or typed.
 struct Answer {
     std::string condition;  // n/a: asked before the trials
     std::string item;
     std::string value;
+    int participant = -1;  // -1: not given
 };
 
 struct Observations {
-    std::vector<std::string> conditions;  // in the order of their first row
+    std::vector<std::string> conditions;  // in the order of the protocol, else of their first row
     std::vector<std::string> participants;
+    std::vector<std::string> groups;
+    std::vector<int> group_of;                 // by participant, -1: none; shorter than participants if nobody has one
+    std::optional<PrimaryComparison> primary;  // as the protocol states it
     std::vector<std::string> nodules;
     std::vector<std::string> comparisons;
     std::vector<Observation> rows;
     std::vector<TrialFigures> trials;
     std::vector<Choices> choices;
+    std::vector<StifferAnswers> stiffer;  // the same choices, for psychometric functions
     std::vector<Answer> answers;
     std::vector<std::string> notes;  // for the reader of a report: interrupted trials, cut lines, clocks set back
     bool simulated = false;          // at least one trial is simulated
     std::int64_t practice_trials = 0;
     std::int64_t interrupted_trials = 0;
+    std::int64_t excluded_trials = 0;       // finished tests that are left out
+    std::vector<Progress> progress;         // logs against the plan; empty if the plan is not known
+    std::vector<Exclusion> exclusions;      // as the experimenter decided
+    std::vector<Replacement> replacements;  // whose trials are all excluded
 };
 
 // Returns the index of `name`, which is added if it is new.
 int index_of(std::string_view name, std::vector<std::string>& names);
 
 // Reads a table of counts. Its columns are condition, tp, fn, fp and optionally n (= tp + fn, checked), nodule,
-// participant; or, for forced choices, condition, correct, n and optionally participant, comparison. `fp` may be n/a in
+// participant, group; or, for forced choices, condition, correct, n and optionally participant, comparison, group. `fp` may be n/a in
 // rows that name a nodule. Throws InputError with file, line and column for an unknown column, a count that is negative
-// or not whole, n other than tp + fn, correct > n, and two rows with the same condition, participant and nodule or
-// comparison.
+// or not whole, n other than tp + fn, correct > n, a name that is none (study/names.h), and rows that would be counted
+// twice: with the same condition, participant and nodule or comparison, or rows of nodules (comparisons, participants)
+// beside a row for all of them. A table with a column stiffer is read by study/stiffer_counts.h.
 Observations read_counts(const std::filesystem::path& tsv);
 
 }  // namespace palpa::study

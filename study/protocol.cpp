@@ -8,6 +8,7 @@
 #include "files/json.h"
 #include "files/sha256.h"
 #include "files/text.h"
+#include "study/names.h"
 
 namespace palpa::study {
 namespace {
@@ -15,17 +16,9 @@ namespace {
 constexpr const char* kModalities[] = {"touchpad", "pen", "finger", "mouse", "tangible", "shape-display", "hand"};
 constexpr const char* kOrders[] = {"fixed", "random", "latin", "williams"};
 
-// What becomes a field of a log: a tab or the end of a line in it would make the row unreadable.
-std::string field_text(files::JsonReader& json, std::string_view key, const std::string& otherwise) {
-    const std::string text = json.text(key, otherwise);
-    if (text.find_first_of("\t\n\r") != std::string::npos) json.fail(key, files::shown(text), "a name without tabs");
-    return text;
-}
-
 std::string new_id(files::JsonReader& json, std::set<std::string>& known) {
     const std::string id = json.text("id");
-    if (id.empty() || id.find_first_of("\t\n\r") != std::string::npos)
-        json.fail("id", files::shown(id), "a name without tabs");
+    if (!is_name(id)) json.fail("id", files::shown(id), kNameRule);
     if (!known.insert(id).second) json.fail("id", files::shown(id) + " a second time", "each name once");
     return id;
 }
@@ -36,8 +29,7 @@ std::vector<std::string> read_names(files::JsonReader& json, std::string_view ke
     if (!list.is_array() || list.empty()) json.fail(key, files::described(list), "an array of names");
     for (const files::Json& entry : list) {
         const std::string name = entry.is_string() ? entry.get<std::string>() : "";
-        if (name.empty() || name.find_first_of("\t\n\r") != std::string::npos)
-            json.fail(key, files::described(entry), "a name without tabs");
+        if (!is_name(name)) json.fail(key, files::described(entry), kNameRule);
         if (std::count(names.begin(), names.end(), name) > 0)
             json.fail(key, files::shown(name) + " a second time", "each name once");
         names.push_back(name);
@@ -54,7 +46,9 @@ Condition read_condition(files::JsonReader json, TaskKind task, std::set<std::st
         json.choice("modality", {"touchpad", "pen", "finger", "mouse", "tangible", "shape-display", "hand"}));
     condition.scene = json.text("scene", "");
     condition.profile = json.text("profile", "");
-    condition.device = field_text(json, "device", "n/a");
+    condition.device = json.text("device", "n/a");
+    if (condition.device != "n/a" && !is_name(condition.device))
+        json.fail("device", files::shown(condition.device), kNameRule);
     condition.instructions = json.text("instructions", "");
     if (json.has("nodules")) condition.nodules = read_names(json, "nodules");
     const bool by_hand = condition.modality == Modality::hand;
@@ -119,8 +113,9 @@ std::vector<Item> read_items(files::JsonReader& json, std::string_view key) {
     return items;
 }
 
-ChoiceTask read_choice(files::JsonReader json) {
-    json.only({"reference_kPa", "comparisons_kPa", "repeats", "alternate_conditions"});
+// `conditions` are read already.
+ChoiceTask read_choice(files::JsonReader json, const std::vector<Condition>& conditions) {
+    json.only({"reference_kPa", "comparisons_kPa", "repeats", "alternate_conditions", "reference_on"});
     ChoiceTask task;
     task.reference_kPa = json.number("reference_kPa", {0.0, 1e6, true});
     task.comparisons_kPa = json.numbers("comparisons_kPa", 0, {0.0, 1e6, true});
@@ -130,6 +125,14 @@ ChoiceTask read_choice(files::JsonReader json) {
     }
     task.repeats = json.integer("repeats", 1, 1000, task.repeats);
     task.alternate_conditions = json.boolean("alternate_conditions", false);
+    if (json.has("reference_on")) {
+        const std::string id = json.text("reference_on");
+        const auto it =
+            std::find_if(conditions.begin(), conditions.end(), [&](const auto& one) { return one.id == id; });
+        if (it == conditions.end())
+            json.fail("reference_on", files::shown(id), "the id of a condition of this protocol");
+        task.reference_on = static_cast<std::size_t>(it - conditions.begin());
+    }
     json.finish();
     return task;
 }
@@ -152,19 +155,17 @@ Protocol read_protocol(const std::filesystem::path& file) {
     files::JsonReader json(root, file.string());
     json.only({"name", "version", "seed", "choice", "conditions", "groups", "assignment", "order", "repeats",
                "turn_maps", "flip_maps", "time_limit_s", "practice", "break_every_trials", "nodule_count_told",
-               "instructions", "demographics", "ratings"});
+               "instructions", "demographics", "ratings", "analysis"});
     protocol.name = json.text("name");
     protocol.version = json.text("version");
     protocol.seed = static_cast<std::uint32_t>(json.integer("seed", 0, 2000000000));
-    if (auto choice = json.optional_object("choice")) {
-        protocol.task = TaskKind::choice;
-        protocol.choice = read_choice(*choice);
-    }
+    if (json.has("choice")) protocol.task = TaskKind::choice;
     std::set<std::string> conditions, groups;
     for (files::JsonReader& entry : json.objects("conditions")) {
         protocol.conditions.push_back(read_condition(entry, protocol.task, conditions));
     }
     if (protocol.conditions.empty()) json.fail("conditions", "nothing", "one condition at least");
+    if (auto choice = json.optional_object("choice")) protocol.choice = read_choice(*choice, protocol.conditions);
     for (files::JsonReader& entry : json.objects("groups"))
         protocol.groups.push_back(read_group(entry, protocol.conditions, groups));
     if (protocol.groups.empty()) {
@@ -184,6 +185,10 @@ Protocol read_protocol(const std::filesystem::path& file) {
     protocol.instructions = json.text("instructions", "");
     protocol.demographics = read_items(json, "demographics");
     protocol.ratings = read_items(json, "ratings");
+    if (auto analysis = json.optional_object("analysis")) {
+        protocol.primary = read_primary(*analysis, {conditions.begin(), conditions.end()},
+                                        {groups.begin(), groups.end()}, protocol.task == TaskKind::choice);
+    }
     json.finish();
     return protocol;
 }

@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "study/primary.h"
+
 namespace palpa::study {
 
 enum class Modality { touchpad, pen, finger, mouse, tangible, shape_display, hand };
@@ -36,6 +38,8 @@ struct ChoiceTask {
     std::vector<double> comparisons_kPa;
     int repeats = 2;  // of each pair under each condition; an even number gives both orders equally often
     bool alternate_conditions = false;  // conditions alternate trial by trial; else one is completed before the next
+    // The condition of every reference; absent: that of the comparison.
+    std::optional<std::size_t> reference_on = std::nullopt;
 };
 
 // A question to the participant, before the trials or after each condition.
@@ -70,6 +74,7 @@ struct Protocol {
     std::string instructions;
     std::vector<Item> demographics;
     std::vector<Item> ratings;
+    std::optional<PrimaryComparison> primary;  // of the analysis
 };
 
 // Throws InputError that names file, key, what was found and what was expected.

@@ -7,7 +7,7 @@
 #include "files/input_error.h"
 #include "files/json.h"
 #include "files/text.h"
-#include "study/read_logs.h"
+#include "study/run_log.h"
 
 namespace palpa::study {
 namespace {
@@ -21,6 +21,7 @@ fs::path file_of(const fs::path& directory, const std::string& code) {
 std::string one_field(std::string text) {
     std::replace_if(
         text.begin(), text.end(), [](char c) { return c == '\t' || c == '\n' || c == '\r'; }, ' ');
+    std::replace(text.begin(), text.end(), '"', '\'');  // tables take a double quote for the begin of a quoted field
     return text.empty() ? "n/a" : text;
 }
 

@@ -16,7 +16,8 @@ struct Rating {
     std::string value = "n/a";  // n/a: no answer
 };
 
-// Appends the answers; they are on the disk when the function returns. Tabs and line ends in values become spaces.
+// Appends the answers; they are on the disk when the function returns. Tabs and line ends in values become spaces,
+// double quotes single ones.
 // Throws std::runtime_error if they cannot be written.
 void add_ratings(const std::filesystem::path& directory, const std::string& code, const std::vector<Rating>& ratings);
 

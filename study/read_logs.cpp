@@ -2,16 +2,19 @@
 
 #include <algorithm>
 #include <map>
-#include <optional>
 #include <set>
+#include <unordered_map>
 
 #include "files/input_error.h"
 #include "files/json.h"
-#include "files/table.h"
 #include "files/text.h"
-#include "study/count.h"
+#include "study/follow_protocol.h"
+#include "study/name_index.h"
 #include "study/ratings.h"
+#include "study/run_files.h"
+#include "study/stiffer_counts.h"
 #include "study/study_folder.h"
+#include "study/subject_folders.h"
 
 namespace palpa::study {
 namespace {
@@ -25,288 +28,348 @@ fs::path beside(const fs::path& events, std::string_view suffix) {
     return name.substr(0, name.size() - kEvents.size()) + std::string(suffix);
 }
 
-// Returns a value in seconds, millimetres or newtons, which cannot be negative; NaN for n/a, where nothing was
-// measured.
-double amount(const files::Table& table, std::size_t column) {
-    const double value = table.number(column);
-    if (value < 0.0) table.fail(column, "a number from 0 up, or n/a");
-    return value;
-}
-
-// As amount(), for columns that logs of version 0.1 do not have: NaN if the column is missing.
-double amount_or_missing(const files::Table& table, std::string_view column) {
-    if (!table.has_column(column)) return std::numeric_limits<double>::quiet_NaN();
-    return amount(table, table.column(column));
-}
-
-void take_finish(const files::Table& table, RunLog& run) {
-    run.finished = true;
-    run.duration_s = amount(table, table.column("duration"));
-    run.tp = count(table, table.column("tp"));
-    run.fp = count(table, table.column("fp"));
-    run.fn = count(table, table.column("fn"));
-    if (table.has_column("n_nodules") && count(table, table.column("n_nodules")) != run.tp + run.fn) {
-        table.fail(table.column("n_nodules"), "tp + fn = " + std::to_string(run.tp + run.fn));
-    }
-    run.path_m = 1e-3 * amount_or_missing(table, "path_mm");
-    run.mean_force_N = amount_or_missing(table, "mean_force_N");
-    run.max_force_N = amount_or_missing(table, "max_force_N");
-}
-
-void take_choice(const files::Table& table, RunLog& run) {
-    const bool correct = whole_number(table, table.column("correct"), 0, 1) == 1;
-    run.choices.push_back(
-        {run.trial, run.condition, std::string(table.field(table.column("comparison_kPa"))), correct, run.practice});
-}
-
-struct Settings {
-    std::string sha256;  // of the protocol; empty for a single run
-    std::vector<std::string> nodules;
-    bool simulated = false;
-};
-
-Settings read_settings(const fs::path& file, std::vector<std::string>& notes) {
-    Settings out;
-    if (!fs::exists(file)) {
-        notes.push_back(file.string() + ": is not there; nodules that were missed cannot be told apart");
-        return out;
-    }
-    const files::Json root = files::read_json(file);
-    files::JsonReader json(root, file.string());
-    if (auto study = json.optional_object("study")) {
-        out.sha256 = study->text("sha256", "");
-        out.simulated = study->boolean("simulated", false);
-    }
-    for (files::JsonReader& nodule : json.objects("nodules")) out.nodules.push_back(nodule.text("id"));
-    return out;
-}
-
-std::set<std::string> read_hits(const fs::path& file, std::vector<std::string>& notes) {
-    std::set<std::string> hits;
-    if (!fs::exists(file)) {
-        notes.push_back(file.string() + ": is not there");
-        return hits;
-    }
-    const std::string text = files::read_text(file);
-    files::Table table(std::string(whole_lines(text, file.string(), notes)), file.string(), '\t');
-    const std::size_t nodule = table.column("nodule"), hit = table.column("hit");
-    while (table.next()) {
-        if (whole_number(table, hit, 0, 1) == 1) hits.insert(std::string(table.field(nodule)));
-    }
-    return hits;
-}
-
 std::string began_utc(const fs::path& file) {
     if (!fs::exists(file)) return "";  // written last, so an interrupted trial has none
     const files::Json json = files::read_json(file);
     return json.contains("began_utc") && json["began_utc"].is_string() ? json["began_utc"].get<std::string>() : "";
 }
 
-void add_find(const RunLog& run, int participant, const Settings& settings, std::map<std::pair<int, int>, int>& repeats,
-              Observations& out) {
-    const int condition = index_of(run.condition, out.conditions);
-    const int repeat = repeats[{participant, condition}]++;
-    const std::set<std::string> hits = read_hits(beside(run.events, "_marks.tsv"), out.notes);
-    std::int64_t found = 0;
-    for (const std::string& id : settings.nodules) {
-        const bool hit = hits.count(id) > 0;
-        found += hit;
-        out.rows.push_back({condition, participant, index_of(id, out.nodules), repeat, hit, !hit, 0});
+// What is known of the whole study while its participants are read.
+struct Study {
+    explicit Study(Observations& out)
+        : conditions(out.conditions), nodules(out.nodules), comparisons(out.comparisons) {}
+
+    fs::path directory;
+    std::optional<StudyIdentity> identity;
+    std::optional<Protocol> protocol;
+    std::map<std::string, int> planned_condition;  // index in the protocol
+    std::set<std::string> people;                  // of participants.tsv
+    Numbers numbers;
+    std::set<std::string> left_out;  // participants of whom all is excluded
+    std::set<std::pair<std::string, int>> left_out_trials;
+    std::string sha256, sha256_in;                      // of the first trial that names a protocol
+    std::unordered_map<std::size_t, std::string> seen;  // file of events by the hash of its text
+    NameIndex conditions, nodules, comparisons;         // of the observations
+
+    bool excludes(const std::string& code, int trial) const {
+        return left_out.count(code) > 0 || left_out_trials.count({code, trial}) > 0;
     }
-    const auto n = static_cast<std::int64_t>(settings.nodules.size());
-    if (n == 0) {
-        out.rows.push_back({condition, participant, -1, repeat, run.tp, run.fn, run.fp});
-    } else {
-        if (found != run.tp || n != run.tp + run.fn) {
-            throw files::bad_input(
-                run.events.string(), "finish",
-                std::to_string(run.tp) + " found and " + std::to_string(run.fn) + " missed",
-                std::to_string(found) + " of " + std::to_string(n) + " as the marks and the settings beside it say");
-        }
-        out.rows.push_back({condition, participant, -1, repeat, 0, 0, run.fp});
+};
+
+void read_protocol_of(Study& study, std::vector<std::string>& notes) {
+    if (!study.identity) return;
+    const fs::path file = study.directory / "protocol.json";
+    if (!fs::exists(file)) {
+        notes.push_back(file.string() + ": is not there; the logs cannot be compared with the plan");
+        return;
     }
-    out.trials.push_back({condition, participant, run.duration_s, run.path_m, run.mean_force_N, run.max_force_N});
+    study.protocol = read_protocol(file);
+    if (study.protocol->sha256 != study.identity->sha256) {
+        throw files::bad_input(file.string(), "", "sha256 " + study.protocol->sha256.substr(0, 12),
+                               study.identity->sha256.substr(0, 12) + " as in study.json: the file was changed");
+    }
+    for (std::size_t i = 0; i < study.protocol->conditions.size(); ++i)
+        study.planned_condition[study.protocol->conditions[i].id] = static_cast<int>(i);
 }
 
-void add_choices(const RunLog& run, int participant, Observations& out) {
-    for (const RunLog::Choice& choice : run.choices) {
-        if (choice.practice) {
-            ++out.practice_trials;
-            continue;
-        }
-        Choices row;
-        row.condition = index_of(choice.condition, out.conditions);
-        row.participant = participant;
-        row.comparison = index_of(choice.comparison + " kPa", out.comparisons);
-        row.correct = choice.correct ? 1 : 0;
-        row.n = 1;
-        out.choices.push_back(row);
+void add_find(const RunLog& run, int participant, const RunSettings& settings, const std::vector<LoggedMark>& marks,
+              std::map<std::pair<int, int>, int>& repeats, Study& study, Observations& out) {
+    const int condition = study.conditions.of(run.condition);
+    const int repeat = repeats[{participant, condition}]++;
+    for (const RunSettings::Nodule& nodule : settings.nodules) {
+        const bool hit = std::any_of(marks.begin(), marks.end(),
+                                     [&](const LoggedMark& mark) { return mark.hit && mark.nodule == nodule.id; });
+        out.rows.push_back({condition, participant, study.nodules.of(nodule.id), repeat, hit, !hit, 0});
     }
+    const bool named = !settings.nodules.empty();
+    out.rows.push_back({condition, participant, -1, repeat, named ? 0 : run.tp, named ? 0 : run.fn, run.fp});
+    out.trials.push_back({condition, participant, run.duration_s, run.path_m, run.mean_force_N, run.max_force_N});
 }
 
 // Reads all runs of one participant, in the order of their numbers.
 class Subject {
   public:
-    explicit Subject(int index) : index_(index) {}
+    Subject(std::string code, int index, Study& study, Observations& out)
+        : code_(std::move(code)), index_(index), study_(study), out_(out) {}
 
-    void add(const fs::path& events, const std::optional<StudyIdentity>& identity, Observations& out) {
-        const RunLog run = read_run(events, out.notes);
-        if (identity) refuse_answered_twice(run);
-        add_choices(run, index_, out);
-        if (!run.choices.empty()) return;
-        const Settings settings =
-            run.finished ? read_settings(beside(events, "_settings.json"), out.notes) : Settings{};
-        check_version(events, settings, identity);
-        note_clock(events, out.notes);
-        out.simulated = out.simulated || settings.simulated;
-        if (!run.finished) {
-            ++out.interrupted_trials;
-            return;
+    void add(const fs::path& events) {
+        const RunLog run = read_run(events, out_.notes);
+        files_.push_back(events.string());
+        note_copy(run);
+        if (seed_ == 0 && run.seed > 0) {
+            seed_ = run.choices.empty() ? run.seed : run.choices.front().seed;
+            seeded_trial_ = run.choices.empty() ? run.trial : run.choices.front().trial;
         }
-        if (run.practice) {
-            ++out.practice_trials;
-            return;
-        }
-        const auto [it, fresh] = finished_.emplace(run.trial, events.string());
-        if (identity && !fresh) {
-            throw files::bad_input(events.string(), "trial", std::to_string(run.trial) + " finished a second time",
-                                   "once: it is in " + it->second + " too");
-        }
-        add_find(run, index_, settings, repeats_, out);
+        if (!run.choices.empty()) return add_choices(run);
+        if (run.trial > 0)
+            add_run(run);  // 0: killed before the first row
+        else
+            ++out_.interrupted_trials;
     }
+
+    // To be called once all runs are added: compares them with the plan.
+    void settle() {
+        if (!study_.protocol) return;
+        const auto likely = study_.numbers.number(code_);
+        int number = number_.value_or(likely);
+        if (!number_ && seed_ > 0) {
+            const auto found = number_with_seed(*study_.protocol, seeded_trial_, seed_, likely,
+                                                static_cast<int>(study_.people.size()));
+            if (!found) {
+                out_.notes.push_back("sub-" + code_ + ": the seed of trial " + std::to_string(seeded_trial_) +
+                                     " is not that of any participant's plan");
+            }
+            number = found.value_or(likely);
+        }
+        const PlannedParticipant plan = plan_participant(*study_.protocol, number);
+        if (last_trial_ > static_cast<int>(plan.trials.size())) {
+            throw files::bad_input(text(last_place_), "trial", std::to_string(last_trial_),
+                                   "1 to " + std::to_string(plan.trials.size()) + ", as the protocol plans them");
+        }
+        const auto rows = compare_with_plan(*study_.protocol, plan, code_, logged_, out_.notes);
+        out_.progress.insert(out_.progress.end(), rows.begin(), rows.end());
+    }
+
+    bool has_finished(int trial) const { return finished_.count(trial) > 0; }
 
   private:
-    void refuse_answered_twice(const RunLog& run) {
+    void note_copy(const RunLog& run) {
+        if (!run.finished && run.choices.empty()) return;
+        const auto [it, fresh] = study_.seen.emplace(run.text_hash, run.events.string());
+        if (!fresh) out_.notes.push_back(run.events.string() + ": holds the same bytes as " + it->second + ": a copy?");
+    }
+
+    // A line of one of this participant's files.
+    struct Place {
+        std::size_t file = 0;
+        std::size_t line = 0;  // 0: the whole file
+    };
+    std::string text(const Place& place) const {
+        return files_[place.file] + (place.line > 0 ? ": line " + std::to_string(place.line) : "");
+    }
+
+    // Notes what the log says of a trial, for the comparison with the plan.
+    Logged& log(const Place& place, const std::string& condition, int trial, bool practice, bool finished) {
+        if (trial > last_trial_) last_place_ = place;
+        last_trial_ = std::max(last_trial_, trial);
+        const auto it = study_.planned_condition.find(condition);
+        if (study_.protocol && it == study_.planned_condition.end()) {
+            throw files::bad_input(text(place), "condition", files::shown(condition),
+                                   "a condition of " + (study_.directory / "protocol.json").string());
+        }
+        const int index = it == study_.planned_condition.end() ? 0 : it->second;
+        logged_.push_back({trial, index, practice, finished, finished && study_.excludes(code_, trial)});
+        return logged_.back();
+    }
+
+    void finish_once(const Place& place, int trial) {
+        const auto [it, fresh] = finished_.emplace(trial, place);
+        if (fresh) return;
+        throw files::bad_input(text(place), "trial", std::to_string(trial) + " finished a second time",
+                               "once: it is in " + text(it->second) + " too");
+    }
+
+    void add_choices(const RunLog& run) {
         for (const RunLog::Choice& choice : run.choices) {
-            const auto [it, fresh] = answered_.emplace(choice.trial, run.events.string());
-            if (fresh) continue;
-            throw files::bad_input(run.events.string(), "trial",
-                                   std::to_string(choice.trial) + " answered a second time",
-                                   "once: it is in " + it->second + " too");
+            const Place place{files_.size() - 1, choice.line};
+            finish_once(place, choice.trial);
+            Logged& logged = log(place, choice.condition, choice.trial, choice.practice, true);
+            if (study_.protocol) check_pair(place, choice, logged);
+            if (choice.practice) {
+                ++out_.practice_trials;
+            } else if (logged.excluded) {
+                ++out_.excluded_trials;
+            } else {
+                const int condition = study_.conditions.of(choice.condition);
+                out_.choices.push_back(
+                    {condition, index_, study_.comparisons.of(choice.comparison + " kPa"), choice.correct ? 1 : 0, 1});
+                out_.stiffer.push_back(stiffer_choice(
+                    {choice.reference_kPa, choice.comparison_kPa, choice.reference_first, !choice.reference_on.empty()},
+                    choice.reference_softer));
+                out_.stiffer.back().condition = condition;
+                out_.stiffer.back().participant = index_;
+            }
         }
     }
 
-    static void check_version(const fs::path& events, const Settings& settings,
-                              const std::optional<StudyIdentity>& identity) {
-        if (!identity || settings.sha256.empty() || settings.sha256 == identity->sha256) return;
-        throw files::bad_input(beside(events, "_settings.json").string(), "study.sha256",
-                               files::shown(settings.sha256.substr(0, 12)),
-                               files::shown(identity->sha256.substr(0, 12)) +
-                                   " as in study.json: two versions of a protocol in one folder");
+    void check_pair(const Place& place, const RunLog::Choice& choice, Logged& logged) const {
+        const ChoiceTask& task = study_.protocol->choice;
+        if (choice.reference_kPa != task.reference_kPa) {
+            throw files::bad_input(text(place), "reference_kPa", files::short_number(choice.reference_kPa),
+                                   files::short_number(task.reference_kPa) + " as in the protocol");
+        }
+        const auto& all = task.comparisons_kPa;
+        const auto it = std::find(all.begin(), all.end(), choice.comparison_kPa);
+        if (it == all.end()) {
+            throw files::bad_input(text(place), "comparison_kPa", files::shown(choice.comparison),
+                                   "one of the protocol's comparisons");
+        }
+        const std::string stays = task.reference_on ? study_.protocol->conditions[*task.reference_on].id : "";
+        if (choice.reference_on != stays) {
+            throw files::bad_input(text(place), "reference_on",
+                                   choice.reference_on.empty() ? "n/a" : files::shown(choice.reference_on),
+                                   (stays.empty() ? "n/a" : files::shown(stays)) + " as in the protocol");
+        }
+        logged.comparison = static_cast<int>(it - all.begin());
+        logged.reference_first = choice.reference_first;
+    }
+
+    void add_run(const RunLog& run) {
+        const Place place{files_.size() - 1};
+        const RunSettings settings = settings_of_run(run);
+        check_version(run, settings);
+        note_clock(run.events);
+        out_.simulated = out_.simulated || settings.simulated;
+        const bool of_study = study_.identity || !settings.sha256.empty();
+        if (of_study && run.finished) finish_once(place, run.trial);
+        const bool excluded = log(place, run.condition, run.trial, run.practice, run.finished).excluded;
+        if (!run.finished) {
+            ++out_.interrupted_trials;
+            return;
+        }
+        if (!settings.there) {
+            out_.notes.push_back(beside(run.events, "_settings.json").string() +
+                                 ": is not there; nodules that were missed cannot be told apart");
+        }
+        const auto marks = read_marks_left(beside(run.events, "_marks.tsv"), out_.notes);
+        if (!marks) out_.notes.push_back(beside(run.events, "_marks.tsv").string() + ": is not there");
+        check_counts(run, settings, marks.value_or(std::vector<LoggedMark>{}));
+        if (run.practice) {
+            ++out_.practice_trials;
+        } else if (excluded) {
+            ++out_.excluded_trials;
+        } else {
+            add_find(run, index_, settings, marks.value_or(std::vector<LoggedMark>{}), repeats_, study_, out_);
+        }
+    }
+
+    // Reads the settings of a run. Those of an interrupted one may be damaged by the power cut that ended it.
+    RunSettings settings_of_run(const RunLog& run) {
+        const fs::path file = beside(run.events, "_settings.json");
+        if (run.finished) return read_run_settings(file);
+        try {
+            return read_run_settings(file);
+        } catch (const files::InputError& error) {
+            out_.notes.push_back(error.what() + std::string(" (of an interrupted trial)"));
+            return {};
+        }
+    }
+
+    void check_version(const RunLog& run, const RunSettings& settings) {
+        const std::string file = beside(run.events, "_settings.json").string();
+        if (study_.identity && settings.there && settings.sha256.empty()) {
+            throw files::bad_input(file, "study", "none: a single run",
+                                   "a trial of the protocol in study.json: single runs never share a study's folder");
+        }
+        if (settings.number && number_ && *settings.number != *number_) {
+            throw files::bad_input(file, "study.participant_number", std::to_string(*settings.number),
+                                   std::to_string(*number_) + " as in this participant's trials before it");
+        }
+        if (settings.number) number_ = settings.number;
+        if (settings.sha256.empty()) return;
+        if (study_.sha256.empty()) {
+            study_.sha256 = study_.identity ? study_.identity->sha256 : settings.sha256;
+            study_.sha256_in = study_.identity ? "study.json" : file;
+        }
+        if (settings.sha256 == study_.sha256) return;
+        throw files::bad_input(file, "study.sha256", files::shown(settings.sha256.substr(0, 12)),
+                               files::shown(study_.sha256.substr(0, 12)) + " as in " + study_.sha256_in +
+                                   ": two versions of a protocol in one folder");
     }
 
     // Notes a run that began before the one with the number before. Times are UTC in ISO 8601, which sorts as text.
-    void note_clock(const fs::path& events, std::vector<std::string>& notes) {
+    void note_clock(const fs::path& events) {
         const std::string began = began_utc(beside(events, "_performance.json"));
         if (began.empty()) return;
         if (!last_began_.empty() && began < last_began_) {
-            notes.push_back(events.string() + ": began at " + began +
-                            " by the computer's clock, before the run before it (" + last_began_ +
-                            "): the clock was set back. Times within trials are of the steady clock and hold");
+            out_.notes.push_back(events.string() + ": began at " + began +
+                                 " by the computer's clock, before the run before it (" + last_began_ +
+                                 "): the clock was set back. Times within trials are of the steady clock and hold");
         }
         last_began_ = began;
     }
 
+    std::string code_;
     int index_;
-    std::map<int, std::string> finished_;
-    std::map<int, std::string> answered_;  // of forced choices
+    Study& study_;
+    Observations& out_;
+    std::optional<int> number_;  // in the plan, as the settings say
+    std::int64_t seed_ = 0;      // of the first trial that has one
+    int seeded_trial_ = 1;
+    std::vector<Logged> logged_;
+    std::vector<std::string> files_;  // of events, as they were added
+    std::unordered_map<int, Place> finished_;
+    int last_trial_ = 0;
+    Place last_place_;
     std::map<std::pair<int, int>, int> repeats_;
     std::string last_began_;
 };
 
-}  // namespace
-
-std::string_view whole_lines(std::string_view text, const std::string& file, std::vector<std::string>& notes) {
-    const auto end = text.rfind('\n');
-    const std::string_view whole = end == std::string_view::npos ? std::string_view() : text.substr(0, end + 1);
-    if (whole.size() < text.size()) {
-        const auto line = 1 + std::count(whole.begin(), whole.end(), '\n');
-        notes.push_back(file + ": line " + std::to_string(line) + " is left out: it was cut off after " +
-                        std::to_string(text.size() - whole.size()) + " bytes");
+void check_exclusions(const Study& study, const std::set<std::string>& codes,
+                      const std::set<std::pair<std::string, int>>& finished) {
+    const std::string file = (study.directory / "exclusions.tsv").string();
+    for (const std::string& code : study.left_out) {
+        if (codes.count(code) == 0)
+            throw files::bad_input(file, "participant", files::shown(code), "a participant of this study");
     }
-    return whole;
-}
-
-RunLog read_run(const fs::path& events, std::vector<std::string>& notes) {
-    RunLog run;
-    run.events = events;
-    const std::string text = files::read_text(events);
-    const std::string_view whole_text = whole_lines(text, events.string(), notes);
-    if (whole_text.empty()) return run;  // killed before the first line
-    files::Table table(std::string(whole_text), events.string(), '\t');
-    const std::size_t type = table.column("trial_type"), trial = table.column("trial");
-    const std::size_t condition = table.column("condition"), block = table.column("block"),
-                      onset = table.column("onset");
-    double before_s = 0.0;
-    while (table.next()) {
-        const double onset_s = table.finite_number(onset);
-        if (onset_s < before_s) {
-            notes.push_back(events.string() + ": line " + std::to_string(table.line()) + ": found the time " +
-                            files::short_number(onset_s) + " s after " + files::short_number(before_s) +
-                            " s: the clock went back");
-        }
-        before_s = onset_s;
-        run.trial = static_cast<int>(whole_number(table, trial, 1, kMostCounts));
-        run.condition = table.field(condition);
-        run.practice = table.field(block) == "practice";
-        if (table.field(type) == "finish") take_finish(table, run);
-        if (table.field(type) == "choice") take_choice(table, run);
+    for (const auto& [code, trial] : study.left_out_trials) {
+        if (finished.count({code, trial}) > 0) continue;
+        throw files::bad_input(file, "trial", std::to_string(trial) + " of " + files::shown(code),
+                               "a trial that this participant has finished");
     }
-    return run;
-}
-
-std::vector<fs::path> events_files(const fs::path& subject) {
-    std::vector<fs::path> files;
-    std::error_code error;
-    for (const auto& entry : fs::directory_iterator(subject / "beh", error)) {
-        const std::string name = entry.path().filename().string();
-        constexpr std::string_view kEnd = "_events.tsv";
-        if (name.find("_task-interval_") != std::string::npos) continue;
-        if (name.size() > kEnd.size() && name.compare(name.size() - kEnd.size(), kEnd.size(), kEnd) == 0)
-            files.push_back(entry.path());
-    }
-    // by length first, so that run-100 comes after run-99
-    std::sort(files.begin(), files.end(), [](const fs::path& a, const fs::path& b) {
-        const std::string x = a.filename().string(), y = b.filename().string();
-        return x.size() != y.size() ? x.size() < y.size() : x < y;
-    });
-    return files;
-}
-
-namespace {
-
-// A folder that was copied by hand to another code would count its person twice.
-void refuse_copy(const fs::path& subject, const fs::path& events) {
-    const std::string own = subject.filename().string();
-    const std::string name = events.filename().string();
-    if (name.rfind(own + "_", 0) == 0) return;
-    throw files::bad_input(events.string(), "", "a log of " + name.substr(0, name.find('_')), "one of " + own);
 }
 
 }  // namespace
 
 Observations read_study(const fs::path& directory) {
     Observations out;
-    const auto identity = read_identity(directory);
-    if (identity) out.simulated = identity->kind.simulated;
-    read_people(directory, out.notes);  // refuses a code that appears twice
-    std::vector<fs::path> subjects;
-    for (const auto& entry : fs::directory_iterator(directory)) {
-        if (entry.path().filename().string().rfind("sub-", 0) == 0) subjects.push_back(entry.path());
+    Study study(out);
+    study.directory = directory;
+    study.identity = read_identity(directory);
+    if (study.identity) out.simulated = study.identity->kind.simulated;
+    const std::vector<Person> people = read_people(directory, out.notes);  // refuses a code that appears twice
+    for (const Person& one : people) study.people.insert(one.code);
+    out.exclusions = read_exclusions(directory);
+    out.replacements = read_replacements(directory);
+    study.numbers = numbers_of(people, out.replacements);
+    for (const Replacement& one : out.replacements) study.left_out.insert(one.participant);
+    for (const Exclusion& one : out.exclusions) {
+        if (!one.trial) study.left_out.insert(one.participant);
+        if (one.trial) study.left_out_trials.insert({one.participant, *one.trial});
     }
-    std::sort(subjects.begin(), subjects.end());
-    for (const fs::path& subject : subjects) {
-        out.participants.push_back(subject.filename().string().substr(4));
-        Subject reader(static_cast<int>(out.participants.size()) - 1);
-        for (const fs::path& events : events_files(subject)) {
-            refuse_copy(subject, events);
-            reader.add(events, identity, out);
+    read_protocol_of(study, out.notes);
+    std::set<std::string> codes = subject_codes(directory, out.notes);
+    const std::set<std::string> with_folder = codes;
+    codes.insert(study.people.begin(), study.people.end());
+    std::set<std::pair<std::string, int>> finished;
+    for (const std::string& code : codes) {
+        const auto files = events_files(directory / ("sub-" + code));
+        if (!files.empty()) out.participants.push_back(code);
+        const int index = static_cast<int>(out.participants.size()) - 1;
+        if (!files.empty() && study.identity && study.people.count(code) == 0) {
+            throw files::bad_input((directory / "participants.tsv").string(), "",
+                                   "no line of sub-" + code + ", who has logs", "a line for each participant");
         }
-        for (const Rating& r : read_ratings(directory, out.participants.back(), out.notes))
-            out.answers.push_back({r.condition, r.item, r.value});
+        Subject reader(code, index, study, out);
+        for (const fs::path& events : files) reader.add(events);
+        reader.settle();
+        for (const auto& [who, trial] : study.left_out_trials) {
+            if (who == code && reader.has_finished(trial)) finished.insert({who, trial});
+        }
+        if (with_folder.count(code) == 0 || study.left_out.count(code) > 0) continue;
+        for (const Rating& r : read_ratings(directory, code, out.notes))
+            out.answers.push_back({r.condition, r.item, r.value, files.empty() ? -1 : index});
     }
-    if (out.rows.empty() && out.choices.empty() && out.interrupted_trials + out.practice_trials == 0) {
+    check_exclusions(study, codes, finished);
+    const auto uncounted = out.interrupted_trials + out.practice_trials + out.excluded_trials;
+    if (out.rows.empty() && out.choices.empty() && uncounted == 0) {
         throw files::bad_input(directory.string(), "", "no trial", "sub-XX/beh/..._events.tsv of one trial at least");
+    }
+    take_groups(people, out);
+    if (study.protocol) {
+        follow_protocol(*study.protocol, out);
+    } else if (fs::exists(directory / "protocol.json")) {
+        follow_protocol(read_protocol(directory / "protocol.json"), out);
     }
     return out;
 }

@@ -1,8 +1,8 @@
 #include "study/report.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <numeric>
 #include <set>
@@ -10,51 +10,37 @@
 
 #include "files/quantile.h"
 #include "files/text.h"
+#include "study/contributions.h"
+#include "study/rows_by_condition.h"
 
 namespace palpa::study {
 namespace {
 
-using People = std::vector<Contribution>;  // index: participant
-
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
-
-// Both count hits, as a share of the nodules (sensitivity) or of the marks (PPV).
-enum class Quantity { sensitivity, ppv };
-
-Contribution part_of(const Observation& row, Quantity quantity) {
-    return {row.tp, row.tp + (quantity == Quantity::sensitivity ? row.fn : row.fp)};
-}
-
-// Sums the rows of each participant; `nodule` -1 takes all nodules. Empty if some of the rows do not name their
-// participant.
-People by_participant(const Observations& seen, int condition, int nodule, Quantity quantity) {
-    People people(seen.participants.size());
-    for (const Observation& row : seen.rows) {
-        if (row.condition != condition || (nodule >= 0 && row.nodule != nodule)) continue;
-        if (row.participant < 0) return {};
-        const Contribution part = part_of(row, quantity);
-        people[at(row.participant)].k += part.k;
-        people[at(row.participant)].n += part.n;
-    }
-    return people;
-}
 
 std::optional<Interval> known(const Interval& ci) {
     if (std::isnan(ci.low)) return std::nullopt;
     return ci;
 }
 
+// The pooled share of these people, or of all counts if they name nobody.
+Share share_of(const Proportion& x, const People& people, const BootstrapOptions& options) {
+    Share share{x, wilson(x, z_of_level(options.level)), std::nullopt, false};
+    share.one_each = !people.empty() &&
+                     std::all_of(people.begin(), people.end(), [](const auto& one) { return !one || one->n <= 1; });
+    if (!share.one_each) share.bootstrap = known(bootstrap_share(people, options));
+    return share;
+}
+
 std::optional<Share> share_of(const Observations& seen, int condition, int nodule, Quantity quantity,
                               const ReportOptions& options) {
     Proportion x{0, 0};
-    for (const Observation& row : seen.rows) {
-        if (row.condition != condition || (nodule >= 0 && row.nodule != nodule)) continue;
-        x.k += part_of(row, quantity).k;
-        x.n += part_of(row, quantity).n;
+    for (const Observation& row : rows_of(seen, condition, nodule)) {
+        x.k += row.tp;
+        x.n += row.tp + (quantity == Quantity::sensitivity ? row.fn : row.fp);
     }
     if (x.n == 0) return std::nullopt;
-    const People people = by_participant(seen, condition, nodule, quantity);
-    return Share{x, wilson(x, z_of_level(options.bootstrap.level)), known(bootstrap_share(people, options.bootstrap))};
+    return share_of(x, people_who_took_part(seen, condition, quantity, nodule), options.bootstrap);
 }
 
 std::optional<Spread> spread_over(const Observations& seen, int condition, double TrialFigures::*field) {
@@ -69,18 +55,20 @@ std::optional<Spread> spread_over(const Observations& seen, int condition, doubl
 ConditionResult condition_result(const Observations& seen, int condition, const ReportOptions& options) {
     ConditionResult out;
     out.name = seen.conditions[at(condition)];
-    std::vector<bool> took_part(seen.participants.size(), false);
-    for (const Observation& row : seen.rows) {
-        if (row.condition != condition) continue;
+    std::set<int> took_part;
+    for (const Observation& row : rows_of(seen, condition)) {
         out.tp += row.tp;
         out.fn += row.fn;
         out.fp += row.fp;
-        if (row.participant >= 0) took_part[at(row.participant)] = true;
+        if (row.participant >= 0) took_part.insert(row.participant);
     }
-    out.participants = static_cast<int>(std::count(took_part.begin(), took_part.end(), true));
+    out.participants = static_cast<int>(took_part.size());
     out.se = share_of(seen, condition, -1, Quantity::sensitivity, options);
     out.ppv = share_of(seen, condition, -1, Quantity::ppv, options);
-    for (int nodule = 0; nodule < static_cast<int>(seen.nodules.size()); ++nodule) {
+    std::set<int> nodules;
+    for (const Observation& row : rows_of(seen, condition)) nodules.insert(row.nodule);
+    for (const int nodule : nodules) {
+        if (nodule < 0) continue;
         const auto se = share_of(seen, condition, nodule, Quantity::sensitivity, options);
         if (se) out.nodules.push_back({seen.nodules[at(nodule)], *se});
     }
@@ -91,114 +79,77 @@ ConditionResult condition_result(const Observations& seen, int condition, const 
     return out;
 }
 
-// Counts the nodules that a participant judged once under each condition, matched by participant, nodule and repeat.
-std::optional<PairedCounts> paired_counts(const Observations& seen, int a, int b) {
-    std::map<std::array<int, 3>, std::array<int, 2>> found;  // -1: not judged
-    for (const Observation& row : seen.rows) {
-        if ((row.condition != a && row.condition != b) || row.participant < 0 || row.nodule < 0) continue;
-        if (row.tp + row.fn != 1) continue;  // sums of several judgements cannot be matched
-        auto [it, fresh] = found.try_emplace({row.participant, row.nodule, row.repeat}, std::array<int, 2>{-1, -1});
-        it->second[row.condition == a ? 0 : 1] = static_cast<int>(row.tp);
-    }
-    PairedCounts counts;
-    for (const auto& [key, hit] : found) {
-        if (hit[0] < 0 || hit[1] < 0) continue;
-        std::int64_t& cell =
-            hit[0] == 1 ? (hit[1] == 1 ? counts.both : counts.only_a) : (hit[1] == 1 ? counts.only_b : counts.neither);
-        ++cell;
-    }
-    if (counts.n() == 0) return std::nullopt;
-    return counts;
-}
-
-PairResult pair_result(const Observations& seen, int a, int b, const Share& of_a, const Share& of_b, Quantity quantity,
-                       const ReportOptions& options) {
-    const double z = z_of_level(options.bootstrap.level);
-    const double difference = of_a.x.p() - of_b.x.p();
-    PairResult pair;
-    pair.a = seen.conditions[at(a)];
-    pair.b = seen.conditions[at(b)];
-    if (difference != 0.0) pair.higher = difference > 0.0 ? pair.a : pair.b;
-    pair.delta = std::abs(difference);
-    pair.combined_interval = combined_interval(of_a.x, of_b.x, z);
-    pair.significant = pair.delta > pair.combined_interval;
-    pair.newcombe = newcombe(of_a.x, of_b.x, z);
-    pair.p = combined_p(of_a.x, of_b.x);
-    if (quantity == Quantity::sensitivity) pair.paired = paired_counts(seen, a, b);
-    if (pair.paired) {
-        pair.newcombe_paired = newcombe_paired(*pair.paired, z);
-        pair.mcnemar_p = mcnemar_p(*pair.paired);
-    }
-    const People people_a = by_participant(seen, a, -1, quantity);
-    const People people_b = by_participant(seen, b, -1, quantity);
-    if (people_a.empty() || people_b.empty()) return pair;
-    pair.bootstrap = known(bootstrap_difference(people_a, people_b, options.bootstrap));
-    for (std::size_t i = 0; i < people_a.size(); ++i) {
-        pair.participants_in_both += people_a[i].n > 0 && people_b[i].n > 0 ? 1 : 0;
-    }
-    return pair;
-}
-
-int place_of(const Observations& seen, const ConditionResult& condition) {
-    return static_cast<int>(std::find(seen.conditions.begin(), seen.conditions.end(), condition.name) -
-                            seen.conditions.begin());
-}
-
-std::vector<PairResult> all_pairs(const Observations& seen, const std::vector<ConditionResult>& conditions,
-                                  Quantity quantity, const ReportOptions& options) {
-    std::vector<PairResult> pairs;
-    const auto share = [&](std::size_t i) {
-        return quantity == Quantity::sensitivity ? conditions[i].se : conditions[i].ppv;
-    };
-    for (std::size_t a = 0; a < conditions.size(); ++a) {
-        for (std::size_t b = a + 1; b < conditions.size(); ++b) {
-            if (!share(a) || !share(b)) continue;
-            pairs.push_back(pair_result(seen, place_of(seen, conditions[a]), place_of(seen, conditions[b]), *share(a),
-                                        *share(b), quantity, options));
-        }
-    }
-    std::vector<double> p;
-    for (const PairResult& pair : pairs) p.push_back(pair.p);
-    const std::vector<double> corrected = holm(p);
-    for (std::size_t i = 0; i < pairs.size(); ++i) pairs[i].p_holm = corrected[i];
-    return pairs;
-}
-
 std::optional<ChoiceResult> choice_result(const Observations& seen, int condition, int comparison,
                                           const ReportOptions& options) {
     ChoiceResult out;
     out.condition = seen.conditions[at(condition)];
     if (comparison >= 0) out.comparison = seen.comparisons[at(comparison)];
-    Proportion& x = out.correct.x = {0, 0};
-    People people(seen.participants.size());
-    bool all_told = true;
-    for (const Choices& row : seen.choices) {
-        if (row.condition != condition || (comparison >= 0 && row.comparison != comparison)) continue;
+    Proportion x{0, 0};
+    for (const Choices& row : choice_rows_of(seen, condition, comparison)) {
         x.k += row.correct;
         x.n += row.n;
-        all_told = all_told && row.participant >= 0;
-        if (row.participant < 0) continue;
-        people[at(row.participant)].k += row.correct;
-        people[at(row.participant)].n += row.n;
     }
     if (x.n == 0) return std::nullopt;
     constexpr double kChance = 0.5;
     const double level = options.bootstrap.level;
-    out.correct.wilson = wilson(x, z_of_level(level));
+    const People people = people_who_took_part(seen, condition, Quantity::correct, comparison);
+    out.correct = share_of(x, people, options.bootstrap);
     out.binomial_p = exact_binomial_p(x, kChance);
-    if (x.n >= 2) {
-        std::vector<double> answers(at(static_cast<int>(x.n)), 0.0);
-        std::fill(answers.begin(), answers.begin() + x.k, 1.0);
-        out.over_answers = t_test(answers, kChance, level);
-    }
-    if (!all_told) return out;
-    out.correct.bootstrap = known(bootstrap_share(people, options.bootstrap));
-    std::vector<double> shares;
-    for (const Contribution& one : people) {
-        if (one.n > 0) shares.push_back(static_cast<double>(one.k) / static_cast<double>(one.n));
-    }
-    if (shares.size() >= 2) out.over_people = t_test(shares, kChance, level);
+    if (x.n >= 2) out.over_answers = t_test_of_answers(x, kChance, level);
+    if (!people.empty()) out.over_people = compare_with_chance(people, kChance, {level, options.bootstrap.seed, true});
     return out;
+}
+
+// Holm's correction over the conditions, and apart from them over all single comparisons.
+void correct_choices(std::vector<ChoiceResult>& choices) {
+    for (const bool single : {false, true}) {
+        std::vector<ChoiceResult*> family;
+        std::vector<double> p;
+        for (ChoiceResult& one : choices) {
+            if (one.comparison.empty() == single || !one.over_people) continue;
+            family.push_back(&one);
+            p.push_back(one.over_people->p);
+        }
+        p = holm_of_known(p);
+        for (std::size_t i = 0; i < family.size(); ++i) family[i]->p_holm = p[i];
+    }
+}
+
+// Says that the pairs of very many conditions are not compared.
+void note_many_conditions(Report& report) {
+    const auto choices = std::count_if(report.choices.begin(), report.choices.end(),
+                                       [](const ChoiceResult& one) { return one.comparison.empty(); });
+    const std::size_t most = std::max(report.conditions.size(), static_cast<std::size_t>(choices));
+    if (most <= kMostCompared) return;
+    report.notes.push_back("all pairs of " + std::to_string(most) +
+                           " conditions are not compared: that is done for up to " + std::to_string(kMostCompared));
+}
+
+// Names the conditions with so few people that intervals over people cover too seldom.
+void note_few_people(Report& report) {
+    constexpr int kFew = 10;
+    constexpr int kMostNamed = 20;
+    std::string few;
+    int number = 0;
+    const auto add = [&](const std::string& name, int people) {
+        if (people == 0 || people >= kFew || ++number > kMostNamed) return;
+        few += (few.empty() ? "" : ", ") + name + " (" + std::to_string(people) + ")";
+    };
+    for (const ConditionResult& one : report.conditions) add(one.name, one.participants);
+    for (const ChoiceResult& one : report.choices) {
+        if (one.comparison.empty() && one.over_people) add(one.condition, one.over_people->people_a);
+    }
+    for (const Report& group : report.groups) {
+        int people = 0;
+        for (const ConditionResult& one : group.conditions) people = std::max(people, one.participants);
+        for (const ChoiceResult& one : group.choices)
+            people = std::max(people, one.over_people ? one.over_people->people_a : 0);
+        add("group " + group.group, people);
+    }
+    if (few.empty()) return;
+    if (number > kMostNamed) few += " and " + std::to_string(number - kMostNamed) + " others";
+    report.notes.push_back("WARNING: fewer than " + std::to_string(kFew) + " people: " + few +
+                           ". Bootstrap intervals of so few cover less than they say, and no test can show much");
 }
 
 // Adds one row for answers on a scale, or one row for each text that was given.
@@ -237,14 +188,16 @@ Spread spread_of(std::vector<double> values) {
     out.mean = std::accumulate(values.begin(), values.end(), 0.0) / out.n;
     double squares = 0.0;
     for (const double value : values) squares += (value - out.mean) * (value - out.mean);
-    out.sd = out.n > 1 ? std::sqrt(squares / (out.n - 1)) : 0.0;
+    out.sd = out.n > 1 ? std::sqrt(squares / (out.n - 1)) : std::numeric_limits<double>::quiet_NaN();
     out.lower_quartile = files::sorted_quantile(values, 0.25);
     out.median = files::sorted_quantile(values, 0.5);
     out.upper_quartile = files::sorted_quantile(values, 0.75);
     return out;
 }
 
-Report make_report(const Observations& seen, const ReportOptions& options) {
+Report make_report(const Observations& given, const ReportOptions& options) {
+    Observations seen = given;
+    sort_rows(seen);
     Report report;
     report.options = options;
     report.notes = seen.notes;
@@ -252,18 +205,46 @@ Report make_report(const Observations& seen, const ReportOptions& options) {
     report.trials = static_cast<std::int64_t>(seen.trials.size());
     report.practice_trials = seen.practice_trials;
     report.interrupted_trials = seen.interrupted_trials;
+    report.excluded_trials = seen.excluded_trials;
+    report.progress = seen.progress;
+    report.exclusions = seen.exclusions;
+    report.replacements = seen.replacements;
     report.simulated = seen.simulated;
     for (int c = 0; c < static_cast<int>(seen.conditions.size()); ++c) {
-        const auto here = [&](const Observation& row) { return row.condition == c; };
-        const bool marked = std::any_of(seen.rows.begin(), seen.rows.end(), here);
-        if (marked) report.conditions.push_back(condition_result(seen, c, options));
-        for (int k = -1; k < static_cast<int>(seen.comparisons.size()); ++k) {
+        if (!rows_of(seen, c).empty()) report.conditions.push_back(condition_result(seen, c, options));
+        std::set<int> comparisons{-1};
+        for (const Choices& row : choice_rows_of(seen, c)) comparisons.insert(row.comparison);
+        for (const int k : comparisons) {
             if (const auto choice = choice_result(seen, c, k, options)) report.choices.push_back(*choice);
         }
     }
+    correct_choices(report.choices);
+    report.psychometrics = psychometrics_of(seen, options.greatest_lapse, options.bootstrap);
+    report.notes.insert(report.notes.end(), report.psychometrics.notes.begin(), report.psychometrics.notes.end());
+    note_many_conditions(report);
     add_ratings(seen.answers, report);
-    report.pairs = all_pairs(seen, report.conditions, Quantity::sensitivity, options);
-    report.ppv_pairs = all_pairs(seen, report.conditions, Quantity::ppv, options);
+    report.primary = primary_result(seen, options.bootstrap);
+    report.pairs = compare_conditions(seen, Quantity::sensitivity, options.bootstrap);
+    report.ppv_pairs = compare_conditions(seen, Quantity::ppv, options.bootstrap);
+    report.choice_pairs = compare_conditions(seen, Quantity::correct, options.bootstrap);
+    if (seen.groups.size() >= 2) {
+        report.group_comparisons = compare_groups(seen, options.bootstrap);
+        for (int g = 0; g < static_cast<int>(seen.groups.size()); ++g) {
+            Observations part = only_group(seen, g);
+            part.groups.clear();
+            part.primary.reset();
+            part.notes.clear();
+            report.groups.push_back(make_report(part, options));
+            report.groups.back().group = seen.groups[at(g)];
+            report.groups.back().participants =
+                static_cast<int>(std::count(seen.group_of.begin(), seen.group_of.end(), g));
+        }
+    }
+    if (std::max({report.pairs.size(), report.ppv_pairs.size(), report.choice_pairs.size()}) > kMostResampledPairs) {
+        report.notes.push_back("Of more than " + std::to_string(kMostResampledPairs) +
+                               " pairs of conditions the bootstrap and the permutation tests are left out");
+    }
+    note_few_people(report);
     return report;
 }
 

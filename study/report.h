@@ -8,7 +8,9 @@
 
 #include "files/json.h"
 #include "study/bootstrap.h"
+#include "study/comparisons.h"
 #include "study/observations.h"
+#include "study/psychometric_report.h"
 #include "study/statistics.h"
 
 namespace palpa::study {
@@ -16,8 +18,9 @@ namespace palpa::study {
 // A proportion with its intervals.
 struct Share {
     Proportion x;
-    Interval wilson;
-    std::optional<Interval> bootstrap;  // over participants; absent if fewer than two are named
+    Interval wilson;                    // ignores clustering, unless `one_each`
+    std::optional<Interval> bootstrap;  // over participants; absent if it cannot be computed, and with `one_each`
+    bool one_each = false;              // nobody counts more than once, so Wilson's interval is over participants
 };
 
 struct NoduleResult {
@@ -29,7 +32,7 @@ struct NoduleResult {
 struct Spread {
     int n = 0;
     double mean = 0.0;
-    double sd = 0.0;  // of the sample (n - 1); 0 for a single value
+    double sd = 0.0;  // of the sample (n - 1); NaN for a single value
     double lower_quartile = 0.0;
     double median = 0.0;
     double upper_quartile = 0.0;
@@ -47,30 +50,14 @@ struct ConditionResult {
     std::optional<Spread> duration_s, path_m, mean_force_N, max_force_N;
 };
 
-struct PairResult {
-    std::string a;
-    std::string b;
-    std::string higher;  // a, b or "" if equal
-    double delta = 0.0;  // |p_a - p_b|
-    double combined_interval = 0.0;
-    bool significant = false;            // delta > combined_interval: the paper's test, uncorrected
-    Interval newcombe;                   // of p_a - p_b, both taken as independent
-    double p = 1.0;                      // of the paper's test
-    double p_holm = 1.0;                 // corrected for all pairs of the table
-    std::optional<PairedCounts> paired;  // nodules that the same participants judged under both conditions
-    Interval newcombe_paired;            // of p_a - p_b; only with `paired`
-    double mcnemar_p = 1.0;              // only with `paired`
-    std::optional<Interval> bootstrap;   // of p_a - p_b, over participants
-    int participants_in_both = 0;
-};
-
 struct ChoiceResult {
     std::string condition;
     std::string comparison;  // empty: all comparisons
     Share correct;
     double binomial_p = 1.0;
-    std::optional<TTest> over_people;   // the participants' shares against one half
-    std::optional<TTest> over_answers;  // answers (0 or 1) against one half, as the paper's t(239); not independent
+    std::optional<PeopleTest> over_people;  // against one half; absent if some answers name no participant
+    double p_holm = 1.0;                    // of over_people->p: over the conditions, or over all their comparisons
+    std::optional<TTest> over_answers;      // answers (0 or 1) against one half, as the paper's t(239): a replication
 };
 
 // Answers to one question about one condition.
@@ -83,22 +70,33 @@ struct RatingResult {
 };
 
 struct ReportOptions {
-    BootstrapOptions bootstrap;  // its level is that of every interval
+    BootstrapOptions bootstrap;    // its level is that of every interval
+    double greatest_lapse = 0.05;  // of psychometric functions
 };
 
 struct Report {
     ReportOptions options;
     std::vector<ConditionResult> conditions;
-    std::vector<PairResult> pairs;  // sensitivity
+    std::optional<PrimaryResult> primary;  // absent: the protocol states none
+    std::vector<PairResult> pairs;         // sensitivity
     std::vector<PairResult> ppv_pairs;
+    std::vector<PairResult> choice_pairs;
+    std::vector<GroupResult> group_comparisons;
     std::vector<ChoiceResult> choices;
+    Psychometrics psychometrics;
     std::vector<RatingResult> ratings;
     std::vector<std::string> notes;
     int participants = 0;
     std::int64_t trials = 0;  // finished tests; 0 for a table of counts
     std::int64_t practice_trials = 0;
     std::int64_t interrupted_trials = 0;
+    std::int64_t excluded_trials = 0;
+    std::vector<Progress> progress;  // logs against the plan; empty if the plan is not known
+    std::vector<Exclusion> exclusions;
+    std::vector<Replacement> replacements;
     bool simulated = false;
+    std::string group;           // empty: everybody
+    std::vector<Report> groups;  // of two groups and more: the same of each, without comparisons of groups
 };
 
 Report make_report(const Observations& seen, const ReportOptions& options);
@@ -107,7 +105,8 @@ Spread spread_of(std::vector<double> values);
 
 files::Json report_json(const Report& report);
 
-// One table of the report, for a .tsv and for Markdown.
+// One table of the report, for a .tsv and for Markdown. With groups the last column is `group`: first come the rows of
+// all people, then those of each group.
 struct ReportTable {
     std::string name;  // of the file
     std::string title;
@@ -117,5 +116,10 @@ struct ReportTable {
 std::vector<ReportTable> report_tables(const Report& report);
 std::string tsv_text(const ReportTable& table);
 std::string report_markdown(const Report& report);  // all tables, with methods and notes
+
+// report_plan.cpp: logs against the plan, exclusions and dropouts.
+void add_plan_json(const Report& report, files::Json& json);
+std::vector<ReportTable> plan_tables(const Report& report);
+std::string plan_summary(const Report& report);  // one paragraph; empty if there is nothing to say
 
 }  // namespace palpa::study

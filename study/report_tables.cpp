@@ -1,42 +1,28 @@
-#include <cmath>
-#include <cstdio>
+#include <algorithm>
 
 #include "files/text.h"
+#include "study/comparison_report.h"
+#include "study/permutation.h"
 #include "study/report.h"
+#include "study/table_text.h"
 
 namespace palpa::study {
 namespace {
 
 using Row = std::vector<std::string>;
 
-const std::string kNone = "n/a";
-
-std::string fixed(double value, int digits) {
-    if (!std::isfinite(value)) return kNone;
-    char text[64];
-    std::snprintf(text, sizeof text, "%.*f", digits, value);
-    return text;
-}
-
-std::string share_text(double value) { return fixed(value, 4); }
-std::string p_text(double p) { return p < 1e-4 ? "<0.0001" : fixed(p, 4); }
-std::string whole(std::int64_t value) { return std::to_string(value); }
-
-void add_interval(const std::optional<Interval>& ci, Row& row) {
-    row.push_back(ci ? share_text(ci->low) : kNone);
-    row.push_back(ci ? share_text(ci->high) : kNone);
-}
-
 void add_share(const std::optional<Share>& share, Row& row) {
     row.push_back(share ? whole(share->x.k) : kNone);
     row.push_back(share ? whole(share->x.n) : kNone);
     row.push_back(share ? share_text(share->x.p()) : kNone);
-    add_interval(share ? std::optional(share->wilson) : std::nullopt, row);
     add_interval(share ? share->bootstrap : std::nullopt, row);
+    add_interval(share ? std::optional(share->wilson) : std::nullopt, row);
+    row.push_back(!share ? kNone : share->one_each ? "over participants" : "ignores clustering");
 }
 
 std::vector<std::string> share_columns(Row first) {
-    for (const char* column : {"k", "n", "share", "wilson_low", "wilson_high", "bootstrap_low", "bootstrap_high"}) {
+    for (const char* column :
+         {"k", "n", "share", "bootstrap_low", "bootstrap_high", "wilson_low", "wilson_high", "wilson_is"}) {
         first.emplace_back(column);
     }
     return first;
@@ -74,32 +60,6 @@ ReportTable ppv_table(const Report& report) {
     return table;
 }
 
-ReportTable pair_table(const char* name, const char* title, const std::vector<PairResult>& pairs) {
-    ReportTable table{
-        name,
-        title,
-        {"a", "b", "higher", "delta", "combined_interval", "significant", "newcombe_low", "newcombe_high", "p",
-         "p_holm", "pairs", "paired_low", "paired_high", "mcnemar_p", "bootstrap_low", "bootstrap_high"},
-        {}};
-    for (const PairResult& pair : pairs) {
-        Row row{pair.a,
-                pair.b,
-                pair.higher.empty() ? kNone : pair.higher,
-                share_text(pair.delta),
-                share_text(pair.combined_interval),
-                pair.significant ? "yes" : "no"};
-        add_interval(pair.newcombe, row);
-        row.push_back(p_text(pair.p));
-        row.push_back(p_text(pair.p_holm));
-        row.push_back(pair.paired ? whole(pair.paired->n()) : kNone);
-        add_interval(pair.paired ? std::optional(pair.newcombe_paired) : std::nullopt, row);
-        row.push_back(pair.paired ? p_text(pair.mcnemar_p) : kNone);
-        add_interval(pair.bootstrap, row);
-        table.rows.push_back(row);
-    }
-    return table;
-}
-
 ReportTable trial_table(const Report& report) {
     ReportTable table{"trials",
                       "Time, path and force per trial",
@@ -123,20 +83,26 @@ ReportTable trial_table(const Report& report) {
 
 ReportTable choice_table(const Report& report) {
     ReportTable table{"choices", "Forced choices against chance (0.5)", share_columns({"condition", "comparison"}), {}};
-    for (const char* column : {"binomial_p", "t_participants", "df", "p_participants", "t_answers", "p_answers"}) {
+    for (const char* column : {"t", "df", "p", "p_holm", "p_permutation", "ignores_clustering_binomial_p",
+                               "replication_t", "replication_p", "status"}) {
         table.columns.emplace_back(column);
     }
     for (const ChoiceResult& choice : report.choices) {
         Row row{choice.condition, choice.comparison.empty() ? "all" : choice.comparison};
         add_share(choice.correct, row);
-        row.push_back(p_text(choice.binomial_p));
         const auto& people = choice.over_people;
         row.push_back(people ? fixed(people->t, 3) : kNone);
         row.push_back(people ? fixed(people->df, 0) : kNone);
         row.push_back(people ? p_text(people->p) : kNone);
+        row.push_back(people ? p_text(choice.p_holm) : kNone);
+        row.push_back(people ? p_text(people->p_permutation) : kNone);
+        row.push_back(p_text(choice.binomial_p));
         const auto& answers = choice.over_answers;
         row.push_back(answers ? fixed(answers->t, 3) : kNone);
         row.push_back(answers ? p_text(answers->p) : kNone);
+        row.push_back(!people                  ? "cannot be computed, because the counts do not name their participants"
+                      : people->status.empty() ? "computed"
+                                               : people->status);
         table.rows.push_back(row);
     }
     return table;
@@ -168,21 +134,38 @@ std::string escaped(std::string text) {
     return text;
 }
 
+// Adds the column `group`, and below the rows of all people those of each group.
+void add_groups(const Report& report, std::vector<ReportTable>& tables) {
+    for (ReportTable& table : tables) {
+        table.columns.emplace_back("group");
+        for (Row& row : table.rows) row.emplace_back("all");
+    }
+    for (const Report& group : report.groups) {
+        for (ReportTable& part : report_tables(group)) {
+            const auto whole_table = std::find_if(tables.begin(), tables.end(),
+                                                  [&](const ReportTable& table) { return table.name == part.name; });
+            if (whole_table == tables.end()) continue;
+            for (Row& row : part.rows) {
+                row.push_back(group.group);
+                whole_table->rows.push_back(std::move(row));
+            }
+        }
+    }
+}
+
 }  // namespace
 
 std::vector<ReportTable> report_tables(const Report& report) {
-    std::vector<ReportTable> tables;
-    const auto add = [&](ReportTable table) {
+    std::vector<ReportTable> tables{sensitivity_table(report), nodule_table(report), ppv_table(report)};
+    for (ReportTable& table : comparison_tables(report)) tables.push_back(std::move(table));
+    for (const auto make : {trial_table, choice_table}) tables.push_back(make(report));
+    for (ReportTable& table : psychometric_tables(report.psychometrics)) tables.push_back(std::move(table));
+    tables.push_back(rating_table(report));
+    std::erase_if(tables, [](const ReportTable& table) { return table.rows.empty(); });
+    if (!report.groups.empty()) add_groups(report, tables);
+    for (ReportTable& table : plan_tables(report)) {
         if (!table.rows.empty()) tables.push_back(std::move(table));
-    };
-    add(sensitivity_table(report));
-    add(nodule_table(report));
-    add(ppv_table(report));
-    add(pair_table("pairs", "Sensitivity: all pairs of conditions", report.pairs));
-    add(pair_table("ppv_pairs", "Positive predictive value: all pairs of conditions", report.ppv_pairs));
-    add(trial_table(report));
-    add(choice_table(report));
-    add(rating_table(report));
+    }
     return tables;
 }
 
@@ -203,14 +186,20 @@ std::string report_markdown(const Report& report) {
                whole(report.practice_trials) + " practice trials (not in the tables), " +
                whole(report.interrupted_trials) + " interrupted trials (not in the tables).\n";
     }
-    out += "\nIntervals at " + level + ": wilson = Wilson's score interval; bootstrap = percentiles of " +
-           whole(report.options.bootstrap.resamples) + " resamples of participants (seed " +
-           std::to_string(report.options.bootstrap.seed) +
-           "). significant = the difference is larger than the combined interval of Li et al., each pair alone; p = of "
-           "that test, p_holm = corrected for all pairs of the table. These treat all nodules and conditions as "
-           "independent. paired = Newcombe's interval (1998, method 10) and McNemar's exact test over nodules that the "
-           "same people judged under both conditions; bootstrap of a pair resamples people within the design. Paired "
-           "and bootstrap columns are of a - b.\n";
+    out += plan_summary(report);
+    out +=
+        "\nTests are over participants: design within = Student's t of each person's difference a - b, design "
+        "between = Welch's t of two groups; p_permutation = exact permutation of signs, or of groups (drawn above " +
+        whole(kMostExactPeople) + " people). p_holm = corrected for all pairs of the table. " +
+        (report.primary ? "The primary comparison is not corrected. " : "No protocol states a primary comparison. ") +
+        "Intervals at " + level + ": low, high = of the difference, by t; bootstrap = from " +
+        whole(report.options.bootstrap.resamples) + " resamples of participants (seed " +
+        std::to_string(report.options.bootstrap.seed) +
+        "); wilson = Wilson's score interval, which ignores clustering where people count more than once. Two kinds "
+        "of tables take the nodules of one person as independent and reject too often: *replication* is the test of "
+        "Li et al. (significant = the difference is larger than the combined interval, each pair alone), *ignores "
+        "clustering* is McNemar's exact test with Newcombe's interval (1998, method 10).\n";
+    out += psychometric_methods(report.psychometrics);
     for (const std::string& note : report.notes) out += "\n- " + note;
     if (!report.notes.empty()) out += "\n";
     for (const ReportTable& table : report_tables(report)) {

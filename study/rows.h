@@ -15,7 +15,10 @@
 namespace palpa::study {
 
 inline void append_field(double value, std::string& row) { files::append_number(value, row); }
-inline void append_field(std::string_view value, std::string& row) { row.append(value); }
+// Text in a field: what would end the field, or what tables take for the begin of a quoted one, is replaced.
+inline void append_field(std::string_view value, std::string& row) {
+    for (const char c : value) row.push_back(static_cast<unsigned char>(c) < 0x20 ? ' ' : c == '"' ? '\'' : c);
+}
 inline void append_field(std::int64_t value, std::string& row) {
     char digits[24];
     const auto [end, error] = std::to_chars(digits, digits + sizeof digits, value);

@@ -1,12 +1,12 @@
 #include "study/sample_log.h"
 
-#include <algorithm>
 #include <cstdio>
 #include <stdexcept>
 
 #include "files/input_error.h"
 #include "files/json.h"
 #include "files/text.h"
+#include "study/names.h"
 #include "study/rows.h"
 
 namespace palpa::study {
@@ -45,7 +45,7 @@ void write_if_absent(const std::filesystem::path& path, const std::string& text)
 void prepare_dataset(const std::filesystem::path& directory) {
     write_if_absent(directory / ".bidsignore",
                     "*_samples.tsv\n*_samples.json\n*_marks.tsv\n*_marks.json\n*_settings.json\n*_performance."
-                    "json\nstudy.json\nprotocol.json\nsub-*/now.json\n");
+                    "json\nstudy.json\nprotocol.json\nexclusions.tsv\nreplacements.tsv\nsub-*/now.json\n");
     write_if_absent(directory / "dataset_description.json",
                     files::json_text({{"Name", "Palpa"}, {"BIDSVersion", "1.8.0"}}));
 }
@@ -54,10 +54,7 @@ void explain_samples_once(const std::filesystem::path& json) { write_if_absent(j
 
 RunFiles next_run(const std::filesystem::path& directory, std::string_view participant, std::string_view task,
                   int first) {
-    const bool plain = !participant.empty() && std::all_of(participant.begin(), participant.end(), [](char c) {
-        return (c >= '0' && c <= '9') || (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z');
-    });
-    if (!plain) throw files::bad_input("--participant", "", files::shown(participant), "letters and digits");
+    if (!is_code(participant)) throw files::bad_input("--participant", "", files::shown(participant), kCodeRule);
     RunFiles files;
     const std::string subject = "sub-" + std::string(participant);
     files.folder = directory / subject / "beh";

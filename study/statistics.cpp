@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <numeric>
 
@@ -26,6 +27,53 @@ double bisect(double low, double high, const Below& below) {
         (below(middle) ? low : high) = middle;
     }
     return high;
+}
+
+// Returns the least k in [low, high] for which holds(k) is true, high + 1 if there is none. holds() must be false up to a
+// k and true from then on.
+template <class Holds>
+std::int64_t first_that(std::int64_t low, std::int64_t high, const Holds& holds) {
+    for (++high; low < high;) {
+        const std::int64_t middle = low + (high - low) / 2;
+        if (holds(middle)) {
+            high = middle;
+        } else {
+            low = middle + 1;
+        }
+    }
+    return low;
+}
+
+// The probability of all counts of n that are at most as likely as `seen`: those below the mode and those above it, since
+// the probability rises up to the mode and falls from there.
+double two_tails(std::int64_t n, double chance, double seen) {
+    const auto probability = [&](std::int64_t k) { return files::binomial_probability(k, n, chance); };
+    const auto mode = std::min(n, static_cast<std::int64_t>(static_cast<double>(n + 1) * chance));
+    if (probability(mode) <= seen) return 1.0;
+    const std::int64_t below = first_that(0, mode, [&](std::int64_t k) { return probability(k) > seen; }) - 1;
+    const std::int64_t above = first_that(mode, n, [&](std::int64_t k) { return probability(k) <= seen; });
+    const double low = below < 0 ? 0.0 : files::binomial_at_most(below, n, chance);
+    const double high = above > n ? 0.0 : files::binomial_at_most(n - above, n, 1.0 - chance);
+    return std::min(1.0, low + high);
+}
+
+// Student's t test from the number of values, their mean and the sum of their squared deviations.
+TTest t_of_squares(double n, double mean, double squares, double chance, double level) {
+    TTest test;
+    test.df = n - 1.0;
+    test.mean = mean;
+    if (squares <= 1e-24 * n * square(mean)) {  // rounding of equal values
+        constexpr double kNotKnown = std::numeric_limits<double>::quiet_NaN();
+        test.t = test.p = kNotKnown;
+        test.ci = {kNotKnown, kNotKnown};
+        return test;
+    }
+    const double error = std::sqrt(squares / test.df / n);
+    test.t = (mean - chance) / error;
+    test.p = files::student_p(test.t, test.df);
+    const double arm = files::student_quantile(level, test.df) * error;
+    test.ci = {mean - arm, mean + arm};
+    return test;
 }
 
 }  // namespace
@@ -89,6 +137,8 @@ double mcnemar_p(const PairedCounts& counts) {
 double exact_binomial_p(const Proportion& x, double chance) {
     assert(possible(x) && chance > 0.0 && chance < 1.0);
     const double seen = files::binomial_probability(x.k, x.n, chance) * (1.0 + 1e-7);
+    constexpr std::int64_t kMostSummed = 10'000;
+    if (x.n > kMostSummed) return two_tails(x.n, chance, seen);
     double sum = 0.0;
     for (std::int64_t k = 0; k <= x.n; ++k) {
         const double p = files::binomial_probability(k, x.n, chance);
@@ -100,18 +150,16 @@ double exact_binomial_p(const Proportion& x, double chance) {
 TTest t_test(std::span<const double> values, double chance, double level) {
     assert(values.size() >= 2);
     const auto n = static_cast<double>(values.size());
-    TTest test;
-    test.df = n - 1.0;
-    test.mean = std::accumulate(values.begin(), values.end(), 0.0) / n;
+    const double mean = std::accumulate(values.begin(), values.end(), 0.0) / n;
     double squares = 0.0;
-    for (const double value : values) squares += square(value - test.mean);
-    const double error = std::sqrt(squares / test.df / n);
-    const double off = test.mean - chance;
-    test.t = off == 0.0 ? 0.0 : off / error;  // infinite if all values are alike
-    test.p = files::student_p(test.t, test.df);
-    const double arm = files::student_quantile(level, test.df) * error;
-    test.ci = {test.mean - arm, test.mean + arm};
-    return test;
+    for (const double value : values) squares += square(value - mean);
+    return t_of_squares(n, mean, squares, chance, level);
+}
+
+TTest t_test_of_answers(const Proportion& x, double chance, double level) {
+    assert(possible(x) && x.n >= 2);
+    const auto n = static_cast<double>(x.n);
+    return t_of_squares(n, x.p(), n * x.p() * (1.0 - x.p()), chance, level);
 }
 
 std::vector<double> holm(std::span<const double> p) {

@@ -62,18 +62,22 @@ Interval newcombe_paired(const PairedCounts& counts, double z);
 double mcnemar_p(const PairedCounts& counts);
 
 // Two-sided p value of the exact binomial test: the probability of all outcomes that are at most as likely as the
-// observed one (to 1e-7 of its probability, so that rounding does not split ties). Needs 0 < chance < 1.
+// observed one (to 1e-7 of its probability, so that rounding does not split ties). Needs 0 < chance < 1. Above 10,000 of
+// them the two tails are taken as a whole, in a time that does not depend on n.
 double exact_binomial_p(const Proportion& x, double chance);
 
 // Student's t test of the mean of `values` against `chance`. Needs at least two values.
 struct TTest {
     double mean = 0.0;
-    double t = 0.0;  // infinite if all values are equal and not `chance`
+    double t = 0.0;  // NaN, as p and ci, if all values are equal: there is no variance to compare with
     double df = 0.0;
     double p = 1.0;  // two-sided
     Interval ci;     // of the mean
 };
 TTest t_test(std::span<const double> values, double chance, double level);  // `level`: of the interval
+
+// The same for answers that are 1 (k of them) or 0. Needs n >= 2.
+TTest t_test_of_answers(const Proportion& x, double chance, double level);
 
 // Holm's step-down correction (Scand. J. Statist. 6 (1979) 65): returns the adjusted p values in the order of `p`.
 std::vector<double> holm(std::span<const double> p);

@@ -8,7 +8,9 @@
 #include "files/input_error.h"
 #include "files/json.h"
 #include "files/text.h"
-#include "study/read_logs.h"
+#include "study/exclusions.h"
+#include "study/rows.h"
+#include "study/run_log.h"
 #include "study/sample_log.h"
 #include "study/trial_log.h"
 
@@ -25,7 +27,7 @@ std::string line_of(const Person& p) {
     for (const std::string* field :
          {&p.age, &p.sex, &p.handedness, &p.vision, &p.palpation_experience, &p.vr_experience, &p.group}) {
         line += "\t";
-        for (const char c : *field) line.push_back(static_cast<unsigned char>(c) < 0x20 ? ' ' : c);
+        append_field(*field, line);
     }
     return line + "\n";
 }
@@ -77,6 +79,12 @@ void open_study(const fs::path& directory, const Protocol& protocol, const Study
     files::Json json{{"protocol", protocol.name},   {"version", protocol.version},  {"sha256", protocol.sha256},
                      {"simulated", kind.simulated}, {"simulation_seed", kind.seed}, {"program", kind.program}};
     files::write_text_atomically(file, files::json_text(json));  // last: it makes the folder a study
+}
+
+void check_no_study(const fs::path& directory) {
+    if (!fs::exists(directory / "study.json")) return;
+    throw files::bad_input(directory.string(), "", "the folder of a study (study.json)",
+                           "another folder: single runs never share a study's folder");
 }
 
 std::optional<StudyIdentity> read_identity(const fs::path& directory) {
@@ -169,10 +177,9 @@ std::optional<PlannedTrial> next_trial(const PlannedParticipant& plan, const std
 StudyProgress progress_of(const fs::path& directory, const Protocol& protocol, const std::string& code) {
     std::vector<std::string> notes;
     const std::vector<Person> people = read_people(directory, notes);
-    const auto it = std::find_if(people.begin(), people.end(), [&](const Person& one) { return one.code == code; });
     StudyProgress out;
-    out.known = it != people.end();
-    out.plan = plan_participant(protocol, static_cast<int>(it - people.begin()) + 1);
+    out.known = std::any_of(people.begin(), people.end(), [&](const Person& one) { return one.code == code; });
+    out.plan = plan_participant(protocol, numbers_of(people, read_replacements(directory)).number(code));
     out.finished = finished_trials(directory, code);
     out.next = next_trial(out.plan, out.finished);
     return out;

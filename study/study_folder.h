@@ -13,6 +13,10 @@
 
 namespace palpa::study {
 
+// Who may hold the lock of a study's whole folder (files/folder_lock.h): simulate, import, exclude and replace take it
+// while they write. Screens of `study run` share the folder, and lock the folders of their participants.
+inline constexpr const char* kOtherWriter = "another palpa that writes into this folder";
+
 struct StudyKind {
     bool simulated = false;
     std::uint64_t seed = 0;  // of the simulation
@@ -23,6 +27,9 @@ struct StudyKind {
 // another protocol's logs (naming both versions), logs of another kind, or logs without study.json; std::runtime_error
 // if it cannot be written.
 void open_study(const std::filesystem::path& directory, const Protocol& protocol, const StudyKind& kind);
+
+// Throws InputError if the folder is a study's: single runs never share it.
+void check_no_study(const std::filesystem::path& directory);
 
 // The content of study.json. read_identity() returns nothing if there is no such file (logs of single runs). Throws
 // InputError if the file cannot be read.
@@ -63,7 +70,7 @@ std::optional<PlannedTrial> next_trial(const PlannedParticipant& plan, const std
 // The progress of a participant: what a screen needs to begin, or to continue after a crash.
 struct StudyProgress {
     bool known = false;       // the code is in participants.tsv already
-    PlannedParticipant plan;  // for the participant's line in participants.tsv, or for the next free one
+    PlannedParticipant plan;  // of the participant's number (study/exclusions.h), or of the next free one
     std::set<int> finished;
     std::optional<PlannedTrial> next;  // nothing: all trials are finished
 };

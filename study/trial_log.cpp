@@ -61,6 +61,8 @@ void visit_fields(const ChoiceRow& r, Visit&& visit) {
     visit("seed", r.seed, "", "of the trial");
     visit("reference_kPa", r.reference_kPa, "kPa", "Young's modulus of the reference");
     visit("comparison_kPa", r.comparison_kPa, "kPa", "Young's modulus of the comparison");
+    visit("reference_on", r.reference_on, "",
+          "condition under which the reference was presented, with choice.reference_on; else n/a: that of the row");
     visit("first", r.first, "", "which came first: reference or comparison");
     visit("answer", r.answer, "", "which was called softer: reference or comparison");
     visit("correct", r.correct, "", "1: the softer one");

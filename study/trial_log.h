@@ -77,6 +77,7 @@ struct ChoiceRow {
     std::int64_t seed = 0;
     double reference_kPa = 0.0;
     double comparison_kPa = 0.0;
+    std::string_view reference_on = "n/a";  // condition of the reference; n/a: that of the row
     std::string_view first = "reference";   // reference or comparison
     std::string_view answer = "reference";  // the one that was called softer: reference or comparison
     std::int64_t correct = 0;

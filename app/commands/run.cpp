@@ -21,6 +21,7 @@
 #include "session/plan_in_progress.h"
 #include "session/replay.h"
 #include "session/session.h"
+#include "study/study_folder.h"
 
 namespace palpa::app {
 namespace {
@@ -83,7 +84,10 @@ void run_headless(const RunOptions& options) {
     const double began_s = files::steady_s();
     scene::Scene scene = load_scene(options.scene);
     if (!options.screenshot.empty()) files::check_output(options.screenshot, inputs_of(scene, options.trace));
-    if (!options.log.empty()) files::check_output_folder(options.log);
+    if (!options.log.empty()) {
+        files::check_output_folder(options.log);
+        study::check_no_study(options.log);
+    }
     auto plan = std::make_shared<const scene::Plan>(session::make_plan_here(scene));
     const platform::Trace trace = platform::read_trace(options.trace);
     session::Session session;

@@ -9,14 +9,19 @@
 namespace palpa::app {
 
 void add_study(CLI::App& app) {
-    CLI::App* study = app.add_subcommand("study", "Studies with people: order, run, simulate, import, analyse, watch");
+    CLI::App* study = app.add_subcommand(
+        "study",
+        "Studies with people: order, run, simulate, import, exclude, replace, analyse, levels, watch, observers");
     study->require_subcommand(1);
     add_study_order(*study);
     add_study_run(*study);
     add_study_simulate(*study);
     add_study_import(*study);
+    add_study_exclude(*study);
     add_study_analyse(*study);
+    add_study_levels(*study);
     add_study_watch(*study);
+    add_study_observers(*study);
 }
 
 }  // namespace palpa::app

@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "app/commands/study.h"
+#include "figures/psychometric_figure.h"
 #include "figures/study_figures.h"
 #include "files/input_error.h"
 #include "files/regular_file.h"
@@ -34,13 +35,16 @@ void write_report(const study::Report& report, const fs::path& folder) {
     }
     files::write_text_atomically(folder / "report.md", study::report_markdown(report));
     files::write_text_atomically(folder / "report.json", files::json_text(study::report_json(report)));
-    const std::string trouble = figures::draw_figures(report, folder);
-    if (!trouble.empty()) std::fprintf(stderr, "palpa: %s\n", trouble.c_str());
+    for (const std::string& trouble :
+         {figures::draw_figures(report, folder), figures::draw_psychometric_figure(report, folder)}) {
+        if (!trouble.empty()) std::fprintf(stderr, "palpa: %s\n", trouble.c_str());
+    }
 }
 
 std::vector<std::string> names_of(const study::Report& report) {
     std::vector<std::string> names{"report.md",   "report.json", "figures.gp",
                                    "figures.png", "figures.svg", "figures.pdf"};
+    for (const char* kind : {"gp", "png", "svg", "pdf"}) names.push_back(std::string("psychometric.") + kind);
     for (const study::ReportTable& table : study::report_tables(report)) names.push_back(table.name + ".tsv");
     return names;
 }
@@ -70,7 +74,8 @@ void add_study_analyse(CLI::App& study) {
     command
         ->add_option("INPUT", options->input,
                      "folder of a study's logs; or a table COUNTS.tsv with the columns condition tp fn fp (also n, "
-                     "nodule, participant), or condition correct n (also comparison, participant)")
+                     "nodule, participant, group), or condition correct n (also comparison, participant, group), or "
+                     "condition reference_kPa comparison_kPa stiffer n (also participant)")
         ->required();
     command->add_option("-o,--output", options->output, "folder for report.md, report.json, tables and figures");
     command->add_option("--level", options->report.bootstrap.level, "confidence level of all intervals (default 0.95)")
@@ -80,6 +85,10 @@ void add_study_analyse(CLI::App& study) {
                      "number of resamples of the bootstrap over participants (default 2000)")
         ->check(CLI::Range(100, 1000000));
     command->add_option("--seed", options->report.bootstrap.seed, "seed of the bootstrap (default 1)");
+    command
+        ->add_option("--greatest-lapse", options->report.greatest_lapse,
+                     "greatest probability of an answer by mistake in psychometric functions; 0: none (default 0.05)")
+        ->check(CLI::Range(0.0, 0.2));
     command->add_flag("--json", options->json, "print one JSON object on standard output");
     command->callback([options] { analyse(*options); });
 }

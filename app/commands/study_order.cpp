@@ -38,6 +38,7 @@ files::Json trial_json(const study::Protocol& protocol, const study::PlannedTria
 files::Json order_json(const study::Protocol& protocol, const std::vector<study::PlannedParticipant>& people) {
     files::Json json{{"protocol", protocol.name}, {"version", protocol.version},      {"sha256", protocol.sha256},
                      {"seed", protocol.seed},     {"order", name_of(protocol.order)}, {"task", name_of(protocol.task)}};
+    if (protocol.choice.reference_on) json["reference_on"] = protocol.conditions[*protocol.choice.reference_on].id;
     json["participants"] = files::Json::array();
     for (const study::PlannedParticipant& who : people) {
         files::Json trials = files::Json::array();

@@ -16,6 +16,7 @@
 #include "files/regular_file.h"
 #include "files/text.h"
 #include "render/gl.h"
+#include "study/study_folder.h"
 
 namespace palpa::app {
 namespace {
@@ -347,6 +348,7 @@ std::optional<files::Json> run_live(const RunOptions& options) {
     if (!options.screenshot.empty())
         files::check_output(options.screenshot, {options.scene, options.trace, options.protocol});
     if (!options.log.empty()) files::check_output_folder(options.log);
+    if (!options.log.empty() && options.protocol.empty()) study::check_no_study(options.log);
     Live live(options);
     if (!live.ready()) return std::nullopt;
     while (live.turn(Live::Draw::when_due)) {

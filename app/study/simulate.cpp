@@ -290,11 +290,11 @@ SimulateResult simulate_study(const study::Protocol& protocol, const SimulateOpt
     const StudyScenes scenes = load_study_scenes(protocol);
     Shared shared{protocol, options, scenes, {}, {}, {}, {}, {}, {}, {}};
     shared.next_participant = 1;
-    for (const auto& scene : scenes) shared.identities.push_back(identity_of(scene));
+    shared.identities = identities_of(scenes);
     std::error_code error;  // open_study says why a folder cannot be made
     std::optional<files::FolderLock> lock;
     std::filesystem::create_directories(options.output, error);
-    if (!error) lock.emplace(options.output, "another simulation into it");  // both would run the same trials
+    if (!error) lock.emplace(options.output, study::kOtherWriter);
     study::open_study(options.output, protocol, {true, options.seed, "palpa " PALPA_VERSION});
     add_everybody(protocol, options);
     std::vector<std::thread> workers;

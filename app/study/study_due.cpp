@@ -8,7 +8,14 @@
 namespace palpa::app {
 
 const study::PlannedTrial& due_trial(const StudyRun& run) { return *run.progress.next; }
-const study::Condition& due_condition(const StudyRun& run) { return run.protocol.conditions[due_trial(run).condition]; }
+
+std::size_t due_condition_index(const StudyRun& run) {
+    const study::PlannedTrial& trial = due_trial(run);
+    const bool reference = run.protocol.task == study::TaskKind::choice && (run.interval == 0) == trial.reference_first;
+    return reference ? run.protocol.choice.reference_on.value_or(trial.condition) : trial.condition;
+}
+
+const study::Condition& due_condition(const StudyRun& run) { return run.protocol.conditions[due_condition_index(run)]; }
 
 bool typed_in(const study::Condition& condition) {
     return condition.modality == study::Modality::hand || condition.modality == study::Modality::tangible ||
@@ -16,14 +23,14 @@ bool typed_in(const study::Condition& condition) {
 }
 
 bool shows_tissue(const StudyRun& run) {
-    return !typed_in(due_condition(run)) && run.scenes[due_trial(run).condition].has_value();
+    return !typed_in(due_condition(run)) && run.scenes[due_condition_index(run)].has_value();
 }
 
 const StudyScene& due_scene(const StudyRun& run) {
     const study::PlannedTrial& trial = due_trial(run);
     if (run.protocol.task == study::TaskKind::find) return *run.scenes[trial.condition];
     const bool reference = (run.interval == 0) == trial.reference_first;
-    return run.stimuli[trial.condition][reference ? 0 : 1 + static_cast<std::size_t>(trial.comparison)];
+    return run.stimuli[due_condition_index(run)][reference ? 0 : 1 + static_cast<std::size_t>(trial.comparison)];
 }
 
 session::SessionFiles due_files(const StudyRun& run) {
@@ -32,7 +39,11 @@ session::SessionFiles due_files(const StudyRun& run) {
     files.log = run.directory.string();
     files.participant = run.code;
     files.first_run = run.first_run;
-    files.label = label_of(run.protocol, run.progress.plan, trial, run.identities[trial.condition]);
+    const std::size_t condition = due_condition_index(run);  // that of the interval
+    files.label = label_of(run.protocol, run.progress.plan, trial, run.identities[condition]);
+    files.label->condition = run.protocol.conditions[condition].id;
+    files.label->device = run.protocol.conditions[condition].device;
+    files.label->study["modality"] = name_of(run.protocol.conditions[condition].modality);
     if (run.protocol.task == study::TaskKind::choice) {
         files.task = "interval";
         files.label->study["interval"] = run.interval + 1;

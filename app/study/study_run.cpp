@@ -11,6 +11,7 @@
 #include "files/text.h"
 #include "scene/plan.h"
 #include "session/plan_in_progress.h"
+#include "study/names.h"
 #include "study/ratings.h"
 
 namespace palpa::app {
@@ -42,11 +43,7 @@ std::vector<StudyScene> stimuli_of(const StudyScene& scene, const study::ChoiceT
     return out;
 }
 
-bool plain(const std::string& code) {
-    return !code.empty() && code.size() <= 20 && std::all_of(code.begin(), code.end(), [](char c) {
-        return (c >= '0' && c <= '9') || (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z');
-    });
-}
+bool plain(const std::string& code) { return code.size() <= 20 && study::is_code(code); }
 
 // Returns what the experimenter sees from elsewhere (palpa study watch).
 files::Json now_json(const StudyRun& run) {
@@ -67,6 +64,7 @@ files::Json now_json(const StudyRun& run) {
     json["present_kPa"] = {trial.reference_first ? task.reference_kPa : comparison_kPa,
                            trial.reference_first ? comparison_kPa : task.reference_kPa};
     json["interval"] = run.interval + 1;
+    json["condition"] = due_condition(run).id;  // that of the interval
     return json;
 }
 
@@ -197,6 +195,7 @@ void finish_due(StudyRun& run) {
     run.progress.finished.insert(due_trial(run).trial);
     run.progress.next = study::next_trial(run.progress.plan, run.progress.finished);
     run.rested = false;
+    run.interval = 0;
     go_on(run);
 }
 
@@ -224,8 +223,8 @@ StudyRun open_study_run(const study::Protocol& protocol, const fs::path& directo
     run.protocol = protocol;
     run.directory = directory;
     run.scenes = load_study_scenes(protocol);
+    run.identities = identities_of(run.scenes);
     for (const auto& scene : run.scenes) {
-        run.identities.push_back(identity_of(scene));
         run.stimuli.emplace_back();
         if (protocol.task == study::TaskKind::choice && scene) run.stimuli.back() = stimuli_of(*scene, protocol.choice);
     }
@@ -336,7 +335,7 @@ void interval_presented(StudyRun& run) {
 void choose_softer(bool first, double now_s, StudyRun& run) {
     const study::PlannedTrial& trial = due_trial(run);
     const study::ChoiceTask& task = run.protocol.choice;
-    const study::Condition& condition = due_condition(run);
+    const study::Condition& condition = run.protocol.conditions[trial.condition];
     const bool reference = first == trial.reference_first;
     study::ChoiceRow row;
     const std::string block = trial.practice ? "practice" : "test";
@@ -349,6 +348,7 @@ void choose_softer(bool first, double now_s, StudyRun& run) {
     row.seed = trial.seed;
     row.reference_kPa = task.reference_kPa;
     row.comparison_kPa = task.comparisons_kPa[static_cast<std::size_t>(trial.comparison)];
+    if (task.reference_on) row.reference_on = run.protocol.conditions[*task.reference_on].id;
     row.first = trial.reference_first ? "reference" : "comparison";
     row.answer = reference ? "reference" : "comparison";
     row.correct = reference == (row.reference_kPa < row.comparison_kPa) ? 1 : 0;

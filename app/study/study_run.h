@@ -77,6 +77,8 @@ void stop_study(const std::string& why, StudyRun& run);
 
 // study_due.cpp: the trial that is due. To be called only while there is one (in the steps from instructions to typed).
 const study::PlannedTrial& due_trial(const StudyRun& run);
+// The condition of the trial; of a forced choice, that of the interval that is due (choice.reference_on).
+std::size_t due_condition_index(const StudyRun& run);
 const study::Condition& due_condition(const StudyRun& run);
 bool typed_in(const study::Condition& condition);  // the program does not drive its device
 bool shows_tissue(const StudyRun& run);            // the due trial has a scene on this screen

@@ -1,5 +1,8 @@
 #include "app/study/study_scenes.h"
 
+#include <map>
+#include <utility>
+
 #include "app/assets.h"
 #include "files/input_error.h"
 #include "files/sha256.h"
@@ -19,25 +22,38 @@ fs::path find_beside(const study::Protocol& protocol, const std::string& name, c
     return assets_folder() / kind / given;
 }
 
-StudyScene load(const study::Protocol& protocol, const study::Condition& condition) {
-    StudyScene out;
-    const fs::path file = find_beside(protocol, condition.scene, "scenes");
-    out.scene = scene::read_scene(file, assets_folder());
-    if (!condition.profile.empty()) out.scene.profile = find_beside(protocol, condition.profile, "profiles");
-    out.plan = std::make_shared<const scene::Plan>(session::make_plan_here(out.scene));
-    return out;
-}
+// Loads each scene once, however many conditions show it with the same profile.
+class SceneLoader {
+  public:
+    explicit SceneLoader(const study::Protocol& protocol) : protocol_(protocol) {}
+
+    StudyScene load(const study::Condition& condition) {
+        const fs::path file = find_beside(protocol_, condition.scene, "scenes");
+        const auto [it, fresh] = loaded_.try_emplace({file, condition.profile});
+        if (!fresh) return it->second;
+        StudyScene out;
+        out.scene = scene::read_scene(file, assets_folder());
+        if (!condition.profile.empty()) out.scene.profile = find_beside(protocol_, condition.profile, "profiles");
+        out.plan = std::make_shared<const scene::Plan>(session::make_plan_here(out.scene));
+        return it->second = out;
+    }
+
+  private:
+    const study::Protocol& protocol_;
+    std::map<std::pair<fs::path, std::string>, StudyScene> loaded_;
+};
 
 }  // namespace
 
 StudyScenes load_study_scenes(const study::Protocol& protocol) {
     StudyScenes scenes;
+    SceneLoader loader(protocol);
     for (std::size_t i = 0; i < protocol.conditions.size(); ++i) {
         const study::Condition& condition = protocol.conditions[i];
         scenes.emplace_back();
         if (condition.scene.empty()) continue;
         try {
-            scenes.back() = load(protocol, condition);
+            scenes.back() = loader.load(condition);
         } catch (const files::InputError& error) {
             throw files::InputError(protocol.file.string() + ": conditions[" + std::to_string(i) + "] " +
                                     files::shown(condition.id) + ": " + error.what());
@@ -52,6 +68,16 @@ files::Json identity_of(const std::optional<StudyScene>& scene) {
     json["profile_sha256"] = files::sha256_of_file(scene->scene.profile);
     json.update(scene::file_hashes(scene->scene.tissue));
     return json;
+}
+
+std::vector<files::Json> identities_of(const StudyScenes& scenes) {
+    std::vector<files::Json> out;
+    std::map<const scene::Plan*, std::size_t> first;  // conditions with one plan have the same files
+    for (const auto& scene : scenes) {
+        const auto [it, fresh] = first.emplace(scene ? scene->plan.get() : nullptr, out.size());
+        out.push_back(fresh ? identity_of(scene) : out[it->second]);
+    }
+    return out;
 }
 
 study::TrialLabel label_of(const study::Protocol& protocol, const study::PlannedParticipant& who,

@@ -19,11 +19,12 @@ struct StudyScene {
 using StudyScenes = std::vector<std::optional<StudyScene>>;
 
 // Loads the scenes. Throws InputError that names the protocol, the condition and what is wrong with its scene, map or
-// profile.
+// profile. Conditions with the same scene and profile share one plan.
 StudyScenes load_study_scenes(const study::Protocol& protocol);
 
 // Returns the hashes of the files that a trial is made from: profile, and map or phantom.
 files::Json identity_of(const std::optional<StudyScene>& scene);
+std::vector<files::Json> identities_of(const StudyScenes& scenes);  // by condition; each file is read once
 
 // Returns the label of a trial, for its events and its settings.
 study::TrialLabel label_of(const study::Protocol& protocol, const study::PlannedParticipant& who,

@@ -10,14 +10,14 @@ using namespace palpa::study;
 
 namespace {
 
-std::vector<Contribution> people(int n, int items, double spread, std::uint64_t seed) {
+People people(int n, int items, double spread, std::uint64_t seed) {
     Random random(seed);
-    std::vector<Contribution> out;
+    People out;
     for (int i = 0; i < n; ++i) {
         const double p = std::clamp(0.6 + spread * random.normal(), 0.0, 1.0);
         Contribution one{0, items};
         for (int k = 0; k < items; ++k) one.k += random.uniform() < p ? 1 : 0;
-        out.push_back(one);
+        out.emplace_back(one);
     }
     return out;
 }
@@ -38,8 +38,8 @@ TEST_CASE("bootstrap: the width is that of a mean over people") {
     // k alike for all but chance: standard error of the share from the spread of the people
     const auto all = people(400, 3, 0.0, 6);
     double mean = 0.0, square = 0.0;
-    for (const Contribution& one : all) {
-        const double share = static_cast<double>(one.k) / 3.0;
+    for (const auto& one : all) {
+        const double share = static_cast<double>(one->k) / 3.0;
         mean += share / 400.0;
         square += share * share / 400.0;
     }
@@ -51,13 +51,13 @@ TEST_CASE("bootstrap: the width is that of a mean over people") {
 TEST_CASE("bootstrap: clusters widen, pairs narrow") {
     const auto clustered = people(20, 30, 0.35, 9);
     std::int64_t k = 0;
-    for (const Contribution& one : clustered) k += one.k;
+    for (const auto& one : clustered) k += one->k;
     CHECK(width(bootstrap_share(clustered, {})) > 1.5 * width(wilson({k, 600}, z_of_level(0.95))));
 
     auto better = clustered;
-    for (Contribution& one : better) one.k = std::min<std::int64_t>(one.n, one.k + 3);
+    for (auto& one : better) one->k = std::min<std::int64_t>(one->n, one->k + 3);
     const Interval within = bootstrap_difference(better, clustered, {});
-    std::vector<Contribution> a(better), b(20);
+    People a(better), b(20);
     a.resize(40);
     b.insert(b.end(), clustered.begin(), clustered.end());
     const Interval between = bootstrap_difference(a, b, {});
@@ -65,8 +65,54 @@ TEST_CASE("bootstrap: clusters widen, pairs narrow") {
     CHECK(within.low > 0.0);
 }
 
-TEST_CASE("bootstrap: one participant says nothing") {
-    const Contribution one[] = {{2, 3}, {0, 0}};
+TEST_CASE("bootstrap: one participant says nothing, and neither do people who are all the same") {
+    const People one{Contribution{2, 3}, Contribution{0, 0}, std::nullopt};
     CHECK(std::isnan(bootstrap_share(one, {}).low));
     CHECK(std::isnan(bootstrap_difference(one, one, {}).high));
+    const People same{Contribution{1, 1}, Contribution{1, 1}};
+    CHECK(std::isnan(bootstrap_share(same, {}).low));
+    CHECK(std::isnan(bootstrap_difference(same, same, {}).low));
+}
+
+TEST_CASE("bootstrap: people without marks belong to the design and widen the interval of those who mark") {
+    People marked = people(10, 4, 0.2, 11);
+    const Interval alone = bootstrap_share(marked, {});
+    for (int i = 0; i < 10; ++i) marked.emplace_back(Contribution{0, 0});
+    const Interval with_silent = bootstrap_share(marked, {});
+    CHECK(with_silent.low < alone.high);
+    CHECK(width(with_silent) != width(alone));
+    const People absent(20);
+    CHECK(std::isnan(bootstrap_share(absent, {}).low));
+}
+
+TEST_CASE("bootstrap: few people have wider intervals than plain percentiles") {
+    // of five people the plain percentiles are about 1.96 sqrt(4/5) = 1.75 standard errors wide, Student's t 2.78
+    const People five{Contribution{20, 100}, Contribution{35, 100}, Contribution{50, 100}, Contribution{65, 100},
+                      Contribution{80, 100}};
+    const double error = std::sqrt((0.09 + 0.0225) * 2.0 / 4.0 / 5.0);
+    CHECK(width(bootstrap_share(five, {20000, 1, 0.95})) > 2.0 * 2.2 * error);
+}
+
+TEST_CASE("bootstrap: many people, drawn by kinds, have the interval of the normal approximation") {
+    const auto all = people(20000, 3, 0.0, 11);
+    double mean = 0.0, square = 0.0;
+    for (const auto& one : all) {
+        const double share = static_cast<double>(one->k) / 3.0;
+        mean += share / 20000.0;
+        square += share * share / 20000.0;
+    }
+    const double arm = 1.96 * std::sqrt((square - mean * mean) / 20000.0);
+    const Interval ci = bootstrap_share(all, {4000, 1, 0.95});
+    // 4,000 resamples: quantiles good to some 3 % of the arm
+    CHECK(ci.low == doctest::Approx(mean - arm).epsilon(0.1 * arm / mean));
+    CHECK(ci.high == doctest::Approx(mean + arm).epsilon(0.1 * arm / mean));
+    // the same people twice: every difference is 0, which says nothing about others
+    CHECK(std::isnan(bootstrap_difference(all, all, {200, 1, 0.95}).low));
+    // other people: the difference has both variances
+    const auto others = people(20000, 3, 0.0, 12);
+    People a(all), b(20000);
+    a.resize(40000);
+    b.insert(b.end(), others.begin(), others.end());
+    const Interval between = bootstrap_difference(a, b, {4000, 1, 0.95});
+    CHECK(0.5 * (between.high - between.low) == doctest::Approx(std::sqrt(2.0) * arm).epsilon(0.1));
 }

@@ -65,3 +65,29 @@ TEST_CASE("observations: bad counts are refused with line and column") {
     CHECK(contains(refusal_of_counts("condition\ttp\tfn\tfp\npen\t1\t0"),
                    "line 2: found 3 fields, expected 4"));  // cut in the middle
 }
+
+TEST_CASE("observations: what is counted twice, and names that tables take for a missing value, are refused") {
+    const std::string head = "condition\tparticipant\tnodule\ttp\tfn\tfp\n";
+    CHECK(
+        contains(refusal_of_counts(head + "pen\tp1\tA\t1\t0\t0\npen\tp1\tn/a\t3\t1\t0\n"),
+                 "line 3, nodule: found 'n/a', expected rows of nodules or one row for all of them, not both: line 2"));
+    CHECK(contains(refusal_of_counts(head + "pen\tp1\tn/a\t3\t1\t0\npen\tp1\tA\t1\t0\t0\n"),
+                   "line 3, nodule: found 'A'"));
+    CHECK(contains(refusal_of_counts(head + "pen\tp1\tA\t1\t0\t2\npen\tp1\tn/a\t0\t0\t2\n"), "line 3, fp: found '2'"));
+    CHECK(contains(refusal_of_counts(head + "pen\tp1\tA\t1\t0\t0\npen\tn/a\tA\t3\t1\t0\n"),
+                   "line 3, participant: found 'n/a'"));
+    CHECK(contains(refusal_of_counts(head + "pen\tp1\ttotal\t1\t0\t0\n"), "line 2, nodule: found 'total'"));
+    CHECK(contains(refusal_of_counts(head + "pen\tall\tA\t1\t0\t0\n"), "line 2, participant: found 'all'"));
+    CHECK(refusal_of_counts(head + "pen\tp1\tA\t1\t0\tn/a\npen\tp1\tn/a\t0\t0\t2\nhand\tp1\tn/a\t3\t1\t0\n").empty());
+    const std::string choices = "condition\tparticipant\tcomparison\tcorrect\tn\n";
+    CHECK(contains(refusal_of_counts(choices + "on\tp1\t2 kPa\t1\t2\non\tp1\tn/a\t1\t2\n"),
+                   "line 3, comparison: found 'n/a'"));
+    CHECK(contains(refusal_of_counts(choices + "on\tp1\t2 kPa\t1\t2\non\tn/a\t2 kPa\t1\t2\n"),
+                   "line 3, participant: found 'n/a'"));
+    for (const char* name : {"NA", "null", "nan", "\"p1\""}) {
+        CAPTURE(name);
+        CHECK(contains(refusal_of_counts(head + "pen\t" + name + "\tA\t1\t0\t0\n"), "line 2, participant: found '"));
+        CHECK(contains(refusal_of_counts(head + name + "\tp1\tA\t1\t0\t0\n"), "line 2, condition: found '"));
+        CHECK(contains(refusal_of_counts(head + "pen\tp1\t" + name + "\t1\t0\t0\n"), "line 2, nodule: found '"));
+    }
+}

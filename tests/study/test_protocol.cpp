@@ -48,6 +48,16 @@ TEST_CASE("protocol: the shipped ones read as they are meant") {
     CHECK(read_protocol(kProtocols + "effects.json").groups.size() == 1);
 }
 
+TEST_CASE("protocol: forced choices may keep the reference under one condition") {
+    const TemporaryFolder folder;
+    const std::string two = R"({"id": "hand", "modality": "hand"}, )" + kPen;
+    const std::string choice = R"(, "choice": {"reference_kPa": 1, "comparisons_kPa": [2])";
+    write_text_atomically(folder / "p.json", with(two, choice + R"(, "reference_on": "pen"})"));
+    CHECK(read_protocol(folder / "p.json").choice.reference_on == 1u);
+    write_text_atomically(folder / "q.json", with(two, choice + "}"));
+    CHECK_FALSE(read_protocol(folder / "q.json").choice.reference_on);
+}
+
 TEST_CASE("protocol: what is wrong is named with its key") {
     CHECK(refusal_of_protocol(with(kPen)).empty());
     CHECK(contains(refusal_of_protocol(with("")), "conditions: found nothing, expected one condition"));
@@ -66,10 +76,34 @@ TEST_CASE("protocol: what is wrong is named with its key") {
     CHECK(contains(refusal_of_protocol(with(kPen, R"(, "seed": 2)")), "seed: found the key twice"));
     CHECK(contains(refusal_of_protocol(with(kPen, R"(, "choice": {"reference_kPa": 1, "comparisons_kPa": [1]})")),
                    "values unlike the reference"));
+    CHECK(contains(refusal_of_protocol(with(
+                       kPen, R"(, "choice": {"reference_kPa": 1, "comparisons_kPa": [2], "reference_on": "pin"})")),
+                   "choice.reference_on: found 'pin', expected the id of a condition"));
+    CHECK(contains(refusal_of_protocol(with(kPen, R"(, "choice": true)")), "choice: found true"));
     CHECK(contains(refusal_of_protocol(with(kPen, R"(, "ratings": [{"id": "a", "text": "t", "from": 5, "to": 1}])")),
                    "ratings[0].to: found 1"));
     CHECK(contains(
         refusal_of_protocol(with(R"({"id": "x", "modality": "pen", "scene": "s.json", "device": "S-pen\tof 2014"})")),
         "conditions[0].device: found 'S-pen?of 2014', expected a name without tabs"));
     CHECK(contains(refusal_of_protocol("{"), "line 1, column"));
+}
+
+TEST_CASE("protocol: names that tables take for a missing value, or that break their fields, are refused") {
+    for (const char* name : {"NA", "n/a", "nan", "null", "a\\\"b", "a\\tb"}) {
+        CAPTURE(name);
+        const std::string id = name;
+        CHECK(contains(refusal_of_protocol(with(R"({"id": ")" + id + R"(", "modality": "pen", "scene": "s.json"})")),
+                       "conditions[0].id: found '"));
+        CHECK(
+            contains(refusal_of_protocol(with(kPen, R"(, "groups": [{"id": ")" + id + R"(", "conditions": ["pen"]}])")),
+                     "groups[0].id: found '"));
+        CHECK(contains(refusal_of_protocol(with(R"({"id": "x", "modality": "hand", "nodules": [")" + id + R"("]})")),
+                       "conditions[0].nodules: found '"));
+        CHECK(contains(refusal_of_protocol(with(kPen, R"(, "ratings": [{"id": ")" + id + R"(", "text": "t"}])")),
+                       "ratings[0].id: found '"));
+    }
+    CHECK(contains(refusal_of_protocol(with(R"({"id": "x", "modality": "pen", "scene": "s.json", "device": "a\tb"})")),
+                   "conditions[0].device: found '"));
+    CHECK(
+        refusal_of_protocol(with(R"({"id": "none", "modality": "pen", "scene": "s.json", "device": "n/a"})")).empty());
 }

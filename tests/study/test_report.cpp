@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <doctest/doctest.h>
 
@@ -48,13 +49,16 @@ TEST_CASE("report: the paper's counts give its verdicts, and Holm's correction k
     CHECK(json["ppv_pairs"].size() == 10);
     int significant = 0, corrected = 0;
     for (const Json& pair : json["pairs"]) {
-        significant += pair["significant"].get<bool>();
-        corrected += pair["p_holm"].get<double>() < 0.05;
-        CHECK(pair["delta"].get<double>() >= 0.0);
-        CHECK_FALSE(pair.contains("paired"));  // the counts do not tell who was who
+        const Json& paper = pair["replication"];
+        significant += paper["significant"].get<bool>();
+        corrected += paper["p_holm"].get<double>() < 0.05;
+        CHECK(paper["delta"].get<double>() >= 0.0);
+        CHECK_FALSE(pair.contains("ignores_clustering"));  // the counts do not tell who was who
+        CHECK(pair["p"].is_null());
+        CHECK(pair["status"] == "cannot be computed, because the counts do not name their participants");
         if (pair["a"] != "S-pen" || pair["b"] != "Bare finger") continue;
-        CHECK(pair["combined_interval"].get<double>() == doctest::Approx(0.119343).epsilon(5e-6));
-        CHECK(pair["significant"] == false);
+        CHECK(paper["combined_interval"].get<double>() == doctest::Approx(0.119343).epsilon(5e-6));
+        CHECK(paper["significant"] == false);
         CHECK(pair["higher"] == "S-pen");
     }
     CHECK(significant == 5);
@@ -77,9 +81,14 @@ TEST_CASE("report: people who did both conditions are compared in pairs, over pa
     CHECK(pair.paired->only_b == 10);
     CHECK(pair.paired->neither == 15);
     CHECK(pair.higher == "b");
-    CHECK(pair.delta == doctest::Approx(0.25));
+    CHECK(pair.people.difference == doctest::Approx(-0.25));
+    CHECK(pair.people.df == 19.0);
+    // ten people differ by one half, ten do not
+    CHECK(pair.people.t == doctest::Approx(-0.25 / std::sqrt(20.0 * 0.0625 / 19.0 / 20.0)));
+    CHECK(pair.people.p_permutation == doctest::Approx(2.0 / 1024.0));
+    CHECK(pair.replication->delta == doctest::Approx(0.25));
     CHECK(pair.mcnemar_p == doctest::Approx(2.0 / 1024.0));
-    CHECK(pair.p > pair.mcnemar_p);  // independent samples see less
+    CHECK(pair.replication->p > pair.mcnemar_p);  // independent samples see less
     REQUIRE(pair.bootstrap);
     CHECK(pair.bootstrap->high < 0.0);
     CHECK(pair.participants_in_both == 20);
@@ -116,10 +125,65 @@ TEST_CASE("report: forced choices against chance, over people and over answers")
     CHECK(choice.correct.x.n == 480);
     REQUIRE(choice.over_people);
     CHECK(choice.over_people->df == 5.0);
-    CHECK(choice.over_people->mean == doctest::Approx(62.5 / 80.0));
+    CHECK(choice.over_people->difference == doctest::Approx(62.5 / 80.0 - 0.5));
+    CHECK(choice.p_holm == doctest::Approx(choice.over_people->p));
+    CHECK(report_json(report)["choices"][0]["t_over_participants"]["mean"].get<double>() ==
+          doctest::Approx(62.5 / 80.0));
     CHECK(choice.over_answers->df == 479.0);
     CHECK(choice.binomial_p < 1e-30);
     CHECK(contains(report_markdown(report), "| with | all | 375 | 480 |"));
+}
+
+TEST_CASE("report: two people with one right answer each give no number without variance") {
+    Observations seen;
+    index_of("with", seen.conditions);
+    for (int person = 0; person < 2; ++person) {
+        index_of("p" + std::to_string(person), seen.participants);
+        seen.choices.push_back({0, person, -1, 1, 1});
+    }
+    const Json choice = report_json(make_report(seen, {}))["choices"][0];
+    const Json& test = choice["t_over_participants"];
+    CHECK(test["p"].is_null());
+    CHECK(test["ci"][0].is_null());
+    CHECK(test["status"] == "cannot be computed, because the shares of all 2 people are the same: no variance");
+    CHECK(test["p_permutation"] == 0.5);
+    CHECK(choice["t_over_answers"]["p"].is_null());
+    CHECK(choice["share_bootstrap_ci"].is_null());
+    CHECK(choice["share_ci_label"] == "over participants");
+    CHECK_FALSE(contains(report_markdown(make_report(seen, {})), "<0.0001"));
+    CHECK(contains(report_markdown(make_report(seen, {})), "WARNING: fewer than 10 people: with (2)"));
+}
+
+TEST_CASE("report: a single trial has no standard deviation") {
+    Observations seen;
+    index_of("a", seen.conditions);
+    seen.rows.push_back({0, -1, -1, 0, 1, 0, 0});
+    seen.trials.push_back({0, 0, 30.0, 1.0, 2.0, 3.0});
+    const Report report = make_report(seen, {});
+    CHECK(report_json(report)["conditions"]["a"]["time_s"]["sd"].is_null());
+    CHECK(contains(report_markdown(report), "| a | time_s | 1 | 30.000 | n/a |"));
+}
+
+TEST_CASE("report: groups stand in every table, below the rows of all people") {
+    Observations seen = paired_study();
+    for (const char* name : {"I", "II"}) index_of(name, seen.groups);
+    for (int person = 0; person < 20; ++person) seen.group_of.push_back(person % 2);
+    seen.answers.push_back({"a", "effort", "3", 1});
+    const Report report = make_report(seen, {});
+    REQUIRE(report.groups.size() == 2);
+    CHECK(report.groups[0].participants == 10);
+    CHECK(report.groups[0].conditions[1].tp == 5 + 10);  // the even ones find the second nodule
+    CHECK(report.groups[1].conditions[1].tp == 10);
+    for (const ReportTable& table : report_tables(report)) {
+        CAPTURE(table.name);
+        CHECK(table.columns.back() == "group");
+        CHECK(table.rows.front().back() == "all");
+        if (table.name != "groups") CHECK(table.rows.back().back() == "II");
+    }
+    const Json json = report_json(report);
+    CHECK(json["groups"]["I"]["conditions"]["b"]["tp"] == 15);
+    CHECK(json["group_comparisons"].size() == 5);
+    CHECK(contains(report_markdown(report), "| sensitivity | a | b | I | II | between | 10 | 10 |"));
 }
 
 TEST_CASE("report: tables have a value in every column, and Markdown keeps its bars") {
@@ -134,4 +198,28 @@ TEST_CASE("report: tables have a value in every column, and Markdown keeps its b
     CHECK(contains(report_markdown(report), "a\\|b"));
     CHECK(contains(report_markdown(report), "SIMULATED"));
     CHECK(report_json(report)["simulated"] == true);
+}
+
+TEST_CASE("report: pairs of very many conditions are not compared, and the report says so") {
+    Observations seen;
+    for (int condition = 0; condition < 300; ++condition) {
+        index_of("c" + std::to_string(condition), seen.conditions);
+        for (int person = 0; person < 3; ++person) {
+            if (condition == 0) index_of("p" + std::to_string(person), seen.participants);
+            seen.rows.push_back({condition, person, -1, 0, person, 3 - person, 0});
+        }
+    }
+    const Report report = make_report(seen, {});
+    CHECK(report.conditions.size() == 300);
+    CHECK(report.pairs.empty());
+    REQUIRE(report.notes.size() == 2);
+    CHECK(contains(report.notes[0], "all pairs of 300 conditions are not compared"));
+    CHECK(contains(report.notes[1], "c19 (3) and 280 others"));
+}
+
+TEST_CASE("report: rows in any order give the same report") {
+    Observations seen = paired_study();
+    const Json expected = report_json(make_report(seen, {}));
+    std::reverse(seen.rows.begin(), seen.rows.end());
+    CHECK(report_json(make_report(seen, {})) == expected);
 }

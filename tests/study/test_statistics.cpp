@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <map>
 #include <string>
+#include <tuple>
 
 #include "files/distributions.h"
 #include "files/json.h"
@@ -128,6 +129,9 @@ TEST_CASE("statistics: Student's t of a few values") {
     CHECK(test.df == 3.0);
     CHECK(test.ci.low < 0.75);
     CHECK(test.ci.low == doctest::Approx(0.75 - 3.182446305284263 * std::sqrt(0.125 / 12.0)).epsilon(1e-9));
+    const double alike[] = {1.0 / 3.0, 1.0 / 3.0, 1.0 / 3.0}, ones[] = {1.0, 1.0};  // no variance, no test
+    CHECK(std::isnan(t_test(alike, 0.5, 0.95).p));
+    CHECK(std::isnan(t_test(ones, 0.5, 0.95).ci.low));
 }
 
 TEST_CASE("statistics: Holm's correction") {
@@ -295,4 +299,40 @@ with open("holm.tsv", "w") as out:
         REQUIRE(of_holm.next());
         CHECK(near(mine, of_holm.number(0), 1e-10));
     }
+}
+
+TEST_CASE("statistics: the exact binomial test of many answers takes both tails as a whole") {
+    // sums over all counts by the formula, from 10,001 on beside the two tails
+    const auto summed = [](std::int64_t k, std::int64_t n, double chance) {
+        const double seen = files::binomial_probability(k, n, chance) * (1.0 + 1e-7);
+        double sum = 0.0;
+        for (std::int64_t i = 0; i <= n; ++i) {
+            const double p = files::binomial_probability(i, n, chance);
+            if (p <= seen) sum += p;
+        }
+        return std::min(1.0, sum);
+    };
+    for (const auto& [k, n, chance] : {std::tuple{6000, 12001, 0.5},
+                                       {6100, 12001, 0.5},
+                                       {5900, 12001, 0.5},
+                                       {6300, 12001, 0.5},
+                                       {0, 12001, 0.001},
+                                       {30, 12001, 0.001},
+                                       {3001, 12001, 0.25},
+                                       {3200, 12001, 0.25},
+                                       {12001, 12001, 0.5}}) {
+        CAPTURE(k);
+        CAPTURE(chance);
+        CHECK(exact_binomial_p({k, n}, chance) == doctest::Approx(summed(k, n, chance)).epsilon(1e-9));
+    }
+    CHECK(exact_binomial_p({150'000'000'000, 300'000'000'000}, 0.5) == 1.0);
+}
+
+TEST_CASE("statistics: the t test of answers is that of as many ones and zeros") {
+    std::vector<double> values(80, 0.0);
+    std::fill(values.begin(), values.begin() + 53, 1.0);
+    const TTest one = t_test(values, 0.5, 0.95), other = t_test_of_answers({53, 80}, 0.5, 0.95);
+    CHECK(other.t == doctest::Approx(one.t).epsilon(1e-12));
+    CHECK(other.p == doctest::Approx(one.p).epsilon(1e-10));
+    CHECK(other.ci.low == doctest::Approx(one.ci.low).epsilon(1e-12));
 }

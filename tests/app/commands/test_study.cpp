@@ -33,7 +33,8 @@ void refused(const std::string& arguments, const std::string& word) {
 }  // namespace
 
 TEST_CASE("command study: help exists for every command") {
-    for (const char* command : {"", "analyse", "import", "order", "run", "simulate", "watch"}) {
+    for (const char* command :
+         {"", "analyse", "exclude", "import", "levels", "observers", "order", "replace", "run", "simulate", "watch"}) {
         CAPTURE(command);
         const Called help = study(std::string(command) + " --help");
         CHECK(help.status == 0);
@@ -241,9 +242,10 @@ TEST_CASE(
     for (const Json& pair : report["pairs"]) {
         if (pair["b"] != "off" && pair["a"] != "off") continue;
         CHECK(pair["higher"] != "off");
-        CHECK(pair["significant"] == true);
+        CHECK(pair["replication"]["significant"] == true);
         CHECK(pair["p_holm"].get<double>() < 0.05);
-        CHECK(pair["paired"]["n"] == 72);
+        CHECK(pair["p_permutation"].get<double>() < 0.05);
+        CHECK(pair["ignores_clustering"]["n"] == 72);
         CHECK(pair["participants_in_both"] == 24);
         ++against_off;
     }
@@ -274,7 +276,7 @@ TEST_CASE("command study simulate: two at once do not share a folder") {
         "simulate " PALPA_SOURCE_DIR "/assets/protocols/softer.json --participants 1 -o " + folder.path().string();
     {
         const FolderLock other(folder.path(), "");
-        refused(call, "found another simulation into it, expected a folder of its own for each");
+        refused(call, "found another palpa that writes into this folder, expected a folder of its own for each");
     }
     CHECK(study(call).status == 0);
 }
@@ -301,6 +303,17 @@ TEST_CASE("command study simulate: the paper's protocol leaves hands out; forced
         "stdout");
     CHECK(again["trials"] == 0);
     CHECK(again["already_there"] == 480);
+}
+
+TEST_CASE("command study levels: a table of rejections and coverage, theirs labelled") {
+    const TemporaryFolder folder;
+    const std::string file = (folder / "levels.md").string();
+    const Called called = study("levels --people 10 --repeats 2 --slope-sd 1 --studies 10 --resamples 100 -o " + file);
+    REQUIRE(called.status == 0);
+    CHECK(contains(called.out, "| people, repeats, slope SD | 10, 2, 1 |"));
+    CHECK(contains(called.out, "| the paper's interval (replication) |"));
+    CHECK(read_text(file) == called.out);
+    refused("levels --people 1", "--people");
 }
 
 TEST_CASE("command study simulate: a disk that is full or cannot be written stops the study with a message") {
@@ -331,4 +344,59 @@ TEST_CASE("command study simulate: a disk that is full or cannot be written stop
     const Called called = study("simulate " + effects + " --participants 1 -o " + (folder / "file").string());
     CHECK(called.status == 2);
     CHECK(contains(called.err, "expected a folder"));
+}
+
+TEST_CASE("command study: one program at a time writes into a whole folder; single runs stay out of it") {
+    const TemporaryFolder folder;
+    const std::string log = (folder / "log").string();
+    const std::string softer = PALPA_SOURCE_DIR "/assets/protocols/softer.json";
+    const std::string simulate = "simulate " + softer + " --participants 1 -o " + log;
+    REQUIRE(study(simulate).status == 0);
+    {
+        const FolderLock lock(log);
+        refused(simulate, "found another palpa that writes into this folder");
+        // which several screens may do at once: it says only that real people never join simulated ones
+        const Called run = study("run " + softer + " --log " + log);
+        CHECK(run.status == 2);
+        CHECK_FALSE(contains(run.err, "another palpa"));
+        refused("exclude " + log + " --participant sim0001 --reason x",
+                "found another palpa that writes into this folder");
+        CHECK(study("analyse " + log + " --json").status == 0);  // which only reads
+        CHECK(study("watch " + log + " --once").status == 0);
+    }
+    {
+        const FolderLock screen(log + "/sub-sim0001");
+        CHECK(study("exclude " + log + " --participant sim0001 --reason x").status == 0);
+    }
+    CHECK(study(simulate).status == 0);
+    const Called run = shell("timeout 60 " PALPA_PROGRAM " run --headless --replay " PALPA_SOURCE_DIR
+                             "/assets/traces/raster.tsv --log " +
+                             log);
+    CHECK(run.status == 2);
+    CHECK(contains(run.err, "found the folder of a study (study.json)"));
+}
+
+TEST_CASE("command study exclude, replace: decisions are written, reported and refused where they cannot be") {
+    const TemporaryFolder folder;
+    const std::string log = (folder / "log").string();
+    REQUIRE(
+        study("simulate " PALPA_SOURCE_DIR "/assets/protocols/effects.json --participants 3 --samples none -o " + log)
+            .status == 0);
+    CHECK(study("exclude " + log + " --participant sim0001 --trial 2 --reason 'fire alarm'").status == 0);
+    CHECK(study("replace " + log + " --participant sim0002 --by x1 --reason 'left'").status == 0);
+    refused("exclude " + log + " --participant sim0001 --trial 2 --reason again", "already, because 'fire alarm'");
+    refused("exclude " + log + " --participant sim0009 --reason x", "--participant: found 'sim0009'");
+    refused("replace " + log + " --participant sim0001 --by sim0003 --reason x", "--by: found 'sim0003'");
+    refused("exclude " + folder.path().string() + " --participant sim0001 --reason x", "no study.json");
+    refused("exclude " + (folder / "none").string() + " --participant sim0001 --reason x", "found no folder");
+    const Called analysed = study("analyse " + log + " --json -o " + (folder / "report").string());
+    REQUIRE(analysed.status == 0);
+    const Json json = parse_json(analysed.out, "stdout");
+    CHECK(json["trials"] == 5);
+    CHECK(json["excluded_trials"] == 4);
+    CHECK(json["plan"].size() == 9);
+    CHECK(json["exclusions"][0]["reason"] == "fire alarm");
+    CHECK(json["replacements"][0]["replaced_by"] == "x1");
+    CHECK(contains(read_text(folder / "report/plan_participants.tsv"), "sim0001\tall\t"));
+    CHECK(contains(read_text(folder / "report/exclusions.tsv"), "sim0002\tall\tdropped out, replaced by x1: left"));
 }

@@ -80,6 +80,7 @@ Json results_of(const fs::path& log) {
     Json json = report_json(make_report(read_study(log), {}));
     json.erase("interrupted_trials");
     json.erase("notes");
+    for (Json& row : json["plan"]) row.erase("interrupted");
     return json;
 }
 

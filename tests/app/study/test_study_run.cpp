@@ -1,5 +1,6 @@
 // The steps of a study with people, without a screen.
 
+#include <cmath>
 #include <doctest/doctest.h>
 #include <filesystem>
 
@@ -378,6 +379,34 @@ TEST_CASE("study run: forced choices without a scene are presented by the experi
     choose_softer(true, 1.0, run);
     CHECK(run.progress.finished.size() == 1);
     CHECK(read_json(folder / "log/sub-01/now.json")["interval"] == 1);  // of the next pair
+}
+
+TEST_CASE("study run: with reference_on every reference is presented under that condition") {
+    const TemporaryFolder folder;
+    write_text_atomically(folder / "p.json", R"({"name": "n", "version": "1", "seed": 1, "order": "fixed",
+        "conditions": [{"id": "real", "modality": "hand"}, {"id": "shown", "modality": "shape-display"}],
+        "choice": {"reference_kPa": 1, "comparisons_kPa": [0.5, 2], "repeats": 2, "reference_on": "real"}})");
+    StudyRun run = open_study_run(read_protocol(folder / "p.json"), folder / "log", "01");
+    for (int pairs = 0; !at<step::Done>(run) && pairs < 20; ++pairs) {
+        if (at<step::Instructions>(run)) begin_step(run);
+        REQUIRE(at<step::Present>(run));
+        const PlannedTrial trial = due_trial(run);
+        for (const bool first : {true, false}) {
+            const std::string expected = first == trial.reference_first || trial.condition == 0 ? "real" : "shown";
+            CHECK(due_condition(run).id == expected);
+            CHECK(read_json(folder / "log/sub-01/now.json")["condition"] == expected);
+            interval_presented(run);
+        }
+        choose_softer(trial.reference_first, 1.0 + pairs, run);  // the reference is always called softer
+    }
+    const Observations seen = read_study(folder / "log");
+    REQUIRE(seen.stiffer.size() == 8);
+    for (const StifferAnswers& answers : seen.stiffer) {
+        CHECK(answers.axis == StiffnessAxis::comparison_reference);
+        CHECK(answers.stiffer == 1);
+        CHECK(std::abs(answers.x) == doctest::Approx(std::log(2.0)));
+    }
+    CHECK(seen.conditions == std::vector<std::string>{"real", "shown"});
 }
 
 TEST_CASE("study run: a folder that cannot be written stops the study in words, before a trial is lost") {

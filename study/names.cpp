@@ -1,0 +1,29 @@
+#include "study/names.h"
+
+#include <algorithm>
+#include <array>
+
+namespace palpa::study {
+
+bool reads_as_missing(std::string_view name) {
+    // pandas.read_csv, argument na_values: the words that it takes for a missing value unless told otherwise
+    constexpr std::array<std::string_view, 19> kMissing{
+        "",     "#N/A", "#N/A N/A", "#NA",  "-1.#IND", "-1.#QNAN", "-NaN", "-nan", "1.#IND", "1.#QNAN",
+        "<NA>", "N/A",  "NA",       "NULL", "NaN",     "None",     "n/a",  "nan",  "null"};
+    return std::find(kMissing.begin(), kMissing.end(), name) != kMissing.end();
+}
+
+bool is_name(std::string_view name) {
+    const bool plain =
+        std::none_of(name.begin(), name.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == '"'; });
+    return plain && !reads_as_missing(name);
+}
+
+bool is_code(std::string_view code) {
+    const bool plain = std::all_of(code.begin(), code.end(), [](char c) {
+        return (c >= '0' && c <= '9') || (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z');
+    });
+    return plain && !reads_as_missing(code);
+}
+
+}  // namespace palpa::study

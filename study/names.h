@@ -1,0 +1,23 @@
+#pragma once
+// Names and codes in logs and tables. Programs that read tables (pandas, R, spreadsheets) take some words for a missing
+// value and a double quote for the begin of a field, so such names are refused before they reach a log.
+
+#include <string_view>
+
+namespace palpa::study {
+
+inline constexpr std::string_view kNameRule =
+    "a name without tabs or double quotes that tables do not take for a missing value (as NA, n/a, null, nan)";
+inline constexpr std::string_view kCodeRule =
+    "letters and digits that tables do not take for a missing value (as NA, null, nan)";
+
+// True for the words that pandas reads as a missing value, among them those of R and the empty text.
+bool reads_as_missing(std::string_view name);
+
+// True for a name as kNameRule says: of a condition, a group, a nodule, a comparison.
+bool is_name(std::string_view name);
+
+// True for a participant's code as kCodeRule says; `sub-` is no part of it.
+bool is_code(std::string_view code);
+
+}  // namespace palpa::study

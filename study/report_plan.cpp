@@ -1,0 +1,111 @@
+// The part of a report that says what was planned, what was done, and what was left out.
+
+#include <algorithm>
+#include <map>
+
+#include "study/report.h"
+
+namespace palpa::study {
+namespace {
+
+// Sums over all participants, in the order in which conditions appear.
+std::vector<Progress> progress_by_condition(const std::vector<Progress>& rows) {
+    std::vector<Progress> sums;
+    std::map<std::string, std::size_t> place;
+    for (const Progress& row : rows) {
+        const auto [it, fresh] = place.emplace(row.condition, sums.size());
+        if (fresh) sums.push_back({"", "", row.condition});
+        Progress& sum = sums[it->second];
+        sum.planned += row.planned;
+        sum.finished += row.finished;
+        sum.interrupted += row.interrupted;
+        sum.excluded += row.excluded;
+    }
+    return sums;
+}
+
+// A sum of rows misses what each row misses: one participant's surplus does not make up for another's gap.
+int missing_of(const std::vector<Progress>& rows, const std::string& condition) {
+    int missing = 0;
+    for (const Progress& row : rows) missing += row.condition == condition ? row.missing() : 0;
+    return missing;
+}
+
+std::string exclusion_scope(const Exclusion& one) { return one.trial ? std::to_string(*one.trial) : "all"; }
+
+files::Json progress_json(const Progress& row) {
+    return {{"condition", row.condition},     {"planned", row.planned},   {"finished", row.finished},
+            {"interrupted", row.interrupted}, {"missing", row.missing()}, {"excluded", row.excluded}};
+}
+
+}  // namespace
+
+void add_plan_json(const Report& report, files::Json& json) {
+    json["excluded_trials"] = report.excluded_trials;
+    json["plan"] = files::Json::array();
+    for (const Progress& row : report.progress) {
+        files::Json entry{{"participant", row.participant}, {"group", row.group}};
+        entry.update(progress_json(row));
+        json["plan"].push_back(std::move(entry));
+    }
+    json["exclusions"] = files::Json::array();
+    for (const Exclusion& one : report.exclusions) {
+        json["exclusions"].push_back({{"participant", one.participant},
+                                      {"trial", one.trial ? files::Json(*one.trial) : files::Json(nullptr)},
+                                      {"reason", one.reason}});
+    }
+    json["replacements"] = files::Json::array();
+    for (const Replacement& one : report.replacements) {
+        json["replacements"].push_back(
+            {{"participant", one.participant}, {"replaced_by", one.replaced_by}, {"reason", one.reason}});
+    }
+}
+
+std::vector<ReportTable> plan_tables(const Report& report) {
+    const std::vector<std::string> counts{"planned", "finished", "interrupted", "missing", "excluded"};
+    ReportTable sums{"plan", "Logs against the plan: tests by condition", {"condition"}, {}};
+    ReportTable all{"plan_participants",
+                    "Logs against the plan: tests by participant and condition",
+                    {"participant", "group", "condition"},
+                    {}};
+    ReportTable left_out{"exclusions", "Left out by the experimenter", {"participant", "trial", "reason"}, {}};
+    for (ReportTable* table : {&sums, &all}) table->columns.insert(table->columns.end(), counts.begin(), counts.end());
+    const auto add = [](ReportTable& table, std::vector<std::string> row, const Progress& one, int missing) {
+        for (const int count : {one.planned, one.finished, one.interrupted, missing, one.excluded})
+            row.push_back(std::to_string(count));
+        table.rows.push_back(std::move(row));
+    };
+    for (const Progress& row : progress_by_condition(report.progress))
+        add(sums, {row.condition}, row, missing_of(report.progress, row.condition));
+    for (const Progress& row : report.progress)
+        add(all, {row.participant, row.group, row.condition}, row, row.missing());
+    for (const Replacement& one : report.replacements) {
+        left_out.rows.push_back(
+            {one.participant, "all", "dropped out, replaced by " + one.replaced_by + ": " + one.reason});
+    }
+    for (const Exclusion& one : report.exclusions)
+        left_out.rows.push_back({one.participant, exclusion_scope(one), one.reason});
+    return {sums, all, left_out};
+}
+
+std::string plan_summary(const Report& report) {
+    Progress sum;
+    int missing = 0;
+    for (const Progress& row : report.progress) {
+        sum.planned += row.planned;
+        sum.finished += row.finished;
+        missing += row.missing();
+    }
+    std::string out;
+    if (!report.progress.empty()) {
+        out += "\nOf " + std::to_string(sum.planned) + " planned tests " + std::to_string(sum.finished) +
+               " are finished and " + std::to_string(missing) + " are missing (table of the plan).\n";
+    }
+    if (report.excluded_trials > 0) {
+        out += "\n" + std::to_string(report.excluded_trials) +
+               " finished tests are left out by the experimenter's decision (table of exclusions).\n";
+    }
+    return out;
+}
+
+}  // namespace palpa::study

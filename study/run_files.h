@@ -1,0 +1,43 @@
+#pragma once
+// What stands beside the events of a run, its settings and its marks, and whether all three agree.
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace palpa::study {
+
+struct RunLog;
+
+struct RunSettings {
+    bool there = false;
+    std::string sha256;         // of the protocol; empty for a single run
+    std::optional<int> number;  // of the participant in the plan
+    bool simulated = false;
+    bool typed = false;  // the answers were typed in: the events hold no marks
+    struct Nodule {
+        std::string id;
+        double diameter_mm = 0.0;
+    };
+    std::vector<Nodule> nodules;
+};
+
+// Reads ..._settings.json; if there is no such file, the result says so. Throws InputError.
+RunSettings read_run_settings(const std::filesystem::path& file);
+
+struct LoggedMark {
+    std::string nodule;        // n/a: none
+    double distance_mm = 0.0;  // NaN: not known
+    bool hit = false;
+};
+
+// Reads ..._marks.tsv; nothing if there is no such file. Throws InputError; a line that was cut off is noted.
+std::optional<std::vector<LoggedMark>> read_marks_left(const std::filesystem::path& file,
+                                                       std::vector<std::string>& notes);
+
+// Compares the counts of a finished run's last row with its marks and its settings. A mark without a hit is false unless
+// it is on a nodule that another mark found (study/score.h). Throws InputError that names what disagrees.
+void check_counts(const RunLog& run, const RunSettings& settings, const std::vector<LoggedMark>& marks);
+
+}  // namespace palpa::study

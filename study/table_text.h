@@ -1,0 +1,33 @@
+#pragma once
+// Values as the cells of the report's tables.
+
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "study/statistics.h"
+
+namespace palpa::study {
+
+inline const std::string kNone = "n/a";
+
+inline std::string fixed(double value, int digits) {
+    if (!std::isfinite(value)) return kNone;
+    char text[64];
+    std::snprintf(text, sizeof text, "%.*f", digits, value);
+    return text;
+}
+
+inline std::string share_text(double value) { return fixed(value, 4); }
+inline std::string p_text(double p) { return p < 1e-4 ? "<0.0001" : fixed(p, 4); }  // n/a for NaN
+inline std::string whole(std::int64_t value) { return std::to_string(value); }
+
+inline void add_interval(const std::optional<Interval>& ci, std::vector<std::string>& row) {
+    row.push_back(ci ? share_text(ci->low) : kNone);
+    row.push_back(ci ? share_text(ci->high) : kNone);
+}
+
+}  // namespace palpa::study

@@ -1,0 +1,131 @@
+#include <doctest/doctest.h>
+
+#include "files/text.h"
+#include "study/exclusions.h"
+#include "study/read_logs.h"
+#include "study/report.h"
+#include "study/typed_trial.h"
+#include "tests/error_message.h"
+#include "tests/temporary_folder.h"
+
+using namespace palpa;
+using namespace palpa::files;
+using namespace palpa::study;
+using namespace palpa::test;
+
+namespace {
+
+namespace fs = std::filesystem;
+
+// Two conditions by hand in a Latin square, so that every second person begins with the same one.
+Protocol study_by_hand(const fs::path& log) {
+    write_text_atomically(log.parent_path() / "p.json", R"({"name": "n", "version": "1", "seed": 3, "order": "latin",
+        "conditions": [{"id": "a", "modality": "hand", "nodules": ["A"]}, {"id": "b", "modality": "hand", "nodules": ["A"]}]})");
+    const Protocol protocol = read_protocol(log.parent_path() / "p.json");
+    open_study(log, protocol, {});
+    return protocol;
+}
+
+// Somebody who finishes the first `trials` of the plan and finds all.
+void take_part(const fs::path& log, const Protocol& protocol, const std::string& code, std::size_t trials) {
+    const StudyProgress progress = progress_of(log, protocol, code);
+    if (!progress.known) add_people(log, {Person{code, "n/a", "n/a", "n/a", "n/a", "n/a", "n/a", "all"}});
+    for (std::size_t i = 0; i < trials; ++i) {
+        const PlannedTrial& trial = progress.plan.trials[i];
+        TrialLabel label;
+        label.condition = protocol.conditions[trial.condition].id;
+        label.trial = trial.trial;
+        label.study = {{"sha256", protocol.sha256}, {"participant_number", progress.plan.number}};
+        TypedAnswers answers;
+        answers.nodules = {5};
+        answers.duration_s = 20.0 + 0.1 * std::stoi(code) + static_cast<double>(i);
+        write_typed_trial(next_run(log, code), label, false, trial.seed, {"A"}, answers);
+    }
+}
+
+}  // namespace
+
+TEST_CASE("exclusions: a trial or a participant is left out and reported, and nothing is deleted") {
+    const TemporaryFolder folder;
+    const fs::path log = folder / "log";
+    const Protocol protocol = study_by_hand(log);
+    for (const char* code : {"01", "02", "03"}) take_part(log, protocol, code, 2);
+    CHECK(read_study(log).trials.size() == 6);
+    add_exclusion(log, {"01", 2, "fire \"alarm\"\t"});
+    add_exclusion(log, {"02", std::nullopt, "did not understand the task"});
+    const Observations seen = read_study(log);
+    CHECK(seen.trials.size() == 3);
+    CHECK(seen.excluded_trials == 3);
+    CHECK(seen.notes.empty());
+    const Report report = make_report(seen, {});
+    const Json json = report_json(report);
+    CHECK(json["exclusions"][0]["reason"] == "fire 'alarm' ");
+    CHECK(json["exclusions"][1]["trial"].is_null());
+    CHECK(json["plan"][0]["finished"] == 1);
+    CHECK(json["plan"][1]["excluded"] == 1);
+    CHECK(contains(report_markdown(report), "3 finished tests are left out by the experimenter's decision"));
+    CHECK(contains(report_markdown(report), "| 02 | all | did not understand the task |"));
+    CHECK(finished_trials(log, "02") == std::set<int>{1, 2});
+}
+
+TEST_CASE(
+    "exclusions: what cannot be is refused before anything is written, and in a table made by hand with its line") {
+    const TemporaryFolder folder;
+    const fs::path log = folder / "log";
+    const Protocol protocol = study_by_hand(log);
+    take_part(log, protocol, "01", 1);
+    const auto refused = [&](const Exclusion& one) { return message_of([&] { add_exclusion(log, one); }); };
+    CHECK(contains(refused({"09", 1, "x"}), "--participant: found '09'"));
+    CHECK(contains(refused({"01", 2, "x"}), "--trial: found 2, expected a trial that 01 has finished"));
+    CHECK(contains(refused({"01", 1, ""}), "--reason: found ''"));
+    CHECK_FALSE(fs::exists(log / "exclusions.tsv"));
+    CHECK(contains(message_of([&] { add_exclusion(folder.path(), {"01", 1, "x"}); }), "no study.json"));
+    add_exclusion(log, {"01", 1, "x"});
+    CHECK(contains(refused({"01", 1, "y"}), "found trial 1 of 01 already, because 'x'"));
+    const auto said = [&](const std::string& rows) {
+        write_text_atomically(log / "exclusions.tsv", rows);
+        return message_of([&] { read_study(log); });
+    };
+    const std::string head = "participant\ttrial\treason\n";
+    CHECK(said(head + "sub-01\t1\tx\n").empty());
+    CHECK(contains(said(head + "01\t2\tx\n"),
+                   "trial: found 2 of '01', expected a trial that this participant has finished"));
+    CHECK(contains(said(head + "02\tall\tx\n"), "participant: found '02'"));
+    CHECK(contains(said(head + "01\tone\tx\n"), "line 2, trial"));
+    CHECK(contains(said(head + "01\t1\tn/a\n"), "line 2, reason: found 'n/a'"));
+    CHECK(contains(said(head + "01\t1\tx\n01\t1\ty\n"), "line 3, trial: found '1', expected each trial"));
+    CHECK(contains(said("participant\treason\n01\tx\n"), "expected the columns participant trial reason"));
+}
+
+TEST_CASE("replacements: who replaces a dropout gets that place in the plan, and nobody else's place changes") {
+    const TemporaryFolder folder;
+    const fs::path log = folder / "log";
+    const Protocol protocol = study_by_hand(log);
+    take_part(log, protocol, "01", 2);
+    take_part(log, protocol, "02", 1);  // leaves
+    take_part(log, protocol, "03", 2);
+    add_replacement(log, {"02", "21", "felt unwell"});
+    CHECK(progress_of(log, protocol, "21").plan.number == 2);
+    CHECK(progress_of(log, protocol, "04").plan.number == 4);
+    take_part(log, protocol, "21", 2);
+    CHECK(progress_of(log, protocol, "04").plan.number == 4);  // 21 has a line, but no number of its own
+    take_part(log, protocol, "04", 2);
+    CHECK(progress_of(log, protocol, "03").plan.number == 3);
+    const Observations seen = read_study(log);
+    CHECK(seen.notes.empty());
+    CHECK(seen.trials.size() == 8);
+    CHECK(seen.excluded_trials == 1);
+    CHECK(contains(report_markdown(make_report(seen, {})), "| 02 | all | dropped out, replaced by 21: felt unwell |"));
+    // every condition stands at every position equally often among those who finished
+    std::vector<PlannedParticipant> people;
+    for (const char* code : {"01", "21", "03", "04"}) people.push_back(progress_of(log, protocol, code).plan);
+    CHECK(imbalance_of(protocol, people)[0].position == 0);
+    add_replacement(log, {"21", "22", "left too"});
+    CHECK(progress_of(log, protocol, "22").plan.number == 2);
+    const auto refused = [&](const Replacement& one) { return message_of([&] { add_replacement(log, one); }); };
+    CHECK(contains(refused({"02", "30", "x"}), "somebody whose place is free: 21 has it"));
+    CHECK(contains(refused({"01", "22", "x"}), "--by: found '22'"));
+    CHECK(contains(refused({"01", "03", "x"}), "--by: found '03', expected a code that is not yet in"));
+    CHECK(contains(refused({"09", "30", "x"}), "--participant: found '09'"));
+    CHECK(contains(refused({"01", "NA", "x"}), "--by: found 'NA'"));
+}

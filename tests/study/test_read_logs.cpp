@@ -1,0 +1,264 @@
+// What a study's folder must not hold: each fault is put into a folder that is right, and is refused or named.
+
+#include <cstdio>
+#include <doctest/doctest.h>
+#include <filesystem>
+#include <functional>
+
+#include "files/text.h"
+#include "study/read_logs.h"
+#include "study/report.h"
+#include "study/study_folder.h"
+#include "study/trial_log.h"
+#include "tests/error_message.h"
+#include "tests/temporary_folder.h"
+
+using namespace palpa;
+using namespace palpa::files;
+using namespace palpa::study;
+using namespace palpa::test;
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kStem01 = "sub-01/beh/sub-01_task-palpation_run-01";
+
+Protocol protocol_in(const fs::path& file, const std::string& rest) {
+    write_text_atomically(file, R"({"name": "n", "version": "1", "seed": 5, "order": "fixed",
+        "conditions": [{"id": "a", "modality": "shape-display", "scene": "s.json"},
+                       {"id": "b", "modality": "shape-display", "scene": "s.json"}])" +
+                                    rest + "}");
+    return read_protocol(file);
+}
+
+// A trial as the program logs it: one nodule of two is found, and one mark is on none.
+void write_trial(const fs::path& log, const std::string& code, const Protocol& protocol, const PlannedTrial& trial,
+                 double duration_s, bool finished = true) {
+    const RunFiles files = next_run(log, code);
+    write_text_atomically(files.file("_settings.json"),
+                          R"({"nodules": [{"id": "A", "diameter_mm": 10}, {"id": "B"}], "study": {"sha256": ")" +
+                              protocol.sha256 + "\"}}");
+    TrialLog out(files, {false, false});
+    EventRow row;
+    row.trial = trial.trial;
+    row.trial_type = "start";
+    row.block = trial.practice ? "practice" : "test";
+    row.condition = protocol.conditions[trial.condition].id;
+    row.seed = trial.seed;
+    row.n_nodules = 2;
+    out.write(row);
+    row.trial_type = "mark";
+    for (const double x_mm : {40.0, 80.0, 81.0}) {
+        row.x_mm = row.y_mm = x_mm;
+        out.write(row);
+    }
+    row.trial_type = "undo";
+    row.x_mm = row.y_mm = EventRow::kMissing;
+    out.write(row);
+    MarkRow mark;
+    mark.trial = trial.trial;
+    mark.nodule = "A";
+    mark.distance_mm = 2.0;
+    mark.hit = 1;
+    out.write(mark);
+    mark.mark = 2;
+    mark.distance_mm = 30.0;
+    mark.hit = 0;
+    out.write(mark);
+    if (!finished) return;
+    row.trial_type = "finish";
+    row.onset_s = row.duration_s = duration_s;
+    row.true_positives = row.false_negatives = row.false_positives = 1;
+    out.write(row);
+}
+
+// Two people who have finished both trials.
+Protocol find_study(const fs::path& log) {
+    const Protocol protocol = protocol_in(log.parent_path() / "p.json", "");
+    open_study(log, protocol, {});
+    for (const int number : {1, 2}) {
+        const std::string code = "0" + std::to_string(number);
+        add_people(log, {Person{code, "n/a", "n/a", "n/a", "n/a", "n/a", "n/a", "all"}});
+        for (const PlannedTrial& trial : plan_participant(protocol, number).trials)
+            write_trial(log, code, protocol, trial, 30.0 + number);
+    }
+    return protocol;
+}
+
+void write_choices(const fs::path& log, const std::string& code, const Protocol& protocol, int number) {
+    ChoiceLog out(next_run(log, code, "softer"));
+    for (const PlannedTrial& trial : plan_participant(protocol, number).trials) {
+        ChoiceRow row;
+        row.trial = trial.trial;
+        row.condition = protocol.conditions[trial.condition].id;
+        row.seed = trial.seed;
+        row.reference_kPa = protocol.choice.reference_kPa;
+        row.comparison_kPa = protocol.choice.comparisons_kPa[static_cast<std::size_t>(trial.comparison)];
+        row.first = trial.reference_first ? "reference" : "comparison";
+        row.correct = trial.trial % 3 != 0 ? 1 : 0;
+        const bool reference = (row.correct == 1) == (row.reference_kPa < row.comparison_kPa);
+        row.answer = reference ? "reference" : "comparison";
+        out.write(row);
+    }
+}
+
+Protocol choice_study(const fs::path& log) {
+    const Protocol protocol =
+        protocol_in(log.parent_path() / "p.json", R"(, "choice": {"reference_kPa": 2, "comparisons_kPa": [1, 3, 4]})");
+    open_study(log, protocol, {});
+    for (const int number : {1, 2}) {
+        const std::string code = "0" + std::to_string(number);
+        add_people(log, {Person{code, "n/a", "n/a", "n/a", "n/a", "n/a", "n/a", "all"}});
+        write_choices(log, code, protocol, number);
+    }
+    return protocol;
+}
+
+// Replaces the first `from` in a file, after the first `after`.
+void forge(const fs::path& file, const std::string& from, const std::string& to, const std::string& after = "") {
+    std::string text = read_text(file);
+    const auto at = text.find(from, text.find(after));
+    REQUIRE(at != std::string::npos);
+    write_text_atomically(file, text.replace(at, from.size(), to));
+}
+
+// Replaces a field of the last row of a table.
+void forge_last(const fs::path& file, const std::string& column, const std::string& value) {
+    const std::string text = read_text(file);
+    const auto names = fields_of(std::string_view(text).substr(0, text.find('\n')), '\t');
+    const auto last = text.rfind('\n', text.size() - 2) + 1;
+    const auto fields = fields_of(std::string_view(text).substr(last, text.size() - 1 - last), '\t');
+    std::string row;
+    for (std::size_t i = 0; i < fields.size(); ++i)
+        row += (i > 0 ? "\t" : "") + (names[i] == column ? value : std::string(fields[i]));
+    write_text_atomically(file, text.substr(0, last) + row + "\n");
+}
+
+void repeat_last_row(const fs::path& file) {
+    const std::string text = read_text(file);
+    write_text_atomically(file, text + text.substr(text.rfind('\n', text.size() - 2) + 1));
+}
+
+// What is said about a folder of finds with this fault: the refusal, or all notes of the report.
+std::string said_of(Protocol (*study)(const fs::path&), const std::function<void(const fs::path&)>& spoil) {
+    const TemporaryFolder folder;
+    study(folder / "log");
+    CHECK(read_study(folder / "log").notes.empty());
+    spoil(folder / "log");
+    std::string said;
+    const std::string refusal = message_of([&] {
+        for (const std::string& note : read_study(folder / "log").notes) said += note + "\n";
+    });
+    return refusal.empty() ? said : "refused: " + refusal;
+}
+
+#define REFUSED(study, words, ...)                                                          \
+    do {                                                                                    \
+        const std::string said = said_of(study, [&](const fs::path& log) { __VA_ARGS__; }); \
+        CAPTURE(said);                                                                      \
+        CHECK(said.rfind("refused: ", 0) == 0);                                             \
+        CHECK(contains(said, words));                                                       \
+    } while (false)
+#define NAMED(study, words, ...)                                                            \
+    do {                                                                                    \
+        const std::string said = said_of(study, [&](const fs::path& log) { __VA_ARGS__; }); \
+        CAPTURE(said);                                                                      \
+        CHECK(contains(said, words));                                                       \
+    } while (false)
+
+}  // namespace
+
+TEST_CASE("read logs: a copied folder of a participant is no person") {
+    REFUSED(find_study, "a file that is no log of this participant",
+            fs::copy(log / "sub-01", log / "sub-03", fs::copy_options::recursive));
+    REFUSED(find_study, "participants.tsv", {
+        fs::create_directories(log / "sub-03/beh");
+        for (const auto& entry : fs::directory_iterator(log / "sub-01/beh")) {
+            std::string name = entry.path().filename().string();
+            fs::copy(entry.path(), log / "sub-03/beh" / name.replace(0, 6, "sub-03"));
+        }
+    });
+    NAMED(find_study, "same bytes", {
+        fs::create_directories(log / "sub-03/beh");
+        for (const auto& entry : fs::directory_iterator(log / "sub-01/beh")) {
+            std::string name = entry.path().filename().string();
+            fs::copy(entry.path(), log / "sub-03/beh" / name.replace(0, 6, "sub-03"));
+        }
+        add_people(log, {Person{"03", "n/a", "n/a", "n/a", "n/a", "n/a", "n/a", "all"}});
+    });
+}
+
+TEST_CASE(
+    "read logs: stray files and folders named sub-... are refused, other strays in a participant's folder named") {
+    REFUSED(find_study, "sub-notes.txt", write_text_atomically(log / "sub-notes.txt", "x"));
+    REFUSED(find_study, "sub-01 (copy)", fs::create_directories(log / "sub-01 (copy)"));
+    REFUSED(find_study, "sub-NA", fs::create_directories(log / "sub-NA"));
+    REFUSED(find_study, "run-01_events (1).tsv",
+            fs::copy(log / (std::string(kStem01) + "_events.tsv"), log / (std::string(kStem01) + "_events (1).tsv")));
+    NAMED(find_study, "notes.txt", write_text_atomically(log / "sub-01/beh/notes.txt", "x"));
+}
+
+TEST_CASE("read logs: a run or a choice that is there twice is refused") {
+    REFUSED(choice_study, "finished a second time",
+            repeat_last_row(log / "sub-01/beh/sub-01_task-softer_run-01_events.tsv"));
+    REFUSED(choice_study, "finished a second time",
+            fs::copy(log / "sub-01/beh/sub-01_task-softer_run-01_events.tsv",
+                     log / "sub-01/beh/sub-01_task-softer_run-02_events.tsv"));
+    REFUSED(find_study, "finished a second time",
+            for (const char* suffix
+                 : {"_events.tsv", "_marks.tsv", "_settings.json"})
+                fs::copy(log / (std::string(kStem01) + suffix),
+                         log / (std::string("sub-01/beh/sub-01_task-palpation_run-07") + suffix)));
+    REFUSED(find_study, "second row finish", repeat_last_row(log / (std::string(kStem01) + "_events.tsv")));
+}
+
+TEST_CASE("read logs: answers and false marks that the log itself contradicts are refused") {
+    const std::string softer = "sub-01/beh/sub-01_task-softer_run-01_events.tsv";
+    REFUSED(choice_study, "correct", forge_last(log / softer, "correct", "1"));
+    REFUSED(choice_study, "answer", forge_last(log / softer, "answer", "both"));
+    REFUSED(choice_study, "comparison_kPa", forge_last(log / softer, "comparison_kPa", "1.5"));
+    REFUSED(choice_study, "reference_on: found 'a', expected n/a as in the protocol",
+            forge_last(log / softer, "reference_on", "a"));
+    REFUSED(choice_study, "reference_kPa", forge_last(log / softer, "reference_kPa", "2.5"));
+    const std::string events = std::string(kStem01) + "_events.tsv", marks = std::string(kStem01) + "_marks.tsv";
+    REFUSED(find_study, "fp", forge_last(log / events, "fp", "50"));
+    REFUSED(find_study, "fp", forge_last(log / events, "fp", "0"));
+    REFUSED(find_study, "fp", forge_last(log / events, "fp", "-2"));
+    REFUSED(find_study, "2 marks", forge_last(log / marks, "hit", "0"); repeat_last_row(log / marks);
+            forge_last(log / events, "fp", "2"));
+}
+
+TEST_CASE("read logs: conditions and blocks that the protocol does not know are refused") {
+    const std::string events = std::string(kStem01) + "_events.tsv";
+    REFUSED(find_study, "found 'c'", forge_last(log / events, "condition", "c");
+            forge(log / events, "\ta\t", "\tc\t", "start"); forge(log / events, "\ta\t", "\tc\t");
+            forge(log / events, "\ta\t", "\tc\t"); forge(log / events, "\ta\t", "\tc\t");
+            forge(log / events, "\ta\t", "\tc\t"));
+    REFUSED(find_study, "block: found 'warmup'", forge_last(log / events, "block", "warmup"));
+    REFUSED(choice_study, "found 'c'",
+            forge_last(log / "sub-01/beh/sub-01_task-softer_run-01_events.tsv", "condition", "c"));
+    REFUSED(choice_study, "block: found 'n/a'",
+            forge_last(log / "sub-01/beh/sub-01_task-softer_run-01_events.tsv", "block", "n/a"));
+    REFUSED(choice_study, "trial: found 99",
+            forge_last(log / "sub-01/beh/sub-01_task-softer_run-01_events.tsv", "trial", "99"));
+    NAMED(find_study, "the plan", {
+        for (const char* run : {"01", "02"}) {
+            const fs::path file = log / ("sub-01/beh/sub-01_task-palpation_run-" + std::string(run) + "_events.tsv");
+            const bool first = std::string(run) == "01";
+            for (int row = 0; row < 6; ++row)
+                forge(file, first ? "\ta\t" : "\tb\t", first ? "\tx\t" : "\ty\t", "onset");
+            for (int row = 0; row < 6; ++row)
+                forge(file, first ? "\tx\t" : "\ty\t", first ? "\tb\t" : "\ta\t", "onset");
+        }
+    });
+}
+
+TEST_CASE("read logs: another protocol's trials are refused, also without study.json, and those of no protocol") {
+    const std::string settings = std::string(kStem01) + "_settings.json";
+    REFUSED(find_study, "two versions of a protocol", fs::remove(log / "study.json");
+            forge(log / settings, R"("sha256": ")", R"("sha256": "0)"));
+    REFUSED(find_study, "study", forge(log / settings, R"("study")", R"("other")"));
+    REFUSED(find_study, "protocol.json", forge(log / "protocol.json", "fixed", "latin"));
+    NAMED(find_study, "protocol.json", fs::remove(log / "protocol.json"));
+}
