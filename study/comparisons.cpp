@@ -160,6 +160,8 @@ PeopleOfGroups split(const Observations& seen, Quantity quantity) {
     return out;
 }
 
+std::size_t pairs_of(std::size_t n) { return n < 2 ? 0 : n * (n - 1) / 2; }
+
 // Calls take(i, j) for all i < j < n.
 template <class Take>
 void each_pair(std::size_t n, const Take& take) {
@@ -212,6 +214,10 @@ std::vector<double> holm_of_known(const std::vector<double>& p) {
     return out;
 }
 
+bool resamples(std::size_t pairs, std::size_t participants) {
+    return pairs <= kMostResampledPairs && pairs * participants <= kMostResampledPeople;
+}
+
 std::vector<PairResult> compare_conditions(const Observations& seen, Quantity quantity,
                                            const BootstrapOptions& options) {
     const double z = z_of_level(options.level);
@@ -225,8 +231,7 @@ std::vector<PairResult> compare_conditions(const Observations& seen, Quantity qu
     for (std::size_t c = 0; c < shares.size(); ++c) {
         if (shares[c].n > 0) compared.push_back(c);
     }
-    const bool resample =
-        compared.size() * (compared.size() - std::min<std::size_t>(1, compared.size())) / 2 <= kMostResampledPairs;
+    const bool resample = resamples(pairs_of(compared.size()), seen.participants.size());
     std::vector<PairResult> pairs;
     each_pair(compared.size(), [&](std::size_t i, std::size_t j) {
         const std::size_t a = compared[i], b = compared[j];
@@ -251,7 +256,9 @@ std::vector<PairResult> compare_conditions(const Observations& seen, Quantity qu
 std::vector<GroupResult> compare_groups(const Observations& seen, const BootstrapOptions& options) {
     std::vector<GroupResult> all;
     if (seen.groups.size() < 2 || seen.conditions.size() > kMostCompared) return all;
-    const PeopleTestOptions how = people_options(options, true);
+    const std::size_t comparisons =
+        pairs_of(seen.groups.size()) * (seen.conditions.size() + pairs_of(seen.conditions.size()));
+    const PeopleTestOptions how = people_options(options, resamples(comparisons, seen.participants.size()));
     for (const Quantity quantity : {Quantity::sensitivity, Quantity::ppv, Quantity::correct}) {
         const PeopleOfGroups people = split(seen, quantity);
         std::vector<GroupResult> single, interactions;

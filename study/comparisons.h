@@ -39,9 +39,12 @@ struct PairResult {
     double mcnemar_p = 1.0;                  // only with `paired`
 };
 
-// Compares all conditions that have a share, in the order of seen.conditions. Above kMostResampledPairs pairs, what
-// resamples people (bootstrap, permutation) is left out.
+// Compares all conditions that have a share, in the order of seen.conditions. Above kMostResampledPairs pairs, or above
+// kMostResampledPeople people in all pairs together, what resamples people (bootstrap, permutation) is left out: it would
+// take minutes, and of so many people Student's t needs no check.
 inline constexpr std::size_t kMostResampledPairs = 1000;
+inline constexpr std::size_t kMostResampledPeople = 100'000;
+bool resamples(std::size_t pairs, std::size_t participants);
 // Above this number of conditions (100 make 4,950 pairs) no pair is compared: nobody reads so many.
 inline constexpr std::size_t kMostCompared = 100;
 std::vector<PairResult> compare_conditions(const Observations& seen, Quantity quantity,

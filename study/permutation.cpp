@@ -4,8 +4,12 @@
 #include <bit>
 #include <cassert>
 #include <cmath>
+#include <cstdint>
+#include <map>
 #include <numeric>
+#include <utility>
 
+#include "study/binomial_draw.h"
 #include "study/random.h"
 
 namespace palpa::study {
@@ -45,6 +49,17 @@ double scale_of(std::span<const double> values) {
     return scale;
 }
 
+// How many values there are of each size. Empty unless there are very many values of few sizes, whose signs are then drawn
+// by one binomial draw for each size, with the same distribution of the sum.
+std::vector<std::pair<double, std::int64_t>> kinds_of(std::span<const double> values) {
+    constexpr std::size_t kMany = 2000, kAlike = 20;
+    if (values.size() < kMany) return {};
+    std::map<double, std::int64_t> kinds;
+    for (const double value : values) ++kinds[value];
+    if (kAlike * kinds.size() >= values.size()) return {};
+    return {kinds.begin(), kinds.end()};
+}
+
 // Rounding must not split ties.
 double rounding(double scale) { return 1e-10 * scale; }
 
@@ -73,12 +88,15 @@ Permutation sign_permutation(std::span<const double> differences, std::uint64_t 
         const double count = count_outside(first, second, 0.5 * (scale - seen), 0.5 * (scale + seen));
         return {count / std::exp2(static_cast<double>(values.size())), true};
     }
+    const auto kinds = kinds_of(values);
     Random random(seed);
     int as_far = 0;
     for (int r = 0; r < kExchanges; ++r) {
         double sum = 0.0;
+        for (const auto& [value, number] : kinds)
+            sum += value * static_cast<double>(2 * binomial_draw(number, 0.5, random) - number);
         std::uint64_t signs = 0;
-        for (std::size_t i = 0; i < values.size(); ++i) {
+        for (std::size_t i = 0; i < values.size() && kinds.empty(); ++i) {
             if (i % 64 == 0) signs = random.bits();
             sum += (signs >> (i % 64)) & 1 ? values[i] : -values[i];
         }

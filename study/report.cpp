@@ -240,9 +240,11 @@ Report make_report(const Observations& given, const ReportOptions& options) {
                 static_cast<int>(std::count(seen.group_of.begin(), seen.group_of.end(), g));
         }
     }
-    if (std::max({report.pairs.size(), report.ppv_pairs.size(), report.choice_pairs.size()}) > kMostResampledPairs) {
-        report.notes.push_back("Of more than " + std::to_string(kMostResampledPairs) +
-                               " pairs of conditions the bootstrap and the permutation tests are left out");
+    const auto pairs = std::max({report.pairs.size(), report.ppv_pairs.size(), report.choice_pairs.size()});
+    if (!resamples(pairs, seen.participants.size())) {
+        report.notes.push_back("Of " + std::to_string(pairs) + " pairs of conditions and " +
+                               std::to_string(seen.participants.size()) +
+                               " people the bootstrap and the permutation tests are left out");
     }
     note_few_people(report);
     return report;

@@ -1,5 +1,6 @@
 #include <cmath>
 #include <doctest/doctest.h>
+#include <string>
 
 #include "study/comparisons.h"
 #include "tests/error_message.h"
@@ -102,4 +103,22 @@ TEST_CASE("comparisons: more pairs than are resampled keep their t test") {
     CHECK_FALSE(pairs[0].bootstrap);
     CHECK(std::isnan(pairs[0].people.p_permutation));
     CHECK_FALSE(std::isnan(pairs[0].people.p));
+}
+
+TEST_CASE("comparisons: of very many people in many pairs the t test alone is computed") {
+    CHECK(resamples(1000, 100));
+    CHECK_FALSE(resamples(1001, 1));
+    CHECK_FALSE(resamples(1000, 101));
+    Observations seen;
+    for (const char* name : {"a", "b", "c", "d", "e"}) index_of(name, seen.conditions);
+    for (int person = 0; person < 10001; ++person) seen.participants.push_back("p" + std::to_string(person));
+    for (int condition = 0; condition < 5; ++condition) {
+        for (int person = 0; person < 20; ++person)
+            seen.rows.push_back({condition, person, -1, 0, (person + condition) % 4, 4, 0});
+    }
+    const auto pairs = compare_conditions(seen, Quantity::sensitivity, {});
+    REQUIRE(pairs.size() == 10);
+    CHECK_FALSE(std::isnan(pairs[0].people.p));
+    CHECK(std::isnan(pairs[0].people.p_permutation));
+    CHECK_FALSE(pairs[0].bootstrap);
 }

@@ -87,3 +87,26 @@ TEST_CASE("permutation: above the people that can be counted, drawn exchanges co
     const double squares = std::inner_product(d.begin(), d.end(), d.begin(), 0.0);
     CHECK(std::abs(drawn.p - std::erfc(std::abs(sum) / std::sqrt(2.0 * squares))) < 0.02);
 }
+
+TEST_CASE("permutation: signs of very many people with few values come close to the normal approximation") {
+    constexpr std::uint64_t kSeed = 33;
+    CAPTURE(kSeed);
+    Random random(kSeed);
+    std::vector<double> d;
+    for (int i = 0; i < 20000; ++i) d.push_back((static_cast<double>(random.below(7)) - 3.0) / 3.0);
+    const double squares = std::inner_product(d.begin(), d.end(), d.begin(), 0.0);
+    for (const double z : {0.5, 1.0, 2.0}) {  // the sum is brought there by people who differ by 1
+        CAPTURE(z);
+        std::vector<double> moved = d;
+        double sum = std::accumulate(d.begin(), d.end(), 0.0);
+        for (double& one : moved) {
+            if (std::abs(sum - z * std::sqrt(squares)) < 1.0) break;
+            const bool up = sum < z * std::sqrt(squares);
+            if (one != (up ? -1.0 : 1.0)) continue;
+            one = -one;
+            sum += 2.0 * one;
+        }
+        // 4 standard errors of the draws, and the steps of the sum
+        CHECK(std::abs(sign_permutation(moved, 1).p - std::erfc(std::abs(sum) / std::sqrt(2.0 * squares))) < 0.02);
+    }
+}
