@@ -21,12 +21,12 @@ using namespace palpa::test;
 namespace {
 
 // A person at the default scene who presses and marks; everything goes the way of the app.
-struct Person {
+struct Trainee {
     Session session;
     TraceInfo info{1280, 800, kMissing, kMissing, "test"};
     double t_s = 1.0;
 
-    explicit Person(const SessionFiles& files = {}) {
+    explicit Trainee(const SessionFiles& files = {}) {
         session.scene = load_scene("");
         session.plan = std::make_shared<const Plan>(make_plan(session.scene));
         begin_trial(files, info, TrialMode::test, session);
@@ -58,7 +58,7 @@ struct Person {
 }  // namespace
 
 TEST_CASE("trial: trials on one tissue share its plan, however it is turned and scaled") {
-    Person person;
+    Trainee person;
     const auto plan = person.session.plan;
     Scene turned = person.session.scene;
     turned.mapping.rotate_deg = 90;
@@ -72,7 +72,7 @@ TEST_CASE("trial: trials on one tissue share its plan, however it is turned and 
 }
 
 TEST_CASE("trial: found, pressed too lightly, never touched; marks with confidence, undone and false") {
-    Person person;
+    Trainee person;
     const std::vector<Nodule>& nodules = person.session.plan->nodules;
     REQUIRE(nodules.size() == 3);
     const auto at = [&](std::size_t i) { return Eigen::Vector2d(1e3 * nodules[i].x_m, 1e3 * nodules[i].y_m); };
@@ -107,14 +107,14 @@ TEST_CASE("trial: found, pressed too lightly, never touched; marks with confiden
 }
 
 TEST_CASE("trial: pressed well but not marked is told apart from pressed too lightly") {
-    Person person;
+    Trainee person;
     const Nodule& nodule = person.session.plan->nodules[1];
     person.stroke(1e3 * nodule.x_m, 1e3 * nodule.y_m, 0.85);
     CHECK(debrief(*person.session.plan, person.session.trial).findings[1] == Finding::not_marked);
 }
 
 TEST_CASE("trial: a pen that lies on the screen without pressure does not press") {
-    Person person;
+    Trainee person;
     Plan plan = *person.session.plan;
     plan.profile.curve = {calibration::CurveModel::power, 3.0, 1.0, 0.0, {}, {}, {}};  // no force at no pressure
     person.session.plan = std::make_shared<const Plan>(std::move(plan));
@@ -129,7 +129,7 @@ TEST_CASE("trial: a pen that lies on the screen without pressure does not press"
 }
 
 TEST_CASE("trial: a window that changes its size after a press leaves the place of the next mark on the tissue") {
-    Person person;
+    Trainee person;
     SUBCASE("tissue under the pen") {}
     SUBCASE("a pad beside the tissue") {
         Scene pad = person.session.scene;
@@ -154,7 +154,7 @@ TEST_CASE("trial: a window that changes its size after a press leaves the place 
 }
 
 TEST_CASE("trial: a very long path is thinned, not cut") {
-    Person person;
+    Trainee person;
     for (int i = 0; i < 400; ++i) {
         person.sample(Phase::down, 5.0, 1.0 + 0.29 * i, 0.5);
         for (int k = 1; k <= 180; ++k) person.sample(Phase::move, 5.0 + 0.6 * k, 1.0 + 0.29 * i, 0.5);
@@ -173,7 +173,7 @@ TEST_CASE("trial: it replays from its trace, and its log holds what happened as 
     Json live;
     {
         SessionFiles files{(folder / "log").string(), "03", (folder / "t.tsv").string()};
-        Person person(files);
+        Trainee person(files);
         const Nodule& nodule = person.session.plan->nodules[0];
         person.stroke(1e3 * nodule.x_m, 1e3 * nodule.y_m, 0.8);
         person.act(Action::mark, 1e3 * nodule.x_m, 1e3 * nodule.y_m);
@@ -207,7 +207,7 @@ TEST_CASE("session: a trial that is broken off keeps its marks with their places
     const std::string stem = (folder / "log/sub-05/beh/sub-05_task-palpation_run-01").string();
     {
         SessionFiles files{(folder / "log").string(), "05", ""};
-        Person person(files);
+        Trainee person(files);
         person.stroke(30.0, 40.0, 0.8);
         person.act(Action::mark, 30.0, 40.0);
         person.act(Action::confidence_3);
@@ -244,7 +244,7 @@ TEST_CASE("session: a trial that is broken off keeps its marks with their places
 TEST_CASE("session: a second trial gets its own run and its own trace; a full disk is noticed and closes the files") {
     const TemporaryFolder folder;
     SessionFiles files{(folder / "log").string(), "01", (folder / "t.tsv").string()};
-    Person person(files);
+    Trainee person(files);
     CHECK(close_files({}, person.session));
     begin_trial(files, person.info, TrialMode::practice, person.session);
     CHECK(std::filesystem::exists(folder / "t-2.tsv"));
