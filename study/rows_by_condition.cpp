@@ -14,7 +14,8 @@ std::span<const Row> rows_between(const std::vector<Row>& rows, const Key& key, 
                                         [&](const Row& row, const auto& wanted) { return key(row) < wanted; });
     const auto end = std::upper_bound(begin, rows.end(), last,
                                       [&](const auto& wanted, const Row& row) { return wanted < key(row); });
-    return {begin, end};
+    return std::span(rows).subspan(static_cast<std::size_t>(begin - rows.begin()),
+                                   static_cast<std::size_t>(end - begin));
 }
 
 }  // namespace
