@@ -33,13 +33,13 @@ double part(std::int64_t k, double p) { return k == 0 ? 0.0 : static_cast<double
 // The slope of the log likelihood and the expected (Fisher) information at a point, by height, slope and lapse:
 //
 //     s = sum (k - n p) / (p q) dp        I = sum n / (p q) dp dp^T        dp = ((1 - 2 l) phi (1, x - origin), 1 - 2 Phi)
-struct Score {
+struct SearchScore {
     Three s{};
     std::array<Three, 3> information{};
 };
 
-Score score_of(const CurveSearch& search, const CurvePoint& point) {
-    Score out;
+SearchScore score_of(const CurveSearch& search, const CurvePoint& point) {
+    SearchScore out;
     const double span = 1.0 - 2.0 * point.lapse;
     for (const LevelAnswers& level : search.levels) {
         const double z = z_at(search, point, level.x);
@@ -90,7 +90,7 @@ bool solve(std::array<Three, 3> a, const Three& s, const std::array<bool, 3>& is
 }
 
 // Damps until the equations can be solved: where a coordinate tells nothing, its information is 0.
-Three direction(const Score& score, const std::array<bool, 3>& is_free) {
+Three direction(const SearchScore& score, const std::array<bool, 3>& is_free) {
     Three d{};
     for (double damping = 0.0; damping < 1e6; damping = damping == 0.0 ? 1e-9 : 100.0 * damping) {
         std::array<Three, 3> a = score.information;
@@ -131,7 +131,7 @@ CurvePoint climb(const CurveSearch& search, const CurvePoint& start) {
     CurvePoint at = start;
     at.log_likelihood = log_likelihood(search, at);
     for (int step = 0; step < kMostSteps; ++step) {
-        const Score score = score_of(search, at);
+        const SearchScore score = score_of(search, at);
         const bool lapse_free = (at.lapse > 0.0 || score.s[2] > 0.0) &&
                                 (at.lapse < search.greatest_lapse || score.s[2] < 0.0) && search.greatest_lapse > 0.0;
         const bool slope_free = search.slope_free && (at.slope > 0.0 || score.s[1] > 0.0);
