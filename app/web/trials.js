@@ -246,7 +246,7 @@ const palpaTrials = (() => {
         return broken.join('\n');
     };
 
-    // False: the desk takes no others either, for now.
+    // Returns false if the desk would take no other trial now either; all are tried again later.
     const sendOne = async (name) => {
         const trial = await request('readonly', (store) => store.get(name));
         if (!trial || trial.sent) return true;

@@ -23,6 +23,14 @@ void live_frames(Desk& desk, int count) {
     }
 }
 
+void open_questions(const TemporaryFolder& folder, Desk& desk) {
+    desk.keeper.busy = false;
+    desk.app.doing =
+        open_study_run(read_protocol(PALPA_SOURCE_DIR "/assets/protocols/paper.json"), folder / "log", "p1");
+    live_frames(desk, 3);
+    REQUIRE(std::holds_alternative<step::Questions>(study_of(desk.app.doing)->step));
+}
+
 }  // namespace
 
 TEST_CASE("study screen: the code's field has the letters again after Escape") {
@@ -63,11 +71,7 @@ TEST_CASE("study screen: a second Enter after the screen before does not take th
 TEST_CASE("study screen: a second Enter after the code does not leave the questions open for good") {
     const TemporaryFolder folder;
     Desk desk("");
-    desk.keeper.busy = false;
-    desk.app.doing =
-        open_study_run(read_protocol(PALPA_SOURCE_DIR "/assets/protocols/paper.json"), folder / "log", "p1");
-    live_frames(desk, 3);
-    REQUIRE(std::holds_alternative<step::Questions>(study_of(desk.app.doing)->step));
+    open_questions(folder, desk);
     tap(desk.window, SDLK_RETURN);
     live_frames(desk, 5);
     CHECK(std::holds_alternative<step::Questions>(study_of(desk.app.doing)->step));
@@ -80,11 +84,7 @@ TEST_CASE("study screen: a second Enter after the code does not leave the questi
 TEST_CASE("study screen: answers that are not logged yet are not closed over without a question") {
     const TemporaryFolder folder;
     Desk desk("");
-    desk.keeper.busy = false;
-    desk.app.doing =
-        open_study_run(read_protocol(PALPA_SOURCE_DIR "/assets/protocols/paper.json"), folder / "log", "p1");
-    live_frames(desk, 3);
-    REQUIRE(std::holds_alternative<step::Questions>(study_of(desk.app.doing)->step));
+    open_questions(folder, desk);
     Wishes close;
     close.quit = true;
     desk.app.view.study.answers.at(0) = "30";
