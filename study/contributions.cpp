@@ -105,6 +105,7 @@ Observations only_group(const Observations& seen, int group) {
         if (seen.group_of[i] == group) codes.insert(seen.participants[i]);
     }
     const auto elsewhere = [&](const auto& one) { return codes.count(one.participant) == 0; };
+    std::erase_if(out.staircases, elsewhere);
     std::erase_if(out.progress, elsewhere);
     std::erase_if(out.exclusions, elsewhere);
     std::erase_if(out.replacements, elsewhere);

@@ -45,6 +45,20 @@ void follow_protocol(const Protocol& protocol, Observations& seen) {
     }
 }
 
+void take_staircases(const std::filesystem::path& directory, const std::set<std::string>& left_out,
+                     const std::set<std::pair<std::string, int>>& left_out_trials, Observations& seen) {
+    std::vector<std::string> counted;
+    for (const std::string& code : seen.participants) {
+        if (left_out.count(code) == 0) counted.push_back(code);
+    }
+    seen.staircases = staircase_results(directory, counted, left_out_trials);
+    std::set<std::string> conditions;
+    for (const StaircaseResult& one : seen.staircases) conditions.insert(one.condition);
+    std::erase_if(seen.choices, [&](const Choices& row) {
+        return conditions.count(seen.conditions[static_cast<std::size_t>(row.condition)]) > 0;
+    });
+}
+
 void take_groups(const std::vector<Person>& people, Observations& seen) {
     std::map<std::string, std::string> group_of;
     for (const Person& person : people) group_of[person.code] = person.group;

@@ -11,6 +11,7 @@
 #include "study/exclusions.h"
 #include "study/planned.h"
 #include "study/primary.h"
+#include "study/staircase_history.h"
 
 namespace palpa::study {
 
@@ -79,6 +80,7 @@ struct Observations {
     std::vector<Choices> choices;
     std::vector<StifferAnswers> stiffer;  // the same choices, for psychometric functions
     std::vector<Answer> answers;
+    std::vector<StaircaseResult> staircases;
     std::vector<std::string> notes;  // for the reader of a report: interrupted trials, cut lines, clocks set back
     bool simulated = false;          // at least one trial is simulated
     std::int64_t practice_trials = 0;

@@ -1,14 +1,16 @@
 #include "study/order.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
+#include "study/order_views.h"
 #include "study/random.h"
 
 namespace palpa::study {
 namespace {
 
-enum Purpose : std::uint64_t { kGroups = 1, kOrder = 2, kTurns = 3, kTrial = 4, kChoices = 5 };
+enum Purpose : std::uint64_t { kGroups = 1, kOrder = 2, kTurns = 3, kTrial = 4, kRounds = 5, kChoices = 6 };
 
 std::vector<std::size_t> counted(std::size_t n) {
     std::vector<std::size_t> out(n);
@@ -16,20 +18,13 @@ std::vector<std::size_t> counted(std::size_t n) {
     return out;
 }
 
-// Groups come in blocks with each group once, so that their sizes never differ by more than one person.
-std::size_t group_of(const Protocol& protocol, int number) {
-    const std::size_t groups = protocol.groups.size();
-    const auto index = static_cast<std::size_t>(number - 1);
-    if (protocol.assignment == Assignment::alternate) return index % groups;
-    Random random(derived_seed(protocol.seed, kGroups, index / groups));
-    std::vector<std::size_t> block = counted(groups);
-    random.shuffle(block);
-    return block[index % groups];
-}
-
-// The participant's number within the group, from 0.
-int place_in_group(const Protocol& protocol, int number) {
-    return (number - 1) / static_cast<int>(protocol.groups.size());  // blocks hold each group once
+// Returns the row of a square, from 0, that this place in a group has. The rows are in a random order, drawn once for the
+// study, so that the first participants of two studies differ.
+std::size_t row_of(const Protocol& protocol, std::size_t rows, int place) {
+    std::vector<std::size_t> order = counted(rows);
+    Random random(derived_seed(protocol.seed, kOrder, 0));
+    random.shuffle(order);
+    return order[static_cast<std::size_t>(place) % rows];
 }
 
 // How many rows the order has, and one of them. A participant's row is made alone: a design of 1,000 conditions has a
@@ -58,71 +53,28 @@ std::vector<std::vector<std::size_t>> all_rows(OrderKind order, std::size_t n) {
     return rows;
 }
 
+// Returns the order of the conditions as places in the group.
 std::vector<std::size_t> sequence(const Protocol& protocol, const PlannedParticipant& who, int place, int& order_id) {
     const std::size_t n = protocol.groups[who.group].conditions.size();
     if (protocol.order == OrderKind::random) {
-        std::vector<std::size_t> row = counted(n);
+        std::vector<std::size_t> order = counted(n);
         Random random(derived_seed(protocol.seed, kOrder, static_cast<std::uint64_t>(who.number)));
-        random.shuffle(row);
+        random.shuffle(order);
         order_id = who.number;
-        return row;
+        return order;
     }
-    // the first row is drawn once for the study, so that the first participants of two studies differ
-    std::vector<std::size_t> rows = counted(order_rows(protocol.order, n));
-    Random random(derived_seed(protocol.seed, kOrder, 0));
-    random.shuffle(rows);
-    order_id = place % static_cast<int>(rows.size()) + 1;
-    return order_row(protocol.order, n, rows[static_cast<std::size_t>(order_id - 1)]);
-}
-
-struct View {
-    int rotate_deg = 0;
-    bool flip = false;
-};
-
-// Returns all views in a random order of the participant's own. Trials, practice included, use them in turn, so that no
-// view repeats before all were shown.
-std::vector<View> views_of(const Protocol& protocol, int number) {
-    std::vector<View> views{{0, false}};
-    if (protocol.turn_maps) views = {{0, false}, {90, false}, {180, false}, {270, false}};
-    if (protocol.flip_maps) {
-        const std::size_t n = views.size();
-        for (std::size_t i = 0; i < n; ++i) views.push_back({views[i].rotate_deg, true});
-    }
-    Random random(derived_seed(protocol.seed, kTurns, static_cast<std::uint64_t>(number)));
-    random.shuffle(views);
-    return views;
-}
-
-void add_trial(const Protocol& protocol, PlannedTrial trial, const std::vector<View>& views, PlannedParticipant& who) {
-    const std::size_t index = who.trials.size();
-    trial.trial = static_cast<int>(index) + 1;
-    trial.rotate_deg = views[index % views.size()].rotate_deg;
-    trial.flip = views[index % views.size()].flip;
-    constexpr std::uint64_t kSeeds = 2000000000;  // seeds of scenes are smaller
-    const std::uint64_t of_person = derived_seed(protocol.seed, kTrial, static_cast<std::uint64_t>(who.number));
-    trial.seed = static_cast<std::uint32_t>(derived_seed(of_person, kTrial, index) % kSeeds);
-    who.trials.push_back(trial);
-}
-
-void add_breaks(const Protocol& protocol, PlannedParticipant& who) {
-    const int every = protocol.break_every_trials;
-    int tests = 0;
-    for (PlannedTrial& trial : who.trials) {
-        trial.break_before = every > 0 && !trial.practice && tests > 0 && tests % every == 0;
-        tests += trial.practice ? 0 : 1;
-    }
+    const std::size_t rows = order_rows(protocol.order, n);
+    order_id = place % static_cast<int>(rows) + 1;
+    return order_row(protocol.order, n, row_of(protocol, rows, place));
 }
 
 // Returns all pairs of one condition, `repeats` times, in a random order of the participant's own. Whether the
 // reference comes first alternates from repeat to repeat.
-std::vector<PlannedTrial> choices_of(const Protocol& protocol, std::size_t condition, int number) {
+std::vector<PlannedTrial> choices_of(const Protocol& protocol, Random& random) {
     std::vector<PlannedTrial> out;
-    Random random(derived_seed(protocol.seed, kChoices + condition, static_cast<std::uint64_t>(number)));
     for (int repeat = 0; repeat < protocol.choice.repeats; ++repeat) {
         for (std::size_t c = 0; c < protocol.choice.comparisons_kPa.size(); ++c) {
             PlannedTrial trial;
-            trial.condition = condition;
             trial.repeat = repeat;
             trial.comparison = static_cast<int>(c);
             // with an odd number of repeats, the order of the last pair is drawn
@@ -135,53 +87,147 @@ std::vector<PlannedTrial> choices_of(const Protocol& protocol, std::size_t condi
     return out;
 }
 
-void add_choices(const Protocol& protocol, const std::vector<std::size_t>& conditions, const std::vector<View>& views,
-                 PlannedParticipant& who) {
-    std::vector<std::vector<PlannedTrial>> lists;
-    for (const std::size_t condition : conditions) lists.push_back(choices_of(protocol, condition, who.number));
-    if (!protocol.choice.alternate_conditions) {
-        for (const auto& list : lists) {
-            for (const PlannedTrial& trial : list) add_trial(protocol, trial, views, who);
-        }
-        return;
+// Returns the pairs of a staircase. The reference comes first in one of every two of them.
+std::vector<PlannedTrial> steps_of(const Protocol& protocol, Random& random) {
+    std::vector<PlannedTrial> out;
+    for (int i = 0; i < protocol.staircase.trials; ++i) {
+        PlannedTrial trial;
+        trial.repeat = i;
+        trial.reference_first = i % 2 == 0 ? random.below(2) == 0 : !out.back().reference_first;
+        out.push_back(trial);
     }
-    for (std::size_t i = 0; i < lists[0].size(); ++i) {
-        for (const auto& list : lists) add_trial(protocol, list[i], views, who);
+    return out;
+}
+
+std::vector<PlannedTrial> tests_in(const Protocol& protocol, std::size_t condition, int number) {
+    Random random(derived_seed(protocol.seed, kChoices + condition, static_cast<std::uint64_t>(number)));
+    std::vector<PlannedTrial> out(static_cast<std::size_t>(protocol.repeats));
+    switch (task_of(protocol, condition)) {
+        case TaskKind::find:
+            for (std::size_t i = 0; i < out.size(); ++i) out[i].repeat = static_cast<int>(i);
+            break;
+        case TaskKind::choice:
+            out = choices_of(protocol, random);
+            break;
+        case TaskKind::staircase:
+            out = steps_of(protocol, random);
+            break;
+    }
+    for (PlannedTrial& trial : out) trial.condition = condition;
+    return out;
+}
+
+// Practice of a comparison shows the pair whose difference is the greatest, in both orders in turn.
+std::vector<PlannedTrial> practice_in(const Protocol& protocol, std::size_t condition) {
+    std::vector<PlannedTrial> out(static_cast<std::size_t>(protocol.practice_trials));
+    for (std::size_t i = 0; i < out.size(); ++i) {
+        out[i].practice = true;
+        out[i].condition = condition;
+        out[i].repeat = static_cast<int>(i);
+        if (!compares(task_of(protocol, condition))) continue;
+        const double reference_kPa = reference_kPa_of(protocol, condition);
+        const std::vector<double>& kPa = comparisons_kPa_of(protocol, condition);
+        const auto less_unlike = [&](double a, double b) {
+            return std::abs(std::log(a / reference_kPa)) < std::abs(std::log(b / reference_kPa));
+        };
+        out[i].comparison = static_cast<int>(std::max_element(kPa.begin(), kPa.end(), less_unlike) - kPa.begin());
+        out[i].reference_first = i % 2 == 0;
+    }
+    return out;
+}
+
+// Returns the order of the conditions in the next round of interleaved trials, as places in the group. `before`: the
+// order of the round before.
+//
+// In a Williams design each round is a row of the design. Rows are chosen so that the step from the last condition of a
+// round to the first of the next one runs through all differences in turn, as the steps within a row do; the same row
+// again would make one step nearly twice as frequent as the others.
+std::vector<std::size_t> next_round(const Protocol& protocol, int round, const std::vector<std::size_t>& before,
+                                    Random& random) {
+    const std::size_t n = before.size();
+    std::vector<std::size_t> out = before;
+    if (n < 2) return out;
+    if (protocol.order == OrderKind::williams) {
+        const std::size_t step = 1 + static_cast<std::size_t>(round - 1) % (n - 1);
+        const std::size_t shift = before.back() + step + n - before.front();
+        for (std::size_t& entry : out) entry = (entry + shift) % n;
+    } else if (protocol.order == OrderKind::random) {
+        random.shuffle(out);
+        if (out.front() == before.back())
+            std::swap(out.front(), out[1 + random.below(static_cast<std::uint32_t>(n - 1))]);
+    }
+    return out;
+}
+
+// Merges the tests of all conditions. `lists`: by place in the group.
+std::vector<PlannedTrial> interleaved(const Protocol& protocol, const PlannedParticipant& who,
+                                      std::vector<std::size_t> order,
+                                      const std::vector<std::vector<PlannedTrial>>& lists) {
+    std::vector<PlannedTrial> out;
+    Random random(derived_seed(protocol.seed, kRounds, static_cast<std::uint64_t>(who.number)));
+    std::size_t rounds = 0;
+    for (const auto& list : lists) rounds = std::max(rounds, list.size());
+    for (std::size_t round = 0; round < rounds; ++round) {
+        if (round > 0) order = next_round(protocol, static_cast<int>(round), order, random);
+        for (const std::size_t at : order) {
+            if (round < lists[at].size()) out.push_back(lists[at][round]);
+        }
+    }
+    return out;
+}
+
+// A staircase goes on in the order of its repeats, whatever the order of the trials.
+void put_repeats_in_order(std::vector<PlannedTrial>& tests, std::size_t conditions) {
+    std::vector<int> next(conditions, 0);
+    for (PlannedTrial& trial : tests) {
+        if (trial.comparison < 0) trial.repeat = next[trial.condition]++;
     }
 }
 
-// A square table of counts; the conditions of a group are its rows.
-class Counts {
-  public:
-    Counts(std::size_t rows, std::size_t columns) : columns_(columns), counts_(rows * columns) {}
-    int& at(std::size_t row, std::size_t column) { return counts_[row * columns_ + column]; }
-    // Returns the greatest minus the least count; `diagonal`: whether a row and the column of its number are one of them.
-    int spread(bool diagonal) const {
-        int most = 0;
-        int least = 1 << 30;
-        for (std::size_t i = 0; i < counts_.size(); ++i) {
-            if (!diagonal && i / columns_ == i % columns_) continue;
-            most = std::max(most, counts_[i]);
-            least = std::min(least, counts_[i]);
-        }
-        return most < least ? 0 : most - least;
+std::vector<PlannedTrial> trials_in_order(const Protocol& protocol, const PlannedParticipant& who,
+                                          const std::vector<std::size_t>& order) {
+    const std::vector<std::size_t>& conditions = protocol.groups[who.group].conditions;
+    std::vector<PlannedTrial> out;
+    std::vector<std::vector<PlannedTrial>> lists(conditions.size());
+    const bool in_turn = protocol.trial_order == TrialOrder::interleaved || protocol.choice.alternate_conditions;
+    const bool blocked = protocol.trial_order == TrialOrder::blocked && !in_turn;
+    const auto add = [&](const std::vector<PlannedTrial>& trials) {
+        out.insert(out.end(), trials.begin(), trials.end());
+    };
+    for (const std::size_t at : order) {
+        lists[at] = tests_in(protocol, conditions[at], who.number);
+        add(practice_in(protocol, conditions[at]));
+        if (blocked) add(lists[at]);
     }
-
-  private:
-    std::size_t columns_;
-    std::vector<int> counts_;
-};
-
-// Returns the conditions of the tests in the order of their first trials.
-std::vector<std::size_t> conditions_of(const Protocol& protocol, const PlannedParticipant& who) {
-    std::vector<std::size_t> out;
-    std::vector<bool> there(protocol.conditions.size());
-    for (const PlannedTrial& trial : who.trials) {
-        if (trial.practice || there[trial.condition]) continue;
-        there[trial.condition] = true;
-        out.push_back(trial.condition);
+    if (blocked) return out;
+    std::vector<PlannedTrial> tests;
+    if (in_turn) {
+        tests = interleaved(protocol, who, order, lists);
+    } else {
+        for (const auto& list : lists) tests.insert(tests.end(), list.begin(), list.end());
+        Random random(derived_seed(protocol.seed, kRounds, static_cast<std::uint64_t>(who.number)));
+        random.shuffle(tests);
+        put_repeats_in_order(tests, protocol.conditions.size());
     }
+    add(tests);
     return out;
+}
+
+// Numbers the trials and gives each its seed. A break follows a test, so that practice and the tests that it prepares
+// stay together.
+void number_trials(const Protocol& protocol, PlannedParticipant& who) {
+    const std::uint64_t of_person = derived_seed(protocol.seed, kTrial, static_cast<std::uint64_t>(who.number));
+    constexpr std::uint64_t kSeeds = 2000000000;  // seeds of scenes are smaller
+    const int every = protocol.break_every_trials;
+    int tests = 0;
+    for (std::size_t i = 0; i < who.trials.size(); ++i) {
+        PlannedTrial& trial = who.trials[i];
+        trial.trial = static_cast<int>(i) + 1;
+        trial.seed = static_cast<std::uint32_t>(derived_seed(of_person, kTrial, i) % kSeeds);
+        const bool after_test = i > 0 && !who.trials[i - 1].practice;
+        trial.break_before = every > 0 && after_test && tests % every == 0;
+        tests += trial.practice ? 0 : 1;
+    }
 }
 
 }  // namespace
@@ -190,69 +236,42 @@ std::vector<std::vector<std::size_t>> latin_square(std::size_t n) { return all_r
 
 std::vector<std::vector<std::size_t>> williams_design(std::size_t n) { return all_rows(OrderKind::williams, n); }
 
+Membership membership_of(const Protocol& protocol, int number) {
+    const std::size_t groups = protocol.groups.size();
+    const auto index = static_cast<std::size_t>(number - 1);
+    if (protocol.assignment == Assignment::alternate) return {index % groups, static_cast<int>(index / groups)};
+    const auto of_each = static_cast<std::size_t>(protocol.people_per_block);
+    std::vector<std::size_t> block;
+    for (std::size_t i = 0; i < groups * of_each; ++i) block.push_back(i % groups);
+    Random random(derived_seed(protocol.seed, kGroups, index / block.size()));
+    random.shuffle(block);
+    const auto at = block.begin() + static_cast<std::ptrdiff_t>(index % block.size());
+    const std::size_t before = index / block.size() * of_each;
+    return {*at, static_cast<int>(before) + static_cast<int>(std::count(block.begin(), at, *at))};
+}
+
+int tests_of(const Protocol& protocol, std::size_t condition) {
+    switch (task_of(protocol, condition)) {
+        case TaskKind::choice:
+            return protocol.choice.repeats * static_cast<int>(protocol.choice.comparisons_kPa.size());
+        case TaskKind::staircase:
+            return protocol.staircase.trials;
+        case TaskKind::find:
+            break;
+    }
+    return protocol.repeats;
+}
+
 PlannedParticipant plan_participant(const Protocol& protocol, int number) {
     PlannedParticipant who;
     who.number = number;
-    who.group = group_of(protocol, number);
-    std::vector<std::size_t> conditions;
-    for (const std::size_t place : sequence(protocol, who, place_in_group(protocol, number), who.order_id)) {
-        conditions.push_back(protocol.groups[who.group].conditions[place]);
-    }
-    const std::vector<View> views = views_of(protocol, number);
-    if (protocol.task == TaskKind::choice) {
-        add_choices(protocol, conditions, views, who);
-        add_breaks(protocol, who);
-        return who;
-    }
-    for (const std::size_t condition : conditions) {
-        for (int i = 0; i < protocol.practice_trials + protocol.repeats; ++i) {
-            PlannedTrial trial;
-            trial.practice = i < protocol.practice_trials;
-            trial.repeat = trial.practice ? i : i - protocol.practice_trials;
-            trial.condition = condition;
-            add_trial(protocol, trial, views, who);
-        }
-    }
-    add_breaks(protocol, who);
+    const Membership membership = membership_of(protocol, number);
+    who.group = membership.group;
+    const std::vector<std::size_t> order = sequence(protocol, who, membership.place, who.order_id);
+    who.trials = trials_in_order(protocol, who, order);
+    number_trials(protocol, who);
+    give_views(protocol, membership.place, derived_seed(protocol.seed, kTurns, 0), who);
     return who;
-}
-
-std::vector<Imbalance> imbalance_of(const Protocol& protocol, const std::vector<PlannedParticipant>& people) {
-    std::vector<Imbalance> out;
-    for (std::size_t g = 0; g < protocol.groups.size(); ++g) {
-        const auto& conditions = protocol.groups[g].conditions;
-        const std::size_t n = conditions.size();
-        std::vector<std::size_t> row(protocol.conditions.size());  // of a condition
-        for (std::size_t i = 0; i < n; ++i) row[conditions[i]] = i;
-        std::vector<std::size_t> views;  // those that are used
-        for (std::size_t view = 0; view < 8; ++view) {
-            if ((protocol.turn_maps || view % 4 == 0) && (protocol.flip_maps || view < 4)) views.push_back(view);
-        }
-        Counts positions(n, n), followers(n, n), seen(n, views.size());
-        Imbalance imbalance;
-        imbalance.group = protocol.groups[g].id;
-        imbalance.full_rounds_of = static_cast<int>(order_rows(protocol.order, n));
-        for (const PlannedParticipant& who : people) {
-            if (who.group != g) continue;
-            ++imbalance.participants;
-            const std::vector<std::size_t> order = conditions_of(protocol, who);
-            for (std::size_t place = 0; place < order.size(); ++place) {
-                ++positions.at(row[order[place]], place);
-                if (place > 0) ++followers.at(row[order[place - 1]], row[order[place]]);
-            }
-            for (const PlannedTrial& trial : who.trials) {
-                if (trial.practice) continue;
-                const auto view = static_cast<std::size_t>(trial.rotate_deg / 90 + (trial.flip ? 4 : 0));
-                const auto used = std::find(views.begin(), views.end(), view) - views.begin();
-                ++seen.at(row[trial.condition], static_cast<std::size_t>(used));
-            }
-        }
-        imbalance.position = positions.spread(true);
-        imbalance.carry_over = followers.spread(false);
-        imbalance.turns = seen.spread(true);
-        out.push_back(imbalance);
-    }
-    return out;
 }
 
 }  // namespace palpa::study

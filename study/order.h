@@ -1,6 +1,7 @@
 #pragma once
 // The order of trials: which participant gets which condition when, and how the map is turned. It is a function of the
 // protocol, its seed and the participant's number, so that a study script, the app and a reviewer see the same order.
+// Only the comparisons of a staircase follow from the answers.
 
 #include <cstdint>
 #include <string>
@@ -9,6 +10,10 @@
 #include "study/protocol.h"
 
 namespace palpa::study {
+
+// Counts the changes of the functions below that give other orders for the same protocol. A study goes on only with the
+// version that it began with.
+inline constexpr int kOrdersVersion = 2;
 
 struct PlannedTrial {
     int trial = 1;  // number within the participant, practice included
@@ -19,7 +24,7 @@ struct PlannedTrial {
     bool flip = false;
     std::uint32_t seed = 0;
     bool break_before = false;
-    int comparison = -1;  // index in comparisons_kPa; -1 if the task is no choice
+    int comparison = -1;  // index in comparisons_kPa_of(); -1: nothing is compared, or it follows from the answers
     bool reference_first = false;
 };
 
@@ -33,6 +38,18 @@ struct PlannedParticipant {
 // The plan of one participant; `number` counts from 1.
 PlannedParticipant plan_participant(const Protocol& protocol, int number);
 
+// The group of a participant, and the participant's place in it, from 0. Random assignment shuffles blocks of
+// people_per_block people of each group, so that the sizes of groups never differ by more than that and the last people
+// of a block cannot be guessed from the one before.
+struct Membership {
+    std::size_t group = 0;
+    int place = 0;
+};
+Membership membership_of(const Protocol& protocol, int number);
+
+// Returns how many tests a participant has under this condition.
+int tests_of(const Protocol& protocol, std::size_t condition);
+
 // Both return rows of condition numbers 0 ... n - 1.
 // Latin square: every condition stands once in every row and in every column (cyclic).
 // Williams design: a Latin square in which every condition also directly follows every other equally often. It has n
@@ -40,16 +57,5 @@ PlannedParticipant plan_participant(const Protocol& protocol, int number);
 // Source: Williams, Austral. J. Sci. Res. A 2 (1949) 149.
 std::vector<std::vector<std::size_t>> latin_square(std::size_t n);
 std::vector<std::vector<std::size_t>> williams_design(std::size_t n);
-
-// How far the plans of `participants` people are from balance; all three differences are 0 if they are balanced.
-struct Imbalance {
-    std::string group;
-    int participants = 0;
-    int position = 0;        // greatest minus least count of a condition at a position
-    int carry_over = 0;      // greatest minus least count of a condition directly after another
-    int turns = 0;           // greatest minus least count of a condition in a view
-    int full_rounds_of = 1;  // multiples of this number of people balance positions; 1 for fixed and random orders
-};
-std::vector<Imbalance> imbalance_of(const Protocol& protocol, const std::vector<PlannedParticipant>& people);
 
 }  // namespace palpa::study

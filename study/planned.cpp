@@ -34,8 +34,9 @@ std::vector<Progress> compare_with_plan(const Protocol& protocol, const PlannedP
     for (const Logged& one : logged) {
         const auto condition = static_cast<std::size_t>(one.condition);
         const PlannedTrial& planned = plan.trials[static_cast<std::size_t>(one.trial) - 1];
-        const bool pair = one.comparison >= 0 && planned.comparison >= 0 &&
-                          (one.comparison != planned.comparison || one.reference_first != planned.reference_first);
+        // the plan of a staircase has no comparisons
+        const bool other = planned.comparison >= 0 && one.comparison != planned.comparison;
+        const bool pair = one.comparison >= 0 && (other || one.reference_first != planned.reference_first);
         if (planned.condition != condition || planned.practice != one.practice || pair) {
             if (++odd == 1) {
                 first = "sub-" + participant + ": trial " + std::to_string(one.trial) + " is " +

@@ -4,9 +4,17 @@
 
 #include "files/input_error.h"
 #include "files/text.h"
+#include "study/protocol.h"
 
 namespace palpa::study {
 namespace {
+
+template <class Things>
+std::vector<std::string> ids_in(const Things& things) {
+    std::vector<std::string> ids;
+    for (const auto& one : things) ids.push_back(one.id);
+    return ids;
+}
 
 std::array<std::string, 2> read_two(files::JsonReader& json, std::string_view key,
                                     const std::vector<std::string>& known) {
@@ -22,24 +30,36 @@ std::array<std::string, 2> read_two(files::JsonReader& json, std::string_view ke
     return two;
 }
 
-PrimaryComparison read_comparison(files::JsonReader json, const std::vector<std::string>& conditions,
-                                  const std::vector<std::string>& groups, bool choices) {
+// Refuses a quantity that this condition does not have.
+void check_quantity(const files::JsonReader& json, const Protocol& protocol, const std::string& id, Quantity quantity) {
+    const auto& all = protocol.conditions;
+    const auto it = std::find_if(all.begin(), all.end(), [&](const Condition& one) { return one.id == id; });
+    const TaskKind task = task_of(protocol, static_cast<std::size_t>(it - all.begin()));
+    const bool choices = quantity == Quantity::correct;
+    if (task == (choices ? TaskKind::choice : TaskKind::find)) return;
+    const std::string under = " under " + files::shown(id);
+    const std::string found = files::shown(name_of(quantity));
+    if (task == TaskKind::choice) json.fail("quantity", found, "correct: people choose" + under);
+    if (task == TaskKind::find) json.fail("quantity", found, "sensitivity or ppv: people find nodules" + under);
+    json.fail("quantity", found, "other conditions: the method sets the share of right answers" + under);
+}
+
+PrimaryComparison read_comparison(files::JsonReader json, const Protocol& protocol) {
     json.only({"quantity", "conditions", "groups", "condition", "test"});
+    const std::vector<std::string> conditions = ids_in(protocol.conditions);
     PrimaryComparison primary;
     primary.quantity = static_cast<Quantity>(json.choice("quantity", {"sensitivity", "ppv", "correct"}));
-    if (choices != (primary.quantity == Quantity::correct)) {
-        json.fail("quantity", files::shown(name_of(primary.quantity)),
-                  choices ? "correct: people choose" : "sensitivity or ppv: people find nodules");
-    }
     if (json.has("test")) primary.test = static_cast<PrimaryTest>(json.choice("test", {"t", "permutation"}));
     primary.of_groups = json.has("groups");
     if (!primary.of_groups) {
         primary.sides = read_two(json, "conditions", conditions);
+        for (const std::string& side : primary.sides) check_quantity(json, protocol, side, primary.quantity);
     } else {
-        primary.sides = read_two(json, "groups", groups);
+        primary.sides = read_two(json, "groups", ids_in(protocol.groups));
         primary.condition = json.text("condition");
         if (std::find(conditions.begin(), conditions.end(), primary.condition) == conditions.end())
             json.fail("condition", files::shown(primary.condition), "the id of a condition of this protocol");
+        check_quantity(json, protocol, primary.condition, primary.quantity);
     }
     json.finish();
     return primary;
@@ -47,11 +67,10 @@ PrimaryComparison read_comparison(files::JsonReader json, const std::vector<std:
 
 }  // namespace
 
-std::optional<PrimaryComparison> read_primary(files::JsonReader json, const std::vector<std::string>& conditions,
-                                              const std::vector<std::string>& groups, bool choices) {
+std::optional<PrimaryComparison> read_primary(files::JsonReader json, const Protocol& protocol) {
     json.only({"primary"});
     std::optional<PrimaryComparison> primary;
-    if (auto one = json.optional_object("primary")) primary = read_comparison(*one, conditions, groups, choices);
+    if (auto one = json.optional_object("primary")) primary = read_comparison(*one, protocol);
     json.finish();
     return primary;
 }

@@ -23,12 +23,13 @@ struct PrimaryComparison {
     PrimaryTest test = PrimaryTest::t;
 };
 
+struct Protocol;
+
 // Reads the key `analysis` of a protocol: {"primary": {"quantity": "sensitivity", "conditions": ["a", "b"], "test":
-// "t"}}, or with "groups": ["I", "II"] and "condition": "a" instead of "conditions". `choices` tells whether people
-// choose (quantity "correct") or find ("sensitivity", "ppv"). Throws InputError for names that the protocol does not
-// have.
-std::optional<PrimaryComparison> read_primary(files::JsonReader json, const std::vector<std::string>& conditions,
-                                              const std::vector<std::string>& groups, bool choices);
+// "t"}}, or with "groups": ["I", "II"] and "condition": "a" instead of "conditions". `protocol` knows its conditions,
+// their tasks and its groups: "correct" compares conditions with the task choice, "sensitivity" and "ppv" those in which
+// nodules are found. Throws InputError for names that the protocol does not have.
+std::optional<PrimaryComparison> read_primary(files::JsonReader json, const Protocol& protocol);
 
 const char* name_of(Quantity quantity);
 const char* name_of(PrimaryTest test);

@@ -9,12 +9,16 @@
 #include "files/sha256.h"
 #include "files/text.h"
 #include "study/names.h"
+#include "study/protocol_checks.h"
 
 namespace palpa::study {
 namespace {
 
 constexpr const char* kModalities[] = {"touchpad", "pen", "finger", "mouse", "tangible", "shape-display", "hand"};
 constexpr const char* kOrders[] = {"fixed", "random", "latin", "williams"};
+constexpr const char* kTasks[] = {"find", "choice", "staircase"};
+constexpr const char* kTrialOrders[] = {"blocked", "interleaved", "shuffled"};
+constexpr const char* kMethods[] = {"weighted-up-down", "quest-plus"};
 
 std::string new_id(files::JsonReader& json, std::set<std::string>& known) {
     const std::string id = json.text("id");
@@ -38,12 +42,14 @@ std::vector<std::string> read_names(files::JsonReader& json, std::string_view ke
 }
 
 Condition read_condition(files::JsonReader json, TaskKind task, std::set<std::string>& known) {
-    json.only({"id", "title", "modality", "scene", "profile", "device", "instructions", "nodules"});
+    json.only({"id", "title", "modality", "task", "scene", "profile", "device", "instructions", "nodules"});
     Condition condition;
     condition.id = new_id(json, known);
     condition.title = json.text("title", condition.id);
     condition.modality = static_cast<Modality>(
         json.choice("modality", {"touchpad", "pen", "finger", "mouse", "tangible", "shape-display", "hand"}));
+    if (json.has("task")) task = static_cast<TaskKind>(json.choice("task", {"find", "choice", "staircase"}));
+    condition.task = task;
     condition.scene = json.text("scene", "");
     condition.profile = json.text("profile", "");
     condition.device = json.text("device", "n/a");
@@ -56,6 +62,10 @@ Condition read_condition(files::JsonReader json, TaskKind task, std::set<std::st
         json.fail("scene", files::shown(condition.scene), "none: a real phantom has no scene");
     if (!by_hand && condition.scene.empty() && task == TaskKind::find) json.fail("scene", "nothing", "a scene file");
     if (!by_hand && !condition.nodules.empty()) json.fail("nodules", "names", "none: a scene knows its nodules");
+    if (compares(task) && !condition.nodules.empty())
+        json.fail("nodules", "names", "none: two surfaces are compared, and nothing is to be found");
+    if (condition.scene.empty() && !condition.profile.empty())
+        json.fail("profile", files::shown(condition.profile), "none: there is no scene whose profile it could replace");
     json.finish();
     return condition;
 }
@@ -137,6 +147,46 @@ ChoiceTask read_choice(files::JsonReader json, const std::vector<Condition>& con
     return task;
 }
 
+StaircaseTask read_staircase(files::JsonReader json) {
+    json.only({"method", "reference_kPa", "comparisons_kPa", "trials", "steps_after_wrong", "start_kPa"});
+    StaircaseTask task;
+    task.method = static_cast<StaircaseMethod>(json.choice("method", {"weighted-up-down", "quest-plus"}));
+    task.reference_kPa = json.number("reference_kPa", {0.0, 1e6, true});
+    std::vector<double>& levels = task.comparisons_kPa = json.numbers("comparisons_kPa", 0, {0.0, 1e6, true});
+    const auto unlike = [&](double kPa) { return std::abs(std::log(kPa / task.reference_kPa)); };
+    std::sort(levels.begin(), levels.end(), [&](double a, double b) { return unlike(a) < unlike(b); });
+    task.trials = json.integer("trials", 1, 1000, task.trials);
+    const bool one_side = std::all_of(levels.begin(), levels.end(), [&](double kPa) {
+        return (kPa > task.reference_kPa) == (levels.front() > task.reference_kPa);
+    });
+    if (levels.size() < 3) json.fail("comparisons_kPa", std::to_string(levels.size()) + " levels", "three or more");
+    for (std::size_t i = 0; i < levels.size(); ++i) {
+        if (levels[i] == task.reference_kPa)
+            json.fail("comparisons_kPa", files::short_number(levels[i]), "values unlike the reference");
+        if (std::count(levels.begin(), levels.end(), levels[i]) > 1)
+            json.fail("comparisons_kPa", files::short_number(levels[i]) + " a second time", "each level once");
+    }
+    task.start = static_cast<int>(levels.size()) - 1;
+    if (task.method == StaircaseMethod::quest_plus) {
+        for (const char* key : {"steps_after_wrong", "start_kPa"}) {
+            if (json.has(key)) json.fail(key, "a value", "none: QUEST+ needs none");
+        }
+        json.finish();
+        return task;
+    }
+    if (!one_side)
+        json.fail("comparisons_kPa", "levels on both sides of the reference",
+                  "all of them stiffer, or all of them softer: weighted up-down moves along one side");
+    task.steps_after_wrong = json.integer("steps_after_wrong", 1, 20, task.steps_after_wrong);
+    if (json.has("start_kPa")) {
+        const auto at = std::find(levels.begin(), levels.end(), json.number("start_kPa", {0.0, 1e6, true}));
+        if (at == levels.end()) json.fail("start_kPa", "another value", "one of comparisons_kPa");
+        task.start = static_cast<int>(at - levels.begin());
+    }
+    json.finish();
+    return task;
+}
+
 void read_practice(files::JsonReader json, Protocol& protocol) {
     json.only({"trials", "time_limit_s"});
     protocol.practice_trials = json.integer("trials", 0, 100);
@@ -153,12 +203,36 @@ Protocol read_protocol(const std::filesystem::path& file) {
     protocol.sha256 = files::sha256_hex(protocol.text);
     const files::Json root = files::parse_json(protocol.text, file.string());
     files::JsonReader json(root, file.string());
-    json.only({"name", "version", "seed", "choice", "conditions", "groups", "assignment", "order", "repeats",
-               "turn_maps", "flip_maps", "time_limit_s", "practice", "break_every_trials", "nodule_count_told",
-               "instructions", "demographics", "ratings", "analysis"});
+    json.only({"name",
+               "version",
+               "seed",
+               "choice",
+               "staircase",
+               "conditions",
+               "groups",
+               "assignment",
+               "people_per_block",
+               "order",
+               "trial_order",
+               "repeats",
+               "turn_maps",
+               "flip_maps",
+               "time_limit_s",
+               "practice",
+               "break_every_trials",
+               "nodule_count_told",
+               "consent",
+               "instructions",
+               "demographics",
+               "ratings",
+               "analysis"});
     protocol.name = json.text("name");
     protocol.version = json.text("version");
     protocol.seed = static_cast<std::uint32_t>(json.integer("seed", 0, 2000000000));
+    if (auto staircase = json.optional_object("staircase")) {
+        protocol.task = TaskKind::staircase;
+        protocol.staircase = read_staircase(*staircase);
+    }
     if (json.has("choice")) protocol.task = TaskKind::choice;
     std::set<std::string> conditions, groups;
     for (files::JsonReader& entry : json.objects("conditions")) {
@@ -174,7 +248,11 @@ Protocol read_protocol(const std::filesystem::path& file) {
     }
     if (json.has("assignment"))
         protocol.assignment = static_cast<Assignment>(json.choice("assignment", {"alternate", "random"}));
+    protocol.people_per_block = json.integer("people_per_block", 2, 100, protocol.people_per_block);
     protocol.order = static_cast<OrderKind>(json.choice("order", {"fixed", "random", "latin", "williams"}));
+    if (json.has("trial_order"))
+        protocol.trial_order =
+            static_cast<TrialOrder>(json.choice("trial_order", {"blocked", "interleaved", "shuffled"}));
     protocol.repeats = json.integer("repeats", 1, 1000, 1);
     protocol.turn_maps = json.boolean("turn_maps", true);
     protocol.flip_maps = json.boolean("flip_maps", false);
@@ -182,19 +260,40 @@ Protocol read_protocol(const std::filesystem::path& file) {
     if (auto practice = json.optional_object("practice")) read_practice(*practice, protocol);
     protocol.break_every_trials = json.integer("break_every_trials", 0, 10000, 0);
     protocol.count_told = json.boolean("nodule_count_told", false);
+    protocol.consent = json.text("consent", "");
     protocol.instructions = json.text("instructions", "");
     protocol.demographics = read_items(json, "demographics");
     protocol.ratings = read_items(json, "ratings");
-    if (auto analysis = json.optional_object("analysis")) {
-        protocol.primary = read_primary(*analysis, {conditions.begin(), conditions.end()},
-                                        {groups.begin(), groups.end()}, protocol.task == TaskKind::choice);
-    }
+    if (auto analysis = json.optional_object("analysis")) protocol.primary = read_primary(*analysis, protocol);
+    refuse_ignored_keys(json, protocol);
     json.finish();
     return protocol;
 }
 
 const char* name_of(Modality modality) { return kModalities[static_cast<int>(modality)]; }
 const char* name_of(OrderKind order) { return kOrders[static_cast<int>(order)]; }
-const char* name_of(TaskKind task) { return task == TaskKind::find ? "find" : "choice"; }
+const char* name_of(TaskKind task) { return kTasks[static_cast<int>(task)]; }
+const char* name_of(TrialOrder order) { return kTrialOrders[static_cast<int>(order)]; }
+const char* name_of(StaircaseMethod method) { return kMethods[static_cast<int>(method)]; }
+
+TaskKind task_of(const Protocol& protocol, std::size_t condition) {
+    return protocol.conditions[condition].task.value_or(protocol.task);
+}
+
+bool compares(TaskKind task) { return task != TaskKind::find; }
+
+std::optional<std::size_t> reference_condition_of(const Protocol& protocol, std::size_t condition) {
+    return task_of(protocol, condition) == TaskKind::choice ? protocol.choice.reference_on : std::nullopt;
+}
+
+double reference_kPa_of(const Protocol& protocol, std::size_t condition) {
+    return task_of(protocol, condition) == TaskKind::staircase ? protocol.staircase.reference_kPa
+                                                               : protocol.choice.reference_kPa;
+}
+
+const std::vector<double>& comparisons_kPa_of(const Protocol& protocol, std::size_t condition) {
+    return task_of(protocol, condition) == TaskKind::staircase ? protocol.staircase.comparisons_kPa
+                                                               : protocol.choice.comparisons_kPa;
+}
 
 }  // namespace palpa::study

@@ -13,8 +13,10 @@ namespace palpa::study {
 
 enum class Modality { touchpad, pen, finger, mouse, tangible, shape_display, hand };
 enum class OrderKind { fixed, random, latin, williams };
-enum class TaskKind { find, choice };
+enum class TaskKind { find, choice, staircase };
 enum class Assignment { alternate, random };
+enum class TrialOrder { blocked, interleaved, shuffled };
+enum class StaircaseMethod { weighted_up_down, quest_plus };
 
 struct Condition {
     std::string id;
@@ -25,6 +27,7 @@ struct Condition {
     std::string device;   // free text, for the log
     std::string instructions;
     std::vector<std::string> nodules;  // by hand only: names of the phantom's nodules, for answers typed in
+    std::optional<TaskKind> task;      // absent: the protocol's; task_of() knows
 };
 
 struct Group {
@@ -42,6 +45,16 @@ struct ChoiceTask {
     std::optional<std::size_t> reference_on = std::nullopt;
 };
 
+// A forced choice whose comparison follows from the answers so far (study/staircase.h), to find a threshold.
+struct StaircaseTask {
+    StaircaseMethod method = StaircaseMethod::quest_plus;
+    double reference_kPa = 0.0;
+    std::vector<double> comparisons_kPa;  // the levels, the most similar to the reference first
+    int trials = 40;                      // under each condition
+    int steps_after_wrong = 3;            // weighted up-down: k levels easier after a wrong answer, 1 harder else
+    int start = 0;                        // weighted up-down: index of the first level
+};
+
 // A question to the participant, before the trials or after each condition.
 struct Item {
     std::string id;
@@ -57,20 +70,24 @@ struct Protocol {
     std::string name;
     std::string version;
     std::uint32_t seed = 1;
-    TaskKind task = TaskKind::find;
-    ChoiceTask choice;  // with TaskKind::choice
+    TaskKind task = TaskKind::find;  // of conditions that name none
+    ChoiceTask choice;               // of conditions with TaskKind::choice
+    StaircaseTask staircase;         // of conditions with TaskKind::staircase
     std::vector<Condition> conditions;
     std::vector<Group> groups;
     Assignment assignment = Assignment::alternate;
+    int people_per_block = 2;  // of each group, in a block of random assignment
     OrderKind order = OrderKind::random;
-    int repeats = 1;            // trials of each condition, one after the other
-    bool turn_maps = true;      // successive trials of a participant show the map under different quarter turns
+    TrialOrder trial_order = TrialOrder::blocked;
+    int repeats = 1;            // trials of each condition in which nodules are to be found
+    bool turn_maps = true;      // trials of a participant show the map under different quarter turns
     bool flip_maps = false;     // also with left and right exchanged: eight views instead of four
     double time_limit_s = 0.0;  // 0: none
     int practice_trials = 0;    // before the first trial of each condition, with known positions
     double practice_limit_s = 0.0;
     int break_every_trials = 0;
     bool count_told = false;  // whether the participant is told the number of nodules
+    std::string consent;      // shown before everything else; a participant takes part only after agreeing. Empty: none
     std::string instructions;
     std::vector<Item> demographics;
     std::vector<Item> ratings;
@@ -80,8 +97,22 @@ struct Protocol {
 // Throws InputError that names file, key, what was found and what was expected.
 Protocol read_protocol(const std::filesystem::path& file);
 
+TaskKind task_of(const Protocol& protocol, std::size_t condition);
+// True for tasks in which two surfaces are compared.
+bool compares(TaskKind task);
+
+// The condition under which the references of this one are presented, if its task is a choice with
+// choice.reference_on; else nothing: its own.
+std::optional<std::size_t> reference_condition_of(const Protocol& protocol, std::size_t condition);
+
+// The surfaces of a condition in which two are compared.
+double reference_kPa_of(const Protocol& protocol, std::size_t condition);
+const std::vector<double>& comparisons_kPa_of(const Protocol& protocol, std::size_t condition);
+
 const char* name_of(Modality modality);
 const char* name_of(OrderKind order);
 const char* name_of(TaskKind task);
+const char* name_of(TrialOrder order);
+const char* name_of(StaircaseMethod method);
 
 }  // namespace palpa::study

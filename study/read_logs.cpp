@@ -15,6 +15,7 @@
 #include "study/stiffer_counts.h"
 #include "study/study_folder.h"
 #include "study/subject_folders.h"
+#include "study/withdrawal.h"
 
 namespace palpa::study {
 namespace {
@@ -192,19 +193,26 @@ class Subject {
         }
     }
 
+    // The level of a staircase follows from the answers, so any of its levels is right here.
     void check_pair(const Place& place, const RunLog::Choice& choice, Logged& logged) const {
-        const ChoiceTask& task = study_.protocol->choice;
-        if (choice.reference_kPa != task.reference_kPa) {
-            throw files::bad_input(text(place), "reference_kPa", files::short_number(choice.reference_kPa),
-                                   files::short_number(task.reference_kPa) + " as in the protocol");
+        const Protocol& protocol = *study_.protocol;
+        const auto condition = static_cast<std::size_t>(logged.condition);
+        if (!compares(task_of(protocol, condition))) {
+            throw files::bad_input(text(place), "condition", files::shown(choice.condition),
+                                   "a condition in which two surfaces are compared, by the protocol");
         }
-        const auto& all = task.comparisons_kPa;
+        if (choice.reference_kPa != reference_kPa_of(protocol, condition)) {
+            throw files::bad_input(text(place), "reference_kPa", files::short_number(choice.reference_kPa),
+                                   files::short_number(reference_kPa_of(protocol, condition)) + " as in the protocol");
+        }
+        const auto& all = comparisons_kPa_of(protocol, condition);
         const auto it = std::find(all.begin(), all.end(), choice.comparison_kPa);
         if (it == all.end()) {
             throw files::bad_input(text(place), "comparison_kPa", files::shown(choice.comparison),
                                    "one of the protocol's comparisons");
         }
-        const std::string stays = task.reference_on ? study_.protocol->conditions[*task.reference_on].id : "";
+        const auto on = reference_condition_of(protocol, condition);
+        const std::string stays = on ? protocol.conditions[*on].id : "";
         if (choice.reference_on != stays) {
             throw files::bad_input(text(place), "reference_on",
                                    choice.reference_on.empty() ? "n/a" : files::shown(choice.reference_on),
@@ -344,7 +352,9 @@ Observations read_study(const fs::path& directory) {
     std::set<std::pair<std::string, int>> finished;
     for (const std::string& code : codes) {
         const auto files = events_files(directory / ("sub-" + code));
-        if (!files.empty()) out.participants.push_back(code);
+        const bool withdrew = takes_data(directory, code, out.notes);
+        if (withdrew) study.left_out.insert(code);
+        if (!files.empty() && !withdrew) out.participants.push_back(code);
         const int index = static_cast<int>(out.participants.size()) - 1;
         if (!files.empty() && study.identity && study.people.count(code) == 0) {
             throw files::bad_input((directory / "participants.tsv").string(), "",
@@ -361,8 +371,9 @@ Observations read_study(const fs::path& directory) {
             out.answers.push_back({r.condition, r.item, r.value, files.empty() ? -1 : index});
     }
     check_exclusions(study, codes, finished);
+    take_staircases(directory, study.left_out, study.left_out_trials, out);
     const auto uncounted = out.interrupted_trials + out.practice_trials + out.excluded_trials;
-    if (out.rows.empty() && out.choices.empty() && uncounted == 0) {
+    if (out.rows.empty() && out.stiffer.empty() && uncounted == 0) {
         throw files::bad_input(directory.string(), "", "no trial", "sub-XX/beh/..._events.tsv of one trial at least");
     }
     take_groups(people, out);

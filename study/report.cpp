@@ -210,6 +210,7 @@ Report make_report(const Observations& given, const ReportOptions& options) {
     report.exclusions = seen.exclusions;
     report.replacements = seen.replacements;
     report.simulated = seen.simulated;
+    report.staircases = seen.staircases;
     for (int c = 0; c < static_cast<int>(seen.conditions.size()); ++c) {
         if (!rows_of(seen, c).empty()) report.conditions.push_back(condition_result(seen, c, options));
         std::set<int> comparisons{-1};

@@ -85,6 +85,7 @@ struct Report {
     std::vector<ChoiceResult> choices;
     Psychometrics psychometrics;
     std::vector<RatingResult> ratings;
+    std::vector<StaircaseResult> staircases;
     std::vector<std::string> notes;
     int participants = 0;
     std::int64_t trials = 0;  // finished tests; 0 for a table of counts

@@ -3,6 +3,7 @@
 
 #include "study/comparison_report.h"
 #include "study/report.h"
+#include "study/staircase_report.h"
 
 namespace palpa::study {
 namespace {
@@ -123,6 +124,7 @@ files::Json report_json(const Report& report) {
     if (!report.choices.empty()) json["choices"] = files::Json::array();
     for (const ChoiceResult& choice : report.choices) json["choices"].push_back(choice_json(choice));
     add_psychometrics(report.psychometrics, json);
+    for (const StaircaseResult& result : report.staircases) json["staircases"].push_back(staircase_json(result));
     for (const RatingResult& rating : report.ratings) json["ratings"].push_back(rating_json(rating));
     for (const Report& group : report.groups) json["groups"][group.group] = report_json(group);
     json["notes"] = report.notes;

@@ -4,6 +4,7 @@
 #include "study/comparison_report.h"
 #include "study/permutation.h"
 #include "study/report.h"
+#include "study/staircase_report.h"
 #include "study/table_text.h"
 
 namespace palpa::study {
@@ -160,6 +161,7 @@ std::vector<ReportTable> report_tables(const Report& report) {
     for (ReportTable& table : comparison_tables(report)) tables.push_back(std::move(table));
     for (const auto make : {trial_table, choice_table}) tables.push_back(make(report));
     for (ReportTable& table : psychometric_tables(report.psychometrics)) tables.push_back(std::move(table));
+    tables.push_back(staircase_table(report));
     tables.push_back(rating_table(report));
     std::erase_if(tables, [](const ReportTable& table) { return table.rows.empty(); });
     if (!report.groups.empty()) add_groups(report, tables);

@@ -53,6 +53,11 @@ void check_same(const fs::path& file, const StudyIdentity& found, const Protocol
     const auto told = [](const StudyKind& k) {
         return k.simulated ? "simulated participants of seed " + std::to_string(k.seed) : std::string("people");
     };
+    if (found.orders_version != kOrdersVersion) {
+        throw files::bad_input(file.string(), "orders_version", std::to_string(found.orders_version),
+                               std::to_string(kOrdersVersion) + ": this program gives participants other orders than " +
+                                   files::shown(found.kind.program) + ", with which this study has to be finished");
+    }
     if (found.kind.simulated != kind.simulated || found.kind.seed != kind.seed) {
         throw files::bad_input(file.string(), "simulated", told(found.kind),
                                told(kind) + ": they never share a folder");
@@ -76,8 +81,9 @@ void open_study(const fs::path& directory, const Protocol& protocol, const Study
     }
     prepare_log_folder(directory);
     files::write_text_atomically(directory / "protocol.json", protocol.text);
-    files::Json json{{"protocol", protocol.name},   {"version", protocol.version},  {"sha256", protocol.sha256},
-                     {"simulated", kind.simulated}, {"simulation_seed", kind.seed}, {"program", kind.program}};
+    files::Json json{{"protocol", protocol.name},       {"version", protocol.version},  {"sha256", protocol.sha256},
+                     {"simulated", kind.simulated},     {"simulation_seed", kind.seed}, {"program", kind.program},
+                     {"orders_version", kOrdersVersion}};
     files::write_text_atomically(file, files::json_text(json));  // last: it makes the folder a study
 }
 
@@ -96,7 +102,7 @@ std::optional<StudyIdentity> read_identity(const fs::path& directory) {
 StudyIdentity identity_in(std::string_view study_json, const std::string& file_name) {
     const files::Json root = files::parse_json(study_json, file_name);
     files::JsonReader json(root, file_name);
-    json.only({"protocol", "version", "sha256", "simulated", "simulation_seed", "program"});
+    json.only({"protocol", "version", "sha256", "simulated", "simulation_seed", "program", "orders_version"});
     StudyIdentity out;
     out.name = json.text("protocol");
     out.version = json.text("version");
@@ -104,6 +110,7 @@ StudyIdentity identity_in(std::string_view study_json, const std::string& file_n
     out.kind.simulated = json.boolean("simulated", false);
     out.kind.seed = static_cast<std::uint64_t>(json.number("simulation_seed", {0.0, 9e15}, 0.0));
     out.kind.program = json.text("program", "");
+    out.orders_version = json.integer("orders_version", 1, 1000, 1);
     json.finish();
     return out;
 }
@@ -189,9 +196,12 @@ std::string instructions_for(const Protocol& protocol, const PlannedTrial& trial
     const Condition& condition = protocol.conditions[trial.condition];
     std::string text = protocol.instructions;
     if (!condition.instructions.empty()) text += (text.empty() ? "" : "\n\n") + condition.instructions;
-    if (trial.practice) text += "\n\nThis is practice: you see where the harder places are.";
+    const bool pairs = compares(task_of(protocol, trial.condition));
+    if (trial.practice && pairs) text += "\n\nThis is practice: after each answer you are told whether it was right.";
+    if (trial.practice && !pairs) text += "\n\nThis is practice: you see where the harder places are.";
     const double limit_s = trial.practice ? protocol.practice_limit_s : protocol.time_limit_s;
-    if (limit_s > 0.0) text += "\n\nYou have " + files::short_number(limit_s) + " seconds.";
+    if (limit_s > 0.0 && (!pairs || !condition.scene.empty()))
+        text += "\n\nYou have " + files::short_number(limit_s) + " seconds.";
     return text;
 }
 

@@ -24,8 +24,8 @@ struct StudyKind {
 };
 
 // Creates the folder, or continues in a folder of the same protocol and kind. Throws InputError if the folder holds
-// another protocol's logs (naming both versions), logs of another kind, or logs without study.json; std::runtime_error
-// if it cannot be written.
+// another protocol's logs (naming both versions), logs of another kind, logs of a program with other orders, or logs
+// without study.json; std::runtime_error if it cannot be written.
 void open_study(const std::filesystem::path& directory, const Protocol& protocol, const StudyKind& kind);
 
 // Throws InputError if the folder is a study's: single runs never share it.
@@ -38,6 +38,7 @@ struct StudyIdentity {
     std::string version;
     std::string sha256;
     StudyKind kind;
+    int orders_version = 1;  // of the program that began the study (order.h); files without the key have 1
 };
 std::optional<StudyIdentity> read_identity(const std::filesystem::path& directory);
 StudyIdentity identity_in(std::string_view study_json, const std::string& file_name);

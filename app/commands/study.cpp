@@ -9,9 +9,9 @@
 namespace palpa::app {
 
 void add_study(CLI::App& app) {
-    CLI::App* study = app.add_subcommand(
-        "study",
-        "Studies with people: order, run, simulate, import, exclude, replace, analyse, levels, watch, observers");
+    CLI::App* study = app.add_subcommand("study",
+                                         "Studies with people: order, run, simulate, import, exclude, replace, "
+                                         "withdraw, analyse, levels, watch, observers");
     study->require_subcommand(1);
     add_study_order(*study);
     add_study_run(*study);
@@ -22,6 +22,7 @@ void add_study(CLI::App& app) {
     add_study_levels(*study);
     add_study_watch(*study);
     add_study_observers(*study);
+    add_study_withdraw(*study);
 }
 
 }  // namespace palpa::app

@@ -16,5 +16,6 @@ void add_study_order(CLI::App& study);
 void add_study_run(CLI::App& study);
 void add_study_simulate(CLI::App& study);
 void add_study_watch(CLI::App& study);
+void add_study_withdraw(CLI::App& study);
 
 }  // namespace palpa::app

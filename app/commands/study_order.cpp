@@ -8,6 +8,7 @@
 #include "app/study/study_scenes.h"
 #include "files/json.h"
 #include "files/text.h"
+#include "study/order_balance.h"
 
 namespace palpa::app {
 namespace {
@@ -18,16 +19,24 @@ struct OrderOptions {
     bool json = false;
 };
 
+double comparison_kPa(const study::Protocol& protocol, const study::PlannedTrial& trial) {
+    return study::comparisons_kPa_of(protocol, trial.condition)[static_cast<std::size_t>(trial.comparison)];
+}
+
 files::Json trial_json(const study::Protocol& protocol, const study::PlannedTrial& trial) {
     files::Json json{{"trial", trial.trial},
                      {"block", trial.practice ? "practice" : "test"},
                      {"condition", protocol.conditions[trial.condition].id},
                      {"repeat", trial.repeat + 1}};
-    if (protocol.task == study::TaskKind::find) {
+    const study::TaskKind task = study::task_of(protocol, trial.condition);
+    json["task"] = name_of(task);
+    if (!compares(task) || !protocol.conditions[trial.condition].scene.empty()) {
         json["map_rotation_deg"] = trial.rotate_deg;
         json["map_flip"] = trial.flip;
-    } else {
-        json["comparison_kPa"] = protocol.choice.comparisons_kPa[static_cast<std::size_t>(trial.comparison)];
+    }
+    if (compares(task)) {
+        json["comparison_kPa"] = nullptr;  // follows from the answers
+        if (trial.comparison >= 0) json["comparison_kPa"] = comparison_kPa(protocol, trial);
         json["reference_first"] = trial.reference_first;
     }
     json["seed"] = trial.seed;
@@ -36,8 +45,13 @@ files::Json trial_json(const study::Protocol& protocol, const study::PlannedTria
 }
 
 files::Json order_json(const study::Protocol& protocol, const std::vector<study::PlannedParticipant>& people) {
-    files::Json json{{"protocol", protocol.name}, {"version", protocol.version},      {"sha256", protocol.sha256},
-                     {"seed", protocol.seed},     {"order", name_of(protocol.order)}, {"task", name_of(protocol.task)}};
+    files::Json json{{"protocol", protocol.name},
+                     {"version", protocol.version},
+                     {"sha256", protocol.sha256},
+                     {"seed", protocol.seed},
+                     {"order", name_of(protocol.order)},
+                     {"task", name_of(protocol.task)},
+                     {"trial_order", name_of(protocol.trial_order)}};
     if (protocol.choice.reference_on) json["reference_on"] = protocol.conditions[*protocol.choice.reference_on].id;
     json["participants"] = files::Json::array();
     for (const study::PlannedParticipant& who : people) {
@@ -64,10 +78,10 @@ void print_trial(const study::Protocol& protocol, const study::PlannedTrial& tri
     const std::string& condition = protocol.conditions[trial.condition].id;
     std::printf("%s  %3d  %-8s  %-20s", trial.break_before ? "  -- break --\n" : "", trial.trial,
                 trial.practice ? "practice" : "test", condition.c_str());
-    if (protocol.task == study::TaskKind::choice) {
-        const double comparison_kPa = protocol.choice.comparisons_kPa[static_cast<std::size_t>(trial.comparison)];
-        std::printf("  %s kPa, reference %s\n", files::short_number(comparison_kPa).c_str(),
-                    trial.reference_first ? "first" : "second");
+    if (compares(study::task_of(protocol, trial.condition))) {
+        const std::string level = trial.comparison < 0 ? "level by the answers"
+                                                       : files::short_number(comparison_kPa(protocol, trial)) + " kPa";
+        std::printf("  %s, reference %s\n", level.c_str(), trial.reference_first ? "first" : "second");
         return;
     }
     std::printf("  turned %3d deg%s\n", trial.rotate_deg, trial.flip ? ", flipped" : "");

@@ -20,7 +20,7 @@ void begin_study_trial(platform::Window& window, const Gui& gui, App& app) {
     try {
         const StudyScene& due = due_scene(run);
         const study::PlannedTrial& trial = due_trial(run);
-        const bool known = trial.practice && run.protocol.task == study::TaskKind::find;
+        const bool known = trial.practice && !due_compares(run);
         session::SessionFiles files = due_files(run);
         files.finger_offset_mm = finger_offset_mm(app);
         put_scene(scene_of(due, trial), due.plan, window, app);

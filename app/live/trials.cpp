@@ -191,9 +191,9 @@ bool work_at_stake(const App& app) {
 
 void act(platform::Action action, platform::Window& window, App& app) {
     const StudyRun* study = study_of(app.doing);
-    const bool choice = study != nullptr && study->protocol.task == study::TaskKind::choice;
-    if (choice && action != platform::Action::finish) return;  // a forced choice has nothing to mark
-    if (waits_for_keeper(app)) return;                         // there is no trial to act on yet
+    const bool pair = study != nullptr && due_compares(*study);
+    if (pair && action != platform::Action::finish) return;  // in a comparison there is nothing to mark
+    if (waits_for_keeper(app)) return;                       // there is no trial to act on yet
     platform::Sample sample;
     sample.t_host_s = now_of(app, window);
     sample.phase = platform::Phase::ui;

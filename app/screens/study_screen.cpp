@@ -6,6 +6,7 @@
 #include <cstdio>
 
 #include "app/screens/screens.h"
+#include "app/screens/study_widgets.h"
 #include "app/screens/widgets.h"
 #include "app/screens/words.h"
 #include "app/study/study_run.h"
@@ -13,23 +14,6 @@
 
 namespace palpa::app {
 namespace {
-
-bool enter_pressed(const Gui& gui) {
-    return gui.pressed(platform::key::enter) || gui.pressed(platform::key::pad_enter);
-}
-
-// The button that leads on; Enter does the same.
-bool forward(const char* label, const Gui& gui, bool enabled = true) {
-    const float width_px = std::min(70.0f * gui.mm(), ImGui::GetContentRegionAvail().x);
-    const bool asked = big_button(label, words::kEnter, {width_px, kMark_mm, enabled, false}, gui);
-    return asked || (enabled && enter_pressed(gui));
-}
-
-void title(const std::string& text) {
-    ImGui::SetWindowFontScale(1.4f);
-    ImGui::TextWrapped("%s", text.c_str());
-    ImGui::SetWindowFontScale(1.0f);
-}
 
 // Puts text beside a button, at the height of the button's word.
 void beside(const std::string& text, const Gui& gui) {
@@ -49,22 +33,12 @@ bool text_field(const char* label, char* text, std::size_t size, ImGuiInputTextF
     return done;
 }
 
-void gap(const Gui& gui) { ImGui::Dummy(ImVec2(0.0f, 2.0f * gui.mm())); }
-
 // The experimenter's button for pairing, sending and exporting.
 void trials_button(const Gui& gui, const StudyRun& run, Wishes& wishes) {
     if (!run.on_tablet) return;
     if (big_button(words::kTrialsOnTablet, "",
                    {std::min(70.0f * gui.mm(), share_of_line_px(1)), kTarget_mm, true, false}, gui))
         wishes.trials = true;
-}
-
-// The button that leaves the study. On a tablet, which has no window to close, it leads to the rest of the app.
-void leave_button(const Gui& gui, const StudyRun& run, Wishes& wishes) {
-    const char* label = run.on_tablet ? words::kLeaveStudy : words::kClose;
-    const char* key = run.on_tablet ? "" : words::kCtrlQ;
-    if (big_button(label, key, {std::min(70.0f * gui.mm(), share_of_line_px(1)), kTarget_mm, true, false}, gui))
-        wishes.quit = true;
 }
 
 // The screen while the keeper stores the last step, usually for less than a frame.
@@ -187,16 +161,17 @@ void draw_items(const StudyRun& run, double now_s, Gui& gui, std::vector<std::st
 void draw_instructions(const StudyRun& run, Gui& gui, Wishes& wishes) {
     const study::PlannedTrial& trial = due_trial(run);
     title(words::filled(trial.practice ? words::kPracticeOf : words::kTrialOf, {progress_text(run)}));
-    const float below_px = (kMark_mm + 4.0f) * gui.mm();
+    const float below_px = (kMark_mm + kTarget_mm + 6.0f) * gui.mm();
     ImGui::BeginChild("text", ImVec2(0.0f, ImGui::GetContentRegionAvail().y - below_px), false,
                       ImGuiWindowFlags_NavFlattened);
     ImGui::TextWrapped("%s", study::instructions_for(run.protocol, trial).c_str());
-    if (run.protocol.count_told && run.protocol.task == study::TaskKind::find) {
+    if (run.protocol.count_told && !due_compares(run)) {
         gap(gui);
         ImGui::TextWrapped("%s", words::filled(words::kThereAre, {std::to_string(due_nodules(run).size())}).c_str());
     }
     ImGui::EndChild();
     if (forward(words::kBegin, gui)) wishes.study = BeginStep{};
+    stop_button(gui, wishes);
 }
 
 void draw_device(const step::Device& step, const StudyRun& run, Gui& gui, Wishes& wishes) {
@@ -231,6 +206,8 @@ void draw_question(const StudyRun& run, double now_s, Gui& gui, Wishes& wishes) 
                         gui.pressed('2') || gui.pressed(platform::key::pad_0 + 2);
     gap(gui);
     paragraph(words::filled(words::kPairOf, {progress_text(run)}));
+    gap(gui);
+    stop_button(gui, wishes);
     if (first || second) wishes.study = ChooseSofter{first, now_s};
 }
 
@@ -333,6 +310,8 @@ void draw_pause(const StudyRun& run, double now_s, Gui& gui, Wishes& wishes) {
     ImGui::Text("%s", clock_text(now_s - run.step_began_s).c_str());
     gap(gui);
     if (forward(words::kGoOn, gui)) wishes.study = BeginStep{};
+    gap(gui);
+    stop_button(gui, wishes);
 }
 
 // Returns an empty form for the present step of the study.
@@ -347,6 +326,7 @@ StudyForm form_for(const StudyRun& run) {
 void draw_step(const StudyRun& run, double now_s, Gui& gui, StudyForm& form, Wishes& wishes) {
     if (const auto* code = std::get_if<step::Code>(&run.step)) return draw_code(*code, run, now_s, gui, form, wishes);
     if (at<step::Again>(run)) return draw_again(run, gui, wishes);
+    if (draw_consent_step(run, gui, wishes)) return;
     if (at<step::Questions>(run) || at<step::Ratings>(run)) return draw_items(run, now_s, gui, form.answers, wishes);
     if (at<step::Instructions>(run)) return draw_instructions(run, gui, wishes);
     if (const auto* device = std::get_if<step::Device>(&run.step)) return draw_device(*device, run, gui, wishes);

@@ -50,7 +50,7 @@ void draw_force_bar(const Shown& shown, float height_px, const Gui& gui) {
 // True for an interval of a forced choice: there is nothing to mark, and no number may tell how soft the surface is.
 bool is_interval(const Doing& doing) {
     const StudyRun* study = study_of(doing);
-    return study != nullptr && study->protocol.task == study::TaskKind::choice;
+    return study != nullptr && due_compares(*study);
 }
 
 void draw_numbers(const Shown& shown, const Gui& gui) {
@@ -92,7 +92,7 @@ void draw_study_header(const Shown& shown, const StudyRun& run) {
     ImGui::SetWindowFontScale(1.3f);
     ImGui::Text("%s  %s", clock_text(left_s).c_str(), what);
     ImGui::SetWindowFontScale(1.0f);
-    if (run.protocol.task == study::TaskKind::choice) {
+    if (due_compares(run)) {
         ImGui::TextWrapped("%s", run.interval == 0 ? words::kFirstSurface : words::kSecondSurface);
         paragraph(words::filled(words::kPairOf, {progress_text(run)}));
     } else {

@@ -251,6 +251,21 @@ inline constexpr const char* kCodeNoName =
 inline constexpr const char* kCode = "code";
 inline constexpr const char* kGoOnWithStudy = "Go on with the study";
 inline constexpr const char* kSomebodyElse = "Somebody else";
+inline constexpr const char* kBeforeYouTakePart = "Before you take part";
+inline constexpr const char* kAgree = "I agree and take part";
+inline constexpr const char* kDoNotAgree = "I do not take part";
+inline constexpr const char* kStopTakingPart = "Stop taking part";
+inline constexpr const char* kWantToStop = "Do you want to stop taking part?";
+inline constexpr const char* kMayStop =
+    "You may stop at any time, without giving a reason. What you did so far may be used for the study, or is left out "
+    "of it.";
+inline constexpr const char* kStopKeepsData = "Stop; what I did may be used";
+inline constexpr const char* kStopTakesData = "Stop; leave out what I did";
+inline constexpr const char* kHasStopped = "You have left the study. Thank you!";
+inline constexpr const char* kCodeHasLeft = "Participant {} takes part no longer.";
+inline constexpr const char* kWasRight = "That was right";
+inline constexpr const char* kWasWrong = "That was not right";
+inline constexpr const char* kOnlyInPractice = "You are told this only in practice.";
 inline constexpr const char* kQuestionsFirst = "Some questions first";
 inline constexpr const char* kHowWasIt = "How was it?";
 inline constexpr const char* kMayLeaveOpen = "You may leave any of them open.";

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 #include <exception>
+#include <map>
 #include <mutex>
 #include <numbers>
 #include <optional>
@@ -19,6 +20,7 @@
 #include "scene/mapping.h"
 #include "session/session.h"
 #include "study/simulated_person.h"
+#include "study/staircase_history.h"
 #include "study/study_folder.h"
 
 namespace palpa::app {
@@ -186,40 +188,59 @@ void run_trial(Shared& shared, const study::PlannedParticipant& who, const study
     shared.result.written_MB += written_MB;
 }
 
-// Answers forced choices without the loop: each answer is drawn from two stiffnesses with noise.
-void run_choices(Shared& shared, const study::PlannedParticipant& who, const std::set<int>& finished) {
-    const study::Protocol& protocol = shared.protocol;
-    if (!study::next_trial(who, finished)) return;
-    study::ChoiceLog log(study::next_run(shared.options.output, code_of(who.number), "softer"));
-    const std::uint64_t of_person =
-        study::derived_seed(shared.options.seed, kAnswers, static_cast<std::uint64_t>(who.number));
-    int done = 0;
-    for (const study::PlannedTrial& trial : who.trials) {
-        if (finished.count(trial.trial) > 0) continue;
-        study::Random random(study::derived_seed(of_person, kAnswers, static_cast<std::uint64_t>(trial.trial)));
+// The answers of one participant to pairs of surfaces, which need no loop: each answer is drawn from two stiffnesses
+// with noise.
+class PairAnswers {
+  public:
+    PairAnswers(Shared& shared, const study::PlannedParticipant& who) : shared_(shared), who_(who) {}
+
+    void answer(const study::PlannedTrial& trial) {
+        const study::Protocol& protocol = shared_.protocol;
         const study::Condition& condition = protocol.conditions[trial.condition];
+        const std::uint64_t of_person =
+            study::derived_seed(shared_.options.seed, kAnswers, static_cast<std::uint64_t>(who_.number));
+        study::Random random(study::derived_seed(of_person, kAnswers, static_cast<std::uint64_t>(trial.trial)));
+        const int level = level_of(trial);
         study::ChoiceRow row;
         row.duration_s = 2.0 + random.uniform();
         row.onset_s = 3.0 * (trial.trial - 1);
+        row.block = trial.practice ? "practice" : "test";
         row.trial = trial.trial;
-        row.order_id = who.order_id;
+        row.order_id = who_.order_id;
         row.condition = condition.id;
         row.device_id = condition.device;
         row.seed = trial.seed;
-        row.reference_kPa = protocol.choice.reference_kPa;
-        row.comparison_kPa = protocol.choice.comparisons_kPa[static_cast<std::size_t>(trial.comparison)];
+        row.reference_kPa = study::reference_kPa_of(protocol, trial.condition);
+        row.comparison_kPa = study::comparisons_kPa_of(protocol, trial.condition)[static_cast<std::size_t>(level)];
         row.first = trial.reference_first ? "reference" : "comparison";
         const bool right = study::answers_right(row.reference_kPa, row.comparison_kPa, kSoftnessWeber, random);
         const bool reference_softer = row.reference_kPa < row.comparison_kPa;
         row.answer = right == reference_softer ? "reference" : "comparison";
         row.correct = right ? 1 : 0;
-        if (!log.write(row))
-            throw std::runtime_error(code_of(who.number) + ": a choice could not be written; the study stops here");
-        ++done;
+        const std::string code = code_of(who_.number);
+        if (!log_) log_.emplace(study::next_run(shared_.options.output, code, "softer"));
+        if (!log_->write(row)) throw std::runtime_error(code + ": a choice could not be written; the study stops here");
+        if (trial.comparison < 0) steps_[trial.condition].push_back({level, trial.reference_first, right});
+        const std::lock_guard lock(shared_.mutex);
+        ++shared_.result.trials;
     }
-    const std::lock_guard lock(shared.mutex);
-    shared.result.trials += done;
-}
+
+  private:
+    int level_of(const study::PlannedTrial& trial) {
+        if (trial.comparison >= 0) return trial.comparison;
+        auto [answers, fresh] = steps_.try_emplace(trial.condition);
+        if (fresh) {  // of an earlier call
+            answers->second = study::staircase_answers(shared_.options.output, shared_.protocol, code_of(who_.number),
+                                                       trial.condition);
+        }
+        return study::next_level(shared_.protocol.staircase, answers->second, trial.reference_first);
+    }
+
+    Shared& shared_;
+    const study::PlannedParticipant& who_;
+    std::optional<study::ChoiceLog> log_;
+    std::map<std::size_t, std::vector<study::StaircaseAnswer>> steps_;  // by condition
+};
 
 void run_participant(Shared& shared, int number, std::vector<std::optional<session::Session>>& sessions) {
     const study::PlannedParticipant who = study::plan_participant(shared.protocol, number);
@@ -228,16 +249,21 @@ void run_participant(Shared& shared, int number, std::vector<std::optional<sessi
         const std::lock_guard lock(shared.mutex);
         shared.result.already_there += static_cast<int>(finished.size());
     }
-    if (shared.protocol.task == study::TaskKind::choice) return run_choices(shared, who, finished);
+    PairAnswers pairs(shared, who);
     for (const study::PlannedTrial& trial : who.trials) {
         if (shared.stop) return;
+        const bool pair = study::compares(study::task_of(shared.protocol, trial.condition));
         const bool simulated =
-            shared.scenes[trial.condition].has_value() && (!trial.practice || shared.options.practice);
+            (pair || shared.scenes[trial.condition].has_value()) && (!trial.practice || shared.options.practice);
         if (!simulated && !trial.practice) {
             const std::lock_guard lock(shared.mutex);
             ++shared.result.left_out;
         }
         if (!simulated || finished.count(trial.trial) > 0) continue;
+        if (pair) {
+            pairs.answer(trial);
+            continue;
+        }
         std::optional<session::Session>& session = sessions[trial.condition];
         if (!session) {
             session.emplace();
@@ -268,7 +294,7 @@ void add_everybody(const study::Protocol& protocol, const SimulateOptions& optio
     for (int number = 1; number <= options.participants; ++number) {
         study::Person person;
         person.code = code_of(number);
-        person.group = protocol.groups[study::plan_participant(protocol, number).group].id;
+        person.group = protocol.groups[study::membership_of(protocol, number).group].id;
         people.push_back(person);
     }
     study::add_people(options.output, people);

@@ -4,6 +4,7 @@
 
 #include "app/study/study_run.h"
 #include "files/text.h"
+#include "study/staircase_history.h"
 
 namespace palpa::app {
 
@@ -11,8 +12,9 @@ const study::PlannedTrial& due_trial(const StudyRun& run) { return *run.progress
 
 std::size_t due_condition_index(const StudyRun& run) {
     const study::PlannedTrial& trial = due_trial(run);
-    const bool reference = run.protocol.task == study::TaskKind::choice && (run.interval == 0) == trial.reference_first;
-    return reference ? run.protocol.choice.reference_on.value_or(trial.condition) : trial.condition;
+    const bool reference = (run.interval == 0) == trial.reference_first;
+    const auto stays = study::reference_condition_of(run.protocol, trial.condition);
+    return reference ? stays.value_or(trial.condition) : trial.condition;
 }
 
 const study::Condition& due_condition(const StudyRun& run) { return run.protocol.conditions[due_condition_index(run)]; }
@@ -26,11 +28,30 @@ bool shows_tissue(const StudyRun& run) {
     return !typed_in(due_condition(run)) && run.scenes[due_condition_index(run)].has_value();
 }
 
+bool due_compares(const StudyRun& run) {
+    return run.progress.next && study::compares(study::task_of(run.protocol, run.progress.next->condition));
+}
+
+void find_comparison(StudyRun& run) {
+    run.comparison = -1;
+    if (!due_compares(run)) return;
+    const study::PlannedTrial& trial = due_trial(run);
+    run.comparison = trial.comparison;
+    if (run.comparison >= 0) return;
+    const auto answers = study::staircase_answers(run.directory, run.protocol, run.code, trial.condition);
+    run.comparison = study::next_level(run.protocol.staircase, answers, trial.reference_first);
+}
+
+double due_comparison_kPa(const StudyRun& run) {
+    const std::vector<double>& kPa = study::comparisons_kPa_of(run.protocol, due_trial(run).condition);
+    return kPa[static_cast<std::size_t>(run.comparison)];
+}
+
 const StudyScene& due_scene(const StudyRun& run) {
     const study::PlannedTrial& trial = due_trial(run);
-    if (run.protocol.task == study::TaskKind::find) return *run.scenes[trial.condition];
+    if (!due_compares(run)) return *run.scenes[trial.condition];
     const bool reference = (run.interval == 0) == trial.reference_first;
-    return run.stimuli[due_condition_index(run)][reference ? 0 : 1 + static_cast<std::size_t>(trial.comparison)];
+    return run.stimuli[due_condition_index(run)][reference ? 0 : 1 + static_cast<std::size_t>(run.comparison)];
 }
 
 session::SessionFiles due_files(const StudyRun& run) {
@@ -44,11 +65,32 @@ session::SessionFiles due_files(const StudyRun& run) {
     files.label->condition = run.protocol.conditions[condition].id;
     files.label->device = run.protocol.conditions[condition].device;
     files.label->study["modality"] = name_of(run.protocol.conditions[condition].modality);
-    if (run.protocol.task == study::TaskKind::choice) {
+    if (due_compares(run)) {
         files.task = "interval";
         files.label->study["interval"] = run.interval + 1;
     }
     return files;
+}
+
+study::ChoiceRow due_choice(const StudyRun& run, bool first_is_softer) {
+    const study::PlannedTrial& trial = due_trial(run);
+    const study::Condition& condition = run.protocol.conditions[trial.condition];
+    const bool reference = first_is_softer == trial.reference_first;
+    study::ChoiceRow row;
+    row.block = trial.practice ? "practice" : "test";
+    row.trial = trial.trial;
+    row.order_id = run.progress.plan.order_id;
+    row.condition = condition.id;
+    row.device_id = condition.device;
+    row.seed = trial.seed;
+    row.reference_kPa = study::reference_kPa_of(run.protocol, trial.condition);
+    row.comparison_kPa = due_comparison_kPa(run);
+    if (const auto stays = study::reference_condition_of(run.protocol, trial.condition))
+        row.reference_on = run.protocol.conditions[*stays].id;
+    row.first = trial.reference_first ? "reference" : "comparison";
+    row.answer = reference ? "reference" : "comparison";
+    row.correct = reference == (row.reference_kPa < row.comparison_kPa) ? 1 : 0;
+    return row;
 }
 
 double due_limit_s(const StudyRun& run) {

@@ -32,11 +32,12 @@ std::shared_ptr<const scene::Plan> smoothed_anew(const scene::Plan& reference, c
 
 // Returns the reference and its comparisons: the same tissue with scaled forces, since forces of linear elastic tissue
 // are proportional to its modulus. All look alike to the participant, with the force bar of the reference.
-std::vector<StudyScene> stimuli_of(const StudyScene& scene, const study::ChoiceTask& task) {
+std::vector<StudyScene> stimuli_of(const StudyScene& scene, const study::Protocol& protocol, std::size_t condition) {
     std::vector<StudyScene> out{scene};
-    for (const double comparison_kPa : task.comparisons_kPa) {
+    const double reference_kPa = study::reference_kPa_of(protocol, condition);
+    for (const double comparison_kPa : study::comparisons_kPa_of(protocol, condition)) {
         StudyScene other = scene;
-        other.scene.stiffness_scale *= comparison_kPa / task.reference_kPa;
+        other.scene.stiffness_scale *= comparison_kPa / reference_kPa;
         if (!scene::serves(*scene.plan, other.scene)) other.plan = smoothed_anew(*scene.plan, other.scene);
         out.push_back(std::move(other));
     }
@@ -58,26 +59,14 @@ files::Json now_json(const StudyRun& run) {
     json["trial"] = trial.trial;
     json["condition"] = run.protocol.conditions[trial.condition].id;
     json["practice"] = trial.practice;
-    if (trial.comparison < 0) return json;
-    const study::ChoiceTask& task = run.protocol.choice;
-    const double comparison_kPa = task.comparisons_kPa[static_cast<std::size_t>(trial.comparison)];
-    json["present_kPa"] = {trial.reference_first ? task.reference_kPa : comparison_kPa,
-                           trial.reference_first ? comparison_kPa : task.reference_kPa};
+    if (run.comparison < 0) return json;
+    const double comparison_kPa = due_comparison_kPa(run);
+    const double reference_kPa = study::reference_kPa_of(run.protocol, trial.condition);
+    json["present_kPa"] = {trial.reference_first ? reference_kPa : comparison_kPa,
+                           trial.reference_first ? comparison_kPa : reference_kPa};
     json["interval"] = run.interval + 1;
     json["condition"] = due_condition(run).id;  // that of the interval
     return json;
-}
-
-// Runs `work`. An exception, such as a problem with the disk, stops the study with a message before a trial is lost.
-template <class Work>
-bool kept(StudyRun& run, const Work& work) {
-    try {
-        work();
-        return true;
-    } catch (const std::exception& error) {
-        stop_study(error.what(), run);
-        return false;
-    }
 }
 
 void write_now(const StudyRun& run) {
@@ -90,11 +79,6 @@ void change_step(StudyStep step, StudyRun& run) {
     run.step = std::move(step);
     run.step_began_s = 0.0;
     ++run.entered;
-}
-
-void enter(StudyStep step, StudyRun& run) {
-    change_step(std::move(step), run);
-    kept(run, [&] { write_now(run); });
 }
 
 void check_room(const StudyRun& run) {
@@ -147,10 +131,12 @@ void add_person(const std::vector<std::string>& answers, StudyRun& run) {
         else
             others.push_back({"n/a", id, value});
     }
+    if (!run.protocol.consent.empty()) others.insert(others.begin(), study::consent_given());
     study::add_ratings(run.directory, run.code, others);
     study::add_people(run.directory, {person});
     run.unkept_answers = true;
     run.progress = study::progress_of(run.directory, run.protocol, run.code);
+    find_comparison(run);
 }
 
 void begin_trial_step(StudyRun& run) {
@@ -159,23 +145,14 @@ void begin_trial_step(StudyRun& run) {
     run.told_practice = trial.practice;
     run.interval = 0;
     if (!kept(run, [&] { check_room(run); })) return;
-    const bool choice = run.protocol.task == study::TaskKind::choice;
     if (shows_tissue(run)) return enter(step::Trial{}, run);
-    if (choice) return enter(step::Present{}, run);
+    if (due_compares(run)) return enter(step::Present{}, run);
     enter(step::Typed{}, run);
 }
 
-void go_on(StudyRun& run) {
-    run.interval = 0;
-    if (!run.progress.known && !run.protocol.demographics.empty()) return enter(step::Questions{}, run);
-    if (!run.progress.known && !kept(run, [&] { add_person({}, run); })) return;
-    if (const auto condition = to_rate(run)) return enter(step::Ratings{*condition}, run);
-    if (!run.progress.next) return enter(step::Done{}, run);
-    const study::PlannedTrial& trial = *run.progress.next;
-    if (trial.break_before && !run.rested) return enter(step::Pause{}, run);
-    const bool told = run.told == trial.condition && run.told_practice == trial.practice;
-    if (run.protocol.task == study::TaskKind::choice && told) return begin_trial_step(run);
-    enter(step::Instructions{}, run);
+const char* why_refused(const StudyRun& run, const std::string& code) {
+    if (study::withdrawal_of(run.directory, code) != study::Withdrawal::none) return "who has left the study";
+    return run.code.empty() ? "who is at another screen now" : "who has finished all trials";
 }
 
 // Makes the person's folder, and holds it until somebody else's code is asked for.
@@ -196,16 +173,47 @@ void finish_due(StudyRun& run) {
     run.progress.next = study::next_trial(run.progress.plan, run.progress.finished);
     run.rested = false;
     run.interval = 0;
-    go_on(run);
+    if (kept(run, [&] { find_comparison(run); })) go_on(run);
 }
 
 }  // namespace
 
 const char* name_of(const StudyStep& step) {
-    constexpr const char* kNames[] = {"code",     "again", "questions", "instructions", "trial", "device", "present",
-                                      "question", "typed", "ratings",   "pause",        "done",  "stopped"};
+    constexpr const char* kNames[] = {"code",   "again",   "consent",   "questions", "instructions", "trial",
+                                      "device", "present", "question",  "told",      "typed",        "ratings",
+                                      "pause",  "leaving", "withdrawn", "done",      "stopped"};
     static_assert(std::size(kNames) == std::variant_size_v<StudyStep>);
     return kNames[step.index()];
+}
+
+void enter(StudyStep step, StudyRun& run) {
+    change_step(std::move(step), run);
+    kept(run, [&] { write_now(run); });
+}
+
+bool kept(StudyRun& run, const std::function<void()>& work) {
+    try {
+        work();
+        return true;
+    } catch (const std::exception& error) {
+        stop_study(error.what(), run);
+        return false;
+    }
+}
+
+void go_on(StudyRun& run) {
+    run.interval = 0;
+    const bool known = run.progress.known;
+    if (!known && !run.protocol.consent.empty() && !run.consented) return enter(step::Consent{}, run);
+    if (!known && !run.protocol.demographics.empty()) return enter(step::Questions{}, run);
+    if (!known && !kept(run, [&] { add_person({}, run); })) return;
+    if (const auto condition = to_rate(run)) return enter(step::Ratings{*condition}, run);
+    if (!run.progress.next) return enter(step::Done{}, run);
+    const study::PlannedTrial& trial = *run.progress.next;
+    if (trial.break_before && !run.rested) return enter(step::Pause{}, run);
+    const bool told = run.told == trial.condition && run.told_practice == trial.practice;
+    if (due_compares(run) && told) return begin_trial_step(run);
+    enter(step::Instructions{}, run);
 }
 
 bool trial_waits(const StudyRun& run) {
@@ -226,16 +234,16 @@ StudyRun open_study_run(const study::Protocol& protocol, const fs::path& directo
     run.identities = identities_of(run.scenes);
     for (const auto& scene : run.scenes) {
         run.stimuli.emplace_back();
-        if (protocol.task == study::TaskKind::choice && scene) run.stimuli.back() = stimuli_of(*scene, protocol.choice);
+        const std::size_t condition = run.stimuli.size() - 1;
+        if (scene && study::compares(study::task_of(protocol, condition)))
+            run.stimuli.back() = stimuli_of(*scene, protocol, condition);
     }
     study::open_study(directory, protocol, {false, 0, "palpa " PALPA_VERSION});
     if (code.empty()) return run;
     if (!plain(code)) throw files::bad_input("--participant", "", files::shown(code), "up to 20 letters and digits");
     enter_code(code, run);
-    if (!run.note.empty()) {
-        const char* why = run.code.empty() ? ", who is at another screen now" : ", who has finished all trials";
-        throw files::bad_input("--participant", "", files::shown(code) + why, "a new code");
-    }
+    if (!run.note.empty())
+        throw files::bad_input("--participant", "", files::shown(code) + ", " + why_refused(run, code), "a new code");
     if (const auto* stopped = std::get_if<step::Stopped>(&run.step)) throw std::runtime_error(stopped->why);
     return run;
 }
@@ -256,6 +264,9 @@ std::string free_code(const StudyRun& run) {
 void carry_out(const StudyWish& wish, StudyRun& run) {
     if (const auto* code = std::get_if<EnterCode>(&wish)) return enter_code(code->code, run);
     if (const auto* person = std::get_if<SamePerson>(&wish)) return same_person(person->is, run);
+    if (const auto* consent = std::get_if<GiveConsent>(&wish)) return answer_consent(consent->given, run);
+    if (std::holds_alternative<WantToLeave>(wish)) return want_to_leave(run);
+    if (const auto* leave = std::get_if<LeaveStudy>(&wish)) return leave_study(leave->how, run);
     if (const auto* submit = std::get_if<SubmitAnswers>(&wish)) return submit_answers(submit->answers, run);
     if (std::holds_alternative<BeginStep>(wish)) return begin_step(run);
     if (std::holds_alternative<IntervalPresented>(wish)) return interval_presented(run);
@@ -272,9 +283,20 @@ void enter_code(const std::string& code, StudyRun& run) {
         run.code.clear();
         return refuse_code(code + " is at another screen now; close the study there, or take another code.", run);
     }
-    if (!kept(run, [&] { run.progress = study::progress_of(run.directory, run.protocol, code); })) return;
+    auto withdrawal = study::Withdrawal::none;
+    const bool good = kept(run, [&] {
+        run.progress = study::progress_of(run.directory, run.protocol, code);
+        withdrawal = study::withdrawal_of(run.directory, code);
+    });
+    if (!good) return;
+    if (withdrawal != study::Withdrawal::none) {
+        run.lock.reset();
+        return refuse_code(code + " has left the study; take a new code.", run);
+    }
     run.code = code;
+    if (!kept(run, [&] { find_comparison(run); })) return;
     run.rested = false;
+    run.consented = false;
     run.told.reset();
     run.choices.reset();  // each person's choices go to files of their own
     if (run.progress.known && !run.progress.next && !to_rate(run)) {
@@ -313,6 +335,7 @@ void begin_step(StudyRun& run) {
         run.rested = true;
         return go_on(run);
     }
+    if (at<step::Told>(run)) return finish_due(run);
     const auto* device = std::get_if<step::Device>(&run.step);
     if (device == nullptr) return begin_trial_step(run);
     if (device->here) enter(step::Trial{}, run);  // in a forced choice, the same interval
@@ -321,7 +344,7 @@ void begin_step(StudyRun& run) {
 void wait_for_device(bool left, StudyRun& run) { enter(step::Device{false, left}, run); }
 
 void trial_finished(StudyRun& run) {
-    if (run.protocol.task == study::TaskKind::find) return finish_due(run);
+    if (!due_compares(run)) return finish_due(run);
     interval_presented(run);
 }
 
@@ -333,25 +356,8 @@ void interval_presented(StudyRun& run) {
 }
 
 void choose_softer(bool first, double now_s, StudyRun& run) {
-    const study::PlannedTrial& trial = due_trial(run);
-    const study::ChoiceTask& task = run.protocol.choice;
-    const study::Condition& condition = run.protocol.conditions[trial.condition];
-    const bool reference = first == trial.reference_first;
-    study::ChoiceRow row;
-    const std::string block = trial.practice ? "practice" : "test";
-    row.block = block;
+    study::ChoiceRow row = due_choice(run, first);
     row.duration_s = now_s - run.step_began_s;
-    row.trial = trial.trial;
-    row.order_id = run.progress.plan.order_id;
-    row.condition = condition.id;
-    row.device_id = condition.device;
-    row.seed = trial.seed;
-    row.reference_kPa = task.reference_kPa;
-    row.comparison_kPa = task.comparisons_kPa[static_cast<std::size_t>(trial.comparison)];
-    if (task.reference_on) row.reference_on = run.protocol.conditions[*task.reference_on].id;
-    row.first = trial.reference_first ? "reference" : "comparison";
-    row.answer = reference ? "reference" : "comparison";
-    row.correct = reference == (row.reference_kPa < row.comparison_kPa) ? 1 : 0;
     const bool good = kept(run, [&] {
         if (!run.choices) {
             run.choices =
@@ -364,7 +370,9 @@ void choose_softer(bool first, double now_s, StudyRun& run) {
                                      ": the choice could not be written; the study stops here");
     });
     run.unkept_answers = true;
-    if (good) finish_due(run);
+    if (!good) return;
+    if (due_trial(run).practice) return enter(step::Told{row.correct == 1}, run);
+    finish_due(run);
 }
 
 void submit_typed(const study::TypedAnswers& typed, StudyRun& run) {

@@ -2,6 +2,7 @@
 // A study with people, in the app: who takes part, what comes next, what they answered. The loop owns it and runs its
 // trials; app/screens/study_screen.cpp draws it. Everything that counts is on the disk before the next step.
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -21,7 +22,7 @@ struct StudyRun {
     study::Protocol protocol;
     StudyScenes scenes;                            // by condition
     std::vector<files::Json> identities;           // by condition
-    std::vector<std::vector<StudyScene>> stimuli;  // forced choices, by condition: the reference, then each comparison
+    std::vector<std::vector<StudyScene>> stimuli;  // of comparisons, by condition: the reference, then each level
     std::filesystem::path directory;
     StudyStep step;                           // only the functions below change it
     int entered = 0;                          // number of steps entered so far, which identifies a step
@@ -30,7 +31,9 @@ struct StudyRun {
     std::unique_ptr<files::FolderLock> lock;  // of the participant's folder: the code is at one screen at a time
     std::string note;                         // why a code was refused
     study::StudyProgress progress;
-    int interval = 0;                 // of a forced choice: 0 or 1
+    int comparison = -1;              // of the due trial, index in comparisons_kPa_of(); -1: nothing is compared
+    int interval = 0;                 // of a comparison: 0 or 1
+    bool consented = false;           // this participant has agreed to take part
     bool rested = false;              // the break before this trial is over
     std::optional<std::size_t> told;  // condition whose instructions were read last
     bool told_practice = false;
@@ -67,13 +70,25 @@ void carry_out(const StudyWish& wish, StudyRun& run);
 void enter_code(const std::string& code, StudyRun& run);
 void same_person(bool is, StudyRun& run);
 void submit_answers(const std::vector<std::string>& answers, StudyRun& run);  // of questions and ratings
-void begin_step(StudyRun& run);                  // from instructions, a pause, or once the device is connected
+void begin_step(StudyRun& run);                                               // see BeginStep
 void wait_for_device(bool left, StudyRun& run);  // instead of a trial; left: the device went during it
 void trial_finished(StudyRun& run);              // the trial is on the disk
 void interval_presented(StudyRun& run);
 void choose_softer(bool first, double now_s, StudyRun& run);
 void submit_typed(const study::TypedAnswers& typed, StudyRun& run);
 void stop_study(const std::string& why, StudyRun& run);
+
+// study_consent.cpp: who takes part, and who stops.
+void answer_consent(bool given, StudyRun& run);
+void want_to_leave(StudyRun& run);
+void leave_study(study::Withdrawal how, StudyRun& run);
+
+// For these files alone. kept() runs `work`; an exception, such as a problem with the disk, stops the study with a
+// message before a trial is lost.
+void enter(StudyStep step, StudyRun& run);
+void go_on(StudyRun& run);
+bool kept(StudyRun& run, const std::function<void()>& work);
+void find_comparison(StudyRun& run);  // of the due trial; in a staircase it follows from the answers on the disk
 
 // study_due.cpp: the trial that is due. To be called only while there is one (in the steps from instructions to typed).
 const study::PlannedTrial& due_trial(const StudyRun& run);
@@ -82,11 +97,14 @@ std::size_t due_condition_index(const StudyRun& run);
 const study::Condition& due_condition(const StudyRun& run);
 bool typed_in(const study::Condition& condition);  // the program does not drive its device
 bool shows_tissue(const StudyRun& run);            // the due trial has a scene on this screen
+bool due_compares(const StudyRun& run);            // a trial is due, and two surfaces are compared in it
+double due_comparison_kPa(const StudyRun& run);    // needs due_compares()
 const StudyScene& due_scene(const StudyRun& run);  // needs shows_tissue()
 session::SessionFiles due_files(const StudyRun& run);
-double due_limit_s(const StudyRun& run);                         // time limit; 0: none
-std::vector<std::string> due_nodules(const StudyRun& run);       // names of its nodules, for typed answers
-const std::vector<study::Item>& due_items(const StudyRun& run);  // of the step of questions or ratings
+study::ChoiceRow due_choice(const StudyRun& run, bool first_is_softer);  // without times; views into `run`
+double due_limit_s(const StudyRun& run);                                 // time limit; 0: none
+std::vector<std::string> due_nodules(const StudyRun& run);               // names of its nodules, for typed answers
+const std::vector<study::Item>& due_items(const StudyRun& run);          // of the step of questions or ratings
 // False if the item asks for a number and the answer is none or outside its range. An empty answer is one.
 bool is_answer(const study::Item& item, const std::string& answer);
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "study/typed_trial.h"
+#include "study/withdrawal.h"
 
 namespace palpa::app {
 
@@ -16,6 +17,7 @@ struct Code {         // who takes part?
     int refused = 0;  // number of codes refused so far
 };
 struct Again {};      // a known code: is it the same person?
+struct Consent {};    // the protocol's text, before everything else
 struct Questions {};  // of the protocol, before the trials
 struct Instructions {};
 struct Trial {           // on the tissue; in a forced choice, one of the two intervals
@@ -27,11 +29,16 @@ struct Device {         // a trial is due, and its device is not connected
 };
 struct Present {};   // an interval that the experimenter presents
 struct Question {};  // which was softer
-struct Typed {};     // the experimenter types in the participant's answers
-struct Ratings {     // after a condition
+struct Told {        // after practice of a comparison
+    bool right = false;
+};
+struct Typed {};  // the experimenter types in the participant's answers
+struct Ratings {  // after a condition
     std::size_t condition = 0;
 };
 struct Pause {};
+struct Leaving {};    // the participant wants to stop: is it certain, and may the data be used?
+struct Withdrawn {};  // the participant has stopped
 struct Done {};
 struct Stopped {  // the study cannot continue
     std::string why;
@@ -39,9 +46,9 @@ struct Stopped {  // the study cannot continue
 
 }  // namespace step
 
-using StudyStep =
-    std::variant<step::Code, step::Again, step::Questions, step::Instructions, step::Trial, step::Device, step::Present,
-                 step::Question, step::Typed, step::Ratings, step::Pause, step::Done, step::Stopped>;
+using StudyStep = std::variant<step::Code, step::Again, step::Consent, step::Questions, step::Instructions, step::Trial,
+                               step::Device, step::Present, step::Question, step::Told, step::Typed, step::Ratings,
+                               step::Pause, step::Leaving, step::Withdrawn, step::Done, step::Stopped>;
 const char* name_of(const StudyStep& step);
 
 // What a participant or the experimenter asks for on the screen of a step.
@@ -51,10 +58,17 @@ struct EnterCode {
 struct SamePerson {
     bool is = true;
 };
+struct GiveConsent {
+    bool given = true;
+};
+struct WantToLeave {};
+struct LeaveStudy {
+    study::Withdrawal how = study::Withdrawal::none;  // none: the participant goes on after all
+};
 struct SubmitAnswers {  // answers to the items of this step; "" = not answered
     std::vector<std::string> answers;
 };
-struct BeginStep {};  // from instructions, a pause, or once the device is connected
+struct BeginStep {};  // from instructions, a pause, what was told after practice, or once the device is connected
 struct IntervalPresented {};
 struct ChooseSofter {
     bool first = true;
@@ -63,7 +77,7 @@ struct ChooseSofter {
 struct SubmitTyped {
     study::TypedAnswers answers;
 };
-using StudyWish =
-    std::variant<EnterCode, SamePerson, SubmitAnswers, BeginStep, IntervalPresented, ChooseSofter, SubmitTyped>;
+using StudyWish = std::variant<EnterCode, SamePerson, GiveConsent, WantToLeave, LeaveStudy, SubmitAnswers, BeginStep,
+                               IntervalPresented, ChooseSofter, SubmitTyped>;
 
 }  // namespace palpa::app

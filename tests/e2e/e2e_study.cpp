@@ -20,7 +20,20 @@ using namespace palpa::test;
 
 namespace {
 
-enum Key { kEnter = 36, kT = 28, kM = 58, kF = 41, k4 = 13, k0 = 19, k7 = 16, kBackspace = 22, kMenuKey = 76, kC = 54 };
+enum Key {
+    kEnter = 36,
+    kT = 28,
+    kM = 58,
+    kF = 41,
+    k4 = 13,
+    k0 = 19,
+    k7 = 16,
+    kBackspace = 22,
+    kMenuKey = 76,
+    kC = 54,
+    k1 = 10,
+    k2 = 11
+};
 
 class Script {
   public:
@@ -276,4 +289,50 @@ TEST_CASE("left: a trial that its pen leaves is interrupted with its marks, neve
     const Observations seen = read_study(folder / "log");
     CHECK(seen.interrupted_trials == 1);
     CHECK(seen.trials.size() == 1);
+}
+
+TEST_CASE("consent: a person agrees by a key of its own, practises a pair, and goes through a staircase") {
+    const TemporaryFolder folder;
+    write_text_atomically(folder / "p.json",
+                          R"({"name": "n", "version": "1", "seed": 1, "order": "fixed", "turn_maps": false,
+        "consent": "You press on surfaces for some minutes. Your answers are kept under a code.",
+        "practice": {"trials": 1}, "instructions": "Say which one is softer.",
+        "staircase": {"method": "weighted-up-down", "reference_kPa": 10, "comparisons_kPa": [12, 15, 20], "trials": 2},
+        "conditions": [{"id": "pen", "modality": "pen", "scene": ")" PALPA_SOURCE_DIR
+                          R"(/assets/scenes/default.json"}]})");
+    Script script(folder / "script.tsv");
+    script.wait(3.0);
+    script.key(kEnter);  // does not agree for anybody
+    script.wait(0.5);
+    script.key(k1);
+    script.wait(0.5);
+    script.key(kEnter);  // begin the practice
+    for (int pair = 0; pair < 3; ++pair) {
+        for (int interval = 0; interval < 2; ++interval) {
+            script.wait(1.0);
+            if (pair == 0) script.stroke(0.4, true);
+            script.key(kF);
+        }
+        script.wait(1.0);
+        script.key(pair == 1 ? k2 : k1);
+        script.wait(0.5);
+        if (pair > 0) continue;
+        script.key(kEnter);  // it was told whether that was right
+        script.wait(0.5);
+        script.key(kEnter);  // begin the tests
+    }
+    const std::string arguments = study_arguments(folder, "--quit-after-s " + std::to_string(script.close() + 5.0) +
+                                                              " --screenshot " + (folder / "p.png").string());
+    REQUIRE(run_program(folder, arguments, folder / "log/sub-07/now.json", [&] { CHECK(play_script(folder) == 0); }) ==
+            0);
+    const Json result = read_json(folder / "out.json");
+    CHECK(result["finished"] == 3);
+    CHECK(result["step"] == "done");
+    CHECK(result["overflow"] == "");
+    CHECK(text_of(folder / "log/sub-07/beh/sub-07_task-ratings_beh.tsv").find("\tconsent\tgiven\n") !=
+          std::string::npos);
+    const Observations seen = read_study(folder / "log");
+    CHECK(seen.practice_trials == 1);
+    REQUIRE(seen.staircases.size() == 1);
+    CHECK(seen.staircases[0].estimate.trials == 2);
 }

@@ -2,6 +2,7 @@
 
 #include "files/text.h"
 #include "study/exclusions.h"
+#include "study/order_balance.h"
 #include "study/read_logs.h"
 #include "study/report.h"
 #include "study/typed_trial.h"

@@ -60,19 +60,6 @@ TEST_CASE("order: in a Williams design every condition follows every other equal
     }
 }
 
-TEST_CASE("order: full rounds are balanced, others say by how much they are not") {
-    Protocol protocol = protocol_of(3, OrderKind::williams);
-    const Imbalance full = imbalance_of(protocol, people(protocol, 12))[0];
-    CHECK(full.position == 0);
-    CHECK(full.carry_over == 0);
-    CHECK(full.full_rounds_of == 6);
-    const Imbalance short_of = imbalance_of(protocol, people(protocol, 7))[0];
-    CHECK(short_of.position == 1);
-    CHECK(short_of.participants == 7);
-    protocol.order = OrderKind::fixed;
-    CHECK(imbalance_of(protocol, people(protocol, 7))[0].position == 7);
-}
-
 TEST_CASE("order: it is a function of protocol, seed and number; another seed gives another order") {
     Protocol protocol = protocol_of(6, OrderKind::random);
     const auto orders = [&] {
@@ -94,28 +81,22 @@ TEST_CASE("order: it is a function of protocol, seed and number; another seed gi
     CHECK(at_start.size() == 6);
 }
 
-TEST_CASE("order: a participant sees every view before one comes again, and practice comes first") {
+TEST_CASE("order: practice comes before the tests of its condition, and no break parts them") {
     Protocol protocol = protocol_of(3, OrderKind::latin);
-    protocol.flip_maps = true;
     protocol.practice_trials = 1;
     protocol.repeats = 2;
     protocol.break_every_trials = 2;
     const PlannedParticipant who = plan_participant(protocol, 5);
     REQUIRE(who.trials.size() == 9);
-    std::set<std::pair<int, bool>> seen;
-    for (std::size_t i = 0; i < 8; ++i) seen.insert({who.trials[i].rotate_deg, who.trials[i].flip});
-    CHECK(seen.size() == 8);
     int breaks = 0;
     for (std::size_t i = 0; i < 9; ++i) {
         CHECK(who.trials[i].trial == static_cast<int>(i) + 1);
         CHECK(who.trials[i].practice == (i % 3 == 0));
         CHECK(who.trials[i].condition == who.trials[i - i % 3].condition);
+        CHECK(who.trials[i].break_before == (i == 3 || i == 6));  // before the practice
         breaks += who.trials[i].break_before;
     }
     CHECK(breaks == 2);
-    protocol.turn_maps = protocol.flip_maps = false;
-    for (const PlannedTrial& trial : plan_participant(protocol, 1).trials)
-        CHECK((trial.rotate_deg == 0 && !trial.flip));
 }
 
 TEST_CASE("order: the time to plan grows with the trials, not with their square") {
@@ -130,7 +111,28 @@ TEST_CASE("order: the time to plan grows with the trials, not with their square"
     CHECK(who.trials[599998].break_before);
 }
 
-TEST_CASE("order: groups never differ by more than one person; random ones are shuffled in blocks") {
+TEST_CASE("order: with random assignment groups differ by no more than a block has of each; the last is not known") {
+    Protocol protocol = protocol_of(2, OrderKind::random);
+    protocol.groups = {{"x", {0, 1}}, {"y", {0, 1}}};
+    protocol.assignment = Assignment::random;
+    for (const int of_each : {2, 5}) {
+        protocol.people_per_block = of_each;
+        int difference = 0;
+        int same_pairs = 0;
+        std::vector<int> place(2, 0);
+        for (int number = 1; number <= 200; ++number) {
+            const Membership one = membership_of(protocol, number);
+            CHECK(one.place == place[one.group]++);
+            difference += one.group == 0 ? 1 : -1;
+            CHECK(std::abs(difference) <= of_each);
+            if (number % (2 * of_each) == 0) CHECK(difference == 0);
+            if (number % 2 == 0) same_pairs += membership_of(protocol, number - 1).group == one.group;
+        }
+        CHECK(same_pairs > 20);  // 0 in blocks of one person of each group
+    }
+}
+
+TEST_CASE("order: alternate assignment goes round, random assignment does not") {
     Protocol protocol = protocol_of(4, OrderKind::random);
     protocol.groups = {{"x", {0, 1}}, {"y", {2, 3}}, {"z", {0, 3}}};
     for (const Assignment assignment : {Assignment::alternate, Assignment::random}) {
@@ -141,7 +143,8 @@ TEST_CASE("order: groups never differ by more than one person; random ones are s
             const std::size_t group = plan_participant(protocol, number).group;
             ++size[group];
             sequence += std::to_string(group);
-            CHECK(*std::max_element(size.begin(), size.end()) - *std::min_element(size.begin(), size.end()) <= 1);
+            const auto [least, most] = std::minmax_element(size.begin(), size.end());
+            CHECK(*most - *least <= (assignment == Assignment::alternate ? 1 : 2));
         }
         CHECK((sequence.substr(0, 9) == "012012012") == (assignment == Assignment::alternate));
     }
@@ -161,4 +164,59 @@ TEST_CASE("order: forced choices hold every pair in both orders alike, condition
     CHECK(first.size() == 10);
     for (const auto& [key, balance] : first) CHECK(balance == 0);
     CHECK(who.trials[0].condition != plan_participant(protocol, 4).trials[0].condition);
+}
+
+TEST_CASE("order: interleaved trials take every condition once in each round, shuffled ones do not") {
+    Protocol protocol = protocol_of(4, OrderKind::williams);
+    protocol.repeats = 6;
+    protocol.practice_trials = 1;
+    protocol.trial_order = TrialOrder::interleaved;
+    const PlannedParticipant who = plan_participant(protocol, 2);
+    REQUIRE(who.trials.size() == 28);
+    for (std::size_t i = 0; i < 4; ++i) CHECK(who.trials[i].practice);
+    for (std::size_t round = 0; round < 6; ++round) {
+        std::set<std::size_t> seen;
+        for (std::size_t i = 4 + 4 * round; i < 8 + 4 * round; ++i) {
+            seen.insert(who.trials[i].condition);
+            CHECK(who.trials[i].repeat == static_cast<int>(round));
+            CHECK(who.trials[i].condition != who.trials[i - 1].condition);
+        }
+        CHECK(seen.size() == 4);
+    }
+    protocol.trial_order = TrialOrder::shuffled;
+    std::map<std::size_t, int> count;
+    int same = 0;
+    const PlannedParticipant shuffled = plan_participant(protocol, 2);
+    for (std::size_t i = 5; i < 28; ++i)
+        same += shuffled.trials[i].condition == shuffled.trials[i - 1].condition ? 1 : 0;
+    for (const PlannedTrial& trial : shuffled.trials) ++count[trial.condition];
+    CHECK(same > 0);
+    for (const auto& [condition, n] : count) CHECK(n == 7);
+}
+
+TEST_CASE("order: finding, choices and staircases in one session, with practice of each") {
+    Protocol protocol = protocol_of(3, OrderKind::fixed);
+    protocol.repeats = 2;
+    protocol.practice_trials = 2;
+    protocol.conditions[1].task = TaskKind::choice;
+    protocol.conditions[2].task = TaskKind::staircase;
+    protocol.choice = {10.0, {9.0, 14.0}, 2, false};
+    protocol.staircase.reference_kPa = 10.0;
+    protocol.staircase.comparisons_kPa = {11.0, 12.0, 13.0};
+    protocol.staircase.trials = 20;
+    const PlannedParticipant who = plan_participant(protocol, 1);
+    REQUIRE(who.trials.size() == 2 + 2 + 2 + 4 + 2 + 20);
+    CHECK(who.trials[0].comparison == -1);
+    CHECK(who.trials[4].practice);
+    CHECK(who.trials[4].comparison == 1);  // 14 differs more from 10 than 9 does
+    CHECK(who.trials[4].reference_first != who.trials[5].reference_first);
+    CHECK(who.trials[6].comparison >= 0);
+    CHECK(who.trials[10].comparison == 2);
+    int reference_first = 0;
+    for (std::size_t i = 12; i < 32; ++i) {
+        CHECK(who.trials[i].comparison == -1);  // follows from the answers
+        CHECK(who.trials[i].repeat == static_cast<int>(i) - 12);
+        reference_first += who.trials[i].reference_first;
+    }
+    CHECK(reference_first == 10);
 }

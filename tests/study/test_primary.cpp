@@ -56,3 +56,26 @@ TEST_CASE("primary: what the protocol does not define is refused with its key") 
     CHECK(contains(refusal_of_primary(R"({"quantity": "sensitivity", "conditions": ["x", "y"], "alpha": 0.05})"),
                    "alpha"));
 }
+
+TEST_CASE(
+    "primary: in a protocol of several tasks the conditions that are compared decide which quantities they have") {
+    const auto with = [](const std::string& primary) {
+        const TemporaryFolder folder;
+        write_text_atomically(folder / "p.json", R"({"name": "n", "version": "1", "seed": 1, "order": "fixed",
+            "choice": {"reference_kPa": 1, "comparisons_kPa": [2]},
+            "staircase": {"method": "quest-plus", "reference_kPa": 1, "comparisons_kPa": [2, 3, 4]},
+            "conditions": [
+                {"id": "f", "modality": "hand", "task": "find"}, {"id": "g", "modality": "hand", "task": "find"},
+                {"id": "c", "modality": "hand", "task": "choice"}, {"id": "d", "modality": "hand"},
+                {"id": "s", "modality": "hand", "task": "staircase"}],
+            "analysis": {"primary": )" + primary + "}}");
+        return read_protocol(folder / "p.json").primary;
+    };
+    CHECK(with(R"({"quantity": "sensitivity", "conditions": ["f", "g"]})")->quantity == Quantity::sensitivity);
+    CHECK(with(R"({"quantity": "correct", "conditions": ["c", "d"]})")->quantity == Quantity::correct);
+    const auto refusal = [&](const std::string& primary) { return message_of([&] { with(primary); }); };
+    CHECK(contains(refusal(R"({"quantity": "ppv", "conditions": ["f", "c"]})"), "correct: people choose under 'c'"));
+    CHECK(contains(refusal(R"({"quantity": "correct", "conditions": ["c", "g"]})"), "people find nodules under 'g'"));
+    CHECK(contains(refusal(R"({"quantity": "correct", "conditions": ["c", "s"]})"),
+                   "the method sets the share of right answers under 's'"));
+}

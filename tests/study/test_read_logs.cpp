@@ -217,7 +217,7 @@ TEST_CASE("read logs: answers and false marks that the log itself contradicts ar
     const std::string softer = "sub-01/beh/sub-01_task-softer_run-01_events.tsv";
     REFUSED(choice_study, "correct", forge_last(log / softer, "correct", "1"));
     REFUSED(choice_study, "answer", forge_last(log / softer, "answer", "both"));
-    REFUSED(choice_study, "comparison_kPa", forge_last(log / softer, "comparison_kPa", "1.5"));
+    REFUSED(choice_study, "comparison_kPa", forge_last(log / softer, "comparison_kPa", "3.5"));
     REFUSED(choice_study, "reference_on: found 'a', expected n/a as in the protocol",
             forge_last(log / softer, "reference_on", "a"));
     REFUSED(choice_study, "reference_kPa", forge_last(log / softer, "reference_kPa", "2.5"));

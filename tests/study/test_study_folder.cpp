@@ -98,6 +98,21 @@ TEST_CASE("study folder: made once, gone on with, refused to another version or 
         contains(message_of([&] { open_study(folder / "other", protocol, {}); }), "logs (sub-...) but no study.json"));
 }
 
+TEST_CASE("study folder: a study that was begun with other orders of trials is not gone on with") {
+    const TemporaryFolder folder;
+    const Protocol protocol = protocol_of(folder);
+    open_study(folder / "log", protocol, {false, 0, "palpa 0.5"});
+    std::string text = read_text(folder / "log/study.json");
+    const auto key = text.find(",\n  \"orders_version\"");
+    REQUIRE(key != std::string::npos);
+    text.erase(key, text.find('\n', key + 2) - key);
+    write_text_atomically(folder / "log/study.json", text);
+    CHECK(read_identity(folder / "log")->orders_version == 1);  // it can be analysed
+    const std::string message = message_of([&] { open_study(folder / "log", protocol, {false, 0, "palpa 0.6"}); });
+    CHECK(contains(message, "study.json: orders_version: found 1, expected 2"));
+    CHECK(contains(message, "'palpa 0.5'"));
+}
+
 TEST_CASE("study folder: people are added once; a code that stands twice is named; a line cut off is noted, not lost") {
     const TemporaryFolder folder;
     Person first{"01", "31", "F"};

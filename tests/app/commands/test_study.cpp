@@ -316,6 +316,42 @@ TEST_CASE("command study levels: a table of rejections and coverage, theirs labe
     refused("levels --people 1", "--people");
 }
 
+TEST_CASE("command study: staircases are ordered, simulated, gone on with and analysed; who withdraws is left out") {
+    const TemporaryFolder folder;
+    const std::string protocol = PALPA_SOURCE_DIR "/assets/protocols/threshold.json ";
+    const Json order = parse_json(study("order " + protocol + "--participants 4 --json").out, "stdout");
+    CHECK(order["trial_order"] == "interleaved");
+    CHECK(order["imbalance"][0]["carry_over"].get<int>() <= 4);
+    CHECK(order["participants"][0]["trials"].size() == 84);
+    CHECK(order["participants"][0]["trials"][0]["comparison_kPa"] == 10.0);  // practice
+    CHECK(order["participants"][0]["trials"][4]["comparison_kPa"].is_null());
+    CHECK(contains(study("order " + protocol + "--participants 1").out, "level by the answers, reference"));
+
+    const std::string log = (folder / "log").string();
+    REQUIRE(study("simulate " + protocol + "--participants 3 -o " + log).status == 0);
+    const Json report = parse_json(study("analyse " + log + " --json").out, "stdout");
+    REQUIRE(report["staircases"].size() == 6);
+    for (const Json& one : report["staircases"]) {
+        CHECK(one["method"] == "quest-plus");
+        CHECK(one["trials"] == 40);
+        CHECK(one["threshold_percent"].is_null());
+        // simulated eyes have sd 0.28 of ln, a JND of 21 %
+        CHECK(one["jnd_percent"].get<double>() > 8.0);
+        CHECK(one["jnd_percent"].get<double>() < 50.0);
+    }
+    CHECK_FALSE(report.contains("choices"));
+
+    refused("withdraw " + log + " --participant 9 --data keep", "--participant: found '9', expected a code that is in");
+    refused("withdraw " + folder.path().string() + " --participant 9 --data keep", "found no study.json");
+    refused("withdraw " + log + " --participant sim0002 --data burn", "--data");
+    CHECK(study("withdraw " + log + " --participant sim0002 --data leave-out").status == 0);
+    refused("withdraw " + log + " --participant sim0002 --data keep", "who has withdrawn the data");
+    const Json left = parse_json(study("analyse " + log + " --json").out, "stdout");
+    CHECK(left["staircases"].size() == 4);
+    CHECK(left["participants"] == 2);
+    CHECK(contains(left["notes"].dump(), "sub-sim0002: withdrew from the study; the data are left out"));
+}
+
 TEST_CASE("command study simulate: a disk that is full or cannot be written stops the study with a message") {
     const TemporaryFolder folder;
     {

@@ -224,10 +224,14 @@ TEST_CASE("screens: every step of a study fits, and none tells where the nodules
     run->progress = progress_of(run->directory, run->protocol, run->code);
     run->progress.next = run->progress.plan.trials.front();
     const step::Stopped stopped{"log: found 12 MB free, expected 64 MB for a trial; the study stops here"};
+    run->protocol.consent =
+        "You are asked to feel surfaces on a screen for about half an hour. Your answers are kept under a "
+        "code and not under your name. You may stop at any time and need not say why.";
     const StudyStep steps[] = {
-        step::Code{},    step::Again{},    step::Questions{}, step::Instructions{}, step::Trial{true}, step::Device{},
-        step::Present{}, step::Question{}, step::Typed{},     step::Ratings{},      step::Pause{},     step::Done{},
-        stopped};
+        step::Code{},      step::Again{},   step::Consent{}, step::Questions{}, step::Instructions{},
+        step::Trial{true}, step::Device{},  step::Present{}, step::Question{},  step::Told{false},
+        step::Typed{},     step::Ratings{}, step::Pause{},   step::Leaving{},   step::Withdrawn{},
+        step::Done{},      stopped};
     static_assert(std::size(steps) == std::variant_size_v<StudyStep>);
     const Case cases[] = {{1280, 800, kMissing, false},
                           {800, 1280, kMissing, false},

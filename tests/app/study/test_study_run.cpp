@@ -105,7 +105,7 @@ TEST_CASE("study run: from the code to the thanks, everything in the log") {
         }
     }
     CHECK(steps ==
-          "instructions trial instructions trial ratings instructions typed pause instructions typed ratings ");
+          "instructions trial instructions trial ratings pause instructions typed instructions typed ratings ");
     CHECK(read_text(log / "participants.tsv").find("sub-P7\t33\tn/a\tn/a\tn/a\tn/a\tn/a\tall\n") != std::string::npos);
     const Observations seen = read_study(log);
     CHECK(seen.notes.empty());
@@ -144,6 +144,8 @@ TEST_CASE("study run: what a keeper has to take is told, and run numbers that ar
     rate(run, "6");
     CHECK(run.unkept_answers);
     CHECK(run.unkept_runs.empty());
+    REQUIRE(at<step::Pause>(run));
+    begin_step(run);
     begin_step(run);
     REQUIRE(at<step::Typed>(run));
     TypedAnswers typed;
@@ -419,4 +421,108 @@ TEST_CASE("study run: a folder that cannot be written stops the study in words, 
     CHECK_FALSE(std::get<step::Stopped>(run.step).why.empty());
     CHECK(
         contains(message_of([&] { open_study_run(find_protocol(folder), log, "a b"); }), "--participant: found 'a b'"));
+}
+
+namespace {
+
+Protocol thresholds(const TemporaryFolder& folder) {
+    write_text_atomically(folder / "p.json", R"({"name": "n", "version": "1", "seed": 4, "order": "fixed",
+        "consent": "You press on surfaces.", "practice": {"trials": 1},
+        "conditions": [{"id": "find", "modality": "pen", "task": "find", "scene": ")" +
+                                                 kScene + R"("},
+                       {"id": "steps", "modality": "pen", "task": "staircase", "scene": ")" +
+                                                 kScene + R"("},
+                       {"id": "pairs", "modality": "hand", "task": "choice"}],
+        "choice": {"reference_kPa": 10, "comparisons_kPa": [5, 20], "repeats": 1},
+        "staircase": {"method": "weighted-up-down", "reference_kPa": 10, "comparisons_kPa": [12, 14, 17, 20], "trials": 4}})");
+    return read_protocol(folder / "p.json");
+}
+
+// Carries out one step. A pair is answered rightly where the levels differ by half or more.
+void one_step(StudyRun& run) {
+    if (at<step::Instructions>(run) || at<step::Told>(run)) return begin_step(run);
+    if (at<step::Present>(run)) return interval_presented(run);
+    if (at<step::Trial>(run)) return run_trial(run);
+    REQUIRE(at<step::Question>(run));
+    const double kPa = due_comparison_kPa(run);
+    const bool right = kPa >= 15.0 || kPa < 7.0;
+    const bool first_softer = due_trial(run).reference_first == (kPa > 10.0);
+    choose_softer(first_softer == right, 1.0, run);
+}
+
+}  // namespace
+
+TEST_CASE("study run: consent comes first; finding, a staircase and choices follow in one session") {
+    const TemporaryFolder folder;
+    const auto log = folder / "log";
+    StudyRun run = open_study_run(thresholds(folder), log, "07");
+    REQUIRE(at<step::Consent>(run));
+    carry_out(GiveConsent{false}, run);
+    CHECK(at<step::Code>(run));
+    CHECK(contains(run.note, "nothing was kept"));
+    CHECK_FALSE(std::filesystem::exists(log / "sub-07"));
+    CHECK_FALSE(std::filesystem::exists(log / "participants.tsv"));
+    enter_code("07", run);
+    carry_out(GiveConsent{true}, run);
+    CHECK(contains(read_text(log / "sub-07/beh/sub-07_task-ratings_beh.tsv"), "n/a\tconsent\tgiven\n"));
+    std::string steps, levels;
+    for (int i = 0; !at<step::Done>(run) && i < 80; ++i) {
+        if (at<step::Question>(run) && due_condition(run).id == "steps" && !due_trial(run).practice)
+            levels += std::to_string(run.comparison);
+        if (at<step::Trial>(run) && due_compares(run)) {
+            CHECK(&due_scene(run) == &run.stimuli[1][(run.interval == 0) == due_trial(run).reference_first
+                                                         ? 0
+                                                         : 1 + static_cast<std::size_t>(run.comparison)]);
+        }
+        steps += name_of(run.step) + std::string(" ");
+        one_step(run);
+        if (i == 20) {         // a crash between two pairs loses nothing
+            run.lock.reset();  // the app was closed
+            run = open_study_run(thresholds(folder), log, "07");
+            same_person(true, run);
+        }
+    }
+    CHECK(at<step::Done>(run));
+    CHECK(contains(steps, "instructions trial instructions trial instructions trial trial question told "));
+    CHECK(levels == "3213");  // 20 and 17 kPa were felt, 14 kPa was not
+    const Observations seen = read_study(log);
+    CHECK(seen.trials.size() == 1);
+    CHECK(seen.practice_trials == 3);
+    CHECK(seen.choices.size() == 2);  // answers of staircases are no shares of right answers
+    REQUIRE(seen.staircases.size() == 1);
+    CHECK(seen.staircases[0].estimate.trials == 4);
+}
+
+TEST_CASE("study run: who stops is asked about the data, and is left out where they are withdrawn") {
+    const TemporaryFolder folder;
+    const auto log = folder / "log";
+    StudyRun run = open_study_run(find_protocol(folder), log, "");
+    for (const char* code : {"01", "02", "03"}) {
+        enter_code(code, run);
+        answer_questions(run);
+        begin_step(run);
+        run_trial(run);
+        begin_step(run);
+        run_trial(run);
+        rate(run, "6");
+        REQUIRE(at<step::Pause>(run));
+        carry_out(WantToLeave{}, run);
+        CHECK(at<step::Leaving>(run));
+        if (code == std::string("03")) break;
+        const bool first = code == std::string("01");
+        carry_out(LeaveStudy{first ? Withdrawal::keeps_data : Withdrawal::takes_data}, run);
+        CHECK(at<step::Withdrawn>(run));
+        CHECK(read_json(log / ("sub-" + std::string(code)) / "now.json")["step"] == "withdrawn");
+        same_person(false, run);
+    }
+    carry_out(LeaveStudy{Withdrawal::none}, run);
+    CHECK(at<step::Pause>(run));  // goes on where it was
+    const Observations seen = read_study(log);
+    CHECK(seen.participants == std::vector<std::string>{"01", "03"});
+    REQUIRE(seen.notes.size() == 2);
+    CHECK(seen.notes[0] == "sub-01: withdrew from the study; the data may be used");
+    CHECK(contains(seen.notes[1], "sub-02: withdrew from the study; the data are left out"));
+    enter_code("02", run);
+    CHECK(contains(run.note, "02 has left the study"));
+    CHECK(contains(message_of([&] { open_study_run(find_protocol(folder), log, "02"); }), "who has left the study"));
 }

@@ -1,0 +1,13 @@
+#pragma once
+// Keys of a protocol that are well-formed and would have no effect: a person who wrote them expects one.
+
+#include "files/json.h"
+#include "study/protocol.h"
+
+namespace palpa::study {
+
+// Throws InputError for a key that this protocol would ignore, for a task without its settings, and for a condition in
+// no group. `json`: the protocol's file.
+void refuse_ignored_keys(const files::JsonReader& json, const Protocol& protocol);
+
+}  // namespace palpa::study

@@ -1,0 +1,31 @@
+#pragma once
+// Participants who agree to take part, and those who stop before the end. Both are kept among the answers to the
+// protocol's questions (study/ratings.h), so that they come with the logs of a tablet.
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "study/ratings.h"
+
+namespace palpa::study {
+
+enum class Withdrawal {
+    none,
+    keeps_data,  // stopped; the data so far may be used
+    takes_data   // stopped; the analysis leaves out all data of this participant
+};
+
+Withdrawal withdrawal_of(const std::filesystem::path& directory, const std::string& code);
+
+// Notes a withdrawal for the reader of a report. True for a participant who withdrew the data too.
+bool takes_data(const std::filesystem::path& directory, const std::string& code, std::vector<std::string>& notes);
+
+// Keeps that a participant stops; `how` is not none. Nothing is deleted. Throws std::runtime_error if it cannot be
+// written.
+void withdraw(const std::filesystem::path& directory, const std::string& code, Withdrawal how);
+
+// The answer that stands for the consent of a participant.
+Rating consent_given();
+
+}  // namespace palpa::study
