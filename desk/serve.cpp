@@ -197,7 +197,6 @@ void serve(const ServeOptions& options) {
                        options.sessions, trouble),
               std::nullopt,
               DeskEvents(options.json)};
-    if (!options.collect.empty()) desk.uploads.emplace(options.collect, options.uploads, notes);
 
     const EndNotes notes_of_end;
     ::signal(SIGPIPE, SIG_IGN);
@@ -205,6 +204,8 @@ void serve(const ServeOptions& options) {
     DeskServer server(std::move(tls), options.patience, {});
     set_routes(desk, server);
     const int port = server.bind(options.bind, options.port);
+    // only now: a desk that finds its port taken leaves no folder
+    if (!options.collect.empty()) desk.uploads.emplace(options.collect, options.uploads, notes);
     print_start(options, urls_of(options, binding, port), with_tls ? desk.codes.code() : "", print, port);
     if (!trouble.empty()) desk.events.tell("note", trouble, {{"what", trouble}});
     for (const std::string& note : notes) desk.events.tell("note", note, {{"what", note}});

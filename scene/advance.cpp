@@ -280,6 +280,7 @@ void advance(const Scene& scene, const Plan& plan, const platform::Sample& sampl
     follow_pointer(scene, plan, sample, state);
     if (!state.answered) return;
     run_stages(scene, plan, sample, state);
+    state.counters.inexact += state.contact.inexact;
     state.avatar.p_m = state.touch.p_m - state.avatar.lag_m;
     note_extremes(state.avatar, state.timeline.now_s, state);
 }

@@ -193,6 +193,7 @@ LinearAnswer press(const LinearTissue& tissue, const Eigen::Vector2d& p_m, doubl
     const mechanics::ToolForce& out = work.contact.tool[0];
     answer.depth_m = out.depth_m;
     answer.saturated = work.contact.flags.capped;
+    answer.inexact = work.contact.flags.not_settled || work.contact.flags.force_missed;
     work.depth_m = out.depth_m;
     const double width_m = 2.0 * std::sqrt(out.area_m2 / std::numbers::pi);
     answer.linearity = mechanics::linearity_ratio(out.depth_m, tissue.phantom.size_m[2], width_m);
@@ -271,6 +272,7 @@ void rub(const LinearTissue& tissue, const Press& press, LinearWork& work, Conta
     const std::int64_t before = work.skipped_slides;
     drag(tissue, press.p_m, contact.depth_m, work);
     contact.skipped_slides = work.skipped_slides - before;
+    contact.inexact = contact.inexact || work.sliding.flags.not_settled;
 }
 
 }  // namespace
@@ -282,6 +284,7 @@ void answer(const LinearTissue& tissue, StageId stage, const Press& press, Linea
         const LinearAnswer found = scene::press(tissue, press.p_m, press.force_N / press.stiffness_scale, work);
         contact.depth_m = found.depth_m;
         contact.saturated = found.saturated;
+        contact.inexact = found.inexact;
         contact.linearity = found.linearity;
         return;
     }

@@ -74,6 +74,7 @@ LinearWork make_work(const LinearTissue& tissue);
 struct LinearAnswer {
     double depth_m = 0.0;
     bool saturated = false;  // the force is not reached at the greatest depth allowed; the depth stays there
+    bool inexact = false;    // the contact did not settle, or the force was missed (mechanics/contact.h)
     double linearity = 0.0;  // mechanics/linear_range.h: amber above 0.10, red above 0.25
 };
 LinearAnswer press(const LinearTissue& tissue, const Eigen::Vector2d& p_m, double force_N, LinearWork& work);

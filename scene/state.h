@@ -31,6 +31,7 @@ struct Counters {
     std::int64_t distrusted = 0;        // first of a touch, with a level that no touch begins with
     std::int64_t palms = 0;             // touches of fingers that ended because a pen came down
     std::int64_t saturated = 0;         // Contact::saturated
+    std::int64_t inexact = 0;           // Contact::inexact
     std::int64_t off_tissue = 0;        // touching beside the tissue
     std::int64_t not_numbers = 0;       // with a position that is not finite
     std::int64_t unmeasured = 0;        // not Contact::measured

@@ -105,6 +105,7 @@ files::Json run_json(const scene::Scene& scene, const scene::Plan& plan, const s
         }
     }
     json["counts"] = {{"saturated", counters.saturated},
+                      {"inexact", counters.inexact},
                       {"levels_clamped", counters.levels_clamped},
                       {"without_level", counters.without_level},
                       {"off_tissue", counters.off_tissue},

@@ -51,7 +51,7 @@ void take_staircases(const std::filesystem::path& directory, const std::set<std:
     for (const std::string& code : seen.participants) {
         if (left_out.count(code) == 0) counted.push_back(code);
     }
-    seen.staircases = staircase_results(directory, counted, left_out_trials);
+    seen.staircases = staircase_results(directory, counted, left_out_trials, seen.notes);
     std::set<std::string> conditions;
     for (const StaircaseResult& one : seen.staircases) conditions.insert(one.condition);
     std::erase_if(seen.choices, [&](const Choices& row) {

@@ -69,6 +69,10 @@ void read_protocol_of(Study& study, std::vector<std::string>& notes) {
         throw files::bad_input(file.string(), "", "sha256 " + study.protocol->sha256.substr(0, 12),
                                study.identity->sha256.substr(0, 12) + " as in study.json: the file was changed");
     }
+    if (study.identity->orders_version != kOrdersVersion) {
+        notes.push_back((study.directory / "study.json").string() +
+                        ": began with another version's orders; the logs are compared with the plan's numbers only");
+    }
     for (std::size_t i = 0; i < study.protocol->conditions.size(); ++i)
         study.planned_condition[study.protocol->conditions[i].id] = static_cast<int>(i);
 }
@@ -127,7 +131,9 @@ class Subject {
             throw files::bad_input(text(last_place_), "trial", std::to_string(last_trial_),
                                    "1 to " + std::to_string(plan.trials.size()) + ", as the protocol plans them");
         }
-        const auto rows = compare_with_plan(*study_.protocol, plan, code_, logged_, out_.notes);
+        std::vector<std::string> of_other_orders;
+        auto& notes = study_.identity->orders_version == kOrdersVersion ? out_.notes : of_other_orders;
+        const auto rows = compare_with_plan(*study_.protocol, plan, code_, logged_, notes);
         out_.progress.insert(out_.progress.end(), rows.begin(), rows.end());
     }
 
@@ -367,8 +373,10 @@ Observations read_study(const fs::path& directory) {
             if (who == code && reader.has_finished(trial)) finished.insert({who, trial});
         }
         if (with_folder.count(code) == 0 || study.left_out.count(code) > 0) continue;
-        for (const Rating& r : read_ratings(directory, code, out.notes))
+        for (const Rating& r : read_ratings(directory, code, out.notes)) {
+            if (tells_participation(r)) continue;
             out.answers.push_back({r.condition, r.item, r.value, files.empty() ? -1 : index});
+        }
     }
     check_exclusions(study, codes, finished);
     take_staircases(directory, study.left_out, study.left_out_trials, out);

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <numeric>
 
@@ -18,6 +17,7 @@ constexpr double kLeastSd = 0.02;
 constexpr double kGreatestSd = 1.5;
 constexpr double kLapses[] = {0.0, 0.02, 0.04};
 constexpr double kJndOfSd = 0.6744897501960817;  // Phi(0.6745) = 0.75
+constexpr double kEqualEntropy = 1e-9;           // nat: which of two such levels is taken may depend on the machine
 constexpr int kFirstReversals = 2;               // on the way from the first level to the threshold
 
 double normal_share(double z) { return 0.5 * std::erfc(-z / std::numbers::sqrt2); }
@@ -66,17 +66,25 @@ double expected_entropy(const std::vector<PosteriorPoint>& posterior, double dif
     return expected;
 }
 
-int most_telling_level(const StaircaseTask& task, const std::vector<StaircaseAnswer>& answers, bool reference_first) {
-    const std::vector<PosteriorPoint> posterior = posterior_of(task, answers);
-    int best = 0;
-    double least = std::numeric_limits<double>::infinity();
-    for (int level = 0; level < static_cast<int>(task.comparisons_kPa.size()); ++level) {
-        const double entropy = expected_entropy(posterior, difference_at(task, level), reference_first);
-        if (entropy >= least) continue;
-        least = entropy;
-        best = level;
+// Of each level.
+std::vector<double> expected_entropies(const StaircaseTask& task, const std::vector<PosteriorPoint>& posterior,
+                                       bool reference_first) {
+    std::vector<double> out;
+    for (int level = 0; level < static_cast<int>(task.comparisons_kPa.size()); ++level)
+        out.push_back(expected_entropy(posterior, difference_at(task, level), reference_first));
+    return out;
+}
+
+void learn(const StaircaseTask& task, const StaircaseAnswer& answer, std::vector<PosteriorPoint>& points) {
+    const double difference = difference_at(task, answer.level);
+    double sum = 0.0;
+    for (PosteriorPoint& point : points) {
+        const double right = share_right(point, difference, answer.reference_first);
+        point.weight *= answer.correct ? right : 1.0 - right;
+        sum += point.weight;
     }
-    return best;
+    assert(sum > 0.0);  // a lapse is always possible
+    for (PosteriorPoint& point : points) point.weight /= sum;
 }
 
 int moved(const StaircaseTask& task, int level, bool correct) {
@@ -139,23 +147,33 @@ double share_right(const PosteriorPoint& point, double difference, bool referenc
 }
 
 int next_level(const StaircaseTask& task, const std::vector<StaircaseAnswer>& answers, bool reference_first) {
-    if (task.method == StaircaseMethod::quest_plus) return most_telling_level(task, answers, reference_first);
+    if (task.method == StaircaseMethod::quest_plus) {
+        const std::vector<double> entropies = expected_entropies(task, posterior_of(task, answers), reference_first);
+        return static_cast<int>(std::min_element(entropies.begin(), entropies.end()) - entropies.begin());
+    }
     return answers.empty() ? task.start : moved(task, answers.back().level, answers.back().correct);
+}
+
+int answers_at_other_levels(const StaircaseTask& task, const std::vector<StaircaseAnswer>& answers) {
+    int others = 0, asked = task.start;
+    std::vector<PosteriorPoint> posterior = prior();
+    for (const StaircaseAnswer& answer : answers) {
+        if (task.method == StaircaseMethod::weighted_up_down) {
+            others += answer.level != asked ? 1 : 0;
+            asked = moved(task, answer.level, answer.correct);
+            continue;
+        }
+        const std::vector<double> entropies = expected_entropies(task, posterior, answer.reference_first);
+        const double least = *std::min_element(entropies.begin(), entropies.end());
+        others += entropies[static_cast<std::size_t>(answer.level)] > least + kEqualEntropy ? 1 : 0;
+        learn(task, answer, posterior);
+    }
+    return others;
 }
 
 std::vector<PosteriorPoint> posterior_of(const StaircaseTask& task, const std::vector<StaircaseAnswer>& answers) {
     std::vector<PosteriorPoint> points = prior();
-    for (const StaircaseAnswer& answer : answers) {
-        const double difference = difference_at(task, answer.level);
-        double sum = 0.0;
-        for (PosteriorPoint& point : points) {
-            const double right = share_right(point, difference, answer.reference_first);
-            point.weight *= answer.correct ? right : 1.0 - right;
-            sum += point.weight;
-        }
-        assert(sum > 0.0);  // a lapse is always possible
-        for (PosteriorPoint& point : points) point.weight /= sum;
-    }
+    for (const StaircaseAnswer& answer : answers) learn(task, answer, points);
     return points;
 }
 

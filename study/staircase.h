@@ -33,6 +33,10 @@ struct StaircaseAnswer {
 // Source: Watson, Journal of Vision 17(3):10 (2017), equations 4 to 10.
 int next_level(const StaircaseTask& task, const std::vector<StaircaseAnswer>& answers, bool reference_first);
 
+// Returns how many answers were given at a level that next_level() does not ask for after the answers before them. Levels
+// that tell QUEST+ equally much all count as asked for.
+int answers_at_other_levels(const StaircaseTask& task, const std::vector<StaircaseAnswer>& answers);
+
 // The psychometric function of the posterior:
 //
 //   P(second is called stiffer) = lapse + (1 - 2 lapse) Phi((x - pse) / sd)        x = ln(second / first)

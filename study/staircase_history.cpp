@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "files/input_error.h"
 #include "files/table.h"
 #include "files/text.h"
 #include "study/count.h"
@@ -46,6 +47,15 @@ std::set<int> trials_of(const std::string& code, const std::set<std::pair<std::s
     return trials;
 }
 
+void note_other_levels(const StaircaseTask& task, const std::vector<StaircaseAnswer>& answers, const std::string& code,
+                       const std::string& condition, std::vector<std::string>& notes) {
+    const int others = answers_at_other_levels(task, answers);
+    if (others == 0) return;
+    notes.push_back("sub-" + code + ": " + std::to_string(others) + " of " + std::to_string(answers.size()) +
+                    " answers of the staircase under " + files::shown(condition) +
+                    " are at a level that the answers before them do not ask for");
+}
+
 }  // namespace
 
 std::vector<StaircaseAnswer> staircase_answers(const fs::path& directory, const Protocol& protocol,
@@ -60,7 +70,8 @@ std::vector<StaircaseAnswer> staircase_answers(const fs::path& directory, const 
 }
 
 std::vector<StaircaseResult> staircase_results(const fs::path& directory, const std::vector<std::string>& participants,
-                                               const std::set<std::pair<std::string, int>>& left_out) {
+                                               const std::set<std::pair<std::string, int>>& left_out,
+                                               std::vector<std::string>& notes) {
     std::vector<StaircaseResult> out;
     if (!fs::exists(directory / "protocol.json")) return out;
     const Protocol protocol = read_protocol(directory / "protocol.json");
@@ -68,6 +79,8 @@ std::vector<StaircaseResult> staircase_results(const fs::path& directory, const 
         if (task_of(protocol, i) != TaskKind::staircase) continue;
         for (const std::string& code : participants) {
             const auto answers = staircase_answers(directory, protocol, code, i, trials_of(code, left_out));
+            note_other_levels(protocol.staircase, staircase_answers(directory, protocol, code, i), code,
+                              protocol.conditions[i].id, notes);
             if (answers.empty()) continue;
             out.push_back(
                 {protocol.conditions[i].id, code, protocol.staircase.method, estimate_of(protocol.staircase, answers)});

@@ -13,8 +13,8 @@
 
 namespace palpa::study {
 
-// Who may hold the lock of a study's whole folder (files/folder_lock.h): simulate, import, exclude and replace take it
-// while they write. Screens of `study run` share the folder, and lock the folders of their participants.
+// Who may hold the lock of a study's whole folder (files/folder_lock.h): simulate, import, exclude, replace and
+// withdraw take it while they write. Screens of `study run` share the folder, and lock the folders of their participants.
 inline constexpr const char* kOtherWriter = "another palpa that writes into this folder";
 
 struct StudyKind {

@@ -5,6 +5,7 @@
 namespace palpa::study {
 namespace {
 
+constexpr const char* kConsentItem = "consent";
 constexpr const char* kWithdrawalItem = "withdrawal";
 constexpr const char* kKeepsData = "data may be used";
 constexpr const char* kTakesData = "data must not be used";
@@ -34,6 +35,10 @@ void withdraw(const std::filesystem::path& directory, const std::string& code, W
     add_ratings(directory, code, {{"n/a", kWithdrawalItem, how == Withdrawal::takes_data ? kTakesData : kKeepsData}});
 }
 
-Rating consent_given() { return {"n/a", "consent", "given"}; }
+bool tells_participation(const Rating& answer) {
+    return answer.condition == "n/a" && (answer.item == kConsentItem || answer.item == kWithdrawalItem);
+}
+
+Rating consent_given() { return {"n/a", kConsentItem, "given"}; }
 
 }  // namespace palpa::study

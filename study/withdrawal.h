@@ -25,6 +25,9 @@ bool takes_data(const std::filesystem::path& directory, const std::string& code,
 // written.
 void withdraw(const std::filesystem::path& directory, const std::string& code, Withdrawal how);
 
+// True for an answer that says that a person takes part, or has stopped: no answer to a question.
+bool tells_participation(const Rating& answer);
+
 // The answer that stands for the consent of a participant.
 Rating consent_given();
 

@@ -204,7 +204,7 @@ void print_report(const std::string& name, const stiffnessmaps::Map& map, const 
     const char* unit = report.form == stiffnessmaps::RecordingForm::probing   ? "points"
                        : report.form == stiffnessmaps::RecordingForm::sliding ? "samples"
                                                                               : "numbers";
-    std::printf("%s: %zu %s become %zu x %zu cells of %.2f x %.2f mm, %zu depths to %.2f mm\n", name.c_str(),
+    std::printf("%s: %zu %s become %zu x %zu cells of %.4g x %.4g mm, %zu depths to %.4g mm\n", name.c_str(),
                 report.points, unit, map.n_x, map.n_y, 1e3 * map.spacing_m[0], 1e3 * map.spacing_m[1], map.n_depths(),
                 1e3 * map.depths_m.back());
     std::printf("  %zu cells missing; %zu of %zu rows and %zu points rejected (%zu outliers)", report.missing_cells,

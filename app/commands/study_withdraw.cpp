@@ -7,6 +7,7 @@
 
 #include "app/commands/option_checks.h"
 #include "app/commands/study.h"
+#include "files/folder_lock.h"
 #include "files/input_error.h"
 #include "files/text.h"
 #include "study/study_folder.h"
@@ -26,6 +27,7 @@ void withdraw_participant(const WithdrawOptions& options) {
         throw files::bad_input(options.directory, "", "no study.json",
                                "the folder of a study (--log of palpa study run)");
     }
+    const files::FolderLock lock(options.directory, study::kOtherWriter);
     std::vector<std::string> notes;
     const std::vector<study::Person> people = study::read_people(options.directory, notes);
     const auto same = [&](const study::Person& one) { return one.code == options.participant; };

@@ -64,7 +64,8 @@ const palpaTrials = (() => {
         const asked = asked_for('participant');
         if (protocol() !== '') return asked === null ? '' : asked.slice(0, 64); // a study asks for nobody by itself
         if (asked !== null && kPlain.test(asked)) remember('palpa-participant', asked);
-        return recall('palpa-participant') || `tablet${tabletName()}`;
+        const kept = recall('palpa-participant');
+        return kPlain.test(kept) ? kept : `tablet${tabletName()}`;
     };
     // Names of runs are never given twice, whatever became of their trials.
     const runOf = (name) => Number((/_run-([0-9]+)$/.exec(name) || [0, 0])[1]);

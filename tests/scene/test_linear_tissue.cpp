@@ -55,6 +55,38 @@ TEST_CASE("linear tissue: harder sinks deeper, over the nodule less than beside 
     CHECK(deep.linearity > 0.25);  // red
 }
 
+TEST_CASE("linear tissue: an answer that is not exact says so, and a trial counts it") {
+    Block block;
+    const Eigen::Vector2d between_nodes(0.0451, 0.0301);
+    CHECK(press(block.tissue, between_nodes, 1e-18, block.work).inexact);  // less than the last bit of a depth
+    CHECK_FALSE(press(block.tissue, between_nodes, 0.5, block.work).inexact);
+
+    Scene scene;
+    scene.tissue = block.options;
+    scene.profile = PALPA_SOURCE_DIR "/assets/profiles/s-pen.json";
+    ::setenv("XDG_CACHE_HOME", block.folder.path().c_str(), 1);
+    Plan plan = make_plan(scene);
+    const auto count = [&](const Plan& with) {
+        State state = start(scene, with, {600, 600});
+        Sample sample;
+        const Eigen::Vector2d px = px_of_tissue(state.view, between_nodes);
+        sample.x_px = px.x();
+        sample.y_px = px.y();
+        sample.pressure = 0.45;
+        for (const Phase phase : {Phase::down, Phase::move, Phase::up}) {
+            sample.phase = phase;
+            sample.t_host_s += 0.01;
+            advance(scene, with, sample, state);
+        }
+        return state.counters.inexact;
+    };
+    CHECK(count(plan) == 0);
+    auto& compliance = std::get<LinearTissue>(plan.tissue).compliance;  // that no contact settles on
+    compliance.revision = mechanics::new_revision();
+    compliance.normal_m_per_N.topRows(compliance.n_touch).diagonal() *= -1.0;
+    CHECK(count(plan) == 2);
+}
+
 TEST_CASE("linear tissue: resists on the way to the nodule, lets go behind it, mirrored places answer alike") {
     Block block;
     const double depth_m = 2e-3;

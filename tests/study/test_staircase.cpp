@@ -181,3 +181,15 @@ TEST_CASE("staircase: too few reversals, or levels that end too early, say so") 
     CHECK(estimate_of(task, {}).trials == 0);
     CHECK(percent_of(std::log(1.25)) == doctest::Approx(25.0));
 }
+
+TEST_CASE("staircase: answers at levels that were not asked for are counted, by both methods") {
+    MESSAGE("seed " << kSeed);
+    Random random(kSeed);
+    const PosteriorPoint observer{0.0, 0.2, 0.02, 1.0};
+    for (const StaircaseTask& task : {up_down(3, 0.05, 10, 40), quest(40)}) {
+        std::vector<StaircaseAnswer> answers = answers_of(task, observer, random);
+        CHECK(answers_at_other_levels(task, answers) == 0);
+        answers.back().level = answers.back().level == 0 ? 5 : 0;
+        CHECK(answers_at_other_levels(task, answers) == 1);
+    }
+}

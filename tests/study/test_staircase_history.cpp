@@ -1,5 +1,7 @@
 #include <doctest/doctest.h>
 
+#include <algorithm>
+
 #include "files/text.h"
 #include "study/read_logs.h"
 #include "study/report.h"
@@ -136,4 +138,28 @@ TEST_CASE("staircase history: the analysis holds staircases against the plan, an
 
     write_text_atomically(log / "exclusions.tsv", "participant\ttrial\treason\n01\tall\tleft\n");
     CHECK(read_study(log).staircases.empty());
+}
+
+TEST_CASE("staircase history: answers at a level that the staircase did not ask for are named") {
+    const TemporaryFolder folder;
+    const Protocol protocol = threshold_protocol(folder);
+    const std::filesystem::path log = folder / "log";
+    open_study(log, protocol, {false, 0, "p"});
+    Person person;
+    person.code = "01";
+    add_people(log, {person});
+    answer(protocol, log, 1000);
+    CHECK_FALSE(contains(report_json(make_report(read_study(log), {})).dump(), "do not ask for"));
+
+    const std::filesystem::path file = events_files(log / "sub-01").front();
+    std::string text = read_text(file);
+    const std::size_t last = text.rfind("\t12\t");  // 12 kPa, in one of the last tests of condition b
+    REQUIRE(last != std::string::npos);
+    text.replace(last, 4, "\t11\t");
+    write_text_atomically(file, text);
+    const Observations seen = read_study(log);
+    const auto tells = [](const std::string& note) {
+        return contains(note, "of 12 answers of the staircase under 'b'") && contains(note, "do not ask for");
+    };
+    CHECK(std::count_if(seen.notes.begin(), seen.notes.end(), tells) == 1);
 }

@@ -352,6 +352,44 @@ TEST_CASE("command study: staircases are ordered, simulated, gone on with and an
     CHECK(contains(left["notes"].dump(), "sub-sim0002: withdrew from the study; the data are left out"));
 }
 
+TEST_CASE("command study: finding, choices and a staircase, interleaved in one session, are analysed side by side") {
+    const TemporaryFolder folder;
+    const std::string scene = PALPA_SOURCE_DIR "/assets/scenes/default.json";
+    write_text_atomically(folder / "p.json", R"({"name": "n", "version": "1", "seed": 8, "order": "latin",
+        "trial_order": "interleaved", "practice": {"trials": 1}, "repeats": 4, "conditions": [
+            {"id": "find", "modality": "pen", "task": "find", "scene": ")" + scene +
+                                                 R"("},
+            {"id": "pairs", "modality": "pen", "task": "choice", "scene": ")" + scene +
+                                                 R"("},
+            {"id": "steps", "modality": "pen", "task": "staircase", "scene": ")" + scene +
+                                                 R"("}],
+        "choice": {"reference_kPa": 20, "comparisons_kPa": [14, 28], "repeats": 3},
+        "staircase": {"method": "weighted-up-down", "reference_kPa": 20, "comparisons_kPa": [22, 25, 28, 32], "trials": 6}})");
+    const std::string protocol = (folder / "p.json").string(), log = (folder / "log").string();
+    REQUIRE(study("simulate " + protocol + " --participants 4 -o " + log).status == 0);
+    const Json report = parse_json(study("analyse " + log + " --json").out, "stdout");
+    CHECK(report["participants"] == 4);
+    CHECK(report["trials"] == 16);
+    REQUIRE(report["progress"].size() == 12);
+    for (const Json& one : report["progress"]) {
+        CHECK(one["planned"] == (one["condition"] == "find" ? 4 : 6));
+        CHECK(one["finished"] == one["planned"]);
+    }
+    REQUIRE(report["choices"].size() >= 1);
+    for (const Json& one : report["choices"]) CHECK(one["condition"] == "pairs");
+    CHECK(report["staircases"].size() == 4);
+    CHECK_FALSE(contains(report["notes"].dump(), "in the plan"));
+    CHECK_FALSE(contains(report["notes"].dump(), "staircase"));
+
+    // Logs of a version with other orders are counted, not compared trial by trial.
+    Json identity = read_json(folder / "log/study.json");
+    identity["orders_version"] = 1;
+    write_text_atomically(folder / "log/study.json", json_text(identity));
+    const Json older = parse_json(study("analyse " + log + " --json").out, "stdout");
+    CHECK(older["progress"] == report["progress"]);
+    CHECK(contains(older["notes"].dump(), "began with another version's orders"));
+}
+
 TEST_CASE("command study simulate: a disk that is full or cannot be written stops the study with a message") {
     const TemporaryFolder folder;
     {
