@@ -34,9 +34,9 @@ struct Contact {
     double normal_N = 0.0;
     double tangential_N = 0.0;  // resists motion along Press::heading
     bool saturated = false;     // the force is not reached at the greatest known depth; the depth stays there
-    bool inexact = false;       // a simulated contact did not settle, or its force was not met; the answer is the nearest
-    bool measured = true;       // false where a map has no measured cells or ends
-    double linearity = 0.0;     // of a simulated tissue: amber above 0.10, red above 0.25 (mechanics/linear_range.h)
+    bool inexact = false;    // a simulated contact did not settle, or its force was not met; the answer is the nearest
+    bool measured = true;    // false where a map has no measured cells or ends
+    double linearity = 0.0;  // of a simulated tissue: amber above 0.10, red above 0.25 (mechanics/linear_range.h)
     std::int64_t skipped_slides = 0;  // friction steps left out on the way to this touch
 };
 

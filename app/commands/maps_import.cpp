@@ -199,14 +199,21 @@ files::Json import_json(const stiffnessmaps::ImportReport& report) {
         {"notes", report.notes}};
 }
 
+// Micrometres are not lost where a map is small.
+std::string shown_mm(double value_m) {
+    char text[32];
+    std::snprintf(text, sizeof text, 1e3 * value_m < 0.1 ? "%.2g" : "%.2f", 1e3 * value_m);
+    return text;
+}
+
 void print_report(const std::string& name, const stiffnessmaps::Map& map, const stiffnessmaps::ImportReport& report) {
     const stiffnessmaps::ImportResidual& residual = report.residual;
     const char* unit = report.form == stiffnessmaps::RecordingForm::probing   ? "points"
                        : report.form == stiffnessmaps::RecordingForm::sliding ? "samples"
                                                                               : "numbers";
-    std::printf("%s: %zu %s become %zu x %zu cells of %.4g x %.4g mm, %zu depths to %.4g mm\n", name.c_str(),
-                report.points, unit, map.n_x, map.n_y, 1e3 * map.spacing_m[0], 1e3 * map.spacing_m[1], map.n_depths(),
-                1e3 * map.depths_m.back());
+    std::printf("%s: %zu %s become %zu x %zu cells of %s x %s mm, %zu depths to %s mm\n", name.c_str(), report.points,
+                unit, map.n_x, map.n_y, shown_mm(map.spacing_m[0]).c_str(), shown_mm(map.spacing_m[1]).c_str(),
+                map.n_depths(), shown_mm(map.depths_m.back()).c_str());
     std::printf("  %zu cells missing; %zu of %zu rows and %zu points rejected (%zu outliers)", report.missing_cells,
                 report.rejected_rows, report.rows, report.rejected_points, report.outliers);
     if (report.form == stiffnessmaps::RecordingForm::probing)

@@ -357,11 +357,14 @@ TEST_CASE("command study: finding, choices and a staircase, interleaved in one s
     const std::string scene = PALPA_SOURCE_DIR "/assets/scenes/default.json";
     write_text_atomically(folder / "p.json", R"({"name": "n", "version": "1", "seed": 8, "order": "latin",
         "trial_order": "interleaved", "practice": {"trials": 1}, "repeats": 4, "conditions": [
-            {"id": "find", "modality": "pen", "task": "find", "scene": ")" + scene +
+            {"id": "find", "modality": "pen", "task": "find", "scene": ")" +
+                                                 scene +
                                                  R"("},
-            {"id": "pairs", "modality": "pen", "task": "choice", "scene": ")" + scene +
+            {"id": "pairs", "modality": "pen", "task": "choice", "scene": ")" +
+                                                 scene +
                                                  R"("},
-            {"id": "steps", "modality": "pen", "task": "staircase", "scene": ")" + scene +
+            {"id": "steps", "modality": "pen", "task": "staircase", "scene": ")" +
+                                                 scene +
                                                  R"("}],
         "choice": {"reference_kPa": 20, "comparisons_kPa": [14, 28], "repeats": 3},
         "staircase": {"method": "weighted-up-down", "reference_kPa": 20, "comparisons_kPa": [22, 25, 28, 32], "trials": 6}})");
@@ -370,8 +373,8 @@ TEST_CASE("command study: finding, choices and a staircase, interleaved in one s
     const Json report = parse_json(study("analyse " + log + " --json").out, "stdout");
     CHECK(report["participants"] == 4);
     CHECK(report["trials"] == 16);
-    REQUIRE(report["progress"].size() == 12);
-    for (const Json& one : report["progress"]) {
+    REQUIRE(report["plan"].size() == 12);
+    for (const Json& one : report["plan"]) {
         CHECK(one["planned"] == (one["condition"] == "find" ? 4 : 6));
         CHECK(one["finished"] == one["planned"]);
     }
@@ -386,7 +389,7 @@ TEST_CASE("command study: finding, choices and a staircase, interleaved in one s
     identity["orders_version"] = 1;
     write_text_atomically(folder / "log/study.json", json_text(identity));
     const Json older = parse_json(study("analyse " + log + " --json").out, "stdout");
-    CHECK(older["progress"] == report["progress"]);
+    CHECK(older["plan"] == report["plan"]);
     CHECK(contains(older["notes"].dump(), "began with another version's orders"));
 }
 
