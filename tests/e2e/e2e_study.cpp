@@ -6,6 +6,7 @@
 #include <fstream>
 #include <string>
 
+#include "files/folder_lock.h"
 #include "files/json.h"
 #include "files/text.h"
 #include "scene/mapping.h"
@@ -188,9 +189,13 @@ TEST_CASE("killed: the interrupted trial comes again, and its samples up to the 
     CHECK(run_program(folder, study_arguments(folder, "--quit-after-s 60"), folder / "log/sub-07/now.json", [] {}) !=
           0);
     killer.join();
+    // the shell that was killed too is gone before the program is
+    REQUIRE(wait_for([&] { return !is_folder_locked(folder / "log/sub-07"); }));
     const std::string arguments = study_arguments(folder, "--quit-after-s 14");
-    REQUIRE(run_program(folder, arguments, folder / "log/sub-07/now.json", [] {}) == 0);
+    const int status = run_program(folder, arguments, folder / "log/sub-07/now.json", [] {});
     hand.join();
+    INFO(text_of(folder / "err.txt"));
+    REQUIRE(status == 0);
     CAPTURE(at_kill);
     const Observations seen = read_study(folder / "log");
     CHECK(seen.interrupted_trials == 1);
