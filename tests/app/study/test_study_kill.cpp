@@ -27,7 +27,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kParticipants = 40;
+constexpr int kParticipants = 20;
 constexpr double kPatience_s = 200.0;  // sanitizers are slow
 constexpr int kTrials = 3 * kParticipants;
 const std::string kProtocol = PALPA_SOURCE_DIR "/assets/protocols/effects.json";
