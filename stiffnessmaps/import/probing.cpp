@@ -153,6 +153,13 @@ Probing read_probing(files::Table& table, const Columns& columns, const ImportOp
         p.lateral_N[0].push_back(sign * value_of(table, columns, Role::force_x));
         p.lateral_N[1].push_back(sign * value_of(table, columns, Role::force_y));
     }
+    // Of a press and its release about half the rows go; where many more do, they are hardly in the order of pressing.
+    if (10 * report.rejected_rows > 6 * report.rows) {
+        report.notes.push_back(
+            std::to_string(report.rejected_rows) + " of " + std::to_string(report.rows) +
+            " rows are no deeper than an earlier row of their point, or far from the commanded depth, "
+            "and were left out: are the rows in the order in which the points were pressed?");
+    }
     report.rejected_rows += not_numbers;
     if (probing.points.empty() || not_numbers == report.rows) {
         throw files::bad_input(table.file(), "",

@@ -121,6 +121,22 @@ TEST_CASE("probing: rows that are not numbers are passed over and counted; a fil
     CHECK(contains(message_of([&] { imported(small(), deep); }), "all 6 cells are empty"));
 }
 
+TEST_CASE("probing: rows out of order are told, a release after the press is not") {
+    std::string released = kHeader, shuffled = kHeader;
+    for (int p = 0; p < 6; ++p) {
+        const double x = 2.0 * (p % 3), y = 2.0 * (p / 3);
+        for (const int k : {0, 1, 2, 3, 4, 3, 2, 1, 0}) released += row(p, k, x, y, k, 0.1 + 0.5 * k);
+        for (const int k : {1, 4, 0, 3, 2, 1, 3}) shuffled += row(p, k, x, y, k, 0.1 + 0.5 * k);
+    }
+    ImportReport report;
+    imported(released, {}, &report);
+    CHECK(report.notes.empty());
+    report = {};
+    imported(shuffled, {}, &report);
+    REQUIRE(report.notes.size() == 1);
+    CHECK(contains(report.notes[0], "30 of 42 rows are no deeper than an earlier row"));
+}
+
 TEST_CASE("probing: a row whose depth is far off its command is rejected and counted") {
     std::string text = "point,ref_x_mm,ref_y_mm,depth_cmd_mm,depth_mm,fn_N\n";
     text += "0,0,0,0,0,0\n0,0,0,1,1,1\n0,0,0,2,45,7\n0,0,0,2,2,2\n";
