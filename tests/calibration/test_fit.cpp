@@ -100,12 +100,12 @@ TEST_CASE("fit: power and exponential with offset come back from exact points, b
 }
 
 TEST_CASE("hard case 2: bias at full scale below 3 % over 500 trials with the error model that fits the noise") {
-    constexpr unsigned kSeed = 20261121;
-    CAPTURE(kSeed);
+    constexpr unsigned seed = 20261121;
+    CAPTURE(seed);
     const Published curve = kPaper[0];
     for (const bool additive : {true, false}) {
         for (const Robust robust : {Robust::none, Robust::huber, Robust::tukey}) {
-            std::mt19937_64 random(kSeed);
+            std::mt19937_64 random(seed);
             std::normal_distribution<double> normal;
             double sum = 0.0;
             for (int trial = 0; trial < 500; ++trial) {
