@@ -12,7 +12,9 @@ TEST_CASE("binomial draw: counts come as often as the distribution says") {
     CAPTURE(kSeed);
     Random random(kSeed);
     constexpr int kDraws = 100'000;
-    for (const auto& [n, chance] : {std::pair{20, 0.1}, {60, 0.3}, {400, 0.05}, {400, 0.7}, {5000, 0.5}}) {
+    for (const std::pair<int, double>& one : {std::pair{20, 0.1}, {60, 0.3}, {400, 0.05}, {400, 0.7}, {5000, 0.5}}) {
+        const int n = one.first;
+        const double chance = one.second;
         CAPTURE(n);
         CAPTURE(chance);
         std::vector<int> times(static_cast<std::size_t>(n) + 1);

@@ -312,15 +312,21 @@ TEST_CASE("statistics: the exact binomial test of many answers takes both tails 
         }
         return std::min(1.0, sum);
     };
-    for (const auto& [k, n, chance] : {std::tuple{6000, 12001, 0.5},
-                                       {6100, 12001, 0.5},
-                                       {5900, 12001, 0.5},
-                                       {6300, 12001, 0.5},
-                                       {0, 12001, 0.001},
-                                       {30, 12001, 0.001},
-                                       {3001, 12001, 0.25},
-                                       {3200, 12001, 0.25},
-                                       {12001, 12001, 0.5}}) {
+    struct Draw {
+        int k, n;
+        double chance;
+    };
+    for (const Draw& one : {Draw{6000, 12001, 0.5},
+                            {6100, 12001, 0.5},
+                            {5900, 12001, 0.5},
+                            {6300, 12001, 0.5},
+                            {0, 12001, 0.001},
+                            {30, 12001, 0.001},
+                            {3001, 12001, 0.25},
+                            {3200, 12001, 0.25},
+                            {12001, 12001, 0.5}}) {
+        const int k = one.k, n = one.n;
+        const double chance = one.chance;
         CAPTURE(k);
         CAPTURE(chance);
         CHECK(exact_binomial_p({k, n}, chance) == doctest::Approx(summed(k, n, chance)).epsilon(1e-9));
