@@ -4,7 +4,6 @@
 #include <filesystem>
 #include <map>
 #include <string>
-#include <tuple>
 
 #include "files/distributions.h"
 #include "files/json.h"
