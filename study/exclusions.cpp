@@ -63,6 +63,8 @@ std::string reason_text(std::string reason) {
         if (static_cast<unsigned char>(c) < 0x20) c = ' ';
         if (c == '"') c = '\'';
     }
+    reason.erase(0, std::min(reason.find_first_not_of(' '), reason.size()));
+    reason.erase(reason.find_last_not_of(' ') + 1);
     if (reads_as_missing(reason)) throw files::bad_input("--reason", "", files::shown(reason), "why, in words");
     return reason;
 }

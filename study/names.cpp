@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <string>
 
 namespace palpa::study {
 
@@ -16,7 +17,14 @@ bool reads_as_missing(std::string_view name) {
 bool is_name(std::string_view name) {
     const bool plain =
         std::none_of(name.begin(), name.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == '"'; });
-    return plain && !reads_as_missing(name);
+    const bool spaced = !name.empty() && (name.front() == ' ' || name.back() == ' ');
+    return plain && !spaced && !reads_as_missing(name);
+}
+
+bool names_a_sum(std::string_view name) {
+    std::string lower(name);
+    for (char& c : lower) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+    return lower == "all" || lower == "total" || lower == "sum" || lower == "overall";
 }
 
 bool is_code(std::string_view code) {

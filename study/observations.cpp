@@ -32,9 +32,7 @@ class NameColumn {
         if (!column_) return -1;
         const std::string_view name = table.field(*column_);
         if (name == "n/a" || name.empty()) return -1;
-        for (const std::string_view sum : {"all", "total", "sum", "overall"}) {
-            if (lower_case(name) == sum) table.fail(*column_, "one name, or n/a in a row for all of them");
-        }
+        if (names_a_sum(name)) table.fail(*column_, "one name, or n/a in a row for all of them");
         if (!is_name(name)) table.fail(*column_, std::string(kNameRule) + ", or n/a if it is not given");
         return index_.of(name);
     }
@@ -42,12 +40,6 @@ class NameColumn {
     std::optional<std::size_t> column() const { return column_; }
 
   private:
-    static std::string lower_case(std::string_view name) {
-        std::string out(name);
-        for (char& c : out) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-        return out;
-    }
-
     std::optional<std::size_t> column_;
     NameIndex index_;
 };
@@ -59,7 +51,7 @@ class ConditionColumn {
         : column_(table.column("condition")), index_(out.conditions) {}
 
     int of(const files::Table& table) {
-        if (!is_name(table.field(column_))) table.fail(column_, kNameRule);
+        check_condition_name(table, column_);
         return index_.of(table.field(column_));
     }
     std::size_t column() const { return column_; }

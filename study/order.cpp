@@ -189,8 +189,8 @@ std::vector<PlannedTrial> trials_in_order(const Protocol& protocol, const Planne
     const std::vector<std::size_t>& conditions = protocol.groups[who.group].conditions;
     std::vector<PlannedTrial> out;
     std::vector<std::vector<PlannedTrial>> lists(conditions.size());
-    const bool in_turn = protocol.trial_order == TrialOrder::interleaved || protocol.choice.alternate_conditions;
-    const bool blocked = protocol.trial_order == TrialOrder::blocked && !in_turn;
+    const bool in_turn = protocol.trial_order == TrialOrder::interleaved;
+    const bool blocked = protocol.trial_order == TrialOrder::blocked;
     const auto add = [&](const std::vector<PlannedTrial>& trials) {
         out.insert(out.end(), trials.begin(), trials.end());
     };

@@ -44,6 +44,16 @@ void check_quantity(const files::JsonReader& json, const Protocol& protocol, con
     json.fail("quantity", found, "other conditions: the method sets the share of right answers" + under);
 }
 
+void check_both_have(const files::JsonReader& json, const Protocol& protocol, const PrimaryComparison& primary) {
+    for (const Group& group : protocol.groups) {
+        if (std::find(primary.sides.begin(), primary.sides.end(), group.id) == primary.sides.end()) continue;
+        const auto is_it = [&](std::size_t i) { return protocol.conditions[i].id == primary.condition; };
+        if (std::any_of(group.conditions.begin(), group.conditions.end(), is_it)) continue;
+        json.fail("condition", files::shown(primary.condition) + ", which group " + files::shown(group.id) + " lacks",
+                  "a condition of both groups");
+    }
+}
+
 PrimaryComparison read_comparison(files::JsonReader json, const Protocol& protocol) {
     json.only({"quantity", "conditions", "groups", "condition", "test"});
     const std::vector<std::string> conditions = ids_in(protocol.conditions);
@@ -60,6 +70,7 @@ PrimaryComparison read_comparison(files::JsonReader json, const Protocol& protoc
         if (std::find(conditions.begin(), conditions.end(), primary.condition) == conditions.end())
             json.fail("condition", files::shown(primary.condition), "the id of a condition of this protocol");
         check_quantity(json, protocol, primary.condition, primary.quantity);
+        check_both_have(json, protocol, primary);
     }
     json.finish();
     return primary;

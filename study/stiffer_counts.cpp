@@ -59,12 +59,14 @@ Observations read_stiffer_counts(files::Table& table) {
     std::map<std::tuple<int, int, double, double>, std::size_t> first_line;
     std::map<int, std::array<std::size_t, 2>> lines;  // by condition: the last that names nobody, and somebody
     while (table.next()) {
-        if (!is_name(table.field(condition))) table.fail(condition, kNameRule);
+        check_condition_name(table, condition);
         StifferAnswers row;
         row.condition = conditions.of(table.field(condition));
         if (has_people && !table.field(participant).empty() && table.field(participant) != "n/a") {
             if (!is_name(table.field(participant)))
                 table.fail(participant, std::string(kNameRule) + ", or n/a if it is not given");
+            if (names_a_sum(table.field(participant)))
+                table.fail(participant, "one participant, or n/a in a row for all of them");
             row.participant = participants.of(table.field(participant));
         }
         row.axis = StiffnessAxis::comparison_reference;

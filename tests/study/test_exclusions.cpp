@@ -60,7 +60,7 @@ TEST_CASE("exclusions: a trial or a participant is left out and reported, and no
     CHECK(seen.notes.empty());
     const Report report = make_report(seen, {});
     const Json json = report_json(report);
-    CHECK(json["exclusions"][0]["reason"] == "fire 'alarm' ");
+    CHECK(json["exclusions"][0]["reason"] == "fire 'alarm'");
     CHECK(json["exclusions"][1]["trial"].is_null());
     CHECK(json["plan"][0]["finished"] == 1);
     CHECK(json["plan"][1]["excluded"] == 1);
@@ -77,6 +77,7 @@ TEST_CASE(
     take_part(log, protocol, "01", 1);
     const auto refused = [&](const Exclusion& one) { return message_of([&] { add_exclusion(log, one); }); };
     CHECK(contains(refused({"09", 1, "x"}), "--participant: found '09'"));
+    CHECK(contains(refused({"01", 1, " "}), "--reason: found ''"));
     CHECK(contains(refused({"01", 2, "x"}), "--trial: found 2, expected a trial that 01 has finished"));
     CHECK(contains(refused({"01", 1, ""}), "--reason: found ''"));
     CHECK_FALSE(fs::exists(log / "exclusions.tsv"));

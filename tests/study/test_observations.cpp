@@ -77,6 +77,7 @@ TEST_CASE("observations: what is counted twice, and names that tables take for a
     CHECK(contains(refusal_of_counts(head + "pen\tp1\tA\t1\t0\t0\npen\tn/a\tA\t3\t1\t0\n"),
                    "line 3, participant: found 'n/a'"));
     CHECK(contains(refusal_of_counts(head + "pen\tp1\ttotal\t1\t0\t0\n"), "line 2, nodule: found 'total'"));
+    CHECK(contains(refusal_of_counts(head + "Total\tp1\tA\t1\t0\t0\n"), "line 2, condition: found 'Total'"));
     CHECK(contains(refusal_of_counts(head + "pen\tall\tA\t1\t0\t0\n"), "line 2, participant: found 'all'"));
     CHECK(refusal_of_counts(head + "pen\tp1\tA\t1\t0\tn/a\npen\tp1\tn/a\t0\t0\t2\nhand\tp1\tn/a\t3\t1\t0\n").empty());
     const std::string choices = "condition\tparticipant\tcomparison\tcorrect\tn\n";

@@ -154,6 +154,7 @@ TEST_CASE("order: forced choices hold every pair in both orders alike, condition
     Protocol protocol = protocol_of(2, OrderKind::latin);
     protocol.task = TaskKind::choice;
     protocol.choice = {1.75, {1.875, 2.0, 2.25, 2.75, 3.75}, 8, true};
+    protocol.trial_order = TrialOrder::interleaved;
     const PlannedParticipant who = plan_participant(protocol, 3);
     REQUIRE(who.trials.size() == 80);
     std::map<std::pair<std::size_t, int>, int> first;

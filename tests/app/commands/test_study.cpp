@@ -321,6 +321,8 @@ TEST_CASE("command study: staircases are ordered, simulated, gone on with and an
     const std::string protocol = PALPA_SOURCE_DIR "/assets/protocols/threshold.json ";
     const Json order = parse_json(study("order " + protocol + "--participants 4 --json").out, "stdout");
     CHECK(order["trial_order"] == "interleaved");
+    CHECK(parse_json(study("order " PALPA_SOURCE_DIR "/assets/protocols/softer.json --participants 1 --json").out,
+                     "stdout")["trial_order"] == "interleaved");
     CHECK(order["imbalance"][0]["carry_over"].get<int>() <= 4);
     CHECK(order["participants"][0]["trials"].size() == 84);
     CHECK(order["participants"][0]["trials"][0]["comparison_kPa"] == 10.0);  // practice
