@@ -49,8 +49,9 @@ set multiplot layout 2,3 margins 0.055,0.985,0.07,0.885 spacing 0.072,0.15 \
 
 set xlabel "assemble + factor (s; least of the repetitions)"
 set ylabel "|error| of the mean depression (%)"
-set xrange [0.002:20]
-set yrange [0.04:200]
+# the usual range at least, and every point that was measured
+set xrange [* < 0.002 : 20 < *]
+set yrange [* < 0.04 : 200 < *]
 set key bottom left Left reverse
 do for [nu in "0.3 0.45 0.499"] {
     set title "Slab, parabolic load, Poisson ratio " . nu . "\n{/*0.8 graded, 486 to 19,602 nodes; against Richardson's limit}"
@@ -77,8 +78,8 @@ set title "Contact algorithm\n{/*0.8 median; bar to the 99th percentile; an exac
 set xlabel "one step (us)"
 set key noreverse Right at graph 1.0, 0.44 right top font ",11"
 set ylabel "rms error (%)"
-set xrange [1:1e6]
-set yrange [1e-14:1e3]
+set xrange [* < 1 : 1e6 < *]
+set yrange [1e-14 : 1e3 < *]
 set ytics 100
 plot f using (step(0)):(err("contact solver", "active set; warm")):(step(0)):(late(0)) with xerrorbars ls 3 title "active set, warm", \
      f using (step(0)):(err("contact solver", "active set; cold")):(step(0)):(late(0)) with xerrorbars ls 6 title "active set, cold", \
@@ -89,8 +90,8 @@ plot f using (step(0)):(err("contact solver", "active set; warm")):(step(0)):(la
 set title "Sparse solver, and what is kept between steps\n{/*0.8 median; bar to the 99th percentile}"
 set xlabel "one step, or one right-hand side (us)"
 set key noreverse Right at graph 1.0, 0.98 right top font ",13"
-set xrange [1:1e8]
-set yrange [1e-14:1e-9]
+set xrange [* < 1 : 1e8 < *]
+set yrange [1e-14 : 1e-9 < *]
 set ytics 10
 plot f using (step(0)):(err_of("live step", "compliance")):(step(0)):(late(0)) with xerrorbars ls 3 title "step, compliance kept", \
      f using (step(0)):(err_of("live step", "factor")):(step(0)):(late(0)) with xerrorbars ls 5 title "step, only the factor kept", \

@@ -23,7 +23,12 @@ ParabolicPressure read_pressure(files::JsonReader json, const CaseMesh& mesh) {
         json.fail("face", "no face of the mesh in that side of its bounding box", "at least one");
     const PressureLoad load = parabolic_load(mesh.mesh, mesh.outer, pressure, LoadShare::consistent);
     if (pressure.force_N != 0.0 && !(load.applied_N / pressure.force_N > 1e-6)) {
-        json.fail("centre_mm", "a disc beside the body", "one that at least touches the side");
+        if (load.applied_N == 0.0)
+            json.fail("centre_mm", "a disc beside the body", "one that at least touches the side");
+        json.fail("diameter_mm",
+                  "a disc of which " + files::short_number(load.applied_N / pressure.force_N) +
+                      " of the force falls on the body",
+                  "a disc that is not so much wider than the body");
     }
     return pressure;
 }

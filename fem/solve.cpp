@@ -167,7 +167,9 @@ FemResult solve_loads(const FemCase& model, const Factored& factored, const FemP
     }
     progress("solve", 0, 0);
     result.solution = solve(factored, loads.force_N);
-    if (!result.solution.u_m.allFinite() || !std::isfinite(result.solution.energy_J)) {
+    result.max_displacement_m = result.solution.u_m.colwise().norm().maxCoeff();
+    if (!result.solution.u_m.allFinite() || !std::isfinite(result.max_displacement_m) ||
+        !std::isfinite(result.solution.energy_J)) {
         throw std::runtime_error(model.file + ": the displacement is not finite (loads of " +
                                  files::short_number(loads.applied_N) + " N)");
     }
@@ -178,7 +180,6 @@ FemResult solve_loads(const FemCase& model, const Factored& factored, const FemP
     sum_reactions(model, result);
     result.applied_N = loads.applied_N;
     result.partial = loads.partial;
-    result.max_displacement_m = result.solution.u_m.colwise().norm().maxCoeff();
     if (loads.centre) result.centre_m = depression_at_m(mesh, *loads.centre, result.solution.u_m);
     if (loads.applied_N > 0.0) {
         result.skel_m = loads.force_N.cwiseProduct(result.solution.u_m).sum() / loads.applied_N;

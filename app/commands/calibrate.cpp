@@ -204,6 +204,9 @@ void check(const CheckArguments& arguments) {
         n, [&](Eigen::Index i) { return calibration::force_N(profile, level(i), clamped); });
     const auto bands = calibration::error_bands(level, measured_N, predicted_N, range);
     const double median = calibration::median_relative_error(level, measured_N, predicted_N, range);
+    if (!std::isfinite(median))
+        throw files::bad_input(arguments.data, "", "no point whose level and force are above 0",
+                               "presses to check with");
     const calibration::FitQuality quality = calibration::fit_quality(measured_N, predicted_N);
     std::vector<std::string> warnings = rows.notes;
     if (clamped > 0)

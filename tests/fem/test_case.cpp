@@ -430,6 +430,10 @@ TEST_CASE(
     CHECK(half.reaction_N[0].z() == doctest::Approx(0.0125).epsilon(1e-10));
     CHECK(contains(said(case_text(kSlab, "hex8-bbar", kClamped, press_at(-9, 50, 16))),
                    "centre_mm: found a disc beside the body"));
+    CHECK(contains(said(case_text(kSlab, "hex8-bbar", kClamped, press_at(50, 50, 1e6))),
+                   "diameter_mm: found a disc of which "));
+    CHECK_THROWS_WITH(solved(case_text(kSlab, "hex8-bbar", kClamped, press_at(50, 50, 16), gel(1e-300, 0.45))),
+                      doctest::Contains("the displacement is not finite"));
 }
 
 TEST_CASE("case: mechanics does not depend on how the mesh came: box or file, either version, either encoding") {

@@ -72,6 +72,10 @@ TEST_CASE("calibrate fit: exact points give the paper's curve, a profile that th
           doctest::Approx(0.0827 * std::exp(0.0039 * 1023.0)).epsilon(1e-9));
     CHECK(checked["median_relative_error"].get<double>() < 1e-9);
     CHECK(checked["relative_error_bands"].size() == 5);
+    write_text_atomically(folder / "still.csv", "level,force_N\n100,0\n500,0\n1000,0\n");
+    const Called still = calibrate("check " + profile + " " + (folder / "still.csv").string());
+    CHECK(still.status == 2);
+    CHECK(contains(still.err, "found no point whose level and force are above 0"));
 
     const Called compare = calibrate("compare " + profile + " " PALPA_SOURCE_DIR "/assets/profiles/bamboo.json --json");
     REQUIRE(compare.status == 0);
