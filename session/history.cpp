@@ -170,7 +170,7 @@ fs::path keep_trial(const KeptTrial& trial, const fs::path& folder) {
     stem.erase(std::remove_if(stem.begin(), stem.end(), [](char c) { return c == ':' || c == '-'; }), stem.end());
     const std::string text = json_of(trial).dump() + "\n";
     for (int i = 1; i < kMost; ++i) {
-        const fs::path file = folder / (stem + (i == 1 ? "" : "-" + std::to_string(i)) + kEnding);
+        const fs::path file = folder / (stem + (i == 1 ? "" : "_" + std::to_string(i)) + kEnding);
         if (fs::exists(file)) continue;
         files::AppendFile out(file);  // never replaces a file
         out.append(text);
