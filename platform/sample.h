@@ -21,6 +21,7 @@ enum class Phase : std::uint8_t { hover, down, move, up, cancel, ui };
 //   mark          x_px, y_px hold the position of the mark
 //   confidence_*  how sure the person is of the last mark
 //   hidden, shown the window went out of sight, or came back; nothing is sampled in between
+//   pause, resume the person stopped the trial's clock, or let it run again; nothing is palpated in between
 enum class Action : std::uint8_t {
     none,
     resize,
@@ -33,7 +34,9 @@ enum class Action : std::uint8_t {
     confidence_4,
     confidence_5,
     hidden,
-    shown
+    shown,
+    pause,
+    resume
 };
 
 struct Sample {

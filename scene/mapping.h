@@ -17,6 +17,7 @@ struct Mapping {
     MappingKind kind = MappingKind::direct;
     int rotate_deg = 0;  // 0, 90, 180, 270: how the tissue is turned on the screen
     bool flip = false;
+    bool random_turn = false;                 // the app draws another turn for each trial
     std::optional<Eigen::Vector2d> tissue_m;  // width and height of the tissue; absent: those of the map
     bool true_size = true;  // direct mapping: draws in true size if the screen's scale is known and the tissue fits
 };

@@ -18,7 +18,7 @@ fs::path find_file(const std::string& name, const fs::path& scene_file, const fs
 }
 
 Mapping read_mapping(files::JsonReader json) {
-    json.only({"kind", "rotate_deg", "flip", "true_size", "tissue_mm"});
+    json.only({"kind", "rotate_deg", "flip", "random_turn", "true_size", "tissue_mm"});
     Mapping mapping;
     mapping.kind = static_cast<MappingKind>(json.choice("kind", {"direct", "indirect"}));
     if (json.has("rotate_deg")) {
@@ -28,6 +28,7 @@ Mapping read_mapping(files::JsonReader json) {
         }
     }
     mapping.flip = json.boolean("flip", false);
+    mapping.random_turn = json.boolean("random_turn", false);
     mapping.true_size = json.boolean("true_size", true);
     if (json.has("tissue_mm")) {
         const auto size_mm = json.numbers("tissue_mm", 2, {0.0, 1e4, true});

@@ -34,6 +34,10 @@ const char* event_name(platform::Action action) {
             return "hidden";
         case platform::Action::shown:
             return "shown";
+        case platform::Action::pause:
+            return "pause";
+        case platform::Action::resume:
+            return "resume";
         default:
             return "confidence";
     }

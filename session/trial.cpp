@@ -32,7 +32,8 @@ void add_to_path(const scene::State& state, Trial& trial) {
         trial.path.resize(std::min(kept, kPathPoints - 1));
         trial.path_step_m *= 2.0;
     }
-    trial.path.push_back({p_m, static_cast<float>(state.contact.depth_m), begins});
+    trial.path.push_back(
+        {p_m, static_cast<float>(state.contact.depth_m), begins, static_cast<float>(trial.now_s - trial.began_s)});
 }
 
 // Adds to the way and the impulse while pressing. Motion inside the dead band does not count as way, so that jitter and
@@ -62,6 +63,7 @@ void observe_press(const scene::Plan& plan, const platform::Sample& sample, cons
     if (!pressing) trial.pressing = false;
     if (!state.touch.down) return;
     trial.last_px = Eigen::Vector2d(sample.x_px, sample.y_px);
+    if (!trial.touched_s) trial.touched_s = trial.now_s;
     if (!pressing) return;
     const double R_m = plan.indenter_radius_m;
     const double footprint_m = std::sqrt(R_m * std::min(state.contact.depth_m, R_m));  // contact radius by Hertz
@@ -71,11 +73,21 @@ void observe_press(const scene::Plan& plan, const platform::Sample& sample, cons
     trial.pressing = true;
 }
 
+// Stops the clock, or lets it run again. A clock that has not started stays at 0.
+void hold_clock(bool pause, Trial& trial) {
+    if (pause && !trial.paused_at_s) trial.paused_at_s = trial.now_s;
+    if (pause || !trial.paused_at_s) return;
+    if (trial.touched_s) trial.paused_s += trial.now_s - std::max(*trial.touched_s, *trial.paused_at_s);
+    trial.paused_at_s.reset();
+}
+
 void act(const platform::Sample& sample, const scene::State& state, Trial& trial) {
     const auto first = static_cast<int>(platform::Action::confidence_1);
     const int confidence = static_cast<int>(sample.action) - first + 1;
     if (confidence >= 1 && confidence <= 5 && !trial.marks.empty()) trial.marks.back().confidence = confidence;
     if (sample.action == platform::Action::undo && !trial.marks.empty()) trial.marks.pop_back();
+    if (sample.action == platform::Action::pause || sample.action == platform::Action::resume)
+        hold_clock(sample.action == platform::Action::pause, trial);
     if (sample.action == platform::Action::finish) trial.finished = true;
     if (sample.action != platform::Action::mark || !std::isfinite(sample.x_px + sample.y_px)) return;
     const Eigen::Vector2d p_m = scene::tissue_of_px(state.view, {sample.x_px, sample.y_px});
@@ -119,6 +131,12 @@ void observe(const scene::Plan& plan, const platform::Sample& sample, const scen
     observe_press(plan, sample, state, trial);
 }
 
+double clock_s(const Trial& trial, double now_s) {
+    if (!trial.touched_s) return 0.0;
+    const double end_s = trial.paused_at_s ? *trial.paused_at_s : trial.finished ? trial.now_s : now_s;
+    return std::max(0.0, end_s - *trial.touched_s - trial.paused_s);
+}
+
 double mean_force_N(const Trial& trial) { return trial.impulse_Ns / trial.pressed_s; }
 
 Debrief debrief(const scene::Plan& plan, const Trial& trial) {
@@ -142,6 +160,7 @@ files::Json trial_json(const scene::Plan& plan, const Trial& trial) {
     json["mode"] = name_of(trial.mode);
     json["finished"] = trial.finished;
     json["duration_s"] = trial.now_s - trial.began_s;
+    json["clock_s"] = clock_s(trial, trial.now_s);
     json["tp"] = result.score.true_positives;
     json["fp"] = result.score.false_positives;
     json["fn"] = result.score.false_negatives;

@@ -25,14 +25,18 @@ struct PathPoint {
     Eigen::Vector2d p_m = Eigen::Vector2d::Zero();
     float depth_m = 0.0f;  // greatest depth up to the next point
     bool begins = false;   // the first point of a press
+    float t_s = 0.0f;      // since the trial began
 };
 
 struct Trial {
     TrialMode mode = TrialMode::practice;
     bool began = false;
     bool finished = false;
-    double began_s = 0.0;  // host time of the first sample
-    double now_s = 0.0;    // latest host time of a sample; stands still once finished
+    double began_s = 0.0;               // host time of the first sample
+    double now_s = 0.0;                 // latest host time of a sample; stands still once finished
+    std::optional<double> touched_s;    // host time of the first touch, when the clock starts
+    std::optional<double> paused_at_s;  // host time since when the clock is stopped
+    double paused_s = 0.0;              // time between the first touch and now for which the clock was stopped
     std::vector<Mark> marks;
     study::Coverage coverage;
     std::vector<PathPoint> path;  // at most kPathPoints; when full, every second point within a press is dropped
@@ -53,6 +57,10 @@ Trial make_trial(const scene::Plan& plan, TrialMode mode);
 
 // Takes one sample, after advance() with the same sample. Does nothing once the trial is finished.
 void observe(const scene::Plan& plan, const platform::Sample& sample, const scene::State& state, Trial& trial);
+
+// Returns what the person's clock shows at a host time: the time since the first touch, without pauses. 0 before the
+// first touch.
+double clock_s(const Trial& trial, double now_s);
 
 // Returns the mean force over the time spent pressing; NaN if no time was.
 double mean_force_N(const Trial& trial);

@@ -95,13 +95,18 @@ Group read_group(files::JsonReader json, const std::vector<Condition>& condition
 }
 
 Item read_item(files::JsonReader json, std::set<std::string>& known) {
-    json.only({"id", "text", "from", "to", "choices"});
+    json.only({"id", "text", "from", "to", "low", "high", "choices"});
     Item item;
     item.id = new_id(json, known);
     item.text = json.text("text");
     if (json.has("from") || json.has("to")) {
         item.from = json.integer("from", -100, 100);
         item.to = json.integer("to", *item.from + 1, 100);
+    }
+    for (const char* end : {"low", "high"}) {
+        if (!json.has(end)) continue;
+        if (!item.from) json.fail(end, "no scale", "it beside from and to");
+        (end[0] == 'l' ? item.low : item.high) = json.text(end);
     }
     if (json.has("choices")) {
         if (item.from) json.fail("choices", "a scale too", "either choices or from and to");

@@ -61,6 +61,7 @@ struct Item {
     std::string text;
     std::vector<std::string> choices;  // empty: free text, or a scale
     std::optional<int> from, to;       // of a rating scale
+    std::string low, high;             // what its ends mean, such as "not at all" and "very"; may be empty
 };
 
 struct Protocol {

@@ -10,9 +10,9 @@ void visit_fields(const EventRow& r, Visit&& visit) {
     visit("onset", r.onset_s, "s", "since the trial began");
     visit("duration", r.duration_s, "s", "of the trial, on the row finish");
     visit("trial_type", r.trial_type, "",
-          "start, mark, confidence, undo, finish; hidden and shown: the app was out of sight in between; device_gone: "
-          "what the trial "
-          "is done with was unplugged; interrupted: it ended without finish");
+          "start, mark, confidence, undo, finish; hidden and shown: the app was out of sight in between; pause and "
+          "resume: the person stopped the clock in between; device_gone: what the trial is done with was unplugged; "
+          "interrupted: it ended without finish");
     visit("block", r.block, "", "practice (nodules shown) or test (hidden)");
     visit("trial", r.trial, "", "number of the trial");
     visit("order_id", r.order_id, "", "row of the protocol's order");

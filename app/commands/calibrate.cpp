@@ -214,7 +214,7 @@ void check(const CheckArguments& arguments) {
                            " levels are outside the profile's range and taken at its end");
     if (median > 0.1)
         warnings.push_back("the profile is off by " + files::short_number(100.0 * median) +
-                           " % of the force (median): calibrate this device anew");
+                           " % of the force (median): recalibrate this device");
     if (arguments.json) {
         const files::Json json{{"profile", profile.id},
                                {"n_points", n},

@@ -70,8 +70,9 @@ void add_study_exclude(CLI::App& study) {
     CLI::App* replacing = study.add_subcommand(
         "replace", "Give the place of a participant who dropped out to a new one, who gets the same group and order");
     replacing->add_option("DIR", replaced->directory, "the study's folder")->required();
-    replacing->add_option("--participant", replaced->replacement.participant, "code of who dropped out")->required();
-    replacing->add_option("--by", replaced->replacement.replaced_by, "code of who comes instead and has not begun yet")
+    replacing->add_option("--participant", replaced->replacement.participant, "code of the participant who dropped out")
+        ->required();
+    replacing->add_option("--by", replaced->replacement.replaced_by, "code of the replacement, who has not begun yet")
         ->required();
     replacing->add_option("--reason", replaced->replacement.reason, "why, in words; the report repeats it")->required();
     replacing->callback([replaced] { replace(*replaced); });

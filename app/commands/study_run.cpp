@@ -22,7 +22,7 @@ void run(const RunOptions& options) {
     if (json["of"] == 0) return;
     std::printf("%s: %s of %s trials done\n", json["participant"].get<std::string>().c_str(),
                 json["finished"].dump().c_str(), json["of"].dump().c_str());
-    if (json["finished"] < json["of"]) std::printf("  the same command goes on with the next one\n");
+    if (json["finished"] < json["of"]) std::printf("  the same command continues with the next one\n");
 }
 
 }  // namespace

@@ -92,6 +92,7 @@ files::Json read_now(const fs::path& file) {
     json.integer("of", 0, kMost);
     json.text("stopped", "");
     json.boolean("locked", false);
+    json.text("rated", "");
     if (json.has("trial")) {
         json.integer("trial", 1, kMost);
         json.text("condition");
@@ -161,6 +162,7 @@ void print(const files::Json& state) {
     const files::Json& now = state["now"];
     std::printf("%s of %s  %s", now["finished"].dump().c_str(), now["of"].dump().c_str(),
                 now["step"].get<std::string>().c_str());
+    if (now.contains("rated")) std::printf(", %s", now["rated"].get<std::string>().c_str());
     if (now.contains("trial")) {
         std::printf(", trial %s%s, %s", now["trial"].dump().c_str(), now.value("practice", false) ? " (practice)" : "",
                     now["condition"].get<std::string>().c_str());

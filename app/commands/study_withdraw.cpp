@@ -42,7 +42,7 @@ void withdraw_participant(const WithdrawOptions& options) {
     const bool keep = options.data == "keep";
     study::withdraw(options.directory, options.participant,
                     keep ? study::Withdrawal::keeps_data : study::Withdrawal::takes_data);
-    std::printf("%s has left the study; the data %s\n", options.participant.c_str(),
+    std::printf("%s has withdrawn from the study; the data %s\n", options.participant.c_str(),
                 keep ? "may be used" : "stay on the disk and are left out of the analysis");
 }
 
@@ -51,7 +51,7 @@ void withdraw_participant(const WithdrawOptions& options) {
 void add_study_withdraw(CLI::App& study) {
     auto options = std::make_shared<WithdrawOptions>();
     CLI::App* command = study.add_subcommand(
-        "withdraw", "Note that a participant has left the study, and whether the data may be used; deletes nothing");
+        "withdraw", "Note that a participant has withdrawn, and whether the data may be used; deletes nothing");
     command->add_option("DIR", options->directory, "the study's folder")->required();
     command->add_option("--participant", options->participant, "participant's code")->required();
     command->add_option("--data", options->data, "keep: may be used; leave-out: the analysis leaves them out")

@@ -18,11 +18,11 @@ bool named(const std::vector<platform::PointerDevice>& devices, const std::strin
 // Notes devices that are plugged in or out while the app runs.
 void note_changes(const std::vector<platform::PointerDevice>& now, Notices& notices) {
     for (const platform::PointerDevice& device : notices.devices) {
-        if (!named(now, device.name)) notices.note = words::filled(words::kIsGone, {device.name});
+        if (!named(now, device.name)) notices.note = words::filled(words::kDisconnected, {device.name});
     }
     for (const platform::PointerDevice& device : now) {
         if (!notices.devices.empty() && !named(notices.devices, device.name))
-            notices.note = words::filled(words::kIsHere, {device.name});
+            notices.note = words::filled(words::kConnected, {device.name});
     }
 }
 

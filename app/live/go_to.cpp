@@ -5,6 +5,7 @@
 #include "app/live/live_app.h"
 #include "app/scene_choices.h"
 #include "app/screens/calibrate_form.h"
+#include "app/screens/history_screen.h"
 #include "app/screens/map_screen.h"
 #include "app/screens/words.h"
 
@@ -28,6 +29,17 @@ void open_maps(platform::Window& window, App& app) {
     app.view.maps = make_map_browser(app.session.scene, map_choices());
 }
 
+// The results show where nodules were, as maps do.
+void open_history(platform::Window& window, App& app) {
+    if (!may_show_maps(app.session.trial)) {
+        app.notices.note = words::kMapsHidden;
+        return;
+    }
+    if (std::holds_alternative<BrowsingHistory>(app.doing)) return;
+    go_to(BrowsingHistory{}, window, app);
+    app.view.history = make_history_view(app.history_folder);
+}
+
 void open_devices(platform::Window& window, App& app) {
     app.check = std::make_shared<DeviceCheck>();
     go_to(CheckingDevices{app.check, {}}, window, app);
@@ -40,12 +52,13 @@ void go_to(Doing next, platform::Window& window, App& app) {
     const Doing before = std::exchange(app.doing, std::move(next));
     if (const auto* calibrating = std::get_if<Calibrating>(&before)) close_calibrate(*calibrating->form, app);
     app.view.maps.reset();
+    app.view.history.reset();
 }
 
 Doing back_to_trial(const App& app) {
     const session::Session& s = app.session;
-    if (s.trial.finished) return Reviewing{session::debrief(*s.plan, s.trial)};
-    return Palpating{};
+    if (s.trial.finished) return Reviewing{session::debrief(*s.plan, s.trial), false, app.guided};
+    return Palpating{false, app.guided};
 }
 
 void open_screen(Screen screen, platform::Window& window, App& app) {
@@ -62,6 +75,8 @@ void open_screen(Screen screen, platform::Window& window, App& app) {
             return;
         case Screen::maps:
             return open_maps(window, app);
+        case Screen::history:
+            return open_history(window, app);
     }
 }
 

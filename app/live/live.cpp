@@ -9,6 +9,7 @@
 #include "app/scene_choices.h"
 #include "app/screens/calibrate_form.h"
 #include "app/screens/frame.h"
+#include "app/screens/history_screen.h"
 #include "app/screens/map_screen.h"
 #include "app/screens/screenshot.h"
 #include "app/screens/words.h"
@@ -73,7 +74,7 @@ void take_all(double now_s, std::vector<platform::Sample>& samples, App& app) {
 void place_keyboard(platform::Window& window, const App& app) {
     constexpr double kSpeed_m_per_s = 0.03;
     const scene::ScreenArea& a = app.session.state.screen;
-    if (app.asked || !keys_move_indenter(app.doing)) {
+    if (app.asked || app.view.help || app.session.trial.paused_at_s || !keys_move_indenter(app.doing)) {
         window.set_keyboard(0.0, 0.0, 0.0, 0.0, 0.0);
     } else {
         window.set_keyboard(a.x_px, a.y_px, a.x_px + a.width_px, a.y_px + a.height_px,
@@ -86,9 +87,13 @@ float scale_now(const App& app, const platform::Window& window) {
                          static_cast<float>(window.height_px()), window.touch_px_per_mm());
 }
 
+void set_scale(const platform::Window& window, const App& app, Gui& gui) {
+    gui.set_scale(scale_now(app, window), 0.01f * static_cast<float>(app.settings.text_percent));
+}
+
 // Takes a change of the window's size, or of the hand's side, as a sample: a replay must map positions in the same way.
 void note_resize(const platform::Window& window, Gui& gui, App& app) {
-    gui.set_scale(scale_now(app, window));
+    set_scale(window, app, gui);
     if (app.trace || between_study_trials(app) || app.session.trial.finished) return;
     const platform::Sample now = resize_sample(window, gui, app.settings, now_of(app, window));
     const scene::ScreenArea& area = app.session.state.screen;
@@ -156,7 +161,8 @@ bool in_motion(const App& app) {
     const bool records = std::holds_alternative<Calibrating>(app.doing);
     const bool keeps = waits_for_keeper(app) || (study != nullptr && study->keeping_since_s);
     const bool presses = palpates(app.doing) && app.session.state.pointer;
-    return app.trace || presses || !app.hold.held.empty() || records || keeps || app.save_waits;
+    const bool replays = app.view.history && app.view.history->plays;
+    return replays || app.trace || presses || !app.hold.held.empty() || records || keeps || app.save_waits;
 }
 
 // Stops the trial with a message if a log can no longer be written; earlier rows are on the disk.
@@ -176,6 +182,14 @@ void keep_part(double now_s, App& app) {
     if (app.session.log) app.session.log->flush();
     app.keeper->keep_part(*app.session.files);
     app.parted_s = now_s;
+}
+
+// Nobody has used the app here yet, and nothing is asked of it.
+bool is_first_start(const RunOptions& options, const App& app) {
+    const bool plain = options.scene.empty() && options.trace.empty() && options.log.empty() &&
+                       options.record.empty() && options.screenshot.empty() && options.protocol.empty() &&
+                       !options.test && !options.practice && !options.json && options.quit_after_s == 0.0;
+    return plain && options.screen == Screen::trial && app.keeper == nullptr && !app.settings.guided_done;
 }
 
 void remember_window(const platform::Window& window, App& app) {
@@ -200,12 +214,13 @@ struct Live::Impl {
         if (app.settings.full_screen && !app.trace) window->set_full_screen(true);
         know_screen(*window, app);
         gui.emplace(*window);
-        gui->set_scale(scale_now(app, *window));
+        set_scale(*window, app, *gui);
         ready = prepare_chosen(*window, *gui, app);
         if (!ready) return;
         if (app.trace) app.trace_shift_s = window->now_s() - app.trace->samples.front().t_host_s;
         if (study_of(app.doing) == nullptr) begin(*window, *gui, app);
         if (options.screen != Screen::trial) open_screen(options.screen, *window, app);
+        if (options.guided || is_first_start(options, app)) begin_guided(*window, *gui, app);
         tissue.emplace();
         app.waiting_s.reserve(4096);
         began_s = frame_s = stirred_s = app.drawn_s = window->now_s();
@@ -241,7 +256,7 @@ struct Live::Impl {
         begin_when_kept(*window, *gui, app);
         note_resize(*window, *gui, app);
         place_keyboard(*window, app);
-        lift_fingers(gui->mm(), samples, app);
+        lift_fingers(gui->hand_mm(), samples, app);
         take_all(window->now_s(), samples, app);  // 2. simulate and log
         watch_files(*window, app);
         session::flush_if_due(app.session);  // also while nothing moves and nothing is drawn

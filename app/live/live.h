@@ -27,6 +27,7 @@ struct RunOptions {
     bool test = false;      // nodules hidden until the end; without this and `practice`: as last time
     bool practice = false;  // nodules shown
     bool left_handed = false;
+    bool guided = false;            // begin with the guided start
     Screen screen = Screen::trial;  // the screen that is open first
     // A study's protocol: its trials replace the scene, and `log` is its folder.
     std::string protocol;

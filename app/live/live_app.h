@@ -32,9 +32,11 @@ using Course = std::variant<GoesOn, WaitsForKeeper, TrialStopped>;
 struct App {
     RunOptions options;
     Settings settings;
-    std::filesystem::path settings_path;  // empty: this run keeps none
-    Doing doing;                          // while the window is open, go_to() changes it; a study changes its own step
-    std::optional<Wishes> asked;          // would throw away marks or answers: done once the person has confirmed
+    std::filesystem::path settings_path;   // empty: this run keeps none
+    Doing doing;                           // while the window is open, go_to() changes it; a study changes its own step
+    bool guided = false;                   // the present trial is of the guided start
+    std::filesystem::path history_folder;  // empty: no results are kept
+    std::optional<Wishes> asked;           // would throw away marks or answers: done once the person has confirmed
     Notices notices;
     ViewState view;
     std::shared_ptr<DeviceCheck> check;  // the last device check
@@ -111,6 +113,12 @@ void begin_anew(platform::Window& window, const Gui& gui, App& app);
 void begin_when_kept(platform::Window& window, const Gui& gui, App& app);  // begins what begin_anew() left waiting
 // Changes to another scene or profile. If it cannot be prepared, the present one stays.
 void change_scene(platform::Window& window, Gui& gui, const std::string& file, const std::string& profile, App& app);
+// Begins the guided start: a practice trial on the default scene.
+void begin_guided(platform::Window& window, Gui& gui, App& app);
+// Ends it. What was begun goes on as a practice trial; after its result, a new one begins.
+void leave_guided(platform::Window& window, const Gui& gui, App& app);
+// Turns the tissue of a scene that asks for it (mapping.random_turn) one of eight ways at random.
+void draw_turn(scene::Scene& scene);
 // Turns the tissue to the next of eight orientations, in an order that the seed decides, so that nobody learns where
 // its nodules are. A trial must be begun after it.
 void turn_tissue(platform::Window& window, App& app);

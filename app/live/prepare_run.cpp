@@ -22,6 +22,8 @@ void load(const RunOptions& options, App& app) {
     if (options.width_px > 0) app.settings.width_px = options.width_px;
     if (options.height_px > 0) app.settings.height_px = options.height_px;
     if (!options.protocol.empty()) return load_study(options, app);
+    const std::filesystem::path data = user_folder();
+    if (app.keeper == nullptr && options.trace.empty() && !data.empty()) app.history_folder = data / "history";
     app.notices.scenes = scene_choices();
     app.notices.profiles = profile_choices();
     if (!options.trace.empty()) {
@@ -37,7 +39,10 @@ void load(const RunOptions& options, App& app) {
     if (own_choice && !app.settings.scene.empty()) attempt(app, [&] { scene = load_scene(app.settings.scene); });
     if (scene.name.empty()) scene = load_scene(options.scene);
     if (own_choice && std::filesystem::exists(app.settings.profile)) scene.profile = app.settings.profile;
-    if (app.trace) session::turn_as_recorded(app.trace->info, scene);
+    if (app.trace)
+        session::turn_as_recorded(app.trace->info, scene);
+    else
+        draw_turn(scene);
     if (takes_seconds(scene.tissue)) {
         app.unprepared = std::move(scene);
         return;

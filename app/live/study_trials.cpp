@@ -40,6 +40,20 @@ bool is_device_here(const App& app) {
     return device_here(due_condition(*study_of(app.doing)).modality, app.notices.devices);
 }
 
+bool reads_pressure(const StudyScene& scene) {
+    return scene.plan->profile.level != calibration::LevelField::contact_area;
+}
+
+void note_pen(const App& app, StudyRun& run) {
+    const bool on_tissue = run.progress.next && shows_tissue(run);
+    run.pen = on_tissue ? pen_verdict(due_condition(run).modality, reads_pressure(due_scene(run)), app.notices.devices,
+                                      app.notices.devices_listed, app.pressure)
+                        : PenVerdict::not_needed;
+}
+
+// A trial begins only with its device, and a pen's trial only with a pen that measures pressure.
+bool may_begin(const App& app) { return is_device_here(app) && study_of(app.doing)->pen != PenVerdict::no_pressure; }
+
 // Interrupts a trial whose device is gone, since it says nothing about the person; the trial is repeated.
 void interrupt_study_trial(platform::Window& window, App& app) {
     session::note_event("device_gone", now_of(app, window), app.session);
@@ -93,7 +107,11 @@ void finish_study_trial(platform::Window& window, App& app) {
     const std::string why = close_trial(app);
     end_presses(window, app);
     if (!why.empty()) return stop_study(why, run);
-    trial_finished(run);
+    if (due_trial(run).practice && !due_compares(run)) {
+        give_feedback(session::debrief(*app.session.plan, app.session.trial).score, run);
+    } else {
+        trial_finished(run);
+    }
     follow_keeper(now_of(app, window), app);
 }
 
@@ -111,13 +129,18 @@ void follow_study(const std::optional<StudyWish>& wish, platform::Window& window
     follow_keeper(now_of(app, window), app);
     if (trial_waits(run) && !run.keeping_since_s) {
         note_devices(window, app);
-        if (is_device_here(app)) {
+        note_pen(app, run);
+        if (may_begin(app)) {
             begin_study_trial(window, gui, app);
         } else {
             wait_for_device(false, run);
         }
     }
-    if (auto* device = std::get_if<step::Device>(&run.step)) device->here = is_device_here(app);
+    if (at<step::Instructions>(run) || at<step::Device>(run)) note_pen(app, run);
+    if (auto* device = std::get_if<step::Device>(&run.step)) {
+        device->connected = is_device_here(app);
+        device->here = may_begin(app);
+    }
     if (!trial_goes_on(run)) return;
     if (!is_device_here(app)) return interrupt_study_trial(window, app);
     if (now_of(app, window) >= trial_ends_s(app)) act(platform::Action::finish, window, app);

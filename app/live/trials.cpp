@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <random>
 #include <stdexcept>
 
 #include "app/live/live_app.h"
@@ -10,7 +11,9 @@
 #include "app/screens/map_screen.h"
 #include "app/screens/words.h"
 #include "app/study/study_run.h"
+#include "files/clock.h"
 #include "render/gl.h"
+#include "session/history.h"
 #include "session/plan_in_progress.h"
 #include "session/replay.h"
 
@@ -26,6 +29,12 @@ std::string device_names(const platform::Window& window) {
 bool is_of_last_mark(platform::Action action) {
     return action == platform::Action::undo ||
            (action >= platform::Action::confidence_1 && action <= platform::Action::confidence_5);
+}
+
+// Keeps the result of the trial that has just been finished, unless the person does not want it kept.
+void keep_result(App& app) {
+    if (!app.settings.keep_results || app.history_folder.empty() || app.guided) return;
+    attempt(app, [&] { session::keep_trial(session::kept_trial(app.session, files::utc_now()), app.history_folder); });
 }
 
 void close_or_tell(App& app) {
@@ -84,8 +93,9 @@ void end_presses(platform::Window& window, App& app) {
 }
 
 void begin(platform::Window& window, const Gui& gui, App& app) {
-    const session::TrialMode mode = app.settings.test_mode ? session::TrialMode::test : session::TrialMode::practice;
-    go_to(Palpating{}, window, app);
+    const bool test = app.settings.test_mode && !app.guided;
+    const session::TrialMode mode = test ? session::TrialMode::test : session::TrialMode::practice;
+    go_to(Palpating{false, app.guided}, window, app);
     app.notices.note.clear();
     app.asked.reset();
     app.course = GoesOn{};
@@ -157,11 +167,39 @@ void change_scene(platform::Window& window, Gui& gui, const std::string& file, c
     const bool good = attempt(app, [&] {
         scene = load_scene(file);
         if (!profile.empty()) scene.profile = profile;
+        draw_turn(scene);
         plan = prepare(window, gui, scene);
     });
     if (!good || !plan) return;
     put_scene(std::move(scene), std::move(plan), window, app);
     begin_anew(window, gui, app);
+}
+
+void begin_guided(platform::Window& window, Gui& gui, App& app) {
+    app.guided = true;
+    const std::size_t problems = app.notices.problems.size();
+    change_scene(window, gui, "", app.settings.profile, app);
+    if (app.notices.problems.size() > problems) app.guided = false;  // it goes on with what there is
+}
+
+void leave_guided(platform::Window& window, const Gui& gui, App& app) {
+    app.guided = false;
+    app.settings.guided_done = true;
+    app.settings.test_mode = false;
+    keep_settings(app);
+    if (auto* palpating = std::get_if<Palpating>(&app.doing)) {
+        palpating->guided = false;
+        return;
+    }
+    turn_tissue(window, app);
+    begin_anew(window, gui, app);
+}
+
+void draw_turn(scene::Scene& scene) {
+    if (!scene.mapping.random_turn) return;
+    const unsigned turn = std::random_device{}() % 8;
+    scene.mapping.rotate_deg = 90 * static_cast<int>(turn % 4);
+    scene.mapping.flip = turn >= 4;
 }
 
 void turn_tissue(platform::Window& window, App& app) {
@@ -193,7 +231,11 @@ void act(platform::Action action, platform::Window& window, App& app) {
     const StudyRun* study = study_of(app.doing);
     const bool pair = study != nullptr && due_compares(*study);
     if (pair && action != platform::Action::finish) return;  // in a comparison there is nothing to mark
-    if (waits_for_keeper(app)) return;                       // there is no trial to act on yet
+    const bool clock = action == platform::Action::pause || action == platform::Action::resume;
+    if (clock && study != nullptr) return;                // its limits are the protocol's
+    if (!clock && app.session.trial.paused_at_s) return;  // nothing is done while the clock is stopped
+    if (action == platform::Action::pause) end_presses(window, app);
+    if (waits_for_keeper(app)) return;  // there is no trial to act on yet
     platform::Sample sample;
     sample.t_host_s = now_of(app, window);
     sample.phase = platform::Phase::ui;
@@ -208,6 +250,7 @@ void act(platform::Action action, platform::Window& window, App& app) {
     if (!app.session.trial.finished) return;
     if (study != nullptr) return finish_study_trial(window, app);
     close_or_tell(app);  // before the presses end: the log of a finished trial ends with its last action
+    keep_result(app);
     go_to(back_to_trial(app), window, app);
     app.notices.note.clear();
 }

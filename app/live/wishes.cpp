@@ -4,6 +4,7 @@
 #include <string>
 
 #include "app/live/live_app.h"
+#include "app/screens/history_screen.h"
 #include "app/screens/settings.h"
 
 namespace palpa::app {
@@ -22,13 +23,20 @@ void change_settings(const Wishes& wishes, platform::Window& window, Gui& gui, A
         app.settings.px_per_mm.erase(app.notices.screen_name);
         if (std::isfinite(*wishes.px_per_mm)) app.settings.px_per_mm[app.notices.screen_name] = *wishes.px_per_mm;
     }
-    const bool changed = wishes.left_handed || wishes.above_finger || wishes.mode || wishes.full_screen ||
-                         wishes.px_per_mm || wishes.scene || wishes.profile;
+    if (wishes.keep_results) app.settings.keep_results = *wishes.keep_results;
+    if (wishes.text_percent) app.settings.text_percent = *wishes.text_percent;
+    const bool changed = wishes.keep_results || wishes.text_percent || wishes.left_handed || wishes.above_finger ||
+                         wishes.mode || wishes.full_screen || wishes.px_per_mm || wishes.scene || wishes.profile;
     if (changed) keep_settings(app);
     // a trial has one scale and one way of showing the tissue, so a change begins another trial
     if (!wishes.px_per_mm && !wishes.mode && !wishes.above_finger) return;
     if (app.settings.test_mode) turn_if_shown(window, app);
     begin_anew(window, gui, app);
+}
+
+void delete_results(App& app) {
+    attempt(app, [&] { session::delete_history(app.history_folder); });
+    if (app.view.history) app.view.history = make_history_view(app.history_folder);
 }
 
 void press_by_hold(App& app) {
@@ -64,6 +72,7 @@ void carry_out(const Wishes& asked_for, platform::Window& window, Gui& gui, App&
     if (wishes.action && palpates(app.doing) && !app.trace) act(*wishes.action, window, app);
     if (bool* menu = menu_of(app.doing); menu != nullptr && wishes.menu) *menu = *wishes.menu;
     if (wishes.screen) open_screen(*wishes.screen, window, app);
+    if (wishes.again || wishes.next || wishes.scene || wishes.profile || wishes.mode) app.guided = false;
     if (wishes.scene) app.settings.scene = *wishes.scene;
     if (wishes.profile) app.settings.profile = *wishes.profile;
     if (wishes.scene || wishes.profile) {
@@ -73,7 +82,15 @@ void carry_out(const Wishes& asked_for, platform::Window& window, Gui& gui, App&
     if (wishes.press_by_hold && app.notices.offer_hold) press_by_hold(app);
     if (wishes.trials && app.keeper != nullptr) app.keeper->open();
     if (wishes.studies && app.keeper != nullptr) app.keeper->open_studies();
-    if (wishes.next) turn_tissue(window, app);
+    if (wishes.delete_results && !app.history_folder.empty()) delete_results(app);
+    if (wishes.guided && study_of(app.doing) == nullptr) {
+        if (*wishes.guided)
+            begin_guided(window, gui, app);
+        else
+            leave_guided(window, gui, app);
+    }
+    const bool turns = wishes.next || (wishes.again && app.session.scene.mapping.random_turn);
+    if (turns) turn_tissue(window, app);
     if (wishes.again || wishes.next) begin_anew(window, gui, app);
     app.save_waits = app.save_waits || wishes.save_picture;
 }

@@ -11,7 +11,7 @@ namespace {
 
 bool ends_trial(const Wishes& wishes) {
     return wishes.again || wishes.next || wishes.quit || wishes.scene || wishes.profile || wishes.mode ||
-           wishes.above_finger || wishes.px_per_mm;
+           wishes.above_finger || wishes.px_per_mm || (wishes.guided && *wishes.guided);
 }
 
 }  // namespace
@@ -42,7 +42,7 @@ void draw_ask(const Shown& shown, Gui& gui, Wishes& wishes) {
     paragraph(answers      ? words::kLoseAnswers
               : marks == 1 ? words::kLoseMark
                            : words::filled(words::kLoseManyMarks, {std::to_string(marks)}));
-    const bool stay = big_button(answers ? words::kBackToAnswers : words::kGoOnWithTrial, words::kEscape,
+    const bool stay = big_button(answers ? words::kBackToAnswers : words::kContinueTrial, words::kEscape,
                                  {0.0f, kMark_mm, true, false}, gui) ||
                       gui.pressed(platform::key::escape);
     const bool end =

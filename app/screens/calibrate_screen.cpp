@@ -6,6 +6,7 @@
 #include <exception>
 
 #include "app/scene_choices.h"
+#include "app/screens/plot.h"
 #include "app/screens/widgets.h"
 #include "app/screens/words.h"
 #include "calibration/profile_file.h"
@@ -82,30 +83,10 @@ void keep_profile(CalibrateForm& form) {
                                   {"n_points", calibration.n_points},
                                   {"warnings", calibration.warnings}};
         calibration::write_profile(calibration.profile, quality, file);
-        form.guide.note = words::filled(words::kKeptAs, {file.string()});
+        form.guide.note = words::filled(words::kSavedAs, {file.string()});
         for (const std::string& warning : calibration.warnings) form.guide.note += "\n! " + warning;
         form.recording.reset();
     });
-}
-
-struct Plot {
-    PanelArea area;
-    double most_x = 1.0;
-    double least_y = 0.0;
-    double most_y = 1.0;
-    ImVec2 at(double x, double y) const {
-        const double sx = x / most_x;
-        const double sy = std::clamp((y - least_y) / (most_y - least_y), -0.05, 1.05);
-        return {area.x0 + static_cast<float>(sx) * area.width(), area.y1 - static_cast<float>(sy) * area.height()};
-    }
-};
-
-void draw_frame_of(const Plot& plot, const char* title, const std::string& top, const std::string& bottom,
-                   ImDrawList& draw) {
-    draw.AddRect(ImVec2(plot.area.x0, plot.area.y0), ImVec2(plot.area.x1, plot.area.y1), kPale);
-    draw.AddText(ImVec2(plot.area.x0 + 4.0f, plot.area.y0 - 1.2f * ImGui::GetFontSize()), kInk, title);
-    draw.AddText(ImVec2(plot.area.x0 + 4.0f, plot.area.y0 + 2.0f), kPale, top.c_str());
-    draw.AddText(ImVec2(plot.area.x0 + 4.0f, plot.area.y1 - 1.1f * ImGui::GetFontSize()), kPale, bottom.c_str());
 }
 
 double share_of(const calibration::RecordOptions& options, double level) {
@@ -117,42 +98,44 @@ void draw_plots(const calibration::Recording& recording, const Guide& guide, con
                 ImDrawList& draw) {
     const calibration::RecordOptions& options = recording.arguments.options;
     const calibration::RecordSession& session = recording.session;
-    const float gap_px = 3.0f * gui.mm() + 1.3f * ImGui::GetFontSize();
-    const float split = area.y0 + 0.68f * area.height();
-    Plot curve{{area.x0 + 4 * gui.mm(), area.y0 + gap_px, area.x1 - 4 * gui.mm(), split}, 1.0, 0.0, 0.5};
+    const float split = area.y0 + 0.66f * area.height();
+    constexpr double kFull_percent = 100.0;
+    Plot curve{data_area({area.x0, area.y0 + gui.mm(), area.x1, split}, gui.mm()), 0.0, kFull_percent, 0.0, 0.5};
     const double now_N = session.forces.empty() ? 0.0 : session.forces.back().value;
     for (const calibration::CapturedPoint& point : session.points)
         curve.most_y = std::max(curve.most_y, 1.1 * point.force_N);
     curve.most_y = std::max(curve.most_y, 1.1 * now_N);
     const int band = calibration::target_band(options, session, recording.knowledge.band_error);
     if (band >= 0) {
-        const ImVec2 low = curve.at(static_cast<double>(band) / options.bands, 0.0);
-        const ImVec2 high = curve.at(static_cast<double>(band + 1) / options.bands, curve.most_y);
+        const ImVec2 low = curve.at(kFull_percent * band / options.bands, 0.0);
+        const ImVec2 high = curve.at(kFull_percent * (band + 1) / options.bands, curve.most_y);
         draw.AddRectFilled(ImVec2(low.x, high.y), ImVec2(high.x, low.y), kForceTints[1]);
     }
-    draw_frame_of(curve, words::kForceOverPressure, fixed(curve.most_y, 2) + " N", "0 N, 0 %", draw);
-    Plot rest{{curve.area.x0, split + gap_px, curve.area.x1, area.y1 - 2 * gui.mm()}, 1.0, -0.2, 0.2};
-    draw_frame_of(rest, words::kResiduals, "+20 %", "-20 %", draw);
-    draw.AddLine(rest.at(0.0, 0.0), rest.at(1.0, 0.0), kPale);
+    draw_plot_axes(curve, {words::kForceOverPressure, words::kPressureAxis, words::kForceAxis}, gui.mm(), draw);
+    const Plot rest{data_area({area.x0, split, area.x1, area.y1 - gui.mm()}, gui.mm()), 0.0, kFull_percent, -20.0,
+                    20.0};
+    draw_plot_axes(rest, {words::kResiduals, words::kPressureAxis, words::kPercentAxis}, gui.mm(), draw);
+    draw.AddLine(rest.at(0.0, 0.0), rest.at(kFull_percent, 0.0), kPale);
     const float dot_px = 0.6f * gui.mm();
     for (const calibration::CapturedPoint& point : session.points) {
-        const double x = share_of(options, point.level);
+        const double x = kFull_percent * share_of(options, point.level);
         draw.AddCircleFilled(curve.at(x, point.force_N), dot_px, kInk);
         if (!guide.fit) continue;
         const double curve_N = calibration::value_N(guide.fit->profile.curve, point.level);
-        draw.AddCircleFilled(rest.at(x, (point.force_N - curve_N) / std::max(curve_N, 1e-6)), dot_px, kInk);
+        draw.AddCircleFilled(rest.at(x, kFull_percent * (point.force_N - curve_N) / std::max(curve_N, 1e-6)), dot_px,
+                             kInk);
     }
     if (guide.fit) {
         constexpr int kSteps = 100;
         const auto at = [&](int i) {
             const double level = options.range.lowest + (options.range.highest - options.range.lowest) * i / kSteps;
-            return curve.at(static_cast<double>(i) / kSteps, calibration::value_N(guide.fit->profile.curve, level));
+            return curve.at(kFull_percent * i / kSteps, calibration::value_N(guide.fit->profile.curve, level));
         };
         for (int i = 0; i < kSteps; ++i) draw.AddLine(at(i), at(i + 1), kLag, 0.4f * gui.mm());
     }
     if (!session.levels.empty()) {
-        cross(draw, curve.at(share_of(options, session.levels.back().value), now_N), 1.2f * gui.mm(), kLag,
-              0.4f * gui.mm());
+        cross(draw, curve.at(kFull_percent * share_of(options, session.levels.back().value), now_N), 1.2f * gui.mm(),
+              kLag, 0.4f * gui.mm());
     }
 }
 
@@ -166,12 +149,12 @@ void draw_typed(calibration::Recording& recording, const Gui& gui, Guide& guide)
     const bool entered =
         ImGui::IsItemDeactivatedAfterEdit() && (ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Enter)) ||
                                                 ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_KeyPadEnter)));
-    if (!big_button(words::kTake, words::kEnter, {}, gui) && !entered) return;
+    if (!big_button(words::kRecord, words::kEnter, {}, gui) && !entered) return;
     guide.again = entered;  // the next number is typed at once
     const bool good = std::isfinite(guide.shown_gf) && guide.shown_gf >= 0.0 && guide.shown_gf < 1e5;
     guide.note = good && calibration::take_typed_N(guide.shown_gf * calibration::kN_per_gf, recording)
-                     ? words::kTaken
-                     : words::kNotTaken;
+                     ? words::kRecorded
+                     : words::kNotRecorded;
 }
 
 void form_lines(Gui& gui, CalibrateForm& form) {
@@ -231,10 +214,10 @@ GuideWishes draw_guide(calibration::Recording& recording, Gui& gui, Guide& guide
     value_line(words::kForce,
                fixed(session.forces.empty() ? platform::kMissing : session.forces.back().value, 3) + " N", column_px);
     value_line(words::kPoints, std::to_string(session.points.size()), column_px);
-    value_line(words::kPress, std::to_string(session.repeat + 1), column_px);
+    value_line(words::kPressNumber, std::to_string(session.repeat + 1), column_px);
     if (!recording.sensor) draw_typed(recording, gui, guide);
-    if (big_button(words::kMakeProfile, "", {0.0f, kMark_mm, guide.fit.has_value(), false}, gui)) wishes.keep = true;
-    if (big_button(words::kStopRecording, "", {}, gui)) wishes.stop = true;
+    if (big_button(words::kCreateProfile, "", {0.0f, kMark_mm, guide.fit.has_value(), false}, gui)) wishes.keep = true;
+    if (big_button(words::kPauseRecording, "", {}, gui)) wishes.stop = true;
     ImGui::BeginChild("state", ImVec2(0.0f, 0.0f), false, ImGuiWindowFlags_NavFlattened);
     if (recording.sensor) {
         const devices::SensorHealth health = recording.sensor->health();
@@ -291,8 +274,16 @@ void draw_calibrate_screen(const Shown&, Gui& gui, CalibrateForm& form, Wishes& 
 
 void step_calibrate(const std::vector<platform::Sample>& samples, CalibrateForm& form) {
     if (!form.recording) return;
+    std::vector<platform::Sample> pressed;
+    bool mouse = false;
+    for (const platform::Sample& sample : samples) {
+        const bool sensor = sample.tool == platform::Tool::pen || sample.tool == platform::Tool::finger;
+        if (sensor) pressed.push_back(sample);
+        mouse = mouse || (!sensor && sample.phase == platform::Phase::down);
+    }
+    if (mouse) form.guide.note = words::kMouseHasNone;
     try {
-        calibration::step(samples, *form.recording);
+        calibration::step(pressed, *form.recording);
     } catch (const std::exception& error) {
         form.problem = error.what();
         stop_recording(form);

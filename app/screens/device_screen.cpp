@@ -15,7 +15,7 @@ std::string range_text(const Range& range, int digits) {
 }
 
 void said_lines(const std::vector<platform::PointerDevice>& devices) {
-    ImGui::TextDisabled(words::kSaysItHas);
+    ImGui::TextDisabled(words::kReportedCapabilities);
     for (const platform::PointerDevice& device : devices) {
         std::string text = device.name + " (" + std::string(name_of(device.tool)) + "): ";
         text += device.has_pressure ? words::filled(words::kPressureRange,
@@ -64,11 +64,54 @@ void seen_lines(platform::Tool which, const DeviceCheck& check, const Gui& gui) 
     value_line(words::kClockDrift, clock, column_px);
     const std::string delivery =
         words::filled(words::kAtATime, {fixed(samples_per_delivery(tool), 1), fixed(1e3 * median_delay_s(tool), 0)});
-    if (which != platform::Tool::keyboard) value_line(words::kDelivered, delivery, column_px);
+    if (which != platform::Tool::keyboard) value_line(words::kDelivery, delivery, column_px);
     value_line(words::kTiltAndSize,
                std::string(tool.tilt ? words::kTilt : "-") + ", " + (tool.contact_size ? words::kContactSize : "-"),
                column_px);
     value_line(words::kSamples, std::to_string(tool.samples), column_px);
+}
+
+struct Verdict {
+    bool good = false;
+    std::string text;
+};
+
+// Says in one sentence whether there is a pen or finger whose pressure can be used.
+Verdict verdict_of(const DeviceCheck& check, const std::vector<platform::PointerDevice>& devices) {
+    constexpr std::int64_t kEnough = 20;  // distinct values: what a constant or a switch never gives
+    std::string tried;
+    for (const platform::Tool tool : {platform::Tool::pen, platform::Tool::finger}) {
+        const ToolCheck& seen = of_tool(tool, check);
+        const std::string name(name_of(tool));
+        const platform::PressureKind kind = platform::pressure_kind(check.pressure, tool);
+        if (kind == platform::PressureKind::varies && distinct_pressures(seen) >= kEnough) {
+            return {true, words::filled(words::kVerdictGood,
+                                        {name, std::to_string(distinct_pressures(seen)), fixed(rate_Hz(seen), 0)})};
+        }
+        const bool none = kind == platform::PressureKind::constant || kind == platform::PressureKind::missing;
+        if (none && tried.empty()) tried = words::filled(words::kVerdictNoSensor, {name});
+    }
+    if (!tried.empty()) return {false, tried};
+    const bool sensor =
+        std::any_of(devices.begin(), devices.end(), [](const platform::PointerDevice& d) { return d.has_pressure; });
+    return {false, sensor ? words::kVerdictTry : words::kVerdictNone};
+}
+
+void draw_verdict(const Verdict& verdict, const Gui& gui) {
+    const ImVec2 at = ImGui::GetCursorScreenPos();
+    const float side_px = ImGui::GetFontSize();
+    ImDrawList& draw = *ImGui::GetWindowDrawList();
+    const ImVec2 middle(at.x + 0.5f * side_px, at.y + 0.5f * side_px);
+    if (verdict.good) {  // a tick, and not only a colour
+        const ImVec2 tick[3] = {ImVec2(at.x, middle.y), ImVec2(middle.x - 0.1f * side_px, at.y + 0.85f * side_px),
+                                ImVec2(at.x + side_px, at.y + 0.1f * side_px)};
+        draw.AddPolyline(tick, 3, kInk, 0, 0.7f * gui.mm());
+    } else {
+        draw.AddCircle(middle, 0.45f * side_px, kLag, 24, 0.6f * gui.mm());
+    }
+    ImGui::Dummy(ImVec2(1.2f * side_px, side_px));
+    ImGui::SameLine();
+    ImGui::TextWrapped("%s", verdict.text.c_str());
 }
 
 void draw_test_area(const PanelArea& area, const Gui& gui, const std::vector<Dot>& dots) {
@@ -108,6 +151,7 @@ void draw_device_screen(const Shown& shown, const CheckingDevices& checking, Gui
     if (big_button(words::kBack, words::kEscape, {40.0f * gui.mm(), kTarget_mm, true, false}, gui)) {
         wishes.screen = Screen::trial;
     }
+    draw_verdict(verdict_of(*checking.check, shown.notices.devices), gui);
     ImGui::BeginChild("list");  // this part may scroll, since there may be any number of devices
     said_lines(shown.notices.devices);
     for (const std::string& note : shown.notices.device_notes) warning_paragraph(note);

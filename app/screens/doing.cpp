@@ -14,6 +14,12 @@ bool* menu_of(Doing& doing) {
     return nullptr;
 }
 
+bool is_guided(const Doing& doing) {
+    if (const auto* palpating = std::get_if<Palpating>(&doing)) return palpating->guided;
+    const auto* reviewing = std::get_if<Reviewing>(&doing);
+    return reviewing != nullptr && reviewing->guided;
+}
+
 bool palpates(const Doing& doing) {
     const StudyRun* study = study_of(doing);
     return study != nullptr ? trial_goes_on(*study) : std::holds_alternative<Palpating>(doing);

@@ -16,11 +16,13 @@ struct CalibrateForm;  // calibrate_form.h
 
 struct Palpating {  // a trial outside a study, practice or test (session::Trial::mode)
     bool menu = false;
+    bool guided = false;  // the guided start, on a practice trial
 };
 
 struct Reviewing {  // what a finished trial reveals
     session::Debrief debrief;
     bool menu = false;
+    bool guided = false;  // the last step of the guided start
 };
 
 struct Dot {
@@ -41,9 +43,12 @@ struct Calibrating {
 
 struct BrowsingMaps {};
 
+struct BrowsingHistory {};  // the results that were kept
+
 // A study has steps of its own (app/study/study_step.h), its trials among them. While it runs, the app does nothing
 // else: there is no menu, and nothing is revealed before the end.
-using Doing = std::variant<Palpating, Reviewing, CheckingDevices, MeasuringScreen, Calibrating, BrowsingMaps, StudyRun>;
+using Doing = std::variant<Palpating, Reviewing, CheckingDevices, MeasuringScreen, Calibrating, BrowsingMaps,
+                           BrowsingHistory, StudyRun>;
 
 inline StudyRun* study_of(Doing& doing) { return std::get_if<StudyRun>(&doing); }
 inline const StudyRun* study_of(const Doing& doing) { return std::get_if<StudyRun>(&doing); }
@@ -51,6 +56,9 @@ inline const StudyRun* study_of(const Doing& doing) { return std::get_if<StudyRu
 // Returns the menu of what the app is doing, true if it is open; null if it has none.
 const bool* menu_of(const Doing& doing);
 bool* menu_of(Doing& doing);
+
+// True during the guided start.
+bool is_guided(const Doing& doing);
 
 // True while samples go to the tissue, in a trial of a study or outside one.
 bool palpates(const Doing& doing);

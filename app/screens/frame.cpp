@@ -5,6 +5,7 @@
 
 #include "app/screens/calibrate_form.h"
 #include "app/screens/content_hash.h"
+#include "app/screens/history_screen.h"
 #include "app/screens/map_screen.h"
 #include "app/screens/tissue_drawing.h"
 #include "scene/advance.h"
@@ -13,7 +14,7 @@ namespace palpa::app {
 namespace {
 
 Layout layout_now(const Gui& gui, float width_px, float height_px, const Settings& settings) {
-    return layout_of(width_px, height_px, gui.mm(), settings.left_handed, settings.above_finger);
+    return layout_of(width_px, height_px, gui.mm(), settings.left_handed, settings.above_finger, gui.hand_mm());
 }
 
 struct Surface {
@@ -42,6 +43,8 @@ bool draw_covering(const Shown& shown, Gui& gui, ViewState& view, Wishes& wishes
         draw_calibrate_screen(shown, gui, *calibrating->form, wishes);
     } else if (std::holds_alternative<BrowsingMaps>(shown.doing)) {
         draw_map_screen(shown, gui, *view.maps, wishes);
+    } else if (std::holds_alternative<BrowsingHistory>(shown.doing)) {
+        draw_history_screen(shown, gui, *view.history, wishes);
     } else if (const StudyRun* study = study_of(shown.doing); study != nullptr && !trial_goes_on(*study)) {
         draw_study_screen(*study, shown.now_s, gui, view.study, wishes);
     } else {
@@ -56,14 +59,23 @@ void draw_panels(const Shown& shown, const Layout& layout, Gui& gui, ViewState& 
         return draw_ask(shown, gui, wishes);
     }
     take_keys(shown, gui, view, wishes);
+    if (view.help) {
+        draw_on_tissue(shown, gui);
+        return draw_help(shown, gui, view);
+    }
     if (draw_covering(shown, gui, view, wishes)) return;
     if (const auto* reviewing = std::get_if<Reviewing>(&shown.doing)) {
         draw_reveal_on_tissue(shown, gui, reviewing->debrief);
         draw_reveal_panel(shown, layout, *reviewing, gui, wishes);
     } else {
         draw_on_tissue(shown, gui);
-        draw_trial_panel(shown, layout, gui, wishes);
+        draw_trial_panel(shown, layout, gui, view, wishes);
     }
+    const bool paused = shown.trial.paused_at_s && !shown.trial.finished && study_of(shown.doing) == nullptr;
+    if (paused)
+        draw_paused(shown, layout, gui, wishes);
+    else if (is_guided(shown.doing))
+        draw_guided(shown, layout, gui, wishes);
     const bool* menu = menu_of(shown.doing);
     if (menu != nullptr && *menu) {
         draw_menu(shown, layout, gui, view, wishes);
@@ -95,13 +107,16 @@ Wishes draw_frame(const ToShow& what, const Canvas& canvas, ViewState& view, sce
     Gui& gui = canvas.gui;
     const StudyRun* study = study_of(what.doing);
     gui.keep_enter((study != nullptr && !trial_goes_on(*study)) || what.asked);
-    gui.begin_frame(what.dt_s, what.asked || !keys_move_indenter(what.doing));
+    gui.begin_frame(what.dt_s, what.asked || view.help || what.trial.paused_at_s || !keys_move_indenter(what.doing));
     const WindowSize window = gui.size_px();
     const session::Trial& trial = what.trial;
     Shown shown{what, state, view.times};
     shown.avatar = trial.finished ? scene::Avatar{} : scene::avatar_at(what.scene, state, what.now_s);
     shown.view = tissue_view(what.scene, state, window.width, window.height);
-    shown.trial_s = trial.finished ? trial.now_s - trial.began_s : std::max(0.0, what.now_s - trial.began_s);
+    // a study's time limit runs from the trial's begin
+    const double since_s = (trial.finished ? trial.now_s : what.now_s) - trial.began_s;
+    shown.trial_s = study != nullptr ? std::max(0.0, since_s) : session::clock_s(trial, what.now_s);
+    shown.experimenter = view.cost;
     Wishes wishes;
     draw_panels(shown, layout_now(gui, window.width, window.height, what.settings), gui, view, wishes);
     const Surface surface = trial.finished ? Surface{} : surface_of(what.scene, what.plan, shown.avatar, state);

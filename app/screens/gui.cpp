@@ -52,7 +52,7 @@ void set_colours(ImGuiStyle& style) {
     ImGui::StyleColorsDark(&style);
     ImVec4* c = style.Colors;
     c[ImGuiCol_Text] = colour(236, 239, 241);
-    c[ImGuiCol_TextDisabled] = colour(168, 176, 182);
+    c[ImGuiCol_TextDisabled] = colour(180, 188, 194);
     c[ImGuiCol_WindowBg] = colour(28, 31, 34);
     c[ImGuiCol_Button] = colour(62, 69, 75);
     c[ImGuiCol_ButtonHovered] = colour(80, 89, 97);
@@ -91,9 +91,12 @@ Gui::~Gui() {
     ImGui::DestroyContext();
 }
 
-void Gui::set_scale(float px_per_mm) {
-    if (px_per_mm == mm_) return;
-    mm_ = px_per_mm;
+void Gui::set_scale(float px_per_mm, float text) {
+    hand_mm_ = px_per_mm;
+    const float mm =
+        larger_scale(px_per_mm, text, static_cast<float>(window_.width_px()), static_cast<float>(window_.height_px()));
+    if (mm == mm_) return;
+    mm_ = mm;
     ImFontAtlas& fonts = *ImGui::GetIO().Fonts;
     fonts.Clear();
     const float text_px = std::clamp(kText_mm * mm_, 11.0f, 120.0f);

@@ -27,9 +27,12 @@ class Gui {
     Gui(const Gui&) = delete;
     Gui& operator=(const Gui&) = delete;
 
-    void set_scale(float px_per_mm);  // scale of controls and text; takes effect at once, only outside of a frame
-    float mm() const { return mm_; }  // px per millimetre
-    WindowSize size_px() const;       // of the frame
+    // Scale of controls and text: px per millimetre, and how much larger than usual they are. Takes effect at once, only
+    // outside of a frame.
+    void set_scale(float px_per_mm, float text = 1.0f);
+    float mm() const { return mm_; }            // px per millimetre of controls
+    float hand_mm() const { return hand_mm_; }  // px per millimetre of what hands do, whatever the size of text
+    WindowSize size_px() const;                 // of the frame
 
     // `keys_to_panels`: arrows, Tab and Space work the controls instead of the indenter.
     void begin_frame(double dt_s, bool keys_to_panels);
@@ -94,6 +97,7 @@ class Gui {
     float pointer_x_px_ = -1e6f;
     float pointer_y_px_ = -1e6f;
     float mm_ = 0.0f;
+    float hand_mm_ = 0.0f;
     std::string font_file_;
     std::string overflow_;
 };

@@ -14,7 +14,7 @@ constexpr float kLeastTissue_mm = 30.0f;
 
 }  // namespace
 
-Layout layout_of(float width_px, float height_px, float mm, bool left_handed, bool above_finger) {
+Layout layout_of(float width_px, float height_px, float mm, bool left_handed, bool above_finger, float hand_mm) {
     Layout out;
     const float column_px = kColumn_mm * mm;
     const float strip_px = std::max(kStrip_mm * mm, std::min(height_px - width_px, 1.3f * kStrip_mm * mm));
@@ -24,7 +24,8 @@ Layout layout_of(float width_px, float height_px, float mm, bool left_handed, bo
     const bool strip_fits = width_px >= kLeastStripWidth_mm * mm && below_px >= kLeastTissue_mm * mm;
     out.controls = column_fits || strip_fits;
     out.column = column_fits && (!strip_fits || beside_px >= below_px);
-    out.tissue_px = {0.0f, 0.0f, width_px, height_px - (above_finger ? kFingerOffset_mm * mm : 0.0f)};
+    out.tissue_px = {0.0f, 0.0f, width_px,
+                     height_px - (above_finger ? kFingerOffset_mm * (hand_mm > 0.0f ? hand_mm : mm) : 0.0f)};
     if (!out.controls) return out;
     if (!out.column) {
         out.controls_px = {0.0f, 0.0f, width_px, strip_px};
@@ -37,6 +38,12 @@ Layout layout_of(float width_px, float height_px, float mm, bool left_handed, bo
         out.tissue_px.x0 = column_px;
     }
     return out;
+}
+
+float larger_scale(float mm, float text, float width_px, float height_px) {
+    float scale = mm * text;
+    while (scale > mm && !layout_of(width_px, height_px, scale, false).controls) scale *= 0.95f;
+    return std::max(scale, mm);
 }
 
 float control_scale(double px_per_mm, float width_px, float height_px, double touch_px_per_mm) {

@@ -26,7 +26,12 @@ constexpr float kFingerOffset_mm = 15.0f;
 
 // Divides the window. `mm`: px per millimetre for controls. `above_finger`: the tissue ends kFingerOffset_mm above the
 // window's lower edge, so that all of it can be reached from below.
-Layout layout_of(float width_px, float height_px, float mm, bool left_handed, bool above_finger = false);
+// `hand_mm`: px per millimetre of that distance, if controls are larger than usual; 0: as `mm`.
+Layout layout_of(float width_px, float height_px, float mm, bool left_handed, bool above_finger = false,
+                 float hand_mm = 0.0f);
+
+// Returns the scale of controls that are `text` times as large as usual, or as large as the window has room for.
+float larger_scale(float mm, float text, float width_px, float height_px);
 
 // Returns px per millimetre for controls: the screen's own scale if it is known, else that of a desktop screen (96 px
 // per inch), and more in larger windows. touch_px_per_mm is the scale that the system gives for a touch screen (NaN:

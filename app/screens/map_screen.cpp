@@ -28,7 +28,7 @@ std::vector<std::string> facts_of(const stiffnessmaps::Map& map, const stiffness
     const double missing =
         100.0 * static_cast<double>(stiffnessmaps::missing_count(map)) / static_cast<double>(map.normal_N.size());
     out.push_back(missing > 0.0 ? words::filled(words::kShareMissing, {files::short_number(missing)})
-                                : words::kMeasuredEverywhere);
+                                : words::kNoMissingData);
     out.push_back(words::filled(
         words::kNoise, {files::short_number(1e3 * normal_noise_N(map)), std::to_string(field.isotonic_changed)}));
     out.push_back(words::filled(words::kTangential, {name_of(map.tangential)}));
@@ -52,12 +52,15 @@ bool same_file(const std::string& a, const std::string& b) {
 }
 
 void quantity_buttons(const Gui& gui, MapBrowser& browser) {
-    constexpr const char* kNames[] = {words::kNormal, words::kSidewaysX, words::kSidewaysY, words::kStiffness};
+    constexpr const char* kNames[] = {words::kNormal, words::kTangentialX, words::kTangentialY, words::kStiffness};
     constexpr const char* kKeys[] = {"1", "2", "3", "4"};
-    const float width_px = share_of_line_px(2);
+    float widest_px = 0.0f;
+    for (const char* name : kNames) widest_px = std::max(widest_px, ImGui::CalcTextSize(name).x);
+    const bool pairs = widest_px + 4.0f * gui.mm() < share_of_line_px(2);
+    const float width_px = share_of_line_px(pairs ? 2 : 1);
     for (int i = 0; i < 4; ++i) {
         const auto quantity = static_cast<MapQuantity>(i);
-        if (i % 2 == 1) ImGui::SameLine();
+        if (pairs && i % 2 == 1) ImGui::SameLine();
         if (big_button(kNames[i], kKeys[i],
                        {width_px, kTarget_mm, has_quantity(browser.map, quantity), browser.quantity == quantity},
                        gui)) {

@@ -10,23 +10,28 @@
 namespace palpa::app {
 namespace {
 
+// As high as its pages need; the rest of the tissue stays in view.
 PanelArea menu_area(const Layout& layout, float mm) {
     const PanelArea& t = layout.tissue_px;
     PanelArea area = t;
     area.x1 = std::min(t.x1, t.x0 + 150.0f * mm);
-    if (layout.column) area.y1 = std::max(t.y1, layout.controls_px.y1);
+    const float lowest = layout.column ? std::max(t.y1, layout.controls_px.y1) : t.y1;
+    area.y1 = std::min(lowest, t.y0 + 128.0f * mm);
     return area;
 }
 
-void choices(const char* title, const std::vector<Choice>& list, const std::string& chosen, float height_px,
-             const Gui& gui, std::optional<std::string>& wish) {
+void choices(const char* title, const std::vector<Choice>& list, const std::string& chosen, const Gui& gui,
+             std::optional<std::string>& wish) {
     ImGui::TextDisabled("%s", title);
-    ImGui::BeginChild(title, ImVec2(0.0f, height_px), false, ImGuiWindowFlags_NavFlattened);
+    ImGui::BeginChild(title, ImVec2(0.0f, 0.0f), false, ImGuiWindowFlags_NavFlattened);
     for (const Choice& choice : list) {
         ImGui::PushID(choice.file.c_str());
         ImGui::PushStyleVar(ImGuiStyleVar_ButtonTextAlign, ImVec2(0.0f, 0.5f));
         ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, ImVec2(1.5f * gui.mm(), 0.0f));
-        if (big_button(choice.name.c_str(), "", {0.0f, kTarget_mm, true, choice.file == chosen}, gui))
+        const bool wide =
+            ImGui::CalcTextSize(choice.name.c_str()).x > ImGui::GetContentRegionAvail().x - 3.0f * gui.mm();
+        if (big_button(choice.name.c_str(), "",
+                       {0.0f, kTarget_mm, true, choice.file == chosen, wide ? choice.name.c_str() : ""}, gui))
             wish = choice.file;
         if (choice.file == chosen) ImGui::SetItemDefaultFocus();  // where arrow keys start
         ImGui::PopStyleVar(2);
@@ -35,53 +40,93 @@ void choices(const char* title, const std::vector<Choice>& list, const std::stri
     ImGui::EndChild();
 }
 
-void pair_of_ways(const char* left, const char* right, const Gui& gui, bool& chose_left, bool& chose_right) {
-    const float width_px = share_of_line_px(2);
-    chose_left = big_button(left, "", {width_px, kTarget_mm, true, false}, gui);
-    ImGui::SameLine();
-    chose_right = big_button(right, "", {width_px, kTarget_mm, true, false}, gui);
-}
+struct Way {
+    const char* label;
+    bool chosen = false;
+    const char* hint = "";
+};
 
-void pair(const char* left, const char* right, bool right_chosen, const Gui& gui, bool& chose_left, bool& chose_right) {
-    const float width_px = share_of_line_px(2);
-    chose_left = big_button(left, "", {width_px, kTarget_mm, true, !right_chosen}, gui);
-    ImGui::SameLine();
-    chose_right = big_button(right, "", {width_px, kTarget_mm, true, right_chosen}, gui);
-}
-
-void right_side(const Shown& shown, const Gui& gui, ViewState& view, Wishes& wishes) {
-    bool left = false;
-    bool right = false;
-    ImGui::TextDisabled(words::kTrial);
-    pair(words::kPractice, words::kTest, shown.trial.mode == session::TrialMode::test, gui, left, right);
-    if (left) wishes.mode = session::TrialMode::practice;
-    if (right) wishes.mode = session::TrialMode::test;
-    if (big_button(words::kBeginAnew, "R", {}, gui)) wishes.again = true;
-    ImGui::TextDisabled(words::kDrawingHand);
-    pair(words::kLeft, words::kRight, !shown.settings.left_handed, gui, left, right);
-    if (left) wishes.left_handed = true;
-    if (right) wishes.left_handed = false;
-    ImGui::TextDisabled(words::kAvatarOfFinger);
-    pair(words::kUnderIt, words::kAboveIt, shown.settings.above_finger, gui, left, right);
-    if (left) wishes.above_finger = false;
-    if (right) wishes.above_finger = true;
-    if (shown.notices.keeps_trials) {
-        ImGui::TextDisabled(words::kOnThisTablet);
-        left = right = false;
-        pair_of_ways(words::kTrials, words::kStudies, gui, left, right);
-        wishes.trials = wishes.trials || left;
-        wishes.studies = wishes.studies || right;
+// Draws alternatives side by side under a title. Returns the index of the one that is pressed, -1 if none is.
+int ways(const char* title, std::initializer_list<Way> all, const Gui& gui) {
+    ImGui::TextDisabled("%s", title);
+    ImGui::PushID(title);
+    const float width_px = share_of_line_px(static_cast<int>(all.size()));
+    int pressed = -1;
+    int i = 0;
+    for (const Way& way : all) {
+        if (i > 0) ImGui::SameLine();
+        if (big_button(way.label, "", {width_px, kTarget_mm, true, way.chosen, way.hint}, gui)) pressed = i;
+        ++i;
     }
-    ImGui::TextDisabled(words::kScreenAndDevices);
-    if (big_button(words::kSizeOfScreen, "Z", {}, gui)) wishes.screen = Screen::scale;
-    if (big_button(words::kDeviceCheck, "D", {}, gui)) wishes.screen = Screen::devices;
-    if (big_button(words::kCalibratePressure, "P", {}, gui)) wishes.screen = Screen::calibrate;
-    if (big_button(words::kMaps, "B", {0.0f, kTarget_mm, may_show_maps(shown.trial), false}, gui))
-        wishes.screen = Screen::maps;
-    if (big_button(words::kCost, "C", {0.0f, kTarget_mm, true, view.cost}, gui)) view.cost = !view.cost;
-    if (big_button(words::kFullScreen, "F11", {0.0f, kTarget_mm, true, shown.settings.full_screen}, gui))
-        wishes.full_screen = true;
+    ImGui::PopID();
+    return pressed;
+}
+
+void trial_page(const Shown& shown, const Gui& gui, Wishes& wishes) {
+    const bool test = shown.trial.mode == session::TrialMode::test;
+    const int mode = ways(
+        words::kTrial, {{words::kPractice, !test, words::kHintPractice}, {words::kTest, test, words::kHintTest}}, gui);
+    if (mode >= 0) wishes.mode = mode == 0 ? session::TrialMode::practice : session::TrialMode::test;
+    if (big_button(words::kRestartTrial, words::kKeyAgain, {0.0f, kTarget_mm, true, false, words::kHintRestart}, gui))
+        wishes.again = true;
+    if (big_button(words::kGuidedStart, "", {}, gui)) wishes.guided = true;
+    if (!shown.notices.keeps_trials &&
+        big_button(words::kHistory, words::kKeyHistory, {0.0f, kTarget_mm, may_show_maps(shown.trial), false}, gui))
+        wishes.screen = Screen::history;
+    if (shown.notices.keeps_trials) {
+        const int where = ways(words::kOnThisTablet, {{words::kTrials}, {words::kStudies}}, gui);
+        wishes.trials = wishes.trials || where == 0;
+        wishes.studies = wishes.studies || where == 1;
+    }
     if (!shown.notices.keeps_trials && big_button(words::kQuit, words::kCtrlQ, {}, gui)) wishes.quit = true;
+}
+
+void settings_page(const Shown& shown, const Gui& gui, Wishes& wishes) {
+    const Settings& s = shown.settings;
+    const int hand = ways(words::kDominantHand, {{words::kLeft, s.left_handed}, {words::kRight, !s.left_handed}}, gui);
+    if (hand >= 0) wishes.left_handed = hand == 0;
+    const int finger = ways(words::kContactOfFinger,
+                            {{words::kUnderFinger, !s.above_finger}, {words::kAboveFinger, s.above_finger}}, gui);
+    if (finger >= 0) wishes.above_finger = finger == 1;
+    const int size = ways(words::kTextSize,
+                          {{"100 %", s.text_percent == kTextPercents[0]},
+                           {"120 %", s.text_percent == kTextPercents[1]},
+                           {"140 %", s.text_percent == kTextPercents[2]}},
+                          gui);
+    if (size >= 0) wishes.text_percent = kTextPercents[size];
+    if (!shown.notices.keeps_trials) {
+        const int keep =
+            ways(words::kKeepResults, {{words::kKept, s.keep_results}, {words::kNotKept, !s.keep_results}}, gui);
+        if (keep >= 0) wishes.keep_results = keep == 0;
+    }
+    if (big_button(words::kScreenScale, words::kKeyScale, {0.0f, kTarget_mm, true, false, words::kHintScale}, gui))
+        wishes.screen = Screen::scale;
+    if (big_button(words::kFullScreen, "F11", {0.0f, kTarget_mm, true, s.full_screen}, gui)) wishes.full_screen = true;
+}
+
+void experimenter_page(const Shown& shown, const Gui& gui, ViewState& view, Wishes& wishes) {
+    ImGui::TextDisabled(words::kDisplayAndInput);
+    if (big_button(words::kDeviceCheck, words::kKeyDevices, {0.0f, kTarget_mm, true, false, words::kHintDevices}, gui))
+        wishes.screen = Screen::devices;
+    if (big_button(words::kCalibratePressure, "", {}, gui)) wishes.screen = Screen::calibrate;
+    if (big_button(words::kMaps, words::kKeyMaps, {0.0f, kTarget_mm, may_show_maps(shown.trial), false}, gui))
+        wishes.screen = Screen::maps;
+    if (big_button(words::kPerformance, words::kKeyCost, {0.0f, kTarget_mm, true, view.cost, words::kHintPerformance},
+                   gui))
+        view.cost = !view.cost;
+}
+
+void page_tabs(const Gui& gui, MenuPage& page) {
+    constexpr const char* kPages[] = {words::kTrial, words::kPageSettings, words::kPageExperimenter};
+    const float width_px = share_of_line_px(3);
+    for (int i = 0; i < 3; ++i) {
+        if (i > 0) ImGui::SameLine();
+        ImGui::PushID(i);
+        const auto each = static_cast<MenuPage>(i);
+        if (big_button(kPages[i], "", {width_px, kTarget_mm, true, page == each}, gui)) page = each;
+        ImGui::PopID();
+    }
+    ImGui::Separator();
 }
 
 void stage_rows(const Shown& shown, const std::vector<scene::Stage>& stages) {
@@ -90,10 +135,10 @@ void stage_rows(const Shown& shown, const std::vector<scene::Stage>& stages) {
         ImGui::TableNextRow();
         ImGui::TableNextColumn();
         ImGui::TextUnformatted(name_of(stage.id));
+        hint_for_last(stage.fidelity.c_str());
         ImGui::TableNextColumn();
-        ImGui::TextWrapped("%s", stage.fidelity.c_str());
-        ImGui::TableNextColumn();
-        ImGui::TextWrapped("%s", stage.error.c_str());
+        ImGui::TextUnformatted(stage.error.c_str());
+        hint_for_last(stage.error.c_str());
         ImGui::TableNextColumn();
         ImGui::Text("%.2f", 1e-3 * meter.quantile_ns(0.5));
         ImGui::TableNextColumn();
@@ -121,6 +166,8 @@ void trial_keys(const Shown& shown, const Gui& gui, Wishes& wishes) {
         wishes.action = platform::Action::undo;
     if (gui.pressed('f')) wishes.action = platform::Action::finish;
     if (gui.pressed('h')) wishes.press_by_hold = true;
+    if (gui.pressed('p') && study_of(shown.doing) == nullptr)
+        wishes.action = shown.trial.paused_at_s ? platform::Action::resume : platform::Action::pause;
     for (int i = 0; i < 5; ++i) {
         if (gui.pressed('1' + i) || gui.pressed(platform::key::pad_0 + 1 + i)) {
             wishes.action = static_cast<platform::Action>(static_cast<int>(platform::Action::confidence_1) + i);
@@ -146,38 +193,46 @@ void draw_menu(const Shown& shown, const Layout& layout, Gui& gui, ViewState& vi
     const PanelArea area = menu_area(layout, gui.mm());
     begin_panel("menu", area, gui);
     if (ImGui::IsWindowAppearing()) ImGui::SetWindowFocus();
+    page_tabs(gui, view.menu_page);
+    const bool lists = view.menu_page != MenuPage::settings;
     const bool two_columns = area.width() >= 110.0f * gui.mm();
-    const float half_px = two_columns ? 1.15f * share_of_line_px(2) : 0.0f;
-    const float height_px = two_columns ? ImGui::GetContentRegionAvail().y : 0.5f * ImGui::GetContentRegionAvail().y;
-    ImGui::BeginChild("what", ImVec2(half_px, height_px), false, ImGuiWindowFlags_NavFlattened);
-    const float line_px = ImGui::GetFontSize() + 2.0f * ImGui::GetStyle().ItemSpacing.y;
-    const float list_px = ImGui::GetContentRegionAvail().y - 2.0f * line_px;
-    choices(words::kScene, shown.notices.scenes, shown.scene.file.string(), 0.62f * list_px, gui, wishes.scene);
-    choices(words::kPressureProfile, shown.notices.profiles, shown.scene.profile.string(), 0.36f * list_px, gui,
-            wishes.profile);
-    ImGui::EndChild();
-    if (two_columns) ImGui::SameLine();
+    const float rest_px = ImGui::GetContentRegionAvail().y;
+    if (lists) {
+        ImGui::BeginChild(
+            "what", ImVec2(two_columns ? 1.15f * share_of_line_px(2) : 0.0f, two_columns ? rest_px : 0.5f * rest_px),
+            false, ImGuiWindowFlags_NavFlattened);
+        if (view.menu_page == MenuPage::trial) {
+            choices(words::kScene, shown.notices.scenes, shown.scene.file.string(), gui, wishes.scene);
+        } else {
+            choices(words::kCalibrationProfile, shown.notices.profiles, shown.scene.profile.string(), gui,
+                    wishes.profile);
+        }
+        ImGui::EndChild();
+        if (two_columns) ImGui::SameLine();
+    }
     ImGui::BeginChild("how", ImVec2(0.0f, 0.0f), false, ImGuiWindowFlags_NavFlattened);
-    right_side(shown, gui, view, wishes);
+    if (view.menu_page == MenuPage::trial) trial_page(shown, gui, wishes);
+    if (view.menu_page == MenuPage::settings) settings_page(shown, gui, wishes);
+    if (view.menu_page == MenuPage::experimenter) experimenter_page(shown, gui, view, wishes);
     ImGui::EndChild();
     end_panel("menu", gui);
 }
 
 void draw_cost(const Shown& shown, const Layout& layout, Gui& gui) {
     const PanelArea& t = layout.tissue_px;
-    const float height_px = std::min(0.55f * t.height(), 80.0f * gui.mm());
+    const float height_px = std::min(0.32f * t.height(), 80.0f * gui.mm());
     begin_panel("cost", {t.x0, t.y1 - height_px, t.x1, t.y1}, gui, 0.9f);
     constexpr ImGuiTableFlags kFlags =
         ImGuiTableFlags_RowBg | ImGuiTableFlags_SizingStretchProp | ImGuiTableFlags_ScrollY;
     const std::string text = frame_text(shown);
     const ImVec2 text_size = ImGui::CalcTextSize(text.c_str(), nullptr, false, ImGui::GetContentRegionAvail().x);
     const float text_px = text_size.y + 2.0f * ImGui::GetStyle().ItemSpacing.y;
-    if (ImGui::BeginTable("stages", 6, kFlags, ImVec2(0.0f, ImGui::GetContentRegionAvail().y - text_px))) {
+    if (ImGui::BeginTable("stages", 5, kFlags, ImVec2(0.0f, ImGui::GetContentRegionAvail().y - text_px))) {
         ImGui::TableSetupScrollFreeze(0, 1);
-        constexpr const char* kColumns[] = {words::kStage,        words::kFidelity,       words::kError,
-                                            words::kMicroseconds, words::kMicroseconds99, words::kCalls};
-        constexpr float kWidths[] = {1.9f, 4.0f, 4.0f, 0.8f, 1.1f, 1.0f};
-        for (int i = 0; i < 6; ++i)
+        constexpr const char* kColumns[] = {words::kStage, words::kError, words::kMicroseconds, words::kMicroseconds99,
+                                            words::kCalls};
+        constexpr float kWidths[] = {2.2f, 5.0f, 1.6f, 1.4f, 1.2f};
+        for (int i = 0; i < 5; ++i)
             ImGui::TableSetupColumn(kColumns[i], ImGuiTableColumnFlags_WidthStretch, kWidths[i]);
         ImGui::TableHeadersRow();
         stage_rows(shown, shown.plan.sample_stages);
@@ -201,16 +256,22 @@ void take_keys(const Shown& shown, const Gui& gui, ViewState& view, Wishes& wish
     if (gui.pressed('q', true) && !shown.notices.keeps_trials) wishes.quit = true;
     if (gui.pressed(platform::key::f11)) wishes.full_screen = true;
     if (gui.pressed(platform::key::escape)) wishes.understood = true;
+    const bool help = gui.pressed(platform::key::f1) || gui.pressed('?') || gui.pressed('/');
+    if (view.help) {  // the keys only act on what can be seen
+        if (help || gui.pressed(platform::key::escape)) view.help = false;
+        return;
+    }
     if (palpates(shown.doing)) trial_keys(shown, gui, wishes);
     // in a study the other keys would change what the protocol fixes, or reveal what it hides
     if (study_of(shown.doing) != nullptr) return;
+    if (help) view.help = true;
     if (gui.pressed('t')) wishes.trials = true;
     if (gui.pressed('y')) wishes.studies = true;
     menu_keys(shown, gui, wishes);
     if (gui.pressed('c')) view.cost = !view.cost;
     if (gui.pressed('d')) wishes.screen = Screen::devices;
     if (gui.pressed('z')) wishes.screen = Screen::scale;
-    if (gui.pressed('p')) wishes.screen = Screen::calibrate;
+    if (gui.pressed('v')) wishes.screen = Screen::history;
     if (gui.pressed('b')) wishes.screen = Screen::maps;
     if (gui.pressed('r')) wishes.again = true;
     if (gui.pressed('s', true)) wishes.save_picture = true;

@@ -22,7 +22,8 @@ std::string draw_picture(const ToShow& what, const Picture& picture, ViewState& 
     Gui gui(window);
     render::TissueDrawer tissue;
     gui.set_scale(control_scale(what.notices.px_per_mm, static_cast<float>(picture.width_px),
-                                static_cast<float>(picture.height_px)));
+                                static_cast<float>(picture.height_px)),
+                  0.01f * static_cast<float>(what.settings.text_percent));
     for (int i = 0; i < 3; ++i) draw_frame(what, {gui, tissue}, view, state);
     save_screen(window, picture.png);
     return gui.overflow();

@@ -10,46 +10,6 @@
 namespace palpa::app {
 namespace {
 
-// Draws one run of cells of a row that reached the same level.
-void draw_run(const Shown& shown, const study::Coverage& c, int row, int first, int last, study::PalpationLevel level,
-              float mm, ImDrawList& draw) {
-    const double x0 = c.x_m + first * c.cell_m;
-    const double x1 = c.x_m + (last + 1) * c.cell_m;
-    const double y0 = c.y_m + row * c.cell_m;
-    const double y1 = y0 + c.cell_m;
-    if (level == study::PalpationLevel::none) {  // hatched, so that "never touched" is not one more colour
-        for (int i = first; i <= last; ++i) {
-            if ((i + c.n_y - row) % 4 != 0) continue;  // diagonals from cell to cell
-            const double x_m = c.x_m + i * c.cell_m;
-            draw.AddLine(on_screen(shown.view, x_m, y0), on_screen(shown.view, x_m + c.cell_m, y1),
-                         IM_COL32(20, 22, 24, 70), 0.2f * mm);
-        }
-        return;
-    }
-    const ImU32 colour = kAreaTints[static_cast<int>(level) - 1];
-    draw.AddQuadFilled(on_screen(shown.view, x0, y0), on_screen(shown.view, x1, y0), on_screen(shown.view, x1, y1),
-                       on_screen(shown.view, x0, y1), colour);
-}
-
-void draw_coverage(const Shown& shown, float mm, ImDrawList& draw) {
-    const study::Coverage& c = shown.trial.coverage;
-    const auto level_at = [&](int i, int j) {
-        return level_of(c, static_cast<double>(c.depth_m[static_cast<std::size_t>(j * c.n_x + i)]));
-    };
-    const ImDrawListFlags flags = draw.Flags;
-    draw.Flags &= ~ImDrawListFlags_AntiAliasedFill;  // neighbours would show seams
-    for (int j = 0; j < c.n_y; ++j) {
-        for (int i = 0; i < c.n_x;) {
-            const study::PalpationLevel level = level_at(i, j);
-            int last = i;
-            while (last + 1 < c.n_x && level_at(last + 1, j) == level) ++last;
-            draw_run(shown, c, j, i, last, level, mm, draw);
-            i = last + 1;
-        }
-    }
-    draw.Flags = flags;
-}
-
 void draw_path(const Shown& shown, float mm, ImDrawList& draw) {
     const std::vector<session::PathPoint>& path = shown.trial.path;
     for (std::size_t i = 1; i < path.size(); ++i) {
@@ -72,8 +32,7 @@ void draw_nodules(const Shown& shown, const session::Debrief& debrief, float mm,
             draw.AddCircle(at, radius_px, kDark, 48, 1.3f * mm);
             dashed_circle(draw, at, radius_px, kInk, 0.8f * mm);
         }
-        // the panel says why a nodule was missed
-        const std::string text = words::filled(found ? words::kFoundNodule : words::kMissedNodule, {nodule.id});
+        const std::string text = nodule.id + ": " + name_of(debrief.findings[i]);
         const float width_px = ImGui::CalcTextSize(text.c_str()).x;
         const bool fits = at.x + radius_px + mm + width_px < ImGui::GetIO().DisplaySize.x;
         rimmed_text(
@@ -83,7 +42,41 @@ void draw_nodules(const Shown& shown, const session::Debrief& debrief, float mm,
     }
 }
 
+struct Label {
+    ImVec2 at;
+    std::string text;
+};
+
+bool overlap(const PanelArea& a, const PanelArea& b) {
+    return a.x0 < b.x1 && b.x0 < a.x1 && a.y0 < b.y1 && b.y0 < a.y1;
+}
+
+// Draws each label beside its mark, at the first of eight places where it covers no other and stays in the window.
+void place_labels(const std::vector<Label>& labels, float mm, ImDrawList& draw) {
+    const ImVec2 screen = ImGui::GetIO().DisplaySize;
+    std::vector<PanelArea> taken;
+    for (const Label& label : labels)
+        taken.push_back({label.at.x - mm, label.at.y - mm, label.at.x + mm, label.at.y + mm});
+    for (const Label& label : labels) {
+        const ImVec2 size = ImGui::CalcTextSize(label.text.c_str());
+        const float off_px = 2.4f * mm;
+        PanelArea area{};
+        for (int k = 0; k < 8; ++k) {
+            const float x0 = k % 2 == 0 ? label.at.x + off_px : label.at.x - off_px - size.x;
+            const float step = static_cast<float>(k / 2) * 0.9f * size.y;
+            const float y0 = label.at.y - 1.2f * size.y + (k / 2 % 2 == 0 ? step : -step);
+            area = {x0, y0, x0 + size.x, y0 + size.y};
+            const bool free =
+                std::none_of(taken.begin(), taken.end(), [&](const PanelArea& other) { return overlap(area, other); });
+            if (free && area.x0 >= 0.0f && area.x1 <= screen.x && area.y0 >= 0.0f) break;
+        }
+        taken.push_back(area);
+        rimmed_text(draw, ImVec2(area.x0, area.y0), kInk, label.text);
+    }
+}
+
 void draw_marks(const Shown& shown, const study::Score& score, float mm, ImDrawList& draw) {
+    std::vector<Label> labels;
     for (std::size_t i = 0; i < shown.trial.marks.size(); ++i) {
         const session::Mark& mark = shown.trial.marks[i];
         const ImVec2 at = on_screen(shown.view, mark.p_m.x(), mark.p_m.y());
@@ -96,14 +89,13 @@ void draw_marks(const Shown& shown, const study::Score& score, float mm, ImDrawL
             if (kind == study::MarkKind::hit) draw.AddCircleFilled(at, 1.3f * mm, kInk);
         }
         const char* pattern = kind == study::MarkKind::hit     ? "{}"
-                              : kind == study::MarkKind::again ? words::kMarkAgain
+                              : kind == study::MarkKind::again ? words::kMarkDuplicate
                                                                : words::kMarkFalse;
-        const std::string word = words::filled(pattern, {std::to_string(i + 1)});
-        rimmed_text(draw,
-                    ImVec2(at.x - 1.5f * mm - ImGui::CalcTextSize(std::to_string(i + 1).c_str()).x,
-                           at.y - 1.2f * ImGui::GetFontSize()),
-                    kInk, word);
+        std::string word = words::filled(pattern, {std::to_string(i + 1)});
+        if (mark.confidence > 0) word += words::filled(words::kConfidenceOf, {std::to_string(mark.confidence)});
+        labels.push_back({at, word});
     }
+    place_labels(labels, mm, draw);
 }
 
 std::string percent(double share) { return std::isfinite(share) ? fixed(100.0 * share, 0) + " %" : "-"; }
@@ -115,42 +107,54 @@ void result_lines(const Shown& shown, const session::Debrief& debrief, const Gui
         words::kFoundOf, {std::to_string(s.true_positives), std::to_string(s.true_positives + s.false_negatives)});
     ImGui::TextUnformatted(found.c_str());
     value_line(words::kSensitivity, percent(s.sensitivity), column_px);
+    hint_for_last(words::kHintSensitivity);
     value_line(words::kPpv, percent(s.ppv), column_px);
-    value_line(words::kFalseMarks, std::to_string(s.false_positives), column_px);
+    hint_for_last(words::kHintPpv);
+    value_line(words::kFalsePositives, std::to_string(s.false_positives), column_px);
     value_line(words::kTime, clock_text(shown.trial_s), column_px);
     for (std::size_t i = 0; i < shown.plan.nodules.size(); ++i) {
         std::string text = shown.plan.nodules[i].id + ": " + name_of(debrief.findings[i]);
+        const int by = s.found_by[i];
+        const int sure = by < 0 ? 0 : shown.trial.marks[static_cast<std::size_t>(by)].confidence;
+        if (sure > 0) text += words::filled(words::kConfidenceOf, {std::to_string(sure)});
         if (debrief.depth_m[i] > 0.0) text += words::filled(words::kDownTo, {fixed(1e3 * debrief.depth_m[i], 1)});
         ImGui::TextWrapped("%s", text.c_str());
     }
 }
 
 void legend(const session::Debrief& debrief, const Gui& gui) {
-    ImGui::TextDisabled(words::kAreaExamined);
+    ImGui::TextDisabled(words::kCoverage);
     constexpr const char* kNames[study::kPalpationLevels] = {words::kNotTouched, words::kLightOrDeeper,
                                                              words::kMediumOrDeeper, words::kDeep};
+    float column_px = 0.0f;
+    for (const char* name : kNames) column_px = std::max(column_px, ImGui::CalcTextSize(name).x);
+    column_px += 2.0f * gui.mm();
     ImDrawList& draw = *ImGui::GetWindowDrawList();
     for (int level = study::kPalpationLevels - 1; level >= 0; --level) {
         const ImVec2 at = ImGui::GetCursorScreenPos();
         const float side_px = ImGui::GetFontSize();
         const ImVec2 end(at.x + side_px, at.y + side_px);
-        if (level > 0) draw.AddRectFilled(at, end, kAreaTints[level - 1] | IM_COL32(0, 0, 0, 255));
+        if (level > 0) draw.AddRectFilled(at, end, kAreaTints[level - 1]);
         for (float s = 0.0f; level == 0 && s < 0.99f; s += 0.25f) {  // hatched
             draw.AddLine(ImVec2(at.x + s * side_px, end.y), ImVec2(end.x, at.y + s * side_px), kPale);
             draw.AddLine(ImVec2(at.x, end.y - s * side_px), ImVec2(end.x - s * side_px, at.y), kPale);
         }
         ImGui::Dummy(ImVec2(side_px, side_px));
         ImGui::SameLine();
-        value_line(kNames[level], percent(debrief.area.at_least[level]), 38.0f * gui.mm());
+        value_line(kNames[level], percent(debrief.area.at_least[level]), column_px);
+        hint_for_last(words::kHintCoverage);
     }
 }
 
 void buttons(const Gui& gui, bool menu, Wishes& wishes) {
     const float width_px = share_of_line_px(2);
-    if (big_button(words::kAgain, "R", {width_px, kMark_mm, true, false}, gui)) wishes.again = true;
+    if (big_button(words::kAgain, words::kKeyAgain, {width_px, kMark_mm, true, false, words::kHintRestart}, gui))
+        wishes.again = true;
     ImGui::SameLine();
-    if (big_button(words::kNext, "N", {width_px, kMark_mm, true, false}, gui)) wishes.next = true;
-    if (big_button(words::kSavePicture, "S", {width_px, kTarget_mm, true, false}, gui)) wishes.save_picture = true;
+    if (big_button(words::kNext, words::kKeyNext, {width_px, kMark_mm, true, false, words::kHintNext}, gui))
+        wishes.next = true;
+    if (big_button(words::kSavePicture, words::kKeyPicture, {width_px, kTarget_mm, true, false}, gui))
+        wishes.save_picture = true;
     ImGui::SameLine();
     if (big_button(menu ? words::kClose : words::kMenu, "F10", {width_px, kTarget_mm, true, menu}, gui))
         wishes.menu = !menu;
@@ -173,6 +177,8 @@ void draw_reveal_panel(const Shown& shown, const Layout& layout, const Reviewing
     ImGui::BeginGroup();
     if (!layout.column) ImGui::BeginChild("results", ImVec2(half_px, 0.0f), false, ImGuiWindowFlags_NavFlattened);
     if (layout.column) buttons(gui, reviewing.menu, wishes);
+    ImGui::TextWrapped("%s", advice_for(shown.plan, shown.trial, reviewing.debrief, shown.state.view).c_str());
+    ImGui::Separator();
     result_lines(shown, reviewing.debrief, gui);
     if (!layout.column) ImGui::EndChild();
     ImGui::EndGroup();
@@ -182,9 +188,12 @@ void draw_reveal_panel(const Shown& shown, const Layout& layout, const Reviewing
         buttons(gui, reviewing.menu, wishes);
     }
     legend(reviewing.debrief, gui);
+    // long messages scroll in what is left
+    ImGui::BeginChild("said", ImVec2(0.0f, 0.0f), false, ImGuiWindowFlags_NavFlattened);
     for (const std::string& problem : shown.notices.problems) warning_paragraph(problem);
     if (!shown.notices.note.empty()) paragraph(shown.notices.note);
     if (!shown.notices.trials_note.empty()) paragraph(shown.notices.trials_note);
+    ImGui::EndChild();
     if (!layout.column) ImGui::EndChild();
     end_panel("reveal", gui);
 }

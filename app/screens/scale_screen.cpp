@@ -35,6 +35,21 @@ void draw_card(const PanelArea& area, float px_per_mm) {
     draw.AddText(ImVec2(low.x + 4.0f * px_per_mm, low.y + 4.0f * px_per_mm), kInk, text);
 }
 
+// Lets the person drag the frame's left or right edge, or anything between, to the size of the card.
+void drag_card(const PanelArea& area, double& px_per_mm) {
+    constexpr float kGrip = 1.4f;  // the edges can be gripped from outside
+    const auto half_px = static_cast<float>(0.5 * px_per_mm) * kCardWidth_mm;
+    const float middle_x = 0.5f * (area.x0 + area.x1);
+    ImGui::SetCursorScreenPos(ImVec2(std::max(area.x0, middle_x - kGrip * half_px), area.y0));
+    const float width_px = std::min(area.width(), 2.0f * kGrip * half_px);
+    ImGui::InvisibleButton("card", ImVec2(std::max(1.0f, width_px), std::max(1.0f, area.height())));
+    if (!ImGui::IsItemActive()) return;
+    const float now_px = std::abs(ImGui::GetMousePos().x - middle_x);
+    const float before_px = std::abs(ImGui::GetMousePos().x - ImGui::GetIO().MouseDelta.x - middle_x);
+    if (ImGui::IsMouseDragging(0, 0.0f)) px_per_mm += static_cast<double>(2.0f * (now_px - before_px) / kCardWidth_mm);
+    px_per_mm = std::clamp(px_per_mm, kLeast_px_per_mm, kMost_px_per_mm);
+}
+
 void step_buttons(const Gui& gui, double& px_per_mm) {
     constexpr double kSteps[] = {0.98, 0.998, 1.002, 1.02};
     constexpr const char* kLabels[] = {"- -", "-", "+", "+ +"};
@@ -70,9 +85,9 @@ void draw_scale_screen(const Shown& shown, Gui& gui, double& card_px_per_mm, Wis
         warning_paragraph(words::filled(words::kNumberFromTo, {fixed(kLeast_px_per_mm, 0), fixed(kMost_px_per_mm, 0)}));
     }
     const float width_px = std::min(share_of_line_px(3), 42.0f * gui.mm());
-    if (big_button(words::kKeep, "", {width_px, kMark_mm, true, false}, gui)) wishes.px_per_mm = card_px_per_mm;
+    if (big_button(words::kSave, "", {width_px, kMark_mm, true, false}, gui)) wishes.px_per_mm = card_px_per_mm;
     ImGui::SameLine();
-    if (big_button(words::kForget, "", {width_px, kMark_mm, std::isfinite(shown.notices.px_per_mm), false}, gui))
+    if (big_button(words::kReset, "", {width_px, kMark_mm, std::isfinite(shown.notices.px_per_mm), false}, gui))
         wishes.px_per_mm = platform::kMissing;
     ImGui::SameLine();
     if (big_button(words::kBack, words::kEscape, {width_px, kMark_mm, true, false}, gui)) {
@@ -83,7 +98,9 @@ void draw_scale_screen(const Shown& shown, Gui& gui, double& card_px_per_mm, Wis
                                  : words::kNotMeasured;
     paragraph(words::filled(words::kThisScreen, {shown.notices.screen_name, kept}));
     const float top_px = ImGui::GetCursorScreenPos().y;
-    draw_card({0.0f, top_px, screen.x, screen.y}, static_cast<float>(card_px_per_mm));
+    const PanelArea card{0.0f, top_px, screen.x, std::max(top_px + 1.0f, screen.y - 3.0f * gui.mm())};
+    drag_card(card, card_px_per_mm);
+    draw_card(card, static_cast<float>(card_px_per_mm));
     end_panel("scale", gui);
 }
 

@@ -16,12 +16,21 @@
 #include "scene/scene.h"
 #include "session/trial.h"
 
+struct ImDrawList;
+
 namespace palpa::app {
 
-enum class Screen : std::uint8_t { trial, devices, scale, calibrate, maps };  // screens that a person can ask for
+enum class Screen : std::uint8_t {
+    trial,
+    devices,
+    scale,
+    calibrate,
+    maps,
+    history
+};  // screens that a person can ask for
 
 struct Wishes {
-    std::optional<platform::Action> action;  // mark, confidence, undo, finish
+    std::optional<platform::Action> action;  // mark, confidence, undo, finish, pause, resume
     std::optional<std::string> scene;        // file
     std::optional<std::string> profile;      // file; empty: the scene's own
     std::optional<Screen> screen;            // trial: back to it, or to what it revealed
@@ -31,8 +40,12 @@ struct Wishes {
     std::optional<bool> above_finger;
     std::optional<double> px_per_mm;  // of this screen, measured; NaN: forget it
     std::optional<StudyWish> study;
-    bool again = false;  // another trial on the same tissue
-    bool next = false;   // another trial on the tissue turned another way
+    std::optional<bool> guided;  // true: begin the guided start; false: leave it
+    std::optional<bool> keep_results;
+    std::optional<int> text_percent;
+    bool delete_results = false;  // of all trials, for good
+    bool again = false;           // another trial on the same tissue
+    bool next = false;            // another trial on the tissue turned another way
     bool save_picture = false;
     bool full_screen = false;  // enter or leave full screen
     bool press_by_hold = false;
@@ -94,13 +107,19 @@ struct StudyForm {
     double clock_began_s = 0.0;  // of `typed`; 0: the clock is stopped
 };
 
-struct MapBrowser;  // map_screen.h
+struct MapBrowser;   // map_screen.h
+struct HistoryView;  // history_screen.h
+
+enum class MenuPage : std::uint8_t { trial, settings, experimenter };
 
 // What the screens themselves keep from frame to frame. A replay does not need it.
 struct ViewState {
-    bool cost = false;                 // the cost table is open
-    double card_px_per_mm = 3.78;      // while the scale of the screen is being measured
-    std::shared_ptr<MapBrowser> maps;  // while its screen is open, else null
+    bool cost = false;  // the table of performance is open: the experimenter's view
+    bool help = false;  // the list of keys is open
+    MenuPage menu_page = MenuPage::trial;
+    double card_px_per_mm = 3.78;          // while the scale of the screen is being measured
+    std::shared_ptr<MapBrowser> maps;      // while its screen is open, else null
+    std::shared_ptr<HistoryView> history;  // likewise
     StudyForm study;
     FrameTimes times;
     OnScreen on_screen;
@@ -125,15 +144,33 @@ struct Shown : ToShow {
     const FrameTimes& times;
     scene::Avatar avatar{};
     render::TissueView view{};
-    double trial_s = 0.0;
+    double trial_s = 0.0;       // as the clock shows it
+    bool experimenter = false;  // ViewState::cost
 };
 
 // Draws marks, lag, pen and (in practice) nodules over the tissue.
 void draw_on_tissue(const Shown& shown, const Gui& gui);
 
-void draw_trial_panel(const Shown& shown, const Layout& layout, Gui& gui, Wishes& wishes);
+void draw_trial_panel(const Shown& shown, const Layout& layout, Gui& gui, ViewState& view, Wishes& wishes);
+// Where the guided start stands; it follows from the trial alone.
+enum class GuidedStep : std::uint8_t { press, slide, mark, confidence, finish };
+GuidedStep guided_step(const scene::Plan& plan, const session::Trial& trial);
+// Returns the place on plain tissue that the first step asks to press.
+Eigen::Vector2d plain_place_m(const scene::Plan& plan);
+void draw_guided(const Shown& shown, const Layout& layout, Gui& gui, Wishes& wishes);
+
+// Covers the tissue while the clock is stopped.
+void draw_paused(const Shown& shown, const Layout& layout, Gui& gui, Wishes& wishes);
+// Lists the keys, over everything else.
+void draw_help(const Shown& shown, Gui& gui, ViewState& view);
+
+// One sentence on what to do better, from what was found, where was pressed and how deep.
+std::string advice_for(const scene::Plan& plan, const session::Trial& trial, const session::Debrief& debrief,
+                       const scene::View& view);
+
 void draw_menu(const Shown& shown, const Layout& layout, Gui& gui, ViewState& view, Wishes& wishes);
 void draw_cost(const Shown& shown, const Layout& layout, Gui& gui);
+void draw_coverage(const Shown& shown, float mm, ImDrawList& draw);
 void draw_reveal_on_tissue(const Shown& shown, const Gui& gui, const session::Debrief& debrief);
 void draw_reveal_panel(const Shown& shown, const Layout& layout, const Reviewing& reviewing, Gui& gui, Wishes& wishes);
 void draw_device_screen(const Shown& shown, const CheckingDevices& checking, Gui& gui, Wishes& wishes);

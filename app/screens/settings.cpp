@@ -24,6 +24,9 @@ Settings parse(const fs::path& file) {
     s.above_finger = json.boolean("above_finger", s.above_finger);
     s.test_mode = json.boolean("test_mode", s.test_mode);
     s.full_screen = json.boolean("full_screen", s.full_screen);
+    s.keep_results = json.boolean("keep_results", s.keep_results);
+    s.guided_done = json.boolean("guided_done", s.guided_done);
+    s.text_percent = json.integer("text_percent", kTextPercents[0], kTextPercents[2], s.text_percent);
     s.width_px = json.integer("width_px", 100, 16384, s.width_px);
     s.height_px = json.integer("height_px", 100, 16384, s.height_px);
     for (files::JsonReader& screen : json.objects("screens")) {
@@ -42,6 +45,9 @@ files::Json json_of(const Settings& s) {
                      {"above_finger", s.above_finger},
                      {"test_mode", s.test_mode},
                      {"full_screen", s.full_screen},
+                     {"keep_results", s.keep_results},
+                     {"guided_done", s.guided_done},
+                     {"text_percent", s.text_percent},
                      {"width_px", s.width_px},
                      {"height_px", s.height_px},
                      {"screens", files::Json::array()}};

@@ -14,10 +14,15 @@ struct Settings {
     bool above_finger = false;  // a finger indents the place kFingerOffset_mm above it, and does not hide it
     bool test_mode = false;
     bool full_screen = false;
+    bool keep_results = true;  // of each finished trial, in the user's data folder
+    bool guided_done = false;  // the guided start was finished or skipped
+    int text_percent = 100;    // size of controls and text: one of kTextPercents
     int width_px = 1280;
     int height_px = 800;
     std::map<std::string, double> px_per_mm;  // by screen (its name and size)
 };
+
+inline constexpr int kTextPercents[3] = {100, 120, 140};
 
 // Returns $XDG_CONFIG_HOME/palpa/settings.json, or ~/.config/palpa/settings.json; empty if neither variable is an
 // absolute path.

@@ -28,18 +28,18 @@ void draw_consent(const StudyRun& run, Gui& gui, Wishes& wishes) {
 }
 
 void draw_leaving(Gui& gui, Wishes& wishes) {
-    title(words::kWantToStop);
-    paragraph(words::kMayStop);
+    title(words::kWantToWithdraw);
+    paragraph(words::kMayWithdraw);
     gap(gui);
-    if (forward(words::kGoOnWithStudy, gui)) wishes.study = LeaveStudy{study::Withdrawal::none};
+    if (forward(words::kContinueStudy, gui)) wishes.study = LeaveStudy{study::Withdrawal::none};
     gap(gui);
-    if (wide_button(words::kStopKeepsData, '1', gui)) wishes.study = LeaveStudy{study::Withdrawal::keeps_data};
-    if (wide_button(words::kStopTakesData, '2', gui)) wishes.study = LeaveStudy{study::Withdrawal::takes_data};
+    if (wide_button(words::kWithdrawKeepsData, '1', gui)) wishes.study = LeaveStudy{study::Withdrawal::keeps_data};
+    if (wide_button(words::kWithdrawTakesData, '2', gui)) wishes.study = LeaveStudy{study::Withdrawal::takes_data};
 }
 
 void draw_withdrawn(const StudyRun& run, Gui& gui, Wishes& wishes) {
-    title(words::kHasStopped);
-    paragraph(words::filled(words::kCodeHasLeft, {run.code}));
+    title(words::kHasWithdrawn);
+    paragraph(words::filled(words::kCodeHasWithdrawn, {run.code}));
     gap(gui);
     if (forward(words::kNextParticipant, gui)) wishes.study = SamePerson{false};
     leave_button(gui, run, wishes);
@@ -49,7 +49,15 @@ void draw_told(const step::Told& step, Gui& gui, Wishes& wishes) {
     title(step.right ? words::kWasRight : words::kWasWrong);
     paragraph(words::kOnlyInPractice);
     gap(gui);
-    if (forward(words::kGoOn, gui)) wishes.study = BeginStep{};
+    if (forward(words::kContinue, gui)) wishes.study = BeginStep{};
+}
+
+void draw_feedback(const step::Feedback& step, Gui& gui, Wishes& wishes) {
+    title(words::filled(words::kFoundOf, {std::to_string(step.found), std::to_string(step.nodules)}));
+    ImGui::TextWrapped("%s", words::filled(words::kFeedbackFalse, {std::to_string(step.false_positives)}).c_str());
+    paragraph(words::kOnlyInPractice);
+    gap(gui);
+    if (forward(words::kContinue, gui)) wishes.study = BeginStep{};
 }
 
 }  // namespace
@@ -63,6 +71,8 @@ bool draw_consent_step(const StudyRun& run, Gui& gui, Wishes& wishes) {
         draw_withdrawn(run, gui, wishes);
     } else if (const auto* told = std::get_if<step::Told>(&run.step)) {
         draw_told(*told, gui, wishes);
+    } else if (const auto* feedback = std::get_if<step::Feedback>(&run.step)) {
+        draw_feedback(*feedback, gui, wishes);
     } else {
         return false;
     }

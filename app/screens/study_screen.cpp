@@ -45,8 +45,8 @@ void trials_button(const Gui& gui, const StudyRun& run, Wishes& wishes) {
 void draw_keeping(double now_s, Gui& gui, const StudyRun& run, Wishes& wishes) {
     constexpr double kSoon_s = 0.5;
     if (now_s - *run.keeping_since_s < kSoon_s && run.warnings.empty()) return;
-    title(words::kOneMoment);
-    paragraph(words::kBeingKept);
+    title(words::kPleaseWait);
+    paragraph(words::kBeingStored);
     for (const std::string& warning : run.warnings) warning_paragraph(warning);
     gap(gui);
     if (!run.warnings.empty()) trials_button(gui, run, wishes);
@@ -59,7 +59,7 @@ bool is_double_enter(const StudyRun& run, double now_s) {
 }
 
 void draw_code(const step::Code& step, const StudyRun& run, double now_s, Gui& gui, StudyForm& form, Wishes& wishes) {
-    title(words::kWhoIsHere);
+    title(words::kParticipantCode);
     paragraph(words::kCodeNoName);
     char text[24];
     std::snprintf(text, sizeof text, "%s", form.code.c_str());
@@ -71,7 +71,7 @@ void draw_code(const step::Code& step, const StudyRun& run, double now_s, Gui& g
     // Escape takes the focus from the field, and there is no other field to give it to
     if (ImGui::IsItemDeactivated() && ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape))) form.refused = -1;
     gap(gui);
-    const bool on = forward(words::kGoOn, gui) || entered;
+    const bool on = forward(words::kContinue, gui) || entered;
     const bool accident = form.code == form.offered && is_double_enter(run, now_s);
     if (on && !accident) wishes.study = EnterCode{text};
     if (on && accident) form.refused = -1;  // Enter has taken the focus from the field
@@ -84,12 +84,12 @@ void draw_code(const step::Code& step, const StudyRun& run, double now_s, Gui& g
 }
 
 void draw_again(const StudyRun& run, Gui& gui, Wishes& wishes) {
-    title(words::filled(words::kHasBeenHere, {run.code}));
+    title(words::filled(words::kHasTakenPart, {run.code}));
     paragraph(words::filled(words::kTrialsDone, {std::to_string(run.progress.finished.size()),
                                                  std::to_string(run.progress.plan.trials.size())}));
     gap(gui);
-    const bool same = forward(words::kGoOnWithStudy, gui);
-    const bool other = big_button(words::kSomebodyElse, "", {70.0f * gui.mm(), kTarget_mm, true, false}, gui);
+    const bool same = forward(words::kContinueStudy, gui);
+    const bool other = big_button(words::kAnotherParticipant, "", {70.0f * gui.mm(), kTarget_mm, true, false}, gui);
     if (same || other) wishes.study = SamePerson{same};
 }
 
@@ -111,6 +111,17 @@ void draw_choices(const std::vector<std::string>& choices, float least_px, const
     }
 }
 
+// Says below a scale what its ends mean.
+void draw_anchors(const study::Item& item, float width_px) {
+    if (item.low.empty() && item.high.empty()) return;
+    const float left_px = ImGui::GetCursorPosX();
+    ImGui::TextDisabled("%s", item.low.c_str());
+    ImGui::SameLine();
+    const float end_px = left_px + std::max(width_px - ImGui::CalcTextSize(item.high.c_str()).x, 0.0f);
+    ImGui::SetCursorPosX(std::max(end_px, ImGui::GetCursorPosX()));
+    ImGui::TextDisabled("%s", item.high.c_str());
+}
+
 void draw_item(const study::Item& item, Gui& gui, std::string& answer) {
     ImGui::TextWrapped("%s", item.text.c_str());
     if (!item.choices.empty()) return draw_choices(item.choices, 0.0f, gui, answer);
@@ -120,8 +131,12 @@ void draw_item(const study::Item& item, Gui& gui, std::string& answer) {
         for (int i = *item.from; i <= *item.to; ++i) steps.push_back(std::to_string(i));
         // on one line, if the buttons do not become too small
         const float share_px = share_of_line_px(static_cast<int>(steps.size()));
-        return draw_choices(steps, share_px > 8.0f * gui.mm() ? std::min(11.0f * gui.mm(), share_px) : 11.0f * gui.mm(),
-                            gui, answer);
+        const bool one_line = share_px > 8.0f * gui.mm();
+        const float button_px = one_line ? std::min(11.0f * gui.mm(), share_px) : 11.0f * gui.mm();
+        const float gap_px = ImGui::GetStyle().ItemSpacing.x;
+        const float width_px = static_cast<float>(steps.size()) * (button_px + gap_px) - gap_px;
+        draw_choices(steps, button_px, gui, answer);
+        return draw_anchors(item, one_line ? width_px : ImGui::GetContentRegionAvail().x);
     }
     ImGui::SetNextItemWidth(40.0f * gui.mm());
     char text[120];
@@ -135,7 +150,7 @@ void draw_items(const StudyRun& run, double now_s, Gui& gui, std::vector<std::st
     answers.resize(items.size());
     const auto* rated = std::get_if<step::Ratings>(&run.step);
     title(rated == nullptr ? words::kQuestionsFirst : words::kHowWasIt);
-    if (rated != nullptr) paragraph(run.protocol.conditions[rated->condition].title);
+    if (rated != nullptr) paragraph(words::kAboutLastTrials);  // a condition's name would tell what is compared
     paragraph(words::kMayLeaveOpen);
     const float below_px = (kMark_mm + 4.0f) * gui.mm();
     ImGui::BeginChild("items", ImVec2(0.0f, ImGui::GetContentRegionAvail().y - below_px), false,
@@ -155,13 +170,14 @@ void draw_items(const StudyRun& run, double now_s, Gui& gui, std::vector<std::st
     ImGui::EndChild();
     const bool open = std::all_of(answers.begin(), answers.end(), [](const std::string& a) { return a.empty(); });
     const bool accident = open && is_double_enter(run, now_s);
-    if (forward(words::kGoOn, gui, good) && !accident) wishes.study = SubmitAnswers{answers};
+    if (forward(words::kContinue, gui, good) && !accident) wishes.study = SubmitAnswers{answers};
 }
 
 void draw_instructions(const StudyRun& run, Gui& gui, Wishes& wishes) {
     const study::PlannedTrial& trial = due_trial(run);
     title(words::filled(trial.practice ? words::kPracticeOf : words::kTrialOf, {progress_text(run)}));
-    const float below_px = (kMark_mm + kTarget_mm + 6.0f) * gui.mm();
+    const float pen_px = run.pen == PenVerdict::not_needed ? 0.0f : 2.0f * ImGui::GetTextLineHeightWithSpacing();
+    const float below_px = (kMark_mm + kTarget_mm + 6.0f) * gui.mm() + pen_px;
     ImGui::BeginChild("text", ImVec2(0.0f, ImGui::GetContentRegionAvail().y - below_px), false,
                       ImGuiWindowFlags_NavFlattened);
     ImGui::TextWrapped("%s", study::instructions_for(run.protocol, trial).c_str());
@@ -170,20 +186,32 @@ void draw_instructions(const StudyRun& run, Gui& gui, Wishes& wishes) {
         ImGui::TextWrapped("%s", words::filled(words::kThereAre, {std::to_string(due_nodules(run).size())}).c_str());
     }
     ImGui::EndChild();
-    if (forward(words::kBegin, gui)) wishes.study = BeginStep{};
+    if (run.pen != PenVerdict::not_needed) {
+        paragraph(run.pen == PenVerdict::ready     ? words::kPenReady
+                  : run.pen == PenVerdict::untried ? words::kPenUntried
+                                                   : words::kPenNoPressure);
+    }
+    if (forward(words::kStart, gui)) wishes.study = BeginStep{};
     stop_button(gui, wishes);
 }
 
 void draw_device(const step::Device& step, const StudyRun& run, Gui& gui, Wishes& wishes) {
     const std::string device = name_of(due_condition(run).modality);
-    title(words::filled(step.here ? words::kDeviceIsBack : words::kDeviceMissing, {device}));
-    if (step.left) paragraph(words::kTrialBrokenOff);
-    if (!step.here) {
+    const bool no_pressure = step.connected && run.pen == PenVerdict::no_pressure;
+    title(words::filled(no_pressure ? words::kDeviceNoPressure
+                        : step.here ? words::kDeviceIsBack
+                                    : words::kDeviceMissing,
+                        {device}));
+    if (step.left) paragraph(words::kTrialInterrupted);
+    if (no_pressure) {
+        warning_paragraph(words::kNeedsPressure);
+        paragraph(words::kCloseAndContinue);
+    } else if (!step.here) {
         warning_paragraph(words::filled(words::kTrialWaits, {device}));
-        paragraph(words::kCloseAndGoOn);
+        paragraph(words::kCloseAndContinue);
     }
     gap(gui);
-    if (forward(words::kBegin, gui, step.here)) wishes.study = BeginStep{};
+    if (forward(words::kStart, gui, step.here)) wishes.study = BeginStep{};
     trials_button(gui, run, wishes);
     leave_button(gui, run, wishes);
 }
@@ -192,7 +220,7 @@ void draw_present(const StudyRun& run, Gui& gui, Wishes& wishes) {
     title(words::filled(words::kPairOf, {progress_text(run)}));
     ImGui::TextWrapped("%s", run.interval == 0 ? words::kFeelFirst : words::kFeelSecond);
     gap(gui);
-    if (forward(words::kFelt, gui)) wishes.study = IntervalPresented{};
+    if (forward(words::kDone, gui)) wishes.study = IntervalPresented{};
 }
 
 void draw_question(const StudyRun& run, double now_s, Gui& gui, Wishes& wishes) {
@@ -249,7 +277,7 @@ void draw_typed_clock(double now_s, double limit_s, const Gui& gui, StudyForm& f
     study::TypedAnswers& typed = form.typed;
     const bool runs = form.clock_began_s > 0.0;
     if (runs) typed.duration_s = now_s - form.clock_began_s;
-    const char* label = runs ? words::kStopClock : typed.duration_s > 0.0 ? words::kStartClockAnew : words::kStartClock;
+    const char* label = runs ? words::kStopClock : typed.duration_s > 0.0 ? words::kRestartClock : words::kStartClock;
     if (big_button(label, "T", {60.0f * gui.mm(), kTarget_mm, true, runs}, gui) || gui.pressed('t'))
         form.clock_began_s = runs ? 0.0 : now_s;
     ImGui::SameLine();
@@ -265,7 +293,7 @@ void draw_typed_clock(double now_s, double limit_s, const Gui& gui, StudyForm& f
 void draw_typed(const StudyRun& run, double now_s, Gui& gui, StudyForm& form, Wishes& wishes) {
     const study::Condition& condition = due_condition(run);
     title(words::filled(words::kExperimenter, {progress_text(run), condition.title}));
-    paragraph(condition.modality == study::Modality::hand ? words::kTypeWhatWasSaid : words::kNotDriven);
+    paragraph(condition.modality == study::Modality::hand ? words::kTypeAnswers : words::kNotDriven);
     draw_typed_clock(now_s, due_limit_s(run), gui, form);
     const float below_px = (kMark_mm + 4.0f) * gui.mm();
     ImGui::BeginChild("answers", ImVec2(0.0f, ImGui::GetContentRegionAvail().y - below_px), false,
@@ -278,10 +306,10 @@ void draw_typed(const StudyRun& run, double now_s, Gui& gui, StudyForm& form, Wi
         paragraph(words::kFoundAndSure);
         for (std::size_t i = 0; i < names.size(); ++i) draw_nodule_line(names[i], gui, form.typed.nodules[i]);
     }
-    stepper(words::kFalseMarkCount, gui, form.typed.false_marks);
+    stepper(words::kFalsePositiveCount, gui, form.typed.false_marks);
     ImGui::EndChild();
     const bool timed = form.typed.duration_s > 0.0 && form.clock_began_s == 0.0;
-    if (forward(words::kKeep, gui, timed)) wishes.study = SubmitTyped{form.typed};
+    if (forward(words::kSave, gui, timed)) wishes.study = SubmitTyped{form.typed};
 }
 
 void draw_done(const StudyRun& run, Gui& gui, Wishes& wishes) {
@@ -295,9 +323,9 @@ void draw_done(const StudyRun& run, Gui& gui, Wishes& wishes) {
 }
 
 void draw_stopped(const step::Stopped& step, const StudyRun& run, Gui& gui, Wishes& wishes) {
-    title(words::kStudyStops);
+    title(words::kStudyStopped);
     warning_paragraph(step.why);
-    paragraph(run.on_tablet ? words::kRestKept : words::kRestOnDisk);
+    paragraph(words::kRestKept);
     gap(gui);
     trials_button(gui, run, wishes);
     leave_button(gui, run, wishes);
@@ -309,7 +337,7 @@ void draw_pause(const StudyRun& run, double now_s, Gui& gui, Wishes& wishes) {
     gap(gui);
     ImGui::Text("%s", clock_text(now_s - run.step_began_s).c_str());
     gap(gui);
-    if (forward(words::kGoOn, gui)) wishes.study = BeginStep{};
+    if (forward(words::kContinue, gui)) wishes.study = BeginStep{};
     gap(gui);
     stop_button(gui, wishes);
 }

@@ -26,7 +26,7 @@ void title(const std::string& text) {
 void gap(const Gui& gui) { ImGui::Dummy(ImVec2(0.0f, 2.0f * gui.mm())); }
 
 void leave_button(const Gui& gui, const StudyRun& run, Wishes& wishes) {
-    const char* label = run.on_tablet ? words::kLeaveStudy : words::kClose;
+    const char* label = run.on_tablet ? words::kCloseStudy : words::kClose;
     const char* key = run.on_tablet ? "" : words::kCtrlQ;
     if (big_button(label, key, {std::min(70.0f * gui.mm(), share_of_line_px(1)), kTarget_mm, true, false}, gui))
         wishes.quit = true;
@@ -34,7 +34,7 @@ void leave_button(const Gui& gui, const StudyRun& run, Wishes& wishes) {
 
 void stop_button(const Gui& gui, Wishes& wishes) {
     const float width_px = std::min(70.0f * gui.mm(), share_of_line_px(1));
-    if (big_button(words::kStopTakingPart, "", {width_px, kTarget_mm, true, false}, gui)) wishes.study = WantToLeave{};
+    if (big_button(words::kWithdraw, "", {width_px, kTarget_mm, true, false}, gui)) wishes.study = WantToLeave{};
 }
 
 }  // namespace palpa::app

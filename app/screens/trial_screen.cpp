@@ -11,9 +11,24 @@
 namespace palpa::app {
 namespace {
 
+// How far the force bar reaches beyond the force of the known depth.
+constexpr double kBarOver = 1.25;
+
+// Hatches the part of the bar beyond the known depth, where the tissue's answer is not known.
+void draw_beyond(ImVec2 low, ImVec2 high, float mm, ImDrawList& draw) {
+    draw.AddRectFilled(low, high, kDark);
+    draw.PushClipRect(low, high, true);
+    const float width_px = high.x - low.x;
+    for (float y = low.y; y < high.y + width_px; y += 1.6f * mm)
+        draw.AddLine(ImVec2(low.x, y), ImVec2(high.x, y - width_px), kPale, 0.25f * mm);
+    draw.PopClipRect();
+    draw.AddRect(low, high, kPale);
+}
+
 // A bullet graph: one bar before three tints of one hue, light, medium and deep, named beside it.
 void draw_force_bar(const Shown& shown, float height_px, const Gui& gui) {
-    const double full_N = std::max(0.1, shown.plan.greatest_force_N);
+    const double known_N = std::max(0.1, shown.plan.greatest_force_N);
+    const double full_N = kBarOver * known_N;
     const float mm = gui.mm();
     const ImVec2 at = ImGui::GetCursorScreenPos();
     const float width_px = 8.0f * mm;
@@ -21,7 +36,7 @@ void draw_force_bar(const Shown& shown, float height_px, const Gui& gui) {
         return at.y + height_px * (1.0f - static_cast<float>(std::clamp(force_N / full_N, 0.0, 1.0)));
     };
     ImDrawList& draw = *ImGui::GetWindowDrawList();
-    const double bounds_N[4] = {0.0, shown.plan.zone_N[0], shown.plan.zone_N[1], full_N};
+    const double bounds_N[4] = {0.0, shown.plan.zone_N[0], shown.plan.zone_N[1], known_N};
     constexpr const char* kZones[3] = {words::kLight, words::kMedium, words::kDeep};
     const float text_px = ImGui::GetFontSize();
     for (std::size_t zone = 0; zone < 3; ++zone) {
@@ -38,6 +53,12 @@ void draw_force_bar(const Shown& shown, float height_px, const Gui& gui) {
         const std::string bound = fixed(bounds_N[zone + 1], 1) + (zone == 2 ? " N" : "");
         draw.AddText(ImGui::GetFont(), 0.7f * text_px, ImVec2(at.x + width_px + 1.5f * mm, top), kPale, bound.c_str());
         draw.AddLine(ImVec2(at.x + width_px, top), ImVec2(at.x + width_px + mm, top), kPale);
+    }
+    draw_beyond(ImVec2(at.x, at.y), ImVec2(at.x + width_px, y_of(known_N)), mm, draw);
+    if (y_of(known_N) - at.y >= 1.1f * text_px) {
+        draw.AddText(ImGui::GetFont(), 0.75f * text_px,
+                     ImVec2(at.x + width_px + 1.5f * mm, 0.5f * (at.y + y_of(known_N) - 0.75f * text_px)), kPale,
+                     words::kBeyond);
     }
     const float top = y_of(shown.state.contact.normal_N);
     draw.AddRectFilled(ImVec2(at.x + 0.3f * width_px, top), ImVec2(at.x + 0.7f * width_px, at.y + height_px), kInk);
@@ -58,7 +79,9 @@ void draw_numbers(const Shown& shown, const Gui& gui) {
     const scene::Contact& contact = shown.state.contact;
     ImGui::BeginGroup();
     value_line(words::kForce, fixed(contact.normal_N, 2) + " N", column_px);
-    if (!is_interval(shown.doing)) value_line(words::kDepth, fixed(1e3 * contact.depth_m, 2) + " mm", column_px);
+    const std::string depth_mm = fixed(1e3 * contact.depth_m, 2);
+    const std::string depth = contact.saturated ? words::filled(words::kMoreThan, {depth_mm}) : depth_mm + " mm";
+    if (!is_interval(shown.doing)) value_line(words::kDepth, depth, column_px);
     // in a test the eye has to judge the lag, so no number shows it
     if (shown.trial.mode == session::TrialMode::practice) {
         value_line(words::kLag, fixed(1e3 * shown.avatar.lag_m.norm(), 2) + " mm", column_px);
@@ -69,17 +92,18 @@ void draw_numbers(const Shown& shown, const Gui& gui) {
     ImGui::EndGroup();
 }
 
+// What the person does wrong, if anything; the limits of the tissue model concern the experimenter alone.
 // Draws one line that takes up its space even if it is empty, so that nothing moves when it fills.
 void draw_contact_note(const Shown& shown) {
     const scene::Contact& contact = shown.state.contact;
     const char* note = "";
     if (contact.saturated)
-        note = words::kDeeperThanKnown;
+        note = words::kBeyondKnownDepth;
     else if (!contact.measured)
         note = words::kNotMeasuredHere;
-    else if (mechanics::linear_range(contact.linearity) == mechanics::LinearRange::red)
+    else if (shown.experimenter && mechanics::linear_range(contact.linearity) == mechanics::LinearRange::red)
         note = words::kBeyondLinear;
-    else if (mechanics::linear_range(contact.linearity) == mechanics::LinearRange::amber)
+    else if (shown.experimenter && mechanics::linear_range(contact.linearity) == mechanics::LinearRange::amber)
         note = words::kLeavingLinear;
     ImGui::TextColored(ImVec4(1.0f, 0.84f, 0.35f, 1.0f), "%s", note);
 }
@@ -88,7 +112,7 @@ void draw_contact_note(const Shown& shown) {
 void draw_study_header(const Shown& shown, const StudyRun& run) {
     const double limit_s = due_limit_s(run);
     const double left_s = limit_s > 0.0 ? std::max(0.0, std::ceil(limit_s - shown.trial_s)) : shown.trial_s;
-    const char* what = due_trial(run).practice ? words::kWithNodules : "";
+    const char* what = due_trial(run).practice ? words::kPractice : "";
     ImGui::SetWindowFontScale(1.3f);
     ImGui::Text("%s  %s", clock_text(left_s).c_str(), what);
     ImGui::SetWindowFontScale(1.0f);
@@ -100,20 +124,34 @@ void draw_study_header(const Shown& shown, const StudyRun& run) {
     }
 }
 
-void draw_header(const Shown& shown, const Gui& gui, Wishes& wishes) {
+void draw_header(const Shown& shown, const Gui& gui, ViewState& view, Wishes& wishes) {
     if (const StudyRun* study = study_of(shown.doing)) return draw_study_header(shown, *study);
     const bool* has_menu = menu_of(shown.doing);
     const bool menu = has_menu != nullptr && *has_menu;
     const float line_px = kTarget_mm * gui.mm();
-    if (big_button(menu ? words::kClose : words::kMenu, "F10", {26.0f * gui.mm(), kTarget_mm, true, menu}, gui))
+    const float right_px = ImGui::GetCursorPosX() + ImGui::GetContentRegionAvail().x;
+    if (big_button(menu ? words::kClose : words::kMenu, "",
+                   {20.0f * gui.mm(), kTarget_mm, true, menu, words::kHintMenu}, gui))
         wishes.menu = !menu;
     ImGui::SameLine();
-    ImGui::BeginGroup();
-    ImGui::SetCursorPosY(ImGui::GetCursorPosY() + 0.5f * (line_px - ImGui::GetFontSize()));
-    const char* mode = shown.trial.mode == session::TrialMode::practice ? words::kWithNodules : words::kWithoutNodules;
-    ImGui::Text("%s  %s", clock_text(shown.trial_s).c_str(), mode);
-    ImGui::EndGroup();
+    const float top_px = ImGui::GetCursorPosY();
+    ImGui::SetCursorPosY(top_px + 0.5f * (line_px - 1.2f * ImGui::GetFontSize()));
+    ImGui::SetWindowFontScale(1.2f);
+    ImGui::TextUnformatted(clock_text(shown.trial_s).c_str());
+    ImGui::SetWindowFontScale(1.0f);
+    ImGui::SameLine();
+    ImGui::SetCursorPos(ImVec2(right_px - 2.0f * line_px - ImGui::GetStyle().ItemSpacing.x, top_px));
+    const bool paused = shown.trial.paused_at_s.has_value();
+    if (icon_button(paused ? Icon::play : Icon::pause, words::kHintPause, gui))
+        wishes.action = paused ? platform::Action::resume : platform::Action::pause;
+    ImGui::SameLine();
+    if (icon_button(Icon::question, words::kHintHelp, gui)) view.help = true;
+    const char* mode = shown.trial.mode == session::TrialMode::practice ? words::kPractice : words::kTest;
+    one_line(words::filled(words::kSceneAndMode, {mode, shown.scene.name}));
 }
+
+// While the clock is stopped nothing is marked and nothing is finished.
+bool may_act(const Shown& shown) { return !shown.trial.paused_at_s; }
 
 void draw_confidence(const Shown& shown, const Gui& gui, Wishes& wishes) {
     const int said = shown.trial.marks.empty() ? 0 : shown.trial.marks.back().confidence;
@@ -126,7 +164,10 @@ void draw_confidence(const Shown& shown, const Gui& gui, Wishes& wishes) {
     constexpr const char* kDigits[5] = {"1", "2", "3", "4", "5"};
     for (int i = 0; i < 5; ++i) {
         if (i > 0) ImGui::SameLine();
-        if (big_button(kDigits[i], "", {width_px, kTarget_mm, !shown.trial.marks.empty(), said == i + 1}, gui)) {
+        if (big_button(kDigits[i], "",
+                       {width_px, kTarget_mm, may_act(shown) && !shown.trial.marks.empty(), said == i + 1,
+                        words::kHintConfidence},
+                       gui)) {
             wishes.action = static_cast<platform::Action>(static_cast<int>(platform::Action::confidence_1) + i);
         }
     }
@@ -134,33 +175,43 @@ void draw_confidence(const Shown& shown, const Gui& gui, Wishes& wishes) {
 
 void draw_actions(const Shown& shown, const Gui& gui, Wishes& wishes) {
     if (is_interval(shown.doing)) {
-        if (big_button(words::kFelt, "F", {0.0f, kMark_mm, true, false}, gui)) wishes.action = platform::Action::finish;
+        if (big_button(words::kDone, "", {0.0f, kMark_mm, true, false}, gui)) wishes.action = platform::Action::finish;
         return;
     }
-    const std::string mark = words::filled(words::kMark, {std::to_string(shown.trial.marks.size())}) + "###mark";
-    if (big_button(mark.c_str(), "M", {0.0f, kMark_mm, shown.trial.last_px.has_value(), false}, gui))
+    // a participant reads no keys: nothing on the screen should need an explanation
+    const bool keys = study_of(shown.doing) == nullptr;
+    const std::size_t marks = shown.trial.marks.size();
+    const std::string mark =
+        (marks == 0 ? words::kMarkFirst : words::filled(words::kMarks, {std::to_string(marks)})) + "###mark";
+    const bool may = may_act(shown);
+    if (big_button(mark.c_str(), keys ? words::kKeyMark : "",
+                   {0.0f, kMark_mm, may && shown.trial.last_px.has_value(), false, words::kHintMark}, gui))
         wishes.action = platform::Action::mark;
     draw_confidence(shown, gui, wishes);
     const float width_px = share_of_line_px(2);
-    if (big_button(words::kUndo, "U", {width_px, kTarget_mm, !shown.trial.marks.empty(), false}, gui))
+    if (big_button(words::kUndo, keys ? words::kKeyUndo : "",
+                   {width_px, kTarget_mm, may && marks > 0, false, words::kHintUndo}, gui))
         wishes.action = platform::Action::undo;
     ImGui::SameLine();
-    if (big_button(words::kFinish, "F", {width_px, kTarget_mm, true, false}, gui))
+    if (big_button(words::kFinish, keys ? words::kKeyFinish : "",
+                   {width_px, kTarget_mm, may, false, words::kHintFinish}, gui))
         wishes.action = platform::Action::finish;
 }
 
 void draw_messages(const Shown& shown, const Gui& gui, Wishes& wishes) {
     const Notices& notices = shown.notices;
     for (const std::string& problem : notices.problems) warning_paragraph(problem);
-    if (!notices.problems.empty() && big_button(words::kUnderstood, "", {}, gui)) wishes.understood = true;
+    if (!notices.problems.empty() && big_button(words::kDismiss, "", {}, gui)) wishes.understood = true;
     if (shown.state.without_level) {
         warning_paragraph(words::filled(words::kWithoutLevel,
                                         {std::string(name_of(shown.plan.profile.level)), shown.plan.profile.id}));
     }
     if (notices.offer_hold && big_button(words::kPressByHolding, "H", {}, gui)) wishes.press_by_hold = true;
-    for (const std::string& note : notices.device_notes) paragraph(note);
     if (!notices.note.empty()) paragraph(notices.note);
     if (!notices.trials_note.empty()) paragraph(notices.trials_note);
+    // what was to be read before the first press makes room for what comes after it
+    if (shown.trial.touched_s && !shown.experimenter) return;
+    for (const std::string& note : notices.device_notes) paragraph(note);
     if (study_of(shown.doing) != nullptr) return;  // a participant need not know what the tissue is made of
     if (shown.plan.source == stiffnessmaps::SourceKind::analytic) paragraph(words::kAnalyticTissue);
     if (shown.plan.source == stiffnessmaps::SourceKind::simulated) paragraph(words::kSimulatedTissue);
@@ -170,9 +221,8 @@ void draw_messages(const Shown& shown, const Gui& gui, Wishes& wishes) {
     }
 }
 
-void column_panel(const Shown& shown, Gui& gui, Wishes& wishes) {
-    draw_header(shown, gui, wishes);
-    if (study_of(shown.doing) == nullptr) one_line(shown.scene.name);
+void column_panel(const Shown& shown, Gui& gui, ViewState& view, Wishes& wishes) {
+    draw_header(shown, gui, view, wishes);
     // the space that the other parts leave, within limits
     const float rest_px = 62.0f * gui.mm() + 3.0f * ImGui::GetFontSize();
     const float bar_px = std::clamp(ImGui::GetContentRegionAvail().y - rest_px, 16.0f * gui.mm(), 55.0f * gui.mm());
@@ -189,7 +239,7 @@ void column_panel(const Shown& shown, Gui& gui, Wishes& wishes) {
     ImGui::EndChild();
 }
 
-void strip_panel(const Shown& shown, Gui& gui, Wishes& wishes) {
+void strip_panel(const Shown& shown, Gui& gui, ViewState& view, Wishes& wishes) {
     const float mm = gui.mm();
     const float right_px = 58.0f * mm;
     const float wide_px = ImGui::GetContentRegionAvail().x;
@@ -208,7 +258,7 @@ void strip_panel(const Shown& shown, Gui& gui, Wishes& wishes) {
     ImGui::EndChild();
     ImGui::SetCursorPos(ImVec2(left_px + wide_px - right_px, top_px));
     ImGui::BeginChild("right", ImVec2(right_px, height_px), false, ImGuiWindowFlags_NavFlattened);
-    draw_header(shown, gui, wishes);
+    draw_header(shown, gui, view, wishes);
     draw_actions(shown, gui, wishes);
     if (ImGui::GetScrollMaxY() > 1.0f) gui.note_overflow("actions");
     ImGui::EndChild();
@@ -252,16 +302,16 @@ void draw_on_tissue(const Shown& shown, const Gui& gui) {
     draw_pen(shown, gui, draw);
 }
 
-void draw_trial_panel(const Shown& shown, const Layout& layout, Gui& gui, Wishes& wishes) {
+void draw_trial_panel(const Shown& shown, const Layout& layout, Gui& gui, ViewState& view, Wishes& wishes) {
     if (!layout.controls) {
         rimmed_text(*ImGui::GetForegroundDrawList(), ImVec2(4.0f, 4.0f), kInk, words::kTooSmall);
         return;
     }
     begin_panel("trial", layout.controls_px, gui);
     if (layout.column) {
-        column_panel(shown, gui, wishes);
+        column_panel(shown, gui, view, wishes);
     } else {
-        strip_panel(shown, gui, wishes);
+        strip_panel(shown, gui, view, wishes);
     }
     end_panel("trial", gui);
 }

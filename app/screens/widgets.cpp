@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <imgui_internal.h>
 #include <numbers>
 
 namespace palpa::app {
@@ -42,6 +43,7 @@ bool big_button(const char* label, const char* key, const ButtonLook& look, cons
     const bool pressed = ImGui::Button(label, size);
     if (look.chosen) ImGui::PopStyleColor(4);
     ImGui::EndDisabled();
+    hint_for_last(look.hint);
     const ImVec2 low = ImGui::GetItemRectMin();
     const ImVec2 high = ImGui::GetItemRectMax();
     const float small_px = 0.62f * ImGui::GetFontSize();
@@ -54,6 +56,40 @@ bool big_button(const char* label, const char* key, const ButtonLook& look, cons
                                             key);
     }
     return pressed;
+}
+
+bool icon_button(Icon icon, const char* hint, const Gui& gui) {
+    const float side_px = kTarget_mm * gui.mm();
+    ImGui::PushID(static_cast<int>(icon));
+    const bool pressed = ImGui::Button("##icon", ImVec2(side_px, side_px));
+    ImGui::PopID();
+    hint_for_last(hint);
+    const ImVec2 low = ImGui::GetItemRectMin();
+    const ImVec2 middle(low.x + 0.5f * side_px, low.y + 0.5f * side_px);
+    const float r = 0.2f * side_px;
+    ImDrawList& draw = *ImGui::GetWindowDrawList();
+    if (icon == Icon::pause) {
+        for (const float x : {-0.9f * r, 0.3f * r})
+            draw.AddRectFilled(ImVec2(middle.x + x, middle.y - r), ImVec2(middle.x + x + 0.6f * r, middle.y + r), kInk);
+    } else if (icon == Icon::play) {
+        draw.AddTriangleFilled(ImVec2(middle.x - 0.7f * r, middle.y - r), ImVec2(middle.x + r, middle.y),
+                               ImVec2(middle.x - 0.7f * r, middle.y + r), kInk);
+    } else {
+        const ImVec2 size = ImGui::CalcTextSize("?");
+        draw.AddText(ImVec2(middle.x - 0.5f * size.x, middle.y - 0.5f * size.y), kInk, "?");
+    }
+    return pressed;
+}
+
+void hint_for_last(const char* text) {
+    constexpr float kHover_s = 0.6f;
+    if (*text == '\0' || !ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) return;
+    if (ImGui::GetCurrentContext()->HoveredIdTimer < kHover_s) return;
+    ImGui::BeginTooltip();
+    ImGui::PushTextWrapPos(22.0f * ImGui::GetFontSize());
+    ImGui::TextUnformatted(text);
+    ImGui::PopTextWrapPos();
+    ImGui::EndTooltip();
 }
 
 void paragraph(const std::string& text) {

@@ -11,16 +11,16 @@
 namespace palpa::app {
 
 inline constexpr ImU32 kInk = IM_COL32(236, 239, 241, 255);
-inline constexpr ImU32 kPale = IM_COL32(168, 176, 182, 255);
+inline constexpr ImU32 kPale = IM_COL32(180, 188, 194, 255);
 inline constexpr ImU32 kLag = IM_COL32(255, 214, 90, 255);
 inline constexpr ImU32 kDark = IM_COL32(20, 22, 24, 255);
 
-// Light, medium, deep: three tints of one hue for the force, three steps of cividis (made for red-green colour
-// blindness; PLOS ONE 13 (2018) e0199239) for areas.
+// Light, medium, deep: three tints of one hue for the force; for areas, three steps from dark blue to light yellow, each
+// with a luminance contrast of 3 : 1 to the next, which everybody sees.
 inline constexpr ImU32 kForceTints[3] = {IM_COL32(44, 66, 84, 255), IM_COL32(58, 92, 120, 255),
                                          IM_COL32(76, 122, 160, 255)};
-inline constexpr ImU32 kAreaTints[3] = {IM_COL32(58, 76, 107, 150), IM_COL32(148, 142, 119, 150),
-                                        IM_COL32(250, 221, 76, 150)};
+inline constexpr ImU32 kAreaTints[3] = {IM_COL32(48, 68, 100, 255), IM_COL32(148, 145, 120, 255),
+                                        IM_COL32(255, 252, 190, 255)};
 
 inline constexpr float kTarget_mm = 9.0f;  // least height of a control that is touched
 inline constexpr float kMark_mm = 12.0f;
@@ -34,11 +34,19 @@ struct ButtonLook {
     float width_px = 0.0f;  // 0: the rest of the line
     float height_mm = kTarget_mm;
     bool enabled = true;
-    bool chosen = false;  // filled brightly: the present choice
+    bool chosen = false;    // filled brightly: the present choice
+    const char* hint = "";  // shown after the pointer has rested on the button
 };
 // Draws a button. Returns true if it is pressed. `key` is shown small beside the label, for people who use the
 // keyboard; it may be empty.
 bool big_button(const char* label, const char* key, const ButtonLook& look, const Gui& gui);
+
+enum class Icon : std::uint8_t { pause, play, question };
+// Draws a square button with an icon instead of a word; `hint` says what it does. Returns true if it is pressed.
+bool icon_button(Icon icon, const char* hint, const Gui& gui);
+
+// Explains the control drawn last, once the pointer has rested on it.
+void hint_for_last(const char* text);
 
 // Returns the width of one of `count` buttons that share the rest of the line.
 float share_of_line_px(int count);

@@ -16,42 +16,49 @@ inline constexpr const char* kMenu = "Menu";
 inline constexpr const char* kCtrlQ = "Ctrl Q";
 inline constexpr const char* kEscape = "Esc";
 inline constexpr const char* kEnter = "Enter";
-inline constexpr const char* kGoOn = "Go on";
-inline constexpr const char* kBegin = "Begin";
-inline constexpr const char* kKeep = "Keep";
-inline constexpr const char* kFelt = "Felt";
+inline constexpr const char* kContinue = "Continue";
+inline constexpr const char* kStart = "Start";
+inline constexpr const char* kSave = "Save";
+inline constexpr const char* kDone = "Done";
 
 // menu
 inline constexpr const char* kTrial = "Trial";
 inline constexpr const char* kPractice = "Practice";
 inline constexpr const char* kTest = "Test";
-inline constexpr const char* kBeginAnew = "Begin anew";
-inline constexpr const char* kDrawingHand = "Drawing hand";
+inline constexpr const char* kRestartTrial = "Restart trial";
+inline constexpr const char* kDominantHand = "Dominant hand";
 inline constexpr const char* kLeft = "Left";
 inline constexpr const char* kRight = "Right";
-inline constexpr const char* kAvatarOfFinger = "A finger's avatar";
-inline constexpr const char* kUnderIt = "Under it";
-inline constexpr const char* kAboveIt = "Above it";
-inline constexpr const char* kScreenAndDevices = "Screen and devices";
-inline constexpr const char* kSizeOfScreen = "Size of the screen";
+inline constexpr const char* kContactOfFinger = "Contact point of a finger";
+inline constexpr const char* kUnderFinger = "Under it";
+inline constexpr const char* kAboveFinger = "Above it";
+inline constexpr const char* kScreenScale = "Screen scale";
 inline constexpr const char* kDeviceCheck = "Device check";
 inline constexpr const char* kCalibratePressure = "Calibrate pressure";
 inline constexpr const char* kMaps = "Maps";
-inline constexpr const char* kCost = "Cost";
+inline constexpr const char* kPerformance = "Performance";
 inline constexpr const char* kFullScreen = "Full screen";
 inline constexpr const char* kTrials = "Trials";
 inline constexpr const char* kQuit = "Quit";
 inline constexpr const char* kScene = "Scene";
-inline constexpr const char* kPressureProfile = "Pressure profile";
+inline constexpr const char* kCalibrationProfile = "Calibration profile";
 inline constexpr const char* kOnThisTablet = "On this tablet";
 inline constexpr const char* kStudies = "Studies";
+inline constexpr const char* kPageSettings = "Settings";
+inline constexpr const char* kPageExperimenter = "Experimenter";
+inline constexpr const char* kGuidedStart = "Guided start";
+inline constexpr const char* kHistory = "History";
+inline constexpr const char* kTextSize = "Text size";
+inline constexpr const char* kKeepResults = "Results of your trials";
+inline constexpr const char* kKept = "Keep";
+inline constexpr const char* kNotKept = "Do not keep";
+inline constexpr const char* kDisplayAndInput = "Display and input";
 
-// cost of every stage
+// performance of every stage
 inline constexpr const char* kStage = "stage";
-inline constexpr const char* kFidelity = "fidelity";
 inline constexpr const char* kError = "error";
-inline constexpr const char* kMicroseconds = "us";
-inline constexpr const char* kMicroseconds99 = "us, 99 %";
+inline constexpr const char* kMicroseconds = "us (median)";
+inline constexpr const char* kMicroseconds99 = "us (p99)";
 inline constexpr const char* kCalls = "calls";
 inline constexpr const char* kFrameTimes =
     "Sample to frame {} ms (99 %: {}), besides drawing {} ms. Frame {} ms besides drawing (99 %: {}), drawing {} ms. "
@@ -64,66 +71,190 @@ inline constexpr const char* kDepth = "Depth";
 inline constexpr const char* kLag = "Lag";
 inline constexpr const char* kDelay = "Delay";
 inline constexpr const char* kPhantom = "Phantom";
-inline constexpr const char* kDeeperThanKnown = "deeper than known";
+inline constexpr const char* kBeyondKnownDepth = "beyond the measured depth";
 inline constexpr const char* kNotMeasuredHere = "not measured here";
 inline constexpr const char* kBeyondLinear = "beyond the linear range";
 inline constexpr const char* kLeavingLinear = "leaving the linear range";
 inline constexpr const char* kFirstSurface = "First surface";
 inline constexpr const char* kSecondSurface = "Second surface";
-inline constexpr const char* kWithNodules = "practice";
-inline constexpr const char* kWithoutNodules = "test";
 inline constexpr const char* kUnsure = "unsure";
 inline constexpr const char* kSure = "sure";
 inline constexpr const char* kUndo = "Undo";
 inline constexpr const char* kFinish = "Finish";
-inline constexpr const char* kUnderstood = "Understood";
+inline constexpr const char* kDismiss = "Dismiss";
 inline constexpr const char* kPressByHolding = "Press by holding";
-inline constexpr const char* kAnalyticTissue = "Tissue: analytic stand-in, no recording";
-inline constexpr const char* kSimulatedTissue = "Tissue: simulated, no recording";
-inline constexpr const char* kTooSmall = "Too small for the controls; keys work";
+inline constexpr const char* kAnalyticTissue = "Tissue: closed-form model, not a recording";
+inline constexpr const char* kSimulatedTissue = "Tissue: simulated, not a recording";
+inline constexpr const char* kTooSmall = "The window is too small for the controls; keys still work";
 inline constexpr const char* kLight = "light";
 inline constexpr const char* kMedium = "medium";
 inline constexpr const char* kDeep = "deep";
 inline constexpr const char* kPairOf = "Pair {}";
 inline constexpr const char* kTrialOf = "Trial {}";
-inline constexpr const char* kMark = "Mark  {}";
-inline constexpr const char* kWithoutLevel = "This device reports no {}, which profile {} reads.";
-inline constexpr const char* kShownAt = "Tissue shown at {} % of its size";
+inline constexpr const char* kWithoutLevel = "This device does not report {}, which calibration profile {} needs.";
+inline constexpr const char* kShownAt = "Tissue shown at {} % of its true size";
+inline constexpr const char* kBeyond = "beyond";
+inline constexpr const char* kMoreThan = "> {} mm";
+inline constexpr const char* kMarkFirst = "Mark";
+inline constexpr const char* kMarks = "Mark ({})";
+inline constexpr const char* kPause = "Pause";
+inline constexpr const char* kPaused = "Paused";
+inline constexpr const char* kPausedMeans = "The clock is stopped. Nothing is lost.";
+inline constexpr const char* kSceneAndMode = "{}: {}";
 
 // results of a trial
 inline constexpr const char* kSensitivity = "Sensitivity";
 inline constexpr const char* kPpv = "PPV";
-inline constexpr const char* kFalseMarks = "False marks";
+inline constexpr const char* kFalsePositives = "False positives";
 inline constexpr const char* kTime = "Time";
-inline constexpr const char* kAreaExamined = "Area examined";
+inline constexpr const char* kCoverage = "Coverage";
 inline constexpr const char* kAgain = "Again";
 inline constexpr const char* kNext = "Next";
 inline constexpr const char* kSavePicture = "Save picture";
 inline constexpr const char* kNotTouched = "not touched";
 inline constexpr const char* kLightOrDeeper = "light or deeper";
 inline constexpr const char* kMediumOrDeeper = "medium or deeper";
-inline constexpr const char* kFoundNodule = "{}: found";
-inline constexpr const char* kMissedNodule = "{}: missed";
-inline constexpr const char* kMarkAgain = "{} again";
-inline constexpr const char* kMarkFalse = "{} false";
+inline constexpr const char* kMarkDuplicate = "{} duplicate";
+inline constexpr const char* kMarkFalse = "{} false positive";
 inline constexpr const char* kFoundOf = "Found {} of {}";
 inline constexpr const char* kDownTo = ", down to {} mm";
 
+// tooltips
+inline constexpr const char* kHintMenu = "Other tissues, settings, tools of the experimenter";
+inline constexpr const char* kHintPause = "Stop the clock";
+inline constexpr const char* kHintHelp = "All keys";
+inline constexpr const char* kHintMark = "Marks the place that you pressed last (the dashed ring)";
+inline constexpr const char* kHintConfidence = "How sure are you of the last mark? 1 is unsure, 5 is sure.";
+inline constexpr const char* kHintUndo = "Removes the last mark";
+inline constexpr const char* kHintFinish = "Ends the trial and shows what was there";
+inline constexpr const char* kHintSensitivity = "Share of the nodules that you found";
+inline constexpr const char* kHintPpv = "Positive predictive value: share of your marks that are on a nodule";
+inline constexpr const char* kHintCoverage = "Share of the tissue that you pressed at least so deep";
+inline constexpr const char* kHintRestart = "Repeats the trial on the same tissue";
+inline constexpr const char* kHintNext = "Another trial, with the tissue turned another way";
+inline constexpr const char* kHintPractice = "The nodules are shown all the time";
+inline constexpr const char* kHintTest = "The nodules are hidden until you finish, and the tissue is turned";
+inline constexpr const char* kHintPerformance = "Time and error of every stage, and the limits of the tissue model";
+inline constexpr const char* kHintScale = "Measure the screen, so that the tissue is drawn true to size";
+inline constexpr const char* kHintDevices = "What pens and fingers report, and whether that is enough";
+
+// advice after a trial
+inline constexpr const char* kAdviceNotTouched = "You missed {}: the {} was never examined.";
+inline constexpr const char* kAdvicePassed = "You missed {}: you never pressed on it, in the {}.";
+inline constexpr const char* kAdviceTooLight =
+    "You missed {}: you pressed there, but too lightly. Press until the bar reaches medium.";
+inline constexpr const char* kAdviceNotMarked =
+    "You missed {}: you pressed on it but did not mark it. Compare it with the tissue beside it.";
+inline constexpr const char* kAdviceFalse =
+    "{} of {} marks are on no nodule. Cross a place from two sides before you mark it.";
+inline constexpr const char* kAdviceUnexamined =
+    "You found every nodule, but the {} was never examined: a nodule there would have been missed.";
+inline constexpr const char* kAdviceGood = "You found every nodule, and every mark is on a nodule.";
+inline constexpr const char* kAdviceNoNodules = "This tissue has no nodules, and you marked none.";
+inline constexpr const char* kUpperLeft = "upper left";
+inline constexpr const char* kUpperMiddle = "upper middle";
+inline constexpr const char* kUpperRight = "upper right";
+inline constexpr const char* kMiddleLeft = "left side";
+inline constexpr const char* kMiddle = "middle";
+inline constexpr const char* kMiddleRight = "right side";
+inline constexpr const char* kLowerLeft = "lower left";
+inline constexpr const char* kLowerMiddle = "lower middle";
+inline constexpr const char* kLowerRight = "lower right";
+inline constexpr const char* kConfidenceOf = ", confidence {}";
+
+// guided start
+inline constexpr const char* kStepOf = "Step {} of {}";
+inline constexpr const char* kSkip = "Skip";
+inline constexpr const char* kGuidedPress = "Press inside the ring. The surface gives way: this tissue is soft.";
+inline constexpr const char* kGuidedSlide =
+    "Now press and slide slowly across the other ring, from side to side. The pointer lags behind your hand: this "
+    "place is stiff, a nodule.";
+inline constexpr const char* kGuidedMark =
+    "You have felt a nodule. Mark it with Mark; the mark goes where you pressed last.";
+inline constexpr const char* kGuidedSure = "How sure are you? Choose 1 (unsure) to 5 (sure).";
+inline constexpr const char* kGuidedFinish =
+    "In a trial you would now examine the rest of the tissue. Choose Finish to see the result.";
+inline constexpr const char* kGuidedResult =
+    "The result: solid rings are nodules that you found, dashed rings are nodules that you missed. The colours show "
+    "how deep you pressed, and hatching shows what you never touched.";
+inline constexpr const char* kGuidedEnds =
+    "Practice shows the nodules all the time. A test hides them until you finish.";
+inline constexpr const char* kStartPractice = "Start a practice trial";
+
+// help
+inline constexpr const char* kKeys = "Keys";
+inline constexpr const char* kKeyArrows = "Arrows";
+inline constexpr const char* kKeyArrowsDo = "move the indenter; with Shift slowly";
+inline constexpr const char* kKeySpace = "Space, held";
+inline constexpr const char* kKeySpaceDo = "press, harder the longer it is held";
+inline constexpr const char* kKeyPages = "Page Up, Page Down";
+inline constexpr const char* kKeyPagesDo = "press harder, softer";
+inline constexpr const char* kKeyMark = "M";
+inline constexpr const char* kKeyMarkDo = "mark the place that was pressed last";
+inline constexpr const char* kKeyConfidence = "1 to 5";
+inline constexpr const char* kKeyConfidenceDo = "confidence of the last mark";
+inline constexpr const char* kKeyUndo = "U";
+inline constexpr const char* kKeyUndoDo = "remove the last mark";
+inline constexpr const char* kKeyFinish = "F";
+inline constexpr const char* kKeyFinishDo = "finish the trial";
+inline constexpr const char* kKeyPause = "P";
+inline constexpr const char* kKeyPauseDo = "pause, continue";
+inline constexpr const char* kKeyAgain = "R";
+inline constexpr const char* kKeyAgainDo = "restart the trial on the same tissue";
+inline constexpr const char* kKeyNext = "N";
+inline constexpr const char* kKeyNextDo = "after a trial: the tissue turned another way";
+inline constexpr const char* kKeyPicture = "S";
+inline constexpr const char* kKeyPictureDo = "after a trial: save a picture";
+inline constexpr const char* kKeyMenu = "F10 or Tab";
+inline constexpr const char* kKeyMenuDo = "menu; arrows and Enter choose in it";
+inline constexpr const char* kKeyScreens = "V, B, D, Z";
+inline constexpr const char* kKeyScreensDo = "history, maps, device check, screen scale";
+inline constexpr const char* kKeyCost = "C";
+inline constexpr const char* kKeyHistory = "V";
+inline constexpr const char* kKeyMaps = "B";
+inline constexpr const char* kKeyDevices = "D";
+inline constexpr const char* kKeyScale = "Z";
+inline constexpr const char* kKeyCostDo = "performance, for the experimenter";
+inline constexpr const char* kKeyWindow = "F11, Ctrl Q, Esc";
+inline constexpr const char* kKeyWindowDo = "full screen, quit, back";
+
+// history
+inline constexpr const char* kNoHistory = "No results yet. Each finished trial is listed here.";
+inline constexpr const char* kHistoryKeptIn = "Kept in {}.";
+inline constexpr const char* kHistoryNotKept = "Results are not kept: see the settings.";
+inline constexpr const char* kDeleteResults = "Delete all results";
+inline constexpr const char* kDeleteAsk = "Delete the results of all {} trials? They cannot be restored.";
+inline constexpr const char* kDeleteNow = "Delete";
+inline constexpr const char* kCancel = "Cancel";
+inline constexpr const char* kLearningCurve = "Learning curve (filled: test, hollow: practice)";
+inline constexpr const char* kFoundAxis = "nodules found (%)";
+inline constexpr const char* kTrialAxis = "trial";
+inline constexpr const char* kPlay = "Play";
+inline constexpr const char* kHistoryLine = "{}  {}";
+inline constexpr const char* kHistoryFound = "{} of {} found, {} false positives";
+inline constexpr const char* kHistoryTime = "{} after {}";
+
 // device check
-inline constexpr const char* kSaysItHas = "Says that it has";
-inline constexpr const char* kNoDevice = "no device that the system tells us about";
-inline constexpr const char* kByTimeHeld = "by time held or level set, no sensor";
-inline constexpr const char* kVaries = "varies: a sensor";
-inline constexpr const char* kVaryIt = "vary it for a second";
+inline constexpr const char* kReportedCapabilities = "Reported capabilities";
+inline constexpr const char* kNoDevice = "The system lists no pointing device";
+inline constexpr const char* kByTimeHeld = "set by time or level, no sensor";
+inline constexpr const char* kVerdictGood = "Ready: the {} measures pressure ({} distinct values, {} Hz).";
+inline constexpr const char* kVerdictNoSensor =
+    "The {} does not measure pressure. Press by holding, or use another device.";
+inline constexpr const char* kVerdictTry = "Not tried yet: press in the test area, lightly, then hard.";
+inline constexpr const char* kVerdictNone =
+    "No connected device reports a pressure sensor. Try one in the test area, or press with the mouse or the keys.";
+inline constexpr const char* kVaries = "varies: has a sensor";
+inline constexpr const char* kVaryIt = "press lightly, then hard";
 inline constexpr const char* kPressure = "Pressure";
-inline constexpr const char* kCounts = "Counts";
-inline constexpr const char* kRate = "Rate";
+inline constexpr const char* kCounts = "Raw counts";
+inline constexpr const char* kRate = "Sample rate";
 inline constexpr const char* kClockDrift = "Clock drift";
-inline constexpr const char* kDelivered = "Delivered";
-inline constexpr const char* kTiltAndSize = "Tilt, size";
+inline constexpr const char* kDelivery = "Delivery";
+inline constexpr const char* kTiltAndSize = "Tilt, contact size";
 inline constexpr const char* kSamples = "Samples";
-inline constexpr const char* kTryHere = "Try pen and fingers here: press lightly, then hard";
-inline constexpr const char* kPressureRange = "pressure {} ... {}";
+inline constexpr const char* kTryHere = "Try each pen and finger here: press lightly, then hard";
+inline constexpr const char* kPressureRange = "pressure {} to {}";
 inline constexpr const char* kNoPressure = "no pressure";
 inline constexpr const char* kLevels = ", {} levels";
 inline constexpr const char* kTilt = "tilt";
@@ -131,70 +262,73 @@ inline constexpr const char* kContactSize = "contact size";
 inline constexpr const char* kAlways = "always {}: no sensor";
 inline constexpr const char* kNone = "none";
 inline constexpr const char* kValues = "{}, {} values";
-inline constexpr const char* kRateAndGap = "{} Hz, worst gap {} ms";
-inline constexpr const char* kAtATime = "{} at a time, {} ms late";
+inline constexpr const char* kRateAndGap = "{} Hz, longest gap {} ms";
+inline constexpr const char* kAtATime = "{} samples at a time, delay {} ms";
 
 // size of the screen
 inline constexpr const char* kCardSize = "85.6 x 54.0 mm";
 inline constexpr const char* kPxPerMm = "px per mm";
-inline constexpr const char* kForget = "Forget";
+inline constexpr const char* kReset = "Reset";
 inline constexpr const char* kNotMeasured = "not measured";
-inline constexpr const char* kHoldCard = "Hold a bank card against the screen and make the frame as large as the card.";
+inline constexpr const char* kHoldCard =
+    "Hold a bank card against the screen and drag the edge of the frame until it is as large as the card.";
 inline constexpr const char* kThisScreen =
-    "This screen ({}): {}. Where it is known, tissue under the pen is drawn true to size.";
+    "This screen ({}): {}. Once the scale is known, tissue under the pen is drawn true to size.";
 
 // calibration of pressure
 inline constexpr const char* kPoints = "Points";
-inline constexpr const char* kPress = "Press";
-inline constexpr const char* kMakeProfile = "Make the profile";
-inline constexpr const char* kStopRecording = "Stop (can be continued)";
-inline constexpr const char* kForceOverPressure = "Force over pressure; tinted: press here next";
-inline constexpr const char* kResiduals = "What is left without the curve, share of the force";
-inline constexpr const char* kHoldStill = "Hold the pen still, type what the scale shows, then take it.";
-inline constexpr const char* kTake = "Take";
-inline constexpr const char* kTaken = "Taken.";
-inline constexpr const char* kNotTaken = "Not taken: hold the pen still at another level.";
-inline constexpr const char* kTypedScale = "Scale, typed by hand";
+inline constexpr const char* kPressNumber = "Press";
+inline constexpr const char* kCreateProfile = "Create profile";
+inline constexpr const char* kPauseRecording = "Pause (resume later)";
+inline constexpr const char* kForceOverPressure = "Force vs. pressure (shaded: next target)";
+inline constexpr const char* kResiduals = "Residuals (% of force)";
+inline constexpr const char* kPressureAxis = "pressure (% of full)";
+inline constexpr const char* kForceAxis = "force (N)";
+inline constexpr const char* kPercentAxis = "%";
+inline constexpr const char* kMouseHasNone = "A mouse has no pressure sensor: press with the pen or a finger.";
+inline constexpr const char* kHoldStill = "Hold the pen still, type the reading of the scale, then record it.";
+inline constexpr const char* kRecord = "Record";
+inline constexpr const char* kRecorded = "Recorded.";
+inline constexpr const char* kNotRecorded = "Not recorded: hold the pen still at another level.";
+inline constexpr const char* kTypedScale = "Scale, readings typed in";
 inline constexpr const char* kNetFt = "ATI Net F/T";
 inline constexpr const char* kLoadCell = "Load cell, serial port";
 inline constexpr const char* kCountsPerN = "counts per N";
 inline constexpr const char* kNPerCount = "N per count";
-inline constexpr const char* kSensorStopped = "The sensor has stopped; nothing is captured until it is back.";
-inline constexpr const char* kStart = "Start";
+inline constexpr const char* kSensorStopped = "The sensor sends nothing; no points are recorded until it is back.";
 inline constexpr const char* kGramForce = "gf";
-inline constexpr const char* kAddress = "address";
-inline constexpr const char* kPort = "port";
-inline constexpr const char* kName = "name";
-inline constexpr const char* kKeptAs = "Kept as {}; choose it in the menu.";
-inline constexpr const char* kSensorHealth = "{}: {} readings, lost {}, twice {}, late {}, stalls {}";
+inline constexpr const char* kAddress = "Address";
+inline constexpr const char* kPort = "Port";
+inline constexpr const char* kName = "Name";
+inline constexpr const char* kSavedAs = "Saved as {}; select it in the menu.";
+inline constexpr const char* kSensorHealth = "{}: {} readings, {} lost, {} duplicate, {} out of order, {} stalls";
 inline constexpr const char* kCurveKnown = "The curve is known to 5 % everywhere.";
 inline constexpr const char* kHowToCalibrate =
-    "Put a force sensor under the tablet, or the tablet on a scale. Then press slowly, hold still, press harder, "
-    "several "
-    "times.";
-inline constexpr const char* kPointsIn = "Points: {}, in {}. The same name continues them.";
+    "Put a force sensor under the tablet, or the tablet on a scale. Then press slowly, hold still, press harder, and "
+    "repeat several times.";
+inline constexpr const char* kPointsIn = "{} points saved in {}. To add more, start again under the same name.";
 inline constexpr const char* kCalibratedOnDesk = "Pressure is calibrated on the desk, which has the force sensors.";
 inline constexpr const char* kHowOnDesk =
-    "palpa calibrate record takes the points and palpa calibrate fit makes a profile of them. Profiles that are "
-    "shipped "
-    "with the app stand in the menu. They were measured on single devices: another pen of the same model may differ by "
-    "half, and the logs hold the pressure as the device sent it, so that newtons can be worked out later.";
-inline constexpr const char* kProfileNow = "Profile now: {}";
+    "palpa calibrate record records the points, and palpa calibrate fit makes a profile of them. The menu lists the "
+    "profiles that ship with the app. They were measured on single devices: another pen of the same model may differ "
+    "by half. The logs hold the pressure as the device sent it, so that newtons can be computed later.";
+inline constexpr const char* kCurrentProfile = "Current profile: {}";
 
 // maps
-inline constexpr const char* kMeasuredEverywhere = "Measured everywhere";
-inline constexpr const char* kNormal = "Normal";
-inline constexpr const char* kSidewaysX = "Sideways x";
-inline constexpr const char* kSidewaysY = "Sideways y";
+inline constexpr const char* kNoMissingData = "No missing data";
+inline constexpr const char* kNormal = "Normal force";
+inline constexpr const char* kTangentialX = "Tangential force, x";
+inline constexpr const char* kTangentialY = "Tangential force, y";
 inline constexpr const char* kStiffness = "Stiffness";
 inline constexpr const char* kMap = "Map";
-inline constexpr const char* kNoMap = "There is no map here: put NAME.map folders into your data folder's maps";
-inline constexpr const char* kMapsHidden = "Maps show where nodules are: finish the test first.";
-inline constexpr const char* kMmDeep = "{} mm deep";
+inline constexpr const char* kNoMap =
+    "There is no map yet. Put folders NAME.map into the folder maps of your data folder.";
+inline constexpr const char* kMapsHidden = "Maps show where the nodules are. Finish the test first.";
+inline constexpr const char* kMmDeep = "at {} mm";
 inline constexpr const char* kCellsOf = "{} x {} cells of {} x {} mm";
 inline constexpr const char* kDepthsFromTo = "{} depths, {} to {} mm";
 inline constexpr const char* kForceFromTo = "Force {} to {} N";
-inline constexpr const char* kShareMissing = "Not measured: {} %";
+inline constexpr const char* kShareMissing = "Missing data: {} %";
 inline constexpr const char* kNoise = "Noise {} mN; {} forces do not rise with depth";
 inline constexpr const char* kTangential = "Tangential force: {}";
 inline constexpr const char* kIndenter = "Indenter: {}, radius {} mm";
@@ -204,80 +338,89 @@ inline constexpr const char* kMmLong = ", {} mm long";
 inline constexpr const char* kMmWide = ", {} mm wide";
 inline constexpr const char* kNewtonsPerMm = "N/mm";
 inline constexpr const char* kAxesInMm = "x, y in mm";
-inline constexpr const char* kForceOverDepth = "Force over depth";
+inline constexpr const char* kForceOverDepth = "Force vs. depth";
 inline constexpr const char* kDepthAxis = "depth (mm)";
-inline constexpr const char* kPointAtMap = "Point at the map; a press pins a curve";
+inline constexpr const char* kPointAtMap = "Point at the map; press to pin a curve";
 inline constexpr const char* kNormalForce = "Normal force";
-inline constexpr const char* kForceAgainstX = "Force against +x";
-inline constexpr const char* kForceAgainstY = "Force against +y";
+inline constexpr const char* kForceAgainstX = "Force opposing +x";
+inline constexpr const char* kForceAgainstY = "Force opposing +y";
 inline constexpr const char* kAtPlace = "  at {}, {} mm";
 
 // trial: its messages
 inline constexpr const char* kOtherWays =
     "Other ways to press: the mouse (hold its button, or turn the wheel) and the keys (arrows move, Space presses).";
-inline constexpr const char* kIsGone = "{} is gone.";
-inline constexpr const char* kIsHere = "{} is here.";
+inline constexpr const char* kDisconnected = "{} was disconnected.";
+inline constexpr const char* kConnected = "{} is connected.";
 inline constexpr const char* kHeldPress = "The {} presses harder the longer it is held.";
-inline constexpr const char* kReportsNone = "This {} reports no pressure.";
-inline constexpr const char* kReportsConstant = "This {} reports always the same pressure: it has no sensor.";
+inline constexpr const char* kReportsNone = "This {} does not report pressure.";
+inline constexpr const char* kReportsConstant = "This {} always reports the same pressure: it has no sensor.";
 inline constexpr const char* kReplayOf = "Replay of {}";
-inline constexpr const char* kNoSensorHere = "No pen or finger with a pressure sensor here.";
-inline constexpr const char* kCannotBeWritten = "{}: can no longer be written; stopped (is the disk full?)";
-inline constexpr const char* kPreparing = "Preparing the tissue (once; later starts are quick)";
+inline constexpr const char* kNoSensorHere = "No pen or finger with a pressure sensor is connected.";
+inline constexpr const char* kCannotBeWritten =
+    "{}: cannot be written any more, so the trial has stopped (is the disk full?)";
+inline constexpr const char* kPreparing = "Preparing the tissue (only once; later starts are quick)";
 inline constexpr const char* kSaved = "Saved {}";
 inline constexpr const char* kDoneWith = "This trial is done with the {}.";
 
 // the question before marks are thrown away
 inline constexpr const char* kLoseMarks = "End this trial?";
-inline constexpr const char* kLoseMark =
-    "1 mark stands on the tissue and nothing is scored yet. This trial cannot be continued.";
-inline constexpr const char* kLoseManyMarks =
-    "{} marks stand on the tissue and nothing is scored yet. This trial cannot be continued.";
+inline constexpr const char* kLoseMark = "1 mark is not scored yet. This trial cannot be resumed.";
+inline constexpr const char* kLoseManyMarks = "{} marks are not scored yet. This trial cannot be resumed.";
 inline constexpr const char* kLeaveAnswers = "Close without these answers?";
-inline constexpr const char* kLoseAnswers = "The answers on this page are not kept yet.";
+inline constexpr const char* kLoseAnswers = "The answers on this page are not saved yet.";
 inline constexpr const char* kBackToAnswers = "Back to the answers";
-inline constexpr const char* kGoOnWithTrial = "Go on with the trial";
-inline constexpr const char* kEndTrial = "End it";
+inline constexpr const char* kContinueTrial = "Continue the trial";
+inline constexpr const char* kEndTrial = "End the trial";
 
 // study, between its trials
 inline constexpr const char* kTrialsOnTablet = "Trials on this tablet";
-inline constexpr const char* kLeaveStudy = "Leave the study";
-inline constexpr const char* kOneMoment = "One moment";
-inline constexpr const char* kBeingKept =
-    "What was done is being put into this tablet's storage. The study goes on when it is there.";
-inline constexpr const char* kWhoIsHere = "Who is here?";
+inline constexpr const char* kCloseStudy = "Close the study";
+inline constexpr const char* kPleaseWait = "Please wait";
+inline constexpr const char* kBeingStored =
+    "Your data are being stored on this tablet. The study continues as soon as they are.";
+inline constexpr const char* kParticipantCode = "Participant code";
 inline constexpr const char* kCodeNoName =
-    "A code for the participant, no name: letters and digits. Whoever was here before goes on with the same code.";
+    "Enter letters and digits, not a name. A participant who returns uses the same code.";
 inline constexpr const char* kCode = "code";
-inline constexpr const char* kGoOnWithStudy = "Go on with the study";
-inline constexpr const char* kSomebodyElse = "Somebody else";
+inline constexpr const char* kContinueStudy = "Continue the study";
+inline constexpr const char* kAnotherParticipant = "Another participant";
 inline constexpr const char* kBeforeYouTakePart = "Before you take part";
-inline constexpr const char* kAgree = "I agree and take part";
-inline constexpr const char* kDoNotAgree = "I do not take part";
-inline constexpr const char* kStopTakingPart = "Stop taking part";
-inline constexpr const char* kWantToStop = "Do you want to stop taking part?";
-inline constexpr const char* kMayStop =
-    "You may stop at any time, without giving a reason. What you did so far may be used for the study, or is left out "
-    "of it.";
-inline constexpr const char* kStopKeepsData = "Stop; what I did may be used";
-inline constexpr const char* kStopTakesData = "Stop; leave out what I did";
-inline constexpr const char* kHasStopped = "You have left the study. Thank you!";
-inline constexpr const char* kCodeHasLeft = "Participant {} takes part no longer.";
-inline constexpr const char* kWasRight = "That was right";
-inline constexpr const char* kWasWrong = "That was not right";
-inline constexpr const char* kOnlyInPractice = "You are told this only in practice.";
-inline constexpr const char* kQuestionsFirst = "Some questions first";
+inline constexpr const char* kAgree = "I agree to take part";
+inline constexpr const char* kDoNotAgree = "I do not want to take part";
+inline constexpr const char* kWithdraw = "Withdraw from the study";
+inline constexpr const char* kWantToWithdraw = "Do you want to withdraw from the study?";
+inline constexpr const char* kMayWithdraw =
+    "You may withdraw at any time and need not give a reason. You decide whether your data so far may be used.";
+inline constexpr const char* kWithdrawKeepsData = "Withdraw; my data may be used";
+inline constexpr const char* kWithdrawTakesData = "Withdraw; do not use my data";
+inline constexpr const char* kHasWithdrawn = "You have withdrawn from the study. Thank you!";
+inline constexpr const char* kCodeHasWithdrawn = "Participant {} has withdrawn.";
+inline constexpr const char* kWasRight = "Correct";
+inline constexpr const char* kWasWrong = "Incorrect";
+inline constexpr const char* kFeedbackFalse = "False positives (marks on no nodule): {}";
+inline constexpr const char* kAboutLastTrials = "These questions are about the trials that you have just finished.";
+inline constexpr const char* kOnlyInPractice = "You get this feedback only during practice.";
+inline constexpr const char* kQuestionsFirst = "About you";
 inline constexpr const char* kHowWasIt = "How was it?";
-inline constexpr const char* kMayLeaveOpen = "You may leave any of them open.";
+inline constexpr const char* kMayLeaveOpen = "You may skip any question.";
 inline constexpr const char* kDeviceMissing = "The {} is not connected";
 inline constexpr const char* kDeviceIsBack = "The {} is connected";
+inline constexpr const char* kDeviceNoPressure = "The {} does not measure pressure";
+inline constexpr const char* kNeedsPressure =
+    "This trial needs a pen that measures pressure. Press with it anywhere, lightly, then hard; as soon as its "
+    "pressure "
+    "varies, the trial can start.";
+inline constexpr const char* kPenReady = "Device check: the pen measures pressure.";
+inline constexpr const char* kPenUntried =
+    "Device check: press with the pen here, lightly, then hard, to try its pressure.";
+inline constexpr const char* kPenNoPressure = "Device check: the pen does not measure pressure.";
 inline constexpr const char* kTrialWaits =
-    "This trial is done with the {}. Connect it or switch it on: it is noticed within a second.";
-inline constexpr const char* kTrialBrokenOff =
-    "The trial that was going on was interrupted. It is logged as interrupted, counts as no answer, and begins anew.";
-inline constexpr const char* kCloseAndGoOn =
-    "Or close the study: everything that was finished is on the disk, and the same command goes on here with the same "
-    "code.";
+    "This trial is done with the {}. Connect it or switch it on; the app notices it within a second.";
+inline constexpr const char* kTrialInterrupted =
+    "The trial was interrupted. It is logged as interrupted, does not count, and will be repeated.";
+inline constexpr const char* kCloseAndContinue =
+    "You can also close the study: all finished trials are saved. To continue, run the same command with the same "
+    "participant code.";
 inline constexpr const char* kFeelFirst = "Feel the first surface.";
 inline constexpr const char* kFeelSecond = "Now feel the second surface.";
 inline constexpr const char* kWhichSofter = "Which one was softer?";
@@ -286,106 +429,105 @@ inline constexpr const char* kTheSecond = "The second";
 inline constexpr const char* kMissed = "missed";
 inline constexpr const char* kFound = "found";
 inline constexpr const char* kStopClock = "Stop the clock";
-inline constexpr const char* kStartClockAnew = "Start the clock anew";
+inline constexpr const char* kRestartClock = "Restart the clock";
 inline constexpr const char* kStartClock = "Start the clock";
-inline constexpr const char* kTypeWhatWasSaid = "The participant palpates the phantom; type what was said.";
-inline constexpr const char* kNotDriven = "This device is not driven from here; type what was said.";
+inline constexpr const char* kTypeAnswers = "The participant palpates the phantom. Type in the answers.";
+inline constexpr const char* kNotDriven = "This device is not controlled by the app. Type in the answers.";
 inline constexpr const char* kNodulesFound = "nodules found";
 inline constexpr const char* kNodulesMissed = "nodules missed";
-inline constexpr const char* kFoundAndSure = "Found, and how sure: 1 unsure to 5 sure.";
-inline constexpr const char* kFalseMarkCount = "marks on no nodule";
-inline constexpr const char* kThatWasAll = "That was all. Thank you!";
+inline constexpr const char* kFoundAndSure = "Found, and the confidence from 1 (unsure) to 5 (sure).";
+inline constexpr const char* kFalsePositiveCount = "false positives";
+inline constexpr const char* kThatWasAll = "The study is complete. Thank you!";
 inline constexpr const char* kNextParticipant = "Next participant";
-inline constexpr const char* kStudyStops = "The study stops here";
+inline constexpr const char* kStudyStopped = "The study has stopped";
 inline constexpr const char* kBreak = "Time for a break";
-inline constexpr const char* kHasBeenHere = "Participant {} has been here";
-inline constexpr const char* kTrialsDone = "{} of {} trials are done. A trial that was interrupted is done once more.";
-inline constexpr const char* kNumberFromTo = "A number from {} to {}.";
+inline constexpr const char* kHasTakenPart = "Participant {} has already taken part";
+inline constexpr const char* kTrialsDone = "{} of {} trials are finished. A trial that was interrupted is repeated.";
+inline constexpr const char* kNumberFromTo = "Enter a number from {} to {}.";
 inline constexpr const char* kPracticeOf = "Practice, trial {}";
-inline constexpr const char* kThereAre = "There are {} of them.";
+inline constexpr const char* kThereAre = "There are {} nodules.";
 inline constexpr const char* kTimeOf = "{} of {}";
-inline constexpr const char* kTimeOver = "{} of {}: the time is over";
+inline constexpr const char* kTimeOver = "{} of {}: time is up";
 inline constexpr const char* kExperimenter = "Experimenter: trial {}, {}";
-inline constexpr const char* kAllOnTablet = "Participant {}: {} trials, all kept on this tablet.";
-inline constexpr const char* kAllOnDisk = "Participant {}: {} trials, all on the disk.";
+inline constexpr const char* kAllOnTablet = "Participant {}: {} trials, all saved on this tablet.";
+inline constexpr const char* kAllOnDisk = "Participant {}: {} trials, all saved.";
 inline constexpr const char* kRestKept =
-    "Everything that was finished before is kept. Start the study again with the same code to go on.";
-inline constexpr const char* kRestOnDisk =
-    "Everything that was finished before is on the disk. Start the study again with the same code to go on.";
-inline constexpr const char* kComesNext = "Trial {} comes next. Go on when you like.";
+    "All trials that were finished before are saved. To continue, start the study again with the same participant "
+    "code.";
+inline constexpr const char* kComesNext = "Next is trial {}. Continue when you are ready.";
 
 // the page around the program, in the browser: cmake/page_words.py hands these to its scripts
 inline constexpr const char* pageLoading = "Loading Palpa";
-inline constexpr const char* pageLeaveStudy = "Leave the study";
+inline constexpr const char* pageCloseStudy = "Close the study";
 inline constexpr const char* pageYourAnswer = "Your answer";
 inline constexpr const char* pageTrials = "Trials on this tablet";
-inline constexpr const char* pageCode = "Code that the desk shows (palpa serve)";
+inline constexpr const char* pageCode = "Pairing code (palpa serve shows it on the desk)";
 inline constexpr const char* pagePair = "Pair with the desk";
 inline constexpr const char* pageSendNow = "Send now";
-inline constexpr const char* pageExport = "Export to one file";
-inline constexpr const char* pageRemove = "Remove what was exported";
+inline constexpr const char* pageExport = "Export to a file";
+inline constexpr const char* pageRemove = "Delete exported trials";
 inline constexpr const char* pageClose = "Close";
-inline constexpr const char* pageStudies = "A study by its protocol";
-inline constexpr const char* pageStudyCode = "Code of the participant: letters and digits; empty: it is asked for";
-inline constexpr const char* pageBegin = "Begin";
+inline constexpr const char* pageStudies = "Start a study";
+inline constexpr const char* pageStudyCode = "Participant code: letters and digits (if empty, the study asks for it)";
+inline constexpr const char* pageStart = "Start";
 inline constexpr const char* pageStopped = "Palpa has stopped: {}";
 inline constexpr const char* pageNotHere = "This study cannot be run here. {}";
 inline constexpr const char* pageLooking = "Looking for protocols";
 inline constexpr const char* pageRemoveAsk =
-    "Remove the exported trials from this tablet? The file that was exported is then the only copy.";
+    "Delete the exported trials from this tablet? The exported file is then the only copy.";
 inline constexpr const char* pageNotLoaded = "the program cannot be loaded; is the desk reachable?";
 inline constexpr const char* pageAnswered = "The desk answered {} to {}.";
-inline constexpr const char* pageInTheApp = "in the app";
-inline constexpr const char* pageOfDeskKept = "of the desk, kept here";
-inline constexpr const char* pageOfDesk = "of the desk";
+inline constexpr const char* pageInTheApp = "included in the app";
+inline constexpr const char* pageOfDeskStored = "from the desk, stored here";
+inline constexpr const char* pageOfDesk = "from the desk";
 inline constexpr const char* pageNoDesk =
-    "No desk is reachable, or this tablet is not paired (Menu, Trials): its protocols are missing here unless they "
-    "were "
-    "used before.";
-inline constexpr const char* pageNoStorage = "the browser has no storage for this page";
-inline constexpr const char* pageInterrupted = "broken off";
-inline constexpr const char* pageHeldElsewhere = "another page holds it";
-inline constexpr const char* pageGone = "{} trial(s) that were kept here are gone: the browser has removed them ({}).";
+    "No desk is reachable, or this tablet is not paired (Menu, Trials). Protocols of the desk are missing here unless "
+    "they were used before.";
+inline constexpr const char* pageNoStorage = "the browser offers no storage to this page";
+inline constexpr const char* pageInterrupted = "interrupted";
+inline constexpr const char* pageHeldElsewhere = "another page is using it";
+inline constexpr const char* pageLost = "{} stored trial(s) are lost: the browser has deleted them ({}).";
 inline constexpr const char* pageSecondTab =
     "Palpa is open in another tab or window of this browser; close one of them";
 inline constexpr const char* pageStorageClosed =
-    "The browser has closed its storage: trials are not kept any more. Export what is there.";
-inline constexpr const char* pageCannotKeep = "Trials cannot be kept in this browser ({}): export each one after it.";
-inline constexpr const char* pageTakesNoLogs = "This desk takes no logs (it was started without --collect).";
-inline constexpr const char* pageNotKept =
-    "Trial {} is not kept: {}. Menu, Trials, Export saves it to a file; the next trial waits for that.";
+    "The browser has closed its storage: trials are no longer stored. Export what is there.";
+inline constexpr const char* pageCannotStore =
+    "This browser cannot store trials ({}). Export each trial when it is finished.";
+inline constexpr const char* pageTakesNoLogs = "This desk does not accept logs (it was started without --collect).";
+inline constexpr const char* pageNotStored =
+    "Trial {} is not stored: {}. Menu, Trials, Export saves it to a file; the next trial waits for that.";
 inline constexpr const char* pageCannotRead =
-    "The trials that were kept before cannot be read ({}): the exported file is without them.";
+    "The trials that were stored before cannot be read ({}); the exported file does not contain them.";
 inline constexpr const char* pageOddParticipant =
-    "The page's address names the participant '{}', expected 1 to 64 letters and digits: trials are kept as those of "
-    "{}.";
+    "The page's address names the participant '{}', expected 1 to 64 letters and digits. Trials are stored under {}.";
 inline constexpr const char* pageStorageFull = "the storage of this browser is full";
-inline constexpr const char* pagePartNotKept =
-    "While it is going on this trial is not kept ({}); it will be tried at its end.";
-inline constexpr const char* pagePairAgain = "The desk does not know this tablet any more: pair again.";
-inline constexpr const char* pageOtherBytes = "The desk has other bytes of {}; it is sent again.";
+inline constexpr const char* pagePartNotStored =
+    "The trial in progress is not stored ({}); this is tried again at its end.";
+inline constexpr const char* pagePairAgain = "The desk no longer knows this tablet. Pair it again.";
+inline constexpr const char* pageChecksumMismatch =
+    "Checksum mismatch: the copy of {} at the desk differs; it is sent again.";
 inline constexpr const char* pageTrialsWait = "The desk is not reachable; trials wait here.";
 inline constexpr const char* pagePaired = "Paired.";
-inline constexpr const char* pageWrongCode = "The desk does not take this code ({}).";
+inline constexpr const char* pageWrongCode = "The desk does not accept this code ({}).";
 inline constexpr const char* pageNotReachable = "The desk is not reachable.";
 inline constexpr const char* pageAtDesk = "at the desk";
-inline constexpr const char* pageGoingOn = "going on";
+inline constexpr const char* pageInProgress = "in progress";
 inline constexpr const char* pageWaiting = "waiting";
-inline constexpr const char* pageBrokenOff = "broken off, waiting";
+inline constexpr const char* pageInterruptedWaiting = "interrupted, waiting";
 inline constexpr const char* pageExported = ", exported";
 inline constexpr const char* pageHowMany = "{} waiting, {} at the desk.";
 inline constexpr const char* pageIsPaired = "Paired with the desk.";
-inline constexpr const char* pageOpenToAll = "The desk takes logs without a code.";
+inline constexpr const char* pageOpenToAll = "The desk accepts logs without a code.";
 inline constexpr const char* pageNotPaired = "Not paired with a desk.";
-inline constexpr const char* pageMayRemove =
-    "The browser may remove what is kept here when space is short: send or export, or put Palpa on the home screen.";
-inline constexpr const char* pageExportIt = "NOT kept: export it";
-inline constexpr const char* pageKeptUnsent = "{} trial(s) kept on this tablet, not yet at the desk.";
-inline constexpr const char* pageKept = "{} trial(s) kept on this tablet.";
+inline constexpr const char* pageMayDelete =
+    "The browser may delete stored trials when space is short: send or export them, or put Palpa on the home screen.";
+inline constexpr const char* pageExportIt = "NOT stored: export it";
+inline constexpr const char* pageStoredUnsent = "{} trial(s) stored on this tablet, not yet at the desk.";
+inline constexpr const char* pageStored = "{} trial(s) stored on this tablet.";
 inline constexpr const char* pageAllSafe = "All trials are at the desk or exported.";
-inline constexpr const char* pageKeptHere = "Trials are kept on this tablet.";
-inline constexpr const char* pageSettingsNotKept = "Settings are not kept: the storage of this browser is full.";
-inline constexpr const char* pageUnsaved = "{} trial(s) NOT kept: Menu, Trials, Export.";
+inline constexpr const char* pageStoredHere = "Trials are stored on this tablet.";
+inline constexpr const char* pageSettingsNotStored = "Settings are not stored: the storage of this browser is full.";
+inline constexpr const char* pageUnsaved = "{} trial(s) NOT stored: Menu, Trials, Export.";
 inline constexpr const char* pageCanvas = "Tissue to press on, and its controls";
 
 }  // namespace palpa::app::words

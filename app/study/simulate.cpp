@@ -180,7 +180,7 @@ void run_trial(Shared& shared, const study::PlannedParticipant& who, const study
     session.finished.clear();
     if (!session::close_files({{"wall_s", wall_s}, {"samples", samples}}, session)) {
         throw std::runtime_error(
-            stem + ": the trial could not be written to its end (is the disk full?); the study stops here");
+            stem + ": the trial could not be written to its end (is the disk full?); the study has stopped");
     }
     const std::lock_guard lock(shared.mutex);
     ++shared.result.trials;
@@ -219,7 +219,8 @@ class PairAnswers {
         row.correct = right ? 1 : 0;
         const std::string code = code_of(who_.number);
         if (!log_) log_.emplace(study::next_run(shared_.options.output, code, "softer"));
-        if (!log_->write(row)) throw std::runtime_error(code + ": a choice could not be written; the study stops here");
+        if (!log_->write(row))
+            throw std::runtime_error(code + ": a choice could not be written; the study has stopped");
         if (trial.comparison < 0) steps_[trial.condition].push_back({level, trial.reference_first, right});
         const std::lock_guard lock(shared_.mutex);
         ++shared_.result.trials;

@@ -115,6 +115,32 @@ bool is_answer(const study::Item& item, const std::string& answer) {
     return files::parse_number(answer, value) && value >= *item.from && value <= *item.to;
 }
 
+files::Json now_json(const StudyRun& run) {
+    files::Json json{{"participant", run.code},
+                     {"step", name_of(run.step)},
+                     {"finished", run.progress.finished.size()},
+                     {"of", run.progress.plan.trials.size()},
+                     {"locked", run.lock != nullptr && run.lock->held()}};
+    if (const auto* stopped = std::get_if<step::Stopped>(&run.step)) json["stopped"] = stopped->why;
+    if (const auto* rated = std::get_if<step::Ratings>(&run.step)) {
+        json["rated"] = run.protocol.conditions[rated->condition].id;
+        return json;
+    }
+    if (!run.progress.next) return json;
+    const study::PlannedTrial& trial = *run.progress.next;
+    json["trial"] = trial.trial;
+    json["condition"] = run.protocol.conditions[trial.condition].id;
+    json["practice"] = trial.practice;
+    if (run.comparison < 0) return json;
+    const double comparison_kPa = due_comparison_kPa(run);
+    const double reference_kPa = study::reference_kPa_of(run.protocol, trial.condition);
+    json["present_kPa"] = {trial.reference_first ? reference_kPa : comparison_kPa,
+                           trial.reference_first ? comparison_kPa : reference_kPa};
+    json["interval"] = run.interval + 1;
+    json["condition"] = due_condition(run).id;  // that of the interval
+    return json;
+}
+
 std::string progress_text(const StudyRun& run) {
     const std::size_t of = run.progress.plan.trials.size();
     return std::to_string(std::min(of, run.progress.finished.size() + 1)) + " of " + std::to_string(of);

@@ -46,29 +46,6 @@ std::vector<StudyScene> stimuli_of(const StudyScene& scene, const study::Protoco
 
 bool plain(const std::string& code) { return code.size() <= 20 && study::is_code(code); }
 
-// Returns what the experimenter sees from elsewhere (palpa study watch).
-files::Json now_json(const StudyRun& run) {
-    files::Json json{{"participant", run.code},
-                     {"step", name_of(run.step)},
-                     {"finished", run.progress.finished.size()},
-                     {"of", run.progress.plan.trials.size()},
-                     {"locked", run.lock != nullptr && run.lock->held()}};
-    if (const auto* stopped = std::get_if<step::Stopped>(&run.step)) json["stopped"] = stopped->why;
-    if (!run.progress.next) return json;
-    const study::PlannedTrial& trial = *run.progress.next;
-    json["trial"] = trial.trial;
-    json["condition"] = run.protocol.conditions[trial.condition].id;
-    json["practice"] = trial.practice;
-    if (run.comparison < 0) return json;
-    const double comparison_kPa = due_comparison_kPa(run);
-    const double reference_kPa = study::reference_kPa_of(run.protocol, trial.condition);
-    json["present_kPa"] = {trial.reference_first ? reference_kPa : comparison_kPa,
-                           trial.reference_first ? comparison_kPa : reference_kPa};
-    json["interval"] = run.interval + 1;
-    json["condition"] = due_condition(run).id;  // that of the interval
-    return json;
-}
-
 void write_now(const StudyRun& run) {
     const fs::path subject = run.directory / ("sub-" + run.code);
     fs::create_directories(subject);
@@ -86,7 +63,7 @@ void check_room(const StudyRun& run) {
     if (free_MB >= kRoom_MB) return;
     throw std::runtime_error(run.directory.string() + ": found " + files::short_number(free_MB) +
                              " MB free, expected " + files::short_number(kRoom_MB) +
-                             " MB for a trial; the study stops here");
+                             " MB for a trial; the study has stopped");
 }
 
 // Returns the first condition whose trials are all finished and which was not rated yet.
@@ -151,7 +128,7 @@ void begin_trial_step(StudyRun& run) {
 }
 
 const char* why_refused(const StudyRun& run, const std::string& code) {
-    if (study::withdrawal_of(run.directory, code) != study::Withdrawal::none) return "who has left the study";
+    if (study::withdrawal_of(run.directory, code) != study::Withdrawal::none) return "who has withdrawn from the study";
     return run.code.empty() ? "who is at another screen now" : "who has finished all trials";
 }
 
@@ -179,9 +156,9 @@ void finish_due(StudyRun& run) {
 }  // namespace
 
 const char* name_of(const StudyStep& step) {
-    constexpr const char* kNames[] = {"code",   "again",   "consent",   "questions", "instructions", "trial",
-                                      "device", "present", "question",  "told",      "typed",        "ratings",
-                                      "pause",  "leaving", "withdrawn", "done",      "stopped"};
+    constexpr const char* kNames[] = {"code",    "again",   "consent",  "questions", "instructions", "trial",
+                                      "device",  "present", "question", "told",      "feedback",     "typed",
+                                      "ratings", "pause",   "leaving",  "withdrawn", "done",         "stopped"};
     static_assert(std::size(kNames) == std::variant_size_v<StudyStep>);
     return kNames[step.index()];
 }
@@ -208,7 +185,10 @@ void go_on(StudyRun& run) {
     if (!known && !run.protocol.demographics.empty()) return enter(step::Questions{}, run);
     if (!known && !kept(run, [&] { add_person({}, run); })) return;
     if (const auto condition = to_rate(run)) return enter(step::Ratings{*condition}, run);
-    if (!run.progress.next) return enter(step::Done{}, run);
+    if (!run.progress.next) {
+        run.lock.reset();  // nothing more is written; the code is free for the experimenter's other programs
+        return enter(step::Done{}, run);
+    }
     const study::PlannedTrial& trial = *run.progress.next;
     if (trial.break_before && !run.rested) return enter(step::Pause{}, run);
     const bool told = run.told == trial.condition && run.told_practice == trial.practice;
@@ -276,12 +256,12 @@ void carry_out(const StudyWish& wish, StudyRun& run) {
 
 void enter_code(const std::string& code, StudyRun& run) {
     run.note.clear();
-    if (!plain(code)) return refuse_code("Up to 20 letters and digits.", run);
+    if (!plain(code)) return refuse_code("Enter up to 20 letters and digits.", run);
     if (!kept(run, [&] { lock_code(code, run); })) return;
     if (run.lock->held_elsewhere()) {
         run.lock.reset();
         run.code.clear();
-        return refuse_code(code + " is at another screen now; close the study there, or take another code.", run);
+        return refuse_code(code + " is in use at another screen; close the study there, or enter another code.", run);
     }
     auto withdrawal = study::Withdrawal::none;
     const bool good = kept(run, [&] {
@@ -291,7 +271,7 @@ void enter_code(const std::string& code, StudyRun& run) {
     if (!good) return;
     if (withdrawal != study::Withdrawal::none) {
         run.lock.reset();
-        return refuse_code(code + " has left the study; take a new code.", run);
+        return refuse_code(code + " has withdrawn from the study; enter a new code.", run);
     }
     run.code = code;
     if (!kept(run, [&] { find_comparison(run); })) return;
@@ -301,7 +281,7 @@ void enter_code(const std::string& code, StudyRun& run) {
     run.choices.reset();  // each person's choices go to files of their own
     if (run.progress.known && !run.progress.next && !to_rate(run)) {
         run.lock.reset();
-        return refuse_code(code + " has finished all trials; take a new code.", run);
+        return refuse_code(code + " has finished all trials; enter a new code.", run);
     }
     if (run.progress.known) return enter(step::Again{}, run);
     go_on(run);
@@ -335,13 +315,18 @@ void begin_step(StudyRun& run) {
         run.rested = true;
         return go_on(run);
     }
-    if (at<step::Told>(run)) return finish_due(run);
+    if (at<step::Told>(run) || at<step::Feedback>(run)) return finish_due(run);
     const auto* device = std::get_if<step::Device>(&run.step);
     if (device == nullptr) return begin_trial_step(run);
     if (device->here) enter(step::Trial{}, run);  // in a forced choice, the same interval
 }
 
-void wait_for_device(bool left, StudyRun& run) { enter(step::Device{false, left}, run); }
+void wait_for_device(bool left, StudyRun& run) { enter(step::Device{false, false, left}, run); }
+
+void give_feedback(const study::Score& score, StudyRun& run) {
+    enter(step::Feedback{score.true_positives, score.true_positives + score.false_negatives, score.false_positives},
+          run);
+}
 
 void trial_finished(StudyRun& run) {
     if (!due_compares(run)) return finish_due(run);
@@ -367,7 +352,7 @@ void choose_softer(bool first, double now_s, StudyRun& run) {
         row.onset_s = now_s - run.choices_began_s;
         if (!run.choices->write(row))
             throw std::runtime_error(run.directory.string() +
-                                     ": the choice could not be written; the study stops here");
+                                     ": the choice could not be written; the study has stopped");
     });
     run.unkept_answers = true;
     if (!good) return;

@@ -9,6 +9,7 @@
 #include <variant>
 #include <vector>
 
+#include "app/study/study_device.h"
 #include "app/study/study_scenes.h"
 #include "app/study/study_step.h"
 #include "files/folder_lock.h"
@@ -41,6 +42,7 @@ struct StudyRun {
     double choices_began_s = 0.0;
     // For a keeper (session/keeper.h): what it has not been given yet, and what it reports.
     bool on_tablet = false;
+    PenVerdict pen = PenVerdict::not_needed;   // of the due trial; set by the loop
     int first_run = 1;                         // first run number of the log that may be free
     std::vector<study::RunFiles> unkept_runs;  // typed trials
     bool unkept_answers = false;
@@ -71,8 +73,9 @@ void enter_code(const std::string& code, StudyRun& run);
 void same_person(bool is, StudyRun& run);
 void submit_answers(const std::vector<std::string>& answers, StudyRun& run);  // of questions and ratings
 void begin_step(StudyRun& run);                                               // see BeginStep
-void wait_for_device(bool left, StudyRun& run);  // instead of a trial; left: the device went during it
-void trial_finished(StudyRun& run);              // the trial is on the disk
+void wait_for_device(bool left, StudyRun& run);                // instead of a trial; left: the device went during it
+void trial_finished(StudyRun& run);                            // the trial is on the disk
+void give_feedback(const study::Score& score, StudyRun& run);  // the same for practice, which tells what was found
 void interval_presented(StudyRun& run);
 void choose_softer(bool first, double now_s, StudyRun& run);
 void submit_typed(const study::TypedAnswers& typed, StudyRun& run);
@@ -107,6 +110,9 @@ std::vector<std::string> due_nodules(const StudyRun& run);               // name
 const std::vector<study::Item>& due_items(const StudyRun& run);          // of the step of questions or ratings
 // False if the item asks for a number and the answer is none or outside its range. An empty answer is one.
 bool is_answer(const study::Item& item, const std::string& answer);
+
+// Returns what the experimenter sees from elsewhere (palpa study watch).
+files::Json now_json(const StudyRun& run);
 
 // Returns, for example, "3 of 8": the number of the due trial, tests and practice together.
 std::string progress_text(const StudyRun& run);

@@ -23,14 +23,20 @@ struct Instructions {};
 struct Trial {           // on the tissue; in a forced choice, one of the two intervals
     bool begun = false;  // false: the loop must begin it
 };
-struct Device {         // a trial is due, and its device is not connected
-    bool here = false;  // it is connected now; set by the loop
-    bool left = false;  // it went during the trial, which begins again
+struct Device {              // a trial is due, and its device is not connected, or is a pen without pressure
+    bool here = false;       // the trial could begin now; set by the loop
+    bool connected = false;  // likewise
+    bool left = false;       // it went during the trial, which begins again
 };
 struct Present {};   // an interval that the experimenter presents
 struct Question {};  // which was softer
 struct Told {        // after practice of a comparison
     bool right = false;
+};
+struct Feedback {  // after a practice trial in which nodules were to be found
+    int found = 0;
+    int nodules = 0;
+    int false_positives = 0;
 };
 struct Typed {};  // the experimenter types in the participant's answers
 struct Ratings {  // after a condition
@@ -47,8 +53,8 @@ struct Stopped {  // the study cannot continue
 }  // namespace step
 
 using StudyStep = std::variant<step::Code, step::Again, step::Consent, step::Questions, step::Instructions, step::Trial,
-                               step::Device, step::Present, step::Question, step::Told, step::Typed, step::Ratings,
-                               step::Pause, step::Leaving, step::Withdrawn, step::Done, step::Stopped>;
+                               step::Device, step::Present, step::Question, step::Told, step::Feedback, step::Typed,
+                               step::Ratings, step::Pause, step::Leaving, step::Withdrawn, step::Done, step::Stopped>;
 const char* name_of(const StudyStep& step);
 
 // What a participant or the experimenter asks for on the screen of a step.
@@ -68,7 +74,7 @@ struct LeaveStudy {
 struct SubmitAnswers {  // answers to the items of this step; "" = not answered
     std::vector<std::string> answers;
 };
-struct BeginStep {};  // from instructions, a pause, what was told after practice, or once the device is connected
+struct BeginStep {};  // from instructions, a pause, feedback after practice, or once the device is connected
 struct IntervalPresented {};
 struct ChooseSofter {
     bool first = true;

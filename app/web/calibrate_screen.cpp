@@ -18,7 +18,7 @@ void draw_calibrate_screen(const Shown& shown, Gui& gui, CalibrateForm&, Wishes&
     }
     ImGui::TextWrapped("%s", words::kCalibratedOnDesk);
     paragraph(words::kHowOnDesk);
-    paragraph(words::filled(words::kProfileNow, {shown.plan.profile.id}));
+    paragraph(words::filled(words::kCurrentProfile, {shown.plan.profile.id}));
     end_panel("calibrate", gui);
 }
 

@@ -107,7 +107,7 @@ const palpaStudies = (() => {
         }
         const nameOf = (path) => path.slice('protocols/'.length, -5);
         const isProtocol = (path) => path.startsWith('protocols/') && path.endsWith('.json');
-        for (const {path, bytes} of kept.values()) if (isProtocol(path)) add(nameOf(path), textOf(bytes), palpaWords.ofDeskKept);
+        for (const {path, bytes} of kept.values()) if (isProtocol(path)) add(nameOf(path), textOf(bytes), palpaWords.ofDeskStored);
         let said = '';
         try {
             for (const path of [...await atDesk()].filter(isProtocol)) add(nameOf(path), textOf(await askFile(path)), palpaWords.ofDesk);

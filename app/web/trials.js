@@ -114,7 +114,7 @@ const palpaTrials = (() => {
             return;
         }
         const gone = names.filter((name) => !trials.has(name));
-        if (gone.length > 0) tell(palpaFilled(palpaWords.gone, gone.length, gone.join(', ')));
+        if (gone.length > 0) tell(palpaFilled(palpaWords.lost, gone.length, gone.join(', ')));
     };
 
     // Two pages would give the same names. The lock goes with the page that holds it.
@@ -139,7 +139,7 @@ const palpaTrials = (() => {
             findMissing();
             noteNames();
         } catch (error) {
-            tell(palpaFilled(palpaWords.cannotKeep, error.message));
+            tell(palpaFilled(palpaWords.cannotStore, error.message));
         }
         askToStay();
         const odd = asked_for('participant');
@@ -209,7 +209,7 @@ const palpaTrials = (() => {
         } catch (error) {
             unsaved.set(name, {trial, files});
             const full = error && error.name === 'QuotaExceededError';
-            tell(palpaFilled(palpaWords.notKept, name, full ? palpaWords.storageFull : error.message));
+            tell(palpaFilled(palpaWords.notStored, name, full ? palpaWords.storageFull : error.message));
         } finally {
             --writing;
         }
@@ -221,7 +221,7 @@ const palpaTrials = (() => {
     const putPart = (name, path, offset, text) => {
         remember('palpa-runs', String(Math.max(Number(recall('palpa-runs')) || 0, runOf(name))));
         request('readwrite', (store) => { store.put({name, path, offset, text}); }, ['parts'], 'relaxed').catch((error) => {
-            if (!partsTold) tell(palpaFilled(palpaWords.partNotKept, error.message));
+            if (!partsTold) tell(palpaFilled(palpaWords.partNotStored, error.message));
             partsTold = true;
         });
     };
@@ -264,7 +264,7 @@ const palpaTrials = (() => {
         }
         const confirmed = answer.ok ? (await answer.json()).sha256 : '';
         if (confirmed !== trial.sha256) {
-            lastWord = answer.ok ? palpaFilled(palpaWords.otherBytes, name) : palpaFilled(palpaWords.answered, answer.status, name);
+            lastWord = answer.ok ? palpaFilled(palpaWords.checksumMismatch, name) : palpaFilled(palpaWords.answered, answer.status, name);
             return kOfOneTrial.includes(answer.status);
         }
         // the desk has it: from here on only its name is kept
@@ -365,8 +365,8 @@ const palpaTrials = (() => {
     const words = (trial) => {
         if (unsaved.has(trial.name) && !trial.exported) return palpaWords.exportIt;
         if (trial.sent) return palpaWords.atDesk;
-        if (!isOver(trial)) return palpaWords.goingOn;
-        return (trial.finished ? palpaWords.waiting : palpaWords.brokenOff) + (trial.exported ? palpaWords.exported : '');
+        if (!isOver(trial)) return palpaWords.inProgress;
+        return (trial.finished ? palpaWords.waiting : palpaWords.interruptedWaiting) + (trial.exported ? palpaWords.exported : '');
     };
 
     const state = () => {
@@ -374,7 +374,7 @@ const palpaTrials = (() => {
         const paired = maySend();
         const lines = [palpaFilled(palpaWords.howMany, waiting, [...trials.values()].filter((t) => t.sent).length)];
         lines.push(recall('palpa-token') !== '' ? palpaWords.isPaired : open_to_all ? palpaWords.openToAll : palpaWords.notPaired);
-        if (!persistent) lines.push(palpaWords.mayRemove);
+        if (!persistent) lines.push(palpaWords.mayDelete);
         if (lastWord) lines.push(lastWord);
         const kept = [...trials.values()].filter((t) => !unsaved.has(t.name));
         return {lines, paired, waiting, trials: [...kept, ...[...unsaved.values()].map(({trial}) => trial)].map((t) => ({...t, words: words(t)}))};
@@ -383,17 +383,17 @@ const palpaTrials = (() => {
     const noteText = () => {
         const {waiting, paired} = state();
         if (inDanger() > 0) return palpaFilled(palpaWords.unsaved, inDanger());
-        return waiting === 0 ? palpaWords.allSafe : palpaFilled(paired ? palpaWords.keptUnsent : palpaWords.kept, waiting);
+        return waiting === 0 ? palpaWords.allSafe : palpaFilled(paired ? palpaWords.storedUnsent : palpaWords.stored, waiting);
     };
 
     return {
         start, put, putPart, restore, tell, send, pair, exportAll, removeExported, state, request, credentials, protocol, setParticipant,
         ready: () => writing === 0 && inDanger() === 0,
         nextProblem: () => problems.shift() || '',
-        note: () => trials.size + unsaved.size > 0 ? noteText() : palpaWords.keptHere,
+        note: () => trials.size + unsaved.size > 0 ? noteText() : palpaWords.storedHere,
         participant, nextRun,
         settings: () => recall('palpa-settings'),
-        keepSettings: (text) => { if (!remember('palpa-settings', text)) tell(palpaWords.settingsNotKept); },
+        keepSettings: (text) => { if (!remember('palpa-settings', text)) tell(palpaWords.settingsNotStored); },
         open: () => openDialog(),
         onChange: (callback) => { changed = callback; },
     };

@@ -152,7 +152,7 @@ void open_session(const RecordArguments& arguments, RecordSession& session) {
     const auto file = points_file(arguments);
     if (std::filesystem::exists(file)) {
         if (!arguments.resume)
-            throw files::bad_input(file.string(), "", "a session", "a new folder, or --resume to go on with it");
+            throw files::bad_input(file.string(), "", "a session", "a new folder, or --resume to continue it");
         session.points = read_session(file);
         for (const CapturedPoint& point : session.points) session.repeat = std::max(session.repeat, point.repeat + 1);
         if (!session.points.empty())

@@ -23,6 +23,8 @@ int key_of(SDL_Keycode code) {
             return key::home;
         case SDLK_END:
             return key::end;
+        case SDLK_F1:
+            return key::f1;
         case SDLK_F10:
             return key::f10;
         case SDLK_F11:

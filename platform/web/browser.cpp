@@ -68,7 +68,7 @@ EM_JS(void, palpa_listen, (), {
 
     // codes of platform/window_event.h
     const named = {Backspace: 8, Tab: 9, Enter: 13, Escape: 27, Delete: 127, ArrowLeft: 256, ArrowRight: 257, ArrowUp: 258,
-                   ArrowDown: 259, PageUp: 260, PageDown: 261, Home: 262, End: 263, F10: 264, F11: 265};
+                   ArrowDown: 259, PageUp: 260, PageDown: 261, Home: 262, End: 263, F10: 264, F11: 265, F1: 279};
     const pad = {NumpadEnter: 266, NumpadAdd: 267, NumpadSubtract: 268};
     const code_of = (event) => {
         if (event.code in pad) return pad[event.code];

@@ -30,7 +30,7 @@ struct Point {
     double x_px, y_px;
 };
 // The middle of controls, as the screenshot of a window of 1280 x 800 px shows them.
-constexpr Point kMirrored{120, 217}, kSilicone{120, 257}, kShallower{26, 147}, kBack{85, 27}, kOnMatrix{560, 400};
+constexpr Point kMirrored{120, 299}, kSilicone{120, 339}, kShallower{26, 229}, kBack{85, 27}, kOnMatrix{560, 400};
 enum Key { kB = 56, kEsc = 9, k1 = 10, k4 = 13, kI = 31, kO = 32, kPageDown = 105 };
 
 class Script {

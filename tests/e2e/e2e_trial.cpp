@@ -37,8 +37,8 @@ Point place(double x_mm, double y_mm, bool above_finger = false) {
 }
 
 // The middle of controls, as the screenshot of this size shows them.
-constexpr Point kMenu{58, 27}, kSecondScene{360, 91}, kMark{120, 335}, kSure4{162, 405}, kSure2{72, 405},
-    kUndo{62, 446}, kFinish{176, 446}, kAgain{64, 33}, kTest{739, 51};
+constexpr Point kMenu{58, 27}, kDelayScene{360, 181}, kMark{120, 335}, kSure4{162, 405}, kSure2{72, 405},
+    kUndo{62, 446}, kFinish{176, 446}, kAgain{64, 33}, kTest{743, 100};
 enum Key {
     kF10 = 76,
     kEnter = 36,
@@ -117,7 +117,7 @@ class Script {
 
 void by_pen(Script& script) {
     script.tap("pen", 0, kMenu);
-    script.tap("pen", 0, kSecondScene);  // "Silicone phantom, delay"
+    script.tap("pen", 0, kDelayScene);
     script.wait(2.5);                    // the scene is read anew
     script.stroke("pen", 0, 35, 35);
     script.lift("pen", 0, 35, 35);
@@ -148,7 +148,7 @@ void by_two_fingers(Script& script) {
 void by_keyboard(Script& script) {
     script.key(kF10);  // the menu: another scene by arrows and Enter
     script.wait(0.3);
-    script.key(kDown);  // from the chosen "delay" to "display ratio"
+    script.key(kUp);  // from the chosen "Silicone phantom, delay" to "Silicone phantom"
     script.key(kEnter);
     script.wait(2.5);  // the scene is read anew
     script.key(kLeft, 25.0 / 30.0);

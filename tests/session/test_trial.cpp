@@ -255,3 +255,42 @@ TEST_CASE("session: a second trial gets its own run and its own trace; a full di
     CHECK(files_good(person.session));
     CHECK(person.session.trial.began == false);
 }
+
+TEST_CASE("trial: the clock starts at the first touch and stands still in a pause") {
+    Trainee person;
+    const auto clock = [&] { return clock_s(person.session.trial, person.session.trial.now_s); };
+    person.sample(Phase::hover, 40.0, 40.0, kMissing);
+    person.t_s += 5.0;
+    person.act(Action::pause);  // before the first touch
+    person.t_s += 5.0;
+    person.act(Action::resume);
+    CHECK(clock() == 0.0);
+    person.stroke(40.0, 40.0, 0.5);
+    const double stroked_s = clock();
+    CHECK(stroked_s == doctest::Approx(0.18));
+    person.t_s += 1.0;
+    person.act(Action::pause);
+    person.t_s += 30.0;
+    person.act(Action::pause);  // it is stopped already
+    CHECK(clock_s(person.session.trial, person.t_s + 100.0) == doctest::Approx(stroked_s + 1.01));
+    person.act(Action::resume);
+    person.act(Action::resume);  // it runs already
+    person.t_s += 2.0;
+    person.act(Action::finish);
+    CHECK(person.session.trial.finished);
+    CHECK(clock() == doctest::Approx(stroked_s + 1.01 + 0.01 + 2.01));
+    CHECK(clock_s(person.session.trial, 1e6) == clock());
+    CHECK(person.session.finished[0]["clock_s"].get<double>() == doctest::Approx(clock()));
+    CHECK(person.session.finished[0]["duration_s"].get<double>() > 40.0);
+}
+
+TEST_CASE("trial: points of the path know when they were pressed") {
+    Trainee person;
+    person.stroke(40.0, 40.0, 0.5);
+    person.t_s += 3.0;
+    person.stroke(60.0, 60.0, 0.5);
+    const std::vector<PathPoint>& path = person.session.trial.path;
+    REQUIRE(path.size() > 10);
+    for (std::size_t i = 1; i < path.size(); ++i) CHECK(path[i].t_s >= path[i - 1].t_s);
+    CHECK(path.back().t_s - path.front().t_s == doctest::Approx(3.3).epsilon(0.05));
+}

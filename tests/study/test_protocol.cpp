@@ -80,6 +80,8 @@ TEST_CASE("protocol: what is wrong is named with its key") {
                        kPen, R"(, "choice": {"reference_kPa": 1, "comparisons_kPa": [2], "reference_on": "pin"})")),
                    "choice.reference_on: found 'pin', expected the id of a condition"));
     CHECK(contains(refusal_of_protocol(with(kPen, R"(, "choice": true)")), "choice: found true"));
+    CHECK(contains(refusal_of_protocol(with(kPen, R"(, "ratings": [{"id": "a", "text": "t", "low": "never"}])")),
+                   "low: found no scale, expected it beside from and to"));
     CHECK(contains(refusal_of_protocol(with(kPen, R"(, "ratings": [{"id": "a", "text": "t", "from": 5, "to": 1}])")),
                    "ratings[0].to: found 1"));
     CHECK(contains(

@@ -110,6 +110,8 @@ test('from the menu to the thanks; a reload in the middle of a trial; the desk\'
     // the desk takes nothing for now, so that the storage keeps the texts
     await page.route('**/api/logs/**', (route) => route.abort());
     await runTrial(browser, 700, 300);             // practice
+    await at(page, 'feedback');
+    await key(page, 'Enter');
     await begin(page);                             // the first of two, interrupted
     await stroke(browser, 800, 500);
     await page.waitForTimeout(1500);
@@ -181,7 +183,7 @@ test('the real desk by https: a wrong code pairs nothing, the right one does; th
         await page.click('#pair-now');
         await page.waitForFunction((text) => document.getElementById('trials-state').textContent.includes(text), said);
     };
-    await pairBy(desk.code === '000000' ? '000001' : '000000', 'does not take this code (401)');
+    await pairBy(desk.code === '000000' ? '000001' : '000000', 'does not accept this code (401)');
     assert.equal(await page.evaluate(() => localStorage.getItem('palpa-token')), null);
     await pairBy(desk.code.slice(0, 3) + desk.code.slice(3), 'Paired with the desk.');
     await open(browser, desk.url, '?protocol=short&participant=1');

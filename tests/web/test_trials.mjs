@@ -124,7 +124,7 @@ test('what the browser has removed is said at the next start', () => withPage({}
     assert.ok((await report(page)).problems.some((text) => text.includes('the browser has removed them')));
 }));
 
-test('a trial that is going on when the page goes out of sight is kept, and counts as broken off', () => withPage({}, async (browser) => {
+test('a trial that is going on when the page goes out of sight is kept, and counts as interrupted', () => withPage({}, async (browser) => {
     const {page} = browser;
     await pen(browser, 'mouseMoved', 800, 400, 0);
     await pen(browser, 'mousePressed', 800, 400, 0.3);

@@ -408,7 +408,7 @@ TEST_CASE("command study simulate: a disk that is full or cannot be written stop
         const int status = std::system(command.c_str());
         CHECK(WEXITSTATUS(status) == 1);
         CHECK(contains(read_text(said / "err"),
-                       "could not be written to its end (is the disk full?); the study stops here"));
+                       "could not be written to its end (is the disk full?); the study has stopped"));
         const std::string events = read_text(log + "/sub-sim0001/beh/sub-sim0001_task-palpation_run-01_events.tsv");
         CHECK_FALSE(contains(events, "finish"));
         CHECK_FALSE(std::filesystem::exists(log + "/sub-sim0001/beh/sub-sim0001_task-palpation_run-02_events.tsv"));

@@ -2,9 +2,12 @@
 
 #include <SDL.h>
 #include <doctest/doctest.h>
+#include <set>
 
+#include "app/screens/history_screen.h"
 #include "scene/advance.h"
 #include "tests/app/live/desk.h"
+#include "tests/temporary_folder.h"
 
 using namespace palpa;
 using namespace palpa::platform;
@@ -133,4 +136,99 @@ TEST_CASE("live: a scene that cannot be read leaves the present one") {
     CHECK(desk.app.session.scene.name == name);
     CHECK(desk.app.notices.problems.size() == 1);
     check_whole(desk.app.session);
+}
+
+TEST_CASE("live: while the clock is stopped nothing is marked or finished, and then the trial goes on") {
+    Desk desk("");
+    const auto& trial = desk.app.session.trial;
+    desk.sample(Phase::down);
+    desk.sample(Phase::move);
+    act(Action::pause, desk.window, desk.app);
+    CHECK(trial.paused_at_s.has_value());
+    CHECK_FALSE(desk.app.session.state.pointer.has_value());  // a press does not outlive the pause
+    act(Action::mark, desk.window, desk.app);
+    act(Action::finish, desk.window, desk.app);
+    CHECK(trial.marks.empty());
+    CHECK_FALSE(trial.finished);
+    desk.show_frame();
+    act(Action::resume, desk.window, desk.app);
+    CHECK_FALSE(trial.paused_at_s.has_value());
+    act(Action::mark, desk.window, desk.app);
+    CHECK(trial.marks.size() == 1);
+    act(Action::finish, desk.window, desk.app);
+    CHECK(trial.finished);
+}
+
+TEST_CASE("live: results are kept unless the person does not want it, none of the guided start, and are deleted") {
+    const TemporaryFolder folder;
+    Desk desk("");
+    desk.keeper.busy = false;
+    desk.app.history_folder = folder / "history";
+    const auto kept = [&] {
+        std::vector<std::string> problems;
+        const std::size_t count = read_history(desk.app.history_folder, problems).size();
+        CHECK(problems.empty());
+        return count;
+    };
+    act(Action::finish, desk.window, desk.app);
+    CHECK(kept() == 1);
+    begin_anew(desk.window, desk.gui, desk.app);
+    desk.app.settings.keep_results = false;
+    act(Action::finish, desk.window, desk.app);
+    CHECK(kept() == 1);
+    desk.app.settings.keep_results = true;
+
+    desk.app.settings.test_mode = true;
+    begin_guided(desk.window, desk.gui, desk.app);
+    REQUIRE(is_guided(desk.app.doing));
+    CHECK(desk.app.session.trial.mode == TrialMode::practice);
+    desk.show_frame();
+    act(Action::finish, desk.window, desk.app);
+    CHECK(kept() == 1);
+    REQUIRE(std::holds_alternative<Reviewing>(desk.app.doing));
+    CHECK(is_guided(desk.app.doing));
+    desk.show_frame();
+    leave_guided(desk.window, desk.gui, desk.app);
+    CHECK(std::holds_alternative<Palpating>(desk.app.doing));
+    CHECK_FALSE(is_guided(desk.app.doing));
+    CHECK(desk.app.settings.guided_done);
+
+    open_screen(Screen::history, desk.window, desk.app);
+    REQUIRE(std::holds_alternative<BrowsingHistory>(desk.app.doing));
+    CHECK(desk.app.view.history->trials.size() == 1);
+    desk.show_frame();
+    Wishes wishes;
+    wishes.delete_results = true;
+    carry_out(wishes, desk.window, desk.gui, desk.app);
+    CHECK(kept() == 0);
+    CHECK(desk.app.view.history->trials.empty());
+    desk.show_frame();
+}
+
+TEST_CASE("live: the guided start that is skipped leaves its trial as it is") {
+    Desk desk("");
+    desk.keeper.busy = false;
+    begin_guided(desk.window, desk.gui, desk.app);
+    desk.sample(Phase::down);
+    desk.sample(Phase::move);
+    act(Action::mark, desk.window, desk.app);
+    leave_guided(desk.window, desk.gui, desk.app);
+    CHECK(desk.app.session.trial.marks.size() == 1);
+    CHECK(std::holds_alternative<Palpating>(desk.app.doing));
+    CHECK_FALSE(is_guided(desk.app.doing));
+}
+
+TEST_CASE("live: a scene with a random turn is drawn in all eight, another one stays as it is") {
+    Scene scene = load_scene(PALPA_SOURCE_DIR "/assets/scenes/random-turn.json");
+    REQUIRE(scene.mapping.random_turn);
+    std::set<int> turns;
+    for (int i = 0; i < 400; ++i) {
+        draw_turn(scene);
+        turns.insert(scene.mapping.rotate_deg + (scene.mapping.flip ? 1 : 0));
+    }
+    CHECK(turns.size() == 8);
+    Scene plain = load_scene("");
+    draw_turn(plain);
+    CHECK(plain.mapping.rotate_deg == 0);
+    CHECK_FALSE(plain.mapping.flip);
 }

@@ -49,7 +49,7 @@ TEST_CASE("calibrate screen: Enter takes the number that the scale shows, and th
     frames(desk, 8);
     REQUIRE(form.recording->session.points.size() == 1);
     CHECK(form.recording->session.points[0].force_N == doctest::Approx(5.0 * calibration::kN_per_gf));
-    CHECK(form.guide.note == "Taken.");
+    CHECK(form.guide.note == "Recorded.");
     tap(desk.window, SDLK_RETURN);  // twice
     frames(desk, 8);
     CHECK(form.recording->session.points.size() == 1);

@@ -8,6 +8,7 @@
 
 #include "app/scene_choices.h"
 #include "app/screens/frame.h"
+#include "app/screens/history_screen.h"
 #include "app/screens/map_screen.h"
 #include "app/study/study_run.h"
 #include "scene/advance.h"
@@ -164,6 +165,19 @@ TEST_CASE("screens: every screen fits and is drawn at the sizes of desks and tab
     Screens asked{trial.notices};
     asked.asked.emplace().again = true;
     Screens menu{trial.notices, Palpating{true}};
+    Screens menu_settings{trial.notices, Palpating{true}};
+    menu_settings.view.menu_page = MenuPage::settings;
+    Screens menu_experimenter{trial.notices, Palpating{true}};
+    menu_experimenter.view.menu_page = MenuPage::experimenter;
+    Screens help{trial.notices};
+    help.view.help = true;
+    Screens guided{trial.notices, Palpating{false, true}};
+    Session stopped;
+    stopped.scene = session.scene;
+    stopped.plan = session.plan;
+    begin_trial({}, whole.info, TrialMode::practice, stopped);
+    for (std::size_t i = 0; i < 400; ++i) take_sample(whole.samples[i], stopped);
+    stopped.trial.paused_at_s = stopped.trial.now_s;
     Screens cost{trial.notices};
     cost.view.cost = true;
     Screens scale{trial.notices, MeasuringScreen{}};
@@ -181,6 +195,19 @@ TEST_CASE("screens: every screen fits and is drawn at the sizes of desks and tab
     REQUIRE(done.trial.finished);
     Screens reveal{trial.notices, Reviewing{debrief(*done.plan, done.trial)}};
     reveal.notices.problems.clear();
+
+    Screens guided_result{trial.notices, Reviewing{debrief(*done.plan, done.trial), false, true}};
+    Screens history{trial.notices, BrowsingHistory{}};
+    history.view.history = std::make_shared<HistoryView>();
+    for (int i = 0; i < 12; ++i) {
+        KeptTrial kept = kept_trial(done, "2026-11-" + std::to_string(10 + i) + "T09:30:00Z");
+        kept.found = std::min(3, i / 3);
+        kept.mode = i % 4 == 0 ? TrialMode::practice : TrialMode::test;
+        history.view.history->trials.push_back(kept);
+    }
+    choose_trial(11, *history.view.history);
+    history.view.history->shown_s = 20.0;
+    history.view.history->plays = false;
 
     Screens maps{trial.notices, BrowsingMaps{}};
     maps.view.maps = make_map_browser(session.scene, map_choices());
@@ -203,6 +230,13 @@ TEST_CASE("screens: every screen fits and is drawn at the sizes of desks and tab
         if (c.width_px < 600) continue;  // panels need some room
         check_case(session, asked, c, "asked", folder);
         check_case(session, menu, c, "menu", folder);
+        check_case(session, menu_settings, c, "menu-settings", folder);
+        check_case(session, menu_experimenter, c, "menu-experimenter", folder);
+        check_case(session, help, c, "help", folder);
+        check_case(session, guided, c, "guided", folder);
+        check_case(stopped, trial, c, "paused", folder);
+        check_case(session, history, c, "history", folder);
+        check_case(done, guided_result, c, "guided-result", folder);
         check_case(session, cost, c, "cost", folder);
         check_case(session, scale, c, "scale", folder);
         check_case(session, devices, c, "devices", folder);
@@ -228,15 +262,28 @@ TEST_CASE("screens: every step of a study fits, and none tells where the nodules
     run->code = "07";
     run->progress = progress_of(run->directory, run->protocol, run->code);
     run->progress.next = run->progress.plan.trials.front();
-    const step::Stopped stopped{"log: found 12 MB free, expected 64 MB for a trial; the study stops here"};
+    const step::Stopped stopped{"log: found 12 MB free, expected 64 MB for a trial; the study has stopped"};
     run->protocol.consent =
         "You are asked to feel surfaces on a screen for about half an hour. Your answers are kept under a "
         "code and not under your name. You may stop at any time and need not say why.";
-    const StudyStep steps[] = {
-        step::Code{},      step::Again{},   step::Consent{}, step::Questions{}, step::Instructions{},
-        step::Trial{true}, step::Device{},  step::Present{}, step::Question{},  step::Told{false},
-        step::Typed{},     step::Ratings{}, step::Pause{},   step::Leaving{},   step::Withdrawn{},
-        step::Done{},      stopped};
+    const StudyStep steps[] = {step::Code{},
+                               step::Again{},
+                               step::Consent{},
+                               step::Questions{},
+                               step::Instructions{},
+                               step::Trial{true},
+                               step::Device{},
+                               step::Present{},
+                               step::Question{},
+                               step::Told{false},
+                               step::Feedback{2, 3, 1},
+                               step::Typed{},
+                               step::Ratings{},
+                               step::Pause{},
+                               step::Leaving{},
+                               step::Withdrawn{},
+                               step::Done{},
+                               stopped};
     static_assert(std::size(steps) == std::variant_size_v<StudyStep>);
     const Case cases[] = {{1280, 800, kMissing, false},
                           {800, 1280, kMissing, false},

@@ -17,6 +17,9 @@ TEST_CASE("settings: what is saved is read back") {
     s.scene = "/somewhere/scene.json";
     s.left_handed = true;
     s.test_mode = true;
+    s.keep_results = false;
+    s.guided_done = true;
+    s.text_percent = 120;
     s.width_px = 1920;
     s.px_per_mm["eDP-1, 2560 x 1600"] = 11.8125;
     REQUIRE(save_settings(s, file).empty());
@@ -27,6 +30,9 @@ TEST_CASE("settings: what is saved is read back") {
     CHECK(again.left_handed);
     CHECK(again.test_mode);
     CHECK_FALSE(again.full_screen);
+    CHECK_FALSE(again.keep_results);
+    CHECK(again.guided_done);
+    CHECK(again.text_percent == 120);
     CHECK(again.width_px == 1920);
     CHECK(again.px_per_mm == s.px_per_mm);
 }

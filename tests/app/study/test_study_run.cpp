@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "app/study/study_run.h"
+#include "files/folder_lock.h"
 #include "files/input_error.h"
 #include "files/text.h"
 #include "scene/advance.h"
@@ -84,7 +85,7 @@ TEST_CASE("study run: from the code to the thanks, everything in the log") {
     CHECK(free_code(run) == "01");
     enter_code("P 7", run);
     CHECK(at<step::Code>(run));
-    CHECK(run.note == "Up to 20 letters and digits.");
+    CHECK(run.note == "Enter up to 20 letters and digits.");
     enter_code("P7", run);
     answer_questions(run);
     REQUIRE(run.progress.plan.trials.size() == 4);  // practice and test under each condition
@@ -122,8 +123,53 @@ TEST_CASE("study run: from the code to the thanks, everything in the log") {
     CHECK(contains(message_of([&] { open_study_run(find_protocol(folder), log, "P7"); }),
                    "found 'P7', who has finished all trials"));
     enter_code("P7", run);
-    CHECK(contains(run.note, "take a new code"));
+    CHECK(contains(run.note, "enter a new code"));
     CHECK(free_code(run) == "02");
+}
+
+TEST_CASE("study run: practice tells what was found, a rating names what is rated, and the thanks let go of the code") {
+    const TemporaryFolder folder;
+    const auto log = folder / "log";
+    StudyRun run = open_study_run(find_protocol(folder), log, "P8");
+    const auto now = [&] { return read_json(log / "sub-P8/now.json"); };
+    answer_questions(run);
+    begin_step(run);
+    REQUIRE(due_trial(run).practice);
+    Score score;
+    score.true_positives = 2;
+    score.false_negatives = 1;
+    score.false_positives = 4;
+    std::get<step::Trial>(run.step).begun = true;
+    give_feedback(score, run);
+    REQUIRE(at<step::Feedback>(run));
+    CHECK(std::get<step::Feedback>(run.step).found == 2);
+    CHECK(std::get<step::Feedback>(run.step).nodules == 3);
+    CHECK(std::get<step::Feedback>(run.step).false_positives == 4);
+    CHECK(now()["step"] == "feedback");
+    begin_step(run);
+    REQUIRE(at<step::Instructions>(run));
+    CHECK_FALSE(due_trial(run).practice);
+    begin_step(run);
+    run_trial(run);
+    REQUIRE(at<step::Ratings>(run));
+    CHECK(now()["rated"] == "pen");
+    CHECK_FALSE(now().contains("condition"));  // that of the next trial
+    rate(run, "6");
+    for (int i = 0; !at<step::Done>(run) && i < 10; ++i) {
+        CHECK(is_folder_locked(log / "sub-P8"));
+        if (at<step::Typed>(run)) {
+            TypedAnswers typed;
+            typed.nodules = {4, kMissed};
+            typed.duration_s = 12.0;
+            submit_typed(typed, run);
+        } else if (at<step::Ratings>(run)) {
+            rate(run, "6");
+        } else {
+            begin_step(run);
+        }
+    }
+    REQUIRE(at<step::Done>(run));
+    CHECK_FALSE(is_folder_locked(log / "sub-P8"));
 }
 
 TEST_CASE("study run: what a keeper has to take is told, and run numbers that are taken elsewhere stay free") {
@@ -221,7 +267,7 @@ TEST_CASE("study run: a code is at one screen at a time, until that screen is cl
         CHECK(free_code(here) == "02");  // who answers the questions there is nobody else here
         enter_code("01", here);
         REQUIRE(at<step::Code>(here));
-        CHECK(here.note == "01 is at another screen now; close the study there, or take another code.");
+        CHECK(here.note == "01 is in use at another screen; close the study there, or enter another code.");
         answer_questions(there);
         enter_code("01", here);
         CHECK(at<step::Code>(here));
@@ -523,6 +569,7 @@ TEST_CASE("study run: who stops is asked about the data, and is left out where t
     CHECK(seen.notes[0] == "sub-01: withdrew from the study; the data may be used");
     CHECK(contains(seen.notes[1], "sub-02: withdrew from the study; the data are left out"));
     enter_code("02", run);
-    CHECK(contains(run.note, "02 has left the study"));
-    CHECK(contains(message_of([&] { open_study_run(find_protocol(folder), log, "02"); }), "who has left the study"));
+    CHECK(contains(run.note, "02 has withdrawn from the study"));
+    CHECK(contains(message_of([&] { open_study_run(find_protocol(folder), log, "02"); }),
+                   "who has withdrawn from the study"));
 }

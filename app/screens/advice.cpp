@@ -1,0 +1,82 @@
+// One sentence after a trial: what to do better.
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "app/screens/screens.h"
+#include "app/screens/words.h"
+
+namespace palpa::app {
+namespace {
+
+constexpr int kRegionCount = 9;  // thirds of the tissue as it lies on the screen, row by row from the upper left
+
+int region_of(const scene::View& view, const Eigen::Vector2d& p_m) {
+    const Eigen::Vector2d off_px = scene::px_of_tissue(view, p_m) - view.centre_px;
+    const Eigen::Vector2d size_px = view.px_per_m * (view.axes * view.area.size_m).cwiseAbs();
+    const auto third = [](double off, double size) {
+        return std::clamp(static_cast<int>(std::floor(3.0 * (off / size + 0.5))), 0, 2);
+    };
+    return 3 * third(off_px.y(), size_px.y()) + third(off_px.x(), size_px.x());
+}
+
+const char* name_of_region(int region) {
+    constexpr std::array<const char*, kRegionCount> kNames{words::kUpperLeft,  words::kUpperMiddle, words::kUpperRight,
+                                                           words::kMiddleLeft, words::kMiddle,      words::kMiddleRight,
+                                                           words::kLowerLeft,  words::kLowerMiddle, words::kLowerRight};
+    return kNames[static_cast<std::size_t>(region)];
+}
+
+// Returns the share of each region that was pressed.
+std::array<double, kRegionCount> examined(const study::Coverage& c, const scene::View& view) {
+    std::array<double, kRegionCount> cells{};
+    std::array<double, kRegionCount> pressed{};
+    for (int j = 0; j < c.n_y; ++j) {
+        for (int i = 0; i < c.n_x; ++i) {
+            const Eigen::Vector2d p_m(c.x_m + (i + 0.5) * c.cell_m, c.y_m + (j + 0.5) * c.cell_m);
+            const auto region = static_cast<std::size_t>(region_of(view, p_m));
+            cells[region] += 1.0;
+            if (c.depth_m[static_cast<std::size_t>(j * c.n_x + i)] > 0.0f) pressed[region] += 1.0;
+        }
+    }
+    for (std::size_t i = 0; i < pressed.size(); ++i) pressed[i] /= std::max(1.0, cells[i]);
+    return pressed;
+}
+
+// The reason that comes first also helps most: tissue that was never touched, then too little force, then judgement.
+const session::Finding kReasons[] = {session::Finding::not_touched, session::Finding::too_light,
+                                     session::Finding::not_marked};
+
+std::string advice_on_missed(const stiffnessmaps::Nodule& nodule, session::Finding finding,
+                             const std::array<double, kRegionCount>& shares, const scene::View& view) {
+    if (finding == session::Finding::too_light) return words::filled(words::kAdviceTooLight, {nodule.id});
+    if (finding == session::Finding::not_marked) return words::filled(words::kAdviceNotMarked, {nodule.id});
+    constexpr double kHardly = 0.25;
+    const int region = region_of(view, {nodule.x_m, nodule.y_m});
+    const bool hardly = shares[static_cast<std::size_t>(region)] < kHardly;
+    return words::filled(hardly ? words::kAdviceNotTouched : words::kAdvicePassed, {nodule.id, name_of_region(region)});
+}
+
+}  // namespace
+
+std::string advice_for(const scene::Plan& plan, const session::Trial& trial, const session::Debrief& debrief,
+                       const scene::View& view) {
+    const std::array<double, kRegionCount> shares = examined(trial.coverage, view);
+    for (const session::Finding reason : kReasons) {
+        for (std::size_t i = 0; i < plan.nodules.size(); ++i) {
+            if (debrief.findings[i] == reason) return advice_on_missed(plan.nodules[i], reason, shares, view);
+        }
+    }
+    const int wrong = debrief.score.false_positives;
+    if (wrong > 0)
+        return words::filled(words::kAdviceFalse, {std::to_string(wrong), std::to_string(trial.marks.size())});
+    if (plan.nodules.empty()) return words::kAdviceNoNodules;
+    constexpr double kUnexamined = 0.1;
+    const auto least = std::min_element(shares.begin(), shares.end());
+    if (*least < kUnexamined)
+        return words::filled(words::kAdviceUnexamined, {name_of_region(static_cast<int>(least - shares.begin()))});
+    return words::kAdviceGood;
+}
+
+}  // namespace palpa::app

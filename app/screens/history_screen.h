@@ -1,0 +1,35 @@
+#pragma once
+// The screen of the results that were kept: a list, a learning curve, and the path of each trial replayed.
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "app/screens/screens.h"
+#include "session/history.h"
+
+namespace palpa::app {
+
+struct HistoryView {
+    std::filesystem::path folder;            // empty: this run keeps no results
+    std::vector<session::KeptTrial> trials;  // oldest first
+    std::vector<std::string> problems;       // files that could not be read
+    std::size_t chosen = 0;                  // index in `trials`
+    double shown_s = 0.0;                    // of the chosen trial's path, since the trial began
+    bool plays = false;
+    bool asks = false;  // whether everything is to be deleted
+};
+
+// Reads the folder; the newest trial is chosen, and its path is replayed.
+std::shared_ptr<HistoryView> make_history_view(const std::filesystem::path& folder);
+
+// Chooses a trial and replays its path.
+void choose_trial(std::size_t index, HistoryView& history);
+
+// Moves the replay on by the time between frames; the whole path takes at most some seconds.
+void play_on(double dt_s, HistoryView& history);
+
+void draw_history_screen(const Shown& shown, Gui& gui, HistoryView& history, Wishes& wishes);
+
+}  // namespace palpa::app

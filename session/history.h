@@ -1,0 +1,77 @@
+#pragma once
+// The results of a person's own trials, kept without being asked: one small file for each finished trial. A file is
+// never overwritten, and is on the disk before the function that writes it returns.
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "session/session.h"
+
+namespace palpa::session {
+
+struct KeptNodule {
+    std::string id;
+    double x_mm = 0.0;
+    double y_mm = 0.0;
+    double diameter_mm = 0.0;
+    Finding finding = Finding::not_touched;
+};
+
+struct KeptMark {
+    double x_mm = 0.0;
+    double y_mm = 0.0;
+    int confidence = 0;  // 0: the person did not say
+    double time_s = 0.0;
+    bool hit = false;
+};
+
+struct KeptPoint {
+    double time_s = 0.0;  // since the trial began
+    double x_mm = 0.0;
+    double y_mm = 0.0;
+    double depth_mm = 0.0;
+    bool begins = false;  // the first point of a press
+};
+
+// A finished trial. Places are in the tissue's own frame; `rotate_deg` and `flip` say how it lay on the screen.
+struct KeptTrial {
+    std::string utc;  // when it was finished, such as 2026-11-21T09:30:00Z
+    std::string scene;
+    TrialMode mode = TrialMode::practice;
+    int rotate_deg = 0;
+    bool flip = false;
+    double x_mm = 0.0;  // centre of the tissue
+    double y_mm = 0.0;
+    double width_mm = 0.0;
+    double height_mm = 0.0;
+    double known_depth_mm = 0.0;
+    double clock_s = 0.0;
+    int found = 0;
+    int false_positives = 0;
+    double coverage[3] = {0.0, 0.0, 0.0};  // share pressed light, medium, deep, or deeper
+    double max_force_N = 0.0;
+    std::vector<KeptNodule> nodules;
+    std::vector<KeptMark> marks;
+    std::vector<KeptPoint> path;  // at most kKeptPoints
+};
+inline constexpr std::size_t kKeptPoints = 3000;
+
+// Returns the session's finished trial.
+KeptTrial kept_trial(const Session& session, const std::string& utc);
+
+// Writes a new file into the folder, which is made if need be. Returns the file. Throws std::runtime_error.
+std::filesystem::path keep_trial(const KeptTrial& trial, const std::filesystem::path& folder);
+
+// Throws InputError that names file, key, what was found and what was expected.
+KeptTrial read_kept_trial(const std::filesystem::path& file);
+
+// Reads all trials of the folder, oldest first; of no folder, none. A file that cannot be read is left out, and
+// `problems` says why.
+std::vector<KeptTrial> read_history(const std::filesystem::path& folder, std::vector<std::string>& problems);
+
+// Deletes the files of kept trials, and nothing else that is in the folder. Throws std::runtime_error.
+void delete_history(const std::filesystem::path& folder);
+
+}  // namespace palpa::session

@@ -1,0 +1,204 @@
+// Text can be read: its contrast to what it stands on, measured in pictures of the screens. Off screen.
+
+#include <algorithm>
+#include <cmath>
+#include <doctest/doctest.h>
+#include <imgui.h>
+#include <optional>
+#include <set>
+
+#include "app/scene_choices.h"
+#include "app/screens/frame.h"
+#include "app/screens/widgets.h"
+#include "render/gl.h"
+#include "tests/off_screen.h"
+
+using namespace palpa;
+using namespace palpa::platform;
+using namespace palpa::scene;
+using namespace palpa::render;
+using namespace palpa::session;
+using namespace palpa::app;
+using namespace palpa::test;
+
+namespace {
+
+constexpr int kWidth = 1280;
+constexpr int kHeight = 800;
+constexpr double kLeastContrast = 4.5;  // WCAG 2.2, 1.4.3
+
+double linear(double value) { return value <= 0.04045 ? value / 12.92 : std::pow((value + 0.055) / 1.055, 2.4); }
+
+// Relative luminance of a colour of 8 bits a channel.
+double luminance(int r, int g, int b) {
+    return 0.2126 * linear(r / 255.0) + 0.7152 * linear(g / 255.0) + 0.0722 * linear(b / 255.0);
+}
+
+double contrast(double a, double b) { return (std::max(a, b) + 0.05) / (std::min(a, b) + 0.05); }
+
+double luminance(ImU32 c) {
+    return luminance(static_cast<int>(c & 0xFF), static_cast<int>((c >> 8) & 0xFF), static_cast<int>((c >> 16) & 0xFF));
+}
+
+struct Letter {
+    ImVec2 low, high;
+    ImU32 colour;
+};
+
+// The letters of the frame that was built last, from what Dear ImGui draws. Text of controls that do nothing now is
+// translucent and left out, as is the dark rim of text on tissue.
+std::vector<Letter> letters() {
+    std::set<std::pair<float, float>> corners;
+    for (const ImFontGlyph& glyph : ImGui::GetFont()->Glyphs) corners.insert({glyph.U0, glyph.V0});
+    std::vector<Letter> out;
+    const ImDrawData& data = *ImGui::GetDrawData();
+    for (int i = 0; i < data.CmdListsCount; ++i) {
+        const ImDrawList& list = *data.CmdLists[i];
+        for (const ImDrawCmd& command : list.CmdBuffer) {
+            for (unsigned k = 0; k + 5 < command.ElemCount; k += 3) {
+                const ImDrawIdx* at = &list.IdxBuffer[static_cast<int>(command.IdxOffset + k)];
+                const ImDrawVert& a = list.VtxBuffer[static_cast<int>(command.VtxOffset) + at[0]];
+                const ImDrawVert& c = list.VtxBuffer[static_cast<int>(command.VtxOffset) + at[2]];
+                const bool glyph = corners.count({a.uv.x, a.uv.y}) > 0 && c.uv.x > a.uv.x && c.uv.y > a.uv.y;
+                const bool clipped = a.pos.x < command.ClipRect.x || c.pos.x > command.ClipRect.z ||
+                                     a.pos.y < command.ClipRect.y || c.pos.y > command.ClipRect.w;
+                if (glyph && !clipped && (a.col >> 24) == 255 && a.col != kDark) out.push_back({a.pos, c.pos, a.col});
+            }
+        }
+    }
+    return out;
+}
+
+// The share of the pixels around a letter to which it has enough contrast. A letter covers less than half of its own
+// rectangle; on tissue a dark rim takes the place of a background.
+double readable_share(const Letter& letter, const std::vector<unsigned char>& rgb) {
+    int all = 0;
+    int good = 0;
+    const double text = luminance(letter.colour);
+    for (int y = static_cast<int>(letter.low.y) - 1; y <= static_cast<int>(letter.high.y); ++y) {
+        for (int x = static_cast<int>(letter.low.x) - 1; x <= static_cast<int>(letter.high.x); ++x) {
+            if (x < 0 || y < 0 || x >= kWidth || y >= kHeight) continue;
+            const unsigned char* p = &rgb[3 * static_cast<std::size_t>(y * kWidth + x)];
+            ++all;
+            good += contrast(text, luminance(p[0], p[1], p[2])) >= kLeastContrast;
+        }
+    }
+    return all == 0 ? 1.0 : static_cast<double>(good) / all;
+}
+
+struct Pictures {
+    WindowOptions options() {
+        WindowOptions out = off_screen();
+        out.width_px = kWidth;
+        out.height_px = kHeight;
+        return out;
+    }
+    Window window{options()};
+    Gui gui{window};
+    std::optional<TissueDrawer> tissue;
+    Session session;
+    Settings settings;
+    Notices notices;
+    Doing doing;
+    std::optional<Wishes> asked;
+    ViewState view;
+
+    Pictures() {
+        tissue.emplace();
+        Scene scene = load_scene("");
+        auto plan = std::make_shared<const Plan>(make_plan(scene));
+        change_tissue(std::move(scene), std::move(plan), {}, session);
+        notices.scenes = scene_choices();
+        notices.profiles = profile_choices();
+        notices.problems = {"scene.json: tissue.map: found nothing, expected a map folder"};
+        notices.note = "Saved a picture";
+        begin();
+    }
+
+    void begin() {
+        begin_trial({}, {kWidth, kHeight, kMissing, kMissing, "test"}, TrialMode::practice, session);
+        take_sample(resize_sample(window, gui, settings, 1.0), session);
+    }
+
+    void act(Action action, double x_m, double y_m) {
+        Sample sample;
+        sample.t_host_s = 2.0;
+        sample.phase = Phase::ui;
+        sample.action = action;
+        const Eigen::Vector2d px = px_of_tissue(session.state.view, {x_m, y_m});
+        sample.x_px = px.x();
+        sample.y_px = px.y();
+        take_sample(sample, session);
+    }
+
+    void check(const char* name) {
+        CAPTURE(name);
+        view.on_screen = {};
+        for (int i = 0; i < 3; ++i) {
+            view.on_screen.content = 0;
+            draw_frame({session.scene, *session.plan, session.trial, settings, notices, doing, asked, 2.0},
+                       {gui, *tissue}, view, session.state);
+        }
+        const std::vector<Letter> text = letters();
+        CHECK(text.size() > 40);
+        const std::vector<unsigned char> rgb = read_pixels(kWidth, kHeight);
+        constexpr double kLeastShare = 0.2;
+        int bad = 0;
+        double worst = 1.0;
+        ImVec2 where(0.0f, 0.0f);
+        for (const Letter& letter : text) {
+            const double share = readable_share(letter, rgb);
+            if (share < worst) where = letter.low;
+            worst = std::min(worst, share);
+            bad += share < kLeastShare;
+        }
+        CAPTURE(worst);
+        CAPTURE(where.x);
+        CAPTURE(where.y);
+        CHECK(bad == 0);
+    }
+};
+
+}  // namespace
+
+TEST_CASE("contrast: all text of every screen has 4.5 : 1 to what it stands on") {
+    Pictures p;
+    p.act(Action::mark, 0.035, 0.035);
+    p.act(Action::confidence_4, 0.0, 0.0);
+    p.check("trial");
+    for (const MenuPage page : {MenuPage::trial, MenuPage::settings, MenuPage::experimenter}) {
+        p.view.menu_page = page;
+        p.doing = Palpating{true};
+        p.check("menu");
+    }
+    p.doing = Palpating{false, true};
+    p.check("guided start");
+    p.doing = Palpating{};
+    p.view.help = true;
+    p.check("help");
+    p.view.help = false;
+    p.view.cost = true;
+    p.check("performance");
+    p.view.cost = false;
+    p.asked.emplace().again = true;
+    p.check("question");
+    p.asked.reset();
+    p.doing = MeasuringScreen{};
+    p.check("screen scale");
+    p.doing = CheckingDevices{std::make_shared<DeviceCheck>(), {}};
+    p.check("device check");
+    p.doing = Palpating{};
+    p.act(Action::pause, 0.0, 0.0);
+    p.check("paused");
+    p.act(Action::resume, 0.0, 0.0);
+    p.act(Action::finish, 0.0, 0.0);
+    p.doing = Reviewing{debrief(*p.session.plan, p.session.trial)};
+    p.check("result");
+}
+
+TEST_CASE("contrast: the levels of the coverage differ by 3 : 1, each from the next") {
+    CHECK(contrast(luminance(kAreaTints[0]), luminance(kAreaTints[1])) >= 3.0);
+    CHECK(contrast(luminance(kAreaTints[1]), luminance(kAreaTints[2])) >= 3.0);
+    // what was never touched is told apart by a rim, and by hatching
+    CHECK(contrast(luminance(kAreaTints[0]), luminance(kInk)) >= 3.0);
+}

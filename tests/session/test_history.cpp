@@ -1,0 +1,106 @@
+// Results of trials that are kept: written, read back, never overwritten, deleted.
+
+#include <doctest/doctest.h>
+#include <filesystem>
+
+#include "app/scene_choices.h"
+#include "files/text.h"
+#include "session/history.h"
+#include "session/replay.h"
+#include "tests/error_message.h"
+#include "tests/temporary_folder.h"
+
+using namespace palpa;
+using namespace palpa::platform;
+using namespace palpa::files;
+using namespace palpa::scene;
+using namespace palpa::session;
+using namespace palpa::app;
+using namespace palpa::test;
+
+namespace {
+
+// The shipped trace, with a hit, a false positive and a finish.
+KeptTrial finished() {
+    Session session;
+    session.scene = load_scene("");
+    session.scene.mapping.rotate_deg = 90;
+    session.plan = std::make_shared<const Plan>(make_plan(session.scene));
+    const Trace trace = read_trace(default_trace());
+    begin_trial({}, trace.info, TrialMode::test, session);
+    for (const Sample& sample : trace.samples) take_sample(sample, session);
+    const auto act = [&](Action action, double x_m, double y_m) {
+        Sample sample;
+        sample.t_host_s = session.trial.now_s + 0.1;
+        sample.phase = Phase::ui;
+        sample.action = action;
+        const Eigen::Vector2d px = px_of_tissue(session.state.view, {x_m, y_m});
+        sample.x_px = px.x();
+        sample.y_px = px.y();
+        take_sample(sample, session);
+    };
+    act(Action::mark, session.plan->nodules[0].x_m, session.plan->nodules[0].y_m);
+    act(Action::confidence_4, 0.0, 0.0);
+    act(Action::mark, 0.1, 0.1);
+    act(Action::finish, 0.0, 0.0);
+    REQUIRE(session.trial.finished);
+    return kept_trial(session, "2026-11-21T09:30:00Z");
+}
+
+}  // namespace
+
+TEST_CASE("history: what is kept of a trial is what is read back") {
+    const TemporaryFolder folder;
+    const KeptTrial trial = finished();
+    CHECK(trial.found == 1);
+    CHECK(trial.false_positives == 1);
+    CHECK(trial.clock_s > 10.0);
+    REQUIRE(trial.path.size() > 100);
+    CHECK(trial.path.size() <= kKeptPoints);
+    CHECK(trial.path.front().begins);
+    const KeptTrial back = read_kept_trial(keep_trial(trial, folder / "history"));
+    CHECK(back.utc == trial.utc);
+    CHECK(back.scene == trial.scene);
+    CHECK(back.mode == TrialMode::test);
+    CHECK(back.rotate_deg == 90);
+    CHECK(back.clock_s == doctest::Approx(trial.clock_s).epsilon(1e-3));
+    REQUIRE(back.nodules.size() == trial.nodules.size());
+    CHECK(back.nodules[0].finding == Finding::found);
+    REQUIRE(back.marks.size() == 2);
+    CHECK(back.marks[0].hit);
+    CHECK(back.marks[0].confidence == 4);
+    CHECK_FALSE(back.marks[1].hit);
+    REQUIRE(back.path.size() == trial.path.size());
+    double previous_s = 0.0;
+    for (std::size_t i = 0; i < back.path.size(); ++i) {
+        CHECK(back.path[i].time_s >= previous_s);
+        CHECK(back.path[i].x_mm == doctest::Approx(trial.path[i].x_mm).epsilon(1e-3));
+        previous_s = back.path[i].time_s;
+    }
+}
+
+TEST_CASE("history: trials of one second do not overwrite each other, and only trials are deleted") {
+    const TemporaryFolder folder;
+    KeptTrial trial = finished();
+    keep_trial(trial, folder.path());
+    trial.found = 2;
+    keep_trial(trial, folder.path());
+    trial.utc = "2025-01-01T00:00:00Z";
+    keep_trial(trial, folder.path());
+    write_text_whole(folder / "notes.txt", "mine");
+    write_text_whole(folder / "broken.trial.json", R"({"palpa_trial": 1, "utc": "x", "scene": 3})");
+    std::vector<std::string> problems;
+    const std::vector<KeptTrial> all = read_history(folder.path(), problems);
+    REQUIRE(all.size() == 3);
+    CHECK(all[0].utc == "2025-01-01T00:00:00Z");
+    CHECK(all[1].found == 1);
+    CHECK(all[2].found == 2);
+    REQUIRE(problems.size() == 1);
+    CHECK(contains(problems[0], "broken.trial.json: scene: found 3"));
+    delete_history(folder.path());
+    CHECK(std::filesystem::exists(folder / "notes.txt"));
+    problems.clear();
+    CHECK(read_history(folder.path(), problems).empty());
+    CHECK(problems.empty());
+    CHECK(read_history(folder / "none", problems).empty());
+}
