@@ -12,6 +12,7 @@ namespace {
 void change_settings(const Wishes& wishes, platform::Window& window, Gui& gui, App& app) {
     if (wishes.left_handed) app.settings.left_handed = *wishes.left_handed;
     if (wishes.above_finger) app.settings.above_finger = *wishes.above_finger;
+    if (wishes.side_view) app.settings.side_view = *wishes.side_view;
     if (wishes.mode) app.settings.test_mode = *wishes.mode == session::TrialMode::test;
     if (wishes.full_screen) {
         app.settings.full_screen = !window.full_screen();
@@ -22,7 +23,7 @@ void change_settings(const Wishes& wishes, platform::Window& window, Gui& gui, A
         app.settings.px_per_mm.erase(app.notices.screen_name);
         if (std::isfinite(*wishes.px_per_mm)) app.settings.px_per_mm[app.notices.screen_name] = *wishes.px_per_mm;
     }
-    const bool changed = wishes.left_handed || wishes.above_finger || wishes.mode || wishes.full_screen ||
+    const bool changed = wishes.left_handed || wishes.above_finger || wishes.side_view || wishes.mode || wishes.full_screen ||
                          wishes.px_per_mm || wishes.scene || wishes.profile;
     if (changed) keep_settings(app);
     // a trial has one scale and one way of showing the tissue, so a change begins another trial

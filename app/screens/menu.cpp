@@ -65,6 +65,9 @@ void right_side(const Shown& shown, const Gui& gui, ViewState& view, Wishes& wis
     pair(words::kUnderIt, words::kAboveIt, shown.settings.above_finger, gui, left, right);
     if (left) wishes.above_finger = false;
     if (right) wishes.above_finger = true;
+    if (shown.scene.cues.side_view &&
+        big_button(words::kSideView, "V", {0.0f, kTarget_mm, true, shown.settings.side_view}, gui))
+        wishes.side_view = !shown.settings.side_view;
     if (shown.notices.keeps_trials) {
         ImGui::TextDisabled(words::kOnThisTablet);
         left = right = false;
@@ -207,6 +210,7 @@ void take_keys(const Shown& shown, const Gui& gui, ViewState& view, Wishes& wish
     if (gui.pressed('t')) wishes.trials = true;
     if (gui.pressed('y')) wishes.studies = true;
     menu_keys(shown, gui, wishes);
+    if (gui.pressed('v')) wishes.side_view = !shown.settings.side_view;
     if (gui.pressed('c')) view.cost = !view.cost;
     if (gui.pressed('d')) wishes.screen = Screen::devices;
     if (gui.pressed('z')) wishes.screen = Screen::scale;

@@ -3,52 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "app/screens/coverage_drawing.h"
 #include "app/screens/screens.h"
 #include "app/screens/widgets.h"
 #include "app/screens/words.h"
 
 namespace palpa::app {
 namespace {
-
-// Draws one run of cells of a row that reached the same level.
-void draw_run(const Shown& shown, const study::Coverage& c, int row, int first, int last, study::PalpationLevel level,
-              float mm, ImDrawList& draw) {
-    const double x0 = c.x_m + first * c.cell_m;
-    const double x1 = c.x_m + (last + 1) * c.cell_m;
-    const double y0 = c.y_m + row * c.cell_m;
-    const double y1 = y0 + c.cell_m;
-    if (level == study::PalpationLevel::none) {  // hatched, so that "never touched" is not one more colour
-        for (int i = first; i <= last; ++i) {
-            if ((i + c.n_y - row) % 4 != 0) continue;  // diagonals from cell to cell
-            const double x_m = c.x_m + i * c.cell_m;
-            draw.AddLine(on_screen(shown.view, x_m, y0), on_screen(shown.view, x_m + c.cell_m, y1),
-                         IM_COL32(20, 22, 24, 70), 0.2f * mm);
-        }
-        return;
-    }
-    const ImU32 colour = kAreaTints[static_cast<int>(level) - 1];
-    draw.AddQuadFilled(on_screen(shown.view, x0, y0), on_screen(shown.view, x1, y0), on_screen(shown.view, x1, y1),
-                       on_screen(shown.view, x0, y1), colour);
-}
-
-void draw_coverage(const Shown& shown, float mm, ImDrawList& draw) {
-    const study::Coverage& c = shown.trial.coverage;
-    const auto level_at = [&](int i, int j) {
-        return level_of(c, static_cast<double>(c.depth_m[static_cast<std::size_t>(j * c.n_x + i)]));
-    };
-    const ImDrawListFlags flags = draw.Flags;
-    draw.Flags &= ~ImDrawListFlags_AntiAliasedFill;  // neighbours would show seams
-    for (int j = 0; j < c.n_y; ++j) {
-        for (int i = 0; i < c.n_x;) {
-            const study::PalpationLevel level = level_at(i, j);
-            int last = i;
-            while (last + 1 < c.n_x && level_at(last + 1, j) == level) ++last;
-            draw_run(shown, c, j, i, last, level, mm, draw);
-            i = last + 1;
-        }
-    }
-    draw.Flags = flags;
-}
 
 void draw_path(const Shown& shown, float mm, ImDrawList& draw) {
     const std::vector<session::PathPoint>& path = shown.trial.path;
@@ -63,15 +24,10 @@ void draw_nodules(const Shown& shown, const session::Debrief& debrief, float mm,
     for (std::size_t i = 0; i < shown.plan.nodules.size(); ++i) {
         const stiffnessmaps::Nodule& nodule = shown.plan.nodules[i];
         const ImVec2 at = on_screen(shown.view, nodule.x_m, nodule.y_m);
-        const auto radius_px = static_cast<float>(0.5 * nodule.diameter_m.value_or(4e-3)) * shown.view.px_per_m;
+        const auto radius_m = static_cast<float>(0.5 * nodule.diameter_m.value_or(4e-3));
+        const float radius_px = radius_m * shown.view.px_per_m;
         const bool found = debrief.findings[i] == session::Finding::found;
-        if (found) {
-            draw.AddCircle(at, radius_px, kDark, 48, 1.3f * mm);
-            draw.AddCircle(at, radius_px, kInk, 48, 0.8f * mm);
-        } else {
-            draw.AddCircle(at, radius_px, kDark, 48, 1.3f * mm);
-            dashed_circle(draw, at, radius_px, kInk, 0.8f * mm);
-        }
+        ring_on_surface(draw, shown.picture, {nodule.x_m, nodule.y_m}, radius_m, {0.8f * mm, 0.4f * mm, !found});
         // the panel says why a nodule was missed
         const std::string text = words::filled(found ? words::kFoundNodule : words::kMissedNodule, {nodule.id});
         const float width_px = ImGui::CalcTextSize(text.c_str()).x;
@@ -160,7 +116,7 @@ void buttons(const Gui& gui, bool menu, Wishes& wishes) {
 
 void draw_reveal_on_tissue(const Shown& shown, const Gui& gui, const session::Debrief& debrief) {
     ImDrawList& draw = *ImGui::GetBackgroundDrawList();
-    draw_coverage(shown, gui.mm(), draw);
+    draw_coverage(shown.view, shown.trial.coverage, gui.mm(), draw);
     draw_path(shown, gui.mm(), draw);
     draw_nodules(shown, debrief, gui.mm(), draw);
     draw_marks(shown, debrief.score, gui.mm(), draw);

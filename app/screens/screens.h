@@ -29,6 +29,7 @@ struct Wishes {
     std::optional<session::TrialMode> mode;
     std::optional<bool> left_handed;
     std::optional<bool> above_finger;
+    std::optional<bool> side_view;
     std::optional<double> px_per_mm;  // of this screen, measured; NaN: forget it
     std::optional<StudyWish> study;
     bool again = false;  // another trial on the same tissue
@@ -124,12 +125,17 @@ struct Shown : ToShow {
     const scene::State& state;
     const FrameTimes& times;
     scene::Avatar avatar{};
-    render::TissueView view{};
+    scene::SurfaceShape shape{};      // of the surface, as it is
+    render::TissuePicture picture{};  // of the tissue, as it is drawn
+    render::TissueView view{};        // picture.view
     double trial_s = 0.0;
 };
 
 // Draws marks, lag, pen and (in practice) nodules over the tissue.
 void draw_on_tissue(const Shown& shown, const Gui& gui);
+
+// Draws the section through the contact, if the scene has one and the person wants to see it.
+void draw_side_view(const Shown& shown, const Gui& gui);
 
 void draw_trial_panel(const Shown& shown, const Layout& layout, Gui& gui, Wishes& wishes);
 void draw_menu(const Shown& shown, const Layout& layout, Gui& gui, ViewState& view, Wishes& wishes);

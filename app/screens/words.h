@@ -29,6 +29,7 @@ inline constexpr const char* kBeginAnew = "Begin anew";
 inline constexpr const char* kDrawingHand = "Drawing hand";
 inline constexpr const char* kLeft = "Left";
 inline constexpr const char* kRight = "Right";
+inline constexpr const char* kSideView = "Side view";
 inline constexpr const char* kAvatarOfFinger = "A finger's avatar";
 inline constexpr const char* kUnderIt = "Under it";
 inline constexpr const char* kAboveIt = "Above it";
