@@ -1,6 +1,7 @@
 #include "render/gl.h"
 
 #include <algorithm>
+#include <cstring>
 #include <stdexcept>
 
 namespace palpa::render {
@@ -105,6 +106,88 @@ void AreaCopy::put() const {
     glBindFramebuffer(GL_READ_FRAMEBUFFER, framebuffer_);
     glBlitFramebuffer(0, 0, width_px_, height_px_, 0, 0, width_px_, height_px_, GL_COLOR_BUFFER_BIT, GL_NEAREST);
     glBindFramebuffer(GL_READ_FRAMEBUFFER, 0);
+}
+
+Texture::Texture(int side_px) : side_px_(side_px) {
+    glGenTextures(1, &texture_);
+    glGenFramebuffers(1, &framebuffer_);
+    glBindTexture(GL_TEXTURE_2D, texture_);
+    glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, side_px, side_px, 0, GL_RGBA, GL_UNSIGNED_BYTE, nullptr);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+    glBindTexture(GL_TEXTURE_2D, 0);
+}
+
+Texture::~Texture() {
+    glDeleteFramebuffers(1, &framebuffer_);
+    glDeleteTextures(1, &texture_);
+}
+
+bool Texture::begin() {
+    glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_);
+    glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, texture_, 0);
+    glViewport(0, 0, side_px_, side_px_);
+    if (glCheckFramebufferStatus(GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE) return true;
+    glBindFramebuffer(GL_FRAMEBUFFER, 0);
+    return false;
+}
+
+void Texture::end() {
+    glBindFramebuffer(GL_FRAMEBUFFER, 0);
+    glBindTexture(GL_TEXTURE_2D, texture_);
+    glGenerateMipmap(GL_TEXTURE_2D);
+    glBindTexture(GL_TEXTURE_2D, 0);
+}
+
+void Texture::bind(bool much_smaller) const {
+    glBindTexture(GL_TEXTURE_2D, texture_);
+    // choosing among sizes costs software drawing as much as the rest of a look-up
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, much_smaller ? GL_LINEAR_MIPMAP_NEAREST : GL_LINEAR);
+}
+
+Layer::Layer() {
+    glGenFramebuffers(1, &framebuffer_);
+    glGenRenderbuffers(2, buffers_);
+}
+
+Layer::~Layer() {
+    glDeleteRenderbuffers(2, buffers_);
+    glDeleteFramebuffers(1, &framebuffer_);
+}
+
+bool Layer::begin(int width_px, int height_px) {
+    glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_);
+    if (width_px != width_px_ || height_px != height_px_) {
+        constexpr GLenum kFormats[2] = {GL_RGBA8, GL_DEPTH_COMPONENT24};
+        constexpr GLenum kPlaces[2] = {GL_COLOR_ATTACHMENT0, GL_DEPTH_ATTACHMENT};
+        for (int i = 0; i < 2; ++i) {
+            glBindRenderbuffer(GL_RENDERBUFFER, buffers_[i]);
+            glRenderbufferStorage(GL_RENDERBUFFER, kFormats[i], width_px, height_px);
+            glFramebufferRenderbuffer(GL_FRAMEBUFFER, kPlaces[i], GL_RENDERBUFFER, buffers_[i]);
+        }
+        glBindRenderbuffer(GL_RENDERBUFFER, 0);
+        width_px_ = width_px;
+        height_px_ = height_px;
+    }
+    if (glCheckFramebufferStatus(GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE) return true;
+    glBindFramebuffer(GL_FRAMEBUFFER, 0);
+    return false;
+}
+
+void Layer::show(int width_px, int height_px) {
+    glBindFramebuffer(GL_FRAMEBUFFER, 0);
+    clear_screen(width_px, height_px);
+    glBindFramebuffer(GL_READ_FRAMEBUFFER, framebuffer_);
+    glBlitFramebuffer(0, 0, width_px_, height_px_, 0, 0, width_px, height_px, GL_COLOR_BUFFER_BIT, GL_LINEAR);
+    glBindFramebuffer(GL_READ_FRAMEBUFFER, 0);
+}
+
+bool draws_in_software() {
+    const auto* renderer = reinterpret_cast<const char*>(glGetString(GL_RENDERER));
+    if (renderer == nullptr) return false;
+    for (const char* name : {"llvmpipe", "softpipe", "swrast", "SwiftShader"}) {
+        if (std::strstr(renderer, name) != nullptr) return true;
+    }
+    return false;
 }
 
 void clear_screen(int width_px, int height_px) {

@@ -56,6 +56,43 @@ class AreaCopy {
     int height_px_ = 0;
 };
 
+// A square picture with four channels, drawn once and then used on surfaces, over which it repeats.
+class Texture {
+  public:
+    explicit Texture(int side_px);
+    ~Texture();
+    Texture(const Texture&) = delete;
+    Texture& operator=(const Texture&) = delete;
+    bool begin();  // what is drawn next goes to the texture, until end(); false: this driver cannot
+    void end();
+    void bind(bool much_smaller) const;  // much_smaller: fewer pixels than half its own show it
+
+  private:
+    int side_px_ = 0;
+    GLuint texture_ = 0;
+    GLuint framebuffer_ = 0;
+};
+
+// A drawing area of its own, with depth, to be shown larger or smaller than it was drawn.
+class Layer {
+  public:
+    Layer();
+    ~Layer();
+    Layer(const Layer&) = delete;
+    Layer& operator=(const Layer&) = delete;
+    bool begin(int width_px, int height_px);  // what is drawn next goes here, until show(); false: this driver cannot
+    void show(int width_px, int height_px);   // in the window, stretched to this size
+
+  private:
+    GLuint framebuffer_ = 0;
+    GLuint buffers_[2] = {0, 0};  // colour, depth
+    int width_px_ = 0;
+    int height_px_ = 0;
+};
+
+// True if the driver computes pictures on the processor.
+bool draws_in_software();
+
 void clear_screen(int width_px, int height_px);
 
 // Returns the picture that was drawn last as rows of RGB, from the top downwards.

@@ -2,9 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/geometric.hpp>
 #include <glm/gtc/type_ptr.hpp>
+#include <glm/matrix.hpp>
+#include <optional>
 
 #include "render/gl.h"
+#include "render/relief.h"
+#include "render/tissue_shaders.h"
 
 namespace palpa::render {
 
@@ -15,119 +20,60 @@ struct SurfaceMesh {
 
 namespace {
 
-constexpr int kCells = 160;  // 0.75 mm on the 120 mm phantom
+constexpr int kCells = 80;  // 0.35 mm apart at the contact, 3.7 mm far from it, on the 120 mm phantom
+constexpr int kRingPoints = 96;
+constexpr int kGrain_px = 512;
+constexpr float kGrain_m = 0.06f;
+constexpr float kMost_px = 1.5e6f;  // of a picture that software draws at its full resolution
 
-// Shared by both programs: the map from the tissue to the screen.
-#define PALPA_PROJECTION                                                                                     \
-    "#version 300 es\n"                                                                                      \
-    "precision highp float;\n"                                                                               \
-    "layout(location = 0) in vec2 unit;\n"                                                                   \
-    "uniform vec2 area_px; uniform vec2 centre_px; uniform vec2 centre_m; uniform vec2 size_m;\n"            \
-    "uniform mat2 axes; uniform float px_per_m; uniform float tilt;\n"                                       \
-    "vec4 project(vec3 p) {\n"                                                                               \
-    "  vec2 q = px_per_m * (axes * (p.xy - centre_m));\n"                                                    \
-    "  float y = q.y * cos(tilt) - px_per_m * p.z * sin(tilt);\n"                                            \
-    "  float depth = (-q.y * sin(tilt) - px_per_m * p.z * cos(tilt)) / (4.0 * max(area_px.x, area_px.y));\n" \
-    "  vec2 s = centre_px + vec2(q.x, y);\n"                                                                 \
-    "  return vec4(2.0 * s.x / area_px.x - 1.0, 1.0 - 2.0 * s.y / area_px.y, depth, 1.0);\n"                 \
-    "}\n"
-
-constexpr const char* kSurfaceVertex = PALPA_PROJECTION R"(
-layout(location = 1) in vec3 relief;
-uniform vec2 dent_m; uniform float reach_m; uniform float sink_m[64]; uniform float has_relief;
-out vec2 place_m; out vec3 normal; out float sunk_m;
-float sink(float r) {
-  if (r >= reach_m) return 0.0;
-  float i = 63.0 * sqrt(r / reach_m);
-  int k = int(i);
-  return mix(sink_m[k], k < 63 ? sink_m[k + 1] : 0.0, i - float(k));
-}
-void main() {
-  vec2 p = centre_m + (unit - 0.5) * size_m;
-  vec2 d = p - dent_m;
-  float r = length(d);
-  float h = 3e-4;
-  float slope = (sink(r + h) - sink(max(r - h, 0.0))) / (r > h ? 2.0 * h : r + h);
-  vec2 outward = r > 1e-9 ? d / r : vec2(0.0);
-  place_m = p;
-  sunk_m = has_relief > 0.5 ? relief.x : sink(r);
-  normal = normalize(vec3(has_relief > 0.5 ? relief.yz : outward * slope, 1.0));
-  gl_Position = project(vec3(p, -sunk_m));
-}
-)";
-
-// The light comes from the upper left of the screen, low enough that a shallow dent shows. Grid lines are 10 mm apart.
-constexpr const char* kSurfaceFragment = R"(#version 300 es
-precision highp float;
-in vec2 place_m; in vec3 normal; in float sunk_m;
-uniform mat2 axes; uniform vec2 centre_m;
-out vec4 colour;
-void main() {
-  vec3 n = normalize(normal);
-  vec2 across = axes * n.xy;  // screen y points down
-  vec3 on_screen = normalize(vec3(across.x, -across.y, n.z));
-  vec3 light = normalize(vec3(-0.55, 0.65, 0.75));
-  float lit = max(dot(on_screen, light), 0.0) / light.z;
-  vec3 tissue = vec3(0.80, 0.58, 0.52);
-  vec3 shaded = tissue * (0.30 + 0.70 * lit) * exp(-sunk_m * 45.0);
-  vec3 half_way = normalize(light + vec3(0.0, 0.0, 1.0));
-  shaded += 0.10 * (pow(max(dot(on_screen, half_way), 0.0), 40.0) - pow(half_way.z, 40.0));
-  vec2 line = abs(fract((place_m - centre_m) / 0.01 + 0.5) - 0.5) * 0.01;
-  vec2 width = fwidth(place_m) * 0.7;
-  float on_line = max(1.0 - line.x / width.x, 1.0 - line.y / width.y);
-  colour = vec4(mix(shaded, shaded * 0.86, clamp(on_line, 0.0, 1.0)), 1.0);
-}
-)";
-
-constexpr const char* kBallVertex = PALPA_PROJECTION R"(
-uniform vec3 ball_m; uniform float radius_m;
-out vec2 spot;
-void main() {
-  spot = 3.2 * (unit - 0.5);
-  vec4 c = project(ball_m);
-  gl_Position = vec4(c.xy + spot * radius_m * px_per_m * 2.0 / area_px, c.z - 0.02, 1.0);
-}
-)";
-
-constexpr const char* kBallFragment = R"(#version 300 es
-precision highp float;
-in vec2 spot;
-uniform float opacity;
-out vec4 colour;
-void main() {
-  float r2 = dot(spot, spot);
-  float edge = fwidth(r2) + 1e-6;
-  float inside = clamp((1.0 - r2) / edge + 0.5, 0.0, 1.0);
-  vec2 fallen = spot - vec2(0.14, -0.16);
-  float shadow = 0.45 * exp(-3.5 * max(length(fallen) - 0.75, 0.0)) * (1.0 - smoothstep(1.0, 1.28, length(fallen)));
-  vec3 n = vec3(spot, sqrt(max(1.0 - r2, 0.0)));
-  vec3 light = normalize(vec3(-0.55, 0.65, 0.75));
-  float lit = max(dot(n, light), 0.0);
-  vec3 half_way = normalize(light + vec3(0.0, 0.0, 1.0));
-  vec3 steel = vec3(0.42, 0.50, 0.60) * (0.35 + 0.75 * lit) + 0.55 * pow(max(dot(n, half_way), 0.0), 60.0);
-  vec3 mixed = mix(vec3(0.0), steel, inside);
-  float cover = mix(shadow, 1.0, inside);
-  if (cover < 0.004) discard;
-  colour = vec4(mixed, cover * opacity);
-}
-)";
-
-SurfaceMesh unit_grid(int cells) {
+// The vertices i = 0 ... cells of each axis, with `border` more on both sides, which lie just beside 0 ... 1.
+SurfaceMesh unit_grid(const std::array<int, 2>& cells, int border) {
     SurfaceMesh mesh;
-    const auto row = static_cast<unsigned>(cells + 1);
-    for (int j = 0; j <= cells; ++j) {
-        for (int i = 0; i <= cells; ++i) {
-            mesh.points.push_back(static_cast<float>(i) / static_cast<float>(cells));
-            mesh.points.push_back(static_cast<float>(j) / static_cast<float>(cells));
+    const auto unit_of = [&](int i, int axis) {
+        return static_cast<float>(i) / static_cast<float>(cells[static_cast<std::size_t>(axis)]);
+    };
+    for (int j = -border; j <= cells[1] + border; ++j) {
+        for (int i = -border; i <= cells[0] + border; ++i) {
+            mesh.points.push_back(unit_of(i, 0));
+            mesh.points.push_back(unit_of(j, 1));
         }
     }
-    for (unsigned j = 0; j + 1 < row; ++j) {
+    const auto row = static_cast<unsigned>(cells[0] + 2 * border + 1);
+    const auto rows = static_cast<unsigned>(cells[1] + 2 * border + 1);
+    for (unsigned j = 0; j + 1 < rows; ++j) {
         for (unsigned i = 0; i + 1 < row; ++i) {
             const unsigned at = j * row + i;
             for (const unsigned k : {at, at + 1, at + row, at + 1, at + row + 1, at + row}) mesh.triangles.push_back(k);
         }
     }
     return mesh;
+}
+
+// How a material answers light; colours are linear.
+struct MaterialLook {
+    glm::vec3 plain, pale, flushed;  // at rest, pressed pale, and around that
+    glm::vec3 wrap;                  // how far light bleeds round into the shade, for red, green, blue
+    glm::vec3 bled;                  // what is left of the light in a shadow
+    glm::vec3 gloss;                 // a wide, a middle and a narrow highlight
+    float bump;                      // how strongly its slopes catch the light
+};
+
+MaterialLook look_of(Material material) {
+    if (material == Material::silicone)
+        return {{0.66f, 0.45f, 0.36f},
+                {0.74f, 0.57f, 0.48f},
+                {0.60f, 0.36f, 0.28f},
+                {0.42f, 0.30f, 0.24f},
+                {0.50f, 0.33f, 0.27f},
+                {0.075f, 0.14f, 0.30f},
+                0.10f};
+    return {{0.62f, 0.32f, 0.245f},
+            {0.76f, 0.53f, 0.43f},
+            {0.60f, 0.25f, 0.19f},
+            {0.34f, 0.14f, 0.10f},
+            {0.44f, 0.17f, 0.12f},
+            {0.060f, 0.070f, 0.08f},
+            0.42f};
 }
 
 void set_view(const Program& program, const TissueView& view) {
@@ -139,20 +85,53 @@ void set_view(const Program& program, const TissueView& view) {
     glUniformMatrix2fv(program.uniform("axes"), 1, GL_FALSE, glm::value_ptr(view.axes));
     glUniform1f(program.uniform("px_per_m"), view.px_per_m);
     glUniform1f(program.uniform("tilt"), view.tilt_rad);
+    glUniform2fv(program.uniform("eye_m"), 1, glm::value_ptr(view.eye_m));
+    glUniform1f(program.uniform("eye_per_m"), view.eye_per_m);
+}
+
+// The lamp stands at the upper left of the screen, low enough that a shallow dent shows.
+constexpr glm::vec3 kLampDirection{-0.56f, 0.62f, 0.62f};  // right, up, towards the viewer
+
+glm::vec3 towards_lamp(const TissueView& view) {
+    // screen y points down; axes are orthogonal
+    const glm::vec2 across = glm::transpose(view.axes) * glm::vec2(kLampDirection.x, -kLampDirection.y);
+    return glm::normalize(glm::vec3(across, kLampDirection.z));
+}
+
+glm::vec3 towards_eye(const TissueView& view) {
+    return {glm::transpose(view.axes) * glm::vec2(0.0f, std::sin(view.tilt_rad)), std::cos(view.tilt_rad)};
+}
+
+void set3(const Program& program, const char* name, const glm::vec3& v) {
+    glUniform3fv(program.uniform(name), 1, glm::value_ptr(v));
 }
 
 }  // namespace
 
 struct TissueDrawer::Gpu {
-    void draw(const TissueView& view, const Dent& dent, const Relief& sunk, const Ball& indenter);
+    void draw(const TissuePicture& picture);
+    void draw_surface(const TissuePicture& picture, const MaterialLook& look);
+    void draw_ring(const TissuePicture& picture);
+    void draw_indenter(const TissuePicture& picture, const MaterialLook& look);
+    void make_grain(Material material);
 
     Program surface{kSurfaceVertex, kSurfaceFragment};
-    Program ball{kBallVertex, kBallFragment};
-    SurfaceMesh fine = unit_grid(kCells);
-    SurfaceMesh single = unit_grid(1);
+    Program indenter{kIndenterVertex, kIndenterFragment};
+    Program grain_maker{kGrainVertex, kGrainFragment};
+    Program ring{kRingVertex, kRingFragment};
+    SurfaceMesh fine = unit_grid({kCells, kCells}, 1);
+    SurfaceMesh single = unit_grid({1, 1}, 0);
+    SurfaceMesh strip = unit_grid({kRingPoints, 1}, 0);
     Mesh tissue{fine.points, fine.triangles};
     Mesh quad{single.points, single.triangles};
+    Mesh ring_strip{strip.points, strip.triangles};
+    Texture grain{kGrain_px};
+    std::optional<Material> grain_of;
     std::vector<float> relief;
+    std::vector<float> rows;
+    std::vector<float> points;  // of the ring
+    Layer half;
+    bool software = draws_in_software();
     AreaCopy copy;
     bool copied = false;  // what the last call got
 };
@@ -160,116 +139,143 @@ struct TissueDrawer::Gpu {
 TissueDrawer::TissueDrawer() : gpu_(std::make_unique<Gpu>()) {}
 TissueDrawer::~TissueDrawer() = default;
 
-void TissueDrawer::draw(const TissueView& view, const Dent& dent, const Relief& relief, const Ball& ball,
-                        bool as_before) {
+void TissueDrawer::draw(const TissuePicture& picture, bool as_before) {
     if (as_before && gpu_->copied) return gpu_->copy.put();
-    gpu_->draw(view, dent, relief, ball);
+    const auto width_px = static_cast<int>(picture.view.area_px.x);
+    const auto height_px = static_cast<int>(picture.view.area_px.y);
+    if (gpu_->grain_of != picture.material) gpu_->make_grain(picture.material);
+    const bool large = picture.view.area_px.x * picture.view.area_px.y > kMost_px;
+    const bool at_half = gpu_->software && large && gpu_->half.begin((width_px + 1) / 2, (height_px + 1) / 2);
+    if (at_half) clear_screen((width_px + 1) / 2, (height_px + 1) / 2);
+    if (!at_half) clear_screen(width_px, height_px);
+    gpu_->draw(picture);
+    if (at_half) gpu_->half.show(width_px, height_px);
     // something that moves is never shown twice, so it is not copied either
-    const auto width_px = static_cast<int>(view.area_px.x);
-    const auto height_px = static_cast<int>(view.area_px.y);
     gpu_->copied = as_before && gpu_->copy.take(width_px, height_px);
 }
 
-void TissueDrawer::Gpu::draw(const TissueView& view, const Dent& dent, const Relief& sunk, const Ball& indenter) {
-    clear_screen(static_cast<int>(view.area_px.x), static_cast<int>(view.area_px.y));
+void TissueDrawer::Gpu::make_grain(Material material) {
+    grain_of = material;
+    glDisable(GL_DEPTH_TEST);
+    glDisable(GL_BLEND);
+    if (!grain.begin()) return;
+    grain_maker.use();
+    glUniform1f(grain_maker.uniform("skin"), material == Material::skin ? 1.0f : 0.0f);
+    quad.draw();
+    grain.end();
+}
+
+void TissueDrawer::Gpu::draw(const TissuePicture& picture) {
+    const MaterialLook look = look_of(picture.material);
     glEnable(GL_DEPTH_TEST);
     glDisable(GL_CULL_FACE);
     glDisable(GL_BLEND);
+    draw_surface(picture, look);
+    if (picture.indenter.radius_m > 0.0f) draw_indenter(picture, look);
+    glDisable(GL_DEPTH_TEST);
+}
+
+void TissueDrawer::Gpu::draw_surface(const TissuePicture& picture, const MaterialLook& look) {
+    const auto& [view, dent, sunk, grip, ball, material] = picture;
     set_view(surface, view);
+    const glm::vec2 focus = focus_of(picture);
+    glUniform2fv(surface.uniform("focus"), 1, glm::value_ptr(focus));
+    glUniform1f(surface.uniform("thickness_m"), view.thickness_m);
+    glUniform2fv(surface.uniform("texture_m"), 1, glm::value_ptr(view.texture_m));
     glUniform2fv(surface.uniform("dent_m"), 1, glm::value_ptr(dent.centre_m));
     glUniform1f(surface.uniform("reach_m"), dent.reach_m);
     glUniform1fv(surface.uniform("sink_m"), kSinkPoints, dent.sink_m.data());
+    glUniform2fv(surface.uniform("grip_m"), 1, glm::value_ptr(grip.centre_m));
+    glUniform1f(surface.uniform("contact_m"), grip.contact_radius_m);
+    glUniform1f(surface.uniform("pull"), grip.pull);
+    glUniform1f(surface.uniform("pressure"), grip.pressure);
+    glUniform1f(surface.uniform("crease"), grip.crease);
+    set3(surface, "ball_m", {ball.centre_m, ball.height_m});
+    glUniform1f(surface.uniform("radius_m"), ball.radius_m);
+    glUniform1f(surface.uniform("opacity"), ball.opacity);
+    const glm::vec3 lamp = towards_lamp(view);
+    set3(surface, "lamp", lamp);
+    set3(surface, "half_way", glm::normalize(lamp + towards_eye(view)));
+    set3(surface, "plain", look.plain);
+    set3(surface, "pale", look.pale);
+    set3(surface, "flushed", look.flushed);
+    set3(surface, "wrap", look.wrap);
+    set3(surface, "bled", look.bled);
+    set3(surface, "gloss", look.gloss);
+    glUniform1f(surface.uniform("bump"), look.bump);
     glUniform1f(surface.uniform("has_relief"), sunk.n_x >= 2 ? 1.0f : 0.0f);
     if (sunk.n_x >= 2) {
-        refine(sunk, view.size_m, kCells, relief);
+        refine(sunk, view.size_m, kCells, focus, rows, relief);
         tissue.set_second(relief);
     }
+    grain.bind(view.px_per_m * kGrain_m < 0.55f * kGrain_px);
     tissue.draw();
+    if (grip.footprint_m > 0.0f) draw_ring(picture);
+}
 
-    glDisable(GL_DEPTH_TEST);
-    if (indenter.radius_m <= 0.0f) return;
+void TissueDrawer::Gpu::draw_ring(const TissuePicture& picture) {
+    const Grip& grip = picture.grip;
+    const float half_m = std::max(2.4f / picture.view.px_per_m, 0.34e-3f);
+    points.clear();
+    for (int side = 0; side < 2; ++side) {
+        for (int i = 0; i <= kRingPoints; ++i) {
+            const float angle = 6.2831853f * static_cast<float>(i) / kRingPoints;
+            const float radius_m = grip.footprint_m + (side == 0 ? -half_m : half_m);
+            const glm::vec2 p_m = grip.centre_m + radius_m * glm::vec2(std::cos(angle), std::sin(angle));
+            const glm::vec3 point_m = displaced_m(picture, p_m);
+            points.insert(points.end(), {point_m.x, point_m.y, point_m.z});
+        }
+    }
+    set_view(ring, picture.view);
     glEnable(GL_BLEND);
     glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
-    set_view(ball, view);
-    glUniform3f(ball.uniform("ball_m"), indenter.centre_m.x, indenter.centre_m.y, indenter.height_m);
-    glUniform1f(ball.uniform("radius_m"), indenter.radius_m);
-    glUniform1f(ball.uniform("opacity"), indenter.opacity);
+    ring_strip.set_second(points);
+    ring_strip.draw();
+    glDisable(GL_BLEND);
+}
+
+void TissueDrawer::Gpu::draw_indenter(const TissuePicture& picture, const MaterialLook& look) {
+    const TissueView& view = picture.view;
+    const Indenter& ball = picture.indenter;
+    glEnable(GL_BLEND);
+    glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
+    set_view(indenter, view);
+    set3(indenter, "ball_m", {ball.centre_m, ball.height_m});
+    glUniform1f(indenter.uniform("radius_m"), ball.radius_m);
+    glUniform1f(indenter.uniform("extent"), ball.kind == IndenterKind::ball ? 1.1f : 3.3f);
+    glUniform1f(indenter.uniform("opacity"), ball.opacity);
+    glUniform1f(indenter.uniform("kind"), static_cast<float>(ball.kind));
+    glUniform1f(indenter.uniform("covered"), ball.covered);
+    glUniform1f(indenter.uniform("height_r"), ball.height_m / ball.radius_m);
+    const float nearer = 1.0f / (1.0f - ball.height_m * view.eye_per_m);
+    const float depth = ball.radius_m * view.px_per_m * nearer / (4.0f * std::max(view.area_px.x, view.area_px.y));
+    glUniform1f(indenter.uniform("depth_per_r"), depth);
+    const glm::vec2 hand = glm::normalize(glm::vec2(0.5f * ball.hand_x, -0.87f));
+    glUniform2fv(indenter.uniform("hand"), 1, glm::value_ptr(hand));
+    set3(indenter, "lamp", glm::normalize(kLampDirection));
+    set3(indenter, "tissue", look.plain);
     quad.draw();
     glDisable(GL_BLEND);
 }
 
-namespace {
-
-// Catmull-Rom weights of the four neighbours of a place between the middle two, and their derivatives.
-struct Weights {
-    int first = 0;
-    float value[4];
-    float slope[4];
-};
-
-Weights weights_at(float at) {
-    Weights w;
-    const float low = std::floor(at);
-    const float t = at - low;
-    w.first = static_cast<int>(low) - 1;
-    w.value[0] = 0.5f * (-t + 2.0f * t * t - t * t * t);
-    w.value[1] = 0.5f * (2.0f - 5.0f * t * t + 3.0f * t * t * t);
-    w.value[2] = 0.5f * (t + 4.0f * t * t - 3.0f * t * t * t);
-    w.value[3] = 0.5f * (-t * t + t * t * t);
-    w.slope[0] = 0.5f * (-1.0f + 4.0f * t - 3.0f * t * t);
-    w.slope[1] = 0.5f * (-10.0f * t + 9.0f * t * t);
-    w.slope[2] = 0.5f * (1.0f + 8.0f * t - 9.0f * t * t);
-    w.slope[3] = 0.5f * (-2.0f * t + 3.0f * t * t);
-    return w;
-}
-
-}  // namespace
-
-void refine(const Relief& relief, const glm::vec2& size_m, int cells, std::vector<float>& out) {
-    const auto n = static_cast<std::size_t>(cells) + 1;
-    const float dx_m = size_m.x / static_cast<float>(relief.n_x - 1);
-    const float dy_m = size_m.y / static_cast<float>(relief.n_y - 1);
-    // along x first: value and slope of every row at the n places
-    std::vector<float> rows(2 * n * static_cast<std::size_t>(relief.n_y));
-    for (std::size_t i = 0; i < n; ++i) {
-        const Weights w =
-            weights_at((static_cast<float>(i) / static_cast<float>(cells) * size_m.x - relief.shift_m.x) / dx_m);
-        for (int j = 0; j < relief.n_y; ++j) {
-            float value = 0.0f;
-            float slope = 0.0f;
-            for (int k = 0; k < 4; ++k) {
-                const int x = std::clamp(w.first + k, 0, relief.n_x - 1);
-                const float sink = relief.sink_m[static_cast<std::size_t>(j * relief.n_x + x)];
-                value += w.value[k] * sink;
-                slope += w.slope[k] * sink;
-            }
-            const std::size_t at = 2 * (static_cast<std::size_t>(j) * n + i);
-            rows[at] = value;
-            rows[at + 1] = slope / dx_m;
-        }
-    }
-    out.resize(3 * n * n);
-    for (std::size_t j = 0; j < n; ++j) {
-        const Weights w =
-            weights_at((static_cast<float>(j) / static_cast<float>(cells) * size_m.y - relief.shift_m.y) / dy_m);
-        for (std::size_t i = 0; i < n; ++i) {
-            float* vertex = &out[3 * (j * n + i)];
-            vertex[0] = vertex[1] = vertex[2] = 0.0f;
-            for (int k = 0; k < 4; ++k) {
-                const int y = std::clamp(w.first + k, 0, relief.n_y - 1);
-                const float* row = &rows[2 * (static_cast<std::size_t>(y) * n + i)];
-                vertex[0] += w.value[k] * row[0];
-                vertex[1] += w.value[k] * row[1];
-                vertex[2] += w.slope[k] * row[0] / dy_m;
-            }
-        }
-    }
-}
-
 glm::vec2 project_px(const TissueView& view, const glm::vec3& p_m) {
-    const glm::vec2 q = view.px_per_m * (view.axes * (glm::vec2(p_m) - view.centre_m));
+    const glm::vec2 seen_m = view.eye_m + (glm::vec2(p_m) - view.eye_m) / (1.0f - p_m.z * view.eye_per_m);
+    const glm::vec2 q = view.px_per_m * (view.axes * (seen_m - view.centre_m));
     const float y = q.y * std::cos(view.tilt_rad) - view.px_per_m * p_m.z * std::sin(view.tilt_rad);
     return view.centre_px + glm::vec2(q.x, y);
+}
+
+glm::vec3 displaced_m(const TissuePicture& picture, const glm::vec2& p_m) {
+    const float sunk_m =
+        picture.relief.n_x >= 2 ? sink_m(picture.relief, picture.view, p_m) : sink_m(picture.dent, p_m);
+    const Grip& grip = picture.grip;
+    const glm::vec2 from_m = p_m - grip.centre_m;
+    const float r_m = glm::length(from_m);
+    const float a_m = grip.contact_radius_m;
+    if (!(a_m > 0.0f) || !(r_m > 0.0f)) return {p_m, -sunk_m};
+    const float beside = std::max(r_m - a_m, 0.0f) / (1.5f * a_m);
+    const float drawn_in_m = grip.pull * a_m * std::min(r_m / a_m, 1.0f) * std::exp(-0.5f * beside * beside);
+    return {p_m - drawn_in_m / r_m * from_m, -sunk_m};
 }
 
 }  // namespace palpa::render

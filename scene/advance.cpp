@@ -130,7 +130,10 @@ void run_stage(StageId id, const Scene& scene, const Plan& plan, const platform:
         case StageId::delay:
             return lag(scene, plan, state);
         case StageId::surface:
-            return;  // runs once per frame, in surface_now()
+        case StageId::footprint:
+        case StageId::crease:
+        case StageId::depth_gain:
+            return;  // run once per frame, in surface_now()
     }
 }
 
@@ -305,9 +308,20 @@ void surface_now(const Scene& scene, const Plan& plan, State& state, SurfaceShap
     const std::int64_t before_ns = steady_ns();
     sample_surface(plan.tissue, *scene.surface, state.contact, state.tissue, shape);
     if (!state.touch.down) shape.sink_m.setZero();
-    Meter& meter = state.meters[static_cast<std::size_t>(StageId::surface)];
-    meter.count();
-    meter.add_ns(static_cast<double>(steady_ns() - before_ns));
+    const auto note = [&](StageId id, std::int64_t since_ns) {
+        Meter& meter = state.meters[static_cast<std::size_t>(id)];
+        meter.count();
+        meter.add_ns(static_cast<double>(steady_ns() - since_ns));
+    };
+    note(StageId::surface, before_ns);
+    shape.cues = {};
+    shape.cues.drawn_depth_m = state.touch.down ? state.contact.depth_m : 0.0;
+    if (plan.frame_stages.size() < 2) return;
+    const std::int64_t cues_ns = steady_ns();
+    shape.cues = cues_at(scene.cues, plan.indenter_radius_m, shape.cues.drawn_depth_m);
+    for (const Stage& stage : plan.frame_stages) {
+        if (stage.id != StageId::surface) note(stage.id, cues_ns);
+    }
 }
 
 }  // namespace palpa::scene

@@ -21,7 +21,8 @@ void advance(const Scene& scene, const Plan& plan, const platform::Sample& sampl
 // Returns the avatar at a time after the last sample; it goes on moving while the pen rests.
 Avatar avatar_at(const Scene& scene, const State& state, double t_s);
 
-// Runs the stage that a frame needs: the surface under the last contact. The scene must have a surface (assert).
+// Runs the stages that a frame needs: the surface under the last contact, and the cues that are drawn with it. The scene
+// must have a surface (assert).
 // `shape` may be used again for the next frame.
 void surface_now(const Scene& scene, const Plan& plan, State& state, SurfaceShape& shape);
 

@@ -169,6 +169,7 @@ void describe(const MapTissue& tissue, const Scene& scene, Plan& plan) {
         plan.zone_N[static_cast<std::size_t>(third - 1)] =
             scene.stiffness_scale * median_force_N(tissue, third * plan.greatest_depth_m / 3.0);
     plan.indenter_radius_m = map.indenter_radius_m;
+    if (map.indenter == stiffnessmaps::IndenterShape::cylinder) plan.indenter = DrawnIndenter::probe;
     const Eigen::Vector2d first(map.origin_m[0], map.origin_m[1]);
     const Eigen::Vector2d last(map.x_of(map.n_x - 1), map.y_of(map.n_y - 1));
     plan.area.centre_m = 0.5 * (first + last);

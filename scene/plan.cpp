@@ -19,12 +19,16 @@ Stage calibration_stage(const Plan& plan) {
     return stage_of(StageForm::calibration_with_points, fidelity, {std::to_string(profile.points.size())});
 }
 
+// A sphere of this radius or more is drawn as a fingertip, whose pulp is about as round.
+constexpr double kFingertip_m = 6e-3;
+
 void add_stages(const Scene& scene, Plan& plan) {
     const bool direct = scene.mapping.kind == MappingKind::direct;
     plan.sample_stages.push_back(calibration_stage(plan));
     plan.sample_stages.push_back(stage_of(StageForm::position, direct ? "direct" : "indirect"));
     for (const Stage& stage : stages(plan.tissue, scene))
         (stage.per_frame ? plan.frame_stages : plan.sample_stages).push_back(stage);
+    add_cue_stages(scene, plan.frame_stages);
     if (scene.display_ratio) plan.grid_stages.push_back(StageId::display_ratio);
     if (scene.delay) plan.grid_stages.push_back(StageId::delay);
 }
@@ -38,6 +42,8 @@ Plan make_plan(const Scene& scene, const mechanics::Progress& progress) {
     describe(plan.tissue, scene, plan);
     if (scene.mapping.tissue_m) plan.area.size_m = *scene.mapping.tissue_m;
     if (scene.surface) plan.indenter_radius_m = scene.surface->indenter_radius_m.value_or(plan.indenter_radius_m);
+    if (plan.indenter_radius_m >= kFingertip_m) plan.indenter = DrawnIndenter::fingertip;
+    if (scene.surface) plan.indenter = scene.surface->indenter.value_or(plan.indenter);
     add_stages(scene, plan);
     return plan;
 }

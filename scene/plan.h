@@ -31,6 +31,7 @@ struct Plan {
     std::array<double, 2> zone_N{0.0, 0.0};
     TissueArea area;
     double indenter_radius_m = 4e-3;
+    DrawnIndenter indenter = DrawnIndenter::ball;
     // "recorded" if the map holds a recorded tangential force, else "energy"; how the laws use either is described in
     // stiffnessmaps/field.h.
     const char* tangential_source = "energy";

@@ -10,6 +10,7 @@
 
 #include "avatar/delay.h"
 #include "avatar/display_ratio.h"
+#include "scene/cues.h"
 #include "scene/mapping.h"
 #include "stiffnessmaps/field.h"
 
@@ -32,9 +33,15 @@ struct TangentialOptions {
     std::optional<double> smoothing_m;  // Gaussian sigma; absent: from the map's own noise (stiffnessmaps/noise.h)
 };
 
+// What the tissue looks like, and what is pressed into it.
+enum class SurfaceMaterial { skin, silicone };
+enum class DrawnIndenter { ball, probe, fingertip };
+
 struct SurfaceEffect {
     std::optional<double> indenter_radius_m;  // absent: that of the map or the phantom
     double thickness_m = 25e-3;               // of a map's tissue, bonded to its base
+    SurfaceMaterial material = SurfaceMaterial::skin;
+    std::optional<DrawnIndenter> indenter;  // absent: as that of the map or the phantom is
 };
 
 struct Scene {
@@ -49,6 +56,7 @@ struct Scene {
     std::optional<avatar::DisplayRatio> display_ratio;  // at most one of the two laws
     std::optional<avatar::Delay> delay;
     std::optional<SurfaceEffect> surface;
+    DrawnCues cues;  // of the surface
     std::int64_t seed = 1;
 };
 

@@ -104,8 +104,14 @@ void read_tissue(files::JsonReader json, const fs::path& file, const fs::path& a
 }
 
 SurfaceEffect read_surface(files::JsonReader json) {
-    json.only({"profile"});
+    json.only({"profile", "material", "indenter"});
     SurfaceEffect surface;
+    if (json.has("material")) {
+        surface.material = static_cast<SurfaceMaterial>(json.choice("material", {"skin", "silicone"}));
+    }
+    if (json.has("indenter")) {
+        surface.indenter = static_cast<DrawnIndenter>(json.choice("indenter", {"ball", "probe", "fingertip"}));
+    }
     files::JsonReader profile = json.object("profile");
     profile.only({"thickness_mm", "indenter_radius_mm"});
     surface.thickness_m = 1e-3 * profile.number("thickness_mm", {0.0, 1e3, true}, 1e3 * surface.thickness_m);
@@ -115,6 +121,17 @@ SurfaceEffect read_surface(files::JsonReader json) {
     profile.finish();
     json.finish();
     return surface;
+}
+
+DrawnCues read_cues(files::JsonReader json) {
+    json.only({"footprint", "crease", "depth_gain", "side_view"});
+    DrawnCues cues;
+    cues.footprint = json.number("footprint", {0.0, 10.0}, cues.footprint);
+    cues.crease = json.number("crease", {0.0, 1.0}, cues.crease);
+    cues.depth_gain = json.number("depth_gain", {0.0, 3.0}, cues.depth_gain);
+    cues.side_view = json.boolean("side_view", cues.side_view);
+    json.finish();
+    return cues;
 }
 
 void read_avatar(files::JsonReader json, Scene& scene) {
@@ -136,7 +153,7 @@ void read_avatar(files::JsonReader json, Scene& scene) {
 Scene read_scene(const fs::path& file, const fs::path& assets) {
     const files::Json root = files::read_json(file);
     files::JsonReader json(root, file.string());
-    json.only({"name", "tissue", "profile", "mapping", "force_scale", "avatar", "surface", "seed"});
+    json.only({"name", "tissue", "profile", "mapping", "force_scale", "avatar", "surface", "cues", "seed"});
     Scene scene;
     scene.file = file;
     scene.name = json.text("name");
@@ -147,6 +164,10 @@ Scene read_scene(const fs::path& file, const fs::path& assets) {
     scene.force_scale = json.number("force_scale", {0.0, 1e3, true}, scene.force_scale);
     if (auto avatar = json.optional_object("avatar")) read_avatar(*avatar, scene);
     if (auto surface = json.optional_object("surface")) scene.surface = read_surface(*surface);
+    if (auto cues = json.optional_object("cues")) {
+        if (!scene.surface) json.fail("cues", "no surface to draw them on", "the key surface beside it");
+        scene.cues = read_cues(*cues);
+    }
     scene.seed = json.integer("seed", 0, 2000000000, 1);
     json.finish();
     return scene;

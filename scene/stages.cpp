@@ -27,6 +27,12 @@ const char* name_of(StageId id) {
             return "delay";
         case StageId::surface:
             return "surface";
+        case StageId::footprint:
+            return "footprint";
+        case StageId::crease:
+            return "crease";
+        case StageId::depth_gain:
+            return "depth_gain";
     }
     return "";
 }
@@ -34,6 +40,18 @@ const char* name_of(StageId id) {
 Stage stage_of(StageForm form, std::string fidelity, std::initializer_list<std::string_view> figures) {
     const StageFigures& row = figures_of(form);
     return {row.id, row.per_frame, std::move(fidelity), files::filled(row.error, figures), row.cost_us};
+}
+
+void add_cue_stages(const Scene& scene, std::vector<Stage>& out) {
+    const DrawnCues& cues = scene.cues;
+    const auto of = [](double strength) { return files::short_number(strength); };
+    if (cues.footprint > 0.0)
+        out.push_back(
+            stage_of(StageForm::footprint_ring, "ring, " + of(cues.footprint) + " mm of radius for each mm of depth"));
+    if (cues.crease > 0.0) out.push_back(stage_of(StageForm::crease_shadow, "shadow, strength " + of(cues.crease)));
+    if (cues.depth_gain > 0.0)
+        out.push_back(stage_of(StageForm::depth_exaggerated, "surface and indenter, strength " + of(cues.depth_gain),
+                               {of(1.0 + cues.depth_gain)}));
 }
 
 void add_law_stages(const Scene& scene, const avatar::StationLimit& limit, StageForm display_ratio, StageForm delay,

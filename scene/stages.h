@@ -12,8 +12,20 @@
 
 namespace palpa::scene {
 
-enum class StageId : std::size_t { calibration, position, depth, friction, tangential, display_ratio, delay, surface };
-inline constexpr std::size_t kStageCount = 8;
+enum class StageId : std::size_t {
+    calibration,
+    position,
+    depth,
+    friction,
+    tangential,
+    display_ratio,
+    delay,
+    surface,
+    footprint,
+    crease,
+    depth_gain
+};
+inline constexpr std::size_t kStageCount = 11;
 
 const char* name_of(StageId id);
 
@@ -46,8 +58,11 @@ enum class StageForm : std::size_t {
     delay_on_linear,
     surface_sphere,
     surface_nodes,
+    footprint_ring,
+    crease_shadow,
+    depth_exaggerated,
 };
-inline constexpr std::size_t kStageFormCount = static_cast<std::size_t>(StageForm::surface_nodes) + 1;
+inline constexpr std::size_t kStageFormCount = static_cast<std::size_t>(StageForm::depth_exaggerated) + 1;
 
 struct StageFigures {
     StageForm form;
@@ -93,6 +108,9 @@ inline constexpr std::array<StageFigures, kStageFormCount> kStageFigures{{
     {StageForm::surface_sphere, StageId::surface, true, 6.0,
      "7 % of the depth at worst against the exact bonded layer (25 mm, depth to 2 mm)"},
     {StageForm::surface_nodes, StageId::surface, true, 13.0, "that of depth"},
+    {StageForm::footprint_ring, StageId::footprint, true, 0.02, "drawn on purpose: no part of the tissue"},
+    {StageForm::crease_shadow, StageId::crease, true, 0.02, "drawn on purpose: no part of the tissue"},
+    {StageForm::depth_exaggerated, StageId::depth_gain, true, 0.02, "drawn {} times as deep as the tissue gives way"},
 }};
 
 constexpr bool each_form_stands_at_its_place() {
@@ -108,6 +126,9 @@ struct Scene;
 
 // Returns a stage by its row of the table; `figures` replace each {} of the error, in order.
 Stage stage_of(StageForm form, std::string fidelity, std::initializer_list<std::string_view> figures = {});
+
+// Appends the stages of the cues whose strength is not 0.
+void add_cue_stages(const Scene& scene, std::vector<Stage>& out);
 
 // Appends the stages of the scene's laws, on a tissue that can answer at `limit` stations of the path.
 void add_law_stages(const Scene& scene, const avatar::StationLimit& limit, StageForm display_ratio, StageForm delay,

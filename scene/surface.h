@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "avatar/surface.h"
+#include "scene/cues.h"
 
 namespace palpa::scene {
 
@@ -16,6 +17,7 @@ struct SurfaceShape {
     Eigen::Index n_y = 0;
     Eigen::Vector2d spacing_m = Eigen::Vector2d::Zero();
     Eigen::VectorXd sink_m;  // of the nodes, downwards, n_x * n_y values, x fastest
+    CueValues cues;          // what is drawn with it
 };
 
 // Returns the sink (m, downwards) at any place of the tissue: linear between the nodes; beside the grid as at its edge.

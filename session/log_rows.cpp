@@ -8,7 +8,20 @@
 
 namespace palpa::session {
 
-study::SampleRow row_of(const platform::Sample& sample, const scene::Plan& plan, const scene::State& state) {
+namespace {
+
+void add_cues(const scene::Scene& scene, const scene::Plan& plan, const scene::State& state, study::SampleRow& row) {
+    const double depth_m = state.touch.down ? state.contact.depth_m : 0.0;
+    const scene::CueValues values = scene::cues_at(scene.cues, plan.indenter_radius_m, depth_m);
+    if (scene.cues.footprint > 0.0) row.footprint_mm = 1e3 * values.footprint_m;
+    if (scene.cues.crease > 0.0) row.crease = values.crease;
+    if (scene.cues.depth_gain > 0.0) row.drawn_depth_mm = 1e3 * values.drawn_depth_m;
+}
+
+}  // namespace
+
+study::SampleRow row_of(const platform::Sample& sample, const scene::Scene& scene, const scene::Plan& plan,
+                        const scene::State& state) {
     study::SampleRow row;
     row.t_host_s = sample.t_host_s;
     row.t_device_s = sample.t_device_s;
@@ -28,6 +41,7 @@ study::SampleRow row_of(const platform::Sample& sample, const scene::Plan& plan,
     row.delay_ms = 1e3 * state.avatar.delay_s;
     row.saturated = state.contact.saturated;
     row.ft_source = state.contact.measured ? plan.tangential_source : "none";
+    add_cues(scene, plan, state, row);
     return row;
 }
 

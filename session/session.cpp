@@ -235,7 +235,7 @@ void take_sample(const platform::Sample& sample, Session& session) {
     const std::size_t marks_before = session.trial.marks.size();
     observe(*session.plan, sample, session.state, session.trial);
     if (session.log) {
-        study::SampleRow row = row_of(sample, *session.plan, session.state);
+        study::SampleRow row = row_of(sample, session.scene, *session.plan, session.state);
         if (session.label) row.trial = session.label->trial;
         session.log->write(row);
     }

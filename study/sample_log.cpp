@@ -32,6 +32,9 @@ void visit_fields(const SampleRow& r, Visit&& visit) {
     visit("delay_ms", r.delay_ms, "ms", "delay of the avatar (law D)");
     visit("saturated", r.saturated, "", "1: pressed deeper than the tissue is known");
     visit("ft_source", r.ft_source, "", "where the tangential force comes from: recorded, energy or none");
+    visit("footprint_mm", r.footprint_mm, "mm", "radius of the ring that grows with depth; n/a without this cue");
+    visit("crease", r.crease, "", "darkness of the crease, 0 to 1; n/a without this cue");
+    visit("drawn_depth_mm", r.drawn_depth_mm, "mm", "depth as drawn; n/a where it is drawn as it is");
 }
 
 namespace {

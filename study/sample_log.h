@@ -34,6 +34,9 @@ struct SampleRow {
     double delay_ms = kMissing;
     std::int64_t saturated = 0;
     std::string_view ft_source = "n/a";
+    double footprint_mm = kMissing;
+    double crease = kMissing;
+    double drawn_depth_mm = kMissing;
 };
 
 // The files of one run. next_run() takes the first free number from `first` on and creates the folders. Throws

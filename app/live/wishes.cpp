@@ -13,6 +13,7 @@ namespace {
 void change_settings(const Wishes& wishes, platform::Window& window, Gui& gui, App& app) {
     if (wishes.left_handed) app.settings.left_handed = *wishes.left_handed;
     if (wishes.above_finger) app.settings.above_finger = *wishes.above_finger;
+    if (wishes.side_view) app.settings.side_view = *wishes.side_view;
     if (wishes.mode) app.settings.test_mode = *wishes.mode == session::TrialMode::test;
     if (wishes.full_screen) {
         app.settings.full_screen = !window.full_screen();
@@ -26,7 +27,8 @@ void change_settings(const Wishes& wishes, platform::Window& window, Gui& gui, A
     if (wishes.keep_results) app.settings.keep_results = *wishes.keep_results;
     if (wishes.text_percent) app.settings.text_percent = *wishes.text_percent;
     const bool changed = wishes.keep_results || wishes.text_percent || wishes.left_handed || wishes.above_finger ||
-                         wishes.mode || wishes.full_screen || wishes.px_per_mm || wishes.scene || wishes.profile;
+                         wishes.side_view || wishes.mode || wishes.full_screen || wishes.px_per_mm || wishes.scene ||
+                         wishes.profile;
     if (changed) keep_settings(app);
     // a trial has one scale and one way of showing the tissue, so a change begins another trial
     if (!wishes.px_per_mm && !wishes.mode && !wishes.above_finger) return;

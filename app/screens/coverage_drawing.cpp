@@ -1,129 +1,163 @@
-// What was pressed, and how deep, over the tissue: areas with smooth edges, made of the cells of the coverage.
+// How deep each place was pressed, as bands with smooth outlines. The outlines are dark and stand out from every tint, so
+// that the bands can be told apart without their colours.
+
+#include "app/screens/coverage_drawing.h"
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <glm/vec2.hpp>
+#include <vector>
 
-#include "app/screens/screens.h"
 #include "app/screens/widgets.h"
 
 namespace palpa::app {
 namespace {
 
-// The tissue around the areas is darkened, so that all of them stand out.
-constexpr ImU32 kVeil = IM_COL32(16, 18, 20, 200);
-constexpr ImU32 kHatch = IM_COL32(168, 176, 182, 110);
-
-// A quantity at the centres of the cells, between which it is linear along the sides of squares. Beyond the first and
-// the last cell it goes on to the edge of the tissue.
-struct CellField {
-    const study::Coverage& c;
-    bool touched;      // the quantity is 1 where something pressed, else the depth as a share of the full depth
-    double threshold;  // from which a place belongs to the area
-
-    double at(int i, int j) const {
-        const int x = std::clamp(i, 0, c.n_x - 1);
-        const int y = std::clamp(j, 0, c.n_y - 1);
-        const auto depth_m = static_cast<double>(c.depth_m[static_cast<std::size_t>(y * c.n_x + x)]);
-        if (touched) return depth_m > 0.0 ? 1.0 : 0.0;
-        return depth_m / c.full_depth_m;
-    }
-    bool inside(int i, int j) const { return at(i, j) >= threshold; }
-    Eigen::Vector2d place_m(int i, int j) const {
-        const double x = std::clamp(i + 0.5, 0.0, static_cast<double>(c.n_x));
-        const double y = std::clamp(j + 0.5, 0.0, static_cast<double>(c.n_y));
-        return {c.x_m + x * c.cell_m, c.y_m + y * c.cell_m};
-    }
+// One level on the grid of the cells' centres with a border around it: 1 where it was reached, 0 elsewhere, blurred.
+struct Mask {
+    int n_x = 0;
+    int n_y = 0;
+    std::vector<float> share;
+    float at(int i, int j) const { return share[static_cast<std::size_t>(j * n_x + i)]; }
 };
 
-struct AreaLook {
-    ImU32 colour;
-    float rim_px;  // of a light line around the area; 0: none
-};
-
-// Draws the part of one square between four centres that belongs to the area.
-void draw_square(const Shown& shown, const CellField& field, int i, int j, const AreaLook& look, ImDrawList& draw) {
-    constexpr std::array<std::array<int, 2>, 4> kCorners{{{0, 0}, {1, 0}, {1, 1}, {0, 1}}};
-    ImVec2 outline[8];
-    ImVec2 crossed[4];
-    int points = 0;
-    int crossings = 0;
-    for (std::size_t k = 0; k < 4; ++k) {
-        const int ai = i + kCorners[k][0];
-        const int aj = j + kCorners[k][1];
-        const int bi = i + kCorners[(k + 1) % 4][0];
-        const int bj = j + kCorners[(k + 1) % 4][1];
-        const double a = field.at(ai, aj);
-        const double b = field.at(bi, bj);
-        const Eigen::Vector2d a_m = field.place_m(ai, aj);
-        if (a >= field.threshold) outline[points++] = on_screen(shown.view, a_m.x(), a_m.y());
-        if ((a >= field.threshold) == (b >= field.threshold)) continue;
-        const Eigen::Vector2d p_m = a_m + (field.threshold - a) / (b - a) * (field.place_m(bi, bj) - a_m);
-        outline[points++] = crossed[crossings++] = on_screen(shown.view, p_m.x(), p_m.y());
+void blur(int n, int stride, float* values) {
+    float before = values[0];
+    for (int i = 0; i < n; ++i) {
+        const float here = values[i * stride];
+        const float after = i + 1 < n ? values[(i + 1) * stride] : here;
+        values[i * stride] = 0.25f * before + 0.5f * here + 0.25f * after;
+        before = here;
     }
-    if (points > 2) draw.AddConvexPolyFilled(outline, points, look.colour);
-    if (look.rim_px <= 0.0f) return;
-    for (int k = 0; k + 1 < crossings; k += 2) draw.AddLine(crossed[k], crossed[k + 1], kInk, look.rim_px);
 }
 
-// Draws squares that belong to the area entirely as one.
-void draw_row_of_squares(const Shown& shown, const CellField& field, int first, int last, int j, ImU32 colour,
-                         ImDrawList& draw) {
-    const auto px = [&](int x, int y) {
-        const Eigen::Vector2d p_m = field.place_m(x, y);
-        return on_screen(shown.view, p_m.x(), p_m.y());
-    };
-    draw.AddQuadFilled(px(first, j), px(last + 1, j), px(last + 1, j + 1), px(first, j + 1), colour);
-}
-
-void draw_area(const Shown& shown, const CellField& field, const AreaLook& look, ImDrawList& draw) {
-    for (int j = -1; j < field.c.n_y; ++j) {
-        const auto corners = [&](int i) {
-            return static_cast<int>(field.inside(i, j)) + static_cast<int>(field.inside(i + 1, j)) +
-                   static_cast<int>(field.inside(i, j + 1)) + static_cast<int>(field.inside(i + 1, j + 1));
-        };
-        for (int i = -1; i < field.c.n_x; ++i) {
-            const int here = corners(i);
-            if (here == 0) continue;
-            if (here < 4) {
-                draw_square(shown, field, i, j, look, draw);
-                continue;
-            }
-            int last = i;
-            while (last + 1 < field.c.n_x && corners(last + 1) == 4) ++last;
-            draw_row_of_squares(shown, field, i, last, j, look.colour, draw);
-            i = last;
+Mask mask_of(const study::Coverage& c, study::PalpationLevel level) {
+    Mask mask{c.n_x + 2, c.n_y + 2, {}};
+    mask.share.resize(static_cast<std::size_t>(mask.n_x * mask.n_y));
+    for (int j = 0; j < mask.n_y; ++j) {
+        for (int i = 0; i < mask.n_x; ++i) {
+            // the border is as the outermost cells, so that a band ends at the tissue's edge
+            const int x = std::clamp(i - 1, 0, c.n_x - 1);
+            const int y = std::clamp(j - 1, 0, c.n_y - 1);
+            const auto depth_m = static_cast<double>(c.depth_m[static_cast<std::size_t>(y * c.n_x + x)]);
+            mask.share[static_cast<std::size_t>(j * mask.n_x + i)] = level_of(c, depth_m) >= level ? 1.0f : 0.0f;
         }
     }
+    for (int pass = 0; pass < 2; ++pass) {
+        for (int j = 0; j < mask.n_y; ++j) blur(mask.n_x, 1, &mask.share[static_cast<std::size_t>(j * mask.n_x)]);
+        for (int i = 0; i < mask.n_x; ++i) blur(mask.n_y, mask.n_x, &mask.share[static_cast<std::size_t>(i)]);
+    }
+    return mask;
 }
 
-// Veils the tissue and hatches what was never touched, so that this is not one more colour.
-void draw_untouched(const Shown& shown, const study::Coverage& c, float mm, ImDrawList& draw) {
-    const double x1 = c.x_m + c.n_x * c.cell_m;
-    const double y1 = c.y_m + c.n_y * c.cell_m;
-    draw.AddQuadFilled(on_screen(shown.view, c.x_m, c.y_m), on_screen(shown.view, x1, c.y_m),
-                       on_screen(shown.view, x1, y1), on_screen(shown.view, c.x_m, y1), kVeil);
-    for (int j = 0; j < c.n_y; ++j) {
-        for (int i = 0; i < c.n_x; ++i) {
-            if ((i + c.n_y - j) % 4 != 0 || c.depth_m[static_cast<std::size_t>(j * c.n_x + i)] > 0.0f) continue;
-            const double x_m = c.x_m + i * c.cell_m;
-            const double y_m = c.y_m + j * c.cell_m;
-            draw.AddLine(on_screen(shown.view, x_m, y_m), on_screen(shown.view, x_m + c.cell_m, y_m + c.cell_m), kHatch,
-                         0.2f * mm);
+// The part of a square between four centres where the level was reached: a polygon of up to six corners, and the line
+// (up to two) that ends it.
+struct Piece {
+    std::array<glm::vec2, 8> corners;
+    int count = 0;
+    std::array<glm::vec2, 4> edge;
+    int edge_count = 0;
+};
+
+Piece piece_of(const Mask& mask, int i, int j) {
+    constexpr float kHalf = 0.5f;
+    const std::array<float, 4> share{mask.at(i, j), mask.at(i + 1, j), mask.at(i + 1, j + 1), mask.at(i, j + 1)};
+    const std::array<glm::vec2, 4> corner{glm::vec2(0, 0), glm::vec2(1, 0), glm::vec2(1, 1), glm::vec2(0, 1)};
+    Piece piece;
+    for (std::size_t k = 0; k < 4; ++k) {
+        const std::size_t next = (k + 1) % 4;
+        const bool inside = share[k] >= kHalf;
+        if (inside) piece.corners[static_cast<std::size_t>(piece.count++)] = corner[k];
+        if (inside == (share[next] >= kHalf)) continue;
+        const float s = (kHalf - share[k]) / (share[next] - share[k]);
+        const glm::vec2 crossing = corner[k] + s * (corner[next] - corner[k]);
+        piece.corners[static_cast<std::size_t>(piece.count++)] = crossing;
+        piece.edge[static_cast<std::size_t>(piece.edge_count++)] = crossing;
+    }
+    return piece;
+}
+
+// Converts places of the mask to the screen, cut off at the tissue's edges.
+struct OnTissue {
+    const render::TissueView& view;
+    const study::Coverage& c;
+    ImVec2 operator()(float x, float y) const {
+        const double across = std::clamp(static_cast<double>(x) - 0.5, 0.0, static_cast<double>(c.n_x));
+        const double up = std::clamp(static_cast<double>(y) - 0.5, 0.0, static_cast<double>(c.n_y));
+        return on_screen(view, c.x_m + across * c.cell_m, c.y_m + up * c.cell_m);
+    }
+};
+
+void fill_run(const OnTissue& at, int first, int last, int j, ImU32 colour, ImDrawList& draw) {
+    const auto x0 = static_cast<float>(first);
+    const auto x1 = static_cast<float>(last + 1);
+    const auto y = static_cast<float>(j);
+    draw.AddQuadFilled(at(x0, y), at(x1, y), at(x1, y + 1.0f), at(x0, y + 1.0f), colour);
+}
+
+void fill_piece(const OnTissue& at, const Piece& piece, int i, int j, ImU32 colour, ImDrawList& draw) {
+    for (int k = 0; k < piece.count; ++k) {
+        const glm::vec2& p = piece.corners[static_cast<std::size_t>(k)];
+        draw.PathLineTo(at(static_cast<float>(i) + p.x, static_cast<float>(j) + p.y));
+    }
+    draw.PathFillConvex(colour);
+}
+
+// Calls per_piece(i, j, piece) for each square that the outline crosses, per_run(first, last, j) for the rest.
+template <class PerPiece, class PerRun>
+void for_each_part(const Mask& mask, const PerPiece& per_piece, const PerRun& per_run) {
+    for (int j = 0; j + 1 < mask.n_y; ++j) {
+        int began = -1;
+        for (int i = 0; i + 1 < mask.n_x; ++i) {
+            const Piece piece = piece_of(mask, i, j);
+            const bool whole = piece.count == 4 && piece.edge_count == 0;
+            if (whole && began < 0) began = i;
+            if (whole) continue;
+            if (began >= 0) per_run(began, i - 1, j);
+            began = -1;
+            if (piece.count > 0) per_piece(i, j, piece);
+        }
+        if (began >= 0) per_run(began, mask.n_x - 2, j);
+    }
+}
+
+void hatch_untouched(const OnTissue& at, const Mask& touched, float mm, ImDrawList& draw) {
+    for (int j = 0; j + 1 < touched.n_y; ++j) {
+        for (int i = 0; i + 1 < touched.n_x; ++i) {
+            if ((i + touched.n_y - j) % 5 != 0 || touched.at(i, j) > 0.1f || touched.at(i + 1, j + 1) > 0.1f) continue;
+            const auto x = static_cast<float>(i);
+            const auto y = static_cast<float>(j);
+            draw.AddLine(at(x, y), at(x + 1.0f, y + 1.0f), kHatch, 0.3f * mm);
         }
     }
 }
 
 }  // namespace
 
-void draw_coverage(const Shown& shown, float mm, ImDrawList& draw) {
-    const study::Coverage& c = shown.trial.coverage;
-    draw_untouched(shown, c, mm, draw);
+void draw_coverage(const render::TissueView& view, const study::Coverage& coverage, float mm, ImDrawList& draw) {
+    const OnTissue at{view, coverage};
     const ImDrawListFlags flags = draw.Flags;
-    draw.Flags &= ~ImDrawListFlags_AntiAliasedFill;  // neighbours would show seams
-    draw_area(shown, {c, true, 0.5}, {kAreaTints[0], 0.35f * mm}, draw);
-    draw_area(shown, {c, false, 1.0 / 3.0}, {kAreaTints[1], 0.0f}, draw);
-    draw_area(shown, {c, false, 2.0 / 3.0}, {kAreaTints[2], 0.0f}, draw);
-    draw.Flags = flags;
+    for (int level = 1; level < study::kPalpationLevels; ++level) {
+        const Mask mask = mask_of(coverage, static_cast<study::PalpationLevel>(level));
+        if (level == 1) hatch_untouched(at, mask, mm, draw);
+        const ImU32 tint = kAreaTints[level - 1];
+        draw.Flags &= ~ImDrawListFlags_AntiAliasedFill;  // neighbours would show seams
+        for_each_part(
+            mask, [&](int i, int j, const Piece& piece) { fill_piece(at, piece, i, j, tint, draw); },
+            [&](int first, int last, int j) { fill_run(at, first, last, j, tint, draw); });
+        draw.Flags = flags;
+        for_each_part(
+            mask,
+            [&](int i, int j, const Piece& piece) {
+                for (std::size_t k = 0; k + 1 < static_cast<std::size_t>(piece.edge_count); k += 2) {
+                    const glm::vec2 from = glm::vec2(i, j) + piece.edge[k];
+                    const glm::vec2 to = glm::vec2(i, j) + piece.edge[k + 1];
+                    draw.AddLine(at(from.x, from.y), at(to.x, to.y), kDark, 0.35f * mm);
+                }
+            },
+            [](int, int, int) {});
+    }
 }
 
 }  // namespace palpa::app

@@ -17,20 +17,20 @@ Layout layout_now(const Gui& gui, float width_px, float height_px, const Setting
     return layout_of(width_px, height_px, gui.mm(), settings.left_handed, settings.above_finger, gui.hand_mm());
 }
 
-struct Surface {
-    render::Dent dent;
-    render::Relief relief;
-};
-
-Surface surface_of(const scene::Scene& scene, const scene::Plan& plan, const scene::Avatar& avatar,
-                   scene::State& state) {
-    Surface surface;
-    if (!scene.surface) return surface;
-    scene::SurfaceShape shape;
-    scene::surface_now(scene, plan, state, shape);
-    if (shape.curve) surface.dent = dent_of(*shape.curve, avatar);
-    if (shape.n_x > 0) surface.relief = relief_of(shape, avatar);
-    return surface;
+// Fills what is derived from the state: where the avatar is now, and what the tissue looks like.
+void look_at_tissue(const ToShow& what, const glm::vec2& window_px, scene::State& state, Shown& shown) {
+    const bool finished = what.trial.finished;
+    shown.avatar = finished ? scene::Avatar{} : scene::avatar_at(what.scene, state, what.now_s);
+    shown.view = tissue_view(what.scene, state, shown.avatar, window_px);
+    shown.picture.view = shown.view;
+    if (what.scene.surface) shown.picture.material = static_cast<render::Material>(what.scene.surface->material);
+    if (finished) return;
+    if (what.scene.surface) {
+        scene::surface_now(what.scene, what.plan, state, shown.shape);
+        add_surface(shown.shape, what.scene.cues, shown.avatar, shown.picture);
+    }
+    add_indenter(what.plan, state, shown.shape.cues, shown.avatar, shown.picture);
+    shown.picture.indenter.hand_x = what.settings.left_handed ? -1.0f : 1.0f;
 }
 
 // Draws the open screen if it covers the tissue. Returns false if none does.
@@ -91,11 +91,13 @@ std::uint64_t hash_of(std::uint64_t hash, const Numbers& numbers) {
     return hash_more(hash, &numbers, sizeof numbers);
 }
 
-std::uint64_t content_of(const render::TissueView& view, const Surface& surface, const render::Ball& ball) {
-    static_assert(sizeof(render::TissueView) == 14 * sizeof(float) && sizeof(render::Ball) == 5 * sizeof(float));
+std::uint64_t content_of(const render::TissuePicture& picture) {
+    static_assert(sizeof(render::TissueView) == 20 * sizeof(float) && sizeof(render::Indenter) == 8 * sizeof(float));
     static_assert(sizeof(render::Dent) == (3 + render::kSinkPoints) * sizeof(float));
-    std::uint64_t hash = hash_of(hash_of(hash_of(1, view), surface.dent), ball);
-    const render::Relief& relief = surface.relief;
+    static_assert(sizeof(render::Grip) == 8 * sizeof(float));
+    const std::uint64_t view = hash_of(hash_of(1, picture.view), picture.material);
+    std::uint64_t hash = hash_of(hash_of(hash_of(view, picture.dent), picture.grip), picture.indenter);
+    const render::Relief& relief = picture.relief;
     hash = hash_of(hash_of(hash_of(hash, relief.n_x), relief.n_y), relief.shift_m);
     return hash_more(hash, relief.sink_m.data(), relief.sink_m.size() * sizeof(float));
 }
@@ -111,28 +113,24 @@ Wishes draw_frame(const ToShow& what, const Canvas& canvas, ViewState& view, sce
     const WindowSize window = gui.size_px();
     const session::Trial& trial = what.trial;
     Shown shown{what, state, view.times};
-    shown.avatar = trial.finished ? scene::Avatar{} : scene::avatar_at(what.scene, state, what.now_s);
-    shown.view = tissue_view(what.scene, state, window.width, window.height);
+    look_at_tissue(what, {window.width, window.height}, state, shown);
     // a study's time limit runs from the trial's begin
     const double since_s = (trial.finished ? trial.now_s : what.now_s) - trial.began_s;
     shown.trial_s = study != nullptr ? std::max(0.0, since_s) : session::clock_s(trial, what.now_s);
     shown.experimenter = view.cost;
     Wishes wishes;
     draw_panels(shown, layout_now(gui, window.width, window.height, what.settings), gui, view, wishes);
-    const Surface surface = trial.finished ? Surface{} : surface_of(what.scene, what.plan, shown.avatar, state);
-    render::Ball ball = ball_of(what.plan, state, shown.avatar);
-    if (trial.finished) ball.radius_m = 0.0f;
     gui.end_frame();
     const std::int64_t built_ns = scene::steady_ns();
     view.times.built_ns = built_ns;
     view.times.cpu.add_ns(static_cast<double>(built_ns - began_ns));
-    const std::uint64_t tissue = content_of(shown.view, surface, ball);
+    const std::uint64_t tissue = content_of(shown.picture);
     const std::uint64_t content = hash_of(gui.content(), tissue);
     view.on_screen.drawn = content != view.on_screen.content;
     if (!view.on_screen.drawn) return wishes;
     view.on_screen.content = content;
     const bool tissue_as_before = tissue == std::exchange(view.on_screen.tissue, tissue);
-    canvas.tissue.draw(shown.view, surface.dent, surface.relief, ball, tissue_as_before);
+    canvas.tissue.draw(shown.picture, tissue_as_before);
     gui.draw();
     view.times.gl.add_ns(static_cast<double>(scene::steady_ns() - built_ns));
     return wishes;

@@ -88,6 +88,10 @@ void settings_page(const Shown& shown, const Gui& gui, Wishes& wishes) {
     const int finger = ways(words::kContactOfFinger,
                             {{words::kUnderFinger, !s.above_finger}, {words::kAboveFinger, s.above_finger}}, gui);
     if (finger >= 0) wishes.above_finger = finger == 1;
+    if (shown.scene.cues.side_view) {
+        const int side = ways(words::kSideView, {{words::kShown, s.side_view}, {words::kHidden, !s.side_view}}, gui);
+        if (side >= 0) wishes.side_view = side == 0;
+    }
     const int size = ways(words::kTextSize,
                           {{"100 %", s.text_percent == kTextPercents[0]},
                            {"120 %", s.text_percent == kTextPercents[1]},
@@ -268,6 +272,7 @@ void take_keys(const Shown& shown, const Gui& gui, ViewState& view, Wishes& wish
     if (gui.pressed('t')) wishes.trials = true;
     if (gui.pressed('y')) wishes.studies = true;
     menu_keys(shown, gui, wishes);
+    if (gui.pressed('x') && shown.scene.cues.side_view) wishes.side_view = !shown.settings.side_view;
     if (gui.pressed('c')) view.cost = !view.cost;
     if (gui.pressed('d')) wishes.screen = Screen::devices;
     if (gui.pressed('z')) wishes.screen = Screen::scale;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "app/screens/coverage_drawing.h"
 #include "app/screens/screens.h"
 #include "app/screens/widgets.h"
 #include "app/screens/words.h"
@@ -23,15 +24,10 @@ void draw_nodules(const Shown& shown, const session::Debrief& debrief, float mm,
     for (std::size_t i = 0; i < shown.plan.nodules.size(); ++i) {
         const stiffnessmaps::Nodule& nodule = shown.plan.nodules[i];
         const ImVec2 at = on_screen(shown.view, nodule.x_m, nodule.y_m);
-        const auto radius_px = static_cast<float>(0.5 * nodule.diameter_m.value_or(4e-3)) * shown.view.px_per_m;
+        const auto radius_m = static_cast<float>(0.5 * nodule.diameter_m.value_or(4e-3));
+        const float radius_px = radius_m * shown.view.px_per_m;
         const bool found = debrief.findings[i] == session::Finding::found;
-        if (found) {
-            draw.AddCircle(at, radius_px, kDark, 48, 1.3f * mm);
-            draw.AddCircle(at, radius_px, kInk, 48, 0.8f * mm);
-        } else {
-            draw.AddCircle(at, radius_px, kDark, 48, 1.3f * mm);
-            dashed_circle(draw, at, radius_px, kInk, 0.8f * mm);
-        }
+        ring_on_surface(draw, shown.picture, {nodule.x_m, nodule.y_m}, radius_m, {0.8f * mm, 0.4f * mm, !found});
         const std::string text = nodule.id + ": " + name_of(debrief.findings[i]);
         const float width_px = ImGui::CalcTextSize(text.c_str()).x;
         const bool fits = at.x + radius_px + mm + width_px < ImGui::GetIO().DisplaySize.x;
@@ -164,7 +160,7 @@ void buttons(const Gui& gui, bool menu, Wishes& wishes) {
 
 void draw_reveal_on_tissue(const Shown& shown, const Gui& gui, const session::Debrief& debrief) {
     ImDrawList& draw = *ImGui::GetBackgroundDrawList();
-    draw_coverage(shown, gui.mm(), draw);
+    draw_coverage(shown.view, shown.trial.coverage, gui.mm(), draw);
     draw_path(shown, gui.mm(), draw);
     draw_nodules(shown, debrief, gui.mm(), draw);
     draw_marks(shown, debrief.score, gui.mm(), draw);

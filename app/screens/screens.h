@@ -38,6 +38,7 @@ struct Wishes {
     std::optional<session::TrialMode> mode;
     std::optional<bool> left_handed;
     std::optional<bool> above_finger;
+    std::optional<bool> side_view;
     std::optional<double> px_per_mm;  // of this screen, measured; NaN: forget it
     std::optional<StudyWish> study;
     std::optional<bool> guided;  // true: begin the guided start; false: leave it
@@ -143,9 +144,11 @@ struct Shown : ToShow {
     const scene::State& state;
     const FrameTimes& times;
     scene::Avatar avatar{};
-    render::TissueView view{};
-    double trial_s = 0.0;       // as the clock shows it
-    bool experimenter = false;  // ViewState::cost
+    scene::SurfaceShape shape{};      // of the surface, as it is
+    render::TissuePicture picture{};  // of the tissue, as it is drawn
+    render::TissueView view{};        // picture.view
+    double trial_s = 0.0;             // as the clock shows it
+    bool experimenter = false;        // ViewState::cost
 };
 
 // Draws marks, lag, pen and (in practice) nodules over the tissue.
@@ -168,9 +171,11 @@ void draw_help(const Shown& shown, Gui& gui, ViewState& view);
 std::string advice_for(const scene::Plan& plan, const session::Trial& trial, const session::Debrief& debrief,
                        const scene::View& view);
 
+// Draws the section through the contact, if the scene has one and the person wants to see it.
+void draw_side_view(const Shown& shown, const Gui& gui);
+
 void draw_menu(const Shown& shown, const Layout& layout, Gui& gui, ViewState& view, Wishes& wishes);
 void draw_cost(const Shown& shown, const Layout& layout, Gui& gui);
-void draw_coverage(const Shown& shown, float mm, ImDrawList& draw);
 void draw_reveal_on_tissue(const Shown& shown, const Gui& gui, const session::Debrief& debrief);
 void draw_reveal_panel(const Shown& shown, const Layout& layout, const Reviewing& reviewing, Gui& gui, Wishes& wishes);
 void draw_device_screen(const Shown& shown, const CheckingDevices& checking, Gui& gui, Wishes& wishes);

@@ -22,6 +22,7 @@ Settings parse(const fs::path& file) {
     s.profile = json.text("profile", s.profile);
     s.left_handed = json.boolean("left_handed", s.left_handed);
     s.above_finger = json.boolean("above_finger", s.above_finger);
+    s.side_view = json.boolean("side_view", s.side_view);
     s.test_mode = json.boolean("test_mode", s.test_mode);
     s.full_screen = json.boolean("full_screen", s.full_screen);
     s.keep_results = json.boolean("keep_results", s.keep_results);
@@ -43,6 +44,7 @@ files::Json json_of(const Settings& s) {
                      {"profile", s.profile},
                      {"left_handed", s.left_handed},
                      {"above_finger", s.above_finger},
+                     {"side_view", s.side_view},
                      {"test_mode", s.test_mode},
                      {"full_screen", s.full_screen},
                      {"keep_results", s.keep_results},

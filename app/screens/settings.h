@@ -12,6 +12,7 @@ struct Settings {
     std::string profile;  // empty: the scene's own
     bool left_handed = false;
     bool above_finger = false;  // a finger indents the place kFingerOffset_mm above it, and does not hide it
+    bool side_view = true;      // of scenes that have one
     bool test_mode = false;
     bool full_screen = false;
     bool keep_results = true;  // of each finished trial, in the user's data folder

@@ -7,18 +7,19 @@
 
 namespace palpa::app {
 
-// Returns the view of the tissue as the scene maps it. An indirect scene is drawn tilted, since no pen has to lie on
-// it.
-render::TissueView tissue_view(const scene::Scene& scene, const scene::State& state, float window_width_px,
-                               float window_height_px);
+// Returns the view of the tissue as the scene maps it, with the eye above the avatar. An indirect scene is drawn tilted,
+// since no pen has to lie on it.
+render::TissueView tissue_view(const scene::Scene& scene, const scene::State& state, const scene::Avatar& avatar,
+                               const glm::vec2& window_px);
 
-render::Dent dent_of(const avatar::SurfaceCurve& curve, const scene::Avatar& avatar);
+// Adds the surface to the picture, moved with the avatar. A surface of nodes is smoothed by 1-2-1 over the nodes, which
+// removes the zig-zag that forces on single nodes leave.
+void add_surface(const scene::SurfaceShape& shape, const scene::DrawnCues& cues, const scene::Avatar& avatar,
+                 render::TissuePicture& picture);
 
-// Returns a surface of nodes, moved with the avatar and smoothed by 1-2-1 over the nodes, which removes the zig-zag
-// that forces on single nodes leave.
-render::Relief relief_of(const scene::SurfaceShape& shape, const scene::Avatar& avatar);
-
-// Returns the indenter at the avatar's position. While nothing touches, it hovers and is translucent.
-render::Ball ball_of(const scene::Plan& plan, const scene::State& state, const scene::Avatar& avatar);
+// Adds the indenter at the avatar's position, and what it does to the look of the surface around it. Without a drawn
+// depth, which no scene without a surface has, it lies on top. While nothing touches, it hovers and is translucent.
+void add_indenter(const scene::Plan& plan, const scene::State& state, const scene::CueValues& cues,
+                  const scene::Avatar& avatar, render::TissuePicture& picture);
 
 }  // namespace palpa::app

@@ -264,18 +264,37 @@ void strip_panel(const Shown& shown, Gui& gui, ViewState& view, Wishes& wishes) 
     ImGui::EndChild();
 }
 
+ImVec2 at_height(const render::TissueView& view, const Eigen::Vector2d& p_m, float height_m) {
+    const glm::vec2 px = render::project_px(view, glm::vec3(p_m.x(), p_m.y(), height_m));
+    return {px.x, px.y};
+}
+
 void draw_pen(const Shown& shown, const Gui& gui, ImDrawList& draw) {
     if (!shown.state.touch.down) {  // shows where a mark would go
         if (!shown.trial.last_px) return;
         const Eigen::Vector2d p_m = scene::tissue_of_px(shown.state.view, *shown.trial.last_px);
         const ImVec2 at = on_screen(shown.view, p_m.x(), p_m.y());
+        draw.AddCircle(at, 2.2f * gui.mm(), kDark, 32, 0.9f * gui.mm());
         dashed_circle(draw, at, 2.2f * gui.mm(), kInk, 0.3f * gui.mm());
         return;
     }
+    // beside an avatar that does not lag the pen needs no mark
+    const auto lag_m = static_cast<float>(shown.avatar.lag_m.norm());
+    const float strength = std::clamp((lag_m - 0.1e-3f) / 0.4e-3f, 0.0f, 1.0f);
+    if (!(strength > 0.0f)) return;
+    const auto faded = [&](ImU32 colour) {
+        const auto alpha = static_cast<ImU32>(255.0f * strength);
+        return (colour & ~IM_COL32_A_MASK) | (alpha << IM_COL32_A_SHIFT);
+    };
     const Eigen::Vector2d& pen_m = shown.state.touch.p_m;
-    const ImVec2 pen = on_screen(shown.view, pen_m.x(), pen_m.y());
-    draw.AddLine(on_screen(shown.view, shown.avatar.p_m.x(), shown.avatar.p_m.y()), pen, kLag, 0.8f * gui.mm());
-    draw.AddCircle(pen, 1.6f * gui.mm(), kLag, 24, 0.6f * gui.mm());
+    // where a pen lies on the glass, its mark stays under it; a tilted tissue is seen from the side, and the pen with it
+    const float height_m = shown.view.tilt_rad > 0.0f ? shown.picture.indenter.height_m : 0.0f;
+    const ImVec2 pen = at_height(shown.view, pen_m, height_m);
+    const ImVec2 avatar = at_height(shown.view, shown.avatar.p_m, height_m);
+    draw.AddLine(avatar, pen, faded(kDark), 1.3f * gui.mm());
+    draw.AddCircle(pen, 1.6f * gui.mm(), faded(kDark), 24, 1.1f * gui.mm());
+    draw.AddLine(avatar, pen, faded(kLag), 0.7f * gui.mm());
+    draw.AddCircle(pen, 1.6f * gui.mm(), faded(kLag), 24, 0.6f * gui.mm());
 }
 
 }  // namespace
@@ -284,15 +303,16 @@ void draw_on_tissue(const Shown& shown, const Gui& gui) {
     ImDrawList& draw = *ImGui::GetBackgroundDrawList();
     if (shown.trial.mode == session::TrialMode::practice) {
         for (const stiffnessmaps::Nodule& nodule : shown.plan.nodules) {
-            const ImVec2 at = on_screen(shown.view, nodule.x_m, nodule.y_m);
-            const auto radius_px = static_cast<float>(0.5 * nodule.diameter_m.value_or(4e-3)) * shown.view.px_per_m;
-            draw.AddCircle(at, radius_px, kInk, 48, 0.5f * gui.mm());
-            rimmed_text(draw, ImVec2(at.x + radius_px + gui.mm(), at.y), kInk, nodule.id);
+            const ImVec2 at = on_surface(shown.picture, nodule.x_m, nodule.y_m);
+            const auto radius_m = static_cast<float>(0.5 * nodule.diameter_m.value_or(4e-3));
+            ring_on_surface(draw, shown.picture, {nodule.x_m, nodule.y_m}, radius_m,
+                            {0.45f * gui.mm(), 0.3f * gui.mm()});
+            rimmed_text(draw, ImVec2(at.x + radius_m * shown.view.px_per_m + gui.mm(), at.y), kInk, nodule.id);
         }
     }
     for (std::size_t i = 0; i < shown.trial.marks.size(); ++i) {
         const session::Mark& mark = shown.trial.marks[i];
-        const ImVec2 at = on_screen(shown.view, mark.p_m.x(), mark.p_m.y());
+        const ImVec2 at = on_surface(shown.picture, mark.p_m.x(), mark.p_m.y());
         cross(draw, at, 1.6f * gui.mm(), kDark, 1.2f * gui.mm());
         cross(draw, at, 1.6f * gui.mm(), kInk, 0.6f * gui.mm());
         const std::string sure = mark.confidence > 0 ? " (" + std::to_string(mark.confidence) + ")" : "";
@@ -300,6 +320,7 @@ void draw_on_tissue(const Shown& shown, const Gui& gui) {
                     std::to_string(i + 1) + sure);
     }
     draw_pen(shown, gui, draw);
+    draw_side_view(shown, gui);
 }
 
 void draw_trial_panel(const Shown& shown, const Layout& layout, Gui& gui, ViewState& view, Wishes& wishes) {

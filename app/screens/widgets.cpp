@@ -1,6 +1,7 @@
 #include "app/screens/widgets.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <imgui_internal.h>
@@ -141,6 +142,27 @@ std::string fixed(double value, int digits) {
 ImVec2 on_screen(const render::TissueView& view, double x_m, double y_m) {
     const glm::vec2 px = render::project_px(view, glm::vec3(x_m, y_m, 0.0));
     return {px.x, px.y};
+}
+
+ImVec2 on_surface(const render::TissuePicture& picture, double x_m, double y_m) {
+    const glm::vec3 p_m = render::displaced_m(picture, {x_m, y_m});
+    const glm::vec2 px = render::project_px(picture.view, p_m);
+    return {px.x, px.y};
+}
+
+void ring_on_surface(ImDrawList& draw, const render::TissuePicture& picture, const glm::vec2& centre_m, float radius_m,
+                     const RimmedLine& line) {
+    constexpr int kPoints = 64;
+    std::array<ImVec2, kPoints> points;
+    for (int i = 0; i < kPoints; ++i) {
+        const float angle = 2.0f * std::numbers::pi_v<float> * static_cast<float>(i) / kPoints;
+        const glm::vec2 p_m = centre_m + radius_m * glm::vec2(std::cos(angle), std::sin(angle));
+        points[static_cast<std::size_t>(i)] =
+            on_surface(picture, static_cast<double>(p_m.x), static_cast<double>(p_m.y));
+    }
+    draw.AddPolyline(points.data(), kPoints, kDark, ImDrawFlags_Closed, line.core_px + 2.0f * line.rim_px);
+    if (!line.dashed) return draw.AddPolyline(points.data(), kPoints, kInk, ImDrawFlags_Closed, line.core_px);
+    for (std::size_t i = 0; i < kPoints; i += 4) draw.AddPolyline(&points[i], 3, kInk, 0, line.core_px);
 }
 
 void cross(ImDrawList& draw, ImVec2 at, float r, ImU32 colour, float width_px) {

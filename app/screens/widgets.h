@@ -15,12 +15,13 @@ inline constexpr ImU32 kPale = IM_COL32(180, 188, 194, 255);
 inline constexpr ImU32 kLag = IM_COL32(255, 214, 90, 255);
 inline constexpr ImU32 kDark = IM_COL32(20, 22, 24, 255);
 
-// Light, medium, deep: three tints of one hue for the force; for areas, three steps from dark blue to light yellow, each
-// with a luminance contrast of 3 : 1 to the next, which everybody sees.
+// Light, medium, deep: three tints of one hue for the force, three steps of cividis (made for red-green colour
+// blindness; PLOS ONE 13 (2018) e0199239) for areas, all of them light enough for dark lines.
 inline constexpr ImU32 kForceTints[3] = {IM_COL32(44, 66, 84, 255), IM_COL32(58, 92, 120, 255),
                                          IM_COL32(76, 122, 160, 255)};
-inline constexpr ImU32 kAreaTints[3] = {IM_COL32(48, 68, 100, 255), IM_COL32(148, 145, 120, 255),
-                                        IM_COL32(255, 252, 190, 255)};
+inline constexpr ImU32 kAreaTints[3] = {IM_COL32(122, 158, 214, 235), IM_COL32(186, 190, 176, 235),
+                                        IM_COL32(250, 221, 76, 235)};
+inline constexpr ImU32 kHatch = IM_COL32(20, 22, 24, 190);
 
 inline constexpr float kTarget_mm = 9.0f;  // least height of a control that is touched
 inline constexpr float kMark_mm = 12.0f;
@@ -60,8 +61,20 @@ void value_line(const char* name, const std::string& value, float column_px);
 std::string clock_text(double seconds);       // such as 1:07
 std::string fixed(double value, int digits);  // with this many decimals; "-" if not finite
 
-// Returns where a place on the tissue is drawn.
+// Returns where a place on the tissue is drawn: on the undisturbed surface, or on the surface as it is displaced now.
 ImVec2 on_screen(const render::TissueView& view, double x_m, double y_m);
+ImVec2 on_surface(const render::TissuePicture& picture, double x_m, double y_m);
+
+// What is drawn on the tissue has a light core in a dark rim, since no single colour stands out from every tissue, its
+// lit slopes and its shadows. Widths are of the core; the rim is `rim_px` wide on both sides.
+struct RimmedLine {
+    float core_px = 1.0f;
+    float rim_px = 1.0f;
+    bool dashed = false;
+};
+// Draws a circle that lies on the surface and is displaced with it.
+void ring_on_surface(ImDrawList& draw, const render::TissuePicture& picture, const glm::vec2& centre_m, float radius_m,
+                     const RimmedLine& line);
 
 void cross(ImDrawList& draw, ImVec2 at, float radius_px, ImU32 colour, float width_px);
 void dashed_circle(ImDrawList& draw, ImVec2 at, float radius_px, ImU32 colour, float width_px);

@@ -65,6 +65,21 @@ TEST_CASE("scene file: presets and what overrides them") {
     CHECK(*delay.tangential.smoothing_m == doctest::Approx(1.5e-3));
 }
 
+TEST_CASE("scene file: the look of the surface and the cues that are drawn with it") {
+    const Scene plain = read(with(R"(, "surface": {"profile": {}})"));
+    CHECK(plain.surface->material == SurfaceMaterial::skin);
+    CHECK_FALSE(plain.surface->indenter);
+    CHECK(plain.cues.footprint + plain.cues.crease + plain.cues.depth_gain == 0.0);
+    const Scene all = read(with(R"(, "surface": {"profile": {}, "material": "silicone", "indenter": "fingertip"},
+                 "cues": {"footprint": 0.7, "crease": 0.6, "depth_gain": 0.5, "side_view": true})"));
+    CHECK(all.surface->material == SurfaceMaterial::silicone);
+    CHECK(all.surface->indenter == DrawnIndenter::fingertip);
+    CHECK(all.cues.footprint == 0.7);
+    CHECK(all.cues.crease == 0.6);
+    CHECK(all.cues.depth_gain == 0.5);
+    CHECK(all.cues.side_view);
+}
+
 TEST_CASE("scene file: wrong keys and values are refused by key") {
     CHECK(contains(said("{}"), "name: found nothing"));
     CHECK(contains(said(with(R"(, "avatr": {})")), "avatr: found an unknown key, expected one of"));
@@ -81,5 +96,11 @@ TEST_CASE("scene file: wrong keys and values are refused by key") {
     CHECK(
         contains(said(with(R"(, "mapping": {"kind": "direct", "tissue_mm": [0, 1]})")), "mapping.tissue_mm: found 0"));
     CHECK(contains(said(with(R"(, "force_scale": -1)")), "force_scale: found -1"));
+    CHECK(contains(said(with(R"(, "cues": {"crease": 1})")), "cues: found no surface to draw them on"));
+    const std::string surface = R"(, "surface": {"profile": {}})";
+    CHECK(contains(said(with(surface + R"(, "cues": {"crease": 1.5})")), "cues.crease: found 1.5"));
+    CHECK(contains(said(with(surface + R"(, "cues": {"size": 1})")), "cues.size: found an unknown key"));
+    CHECK(contains(said(with(R"(, "surface": {"profile": {}, "material": "wood"})")),
+                   "surface.material: found 'wood', expected one of skin silicone"));
     CHECK(contains(said(with(R"(, "seed": 0.5)")), "seed: found 0.5, expected a whole number"));
 }

@@ -108,6 +108,7 @@ TEST_CASE("tissue: the surface sinks by the depth where it is pressed, and is fl
     SUBCASE("a map") { scene = map_scene(); }
     SUBCASE("linear") { scene = linear_scene(folder, {}); }
     scene.surface = SurfaceEffect{};
+    scene.cues = {};
     const Plan plan = make_plan(scene);
     CHECK(plan.frame_stages.size() == 1);
     State state = start(scene, plan, {600, 600});

@@ -95,7 +95,7 @@ test('from the menu to the thanks; a reload in the middle of a trial; the desk\'
     // the way in, by hand
     await tap(browser, 90, 45);
     await tap(browser, 1152, 476);
-    await page.waitForFunction(() => document.querySelectorAll('#studies-list label').length === 5);
+    await page.waitForFunction(() => document.querySelectorAll('#studies-list label').length === 6);
     await page.check('input[value=short]');
     await page.click('#begin-study');
     await page.waitForURL(/protocol=short/);
@@ -173,7 +173,7 @@ const certificate = ({folder}) => {
 test('the real desk by https: a wrong code pairs nothing, the right one does; the study comes from the desk after it', options, () => withDesk(async (browser, desk, where) => {
     const {page} = browser;
     await open(browser, desk.url, '?protocol=short&participant=1');
-    assert.match(await page.textContent('#message-text'), /protocol: found 'short', expected one of effects paper softer, or of a desk/);
+    assert.match(await page.textContent('#message-text'), /protocol: found 'short', expected one of effects paper softer threshold, or of a desk/);
     await page.click('#leave');
     await page.waitForURL((url) => url.search === '');
     await started(page);
