@@ -215,7 +215,7 @@ void TissueDrawer::Gpu::draw_surface(const TissuePicture& picture, const Materia
 
 void TissueDrawer::Gpu::draw_ring(const TissuePicture& picture) {
     const Grip& grip = picture.grip;
-    const float half_m = std::max(2.4f / picture.view.px_per_m, 0.34e-3f);
+    const float half_m = std::max(3.3f / picture.view.px_per_m, 0.5e-3f);
     points.clear();
     for (int side = 0; side < 2; ++side) {
         for (int i = 0; i <= kRingPoints; ++i) {

@@ -131,7 +131,7 @@ out vec4 colour;
 void main() {
   float off = abs(2.0 * across - 1.0);
   float width = fwidth(off);
-  float light = clamp((0.45 - off) / width + 0.5, 0.0, 1.0);
+  float light = clamp((0.40 - off) / width + 0.5, 0.0, 1.0);
   colour = vec4(vec3(mix(0.08, 0.94, light)), clamp((1.0 - off) / width, 0.0, 1.0));
 }
 )";

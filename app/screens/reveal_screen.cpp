@@ -27,7 +27,7 @@ void draw_nodules(const Shown& shown, const session::Debrief& debrief, float mm,
         const auto radius_m = static_cast<float>(0.5 * nodule.diameter_m.value_or(4e-3));
         const float radius_px = radius_m * shown.view.px_per_m;
         const bool found = debrief.findings[i] == session::Finding::found;
-        ring_on_surface(draw, shown.picture, {nodule.x_m, nodule.y_m}, radius_m, {0.8f * mm, 0.4f * mm, !found});
+        ring_on_surface(draw, shown.picture, {nodule.x_m, nodule.y_m}, radius_m, {0.7f * mm, 0.5f * mm, !found});
         const std::string text = nodule.id + ": " + name_of(debrief.findings[i]);
         const float width_px = ImGui::CalcTextSize(text.c_str()).x;
         const bool fits = at.x + radius_px + mm + width_px < ImGui::GetIO().DisplaySize.x;
@@ -78,7 +78,7 @@ void draw_marks(const Shown& shown, const study::Score& score, float mm, ImDrawL
         const ImVec2 at = on_screen(shown.view, mark.p_m.x(), mark.p_m.y());
         const study::MarkKind kind = score.marks[i].kind;
         if (kind == study::MarkKind::false_mark) {
-            cross(draw, at, 1.7f * mm, kDark, 1.3f * mm);
+            cross(draw, at, 1.7f * mm, kDark, 1.8f * mm);
             cross(draw, at, 1.7f * mm, kInk, 0.7f * mm);
         } else {
             draw.AddCircleFilled(at, 1.7f * mm, kDark);

@@ -306,14 +306,14 @@ void draw_on_tissue(const Shown& shown, const Gui& gui) {
             const ImVec2 at = on_surface(shown.picture, nodule.x_m, nodule.y_m);
             const auto radius_m = static_cast<float>(0.5 * nodule.diameter_m.value_or(4e-3));
             ring_on_surface(draw, shown.picture, {nodule.x_m, nodule.y_m}, radius_m,
-                            {0.45f * gui.mm(), 0.3f * gui.mm()});
+                            {0.45f * gui.mm(), 0.5f * gui.mm()});
             rimmed_text(draw, ImVec2(at.x + radius_m * shown.view.px_per_m + gui.mm(), at.y), kInk, nodule.id);
         }
     }
     for (std::size_t i = 0; i < shown.trial.marks.size(); ++i) {
         const session::Mark& mark = shown.trial.marks[i];
         const ImVec2 at = on_surface(shown.picture, mark.p_m.x(), mark.p_m.y());
-        cross(draw, at, 1.6f * gui.mm(), kDark, 1.2f * gui.mm());
+        cross(draw, at, 1.6f * gui.mm(), kDark, 1.7f * gui.mm());
         cross(draw, at, 1.6f * gui.mm(), kInk, 0.6f * gui.mm());
         const std::string sure = mark.confidence > 0 ? " (" + std::to_string(mark.confidence) + ")" : "";
         rimmed_text(draw, ImVec2(at.x + 2.0f * gui.mm(), at.y - 1.6f * gui.mm() - 0.5f * ImGui::GetFontSize()), kInk,

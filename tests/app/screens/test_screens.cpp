@@ -94,7 +94,7 @@ struct Screens {
 };
 
 bool covers_all(const Screens& screens) {
-    return screens.asked || (menu_of(screens.doing) == nullptr && !palpates(screens.doing));
+    return screens.asked || screens.view.help || (menu_of(screens.doing) == nullptr && !palpates(screens.doing));
 }
 
 std::string draw(const Session& session, const Settings& settings, const Screens& screens, const Picture& picture,
