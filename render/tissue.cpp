@@ -34,6 +34,7 @@ constexpr int kCells = 160;  // 0.75 mm on the 120 mm phantom
 
 constexpr const char* kSurfaceVertex = PALPA_PROJECTION R"(
 layout(location = 1) in vec3 relief;
+uniform vec2 drag_at_m; uniform vec2 drag_m;
 uniform vec2 dent_m; uniform float reach_m; uniform float sink_m[64]; uniform float has_relief;
 out vec2 place_m; out vec3 normal; out float sunk_m;
 float sink(float r) {
@@ -49,7 +50,8 @@ void main() {
   float h = 3e-4;
   float slope = (sink(r + h) - sink(max(r - h, 0.0))) / (r > h ? 2.0 * h : r + h);
   vec2 outward = r > 1e-9 ? d / r : vec2(0.0);
-  place_m = p;
+  vec2 from_finger = (p - drag_at_m) / 0.025;  // a finger hides 10 mm around it
+  place_m = p - drag_m * exp(-0.5 * dot(from_finger, from_finger));
   sunk_m = has_relief > 0.5 ? relief.x : sink(r);
   normal = normalize(vec3(has_relief > 0.5 ? relief.yz : outward * slope, 1.0));
   gl_Position = project(vec3(p, -sunk_m));
@@ -176,6 +178,8 @@ void TissueDrawer::Gpu::draw(const TissueView& view, const Dent& dent, const Rel
     glDisable(GL_CULL_FACE);
     glDisable(GL_BLEND);
     set_view(surface, view);
+    glUniform2fv(surface.uniform("drag_at_m"), 1, glm::value_ptr(view.drag_at_m));
+    glUniform2fv(surface.uniform("drag_m"), 1, glm::value_ptr(view.drag_m));
     glUniform2fv(surface.uniform("dent_m"), 1, glm::value_ptr(dent.centre_m));
     glUniform1f(surface.uniform("reach_m"), dent.reach_m);
     glUniform1fv(surface.uniform("sink_m"), kSinkPoints, dent.sink_m.data());

@@ -23,6 +23,9 @@ struct TissueView {
     glm::mat2 axes{1.0f};
     float px_per_m = 1.0f;
     float tilt_rad = 0.0f;  // 0 looks straight down
+    // The texture is dragged along with a finger at drag_at_m by drag_m, and less and less farther away.
+    glm::vec2 drag_at_m{0.0f};
+    glm::vec2 drag_m{0.0f};
 };
 
 // Dent around (x, y): the sink at r_i = reach (i / 63)^2, in metres downwards. Without a dent, reach is 0.

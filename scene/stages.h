@@ -12,8 +12,18 @@
 
 namespace palpa::scene {
 
-enum class StageId : std::size_t { calibration, position, depth, friction, tangential, display_ratio, delay, surface };
-inline constexpr std::size_t kStageCount = 8;
+enum class StageId : std::size_t {
+    calibration,
+    position,
+    depth,
+    friction,
+    tangential,
+    display_ratio,
+    delay,
+    texture_drag,
+    surface
+};
+inline constexpr std::size_t kStageCount = 9;
 
 const char* name_of(StageId id);
 
@@ -44,6 +54,7 @@ enum class StageForm : std::size_t {
     display_ratio_on_linear,
     delay_on_map,
     delay_on_linear,
+    texture_drag,
     surface_sphere,
     surface_nodes,
 };
@@ -90,6 +101,7 @@ inline constexpr std::array<StageFigures, kStageFormCount> kStageFigures{{
      "0.0002 mm against 5 times as many stations"},
     {StageForm::delay_on_map, StageId::delay, false, 0.4, "exact at the stations"},
     {StageForm::delay_on_linear, StageId::delay, false, 110.0, "exact at the stations"},
+    {StageForm::texture_drag, StageId::texture_drag, false, 0.01, "exact: the texture takes what the avatar loses"},
     {StageForm::surface_sphere, StageId::surface, true, 6.0,
      "7 % of the depth at worst against the exact bonded layer (25 mm, depth to 2 mm)"},
     {StageForm::surface_nodes, StageId::surface, true, 13.0, "that of depth"},
@@ -109,7 +121,7 @@ struct Scene;
 // Returns a stage by its row of the table; `figures` replace each {} of the error, in order.
 Stage stage_of(StageForm form, std::string fidelity, std::initializer_list<std::string_view> figures = {});
 
-// Appends the stages of the scene's laws, on a tissue that can answer at `limit` stations of the path.
+// Appends the stages of the scene's laws and of what follows from them, on a tissue that can answer at `limit` stations of the path.
 void add_law_stages(const Scene& scene, const avatar::StationLimit& limit, StageForm display_ratio, StageForm delay,
                     std::vector<Stage>& out);
 

@@ -80,7 +80,7 @@ std::uint64_t hash_of(std::uint64_t hash, const Numbers& numbers) {
 }
 
 std::uint64_t content_of(const render::TissueView& view, const Surface& surface, const render::Ball& ball) {
-    static_assert(sizeof(render::TissueView) == 14 * sizeof(float) && sizeof(render::Ball) == 5 * sizeof(float));
+    static_assert(sizeof(render::TissueView) == 18 * sizeof(float) && sizeof(render::Ball) == 5 * sizeof(float));
     static_assert(sizeof(render::Dent) == (3 + render::kSinkPoints) * sizeof(float));
     std::uint64_t hash = hash_of(hash_of(hash_of(1, view), surface.dent), ball);
     const render::Relief& relief = surface.relief;
@@ -101,6 +101,7 @@ Wishes draw_frame(const ToShow& what, const Canvas& canvas, ViewState& view, sce
     Shown shown{what, state, view.times};
     shown.avatar = trial.finished ? scene::Avatar{} : scene::avatar_at(what.scene, state, what.now_s);
     shown.view = tissue_view(what.scene, state, window.width, window.height);
+    drag_texture(shown.avatar, shown.view);
     shown.trial_s = trial.finished ? trial.now_s - trial.began_s : std::max(0.0, what.now_s - trial.began_s);
     Wishes wishes;
     draw_panels(shown, layout_now(gui, window.width, window.height, what.settings), gui, view, wishes);

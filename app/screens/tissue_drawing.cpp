@@ -24,6 +24,11 @@ render::TissueView tissue_view(const scene::Scene& scene, const scene::State& st
     return out;
 }
 
+void drag_texture(const scene::Avatar& avatar, render::TissueView& view) {
+    view.drag_at_m = to_gl(avatar.p_m);
+    view.drag_m = to_gl(avatar.texture_m);
+}
+
 render::Dent dent_of(const avatar::SurfaceCurve& curve, const scene::Avatar& avatar) {
     static_assert(render::kSinkPoints == avatar::kSurfacePoints, "the curve goes to the shader as it is");
     render::Dent dent;

@@ -12,6 +12,9 @@ namespace palpa::app {
 render::TissueView tissue_view(const scene::Scene& scene, const scene::State& state, float window_width_px,
                                float window_height_px);
 
+// Adds to the view by how much the texture is dragged along with a finger.
+void drag_texture(const scene::Avatar& avatar, render::TissueView& view);
+
 render::Dent dent_of(const avatar::SurfaceCurve& curve, const scene::Avatar& avatar);
 
 // Returns a surface of nodes, moved with the avatar and smoothed by 1-2-1 over the nodes, which removes the zig-zag

@@ -113,7 +113,7 @@ session::SessionFiles files_of(const Shared& shared, const study::PlannedPartici
 
 // Returns what a person sees of the present state.
 study::Sight sight_of(const session::Session& session) {
-    return {session.state.avatar.lag_m.norm(), session.state.contact.depth_m, session.scene.surface.has_value()};
+    return {scene::seen_lag_m(session.state.avatar), session.state.contact.depth_m, session.scene.surface.has_value()};
 }
 
 void palpate(study::SimulatedPerson& person, const Hand& hand, double rate_Hz, session::Session& session) {
