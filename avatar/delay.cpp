@@ -1,6 +1,7 @@
 #include "avatar/delay.h"
 
 #include <algorithm>
+#include <cassert>
 
 namespace palpa::avatar {
 namespace {
@@ -19,6 +20,18 @@ Delay delay_paper() {
 }
 
 Delay delay_clear() { return Delay{}; }
+
+Delay delay_strong() {
+    Delay law;
+    set_strength(4.0, law);
+    law.cap_s = 0.4;
+    return law;
+}
+
+void set_strength(double strength, Delay& law) {
+    assert(strength > 0.0);
+    law.m_s_per_N = strength * Delay{}.m_s_per_N;
+}
 
 double delay_at(const Delay& law, const DelayState& state, double t_s) {
     const double since_s = std::max(0.0, t_s - state.station_s);

@@ -25,8 +25,12 @@ struct Delay {
     PathParameters path;
 };
 
-Delay delay_paper();  // m = 500 ms/N: a delay of about one frame, which is not visible
-Delay delay_clear();  // m = 3000 ms/N: the delay that the paper's blocked frame loop probably showed
+Delay delay_paper();   // m = 500 ms/N: a delay of about one frame, which is not visible
+Delay delay_clear();   // m = 3000 ms/N: the delay that the paper's blocked frame loop probably showed
+Delay delay_strong();  // strength 4, so m = 12,000 ms/N, cap 400 ms: a delay that people see unasked
+
+// Sets m = 3000 ms/N * strength; 1 is `clear`. `strength` must be > 0 (assert): a law of strength 0 is no law.
+void set_strength(double strength, Delay& law);
 
 struct DelayState {
     PathState path;

@@ -1,6 +1,7 @@
 #include "avatar/display_ratio.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 namespace palpa::avatar {
@@ -41,6 +42,19 @@ DisplayRatio display_ratio_paper() {
 }
 
 DisplayRatio display_ratio_clear() { return DisplayRatio{}; }
+
+DisplayRatio display_ratio_strong() {
+    DisplayRatio law;
+    set_strength(4.0, law);
+    law.cap_m = 8e-3;
+    return law;
+}
+
+void set_strength(double strength, DisplayRatio& law) {
+    assert(strength > 0.0);
+    law.f_0_N = DisplayRatio{}.f_0_N / strength;
+    law.gate_N = DisplayRatio{}.gate_N / strength;
+}
 
 double display_gain(const DisplayRatio& law, double df_N) { return 1.0 - resistance(law, df_N); }
 

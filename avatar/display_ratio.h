@@ -20,13 +20,19 @@ struct DisplayRatio {
     std::optional<double> cap_m = 3e-3;  // absent: the lag is not bounded
     double release = 1.0;                // c, metres of lag given back per metre of path
     double gate_N = 2e-3;                // df_on: from this rise on nothing is released
-    double hold_s = 0.15;                // T_hold: after standing still for longer the lag decays
+    double hold_s = 0.15;                // T_hold: a resting pen keeps its lag for so long, then it decays
     double pause_decay_s = 0.1;          // tau_p, time constant of that decay
     PathParameters path;
 };
 
-DisplayRatio display_ratio_paper();  // f_0 = 1 N, no cap: a lag of at most one pixel on common screens
-DisplayRatio display_ratio_clear();  // f_0 = 0.02 N, cap 3 mm: a visible lag
+DisplayRatio display_ratio_paper();   // f_0 = 1 N, no cap: a lag of at most one pixel on common screens
+DisplayRatio display_ratio_clear();   // f_0 = 0.02 N, cap 3 mm: a visible lag
+DisplayRatio display_ratio_strong();  // strength 4, cap 8 mm: a lag that people see unasked
+
+// Makes the law answer as if every force were `strength` times as large: f_0 = 0.02 N / strength, and the gate, 2 mN /
+// strength, follows, since otherwise all that a small rise adds would be released at once. 1 is `clear`. `strength` must
+// be > 0 (assert): a law of strength 0 is no law.
+void set_strength(double strength, DisplayRatio& law);
 
 struct DisplayRatioState {
     PathState path;

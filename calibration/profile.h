@@ -51,6 +51,10 @@ double force_N(const Profile& profile, double level, std::int64_t& clamped);
 // Returns the level at a force, clamped to the range: the inverse of force_N within it.
 double level_at_force(const Profile& profile, double force_N);
 
+// Writes a level into the fields that the profile reads: the inverse of level_of(). Where that is not the pressure,
+// `pressure` becomes the level's share of the range.
+void set_level(const Profile& profile, double level, platform::Sample& sample);
+
 const char* name_of(LevelField level);
 
 }  // namespace palpa::calibration

@@ -181,7 +181,8 @@ void TissueDrawer::Gpu::draw_surface(const TissuePicture& picture, const Materia
     const glm::vec2 focus = focus_of(picture);
     glUniform2fv(surface.uniform("focus"), 1, glm::value_ptr(focus));
     glUniform1f(surface.uniform("thickness_m"), view.thickness_m);
-    glUniform2fv(surface.uniform("texture_m"), 1, glm::value_ptr(view.texture_m));
+    glUniform2fv(surface.uniform("drag_at_m"), 1, glm::value_ptr(view.drag_at_m));
+    glUniform2fv(surface.uniform("drag_m"), 1, glm::value_ptr(view.drag_m));
     glUniform2fv(surface.uniform("dent_m"), 1, glm::value_ptr(dent.centre_m));
     glUniform1f(surface.uniform("reach_m"), dent.reach_m);
     glUniform1fv(surface.uniform("sink_m"), kSinkPoints, dent.sink_m.data());

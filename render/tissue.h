@@ -29,7 +29,9 @@ struct TissueView {
     glm::vec2 eye_m{0.0f};       // the place that the eye is straight above
     float eye_per_m = 0.0f;      // 1 / height of the eye; 0: all lines of sight are parallel
     float thickness_m = 25e-3f;  // of the block, whose sides show where it is tilted
-    glm::vec2 texture_m{0.0f};   // what is drawn on the tissue is moved by this, its shape is not
+    // The texture is dragged along with a finger at drag_at_m by drag_m, and less and less farther away.
+    glm::vec2 drag_at_m{0.0f};
+    glm::vec2 drag_m{0.0f};
 };
 
 // Dent around (x, y): the sink at r_i = reach (i / 63)^2, in metres downwards. Without a dent, reach is 0.

@@ -27,7 +27,7 @@ namespace palpa::render {
 inline constexpr const char* kSurfaceVertex = PALPA_PROJECTION R"(
 layout(location = 1) in vec3 relief;
 uniform vec2 dent_m; uniform float reach_m; uniform float sink_m[64]; uniform float has_relief;
-uniform vec2 focus; uniform float thickness_m; uniform vec2 texture_m;
+uniform vec2 focus; uniform float thickness_m; uniform vec2 drag_at_m; uniform vec2 drag_m;
 uniform vec2 grip_m; uniform float contact_m; uniform float pull; uniform float pressure; uniform float crease;
 uniform vec3 ball_m; uniform float radius_m; uniform float opacity;
 uniform vec3 lamp; uniform vec3 plain; uniform vec3 pale; uniform vec3 flushed; uniform vec3 bled;
@@ -67,7 +67,9 @@ void main() {
   vec3 p = vec3(moved, mix(-sunk, -thickness_m, down));
   gl_Position = project(p);
   from_centre = (rest - centre_m) / size_m;
-  grain_at = (rest - centre_m - texture_m + vec2(0.0, down * thickness_m)) / 0.06;
+  vec2 from_finger = (rest - drag_at_m) / 0.025;  // a finger hides 10 mm around it
+  vec2 dragged = drag_m * exp(-0.5 * dot(from_finger, from_finger));
+  grain_at = (rest - centre_m - dragged + vec2(0.0, down * thickness_m)) / 0.06;
 
   // sky that the indenter hides, and its shadow
   vec3 to_ball = ball_m - p;

@@ -7,6 +7,7 @@
 namespace palpa::scene {
 namespace {
 
+constexpr double kLightest_N = 0.5;  // TangentialOptions::per_newton takes no force for less, which would raise noise
 constexpr double kLongestGap_s = 60.0;  // of which every grid step is taken
 // As a share of the profile's range: no hand presses that hard by the first sample of a touch.
 constexpr double kUnbelievable = 0.9;
@@ -96,7 +97,8 @@ avatar::Touch timed(const State& state) {
 
 void lag(const Scene& scene, const Plan& plan, State& state) {
     const auto rise = [&](const Eigen::Vector2d& p_m, const Eigen::Vector2d& u, double force_N, double reference_m) {
-        return rise_N(plan.tissue, {p_m, u, force_N, reference_m, scene.stiffness_scale}, state.tissue);
+        const double df_N = rise_N(plan.tissue, {p_m, u, force_N, reference_m, scene.stiffness_scale}, state.tissue);
+        return scene.tangential.per_newton ? df_N / std::max(force_N, kLightest_N) : df_N;
     };
     std::int64_t& skipped = state.counters.skipped_stations;
     skipped = 0;
@@ -114,6 +116,13 @@ void lag(const Scene& scene, const Plan& plan, State& state) {
     }
 }
 
+void drag_texture(const Scene& scene, const State& state, Avatar& avatar) {
+    const bool finger = state.touch.down && state.pointer_tool == platform::Tool::finger;
+    avatar.texture_m =
+        finger ? Eigen::Vector2d(scene.texture_drag->strength * avatar.lag_m) : Eigen::Vector2d(0.0, 0.0);
+    avatar.lag_m -= avatar.texture_m;
+}
+
 void run_stage(StageId id, const Scene& scene, const Plan& plan, const platform::Sample& sample, State& state) {
     switch (id) {
         case StageId::calibration:
@@ -129,6 +138,8 @@ void run_stage(StageId id, const Scene& scene, const Plan& plan, const platform:
         case StageId::display_ratio:
         case StageId::delay:
             return lag(scene, plan, state);
+        case StageId::texture_drag:
+            return drag_texture(scene, state, state.avatar);
         case StageId::surface:
         case StageId::footprint:
         case StageId::crease:
@@ -143,7 +154,7 @@ void note_extremes(const Avatar& avatar, double t_s, State& state) {
         state.extremes.force_at_s = t_s;
     }
     state.extremes.depth_m = std::max(state.extremes.depth_m, state.contact.depth_m);
-    const double lag_m = avatar.lag_m.norm();
+    const double lag_m = seen_lag_m(avatar);
     if (lag_m > state.extremes.lag_m) {
         state.extremes.lag_m = lag_m;
         state.extremes.lag_at_s = t_s;
@@ -292,12 +303,15 @@ Avatar avatar_at(const Scene& scene, const State& state, double t_s) {
     Avatar avatar = state.avatar;
     if (!state.touch.down) return avatar;
     if (state.display_ratio) {
-        avatar.lag_m *= avatar::pause_factor(*scene.display_ratio, *state.display_ratio, state.timeline.now_s, t_s);
+        const double left = avatar::pause_factor(*scene.display_ratio, *state.display_ratio, state.timeline.now_s, t_s);
+        avatar.lag_m *= left;
+        avatar.texture_m *= left;
     }
     if (state.delay) {
         const avatar::Delayed delayed = avatar::delayed_at(*scene.delay, *state.delay, t_s);
         avatar.lag_m = delayed.lag_m;
         avatar.delay_s = delayed.tau_s;
+        if (scene.texture_drag) drag_texture(scene, state, avatar);
     }
     avatar.p_m = state.touch.p_m - avatar.lag_m;
     return avatar;

@@ -31,6 +31,15 @@ using TissueOptions = std::variant<MapOptions, LinearOptions>;
 struct TangentialOptions {
     stiffnessmaps::TangentialForce force = stiffnessmaps::TangentialForce::energy;
     std::optional<double> smoothing_m;  // Gaussian sigma; absent: from the map's own noise (stiffnessmaps/noise.h)
+    // Divides its rise by the normal force in newtons, so that a place lags alike however hard it is pressed. Otherwise
+    // the lag grows faster than the force.
+    bool per_newton = false;
+};
+
+// A finger hides the avatar. Under it the texture of the tissue takes over a share of the avatar's lag: it is dragged
+// along with the finger by that share, and the avatar keeps the rest. What moves against what stays the same.
+struct TextureDrag {
+    double strength = 1.0;  // share, > 0 ... 1; at 1 the avatar stays at the finger
 };
 
 // What the tissue looks like, and what is pressed into it.
@@ -55,6 +64,7 @@ struct Scene {
     TangentialOptions tangential;
     std::optional<avatar::DisplayRatio> display_ratio;  // at most one of the two laws
     std::optional<avatar::Delay> delay;
+    std::optional<TextureDrag> texture_drag;  // only beside a law
     std::optional<SurfaceEffect> surface;
     DrawnCues cues;  // of the surface
     std::int64_t seed = 1;

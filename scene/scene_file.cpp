@@ -1,3 +1,5 @@
+#include <array>
+
 #include "files/input_error.h"
 #include "files/json.h"
 #include "scene/scene.h"
@@ -45,14 +47,27 @@ void read_law_options(files::JsonReader& json, avatar::PathParameters& path, Tan
     if (json.has("force")) {
         tangential.force = static_cast<stiffnessmaps::TangentialForce>(json.choice("force", {"energy", "recorded"}));
     }
+    tangential.per_newton = json.boolean("per_newton", tangential.per_newton);
     if (json.has("smoothing_mm")) tangential.smoothing_m = 1e-3 * json.number("smoothing_mm", {0.0, 100.0});
 }
 
-avatar::DisplayRatio read_display_ratio(files::JsonReader json, TangentialOptions& tangential) {
-    json.only({"preset", "f_0_N", "cap_mm", "release", "gate_N", "hold_s", "pause_decay_s", "s_ref_mm", "dead_band_mm",
-               "force", "smoothing_mm"});
-    const bool paper = json.choice("preset", {"clear", "paper"}) == 1;
-    avatar::DisplayRatio law = paper ? avatar::display_ratio_paper() : avatar::display_ratio_clear();
+// Returns the strength of a law, if the file states one. `instead`: the parameter that it stands for.
+std::optional<double> read_strength(files::JsonReader& json, const char* instead) {
+    constexpr double kGreatest = 100.0;
+    if (!json.has("strength")) return std::nullopt;
+    if (json.has(instead)) json.fail("strength", "a strength beside " + std::string(instead), "one of the two");
+    return json.number("strength", {0.0, kGreatest});
+}
+
+// Returns nothing for a law of strength 0, whose other keys then count no more than if the law were absent.
+std::optional<avatar::DisplayRatio> read_display_ratio(files::JsonReader json, TangentialOptions& tangential) {
+    json.only({"preset", "strength", "f_0_N", "cap_mm", "release", "gate_N", "hold_s", "pause_decay_s", "s_ref_mm",
+               "dead_band_mm", "force", "smoothing_mm", "per_newton"});
+    constexpr std::array kPresets{avatar::display_ratio_clear, avatar::display_ratio_paper,
+                                  avatar::display_ratio_strong};
+    avatar::DisplayRatio law = kPresets[json.choice("preset", {"clear", "paper", "strong"})]();
+    const std::optional<double> strength = read_strength(json, "f_0_N");
+    if (strength > 0.0) avatar::set_strength(*strength, law);
     law.f_0_N = json.number("f_0_N", files::kPositive, law.f_0_N);
     if (json.has("cap_mm")) {
         const bool none = json.any("cap_mm").is_null();
@@ -62,24 +77,32 @@ avatar::DisplayRatio read_display_ratio(files::JsonReader json, TangentialOption
     law.gate_N = json.number("gate_N", files::kPositive, law.gate_N);
     law.hold_s = json.number("hold_s", files::kNotNegative, law.hold_s);
     law.pause_decay_s = json.number("pause_decay_s", files::kPositive, law.pause_decay_s);
-    read_law_options(json, law.path, tangential);
+    TangentialOptions options;
+    read_law_options(json, law.path, options);
     json.finish();
+    if (strength == 0.0) return std::nullopt;
+    tangential = options;
     return law;
 }
 
-avatar::Delay read_delay(files::JsonReader json, TangentialOptions& tangential) {
-    json.only({"preset", "m_ms_per_N", "cap_ms", "rise", "fall", "hold_s", "s_ref_mm", "dead_band_mm", "force",
-               "smoothing_mm"});
-    const bool paper = json.choice("preset", {"clear", "paper"}) == 1;
-    avatar::Delay law = paper ? avatar::delay_paper() : avatar::delay_clear();
+std::optional<avatar::Delay> read_delay(files::JsonReader json, TangentialOptions& tangential) {
+    json.only({"preset", "strength", "m_ms_per_N", "cap_ms", "rise", "fall", "hold_s", "s_ref_mm", "dead_band_mm",
+               "force", "smoothing_mm", "per_newton"});
+    constexpr std::array kPresets{avatar::delay_clear, avatar::delay_paper, avatar::delay_strong};
+    avatar::Delay law = kPresets[json.choice("preset", {"clear", "paper", "strong"})]();
+    const std::optional<double> strength = read_strength(json, "m_ms_per_N");
+    if (strength > 0.0) avatar::set_strength(*strength, law);
     law.m_s_per_N = 1e-3 * json.number("m_ms_per_N", files::kNotNegative, 1e3 * law.m_s_per_N);
     // at most as long as the ring of remembered samples is at 2,000 Hz (avatar/delay.h)
     law.cap_s = 1e-3 * json.number("cap_ms", {0.0, 500.0}, 1e3 * law.cap_s);
     law.rise = json.number("rise", {0.0, 0.999, true}, law.rise);
     law.fall = json.number("fall", {0.0, 100.0, true}, law.fall);
     law.hold_s = json.number("hold_s", files::kNotNegative, law.hold_s);
-    read_law_options(json, law.path, tangential);
+    TangentialOptions options;
+    read_law_options(json, law.path, options);
     json.finish();
+    if (strength == 0.0) return std::nullopt;
+    tangential = options;
     return law;
 }
 
@@ -134,8 +157,15 @@ DrawnCues read_cues(files::JsonReader json) {
     return cues;
 }
 
+std::optional<TextureDrag> read_texture_drag(files::JsonReader json) {
+    json.only({"strength"});
+    const TextureDrag drag{json.number("strength", {0.0, 1.0}, TextureDrag{}.strength)};
+    json.finish();
+    return drag.strength > 0.0 ? std::optional(drag) : std::nullopt;
+}
+
 void read_avatar(files::JsonReader json, Scene& scene) {
-    json.only({"display_ratio", "delay"});
+    json.only({"display_ratio", "delay", "texture_drag"});
     const bool ratio = json.has("display_ratio");
     if (ratio == json.has("delay")) {
         json.fail("", ratio ? "both laws" : "no law", "display_ratio or delay (leave `avatar` out for neither)");
@@ -145,6 +175,8 @@ void read_avatar(files::JsonReader json, Scene& scene) {
     } else {
         scene.delay = read_delay(json.object("delay"), scene.tangential);
     }
+    if (auto drag = json.optional_object("texture_drag")) scene.texture_drag = read_texture_drag(*drag);
+    if (!scene.display_ratio && !scene.delay) scene.texture_drag.reset();  // there is no lag to hand over
     json.finish();
 }
 

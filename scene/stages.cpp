@@ -25,6 +25,8 @@ const char* name_of(StageId id) {
             return "display_ratio";
         case StageId::delay:
             return "delay";
+        case StageId::texture_drag:
+            return "texture_drag";
         case StageId::surface:
             return "surface";
         case StageId::footprint:
@@ -62,8 +64,14 @@ void add_law_stages(const Scene& scene, const avatar::StationLimit& limit, Stage
         "stations every " + mm_text(path.station_m) + ", difference over " + mm_text(path.reference_m);
     if (std::isfinite(limit.per_s))
         stations += ", fewer in strokes faster than " + mm_text(limit.per_s * path.station_m) + "/s";
+    if (scene.tangential.per_newton) stations += ", per newton of normal force";
     if (scene.display_ratio) out.push_back(stage_of(display_ratio, stations));
     if (scene.delay) out.push_back(stage_of(delay, stations));
+    if (scene.texture_drag) {
+        out.push_back(stage_of(StageForm::texture_drag, "under a finger, " +
+                                                            files::short_number(100.0 * scene.texture_drag->strength) +
+                                                            " % of the lag goes to the texture"));
+    }
 }
 
 }  // namespace palpa::scene

@@ -20,12 +20,13 @@ enum class StageId : std::size_t {
     tangential,
     display_ratio,
     delay,
+    texture_drag,
     surface,
     footprint,
     crease,
     depth_gain
 };
-inline constexpr std::size_t kStageCount = 11;
+inline constexpr std::size_t kStageCount = 12;
 
 const char* name_of(StageId id);
 
@@ -56,6 +57,7 @@ enum class StageForm : std::size_t {
     display_ratio_on_linear,
     delay_on_map,
     delay_on_linear,
+    texture_drag,
     surface_sphere,
     surface_nodes,
     footprint_ring,
@@ -105,6 +107,7 @@ inline constexpr std::array<StageFigures, kStageFormCount> kStageFigures{{
      "0.0002 mm against 5 times as many stations"},
     {StageForm::delay_on_map, StageId::delay, false, 0.4, "exact at the stations"},
     {StageForm::delay_on_linear, StageId::delay, false, 110.0, "exact at the stations"},
+    {StageForm::texture_drag, StageId::texture_drag, false, 0.01, "exact: the texture takes what the avatar loses"},
     {StageForm::surface_sphere, StageId::surface, true, 6.0,
      "7 % of the depth at worst against the exact bonded layer (25 mm, depth to 2 mm)"},
     {StageForm::surface_nodes, StageId::surface, true, 13.0, "that of depth"},
@@ -130,7 +133,7 @@ Stage stage_of(StageForm form, std::string fidelity, std::initializer_list<std::
 // Appends the stages of the cues whose strength is not 0.
 void add_cue_stages(const Scene& scene, std::vector<Stage>& out);
 
-// Appends the stages of the scene's laws, on a tissue that can answer at `limit` stations of the path.
+// Appends the stages of the scene's laws and of what follows from them, on a tissue that can answer at `limit` stations of the path.
 void add_law_stages(const Scene& scene, const avatar::StationLimit& limit, StageForm display_ratio, StageForm delay,
                     std::vector<Stage>& out);
 

@@ -17,7 +17,12 @@ struct Avatar {
     Eigen::Vector2d p_m = Eigen::Vector2d::Zero();
     Eigen::Vector2d lag_m = Eigen::Vector2d::Zero();  // pen - avatar
     double delay_s = 0.0;                             // of the law `delay`
+    // By which the texture of the tissue is dragged along with a finger (TextureDrag).
+    Eigen::Vector2d texture_m = Eigen::Vector2d::Zero();
 };
+
+// Returns how far the avatar is seen to lag behind the pen over the tissue.
+inline double seen_lag_m(const Avatar& avatar) { return (avatar.lag_m + avatar.texture_m).norm(); }
 
 // Counted since start(); of samples unless a line says otherwise.
 struct Counters {

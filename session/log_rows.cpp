@@ -39,6 +39,7 @@ study::SampleRow row_of(const platform::Sample& sample, const scene::Scene& scen
     row.avatar_y_mm = 1e3 * state.avatar.p_m.y();
     row.lag_mm = 1e3 * state.avatar.lag_m.norm();
     row.delay_ms = 1e3 * state.avatar.delay_s;
+    row.texture_mm = 1e3 * state.avatar.texture_m.norm();
     row.saturated = state.contact.saturated;
     row.ft_source = state.contact.measured ? plan.tangential_source : "none";
     add_cues(scene, plan, state, row);

@@ -12,7 +12,7 @@ namespace {
 
 void note_nodules(const scene::Plan& plan, const scene::State& state, ReplayResult& result) {
     if (!state.answered || !state.touch.down) return;
-    const double lag_m = state.avatar.lag_m.norm();
+    const double lag_m = scene::seen_lag_m(state.avatar);
     bool beside = true;
     for (std::size_t i = 0; i < plan.nodules.size(); ++i) {
         const stiffnessmaps::Nodule& nodule = plan.nodules[i];

@@ -30,6 +30,7 @@ void visit_fields(const SampleRow& r, Visit&& visit) {
     visit("avatar_y_mm", r.avatar_y_mm, "mm", "avatar as shown, map's frame");
     visit("lag_mm", r.lag_mm, "mm", "distance from pen to avatar");
     visit("delay_ms", r.delay_ms, "ms", "delay of the avatar (law D)");
+    visit("texture_mm", r.texture_mm, "mm", "how far the tissue's texture is dragged along with a finger");
     visit("saturated", r.saturated, "", "1: pressed deeper than the tissue is known");
     visit("ft_source", r.ft_source, "", "where the tangential force comes from: recorded, energy or none");
     visit("footprint_mm", r.footprint_mm, "mm", "radius of the ring that grows with depth; n/a without this cue");

@@ -32,6 +32,7 @@ struct SampleRow {
     double avatar_y_mm = kMissing;
     double lag_mm = kMissing;
     double delay_ms = kMissing;
+    double texture_mm = kMissing;
     std::int64_t saturated = 0;
     std::string_view ft_source = "n/a";
     double footprint_mm = kMissing;

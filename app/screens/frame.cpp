@@ -92,7 +92,7 @@ std::uint64_t hash_of(std::uint64_t hash, const Numbers& numbers) {
 }
 
 std::uint64_t content_of(const render::TissuePicture& picture) {
-    static_assert(sizeof(render::TissueView) == 20 * sizeof(float) && sizeof(render::Indenter) == 8 * sizeof(float));
+    static_assert(sizeof(render::TissueView) == 22 * sizeof(float) && sizeof(render::Indenter) == 8 * sizeof(float));
     static_assert(sizeof(render::Dent) == (3 + render::kSinkPoints) * sizeof(float));
     static_assert(sizeof(render::Grip) == 8 * sizeof(float));
     const std::uint64_t view = hash_of(hash_of(1, picture.view), picture.material);

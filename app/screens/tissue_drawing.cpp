@@ -80,6 +80,8 @@ render::TissueView tissue_view(const scene::Scene& scene, const scene::State& st
         out.eye_m = to_gl(avatar.p_m);
         out.eye_per_m = 1.0f / kEye_m;
     }
+    out.drag_at_m = to_gl(avatar.p_m);
+    out.drag_m = to_gl(avatar.texture_m);
     return out;
 }
 

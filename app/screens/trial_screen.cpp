@@ -84,7 +84,7 @@ void draw_numbers(const Shown& shown, const Gui& gui) {
     if (!is_interval(shown.doing)) value_line(words::kDepth, depth, column_px);
     // in a test the eye has to judge the lag, so no number shows it
     if (shown.trial.mode == session::TrialMode::practice) {
-        value_line(words::kLag, fixed(1e3 * shown.avatar.lag_m.norm(), 2) + " mm", column_px);
+        value_line(words::kLag, fixed(1e3 * scene::seen_lag_m(shown.avatar), 2) + " mm", column_px);
         if (shown.scene.delay) value_line(words::kDelay, fixed(1e3 * shown.avatar.delay_s, 0) + " ms", column_px);
     }
     if (shown.scene.force_scale != 1.0)

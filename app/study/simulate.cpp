@@ -2,12 +2,10 @@
 
 #include <atomic>
 #include <chrono>
-#include <cmath>
 #include <cstdio>
 #include <exception>
 #include <map>
 #include <mutex>
-#include <numbers>
 #include <optional>
 #include <stdexcept>
 #include <thread>
@@ -69,13 +67,7 @@ class Hand {
         out.tool = tool_;
         out.phase = phase;
         place(at, view_.input_px_per_m, out);
-        const double level = calibration::level_at_force(profile_, force_N / force_scale_);
-        const double share = (level - profile_.level_lowest) / (profile_.level_highest - profile_.level_lowest);
-        out.pressure = share;
-        if (profile_.level == calibration::LevelField::pressure_raw) out.pressure_raw = std::round(level);
-        if (profile_.level == calibration::LevelField::contact_area) {
-            out.width_px = out.height_px = std::sqrt(4.0 / std::numbers::pi * level * profile_.full_contact_area_px2);
-        }
+        set_level(profile_, calibration::level_at_force(profile_, force_N / force_scale_), out);
         return out;
     }
     platform::Sample act(double t_s, const study::ScreenPlace& at, platform::Action action) const {
@@ -121,7 +113,7 @@ session::SessionFiles files_of(const Shared& shared, const study::PlannedPartici
 
 // Returns what a person sees of the present state.
 study::Sight sight_of(const session::Session& session) {
-    return {session.state.avatar.lag_m.norm(), session.state.contact.depth_m, session.scene.surface.has_value()};
+    return {scene::seen_lag_m(session.state.avatar), session.state.contact.depth_m, session.scene.surface.has_value()};
 }
 
 void palpate(study::SimulatedPerson& person, const Hand& hand, double rate_Hz, session::Session& session) {

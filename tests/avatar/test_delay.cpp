@@ -120,3 +120,13 @@ TEST_CASE("delay: not-a-number, lift and jump of the pen") {
     CHECK(lifted.lag_m.norm() == 0.0);
     CHECK(lifted.tau_s == 0.0);
 }
+
+TEST_CASE("delay: strength 1 is `clear`, `strong` has strength 4 and a longer cap") {
+    Delay law;
+    set_strength(1.0, law);
+    CHECK(law.m_s_per_N == delay_clear().m_s_per_N);
+    set_strength(4.0, law);
+    CHECK(law.m_s_per_N == 12.0);
+    CHECK(delay_strong().m_s_per_N == 12.0);
+    CHECK(delay_strong().cap_s == 0.4);
+}

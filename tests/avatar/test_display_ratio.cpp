@@ -175,3 +175,40 @@ TEST_CASE("display ratio: not-a-number, lift and jump of the pen") {
     up.down = false;
     CHECK(advance_lag(law, up, rise_of(tent_N), state).norm() == 0.0);
 }
+
+TEST_CASE("display ratio: strength 1 is `clear`, `strong` has strength 4 and a wider cap") {
+    DisplayRatio law;
+    set_strength(1.0, law);
+    CHECK(law.f_0_N == display_ratio_clear().f_0_N);
+    CHECK(law.gate_N == display_ratio_clear().gate_N);
+    set_strength(0.02, law);
+    CHECK(law.f_0_N == display_ratio_paper().f_0_N);
+    set_strength(4.0, law);
+    CHECK(law.f_0_N == 0.005);
+    CHECK(display_ratio_strong().f_0_N == 0.005);
+    CHECK(*display_ratio_strong().cap_m == 8e-3);
+    CHECK(display_gain(display_ratio_strong(), 0.005) == doctest::Approx(0.5));
+    // as if the tissue were four times as stiff, below the cap
+    const auto stiff_N = [](const Eigen::Vector2d& p, const Eigen::Vector2d& u) { return 4.0 * tent_N(p, u); };
+    set_strength(4.0, law = display_ratio_clear());
+    for (const double x_mm : {-4.0, -2.0, 0.0, 1.0})
+        CHECK(lag_after(law, stroke(240, 1e-3 * x_mm), tent_N) ==
+              doctest::Approx(lag_after(display_ratio_clear(), stroke(240, 1e-3 * x_mm), stiff_N)).epsilon(1e-12));
+}
+
+TEST_CASE("display ratio: a resting pen keeps its lag to the last bit for hold_s, then it decays") {
+    for (const double hold_s : {0.15, 2.0}) {
+        CAPTURE(hold_s);
+        DisplayRatio law = display_ratio_clear();
+        law.hold_s = hold_s;
+        DisplayRatioState state;
+        const auto samples = stroke(1000, -3e-3);
+        const double lag_m = lag_after(law, samples, tent_N, state);
+        const double moved_s = state.moved_s;
+        const auto rest_until = [&](double t_s) {
+            return advance_lag(law, touch_at(t_s, -3e-3), rise_of(tent_N), state).x();
+        };
+        CHECK(rest_until(moved_s + 0.99 * hold_s) == lag_m);
+        CHECK(rest_until(moved_s + hold_s + law.pause_decay_s) == doctest::Approx(lag_m * std::exp(-1.0)));
+    }
+}

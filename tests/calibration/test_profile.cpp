@@ -63,3 +63,17 @@ TEST_CASE("profile: each reads its own field of a sample") {
     sample.width_px = kMissing;
     CHECK(std::isnan(level_of(shipped("xoom-finger.json"), sample)));
 }
+
+TEST_CASE("profile: a level that is written into a sample reads back, whatever the field") {
+    for (const char* file : {"bamboo.json", "s-pen.json", "xoom-finger.json"}) {
+        CAPTURE(file);
+        const Profile profile = shipped(file);
+        const double whole = std::round(profile.level_lowest + 0.4 * (profile.level_highest - profile.level_lowest));
+        const double level = profile.level == LevelField::pressure_raw ? whole : 0.4;
+        Sample sample;
+        set_level(profile, level, sample);
+        CHECK(level_of(profile, sample) == doctest::Approx(level).epsilon(1e-12));
+        CHECK(sample.pressure ==
+              doctest::Approx((level - profile.level_lowest) / (profile.level_highest - profile.level_lowest)));
+    }
+}

@@ -8,6 +8,7 @@
 
 using namespace palpa;
 using namespace palpa::files;
+using namespace palpa::avatar;
 using namespace palpa::stiffnessmaps;
 using namespace palpa::scene;
 using namespace palpa::test;
@@ -80,6 +81,40 @@ TEST_CASE("scene file: the look of the surface and the cues that are drawn with 
     CHECK(all.cues.side_view);
 }
 
+TEST_CASE("scene file: strength stands for f_0 and m on one scale, and 0 removes the law with all that it asks for") {
+    const auto ratio = [](const std::string& keys) {
+        return read(with(R"(, "avatar": {"display_ratio": {)" + keys + "}}"));
+    };
+    const auto delay = [](const std::string& keys) { return read(with(R"(, "avatar": {"delay": {)" + keys + "}}")); };
+    CHECK(ratio(R"("preset": "strong")").display_ratio->f_0_N == 0.005);
+    CHECK(ratio(R"("preset": "strong")").display_ratio->cap_m == 8e-3);
+    CHECK(ratio(R"("preset": "clear", "strength": 2)").display_ratio->f_0_N == 0.01);
+    CHECK(ratio(R"("preset": "clear", "strength": 2)").display_ratio->cap_m == 3e-3);
+    CHECK(ratio(R"("preset": "paper", "strength": 2)").display_ratio->f_0_N == 0.01);
+    CHECK(delay(R"("preset": "strong")").delay->m_s_per_N == 12.0);
+    CHECK(delay(R"("preset": "strong")").delay->cap_s == doctest::Approx(0.4));
+    CHECK(delay(R"("preset": "clear", "strength": 0.5)").delay->m_s_per_N == 1.5);
+    for (const Scene& scene : {ratio(R"("preset": "strong", "strength": 0, "smoothing_mm": 3, "s_ref_mm": 1)"),
+                               delay(R"("preset": "strong", "strength": 0, "smoothing_mm": 3, "s_ref_mm": 1)")}) {
+        CHECK_FALSE(scene.display_ratio);
+        CHECK_FALSE(scene.delay);
+        CHECK_FALSE(scene.tangential.smoothing_m);
+        CHECK(path_of(scene).reference_m == PathParameters{}.reference_m);
+    }
+}
+
+TEST_CASE("scene file: the texture is dragged only beside a law, and not by a strength of 0") {
+    const auto drag = [](const std::string& law, const std::string& keys) {
+        return read(with(R"(, "avatar": {"display_ratio": {"preset": "clear")" + law + R"(}, "texture_drag": {)" +
+                         keys + "}}"))
+            .texture_drag;
+    };
+    CHECK(drag("", "")->strength == 1.0);
+    CHECK(drag("", R"("strength": 0.25)")->strength == 0.25);
+    CHECK_FALSE(drag("", R"("strength": 0)"));
+    CHECK_FALSE(drag(R"(, "strength": 0)", ""));
+}
+
 TEST_CASE("scene file: wrong keys and values are refused by key") {
     CHECK(contains(said("{}"), "name: found nothing"));
     CHECK(contains(said(with(R"(, "avatr": {})")), "avatr: found an unknown key, expected one of"));
@@ -87,7 +122,16 @@ TEST_CASE("scene file: wrong keys and values are refused by key") {
     CHECK(contains(said(with(R"(, "avatar": {"delay": {"preset": "clear"}, "display_ratio": {"preset": "clear"}})")),
                    "found both laws"));
     CHECK(contains(said(with(R"(, "avatar": {"delay": {"preset": "slow"}})")),
-                   "avatar.delay.preset: found 'slow', expected one of clear paper"));
+                   "avatar.delay.preset: found 'slow', expected one of clear paper strong"));
+    CHECK(contains(said(with(R"(, "avatar": {"delay": {"preset": "clear", "strength": -1}})")),
+                   "avatar.delay.strength: found -1, expected a number from 0 to 100"));
+    CHECK(contains(said(with(R"(, "avatar": {"delay": {"preset": "clear", "strength": 2, "m_ms_per_N": 3}})")),
+                   "avatar.delay.strength: found a strength beside m_ms_per_N, expected one of the two"));
+    CHECK(contains(said(with(R"(, "avatar": {"display_ratio": {"preset": "clear", "strength": 2, "f_0_N": 3}})")),
+                   "avatar.display_ratio.strength: found a strength beside f_0_N, expected one of the two"));
+    CHECK(contains(said(with(R"(, "avatar": {"delay": {"preset": "clear"}, "texture_drag": {"strength": 1.5}})")),
+                   "avatar.texture_drag.strength: found 1.5, expected a number from 0 to 1"));
+    CHECK(contains(said(with(R"(, "avatar": {"texture_drag": {}})")), "found no law"));
     CHECK(contains(said(with(R"(, "avatar": {"delay": {"preset": "clear", "rise": 1.5}})")),
                    "avatar.delay.rise: found 1.5"));
     CHECK(contains(said(with(R"(, "avatar": {"display_ratio": {"preset": "clear", "f_0_N": 0}})")), "f_0_N: found 0"));
