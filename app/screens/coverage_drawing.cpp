@@ -37,7 +37,8 @@ struct CellField {
 
 struct AreaLook {
     ImU32 colour;
-    float rim_px;  // of a light line around the area; 0: none
+    float rim_px;            // of a light line around the area; 0: none
+    const CellField* above;  // the next level, which covers its part of this one; null: none
 };
 
 // Draws the part of one square between four centres that belongs to the area.
@@ -76,6 +77,10 @@ void draw_row_of_squares(const Shown& shown, const CellField& field, int first, 
 }
 
 void draw_area(const Shown& shown, const CellField& field, const AreaLook& look, ImDrawList& draw) {
+    const auto covered = [&](int i, int j) {
+        return look.above != nullptr && look.above->inside(i, j) && look.above->inside(i + 1, j) &&
+               look.above->inside(i, j + 1) && look.above->inside(i + 1, j + 1);
+    };
     for (int j = -1; j < field.c.n_y; ++j) {
         const auto corners = [&](int i) {
             return static_cast<int>(field.inside(i, j)) + static_cast<int>(field.inside(i + 1, j)) +
@@ -89,8 +94,8 @@ void draw_area(const Shown& shown, const CellField& field, const AreaLook& look,
                 continue;
             }
             int last = i;
-            while (last + 1 < field.c.n_x && corners(last + 1) == 4) ++last;
-            draw_row_of_squares(shown, field, i, last, j, look.colour, draw);
+            while (last + 1 < field.c.n_x && corners(last + 1) == 4 && covered(last + 1, j) == covered(i, j)) ++last;
+            if (!covered(i, j)) draw_row_of_squares(shown, field, i, last, j, look.colour, draw);
             i = last;
         }
     }
@@ -120,9 +125,12 @@ void draw_coverage(const Shown& shown, float mm, ImDrawList& draw) {
     draw_untouched(shown, c, mm, draw);
     const ImDrawListFlags flags = draw.Flags;
     draw.Flags &= ~ImDrawListFlags_AntiAliasedFill;  // neighbours would show seams
-    draw_area(shown, {c, true, 0.5}, {kAreaTints[0], 0.35f * mm}, draw);
-    draw_area(shown, {c, false, 1.0 / 3.0}, {kAreaTints[1], 0.0f}, draw);
-    draw_area(shown, {c, false, 2.0 / 3.0}, {kAreaTints[2], 0.0f}, draw);
+    const CellField touched{c, true, 0.5};
+    const CellField medium{c, false, 1.0 / 3.0};
+    const CellField deep{c, false, 2.0 / 3.0};
+    draw_area(shown, touched, {kAreaTints[0], 0.35f * mm, &medium}, draw);
+    draw_area(shown, medium, {kAreaTints[1], 0.0f, &deep}, draw);
+    draw_area(shown, deep, {kAreaTints[2], 0.0f, nullptr}, draw);
     draw.Flags = flags;
 }
 

@@ -19,8 +19,8 @@ inline constexpr ImU32 kDark = IM_COL32(20, 22, 24, 255);
 // with a luminance contrast of 3 : 1 to the next, which everybody sees.
 inline constexpr ImU32 kForceTints[3] = {IM_COL32(44, 66, 84, 255), IM_COL32(58, 92, 120, 255),
                                          IM_COL32(76, 122, 160, 255)};
-inline constexpr ImU32 kAreaTints[3] = {IM_COL32(48, 68, 100, 255), IM_COL32(148, 145, 120, 255),
-                                        IM_COL32(255, 252, 190, 255)};
+inline constexpr ImU32 kAreaTints[3] = {IM_COL32(44, 64, 96, 255), IM_COL32(144, 141, 116, 255),
+                                        IM_COL32(250, 244, 206, 255)};
 
 inline constexpr float kTarget_mm = 9.0f;  // least height of a control that is touched
 inline constexpr float kMark_mm = 12.0f;
@@ -65,7 +65,7 @@ ImVec2 on_screen(const render::TissueView& view, double x_m, double y_m);
 
 void cross(ImDrawList& draw, ImVec2 at, float radius_px, ImU32 colour, float width_px);
 void dashed_circle(ImDrawList& draw, ImVec2 at, float radius_px, ImU32 colour, float width_px);
-// Draws text with a dark rim, so that it can be read on any tissue.
-void rimmed_text(ImDrawList& draw, ImVec2 at, ImU32 colour, const std::string& text);
+// Draws text on a dark plate, so that it can be read on any tissue.
+void plated_text(ImDrawList& draw, ImVec2 at, ImU32 colour, const std::string& text);
 
 }  // namespace palpa::app
