@@ -53,7 +53,7 @@ void print(const files::Json& result, bool as_json) {
 void draw(const platform::Trace& trace, const RunOptions& options, session::Session& session) {
     Doing doing;
     if (session.trial.finished) {
-        doing = Reviewing{session::debrief(*session.plan, session.trial)};
+        doing = review_of(*session.plan, session.trial, session.state.view);
     } else {
         const scene::Extremes extremes = session.state.extremes;
         session::begin_replay({}, trace.info, session.trial.mode, session);

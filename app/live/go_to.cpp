@@ -57,7 +57,7 @@ void go_to(Doing next, platform::Window& window, App& app) {
 
 Doing back_to_trial(const App& app) {
     const session::Session& s = app.session;
-    if (s.trial.finished) return Reviewing{session::debrief(*s.plan, s.trial), false, app.guided};
+    if (s.trial.finished) return review_of(*s.plan, s.trial, s.state.view, app.guided);
     return Palpating{false, app.guided};
 }
 

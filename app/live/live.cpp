@@ -266,10 +266,11 @@ struct Live::Impl {
     // Returns when the next frame is built. While nothing happens, frames are rare: often enough for clocks, notices
     // and cursors that blink. Input wakes the loop at once.
     double next_frame_s() const {
-        constexpr double kIdle_s = 0.1;
+        // a result has no clock, and much to draw
+        const double idle_s = std::holds_alternative<Reviewing>(app.doing) ? 0.25 : 0.1;
         constexpr double kSettle_s = 0.25;  // panels take some frames to settle, and the log is flushed after 80 ms
         const bool quick = in_motion(app) || gui->in_use() || window->now_s() - stirred_s < kSettle_s;
-        return std::min(frame_s + (quick ? kFrame_s : kIdle_s), trial_ends_s(app));
+        return std::min(frame_s + (quick ? kFrame_s : idle_s), trial_ends_s(app));
     }
 
     App app;

@@ -60,6 +60,12 @@ std::string advice_on_missed(const stiffnessmaps::Nodule& nodule, session::Findi
 
 }  // namespace
 
+Reviewing review_of(const scene::Plan& plan, const session::Trial& trial, const scene::View& view, bool guided) {
+    Reviewing out{session::debrief(plan, trial), false, guided};
+    out.advice = advice_for(plan, trial, out.debrief, view);
+    return out;
+}
+
 std::string advice_for(const scene::Plan& plan, const session::Trial& trial, const session::Debrief& debrief,
                        const scene::View& view) {
     const std::array<double, kRegionCount> shares = examined(trial.coverage, view);

@@ -47,7 +47,7 @@ std::string verdict(platform::Tool which, const DeviceCheck& check) {
 void seen_lines(platform::Tool which, const DeviceCheck& check, const Gui& gui) {
     const ToolCheck& tool = of_tool(which, check);
     if (tool.samples == 0) return;
-    const float column_px = 34.0f * gui.mm();
+    const float column_px = 40.0f * gui.mm();
     ImGui::Separator();
     ImGui::Text("%s", std::string(name_of(which)).c_str());
     value_line(words::kPressure, verdict(which, check), column_px);

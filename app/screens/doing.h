@@ -3,6 +3,7 @@
 // the loop changes it; the screens draw it, and ask for a change in Wishes (app/screens/screens.h).
 
 #include <memory>
+#include <string>
 #include <variant>
 #include <vector>
 
@@ -22,7 +23,8 @@ struct Palpating {  // a trial outside a study, practice or test (session::Trial
 struct Reviewing {  // what a finished trial reveals
     session::Debrief debrief;
     bool menu = false;
-    bool guided = false;  // the last step of the guided start
+    bool guided = false;   // the last step of the guided start
+    std::string advice{};  // one sentence; empty: none
 };
 
 struct Dot {

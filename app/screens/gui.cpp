@@ -254,7 +254,8 @@ void Gui::let_all_keys_go() {
 void Gui::begin_frame(double dt_s, bool keys_to_panels) {
     ImGuiIO& io = ImGui::GetIO();
     io.DisplaySize = ImVec2(static_cast<float>(window_.width_px()), static_cast<float>(window_.height_px()));
-    io.DeltaTime = std::max(1e-4f, static_cast<float>(dt_s));
+    constexpr float kSlowest_s = 0.1f;  // a key that is held for one slow frame is not repeated
+    io.DeltaTime = std::clamp(static_cast<float>(dt_s), 1e-4f, kSlowest_s);
     if (keys_to_panels != keys_to_panels_) let_all_keys_go();
     keys_to_panels_ = keys_to_panels;
     io.ConfigFlags = keys_to_panels ? ImGuiConfigFlags_NavEnableKeyboard : ImGuiConfigFlags_None;

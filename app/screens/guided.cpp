@@ -11,6 +11,7 @@ namespace palpa::app {
 namespace {
 
 constexpr int kGuidedSteps = 6;
+constexpr float kGuidedText = 1.2f;  // size beside that of other text
 constexpr double kNear_m = 8e-3;
 constexpr double kEnough = 1.0 / 6.0;  // of the known depth: a press that shows on the picture
 
@@ -70,7 +71,7 @@ PanelArea guided_area(const Layout& layout, const std::string& text, float mm, s
     const PanelArea& t = layout.tissue_px;
     const ImGuiStyle& style = ImGui::GetStyle();
     const float wrap_px = t.width() - 2.0f * style.WindowPadding.x;
-    const float text_px = ImGui::CalcTextSize(text.c_str(), nullptr, false, wrap_px).y;
+    const float text_px = kGuidedText * ImGui::CalcTextSize(text.c_str(), nullptr, false, wrap_px / kGuidedText).y;
     const float height_px = std::min(0.6f * t.height(), ImGui::GetFontSize() + text_px + kTarget_mm * mm +
                                                             3.0f * style.ItemSpacing.y + 2.0f * style.WindowPadding.y);
     const bool below = target_y_px && *target_y_px < 0.5f * (t.y0 + t.y1);
@@ -122,16 +123,19 @@ void draw_guided(const Shown& shown, const Layout& layout, Gui& gui, Wishes& wis
     }
     const std::string text =
         result ? std::string(words::kGuidedResult) + "\n" + words::kGuidedEnds : std::string(text_of(step));
-    begin_panel("guided", guided_area(layout, text, gui.mm(), target_y_px), gui, 0.92f);
+    begin_panel("guided", guided_area(layout, text, gui.mm(), target_y_px), gui);
     guided_title(result ? kGuidedSteps : static_cast<int>(step) + 1);
+    ImGui::SetWindowFontScale(kGuidedText);
     ImGui::TextWrapped("%s", text.c_str());
+    ImGui::SetWindowFontScale(1.0f);
     if (result) {
         if (big_button(words::kStartPractice, "", {60.0f * gui.mm(), kTarget_mm, true, true}, gui))
             wishes.guided = false;
         ImGui::SameLine();
-        if (big_button(words::kGuidedStart, "", {44.0f * gui.mm(), kTarget_mm, true, false}, gui)) wishes.guided = true;
+        if (big_button(words::kRepeatGuided, "", {44.0f * gui.mm(), kTarget_mm, true, false}, gui))
+            wishes.guided = true;
     } else if (big_button(words::kSkip, words::kEscape, {34.0f * gui.mm(), kTarget_mm, true, false}, gui) ||
-               gui.pressed(platform::key::escape)) {
+               (gui.pressed(platform::key::escape) && !*menu_of(shown.doing))) {
         wishes.guided = false;
     }
     end_panel("guided", gui);

@@ -1,6 +1,7 @@
 // The list of keys, and the tissue's cover while the clock is stopped.
 
 #include <algorithm>
+#include <iterator>
 
 #include "app/screens/screens.h"
 #include "app/screens/widgets.h"
@@ -30,12 +31,18 @@ void draw_help(const Shown&, Gui& gui, ViewState& view) {
     const WindowSize window = gui.size_px();
     gui.claim({0.0f, 0.0f, window.width, window.height});  // nothing is palpated meanwhile
     const float width_px = std::min(window.width, 150.0f * gui.mm());
-    const float height_px = std::min(window.height, 165.0f * gui.mm());
+    const float lines = static_cast<float>(std::size(kKeyLines)) + 2.5f;
+    const float needed_px = lines * ImGui::GetTextLineHeightWithSpacing() + (kTarget_mm + 12.0f) * gui.mm();
+    const float height_px = std::min(window.height, needed_px);
     const float x0 = 0.5f * (window.width - width_px);
     const float y0 = 0.5f * (window.height - height_px);
+    ImGui::GetBackgroundDrawList()->AddRectFilled(ImVec2(0.0f, 0.0f), ImVec2(window.width, window.height),
+                                                  IM_COL32(0, 0, 0, 150));
     begin_panel("help", {x0, y0, x0 + width_px, y0 + height_px}, gui);
     if (ImGui::IsWindowAppearing()) ImGui::SetWindowFocus();
+    ImGui::SetWindowFontScale(1.4f);
     ImGui::TextUnformatted(words::kKeys);
+    ImGui::SetWindowFontScale(1.0f);
     const float below_px = (kTarget_mm + 4.0f) * gui.mm();
     ImGui::BeginChild("keys", ImVec2(0.0f, ImGui::GetContentRegionAvail().y - below_px), false,
                       ImGuiWindowFlags_NavFlattened);

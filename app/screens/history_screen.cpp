@@ -38,8 +38,9 @@ void trial_list(const Gui& gui, HistoryView& history) {
         ImGui::PushID(static_cast<int>(k));
         ImGui::PushStyleVar(ImGuiStyleVar_ButtonTextAlign, ImVec2(0.0f, 0.5f));
         ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, ImVec2(1.5f * gui.mm(), 0.0f));
-        const std::string text = words::filled(words::kHistoryLine, {when_of(trial), mode_word(trial)}) + "\n" +
-                                 words::filled(words::kHistoryTime, {found_text(trial), clock_text(trial.clock_s)});
+        const std::string text =
+            words::filled(words::kHistoryLine, {when_of(trial), mode_word(trial), clock_text(trial.clock_s)}) + "\n" +
+            found_text(trial);
         if (big_button(text.c_str(), "", {0.0f, 1.5f * kTarget_mm, true, k == history.chosen}, gui))
             choose_trial(k, history);
         if (k == history.chosen) ImGui::SetItemDefaultFocus();
@@ -148,7 +149,7 @@ void draw_replay(const KeptTrial& trial, double shown_s, const PanelArea& area, 
             draw.AddCircle(at, radius_px, kInk, 48, 0.6f * mm);
         else
             dashed_circle(draw, at, radius_px, kInk, 0.6f * mm);
-        rimmed_text(draw, ImVec2(at.x + radius_px + mm, at.y - 0.5f * ImGui::GetFontSize()), kInk, n.id);
+        plated_text(draw, ImVec2(at.x + radius_px + mm, at.y - 0.5f * ImGui::GetFontSize()), kInk, n.id);
     }
     for (const session::KeptMark& m : trial.marks) {
         if (m.time_s > shown_s) continue;

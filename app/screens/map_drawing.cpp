@@ -215,7 +215,7 @@ void draw_nodule(const stiffnessmaps::Nodule& nodule, const Frame& f, float mm, 
     }
     const ImVec2 at = f.px(nodule.x_m, nodule.y_m);
     const ImVec2 size = ImGui::CalcTextSize(nodule.id.c_str());
-    rimmed_text(draw, ImVec2(at.x - 0.5f * size.x, at.y - 0.5f * size.y), kInk, nodule.id);
+    plated_text(draw, ImVec2(at.x - 0.5f * size.x, at.y - 0.5f * size.y), kInk, nodule.id);
 }
 
 void draw_pin(ImVec2 at, std::size_t number, float mm, ImDrawList& draw) {

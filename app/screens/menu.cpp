@@ -65,7 +65,7 @@ int ways(const char* title, std::initializer_list<Way> all, const Gui& gui) {
 void trial_page(const Shown& shown, const Gui& gui, Wishes& wishes) {
     const bool test = shown.trial.mode == session::TrialMode::test;
     const int mode = ways(
-        words::kTrial, {{words::kPractice, !test, words::kHintPractice}, {words::kTest, test, words::kHintTest}}, gui);
+        words::kMode, {{words::kPractice, !test, words::kHintPractice}, {words::kTest, test, words::kHintTest}}, gui);
     if (mode >= 0) wishes.mode = mode == 0 ? session::TrialMode::practice : session::TrialMode::test;
     if (big_button(words::kRestartTrial, words::kKeyAgain, {0.0f, kTarget_mm, true, false, words::kHintRestart}, gui))
         wishes.again = true;

@@ -31,7 +31,7 @@ void draw_nodules(const Shown& shown, const session::Debrief& debrief, float mm,
         const std::string text = nodule.id + ": " + name_of(debrief.findings[i]);
         const float width_px = ImGui::CalcTextSize(text.c_str()).x;
         const bool fits = at.x + radius_px + mm + width_px < ImGui::GetIO().DisplaySize.x;
-        rimmed_text(
+        plated_text(
             draw,
             ImVec2(fits ? at.x + radius_px + mm : at.x - radius_px - mm - width_px, at.y + 0.3f * ImGui::GetFontSize()),
             kInk, text);
@@ -67,7 +67,7 @@ void place_labels(const std::vector<Label>& labels, float mm, ImDrawList& draw) 
             if (free && area.x0 >= 0.0f && area.x1 <= screen.x && area.y0 >= 0.0f) break;
         }
         taken.push_back(area);
-        rimmed_text(draw, ImVec2(area.x0, area.y0), kInk, label.text);
+        plated_text(draw, ImVec2(area.x0, area.y0), kInk, label.text);
     }
 }
 
@@ -96,7 +96,12 @@ void draw_marks(const Shown& shown, const study::Score& score, float mm, ImDrawL
 
 std::string percent(double share) { return std::isfinite(share) ? fixed(100.0 * share, 0) + " %" : "-"; }
 
-void result_lines(const Shown& shown, const session::Debrief& debrief, const Gui& gui) {
+void result_lines(const Shown& shown, const Reviewing& reviewing, const Gui& gui) {
+    const session::Debrief& debrief = reviewing.debrief;
+    if (!reviewing.advice.empty()) {
+        ImGui::TextWrapped("%s", reviewing.advice.c_str());
+        ImGui::Separator();
+    }
     const study::Score& s = debrief.score;
     const float column_px = 34.0f * gui.mm();
     const std::string found = words::filled(
@@ -144,7 +149,7 @@ void legend(const session::Debrief& debrief, const Gui& gui) {
 
 void buttons(const Gui& gui, bool menu, Wishes& wishes) {
     const float width_px = share_of_line_px(2);
-    if (big_button(words::kAgain, words::kKeyAgain, {width_px, kMark_mm, true, false, words::kHintRestart}, gui))
+    if (big_button(words::kRestart, words::kKeyAgain, {width_px, kMark_mm, true, false, words::kHintRestart}, gui))
         wishes.again = true;
     ImGui::SameLine();
     if (big_button(words::kNext, words::kKeyNext, {width_px, kMark_mm, true, false, words::kHintNext}, gui))
@@ -154,6 +159,12 @@ void buttons(const Gui& gui, bool menu, Wishes& wishes) {
     ImGui::SameLine();
     if (big_button(menu ? words::kClose : words::kMenu, "F10", {width_px, kTarget_mm, true, menu}, gui))
         wishes.menu = !menu;
+}
+
+void messages(const Shown& shown) {
+    for (const std::string& problem : shown.notices.problems) warning_paragraph(problem);
+    if (!shown.notices.note.empty()) paragraph(shown.notices.note);
+    if (!shown.notices.trials_note.empty()) paragraph(shown.notices.trials_note);
 }
 
 }  // namespace
@@ -169,28 +180,24 @@ void draw_reveal_on_tissue(const Shown& shown, const Gui& gui, const session::De
 void draw_reveal_panel(const Shown& shown, const Layout& layout, const Reviewing& reviewing, Gui& gui, Wishes& wishes) {
     if (!layout.controls) return;
     begin_panel("reveal", layout.controls_px, gui);
-    const float half_px = layout.column ? 0.0f : share_of_line_px(2);
-    ImGui::BeginGroup();
-    if (!layout.column) ImGui::BeginChild("results", ImVec2(half_px, 0.0f), false, ImGuiWindowFlags_NavFlattened);
-    if (layout.column) buttons(gui, reviewing.menu, wishes);
-    ImGui::TextWrapped("%s", advice_for(shown.plan, shown.trial, reviewing.debrief, shown.state.view).c_str());
-    ImGui::Separator();
-    result_lines(shown, reviewing.debrief, gui);
-    if (!layout.column) ImGui::EndChild();
-    ImGui::EndGroup();
-    if (!layout.column) {
+    if (layout.column) {
+        buttons(gui, reviewing.menu, wishes);
+        ImGui::BeginChild("rest", ImVec2(0.0f, 0.0f), false, ImGuiWindowFlags_NavFlattened);  // scrolls if need be
+        result_lines(shown, reviewing, gui);
+        legend(reviewing.debrief, gui);
+        messages(shown);
+        ImGui::EndChild();
+    } else {
+        ImGui::BeginChild("results", ImVec2(share_of_line_px(2), 0.0f), false, ImGuiWindowFlags_NavFlattened);
+        result_lines(shown, reviewing, gui);
+        ImGui::EndChild();
         ImGui::SameLine();
         ImGui::BeginChild("legend", ImVec2(0.0f, 0.0f), false, ImGuiWindowFlags_NavFlattened);
         buttons(gui, reviewing.menu, wishes);
+        legend(reviewing.debrief, gui);
+        messages(shown);
+        ImGui::EndChild();
     }
-    legend(reviewing.debrief, gui);
-    // long messages scroll in what is left
-    ImGui::BeginChild("said", ImVec2(0.0f, 0.0f), false, ImGuiWindowFlags_NavFlattened);
-    for (const std::string& problem : shown.notices.problems) warning_paragraph(problem);
-    if (!shown.notices.note.empty()) paragraph(shown.notices.note);
-    if (!shown.notices.trials_note.empty()) paragraph(shown.notices.trials_note);
-    ImGui::EndChild();
-    if (!layout.column) ImGui::EndChild();
     end_panel("reveal", gui);
 }
 

@@ -167,6 +167,9 @@ void draw_paused(const Shown& shown, const Layout& layout, Gui& gui, Wishes& wis
 // Lists the keys, over everything else.
 void draw_help(const Shown& shown, Gui& gui, ViewState& view);
 
+// What a finished trial reveals.
+Reviewing review_of(const scene::Plan& plan, const session::Trial& trial, const scene::View& view, bool guided = false);
+
 // One sentence on what to do better, from what was found, where was pressed and how deep.
 std::string advice_for(const scene::Plan& plan, const session::Trial& trial, const session::Debrief& debrief,
                        const scene::View& view);

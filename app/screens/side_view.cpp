@@ -111,7 +111,7 @@ void draw_depth(const Shown& shown, const Section& section, double depth_m, floa
     draw.AddLine(top, low, kInk, 0.4f * mm);
     draw.AddLine(ImVec2(section.at(0.0, 0.0).x, low.y), ImVec2(low.x + mm, low.y), kInk, 0.2f * mm);
     const std::string beyond = shown.state.contact.saturated ? "> " : "";
-    rimmed_text(draw, ImVec2(low.x + mm, 0.5f * (top.y + low.y - ImGui::GetFontSize())), kInk,
+    plated_text(draw, ImVec2(low.x + mm, 0.5f * (top.y + low.y - ImGui::GetFontSize())), kInk,
                 beyond + fixed(1e3 * depth_m, 1) + " mm");
 }
 

@@ -13,7 +13,7 @@ bool enter_pressed(const Gui& gui) {
 
 bool forward(const char* label, const Gui& gui, bool enabled) {
     const float width_px = std::min(70.0f * gui.mm(), ImGui::GetContentRegionAvail().x);
-    const bool asked = big_button(label, words::kEnter, {width_px, kMark_mm, enabled, false}, gui);
+    const bool asked = big_button(label, words::kEnter, {width_px, kMark_mm, enabled, enabled}, gui);
     return asked || (enabled && enter_pressed(gui));
 }
 

@@ -247,14 +247,16 @@ void strip_panel(const Shown& shown, Gui& gui, ViewState& view, Wishes& wishes) 
     const float left_px = ImGui::GetCursorPosX();
     const float top_px = ImGui::GetCursorPosY();
     const float gap_px = ImGui::GetStyle().ItemSpacing.x;
-    ImGui::BeginChild("left", ImVec2(wide_px - right_px - gap_px, height_px), false, ImGuiWindowFlags_NoNav);
-    const float rest_px = (shown.notices.problems.empty() ? 12.0f : 30.0f) * mm;
-    draw_force_bar(shown, std::max(16.0f * mm, height_px - rest_px - 12.0f * mm), gui);
+    ImGui::BeginChild("left", ImVec2(wide_px - right_px - gap_px, height_px), false, ImGuiWindowFlags_NavFlattened);
+    draw_force_bar(shown, std::max(16.0f * mm, height_px - 2.0f * mm), gui);
     ImGui::SameLine();
-    ImGui::SetCursorPosX(26.0f * mm);
+    ImGui::SetCursorPosX(30.0f * mm);
+    ImGui::BeginChild("beside", ImVec2(0.0f, height_px - 2.0f * mm), false,
+                      ImGuiWindowFlags_NavFlattened);  // long messages scroll
     draw_numbers(shown, gui);
     if (!is_interval(shown.doing)) draw_contact_note(shown);
     draw_messages(shown, gui, wishes);
+    ImGui::EndChild();
     ImGui::EndChild();
     ImGui::SetCursorPos(ImVec2(left_px + wide_px - right_px, top_px));
     ImGui::BeginChild("right", ImVec2(right_px, height_px), false, ImGuiWindowFlags_NavFlattened);
@@ -307,7 +309,7 @@ void draw_on_tissue(const Shown& shown, const Gui& gui) {
             const auto radius_m = static_cast<float>(0.5 * nodule.diameter_m.value_or(4e-3));
             ring_on_surface(draw, shown.picture, {nodule.x_m, nodule.y_m}, radius_m,
                             {0.45f * gui.mm(), 0.5f * gui.mm()});
-            rimmed_text(draw, ImVec2(at.x + radius_m * shown.view.px_per_m + gui.mm(), at.y), kInk, nodule.id);
+            plated_text(draw, ImVec2(at.x + radius_m * shown.view.px_per_m + gui.mm(), at.y), kInk, nodule.id);
         }
     }
     for (std::size_t i = 0; i < shown.trial.marks.size(); ++i) {
@@ -316,7 +318,7 @@ void draw_on_tissue(const Shown& shown, const Gui& gui) {
         cross(draw, at, 1.6f * gui.mm(), kDark, 1.7f * gui.mm());
         cross(draw, at, 1.6f * gui.mm(), kInk, 0.6f * gui.mm());
         const std::string sure = mark.confidence > 0 ? " (" + std::to_string(mark.confidence) + ")" : "";
-        rimmed_text(draw, ImVec2(at.x + 2.0f * gui.mm(), at.y - 1.6f * gui.mm() - 0.5f * ImGui::GetFontSize()), kInk,
+        plated_text(draw, ImVec2(at.x + 2.0f * gui.mm(), at.y - 1.6f * gui.mm() - 0.5f * ImGui::GetFontSize()), kInk,
                     std::to_string(i + 1) + sure);
     }
     draw_pen(shown, gui, draw);
@@ -325,7 +327,7 @@ void draw_on_tissue(const Shown& shown, const Gui& gui) {
 
 void draw_trial_panel(const Shown& shown, const Layout& layout, Gui& gui, ViewState& view, Wishes& wishes) {
     if (!layout.controls) {
-        rimmed_text(*ImGui::GetForegroundDrawList(), ImVec2(4.0f, 4.0f), kInk, words::kTooSmall);
+        plated_text(*ImGui::GetForegroundDrawList(), ImVec2(4.0f, 4.0f), kInk, words::kTooSmall);
         return;
     }
     begin_panel("trial", layout.controls_px, gui);

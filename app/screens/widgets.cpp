@@ -179,11 +179,12 @@ void dashed_circle(ImDrawList& draw, ImVec2 at, float radius_px, ImU32 colour, f
     }
 }
 
-void rimmed_text(ImDrawList& draw, ImVec2 at, ImU32 colour, const std::string& text) {
-    const float rim_px = std::max(1.0f, ImGui::GetFontSize() / 16.0f);
-    for (const float dx : {-rim_px, rim_px}) {
-        for (const float dy : {-rim_px, rim_px}) draw.AddText(ImVec2(at.x + dx, at.y + dy), kDark, text.c_str());
-    }
+void plated_text(ImDrawList& draw, ImVec2 at, ImU32 colour, const std::string& text) {
+    const ImVec2 size = ImGui::CalcTextSize(text.c_str());
+    const float margin_px = 0.2f * ImGui::GetFontSize();
+    draw.AddRectFilled(ImVec2(at.x - margin_px, at.y - 0.4f * margin_px),
+                       ImVec2(at.x + size.x + margin_px, at.y + size.y + 0.4f * margin_px), IM_COL32(20, 22, 24, 205),
+                       margin_px);
     draw.AddText(at, colour, text.c_str());
 }
 

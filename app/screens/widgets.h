@@ -78,7 +78,7 @@ void ring_on_surface(ImDrawList& draw, const render::TissuePicture& picture, con
 
 void cross(ImDrawList& draw, ImVec2 at, float radius_px, ImU32 colour, float width_px);
 void dashed_circle(ImDrawList& draw, ImVec2 at, float radius_px, ImU32 colour, float width_px);
-// Draws text with a dark rim, so that it can be read on any tissue.
-void rimmed_text(ImDrawList& draw, ImVec2 at, ImU32 colour, const std::string& text);
+// Draws text on a dark plate, so that it can be read on any tissue.
+void plated_text(ImDrawList& draw, ImVec2 at, ImU32 colour, const std::string& text);
 
 }  // namespace palpa::app

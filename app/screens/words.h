@@ -42,6 +42,7 @@ inline constexpr const char* kMaps = "Maps";
 inline constexpr const char* kPerformance = "Performance";
 inline constexpr const char* kFullScreen = "Full screen";
 inline constexpr const char* kTrials = "Trials";
+inline constexpr const char* kMode = "Mode";
 inline constexpr const char* kQuit = "Quit";
 inline constexpr const char* kScene = "Scene";
 inline constexpr const char* kCalibrationProfile = "Calibration profile";
@@ -64,9 +65,8 @@ inline constexpr const char* kMicroseconds = "us (median)";
 inline constexpr const char* kMicroseconds99 = "us (p99)";
 inline constexpr const char* kCalls = "calls";
 inline constexpr const char* kFrameTimes =
-    "Sample to frame {} ms (99 %: {}), besides drawing {} ms. Frame {} ms besides drawing (99 %: {}), drawing {} ms. "
-    "{} "
-    "frames/s, {} samples, {} steps dropped, {} along fast strokes skipped.";
+    "Input to frame {} ms (p99 {}), without drawing {} ms. Frame {} ms without drawing (p99 {}), drawing {} ms. "
+    "{} frames/s, {} samples, {} steps dropped, {} along fast strokes skipped.";
 
 // trial
 inline constexpr const char* kForce = "Force";
@@ -111,7 +111,7 @@ inline constexpr const char* kPpv = "PPV";
 inline constexpr const char* kFalsePositives = "False positives";
 inline constexpr const char* kTime = "Time";
 inline constexpr const char* kCoverage = "Coverage";
-inline constexpr const char* kAgain = "Again";
+inline constexpr const char* kRestart = "Restart";
 inline constexpr const char* kNext = "Next";
 inline constexpr const char* kSavePicture = "Save picture";
 inline constexpr const char* kNotTouched = "not touched";
@@ -170,7 +170,7 @@ inline constexpr const char* kStepOf = "Step {} of {}";
 inline constexpr const char* kSkip = "Skip";
 inline constexpr const char* kGuidedPress = "Press inside the ring. The surface gives way: this tissue is soft.";
 inline constexpr const char* kGuidedSlide =
-    "Now press and slide slowly across the other ring, from side to side. The pointer lags behind your hand: this "
+    "Now press and slide slowly across the other ring, from side to side. The indenter lags behind your hand: this "
     "place is stiff, a nodule.";
 inline constexpr const char* kGuidedMark =
     "You have felt a nodule. Mark it with Mark; the mark goes where you pressed last.";
@@ -183,6 +183,7 @@ inline constexpr const char* kGuidedResult =
 inline constexpr const char* kGuidedEnds =
     "Practice shows the nodules all the time. A test hides them until you finish.";
 inline constexpr const char* kStartPractice = "Start a practice trial";
+inline constexpr const char* kRepeatGuided = "Repeat";
 
 // help
 inline constexpr const char* kKeys = "Keys";
@@ -233,9 +234,8 @@ inline constexpr const char* kLearningCurve = "Learning curve (filled: test, hol
 inline constexpr const char* kFoundAxis = "nodules found (%)";
 inline constexpr const char* kTrialAxis = "trial";
 inline constexpr const char* kPlay = "Play";
-inline constexpr const char* kHistoryLine = "{}  {}";
-inline constexpr const char* kHistoryFound = "{} of {} found, {} false positives";
-inline constexpr const char* kHistoryTime = "{} after {}";
+inline constexpr const char* kHistoryLine = "{}  {}  {}";
+inline constexpr const char* kHistoryFound = "Found {} of {}, false positives: {}";
 
 // device check
 inline constexpr const char* kReportedCapabilities = "Reported capabilities";

@@ -26,7 +26,7 @@ namespace {
 constexpr float kMm = 96.0f / 25.4f;  // px per mm of the controls on a screen that nobody measured
 
 // The middle of controls in a window of 1280 x 800 px.
-const Eigen::Vector2d kMark(120, 335), kSure4(162, 405), kFinish(176, 446), kMenu(48, 27), kTest(743, 100);
+const Eigen::Vector2d kMark(120, 335), kSure4(162, 405), kFinish(176, 446), kMenu(175, 79), kTest(743, 100);
 
 class MouseScript {
   public:
@@ -89,12 +89,12 @@ TEST_CASE("first: the guided start, a practice trial and a test by mouse alone")
     script.click(kMark);
     script.click(kSure4);
     script.click(kFinish);
-    script.click(Eigen::Vector2d(static_cast<double>(t.x0) + 120.0, 112.0));  // start a practice trial
+    script.click(Eigen::Vector2d(static_cast<double>(t.x0) + 120.0, 125.0));  // start a practice trial
     script.wait(1.0);
     script.press(Eigen::Vector2d(700, 400), Eigen::Vector2d(800, 400));
     script.click(kMark);
     script.click(kFinish);
-    script.click(kMenu + Eigen::Vector2d(6.0, 75.0));  // menu, under Again and Next
+    script.click(kMenu);
     script.click(kTest);
     script.wait(1.0);
     script.press(Eigen::Vector2d(600, 300), Eigen::Vector2d(700, 500));

@@ -150,7 +150,7 @@ TEST_CASE("maps: the browser by mouse, pen and keys draws what was asked for, an
                                   std::to_string(played_s + 12.0) + " --screenshot " + (folder / "p.png").string();
     std::vector<std::size_t> stood;
     const int status = run_app(folder, arguments, [&] {
-        Watcher watcher(262, 40, 420, 700);  // within the matrix
+        Watcher watcher(262, 160, 420, 580);  // within the matrix, below what explains the button that the pen is over
         sleep_s(1.0);
         CHECK(play_script(folder) == 0);
         sleep_s(3.0);

@@ -94,7 +94,7 @@ test('from the menu to the thanks; a reload in the middle of a trial; the desk\'
     await open(browser, desk.url);
     // the way in, by hand
     await tap(browser, 90, 45);
-    await tap(browser, 1152, 476);
+    await tap(browser, 1178, 410);
     await page.waitForFunction(() => document.querySelectorAll('#studies-list label').length === 6);
     await page.check('input[value=short]');
     await page.click('#begin-study');

@@ -61,3 +61,26 @@ TEST_CASE("calibrate screen: Enter takes the number that the scale shows, and th
     CHECK(form.guide.shown_gf == 7.0);
     CHECK(form.recording->session.points.size() == 2);
 }
+
+TEST_CASE("calibrate screen: a mouse has no pressure, and is told so instead of being recorded") {
+    const TemporaryFolder folder;
+    Desk desk("");
+    open_screen(Screen::calibrate, desk.window, desk.app);
+    CalibrateForm& form = *std::get<Calibrating>(desk.app.doing).form;
+    calibration::RecordArguments arguments;
+    arguments.folder = (folder / "c").string();
+    arguments.sensor = "typed";
+    form.recording = calibration::open_recording(arguments);
+    Sample sample;
+    sample.t_host_s = devices::steady_s();
+    sample.tool = Tool::mouse;
+    sample.phase = Phase::down;
+    sample.pressure = 0.0;
+    step_calibrate({sample}, form);
+    CHECK(form.recording->session.levels.empty());
+    CHECK(form.guide.note.find("mouse") != std::string::npos);
+    sample.tool = Tool::pen;
+    sample.pressure = 0.3;
+    step_calibrate({sample}, form);
+    CHECK(form.recording->session.levels.size() == 1);
+}

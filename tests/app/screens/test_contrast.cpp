@@ -184,6 +184,6 @@ TEST_CASE("contrast: all text of every screen has 4.5 : 1 to what it stands on")
     p.check("paused");
     p.act(Action::resume, 0.0, 0.0);
     p.act(Action::finish, 0.0, 0.0);
-    p.doing = Reviewing{debrief(*p.session.plan, p.session.trial)};
+    p.doing = review_of(*p.session.plan, p.session.trial, p.session.state.view);
     p.check("result");
 }

@@ -35,3 +35,29 @@ TEST_CASE("scale screen: what is typed counts while it is a scale that a screen 
     CHECK(desk.app.view.card_px_per_mm == 8.5);
     CHECK(std::holds_alternative<MeasuringScreen>(desk.app.doing));  // no letter was a shortcut
 }
+
+TEST_CASE("scale screen: the frame is as large as it is dragged") {
+    Desk desk("");
+    open_screen(Screen::scale, desk.window, desk.app);
+    frames(desk, 5);
+    const double before = desk.app.view.card_px_per_mm;
+    const auto drag = [&](int from_x_px, int to_x_px) {
+        constexpr int kY_px = 300;
+        move_mouse(desk.window, from_x_px, kY_px);
+        frames(desk, 3);
+        button(desk.window, true, from_x_px, kY_px);
+        frames(desk, 3);
+        move_mouse(desk.window, to_x_px, kY_px);
+        frames(desk, 3);
+        button(desk.window, false, to_x_px, kY_px);
+        frames(desk, 3);
+    };
+    drag(480, 520);  // the right edge by 40 px
+    const double wider = desk.app.view.card_px_per_mm;
+    CHECK(wider == doctest::Approx(before + 2.0 * 40.0 / 85.6).epsilon(1e-3));
+    drag(160, 180);  // the left one
+    CHECK(desk.app.view.card_px_per_mm == doctest::Approx(wider - 2.0 * 20.0 / 85.6).epsilon(1e-3));
+    move_mouse(desk.window, 600, 300);  // nothing is held
+    frames(desk, 3);
+    CHECK(desk.app.view.card_px_per_mm == doctest::Approx(wider - 2.0 * 20.0 / 85.6).epsilon(1e-3));
+}

@@ -83,6 +83,7 @@ struct Case {
     double px_per_mm;
     bool left_handed;
     bool above_finger = false;
+    int text_percent = 100;
 };
 
 // What is open, and what the app says.
@@ -113,11 +114,14 @@ void check_case(const Session& session, Screens& screens, const Case& c, const s
     Settings settings;
     settings.left_handed = c.left_handed;
     settings.above_finger = c.above_finger;
+    settings.text_percent = c.text_percent;
     screens.notices.px_per_mm = c.px_per_mm;
     State state = session.state;
-    const float mm = control_scale(c.px_per_mm, static_cast<float>(c.width_px), static_cast<float>(c.height_px));
-    const Layout layout =
-        layout_of(static_cast<float>(c.width_px), static_cast<float>(c.height_px), mm, c.left_handed, c.above_finger);
+    const auto width_px = static_cast<float>(c.width_px);
+    const auto height_px = static_cast<float>(c.height_px);
+    const float hand_mm = control_scale(c.px_per_mm, width_px, height_px);
+    const float mm = larger_scale(hand_mm, 0.01f * static_cast<float>(c.text_percent), width_px, height_px);
+    const Layout layout = layout_of(width_px, height_px, mm, c.left_handed, c.above_finger, hand_mm);
     const PanelArea& t = layout.tissue_px;
     Sample resize;
     resize.phase = Phase::ui;
@@ -138,9 +142,10 @@ void check_case(const Session& session, Screens& screens, const Case& c, const s
     CHECK(colours_in(picture, covers_all(screens) ? all : layout.tissue_px, kTextHas) == kTextHas);
     if (const char* keep = ::getenv("PALPA_KEEP_PICTURES")) {
         const std::string size = std::to_string(c.width_px) + "x" + std::to_string(c.height_px);
-        std::filesystem::copy_file(
-            file, std::filesystem::path(keep) / (name + "-" + size + (c.left_handed ? "-left" : "") + ".png"),
-            std::filesystem::copy_options::overwrite_existing);
+        std::filesystem::copy_file(file,
+                                   std::filesystem::path(keep) / (name + "-" + size + (c.left_handed ? "-left" : "") +
+                                                                  (c.text_percent > 100 ? "-large" : "") + ".png"),
+                                   std::filesystem::copy_options::overwrite_existing);
     }
 }
 
@@ -193,10 +198,10 @@ TEST_CASE("screens: every screen fits and is drawn at the sizes of desks and tab
     begin_trial({}, whole.info, TrialMode::test, done);
     for (const Sample& sample : finished_trace(*done.plan, done.state).samples) take_sample(sample, done);
     REQUIRE(done.trial.finished);
-    Screens reveal{trial.notices, Reviewing{debrief(*done.plan, done.trial)}};
+    Screens reveal{trial.notices, review_of(*done.plan, done.trial, done.state.view)};
     reveal.notices.problems.clear();
 
-    Screens guided_result{trial.notices, Reviewing{debrief(*done.plan, done.trial), false, true}};
+    Screens guided_result{trial.notices, review_of(*done.plan, done.trial, done.state.view, true)};
     Screens history{trial.notices, BrowsingHistory{}};
     history.view.history = std::make_shared<HistoryView>();
     for (int i = 0; i < 12; ++i) {
@@ -224,6 +229,7 @@ TEST_CASE("screens: every screen fits and is drawn at the sizes of desks and tab
                           {2560, 1600, kTablet_px_per_mm, false, true},
                           {1600, 2560, kTablet_px_per_mm, false},
                           {1024, 600, kMissing, true},
+                          {1280, 800, kMissing, false, false, 140},
                           {200, 100, kMissing, false}};
     for (const Case& c : cases) {
         check_case(session, trial, c, "trial", folder);

@@ -32,17 +32,28 @@ inline void type(const platform::Window& window, char letter) {
     send_key(window, SDL_KEYUP, letter);
 }
 
+inline void move_mouse(const platform::Window& window, int x_px, int y_px) {
+    SDL_Event event{};
+    event.type = SDL_MOUSEMOTION;
+    event.motion.windowID = SDL_GetWindowID(window.sdl());
+    event.motion.x = x_px;
+    event.motion.y = y_px;
+    SDL_PushEvent(&event);
+}
+
+inline void button(const platform::Window& window, bool down, int x_px, int y_px) {
+    SDL_Event event{};
+    event.type = down ? SDL_MOUSEBUTTONDOWN : SDL_MOUSEBUTTONUP;
+    event.button.windowID = SDL_GetWindowID(window.sdl());
+    event.button.button = SDL_BUTTON_LEFT;
+    event.button.state = down ? SDL_PRESSED : SDL_RELEASED;
+    event.button.x = x_px;
+    event.button.y = y_px;
+    SDL_PushEvent(&event);
+}
+
 inline void click(const platform::Window& window, int x_px, int y_px) {
-    for (const Uint32 type : {SDL_MOUSEBUTTONDOWN, SDL_MOUSEBUTTONUP}) {
-        SDL_Event event{};
-        event.type = type;
-        event.button.windowID = SDL_GetWindowID(window.sdl());
-        event.button.button = SDL_BUTTON_LEFT;
-        event.button.state = type == SDL_MOUSEBUTTONDOWN ? SDL_PRESSED : SDL_RELEASED;
-        event.button.x = x_px;
-        event.button.y = y_px;
-        SDL_PushEvent(&event);
-    }
+    for (const bool down : {true, false}) button(window, down, x_px, y_px);
 }
 
 }  // namespace palpa::test
