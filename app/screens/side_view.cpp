@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <glm/common.hpp>
 
 #include "app/screens/screens.h"
 #include "app/screens/widgets.h"
@@ -15,6 +16,7 @@ namespace {
 
 constexpr float kWide_mm = 52.0f;  // on the screen
 constexpr float kHigh_mm = 29.0f;
+constexpr float kLeastWide_mm = 36.0f;
 constexpr double kSection_m = 44e-3;   // of the tissue, along the screen's x
 constexpr double kAbove_m = 10e-3;     // the undisturbed surface is this far below the upper edge
 constexpr double kDimension_m = 8e-3;  // the line that measures the depth is this far from the contact
@@ -29,21 +31,27 @@ struct Section {
     }
 };
 
-// The lower right corner, or the lower left one where the contact is near that.
+// The lower right corner, as large as fits beside or below the tissue. Where little room is left there, it covers the
+// tissue's lower right corner, or the lower left one while the contact is near that.
 Section place_section(const Shown& shown, float mm) {
     const scene::ScreenArea& area = shown.state.screen;
-    Section section;
-    section.size_px = ImVec2(kWide_mm * mm, kHigh_mm * mm);
-    section.px_per_m = section.size_px.x / static_cast<float>(kSection_m);
     const float gap_px = 2.0f * mm;
-    const auto left = static_cast<float>(area.x_px);
     const auto right = static_cast<float>(area.x_px + area.width_px);
     const auto bottom = static_cast<float>(area.y_px + area.height_px);
-    section.corner = ImVec2(right - section.size_px.x - gap_px, bottom - section.size_px.y - gap_px);
+    const auto half_px = 0.5f * shown.view.px_per_m * glm::abs(shown.view.axes * shown.view.size_m);
+    const float beside_px = right - shown.view.centre_px.x - half_px.x - 2.0f * gap_px;
+    const float below_px = bottom - shown.view.centre_px.y - half_px.y - 2.0f * gap_px;
+    const float room_px = std::max(beside_px, below_px * kWide_mm / kHigh_mm);
+    const float wide_px = std::clamp(room_px, kLeastWide_mm * mm, kWide_mm * mm);
+    Section section;
+    section.size_px = ImVec2(wide_px, wide_px * kHigh_mm / kWide_mm);
+    section.px_per_m = wide_px / static_cast<float>(kSection_m);
+    section.corner = ImVec2(right - wide_px - gap_px, bottom - section.size_px.y - gap_px);
+    if (room_px >= wide_px) return section;
     const ImVec2 contact = on_screen(shown.view, shown.avatar.p_m.x(), shown.avatar.p_m.y());
     const float near_px = 14.0f * mm;
     if (contact.x > section.corner.x - near_px && contact.y > section.corner.y - near_px)
-        section.corner.x = left + gap_px;
+        section.corner.x = static_cast<float>(area.x_px) + gap_px;
     return section;
 }
 

@@ -19,8 +19,8 @@ inline constexpr ImU32 kDark = IM_COL32(20, 22, 24, 255);
 // blindness; PLOS ONE 13 (2018) e0199239) for areas, all of them light enough for dark lines.
 inline constexpr ImU32 kForceTints[3] = {IM_COL32(44, 66, 84, 255), IM_COL32(58, 92, 120, 255),
                                          IM_COL32(76, 122, 160, 255)};
-inline constexpr ImU32 kAreaTints[3] = {IM_COL32(122, 158, 214, 235), IM_COL32(186, 190, 176, 235),
-                                        IM_COL32(250, 221, 76, 235)};
+inline constexpr ImU32 kAreaTints[3] = {IM_COL32(122, 158, 214, 215), IM_COL32(186, 190, 176, 215),
+                                        IM_COL32(250, 221, 76, 215)};
 inline constexpr ImU32 kHatch = IM_COL32(20, 22, 24, 190);
 
 inline constexpr float kTarget_mm = 9.0f;  // least height of a control that is touched
