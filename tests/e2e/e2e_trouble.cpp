@@ -50,7 +50,7 @@ TEST_CASE("scene broken: choosing it says what is wrong, and the present scene g
     });
     CHECK(status == 0);
     const Json result = read_json(folder / "out.json");
-    CHECK(result["scene"] == "Silicone phantom, display ratio");
+    CHECK(result["scene"] == "Silicone phantom, training");
     REQUIRE(result["problems"].size() == 1);
     CHECK(contains(result["problems"][0], "delay.json: tissue: found 3"));
 }

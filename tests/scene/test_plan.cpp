@@ -37,7 +37,7 @@ TEST_CASE("plan: only what the scene asks for, in the order of the road") {
     using Names = std::vector<std::string>;
     CHECK(stages_of("off.json") == Names{"calibration", "position", "depth", "tangential"});
     CHECK(stages_of("default.json") ==
-          Names{"calibration", "position", "depth", "tangential", "display_ratio", "surface"});
+          Names{"calibration", "position", "depth", "tangential", "display_ratio", "texture_drag", "surface"});
     CHECK(stages_of("delay.json") == Names{"calibration", "position", "depth", "tangential", "delay", "surface"});
 }
 
