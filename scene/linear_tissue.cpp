@@ -111,6 +111,7 @@ LinearTissue make_linear_tissue(const LinearOptions& options, const std::filesys
                                 const mechanics::Progress& progress) {
     LinearTissue tissue;
     tissue.phantom = stiffnessmaps::read_phantom(options.phantom);
+    if (!options.nodules) tissue.phantom.nodules.clear();
     tissue.indenter.shape = tissue.phantom.indenter == stiffnessmaps::IndenterShape::sphere
                                 ? mechanics::IndenterShape::sphere
                                 : mechanics::IndenterShape::cylinder;

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "files/input_error.h"
+#include "files/quantile.h"
 #include "files/sha256.h"
 #include "files/text.h"
 #include "mechanics/linear_range.h"
@@ -110,6 +111,21 @@ std::vector<stiffnessmaps::Nodule> nodules_to_find(const stiffnessmaps::Map& map
     return placed.empty() ? map.nodules : placed;
 }
 
+// Gives every cell the median of its layer, so that nothing stands out.
+void level_out(std::vector<float>& layers_N, std::size_t cells) {
+    for (std::size_t at = 0; at < layers_N.size(); at += cells) {
+        const auto first = layers_N.begin() + static_cast<std::ptrdiff_t>(at);
+        const auto last = first + static_cast<std::ptrdiff_t>(cells);
+        std::fill(first, last, static_cast<float>(files::upper_median({first, last})));
+    }
+}
+
+void leave_out_nodules(stiffnessmaps::Map& map) {
+    for (std::vector<float>* layers_N : {&map.normal_N, &map.tangential_x_N, &map.tangential_y_N})
+        level_out(*layers_N, map.n_cells());
+    map.nodules.clear();
+}
+
 void sink(const MapTissue& tissue, const Press& press, MapWork& work, Contact& contact) {
     const stiffnessmaps::Place& at = work.place = stiffnessmaps::place_at(tissue.field, press.p_m);
     const stiffnessmaps::DepthAnswer answer =
@@ -145,6 +161,7 @@ std::filesystem::path map_folder(const MapOptions& options) { return options.fol
 MapTissue prepare(const MapOptions& options, const Scene& scene, const mechanics::Progress&) {
     MapTissue tissue;
     tissue.map = stiffnessmaps::read_map(options.folder);
+    if (!options.nodules) leave_out_nodules(tissue.map);
     if (scene.tangential.force == stiffnessmaps::TangentialForce::recorded &&
         tissue.map.tangential != stiffnessmaps::TangentialKind::recorded) {
         throw files::bad_input(scene.file.string(), "avatar force", "recorded",

@@ -17,13 +17,16 @@
 namespace palpa::scene {
 
 // The tissue that is asked for. scene/tissue.h lists what every tissue answers.
+// `nodules`: false for tissue without them, to compare with: a map answers everywhere with the median of its cells.
 struct MapOptions {
     std::filesystem::path folder;
+    bool nodules = true;
 };
 struct LinearOptions {
     std::filesystem::path phantom;
     double spacing_m = 2e-3;         // of the surface nodes; memory grows with its power -4, preparation time faster
     std::optional<double> friction;  // coefficient, > 0; absent: frictionless
+    bool nodules = true;
 };
 using TissueOptions = std::variant<MapOptions, LinearOptions>;
 

@@ -36,6 +36,10 @@ std::filesystem::path map_folder(const TissueOptions& options) {
     return std::visit([](const auto& of_kind) { return map_folder(of_kind); }, options);
 }
 
+void leave_out_nodules(TissueOptions& options) {
+    std::visit([](auto& of_kind) { of_kind.nodules = false; }, options);
+}
+
 Tissue prepare(const TissueOptions& options, const Scene& scene, const mechanics::Progress& progress) {
     return std::visit([&](const auto& of_kind) { return Tissue(prepare(of_kind, scene, progress)); }, options);
 }

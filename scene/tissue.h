@@ -19,6 +19,8 @@ std::vector<std::filesystem::path> input_files(const TissueOptions& options);
 files::Json file_hashes(const TissueOptions& options);           // SHA-256 of its input files, for logs
 std::filesystem::path map_folder(const TissueOptions& options);  // empty for a tissue that is not made from a map
 
+void leave_out_nodules(TissueOptions& options);  // sets `nodules` to false
+
 // Reads or computes the tissue, which may take seconds to minutes: `progress` reports and may cancel. Throws
 // InputError, mechanics' errors for a block that cannot be solved, and mechanics::Cancelled.
 Tissue prepare(const TissueOptions& options, const Scene& scene, const mechanics::Progress& progress);

@@ -40,6 +40,7 @@ void add_bench(CLI::App& app) {
     add_bench_accuracy(*bench);
     add_bench_speed(*bench);
     add_bench_pens(*bench);
+    add_bench_visibility(*bench);
     auto options = std::make_shared<TraceOptions>();
     CLI::App* trace = bench->add_subcommand("trace", "Write a trace of a simulated pen that sweeps the tissue");
     trace->add_option("SCENE", options->scene, "scene JSON or map folder (default: the default scene)");

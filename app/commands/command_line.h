@@ -24,5 +24,6 @@ void add_bench(CLI::App& app);
 void add_bench_accuracy(CLI::App& bench);
 void add_bench_pens(CLI::App& bench);
 void add_bench_speed(CLI::App& bench);
+void add_bench_visibility(CLI::App& bench);
 
 }  // namespace palpa::app

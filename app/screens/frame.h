@@ -25,6 +25,22 @@ platform::Sample resize_sample(const platform::Window& window, const Gui& gui, c
 // Writes what the window shows to a PNG file. Throws std::runtime_error if it cannot be written.
 void save_screen(const platform::Window& window, const std::filesystem::path& png);
 
+// Draws without a display. The scale of the controls is that of a screen with so many px per mm; NaN: of any.
+class OffScreen {
+  public:
+    OffScreen(int width_px, int height_px, double px_per_mm = platform::kMissing, int text_percent = 100);
+    const platform::Window& window() const { return window_; }
+    const Gui& gui() const { return gui_; }
+    // Draws the frame whether or not anything has changed.
+    void draw(const ToShow& what, ViewState& view, scene::State& state);
+    std::vector<unsigned char> pixels() const;  // RGB of the last frame, rows from the top
+
+  private:
+    platform::Window window_;
+    Gui gui_;
+    render::TissueDrawer tissue_;
+};
+
 struct Picture {
     int width_px = 0;
     int height_px = 0;

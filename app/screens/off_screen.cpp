@@ -13,20 +13,38 @@ void save_screen(const platform::Window& window, const std::filesystem::path& pn
     files::write_text_whole(png, render::png_bytes(width_px, height_px, render::read_pixels(width_px, height_px)));
 }
 
-std::string draw_picture(const ToShow& what, const Picture& picture, ViewState& view, scene::State& state) {
+namespace {
+
+platform::WindowOptions unseen(int width_px, int height_px) {
     platform::WindowOptions options;
     options.visible = false;
-    options.width_px = picture.width_px;
-    options.height_px = picture.height_px;
-    platform::Window window(options);
-    Gui gui(window);
-    render::TissueDrawer tissue;
-    gui.set_scale(control_scale(what.notices.px_per_mm, static_cast<float>(picture.width_px),
-                                static_cast<float>(picture.height_px)),
-                  0.01f * static_cast<float>(what.settings.text_percent));
-    for (int i = 0; i < 3; ++i) draw_frame(what, {gui, tissue}, view, state);
-    save_screen(window, picture.png);
-    return gui.overflow();
+    options.width_px = width_px;
+    options.height_px = height_px;
+    return options;
+}
+
+}  // namespace
+
+OffScreen::OffScreen(int width_px, int height_px, double px_per_mm, int text_percent)
+    : window_(unseen(width_px, height_px)), gui_(window_) {
+    gui_.set_scale(control_scale(px_per_mm, static_cast<float>(width_px), static_cast<float>(height_px)),
+                   0.01f * static_cast<float>(text_percent));
+}
+
+void OffScreen::draw(const ToShow& what, ViewState& view, scene::State& state) {
+    view.on_screen.content = 0;
+    draw_frame(what, {gui_, tissue_}, view, state);
+}
+
+std::vector<unsigned char> OffScreen::pixels() const {
+    return render::read_pixels(window_.width_px(), window_.height_px());
+}
+
+std::string draw_picture(const ToShow& what, const Picture& picture, ViewState& view, scene::State& state) {
+    OffScreen screen(picture.width_px, picture.height_px, what.notices.px_per_mm, what.settings.text_percent);
+    for (int i = 0; i < 3; ++i) screen.draw(what, view, state);
+    save_screen(screen.window(), picture.png);
+    return screen.gui().overflow();
 }
 
 }  // namespace palpa::app

@@ -379,7 +379,7 @@ TEST_CASE("advance: a finger that the pen pushed out stays out though it was sti
 }
 
 TEST_CASE("advance: taking over ends the finger's touch as a lift would") {
-    for (const char* name : {"default.json", "delay.json"}) {
+    for (const char* name : {"display-ratio.json", "delay.json"}) {
         CAPTURE(name);
         Run lifted(name), taken(name);
         for (Run* run : {&lifted, &taken}) {

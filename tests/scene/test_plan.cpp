@@ -37,7 +37,7 @@ TEST_CASE("plan: only what the scene asks for, in the order of the road") {
     using Names = std::vector<std::string>;
     CHECK(stages_of("off.json") == Names{"calibration", "position", "depth", "tangential"});
     CHECK(stages_of("default.json") == Names{"calibration", "position", "depth", "tangential", "display_ratio",
-                                             "surface", "footprint", "crease", "depth_gain"});
+                                             "texture_drag", "surface", "footprint", "crease", "depth_gain"});
     CHECK(stages_of("display-ratio.json") ==
           Names{"calibration", "position", "depth", "tangential", "display_ratio", "surface"});
     CHECK(stages_of("delay.json") == Names{"calibration", "position", "depth", "tangential", "delay", "surface"});

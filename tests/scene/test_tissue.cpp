@@ -170,3 +170,26 @@ TEST_CASE("tissue: a recorded map whose noise was estimated is smoothed for one 
     scene.tangential.smoothing_m = tissue.smoothing_m;  // asked for, whatever the noise
     CHECK(serves(plan, scene));
 }
+
+TEST_CASE("tissue: without its nodules a map answers everywhere the same, a block nowhere stiffer") {
+    const TemporaryFolder folder;
+    Scene map = read_scene(kAssets / "scenes/default.json", kAssets);
+    Scene linear = linear_scene(folder, std::nullopt);
+    for (Scene* scene : {&map, &linear}) {
+        const Plan with = make_plan(*scene);
+        leave_out_nodules(scene->tissue);
+        const Plan without = make_plan(*scene);
+        CHECK_FALSE(with.nodules.empty());
+        CHECK(without.nodules.empty());
+        const stiffnessmaps::Nodule& nodule = with.nodules.front();
+        const auto depth_m = [](const Plan& plan, const Eigen::Vector2d& p_m) {
+            TissueWork work = make_work(plan.tissue);
+            Contact contact;
+            answer(plan.tissue, StageId::depth, {p_m, 0.5, {1, 0}, true, 1.0}, work, contact);
+            return contact.depth_m;
+        };
+        const Eigen::Vector2d there(nodule.x_m, nodule.y_m);
+        CHECK(depth_m(with, there) < 0.98 * depth_m(without, there));
+        if (scene == &map) CHECK(depth_m(without, there) == depth_m(without, {0.02, 0.1}));
+    }
+}

@@ -1,0 +1,78 @@
+// What the pixels of the app's own frames say about the shipped scenes.
+
+#include <doctest/doctest.h>
+#include <filesystem>
+#include <string>
+
+#include "files/json.h"
+#include "files/text.h"
+#include "tests/app/palpa_with.h"
+#include "tests/error_message.h"
+#include "tests/temporary_folder.h"
+
+using namespace palpa;
+using namespace palpa::files;
+using namespace palpa::test;
+
+namespace {
+
+const std::string kScenes = PALPA_SOURCE_DIR "/assets/scenes/";
+
+// It draws some 80 frames, a few seconds of computing, which a busy machine stretches.
+Json visibility(const std::string& arguments) {
+    const Called called = shell("timeout 250 " PALPA_PROGRAM " bench visibility " + arguments + " --json");
+    CHECK(called.err.empty());
+    REQUIRE(called.status == 0);
+    return parse_json(called.out, "stdout");
+}
+
+}  // namespace
+
+TEST_CASE("bench visibility: in the training scene every nodule is seen under 1, 2 and 3 N, and nothing beside them") {
+    for (const char* force_N : {"1", "2", "3"}) {
+        CAPTURE(force_N);
+        const Json seen = visibility(std::string("--force-N ") + force_N);
+        REQUIRE(seen["nodules"].size() == 3);
+        for (const Json& nodule : seen["nodules"]) {
+            CAPTURE(nodule.dump());
+            CHECK(nodule["visible"] == true);
+            // what the pixels say is what the avatar does: the picture has 6.3 px per mm
+            CHECK(nodule["motion_px"].get<double>() / 6.27 ==
+                  doctest::Approx(nodule["lag_mm"].get<double>()).epsilon(0.15));
+        }
+        CHECK(seen["beside_visible"] == false);
+    }
+}
+
+TEST_CASE("bench visibility: a finger sees them by the texture that it drags along") {
+    const Json seen = visibility("--finger");
+    for (const Json& nodule : seen["nodules"]) CHECK(nodule["visible"] == true);
+    CHECK(seen["beside_visible"] == false);
+}
+
+TEST_CASE("bench visibility: without effects nothing is seen, and the picture is still") {
+    const Json seen = visibility(kScenes + "off.json");
+    for (const Json& nodule : seen["nodules"]) {
+        CHECK(nodule["visible"] == false);
+        CHECK(nodule["motion_px"] == 0.0);
+        CHECK(nodule["depth_change"].get<double>() > 0.05);
+    }
+}
+
+TEST_CASE("bench visibility: a larger or nearer screen shows the same motion at a larger angle; frames can be kept") {
+    const TemporaryFolder folder;
+    const std::string small = kScenes + "display-ratio.json --width-px 640 --height-px 400";
+    const Json far = visibility(small + " --pictures " + (folder / "p").string());
+    const Json near = visibility(small + " --distance-cm 20");
+    const auto angle = [](const Json& seen) { return seen["nodules"][0]["motion_arcmin"].get<double>(); };
+    CHECK(angle(far) > 1.0);
+    CHECK(angle(near) == doctest::Approx(2.0 * angle(far)).epsilon(1e-3));
+    CHECK(std::filesystem::file_size(folder / "p/A-with.png") > 1000);
+    CHECK(read_text(folder / "p/A-with.png") != read_text(folder / "p/A-without.png"));
+}
+
+TEST_CASE("bench visibility: a force that the profile cannot reach is refused") {
+    const Called called = palpa_with("bench visibility --force-N 8");
+    CHECK(called.status == 2);
+    CHECK(contains(called.err, "--force-N: found 8, expected at most 6.777, the greatest force of the profile s-pen"));
+}
