@@ -19,9 +19,9 @@ constexpr int kGrid = 6;             // places beside the nodules along x and al
 const std::array<Eigen::Vector2d, 4> kDirections{Eigen::Vector2d(1, 0), Eigen::Vector2d(-1, 0), Eigen::Vector2d(0, 1),
                                                  Eigen::Vector2d(0, -1)};
 
-bool stays_on(const Stroke& stroke, const scene::TissueArea& area) {
+bool stays_on(const Stroke& stroke, const scene::TissueArea& area, double margin_m = 0.0) {
     const auto inside = [&](const Eigen::Vector2d& p_m) {
-        return ((p_m - area.centre_m).cwiseAbs() - 0.5 * area.size_m).maxCoeff() < 0.0;
+        return ((p_m - area.centre_m).cwiseAbs() - 0.5 * area.size_m).maxCoeff() < -margin_m;
     };
     return inside(stroke.through_m - kBefore_m * stroke.along) && inside(stroke.through_m + kAfter_m * stroke.along);
 }
@@ -47,7 +47,10 @@ double distance_m(const Eigen::Vector2d& p_m, const Stroke& stroke) {
     return (off_m - s_m * stroke.along).norm();
 }
 
+// Keeps away from the nodules, and from the edges, where any block gives way more than the level tissue that it is compared
+// with.
 bool keeps_away(const Stroke& stroke, const scene::Plan& plan) {
+    if (!stays_on(stroke, plan.area, 4.0 * plan.indenter_radius_m)) return false;
     return std::none_of(plan.nodules.begin(), plan.nodules.end(), [&](const stiffnessmaps::Nodule& nodule) {
         return distance_m({nodule.x_m, nodule.y_m}, stroke) < away_m(nodule, plan);
     });
@@ -84,7 +87,7 @@ std::vector<Stroke> strokes_over(const scene::Plan& plan) {
         for (const Eigen::Vector2d& along : kDirections) {
             const double stop_m = kAfter_m + (1.0 + 1e-9) * away_m(nodule, plan);
             const Stroke stroke{"", Eigen::Vector2d(nodule.x_m, nodule.y_m) - stop_m * along, along};
-            if (stays_on(stroke, plan.area) && keeps_away(stroke, plan)) out.push_back(stroke);
+            if (keeps_away(stroke, plan)) out.push_back(stroke);
         }
     }
     const Eigen::Vector2d low_m = plan.area.centre_m - 0.5 * plan.area.size_m;
@@ -92,7 +95,7 @@ std::vector<Stroke> strokes_over(const scene::Plan& plan) {
         for (int i = 1; i <= kGrid; ++i) {
             const Eigen::Vector2d share = Eigen::Vector2d(i, j) / (kGrid + 1.0);
             const Stroke stroke{"", low_m + share.cwiseProduct(plan.area.size_m), Eigen::Vector2d::UnitX()};
-            if (stays_on(stroke, plan.area) && keeps_away(stroke, plan)) out.push_back(stroke);
+            if (keeps_away(stroke, plan)) out.push_back(stroke);
         }
     }
     return out;
