@@ -1,6 +1,7 @@
 #include "app/screens/calibrate_screen.h"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <ctime>
 #include <exception>
@@ -204,7 +205,9 @@ GuideWishes draw_guide(calibration::Recording& recording, Gui& gui, Guide& guide
     GuideWishes wishes;
     begin_panel("guide", {0.0f, 0.0f, panel_px, window.height}, gui);
     ImGui::SetWindowFontScale(1.5f);
-    ImGui::TextWrapped("%s", calibration::advice(recording).c_str());
+    std::string advice = calibration::advice(recording);
+    if (!advice.empty()) advice[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(advice[0])));
+    ImGui::TextWrapped("%s", advice.c_str());
     ImGui::SetWindowFontScale(1.0f);
     const float column_px = 26.0f * gui.mm();
     const calibration::RecordSession& session = recording.session;

@@ -29,7 +29,7 @@ ImVec2 Plot::at(double x, double y) const {
 
 PanelArea data_area(const PanelArea& whole, float mm) {
     const float text_px = ImGui::GetFontSize();
-    return {whole.x0 + 3.0f * text_px, whole.y0 + 2.4f * text_px + mm, whole.x1 - 2.0f * mm,
+    return {whole.x0 + 3.0f * text_px, whole.y0 + 2.4f * text_px + mm, whole.x1 - text_px - mm,
             whole.y1 - 2.2f * text_px - mm};
 }
 

@@ -96,20 +96,26 @@ void draw_marks(const Shown& shown, const study::Score& score, float mm, ImDrawL
 
 std::string percent(double share) { return std::isfinite(share) ? fixed(100.0 * share, 0) + " %" : "-"; }
 
+void gap_before_results(const Gui& gui) {
+    ImGui::Dummy(ImVec2(0.0f, 0.5f * gui.mm()));
+    ImGui::Separator();
+}
+
 void result_lines(const Shown& shown, const Reviewing& reviewing, const Gui& gui) {
     const session::Debrief& debrief = reviewing.debrief;
     if (!reviewing.advice.empty()) {
         ImGui::TextWrapped("%s", reviewing.advice.c_str());
-        ImGui::Separator();
+        gap_before_results(gui);
     }
     const study::Score& s = debrief.score;
     const float column_px = 34.0f * gui.mm();
-    const std::string found = words::filled(
-        words::kFoundOf, {std::to_string(s.true_positives), std::to_string(s.true_positives + s.false_negatives)});
-    ImGui::TextUnformatted(found.c_str());
-    value_line(words::kSensitivity, percent(s.sensitivity), column_px);
+    const auto share = [](double value, int count, int of) {
+        return words::filled(words::kShareOf, {percent(value), std::to_string(count), std::to_string(of)});
+    };
+    value_line(words::kSensitivity, share(s.sensitivity, s.true_positives, s.true_positives + s.false_negatives),
+               column_px);
     hint_for_last(words::kHintSensitivity);
-    value_line(words::kPpv, percent(s.ppv), column_px);
+    value_line(words::kPpv, share(s.ppv, s.true_positives, s.true_positives + s.false_positives), column_px);
     hint_for_last(words::kHintPpv);
     value_line(words::kFalsePositives, std::to_string(s.false_positives), column_px);
     value_line(words::kTime, clock_text(shown.trial_s), column_px);
@@ -124,9 +130,9 @@ void result_lines(const Shown& shown, const Reviewing& reviewing, const Gui& gui
 }
 
 void legend(const session::Debrief& debrief, const Gui& gui) {
-    ImGui::TextDisabled(words::kCoverage);
-    constexpr const char* kNames[study::kPalpationLevels] = {words::kNotTouched, words::kLightOrDeeper,
-                                                             words::kMediumOrDeeper, words::kDeep};
+    ImGui::TextDisabled(words::kCoverageAtLeast);
+    constexpr const char* kNames[study::kPalpationLevels] = {words::kNotTouched, words::kLight, words::kMedium,
+                                                             words::kDeep};
     float column_px = 0.0f;
     for (const char* name : kNames) column_px = std::max(column_px, ImGui::CalcTextSize(name).x);
     column_px += 2.0f * gui.mm();
@@ -182,10 +188,14 @@ void draw_reveal_panel(const Shown& shown, const Layout& layout, const Reviewing
     begin_panel("reveal", layout.controls_px, gui);
     if (layout.column) {
         buttons(gui, reviewing.menu, wishes);
-        ImGui::BeginChild("rest", ImVec2(0.0f, 0.0f), false, ImGuiWindowFlags_NavFlattened);  // scrolls if need be
+        ImGui::BeginChild("rest", ImVec2(0.0f, 0.0f), false, ImGuiWindowFlags_NavFlattened);  // messages scroll
+        ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2(ImGui::GetStyle().ItemSpacing.x, 0.8f * gui.mm()));
         result_lines(shown, reviewing, gui);
         legend(reviewing.debrief, gui);
+        const bool fits = ImGui::GetCursorPosY() <= ImGui::GetWindowHeight() + 1.0f;
+        if (!fits) gui.note_overflow("result");
         messages(shown);
+        ImGui::PopStyleVar();
         ImGui::EndChild();
     } else {
         ImGui::BeginChild("results", ImVec2(share_of_line_px(2), 0.0f), false, ImGuiWindowFlags_NavFlattened);

@@ -292,7 +292,7 @@ void draw_typed_clock(double now_s, double limit_s, const Gui& gui, StudyForm& f
 
 void draw_typed(const StudyRun& run, double now_s, Gui& gui, StudyForm& form, Wishes& wishes) {
     const study::Condition& condition = due_condition(run);
-    title(words::filled(words::kExperimenter, {progress_text(run), condition.title}));
+    title(words::filled(words::kExperimenter, {progress_text(run), name_of(condition.modality)}));
     paragraph(condition.modality == study::Modality::hand ? words::kTypeAnswers : words::kNotDriven);
     draw_typed_clock(now_s, due_limit_s(run), gui, form);
     const float below_px = (kMark_mm + 4.0f) * gui.mm();

@@ -1,12 +1,15 @@
 // Every screen at the sizes of desks and tablets: nothing blank, nothing that does not fit. Drawn without a display.
 
 #include <algorithm>
+#include <cmath>
 #include <doctest/doctest.h>
 #include <limits>
 #include <png.h>
 #include <stdlib.h>
 
 #include "app/scene_choices.h"
+#include "app/screens/calibrate_form.h"
+#include "app/screens/calibrate_screen.h"
 #include "app/screens/frame.h"
 #include "app/screens/history_screen.h"
 #include "app/screens/map_screen.h"
@@ -214,6 +217,19 @@ TEST_CASE("screens: every screen fits and is drawn at the sizes of desks and tab
     history.view.history->shown_s = 20.0;
     history.view.history->plays = false;
 
+    Calibrating recording{make_calibrate_form()};
+    calibration::RecordArguments arguments;
+    arguments.folder = (folder / "c").string();
+    arguments.sensor = "typed";
+    recording.form->recording = calibration::open_recording(arguments);
+    for (int i = 1; i <= 18; ++i) {
+        const double level = i / 19.0;
+        const double force_N = 0.1 * std::exp(3.5 * level) * (i % 2 == 0 ? 1.04 : 0.97);
+        recording.form->recording->session.points.push_back({0.0, level, force_N, i % 3});
+    }
+    Screens calibrating{trial.notices, recording};
+    Screens calibrate{trial.notices, Calibrating{make_calibrate_form()}};
+
     Screens maps{trial.notices, BrowsingMaps{}};
     maps.view.maps = make_map_browser(session.scene, map_choices());
     REQUIRE(maps.view.maps->problem == "");
@@ -246,6 +262,8 @@ TEST_CASE("screens: every screen fits and is drawn at the sizes of desks and tab
         check_case(session, cost, c, "cost", folder);
         check_case(session, scale, c, "scale", folder);
         check_case(session, devices, c, "devices", folder);
+        check_case(session, calibrate, c, "calibrate", folder);
+        check_case(session, calibrating, c, "calibrating", folder);
         check_case(session, maps, c, "maps", folder);
         check_case(done, reveal, c, "reveal", folder);
     }
