@@ -16,6 +16,7 @@ TEST_CASE("settings: what is saved is read back") {
     Settings s;
     s.scene = "/somewhere/scene.json";
     s.left_handed = true;
+    s.side_view = false;
     s.test_mode = true;
     s.width_px = 1920;
     s.px_per_mm["eDP-1, 2560 x 1600"] = 11.8125;
@@ -25,6 +26,7 @@ TEST_CASE("settings: what is saved is read back") {
     CHECK(problem.empty());
     CHECK(again.scene == s.scene);
     CHECK(again.left_handed);
+    CHECK_FALSE(again.side_view);
     CHECK(again.test_mode);
     CHECK_FALSE(again.full_screen);
     CHECK(again.width_px == 1920);
