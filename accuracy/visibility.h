@@ -45,7 +45,7 @@ struct Stroke {
 };
 
 // Returns a stroke through each nodule, and strokes beside all of them: towards each nodule, and through a grid of
-// places. These stay away from every nodule by its radius and four radii of the indenter. Strokes that leave the tissue
+// places. These stay away from every nodule by its radius and four radii of the indenter, and from the edges by four. Strokes that leave the tissue
 // are left out.
 std::vector<Stroke> strokes_over(const scene::Plan& plan);
 

@@ -226,7 +226,7 @@ vec4 capsule(vec2 from, vec2 along, float length_r, float radius) {
   float r2 = dot(off, off);
   return vec4(off, sqrt(max(1.0 - r2, 0.0)), (1.0 - sqrt(r2)) * radius);
 }
-vec3 steel(vec3 n, float height) {
+vec3 steel(vec3 n) {
   vec3 back = vec3(2.0 * n.z * n.xy, 2.0 * n.z * n.z - 1.0);
   float sky = smoothstep(-0.95, 0.8, back.z);
   vec3 room = mix(vec3(0.03, 0.035, 0.045), vec3(0.42, 0.47, 0.54), sky) * (0.75 + 0.25 * back.y);
@@ -259,7 +259,7 @@ void main() {
   float edge = fwidth(ball.w) + 1e-6;
   float inside = clamp((ball.w - (kind > 1.5 ? 0.0 : covered)) / edge + 0.5, 0.0, 1.0);
   float height = height_r + n.z;  // above the undisturbed surface, in radii
-  vec3 shown = kind > 1.5 ? fingertip(ball) : steel(n, height);
+  vec3 shown = kind > 1.5 ? fingertip(ball) : steel(n);
   height += kind > 1.5 ? 0.8 * max(dot(spot, hand), 0.0) : 0.0;
   float sunk = smoothstep(0.35, -1.1, height);  // walls of tissue stand around what lies deep
   shown = mix(shown, shown * 0.25 + 0.10 * tissue, sunk);
@@ -267,7 +267,7 @@ void main() {
   if (kind > 0.5 && kind < 1.5) {
     vec4 shaft = capsule(0.25 * hand, hand, 3.0, 0.34);
     float on_shaft = clamp(shaft.w / (fwidth(shaft.w) + 1e-6) + 0.5, 0.0, 1.0);
-    shown = mix(shown, steel(shaft.xyz, 1.0), on_shaft);
+    shown = mix(shown, steel(shaft.xyz), on_shaft);
     inside = max(inside, on_shaft);
   }
   float fade = kind > 0.5 ? 1.0 - smoothstep(1.5, 2.9, dot(spot, hand)) : 1.0;

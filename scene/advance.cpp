@@ -322,19 +322,20 @@ void surface_now(const Scene& scene, const Plan& plan, State& state, SurfaceShap
     const std::int64_t before_ns = steady_ns();
     sample_surface(plan.tissue, *scene.surface, state.contact, state.tissue, shape);
     if (!state.touch.down) shape.sink_m.setZero();
-    const auto note = [&](StageId id, std::int64_t since_ns) {
+    const auto note = [&](StageId id, std::int64_t took_ns) {
         Meter& meter = state.meters[static_cast<std::size_t>(id)];
         meter.count();
-        meter.add_ns(static_cast<double>(steady_ns() - since_ns));
+        meter.add_ns(static_cast<double>(took_ns));
     };
-    note(StageId::surface, before_ns);
+    note(StageId::surface, steady_ns() - before_ns);
     shape.cues = {};
     shape.cues.drawn_depth_m = state.touch.down ? state.contact.depth_m : 0.0;
     if (plan.frame_stages.size() < 2) return;
-    const std::int64_t cues_ns = steady_ns();
+    const std::int64_t cues_began_ns = steady_ns();
     shape.cues = cues_at(scene.cues, plan.indenter_radius_m, shape.cues.drawn_depth_m);
+    const std::int64_t cues_took_ns = steady_ns() - cues_began_ns;  // they are computed together
     for (const Stage& stage : plan.frame_stages) {
-        if (stage.id != StageId::surface) note(stage.id, cues_ns);
+        if (stage.id != StageId::surface) note(stage.id, cues_took_ns);
     }
 }
 

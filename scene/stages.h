@@ -111,9 +111,9 @@ inline constexpr std::array<StageFigures, kStageFormCount> kStageFigures{{
     {StageForm::surface_sphere, StageId::surface, true, 6.0,
      "7 % of the depth at worst against the exact bonded layer (25 mm, depth to 2 mm)"},
     {StageForm::surface_nodes, StageId::surface, true, 13.0, "that of depth"},
-    {StageForm::footprint_ring, StageId::footprint, true, 0.02, "drawn on purpose: no part of the tissue"},
-    {StageForm::crease_shadow, StageId::crease, true, 0.02, "drawn on purpose: no part of the tissue"},
-    {StageForm::depth_exaggerated, StageId::depth_gain, true, 0.02, "drawn {} times as deep as the tissue gives way"},
+    {StageForm::footprint_ring, StageId::footprint, true, 0.03, "drawn on purpose: no part of the tissue"},
+    {StageForm::crease_shadow, StageId::crease, true, 0.03, "drawn on purpose: no part of the tissue"},
+    {StageForm::depth_exaggerated, StageId::depth_gain, true, 0.03, "drawn {} times as deep as the tissue gives way"},
 }};
 
 constexpr bool each_form_stands_at_its_place() {

@@ -126,7 +126,9 @@ void draw_depth(const Shown& shown, const Section& section, double depth_m, floa
 }  // namespace
 
 void draw_side_view(const Shown& shown, const Gui& gui) {
-    if (!shown.scene.surface || !shown.scene.cues.side_view || !shown.settings.side_view) return;
+    // in a study the protocol's scene decides, not what somebody switched off before
+    const bool wanted = shown.settings.side_view || study_of(shown.doing) != nullptr;
+    if (!shown.scene.surface || !shown.scene.cues.side_view || !wanted) return;
     const float mm = gui.mm();
     const Section section = place_section(shown, mm);
     if (section.size_px.x > 0.5f * static_cast<float>(shown.state.screen.width_px)) return;  // too small a window

@@ -1,5 +1,6 @@
 #include <doctest/doctest.h>
 #include <memory>
+#include <sstream>
 
 #include "app/scene_choices.h"
 #include "files/json.h"
@@ -188,6 +189,44 @@ TEST_CASE("replay: the same trace gives the same log, byte for byte, for every s
         CHECK(first.find("nan") == std::string::npos);
         CHECK(first.find("inf") == std::string::npos);
     }
+}
+
+TEST_CASE("replay: drawn cues change their own columns alone, and a strength of zero changes nothing") {
+    const TemporaryFolder folder;
+    Trace trace = read_trace(default_trace());
+    trace.samples.resize(1000);
+    Json scene = read_json(PALPA_SOURCE_DIR "/assets/scenes/display-ratio.json");
+    scene["tissue"]["map"] = PALPA_SOURCE_DIR "/assets/maps/silicone.map";
+    const auto log_with = [&](const char* name, const Json& cues) {
+        if (!cues.is_null()) scene["cues"] = cues;
+        write_text_atomically(folder / (std::string(name) + ".json"), json_text(scene));
+        Session session;
+        Scene read = load_scene((folder / (std::string(name) + ".json")).string());
+        auto plan = std::make_shared<const Plan>(make_plan(read));
+        change_tissue(std::move(read), std::move(plan), {}, session);
+        begin_replay({(folder / name).string(), "01", ""}, trace.info, std::nullopt, session);
+        replay(trace, session);
+        CHECK(close_files({}, session));
+        return read_text(folder / name / (std::string(kStem) + "_samples.tsv"));
+    };
+    const std::string absent = log_with("absent", nullptr);
+    CHECK(log_with("zero", {{"footprint", 0}, {"crease", 0}, {"depth_gain", 0}, {"side_view", true}}) == absent);
+    const std::string all = log_with("all", {{"footprint", 0.7}, {"crease", 0.5}, {"depth_gain", 0.4}});
+    std::istringstream with(all);
+    std::istringstream without(absent);
+    std::string row;
+    std::string other;
+    int pressed = 0;
+    while (std::getline(with, row) && std::getline(without, other)) {
+        const auto shared = [](const std::string& line) {
+            std::size_t end = line.size();
+            for (int column = 0; column < 3; ++column) end = line.rfind('\t', end - 1);
+            return line.substr(0, end);
+        };
+        CHECK(shared(row) == shared(other));
+        if (row.size() > 12 && row.find("n/a", row.size() - 12) == std::string::npos) ++pressed;
+    }
+    CHECK(pressed > 900);
 }
 
 TEST_CASE("replay: the surface, which nobody sees, is computed only for the frames that are timed") {

@@ -129,3 +129,34 @@ TEST_CASE("frame: an avatar that catches up while the pen rests is drawn") {
     }
     CHECK(caught_up > 0);
 }
+
+TEST_CASE("frame: the side view can be switched off, and stands only in scenes that ask for it") {
+    Screening s("");
+    s.press(Phase::down, 0.5, 0.6);
+    CHECK(s.drawn());
+    const auto with = read_pixels(640, 400);
+    s.settings.side_view = false;
+    CHECK(s.drawn());
+    const auto without = read_pixels(640, 400);
+    CHECK(with != without);
+    s.session.scene.cues.side_view = false;
+    CHECK_FALSE(s.drawn());
+    s.settings.side_view = true;
+    CHECK_FALSE(s.drawn());
+}
+
+TEST_CASE("frame: strengths of zero look as no cues do, and each cue changes the picture") {
+    const auto pixels = [](const DrawnCues& cues, double pressure) {
+        Screening s(PALPA_SOURCE_DIR "/assets/scenes/display-ratio.json");
+        s.session.scene.cues = cues;
+        s.session.plan = std::make_shared<const Plan>(make_plan(s.session.scene));
+        s.press(Phase::down, 0.5, pressure);
+        s.drawn();
+        return read_pixels(640, 400);
+    };
+    const auto absent = pixels({}, 0.6);
+    CHECK(pixels({0.0, 0.0, 0.0, false}, 0.6) == absent);
+    CHECK(pixels({0.7, 0.0, 0.0, false}, 0.6) != absent);
+    CHECK(pixels({0.0, 0.5, 0.0, false}, 0.6) != absent);
+    CHECK(pixels({0.0, 0.0, 0.4, false}, 0.6) != absent);
+}

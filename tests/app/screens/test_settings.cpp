@@ -16,6 +16,7 @@ TEST_CASE("settings: what is saved is read back") {
     Settings s;
     s.scene = "/somewhere/scene.json";
     s.left_handed = true;
+    s.side_view = false;
     s.test_mode = true;
     s.keep_results = false;
     s.guided_done = true;
@@ -28,6 +29,7 @@ TEST_CASE("settings: what is saved is read back") {
     CHECK(problem.empty());
     CHECK(again.scene == s.scene);
     CHECK(again.left_handed);
+    CHECK_FALSE(again.side_view);
     CHECK(again.test_mode);
     CHECK_FALSE(again.full_screen);
     CHECK_FALSE(again.keep_results);
