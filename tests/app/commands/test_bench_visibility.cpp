@@ -71,6 +71,15 @@ TEST_CASE("bench visibility: a larger or nearer screen shows the same motion at 
     CHECK(read_text(folder / "p/A-with.png") != read_text(folder / "p/A-without.png"));
 }
 
+TEST_CASE("bench visibility: --help tells how the strokes and the screen are set") {
+    const Called help = palpa_with("bench visibility --help");
+    CHECK(help.status == 0);
+    CHECK(contains(help.out, "Usage: palpa bench visibility"));
+    for (const char* option :
+         {"--force-N", "--speed-mm-per-s", "--distance-cm", "--px-per-mm", "--finger", "--pictures"})
+        CHECK(contains(help.out, option));
+}
+
 TEST_CASE("bench visibility: a force that the profile cannot reach is refused") {
     const Called called = palpa_with("bench visibility --force-N 8");
     CHECK(called.status == 2);
