@@ -1,5 +1,7 @@
 // Who takes part in a study, and who stops before its end.
 
+#include <algorithm>
+#include <cstdio>
 #include <filesystem>
 
 #include "app/study/study_run.h"
@@ -18,6 +20,19 @@ void forget(const fs::path& subject) {
 
 }  // namespace
 
+std::string free_code(const StudyRun& run) {
+    std::vector<std::string> notes;
+    const std::vector<study::Person> people = study::read_people(run.directory, notes);
+    for (std::size_t number = people.size() + 1;; ++number) {
+        char code[24];
+        std::snprintf(code, sizeof code, "%02zu", number);
+        const auto same = [&](const study::Person& p) { return p.code == code; };
+        // whoever answers the first questions is not among the people yet
+        const bool begun = fs::exists(run.directory / (std::string("sub-") + code));
+        if (!begun && std::none_of(people.begin(), people.end(), same)) return code;
+    }
+}
+
 void answer_consent(bool given, StudyRun& run) {
     run.consented = given;
     if (given) return go_on(run);
@@ -34,6 +49,14 @@ void leave_study(study::Withdrawal how, StudyRun& run) {
     if (how == study::Withdrawal::none) return go_on(run);
     run.unkept_answers = true;
     if (kept(run, [&] { study::withdraw(run.directory, run.code, how); })) enter(step::Withdrawn{}, run);
+}
+
+bool withdrawn_elsewhere(StudyRun& run) {
+    auto how = study::Withdrawal::none;
+    if (!kept(run, [&] { how = study::withdrawal_of(run.directory, run.code); })) return true;
+    if (how == study::Withdrawal::none) return false;
+    enter(step::Withdrawn{}, run);
+    return true;
 }
 
 }  // namespace palpa::app

@@ -1,7 +1,6 @@
 #include "app/study/study_run.h"
 
 #include <algorithm>
-#include <cstdio>
 #include <exception>
 #include <iterator>
 #include <stdexcept>
@@ -117,6 +116,7 @@ void add_person(const std::vector<std::string>& answers, StudyRun& run) {
 }
 
 void begin_trial_step(StudyRun& run) {
+    if (withdrawn_elsewhere(run)) return;
     const study::PlannedTrial& trial = due_trial(run);
     run.told = trial.condition;
     run.told_practice = trial.practice;
@@ -180,6 +180,7 @@ bool kept(StudyRun& run, const std::function<void()>& work) {
 
 void go_on(StudyRun& run) {
     run.interval = 0;
+    if (withdrawn_elsewhere(run)) return;
     const bool known = run.progress.known;
     if (!known && !run.protocol.consent.empty() && !run.consented) return enter(step::Consent{}, run);
     if (!known && !run.protocol.demographics.empty()) return enter(step::Questions{}, run);
@@ -226,19 +227,6 @@ StudyRun open_study_run(const study::Protocol& protocol, const fs::path& directo
         throw files::bad_input("--participant", "", files::shown(code) + ", " + why_refused(run, code), "a new code");
     if (const auto* stopped = std::get_if<step::Stopped>(&run.step)) throw std::runtime_error(stopped->why);
     return run;
-}
-
-std::string free_code(const StudyRun& run) {
-    std::vector<std::string> notes;
-    const std::vector<study::Person> people = study::read_people(run.directory, notes);
-    for (std::size_t number = people.size() + 1;; ++number) {
-        char code[24];
-        std::snprintf(code, sizeof code, "%02zu", number);
-        const auto same = [&](const study::Person& p) { return p.code == code; };
-        // whoever answers the first questions is not among the people yet
-        const bool begun = fs::exists(run.directory / (std::string("sub-") + code));
-        if (!begun && std::none_of(people.begin(), people.end(), same)) return code;
-    }
 }
 
 void carry_out(const StudyWish& wish, StudyRun& run) {

@@ -573,3 +573,25 @@ TEST_CASE("study run: who stops is asked about the data, and is left out where t
     CHECK(contains(message_of([&] { open_study_run(find_protocol(folder), log, "02"); }),
                    "who has withdrawn from the study"));
 }
+
+TEST_CASE("study run: a withdrawal that the experimenter notes meanwhile ends the study before the next trial") {
+    const TemporaryFolder folder;
+    const auto log = folder / "log";
+    StudyRun run = open_study_run(find_protocol(folder), log, "01");
+    answer_questions(run);
+    REQUIRE(at<step::Instructions>(run));
+    SUBCASE("while the instructions are read") {
+        withdraw(log, "01", Withdrawal::takes_data);
+        begin_step(run);
+        CHECK(at<step::Withdrawn>(run));
+    }
+    SUBCASE("during a trial, which is kept") {
+        begin_step(run);
+        REQUIRE(at<step::Trial>(run));
+        withdraw(log, "01", Withdrawal::keeps_data);
+        run_trial(run);
+        CHECK(at<step::Withdrawn>(run));
+        CHECK(run.progress.finished.size() == 1);
+    }
+    CHECK(read_json(log / "sub-01/now.json")["step"] == "withdrawn");
+}
