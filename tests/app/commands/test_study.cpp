@@ -357,11 +357,14 @@ TEST_CASE("command study: finding, choices and a staircase, interleaved in one s
     const std::string scene = PALPA_SOURCE_DIR "/assets/scenes/default.json";
     write_text_atomically(folder / "p.json", R"({"name": "n", "version": "1", "seed": 8, "order": "latin",
         "trial_order": "interleaved", "practice": {"trials": 1}, "repeats": 4, "conditions": [
-            {"id": "find", "modality": "pen", "task": "find", "scene": ")" + scene +
+            {"id": "find", "modality": "pen", "task": "find", "scene": ")" +
+                                                 scene +
                                                  R"("},
-            {"id": "pairs", "modality": "pen", "task": "choice", "scene": ")" + scene +
+            {"id": "pairs", "modality": "pen", "task": "choice", "scene": ")" +
+                                                 scene +
                                                  R"("},
-            {"id": "steps", "modality": "pen", "task": "staircase", "scene": ")" + scene +
+            {"id": "steps", "modality": "pen", "task": "staircase", "scene": ")" +
+                                                 scene +
                                                  R"("}],
         "choice": {"reference_kPa": 20, "comparisons_kPa": [14, 28], "repeats": 3},
         "staircase": {"method": "weighted-up-down", "reference_kPa": 20, "comparisons_kPa": [22, 25, 28, 32], "trials": 6}})");
@@ -473,4 +476,31 @@ TEST_CASE("command study exclude, replace: decisions are written, reported and r
     CHECK(json["replacements"][0]["replaced_by"] == "x1");
     CHECK(contains(read_text(folder / "report/plan_participants.tsv"), "sim0001\tall\t"));
     CHECK(contains(read_text(folder / "report/exclusions.tsv"), "sim0002\tall\tdropped out, replaced by x1: left"));
+}
+
+TEST_CASE("command study: a map whose nodules the logs could not tell apart is refused before anything is recorded") {
+    const TemporaryFolder folder;
+    const auto map = folder / "m.map";
+    std::filesystem::copy(PALPA_SOURCE_DIR "/assets/maps/silicone.map", map);
+    write_text_atomically(folder / "s.json", R"({"name": "s", "tissue": {"map": "m.map"}})");
+    write_text_atomically(folder / "p.json", R"({"name": "p", "version": "1", "seed": 1, "order": "williams",
+        "conditions": [{"id": "a", "modality": "pen", "scene": "s.json"}], "time_limit_s": 60})");
+    const Json whole = parse_json(read_text(map / "map.json"), "map.json");
+    const std::string simulate = "simulate " + (folder / "p.json").string() + " --participants 1 --samples none -o " +
+                                 (folder / "logs").string();
+    for (const std::string id : {"A\tB", "\"A\"", "n/a", "", "B"}) {
+        Json json = whole;
+        json["nodules"][0]["id"] = id;
+        write_text_atomically(map / "map.json", json_text(json));
+        refused(simulate, id == "B" ? "nodules: found 'B' twice" : "nodules: found '");
+        CHECK_FALSE(std::filesystem::exists(folder / "logs"));
+    }
+    write_text_atomically(map / "map.json", json_text(whole));
+    CHECK(study(simulate).status == 0);
+}
+
+TEST_CASE("command study analyse: a folder that cannot be made is named with the reason") {
+    const Called called = study("analyse " + kCounts + " -o /proc/no/report");
+    CHECK(called.status == 1);
+    CHECK(contains(called.err, "/proc/no/report: cannot be made: "));
 }
