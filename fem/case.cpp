@@ -23,7 +23,8 @@ ParabolicPressure read_pressure(files::JsonReader json, const CaseMesh& mesh) {
         json.fail("face", "no face of the mesh in that side of its bounding box", "at least one");
     const PressureLoad load = parabolic_load(mesh.mesh, mesh.outer, pressure, LoadShare::consistent);
     if (pressure.force_N != 0.0 && !(load.applied_N / pressure.force_N > 1e-6)) {
-        json.fail("centre_mm", "a disc beside the body", "one that at least touches the side");
+        json.fail("centre_mm", "a disc beside the body, or so large that less than a millionth falls on it",
+                  "one that at least touches the side");
     }
     return pressure;
 }
