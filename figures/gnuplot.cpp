@@ -109,13 +109,15 @@ std::string draw_script(const std::filesystem::path& script, const std::string& 
     for (const std::string kind : {"png", "svg", "pdf"}) {
         if (!run(there + " && gnuplot -e \"kind='" + kind + "'\" " + shell_quoted(name)))
             return "gnuplot could not draw " + script.string() + "; " + kept;
+        std::string cut_off;
         for (const std::string& figure : figures_of(script)) {
             const std::filesystem::path file = script.parent_path() / (figure + kind);
             if (is_whole(file, "." + kind)) continue;
             std::error_code none;
             std::filesystem::remove(file, none);
-            return file.string() + ": gnuplot could not draw it to its end (is the disk full?); " + kept;
+            cut_off += (cut_off.empty() ? "" : ", ") + file.string();
         }
+        if (!cut_off.empty()) return cut_off + ": gnuplot could not draw it to its end (is the disk full?); " + kept;
     }
     return "";
 }
