@@ -45,8 +45,8 @@ struct Stroke {
 };
 
 // Returns a stroke through each nodule, and strokes beside all of them: towards each nodule, and through a grid of
-// places. These stay away from every nodule by its radius and four radii of the indenter, and from the edges by four. Strokes that leave the tissue
-// are left out.
+// places. These stay away from every nodule by its radius and four radii of the indenter, and from the edges by four
+// radii. Strokes that leave the tissue are left out.
 std::vector<Stroke> strokes_over(const scene::Plan& plan);
 
 // Returns the samples of a stroke under a constant force. `view`: as the tissue is mapped.

@@ -52,9 +52,10 @@ bool force_in(const std::deque<RecordSession::Timed>& forces, double from_s, dou
     return true;
 }
 
-std::string whole_percent(double share) {
+std::string round_percent(double share) {
     if (share > 1.0) return "over 100 %";
-    return files::short_number(std::round(100.0 * share)) + " %";
+    const double digits = share < 0.1 ? 10.0 : 1.0;
+    return files::short_number(std::round(100.0 * digits * share) / digits) + " %";
 }
 
 }  // namespace
@@ -185,15 +186,15 @@ Knowledge knowledge_of(const RecordOptions& options, const std::vector<CapturedP
     for (int band = 0; band < options.bands; ++band) {
         const double error = out.band_error[static_cast<std::size_t>(band)];
         if (error <= options.goal) continue;
-        places += (places.empty() ? "" : ", ") + whole_percent(static_cast<double>(band) / options.bands) + " to " +
-                  whole_percent((band + 1.0) / options.bands) +
-                  (std::isnan(error) ? " (no point)" : " (" + whole_percent(error) + ")");
+        places += (places.empty() ? "" : ", ") + round_percent(static_cast<double>(band) / options.bands) + " to " +
+                  round_percent((band + 1.0) / options.bands) +
+                  (std::isnan(error) ? " (no point)" : " (" + round_percent(error) + ")");
     }
     if (out.repeats < options.least_repeats)
         out.missing = std::to_string(out.repeats) + " of " + std::to_string(options.least_repeats) + " repeats";
     if (!places.empty())
         out.missing +=
-            (out.missing.empty() ? "" : "; ") + ("not known to " + whole_percent(options.goal) + ": " + places);
+            (out.missing.empty() ? "" : "; ") + ("not known to " + round_percent(options.goal) + ": " + places);
     out.done = out.missing.empty();
     return out;
 }

@@ -24,8 +24,9 @@ struct SensorHealth {
     std::int64_t overflowed = 0;  // readings lost here, because nobody took them in time
     std::int64_t stalls = 0;      // silences over half a second
     std::int64_t reconnects = 0;
-    std::int64_t faults = 0;  // readings with an error status of the sensor (overload, ...)
-    bool alive = false;       // whether something came within the last half second
+    std::int64_t faults = 0;   // readings with a status of the sensor that is not 0
+    std::int64_t invalid = 0;  // of them those that are no forces (overload, ...), and are dropped
+    bool alive = false;        // whether something came within the last half second
 };
 
 // A device, or its simulator behind the same protocol.

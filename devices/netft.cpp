@@ -52,13 +52,18 @@ class NetFt : public ForceSensor {
             ++health_.malformed;
             return;
         }
+        const bool after_silence = !health_.alive;
         last_s_ = steady_s();
         health_.alive = true;
-        const Arrival arrival = track(record.rdt_sequence, sequence_, health_);
+        const Arrival arrival = track(record.rdt_sequence, sequence_, health_, after_silence);
         if (arrival == Arrival::duplicate || arrival == Arrival::late) return;
-        health_.faults += record.status != 0;
         SensorHealth ignored;
-        track(record.ft_sequence, samples_, ignored);
+        track(record.ft_sequence, samples_, ignored, after_silence);
+        health_.faults += record.status != 0;
+        if (is_invalid(record.status)) {
+            ++health_.invalid;
+            return;
+        }
         ForceReading reading;
         reading.t_host_s = last_s_;
         reading.t_device_s = static_cast<double>(samples_.total) / options_.rate_Hz;
@@ -125,6 +130,12 @@ bool decode_rdt_record(const std::uint8_t* bytes, std::size_t count, RdtRecord& 
     out.status = get(bytes + 8, 4);
     for (std::size_t i = 0; i < 6; ++i) out.counts[i] = static_cast<std::int32_t>(get(bytes + 12 + 4 * i, 4));
     return true;
+}
+
+bool is_invalid(std::uint32_t status) {
+    constexpr std::uint32_t kError = 1u << 31;
+    constexpr std::uint32_t kMonitor = 1u << 16;
+    return (status & kError) != 0 && status != (kError | kMonitor);
 }
 
 std::unique_ptr<ForceSensor> open_netft(const NetFtOptions& options) { return std::make_unique<NetFt>(options); }

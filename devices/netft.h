@@ -5,7 +5,7 @@
 //   record   u32 RDT sequence, u32 F/T sequence, u32 status, i32 Fx Fy Fz Tx Ty Tz in counts
 //
 // Supported: the endless real-time stream, its start and stop, sequence numbers with wrap-around, loss, repetition and
-// reordering, status words, a stream that falls silent (it is requested again). Not supported yet: buffered and multi-unit
+// reordering, status words (invalid forces are dropped), a stream that falls silent (it is requested again). Not supported yet: buffered and multi-unit
 // modes, the bias command (the calibration takes the zero itself), reading the scale from the sensor's web page. Tried
 // with devices/simulators only, not with a sensor.
 
@@ -37,6 +37,10 @@ std::array<std::uint8_t, kRdtRecord_bytes> encode_rdt_record(const RdtRecord& re
 // Returns false if the record is not 36 bytes long.
 bool decode_rdt_record(const std::uint8_t* bytes, std::size_t count, RdtRecord& out);
 bool decode_rdt_request(const std::uint8_t* bytes, std::size_t count, RdtCommand& command, std::uint32_t& records);
+
+// True for the status of a record whose forces mean nothing: an error (bit 31: overload, a broken gauge, ...) that is not
+// only a monitor condition (bit 16), which the sensor's owner sets up as a limit for other machines.
+bool is_invalid(std::uint32_t status);
 
 struct NetFtOptions {
     std::string host = "192.168.1.1";  // factory setting

@@ -256,22 +256,24 @@ double reach_m(const Indenter& tool, double depth_m) {
     return std::sqrt(tool.radius_m * std::min(depth_m, tool.radius_m));
 }
 
-// Returns the least distance between a node in contact and another touch node; under a cylinder, only along x.
-double spacing_m(const Compliance& c, const Pressed& pressed, IndenterShape shape) {
+enum class Across : std::uint8_t { anywhere, x, y };
+
+// Returns the least distance between a node in contact and another touch node, along one axis or anywhere.
+double spacing_m(const Compliance& c, const Pressed& pressed, Across across) {
     double least_m = std::numeric_limits<double>::infinity();
     for (const int i : pressed.touch) {
         for (int j = 0; j < c.n_touch; ++j) {
             const double dx = std::abs(c.position_m(0, i) - c.position_m(0, j));
-            const double dy = c.position_m(1, i) - c.position_m(1, j);
-            const double away_m = shape == IndenterShape::cylinder ? dx : std::hypot(dx, dy);
+            const double dy = std::abs(c.position_m(1, i) - c.position_m(1, j));
+            const double away_m = across == Across::x ? dx : across == Across::y ? dy : std::hypot(dx, dy);
             if (away_m > 1e-9 * c.thickness_m) least_m = std::min(least_m, away_m);
         }
     }
     return least_m;
 }
 
-// Sets area and cells across the radius. Where the mesh is too coarse to tell a sphere's area, it is limited to the
-// section of the sphere at the surface.
+// Sets area and cells across the tool. Where the mesh is too coarse to tell the area, it is limited to the section of the
+// tool at the surface.
 void set_area(const Compliance& c, const Pressed& pressed, const FemCase& model, IndenterContact& out) {
     const Indenter& tool = model.indenter->indenter;
     std::vector<int> nodes;
@@ -282,10 +284,17 @@ void set_area(const Compliance& c, const Pressed& pressed, const FemCase& model,
     }
     const Faces top = faces_on(model.problem.mesh, model.outer, Side::zmax);
     out.area_m2 = contact_area_m2(top, tributary_area_m2(model.problem.mesh, top), nodes, pressing_N);
-    out.cells_across_radius = reach_m(tool, out.depth_m) / spacing_m(c, pressed, tool.shape);
-    if (tool.shape == IndenterShape::cylinder || out.cells_across_radius >= kFewestCells) return;
+    const bool along_y = tool.shape == IndenterShape::cylinder;
+    out.cells_across_radius =
+        reach_m(tool, out.depth_m) / spacing_m(c, pressed, along_y ? Across::x : Across::anywhere);
+    if (along_y && std::isfinite(tool.length_m))
+        out.cells_along_length = tool.length_m / spacing_m(c, pressed, Across::y);
+    if (out.cells_across_radius >= kFewestCells && out.cells_along_length.value_or(kFewestCells) >= kFewestCells)
+        return;
     const double d = std::min(out.depth_m, tool.radius_m);
-    out.area_m2 = std::min(out.area_m2, std::numbers::pi * d * (2.0 * tool.radius_m - d));
+    const double half_m2 = d * (2.0 * tool.radius_m - d);
+    out.area_m2 =
+        std::min(out.area_m2, along_y ? 2.0 * std::sqrt(half_m2) * tool.length_m : std::numbers::pi * half_m2);
 }
 
 IndenterContact result_of(const Compliance& c, const Pressed& pressed, const FemCase& model) {
@@ -318,6 +327,11 @@ std::vector<std::string> contact_warnings(const IndenterContact& contact) {
             "the contact's radius spans " + files::short_number(contact.cells_across_radius) +
             " cells: below 4 its force can be far off, whatever the other figures say; refine the mesh around "
             "the tool");
+    }
+    if (contact.cells_along_length && *contact.cells_along_length < kFewestCells) {
+        out.push_back("the tool's length spans " + files::short_number(*contact.cells_along_length) +
+                      " cells: below 4 its force can be far off, whatever the other figures say; refine the mesh "
+                      "along y");
     }
     return out;
 }

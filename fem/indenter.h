@@ -16,11 +16,12 @@ struct IndenterContact {
     double normal_N = 0.0;     // pressing is positive
     double area_m2 = 0.0;      // see mechanics/contact_area.h
     double depth_m = 0.0;
-    double lateral_N[2] = {0.0, 0.0};  // resists motion of the tool along +x, +y (mechanics/contact.h)
-    int nodes = 0;                     // in contact
-    int columns = 0;                   // of the compliance that was computed: its touch nodes
-    double seconds = 0.0;              // that compliance and contact took
-    double cells_across_radius = 0.0;  // sqrt(R depth) over the spacing of the nodes in contact
+    double lateral_N[2] = {0.0, 0.0};          // resists motion of the tool along +x, +y (mechanics/contact.h)
+    int nodes = 0;                             // in contact
+    int columns = 0;                           // of the compliance that was computed: its touch nodes
+    double seconds = 0.0;                      // that compliance and contact took
+    double cells_across_radius = 0.0;          // sqrt(R depth) over the spacing of the nodes in contact
+    std::optional<double> cells_along_length;  // of a cylinder that has ends: its length over that spacing along it
     bool settled = true;
     std::string why_not_settled;  // for people; empty if it settled
     bool over_edge = false;       // part of the tool is beside the tissue

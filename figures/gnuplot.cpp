@@ -1,8 +1,11 @@
 #include "figures/gnuplot.h"
 
+#include <algorithm>
 #include <cstdlib>
 #include <stdexcept>
+#include <string_view>
 #include <unistd.h>
+#include <vector>
 
 #include "files/input_error.h"
 #include "files/regular_file.h"
@@ -36,6 +39,29 @@ constexpr const char* kMissing = "gnuplot is not installed (package gnuplot-nox)
 
 bool is_control(char c) { return static_cast<unsigned char>(c) < ' '; }
 
+// True if the figure has its end. gnuplot does not say so if the disk is full.
+bool is_whole(const std::filesystem::path& file, const std::string& kind) {
+    constexpr std::size_t kTail_bytes = 32;
+    std::error_code none;
+    if (!std::filesystem::exists(file, none)) return false;
+    const std::string bytes = files::read_text(file);
+    const std::string tail = bytes.substr(bytes.size() - std::min(bytes.size(), kTail_bytes));
+    const std::string_view end = kind == ".png" ? "IEND\xae\x42\x60\x82" : kind == ".svg" ? "</svg>" : "%%EOF";
+    return tail.find(end) != std::string::npos;
+}
+
+// Returns the figures of a kept script: the names before `." . kind` in its lines `set output`.
+std::vector<std::string> figures_of(const std::filesystem::path& script) {
+    const std::string text = files::read_text(script);
+    const std::string begin = "set output \"";
+    std::vector<std::string> out;
+    for (std::size_t at = text.find(begin); at != std::string::npos; at = text.find(begin, at + 1)) {
+        const std::size_t from = at + begin.size();
+        out.push_back(text.substr(from, text.find('"', from) - from));
+    }
+    return out;
+}
+
 }  // namespace
 
 std::string single_quoted(const std::string& text) {
@@ -54,20 +80,22 @@ void draw_figure(const std::string& script, const std::filesystem::path& name, i
     if (!is_installed()) throw std::runtime_error(file.string() + ": not drawn: " + kMissing);
     const std::string aside = file.string() + ".part-" + std::to_string(::getpid());
     const std::string commands = aside + ".gp";
-    files::write_text_atomically(commands, "set encoding utf8\n" + set + "set output " + single_quoted(aside) + "\n" +
-                                               script + "\nunset output\n");
-    const bool drawn = run("gnuplot " + shell_quoted(commands));
+    // the figure comes on standard output, since gnuplot's own quotes do not hold every name of a folder
+    files::write_text_atomically(commands, "set encoding utf8\n" + set + script + "\nunset output\n");
+    const bool drawn = run("gnuplot " + shell_quoted(commands) + " > " + shell_quoted(aside));
+    const bool whole = drawn && is_whole(aside, name.extension().string());
     ::unlink(commands.c_str());
     // without this, a viewer may blend cells with each other and with gaps
-    if (drawn && name.extension() == ".svg") {
+    if (whole && name.extension() == ".svg") {
         std::string svg = files::read_text(aside);
         for (std::size_t at = svg.find("<image "); at != std::string::npos; at = svg.find("<image ", at + 1))
             svg.insert(at + 6, " style='image-rendering:pixelated'");
         files::write_text_whole(aside, svg);
     }
-    if (!drawn || ::rename(aside.c_str(), file.c_str()) != 0) {
+    if (!whole || ::rename(aside.c_str(), file.c_str()) != 0) {
         ::unlink(aside.c_str());
-        throw std::runtime_error(file.string() + ": gnuplot could not draw it");
+        throw std::runtime_error(file.string() + ": gnuplot could not draw it" +
+                                 (drawn ? " to its end (is the disk full?)" : ""));
     }
 }
 
@@ -81,6 +109,15 @@ std::string draw_script(const std::filesystem::path& script, const std::string& 
     for (const std::string kind : {"png", "svg", "pdf"}) {
         if (!run(there + " && gnuplot -e \"kind='" + kind + "'\" " + shell_quoted(name)))
             return "gnuplot could not draw " + script.string() + "; " + kept;
+        std::string cut_off;
+        for (const std::string& figure : figures_of(script)) {
+            const std::filesystem::path file = script.parent_path() / (figure + kind);
+            if (is_whole(file, "." + kind)) continue;
+            std::error_code none;
+            std::filesystem::remove(file, none);
+            cut_off += (cut_off.empty() ? "" : ", ") + file.string();
+        }
+        if (!cut_off.empty()) return cut_off + ": gnuplot could not draw it to its end (is the disk full?); " + kept;
     }
     return "";
 }

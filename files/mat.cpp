@@ -1,5 +1,6 @@
 #include "files/mat.h"
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <matio.h>
@@ -42,16 +43,29 @@ struct FreeVariable {
 using MatFile = std::unique_ptr<mat_t, CloseFile>;
 using Variable = std::unique_ptr<matvar_t, FreeVariable>;
 
+// True if the file gives back every value. The library does not say so if the disk is full.
+bool holds(const std::vector<MatArray>& arrays, const std::filesystem::path& path) {
+    try {
+        return std::all_of(arrays.begin(), arrays.end(), [&](const MatArray& array) {
+            const std::vector<float> read = read_mat(array.name, path).values;
+            return read.size() == array.values.size() &&
+                   std::memcmp(read.data(), array.values.data(), read.size() * sizeof(float)) == 0;
+        });
+    } catch (const InputError&) {
+        return false;
+    }
+}
+
 }  // namespace
 
 void write_mat(const std::vector<MatArray>& arrays, const std::filesystem::path& name) {
     const std::filesystem::path path = output_target(name);
     const std::string aside = path.string() + ".part-" + std::to_string(::getpid());
-    const auto fail = [&] {
-        const std::string reason = std::strerror(errno);
+    const auto fail_with = [&](const std::string& reason) {
         ::unlink(aside.c_str());
         throw std::runtime_error(path.string() + ": cannot be written: " + reason);
     };
+    const auto fail = [&] { fail_with(std::strerror(errno)); };
     MatFile file(Mat_CreateVer(aside.c_str(), nullptr, MAT_FT_MAT5));
     if (!file) fail();
     for (const MatArray& array : arrays) {
@@ -63,6 +77,7 @@ void write_mat(const std::vector<MatArray>& arrays, const std::filesystem::path&
         if (!variable || Mat_VarWrite(file.get(), variable.get(), MAT_COMPRESSION_NONE) != 0) fail();
     }
     file.reset();
+    if (!holds(arrays, aside)) fail_with("what is on the disk is not whole (is it full?)");
     sync_file(aside);
     if (::rename(aside.c_str(), path.c_str()) != 0) fail();
 }

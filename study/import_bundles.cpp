@@ -76,6 +76,7 @@ class Plan {
         if (file.kind == LogFileKind::people) return add_people_of(file, from);
         if (file.kind == LogFileKind::identity) return add_identity(file, from);
         if (grows(file.name)) return add_answers(file, from);
+        if (file.name == "protocol.json") protocols_.emplace(file.sha256, from);
         const auto [it, fresh] = first_.emplace(file.name, std::pair(file.sha256, from));
         if (!fresh && it->second.first != file.sha256) {
             throw files::bad_input(from, file.name, "other content than in " + it->second.second,
@@ -91,6 +92,16 @@ class Plan {
         if (it->second.first != file.sha256)
             throw files::bad_input(from, file.name, "content that changed while it was read", "the file left alone");
         return true;
+    }
+
+    // To be called once all bundles are added: a protocol that is not the one of study.json would keep the whole study
+    // from its analysis.
+    void check_protocol() const {
+        for (const auto& [sha256, from] : protocols_) {
+            if (!identity_ || identity_->sha256 == sha256) continue;
+            throw files::bad_input(from, "protocol.json", "sha256 " + files::shown(sha256.substr(0, 12)),
+                                   files::shown(identity_->sha256.substr(0, 12)) + " as in study.json");
+        }
     }
 
     bool is_study() const { return identity_.has_value(); }
@@ -214,6 +225,7 @@ class Plan {
     fs::path directory_;
     std::map<std::string, std::pair<std::string, std::string>> first_;  // name to hash and the bundle it came from
     std::set<std::string> new_;
+    std::map<std::string, std::string> protocols_;  // hash to the bundle that it came from
     std::map<std::string, Person> known_;
     std::optional<StudyIdentity> identity_;
     bool logs_without_identity_ = false;
@@ -225,7 +237,7 @@ class NewFiles {
     explicit NewFiles(const fs::path& directory) : directory_(directory) {}
     ~NewFiles() {
         std::error_code ignored;
-        for (const fs::path& path : paths_) fs::remove(path, ignored);
+        for (auto path = paths_.rbegin(); path != paths_.rend(); ++path) fs::remove(*path, ignored);
     }
     NewFiles(const NewFiles&) = delete;
     NewFiles& operator=(const NewFiles&) = delete;
@@ -279,9 +291,15 @@ BundleReport import_bundles(const std::vector<fs::path>& bundles, const fs::path
         taken.push_back(path);
     }
     plan.settle_answers();
+    plan.check_protocol();
     fs::create_directories(directory);
     if (!lock) lock.emplace(directory, kOtherWriter);
     NewFiles written(directory);
+    // first of all, so that after a kill the folder is known for the study's and the same command goes on
+    if (plan.identity_text) {
+        written.write("study.json", *plan.identity_text);
+        plan.report.written.push_back("study.json");
+    }
     for (const fs::path& path : taken) {
         Bundle bundle = read_whole(path);
         // the events are written last, since a trial counts as done once they end with `finish`
@@ -301,10 +319,6 @@ BundleReport import_bundles(const std::vector<fs::path>& bundles, const fs::path
         if (most.there) continue;
         written.write(name, most.text);
         plan.report.written.push_back(name);
-    }
-    if (plan.identity_text) {
-        written.write("study.json", *plan.identity_text);
-        plan.report.written.push_back("study.json");
     }
     written.keep();
     prepare_log_folder(directory);

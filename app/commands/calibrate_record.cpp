@@ -1,8 +1,11 @@
 // palpa calibrate record
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cctype>
 #include <cstdio>
 #include <memory>
+#include <string_view>
 
 #include "app/commands/command_line.h"
 #include "app/commands/option_checks.h"
@@ -20,6 +23,18 @@ struct RecordArguments {
     std::vector<double> range;
     bool json = false;
 };
+
+// Returns a path as one word of a command line.
+std::string word(const std::string& path) {
+    const bool plain = std::all_of(path.begin(), path.end(), [](unsigned char c) {
+        return std::isalnum(c) != 0 || c >= 0x80 ||
+               std::string_view("_./-+,:@").find(static_cast<char>(c)) != std::string_view::npos;
+    });
+    if (plain) return path;
+    std::string out = "'";
+    for (const char c : path) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
+    return out + "'";
+}
 
 // What the fit has to be told of the levels: it cannot read it off the points.
 std::string level_options(const RecordArguments& arguments) {
@@ -63,7 +78,7 @@ void record(RecordArguments& arguments) {
                                            : result["missing"].get_ref<const std::string&>().c_str());
     if (result.contains("sensor")) std::printf("  sensor      %s\n", result["sensor"]["health"].dump().c_str());
     std::printf("  next        palpa calibrate fit %s -o PROFILE.json%s\n",
-                result["file"].get_ref<const std::string&>().c_str(), level_options(arguments).c_str());
+                word(result["file"].get_ref<const std::string&>()).c_str(), level_options(arguments).c_str());
 }
 
 }  // namespace
@@ -86,7 +101,7 @@ void add_calibrate_record(CLI::App& calibrate) {
     command
         ->add_option("--counts-per-N", options.counts_per_N,
                      "netft: counts per newton (the sensor's counts per force, in newtons)")
-        ->check(CLI::PositiveNumber)
+        ->check(CLI::Range(1e-9, 1e12))
         ->capture_default_str();
     command->add_option("--axis", options.axis, "netft: direction of pressing")
         ->check(one_of({"x", "y", "z", "-x", "-y", "-z"}))

@@ -108,6 +108,7 @@ files::Json json_of(const fem::FemCase& model, const fem::FemResult& result) {
                            {"depth_mm", 1e3 * contact.depth_m},
                            {"lateral_N", {contact.lateral_N[0], contact.lateral_N[1]}},
                            {"compliance_columns", contact.columns}};
+        if (contact.cells_along_length) json["contact"]["cells_along_length"] = *contact.cells_along_length;
     }
     json["energy_J"] = result.solution.energy_J;
     json["max_strain"] = result.max_strain;

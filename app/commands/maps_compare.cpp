@@ -45,13 +45,14 @@ files::Json difference_json(const stiffnessmaps::MapDifference& d) {
 }
 
 void print_difference(const stiffnessmaps::MapDifference& d) {
-    const auto text = [](double v) { return files::short_number(v); };
+    const auto text = [](double v) { return std::isnan(v) ? std::string("n/a") : files::short_number(v); };
     std::printf("B (%s) - A (%s), normal force: %zu x %zu places of map %s (%s x %s mm), %zu depths of map %s\n",
                 d.b.name.c_str(), d.a.name.c_str(), d.a.n_x, d.a.n_y, d.grid_of == "a" ? "A" : "B",
                 text(1e3 * d.a.spacing_m[0]).c_str(), text(1e3 * d.a.spacing_m[1]).c_str(), d.a.n_depths(),
                 d.depths_of == "a" ? "A" : "B");
-    std::printf("  bias %s N, median %s N, RMS %s N (%s %% of A's RMS), correlation %s\n", text(d.all.bias_N).c_str(),
-                text(d.all.median_N).c_str(), text(d.all.rms_N).c_str(), text(100.0 * d.relative).c_str(),
+    std::printf("  bias %s N, median %s N, RMS %s N (%s of A's RMS), correlation %s\n", text(d.all.bias_N).c_str(),
+                text(d.all.median_N).c_str(), text(d.all.rms_N).c_str(),
+                (std::isnan(d.relative) ? text(d.relative) : text(100.0 * d.relative) + " %").c_str(),
                 text(d.correlation).c_str());
     std::printf("  greatest %s N at (%s, %s) mm, %s mm deep\n", text(d.all.greatest_N).c_str(),
                 text(1e3 * d.all.at_x_m).c_str(), text(1e3 * d.all.at_y_m).c_str(), text(1e3 * d.all.depth_m).c_str());

@@ -140,7 +140,7 @@ stiffnessmaps::ImportOptions options_of(const ImportArguments& a) {
     options.layers = a.layers;
     options.fill = !a.no_fill;
     options.tangential = choice<stiffnessmaps::TangentialChoice>(a.tangential, {"measured", "energy", "none"});
-    options.contact = choice<stiffnessmaps::ContactStart>(a.contact, {"first-row", "threshold"});
+    options.contact = choice<stiffnessmaps::ContactStart>(a.contact, {"first-row", "threshold", "given"});
     options.contact_force_N = a.contact_force_N;
     options.surface_z_m = metres(a.surface_z_mm);
     options.surface_node_m = metres(a.surface_node_mm);
@@ -280,7 +280,8 @@ void add_table_options(CLI::App& command, ImportArguments& a) {
     number("--pitch-mm", a.pitch_mm, "pitch of the map where the places do not lie on a grid", 0.01, 1000.0);
     number("--radius-mm", a.radius_mm, "radius around a cell from which it then takes samples", 0.01, 1000.0);
     command.add_option("--layers", a.layers, "number of depths of the map")->check(CLI::Range(1, 200))->group("Tables");
-    text("--contact", a.contact, "start of contact: first-row or threshold")->check(one_of({"first-row", "threshold"}));
+    text("--contact", a.contact, "start of contact: first-row, threshold, or given (depths count from the surface)")
+        ->check(one_of({"first-row", "threshold", "given"}));
     number("--contact-force-N", a.contact_force_N, "threshold of the force at contact", 0.0, 100.0);
     number("--surface-z-mm", a.surface_z_mm, "sliding: height of a flat surface, used instead of an estimated one",
            -1e5, 1e5);

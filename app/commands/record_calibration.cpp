@@ -51,7 +51,8 @@ void tell(const calibration::Recording& recording) {
         const devices::SensorHealth now = recording.sensor->health();
         health = (now.alive ? "" : "  SENSOR SILENT") + std::string("  lost ") + std::to_string(now.lost) + " twice " +
                  std::to_string(now.duplicate) + " late " + std::to_string(now.reordered) + " bad " +
-                 std::to_string(now.malformed) + " stalls " + std::to_string(now.stalls);
+                 std::to_string(now.malformed) + " stalls " + std::to_string(now.stalls) + " invalid " +
+                 std::to_string(now.invalid);
     }
     std::fprintf(stderr, "\r%-22s level %5.1f %%  force %6.3f N  points %zu  press %d%s\033[K",
                  calibration::advice(recording).c_str(),
@@ -59,13 +60,21 @@ void tell(const calibration::Recording& recording) {
                  session.points.size(), session.repeat + 1, health.c_str());
 }
 
-void tell_news(bool was_silent, const calibration::Recording& recording) {
+void tell_news(bool was_silent, bool was_invalid, const calibration::Recording& recording) {
     if (recording.silent && !was_silent) {
         std::fprintf(stderr, "\npalpa: warning: %s has stopped; nothing is captured until it is back\n",
                      recording.sensor->name().c_str());
     }
-    if (!recording.silent && was_silent)
-        std::fprintf(stderr, "\npalpa: %s is back\n", recording.sensor->name().c_str());
+    if (!recording.silent && was_silent) {
+        std::fprintf(stderr, "\npalpa: %s is back: lift the pen, so that its zero is taken anew\n",
+                     recording.sensor->name().c_str());
+    }
+    if (recording.invalid && !was_invalid) {
+        std::fprintf(stderr,
+                     "\npalpa: warning: %s says that its forces are invalid (overloaded?); nothing is captured until "
+                     "they are valid\n",
+                     recording.sensor->name().c_str());
+    }
     if (!recording.judged) return;
     std::fprintf(stderr, "%spress %d: %s\n", ::isatty(2) != 0 ? "\r\033[K" : "", recording.session.repeat + 1,
                  recording.knowledge.done ? "the curve is known everywhere" : recording.knowledge.missing.c_str());
@@ -90,9 +99,10 @@ files::Json record_calibration(const calibration::RecordArguments& arguments) {
         samples.clear();
         const bool more = source->poll(0.005, samples);
         const bool was_silent = recording->silent;
+        const bool was_invalid = recording->invalid;
         going = calibration::step(samples, *recording) && more;
         if (!recording->sensor) going = take_typed(typed, *recording) && going;
-        tell_news(was_silent, *recording);
+        tell_news(was_silent, was_invalid, *recording);
         source->show(*recording);
         if (devices::steady_s() - told_s > 0.1) {
             tell(*recording);

@@ -29,9 +29,7 @@ struct AnalyseOptions {
 void write_report(const study::Report& report, const fs::path& folder) {
     std::error_code error;
     fs::create_directories(folder, error);
-    if (error) throw std::runtime_error(folder.string() + ": cannot be created: " + error.message());
-    if (!fs::is_directory(folder))
-        throw files::bad_input(folder.string(), "", "no folder", "a folder, or a name that is free");
+    if (error) throw std::runtime_error(folder.string() + ": cannot be made: " + error.message());
     for (const study::ReportTable& table : study::report_tables(report)) {
         files::write_text_atomically(folder / (table.name + ".tsv"), study::tsv_text(table));
     }

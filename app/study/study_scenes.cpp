@@ -1,12 +1,14 @@
 #include "app/study/study_scenes.h"
 
 #include <map>
+#include <set>
 #include <utility>
 
 #include "app/assets.h"
 #include "files/input_error.h"
 #include "files/sha256.h"
 #include "session/plan_in_progress.h"
+#include "study/names.h"
 
 namespace palpa::app {
 namespace {
@@ -22,6 +24,19 @@ fs::path find_beside(const study::Protocol& protocol, const std::string& name, c
     return assets_folder() / kind / given;
 }
 
+// Throws InputError for nodules whose names the logs cannot tell apart or tables cannot hold: the logs of such a study
+// could never be analysed.
+void check_nodules(const fs::path& file, const scene::Plan& plan) {
+    std::set<std::string> ids;
+    for (const stiffnessmaps::Nodule& nodule : plan.nodules) {
+        if (!study::is_name(nodule.id))
+            throw files::bad_input(file.string(), "nodules", files::shown(nodule.id), std::string(study::kNameRule));
+        if (!ids.insert(nodule.id).second)
+            throw files::bad_input(file.string(), "nodules", files::shown(nodule.id) + " twice",
+                                   "another id for each nodule");
+    }
+}
+
 // Loads each scene once, however many conditions show it with the same profile.
 class SceneLoader {
   public:
@@ -35,6 +50,7 @@ class SceneLoader {
         out.scene = scene::read_scene(file, assets_folder());
         if (!condition.profile.empty()) out.scene.profile = find_beside(protocol_, condition.profile, "profiles");
         out.plan = std::make_shared<const scene::Plan>(session::make_plan_here(out.scene));
+        check_nodules(file, *out.plan);
         return it->second = out;
     }
 

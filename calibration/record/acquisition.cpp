@@ -19,12 +19,15 @@ std::unique_ptr<devices::ForceSensor> open_sensor(const RecordArguments& argumen
         options.host = sensor.substr(6);
         if (const auto colon = options.host.find(':'); colon != std::string::npos) {
             double port = 0.0;
-            if (!files::parse_number(options.host.substr(colon + 1), port) || !(port >= 1.0 && port <= 65535.0)) {
+            if (!files::parse_number(options.host.substr(colon + 1), port) || !(port >= 1.0 && port <= 65535.0) ||
+                port != std::floor(port)) {
                 throw files::bad_input("--sensor", "", files::shown(sensor), "netft:HOST or netft:HOST:PORT");
             }
             options.port = static_cast<int>(port);
             options.host.resize(colon);
         }
+        if (options.host.empty())
+            throw files::bad_input("--sensor", "", files::shown(sensor), "netft:HOST or netft:HOST:PORT");
         options.counts_per_N = arguments.counts_per_N;
         options.sign = arguments.axis.front() == '-' ? -1.0 : 1.0;
         options.axis = arguments.axis.back() - 'x';
@@ -75,7 +78,7 @@ void take_levels(const std::vector<platform::Sample>& samples, Recording& record
     }
 }
 
-// Takes the new readings. The zero is measured while nothing touches, until the first point of the run fixes it.
+// Takes the new readings. The zero is measured while nothing touches, until the next point fixes it.
 void take_forces(Recording& recording) {
     std::vector<devices::ForceReading> readings;
     recording.sensor->poll(readings);
@@ -89,11 +92,20 @@ void take_forces(Recording& recording) {
         constexpr double kLift_s = 0.1;
         const bool resting = knows_touch && !session.touching && reading.t_host_s - recording.touched_s > kLift_s;
         if (!resting) session.rest.clear();
-        if (resting && session.points.size() == recording.resumed)
+        if (resting && session.points.size() == recording.zero_at)
             take_rest(options, reading.t_host_s, reading.force_N, session);
         if (!std::isnan(session.zero_N))
             take_force(options, reading.t_host_s, reading.force_N - session.zero_N, session);
     }
+}
+
+// A sensor that was away may have been switched off, and has another zero then.
+void zero_again(Recording& recording) {
+    RecordSession& session = recording.session;
+    session.zero_N = platform::kMissing;
+    session.rest.clear();
+    session.forces.clear();
+    recording.zero_at = session.points.size();
 }
 
 // Throws std::runtime_error for a sensor that never sends a reading, which is a mistake in the set-up; one that falls
@@ -104,9 +116,16 @@ void watch_sensor(double now_s, Recording& recording) {
     constexpr double kPatience_s = 5.0;
     if (health.received == 0 && now_s - recording.began_s > kPatience_s) {
         throw std::runtime_error(recording.sensor->name() + ": no reading in " + files::short_number(kPatience_s) +
-                                 " s (connected, powered, right address?)");
+                                 (health.invalid > 0 ? " s that the sensor calls valid (overloaded?)"
+                                                     : " s (connected, powered, right address?)"));
     }
+    const bool was_silent = recording.silent;
     recording.silent = health.received > 0 && !health.alive;
+    if (was_silent && !recording.silent) zero_again(recording);
+    if (health.invalid > recording.invalids) recording.invalid_s = now_s;
+    recording.invalids = health.invalid;
+    constexpr double kInvalid_s = 0.5;
+    recording.invalid = health.invalid > 0 && now_s - recording.invalid_s < kInvalid_s;
 }
 
 // Judges after each press whether the curve is known well enough.
@@ -126,7 +145,7 @@ files::Json health_json(const devices::SensorHealth& health) {
             {"duplicate", health.duplicate}, {"reordered", health.reordered},
             {"malformed", health.malformed}, {"overflowed", health.overflowed},
             {"stalls", health.stalls},       {"reconnects", health.reconnects},
-            {"faults", health.faults}};
+            {"faults", health.faults},       {"invalid", health.invalid}};
 }
 
 files::Json result_of(const Recording& recording) {
@@ -208,7 +227,7 @@ std::unique_ptr<Recording> open_recording(const RecordArguments& arguments) {
     if (std::filesystem::is_directory(arguments.folder))
         recording->lock.emplace(arguments.folder, "another recording into it");
     open_session(arguments, recording->session);
-    recording->resumed = recording->session.points.size();
+    recording->resumed = recording->zero_at = recording->session.points.size();
     recording->knowledge = knowledge_of(arguments.options, recording->session.points);
     recording->raw.emplace(arguments.folder);
     if (device) recording->sensor = std::make_unique<devices::SensorReader>(std::move(device));
@@ -247,6 +266,7 @@ bool take_typed_N(double force_N, Recording& recording) {
 std::string advice(const Recording& recording) {
     const RecordOptions& options = recording.arguments.options;
     if (recording.silent) return "the sensor is silent";
+    if (recording.invalid) return "the sensor is overloaded";
     if (recording.sensor && std::isnan(recording.session.zero_N)) return "do not touch (zero)";
     const int band = target_band(options, recording.session, recording.knowledge.band_error);
     if (band < 0) return "lift the pen";

@@ -61,10 +61,14 @@ struct Recording {
     double touched_s = -1.0;  // when a touch last ended
     std::int64_t samples = 0;
     std::int64_t readings = 0;
-    std::size_t resumed = 0;  // number of points from earlier runs
-    int known_repeats = -1;   // the repeat whose end was judged last
-    bool judged = false;      // a press ended in the last step
-    bool silent = false;      // the sensor has stopped; nothing is captured until it returns
+    std::size_t resumed = 0;    // number of points from earlier runs
+    std::size_t zero_at = 0;    // the zero is measured while there are so many points: at the start, after a silence
+    int known_repeats = -1;     // the repeat whose end was judged last
+    bool judged = false;        // a press ended in the last step
+    bool silent = false;        // the sensor has stopped; nothing is captured until it returns
+    bool invalid = false;       // the sensor says that its forces are invalid; nothing is captured until they are valid
+    std::int64_t invalids = 0;  // such readings so far
+    double invalid_s = -1.0;    // when the last one came
 };
 
 // Opens sensor, folder and files. Throws InputError for impossible arguments, std::runtime_error for what cannot be

@@ -29,7 +29,7 @@ const std::array<KnownRole, kRoles>& known_roles() {
         {Role::z, "z", {"z", "pos_z", "z_pos", "position_z", "pz", "tip_z"}},
         {Role::depth, "depth", {"depth", "indentation", "penetration", "indent"}},
         {Role::commanded_depth, "depth_cmd", {"depth_cmd", "cmd_depth", "commanded_depth", "depth_commanded"}},
-        {Role::normal_force, "fn", {"fn", "normal_force", "force_normal", "f_n", "force", "load", "f"}},
+        {Role::normal_force, "fn", {"fn", "normal_force", "force_normal", "f_n", "force", "load", "f", "normal"}},
         {Role::force_x, "fx", {"fx", "force_x", "f_x", "x_force"}},
         {Role::force_y, "fy", {"fy", "force_y", "f_y", "y_force"}},
         {Role::force_z, "fz", {"fz", "force_z", "f_z", "z_force"}},

@@ -101,6 +101,11 @@ Detection detect_regions(const Map& map, const std::string& file, const DetectOp
             file, "", "no cell with a force down to " + files::short_number(1e3 * *d.options.deepest_m) + " mm",
             "at least one");
     }
+    if (std::none_of(raw.begin(), raw.end(), [](double k) { return k > 0.0; })) {
+        throw files::bad_input(
+            file, "", "no cell that resists (greatest force " + files::short_number(force_range(map).highest_N) + " N)",
+            "forces above 0: pressing is positive");
+    }
     StiffnessGrid grid = make_grid(map, raw, d.options);
     if (measured < kFewCells) {
         d.warnings.push_back("only " + std::to_string(measured) +

@@ -16,7 +16,7 @@ namespace palpa::stiffnessmaps {
 
 enum class RecordingForm { probing, sliding, matrices };
 enum class Gridding { on_grid, plane, inverse_distance, median };
-enum class ContactStart { first_row, threshold };
+enum class ContactStart { first_row, threshold, given };
 enum class TangentialChoice { measured, energy, none };
 enum class Quantity { force, stiffness, young };  // meaning of an array's numbers: N, N/m at any depth, Pa
 enum class LengthUnit { mm, m, um };

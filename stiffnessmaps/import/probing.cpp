@@ -322,7 +322,7 @@ Map map_of_probing(Probing& probing, const ImportOptions& options, const std::st
         throw files::bad_input(file, "", "no point with two depths or more",
                                "probing at several depths (if the tip presses towards +z: --column depth=NAME)");
     }
-    clean_curves(probing, options, source, report);
+    clean_curves(probing, options, file, source, report);
     report.rejected_points = before - probing.points.size();
     if (probing.points.empty())
         throw files::bad_input(file, "", "no point with two depths in contact",

@@ -83,6 +83,50 @@ double start_at_threshold(ProbedPoint& p, double threshold_N) {
     return offset_N;
 }
 
+// Takes depth and force as they stand, with the contact, 0 N at depth 0, before the first row. Returns 0.
+double start_at_surface(ProbedPoint& p) {
+    while (!p.depth_m.empty() && !(p.depth_m.front() > 0.0)) erase_row(p, 0);
+    p.depth_m.insert(p.depth_m.begin(), 0.0);
+    p.force_N.insert(p.force_N.begin(), 0.0);
+    for (auto& lateral : p.lateral_N) {
+        if (!lateral.empty()) lateral.insert(lateral.begin(), 0.0);
+    }
+    return 0.0;
+}
+
+double start_of(ProbedPoint& p, ContactStart contact, double threshold_N) {
+    switch (contact) {
+        case ContactStart::first_row:
+            return start_at_first_row(p);
+        case ContactStart::threshold:
+            return start_at_threshold(p, threshold_N);
+        case ContactStart::given:
+            return start_at_surface(p);
+    }
+    return 0.0;
+}
+
+const char* name_of(ContactStart contact) {
+    return contact == ContactStart::first_row ? "first-row" : contact == ContactStart::given ? "given" : "threshold";
+}
+
+// Throws InputError for depths whose first row is far from 0: nothing tells whether it is the contact.
+void check_first_rows(const Probing& probing, const std::string& file) {
+    std::vector<double> first_m;
+    std::vector<double> step_m;
+    for (const ProbedPoint& p : probing.points) {
+        first_m.push_back(p.depth_m[0]);
+        step_m.push_back(p.depth_m[1] - p.depth_m[0]);
+    }
+    constexpr double kNear_m = 1e-4;
+    const double begins_m = median(std::move(first_m));
+    if (begins_m <= std::max(kNear_m, 0.5 * median(std::move(step_m)))) return;
+    throw files::bad_input(file, "depth",
+                           "depths that begin at " + files::short_number(1e3 * begins_m) + " mm (median)",
+                           "0 at contact, or --contact given (depths and forces count from the surface as they stand) "
+                           "or --contact first-row (they count from the first row)");
+}
+
 // Returns the slopes (b, c) of the plane z = a + b x + c y through the contact heights.
 Eigen::Vector2d contact_slope(const Probing& probing) {
     Eigen::Matrix3d A = Eigen::Matrix3d::Zero();
@@ -117,7 +161,8 @@ void remove_tilt(Probing& probing, MapSource& source) {
 
 }  // namespace
 
-void clean_curves(Probing& probing, const ImportOptions& options, MapSource& source, ImportReport& report) {
+void clean_curves(Probing& probing, const ImportOptions& options, const std::string& file, MapSource& source,
+                  ImportReport& report) {
     constexpr double kOutliers = 20.0;
     const double deviations = options.outliers.value_or(kOutliers);
     if (deviations > 0.0) reject_outliers(probing, deviations, report);
@@ -128,6 +173,7 @@ void clean_curves(Probing& probing, const ImportOptions& options, MapSource& sou
 
     const ContactStart contact =
         options.contact.value_or(probing.depth_from_z ? ContactStart::threshold : ContactStart::first_row);
+    if (!options.contact && !probing.depth_from_z) check_first_rows(probing, file);
     double threshold_N = options.contact_force_N.value_or(0.0);
     if (contact == ContactStart::threshold && !options.contact_force_N) {
         std::vector<double> steps_N;  // between the first two rows, which are in the air
@@ -145,12 +191,11 @@ void clean_curves(Probing& probing, const ImportOptions& options, MapSource& sou
         for (auto& lateral : p.lateral_N) {  // the lateral force counts from its first row, too
             for (std::size_t i = lateral.size(); i-- > 0;) lateral[i] -= lateral[0];
         }
-        offsets_N.push_back(contact == ContactStart::first_row ? start_at_first_row(p)
-                                                               : start_at_threshold(p, threshold_N));
+        offsets_N.push_back(start_of(p, contact, threshold_N));
     }
     report.median_offset_N = median(offsets_N);
     std::erase_if(probing.points, [](const ProbedPoint& p) { return p.depth_m.size() < 2; });
-    add_choice(source, "contact", contact == ContactStart::first_row ? "first-row" : "threshold",
+    add_choice(source, "contact", name_of(contact),
                probing.depth_from_z ? "depth comes from z, the surface must be found"
                                     : "the recording has depths: its robot had found the surface",
                "--contact", options.contact.has_value());

@@ -13,11 +13,14 @@ struct ProbedPoint;
 //             deviations of the recording's noise (robust.h): spikes go, slopes and kinks stay
 //   contact   first_row: the robot had found the surface; depth and force count from the first row.
 //             threshold: depth counts from where the force, less its median over the first three rows, crosses the
-//             threshold; rows before that are left out
+//             threshold; rows before that are left out.
+//             given: depths and forces count from the surface as they stand; rows that are not below it are left out.
+//             Depths that begin far below 0 are refused unless the options choose between first_row and given
 //   tilt      if depth comes from z: fits a plane through the contact heights (least squares) and takes depth and force
 //             along its normal
-// Places with fewer than two depths left are removed.
-void clean_curves(Probing& probing, const ImportOptions& options, MapSource& source, ImportReport& report);
+// Places with fewer than two depths left are removed. Throws InputError.
+void clean_curves(Probing& probing, const ImportOptions& options, const std::string& file, MapSource& source,
+                  ImportReport& report);
 
 // Returns the force at a depth, linear between the place's own steps; NaN beyond its greatest depth (by more than 5 %
 // of `step_m`).

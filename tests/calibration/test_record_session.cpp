@@ -120,6 +120,8 @@ TEST_CASE("record: it is enough when every band is known to 5 %, and until then 
     for (int i = 0; i < 4; ++i) t_s = press(options, staircase(20), t_s, i % 2 == 0 ? 1.0 : 1.4, random, wild);
     CHECK_FALSE(knowledge_of(options, wild.points).done);
     CHECK(contains(knowledge_of(options, wild.points).missing, "not known to 5 %"));
+    options.goal = 0.001;
+    CHECK(contains(knowledge_of(options, wild.points).missing, "not known to 0.1 %"));
 }
 
 TEST_CASE("record: a session is kept in a file, and resumed from it") {

@@ -55,6 +55,29 @@ TEST_CASE("sequence: loss, repetition, lateness and restart, across the wrap-aro
     CHECK(track(0x40000001, sequence, health) == Arrival::next);
 }
 
+TEST_CASE("sequence: after a silence a record that is not ahead is the first of a new count, not a duplicate") {
+    SensorHealth health;
+    Sequence sequence;
+    for (std::uint32_t number = 1; number <= 70000; ++number) track(number, sequence, health);
+    CHECK(track(1, sequence, health, true) == Arrival::restart);
+    CHECK(track(2, sequence, health) == Arrival::next);
+    CHECK(health.duplicate == 0);
+    CHECK(health.lost == 0);
+    CHECK(sequence.total == 70001);
+    CHECK(track(10, sequence, health, true) == Arrival::next);  // the line was cut, the sensor went on
+    CHECK(health.lost == 7);
+}
+
+TEST_CASE("Net F/T: a record with an error is no force; a monitor condition alone is none") {
+    CHECK_FALSE(is_invalid(0));
+    CHECK_FALSE(is_invalid(0x00010000));
+    CHECK_FALSE(is_invalid(0x80010000));
+    CHECK(is_invalid(0x80000000));
+    CHECK(is_invalid(0x80020000));
+    CHECK(is_invalid(0x80030000));
+    CHECK(is_invalid(0xc0000000));
+}
+
 TEST_CASE("sequence: what comes late from before the first record was never counted as lost") {
     SensorHealth health;
     Sequence sequence;

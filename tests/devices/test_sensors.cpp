@@ -88,7 +88,7 @@ TEST_CASE("Net F/T: 7 kHz with nothing lost, times and forces as sent") {
 TEST_CASE("Net F/T: lost, duplicate and reordered records are counted as the line made them") {
     SimulatorProcess simulator(PALPA_NETFT_SIMULATOR,
                                {"--rate-Hz", "2000", "--seconds", "2", "--lose", "0.02", "--duplicate", "0.03",
-                                "--reorder", "0.02", "--noise-N", "0.01", "--seed", "7", "--status", "2147483648"});
+                                "--reorder", "0.02", "--noise-N", "0.01", "--seed", "7", "--status", "2147549184"});
     std::unique_ptr<SensorReader> reader;
     open_reader(simulator, reader);
     const auto all =
@@ -120,6 +120,37 @@ TEST_CASE("Net F/T: a sensor that falls silent is asked again, and goes on") {
     CHECK(health.stalls == 1);
     CHECK(health.reconnects >= 1);
     CHECK(health.alive);
+}
+
+TEST_CASE("Net F/T: a sensor that was switched off and on counts anew, and its readings are taken at once") {
+    const std::vector<std::string> arguments{"--rate-Hz", "2000", "--first-sequence", "100000"};
+    auto simulator = std::make_unique<SimulatorProcess>(PALPA_NETFT_SIMULATOR, arguments);
+    std::unique_ptr<SensorReader> reader;
+    open_reader(*simulator, reader);
+    read_until(*reader, [](const auto& so_far) { return so_far.size() > 100; });
+    const std::string port = simulator->port();
+    simulator.reset();
+    read_until(*reader, [&](const auto&) { return !reader->health().alive; });
+    simulator = std::make_unique<SimulatorProcess>(PALPA_NETFT_SIMULATOR,
+                                                   std::vector<std::string>{"--rate-Hz", "2000", "--port", port});
+    const auto after = read_until(*reader, [](const auto& so_far) { return so_far.size() > 100; });
+    CHECK(after.size() > 100);
+    CHECK(reader->health().duplicate == 0);
+}
+
+TEST_CASE("Net F/T: forces that the sensor calls invalid are counted and not handed on") {
+    SimulatorProcess simulator(PALPA_NETFT_SIMULATOR,
+                               {"--rate-Hz", "500", "--seconds", "1", "--status", "2147614720"});  // 0x80020000
+    std::unique_ptr<SensorReader> reader;
+    open_reader(simulator, reader);
+    bool began = false;
+    const auto all = read_until(*reader, [&](const auto&) {
+        began = began || reader->health().alive;
+        return began && !reader->health().alive;
+    });
+    CHECK(all.empty());
+    CHECK(reader->health().invalid > 100);
+    CHECK(reader->health().received == 0);
 }
 
 TEST_CASE("load cell: lines, clock wrap-around, loss, repetition, garbled lines") {

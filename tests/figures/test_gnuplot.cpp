@@ -1,4 +1,5 @@
 #include <doctest/doctest.h>
+#include <filesystem>
 
 #include "figures/gnuplot.h"
 #include "files/text.h"
@@ -28,4 +29,27 @@ TEST_CASE("gnuplot: a kept script is drawn in its own folder, once for each kind
     files::write_text_atomically(folder / "b.gp", "exit status 3\n");
     CHECK(draw_script(folder / "b.gp", "b.csv is kept") ==
           "gnuplot could not draw " + (folder / "b.gp").string() + "; b.csv is kept");
+}
+
+TEST_CASE("gnuplot: a figure without its end is removed and named, as when the disk is full") {
+    if (!test::has_gnuplot()) return;
+    const test::TemporaryFolder folder;
+    files::write_text_atomically(folder / "a.gp",
+                                 "# set output \"a.\" . kind\nset print 'a.' . kind\nprint 'the begin'\n");
+    CHECK(draw_script(folder / "a.gp", "a.csv is kept") ==
+          (folder / "a.png").string() + ": gnuplot could not draw it to its end (is the disk full?); a.csv is kept");
+    CHECK_FALSE(std::filesystem::exists(folder / "a.png"));
+}
+
+TEST_CASE("gnuplot: figures are drawn in folders of any name") {
+    if (!test::has_gnuplot()) return;
+    const test::TemporaryFolder folder;
+    for (const char* name : {"two\nlines", "a\ttab", "\x1b[31m", "it's \"5\" \\n `x` $y %s"}) {
+        CAPTURE(name);
+        std::filesystem::create_directory(folder / name);
+        for (const char* figure : {"a.png", "a.svg", "a.pdf"}) {
+            draw_figure("plot x", folder / name / figure, 300, 200);
+            CHECK(std::filesystem::exists(folder / name / figure));
+        }
+    }
 }

@@ -1,5 +1,8 @@
 #include <cmath>
+#include <csignal>
 #include <doctest/doctest.h>
+#include <filesystem>
+#include <sys/resource.h>
 
 #include "files/mat.h"
 #include "files/text.h"
@@ -26,4 +29,20 @@ TEST_CASE("mat: three-dimensional arrays and rows come back with every value at 
     write_text_atomically(folder / "text.mat", "no matrix");
     CHECK(contains(message_of([&] { read_mat("x_mm", folder / "text.mat"); }), "no MATLAB file"));
     CHECK_THROWS_AS(write_mat({array}, folder / "no/such/m.mat"), std::runtime_error);
+}
+
+TEST_CASE("mat: a file that the disk cannot hold is an error, and is not left there in part") {
+    const TemporaryFolder folder;
+    const MatArray array{"normal_N", {100, 1000}, std::vector<float>(100000, 1.0f)};
+    rlimit before{};
+    ::getrlimit(RLIMIT_FSIZE, &before);
+    rlimit small = before;
+    small.rlim_cur = 100000;  // bytes
+    const auto ignored = std::signal(SIGXFSZ, SIG_IGN);
+    ::setrlimit(RLIMIT_FSIZE, &small);
+    CHECK_THROWS_WITH_AS(write_mat({array}, folder / "m.mat"), doctest::Contains("m.mat: cannot be written"),
+                         std::runtime_error);
+    ::setrlimit(RLIMIT_FSIZE, &before);
+    std::signal(SIGXFSZ, ignored);
+    CHECK(std::filesystem::is_empty(folder.path()));
 }

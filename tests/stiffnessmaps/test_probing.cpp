@@ -356,3 +356,23 @@ TEST_CASE("probing: the real recording of a phantom with a stiff inclusion becom
     CHECK(depths_m.back() < 4.2e-3);
     CHECK(depths_m[depths_m.size() / 2] > 1.3 * depths_m[depths_m.size() / 50]);  // ... than beside it
 }
+
+TEST_CASE("probing: depths that do not begin at the surface are refused until it is said what they count from") {
+    std::string text = kHeader;
+    for (int p = 0; p < 6; ++p) {
+        for (int k = 2; k < 6; ++k) text += row(p, k, 2.0 * (p % 3), 2.0 * (p / 3), k, 0.5 * k);
+    }
+    const std::string message = refusal(text);
+    CAPTURE(message);
+    CHECK(contains(message, "found depths that begin at 2.001 mm (median), expected 0 at contact"));
+    CHECK(contains(message, "--contact given"));
+    ImportOptions options;
+    options.contact = ContactStart::given;
+    options.depths_m = {2e-3, 4e-3};
+    const Map given = imported(text, options);
+    CHECK(given.normal_N[0] == doctest::Approx(1.0f).epsilon(1e-3));
+    CHECK(given.normal_N[6] == doctest::Approx(2.0f).epsilon(1e-3));
+    options.contact = ContactStart::first_row;
+    options.depths_m = {2e-3};
+    CHECK(imported(text, options).normal_N[0] == doctest::Approx(1.0f).epsilon(1e-3));  // 0.5 N/mm from the first row
+}

@@ -3,6 +3,8 @@
 #include <filesystem>
 #include <map>
 #include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include "files/json.h"
 #include "files/sha256.h"
@@ -49,6 +51,7 @@ const std::string kHeader =
 std::string people(const std::string& lines) { return kHeader + lines; }
 const std::string kAnna = "sub-01\t30\tf\tright\tn/a\tn/a\tn/a\ta\n";
 const std::string kBert = "sub-02\t31\tm\tleft\tn/a\tn/a\tn/a\ta\n";
+const std::string kProtocolSha256 = sha256_hex("{}");
 std::string study_file(const std::string& sha, const std::string& program) {
     return R"({"protocol": "p", "version": "1", "sha256": ")" + sha +
            R"(", "simulated": false, "simulation_seed": 0, "program": ")" + program + "\"}";
@@ -61,11 +64,11 @@ TEST_CASE("import bundles: tablets' logs become one study; a second time nothing
     const auto a = write_bundle(folder / "a", {{run_file("01", "_events.tsv"), "e1\n"},
                                                {run_file("01", "_samples.tsv"), "s1\n"},
                                                {"participants.tsv", people(kAnna)},
-                                               {"study.json", study_file("aa", "tablet")},
+                                               {"study.json", study_file(kProtocolSha256, "tablet")},
                                                {"protocol.json", "{}"}});
     const auto b = write_bundle(folder / "b", {{run_file("02", "_events.tsv"), "e2\n"},
                                                {"participants.tsv", people(kBert)},
-                                               {"study.json", study_file("aa", "another tablet")},
+                                               {"study.json", study_file(kProtocolSha256, "another tablet")},
                                                {"protocol.json", "{}"}});
     const BundleReport first = import_bundles({a, b}, folder / "study");
     CHECK(first.written.size() == 5);
@@ -76,7 +79,7 @@ TEST_CASE("import bundles: tablets' logs become one study; a second time nothing
     CHECK(made.at(run_file("01", "_samples.tsv")) == "s1\n");
     CHECK(made.at(run_file("02", "_events.tsv")) == "e2\n");
     CHECK(made.at("participants.tsv") == people(kAnna + kBert));
-    CHECK(made.at("study.json") == study_file("aa", "tablet"));
+    CHECK(made.at("study.json") == study_file(kProtocolSha256, "tablet"));
     CHECK(made.count("task-palpation_events.json") == 1);
     const BundleReport again = import_bundles({b, a}, folder / "study");
     CHECK(again.written.empty());
@@ -89,7 +92,7 @@ TEST_CASE("import bundles: what does not fit is refused before anything is writt
     const TemporaryFolder folder;
     const auto good = write_bundle(folder / "good", {{run_file("01", "_events.tsv"), "e1\n"},
                                                      {"participants.tsv", people(kAnna)},
-                                                     {"study.json", study_file("aa", "x")}});
+                                                     {"study.json", study_file(kProtocolSha256, "x")}});
     import_bundles({good}, folder / "study");
     const auto before = tree(folder / "study");
     const std::string fresh = run_file("09", "_events.tsv");
@@ -124,7 +127,7 @@ TEST_CASE("import bundles: links are not followed") {
     fs::create_directories(folder / "elsewhere");
     const auto bundle = write_bundle(folder / "b", {{run_file("01", "_events.tsv"), "e1\n"},
                                                     {"participants.tsv", people(kAnna)},
-                                                    {"study.json", study_file("aa", "x")}});
+                                                    {"study.json", study_file(kProtocolSha256, "x")}});
     const auto refused = [&] {
         return contains(message_of([&] { import_bundles({bundle}, folder / "study"); }), "a link in the way");
     };
@@ -149,8 +152,8 @@ TEST_CASE("import bundles: links are not followed") {
 TEST_CASE("import bundles: logs of single runs and a study do not mix") {
     const TemporaryFolder folder;
     import_bundles({write_bundle(folder / "a", {{run_file("01", "_events.tsv"), "e1\n"}})}, folder / "logs");
-    const auto of_study =
-        write_bundle(folder / "b", {{run_file("02", "_events.tsv"), "e2\n"}, {"study.json", study_file("aa", "x")}});
+    const auto of_study = write_bundle(
+        folder / "b", {{run_file("02", "_events.tsv"), "e2\n"}, {"study.json", study_file(kProtocolSha256, "x")}});
     CHECK(contains(message_of([&] { import_bundles({of_study}, folder / "logs"); }), "which has no study.json"));
     CHECK_FALSE(fs::exists(folder / "logs" / "sub-02"));
 }
@@ -162,7 +165,7 @@ TEST_CASE("import bundles: answers grow from bundle to bundle, in any order; oth
     const std::string two = one + "hand\teffort\t5\n";
     const std::string three = two + "off\teffort\t1\n";
     const auto bundle = [&](const char* file, const std::string& text) {
-        return write_bundle(folder / file, {{name, text}, {"study.json", study_file("aa", "x")}});
+        return write_bundle(folder / file, {{name, text}, {"study.json", study_file(kProtocolSha256, "x")}});
     };
     const auto a = bundle("a", one), b = bundle("b", two), c = bundle("c", three);
     CHECK(import_bundles({b, a}, folder / "study").grown.empty());
@@ -184,8 +187,8 @@ TEST_CASE("import bundles: single runs that a tablet took beside a study are pas
     const TemporaryFolder folder;
     const auto single = write_bundle(folder / "s", {{run_file("tablet1", "_events.tsv"), "e\n"},
                                                     {run_file("tablet1", "_settings.json"), R"({"scene": "x"})"}});
-    const auto of_study = write_bundle(
-        folder / "b", {{run_file("02", "_settings.json"), R"({"study": {}})"}, {"study.json", study_file("aa", "x")}});
+    const auto of_study = write_bundle(folder / "b", {{run_file("02", "_settings.json"), R"({"study": {}})"},
+                                                      {"study.json", study_file(kProtocolSha256, "x")}});
     const BundleReport report = import_bundles({single, of_study}, folder / "study");
     CHECK(report.passed_over == std::vector<std::string>{single.string()});
     CHECK_FALSE(fs::exists(folder / "study" / "sub-tablet1"));
@@ -198,7 +201,7 @@ TEST_CASE("import bundles: several people of one tablet in one file") {
     const TemporaryFolder folder;
     const auto file = write_bundle(folder / "b", {{"participants.tsv", people(kAnna)},
                                                   {"participants.tsv", people(kBert)},
-                                                  {"study.json", study_file("aa", "x")}});
+                                                  {"study.json", study_file(kProtocolSha256, "x")}});
     CHECK(import_bundles({file}, folder / "study").people_added == 2);
     CHECK(read_text(folder / "study" / "participants.tsv") == people(kAnna + kBert));
 }
@@ -233,4 +236,44 @@ TEST_CASE("import bundles: what a full disk interrupts is taken back") {
     CHECK(tree(folder / "study").empty());
     import_bundles({bundle}, folder / "study");
     CHECK(tree(folder / "study").at(run_file("01", "_samples.tsv")) == "s1\n");
+}
+
+TEST_CASE("import bundles: a protocol that is not the one of study.json is refused, since it would stop the analysis") {
+    const TemporaryFolder folder;
+    const auto bundle = write_bundle(folder / "bad", {{run_file("01", "_events.tsv"), "e1\n"},
+                                                      {"participants.tsv", people(kAnna)},
+                                                      {"study.json", study_file(kProtocolSha256, "x")},
+                                                      {"protocol.json", "{ }"}});
+    const std::string message = message_of([&] { import_bundles({bundle}, folder / "study"); });
+    CAPTURE(message);
+    CHECK(contains(message, "protocol.json: found sha256"));
+    CHECK(contains(message, "as in study.json"));
+    CHECK_FALSE(fs::exists(folder / "study"));
+}
+
+TEST_CASE("import bundles: killed in its middle, the same import goes on") {
+    const TemporaryFolder folder;
+    const auto bundle = write_bundle(folder / "b", {{run_file("01", "_events.tsv"), "e1\n"},
+                                                    {run_file("01", "_marks.tsv"), "m1\n"},
+                                                    {run_file("01", "_samples.tsv"), std::string(20000, 'x')},
+                                                    {"participants.tsv", people(kAnna)},
+                                                    {"study.json", study_file(kProtocolSha256, "x")}});
+    const pid_t child = ::fork();
+    if (child == 0) {
+        std::signal(SIGXFSZ, SIG_DFL);  // the system ends the process at the first large file
+        const rlimit small{4096, 4096};
+        setrlimit(RLIMIT_FSIZE, &small);
+        import_bundles({bundle}, folder / "study");
+        ::_exit(0);
+    }
+    int status = 0;
+    ::waitpid(child, &status, 0);
+    REQUIRE(WIFSIGNALED(status));
+    CHECK(fs::exists(folder / "study" / run_file("01", "_marks.tsv")));
+    CHECK(import_bundles({bundle}, folder / "study").people_added == 1);
+    import_bundles({bundle}, folder / "fresh");
+    for (const auto& [name, text] : tree(folder / "fresh")) {
+        CAPTURE(name);
+        CHECK(tree(folder / "study").at(name) == text);
+    }
 }

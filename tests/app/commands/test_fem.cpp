@@ -1,5 +1,6 @@
 // `palpa fem solve` as a person calls it.
 
+#include <cmath>
 #include <doctest/doctest.h>
 
 #include "files/json.h"
@@ -204,4 +205,28 @@ TEST_CASE("fem solve: a case whose name is not UTF-8 is solved, and the JSON is 
     const Called called = palpa_with("fem solve '" + (folder / "c\xff.json").string() + "' --json");
     CHECK_MESSAGE(called.status == 0, called.err);
     CHECK(parse_json(called.out, "stdout")["converged"] == true);
+}
+
+TEST_CASE(
+    "fem solve: a cylinder that is short against the cells along it gets a warning and no larger area than its own") {
+    const TemporaryFolder folder;
+    const auto pressed = [&](const std::string& length) {
+        const std::string file = (folder / "c.json").string();
+        write_text_atomically(
+            file, case_text(kFine, "hex8-bbar", kClamped,
+                            R"([{"indenter": {"shape": "cylinder", "radius_mm": 20, "centre_mm": [50, 50], )" + length +
+                                R"("depth_mm": 0.85}}])"));
+        const Called called = palpa_with("fem solve " + file + " --json");
+        CAPTURE(called.err);
+        REQUIRE(called.status == 0);
+        return parse_json(called.out, "stdout");
+    };
+    const Json short_one = pressed(R"("length_mm": 0.1, )");
+    CHECK(short_one["contact"]["cells_along_length"].get<double>() < 1.0);
+    CHECK(contains(short_one["warnings"].dump(), "the tool's length spans"));
+    CHECK(short_one["contact"]["area_mm2"].get<double>() <= 0.1 * 2.0 * std::sqrt(0.85 * (40.0 - 0.85)) + 1e-9);
+    const Json long_one = pressed(R"("length_mm": 30, )");
+    CHECK(long_one["contact"]["cells_along_length"].get<double>() > 4.0);
+    CHECK_FALSE(contains(long_one["warnings"].dump(), "length"));
+    CHECK_FALSE(pressed("")["contact"].contains("cells_along_length"));
 }

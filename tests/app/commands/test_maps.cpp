@@ -246,3 +246,18 @@ TEST_CASE("command maps: help exists for every command") {
         CHECK(help.out.size() > 200);
     }
 }
+
+TEST_CASE("maps: forces that are never above 0 have no stiff regions, and no ratio is printed as a number") {
+    const TemporaryFolder folder;
+    for (const double factor : {0.0, -1.0}) {
+        CAPTURE(factor);
+        Map map = read_map(kSilicone);
+        for (float& force_N : map.normal_N) force_N *= static_cast<float>(factor);
+        const std::string name = (folder / (factor < 0.0 ? "reversed.map" : "zero.map")).string();
+        write_map(map, name);
+        refused("detect " + name + " --write", "no cell that resists");
+        const Called compared = maps("compare " + name + " " + name);
+        CHECK(compared.status == 0);
+        CHECK_FALSE(contains(compared.out, "nan"));
+    }
+}

@@ -1,13 +1,16 @@
 // palpa calibrate record with simulated pens and sensors, end to end.
 
+#include <algorithm>
 #include <cmath>
 #include <doctest/doctest.h>
 #include <filesystem>
+#include <map>
 #include <signal.h>
 #include <string>
 
 #include "files/folder_lock.h"
 #include "files/json.h"
+#include "files/table.h"
 #include "files/text.h"
 #include "tests/devices/simulator_process.h"
 #include "tests/error_message.h"
@@ -138,6 +141,7 @@ TEST_CASE("record: the command that it names for the fit has what was said about
             .out;
     };
     CHECK(contains(next("a", ""), "a/points.csv -o PROFILE.json\n"));
+    CHECK(contains(next("\"it's here\"", ""), "/it'\\''s here/points.csv' -o PROFILE.json\n"));
     CHECK(contains(next("b", " --level pressure_raw --level-range 0 8191"),
                    "-o PROFILE.json --level pressure_raw --level-range 0 8191\n"));
     CHECK(contains(next("c", " --level contact_area --full-contact-area-px2 4000"),
@@ -173,4 +177,44 @@ TEST_CASE("record: what cannot work is said at once, or after five seconds of si
                                 "2 --sensor netft:127.0.0.1:9 --levels -");
     CHECK(silent.status == 1);
     CHECK(contains(silent.err, "no reading in 5 s"));
+}
+
+TEST_CASE("record: a sensor that was away gets its zero anew, and no point has the old one") {
+    const TemporaryFolder folder;
+    const std::string session = (folder / "s").string();
+    const std::string link = (folder / "cell").string();
+    const std::string cell = PALPA_LOAD_CELL_SIMULATOR
+                             " --rate-Hz 200 --steps 4 --greatest-N 2.6 --period-s 4 --link " +
+                             link + " --seconds ";
+    // the second cell shows 0.4 N more without load
+    const Called record = shell("( " + cell + "8; " + cell +
+                                "12 --zero 100000 ) >/dev/null & sleep 0.5; " PALPA_PEN_SIMULATOR
+                                " --steps 4 --greatest-N 2.6 --period-s 4 --seconds 18 | " +
+                                kRecord + "-o " + session + " --sensor serial:" + link +
+                                " --N-per-count 2.5e-5 --levels - --steady-s 0.1 --seconds 17 --json");
+    CAPTURE(record.err);
+    REQUIRE(record.status == 0);
+    CHECK(contains(record.err, "is back: lift the pen"));
+    const Json json = parse_json(record.out, "stdout");
+    CHECK(json["sensor"]["zero_N"].get<double>() == doctest::Approx(2.5).epsilon(0.01));
+    std::map<double, std::vector<double>> forces_N;  // by level
+    Table points = read_csv(session + "/points.csv");
+    const std::size_t level = points.column("level"), force_N = points.column("force_N");
+    while (points.next()) forces_N[points.finite_number(level)].push_back(points.finite_number(force_N));
+    for (const auto& [at, forces] : forces_N) {
+        CAPTURE(at);
+        const auto [least, most] = std::minmax_element(forces.begin(), forces.end());
+        CHECK(*most - *least < 0.01);
+    }
+}
+
+TEST_CASE("record: a sensor that is overloaded gives no points, and a warning") {
+    const TemporaryFolder folder;
+    SimulatorProcess sensor(PALPA_NETFT_SIMULATOR, {"--rate-Hz", "500", "--status", "2147614720"});
+    const Called record =
+        shell(kPen + "--seconds 8 | " + kRecord + "-o " + (folder / "s").string() +
+              " --sensor netft:127.0.0.1:" + sensor.port() + " --levels - --steady-s 0.1 --seconds 7");
+    CHECK(record.status == 1);
+    CHECK(contains(record.err, "says that its forces are invalid"));
+    CHECK(contains(record.err, "no reading in 5 s that the sensor calls valid"));
 }

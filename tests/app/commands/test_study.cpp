@@ -479,3 +479,30 @@ TEST_CASE("command study exclude, replace: decisions are written, reported and r
     CHECK(contains(read_text(folder / "report/plan_participants.tsv"), "sim0001\tall\t"));
     CHECK(contains(read_text(folder / "report/exclusions.tsv"), "sim0002\tall\tdropped out, replaced by x1: left"));
 }
+
+TEST_CASE("command study: a map whose nodules the logs could not tell apart is refused before anything is recorded") {
+    const TemporaryFolder folder;
+    const auto map = folder / "m.map";
+    std::filesystem::copy(PALPA_SOURCE_DIR "/assets/maps/silicone.map", map);
+    write_text_atomically(folder / "s.json", R"({"name": "s", "tissue": {"map": "m.map"}})");
+    write_text_atomically(folder / "p.json", R"({"name": "p", "version": "1", "seed": 1, "order": "williams",
+        "conditions": [{"id": "a", "modality": "pen", "scene": "s.json"}], "time_limit_s": 60})");
+    const Json whole = parse_json(read_text(map / "map.json"), "map.json");
+    const std::string simulate = "simulate " + (folder / "p.json").string() + " --participants 1 --samples none -o " +
+                                 (folder / "logs").string();
+    for (const std::string id : {"A\tB", "\"A\"", "n/a", "", "B"}) {
+        Json json = whole;
+        json["nodules"][0]["id"] = id;
+        write_text_atomically(map / "map.json", json_text(json));
+        refused(simulate, id == "B" ? "nodules: found 'B' twice" : "nodules: found '");
+        CHECK_FALSE(std::filesystem::exists(folder / "logs"));
+    }
+    write_text_atomically(map / "map.json", json_text(whole));
+    CHECK(study(simulate).status == 0);
+}
+
+TEST_CASE("command study analyse: a folder that cannot be made is named with the reason") {
+    const Called called = study("analyse " + kCounts + " -o /proc/no/report");
+    CHECK(called.status == 1);
+    CHECK(contains(called.err, "/proc/no/report: cannot be made: "));
+}
