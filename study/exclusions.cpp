@@ -63,7 +63,9 @@ std::string reason_text(std::string reason) {
         if (static_cast<unsigned char>(c) < 0x20) c = ' ';
         if (c == '"') c = '\'';
     }
-    if (reads_as_missing(reason)) throw files::bad_input("--reason", "", files::shown(reason), "why, in words");
+    const bool blank = reason.find_first_not_of(' ') == std::string::npos;
+    if (blank || reads_as_missing(reason))
+        throw files::bad_input("--reason", "", files::shown(reason), "why, in words");
     return reason;
 }
 

@@ -1,12 +1,15 @@
 #include "app/study/study_scenes.h"
 
 #include <map>
+#include <set>
+#include <string>
 #include <utility>
 
 #include "app/assets.h"
 #include "files/input_error.h"
 #include "files/sha256.h"
 #include "session/plan_in_progress.h"
+#include "study/names.h"
 
 namespace palpa::app {
 namespace {
@@ -22,6 +25,18 @@ fs::path find_beside(const study::Protocol& protocol, const std::string& name, c
     return assets_folder() / kind / given;
 }
 
+// Nodules stand by their names in the tables of logs and reports.
+void check_nodules(const scene::Plan& plan) {
+    std::set<std::string> seen;
+    for (const stiffnessmaps::Nodule& nodule : plan.nodules) {
+        if (!study::is_name(nodule.id))
+            throw files::bad_input("nodules of the map", "id", files::shown(nodule.id), study::kNameRule);
+        if (!seen.insert(nodule.id).second)
+            throw files::bad_input("nodules of the map", "id", files::shown(nodule.id) + " a second time",
+                                   "each name once");
+    }
+}
+
 // Loads each scene once, however many conditions show it with the same profile.
 class SceneLoader {
   public:
@@ -35,6 +50,7 @@ class SceneLoader {
         out.scene = scene::read_scene(file, assets_folder());
         if (!condition.profile.empty()) out.scene.profile = find_beside(protocol_, condition.profile, "profiles");
         out.plan = std::make_shared<const scene::Plan>(session::make_plan_here(out.scene));
+        check_nodules(*out.plan);
         return it->second = out;
     }
 
