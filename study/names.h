@@ -17,6 +17,12 @@ bool reads_as_missing(std::string_view name);
 // True for a name as kNameRule says: of a condition, a group, a nodule, a comparison.
 bool is_name(std::string_view name);
 
+// True for a word that tables have in a row of sums: all, total, sum, overall, in any case.
+bool names_a_sum(std::string_view name);
+
+// True for a name that a space begins or ends, which looks like the name without it.
+bool has_outer_space(std::string_view name);
+
 // True for a participant's code as kCodeRule says; `sub-` is no part of it.
 bool is_code(std::string_view code);
 

@@ -12,6 +12,7 @@
 #include "study/name_index.h"
 #include "study/names.h"
 #include "study/stiffer_counts.h"
+#include "study/table_names.h"
 
 namespace palpa::study {
 namespace {
@@ -32,22 +33,14 @@ class NameColumn {
         if (!column_) return -1;
         const std::string_view name = table.field(*column_);
         if (name == "n/a" || name.empty()) return -1;
-        for (const std::string_view sum : {"all", "total", "sum", "overall"}) {
-            if (lower_case(name) == sum) table.fail(*column_, "one name, or n/a in a row for all of them");
-        }
+        if (names_a_sum(name)) table.fail(*column_, "one name, or n/a in a row for all of them");
         if (!is_name(name)) table.fail(*column_, std::string(kNameRule) + ", or n/a if it is not given");
-        return index_.of(name);
+        return index_.of(name_in(table, *column_));
     }
 
     std::optional<std::size_t> column() const { return column_; }
 
   private:
-    static std::string lower_case(std::string_view name) {
-        std::string out(name);
-        for (char& c : out) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-        return out;
-    }
-
     std::optional<std::size_t> column_;
     NameIndex index_;
 };
@@ -58,10 +51,7 @@ class ConditionColumn {
     ConditionColumn(const files::Table& table, Observations& out)
         : column_(table.column("condition")), index_(out.conditions) {}
 
-    int of(const files::Table& table) {
-        if (!is_name(table.field(column_))) table.fail(column_, kNameRule);
-        return index_.of(table.field(column_));
-    }
+    int of(const files::Table& table) { return index_.of(name_in(table, column_)); }
     std::size_t column() const { return column_; }
 
   private:
@@ -208,6 +198,7 @@ Observations read_counts(const std::filesystem::path& tsv) {
     } else {
         read_marks(table, out);
     }
+    refuse_sum(table, out.conditions);
     if (out.conditions.empty()) throw files::bad_input(tsv.string(), "", "no rows", "one row of counts at least");
     return out;
 }

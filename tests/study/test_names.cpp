@@ -18,5 +18,10 @@ TEST_CASE("names: words for a missing value, quotes and tabs are refused, others
         CAPTURE(code);
         CHECK_FALSE(is_code(code));
     }
+    CHECK(names_a_sum("Total"));
+    CHECK_FALSE(names_a_sum("total force"));
+    CHECK(has_outer_space(" a"));
+    CHECK(has_outer_space("a\xC2\xA0"));
+    CHECK_FALSE(has_outer_space("a b"));
     for (const char* code : {"01", "P7", "sim0001", "na"}) CHECK(is_code(code));
 }
