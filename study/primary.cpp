@@ -44,6 +44,15 @@ void check_quantity(const files::JsonReader& json, const Protocol& protocol, con
     json.fail("quantity", found, "other conditions: the method sets the share of right answers" + under);
 }
 
+bool does(const Protocol& protocol, const std::string& group, const std::string& condition) {
+    for (const Group& one : protocol.groups) {
+        if (one.id != group) continue;
+        return std::any_of(one.conditions.begin(), one.conditions.end(),
+                           [&](std::size_t i) { return protocol.conditions[i].id == condition; });
+    }
+    return false;
+}
+
 PrimaryComparison read_comparison(files::JsonReader json, const Protocol& protocol) {
     json.only({"quantity", "conditions", "groups", "condition", "test"});
     const std::vector<std::string> conditions = ids_in(protocol.conditions);
@@ -60,6 +69,11 @@ PrimaryComparison read_comparison(files::JsonReader json, const Protocol& protoc
         if (std::find(conditions.begin(), conditions.end(), primary.condition) == conditions.end())
             json.fail("condition", files::shown(primary.condition), "the id of a condition of this protocol");
         check_quantity(json, protocol, primary.condition, primary.quantity);
+        for (const std::string& side : primary.sides) {
+            if (!does(protocol, side, primary.condition))
+                json.fail("condition", files::shown(primary.condition),
+                          "a condition of both groups, also of " + files::shown(side));
+        }
     }
     json.finish();
     return primary;

@@ -253,6 +253,7 @@ Protocol read_protocol(const std::filesystem::path& file) {
     if (json.has("trial_order"))
         protocol.trial_order =
             static_cast<TrialOrder>(json.choice("trial_order", {"blocked", "interleaved", "shuffled"}));
+    if (protocol.choice.alternate_conditions) protocol.trial_order = TrialOrder::interleaved;
     protocol.repeats = json.integer("repeats", 1, 1000, 1);
     protocol.turn_maps = json.boolean("turn_maps", true);
     protocol.flip_maps = json.boolean("flip_maps", false);

@@ -49,6 +49,8 @@ TEST_CASE("primary: what the protocol does not define is refused with its key") 
     CHECK(contains(refusal_of_primary(R"({"quantity": "sensitivity", "conditions": ["x"]})"), "an array of two ids"));
     CHECK(contains(refusal_of_primary(R"({"quantity": "sensitivity", "groups": ["I", "II"], "condition": "I"})"),
                    "analysis.primary.condition: found 'I'"));
+    CHECK(contains(refusal_of_primary(R"({"quantity": "sensitivity", "groups": ["I", "II"], "condition": "y"})"),
+                   "analysis.primary.condition: found 'y', expected a condition of both groups, also of 'II'"));
     CHECK(contains(refusal_of_primary(R"({"quantity": "correct", "conditions": ["x", "y"]})"), "people find nodules"));
     CHECK(contains(refusal_of_primary(R"({"quantity": "ppv", "conditions": ["x", "y"]})",
                                       R"("choice": {"reference_kPa": 1, "comparisons_kPa": [2]},)"),
