@@ -7,6 +7,7 @@
 #include "files/input_error.h"
 #include "files/json.h"
 #include "files/sha256.h"
+#include "study/names.h"
 
 namespace palpa::study {
 namespace {
@@ -51,7 +52,7 @@ bool is_trial_file(std::string_view rest) {
     std::string_view subject, again, task, run;
     const bool of_subject = take("sub-", rest) && take_all(is_plain, kLongestLabel, subject, rest) &&
                             take("/beh/sub-", rest) && take_all(is_plain, kLongestLabel, again, rest) &&
-                            again == subject && take("_task-", rest);
+                            again == subject && is_code(subject) && take("_task-", rest);
     if (!of_subject || rest == "ratings_beh.tsv") return of_subject;
     return take_all(is_plain, kLongestLabel, task, rest) && take("_run-", rest) &&
            take_all(is_digit, kLongestRun, run, rest) &&

@@ -7,7 +7,6 @@
 #include <string>
 
 #include "files/table.h"
-#include "study/names.h"
 
 namespace palpa::study {
 
@@ -27,12 +26,6 @@ inline std::int64_t whole_number(const files::Table& table, std::size_t column, 
 
 inline std::int64_t count(const files::Table& table, std::size_t column) {
     return whole_number(table, column, 0, kMostCounts);
-}
-
-// Throws InputError with file, line and column for a field that names no condition, or a sum over conditions.
-inline void check_condition_name(const files::Table& table, std::size_t column) {
-    if (!is_name(table.field(column))) table.fail(column, kNameRule);
-    if (names_a_sum(table.field(column))) table.fail(column, "one condition: sums over conditions are not compared");
 }
 
 }  // namespace palpa::study

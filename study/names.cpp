@@ -17,14 +17,20 @@ bool reads_as_missing(std::string_view name) {
 bool is_name(std::string_view name) {
     const bool plain =
         std::none_of(name.begin(), name.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == '"'; });
-    const bool spaced = !name.empty() && (name.front() == ' ' || name.back() == ' ');
-    return plain && !spaced && !reads_as_missing(name);
+    return plain && !reads_as_missing(name);
 }
 
 bool names_a_sum(std::string_view name) {
     std::string lower(name);
     for (char& c : lower) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
     return lower == "all" || lower == "total" || lower == "sum" || lower == "overall";
+}
+
+bool has_outer_space(std::string_view name) {
+    constexpr std::string_view kHardSpace = "\xC2\xA0";
+    if (name.empty()) return false;
+    return name.front() == ' ' || name.back() == ' ' || name.substr(0, 2) == kHardSpace ||
+           (name.size() >= 2 && name.substr(name.size() - 2) == kHardSpace);
 }
 
 bool is_code(std::string_view code) {

@@ -7,8 +7,7 @@
 namespace palpa::study {
 
 inline constexpr std::string_view kNameRule =
-    "a name without tabs, double quotes or spaces at its ends that tables do not take for a missing value (as NA, n/a, "
-    "null, nan)";
+    "a name without tabs or double quotes that tables do not take for a missing value (as NA, n/a, null, nan)";
 inline constexpr std::string_view kCodeRule =
     "letters and digits that tables do not take for a missing value (as NA, null, nan)";
 
@@ -18,8 +17,11 @@ bool reads_as_missing(std::string_view name);
 // True for a name as kNameRule says: of a condition, a group, a nodule, a comparison.
 bool is_name(std::string_view name);
 
-// True for all, total, sum and overall, in capitals too: a row of a table that sums up the others has such a name.
+// True for a word that tables have in a row of sums: all, total, sum, overall, in any case.
 bool names_a_sum(std::string_view name);
+
+// True for a name that a space begins or ends, which looks like the name without it.
+bool has_outer_space(std::string_view name);
 
 // True for a participant's code as kCodeRule says; `sub-` is no part of it.
 bool is_code(std::string_view code);

@@ -12,6 +12,7 @@
 #include "study/name_index.h"
 #include "study/names.h"
 #include "study/stiffer_counts.h"
+#include "study/table_names.h"
 
 namespace palpa::study {
 namespace {
@@ -34,7 +35,7 @@ class NameColumn {
         if (name == "n/a" || name.empty()) return -1;
         if (names_a_sum(name)) table.fail(*column_, "one name, or n/a in a row for all of them");
         if (!is_name(name)) table.fail(*column_, std::string(kNameRule) + ", or n/a if it is not given");
-        return index_.of(name);
+        return index_.of(name_in(table, *column_));
     }
 
     std::optional<std::size_t> column() const { return column_; }
@@ -50,10 +51,7 @@ class ConditionColumn {
     ConditionColumn(const files::Table& table, Observations& out)
         : column_(table.column("condition")), index_(out.conditions) {}
 
-    int of(const files::Table& table) {
-        check_condition_name(table, column_);
-        return index_.of(table.field(column_));
-    }
+    int of(const files::Table& table) { return index_.of(name_in(table, column_)); }
     std::size_t column() const { return column_; }
 
   private:
@@ -200,6 +198,7 @@ Observations read_counts(const std::filesystem::path& tsv) {
     } else {
         read_marks(table, out);
     }
+    refuse_sum(table, out.conditions);
     if (out.conditions.empty()) throw files::bad_input(tsv.string(), "", "no rows", "one row of counts at least");
     return out;
 }

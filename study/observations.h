@@ -82,10 +82,12 @@ struct Observations {
     std::vector<Answer> answers;
     std::vector<StaircaseResult> staircases;
     std::vector<std::string> notes;  // for the reader of a report: interrupted trials, cut lines, clocks set back
+    bool from_logs = false;          // not from a table of counts
     bool simulated = false;          // at least one trial is simulated
     std::int64_t practice_trials = 0;
     std::int64_t interrupted_trials = 0;
     std::int64_t excluded_trials = 0;       // finished tests that are left out
+    std::int64_t withdrawn_trials = 0;      // those among them of participants who withdrew their data
     std::vector<Progress> progress;         // logs against the plan; empty if the plan is not known
     std::vector<Exclusion> exclusions;      // as the experimenter decided
     std::vector<Replacement> replacements;  // whose trials are all excluded

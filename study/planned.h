@@ -1,6 +1,7 @@
 #pragma once
 // Logs against the plan: what each participant was to do under each condition, and what of it was done.
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -31,10 +32,11 @@ struct Logged {
     bool excluded = false;
     int comparison = -1;  // of a choice: index in comparisons_kPa
     bool reference_first = false;
+    std::int64_t seed = 0;  // 0: not in the log
 };
 
 // Returns one row for each condition that the participant was to do, or did, in the order of the plan. Notes trials whose
-// condition, block or pair is not the plan's. Needs trial numbers that the plan has.
+// condition, block, pair or seed is not the plan's. Needs trial numbers that the plan has.
 std::vector<Progress> compare_with_plan(const Protocol& protocol, const PlannedParticipant& plan,
                                         const std::string& participant, const std::vector<Logged>& logged,
                                         std::vector<std::string>& notes);

@@ -122,7 +122,9 @@ struct Profiles {
             const double slope = slope_of_row(i) / range_of(levels);
             for (const double lapse : lapses_of(greatest_lapse)) offer(search, {0.0, slope, lapse}, starts);
         }
-        return remember(best_climb(search, starts), pse);
+        const double climbed = remember(best_climb(search, starts), pse);
+        // curves much steeper than all starts may be likelier; a climb seldom comes so far
+        return std::max(climbed, step_log_likelihood(levels, pse, greatest_lapse));
     }
 
   private:

@@ -180,6 +180,21 @@ Step likeliest_step(std::span<const LevelAnswers> levels, double greatest_lapse)
     return best;
 }
 
+double step_log_likelihood(std::span<const LevelAnswers> levels, double pse, double greatest_lapse) {
+    std::int64_t wrong = 0, of = 0, at = 0;
+    for (const LevelAnswers& level : levels) {
+        if (level.x == pse) {
+            at += level.n;
+            continue;
+        }
+        wrong += level.x < pse ? level.stiffer : level.n - level.stiffer;
+        of += level.n;
+    }
+    const double share = of > 0 ? static_cast<double>(wrong) / static_cast<double>(of) : 0.0;
+    const double lapse = std::min(share, greatest_lapse);
+    return part(wrong, lapse) + part(of - wrong, 1.0 - lapse) + part(at, 0.5);
+}
+
 double constant_log_likelihood(std::span<const LevelAnswers> levels, double low, double high) {
     std::int64_t n = 0, k = 0;
     for (const LevelAnswers& level : levels) {

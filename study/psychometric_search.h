@@ -40,6 +40,9 @@ struct Step {
 };
 Step likeliest_step(std::span<const LevelAnswers> levels, double greatest_lapse);
 
+// The greatest log likelihood of a step at this PSE: the limit of the curves that have it as their slope rises.
+double step_log_likelihood(std::span<const LevelAnswers> levels, double pse, double greatest_lapse);
+
 // The greatest log likelihood of a probability between `low` and `high` that is the same at all levels: the limit of
 // the curve as sd goes to infinity, or as the PSE does.
 double constant_log_likelihood(std::span<const LevelAnswers> levels, double low, double high);

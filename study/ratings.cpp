@@ -14,9 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-fs::path file_of(const fs::path& directory, const std::string& code) {
-    return directory / ("sub-" + code) / "beh" / ("sub-" + code + "_task-ratings_beh.tsv");
-}
+constexpr const char* kHeader = "condition\titem\tvalue";
 
 std::string one_field(std::string text) {
     std::replace_if(
@@ -27,14 +25,20 @@ std::string one_field(std::string text) {
 
 }  // namespace
 
+fs::path ratings_file(const fs::path& directory, const std::string& code) {
+    return directory / ("sub-" + code) / "beh" / ("sub-" + code + "_task-ratings_beh.tsv");
+}
+
+std::string answer_text(const std::string& answer) { return one_field(answer); }
+
 void add_ratings(const fs::path& directory, const std::string& code, const std::vector<Rating>& ratings) {
     if (ratings.empty()) return;
-    const fs::path file = file_of(directory, code);
+    const fs::path file = ratings_file(directory, code);
     std::error_code error;
     fs::create_directories(file.parent_path(), error);
     if (error) throw std::runtime_error(file.parent_path().string() + ": cannot be created: " + error.message());
     std::string lines;
-    if (!fs::exists(file) || fs::file_size(file) == 0) lines = "condition\titem\tvalue\n";
+    if (!fs::exists(file) || fs::file_size(file) == 0) lines = std::string(kHeader) + "\n";
     for (const Rating& r : ratings)
         lines += one_field(r.condition) + "\t" + one_field(r.item) + "\t" + one_field(r.value) + "\n";
     files::append_synced(file, lines);
@@ -42,16 +46,20 @@ void add_ratings(const fs::path& directory, const std::string& code, const std::
 
 std::vector<Rating> read_ratings(const fs::path& directory, const std::string& code, std::vector<std::string>& notes) {
     std::vector<Rating> out;
-    const fs::path file = file_of(directory, code);
+    const fs::path file = ratings_file(directory, code);
     if (!fs::exists(file)) return out;
     const std::string text = files::read_text(file);
     const std::string_view whole = whole_lines(text, file.string(), notes);
     if (whole.empty()) return out;
     int line = 0;
-    for (const std::string_view row : files::fields_of(whole.substr(0, whole.size() - 1), '\n')) {
+    for (std::string_view row : files::fields_of(whole.substr(0, whole.size() - 1), '\n')) {
         ++line;
+        constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+        if (line == 1 && row.substr(0, kByteOrderMark.size()) == kByteOrderMark)
+            row.remove_prefix(kByteOrderMark.size());
+        if (!row.empty() && row.back() == '\r') row.remove_suffix(1);  // saved by a spreadsheet
+        if (row.empty() || (line == 1 && row == kHeader)) continue;
         const auto fields = files::fields_of(row, '\t');
-        if (line == 1 || row.empty()) continue;
         if (fields.size() != 3) {  // a line that was cut off, and to which a later one was appended
             notes.push_back(file.string() + ": line " + std::to_string(line) + " is left out: " + files::shown(row) +
                             " is not an answer with 3 fields");

@@ -16,13 +16,19 @@ struct Rating {
     std::string value = "n/a";  // n/a: no answer
 };
 
+// Returns the file of a participant's answers, whether it is there or not.
+std::filesystem::path ratings_file(const std::filesystem::path& directory, const std::string& code);
+
 // Appends the answers; they are on the disk when the function returns. Tabs and line ends in values become spaces,
 // double quotes single ones.
 // Throws std::runtime_error if they cannot be written.
 void add_ratings(const std::filesystem::path& directory, const std::string& code, const std::vector<Rating>& ratings);
 
+// Returns an answer as it stands in the table.
+std::string answer_text(const std::string& answer);
+
 // Reads the answers of one participant; returns nothing if there is no file of them. A line that was cut off is left
-// out and noted.
+// out and noted. Line ends may be those of a spreadsheet (CR LF).
 std::vector<Rating> read_ratings(const std::filesystem::path& directory, const std::string& code,
                                  std::vector<std::string>& notes);
 

@@ -8,6 +8,7 @@
 #include "files/input_error.h"
 #include "files/json.h"
 #include "files/text.h"
+#include "study/check_logs.h"
 #include "study/follow_protocol.h"
 #include "study/name_index.h"
 #include "study/ratings.h"
@@ -44,13 +45,14 @@ struct Study {
     std::optional<StudyIdentity> identity;
     std::optional<Protocol> protocol;
     std::map<std::string, int> planned_condition;  // index in the protocol
-    std::set<std::string> people;                  // of participants.tsv
+    std::map<std::string, std::string> people;     // of participants.tsv: the group of each code
     Numbers numbers;
     std::set<std::string> left_out;  // participants of whom all is excluded
     std::set<std::pair<std::string, int>> left_out_trials;
     std::string sha256, sha256_in;                      // of the first trial that names a protocol
     std::unordered_map<std::size_t, std::string> seen;  // file of events by the hash of its text
-    NameIndex conditions, nodules, comparisons;         // of the observations
+    NodulesOfConditions nodules_seen;
+    NameIndex conditions, nodules, comparisons;  // of the observations
 
     bool excludes(const std::string& code, int trial) const {
         return left_out.count(code) > 0 || left_out_trials.count({code, trial}) > 0;
@@ -58,8 +60,12 @@ struct Study {
 };
 
 void read_protocol_of(Study& study, std::vector<std::string>& notes) {
-    if (!study.identity) return;
     const fs::path file = study.directory / "protocol.json";
+    if (!study.identity && fs::exists(file)) {
+        notes.push_back((study.directory / "study.json").string() +
+                        ": is not there; the logs cannot be compared with the plan, nor told from simulated ones");
+    }
+    if (!study.identity) return;
     if (!fs::exists(file)) {
         notes.push_back(file.string() + ": is not there; the logs cannot be compared with the plan");
         return;
@@ -117,6 +123,7 @@ class Subject {
         if (!study_.protocol) return;
         const auto likely = study_.numbers.number(code_);
         int number = number_.value_or(likely);
+        bool known = number_.has_value();
         if (!number_ && seed_ > 0) {
             const auto found = number_with_seed(*study_.protocol, seeded_trial_, seed_, likely,
                                                 static_cast<int>(study_.people.size()));
@@ -125,14 +132,19 @@ class Subject {
                                      " is not that of any participant's plan");
             }
             number = found.value_or(likely);
+            known = found.has_value();
         }
         const PlannedParticipant plan = plan_participant(*study_.protocol, number);
+        const bool same_orders = study_.identity->orders_version == kOrdersVersion;
+        const auto person = study_.people.find(code_);
+        if (known && same_orders && study_.protocol->groups.size() > 1 && person != study_.people.end())
+            check_group(study_.directory, code_, person->second, study_.protocol->groups[plan.group].id);
         if (last_trial_ > static_cast<int>(plan.trials.size())) {
             throw files::bad_input(text(last_place_), "trial", std::to_string(last_trial_),
                                    "1 to " + std::to_string(plan.trials.size()) + ", as the protocol plans them");
         }
         std::vector<std::string> of_other_orders;
-        auto& notes = study_.identity->orders_version == kOrdersVersion ? out_.notes : of_other_orders;
+        auto& notes = same_orders ? out_.notes : of_other_orders;
         const auto rows = compare_with_plan(*study_.protocol, plan, code_, logged_, notes);
         out_.progress.insert(out_.progress.end(), rows.begin(), rows.end());
     }
@@ -156,7 +168,8 @@ class Subject {
     }
 
     // Notes what the log says of a trial, for the comparison with the plan.
-    Logged& log(const Place& place, const std::string& condition, int trial, bool practice, bool finished) {
+    Logged& log(const Place& place, const std::string& condition, int trial, bool practice, bool finished,
+                std::int64_t seed) {
         if (trial > last_trial_) last_place_ = place;
         last_trial_ = std::max(last_trial_, trial);
         const auto it = study_.planned_condition.find(condition);
@@ -166,6 +179,7 @@ class Subject {
         }
         const int index = it == study_.planned_condition.end() ? 0 : it->second;
         logged_.push_back({trial, index, practice, finished, finished && study_.excludes(code_, trial)});
+        logged_.back().seed = seed;
         return logged_.back();
     }
 
@@ -180,8 +194,8 @@ class Subject {
         for (const RunLog::Choice& choice : run.choices) {
             const Place place{files_.size() - 1, choice.line};
             finish_once(place, choice.trial);
-            Logged& logged = log(place, choice.condition, choice.trial, choice.practice, true);
-            if (study_.protocol) check_pair(place, choice, logged);
+            Logged& logged = log(place, choice.condition, choice.trial, choice.practice, true, choice.seed);
+            if (study_.protocol) check_pair(*study_.protocol, text(place), choice, logged);
             if (choice.practice) {
                 ++out_.practice_trials;
             } else if (logged.excluded) {
@@ -199,35 +213,6 @@ class Subject {
         }
     }
 
-    // The level of a staircase follows from the answers, so any of its levels is right here.
-    void check_pair(const Place& place, const RunLog::Choice& choice, Logged& logged) const {
-        const Protocol& protocol = *study_.protocol;
-        const auto condition = static_cast<std::size_t>(logged.condition);
-        if (!compares(task_of(protocol, condition))) {
-            throw files::bad_input(text(place), "condition", files::shown(choice.condition),
-                                   "a condition in which two surfaces are compared, by the protocol");
-        }
-        if (choice.reference_kPa != reference_kPa_of(protocol, condition)) {
-            throw files::bad_input(text(place), "reference_kPa", files::short_number(choice.reference_kPa),
-                                   files::short_number(reference_kPa_of(protocol, condition)) + " as in the protocol");
-        }
-        const auto& all = comparisons_kPa_of(protocol, condition);
-        const auto it = std::find(all.begin(), all.end(), choice.comparison_kPa);
-        if (it == all.end()) {
-            throw files::bad_input(text(place), "comparison_kPa", files::shown(choice.comparison),
-                                   "one of the protocol's comparisons");
-        }
-        const auto on = reference_condition_of(protocol, condition);
-        const std::string stays = on ? protocol.conditions[*on].id : "";
-        if (choice.reference_on != stays) {
-            throw files::bad_input(text(place), "reference_on",
-                                   choice.reference_on.empty() ? "n/a" : files::shown(choice.reference_on),
-                                   (stays.empty() ? "n/a" : files::shown(stays)) + " as in the protocol");
-        }
-        logged.comparison = static_cast<int>(it - all.begin());
-        logged.reference_first = choice.reference_first;
-    }
-
     void add_run(const RunLog& run) {
         const Place place{files_.size() - 1};
         const RunSettings settings = settings_of_run(run);
@@ -236,7 +221,7 @@ class Subject {
         out_.simulated = out_.simulated || settings.simulated;
         const bool of_study = study_.identity || !settings.sha256.empty();
         if (of_study && run.finished) finish_once(place, run.trial);
-        const bool excluded = log(place, run.condition, run.trial, run.practice, run.finished).excluded;
+        const bool excluded = log(place, run.condition, run.trial, run.practice, run.finished, run.seed).excluded;
         if (!run.finished) {
             ++out_.interrupted_trials;
             return;
@@ -244,6 +229,9 @@ class Subject {
         if (!settings.there) {
             out_.notes.push_back(beside(run.events, "_settings.json").string() +
                                  ": is not there; nodules that were missed cannot be told apart");
+        } else if (study_.protocol) {
+            study_.nodules_seen.compare(run.condition, beside(run.events, "_settings.json").string(), settings.nodules,
+                                        out_.notes);
         }
         const auto marks = read_marks_left(beside(run.events, "_marks.tsv"), out_.notes);
         if (!marks) out_.notes.push_back(beside(run.events, "_marks.tsv").string() + ": is not there");
@@ -319,30 +307,18 @@ class Subject {
     std::string last_began_;
 };
 
-void check_exclusions(const Study& study, const std::set<std::string>& codes,
-                      const std::set<std::pair<std::string, int>>& finished) {
-    const std::string file = (study.directory / "exclusions.tsv").string();
-    for (const std::string& code : study.left_out) {
-        if (codes.count(code) == 0)
-            throw files::bad_input(file, "participant", files::shown(code), "a participant of this study");
-    }
-    for (const auto& [code, trial] : study.left_out_trials) {
-        if (finished.count({code, trial}) > 0) continue;
-        throw files::bad_input(file, "trial", std::to_string(trial) + " of " + files::shown(code),
-                               "a trial that this participant has finished");
-    }
-}
-
 }  // namespace
 
 Observations read_study(const fs::path& directory) {
     Observations out;
+    out.from_logs = true;
     Study study(out);
     study.directory = directory;
     study.identity = read_identity(directory);
     if (study.identity) out.simulated = study.identity->kind.simulated;
     const std::vector<Person> people = read_people(directory, out.notes);  // refuses a code that appears twice
-    for (const Person& one : people) study.people.insert(one.code);
+    const std::string left_out_line = out.notes.empty() ? "" : "; " + out.notes.front();
+    for (const Person& one : people) study.people.emplace(one.code, one.group);
     out.exclusions = read_exclusions(directory);
     out.replacements = read_replacements(directory);
     study.numbers = numbers_of(people, out.replacements);
@@ -354,7 +330,7 @@ Observations read_study(const fs::path& directory) {
     read_protocol_of(study, out.notes);
     std::set<std::string> codes = subject_codes(directory, out.notes);
     const std::set<std::string> with_folder = codes;
-    codes.insert(study.people.begin(), study.people.end());
+    for (const Person& one : people) codes.insert(one.code);
     std::set<std::pair<std::string, int>> finished;
     for (const std::string& code : codes) {
         const auto files = events_files(directory / ("sub-" + code));
@@ -364,21 +340,25 @@ Observations read_study(const fs::path& directory) {
         const int index = static_cast<int>(out.participants.size()) - 1;
         if (!files.empty() && study.identity && study.people.count(code) == 0) {
             throw files::bad_input((directory / "participants.tsv").string(), "",
-                                   "no line of sub-" + code + ", who has logs", "a line for each participant");
+                                   "no line of sub-" + code + ", who has logs",
+                                   "a line for each participant" + left_out_line);
         }
+        const auto excluded = out.excluded_trials;
         Subject reader(code, index, study, out);
         for (const fs::path& events : files) reader.add(events);
         reader.settle();
+        if (withdrew) out.withdrawn_trials += out.excluded_trials - excluded;
         for (const auto& [who, trial] : study.left_out_trials) {
             if (who == code && reader.has_finished(trial)) finished.insert({who, trial});
         }
         if (with_folder.count(code) == 0 || study.left_out.count(code) > 0) continue;
-        for (const Rating& r : read_ratings(directory, code, out.notes)) {
-            if (tells_participation(r)) continue;
+        const std::vector<Rating> given = read_ratings(directory, code, out.notes);
+        const Protocol* protocol = study.protocol ? &*study.protocol : nullptr;
+        for (const Rating& r : answers_to_questions(protocol, code, given, out.notes)) {
             out.answers.push_back({r.condition, r.item, r.value, files.empty() ? -1 : index});
         }
     }
-    check_exclusions(study, codes, finished);
+    check_exclusions(directory, study.left_out, study.left_out_trials, codes, finished);
     take_staircases(directory, study.left_out, study.left_out_trials, out);
     const auto uncounted = out.interrupted_trials + out.practice_trials + out.excluded_trials;
     if (out.rows.empty() && out.stiffer.empty() && uncounted == 0) {

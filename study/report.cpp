@@ -203,9 +203,11 @@ Report make_report(const Observations& given, const ReportOptions& options) {
     report.notes = seen.notes;
     report.participants = static_cast<int>(seen.participants.size());
     report.trials = static_cast<std::int64_t>(seen.trials.size());
+    report.forced_choices = seen.from_logs ? static_cast<std::int64_t>(seen.stiffer.size()) : 0;
     report.practice_trials = seen.practice_trials;
     report.interrupted_trials = seen.interrupted_trials;
     report.excluded_trials = seen.excluded_trials;
+    report.withdrawn_trials = seen.withdrawn_trials;
     report.progress = seen.progress;
     report.exclusions = seen.exclusions;
     report.replacements = seen.replacements;

@@ -88,10 +88,12 @@ struct Report {
     std::vector<StaircaseResult> staircases;
     std::vector<std::string> notes;
     int participants = 0;
-    std::int64_t trials = 0;  // finished tests; 0 for a table of counts
+    std::int64_t trials = 0;          // finished tests in which nodules were to be found; 0 for a table of counts
+    std::int64_t forced_choices = 0;  // finished tests in which two surfaces were compared; 0 for a table of counts
     std::int64_t practice_trials = 0;
     std::int64_t interrupted_trials = 0;
-    std::int64_t excluded_trials = 0;
+    std::int64_t excluded_trials = 0;  // those of participants who withdrew their data among them
+    std::int64_t withdrawn_trials = 0;
     std::vector<Progress> progress;  // logs against the plan; empty if the plan is not known
     std::vector<Exclusion> exclusions;
     std::vector<Replacement> replacements;
@@ -115,6 +117,7 @@ struct ReportTable {
     std::vector<std::vector<std::string>> rows;
 };
 std::vector<ReportTable> report_tables(const Report& report);
+const std::vector<std::string>& table_names();  // of all tables that a report may have
 std::string tsv_text(const ReportTable& table);
 std::string report_markdown(const Report& report);  // all tables, with methods and notes
 

@@ -113,6 +113,7 @@ files::Json report_json(const Report& report) {
         {"bootstrap_seed", report.options.bootstrap.seed}};
     json["participants"] = report.participants;
     json["trials"] = report.trials;
+    json["forced_choices"] = report.forced_choices;
     json["practice_trials"] = report.practice_trials;
     json["interrupted_trials"] = report.interrupted_trials;
     add_plan_json(report, json);

@@ -42,6 +42,7 @@ files::Json progress_json(const Progress& row) {
 
 void add_plan_json(const Report& report, files::Json& json) {
     json["excluded_trials"] = report.excluded_trials;
+    json["withdrawn_trials"] = report.withdrawn_trials;
     json["plan"] = files::Json::array();
     for (const Progress& row : report.progress) {
         files::Json entry{{"participant", row.participant}, {"group", row.group}};
@@ -101,9 +102,14 @@ std::string plan_summary(const Report& report) {
         out += "\nOf " + std::to_string(sum.planned) + " planned tests " + std::to_string(sum.finished) +
                " are finished and " + std::to_string(missing) + " are missing (table of the plan).\n";
     }
-    if (report.excluded_trials > 0) {
-        out += "\n" + std::to_string(report.excluded_trials) +
+    const auto decided = report.excluded_trials - report.withdrawn_trials;
+    if (decided > 0) {
+        out += "\n" + std::to_string(decided) +
                " finished tests are left out by the experimenter's decision (table of exclusions).\n";
+    }
+    if (report.withdrawn_trials > 0) {
+        out += "\n" + std::to_string(report.withdrawn_trials) +
+               " finished tests are left out because their participants withdrew the data (notes below).\n";
     }
     return out;
 }

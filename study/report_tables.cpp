@@ -171,6 +171,31 @@ std::vector<ReportTable> report_tables(const Report& report) {
     return tables;
 }
 
+const std::vector<std::string>& table_names() {
+    static const std::vector<std::string> names{"sensitivity",
+                                                "nodules",
+                                                "ppv",
+                                                "primary",
+                                                "pairs",
+                                                "ppv_pairs",
+                                                "choice_pairs",
+                                                "groups",
+                                                "pairs_ignoring_clustering",
+                                                "pairs_replication",
+                                                "ppv_pairs_replication",
+                                                "trials",
+                                                "choices",
+                                                "psychometric",
+                                                "psychometric_pairs",
+                                                "psychometric_answers",
+                                                "staircases",
+                                                "ratings",
+                                                "plan",
+                                                "plan_participants",
+                                                "exclusions"};
+    return names;
+}
+
 std::string tsv_text(const ReportTable& table) {
     std::string out;
     append_row(table.columns, "", "\t", "\n", out);
@@ -182,10 +207,13 @@ std::string report_markdown(const Report& report) {
     std::string out = report.simulated ? "# Report on SIMULATED participants\n" : "# Report\n";
     const std::string level = files::short_number(100.0 * report.options.bootstrap.level) + " %";
     if (report.simulated) out += "\nNo person took part: hands and eyes were simulated by `palpa study simulate`.\n";
-    const bool none_counts = report.choices.empty() && report.practice_trials + report.interrupted_trials > 0;
-    if (report.trials > 0 || none_counts) {
-        out += "\n" + whole(report.participants) + " participants, " + whole(report.trials) + " finished tests, " +
-               whole(report.practice_trials) + " practice trials (not in the tables), " +
+    const std::int64_t tests = report.trials + report.forced_choices;
+    if (tests + report.practice_trials + report.interrupted_trials > 0) {
+        out += "\n" + whole(report.participants) + " participants, " + whole(tests) + " finished tests" +
+               (report.trials > 0 && report.forced_choices > 0
+                    ? " (" + whole(report.trials) + " of nodules, " + whole(report.forced_choices) + " forced choices)"
+                    : "") +
+               ", " + whole(report.practice_trials) + " practice trials (not in the tables), " +
                whole(report.interrupted_trials) + " interrupted trials (not in the tables).\n";
     }
     out += plan_summary(report);

@@ -9,6 +9,7 @@
 #include "files/table.h"
 #include "files/text.h"
 #include "study/count.h"
+#include "study/names.h"
 #include "study/run_log.h"
 #include "study/score.h"
 
@@ -61,8 +62,12 @@ RunSettings read_run_settings(const std::filesystem::path& file) {
         if (study->has("participant_number")) out.number = study->integer("participant_number", 1, kMostPeople);
     }
     out.typed = json.has("answers");
+    std::set<std::string> ids;
     for (files::JsonReader& nodule : json.objects("nodules")) {
         out.nodules.push_back({nodule.text("id"), nodule.number("diameter_mm", files::kNotNegative, 0.0)});
+        const std::string& id = out.nodules.back().id;
+        if (!is_name(id)) nodule.fail("id", files::shown(id), kNameRule);
+        if (!ids.insert(id).second) nodule.fail("id", files::shown(id) + " a second time", "each nodule once");
     }
     return out;
 }

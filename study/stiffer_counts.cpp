@@ -14,6 +14,7 @@
 #include "study/name_index.h"
 #include "study/names.h"
 #include "study/psychometric.h"
+#include "study/table_names.h"
 
 namespace palpa::study {
 namespace {
@@ -59,15 +60,14 @@ Observations read_stiffer_counts(files::Table& table) {
     std::map<std::tuple<int, int, double, double>, std::size_t> first_line;
     std::map<int, std::array<std::size_t, 2>> lines;  // by condition: the last that names nobody, and somebody
     while (table.next()) {
-        check_condition_name(table, condition);
         StifferAnswers row;
-        row.condition = conditions.of(table.field(condition));
+        row.condition = conditions.of(name_in(table, condition));
         if (has_people && !table.field(participant).empty() && table.field(participant) != "n/a") {
             if (!is_name(table.field(participant)))
                 table.fail(participant, std::string(kNameRule) + ", or n/a if it is not given");
             if (names_a_sum(table.field(participant)))
-                table.fail(participant, "one participant, or n/a in a row for all of them");
-            row.participant = participants.of(table.field(participant));
+                table.fail(participant, "one name, or n/a in a row for all of them");
+            row.participant = participants.of(name_in(table, participant));
         }
         row.axis = StiffnessAxis::comparison_reference;
         const double reference_kPa = stiffness_kPa(table, reference);
@@ -94,6 +94,7 @@ Observations read_stiffer_counts(files::Table& table) {
         out.stiffer.push_back(row);
     }
     if (out.stiffer.empty()) throw files::bad_input(table.file(), "", "no rows", "one row of counts at least");
+    refuse_sum(table, out.conditions);
     check_levels(table, out);
     return out;
 }

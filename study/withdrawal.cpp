@@ -2,6 +2,9 @@
 
 #include <cassert>
 
+#include "files/input_error.h"
+#include "files/text.h"
+
 namespace palpa::study {
 namespace {
 
@@ -17,6 +20,10 @@ Withdrawal withdrawal_of(const std::filesystem::path& directory, const std::stri
     Withdrawal last = Withdrawal::none;
     for (const Rating& answer : read_ratings(directory, code, notes)) {
         if (answer.condition != "n/a" || answer.item != kWithdrawalItem) continue;
+        if (answer.value != kTakesData && answer.value != kKeepsData) {
+            throw files::bad_input(ratings_file(directory, code).string(), kWithdrawalItem, files::shown(answer.value),
+                                   files::shown(kKeepsData) + " or " + files::shown(kTakesData));
+        }
         last = answer.value == kTakesData ? Withdrawal::takes_data : Withdrawal::keeps_data;
     }
     return last;

@@ -212,10 +212,6 @@ void check(const CheckArguments& arguments) {
     if (clamped > 0)
         warnings.push_back(std::to_string(clamped) + " of " + std::to_string(n) +
                            " levels are outside the profile's range and taken at its end");
-    if (std::isnan(median))
-        warnings.push_back(
-            "no point has a force, and a level above 0: nothing can be said of the profile (is the sensor "
-            "connected?)");
     if (median > 0.1)
         warnings.push_back("the profile is off by " + files::short_number(100.0 * median) +
                            " % of the force (median): recalibrate this device");
@@ -232,9 +228,9 @@ void check(const CheckArguments& arguments) {
         std::fputs(files::json_text(json).c_str(), stdout);
         return;
     }
-    const std::string off = std::isnan(median) ? "n/a" : files::short_number(100.0 * median) + " %";
-    std::printf("%s on %lld points: off by %s of the force (median), RMSE %s N\n", profile.id.c_str(),
-                static_cast<long long>(n), off.c_str(), files::short_number(quality.rmse_N).c_str());
+    std::printf("%s on %lld points: off by %s %% of the force (median), RMSE %s N\n", profile.id.c_str(),
+                static_cast<long long>(n), files::short_number(100.0 * median).c_str(),
+                files::short_number(quality.rmse_N).c_str());
     figures::print_bands(bands, "these points");
     for (const std::string& warning : warnings) std::fprintf(stderr, "palpa: warning: %s\n", warning.c_str());
 }

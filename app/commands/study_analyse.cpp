@@ -26,10 +26,52 @@ struct AnalyseOptions {
     bool json = false;
 };
 
+bool is_folder_of_logs(const fs::path& folder) {
+    if (fs::exists(folder / "study.json") || fs::exists(folder / "participants.tsv")) return true;
+    std::error_code none;
+    for (const auto& entry : fs::directory_iterator(folder, none)) {
+        if (entry.path().filename().string().rfind("sub-", 0) == 0) return true;
+    }
+    return false;
+}
+
+// A report has tables of the same names as a study (exclusions.tsv), which it would overwrite.
+void refuse_folder_of_logs(const std::string& output) {
+    const fs::path folder = fs::weakly_canonical(output);
+    fs::path inner;
+    for (fs::path outer = folder; outer != inner; outer = outer.parent_path()) {
+        const bool of_participant = inner.filename().string().rfind("sub-", 0) == 0;
+        if ((outer == folder || of_participant) && is_folder_of_logs(outer))
+            throw files::bad_input(output, "", "a folder of logs (" + outer.string() + ")",
+                                   "another folder for the report, such as " + (outer / "report").string());
+        inner = outer;
+    }
+}
+
+// The tables and figures that a report may have.
+std::vector<std::string> result_names() {
+    std::vector<std::string> names{"figures.gp", "psychometric.gp"};
+    for (const std::string& table : study::table_names()) names.push_back(table + ".tsv");
+    for (const char* figure : {"sensitivity", "nodules", "ppv", "psychometric"}) {
+        for (const char* kind : {".svg", ".pdf", ".png"}) names.push_back(std::string(figure) + kind);
+    }
+    return names;
+}
+
+// Removes what an earlier report has left in its folder, since not every report has all tables and figures.
+void remove_earlier_report(const fs::path& folder) {
+    if (!fs::exists(folder / "report.json")) return;
+    std::error_code ignored;
+    for (const std::string& name : result_names()) {
+        if (fs::is_regular_file(fs::symlink_status(folder / name))) fs::remove(folder / name, ignored);
+    }
+}
+
 void write_report(const study::Report& report, const fs::path& folder) {
     std::error_code error;
     fs::create_directories(folder, error);
     if (error) throw std::runtime_error(folder.string() + ": cannot be made: " + error.message());
+    remove_earlier_report(folder);
     for (const study::ReportTable& table : study::report_tables(report)) {
         files::write_text_atomically(folder / (table.name + ".tsv"), study::tsv_text(table));
     }
@@ -41,25 +83,23 @@ void write_report(const study::Report& report, const fs::path& folder) {
     }
 }
 
-std::vector<std::string> names_of(const study::Report& report) {
-    std::vector<std::string> names{"report.md",   "report.json", "figures.gp",
-                                   "figures.png", "figures.svg", "figures.pdf"};
-    for (const char* kind : {"gp", "png", "svg", "pdf"}) names.push_back(std::string("psychometric.") + kind);
-    for (const study::ReportTable& table : study::report_tables(report)) names.push_back(table.name + ".tsv");
-    return names;
-}
-
 study::Observations read_observations(const std::string& input) {
     if (!fs::exists(input)) throw files::bad_input(input, "", "nothing", "a folder of logs or a table COUNTS.tsv");
     return fs::is_directory(input) ? study::read_study(input) : study::read_counts(input);
 }
 
 void analyse(const AnalyseOptions& options) {
-    if (!options.output.empty()) files::check_output_folder(options.output);
+    if (!options.output.empty()) {
+        files::check_output_folder(options.output);
+        refuse_folder_of_logs(options.output);
+    }
     const study::Report report = study::make_report(read_observations(options.input), options.report);
     // the logs of a study have fixed names; a table of counts may have any name
-    if (!options.output.empty() && !fs::is_directory(options.input))
-        files::check_output_folder(options.output, {options.input}, names_of(report));
+    if (!options.output.empty() && !fs::is_directory(options.input)) {
+        std::vector<std::string> names = result_names();
+        names.insert(names.end(), {"report.md", "report.json"});
+        files::check_output_folder(options.output, {options.input}, names);
+    }
     if (!options.output.empty()) write_report(report, options.output);
     const std::string text =
         options.json ? files::json_text(study::report_json(report)) : study::report_markdown(report);

@@ -49,6 +49,7 @@ TEST_CASE("bundle: names of logs and no others") {
     }
     CHECK(kind_of_log_file("sub-01/beh/sub-01_task-ratings_beh.tsv") == LogFileKind::trial);
     CHECK_FALSE(kind_of_log_file("sub-01/beh/sub-02_task-ratings_beh.tsv").has_value());
+    CHECK_FALSE(kind_of_log_file("sub-NA/beh/sub-NA_task-ratings_beh.tsv").has_value());
     CHECK_FALSE(kind_of_log_file("sub-01/beh/sub-01_task-ratings_beh.tsv/").has_value());
     CHECK_FALSE(kind_of_log_file("sub-01/now.json").has_value());
     CHECK(kind_of_log_file("study.json") == LogFileKind::identity);

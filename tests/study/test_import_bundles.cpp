@@ -64,11 +64,11 @@ TEST_CASE("import bundles: tablets' logs become one study; a second time nothing
     const auto a = write_bundle(folder / "a", {{run_file("01", "_events.tsv"), "e1\n"},
                                                {run_file("01", "_samples.tsv"), "s1\n"},
                                                {"participants.tsv", people(kAnna)},
-                                               {"study.json", study_file(kProtocolSha256, "tablet")},
+                                               {"study.json", study_file(sha256_hex("{}"), "tablet")},
                                                {"protocol.json", "{}"}});
     const auto b = write_bundle(folder / "b", {{run_file("02", "_events.tsv"), "e2\n"},
                                                {"participants.tsv", people(kBert)},
-                                               {"study.json", study_file(kProtocolSha256, "another tablet")},
+                                               {"study.json", study_file(sha256_hex("{}"), "another tablet")},
                                                {"protocol.json", "{}"}});
     const BundleReport first = import_bundles({a, b}, folder / "study");
     CHECK(first.written.size() == 5);
@@ -79,7 +79,7 @@ TEST_CASE("import bundles: tablets' logs become one study; a second time nothing
     CHECK(made.at(run_file("01", "_samples.tsv")) == "s1\n");
     CHECK(made.at(run_file("02", "_events.tsv")) == "e2\n");
     CHECK(made.at("participants.tsv") == people(kAnna + kBert));
-    CHECK(made.at("study.json") == study_file(kProtocolSha256, "tablet"));
+    CHECK(made.at("study.json") == study_file(sha256_hex("{}"), "tablet"));
     CHECK(made.count("task-palpation_events.json") == 1);
     const BundleReport again = import_bundles({b, a}, folder / "study");
     CHECK(again.written.empty());
@@ -112,6 +112,7 @@ TEST_CASE("import bundles: what does not fit is refused before anything is writt
     refused({{"participants.tsv", people("sub-../x\t1\tf\tright\tn/a\tn/a\tn/a\ta\n")}}, "letters and digits");
     refused({{"study.json", study_file("bb", "x")}}, "two studies never share a folder");
     refused({{"study.json", "{}"}}, "study.json: protocol: found nothing");
+    refused({{"protocol.json", "{}"}}, "as in study.json: another protocol");
     refused({{"../evil", "x"}}, "files[1].name");
     const auto twice = write_bundle(folder / "twice", {{fresh, "another fresh\n"}});
     const auto once = write_bundle(folder / "once", {{fresh, "fresh\n"}});

@@ -77,7 +77,6 @@ TEST_CASE("observations: what is counted twice, and names that tables take for a
     CHECK(contains(refusal_of_counts(head + "pen\tp1\tA\t1\t0\t0\npen\tn/a\tA\t3\t1\t0\n"),
                    "line 3, participant: found 'n/a'"));
     CHECK(contains(refusal_of_counts(head + "pen\tp1\ttotal\t1\t0\t0\n"), "line 2, nodule: found 'total'"));
-    CHECK(contains(refusal_of_counts(head + "Total\tp1\tA\t1\t0\t0\n"), "line 2, condition: found 'Total'"));
     CHECK(contains(refusal_of_counts(head + "pen\tall\tA\t1\t0\t0\n"), "line 2, participant: found 'all'"));
     CHECK(refusal_of_counts(head + "pen\tp1\tA\t1\t0\tn/a\npen\tp1\tn/a\t0\t0\t2\nhand\tp1\tn/a\t3\t1\t0\n").empty());
     const std::string choices = "condition\tparticipant\tcomparison\tcorrect\tn\n";
@@ -85,6 +84,13 @@ TEST_CASE("observations: what is counted twice, and names that tables take for a
                    "line 3, comparison: found 'n/a'"));
     CHECK(contains(refusal_of_counts(choices + "on\tp1\t2 kPa\t1\t2\non\tn/a\t2 kPa\t1\t2\n"),
                    "line 3, participant: found 'n/a'"));
+    const std::string totals = "condition\ttp\tfn\tfp\n";
+    CHECK(contains(refusal_of_counts(totals + "pen\t1\t0\t0\nhand\t2\t0\t0\nTotal\t3\t0\t0\n"),
+                   "condition: found 'Total' beside other conditions"));
+    CHECK(refusal_of_counts(totals + "all\t3\t0\t0\n").empty());
+    CHECK(contains(refusal_of_counts(totals + "pen\t1\t0\t0\npen \t2\t0\t0\n"),
+                   "line 3, condition: found 'pen ', expected a name without a space at its ends"));
+    CHECK(contains(refusal_of_counts(head + "pen\tp1\xC2\xA0\tA\t1\t0\t0\n"), "line 2, participant: found '"));
     for (const char* name : {"NA", "null", "nan", "\"p1\""}) {
         CAPTURE(name);
         CHECK(contains(refusal_of_counts(head + "pen\t" + name + "\tA\t1\t0\t0\n"), "line 2, participant: found '"));

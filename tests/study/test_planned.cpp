@@ -50,6 +50,33 @@ TEST_CASE("planned: trials that are not what the plan says are named once for a 
           "sub-01: trial 2 is 'b' (test) in the log, 'a' (test) in the plan of number 1; 1 more such trials");
 }
 
+TEST_CASE("planned: a seed that is not the plan's is named, and a comparison that is planned twice is no other pair") {
+    const TemporaryFolder folder;
+    const Protocol protocol = two_conditions(folder);
+    const PlannedParticipant plan = plan_participant(protocol, 1);
+    std::vector<std::string> notes;
+    Logged own{2, 0, false, true}, other{3, 0, false, true};
+    own.seed = plan.trials[1].seed;
+    other.seed = plan_participant(protocol, 2).trials[2].seed;
+    compare_with_plan(protocol, plan, "01", {own, other, other}, notes);
+    REQUIRE(notes.size() == 1);
+    CHECK(contains(notes[0], "sub-01: trial 3 has the seed " + std::to_string(other.seed) + " in the log"));
+    CHECK(contains(notes[0], "; 1 more such trials"));
+    write_text_atomically(folder / "c.json", R"({"name": "n", "version": "1", "seed": 3, "order": "fixed",
+        "conditions": [{"id": "a", "modality": "hand"}],
+        "choice": {"reference_kPa": 2, "comparisons_kPa": [3, 3], "repeats": 2}})");
+    const Protocol twice = read_protocol(folder / "c.json");
+    std::vector<Logged> choices;
+    for (const PlannedTrial& trial : plan_participant(twice, 1).trials) {
+        choices.push_back({trial.trial, 0, false, true});
+        choices.back().comparison = 0;
+        choices.back().reference_first = trial.reference_first;
+    }
+    notes.clear();
+    compare_with_plan(twice, plan_participant(twice, 1), "01", choices, notes);
+    CHECK(notes.empty());
+}
+
 TEST_CASE("planned: a seed tells whose plan a trial is of") {
     const TemporaryFolder folder;
     const Protocol protocol = two_conditions(folder);

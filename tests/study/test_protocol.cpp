@@ -56,6 +56,8 @@ TEST_CASE("protocol: forced choices may keep the reference under one condition")
     CHECK(read_protocol(folder / "p.json").choice.reference_on == 1u);
     write_text_atomically(folder / "q.json", with(two, choice + "}"));
     CHECK_FALSE(read_protocol(folder / "q.json").choice.reference_on);
+    write_text_atomically(folder / "r.json", with(two, choice + R"(, "alternate_conditions": true})"));
+    CHECK(read_protocol(folder / "r.json").trial_order == TrialOrder::interleaved);
 }
 
 TEST_CASE("protocol: what is wrong is named with its key") {

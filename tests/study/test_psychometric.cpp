@@ -189,6 +189,19 @@ TEST_CASE("psychometric: both limits have the likelihood that their level asks f
     }
 }
 
+TEST_CASE("psychometric: a limit of the PSE at a level is there, where steps on its way are likely enough") {
+    // the shares 1/8 at ln(18/20) and 1/2 at ln(19/20) let the PSE be anywhere between these levels, by a step; at
+    // ln(18/20) the profile jumps, as a grid of sd and lapse shows
+    std::vector<LevelAnswers> levels;
+    const double kPa[] = {10, 13, 16, 18, 19, 21, 23, 26, 32, 40};
+    const std::int64_t stiffer[] = {1, 1, 1, 1, 1, 7, 8, 8, 7, 6}, n[] = {2, 10, 9, 8, 2, 8, 8, 8, 8, 6};
+    for (std::size_t i = 0; i < std::size(kPa); ++i) levels.push_back({std::log(kPa[i] / 20.0), stiffer[i], n[i]});
+    const PsychometricFit fit = fit_psychometric(levels, {0.95, 0.1});
+    REQUIRE(fit.pse_ci.closed());
+    CHECK(std::abs(*fit.pse_ci.low - std::log(18.0 / 20.0)) < 1e-6);
+    CHECK(std::abs(*fit.pse_ci.high - std::log(21.0 / 20.0)) < 1e-6);
+}
+
 TEST_CASE("psychometric: the curve, its lapse and the just noticeable difference") {
     const PsychometricCurve curve{0.1, 0.3, 0.04};
     CHECK(probability_stiffer(0.1, curve) == doctest::Approx(0.5));

@@ -10,6 +10,7 @@
 #include "study/report.h"
 #include "study/study_folder.h"
 #include "study/trial_log.h"
+#include "study/withdrawal.h"
 #include "tests/error_message.h"
 #include "tests/temporary_folder.h"
 
@@ -261,4 +262,72 @@ TEST_CASE("read logs: another protocol's trials are refused, also without study.
     REFUSED(find_study, "study", forge(log / settings, R"("study")", R"("other")"));
     REFUSED(find_study, "protocol.json", forge(log / "protocol.json", "fixed", "latin"));
     NAMED(find_study, "protocol.json", fs::remove(log / "protocol.json"));
+}
+
+TEST_CASE("read logs: a participant's line that cannot be read is named") {
+    REFUSED(find_study, "line 3 is left out: it was cut off after", {
+        const std::string people = read_text(log / "participants.tsv");
+        write_text_atomically(log / "participants.tsv", people.substr(0, people.size() - 1));
+    });
+    REFUSED(find_study, "line 2 is left out: '\"sub-01\"", forge(log / "participants.tsv", "sub-01", "\"sub-01\""));
+}
+
+TEST_CASE("read logs: a missing study.json is named") {
+    NAMED(find_study, "study.json: is not there", fs::remove(log / "study.json"));
+    NAMED(choice_study, "study.json: is not there", fs::remove(log / "study.json"));
+}
+
+TEST_CASE("read logs: answers and trials that belong to somebody else are named by their seeds") {
+    NAMED(choice_study, "sub-01: trial 12 has the seed 12 in the log",
+          forge_last(log / "sub-01/beh/sub-01_task-softer_run-01_events.tsv", "seed", "12"));
+    NAMED(find_study, "sub-01: trial 1 has the seed 12 in the log",
+          forge_last(log / (std::string(kStem01) + "_events.tsv"), "seed", "12"));
+}
+
+TEST_CASE("read logs: nodules that a trial's condition does not have are named, names that are none refused") {
+    const std::string settings = std::string(kStem01) + "_settings.json";
+    NAMED(find_study, "the nodules are A, C, but A, B in",
+          { forge(log / "sub-02/beh/sub-02_task-palpation_run-01_settings.json", R"("id": "B")", R"("id": "C")"); });
+    REFUSED(find_study, "found 'NA', expected a name", forge(log / settings, R"("id": "B")", R"("id": "NA")"));
+    REFUSED(find_study, "found 'A' a second time", forge(log / settings, R"("id": "B")", R"("id": "A")"));
+}
+
+TEST_CASE("read logs: a group that is not the plan's is refused") {
+    const auto two_groups = [](const fs::path& log) {
+        const Protocol protocol = protocol_in(log.parent_path() / "p.json", R"(, "groups": [
+            {"id": "I", "conditions": ["a", "b"]}, {"id": "II", "conditions": ["b", "a"]}])");
+        open_study(log, protocol, {});
+        for (const int number : {1, 2}) {
+            const std::string code = "0" + std::to_string(number);
+            add_people(log, {Person{code, "n/a", "n/a", "n/a", "n/a", "n/a", "n/a", number == 1 ? "I" : "II"}});
+            for (const PlannedTrial& trial : plan_participant(protocol, number).trials)
+                write_trial(log, code, protocol, trial, 30.0 + number);
+        }
+        return protocol;
+    };
+    for (const char* group : {"II", "III", "n/a"}) {
+        CAPTURE(group);
+        REFUSED(two_groups, "participants.tsv: sub-01, group: found",
+                forge(log / "participants.tsv", "\tI\n", "\t" + std::string(group) + "\n"));
+    }
+}
+
+TEST_CASE("read logs: tests of a participant who withdrew the data are told apart from excluded ones") {
+    const TemporaryFolder folder;
+    find_study(folder / "log");
+    withdraw(folder / "log", "01", Withdrawal::takes_data);
+    const Report report = make_report(read_study(folder / "log"), {});
+    CHECK(report.excluded_trials == 2);
+    CHECK(report.withdrawn_trials == 2);
+    const std::string text = report_markdown(report);
+    CHECK(contains(text, "2 finished tests are left out because their participants withdrew the data"));
+    CHECK_FALSE(contains(text, "by the experimenter's decision"));
+}
+
+TEST_CASE("read logs: the report counts finished tests of all tasks") {
+    const TemporaryFolder folder;
+    choice_study(folder / "log");
+    const Report report = make_report(read_study(folder / "log"), {});
+    CHECK(report.forced_choices == 24);
+    CHECK(contains(report_markdown(report), "2 participants, 24 finished tests, 0 practice trials"));
 }

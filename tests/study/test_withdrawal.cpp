@@ -1,8 +1,11 @@
 #include <doctest/doctest.h>
 
+#include "files/text.h"
 #include "study/withdrawal.h"
+#include "tests/error_message.h"
 #include "tests/temporary_folder.h"
 
+using namespace palpa::files;
 using namespace palpa::study;
 using namespace palpa::test;
 
@@ -16,4 +19,24 @@ TEST_CASE("withdrawal: it is kept with the answers, and the last one holds") {
     withdraw(folder.path(), "07", Withdrawal::takes_data);
     CHECK(withdrawal_of(folder.path(), "07") == Withdrawal::takes_data);
     CHECK(withdrawal_of(folder.path(), "08") == Withdrawal::none);
+}
+
+TEST_CASE("withdrawal: a table that a spreadsheet saved says the same, and any other word is refused") {
+    const TemporaryFolder folder;
+    withdraw(folder.path(), "07", Withdrawal::takes_data);
+    const auto file = ratings_file(folder.path(), "07");
+    write_text_atomically(file,
+                          "\xEF\xBB\xBF"
+                          "condition\titem\tvalue\r\nn/a\twithdrawal\tdata must not be used\r\n");
+    CHECK(withdrawal_of(folder.path(), "07") == Withdrawal::takes_data);
+    std::vector<std::string> notes;
+    CHECK(takes_data(folder.path(), "07", notes));
+    REQUIRE(notes.size() == 1);
+    CHECK(contains(notes[0], "left out"));
+    write_text_atomically(file, "n/a\twithdrawal\tdata must not be used\n");  // without its header
+    CHECK(withdrawal_of(folder.path(), "07") == Withdrawal::takes_data);
+    write_text_atomically(file, "condition\titem\tvalue\nn/a\twithdrawal\tData must not be used\n");
+    CHECK(
+        contains(message_of([&] { withdrawal_of(folder.path(), "07"); }),
+                 "withdrawal: found 'Data must not be used', expected 'data may be used' or 'data must not be used'"));
 }

@@ -177,13 +177,3 @@ TEST_CASE("bench pens: auto predicts left-out points of 94 real sessions within 
     CHECK(curves[0]["median_firm"].get<double>() == doctest::Approx(0.05).epsilon(0.03));
     CHECK(curves[5]["median_light"].get<double>() == doctest::Approx(0.027).epsilon(0.05));
 }
-
-TEST_CASE("calibrate check: points without force say nothing of a profile, and it says so") {
-    const TemporaryFolder folder;
-    const std::string data = (folder / "d.csv").string();
-    write_text_atomically(data, "level,force_N\n0.2,0\n0.5,0\n1,0\n");
-    const Called check = calibrate("check " PALPA_SOURCE_DIR "/assets/profiles/s-pen.json " + data);
-    CHECK(check.status == 0);
-    CHECK(contains(check.out, "off by n/a of the force"));
-    CHECK(contains(check.err, "nothing can be said of the profile"));
-}

@@ -18,6 +18,8 @@ using namespace palpa::test;
 
 namespace {
 
+namespace fs = std::filesystem;
+
 const std::string kCounts = PALPA_SOURCE_DIR "/assets/counts/paper.tsv";
 
 Called study(const std::string& arguments) { return shell("timeout 120 " PALPA_PROGRAM " study " + arguments); }
@@ -478,6 +480,47 @@ TEST_CASE("command study exclude, replace: decisions are written, reported and r
     CHECK(json["replacements"][0]["replaced_by"] == "x1");
     CHECK(contains(read_text(folder / "report/plan_participants.tsv"), "sim0001\tall\t"));
     CHECK(contains(read_text(folder / "report/exclusions.tsv"), "sim0002\tall\tdropped out, replaced by x1: left"));
+    // into the study's own folder the report's table of exclusions would replace the experimenter's
+    const std::string decided = read_text(folder / "log/exclusions.tsv");
+    for (const std::string& into : {log, log + "/.", log + "/sub-sim0001", log + "/sub-sim0001/beh"})
+        refused("analyse " + log + " -o " + into, "a folder of logs");
+    CHECK(read_text(folder / "log/exclusions.tsv") == decided);
+    CHECK(study("analyse " + log + " -o " + log + "/report").status == 0);
+    refused("exclude " + log + " --participant sim0001 --trial 1 --reason ' '", "why, in words");
+}
+
+TEST_CASE("command study analyse: nothing of an earlier report is left in its folder, and nothing else goes") {
+    const TemporaryFolder folder;
+    const std::string report = (folder / "report").string();
+    write_text_atomically(folder / "choices", "condition\tcorrect\tn\tparticipant\npen\t3\t4\tp\npen\t2\t4\tq\n");
+    write_text_atomically(folder / "finds", "condition\ttp\tfn\tfp\npen\t3\t1\t0\n");
+    REQUIRE(study("analyse " + (folder / "choices").string() + " -o " + report).status == 0);
+    CHECK(fs::exists(folder / "report/choices.tsv"));
+    write_text_atomically(folder / "report/thesis.tsv", "mine");
+    REQUIRE(study("analyse " + (folder / "finds").string() + " -o " + report).status == 0);
+    CHECK_FALSE(fs::exists(folder / "report/choices.tsv"));
+    CHECK(fs::exists(folder / "report/sensitivity.tsv"));
+    CHECK(fs::exists(folder / "report/thesis.tsv"));
+}
+
+TEST_CASE("command study: a map whose nodules have names that tables cannot hold is refused before anybody begins") {
+    const TemporaryFolder folder;
+    fs::copy(PALPA_SOURCE_DIR "/assets/maps/silicone.map", folder / "s.map", fs::copy_options::recursive);
+    write_text_atomically(folder / "s.json",
+                          R"({"name": "s", "tissue": {"map": "s.map"}, "profile": "s-pen.json",
+                              "mapping": {"kind": "direct", "tissue_mm": [120, 120]}})");
+    write_text_atomically(folder / "p.json", R"({"name": "n", "version": "1", "seed": 1, "order": "fixed",
+        "time_limit_s": 1, "conditions": [{"id": "pen", "modality": "pen", "scene": "s.json"}]})");
+    const std::string map = read_text(folder / "s.map/map.json");
+    for (const char* name : {R"(NA)", R"(a\tb)", R"(B)"}) {
+        CAPTURE(name);
+        std::string other = map;
+        write_text_atomically(folder / "s.map/map.json",
+                              other.replace(other.find(R"("A")"), 3, "\"" + std::string(name) + "\""));
+        refused("simulate " + (folder / "p.json").string() + " --participants 1 -o " + (folder / "log").string(),
+                "nodules of the map: id: found '");
+        CHECK_FALSE(fs::exists(folder / "log/study.json"));
+    }
 }
 
 TEST_CASE("command study: a map whose nodules the logs could not tell apart is refused before anything is recorded") {
