@@ -75,7 +75,6 @@ class Plan {
     void add(const BundleFile& file, const std::string& from) {
         if (file.kind == LogFileKind::people) return add_people_of(file, from);
         if (file.kind == LogFileKind::identity) return add_identity(file, from);
-        if (file.name == "protocol.json") protocol_ = {file.sha256, from};
         if (grows(file.name)) return add_answers(file, from);
         if (file.name == "protocol.json") protocols_.emplace(file.sha256, from);
         const auto [it, fresh] = first_.emplace(file.name, std::pair(file.sha256, from));
@@ -106,13 +105,6 @@ class Plan {
     }
 
     bool is_study() const { return identity_.has_value(); }
-
-    // To be called once all bundles are added.
-    void check_protocol() const {
-        if (!identity_ || protocol_.sha256.empty() || protocol_.sha256 == identity_->sha256) return;
-        throw files::bad_input(protocol_.from, "protocol.json", "sha256 " + protocol_.sha256.substr(0, 12),
-                               identity_->sha256.substr(0, 12) + " as in study.json: another protocol");
-    }
 
     // The longest version of a file that grows, if it is longer than the folder's.
     struct Answers {
@@ -236,9 +228,6 @@ class Plan {
     std::map<std::string, std::string> protocols_;  // hash to the bundle that it came from
     std::map<std::string, Person> known_;
     std::optional<StudyIdentity> identity_;
-    struct {
-        std::string sha256, from;
-    } protocol_;  // of the last bundle that has one; all are the same
     bool logs_without_identity_ = false;
 };
 
@@ -303,7 +292,6 @@ BundleReport import_bundles(const std::vector<fs::path>& bundles, const fs::path
     }
     plan.check_protocol();
     plan.settle_answers();
-    plan.check_protocol();
     fs::create_directories(directory);
     if (!lock) lock.emplace(directory, kOtherWriter);
     NewFiles written(directory);

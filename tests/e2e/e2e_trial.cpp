@@ -118,7 +118,7 @@ class Script {
 void by_pen(Script& script) {
     script.tap("pen", 0, kMenu);
     script.tap("pen", 0, kDelayScene);
-    script.wait(2.5);                    // the scene is read anew
+    script.wait(2.5);  // the scene is read anew
     script.stroke("pen", 0, 35, 35);
     script.lift("pen", 0, 35, 35);
     script.tap("pen", 0, kMark);

@@ -27,7 +27,8 @@ TEST_CASE("sample log: header, rows and explanation agree; missing is n/a") {
     CHECK(
         text ==
         "t_host_s\tt_device_s\ttrial\tpointer_id\ttool\tphase\tx_mm\ty_mm\tpressure\tforce_N\tdepth_mm\ttangential_N\t"
-        "avatar_x_mm\tavatar_y_mm\tlag_mm\tdelay_ms\ttexture_mm\tsaturated\tft_source\tfootprint_mm\tcrease\tdrawn_depth_mm\n"
+        "avatar_x_mm\tavatar_y_mm\tlag_mm\tdelay_ms\ttexture_mm\tsaturated\tft_source\tfootprint_mm\tcrease\tdrawn_"
+        "depth_mm\n"
         "0.1\tn/a\t1\t0\tpen\tn/a\tn/a\tn/a\tn/a\tn/a\tn/a\tn/a\tn/a\tn/a\tn/a\tn/a\tn/a\t1\tn/a\tn/a\tn/a\tn/a\n");
     const Json json = read_json(files.file("_samples.json"));
     CHECK(json.size() == 22);

@@ -12,8 +12,7 @@ inline double linear_channel(double value) {
 
 // Relative luminance of a colour of 8 bits a channel.
 inline double luminance(int r, int g, int b) {
-    return 0.2126 * linear_channel(r / 255.0) + 0.7152 * linear_channel(g / 255.0) +
-           0.0722 * linear_channel(b / 255.0);
+    return 0.2126 * linear_channel(r / 255.0) + 0.7152 * linear_channel(g / 255.0) + 0.0722 * linear_channel(b / 255.0);
 }
 
 // Contrast of two relative luminances, 1 to 21.
