@@ -147,8 +147,9 @@ void by_two_fingers(Script& script) {
 // From the middle of the tissue to nodule A; speed 30 mm/s.
 void by_keyboard(Script& script) {
     script.key(kF10);  // the menu: another scene by arrows and Enter
-    script.wait(0.3);
-    script.key(kUp);  // from the chosen "Silicone phantom, delay" to "Silicone phantom"
+    script.wait(1.5);  // a slow machine needs some frames to show it
+    script.key(kUp);   // from the chosen "Silicone phantom, delay" to "Silicone phantom"
+    script.wait(0.5);
     script.key(kEnter);
     script.wait(2.5);  // the scene is read anew
     script.key(kLeft, 25.0 / 30.0);
