@@ -518,7 +518,7 @@ TEST_CASE("command study: a map whose nodules have names that tables cannot hold
         write_text_atomically(folder / "s.map/map.json",
                               other.replace(other.find(R"("A")"), 3, "\"" + std::string(name) + "\""));
         refused("simulate " + (folder / "p.json").string() + " --participants 1 -o " + (folder / "log").string(),
-                "nodules of the map: id: found '");
+                "s.json: nodules: found '");
         CHECK_FALSE(fs::exists(folder / "log/study.json"));
     }
 }

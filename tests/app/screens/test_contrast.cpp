@@ -137,16 +137,20 @@ struct Pictures {
         constexpr double kLeastShare = 0.2;
         int bad = 0;
         double worst = 1.0;
-        ImVec2 where(0.0f, 0.0f);
+        ImVec2 where(0.0f, 0.0f), upto(0.0f, 0.0f);
+        ImU32 colour = 0;
         for (const Letter& letter : text) {
             const double share = readable_share(letter, rgb);
-            if (share < worst) where = letter.low;
+            if (share < worst) where = letter.low, upto = letter.high, colour = letter.colour;
             worst = std::min(worst, share);
             bad += share < kLeastShare;
         }
         CAPTURE(worst);
         CAPTURE(where.x);
         CAPTURE(where.y);
+        CAPTURE(upto.x);
+        CAPTURE(upto.y);
+        CAPTURE(colour);
         CHECK(bad == 0);
     }
 };
