@@ -119,8 +119,9 @@ void draw_depth(const Shown& shown, const Section& section, double depth_m, floa
     draw.AddLine(top, low, kInk, 0.4f * mm);
     draw.AddLine(ImVec2(section.at(0.0, 0.0).x, low.y), ImVec2(low.x + mm, low.y), kInk, 0.2f * mm);
     const std::string beyond = shown.state.contact.saturated ? "> " : "";
-    plated_text(draw, ImVec2(low.x + mm, 0.5f * (top.y + low.y - ImGui::GetFontSize())), kInk,
-                beyond + fixed(1e3 * depth_m, 1) + " mm");
+    const std::string text = beyond + fixed(1e3 * depth_m, 1) + " mm";
+    const float last_px = section.corner.x + section.size_px.x - ImGui::CalcTextSize(text.c_str()).x - mm;
+    plated_text(draw, ImVec2(std::min(low.x + mm, last_px), 0.5f * (top.y + low.y - ImGui::GetFontSize())), kInk, text);
 }
 
 }  // namespace
@@ -139,7 +140,7 @@ void draw_side_view(const Shown& shown, const Gui& gui) {
     draw_tissue(section, sinks_of(shown), shown.scene.surface->material, mm, draw);
     draw_tip(shown, section, depth_m, draw);
     draw_depth(shown, section, depth_m, mm, draw);
-    draw.AddText(ImVec2(section.corner.x + mm, section.corner.y + 0.6f * mm), kInk, words::kSideView);
+    rimmed_text(draw, ImVec2(section.corner.x + mm, end.y - ImGui::GetFontSize() - 0.6f * mm), kInk, words::kSideView);
     draw.AddRect(section.corner, end, kPale, 0.0f, 0, 0.3f * mm);
 }
 

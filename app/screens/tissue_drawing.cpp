@@ -76,6 +76,8 @@ render::TissueView tissue_view(const scene::Scene& scene, const scene::State& st
     if (scene.surface) out.thickness_m = static_cast<float>(scene.surface->thickness_m);
     if (scene.mapping.kind == scene::MappingKind::indirect) {
         out.tilt_rad = kTilt_rad;
+        // the block's front side stands below its surface: both together are in the middle
+        out.centre_px.y -= 0.5f * out.px_per_m * out.thickness_m * std::sin(kTilt_rad);
     } else {
         out.eye_m = to_gl(avatar.p_m);
         out.eye_per_m = 1.0f / kEye_m;
