@@ -68,6 +68,13 @@ const Seen* most_beside(const std::vector<Seen>& seen) {
     return most;
 }
 
+double greatest_lag_beside_m(const std::vector<Seen>& seen) {
+    double lag_m = 0.0;
+    for (const Seen& one : seen)
+        if (one.stroke.nodule.empty()) lag_m = std::max(lag_m, one.difference.lag_m);
+    return lag_m;
+}
+
 }  // namespace
 
 double arcmin_of(double length_m, double distance_m) {
@@ -169,7 +176,7 @@ files::Json visibility_json(const std::vector<Seen>& seen, const VisibilityOptio
                                    {"visible", is_seen(one.motion_arcmin, kIsSeen, options)}});
     }
     if (const Seen* most = most_beside(seen)) {
-        json["beside_lag_mm"] = 1e3 * most->difference.lag_m;
+        json["beside_lag_mm"] = 1e3 * greatest_lag_beside_m(seen);
         json["beside_px"] = most->motion_px;
         json["beside_arcmin"] = most->motion_arcmin;
         json["beside_visible"] = is_seen(most->motion_arcmin, kMayBeSeen, options);
@@ -188,7 +195,7 @@ std::string visibility_table(const std::vector<Seen>& seen, const VisibilityOpti
                "; depth changes by " + text(100.0 * one.difference.depth_share) + " %\n";
     }
     if (const Seen* most = most_beside(seen)) {
-        out += "beside the nodules: lag " + text(1e3 * most->difference.lag_m) + " mm, seen motion " +
+        out += "beside the nodules: lag " + text(1e3 * greatest_lag_beside_m(seen)) + " mm, seen motion " +
                text(most->motion_px) + " px, " + text(most->motion_arcmin) +
                " arcmin: " + (is_seen(most->motion_arcmin, kMayBeSeen, options) ? "may be visible" : "not visible") +
                "\n";

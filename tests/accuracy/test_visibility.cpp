@@ -126,6 +126,7 @@ TEST_CASE("visibility: angles at 40 cm, and what stands in the report") {
     beside.motion_arcmin = 1.0;
     Seen less = beside;
     less.motion_arcmin = 0.5;
+    less.difference.lag_m = 2e-4;
     const Json json = visibility_json({a, b, less, beside}, options);
     CHECK(json["nodules"].size() == 2);
     CHECK(json["nodules"][0]["id"] == "A");
@@ -133,6 +134,7 @@ TEST_CASE("visibility: angles at 40 cm, and what stands in the report") {
     CHECK(json["nodules"][1]["visible"] == false);
     CHECK(json["nodules"][1]["lag_mm"] == 1.0);
     CHECK(json["beside_arcmin"] == 1.0);
+    CHECK(json["beside_lag_mm"] == doctest::Approx(0.2));
     CHECK(json["beside_visible"] == false);
     beside.motion_arcmin = 1.3;
     CHECK(visibility_json({a, beside}, options)["beside_visible"] == true);
