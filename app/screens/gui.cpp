@@ -91,18 +91,28 @@ Gui::~Gui() {
     ImGui::DestroyContext();
 }
 
+void Gui::add_letters(const std::string& texts) {
+    texts_ += texts;
+    set_scale(std::exchange(mm_, 0.0f));
+}
+
 void Gui::set_scale(float px_per_mm) {
     if (px_per_mm == mm_) return;
     mm_ = px_per_mm;
     ImFontAtlas& fonts = *ImGui::GetIO().Fonts;
     fonts.Clear();
     const float text_px = std::clamp(kText_mm * mm_, 11.0f, 120.0f);
+    ImVector<ImWchar> letters;  // needed until the texture is made
+    ImFontGlyphRangesBuilder builder;
+    builder.AddRanges(fonts.GetGlyphRangesDefault());
+    builder.AddText(texts_.c_str());
+    builder.BuildRanges(&letters);
     if (font_file_.empty()) {
         ImFontConfig embedded;
         embedded.SizePixels = text_px;
         fonts.AddFontDefault(&embedded);
     } else {
-        fonts.AddFontFromFileTTF(font_file_.c_str(), text_px);
+        fonts.AddFontFromFileTTF(font_file_.c_str(), text_px, nullptr, letters.Data);
     }
     ImGui_ImplOpenGL3_DestroyFontsTexture();
     ImGui_ImplOpenGL3_CreateFontsTexture();

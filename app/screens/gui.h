@@ -29,7 +29,9 @@ class Gui {
 
     void set_scale(float px_per_mm);  // scale of controls and text; takes effect at once, only outside of a frame
     float mm() const { return mm_; }  // px per millimetre
-    WindowSize size_px() const;       // of the frame
+    // Has the letters of `texts` too (UTF-8), beside those of Western Europe; takes effect as set_scale() does.
+    void add_letters(const std::string& texts);
+    WindowSize size_px() const;  // of the frame
 
     // `keys_to_panels`: arrows, Tab and Space work the controls instead of the indenter.
     void begin_frame(double dt_s, bool keys_to_panels);
@@ -95,6 +97,7 @@ class Gui {
     float pointer_y_px_ = -1e6f;
     float mm_ = 0.0f;
     std::string font_file_;
+    std::string texts_;  // whose letters the panels have
     std::string overflow_;
 };
 

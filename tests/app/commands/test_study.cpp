@@ -357,11 +357,14 @@ TEST_CASE("command study: finding, choices and a staircase, interleaved in one s
     const std::string scene = PALPA_SOURCE_DIR "/assets/scenes/default.json";
     write_text_atomically(folder / "p.json", R"({"name": "n", "version": "1", "seed": 8, "order": "latin",
         "trial_order": "interleaved", "practice": {"trials": 1}, "repeats": 4, "conditions": [
-            {"id": "find", "modality": "pen", "task": "find", "scene": ")" + scene +
+            {"id": "find", "modality": "pen", "task": "find", "scene": ")" +
+                                                 scene +
                                                  R"("},
-            {"id": "pairs", "modality": "pen", "task": "choice", "scene": ")" + scene +
+            {"id": "pairs", "modality": "pen", "task": "choice", "scene": ")" +
+                                                 scene +
                                                  R"("},
-            {"id": "steps", "modality": "pen", "task": "staircase", "scene": ")" + scene +
+            {"id": "steps", "modality": "pen", "task": "staircase", "scene": ")" +
+                                                 scene +
                                                  R"("}],
         "choice": {"reference_kPa": 20, "comparisons_kPa": [14, 28], "repeats": 3},
         "staircase": {"method": "weighted-up-down", "reference_kPa": 20, "comparisons_kPa": [22, 25, 28, 32], "trials": 6}})");
@@ -473,4 +476,17 @@ TEST_CASE("command study exclude, replace: decisions are written, reported and r
     CHECK(json["replacements"][0]["replaced_by"] == "x1");
     CHECK(contains(read_text(folder / "report/plan_participants.tsv"), "sim0001\tall\t"));
     CHECK(contains(read_text(folder / "report/exclusions.tsv"), "sim0002\tall\tdropped out, replaced by x1: left"));
+}
+
+TEST_CASE("command study run: a text that the screens cannot show is refused before anything is recorded") {
+    const TemporaryFolder folder;
+    const auto run = [&](const std::string& consent) {
+        write_text_atomically(folder / "p.json",
+                              R"({"name": "n", "version": "1", "seed": 1, "order": "fixed", "consent": ")" + consent +
+                                  R"(", "conditions": [{"id": "hand", "modality": "hand"}]})");
+        return "run " + (folder / "p.json").string() + " --log " + (folder / "log").string() + " --quit-after-s 0.1";
+    };
+    refused(run("Do you agree? \u60a8\u540c\u610f\u5417"), "p.json: consent: found the letter '\u60a8', expected");
+    refused(run("Do you agree? \u0645\u0648\u0627\u0641\u0642"), "found the letter '\u0645'");
+    CHECK_FALSE(std::filesystem::exists(folder / "log"));
 }
