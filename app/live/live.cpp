@@ -214,6 +214,7 @@ struct Live::Impl {
         if (app.settings.full_screen && !app.trace) window->set_full_screen(true);
         know_screen(*window, app);
         gui.emplace(*window);
+        if (const StudyRun* run = study_of(app.doing)) gui->add_letters(letters_of(run->protocol));
         set_scale(*window, app, *gui);
         ready = prepare_chosen(*window, *gui, app);
         if (!ready) return;

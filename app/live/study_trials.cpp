@@ -7,10 +7,12 @@
 
 #include "app/live/live_app.h"
 #include "app/scene_choices.h"
+#include "app/screens/font.h"
 #include "app/screens/frame.h"
 #include "app/screens/words.h"
 #include "app/study/study_device.h"
 #include "app/study/study_run.h"
+#include "files/input_error.h"
 
 namespace palpa::app {
 namespace {
@@ -84,14 +86,25 @@ void follow_keeper(double now_s, App& app) {
     run.warnings = app.notices.problems;
 }
 
+// A participant must be able to read what is agreed to and asked. Throws InputError.
+void check_letters(const study::Protocol& protocol) {
+    for (const ShownText& shown : shown_texts(protocol)) {
+        const std::string letter = first_letter_not_shown(shown.text);
+        if (letter.empty()) continue;
+        throw files::bad_input(protocol.file.string(), shown.key, "the letter " + files::shown(letter),
+                               "letters that the screens can show: Latin, Greek, Cyrillic");
+    }
+}
+
 }  // namespace
 
 void load_study(const RunOptions& options, App& app) {
     app.settings_path.clear();  // what a study fixes is not kept as a person's choice
     const bool tablet = app.keeper != nullptr;
     // on a tablet the screen refuses a code that has finished, since there is no command line to give another one
-    StudyRun run =
-        open_study_run(study::read_protocol(options.protocol), options.log, tablet ? "" : options.participant);
+    const study::Protocol protocol = study::read_protocol(options.protocol);
+    check_letters(protocol);
+    StudyRun run = open_study_run(protocol, options.log, tablet ? "" : options.participant);
     run.on_tablet = tablet;
     run.first_run = options.first_run;
     if (tablet && !options.participant.empty()) enter_code(options.participant, run);

@@ -91,8 +91,15 @@ Gui::~Gui() {
     ImGui::DestroyContext();
 }
 
+void Gui::add_letters(const std::string& texts) {
+    texts_ += texts;
+    mm_ = 0.0f;
+    if (hand_mm_ > 0.0f) set_scale(hand_mm_, text_scale_);
+}
+
 void Gui::set_scale(float px_per_mm, float text) {
     hand_mm_ = px_per_mm;
+    text_scale_ = text;
     const float mm =
         larger_scale(px_per_mm, text, static_cast<float>(window_.width_px()), static_cast<float>(window_.height_px()));
     if (mm == mm_) return;
@@ -100,12 +107,17 @@ void Gui::set_scale(float px_per_mm, float text) {
     ImFontAtlas& fonts = *ImGui::GetIO().Fonts;
     fonts.Clear();
     const float text_px = std::clamp(kText_mm * mm_, 11.0f, 120.0f);
+    ImVector<ImWchar> letters;  // needed until the texture is made
+    ImFontGlyphRangesBuilder builder;
+    builder.AddRanges(fonts.GetGlyphRangesDefault());
+    builder.AddText(texts_.c_str());
+    builder.BuildRanges(&letters);
     if (font_file_.empty()) {
         ImFontConfig embedded;
         embedded.SizePixels = text_px;
         fonts.AddFontDefault(&embedded);
     } else {
-        fonts.AddFontFromFileTTF(font_file_.c_str(), text_px);
+        fonts.AddFontFromFileTTF(font_file_.c_str(), text_px, nullptr, letters.Data);
     }
     ImGui_ImplOpenGL3_DestroyFontsTexture();
     ImGui_ImplOpenGL3_CreateFontsTexture();

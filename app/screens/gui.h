@@ -32,7 +32,9 @@ class Gui {
     void set_scale(float px_per_mm, float text = 1.0f);
     float mm() const { return mm_; }            // px per millimetre of controls
     float hand_mm() const { return hand_mm_; }  // px per millimetre of what hands do, whatever the size of text
-    WindowSize size_px() const;                 // of the frame
+    // Has the letters of `texts` too (UTF-8), beside those of Western Europe; takes effect as set_scale() does.
+    void add_letters(const std::string& texts);
+    WindowSize size_px() const;  // of the frame
 
     // `keys_to_panels`: arrows, Tab and Space work the controls instead of the indenter.
     void begin_frame(double dt_s, bool keys_to_panels);
@@ -98,7 +100,9 @@ class Gui {
     float pointer_y_px_ = -1e6f;
     float mm_ = 0.0f;
     float hand_mm_ = 0.0f;
+    float text_scale_ = 1.0f;
     std::string font_file_;
+    std::string texts_;  // whose letters the panels have
     std::string overflow_;
 };
 

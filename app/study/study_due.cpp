@@ -141,6 +141,27 @@ files::Json now_json(const StudyRun& run) {
     return json;
 }
 
+std::vector<ShownText> shown_texts(const study::Protocol& protocol) {
+    std::vector<ShownText> texts{{"consent", protocol.consent}, {"instructions", protocol.instructions}};
+    for (const study::Condition& condition : protocol.conditions) {
+        texts.push_back({"conditions: " + condition.id, condition.title + condition.instructions});
+        for (const std::string& nodule : condition.nodules) texts.back().text += nodule;
+    }
+    for (const auto* items : {&protocol.demographics, &protocol.ratings}) {
+        for (const study::Item& item : *items) {
+            texts.push_back({(items == &protocol.ratings ? "ratings: " : "demographics: ") + item.id, item.text});
+            for (const std::string& choice : item.choices) texts.back().text += choice;
+        }
+    }
+    return texts;
+}
+
+std::string letters_of(const study::Protocol& protocol) {
+    std::string letters;
+    for (const ShownText& shown : shown_texts(protocol)) letters += shown.text;
+    return letters;
+}
+
 std::string progress_text(const StudyRun& run) {
     const std::size_t of = run.progress.plan.trials.size();
     return std::to_string(std::min(of, run.progress.finished.size() + 1)) + " of " + std::to_string(of);

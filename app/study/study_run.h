@@ -117,6 +117,13 @@ bool is_answer(const study::Item& item, const std::string& answer);
 // Returns what the experimenter sees from elsewhere (palpa study watch).
 files::Json now_json(const StudyRun& run);
 
+// What the protocol puts on the screens, each with its key or id for messages; and all of it in one text.
+struct ShownText {
+    std::string key, text;
+};
+std::vector<ShownText> shown_texts(const study::Protocol& protocol);
+std::string letters_of(const study::Protocol& protocol);
+
 // Returns, for example, "3 of 8": the number of the due trial, tests and practice together.
 std::string progress_text(const StudyRun& run);
 

@@ -549,3 +549,16 @@ TEST_CASE("command study analyse: a folder that cannot be made is named with the
     CHECK(called.status == 1);
     CHECK(contains(called.err, "/proc/no/report: cannot be made: "));
 }
+
+TEST_CASE("command study run: a text that the screens cannot show is refused before anything is recorded") {
+    const TemporaryFolder folder;
+    const auto run = [&](const std::string& consent) {
+        write_text_atomically(folder / "p.json",
+                              R"({"name": "n", "version": "1", "seed": 1, "order": "fixed", "consent": ")" + consent +
+                                  R"(", "conditions": [{"id": "hand", "modality": "hand"}]})");
+        return "run " + (folder / "p.json").string() + " --log " + (folder / "log").string() + " --quit-after-s 0.1";
+    };
+    refused(run("Do you agree? \u60a8\u540c\u610f\u5417"), "p.json: consent: found the letter '\u60a8', expected");
+    refused(run("Do you agree? \u0645\u0648\u0627\u0641\u0642"), "found the letter '\u0645'");
+    CHECK_FALSE(std::filesystem::exists(folder / "log"));
+}

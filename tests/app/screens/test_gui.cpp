@@ -5,6 +5,7 @@
 #include <doctest/doctest.h>
 #include <imgui.h>
 
+#include "app/screens/font.h"
 #include "app/screens/gui.h"
 #include "tests/app/screens/typing.h"
 #include "tests/off_screen.h"
@@ -131,4 +132,15 @@ TEST_CASE("gui: a text from elsewhere replaces the field's, and Enter comes afte
     form.frames(6);
     CHECK(std::string(form.text).empty());
     CHECK(form.entered == 2);
+}
+
+TEST_CASE("gui: letters of a study's texts are drawn where the font has them") {
+    if (system_font_file().empty()) return;
+    Form form;
+    CHECK(ImGui::GetIO().Fonts->Fonts[0]->FindGlyphNoFallback(0x416) == nullptr);
+    form.gui.add_letters("\u0416 \u2014");
+    form.frames(2);
+    CHECK(ImGui::GetIO().Fonts->Fonts[0]->FindGlyphNoFallback(0x416) != nullptr);
+    CHECK(ImGui::GetIO().Fonts->Fonts[0]->FindGlyphNoFallback(0x2014) != nullptr);
+    CHECK(ImGui::GetIO().Fonts->Fonts[0]->FindGlyphNoFallback('A') != nullptr);
 }
