@@ -140,7 +140,7 @@ void draw_side_view(const Shown& shown, const Gui& gui) {
     draw_tissue(section, sinks_of(shown), shown.scene.surface->material, mm, draw);
     draw_tip(shown, section, depth_m, draw);
     draw_depth(shown, section, depth_m, mm, draw);
-    rimmed_text(draw, ImVec2(section.corner.x + mm, end.y - ImGui::GetFontSize() - 0.6f * mm), kInk, words::kSideView);
+    plated_text(draw, ImVec2(section.corner.x + mm, end.y - ImGui::GetFontSize() - 0.6f * mm), kInk, words::kSideView);
     draw.AddRect(section.corner, end, kPale, 0.0f, 0, 0.3f * mm);
 }
 
