@@ -318,7 +318,7 @@ void draw_on_tissue(const Shown& shown, const Gui& gui) {
         cross(draw, at, 1.6f * gui.mm(), kDark, 1.7f * gui.mm());
         cross(draw, at, 1.6f * gui.mm(), kInk, 0.6f * gui.mm());
         const std::string sure = mark.confidence > 0 ? " (" + std::to_string(mark.confidence) + ")" : "";
-        plated_text(draw, ImVec2(at.x + 2.0f * gui.mm(), at.y - 1.6f * gui.mm() - 0.5f * ImGui::GetFontSize()), kInk,
+        plated_text(draw, ImVec2(at.x + 3.0f * gui.mm(), at.y - 2.0f * gui.mm() - 0.5f * ImGui::GetFontSize()), kInk,
                     std::to_string(i + 1) + sure);
     }
     draw_pen(shown, gui, draw);
