@@ -53,12 +53,13 @@ class NetFt : public ForceSensor {
             return;
         }
         last_s_ = steady_s();
+        const bool after_silence = !health_.alive;
         health_.alive = true;
-        const Arrival arrival = track(record.rdt_sequence, sequence_, health_);
+        const Arrival arrival = track(record.rdt_sequence, after_silence, sequence_, health_);
         if (arrival == Arrival::duplicate || arrival == Arrival::late) return;
         health_.faults += record.status != 0;
         SensorHealth ignored;
-        track(record.ft_sequence, samples_, ignored);
+        track(record.ft_sequence, after_silence, samples_, ignored);
         ForceReading reading;
         reading.t_host_s = last_s_;
         reading.t_device_s = static_cast<double>(samples_.total) / options_.rate_Hz;

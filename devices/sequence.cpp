@@ -2,10 +2,10 @@
 
 namespace palpa::devices {
 
-Arrival track(std::uint32_t number, Sequence& sequence, SensorHealth& health) {
+Arrival track(std::uint32_t number, bool after_silence, Sequence& sequence, SensorHealth& health) {
     const auto ahead = static_cast<std::int32_t>(number - sequence.last);  // across the wrap-around
     constexpr std::int32_t kFar = 1 << 20;
-    const bool anew = ahead > kFar || ahead < -kFar;
+    const bool anew = ahead > kFar || ahead < -kFar || (after_silence && ahead <= 0);
     if (!sequence.started || anew) {
         const bool restarted = sequence.started;
         sequence.total += restarted ? 1 : 0;

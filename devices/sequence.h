@@ -19,7 +19,8 @@ struct Sequence {
 
 // Counts lost, duplicate and reordered records. A record that comes late had been counted as lost (unless it is older
 // than the first one) and is taken off that count.
-// A jump of more than 2^20 in either direction means that the sensor was restarted.
-Arrival track(std::uint32_t number, Sequence& sequence, SensorHealth& health);
+// A jump of more than 2^20 in either direction means that the sensor was restarted, and so does a number that is not new
+// where the stream was silent before it.
+Arrival track(std::uint32_t number, bool after_silence, Sequence& sequence, SensorHealth& health);
 
 }  // namespace palpa::devices

@@ -37,35 +37,41 @@ TEST_CASE("Net F/T: frames are byte for byte as documented") {
 TEST_CASE("sequence: loss, repetition, lateness and restart, across the wrap-around") {
     SensorHealth health;
     Sequence sequence;
-    CHECK(track(0xfffffffe, sequence, health) == Arrival::next);
-    CHECK(track(0xffffffff, sequence, health) == Arrival::next);
-    CHECK(track(2, sequence, health) == Arrival::next);  // 0 and 1 are missing
+    CHECK(track(0xfffffffe, false, sequence, health) == Arrival::next);
+    CHECK(track(0xffffffff, false, sequence, health) == Arrival::next);
+    CHECK(track(2, false, sequence, health) == Arrival::next);  // 0 and 1 are missing
     CHECK(health.lost == 2);
-    CHECK(track(0, sequence, health) == Arrival::late);
+    CHECK(track(0, false, sequence, health) == Arrival::late);
     CHECK(health.lost == 1);
-    CHECK(track(0, sequence, health) == Arrival::duplicate);
-    CHECK(track(2, sequence, health) == Arrival::duplicate);
+    CHECK(track(0, false, sequence, health) == Arrival::duplicate);
+    CHECK(track(2, false, sequence, health) == Arrival::duplicate);
     CHECK(health.duplicate == 2);
     CHECK(health.reordered == 1);
-    CHECK(track(100, sequence, health) == Arrival::next);
+    CHECK(track(100, false, sequence, health) == Arrival::next);
     CHECK(health.lost == 98);
     CHECK(sequence.total == 102);
-    CHECK(track(0x40000000, sequence, health) == Arrival::restart);
+    CHECK(track(0x40000000, false, sequence, health) == Arrival::restart);
     CHECK(health.lost == 98);
-    CHECK(track(0x40000001, sequence, health) == Arrival::next);
+    CHECK(track(0x40000001, false, sequence, health) == Arrival::next);
+    CHECK(track(0x40000003, true, sequence, health) == Arrival::next);
+    CHECK(health.lost == 99);
+    CHECK(track(1, true, sequence, health) == Arrival::restart);
+    CHECK(track(2, false, sequence, health) == Arrival::next);
+    CHECK(track(2, true, sequence, health) == Arrival::restart);
+    CHECK(health.lost == 99);
 }
 
 TEST_CASE("sequence: what comes late from before the first record was never counted as lost") {
     SensorHealth health;
     Sequence sequence;
-    CHECK(track(100, sequence, health) == Arrival::next);
-    CHECK(track(99, sequence, health) == Arrival::late);
+    CHECK(track(100, false, sequence, health) == Arrival::next);
+    CHECK(track(99, false, sequence, health) == Arrival::late);
     CHECK(health.lost == 0);
-    CHECK(track(103, sequence, health) == Arrival::next);
+    CHECK(track(103, false, sequence, health) == Arrival::next);
     CHECK(health.lost == 2);
-    CHECK(track(98, sequence, health) == Arrival::late);
+    CHECK(track(98, false, sequence, health) == Arrival::late);
     CHECK(health.lost == 2);
-    CHECK(track(102, sequence, health) == Arrival::late);
+    CHECK(track(102, false, sequence, health) == Arrival::late);
     CHECK(health.lost == 1);
     CHECK(health.reordered == 3);
 }

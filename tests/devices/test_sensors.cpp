@@ -122,6 +122,24 @@ TEST_CASE("Net F/T: a sensor that falls silent is asked again, and goes on") {
     CHECK(health.alive);
 }
 
+TEST_CASE("Net F/T: a sensor that was switched off and on counts from the start, and its readings are taken") {
+    std::unique_ptr<SensorReader> reader;
+    std::string port;
+    {
+        SimulatorProcess simulator(PALPA_NETFT_SIMULATOR, {"--rate-Hz", "1000", "--seconds", "60"});
+        port = simulator.port();
+        open_reader(simulator, reader);
+        read_until(*reader, [](const auto& all) { return all.size() > 300; });
+    }
+    read_until(*reader, [&](const auto&) { return !reader->health().alive; });
+    const long long before = reader->health().received;
+    SimulatorProcess again(PALPA_NETFT_SIMULATOR, {"--rate-Hz", "1000", "--seconds", "60", "--port", port});
+    read_until(*reader, [&](const auto&) { return reader->health().received > before; });
+    CHECK(reader->health().received > before);
+    CHECK(reader->health().duplicate == 0);
+    CHECK(reader->health().stalls == 1);
+}
+
 TEST_CASE("load cell: lines, clock wrap-around, loss, repetition, garbled lines") {
     const TemporaryFolder folder;
     SimulatorProcess simulator(PALPA_LOAD_CELL_SIMULATOR,

@@ -16,7 +16,7 @@ PALPA_FUZZ_ENTRY(netft)(const std::uint8_t* data, std::size_t size) {
         const std::size_t n = std::min(size - at, kRdtRecord_bytes);
         RdtRecord record;
         if (!decode_rdt_record(data + at, n, record)) continue;
-        track(record.rdt_sequence, sequence, health);
+        track(record.rdt_sequence, at % (2 * kRdtRecord_bytes) != 0, sequence, health);
         const auto again = encode_rdt_record(record);
         if (!std::equal(again.begin(), again.end(), data + at)) fuzz::finding("other bytes when written again");
     }
