@@ -88,11 +88,11 @@ void follow_keeper(double now_s, App& app) {
 
 // A participant must be able to read what is agreed to and asked. Throws InputError.
 void check_letters(const study::Protocol& protocol) {
+    const std::string file = protocol.file.string();
     for (const ShownText& shown : shown_texts(protocol)) {
         const std::string letter = first_letter_not_shown(shown.text);
         if (letter.empty()) continue;
-        throw files::bad_input(protocol.file.string(), shown.key, "the letter " + files::shown(letter),
-                               "letters that the screens can show: Latin, Greek, Cyrillic");
+        throw files::bad_input(file, shown.key, files::shown(letter), "letters of the font: Latin, Greek, Cyrillic");
     }
 }
 

@@ -558,7 +558,7 @@ TEST_CASE("command study run: a text that the screens cannot show is refused bef
                                   R"(", "conditions": [{"id": "hand", "modality": "hand"}]})");
         return "run " + (folder / "p.json").string() + " --log " + (folder / "log").string() + " --quit-after-s 0.1";
     };
-    refused(run("Do you agree? \u60a8\u540c\u610f\u5417"), "p.json: consent: found the letter '\u60a8', expected");
-    refused(run("Do you agree? \u0645\u0648\u0627\u0641\u0642"), "found the letter '\u0645'");
+    refused(run("Do you agree? \u60a8\u540c\u610f\u5417"), "p.json: consent: found '\u60a8', expected");
+    refused(run("Do you agree? \u0645\u0648\u0627\u0641\u0642"), "found '\u0645'");
     CHECK_FALSE(std::filesystem::exists(folder / "log"));
 }
