@@ -46,7 +46,7 @@ TEST_CASE("scene broken: choosing it says what is wrong, and the present scene g
     copy_assets(folder);
     const int status = run_with_copy(folder, "--quit-after-s 6", [&] {
         std::ofstream(folder / "assets/scenes/delay.json") << "{\"name\": \"broken\", \"tissue\": 3}";
-        play(folder, tap(0.0, "58", "27") + tap(0.6, "360", "91"));  // the menu, its second scene
+        play(folder, tap(0.0, "58", "27") + tap(0.6, "360", "178"));  // the menu, its third scene
     });
     CHECK(status == 0);
     const Json result = read_json(folder / "out.json");
@@ -75,7 +75,7 @@ TEST_CASE("disk full: the trial stops in words, what was logged before is there,
     const std::string samples = read_text(folder / "small/sub-01/beh/sub-01_task-palpation_run-01_samples.tsv");
     CHECK(shell("umount " + small) == 0);
     CHECK(status == 1);
-    CHECK(contains(read_text(folder / "err.txt"), "can no longer be written; stopped (is the disk full?)"));
+    CHECK(contains(read_text(folder / "err.txt"), "cannot be written any more, so the trial has stopped (is the disk full?)"));
     CHECK(std::count(samples.begin(), samples.end(), '\n') > 100);
 }
 
