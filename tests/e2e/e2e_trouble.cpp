@@ -75,7 +75,8 @@ TEST_CASE("disk full: the trial stops in words, what was logged before is there,
     const std::string samples = read_text(folder / "small/sub-01/beh/sub-01_task-palpation_run-01_samples.tsv");
     CHECK(shell("umount " + small) == 0);
     CHECK(status == 1);
-    CHECK(contains(read_text(folder / "err.txt"), "cannot be written any more, so the trial has stopped (is the disk full?)"));
+    CHECK(contains(read_text(folder / "err.txt"),
+                   "cannot be written any more, so the trial has stopped (is the disk full?)"));
     CHECK(std::count(samples.begin(), samples.end(), '\n') > 100);
 }
 
