@@ -10,7 +10,7 @@ using namespace palpa::study;
 
 namespace {
 
-constexpr std::uint64_t kSeed = 16;
+constexpr std::uint64_t kStaircaseSeed = 16;
 
 StaircaseTask up_down(int steps_after_wrong, double step, int levels, int trials) {
     StaircaseTask task;
@@ -62,8 +62,8 @@ TEST_CASE("staircase: weighted up-down goes one level down after a right answer,
 }
 
 TEST_CASE("staircase: weighted up-down makes k of k + 1 answers right (Kaernbach 1991)") {
-    MESSAGE("seed " << kSeed);
-    Random random(kSeed);
+    MESSAGE("seed " << kStaircaseSeed);
+    Random random(kStaircaseSeed);
     for (const int k : {1, 2, 3, 4}) {
         const StaircaseTask task = up_down(k, 0.02, 60, 6000);
         const auto answers = answers_of(task, {0.0, 0.4, 0.0, 1.0}, random);
@@ -77,8 +77,8 @@ TEST_CASE("staircase: weighted up-down makes k of k + 1 answers right (Kaernbach
 }
 
 TEST_CASE("staircase: the threshold comes near the level of which 75 % are right") {
-    MESSAGE("seed " << kSeed);
-    Random random(kSeed);
+    MESSAGE("seed " << kStaircaseSeed);
+    Random random(kStaircaseSeed);
     const StaircaseTask task = up_down(3, 0.03, 40, 300);
     double sum = 0.0;
     for (int i = 0; i < 20; ++i) {
@@ -133,8 +133,8 @@ TEST_CASE("staircase: the posterior does not depend on the order of the answers,
 }
 
 TEST_CASE("staircase: 95 % credible intervals hold the truth of 95 % of observers drawn from the prior") {
-    MESSAGE("seed " << kSeed);
-    Random random(kSeed);
+    MESSAGE("seed " << kStaircaseSeed);
+    Random random(kStaircaseSeed);
     const StaircaseTask task = quest(20);
     const std::vector<PosteriorPoint> prior = posterior_of(task, {});
     constexpr int kObservers = 60;
@@ -152,8 +152,8 @@ TEST_CASE("staircase: 95 % credible intervals hold the truth of 95 % of observer
 }
 
 TEST_CASE("staircase: QUEST+ comes nearer with the same number of answers than chance levels do") {
-    MESSAGE("seed " << kSeed);
-    Random random(kSeed);
+    MESSAGE("seed " << kStaircaseSeed);
+    Random random(kStaircaseSeed);
     const StaircaseTask task = quest(30);
     const PosteriorPoint observer{0.05, 0.2, 0.02, 1.0};
     double by_method = 0.0, by_chance = 0.0;
@@ -183,8 +183,8 @@ TEST_CASE("staircase: too few reversals, or levels that end too early, say so") 
 }
 
 TEST_CASE("staircase: answers at levels that were not asked for are counted, by both methods") {
-    MESSAGE("seed " << kSeed);
-    Random random(kSeed);
+    MESSAGE("seed " << kStaircaseSeed);
+    Random random(kStaircaseSeed);
     const PosteriorPoint observer{0.0, 0.2, 0.02, 1.0};
     for (const StaircaseTask& task : {up_down(3, 0.05, 10, 40), quest(40)}) {
         std::vector<StaircaseAnswer> answers = answers_of(task, observer, random);
