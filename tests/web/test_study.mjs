@@ -150,7 +150,8 @@ test('from the menu to the thanks; a reload in the middle of a trial; the desk\'
     const out = path.join(where.folder, 'report');
     palpa('study', 'analyse', study, '-o', out);
     const {conditions: {pen: found}, ...counted} = JSON.parse(fs.readFileSync(path.join(out, 'report.json'), 'utf8'));
-    assert.deepEqual([counted.trials, counted.practice_trials, counted.interrupted_trials, counted.notes], [2, 1, 1, []]);
+    assert.deepEqual([counted.trials, counted.practice_trials, counted.interrupted_trials], [2, 1, 1]);
+    assert.deepEqual(counted.notes.filter((note) => !note.startsWith('WARNING: fewer than 10 people')), []);
     assert.deepEqual([counted.ratings[0].item, counted.ratings[0].mean], ['effort', 4]);
     const finished = kept.filter((trial) => trial.finished && trial.name.includes('palpation')).slice(1); // without practice
     const marks = Object.values(marksOf(finished)).flatMap(table);
@@ -188,6 +189,7 @@ test('the real desk by https: a wrong code pairs nothing, the right one does; th
     await pairBy(desk.code.slice(0, 3) + desk.code.slice(3), 'Paired with the desk.');
     await open(browser, desk.url, '?protocol=short&participant=1');
     await at(page, 'questions');
+    await page.waitForTimeout(1500); // a second Enter at once would not skip the questions
     await key(page, 'Enter');
     await until('the answers are at the desk', () => uploads(where).length === 1);
     await runTrial(browser, 700, 300);
@@ -233,6 +235,7 @@ test('the desk is killed in the middle of an upload and started again: everythin
     try {
         await open(browser, proxy.url, '?protocol=short&participant=2');
         await at(page, 'questions');
+        await page.waitForTimeout(1500);
         await key(page, 'Enter');
         await until('the answers are at the desk', () => uploads(where).length === 1);
         const cut = new Promise((resolve) => { proxy.held = resolve; });
