@@ -121,7 +121,7 @@ test('what the browser has removed is said at the next start', () => withPage({}
     await page.reload();
     await started(page);
     await frames(page, 3);
-    assert.ok((await report(page)).problems.some((text) => text.includes('the browser has removed them')));
+    assert.ok((await report(page)).problems.some((text) => text.includes('the browser has deleted them')));
 }));
 
 test('a trial that is going on when the page goes out of sight is kept, and counts as interrupted', () => withPage({}, async (browser) => {

@@ -107,7 +107,7 @@ test('the browser closes its storage: what is palpated afterwards can be exporte
     await browser.devtools.send('Storage.clearDataForOrigin', {origin: new URL(desk.url).origin, storageTypes: 'indexeddb'});
     await until('said', () => tellsOf(page, 'closed its storage'));
     await finishTrial(browser);
-    await until('said', () => tellsOf(page, 'is not kept'));
+    await until('said', () => tellsOf(page, 'is not stored'));
     const found = await exported(page);
     assert.ok(found.length > 0 && found.every((name) => name.includes('run-02')), found.join());
     assert.ok(await tellsOf(page, 'the exported file is without them'));
