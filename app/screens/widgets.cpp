@@ -145,7 +145,7 @@ ImVec2 on_screen(const render::TissueView& view, double x_m, double y_m) {
 }
 
 ImVec2 on_surface(const render::TissuePicture& picture, double x_m, double y_m) {
-    const glm::vec3 p_m = render::displaced_m(picture, {x_m, y_m});
+    const glm::vec3 p_m = render::displaced_m(picture, render::dragged_m(picture.view, {x_m, y_m}));
     const glm::vec2 px = render::project_px(picture.view, p_m);
     return {px.x, px.y};
 }
