@@ -100,6 +100,15 @@ std::optional<avatar::Delay> read_delay(files::JsonReader json, TangentialOption
     return law;
 }
 
+// Whether the centre is on the block is known only with the phantom (make_linear_tissue).
+mechanics::Grading read_grading(files::JsonReader json, double spacing_m) {
+    json.only({"centre_mm", "finest_mm"});
+    const auto centre_mm = json.numbers("centre_mm", 2, files::kNotNegative);
+    const double finest_mm = json.number("finest_mm", {0.1, 1e3 * spacing_m});
+    json.finish();
+    return {{1e-3 * centre_mm[0], 1e-3 * centre_mm[1]}, 1e-3 * finest_mm};
+}
+
 void read_tissue(files::JsonReader json, const fs::path& file, const fs::path& assets, Scene& scene) {
     json.only({"map", "linear", "stiffness_scale"});
     const bool linear = json.has("linear");
@@ -110,11 +119,12 @@ void read_tissue(files::JsonReader json, const fs::path& file, const fs::path& a
         return json.finish();
     }
     files::JsonReader block = json.object("linear");
-    block.only({"phantom", "spacing_mm", "friction"});
+    block.only({"phantom", "spacing_mm", "friction", "grading"});
     LinearOptions options;
     options.phantom = find_file(block.text("phantom"), file, assets / "phantoms");
     options.spacing_m = 1e-3 * block.number("spacing_mm", {0.2, 100.0}, 1e3 * options.spacing_m);
     if (block.has("friction")) options.friction = block.number("friction", {0.0, 10.0, true});
+    if (auto grading = block.optional_object("grading")) options.grading = read_grading(*grading, options.spacing_m);
     block.finish();
     scene.tissue = options;
     json.finish();
