@@ -125,9 +125,11 @@ bool takes_seconds(const LinearOptions& options);
 std::vector<std::filesystem::path> input_files(const LinearOptions& options);
 files::Json file_hashes(const LinearOptions& options);
 std::filesystem::path map_folder(const LinearOptions& options);
+inline bool knows_surface(const LinearOptions&) { return true; }
 
 LinearTissue prepare(const LinearOptions& options, const Scene& scene, const mechanics::Progress& progress);
 bool serves(const LinearTissue& tissue, const Scene& scene);
+inline const LinearTissue* block_of(const LinearTissue& tissue) { return &tissue; }
 void describe(const LinearTissue& tissue, const Scene& scene, Plan& plan);
 std::vector<Stage> stages(const LinearTissue& tissue, const Scene& scene);
 files::Json identity(const LinearTissue& tissue);

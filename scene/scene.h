@@ -13,6 +13,7 @@
 #include "mechanics/mesh.h"
 #include "scene/cues.h"
 #include "scene/mapping.h"
+#include "scene/tactile_options.h"
 #include "stiffnessmaps/field.h"
 
 namespace palpa::scene {
@@ -73,6 +74,7 @@ struct Scene {
     std::optional<TextureDrag> texture_drag;  // only beside a law
     std::optional<SurfaceEffect> surface;
     DrawnCues cues;  // of the surface
+    std::optional<TactileOptions> tactile;
     std::int64_t seed = 1;
 };
 

@@ -2,7 +2,9 @@
 
 #include "files/input_error.h"
 #include "files/json.h"
+#include "scene/find_file.h"
 #include "scene/scene.h"
+#include "scene/tissue.h"
 
 namespace palpa::scene {
 namespace {
@@ -10,14 +12,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kDefaultProfile = "s-pen.json";
-
-fs::path find_file(const std::string& name, const fs::path& scene_file, const fs::path& assets_folder) {
-    const fs::path given(name);
-    if (given.is_absolute()) return given;
-    const fs::path beside = (scene_file.parent_path() / given).lexically_normal();
-    if (fs::exists(beside) || given.has_parent_path()) return beside;
-    return assets_folder / given;
-}
 
 Mapping read_mapping(files::JsonReader json) {
     json.only({"kind", "rotate_deg", "flip", "random_turn", "true_size", "tissue_mm"});
@@ -195,7 +189,7 @@ void read_avatar(files::JsonReader json, Scene& scene) {
 Scene read_scene(const fs::path& file, const fs::path& assets) {
     const files::Json root = files::read_json(file);
     files::JsonReader json(root, file.string());
-    json.only({"name", "tissue", "profile", "mapping", "force_scale", "avatar", "surface", "cues", "seed"});
+    json.only({"name", "tissue", "profile", "mapping", "force_scale", "avatar", "surface", "cues", "tactile", "seed"});
     Scene scene;
     scene.file = file;
     scene.name = json.text("name");
@@ -209,6 +203,11 @@ Scene read_scene(const fs::path& file, const fs::path& assets) {
     if (auto cues = json.optional_object("cues")) {
         if (!scene.surface) json.fail("cues", "no surface to draw them on", "the key surface beside it");
         scene.cues = read_cues(*cues);
+    }
+    if (auto tactile = json.optional_object("tactile")) {
+        if (!knows_surface(scene.tissue))
+            json.fail("tactile", "a map as the tissue", "linear: a map knows no surface under a finger");
+        scene.tactile = read_tactile(*tactile, file, assets);
     }
     scene.seed = json.integer("seed", 0, 2000000000, 1);
     json.finish();
