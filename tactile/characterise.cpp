@@ -53,6 +53,7 @@ StiffnessRun stiffness_of(double wanted_N_per_m, std::vector<StrokeRow> rows) {
     run.rendered_N_per_m = line[0];
     run.error_share = line[0] / wanted_N_per_m - 1.0;
     run.hysteresis_N = std::abs(line[2]);
+    run.force_at_0_N = line[1];
     run.rows = std::move(rows);
     return run;
 }

@@ -13,6 +13,7 @@ struct StiffnessRun {
     double rendered_N_per_m = 0.0;  // slope of the line through all cycles
     double error_share = 0.0;       // rendered / wanted - 1
     double hysteresis_N = 0.0;      // half the distance of the lines of pressing and releasing
+    double force_at_0_N = 0.0;      // of the line halfway between them
     std::vector<StrokeRow> rows;
 };
 
