@@ -36,6 +36,10 @@ std::filesystem::path map_folder(const TissueOptions& options) {
     return std::visit([](const auto& of_kind) { return map_folder(of_kind); }, options);
 }
 
+bool knows_surface(const TissueOptions& options) {
+    return std::visit([](const auto& of_kind) { return knows_surface(of_kind); }, options);
+}
+
 void leave_out_nodules(TissueOptions& options) {
     std::visit([](auto& of_kind) { of_kind.nodules = false; }, options);
 }
@@ -46,6 +50,10 @@ Tissue prepare(const TissueOptions& options, const Scene& scene, const mechanics
 
 bool serves(const Tissue& tissue, const Scene& scene) {
     return std::visit([&](const auto& of_kind) { return serves(of_kind, scene); }, tissue);
+}
+
+const LinearTissue* block_of(const Tissue& tissue) {
+    return std::visit([](const auto& of_kind) { return block_of(of_kind); }, tissue);
 }
 
 void describe(const Tissue& tissue, const Scene& scene, Plan& plan) {

@@ -27,6 +27,7 @@ const std::map<std::string, std::set<std::string>> kMayInclude{
      {"files", "platform/sample.h", "platform/timeline.h", "calibration", "stiffnessmaps", "mechanics", "avatar"}},
     {"render", {"platform"}},
     {"devices", {"files", "platform"}},
+    {"tactile", {"files", "mechanics", "scene", "devices"}},
     {"study", {"files"}},
     {"session",
      {"files", "platform/sample.h", "platform/timeline.h", "platform/trace.h", "calibration", "scene", "study"}},
