@@ -31,6 +31,9 @@ const std::map<std::string, std::set<std::string>> kMayInclude{
     {"study", {"files"}},
     {"session",
      {"files", "platform/sample.h", "platform/timeline.h", "platform/trace.h", "calibration", "scene", "study"}},
+    {"session/tactile_run", {"files", "scene", "session", "devices", "tactile"}},
+    {"session/tactile_run_live", {"files", "scene", "session", "devices", "tactile"}},
+    {"session/tactile_run_sink", {"files", "scene", "session", "devices", "tactile"}},
     {"fem", {"files", "mechanics", "fem/body_file", "fem/mesh_file"}},
     {"fem/body_file", {"files", "mechanics", "fem/mesh_file"}},
     {"fem/mesh_file", {"files", "mechanics"}},
@@ -50,7 +53,7 @@ const std::map<std::string, std::set<std::string>> kMayInclude{
       "study", "session"}},
     {"app/commands",
      {"app", "files", "platform", "calibration", "stiffnessmaps", "mechanics", "avatar", "scene", "render", "devices",
-      "study", "session", "fem", "figures", "accuracy", "desk"}},
+      "study", "session", "tactile", "fem", "figures", "accuracy", "desk"}},
     {"app/web", {"app", "files", "platform", "calibration", "scene", "render", "study", "session"}},
 };
 
@@ -138,6 +141,9 @@ TEST_CASE("includes: the table refuses what it must") {
     CHECK(allowed("accuracy", "fem/mesh_file.h"));
     CHECK_FALSE(allowed("fem/body_file", "fem/case.h"));
     CHECK_FALSE(allowed("scene", "fem/body_file.h"));
+    CHECK(allowed("session/tactile_run", "tactile/loop.h"));
+    CHECK_FALSE(allowed("session", "tactile/loop.h"));
+    CHECK_FALSE(allowed("tactile", "session/device_rows.h"));
 }
 
 // Everything that depends on the kind of tissue is an overload behind scene/tissue.h.

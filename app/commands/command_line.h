@@ -20,6 +20,7 @@ void add_calibrate_record(CLI::App& calibrate);
 void add_fem(CLI::App& app);
 void add_serve(CLI::App& app);
 void add_study(CLI::App& app);
+void add_tactile(CLI::App& app);
 void add_bench(CLI::App& app);
 void add_bench_accuracy(CLI::App& bench);
 void add_bench_pens(CLI::App& bench);
