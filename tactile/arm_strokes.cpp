@@ -32,11 +32,6 @@ class LinkRig : public ArmRig {
     }
     bool read(ArmFeedback& out) noexcept override { return port_->read(out); }
     void send(const ArmCommand& command) noexcept override { port_->send(command); }
-    double round_trip_s() const override {
-        constexpr double kHalf = 0.5;
-        const devices::TimeHistogram& times = port_->health().round_trip;
-        return times.total > 0 ? times.quantile_s(kHalf) : 0.0;
-    }
     const devices::LinkHealth* link() const override { return &port_->health(); }
 
   private:
@@ -59,6 +54,7 @@ class VirtualRig : public ArmRig {
     void send(const ArmCommand& command) noexcept override {
         devices::simulators::command(command, plant_);
         said_ = devices::simulators::feedback(plant_);
+        said_->age_s = kStrokeTick_s;
     }
 
   private:
@@ -123,12 +119,14 @@ Strokes run_strokes(const StrokeOptions& options, ArmRig& rig) {
     const double began_s = await_sensor(rig, feedback);
     out.has_sensor = feedback.has_sensor == 1.0;
     double last_s = began_s, told_s = began_s, sent_N = 0.0;
+    devices::TimeHistogram delays;
     while (last_s - began_s < options.seconds) {
         const double now_s = rig.next_tick();
         constexpr double kLate_s = 1e-3;
         out.late_ticks += now_s - last_s > kStrokeTick_s + kLate_s;
         last_s = now_s;
         const bool fresh = rig.read(feedback);
+        if (fresh) delays.add(feedback.age_s + feedback.round_trip_s);
         devices::begin_tick(options.limits, now_s, fresh, &feedback, out.guard);
         ArmCommand command = wanted(options, feedback);
         devices::guard_arm(options.limits, command, out.guard);
@@ -142,6 +140,7 @@ Strokes run_strokes(const StrokeOptions& options, ArmRig& rig) {
         told_s = now_s;
     }
     rig.send(ArmCommand{});
+    out.delay_s = delays.quantile_s(0.5);
     if (devices::latches(out.guard.fault))
         throw std::runtime_error("arm: stopped: " + std::string(devices::text(out.guard.fault)));
     return out;

@@ -23,8 +23,7 @@ class ArmRig {
     virtual double next_tick() = 0;
     virtual bool read(devices::ArmFeedback& out) noexcept = 0;
     virtual void send(const devices::ArmCommand& command) noexcept = 0;
-    // Median of command there and feedback back; 0 where there is no link.
-    virtual double round_trip_s() const { return 0.0; }
+    // Null where there is no link.
     virtual const devices::LinkHealth* link() const { return nullptr; }
 };
 
@@ -47,6 +46,7 @@ struct Strokes {
     devices::Guard guard;
     bool has_sensor = false;
     std::int64_t late_ticks = 0;  // that began over 1 ms late
+    double delay_s = 0.0;         // median, from what the arm says to the command that follows from it, there and back
 };
 
 // Waits up to 2 s for the sensor's zero, then strokes. Throws std::runtime_error if nothing answers, or if a fault

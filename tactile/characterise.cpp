@@ -6,21 +6,28 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "files/quantile.h"
+
 namespace palpa::tactile {
 namespace {
 
-// The readings that count: within the tissue, and moving.
+// The readings that count: within the tissue, and about as fast as most.
 std::vector<const StrokeRow*> counting_rows(const std::vector<StrokeRow>& rows) {
-    double deepest_m = 0.0, fastest_m_per_s = 0.0;
+    constexpr double kMargin = 0.05, kSlower = 0.3, kFaster = 3.0;
+    double deepest_m = 0.0;
+    for (const StrokeRow& row : rows) deepest_m = std::max(deepest_m, row.depth_m);
+    std::vector<const StrokeRow*> inside, out;
+    std::vector<double> speed_m_per_s;
     for (const StrokeRow& row : rows) {
-        deepest_m = std::max(deepest_m, row.depth_m);
-        if (row.depth_m > 0.0) fastest_m_per_s = std::max(fastest_m_per_s, std::abs(row.velocity_m_per_s));
+        if (!(row.depth_m > kMargin * deepest_m && row.depth_m < (1.0 - kMargin) * deepest_m)) continue;
+        inside.push_back(&row);
+        speed_m_per_s.push_back(std::abs(row.velocity_m_per_s));
     }
-    constexpr double kMargin = 0.05, kMoving = 0.2;
-    std::vector<const StrokeRow*> out;
-    for (const StrokeRow& row : rows) {
-        const bool inside = row.depth_m > kMargin * deepest_m && row.depth_m < (1.0 - kMargin) * deepest_m;
-        if (inside && std::abs(row.velocity_m_per_s) > kMoving * fastest_m_per_s) out.push_back(&row);
+    if (inside.empty()) return out;
+    const double usual_m_per_s = files::median(speed_m_per_s);
+    for (const StrokeRow* row : inside) {
+        const double speed = std::abs(row->velocity_m_per_s);
+        if (speed > kSlower * usual_m_per_s && speed < kFaster * usual_m_per_s) out.push_back(row);
     }
     return out;
 }
@@ -46,6 +53,7 @@ StiffnessRun stiffness_of(double wanted_N_per_m, std::vector<StrokeRow> rows) {
     run.rendered_N_per_m = line[0];
     run.error_share = line[0] / wanted_N_per_m - 1.0;
     run.hysteresis_N = std::abs(line[2]);
+    run.force_at_0_N = line[1];
     run.rows = std::move(rows);
     return run;
 }
