@@ -105,6 +105,16 @@ void run_virtual_steps(std::span<const devices::PressRow> press, tactile::Virtua
     }
 }
 
+// Greatest minus least sink of the pins under 1 N, over the depth; 0 without pins.
+double own_shape_per_depth(const tactile::TactilePlan& plan, const Eigen::Vector2d& place_m) {
+    if (!plan.pins) return 0.0;
+    tactile::RendererWork work = tactile::make_work(plan.renderer);
+    const tactile::Press press = tactile::press_with_force(plan.renderer, place_m, 1.0, work);
+    Eigen::VectorXd sink_m(mechanics::pin_count(plan.pins->grid));
+    tactile::shape_m(plan.renderer, work, sink_m);
+    return press.depth_m > 0.0 ? (sink_m.maxCoeff() - sink_m.minCoeff()) / press.depth_m : 0.0;
+}
+
 }  // namespace
 
 TactileResult run_virtual(std::shared_ptr<const tactile::TactilePlan> plan, const TactileRunOptions& options) {
@@ -141,11 +151,13 @@ TactileRecord run_press(const scene::Scene& scene, const scene::Plan& scene_plan
                         std::span<const devices::PressRow> press, const PressOptions& options) {
     auto plan = std::make_shared<tactile::TactilePlan>(tactile::make_tactile_plan(scene, scene_plan));
     if (options.schedule && plan->options.display) plan->options.display->schedule = *options.schedule;
+    if (options.compensation) plan->compensation = options.compensation;
     choose_input(press, *plan);
     const std::vector<devices::PressRow> rows(press.begin(), press.end());
     tactile::VirtualPort port(*plan, rows, options.seed);
     auto loop = make_tactile_loop(plan);
     TactileRecord out;
+    if (!press.empty()) out.own_shape_per_depth = own_shape_per_depth(*plan, {press[0].x_m, press[0].y_m});
     out.pins = static_cast<int>(port.height_m.size());
     run_virtual_steps(press, port, *loop, [&](const StepRecord& record) {
         out.time_s.push_back(record.command.time_s);
