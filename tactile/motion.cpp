@@ -17,6 +17,41 @@ std::size_t fitted(const Motion& motion) {
     return n;
 }
 
+// Weights of the fitted samples in the value of the fitted polynomial at a time: with orthogonal polynomials p_j over the
+// samples' times, w_i = sum_j p_j(t) p_j(t_i) / sum_k p_j(t_k)^2.
+struct Weights {
+    std::array<double, Motion::kMost> of{};
+    std::size_t n = 0;
+};
+
+Weights weights_at(const Motion& motion, double lead_s) {
+    Weights out;
+    out.n = fitted(motion);
+    const double last_s = latest(motion, 0).time_s;  // times count from here, so that a long run loses no digits
+    std::array<double, Motion::kMost> t_s{};
+    double mean_s = 0.0;
+    for (std::size_t i = 0; i < out.n; ++i) mean_s += t_s[i] = latest(motion, i).time_s - last_s;
+    const auto count = static_cast<double>(out.n);
+    mean_s /= count;
+    double tt = 0.0, ttt = 0.0;
+    for (std::size_t i = 0; i < out.n; ++i) {
+        t_s[i] -= mean_s;
+        tt += t_s[i] * t_s[i];
+        ttt += t_s[i] * t_s[i] * t_s[i];
+    }
+    // p_0 = 1, p_1 = t, p_2 = t^2 - (ttt / tt) t - tt / n
+    const auto bend = [&](double at_s) { return at_s * at_s - ttt / tt * at_s - tt / count; };
+    double bends = 0.0;
+    for (std::size_t i = 0; i < out.n; ++i) bends += bend(t_s[i]) * bend(t_s[i]);
+    const double at_s = lead_s - mean_s;
+    const bool bent = out.n >= kFewestBent && bends > 0.0;
+    for (std::size_t i = 0; i < out.n; ++i) {
+        out.of[i] = 1.0 / count + at_s * t_s[i] / tt;
+        if (bent) out.of[i] += bend(at_s) * bend(t_s[i]) / bends;
+    }
+    return out;
+}
+
 }  // namespace
 
 void remember(const MotionSample& sample, Motion& motion) noexcept {
@@ -38,35 +73,17 @@ void remember(const MotionSample& sample, Motion& motion) noexcept {
 MotionSample ahead(const Motion& motion, double lead_s) noexcept {
     if (motion.n == 0) return {};
     MotionSample out = latest(motion, 0);
-    const double last_s = out.time_s;
     out.time_s += lead_s;
-    const std::size_t n = fitted(motion);
-    if (n < 2) return out;
-    // times count from the last sample, so that a long run loses no digits
-    double mean_s = 0.0, mean_x_m = 0.0, mean_y_m = 0.0, mean_value = 0.0;
-    for (std::size_t i = 0; i < n; ++i) {
-        const MotionSample& s = latest(motion, i);
-        mean_s += s.time_s - last_s;
-        mean_x_m += s.x_m;
-        mean_y_m += s.y_m;
-        mean_value += s.value;
+    if (motion.n < 2) return out;
+    const Weights weights = weights_at(motion, lead_s);
+    out.x_m = out.y_m = out.value = 0.0;
+    for (std::size_t i = 0; i < weights.n; ++i) {
+        const MotionSample& sample = latest(motion, i);
+        out.x_m += weights.of[i] * sample.x_m;
+        out.y_m += weights.of[i] * sample.y_m;
+        out.value += weights.of[i] * sample.value;
     }
-    const double share = 1.0 / static_cast<double>(n);
-    mean_s *= share, mean_x_m *= share, mean_y_m *= share, mean_value *= share;
-    double tt = 0.0, tx = 0.0, ty = 0.0, tv = 0.0;
-    for (std::size_t i = 0; i < n; ++i) {
-        const MotionSample& s = latest(motion, i);
-        const double t_s = s.time_s - last_s - mean_s;
-        tt += t_s * t_s;
-        tx += t_s * (s.x_m - mean_x_m);
-        ty += t_s * (s.y_m - mean_y_m);
-        tv += t_s * (s.value - mean_value);
-    }
-    if (!(tt > 0.0)) return out;
-    const double from_mean_s = lead_s - mean_s;
-    out.x_m = mean_x_m + tx / tt * from_mean_s;
-    out.y_m = mean_y_m + ty / tt * from_mean_s;
-    out.value = std::max(0.0, mean_value + tv / tt * from_mean_s);
+    out.value = std::max(0.0, out.value);
     return out;
 }
 

@@ -16,7 +16,7 @@ struct MotionSample {
 
 // The latest samples.
 struct Motion {
-    static constexpr std::size_t kMost = 16;
+    static constexpr std::size_t kMost = 24;
     std::array<MotionSample, kMost> sample{};
     std::size_t n = 0;     // that are remembered
     std::size_t next = 0;  // the place of the next one
@@ -27,9 +27,11 @@ struct Motion {
 inline constexpr double kForgotten_s = 0.05;
 void remember(const MotionSample& sample, Motion& motion) noexcept;
 
-// Returns the motion `lead_s` after its last sample, on straight lines fitted by least squares to the samples of the last
-// kFitted_s (at least to two). The value does not fall below 0. Without two samples it is the last sample, later.
-inline constexpr double kFitted_s = 8e-3;
+// Returns the motion `lead_s` after its last sample: on parabolas fitted by least squares to the samples of the last
+// kFitted_s, or on straight lines while these are fewer than kFewestBent. The value does not fall below 0. Without two samples
+// it is the last sample, later.
+inline constexpr double kFitted_s = 16e-3;
+inline constexpr std::size_t kFewestBent = 8;
 MotionSample ahead(const Motion& motion, double lead_s) noexcept;
 
 }  // namespace palpa::tactile

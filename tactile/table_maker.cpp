@@ -155,13 +155,27 @@ Errors errors_between_forces(const Renderer& r, const Table& t, const Progress& 
     return errors;
 }
 
-bool is_good(const Errors& e, const TableOptions& o) { return e.force <= o.error && e.shape_m <= o.shape_error_m; }
+// How many times too large the errors are.
+double excess(const Errors& e, const TableOptions& o) {
+    return std::max(e.force / o.error, e.shape_m / o.shape_error_m);
+}
+
+// Whether halving the spacing until the error is as asked for would take more memory than is allowed, if the error goes
+// on falling as it did from the last level to this one. An answer that jumps, as that of a sphere does when a node
+// joins the contact, falls too slowly for any table.
+bool is_hopeless(double last, double now, double MB, const TableOptions& options) {
+    constexpr double kLeastFall = 1.15;
+    if (now <= 1.0) return false;
+    if (last / now < kLeastFall) return true;
+    const double levels = std::log(now) / std::log(last / now);
+    return MB * std::pow(4.0, levels) > options.most_MB;
+}
 
 std::string not_good(const Table& t, const TableOptions& options) {
     const auto number = [](double value) { return std::to_string(value); };
     return "the table's error stays at " + number(100.0 * t.error) + " % of the force limit and " +
            number(1e3 * t.shape_error_m) + " mm of the shape (wanted " + number(100.0 * options.error) + " % and " +
-           number(1e3 * options.shape_error_m) + " mm) with as much memory as is allowed: the answer stays live";
+           number(1e3 * options.shape_error_m) + " mm) within the memory allowed: the answer stays live";
 }
 
 // Fills and refines. The table is good, or says why it is not.
@@ -171,7 +185,9 @@ void refine(const Renderer& r, const TableOptions& options, const Progress& prog
     double spacing_m = options.spacing_m;
     double limit_N = r.force_limit_N / r.stiffness_scale;
     int forces = t.linear ? 1 : kFirstForces;
-    for (;;) {
+    constexpr int kFewestLevels = 3;  // before it can give up
+    double last = std::numeric_limits<double>::infinity();
+    for (int level = 1;; ++level) {
         set_places(area, spacing_m, t);
         set_forces(forces, limit_N, t);
         if (size_MB(t) > options.most_MB || spacing_m < kLeastSpacing_m || forces > kMostForces) {
@@ -189,10 +205,16 @@ void refine(const Renderer& r, const TableOptions& options, const Progress& prog
         t.error = std::max(places.force, between.force);
         t.shape_error_m = std::max(places.shape_m, between.shape_m);
         t.checked = places.checked + between.checked;
-        t.good = is_good(places, options) && is_good(between, options);
+        const double now = excess(places, options);
+        t.good = now <= 1.0 && excess(between, options) <= 1.0;
         if (t.good) return;
-        if (!is_good(places, options)) spacing_m *= 0.5;
-        if (!is_good(between, options)) forces *= 2;
+        if (level >= kFewestLevels && is_hopeless(last, now, size_MB(t), options)) {
+            t.note = not_good(t, options);
+            return;
+        }
+        last = now;
+        if (now > 1.0) spacing_m *= 0.5;
+        if (excess(between, options) > 1.0) forces *= 2;
     }
 }
 

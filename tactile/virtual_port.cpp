@@ -23,6 +23,7 @@ VirtualPort::VirtualPort(const TactilePlan& plan, std::vector<devices::PressRow>
     settings.pin_speed_m_per_s = plan.pin_device->speed_m_per_s;
     boards = make_maestro_boards(*plan.pin_device, settings, 0.0, seed);
     if (plan.pin_device->detect_baud) take_bytes({&devices::kMaestroBaudByte, 1}, *boards);
+    frame_due_s = 0.5 * plan.pin_device->frame_s;  // boards keep a time of their own: half a frame apart on average
     height_m.resize(boards->pin.size());
     read_heights(*boards, height_m);
 }
