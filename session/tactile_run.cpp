@@ -47,13 +47,13 @@ TactileSink::TactileSink(const tactile::TactilePlan& plan, const std::filesystem
 }
 
 void TactileSink::take(const StepRecord& record, std::span<const double> reached_m) {
-    const LoopCommand& step = record.command;
-    const auto n = static_cast<std::size_t>(step.pins);
-    add(step, result.steps);
-    const std::span<const double> estimate(step.reached_m.data(), n);
-    add({step.wanted_m.data(), n}, reached_m.empty() ? estimate : reached_m, step.pressed, result.mismatch);
-    if (record.step_ns > 0) step_.add_ns(record.step_ns);
-    if (log_) log_->write(step);
+    const LoopCommand& command = record.command;
+    const auto n = static_cast<std::size_t>(command.pins);
+    add(command, result.steps);
+    const std::span<const double> estimate(command.reached_m.data(), n);
+    add({command.wanted_m.data(), n}, reached_m.empty() ? estimate : reached_m, command.pressed, result.mismatch);
+    if (record.step_ns > 0) step.add_ns(record.step_ns);
+    if (log_) log_->write(command);
 }
 
 void TactileSink::take_rows(RowRing& recorded) {
@@ -66,9 +66,9 @@ void TactileSink::finish(const DeviceReport& loop) {
     result.loop = loop;
     result.devices.late_steps = loop.late_periods;
     result.devices.real_time = loop.real_time;
-    if (step_.timed() > 0) {
-        result.devices.step_p50_us = 1e-3 * step_.quantile_ns(0.5);
-        result.devices.step_p99_us = 1e-3 * step_.quantile_ns(0.99);
+    if (step.timed() > 0) {
+        result.devices.step_p50_us = 1e-3 * step.quantile_ns(0.5);
+        result.devices.step_p99_us = 1e-3 * step.quantile_ns(0.99);
     }
     if (log_) result.logged = log_->sync();
     if (rows_) result.logged = rows_->sync() && result.logged;
@@ -103,6 +103,16 @@ void run_virtual_steps(std::span<const devices::PressRow> press, tactile::Virtua
         }
         port.advance(tactile::kStep_s);
     }
+}
+
+// Greatest minus least sink of the pins under 1 N, over the depth; 0 without pins.
+double own_shape_per_depth(const tactile::TactilePlan& plan, const Eigen::Vector2d& place_m) {
+    if (!plan.pins) return 0.0;
+    tactile::RendererWork work = tactile::make_work(plan.renderer);
+    const tactile::Press press = tactile::press_with_force(plan.renderer, place_m, 1.0, work);
+    Eigen::VectorXd sink_m(mechanics::pin_count(plan.pins->grid));
+    tactile::shape_m(plan.renderer, work, sink_m);
+    return press.depth_m > 0.0 ? (sink_m.maxCoeff() - sink_m.minCoeff()) / press.depth_m : 0.0;
 }
 
 }  // namespace
@@ -141,11 +151,13 @@ TactileRecord run_press(const scene::Scene& scene, const scene::Plan& scene_plan
                         std::span<const devices::PressRow> press, const PressOptions& options) {
     auto plan = std::make_shared<tactile::TactilePlan>(tactile::make_tactile_plan(scene, scene_plan));
     if (options.schedule && plan->options.display) plan->options.display->schedule = *options.schedule;
+    if (options.compensation) plan->compensation = options.compensation;
     choose_input(press, *plan);
     const std::vector<devices::PressRow> rows(press.begin(), press.end());
     tactile::VirtualPort port(*plan, rows, options.seed);
     auto loop = make_tactile_loop(plan);
     TactileRecord out;
+    if (!press.empty()) out.own_shape_per_depth = own_shape_per_depth(*plan, {press[0].x_m, press[0].y_m});
     out.pins = static_cast<int>(port.height_m.size());
     run_virtual_steps(press, port, *loop, [&](const StepRecord& record) {
         out.time_s.push_back(record.command.time_s);

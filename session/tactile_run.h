@@ -75,10 +75,13 @@ struct TactileRecord {
     std::vector<double> depth_m;   // that it reached
     std::vector<double> height_m;  // true heights of the pins, `pins` per ms
     int pins = 0;
+    // Greatest minus least sink of the pins over the depth under 1 N at the press's first place: the tissue's own shape.
+    double own_shape_per_depth = 0.0;
 };
 struct PressOptions {
     std::uint64_t seed = 1;
-    std::optional<scene::PinSchedule> schedule;  // instead of the scene's
+    std::optional<scene::PinSchedule> schedule;              // instead of the scene's
+    std::optional<tactile::ArmCompensation> compensation{};  // instead of that of the device's file
 };
 // A press in virtual time. `plan` is that of the scene; no table is made.
 TactileRecord run_press(const scene::Scene& scene, const scene::Plan& plan, std::span<const devices::PressRow> press,

@@ -49,10 +49,10 @@ double ln_force_over_shape(std::span<const FeltMoment> press) {
     for (const FeltMoment& moment : press) {
         if (!is_finite(moment) || moment.depth_m < kLeastDepth_m || moment.force_N < kLeastForce_N) continue;
         own.add(moment.depth_m, moment.own_shape_m);
-        if (moment.shape_m < kGrowing * greatest_m) shape.add(moment.force_N, moment.shape_m);
+        if (moment.shape_m < kGrowing * greatest_m) shape.add(moment.shape_m, moment.force_N);
     }
     const bool felt = shape.value() > 0.0 && own.value() > 0.0;
-    return felt ? std::log(own.value() / shape.value()) : std::numeric_limits<double>::quiet_NaN();
+    return felt ? std::log(own.value() * shape.value()) : std::numeric_limits<double>::quiet_NaN();
 }
 
 }  // namespace

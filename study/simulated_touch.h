@@ -38,9 +38,10 @@ struct FeltStiffness {
     double& by(Sense sense) { return ln_N_per_m[static_cast<std::size_t>(sense)]; }
 };
 
-// Hand: the slope of force over depth through the origin (least squares). Fingertip: the slope of shape over force
-// while the shape still grows (below 90 % of its greatest in this press), as a stiffness by the ratio of shape and
-// depth that the tissue's own surface has. A sense is told nothing if the press has no depth, or less than 0.05 mm of
+// Hand: the slope of force over depth through the origin (least squares). Fingertip: the slope of force over shape while
+// the shape still changes (below 90 % of its greatest in this press), times the ratio of shape and depth that the tissue's
+// own surface has. Pins that are late are behind while pressing and ahead while releasing, so a press there and back tells
+// the right stiffness if both are alike. A sense is told nothing if the press has no depth, or less than 0.05 mm of
 // shape. Moments that are not finite are left out.
 FeltStiffness feel_by_hand(std::span<const FeltMoment> press);
 // The same depth and force, but seen: for a screen.

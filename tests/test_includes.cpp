@@ -32,6 +32,7 @@ const std::map<std::string, std::set<std::string>> kMayInclude{
     {"session",
      {"files", "platform/sample.h", "platform/timeline.h", "platform/trace.h", "calibration", "scene", "study"}},
     {"session/tactile_run", {"files", "scene", "session", "devices", "tactile"}},
+    {"session/tactile_run_identify", {"scene", "devices", "tactile"}},
     {"session/tactile_run_live", {"files", "scene", "session", "devices", "tactile"}},
     {"session/tactile_run_sink", {"files", "scene", "session", "devices", "tactile"}},
     {"fem", {"files", "mechanics", "fem/body_file", "fem/mesh_file"}},

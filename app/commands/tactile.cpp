@@ -182,6 +182,9 @@ void add_tactile(CLI::App& app) {
     CLI::App* tactile = app.add_subcommand("tactile", "Shape display and force arm on finite element tissue");
     tactile->require_subcommand(1);
     add_tactile_run(*tactile);
+    add_tactile_identify(*tactile);
+    add_tactile_characterise(*tactile);
+    add_tactile_pins(*tactile);
 }
 
 }  // namespace palpa::app
