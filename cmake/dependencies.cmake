@@ -13,6 +13,7 @@ find_package(nlohmann_json 3.11 REQUIRED)
 find_package(CLI11 2.1 REQUIRED)
 find_package(doctest 2.4 REQUIRED)
 find_package(PNG REQUIRED)
+find_package(ZLIB REQUIRED)  # CRC-32
 pkg_check_modules(SDL2 REQUIRED IMPORTED_TARGET sdl2)
 pkg_check_modules(X11 REQUIRED IMPORTED_TARGET x11 xi)
 pkg_check_modules(GLES REQUIRED IMPORTED_TARGET glesv2)

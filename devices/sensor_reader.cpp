@@ -32,9 +32,9 @@ void SensorReader::run() {
     }
 }
 
-void SensorReader::poll(std::vector<ForceReading>& out) {
+void SensorReader::poll(std::vector<ForceReading>& out, std::size_t most) {
     ForceReading reading;
-    while (ring_.pop(reading)) out.push_back(reading);
+    while (out.size() < most && ring_.pop(reading)) out.push_back(reading);
 }
 
 SensorHealth SensorReader::health() const {

@@ -2,6 +2,7 @@
 // Reads a sensor in a thread of its own; the caller takes the readings by poll(), which never waits.
 
 #include <atomic>
+#include <cstddef>
 #include <memory>
 #include <mutex>
 #include <thread>
@@ -19,8 +20,8 @@ class SensorReader {
     SensorReader(const SensorReader&) = delete;
     SensorReader& operator=(const SensorReader&) = delete;
 
-    // Appends everything that arrived since the last call, oldest first. Never blocks.
-    void poll(std::vector<ForceReading>& out);
+    // Appends what arrived since the last call, oldest first, until `out` holds `most`. Never blocks.
+    void poll(std::vector<ForceReading>& out, std::size_t most = std::size_t(-1));
     SensorHealth health() const;
     const std::string& name() const { return name_; }
 

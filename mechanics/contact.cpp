@@ -17,8 +17,21 @@ constexpr double kForceTolerance = 1e-9;   // of the force
 constexpr double kDepthRoundOff = 1e-15;   // of the depth: a narrower bracket cannot be halved
 constexpr int kMostSearchSteps = 60;
 
-double compliance_of(const Compliance& c, const ContactWork& w, int i, int j) {
-    return c.normal_m_per_N(w.candidate[at(i)], w.candidate[at(j)]);
+// The compliance of tissue and tool together, between touch nodes.
+struct Both {
+    const Eigen::MatrixXd& tissue;
+    const Eigen::MatrixXd* tool = nullptr;
+    double factor = 0.0;
+};
+Both both_of(const Compliance& c, const ContactOptions& options) {
+    const bool rigid = options.tool_compliance == nullptr || options.tool_factor == 0.0;
+    return {c.normal_m_per_N, rigid ? nullptr : options.tool_compliance, rigid ? 0.0 : options.tool_factor};
+}
+
+double compliance_of(const Both& c, const ContactWork& w, int i, int j) {
+    const int row = w.candidate[at(i)];
+    const int column = w.candidate[at(j)];
+    return c.tissue(row, column) + (c.tool ? c.factor * (*c.tool)(row, column) : 0.0);
 }
 
 // Starts from the last active set, which w.active still lists, if at least half of it is within reach. Otherwise starts
@@ -44,8 +57,8 @@ void list_active(ContactWork& w) {
 
 // Factors C on the active nodes (Cholesky), unless w.factor is of these nodes already. Returns false if C is not
 // positive definite there.
-bool factor_active(const Compliance& c, ContactWork& w) {
-    const bool same = w.factored.size() == w.active.size() &&
+bool factor_active(const Both& c, ContactWork& w) {
+    const bool same = w.factored.size() == w.active.size() && w.factored_tool == c.factor &&
                       std::equal(w.active.begin(), w.active.end(), w.factored.begin(),
                                  [&](int i, int touch) { return w.candidate[at(i)] == touch; });
     if (same) return true;
@@ -56,8 +69,14 @@ bool factor_active(const Compliance& c, ContactWork& w) {
     }
     double trace = 0.0;
     for (Index j = 0; j < n; ++j) {
-        const double* column = c.normal_m_per_N.col(w.candidate[at(w.active[static_cast<std::size_t>(j)])]).data();
+        const int touch = w.candidate[at(w.active[static_cast<std::size_t>(j)])];
+        const double* column = c.tissue.col(touch).data();
         for (Index i = j; i < n; ++i) w.factor(i, j) = column[w.candidate[at(w.active[static_cast<std::size_t>(i)])]];
+        if (c.tool) {
+            const double* tool = c.tool->col(touch).data();
+            for (Index i = j; i < n; ++i)
+                w.factor(i, j) += c.factor * tool[w.candidate[at(w.active[static_cast<std::size_t>(i)])]];
+        }
         trace += w.factor(j, j);
     }
     w.factor.topLeftCorner(n, n).diagonal().array() +=
@@ -68,11 +87,12 @@ bool factor_active(const Compliance& c, ContactWork& w) {
     // the factorisation does not report a NaN
     if (in_place.info() != Eigen::Success || !block.diagonal().allFinite()) return false;
     for (const int i : w.active) w.factored.push_back(w.candidate[at(i)]);
+    w.factored_tool = c.factor;
     return true;
 }
 
 // Solves C_AA p = delta_A on the active nodes; p is 0 elsewhere. Returns false if C_AA cannot be factored.
-bool solve_active(const Compliance& c, ContactWork& w) {
+bool solve_active(const Both& c, ContactWork& w) {
     if (!factor_active(c, w)) return false;
     const auto n = static_cast<Index>(w.active.size());
     for (Index i = 0; i < n; ++i) w.rhs(i) = w.delta_m[at(w.active[static_cast<std::size_t>(i)])];
@@ -85,13 +105,16 @@ bool solve_active(const Compliance& c, ContactWork& w) {
 }
 
 // Computes g = C p - delta at every candidate.
-void compute_gaps(const Compliance& c, ContactWork& w) {
+void compute_gaps(const Both& c, ContactWork& w) {
     const int n = static_cast<int>(w.candidate.size());
     for (int i = 0; i < n; ++i) w.gap_m[at(i)] = -w.delta_m[at(i)];
     for (const int j : w.active) {
-        const double* column = c.normal_m_per_N.col(w.candidate[at(j)]).data();
+        const double* column = c.tissue.col(w.candidate[at(j)]).data();
         const double p = w.p_N[at(j)];
         for (int i = 0; i < n; ++i) w.gap_m[at(i)] += column[w.candidate[at(i)]] * p;
+        if (!c.tool) continue;
+        const double* tool = c.tool->col(w.candidate[at(j)]).data();
+        for (int i = 0; i < n; ++i) w.gap_m[at(i)] += tool[w.candidate[at(i)]] * (c.factor * p);
     }
 }
 
@@ -112,7 +135,7 @@ bool change_set(double tolerance_m, ContactWork& w) {
 }
 
 // Changes the active set until it settles. Returns false if it does not, or cannot be solved.
-bool settle(const Compliance& c, int max_changes, ContactWork& w, int& changes) {
+bool settle(const Both& c, int max_changes, ContactWork& w, int& changes) {
     const double tolerance_m = gap_tolerance(w);
     for (int k = 0; k < max_changes; ++k) {
         list_active(w);
@@ -126,7 +149,7 @@ bool settle(const Compliance& c, int max_changes, ContactWork& w, int& changes) 
 
 // Projected Gauss-Seidel: p_i <- max(0, p_i - g_i / C_ii), then one direct solve on the nodes that it left pressing. If
 // that does not settle, the answer is that of the sweeps. Returns whether it settled.
-bool settle_by_sweeps(const Compliance& c, int sweeps, ContactWork& w, int& changes) {
+bool settle_by_sweeps(const Both& c, int sweeps, ContactWork& w, int& changes) {
     const int n = static_cast<int>(w.candidate.size());
     std::fill(w.p_N.begin(), w.p_N.end(), 0.0);
     for (int i = 0; i < n; ++i) w.gap_m[at(i)] = -w.delta_m[at(i)];
@@ -183,7 +206,7 @@ void collect(const Compliance& c, std::span<const Tool> tools, const ContactWork
 }
 
 // Returns d(normal force)/d(depth) = 1^T C_AA^-1 1, which holds while the set stays as it is.
-double stiffness_of_set(const Compliance& c, ContactWork& w) {
+double stiffness_of_set(const Both& c, ContactWork& w) {
     const auto n = static_cast<Index>(w.active.size());
     if (n == 0 || !factor_active(c, w)) return 0.0;
     w.rhs.head(n).setOnes();
@@ -192,7 +215,7 @@ double stiffness_of_set(const Compliance& c, ContactWork& w) {
 }
 
 double limited_depth_m(const Compliance& c, const ContactOptions& options) {
-    return std::min(options.max_depth_m, c.thickness_m);
+    return options.tool_compliance ? options.max_depth_m : std::min(options.max_depth_m, c.thickness_m);
 }
 
 bool all_finite(std::span<const Tool> tools) {
@@ -205,11 +228,12 @@ bool all_finite(std::span<const Tool> tools) {
 // bulge up to the tool: the margin grows until no node in contact lies near the rim of the candidates.
 void solve_contact(const Compliance& c, const ContactOptions& options, ContactWork& w, Contact& out) {
     out.changes = 0;
+    const Both both = both_of(c, options);
     for (double margin = 0.25;; margin *= 2.0) {
         find_candidates(c, w.tools, margin, w);
         first_guess(w.tools, w);
-        bool settled = settle(c, options.max_changes, w, out.changes);
-        if (!settled) settled = settle_by_sweeps(c, options.sweeps, w, out.changes);
+        bool settled = settle(both, options.max_changes, w, out.changes);
+        if (!settled) settled = settle_by_sweeps(both, options.sweeps, w, out.changes);
         out.flags.not_settled = !settled;
         remember(w);
         const bool at_rim = std::any_of(w.active.begin(), w.active.end(), [&](int i) {
@@ -297,7 +321,7 @@ void press_with_force(const Compliance& compliance, const Tool& tool, double for
     for (int i = 0; i < kMostSearchSteps; ++i) {
         trial.pose.depth_m = depth;
         press_to_depth(compliance, {&trial, 1}, options, work, contact);
-        contact.stiffness_N_per_m = stiffness_of_set(compliance, work);
+        contact.stiffness_N_per_m = stiffness_of_set(both_of(compliance, options), work);
         const double miss = contact.tool[0].normal_N - force_N;
         if (std::abs(miss) <= kForceTolerance * std::abs(force_N) || force_N <= 0.0) return;
         if (miss < 0.0 && depth >= limit_m) {

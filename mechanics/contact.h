@@ -41,9 +41,14 @@ struct Tool {
 };
 
 struct ContactOptions {
-    double max_depth_m = std::numeric_limits<double>::infinity();  // greatest depth; never more than the thickness
+    // Greatest depth; never more than the thickness, unless the tool gives way too.
+    double max_depth_m = std::numeric_limits<double>::infinity();
     int max_changes = 40;  // of the active set before Gauss-Seidel takes over; 0: Gauss-Seidel from the start
     int sweeps = 300;
+    // A tool that gives way too: this matrix between touch nodes (n_touch x n_touch, symmetric), times the factor, is
+    // added to C. Null: a rigid tool.
+    const Eigen::MatrixXd* tool_compliance = nullptr;
+    double tool_factor = 0.0;
 };
 
 struct ToolForce {
@@ -95,6 +100,7 @@ struct ContactWork {
     std::vector<char> in_contact;             // per candidate
     std::vector<char> was_in_contact;         // per touch node
     std::vector<int> factored;                // touch nodes that `factor` belongs to
+    double factored_tool = 0.0;               // tool_factor that it belongs to
     std::vector<int> active;                  // positions in `candidate` of the nodes in contact
     Eigen::MatrixXd factor;                   // lower Cholesky factor in its top left corner
     Eigen::VectorXd rhs;

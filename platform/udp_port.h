@@ -20,6 +20,8 @@ class UdpPort {
     // Receives one datagram. Returns its number of bytes; 0 if none came within `wait_s`, or if nobody listens at the
     // address. With `wait_s` = 0 it takes only what has arrived already.
     int receive(double wait_s, std::uint8_t* bytes, std::size_t room);
+    // Takes one datagram that has arrived, and when the system got it (steady clock). Returns 0 if there is none.
+    int receive_at_once(std::uint8_t* bytes, std::size_t room, double& arrival_s) noexcept;
 
   private:
     int fd_ = -1;

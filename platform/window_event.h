@@ -11,7 +11,7 @@ namespace key {
 inline constexpr int backspace = 8, tab = 9, enter = 13, escape = 27, space = 32, del = 127;
 inline constexpr int left = 256, right = 257, up = 258, down = 259, page_up = 260, page_down = 261, home = 262,
                      end = 263;
-inline constexpr int f10 = 264, f11 = 265;
+inline constexpr int f10 = 264, f11 = 265, f12 = 280;
 inline constexpr int pad_enter = 266, pad_plus = 267, pad_minus = 268, pad_0 = 269;  // pad_0 + 1 ... pad_0 + 9 follow
 inline constexpr int f1 = 279;
 inline constexpr int count = 300;

@@ -33,7 +33,8 @@ double spacings_across(const LinearTissue& tissue) {
 Stage depth_stage(const LinearTissue& tissue) {
     const std::string fidelity = "linear finite elements, " + std::to_string(tissue.mesh_nodes) + " nodes, " +
                                  mm_text(tissue.spacing_m[0]) +
-                                 " on the surface; frictionless contact solved at every sample";
+                                 (tissue.graded ? " on the surface where it is finest" : " on the surface") +
+                                 "; frictionless contact solved at every sample";
     const double spacings = spacings_across(tissue);
     if (spacings >= kFewestSpacings) return stage_of(StageForm::depth_linear, fidelity);
     return stage_of(spacings >= kTooFewSpacings ? StageForm::depth_linear_coarse : StageForm::depth_linear_too_coarse,

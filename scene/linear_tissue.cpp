@@ -25,16 +25,21 @@ constexpr int kMostInContact = 256;          // nodes that memory is reserved fo
 
 mechanics::Material material_of(const stiffnessmaps::Elastic& elastic) { return {elastic.young_Pa, elastic.poisson}; }
 
-mechanics::Body body_of(const stiffnessmaps::Phantom& phantom, std::size_t n_x, std::size_t n_y) {
+mechanics::Body body_of(const stiffnessmaps::Phantom& phantom, std::size_t n_x, std::size_t n_y,
+                        const std::optional<mechanics::Grading>& grading) {
     using namespace mechanics;
-    const auto even = [](double length_m, std::size_t n) {
-        return Eigen::VectorXd(Eigen::VectorXd::LinSpaced(static_cast<Eigen::Index>(n), 0.0, length_m));
+    const auto along = [&](std::size_t axis, std::size_t n) -> Eigen::VectorXd {
+        const auto nodes = static_cast<Eigen::Index>(n);
+        if (!grading) return Eigen::VectorXd::LinSpaced(nodes, 0.0, phantom.size_m[axis]);
+        return graded_coordinates_m(phantom.size_m[axis], static_cast<int>(nodes) - 1, grading->centre_m[axis],
+                                    grading->finest_m);
     };
     const double thickness_m = phantom.size_m[2];
-    const double finest_m = 0.5 * thickness_m / kLayers;
+    const double even_m = 0.5 * thickness_m / kLayers;
+    const double finest_m = grading ? std::min(grading->finest_m, even_m) : even_m;
     Body body;
-    body.mesh = hex_box(even(phantom.size_m[0], n_x), even(phantom.size_m[1], n_y),
-                        graded_coordinates_m(thickness_m, kLayers, thickness_m, finest_m));
+    body.mesh =
+        hex_box(along(0, n_x), along(1, n_y), graded_coordinates_m(thickness_m, kLayers, thickness_m, finest_m));
     body.materials.assign(static_cast<std::size_t>(body.mesh.cells.cols()), material_of(phantom.tissue));
     constexpr int kSubdivisions = 4;
     for (const stiffnessmaps::PhantomNodule& nodule : phantom.nodules) {
@@ -98,7 +103,7 @@ void press_to(const LinearTissue& tissue, const Eigen::Vector2d& p_m, double dep
 double energy_slope_N(const LinearTissue& tissue, const Eigen::Vector2d& p_m, const Eigen::Vector2d& u, double depth_m,
                       SlopeWork& work, mechanics::Contact& probe) {
     if (u.isZero() || !(depth_m > 0.0)) return 0.0;
-    const double window_m = std::min(tissue.spacing_m[0], tissue.spacing_m[1]);
+    const double window_m = spacing_at_m(tissue, p_m);
     press_to(tissue, p_m + 0.5 * window_m * u, depth_m, work.ahead, probe);
     const double ahead_J = probe.energy_J;
     press_to(tissue, p_m - 0.5 * window_m * u, depth_m, work.behind, probe);
@@ -142,7 +147,9 @@ LinearTissue make_linear_tissue(const LinearOptions& options, const std::filesys
     tissue.spacing_m[0] = tissue.phantom.size_m[0] / static_cast<double>(tissue.n_x - 1);
     tissue.spacing_m[1] = tissue.phantom.size_m[1] / static_cast<double>(tissue.n_y - 1);
 
-    mechanics::Problem problem = mechanics::problem_of(body_of(tissue.phantom, tissue.n_x, tissue.n_y));
+    check_grading(options, tissue.phantom);
+    mechanics::Problem problem =
+        mechanics::problem_of(body_of(tissue.phantom, tissue.n_x, tissue.n_y, options.grading));
     tissue.mesh_nodes = static_cast<int>(problem.mesh.nodes_m.cols());
     const mechanics::Faces outer = mechanics::boundary_faces(problem.mesh);
     const mechanics::Faces bottom = mechanics::faces_on(problem.mesh, outer, mechanics::Side::zmin);
@@ -151,14 +158,16 @@ LinearTissue make_linear_tissue(const LinearOptions& options, const std::filesys
         problem.mesh, outer, {0.0, tissue.phantom.size_m[0], 0.0, tissue.phantom.size_m[1]});
     request.tangential = options.friction.has_value();
     const std::uint64_t number = mechanics::fingerprint(problem, request);
+    tissue.content = number;
     tissue.from_cache = restore(cache, number, request, tissue.compliance);
-    if (tissue.from_cache) return tissue;
-    {
+    if (!tissue.from_cache) {
         // this scope frees the factor before the cache copies the compliance
         const mechanics::Factored factored = mechanics::factorise(problem, mechanics::best_solver());
         tissue.compliance = mechanics::surface_compliance(problem.mesh, factored, request, progress);
     }
-    if (!cache.empty()) tissue.cache_warning = files::write_cache(cache, number, arrays_of(tissue.compliance));
+    if (options.grading) take_grid(tissue);
+    if (!cache.empty() && !tissue.from_cache)
+        tissue.cache_warning = files::write_cache(cache, number, arrays_of(tissue.compliance));
     return tissue;
 }
 
@@ -240,7 +249,7 @@ void drag(const LinearTissue& tissue, const Eigen::Vector2d& p_m, double depth_m
         mechanics::slide_to(tissue.compliance, {tissue.indenter, {at_m.x(), at_m.y(), at_depth_m}}, options,
                             work.friction_work, work.friction, work.sliding);
     };
-    const double step_m = 0.5 * std::min(tissue.spacing_m[0], tissue.spacing_m[1]);
+    const double step_m = 0.5 * spacing_at_m(tissue, p_m);
     const mechanics::Pose& last = work.friction.pose;
     Eigen::Vector2d from_m = work.friction.touching ? Eigen::Vector2d(last.x_m, last.y_m) : p_m;
     double from_depth_m = work.friction.touching ? last.depth_m : depth_m;
@@ -300,6 +309,11 @@ double rise_N(const LinearTissue& tissue, const Station& at, LinearWork& work) {
 
 void sample_surface(const LinearTissue& tissue, const SurfaceEffect&, const Contact&, const LinearWork& work,
                     SurfaceShape& shape) {
+    if (tissue.graded) {
+        Eigen::VectorXd node_sink_m;
+        surface_sink_m(tissue, work, node_sink_m);
+        return spread_evenly(tissue, node_sink_m, shape);
+    }
     shape.n_x = static_cast<Eigen::Index>(tissue.n_x);
     shape.n_y = static_cast<Eigen::Index>(tissue.n_y);
     shape.spacing_m = {tissue.spacing_m[0], tissue.spacing_m[1]};

@@ -12,6 +12,7 @@
 #include "mechanics/compliance.h"
 #include "mechanics/contact.h"
 #include "mechanics/friction.h"
+#include "mechanics/surface_grid.h"
 #include "scene/contact.h"
 #include "scene/scene.h"
 #include "scene/stages.h"
@@ -29,9 +30,11 @@ struct LinearTissue {
     mechanics::Indenter indenter;
     std::size_t n_x = 0;  // surface nodes along x and y, numbered x fastest
     std::size_t n_y = 0;
-    double spacing_m[2] = {0.0, 0.0};  // between them
-    std::optional<double> friction;    // coefficient; absent: frictionless
-    int mesh_nodes = 0;                // of the whole mesh
+    double spacing_m[2] = {0.0, 0.0};              // between them; the least, if they are graded
+    std::optional<mechanics::SurfaceGrid> graded;  // their coordinates, unless they are even
+    std::optional<double> friction;                // coefficient; absent: frictionless
+    int mesh_nodes = 0;                            // of the whole mesh
+    std::uint64_t content = 0;                     // fingerprint of mesh, materials and supports
     bool from_cache = false;
     std::string cache_warning;  // why the compliance could not be stored, for people; else empty
 };
@@ -67,6 +70,19 @@ struct LinearWork {
 // that is wrong or needs too much memory, mechanics' errors for what cannot be solved, and mechanics::Cancelled.
 LinearTissue make_linear_tissue(const LinearOptions& options, const std::filesystem::path& cache,
                                 const mechanics::Progress& progress);
+
+// Spreads the sink of graded nodes (n_x * n_y values) evenly over the block, at most 96 x 96 of them, so that a picture has
+// one spacing.
+void spread_evenly(const LinearTissue& tissue, const Eigen::VectorXd& node_sink_m, SurfaceShape& shape);
+
+// Returns the lesser node spacing at a place.
+double spacing_at_m(const LinearTissue& tissue, const Eigen::Vector2d& p_m);
+
+// Throws InputError if the grading's centre is not on the block.
+void check_grading(const LinearOptions& options, const stiffnessmaps::Phantom& phantom);
+
+// Takes the coordinates of graded nodes, and their least spacing, from the tissue's compliance.
+void take_grid(LinearTissue& tissue);
 
 LinearWork make_work(const LinearTissue& tissue);
 
@@ -109,9 +125,11 @@ bool takes_seconds(const LinearOptions& options);
 std::vector<std::filesystem::path> input_files(const LinearOptions& options);
 files::Json file_hashes(const LinearOptions& options);
 std::filesystem::path map_folder(const LinearOptions& options);
+inline bool knows_surface(const LinearOptions&) { return true; }
 
 LinearTissue prepare(const LinearOptions& options, const Scene& scene, const mechanics::Progress& progress);
 bool serves(const LinearTissue& tissue, const Scene& scene);
+inline const LinearTissue* block_of(const LinearTissue& tissue) { return &tissue; }
 void describe(const LinearTissue& tissue, const Scene& scene, Plan& plan);
 std::vector<Stage> stages(const LinearTissue& tissue, const Scene& scene);
 files::Json identity(const LinearTissue& tissue);

@@ -12,6 +12,7 @@
 
 namespace palpa::scene {
 
+struct LinearTissue;
 struct Plan;
 
 // A map prepared for look-up.
@@ -31,9 +32,11 @@ bool takes_seconds(const MapOptions& options);
 std::vector<std::filesystem::path> input_files(const MapOptions& options);
 files::Json file_hashes(const MapOptions& options);
 std::filesystem::path map_folder(const MapOptions& options);
+inline bool knows_surface(const MapOptions&) { return false; }
 
 MapTissue prepare(const MapOptions& options, const Scene& scene, const mechanics::Progress& progress);
 bool serves(const MapTissue& tissue, const Scene& scene);
+inline const LinearTissue* block_of(const MapTissue&) { return nullptr; }
 void describe(const MapTissue& tissue, const Scene& scene, Plan& plan);
 std::vector<Stage> stages(const MapTissue& tissue, const Scene& scene);
 files::Json identity(const MapTissue& tissue);

@@ -10,8 +10,10 @@
 
 #include "avatar/delay.h"
 #include "avatar/display_ratio.h"
+#include "mechanics/mesh.h"
 #include "scene/cues.h"
 #include "scene/mapping.h"
+#include "scene/tactile_options.h"
 #include "stiffnessmaps/field.h"
 
 namespace palpa::scene {
@@ -27,6 +29,8 @@ struct LinearOptions {
     double spacing_m = 2e-3;         // of the surface nodes; memory grows with its power -4, preparation time faster
     std::optional<double> friction;  // coefficient, > 0; absent: frictionless
     bool nodules = true;
+    // Finer around a place and towards the surface, so that `spacing_m` is only the mean; absent: even.
+    std::optional<mechanics::Grading> grading{};
 };
 using TissueOptions = std::variant<MapOptions, LinearOptions>;
 
@@ -70,6 +74,7 @@ struct Scene {
     std::optional<TextureDrag> texture_drag;  // only beside a law
     std::optional<SurfaceEffect> surface;
     DrawnCues cues;  // of the surface
+    std::optional<TactileOptions> tactile;
     std::int64_t seed = 1;
 };
 

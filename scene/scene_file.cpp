@@ -2,7 +2,9 @@
 
 #include "files/input_error.h"
 #include "files/json.h"
+#include "scene/find_file.h"
 #include "scene/scene.h"
+#include "scene/tissue.h"
 
 namespace palpa::scene {
 namespace {
@@ -10,14 +12,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kDefaultProfile = "s-pen.json";
-
-fs::path find_file(const std::string& name, const fs::path& scene_file, const fs::path& assets_folder) {
-    const fs::path given(name);
-    if (given.is_absolute()) return given;
-    const fs::path beside = (scene_file.parent_path() / given).lexically_normal();
-    if (fs::exists(beside) || given.has_parent_path()) return beside;
-    return assets_folder / given;
-}
 
 Mapping read_mapping(files::JsonReader json) {
     json.only({"kind", "rotate_deg", "flip", "random_turn", "true_size", "tissue_mm"});
@@ -106,6 +100,15 @@ std::optional<avatar::Delay> read_delay(files::JsonReader json, TangentialOption
     return law;
 }
 
+// Whether the centre is on the block is known only with the phantom (make_linear_tissue).
+mechanics::Grading read_grading(files::JsonReader json, double spacing_m) {
+    json.only({"centre_mm", "finest_mm"});
+    const auto centre_mm = json.numbers("centre_mm", 2, files::kNotNegative);
+    const double finest_mm = json.number("finest_mm", {0.1, 1e3 * spacing_m});
+    json.finish();
+    return {{1e-3 * centre_mm[0], 1e-3 * centre_mm[1]}, 1e-3 * finest_mm};
+}
+
 void read_tissue(files::JsonReader json, const fs::path& file, const fs::path& assets, Scene& scene) {
     json.only({"map", "linear", "stiffness_scale"});
     const bool linear = json.has("linear");
@@ -116,11 +119,12 @@ void read_tissue(files::JsonReader json, const fs::path& file, const fs::path& a
         return json.finish();
     }
     files::JsonReader block = json.object("linear");
-    block.only({"phantom", "spacing_mm", "friction"});
+    block.only({"phantom", "spacing_mm", "friction", "grading"});
     LinearOptions options;
     options.phantom = find_file(block.text("phantom"), file, assets / "phantoms");
     options.spacing_m = 1e-3 * block.number("spacing_mm", {0.2, 100.0}, 1e3 * options.spacing_m);
     if (block.has("friction")) options.friction = block.number("friction", {0.0, 10.0, true});
+    if (auto grading = block.optional_object("grading")) options.grading = read_grading(*grading, options.spacing_m);
     block.finish();
     scene.tissue = options;
     json.finish();
@@ -185,7 +189,7 @@ void read_avatar(files::JsonReader json, Scene& scene) {
 Scene read_scene(const fs::path& file, const fs::path& assets) {
     const files::Json root = files::read_json(file);
     files::JsonReader json(root, file.string());
-    json.only({"name", "tissue", "profile", "mapping", "force_scale", "avatar", "surface", "cues", "seed"});
+    json.only({"name", "tissue", "profile", "mapping", "force_scale", "avatar", "surface", "cues", "tactile", "seed"});
     Scene scene;
     scene.file = file;
     scene.name = json.text("name");
@@ -199,6 +203,11 @@ Scene read_scene(const fs::path& file, const fs::path& assets) {
     if (auto cues = json.optional_object("cues")) {
         if (!scene.surface) json.fail("cues", "no surface to draw them on", "the key surface beside it");
         scene.cues = read_cues(*cues);
+    }
+    if (auto tactile = json.optional_object("tactile")) {
+        if (!knows_surface(scene.tissue))
+            json.fail("tactile", "a map as the tissue", "linear: a map knows no surface under a finger");
+        scene.tactile = read_tactile(*tactile, file, assets);
     }
     scene.seed = json.integer("seed", 0, 2000000000, 1);
     json.finish();

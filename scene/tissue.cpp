@@ -48,6 +48,10 @@ bool serves(const Tissue& tissue, const Scene& scene) {
     return std::visit([&](const auto& of_kind) { return serves(of_kind, scene); }, tissue);
 }
 
+const LinearTissue* block_of(const Tissue& tissue) {
+    return std::visit([](const auto& of_kind) { return block_of(of_kind); }, tissue);
+}
+
 void describe(const Tissue& tissue, const Scene& scene, Plan& plan) {
     std::visit([&](const auto& of_kind) { describe(of_kind, scene, plan); }, tissue);
 }

@@ -19,6 +19,11 @@ std::vector<std::filesystem::path> input_files(const TissueOptions& options);
 files::Json file_hashes(const TissueOptions& options);           // SHA-256 of its input files, for logs
 std::filesystem::path map_folder(const TissueOptions& options);  // empty for a tissue that is not made from a map
 
+// Whether a finger's contact with its surface can be computed. Here, so that the reader of scene files needs no tissue.
+inline bool knows_surface(const TissueOptions& options) {
+    return std::visit([](const auto& of_kind) { return knows_surface(of_kind); }, options);
+}
+
 void leave_out_nodules(TissueOptions& options);  // sets `nodules` to false
 
 // Reads or computes the tissue, which may take seconds to minutes: `progress` reports and may cancel. Throws
@@ -27,6 +32,9 @@ Tissue prepare(const TissueOptions& options, const Scene& scene, const mechanics
 
 // Returns whether a prepared tissue can be used for this scene; see serves() of plans (scene/plan.h).
 bool serves(const Tissue& tissue, const Scene& scene);
+
+// Returns the block whose surface a finger can press, or nullptr for a tissue that knows none.
+const LinearTissue* block_of(const Tissue& tissue);
 
 // Fills what the plan says about its tissue, from tissue_name on, and adds to its notes.
 void describe(const Tissue& tissue, const Scene& scene, Plan& plan);

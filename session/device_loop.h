@@ -14,6 +14,7 @@
 #include <cassert>
 #include <chrono>
 #include <cstdint>
+#include <pthread.h>
 #include <thread>
 #include <vector>
 
@@ -59,7 +60,9 @@ struct DeviceReport {
     std::int64_t not_numbers = 0;       // feedback or contacts that are not finite; they are neither run nor recorded
     std::int64_t refused_commands = 0;  // commands that are not finite; they are not sent
     std::int64_t missed_periods = 0;    // left out because they could not be caught up on
+    std::int64_t late_periods = 0;      // begun more than 1 ms late
     double latest_s = 0.0;              // greatest delay with which a period began
+    bool real_time = false;             // the scheduler granted the thread its real-time priority
     // Rows that were run but not recorded because the ring was full. Once a row is lost no later one is recorded, so
     // that the recorded rows replay.
     std::int64_t lost_rows = 0;
@@ -114,6 +117,36 @@ inline void write_recorded(RowRing& recorded, DeviceRowWriter& writer) {
     for (DeviceRow row; recorded.take(row);) writer.write(row);
 }
 
+// Asks the scheduler to run this thread before all ordinary ones (SCHED_FIFO). Returns whether it was granted, which takes
+// the right to (ulimit -r, CAP_SYS_NICE).
+inline bool ask_for_real_time() noexcept {
+    sched_param parameter{};
+    parameter.sched_priority = 40;
+    return pthread_setschedparam(pthread_self(), SCHED_FIFO, &parameter) == 0;
+}
+
+// Calls tick(now_s), with the time on the host's clock, at a rate until `stopping`. Periods that it is too late for are left
+// out and counted. rate_Hz: at least 1 (assert).
+template <class Tick>
+void run_ticks(double rate_Hz, const std::atomic<bool>& stopping, DeviceReport& report, const Tick& tick) noexcept {
+    assert(rate_Hz >= 1.0);
+    using Clock = std::chrono::steady_clock;
+    const auto period = std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(1.0 / rate_Hz));
+    constexpr double kLate_s = 1e-3;
+    auto due = Clock::now();
+    while (!stopping) {
+        const auto now = Clock::now();
+        const auto missed = (now - due) / period;
+        const double late_s = std::chrono::duration<double>(now - due).count();
+        report.latest_s = std::max(report.latest_s, late_s);
+        report.late_periods += late_s > kLate_s;
+        report.missed_periods += missed;
+        tick(std::chrono::duration<double>(now.time_since_epoch()).count());
+        due += (missed + 1) * period;
+        std::this_thread::sleep_until(due);
+    }
+}
+
 // Runs a loop in a thread until stop() or the destructor. `port` and `loop` must outlive it; meanwhile other threads
 // may only call `loop.pen.put` and `loop.recorded.take`. rate_Hz: at least 1 (assert).
 template <Device D, class Port>
@@ -131,21 +164,9 @@ class DeviceThread {
     }
 
   private:
-    // Leaves out and counts the periods that it is too late for.
     void run(double rate_Hz, Port& port, DeviceLoop<D>& loop) noexcept {
-        assert(rate_Hz >= 1.0);
-        using Clock = std::chrono::steady_clock;
-        const auto period = std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(1.0 / rate_Hz));
-        auto due = Clock::now();
-        while (!stopping_) {
-            const auto now = Clock::now();
-            const auto missed = (now - due) / period;
-            loop.report.latest_s = std::max(loop.report.latest_s, std::chrono::duration<double>(now - due).count());
-            loop.report.missed_periods += missed;
-            run_period<D>(std::chrono::duration<double>(now.time_since_epoch()).count(), port, loop);
-            due += (missed + 1) * period;
-            std::this_thread::sleep_until(due);
-        }
+        loop.report.real_time = ask_for_real_time();
+        run_ticks(rate_Hz, stopping_, loop.report, [&](double now_s) { run_period<D>(now_s, port, loop); });
     }
 
     std::atomic<bool> stopping_{false};

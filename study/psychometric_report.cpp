@@ -96,8 +96,9 @@ PsychometricPair pair_of(const PsychometricResult& a, const PsychometricResult& 
     out.b = b.condition;
     const bool by_people = a.method == IntervalMethod::bootstrap && b.method == IntervalMethod::bootstrap;
     out.method = by_people ? IntervalMethod::bootstrap : IntervalMethod::profile;
-    if (!a.fit.sd || !b.fit.sd) return out;
-    out.jnd_ratio = *a.fit.sd / *b.fit.sd;
+    const bool both = a.fit.sd && b.fit.sd;
+    if (both) out.jnd_ratio = *a.fit.sd / *b.fit.sd;
+    if (!both && !by_people) return out;  // resamples have limits also where a curve is flat or a step
     out.ci = by_people ? bootstrap_jnd_ratio({of_a.people, of_a.resamples}, {of_b.people, of_b.resamples},
                                              greatest_lapse, options)
                        : independent_jnd_ratio(a.fit, b.fit);

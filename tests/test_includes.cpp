@@ -27,16 +27,21 @@ const std::map<std::string, std::set<std::string>> kMayInclude{
      {"files", "platform/sample.h", "platform/timeline.h", "calibration", "stiffnessmaps", "mechanics", "avatar"}},
     {"render", {"platform"}},
     {"devices", {"files", "platform"}},
+    {"tactile", {"files", "mechanics", "scene", "devices"}},
     {"study", {"files"}},
     {"session",
      {"files", "platform/sample.h", "platform/timeline.h", "platform/trace.h", "calibration", "scene", "study"}},
+    {"session/tactile_run", {"files", "scene", "session", "devices", "tactile"}},
+    {"session/tactile_run_identify", {"scene", "devices", "tactile"}},
+    {"session/tactile_run_live", {"files", "scene", "session", "devices", "tactile"}},
+    {"session/tactile_run_sink", {"files", "scene", "session", "devices", "tactile"}},
     {"fem", {"files", "mechanics", "fem/body_file", "fem/mesh_file"}},
     {"fem/body_file", {"files", "mechanics", "fem/mesh_file"}},
     {"fem/mesh_file", {"files", "mechanics"}},
     {"figures", {"files", "stiffnessmaps", "calibration", "study"}},
     {"accuracy",
-     {"files", "platform", "calibration", "stiffnessmaps", "mechanics", "avatar", "scene", "devices", "study",
-      "session", "fem", "figures"}},
+     {"files", "platform", "calibration", "stiffnessmaps", "mechanics", "avatar", "scene", "devices", "tactile",
+      "study", "session", "fem", "figures"}},
     {"desk", {"files", "study"}},
     // the rooms of the app
     {"app", {"files", "scene", "app/commands/command_line.h"}},
@@ -49,7 +54,7 @@ const std::map<std::string, std::set<std::string>> kMayInclude{
       "study", "session"}},
     {"app/commands",
      {"app", "files", "platform", "calibration", "stiffnessmaps", "mechanics", "avatar", "scene", "render", "devices",
-      "study", "session", "fem", "figures", "accuracy", "desk"}},
+      "study", "session", "tactile", "fem", "figures", "accuracy", "desk"}},
     {"app/web", {"app", "files", "platform", "calibration", "scene", "render", "study", "session"}},
 };
 
@@ -137,6 +142,9 @@ TEST_CASE("includes: the table refuses what it must") {
     CHECK(allowed("accuracy", "fem/mesh_file.h"));
     CHECK_FALSE(allowed("fem/body_file", "fem/case.h"));
     CHECK_FALSE(allowed("scene", "fem/body_file.h"));
+    CHECK(allowed("session/tactile_run", "tactile/loop.h"));
+    CHECK_FALSE(allowed("session", "tactile/loop.h"));
+    CHECK_FALSE(allowed("tactile", "session/device_rows.h"));
 }
 
 // Everything that depends on the kind of tissue is an overload behind scene/tissue.h.

@@ -105,6 +105,7 @@ int run_command_line(int argc, char** argv) {
     add_fem(app);
     add_study(app);
     add_serve(app);
+    add_tactile(app);
     add_bench(app);
     refuse_what_is_no_value(app);
     return with_all_printed(call(argc, argv, app));

@@ -11,6 +11,7 @@
 #include "scene/plan.h"
 #include "session/plan_in_progress.h"
 #include "session/replay.h"
+#include "tactile/plan.h"
 
 namespace palpa::app {
 namespace {
@@ -41,6 +42,30 @@ void print_stage(const scene::Stage& stage, const scene::Meter* meter) {
     std::printf("    %s\n    error: %s\n", stage.fidelity.c_str(), stage.error.c_str());
 }
 
+files::Json tactile_json(const tactile::TactilePlan& plan) {
+    files::Json json{
+        {"pairing", tactile::pairing_text(plan.options)},
+        {"stiffness_N_per_mm", 1e-3 * plan.stiffness_N_per_m},
+        {"stroke_used_up_N", plan.pins ? files::number_or_null(plan.stroke_used_up_N) : files::Json(nullptr)},
+        {"stages", files::Json::array()}};
+    for (const tactile::StageText& stage : plan.stages) {
+        json["stages"].push_back({{"name", stage.name},
+                                  {"per", stage.per},
+                                  {"fidelity", stage.fidelity},
+                                  {"error", stage.error},
+                                  {"cost_us", stage.cost_us}});
+    }
+    return json;
+}
+
+void print_tactile_stages(const tactile::TactilePlan& plan) {
+    std::printf("%s\n", tactile::pairing_text(plan.options).c_str());
+    for (const tactile::StageText& stage : plan.stages) {
+        std::printf("%-14s per %-6s  about %g us\n    %s\n    error: %s\n", stage.name.c_str(), stage.per.c_str(),
+                    stage.cost_us, stage.fidelity.c_str(), stage.error.c_str());
+    }
+}
+
 // Every sample is timed.
 void measure(const platform::Trace& trace, session::Session& session) {
     session::begin_replay({}, trace.info, std::nullopt, session);
@@ -59,7 +84,10 @@ void explain(const ExplainOptions& options) {
         options.trace.empty() ? default_trace() : std::filesystem::path(options.trace);
     if (options.measure) measure(platform::read_trace(trace_file), session);
 
-    const std::vector<std::string> notes = scene::notes_of(scene, plan);
+    std::optional<tactile::TactilePlan> arm_and_pins;
+    if (scene.tactile) arm_and_pins = tactile::make_tactile_plan(scene, plan);
+    std::vector<std::string> notes = scene::notes_of(scene, plan);
+    if (arm_and_pins) notes.insert(notes.end(), arm_and_pins->notes.begin(), arm_and_pins->notes.end());
     files::Json json{{"scene", scene.name}, {"stages", files::Json::array()}, {"notes", notes}};
     if (!options.json) std::printf("%s\n", scene.name.c_str());
     for (const auto* stages : {&plan.sample_stages, &plan.frame_stages}) {
@@ -76,6 +104,10 @@ void explain(const ExplainOptions& options) {
             json["stages"].push_back(entry);
             if (!options.json) print_stage(stage, meter);
         }
+    }
+    if (arm_and_pins) {
+        json["tactile"] = tactile_json(*arm_and_pins);
+        if (!options.json) print_tactile_stages(*arm_and_pins);
     }
     if (options.json) {
         std::fputs(files::json_text(json).c_str(), stdout);

@@ -77,6 +77,8 @@ void open_screen(Screen screen, platform::Window& window, App& app) {
             return open_maps(window, app);
         case Screen::history:
             return open_history(window, app);
+        case Screen::tactile:
+            return go_to(WatchingTactile{}, window, app);
     }
 }
 

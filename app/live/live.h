@@ -31,6 +31,7 @@ struct RunOptions {
     Screen screen = Screen::trial;  // the screen that is open first
     // A study's protocol: its trials replace the scene, and `log` is its folder.
     std::string protocol;
+    bool simulate_devices = false;  // arm and pins: starts their simulators
     bool headless = false;
     bool json = false;
 };

@@ -10,9 +10,12 @@
 #include <vector>
 
 #include "app/live/live.h"
+#include "app/live/tactile_driver.h"
 #include "app/screens/doing.h"
 #include "app/screens/frame.h"
+#include "app/screens/pins_preview.h"
 #include "app/screens/screens.h"
+#include "app/screens/tactile_screen.h"
 #include "platform/hold_press.h"
 #include "platform/pressure.h"
 #include "platform/trace.h"
@@ -27,6 +30,15 @@ struct TrialStopped {      // the trial's files can no longer be written
     std::string why;
 };
 using Course = std::variant<GoesOn, WaitsForKeeper, TrialStopped>;
+
+// Arm and pins of the scene.
+struct TactileControl {
+    std::unique_ptr<TactileDriver> driver;  // while a trial drives devices
+    std::shared_ptr<PinsPreview> preview;   // for pins that are only drawn; null: there are none
+    std::optional<TactileShown> shown;      // nothing: the scene has neither arm nor pins
+    std::optional<double> fault_since_s;    // window's clock; a fault lasts since then
+    files::Json report;                     // of the last trial's loop
+};
 
 // Everything that the app has open while its window is open.
 struct App {
@@ -54,7 +66,8 @@ struct App {
     std::vector<double> waiting_s;  // host times of the samples that no frame has shown yet
     Course course;
     session::TrialKeeper* keeper = nullptr;  // may be null
-    double parted_s = 0.0;                   // when the keeper was last given the trial so far
+    TactileControl tactile;
+    double parted_s = 0.0;  // when the keeper was last given the trial so far
     bool quit = false;
 };
 
@@ -130,6 +143,18 @@ bool work_at_stake(const App& app);
 // why, else "".
 std::string close_trial(App& app);
 void act(platform::Action action, platform::Window& window, App& app);
+
+// tactile_live.cpp
+// Notes what the session's scene asks of arm and pins, and drives nothing.
+void know_tactile(App& app);
+// Starts the scene's devices, unless they are stopped. Throws as TactileDriver does.
+void drive_tactile(const std::filesystem::path& rows, App& app);
+void begin_tactile(App& app);  // both; the trial goes on without a device that cannot be opened
+void rest_tactile(App& app);
+void follow_tactile(double now_s, App& app);  // once per turn of the loop
+void stop_tactile(App& app);                  // F12: at once, and until release_tactile()
+void release_tactile(App& app);
+bool tactile_failed(double now_s, const App& app);  // the devices have stopped, or a fault of theirs does not pass
 
 // device_notes.cpp
 void note_devices(const platform::Window& window, App& app);  // into app.notices

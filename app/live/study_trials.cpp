@@ -17,22 +17,65 @@
 namespace palpa::app {
 namespace {
 
+// Starts arm and pins, if the scene has any, so that the settings of the trial can name them. Returns false if they
+// cannot be opened.
+bool begin_devices(session::SessionFiles& files, App& app) {
+    know_tactile(app);
+    if (!app.tactile.shown) return true;
+    const study::RunFiles log = study::next_run(files.log, files.participant, files.task, files.first_run);
+    try {
+        drive_tactile(log.file("_tactile.tsv"), app);
+    } catch (const std::exception& error) {
+        app.tactile.shown->problem = error.what();
+        return false;
+    }
+    files.label->study["devices"] = files::Json::array();
+    for (const session::TactileDevice& device : app.tactile.shown->devices) {
+        files.label->study["devices"].push_back(
+            {{"role", device.role}, {"name", device.name}, {"port", device.port}, {"simulated", device.simulated}});
+    }
+    return true;
+}
+
+// True if the devices were stopped or could not be opened, which somebody has to read before the trial begins again.
+bool devices_stopped(const App& app) {
+    const auto& shown = app.tactile.shown;
+    return shown && (shown->moment.stopped || !shown->problem.empty());
+}
+
+// What the due trial's arm and pins lack, or why they were stopped.
+void note_tactile(const App& app, StudyRun& run) {
+    if (!run.progress.next || !feels_pins(run) || app.tactile.driver) return run.devices_note.clear();
+    run.devices_note.clear();
+    if (devices_stopped(app)) {
+        const TactileShown& shown = *app.tactile.shown;
+        run.devices_note =
+            shown.problem.empty() ? words::filled(words::kDevicesStopped, {shown.moment.fault}) : shown.problem;
+        return;
+    }
+    if (app.options.simulate_devices) return;
+    for (const std::string& missing : missing_devices(due_scene(run).scene))
+        run.devices_note += (run.devices_note.empty() ? "" : "\n") + words::filled(words::kDevicesMissing, {missing});
+}
+
 void begin_study_trial(platform::Window& window, const Gui& gui, App& app) {
     StudyRun& run = *study_of(app.doing);
     try {
         const StudyScene& due = due_scene(run);
         const study::PlannedTrial& trial = due_trial(run);
         const bool known = trial.practice && !due_compares(run);
+        put_scene(scene_of(due, trial), due.plan, window, app);
         session::SessionFiles files = due_files(run);
         files.finger_offset_mm = finger_offset_mm(app);
-        put_scene(scene_of(due, trial), due.plan, window, app);
         app.notices.note.clear();
+        if (!begin_devices(files, app)) return wait_for_device(false, run);
         session::begin_trial(files, info_of(app, window),
                              known ? session::TrialMode::practice : session::TrialMode::test, app.session);
         app.parted_s = 0.0;
         session::take_sample(resize_sample(window, gui, app.settings, now_of(app, window)), app.session);
         std::get<step::Trial>(run.step).begun = true;
     } catch (const std::exception& error) {
+        rest_tactile(app);
         stop_study(error.what(), run);
     }
 }
@@ -54,7 +97,10 @@ void note_pen(const App& app, StudyRun& run) {
 }
 
 // A trial begins only with its device, and a pen's trial only with a pen that measures pressure.
-bool may_begin(const App& app) { return is_device_here(app) && study_of(app.doing)->pen != PenVerdict::no_pressure; }
+bool may_begin(const App& app) {
+    const StudyRun& run = *study_of(app.doing);
+    return is_device_here(app) && run.pen != PenVerdict::no_pressure && run.devices_note.empty();
+}
 
 // Interrupts a trial whose device is gone, since it says nothing about the person; the trial is repeated.
 void interrupt_study_trial(platform::Window& window, App& app) {
@@ -138,11 +184,17 @@ double trial_ends_s(const App& app) {
 
 void follow_study(const std::optional<StudyWish>& wish, platform::Window& window, const Gui& gui, App& app) {
     StudyRun& run = *study_of(app.doing);
+    const bool waited = at<step::Device>(run);
     if (wish) carry_out(*wish, run);
+    if (waited && trial_waits(run)) {  // somebody has read why the devices were stopped, and went on
+        release_tactile(app);
+        if (app.tactile.shown) app.tactile.shown->problem.clear();
+    }
     follow_keeper(now_of(app, window), app);
     if (trial_waits(run) && !run.keeping_since_s) {
         note_devices(window, app);
         note_pen(app, run);
+        note_tactile(app, run);
         if (may_begin(app)) {
             begin_study_trial(window, gui, app);
         } else {
@@ -151,17 +203,21 @@ void follow_study(const std::optional<StudyWish>& wish, platform::Window& window
     }
     if (at<step::Instructions>(run) || at<step::Device>(run)) note_pen(app, run);
     if (auto* device = std::get_if<step::Device>(&run.step)) {
-        device->connected = is_device_here(app);
-        device->here = may_begin(app);
+        note_tactile(app, run);
+        const bool stopped = devices_stopped(app);  // but they could run
+        device->connected = is_device_here(app) && (stopped || run.devices_note.empty());
+        device->here = stopped || may_begin(app);
     }
     if (!trial_goes_on(run)) return;
-    if (!is_device_here(app)) return interrupt_study_trial(window, app);
+    if (!is_device_here(app) || tactile_failed(window.now_s(), app)) return interrupt_study_trial(window, app);
     if (now_of(app, window) >= trial_ends_s(app)) act(platform::Action::finish, window, app);
 }
 
 bool allowed(const platform::Sample& sample, App& app) {
     const study::Modality modality = due_condition(*study_of(app.doing)).modality;
-    if (sample.phase == platform::Phase::ui || tool_allowed(modality, sample.tool)) return true;
+    if (sample.phase == platform::Phase::ui) return true;
+    if (app.tactile.shown && app.tactile.shown->arm_leads) return false;  // what is felt is not on the screen
+    if (tool_allowed(modality, sample.tool)) return true;
     if (sample.phase == platform::Phase::down) app.notices.note = words::filled(words::kDoneWith, {name_of(modality)});
     return false;
 }

@@ -47,10 +47,12 @@ struct BrowsingMaps {};
 
 struct BrowsingHistory {};  // the results that were kept
 
+struct WatchingTactile {};  // the force arm and the shape display
+
 // A study has steps of its own (app/study/study_step.h), its trials among them. While it runs, the app does nothing
 // else: there is no menu, and nothing is revealed before the end.
 using Doing = std::variant<Palpating, Reviewing, CheckingDevices, MeasuringScreen, Calibrating, BrowsingMaps,
-                           BrowsingHistory, StudyRun>;
+                           BrowsingHistory, WatchingTactile, StudyRun>;
 
 inline StudyRun* study_of(Doing& doing) { return std::get_if<StudyRun>(&doing); }
 inline const StudyRun* study_of(const Doing& doing) { return std::get_if<StudyRun>(&doing); }

@@ -7,6 +7,7 @@
 #include "app/screens/content_hash.h"
 #include "app/screens/history_screen.h"
 #include "app/screens/map_screen.h"
+#include "app/screens/tactile_screen.h"
 #include "app/screens/tissue_drawing.h"
 #include "scene/advance.h"
 
@@ -45,6 +46,8 @@ bool draw_covering(const Shown& shown, Gui& gui, ViewState& view, Wishes& wishes
         draw_map_screen(shown, gui, *view.maps, wishes);
     } else if (std::holds_alternative<BrowsingHistory>(shown.doing)) {
         draw_history_screen(shown, gui, *view.history, wishes);
+    } else if (std::holds_alternative<WatchingTactile>(shown.doing)) {
+        draw_tactile_screen(shown, gui, wishes);
     } else if (const StudyRun* study = study_of(shown.doing); study != nullptr && !trial_goes_on(*study)) {
         draw_study_screen(*study, shown.now_s, gui, view.study, wishes);
     } else {
@@ -120,6 +123,7 @@ Wishes draw_frame(const ToShow& what, const Canvas& canvas, ViewState& view, sce
     shown.experimenter = view.cost;
     Wishes wishes;
     draw_panels(shown, layout_now(gui, window.width, window.height, what.settings), gui, view, wishes);
+    draw_stopped_banner(shown, gui);
     gui.end_frame();
     const std::int64_t built_ns = scene::steady_ns();
     view.times.built_ns = built_ns;

@@ -202,6 +202,7 @@ bool Gui::receive_finger(const platform::WindowEvent& event) {
 }
 
 bool Gui::receive_key(const platform::WindowEvent& event) {
+    if (event.key == platform::key::f12 && event.kind == platform::WindowEvent::Kind::key_down) stop_ = true;
     if (event.repeat) return keys_to_panels_;  // Dear ImGui repeats a held key by itself
     PanelInput input{PanelInput::Kind::key};
     input.down = event.kind == platform::WindowEvent::Kind::key_down;
@@ -341,6 +342,8 @@ void Gui::type_instead(const std::string& text) {
     input.text = text;
     wait_for_frame(std::move(input), waiting_);
 }
+
+bool Gui::take_stop() { return std::exchange(stop_, false); }
 
 bool Gui::pressed(int key, bool ctrl) const {
     return std::any_of(keys_.begin(), keys_.end(), [&](const Key& k) { return k.key == key && k.ctrl == ctrl; });

@@ -52,6 +52,8 @@ class Gui {
     void claim(const PanelArea& area) { areas_.push_back(area); }
     // True if a key (platform/window_event.h) goes down in this frame; always false while text is typed.
     bool pressed(int key, bool ctrl = false) const;
+    // Returns whether F12 went down since the last call, whatever the panels do with keys. It does not wait for a frame.
+    bool take_stop();
     // Returns the field that takes letters now, for a screen with an on-screen keyboard; nothing if no field does.
     struct TextField {
         std::string text;
@@ -95,6 +97,7 @@ class Gui {
     bool mouse_on_panel_ = false;
     bool keys_to_panels_ = false;
     bool keep_enter_ = false;
+    bool stop_ = false;     // F12 went down
     bool emptied_ = false;  // a field was emptied by a Backspace that nobody pressed
     float pointer_x_px_ = -1e6f;
     float pointer_y_px_ = -1e6f;

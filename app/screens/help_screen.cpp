@@ -15,15 +15,22 @@ struct KeyLine {
     const char* does;
 };
 
-constexpr KeyLine kKeyLines[] = {
-    {words::kKeyArrows, words::kKeyArrowsDo},         {words::kKeySpace, words::kKeySpaceDo},
-    {words::kKeyPages, words::kKeyPagesDo},           {words::kKeyMark, words::kKeyMarkDo},
-    {words::kKeyConfidence, words::kKeyConfidenceDo}, {words::kKeyUndo, words::kKeyUndoDo},
-    {words::kKeyFinish, words::kKeyFinishDo},         {words::kKeyPause, words::kKeyPauseDo},
-    {words::kKeyAgain, words::kKeyAgainDo},           {words::kKeyNext, words::kKeyNextDo},
-    {words::kKeyPicture, words::kKeyPictureDo},       {words::kKeyMenu, words::kKeyMenuDo},
-    {words::kKeyScreens, words::kKeyScreensDo},       {words::kKeyCost, words::kKeyCostDo},
-    {words::kKeyWindow, words::kKeyWindowDo}};
+constexpr KeyLine kKeyLines[] = {{words::kKeyArrows, words::kKeyArrowsDo},
+                                 {words::kKeySpace, words::kKeySpaceDo},
+                                 {words::kKeyPages, words::kKeyPagesDo},
+                                 {words::kKeyMark, words::kKeyMarkDo},
+                                 {words::kKeyConfidence, words::kKeyConfidenceDo},
+                                 {words::kKeyUndo, words::kKeyUndoDo},
+                                 {words::kKeyFinish, words::kKeyFinishDo},
+                                 {words::kKeyPause, words::kKeyPauseDo},
+                                 {words::kKeyAgain, words::kKeyAgainDo},
+                                 {words::kKeyNext, words::kKeyNextDo},
+                                 {words::kKeyPicture, words::kKeyPictureDo},
+                                 {words::kKeyMenu, words::kKeyMenuDo},
+                                 {words::kKeyScreens, words::kKeyScreensDo},
+                                 {words::kKeyCost, words::kKeyCostDo},
+                                 {words::kKeyStop, words::kKeyStopDo},
+                                 {words::kKeyWindow, words::kKeyWindowDo}};
 
 }  // namespace
 

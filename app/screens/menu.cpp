@@ -115,6 +115,10 @@ void experimenter_page(const Shown& shown, const Gui& gui, ViewState& view, Wish
     if (big_button(words::kCalibratePressure, "", {}, gui)) wishes.screen = Screen::calibrate;
     if (big_button(words::kMaps, words::kKeyMaps, {0.0f, kTarget_mm, may_show_maps(shown.trial), false}, gui))
         wishes.screen = Screen::maps;
+    const bool devices = shown.tactile != nullptr;
+    if (!shown.notices.keeps_trials &&
+        big_button(words::kTactile, words::kKeyTactile, {0.0f, kTarget_mm, devices, false, words::kHintTactile}, gui))
+        wishes.screen = Screen::tactile;
     if (big_button(words::kPerformance, words::kKeyCost, {0.0f, kTarget_mm, true, view.cost, words::kHintPerformance},
                    gui))
         view.cost = !view.cost;
@@ -269,7 +273,10 @@ void take_keys(const Shown& shown, const Gui& gui, ViewState& view, Wishes& wish
     // in a study the other keys would change what the protocol fixes, or reveal what it hides
     if (study_of(shown.doing) != nullptr) return;
     if (help) view.help = true;
-    if (gui.pressed('t')) wishes.trials = true;
+    if (gui.pressed('t')) {
+        wishes.trials = true;  // in the browser
+        if (!shown.notices.keeps_trials) wishes.screen = Screen::tactile;
+    }
     if (gui.pressed('y')) wishes.studies = true;
     menu_keys(shown, gui, wishes);
     if (gui.pressed('x') && shown.scene.cues.side_view) wishes.side_view = !shown.settings.side_view;

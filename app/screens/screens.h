@@ -26,7 +26,8 @@ enum class Screen : std::uint8_t {
     scale,
     calibrate,
     maps,
-    history
+    history,
+    tactile
 };  // screens that a person can ask for
 
 struct Wishes {
@@ -50,9 +51,11 @@ struct Wishes {
     bool save_picture = false;
     bool full_screen = false;  // enter or leave full screen
     bool press_by_hold = false;
-    bool trials = false;      // show the trials that the keeper holds
-    bool studies = false;     // let the person choose a study
-    bool understood = false;  // dismiss the problems that are shown
+    bool trials = false;           // show the trials that the keeper holds
+    bool studies = false;          // let the person choose a study
+    bool understood = false;       // dismiss the problems that are shown
+    bool stop_devices = false;     // arm and pins, at once
+    bool release_devices = false;  // after a stop or a fault that stays
     bool quit = false;
     bool sure = false;  // confirms that the marks of the present trial may be thrown away,
     bool stay = false;  // or that they may not
@@ -108,8 +111,9 @@ struct StudyForm {
     double clock_began_s = 0.0;  // of `typed`; 0: the clock is stopped
 };
 
-struct MapBrowser;   // map_screen.h
-struct HistoryView;  // history_screen.h
+struct MapBrowser;    // map_screen.h
+struct TactileShown;  // tactile_screen.h
+struct HistoryView;   // history_screen.h
 
 enum class MenuPage : std::uint8_t { trial, settings, experimenter };
 
@@ -134,9 +138,10 @@ struct ToShow {
     const Settings& settings;
     const Notices& notices;
     const Doing& doing;
-    const std::optional<Wishes>& asked;  // would throw away marks or answers: done once the person has confirmed
-    double now_s = 0.0;                  // on the clock of the samples
-    double dt_s = 1.0 / 60.0;            // since the last frame
+    const std::optional<Wishes>& asked;     // would throw away marks or answers: done once the person has confirmed
+    double now_s = 0.0;                     // on the clock of the samples
+    double dt_s = 1.0 / 60.0;               // since the last frame
+    const TactileShown* tactile = nullptr;  // null: the scene has neither arm nor pins
 };
 
 // The same while a frame is built, with what is derived from it.

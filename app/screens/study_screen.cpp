@@ -202,11 +202,12 @@ void draw_device(const step::Device& step, const StudyRun& run, Gui& gui, Wishes
                                     : words::kDeviceMissing,
                         {device}));
     if (step.left) paragraph(words::kTrialInterrupted);
+    if (!run.devices_note.empty()) warning_paragraph(run.devices_note);
     if (no_pressure) {
         warning_paragraph(words::kNeedsPressure);
         paragraph(words::kCloseAndContinue);
     } else if (!step.here) {
-        warning_paragraph(words::filled(words::kTrialWaits, {device}));
+        if (run.devices_note.empty()) warning_paragraph(words::filled(words::kTrialWaits, {device}));
         paragraph(words::kCloseAndContinue);
     }
     gap(gui);

@@ -3,7 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "app/screens/force_bar.h"
+#include "app/screens/pins_drawing.h"
 #include "app/screens/screens.h"
+#include "app/screens/tactile_screen.h"
 #include "app/screens/widgets.h"
 #include "app/screens/words.h"
 #include "mechanics/linear_range.h"
@@ -11,62 +14,9 @@
 namespace palpa::app {
 namespace {
 
-// How far the force bar reaches beyond the force of the known depth.
-constexpr double kBarOver = 1.25;
-
-// Hatches the part of the bar beyond the known depth, where the tissue's answer is not known.
-void draw_beyond(ImVec2 low, ImVec2 high, float mm, ImDrawList& draw) {
-    draw.AddRectFilled(low, high, kDark);
-    draw.PushClipRect(low, high, true);
-    const float width_px = high.x - low.x;
-    for (float y = low.y; y < high.y + width_px; y += 1.6f * mm)
-        draw.AddLine(ImVec2(low.x, y), ImVec2(high.x, y - width_px), kPale, 0.25f * mm);
-    draw.PopClipRect();
-    draw.AddRect(low, high, kPale);
-}
-
-// A bullet graph: one bar before three tints of one hue, light, medium and deep, named beside it.
-void draw_force_bar(const Shown& shown, float height_px, const Gui& gui) {
-    const double known_N = std::max(0.1, shown.plan.greatest_force_N);
-    const double full_N = kBarOver * known_N;
-    const float mm = gui.mm();
-    const ImVec2 at = ImGui::GetCursorScreenPos();
-    const float width_px = 8.0f * mm;
-    const auto y_of = [&](double force_N) {
-        return at.y + height_px * (1.0f - static_cast<float>(std::clamp(force_N / full_N, 0.0, 1.0)));
-    };
-    ImDrawList& draw = *ImGui::GetWindowDrawList();
-    const double bounds_N[4] = {0.0, shown.plan.zone_N[0], shown.plan.zone_N[1], known_N};
-    constexpr const char* kZones[3] = {words::kLight, words::kMedium, words::kDeep};
-    const float text_px = ImGui::GetFontSize();
-    for (std::size_t zone = 0; zone < 3; ++zone) {
-        const float top = y_of(bounds_N[zone + 1]);
-        const float bottom = y_of(bounds_N[zone]);
-        draw.AddRectFilled(ImVec2(at.x, top), ImVec2(at.x + width_px, bottom), kForceTints[zone]);
-        if (bottom - top < 1.1f * text_px) continue;
-        const bool room =
-            width_px + 1.5f * mm + ImGui::CalcTextSize(kZones[zone]).x <= ImGui::GetContentRegionAvail().x;
-        const float name_px = room ? text_px : 0.75f * text_px;
-        draw.AddText(ImGui::GetFont(), name_px, ImVec2(at.x + width_px + 1.5f * mm, 0.5f * (top + bottom - name_px)),
-                     kPale, kZones[zone]);
-        if (bottom - top < 2.0f * text_px) continue;
-        const std::string bound = fixed(bounds_N[zone + 1], 1) + (zone == 2 ? " N" : "");
-        draw.AddText(ImGui::GetFont(), 0.7f * text_px, ImVec2(at.x + width_px + 1.5f * mm, top), kPale, bound.c_str());
-        draw.AddLine(ImVec2(at.x + width_px, top), ImVec2(at.x + width_px + mm, top), kPale);
-    }
-    draw_beyond(ImVec2(at.x, at.y), ImVec2(at.x + width_px, y_of(known_N)), mm, draw);
-    if (y_of(known_N) - at.y >= 1.1f * text_px) {
-        draw.AddText(ImGui::GetFont(), 0.75f * text_px,
-                     ImVec2(at.x + width_px + 1.5f * mm, 0.5f * (at.y + y_of(known_N) - 0.75f * text_px)), kPale,
-                     words::kBeyond);
-    }
-    const float top = y_of(shown.state.contact.normal_N);
-    draw.AddRectFilled(ImVec2(at.x + 0.3f * width_px, top), ImVec2(at.x + 0.7f * width_px, at.y + height_px), kInk);
-    if (shown.state.contact.saturated) {  // a cap on top, not only a colour
-        draw.AddRectFilled(ImVec2(at.x - 0.5f * mm, top - 0.8f * mm), ImVec2(at.x + width_px + 0.5f * mm, top), kLag);
-    }
-    ImGui::Dummy(ImVec2(width_px, height_px));
-}
+// A surface that a study gives to the finger alone: the screen shows nothing of it, and its force only in practice.
+bool hides_tissue(const Shown& shown) { return study_of(shown.doing) != nullptr && arm_leads(shown); }
+bool hides_force(const Shown& shown) { return hides_tissue(shown) && !due_trial(*study_of(shown.doing)).practice; }
 
 // True for an interval of a forced choice: there is nothing to mark, and no number may tell how soft the surface is.
 bool is_interval(const Doing& doing) {
@@ -78,8 +28,8 @@ void draw_numbers(const Shown& shown, const Gui& gui) {
     const float column_px = 13.5f * gui.mm();
     const scene::Contact& contact = shown.state.contact;
     ImGui::BeginGroup();
-    value_line(words::kForce, fixed(contact.normal_N, 2) + " N", column_px);
-    const std::string depth_mm = fixed(1e3 * contact.depth_m, 2);
+    value_line(words::kForce, fixed(felt_force_N(shown), 2) + " N", column_px);
+    const std::string depth_mm = fixed(1e3 * (arm_leads(shown) ? shown.tactile->moment.depth_m : contact.depth_m), 2);
     const std::string depth = contact.saturated ? words::filled(words::kMoreThan, {depth_mm}) : depth_mm + " mm";
     if (!is_interval(shown.doing)) value_line(words::kDepth, depth, column_px);
     // in a test the eye has to judge the lag, so no number shows it
@@ -97,7 +47,9 @@ void draw_numbers(const Shown& shown, const Gui& gui) {
 void draw_contact_note(const Shown& shown) {
     const scene::Contact& contact = shown.state.contact;
     const char* note = "";
-    if (contact.saturated)
+    if (shown.tactile != nullptr && shown.tactile->moment.held)
+        note = words::kPressLightly;
+    else if (contact.saturated)
         note = words::kBeyondKnownDepth;
     else if (!contact.measured)
         note = words::kNotMeasuredHere;
@@ -227,11 +179,13 @@ void column_panel(const Shown& shown, Gui& gui, ViewState& view, Wishes& wishes)
     const float rest_px = 62.0f * gui.mm() + 3.0f * ImGui::GetFontSize();
     const float bar_px = std::clamp(ImGui::GetContentRegionAvail().y - rest_px, 16.0f * gui.mm(), 55.0f * gui.mm());
     const float left_px = ImGui::GetCursorPosX();
-    draw_force_bar(shown, bar_px, gui);
-    ImGui::SameLine();
-    ImGui::SetCursorPosX(left_px + 26.0f * gui.mm());
-    draw_numbers(shown, gui);
-    if (!is_interval(shown.doing)) draw_contact_note(shown);
+    if (!hides_force(shown)) {
+        draw_force_bar(shown, bar_px, gui);
+        ImGui::SameLine();
+        ImGui::SetCursorPosX(left_px + 26.0f * gui.mm());
+        draw_numbers(shown, gui);
+    }
+    if (!is_interval(shown.doing) || arm_leads(shown)) draw_contact_note(shown);
     draw_actions(shown, gui, wishes);
     ImGui::BeginChild("messages", ImVec2(0.0f, 0.0f), false,
                       ImGuiWindowFlags_NavFlattened);  // long messages scroll in the rest of the panel
@@ -248,13 +202,15 @@ void strip_panel(const Shown& shown, Gui& gui, ViewState& view, Wishes& wishes) 
     const float top_px = ImGui::GetCursorPosY();
     const float gap_px = ImGui::GetStyle().ItemSpacing.x;
     ImGui::BeginChild("left", ImVec2(wide_px - right_px - gap_px, height_px), false, ImGuiWindowFlags_NavFlattened);
-    draw_force_bar(shown, std::max(16.0f * mm, height_px - 2.0f * mm), gui);
-    ImGui::SameLine();
-    ImGui::SetCursorPosX(30.0f * mm);
+    if (!hides_force(shown)) {
+        draw_force_bar(shown, std::max(16.0f * mm, height_px - 2.0f * mm), gui);
+        ImGui::SameLine();
+        ImGui::SetCursorPosX(30.0f * mm);
+    }
     ImGui::BeginChild("beside", ImVec2(0.0f, height_px - 2.0f * mm), false,
                       ImGuiWindowFlags_NavFlattened);  // long messages scroll
-    draw_numbers(shown, gui);
-    if (!is_interval(shown.doing)) draw_contact_note(shown);
+    if (!hides_force(shown)) draw_numbers(shown, gui);
+    if (!is_interval(shown.doing) || arm_leads(shown)) draw_contact_note(shown);
     draw_messages(shown, gui, wishes);
     ImGui::EndChild();
     ImGui::EndChild();
@@ -264,6 +220,20 @@ void strip_panel(const Shown& shown, Gui& gui, ViewState& view, Wishes& wishes) 
     draw_actions(shown, gui, wishes);
     if (ImGui::GetScrollMaxY() > 1.0f) gui.note_overflow("actions");
     ImGui::EndChild();
+}
+
+// Covers the tissue's part of the window, and says what to do.
+void draw_cover(const Shown& shown, const Gui& gui, ImDrawList& draw) {
+    const scene::ScreenArea& area = shown.state.screen;
+    const ImVec2 low(static_cast<float>(area.x_px), static_cast<float>(area.y_px));
+    const ImVec2 high(static_cast<float>(area.x_px + area.width_px), static_cast<float>(area.y_px + area.height_px));
+    draw.AddRectFilled(low, high, kDark);
+    const char* text = study_of(shown.doing)->interval == 0 ? words::kFeelFirstOn : words::kFeelSecondOn;
+    const float wrap_px = std::max(20.0f, high.x - low.x - 8.0f * gui.mm());
+    const ImVec2 size = ImGui::CalcTextSize(text, nullptr, false, wrap_px);
+    draw.AddText(ImGui::GetFont(), ImGui::GetFontSize(),
+                 ImVec2(0.5f * (low.x + high.x - size.x), 0.5f * (low.y + high.y - size.y)), kInk, text, nullptr,
+                 wrap_px);
 }
 
 ImVec2 at_height(const render::TissueView& view, const Eigen::Vector2d& p_m, float height_m) {
@@ -303,6 +273,7 @@ void draw_pen(const Shown& shown, const Gui& gui, ImDrawList& draw) {
 
 void draw_on_tissue(const Shown& shown, const Gui& gui) {
     ImDrawList& draw = *ImGui::GetBackgroundDrawList();
+    if (hides_tissue(shown)) return draw_cover(shown, gui, draw);
     if (shown.trial.mode == session::TrialMode::practice) {
         for (const stiffnessmaps::Nodule& nodule : shown.plan.nodules) {
             const ImVec2 at = on_surface(shown.picture, nodule.x_m, nodule.y_m);
@@ -323,6 +294,7 @@ void draw_on_tissue(const Shown& shown, const Gui& gui) {
     }
     draw_pen(shown, gui, draw);
     draw_side_view(shown, gui);
+    draw_pins_inset(shown, gui);
 }
 
 void draw_trial_panel(const Shown& shown, const Layout& layout, Gui& gui, ViewState& view, Wishes& wishes) {

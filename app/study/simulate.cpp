@@ -12,6 +12,7 @@
 #include <unistd.h>
 
 #include "app/assets.h"
+#include "app/study/felt_stimuli.h"
 #include "files/clock.h"
 #include "files/folder_lock.h"
 #include "files/text.h"
@@ -24,7 +25,7 @@
 namespace palpa::app {
 namespace {
 
-enum Purpose : std::uint64_t { kTraits = 11, kTrials = 12, kAnswers = 13 };
+enum Purpose : std::uint64_t { kTraits = 11, kTrials = 12, kAnswers = 13, kHabit = 14, kDevices = 15 };
 
 constexpr double kScreenWidth_px = 1280.0;
 constexpr double kScreenHeight_px = 800.0;
@@ -180,11 +181,15 @@ void run_trial(Shared& shared, const study::PlannedParticipant& who, const study
     shared.result.written_MB += written_MB;
 }
 
-// The answers of one participant to pairs of surfaces, which need no loop: each answer is drawn from two stiffnesses
-// with noise.
+// The answers of one participant to pairs of surfaces, which need no trials: each answer is drawn from what two surfaces
+// feel like, with noise.
 class PairAnswers {
   public:
-    PairAnswers(Shared& shared, const study::PlannedParticipant& who) : shared_(shared), who_(who) {}
+    PairAnswers(Shared& shared, const study::PlannedParticipant& who)
+        : shared_(shared),
+          who_(who),
+          felt_(shared.scenes, habit_of(shared, who.number),
+                study::derived_seed(shared.options.seed, kDevices, static_cast<std::uint64_t>(who.number))) {}
 
     void answer(const study::PlannedTrial& trial) {
         const study::Protocol& protocol = shared_.protocol;
@@ -205,7 +210,9 @@ class PairAnswers {
         row.reference_kPa = study::reference_kPa_of(protocol, trial.condition);
         row.comparison_kPa = study::comparisons_kPa_of(protocol, trial.condition)[static_cast<std::size_t>(level)];
         row.first = trial.reference_first ? "reference" : "comparison";
-        const bool right = study::answers_right(row.reference_kPa, row.comparison_kPa, kSoftnessWeber, random);
+        if (const auto stays = study::reference_condition_of(protocol, trial.condition))
+            row.reference_on = protocol.conditions[*stays].id;
+        const bool right = is_right(trial, row, random);
         const bool reference_softer = row.reference_kPa < row.comparison_kPa;
         row.answer = right == reference_softer ? "reference" : "comparison";
         row.correct = right ? 1 : 0;
@@ -219,6 +226,23 @@ class PairAnswers {
     }
 
   private:
+    static PressHabit habit_of(const Shared& shared, int number) {
+        study::Random random(study::derived_seed(shared.options.seed, kHabit, static_cast<std::uint64_t>(number)));
+        return draw_habit(random);
+    }
+
+    // By what the displays showed where that can be run, else by the two stiffnesses themselves.
+    bool is_right(const study::PlannedTrial& trial, const study::ChoiceRow& row, study::Random& random) {
+        const study::Protocol& protocol = shared_.protocol;
+        if (!feels_displays(protocol, shared_.scenes, trial.condition))
+            return study::answers_right(row.reference_kPa, row.comparison_kPa, kSoftnessWeber, random);
+        const std::size_t on = study::reference_condition_of(protocol, trial.condition).value_or(trial.condition);
+        const double reference = study::perceived_ln(felt_.of(on, 1.0), {}, random);
+        const double ratio = row.comparison_kPa / row.reference_kPa;
+        const double comparison = study::perceived_ln(felt_.of(trial.condition, ratio), {}, random);
+        return (comparison > reference) == (row.comparison_kPa > row.reference_kPa);
+    }
+
     int level_of(const study::PlannedTrial& trial) {
         if (trial.comparison >= 0) return trial.comparison;
         auto [answers, fresh] = steps_.try_emplace(trial.condition);
@@ -231,6 +255,7 @@ class PairAnswers {
 
     Shared& shared_;
     const study::PlannedParticipant& who_;
+    FeltStimuli felt_;
     std::optional<study::ChoiceLog> log_;
     std::map<std::size_t, std::vector<study::StaircaseAnswer>> steps_;  // by condition
 };

@@ -19,13 +19,20 @@ std::size_t due_condition_index(const StudyRun& run) {
 
 const study::Condition& due_condition(const StudyRun& run) { return run.protocol.conditions[due_condition_index(run)]; }
 
-bool typed_in(const study::Condition& condition) {
-    return condition.modality == study::Modality::hand || condition.modality == study::Modality::tangible ||
-           condition.modality == study::Modality::shape_display;
+bool typed_in(const StudyRun& run, std::size_t condition) {
+    const study::Modality modality = run.protocol.conditions[condition].modality;
+    if (modality == study::Modality::hand || modality == study::Modality::tangible) return true;
+    const auto& scene = run.scenes[condition];
+    return modality == study::Modality::shape_display && !(scene && scene->scene.tactile);
+}
+
+bool feels_pins(const StudyRun& run) {
+    return shows_tissue(run) && run.scenes[due_condition_index(run)]->scene.tactile.has_value();
 }
 
 bool shows_tissue(const StudyRun& run) {
-    return !typed_in(due_condition(run)) && run.scenes[due_condition_index(run)].has_value();
+    const std::size_t condition = due_condition_index(run);
+    return !typed_in(run, condition) && run.scenes[condition].has_value();
 }
 
 bool due_compares(const StudyRun& run) {

@@ -43,6 +43,22 @@ std::vector<StudyScene> stimuli_of(const StudyScene& scene, const study::Protoco
     return out;
 }
 
+// Pins that are only drawn cannot be felt.
+void check_displays(const StudyRun& run) {
+    for (std::size_t i = 0; i < run.scenes.size(); ++i) {
+        const study::Condition& condition = run.protocol.conditions[i];
+        if (condition.modality != study::Modality::shape_display || typed_in(run, i)) continue;
+        const scene::TactileOptions& tactile = *run.scenes[i]->scene.tactile;
+        if ((tactile.arm && !tactile.arm->device.empty()) || (tactile.display && !tactile.display->device.empty()))
+            continue;
+        throw files::bad_input(run.protocol.file.string(),
+                               "conditions[" + std::to_string(i) + "] " + files::shown(condition.id) + ": scene",
+                               files::shown(condition.scene) + ", whose key tactile names no device",
+                               "a scene with tactile.arm.device or tactile.display.device, since pins that are only "
+                               "drawn cannot be felt");
+    }
+}
+
 bool plain(const std::string& code) { return code.size() <= 20 && study::is_code(code); }
 
 void write_now(const StudyRun& run) {
@@ -219,6 +235,7 @@ StudyRun open_study_run(const study::Protocol& protocol, const fs::path& directo
         if (scene && study::compares(study::task_of(protocol, condition)))
             run.stimuli.back() = stimuli_of(*scene, protocol, condition);
     }
+    check_displays(run);
     study::open_study(directory, protocol, {false, 0, "palpa " PALPA_VERSION});
     if (code.empty()) return run;
     if (!plain(code)) throw files::bad_input("--participant", "", files::shown(code), "up to 20 letters and digits");

@@ -43,6 +43,7 @@ struct StudyRun {
     // For a keeper (session/keeper.h): what it has not been given yet, and what it reports.
     bool on_tablet = false;
     PenVerdict pen = PenVerdict::not_needed;   // of the due trial; set by the loop
+    std::string devices_note;                  // why arm and pins of the due trial do not run; set by the loop
     int first_run = 1;                         // first run number of the log that may be free
     std::vector<study::RunFiles> unkept_runs;  // typed trials
     bool unkept_answers = false;
@@ -101,7 +102,9 @@ const study::PlannedTrial& due_trial(const StudyRun& run);
 // The condition of the trial; of a forced choice, that of the interval that is due (choice.reference_on).
 std::size_t due_condition_index(const StudyRun& run);
 const study::Condition& due_condition(const StudyRun& run);
-bool typed_in(const study::Condition& condition);  // the program does not drive its device
+// The program does not drive the device of this condition: answers are typed in, and the experimenter presents surfaces.
+bool typed_in(const StudyRun& run, std::size_t condition);
+bool feels_pins(const StudyRun& run);              // the due trial is on a force arm or a shape display
 bool shows_tissue(const StudyRun& run);            // the due trial has a scene on this screen
 bool due_compares(const StudyRun& run);            // a trial is due, and two surfaces are compared in it
 double due_comparison_kPa(const StudyRun& run);    // needs due_compares()

@@ -1,54 +1,17 @@
 // Simulates an Arduino with an HX711 on a pseudo-terminal, which sends lines "t_us,raw". Prints "port PATH" first, and at
 // its end what it sent. To unplug it closes the terminal; plugged in again, a new one stands behind the same --link.
 
-#include <fcntl.h>
 #include <filesystem>
-#include <poll.h>
-#include <stdlib.h>
 #include <string>
-#include <sys/wait.h>
-#include <termios.h>
 #include <unistd.h>
 
 #include "devices/load_cell.h"
 #include "devices/simulators/stream.h"
+#include "devices/simulators/terminal.h"
 
 using namespace palpa;
 using namespace palpa::devices;
 using namespace palpa::devices::simulators;
-
-namespace {
-
-struct Terminal {
-    int master = -1;
-    int slave = -1;  // stays open, so that readers may come and go
-    std::string path;
-};
-
-Terminal plug_in(const std::string& link) {
-    Terminal terminal;
-    terminal.master = ::posix_openpt(O_RDWR | O_NOCTTY | O_NONBLOCK);
-    if (terminal.master < 0 || ::grantpt(terminal.master) != 0 || ::unlockpt(terminal.master) != 0) return {};
-    terminal.path = ::ptsname(terminal.master);
-    terminal.slave = ::open(terminal.path.c_str(), O_RDWR | O_NOCTTY);
-    termios settings{};
-    ::tcgetattr(terminal.slave, &settings);
-    ::cfmakeraw(&settings);
-    ::tcsetattr(terminal.slave, TCSANOW, &settings);
-    if (!link.empty()) {
-        std::filesystem::remove(link);
-        std::filesystem::create_symlink(terminal.path, link);
-    }
-    return terminal;
-}
-
-void unplug(Terminal& terminal) {
-    ::close(terminal.slave);
-    ::close(terminal.master);
-    terminal = {};
-}
-
-}  // namespace
 
 int main(int argc, char** argv) {
     StreamOptions options;

@@ -1,12 +1,11 @@
 // Simulates an ATI Net F/T on loopback UDP: it answers requests for a stream, for one receiver at a time. Prints "port N"
 // first, and at its end what it sent.
 
-#include <arpa/inet.h>
 #include <optional>
-#include <sys/socket.h>
 #include <unistd.h>
 
 #include "devices/netft.h"
+#include "devices/simulators/sockets.h"
 #include "devices/simulators/stream.h"
 
 using namespace palpa;
@@ -14,19 +13,6 @@ using namespace palpa::devices;
 using namespace palpa::devices::simulators;
 
 namespace {
-
-int open_socket(int& port) {
-    const int fd = ::socket(AF_INET, SOCK_DGRAM | SOCK_NONBLOCK, 0);
-    sockaddr_in here{};
-    here.sin_family = AF_INET;
-    here.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-    here.sin_port = htons(static_cast<std::uint16_t>(port));
-    if (fd < 0 || ::bind(fd, reinterpret_cast<const sockaddr*>(&here), sizeof here) != 0) return -1;
-    socklen_t size = sizeof here;
-    ::getsockname(fd, reinterpret_cast<sockaddr*>(&here), &size);
-    port = ntohs(here.sin_port);
-    return fd;
-}
 
 // The newest request decides which address gets the stream.
 void take_requests(int fd, std::optional<sockaddr_in>& owner) {

@@ -29,6 +29,8 @@ int key_of(SDL_Keycode code) {
             return key::f10;
         case SDLK_F11:
             return key::f11;
+        case SDLK_F12:
+            return key::f12;
         case SDLK_KP_ENTER:
             return key::pad_enter;
         case SDLK_KP_PLUS:

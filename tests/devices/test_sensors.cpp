@@ -10,12 +10,13 @@
 #include "devices/load_cell.h"
 #include "devices/netft.h"
 #include "devices/sensor_reader.h"
-#include "tests/devices/simulator_process.h"
+#include "devices/simulators/process.h"
 #include "tests/temporary_folder.h"
 
 using namespace palpa;
 using namespace palpa::devices;
 using namespace palpa::test;
+using palpa::devices::simulators::SimulatorProcess;
 
 namespace {
 

@@ -7,16 +7,17 @@
 #include <string>
 #include <thread>
 
+#include "devices/simulators/process.h"
 #include "devices/simulators/stream.h"
 #include "files/json.h"
 #include "files/text.h"
-#include "tests/devices/simulator_process.h"
 #include "tests/e2e/run_app.h"
 
 using namespace palpa;
 using namespace palpa::files;
 using namespace palpa::devices;
 using namespace palpa::test;
+using palpa::devices::simulators::SimulatorProcess;
 
 namespace {
 

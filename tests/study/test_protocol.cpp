@@ -2,6 +2,7 @@
 
 #include "files/sha256.h"
 #include "files/text.h"
+#include "study/order.h"
 #include "study/protocol.h"
 #include "tests/error_message.h"
 #include "tests/temporary_folder.h"
@@ -46,6 +47,49 @@ TEST_CASE("protocol: the shipped ones read as they are meant") {
     CHECK(softer.task == TaskKind::choice);
     CHECK(softer.choice.comparisons_kPa.size() == 5);
     CHECK(read_protocol(kProtocols + "effects.json").groups.size() == 1);
+}
+
+TEST_CASE(
+    "protocol: tactile.json is the paper's 80 choices with ten times its moduli, and people practise before them") {
+    const Protocol tactile = read_protocol(kProtocols + "tactile.json");
+    REQUIRE(tactile.conditions.size() == 2);
+    for (const Condition& condition : tactile.conditions) {
+        CHECK(condition.modality == Modality::shape_display);
+        CHECK_FALSE(condition.scene.empty());  // driven
+    }
+    CHECK(tactile.trial_order == TrialOrder::interleaved);
+    const ChoiceTask& choice = tactile.choice;
+    CHECK(choice.comparisons_kPa.size() * 2 * static_cast<std::size_t>(choice.repeats) == 80);
+    const double paper_kPa[] = {1.875, 2.0, 2.25, 2.75, 3.75};
+    for (std::size_t i = 0; i < std::size(paper_kPa); ++i)
+        CHECK(choice.comparisons_kPa[i] / choice.reference_kPa == doctest::Approx(paper_kPa[i] / 1.75));
+    CHECK(tactile.practice_trials > 0);
+    // either surface is first equally often, and either condition begins equally often
+    int first = 0, begins = 0;
+    for (int number = 1; number <= 2; ++number) {
+        const PlannedParticipant who = plan_participant(tactile, number);
+        std::size_t before = 2;
+        for (const PlannedTrial& trial : who.trials) {
+            if (trial.practice) continue;
+            if (before == 2) begins += trial.condition == 0 ? 1 : 0;
+            CHECK(trial.condition != before);  // in alternation
+            before = trial.condition;
+            first += trial.reference_first ? 1 : 0;
+        }
+    }
+    CHECK(first == 80);
+    CHECK(begins == 1);
+}
+
+TEST_CASE("protocol: three-displays.json keeps the reference on pins and arm, with comparisons on both sides of it") {
+    const Protocol three = read_protocol(kProtocols + "three-displays.json");
+    REQUIRE(three.choice.reference_on == 0u);
+    CHECK(three.conditions[0].id == "pins and arm");
+    CHECK(three.conditions[2].modality == Modality::pen);
+    int softer = 0;
+    for (const double kPa : three.choice.comparisons_kPa) softer += kPa < three.choice.reference_kPa ? 1 : 0;
+    CHECK(2 * softer == static_cast<int>(three.choice.comparisons_kPa.size()));
+    CHECK(three.practice_trials > 0);
 }
 
 TEST_CASE("protocol: forced choices may keep the reference under one condition") {

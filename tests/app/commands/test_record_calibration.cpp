@@ -8,11 +8,11 @@
 #include <signal.h>
 #include <string>
 
+#include "devices/simulators/process.h"
 #include "files/folder_lock.h"
 #include "files/json.h"
 #include "files/table.h"
 #include "files/text.h"
-#include "tests/devices/simulator_process.h"
 #include "tests/error_message.h"
 #include "tests/shell.h"
 #include "tests/temporary_folder.h"
@@ -20,6 +20,7 @@
 using namespace palpa;
 using namespace palpa::files;
 using namespace palpa::test;
+using palpa::devices::simulators::SimulatorProcess;
 
 namespace {
 

@@ -37,6 +37,9 @@ TEST_CASE("go to: each screen that can be asked for opens, and leads back to the
     CHECK(std::holds_alternative<BrowsingMaps>(desk.app.doing));
     CHECK(desk.app.view.maps);
     desk.show_frame();
+    open(Screen::tactile);
+    CHECK(std::holds_alternative<WatchingTactile>(desk.app.doing));
+    desk.show_frame();
     open(Screen::trial);
     CHECK(std::holds_alternative<Palpating>(desk.app.doing));
     CHECK_FALSE(desk.app.view.maps);

@@ -144,3 +144,22 @@ TEST_CASE("gui: letters of a study's texts are drawn where the font has them") {
     CHECK(ImGui::GetIO().Fonts->Fonts[0]->FindGlyphNoFallback(0x2014) != nullptr);
     CHECK(ImGui::GetIO().Fonts->Fonts[0]->FindGlyphNoFallback('A') != nullptr);
 }
+
+TEST_CASE("gui: F12 stops at once, also while a field takes letters and before any frame is drawn") {
+    Form form;
+    form.frames(4);  // the field has the focus
+    CHECK_FALSE(form.gui.take_stop());
+    form.type('a');
+    form.tap(SDLK_F12);
+    std::vector<Sample> samples;
+    form.window.poll(0.0, samples);  // no frame
+    CHECK(form.gui.take_stop());
+    CHECK_FALSE(form.gui.take_stop());  // once for each press
+    form.send_key(SDL_KEYDOWN, SDLK_F12);
+    form.frames(1);
+    CHECK(form.gui.take_stop());
+    form.send_key(SDL_KEYUP, SDLK_F12);
+    form.frames(2);
+    CHECK_FALSE(form.gui.take_stop());
+    CHECK(std::string(form.text) == "a");
+}

@@ -12,6 +12,7 @@
 #include "app/screens/frame.h"
 #include "app/screens/history_screen.h"
 #include "app/screens/map_screen.h"
+#include "app/screens/tactile_screen.h"
 #include "app/study/study_run.h"
 #include "scene/advance.h"
 #include "tests/temporary_folder.h"
@@ -90,6 +91,7 @@ struct Screens {
     Doing doing{};
     std::optional<Wishes> asked{};
     ViewState view{};
+    const TactileShown* tactile = nullptr;
 };
 
 bool covers_all(const Screens& screens) {
@@ -101,7 +103,7 @@ Pixels draw(const Session& session, const Settings& settings, const Screens& scr
     ViewState view = screens.view;
     for (int i = 0; i < 3; ++i) {
         screen.draw({session.scene, *session.plan, session.trial, settings, screens.notices, screens.doing,
-                     screens.asked, state.timeline.now_s},
+                     screens.asked, state.timeline.now_s, 1.0 / 60.0, screens.tactile},
                     view, state);
     }
     return {screen.window().width_px(), screen.window().height_px(), screen.pixels()};
@@ -270,6 +272,93 @@ TEST_CASE("screens: every screen fits and is drawn at the sizes of desks and tab
         check_case(session, calibrating, c, "calibrating", screen);
         check_case(session, maps, c, "maps", screen);
         check_case(done, reveal, c, "reveal", screen);
+    }
+}
+
+namespace {
+
+// Arm and pins in the middle of a press, shown by a simulator.
+TactileShown pressed_tactile() {
+    TactileShown tactile;
+    TactileMoment& m = tactile.moment;
+    m.time_s = 12.0;
+    m.depth_m = 4.1e-3;
+    m.force_N = 1.25;
+    m.sensor_N = 1.31;
+    m.arm = true;
+    m.rows = m.columns = 6;
+    m.stroke_m = 2e-3;
+    for (std::size_t i = 0; i < 36; ++i) {
+        const double x = static_cast<double>(i % 6) - 2.5;
+        const double y = static_cast<double>(i / 6) - 2.5;
+        m.wanted_m[i] = std::clamp(0.16e-3 * (x * x + y * y), 0.0, m.stroke_m);
+        m.reached_m[i] = std::max(0.0, m.wanted_m[i] - 1e-4 * static_cast<double>(i % 3));
+    }
+    m.reached = ReachedBy::simulator;
+    m.mismatch_m = 0.087e-3;
+    m.mismatch_s = 31e-3;
+    m.shape_scale = 0.71;
+    m.clipped = 4;
+    m.linearity = 0.14;
+    m.stiffness_delay_N_s_per_m = 9.5;
+    m.round_trip_p50_s = 0.21e-3;
+    m.round_trip_p99_s = 0.48e-3;
+    m.lost = 3;
+    m.step_p50_s = 11e-6;
+    m.step_p99_s = 38e-6;
+    m.steps = 12000;
+    m.late_steps = 2;
+    tactile.devices = {{"arm", "One-axis arm with a long name, 1 kHz", "127.0.0.1:49152", true},
+                       {"force sensor", "Net F/T", "192.168.1.1:49152", false},
+                       {"pins", "6 x 6 pins, three boards", "/dev/serial/by-id/usb-Pololu_Maestro-if00", true}};
+    tactile.runs = true;
+    tactile.force_limit_N = 2.5;
+    return tactile;
+}
+
+}  // namespace
+
+TEST_CASE("screens: arm and pins fit at the sizes of desks and tablets: running, stopped, failed, only drawn") {
+    Session session;
+    session.scene = load_scene("");
+    session.plan = std::make_shared<const Plan>(make_plan(session.scene));
+    const Trace whole = read_trace(default_trace());
+    begin_trial({}, whole.info, TrialMode::practice, session);
+    for (std::size_t i = 0; i < 400; ++i) take_sample(whole.samples[i], session);
+    const TactileShown running = pressed_tactile();
+    TactileShown stopped = running;
+    stopped.moment.stopped = true;
+    stopped.moment.fault = "F12";
+    TactileShown failed;
+    failed.problem =
+        "assets/devices/pins-6x6.json: boards[0].port: found nothing at /dev/ttyACM0, expected the serial port of a "
+        "board";
+    TactileShown drawn = running;
+    drawn.devices.clear();
+    drawn.runs = false;
+    drawn.moment.reached = ReachedBy::nothing;
+    drawn.moment.arm = false;
+    TactileShown many = running;  // as many pins as there may be
+    many.moment.rows = many.moment.columns = 12;
+    many.moment.held = true;
+    Screens screen{{}, WatchingTactile{}};
+    Screens trial;
+    constexpr double kTablet_px_per_mm = 11.8;
+    for (const Case& c : {Case{1280, 800, kMissing, false}, Case{800, 1280, kMissing, false},
+                          Case{2560, 1600, kTablet_px_per_mm, false}, Case{1024, 600, kMissing, true},
+                          Case{1280, 800, kMissing, false, false, 140}}) {
+        OffScreen off_screen = screen_of(c);
+        const auto draw_it = [&](Screens& screens, const TactileShown& tactile, const char* name) {
+            screens.tactile = &tactile;
+            check_case(session, screens, c, name, off_screen);
+        };
+        draw_it(screen, running, "tactile");
+        draw_it(screen, stopped, "tactile-stopped");
+        draw_it(screen, failed, "tactile-failed");
+        draw_it(screen, drawn, "tactile-drawn");
+        draw_it(screen, many, "tactile-many");
+        draw_it(trial, running, "trial-pins");
+        draw_it(trial, stopped, "trial-pins-stopped");
     }
 }
 

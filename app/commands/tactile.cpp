@@ -1,0 +1,190 @@
+// palpa tactile: shape display and force arm. `run` presses on a scene's tissue with what its key `tactile` names.
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <memory>
+#include <optional>
+#include <stdexcept>
+
+#include "app/commands/command_line.h"
+#include "app/commands/option_checks.h"
+#include "app/scene_choices.h"
+#include "files/cache.h"
+#include "files/input_error.h"
+#include "files/regular_file.h"
+#include "files/table.h"
+#include "files/text.h"
+#include "session/plan_in_progress.h"
+#include "session/tactile_run.h"
+#include "tactile/simulate.h"
+
+namespace palpa::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct TactileOptions {
+    std::string scene;
+    std::string replay;
+    std::string schedule;
+    std::string log;
+    std::string arm;   // HOST:PORT
+    std::string pins;  // path of a serial port
+    std::uint64_t seed = 1;
+    bool headless = false;
+    bool simulate = false;
+    bool virtual_time = false;
+    bool json = false;
+};
+
+scene::PinSchedule schedule_of(const std::string& name) {
+    for (const auto schedule : {scene::PinSchedule::free, scene::PinSchedule::lead}) {
+        if (name == name_of(schedule)) return schedule;
+    }
+    return scene::PinSchedule::locked;
+}
+
+// A table whose first column is `row` holds recorded rows of a loop, any other a press.
+bool holds_rows(const fs::path& file) { return files::read_tsv(file).columns().front() == "row"; }
+
+void take_ports(const TactileOptions& options, tactile::TactilePlan& plan) {
+    if (!options.pins.empty()) {
+        if (!plan.pin_device)
+            throw files::InputError("--pins-port: found with a scene whose display has no device, expected one");
+        plan.pin_device->port = options.pins;
+    }
+    if (options.arm.empty()) return;
+    if (!plan.arm) throw files::InputError("--arm-port: found with a scene whose arm has no device, expected one");
+    const auto colon = options.arm.rfind(':');
+    double port = 0.0;
+    if (colon == std::string::npos || !files::parse_number(options.arm.substr(colon + 1), port) || port < 1.0 ||
+        port > 65535.0)
+        throw files::InputError("--arm-port: found '" + options.arm + "', expected HOST:PORT");
+    plan.arm->host = options.arm.substr(0, colon);
+    plan.arm->port = static_cast<int>(port);
+}
+
+void check_tactile_run(const TactileOptions& options) {
+    if (options.replay.empty())
+        throw files::InputError(
+            "palpa tactile run: found no --replay PRESS.tsv, expected a press or recorded rows (the "
+            "app's screen of arm and pins, key T, is for presses by hand)");
+    if (options.virtual_time && (!options.arm.empty() || !options.pins.empty()))
+        throw files::InputError(
+            "--virtual-time: found with a port, expected none: both simulators run in this process");
+    if (options.simulate && (!options.arm.empty() || !options.pins.empty()))
+        throw files::InputError("--simulate: found with a port, expected none: it starts the simulators itself");
+}
+
+std::shared_ptr<tactile::TactilePlan> prepare_tactile(const TactileOptions& options, const scene::Scene& scene,
+                                                      const scene::Plan& scene_plan) {
+    auto plan = std::make_shared<tactile::TactilePlan>(tactile::make_tactile_plan(scene, scene_plan));
+    if (!options.schedule.empty()) {
+        if (!plan->pins) throw files::InputError("--schedule: found for a scene without a shape display, expected one");
+        plan->options.display->schedule = schedule_of(options.schedule);
+    }
+    take_ports(options, *plan);
+    return plan;
+}
+
+session::TactileResult run_as_asked(const TactileOptions& options, const std::shared_ptr<tactile::TactilePlan>& plan,
+                                    files::Json& devices) {
+    session::TactileRunOptions run;
+    run.log = options.log;
+    run.seed = options.seed;
+    const bool rows = holds_rows(options.replay);
+    if (!rows) run.press = devices::read_press(options.replay);
+    session::choose_input(run.press, *plan);
+    tactile::make_table_now(files::cache_folder(), {}, *plan);
+    if (!options.log.empty()) fs::create_directories(options.log);
+    std::unique_ptr<tactile::Simulators> simulators;
+    if (!rows && options.simulate && !options.virtual_time)
+        simulators = tactile::start_simulators(options.replay, options.seed, *plan);
+    for (const session::TactileDevice& device :
+         session::devices_of(*plan, options.simulate || options.virtual_time || rows)) {
+        devices.push_back({{"role", device.role},
+                           {"name", device.name},
+                           {"port", options.virtual_time || rows ? "" : device.port},
+                           {"simulated", device.simulated}});
+    }
+    if (rows) {
+        const auto fields = session::field_names<tactile::LoopFeedback>();
+        return session::replay_rows(plan, session::read_device_rows(options.replay, fields), run);
+    }
+    if (options.virtual_time) return session::run_virtual(plan, run);
+    return session::run_live_press(plan, run, simulators ? simulators->heights : fs::path());
+}
+
+void print_tactile(const files::Json& result) {
+    std::printf("%s: %s\n", result["scene"].get<std::string>().c_str(), result["pairing"].get<std::string>().c_str());
+    std::printf("  %s steps, %s late, %s held at the limit, greatest force %.3g N\n", result["steps"].dump().c_str(),
+                result["late_steps"].dump().c_str(), result["held_steps"].dump().c_str(),
+                result["max_force_N"].get<double>());
+    if (!result["mismatch_mm"]["rms"].is_null())
+        std::printf("  pins off the wanted shape by %.3g mm (rms), %.3g mm at most, by %s\n",
+                    result["mismatch_mm"]["rms"].get<double>(), result["mismatch_mm"]["max"].get<double>(),
+                    result["reached_by"].get<std::string>().c_str());
+    std::printf("  linear range: %s\n", result["linear_range"].get<std::string>().c_str());
+    for (const auto& fault : result["faults"])
+        std::printf("  fault: %s, %s times\n", fault["fault"].get<std::string>().c_str(),
+                    fault["times"].dump().c_str());
+    for (const char* key : {"warnings", "notes"}) {
+        for (const auto& text : result[key]) std::printf("  note: %s\n", text.get<std::string>().c_str());
+    }
+}
+
+void run_tactile(const TactileOptions& options) {
+    check_tactile_run(options);
+    const scene::Scene scene = load_scene(options.scene);
+    if (!options.log.empty()) files::check_output_folder(options.log);
+    if (!scene.tactile)
+        throw files::bad_input(scene.file.string(), "tactile", "no such key",
+                               "one that says which arm or display there is");
+    const scene::Plan scene_plan = session::make_plan_here(scene);
+    const auto plan = prepare_tactile(options, scene, scene_plan);
+    files::Json devices = files::Json::array();
+    const session::TactileResult result = run_as_asked(options, plan, devices);
+    files::Json json{{"scene", scene.name}, {"seed", options.seed}};
+    json.update(tactile::figures_json(*plan, result.steps, result.mismatch, result.devices));
+    json["devices"] = devices;
+    if (!options.log.empty())
+        files::write_text_atomically(fs::path(options.log) / "performance.json", files::json_text(json));
+    if (options.json)
+        std::fputs(files::json_text(json).c_str(), stdout);
+    else
+        print_tactile(json);
+    if (!result.logged) throw std::runtime_error(options.log + ": the log could not be written to its end");
+}
+
+void add_tactile_run(CLI::App& tactile) {
+    auto options = std::make_shared<TactileOptions>();
+    CLI::App* command = tactile.add_subcommand("run", "Press on a scene's tissue with its arm and pins");
+    command->add_option("SCENE", options->scene, "scene JSON with the key tactile")->required();
+    command->add_option("--replay", options->replay,
+                        "PRESS.tsv (t_s, x_mm, y_mm, depth_mm or force_N), or the recorded rows of a run");
+    command->add_flag("--headless", options->headless, "open no window (as now: this command has none)");
+    command->add_flag("--simulate", options->simulate, "start the simulators and drive them instead of devices");
+    command->add_flag("--virtual-time", options->virtual_time,
+                      "one process without waiting: the simulators' models in the loop's own time");
+    command->add_option("--schedule", options->schedule, "instead of the scene's")
+        ->check(one_of({"free", "lead", "locked"}));
+    command->add_option("--log", options->log, "folder for the log (existing files are never overwritten)");
+    command->add_option("--seed", options->seed, "of the simulators (default 1)");
+    command->add_option("--arm-port", options->arm, "HOST:PORT of the arm, instead of its device file's");
+    command->add_option("--pins-port", options->pins, "serial port of the pins, instead of their device file's");
+    command->add_flag("--json", options->json, "print one JSON object on standard output");
+    command->callback([options] { run_tactile(*options); });
+}
+
+}  // namespace
+
+void add_tactile(CLI::App& app) {
+    CLI::App* tactile = app.add_subcommand("tactile", "Shape display and force arm on finite element tissue");
+    tactile->require_subcommand(1);
+    add_tactile_run(*tactile);
+    add_tactile_identify(*tactile);
+    add_tactile_characterise(*tactile);
+    add_tactile_pins(*tactile);
+}
+
+}  // namespace palpa::app

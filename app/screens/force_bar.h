@@ -1,0 +1,18 @@
+#pragma once
+// The force that a person presses with, on the screen or on an arm.
+
+#include "app/screens/gui.h"
+#include "app/screens/screens.h"
+
+namespace palpa::app {
+
+// True if the motion of a force arm is the input, and not that on the screen.
+bool arm_leads(const Shown& shown);
+
+// What the person presses with: on the screen, or on the arm where that leads.
+double felt_force_N(const Shown& shown);
+
+// Draws the bar, with the limit of the force where there is one.
+void draw_force_bar(const Shown& shown, float height_px, const Gui& gui);
+
+}  // namespace palpa::app

@@ -1,0 +1,80 @@
+#pragma once
+// What becomes of the steps of a loop of arm and pins, outside of its thread: figures, log, recorded rows. For
+// session/tactile_run*.cpp alone.
+
+#include "session/tactile_run.h"
+
+namespace palpa::session {
+
+// One step as the loop hands it on.
+struct StepRecord {
+    tactile::LoopCommand command;
+    double host_s = 0.0;  // when it was computed
+    double sensor_N = 0.0;
+    double has_sensor = 0.0;
+    double round_trip_s = 0.0;
+    std::int64_t lost = 0;  // packets so far
+    double step_ns = 0.0;   // how long it took; 0: not measured
+    devices::Fault fault = devices::Fault::none;
+    bool latched = false;
+};
+
+class TactileSink {
+  public:
+    // `log`: folder that exists; `rows`: TRACE.tactile.tsv; each empty for none. Throws as StepLog and DeviceRowWriter.
+    TactileSink(const tactile::TactilePlan& plan, const std::filesystem::path& log, const std::filesystem::path& rows);
+    // reached_m: true heights of the pins; empty: the estimate counts.
+    void take(const StepRecord& record, std::span<const double> reached_m);
+    void take_rows(RowRing& recorded);
+    void finish(const DeviceReport& loop);  // syncs the files
+
+    TactileResult result;
+    scene::Meter step;  // time of a step
+    std::int64_t lost_steps = 0;
+
+  private:
+    std::optional<tactile::StepLog> log_;
+    std::optional<DeviceRowWriter> rows_;
+};
+
+// How many steps of 1 ms a press lasts.
+std::int64_t steps_of(std::span<const devices::PressRow> press);
+
+// LOG/press.tactile.tsv; empty without a log.
+std::filesystem::path rows_in(const std::filesystem::path& log);
+
+inline std::unique_ptr<DeviceLoop<TactileLoop>> make_tactile_loop(
+    const std::shared_ptr<const tactile::TactilePlan>& plan) {
+    auto loop = std::make_unique<DeviceLoop<TactileLoop>>();
+    loop->plan = plan;
+    loop->memory.state = tactile::make_loop_state(*plan);
+    return loop;
+}
+
+// Runs one step: the touch, if there is one, and what the devices say. Returns whether `command` is to be sent. Allocates
+// nothing.
+template <class Port>
+bool tactile_step(double time_s, const PenContact* touch, Port& port, DeviceLoop<TactileLoop>& loop,
+                  tactile::LoopCommand& command) noexcept {
+    if (touch != nullptr) {
+        if (all_finite(*touch)) {
+            take_row<TactileLoop>(device_row(DeviceRowKind::hand_over, time_s, *touch), loop, command);
+            ++loop.report.hand_overs;
+        } else {
+            ++loop.report.not_numbers;
+        }
+    }
+    tactile::LoopFeedback feedback;
+    port.read(feedback);
+    feedback.by_table = tactile::table_of(*loop.plan) != nullptr ? 1.0 : 0.0;
+    if (!all_finite(feedback)) {
+        ++loop.report.not_numbers;
+        return false;
+    }
+    ++loop.report.rows;
+    if (take_row<TactileLoop>(device_row(DeviceRowKind::feedback, time_s, feedback), loop, command)) return true;
+    ++loop.report.refused_commands;
+    return false;
+}
+
+}  // namespace palpa::session

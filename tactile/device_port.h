@@ -1,0 +1,72 @@
+#pragma once
+// The devices of a plan as the loop sees them. What goes to a wire has passed the guard (devices/limits.h).
+//
+// Three threads may meet here: the loop calls read() and send(); any thread may call stop() and release().
+
+#include <atomic>
+#include <memory>
+#include <string>
+
+#include "devices/arm_link.h"
+#include "devices/limits.h"
+#include "devices/pins.h"
+#include "tactile/loop.h"
+
+namespace palpa::tactile {
+
+// The guard and what it stands between, real devices or simulated ones.
+struct Guarded {
+    devices::Limits limits;
+    devices::Guard guard;
+};
+Guarded guarded_of(const TactilePlan& plan);
+
+// Replaces what a command says to arm and pins by what may be sent now. Nothing reaches a wire but through here.
+// `fresh`: whether the arm was heard since the last call; `arm`: its newest feedback, null without an arm; `found`: what
+// the driver of the pins has found.
+void guard_command(double now_s, bool fresh, const devices::ArmFeedback* arm, devices::Fault found,
+                   LoopCommand& command, Guarded& guarded) noexcept;
+
+// Real devices, or simulators that speak their protocols.
+class DevicePort {
+  public:
+    // Opens what the plan has. Throws std::runtime_error with the system's reason.
+    explicit DevicePort(const TactilePlan& plan);
+    ~DevicePort();  // the arm rests; the pins do by themselves
+    DevicePort(const DevicePort&) = delete;
+    DevicePort& operator=(const DevicePort&) = delete;
+
+    // Waits until the arm was heard, its force sensor has its zero, and every board of the pins has proved that it is safe.
+    // Throws std::runtime_error that says what is missing after `most_s`.
+    void wait_until_ready(double most_s);
+
+    // The arm's newest feedback; without an arm, zeros. Always true: a step that hears nothing new works on the last feedback.
+    bool read(LoopFeedback& feedback) noexcept;
+    void send(double now_s, const LoopCommand& command) noexcept;
+
+    void stop() noexcept { stop_ = true; }        // F12: latched
+    void release() noexcept { release_ = true; }  // a person's wish to go on
+
+    devices::Fault fault() const noexcept { return guarded_.guard.fault; }  // by the loop's thread
+    const Guarded& guarded() const noexcept { return guarded_; }            // once the loop has ended
+    const devices::LinkHealth* link() const { return arm_ ? &arm_->health() : nullptr; }
+    devices::PinHealth pins() const { return pins_ ? pins_->health() : devices::PinHealth{}; }
+
+  private:
+    bool ask_arm();  // whether it and its sensor are ready
+    void watch_pins(double now_s) noexcept;
+
+    std::unique_ptr<devices::ArmPort> arm_;
+    std::unique_ptr<devices::PinDriver> pins_;
+    Guarded guarded_;
+    bool sensor_ = false;  // the arm has one
+    bool arm_heard_ = false;
+    devices::ArmFeedback newest_;
+    bool fresh_ = false;
+    double pins_due_s_ = 0.0;
+    devices::Fault found_ = devices::Fault::none;
+    std::atomic<bool> stop_{false};
+    std::atomic<bool> release_{false};
+};
+
+}  // namespace palpa::tactile

@@ -1,0 +1,344 @@
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <doctest/doctest.h>
+#include <limits>
+#include <thread>
+
+#include "files/table.h"
+#include "session/tactile_run.h"
+#include "session/tactile_run_sink.h"
+#include "tests/error_message.h"
+#include "tests/mechanics/allocation_count.h"
+#include "tests/tactile/tactile_scene.h"
+
+using namespace palpa;
+using namespace palpa::session;
+using namespace palpa::test;
+
+namespace {
+
+// Presses of 4 mm at up to 20 mm/s, and one beyond the force limit.
+std::vector<devices::PressRow> a_press(bool by_force = false) {
+    std::vector<devices::PressRow> rows;
+    for (int k = 0; k <= 200; ++k) {
+        devices::PressRow row;
+        row.t_s = 0.01 * k;
+        row.x_m = 0.02 + 1e-5 * k;
+        row.y_m = 0.02;
+        const double share = 0.5 - 0.5 * std::cos(10.0 * std::max(0.0, row.t_s - 0.3));  // 0.3 s without touch
+        if (by_force)
+            row.force_N = 3.0 * share;
+        else
+            row.depth_m = (k < 155 ? 4e-3 : 9e-3) * share;
+        rows.push_back(row);
+    }
+    return rows;
+}
+
+std::string file_text(const std::filesystem::path& file) { return files::read_text(file); }
+
+const char* const kArmLeads =
+    R"({"arm": {"device": "arm.json"}, "display": {"device": "pins-6x6.json"}, "leads": "arm"})";
+
+}  // namespace
+
+TEST_CASE("tactile run: where the touch leads, the log is a function of the press") {
+    const TactileScene slab;
+    const TemporaryFolder folder;
+    std::vector<std::string> steps, pins;
+    for (const std::uint64_t seed : {1u, 2u}) {  // another simulated arm and other pins: the same log
+        const auto log = folder / std::to_string(seed);
+        std::filesystem::create_directories(log);
+        const TactileResult result = run_virtual(slab.tactile_plan(), {a_press(), log, seed});
+        CHECK(result.logged);
+        CHECK(result.steps.steps == 2001);
+        CHECK(result.steps.held_steps > 0);
+        CHECK(result.steps.max_force_N <= 2.5);
+        CHECK(result.devices.guard.fault == devices::Fault::none);
+        steps.push_back(file_text(log / "steps.tsv"));
+        pins.push_back(file_text(log / "pins.tsv"));
+    }
+    CHECK(steps[0] == steps[1]);
+    CHECK(pins[0] == pins[1]);
+    auto another = a_press();
+    another[100].depth_m += 1e-5;
+    run_virtual(slab.tactile_plan(), {another, folder.path(), 1});
+    CHECK(file_text(folder / "steps.tsv") != steps[0]);
+}
+
+TEST_CASE("tactile run: where the arm leads, replaying the recorded rows gives the same log") {
+    const TactileScene slab(kArmLeads);
+    const TemporaryFolder folder;
+    const auto live = folder / "live", again = folder / "again";
+    std::filesystem::create_directories(live);
+    std::filesystem::create_directories(again);
+    const TactileResult result = run_virtual(slab.tactile_plan(), {a_press(), live, 3});
+    CHECK(result.steps.max_depth_m > 1e-3);  // the hand moved the arm
+    const auto rows = read_device_rows(live / "press.tactile.tsv", field_names<tactile::LoopFeedback>());
+    const TactileResult replayed = replay_rows(slab.tactile_plan(), rows, {{}, again, 1});
+    CHECK(replayed.steps.steps == result.steps.steps);
+    CHECK(file_text(again / "steps.tsv") == file_text(live / "steps.tsv"));
+    CHECK(file_text(again / "pins.tsv") == file_text(live / "pins.tsv"));
+    // another arm moves otherwise
+    const auto other = folder / "other";
+    std::filesystem::create_directories(other);
+    run_virtual(slab.tactile_plan(), {a_press(), other, 4});
+    CHECK(file_text(other / "steps.tsv") != file_text(live / "steps.tsv"));
+}
+
+TEST_CASE("tactile run: lead halves the mismatch of free at 20 mm/s") {
+    const TactileScene slab;
+    double rms_m[2] = {0.0, 0.0};
+    for (const auto schedule : {scene::PinSchedule::free, scene::PinSchedule::lead}) {
+        auto plan = slab.tactile_plan();
+        plan->options.display->schedule = schedule;
+        std::vector<devices::PressRow> press = a_press();
+        press.resize(155);  // those of 20 mm/s
+        const TactileResult result = run_virtual(plan, {press, {}, 1});
+        rms_m[schedule == scene::PinSchedule::lead ? 1 : 0] = tactile::rms_m(result.mismatch);
+        CHECK(std::string(result.devices.reached_by) == "simulator");
+    }
+    CAPTURE(rms_m[0]);
+    CAPTURE(rms_m[1]);
+    CHECK(rms_m[1] <= 0.5 * rms_m[0]);
+    CHECK(rms_m[1] > 0.0);
+}
+
+TEST_CASE("tactile run: a press by force is pressed by force") {
+    const TactileScene slab;
+    auto plan = slab.tactile_plan();
+    const auto press = a_press(true);
+    choose_input(press, *plan);
+    CHECK(plan->input == tactile::InputKind::force);
+    const TactileResult result = run_virtual(plan, {press, {}, 1});
+    CHECK(result.steps.max_force_N == doctest::Approx(2.5));
+    CHECK(result.steps.held_steps > 0);
+    CHECK(result.steps.held_steps < result.steps.steps / 2);
+}
+
+TEST_CASE("tactile run: a press for a simulated participant: force, depth and true heights, every ms") {
+    const TactileScene slab(kArmLeads);
+    const auto press = a_press();
+    const TactileRecord record = run_press(slab.scene, *slab.plan, press, {});
+    CHECK(record.pins == 36);
+    CHECK(record.time_s.size() == 2001);
+    CHECK(record.force_N.size() == record.time_s.size());
+    CHECK(record.height_m.size() == 36 * record.time_s.size());
+    // the arm's own weight is not compensated here, so that the hand has to carry it
+    const auto [least_N, most_N] = std::minmax_element(record.force_N.begin(), record.force_N.end());
+    CHECK(*most_N - *least_N > 0.5);
+    CHECK(*std::max_element(record.depth_m.begin(), record.depth_m.end()) > 5e-3);
+    for (const double height_m : record.height_m) {
+        CHECK(height_m >= -1e-9);
+        CHECK(height_m <= 2e-3 + 1e-9);
+    }
+    const TactileRecord locked = run_press(slab.scene, *slab.plan, press, {1, scene::PinSchedule::locked});
+    CHECK(locked.height_m.back() == doctest::Approx(2e-3).epsilon(1e-3));
+}
+
+// A port that says what a test wants.
+struct ScriptedPort {
+    tactile::LoopFeedback next;
+    bool read(tactile::LoopFeedback& out) noexcept {
+        out = next;
+        return true;
+    }
+};
+
+TEST_CASE("tactile run: NaN from the arm is neither run nor recorded, and no command follows") {
+    const TactileScene slab(kArmLeads);
+    const auto loop = make_tactile_loop(slab.tactile_plan());
+    ScriptedPort port;
+    tactile::LoopCommand command;
+    CHECK(tactile_step(0.0, nullptr, port, *loop, command));
+    port.next.arm.depth_m = std::numeric_limits<double>::quiet_NaN();
+    CHECK_FALSE(tactile_step(1e-3, nullptr, port, *loop, command));
+    CHECK(loop->report.not_numbers == 1);
+    PenContact contact;
+    contact.depth_m = std::numeric_limits<double>::infinity();
+    port.next.arm.depth_m = 0.0;
+    CHECK(tactile_step(2e-3, &contact, port, *loop, command));
+    CHECK(loop->report.not_numbers == 2);
+    CHECK(loop->report.hand_overs == 0);
+    int rows = 0;
+    for (DeviceRow row; loop->recorded.take(row);) ++rows;
+    CHECK(rows == 2);
+}
+
+TEST_CASE("tactile run: link silent: after 100 ms the force is zero and the pins rest, and both come back") {
+    const TactileScene slab(kArmLeads);
+    const auto plan = slab.tactile_plan();
+    tactile::Guarded guarded = tactile::guarded_of(*plan);
+    devices::ArmFeedback arm;
+    tactile::LoopCommand wanted;
+    wanted.pins = 36;
+    wanted.arm.mode = static_cast<double>(devices::ArmMode::force);
+    wanted.arm.force_N = 1.0;
+    wanted.pins_m.fill(1e-3);
+    tactile::LoopCommand sent;
+    const auto run = [&](double from_s, double to_s, bool heard) {
+        for (double t_s = from_s; t_s < to_s; t_s += 1e-3) {
+            sent = wanted;
+            tactile::guard_command(t_s, heard, &arm, devices::Fault::none, sent, guarded);
+        }
+    };
+    run(0.0, 0.5, true);
+    CHECK(sent.arm.force_N == doctest::Approx(1.0));
+    CHECK(sent.pins_m[0] == doctest::Approx(1e-3));
+    run(0.5, 0.55, false);
+    CHECK(sent.arm.force_N == doctest::Approx(1.0));  // not yet
+    run(0.55, 0.62, false);
+    CHECK(sent.arm.force_N == 0.0);
+    CHECK(sent.pins_m[0] == plan->pin_rest_m);
+    CHECK(guarded.guard.fault == devices::Fault::silence);
+    run(0.62, 1.2, true);
+    CHECK(sent.arm.force_N == doctest::Approx(1.0));
+    CHECK(sent.pins_m[0] == doctest::Approx(1e-3));
+}
+
+TEST_CASE("tactile run: user faster than everything: what is sent stays within limits and slews") {
+    const TactileScene slab(kArmLeads);
+    const auto plan = slab.tactile_plan();
+    auto loop = make_tactile_loop(plan);
+    tactile::Guarded guarded = tactile::guarded_of(*plan);
+    ScriptedPort port;
+    tactile::LoopCommand command;
+    double last_N = 0.0;
+    for (int k = 0; k < 3000; ++k) {
+        const double time_s = 1e-3 * k;
+        port.next.arm.depth_m = 0.03 * std::sin(60.0 * time_s);  // 1.8 m/s
+        port.next.arm.x_m = 0.02 + 0.5 * std::sin(31.0 * time_s);
+        port.next.arm.y_m = 0.02;
+        port.next.arm.velocity_m_per_s = 1.8 * std::cos(60.0 * time_s);
+        if (!tactile_step(time_s, nullptr, port, *loop, command)) continue;
+        tactile::guard_command(time_s, true, &port.next.arm, devices::Fault::none, command, guarded);
+        CHECK(command.arm.force_N >= 0.0);
+        CHECK(command.arm.force_N <= 2.5);
+        CHECK(command.arm.force_N - last_N <= plan->arm->force_slew_N_per_s * 1e-3 + 1e-9);
+        last_N = command.arm.force_N;
+        for (std::size_t i = 0; i < 36; ++i) {
+            CHECK(command.pins_m[i] >= 0.0);
+            CHECK(command.pins_m[i] <= 2e-3);
+        }
+    }
+}
+
+TEST_CASE("tactile run: missing ports are named") {
+    TactileScene slab;
+    const auto missing = missing_ports(*slab.scene.tactile);
+    bool pins = false;
+    for (const std::string& line : missing) pins = pins || contains(line, "/dev/ttyUSB0");
+    CHECK(pins);
+    CHECK(missing_ports(*TactileScene(R"({"display": {}})").scene.tactile).empty());
+}
+
+TEST_CASE("tactile run: a step with its guard allocates nothing") {
+    const TactileScene slab;
+    const auto loop = make_tactile_loop(slab.tactile_plan());
+    tactile::Guarded guarded = tactile::guarded_of(*loop->plan);
+    ScriptedPort port;
+    tactile::LoopCommand command;
+    const auto press = a_press();
+    std::size_t at = 0;
+    long before = 0;
+    for (int k = 0; k < 2000; ++k) {
+        if (k == 10) before = allocation_count();
+        PenContact contact = contact_of(devices::press_at(press, 1e-3 * k, at));
+        contact.time_s = 1e-3 * k;
+        if (tactile_step(contact.time_s, &contact, port, *loop, command))
+            tactile::guard_command(contact.time_s, true, &port.next.arm, devices::Fault::none, command, guarded);
+    }
+    CHECK(allocation_count() == before);
+}
+
+TEST_CASE("tactile run: a pressure display is logged, and its pressures add up to the force") {
+    const TactileScene slab(R"({"finger": {"contact": "rigid"}, "display": {"kind": "pressure"}})");
+    const TemporaryFolder folder;
+    const TactileResult result = run_virtual(slab.tactile_plan(), {a_press(), folder.path(), 1});
+    CHECK(result.steps.steps == 2001);
+    CHECK_FALSE(std::filesystem::exists(folder / "pins.tsv"));
+    files::Table steps = files::read_tsv(folder / "steps.tsv");
+    files::Table pressures = files::read_tsv(folder / "pressures.tsv");
+    double most_N = 0.0, most_Pa = 0.0;
+    while (steps.next()) most_N = std::max(most_N, steps.finite_number(steps.column("force_N")));
+    while (pressures.next()) {
+        for (std::size_t i = 1; i <= 36; ++i) most_Pa = std::max(most_Pa, pressures.finite_number(i));
+    }
+    CHECK(most_N > 1.0);
+    CHECK(most_Pa > 1e3);
+    CHECK(most_Pa < 1e6);
+}
+
+TEST_CASE("tactile run: a table that becomes ready during a run is a row of the input, and replays") {
+    const TactileScene slab(R"({"display": {"device": "pins-6x6.json"}, "table": {"spacing_mm": 4, "error": 0.02}})");
+    auto plan = slab.tactile_plan();
+    tactile::make_table_now({}, {}, *plan);
+    REQUIRE(plan->table);
+    const auto press = a_press();
+    DeviceMemory<TactileLoop> memory;
+    memory.state = tactile::make_loop_state(*plan);
+    std::vector<DeviceRow> rows;
+    std::vector<double> force_N;
+    std::size_t at = 0;
+    for (int k = 0; k < 1000; ++k) {
+        PenContact contact = contact_of(devices::press_at(press, 1e-3 * k, at));
+        contact.time_s = 1e-3 * k;
+        rows.push_back(device_row(DeviceRowKind::hand_over, contact.time_s, contact));
+        tactile::LoopFeedback feedback;
+        feedback.by_table = k < 500 ? 0.0 : 1.0;
+        rows.push_back(device_row(DeviceRowKind::feedback, contact.time_s, feedback));
+    }
+    for (const bool again : {false, true}) {
+        std::size_t k = 0;
+        memory = {};
+        memory.state = tactile::make_loop_state(*plan);
+        replay_device<TactileLoop>(plan, rows, memory, [&](const tactile::LoopCommand& command, double) {
+            if (again)
+                CHECK(command.force_N == force_N[k++]);
+            else
+                force_N.push_back(command.force_N);
+        });
+        CHECK(memory.state.now.table == plan->table.get());
+    }
+    CHECK(force_N.size() == 1000);
+}
+
+TEST_CASE("tactile live: a pen presses by force; F12 holds until a person goes on; rows are recorded") {
+    const TactileScene slab(R"({"display": {}})");  // pins that are only drawn: nothing to open
+    const TemporaryFolder folder;
+    TactileLiveOptions options;
+    options.rows = folder / "t.tactile.tsv";
+    TactileLive live(slab.scene, slab.plan, options);
+    TactileMoment moment;
+    const auto press_for = [&](int ms, double force_N) {
+        for (int k = 0; k < ms; k += 5) {
+            live.hand_over({1e-3 * k, 0.02, 0.02, 0.0, force_N, 0.0, 1.0});
+            std::this_thread::sleep_for(std::chrono::milliseconds(5));
+            live.latest(moment);
+        }
+    };
+    press_for(200, 1.0);
+    CHECK(moment.force_N == doctest::Approx(1.0));
+    CHECK(moment.rows == 6);
+    CHECK(moment.reached == ReachedBy::estimate);
+    CHECK(std::string(moment.fault) == "");
+    press_for(100, 9.0);
+    CHECK(moment.held);
+    CHECK(moment.force_N == doctest::Approx(2.5));
+    live.stop();
+    press_for(100, 1.0);
+    CHECK(moment.force_N == 0.0);
+    CHECK(moment.stopped);
+    CHECK(std::string(moment.fault) == "stopped");
+    live.restart();
+    press_for(100, 1.0);
+    CHECK(moment.force_N == doctest::Approx(1.0));
+    CHECK_FALSE(moment.stopped);
+    const files::Json report = live.report();
+    CHECK(report["held_steps"].get<int>() > 0);
+    CHECK(report["faults"][0]["fault"] == "stopped");
+    CHECK(live.devices().empty());
+    const auto rows = read_device_rows(folder / "t.tactile.tsv", field_names<tactile::LoopFeedback>());
+    CHECK(rows.size() > 100);
+}
