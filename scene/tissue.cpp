@@ -36,10 +36,6 @@ std::filesystem::path map_folder(const TissueOptions& options) {
     return std::visit([](const auto& of_kind) { return map_folder(of_kind); }, options);
 }
 
-bool knows_surface(const TissueOptions& options) {
-    return std::visit([](const auto& of_kind) { return knows_surface(of_kind); }, options);
-}
-
 void leave_out_nodules(TissueOptions& options) {
     std::visit([](auto& of_kind) { of_kind.nodules = false; }, options);
 }

@@ -19,7 +19,10 @@ std::vector<std::filesystem::path> input_files(const TissueOptions& options);
 files::Json file_hashes(const TissueOptions& options);           // SHA-256 of its input files, for logs
 std::filesystem::path map_folder(const TissueOptions& options);  // empty for a tissue that is not made from a map
 
-bool knows_surface(const TissueOptions& options);  // whether a finger's contact with its surface can be computed
+// Whether a finger's contact with its surface can be computed. Here, so that the reader of scene files needs no tissue.
+inline bool knows_surface(const TissueOptions& options) {
+    return std::visit([](const auto& of_kind) { return knows_surface(of_kind); }, options);
+}
 
 void leave_out_nodules(TissueOptions& options);  // sets `nodules` to false
 

@@ -47,13 +47,13 @@ TactileSink::TactileSink(const tactile::TactilePlan& plan, const std::filesystem
 }
 
 void TactileSink::take(const StepRecord& record, std::span<const double> reached_m) {
-    const LoopCommand& step = record.command;
-    const auto n = static_cast<std::size_t>(step.pins);
-    add(step, result.steps);
-    const std::span<const double> estimate(step.reached_m.data(), n);
-    add({step.wanted_m.data(), n}, reached_m.empty() ? estimate : reached_m, step.pressed, result.mismatch);
-    if (record.step_ns > 0) step_.add_ns(record.step_ns);
-    if (log_) log_->write(step);
+    const LoopCommand& command = record.command;
+    const auto n = static_cast<std::size_t>(command.pins);
+    add(command, result.steps);
+    const std::span<const double> estimate(command.reached_m.data(), n);
+    add({command.wanted_m.data(), n}, reached_m.empty() ? estimate : reached_m, command.pressed, result.mismatch);
+    if (record.step_ns > 0) step.add_ns(record.step_ns);
+    if (log_) log_->write(command);
 }
 
 void TactileSink::take_rows(RowRing& recorded) {
@@ -66,9 +66,9 @@ void TactileSink::finish(const DeviceReport& loop) {
     result.loop = loop;
     result.devices.late_steps = loop.late_periods;
     result.devices.real_time = loop.real_time;
-    if (step_.timed() > 0) {
-        result.devices.step_p50_us = 1e-3 * step_.quantile_ns(0.5);
-        result.devices.step_p99_us = 1e-3 * step_.quantile_ns(0.99);
+    if (step.timed() > 0) {
+        result.devices.step_p50_us = 1e-3 * step.quantile_ns(0.5);
+        result.devices.step_p99_us = 1e-3 * step.quantile_ns(0.99);
     }
     if (log_) result.logged = log_->sync();
     if (rows_) result.logged = rows_->sync() && result.logged;

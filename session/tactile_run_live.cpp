@@ -28,12 +28,14 @@ class TactileThread {
         on_grid_ = plan_->options.leads == scene::Leads::touch && !press_.empty();
         steps_ = steps_of(press_);
         port_.wait_until_ready(kReady_s);
-        thread_ = std::thread([this] { run(); });
     }
     ~TactileThread() { end(); }
     TactileThread(const TactileThread&) = delete;
     TactileThread& operator=(const TactileThread&) = delete;
 
+    void start() {
+        thread_ = std::thread([this] { run(); });
+    }
     void end() {
         ending_ = true;
         if (thread_.joinable()) thread_.join();
@@ -167,8 +169,9 @@ void take_devices(TactileThread& thread, const tactile::TactilePlan& plan, Tacti
 
 TactileResult run_live_press(std::shared_ptr<const tactile::TactilePlan> plan, const TactileRunOptions& options,
                              const std::filesystem::path& heights) {
-    TactileSink sink(*plan, options.log, rows_in(options.log));
     TactileThread thread(plan, options.press);
+    TactileSink sink(*plan, options.log, rows_in(options.log));
+    thread.start();
     WantedHeights wanted;
     WantedHeights* const keeps = heights.empty() ? nullptr : &wanted;
     while (!thread.finished()) {
@@ -194,7 +197,6 @@ struct TactileLive::Works {
     std::unique_ptr<TactileSink> sink;
     std::unique_ptr<TactileThread> thread;
     devices::TimeHistogram round_trip;
-    scene::Meter step;
     TactileMoment moment;
 };
 
@@ -252,9 +254,10 @@ TactileLive::TactileLive(const scene::Scene& scene, std::shared_ptr<const scene:
     works.simulated = options.simulate;
     if (options.simulate) works.simulators = tactile::start_simulators({}, options.seed, *works.plan);
     tactile::make_table_meanwhile(files::cache_folder(), *works.plan);
-    works.sink = std::make_unique<TactileSink>(*works.plan, options.log, options.rows);
     works.moment = moment_at_rest(*works.plan);
     works.thread = std::make_unique<TactileThread>(works.plan, std::vector<devices::PressRow>{});
+    works.sink = std::make_unique<TactileSink>(*works.plan, options.log, options.rows);
+    works.thread->start();
 }
 
 TactileLive::~TactileLive() = default;
@@ -266,7 +269,6 @@ bool TactileLive::latest(TactileMoment& out) {
     while (works.thread->take(record)) {
         any = true;
         works.sink->take(record, {});
-        works.step.add_ns(record.step_ns);
         if (record.round_trip_s > 0.0) works.round_trip.add(record.round_trip_s);
     }
     works.sink->take_rows(works.thread->loop().recorded);
@@ -276,8 +278,8 @@ bool TactileLive::latest(TactileMoment& out) {
     works.moment.mismatch_s = tactile::lag_s(works.sink->result.mismatch);
     works.moment.steps = figures.steps;
     works.moment.held_steps = figures.held_steps;
-    works.moment.step_p50_s = 1e-9 * works.step.quantile_ns(0.5);
-    works.moment.step_p99_s = 1e-9 * works.step.quantile_ns(0.99);
+    works.moment.step_p50_s = 1e-9 * works.sink->step.quantile_ns(0.5);
+    works.moment.step_p99_s = 1e-9 * works.sink->step.quantile_ns(0.99);
     works.moment.round_trip_p50_s = works.round_trip.quantile_s(0.5);
     works.moment.round_trip_p99_s = works.round_trip.quantile_s(0.99);
     out = works.moment;

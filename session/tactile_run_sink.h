@@ -29,12 +29,12 @@ class TactileSink {
     void finish(const DeviceReport& loop);  // syncs the files
 
     TactileResult result;
+    scene::Meter step;  // time of a step
     std::int64_t lost_steps = 0;
 
   private:
     std::optional<tactile::StepLog> log_;
     std::optional<DeviceRowWriter> rows_;
-    scene::Meter step_;
 };
 
 // How many steps of 1 ms a press lasts.

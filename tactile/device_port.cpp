@@ -36,6 +36,10 @@ DevicePort::DevicePort(const TactilePlan& plan) : guarded_(guarded_of(plan)) {
     if (plan.pin_device) pins_ = std::make_unique<devices::PinDriver>(*plan.pin_device);
 }
 
+DevicePort::~DevicePort() {
+    if (arm_) arm_->send({});
+}
+
 bool DevicePort::ask_arm() {
     if (!arm_) return true;
     arm_->send({});  // rest; the arm answers every command

@@ -32,6 +32,9 @@ class DevicePort {
   public:
     // Opens what the plan has. Throws std::runtime_error with the system's reason.
     explicit DevicePort(const TactilePlan& plan);
+    ~DevicePort();  // the arm rests; the pins do by themselves
+    DevicePort(const DevicePort&) = delete;
+    DevicePort& operator=(const DevicePort&) = delete;
 
     // Waits until the arm was heard, its force sensor has its zero, and every board of the pins has proved that it is safe.
     // Throws std::runtime_error that says what is missing after `most_s`.

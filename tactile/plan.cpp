@@ -1,6 +1,7 @@
 #include "tactile/plan.h"
 
 #include <cmath>
+#include <utility>
 
 #include "files/input_error.h"
 #include "files/text.h"
@@ -68,7 +69,10 @@ void take_arm(const scene::ArmOptions& options, const std::string& scene_file, T
 }
 
 void take_display(const scene::DisplayOptions& options, TactilePlan& plan) {
-    if (options.kind != DisplayKind::shape) return;
+    if (options.kind != DisplayKind::shape) {
+        plan.pressure_m = mechanics::make_pin_shape({}, {}).pin_m;
+        return;
+    }
     if (!options.device.empty()) plan.pin_device = devices::read_pin_device(options.device);
     plan.pins = mechanics::make_pin_shape(grid_of(plan.pin_device), shape_options(options));
     plan.pin_dynamics.speed_m_per_s = plan.pins->grid.speed_m_per_s;
@@ -76,9 +80,8 @@ void take_display(const scene::DisplayOptions& options, TactilePlan& plan) {
     plan.pin_rest_m = plan.pin_device ? plan.pin_device->rest_m : mechanics::rest_height_m(*plan.pins);
 }
 
-// Presses the middle of the tissue with the force limit.
-void try_middle(const scene::Plan& scene_plan, TactilePlan& plan) {
-    const Eigen::Vector2d middle_m = scene_plan.area.centre_m;
+// Presses the middle of the tissue lightly.
+void try_middle(const Eigen::Vector2d& middle_m, TactilePlan& plan) {
     RendererWork work = make_work(plan.renderer);
     const double force_N = 0.1 * plan.options.force_limit_N;
     const Press press = press_with_force(plan.renderer, middle_m, force_N, work);
@@ -101,6 +104,22 @@ void add_plan_notes(TactilePlan& plan) {
     if (plan.options.arm && !plan.arm) plan.notes.push_back("the arm has no device: its force is computed and logged");
 }
 
+TactilePlan plan_of_devices(const scene::TactileOptions& options, const std::string& file) {
+    TactilePlan plan;
+    plan.options = options;
+    if (options.arm) take_arm(*options.arm, file, plan);
+    if (options.display) take_display(*options.display, plan);
+    const bool high = options.arm && options.arm->impedance == ArmImpedance::high;
+    plan.input = high ? InputKind::force : InputKind::depth;
+    return plan;
+}
+
+void finish(const Eigen::Vector2d& middle_m, const std::string& tissue, TactilePlan& plan) {
+    try_middle(middle_m, plan);
+    add_plan_notes(plan);
+    plan.stages = stages_of(plan, tissue);
+}
+
 }  // namespace
 
 TactilePlan make_tactile_plan(const scene::Scene& scene, const scene::Plan& scene_plan) {
@@ -110,29 +129,32 @@ TactilePlan make_tactile_plan(const scene::Scene& scene, const scene::Plan& scen
     const scene::LinearTissue* block = scene::block_of(scene_plan.tissue);
     if (block == nullptr)
         throw files::bad_input(file, "tactile", "a tissue without a surface", "linear: a map knows no surface");
-    TactilePlan plan;
-    plan.options = *scene.tactile;
-    if (plan.options.arm) take_arm(*plan.options.arm, file, plan);
-    if (plan.options.display) take_display(*plan.options.display, plan);
-    const bool high = plan.options.arm && plan.options.arm->impedance == ArmImpedance::high;
-    plan.input = high ? InputKind::force : InputKind::depth;
+    TactilePlan plan = plan_of_devices(*scene.tactile, file);
     plan.renderer = make_renderer(*block, finger_of(plan.options.finger), scene.stiffness_scale,
                                   plan.options.force_limit_N, plan.pins ? observation_of(*plan.pins) : Observation{});
-    try_middle(scene_plan, plan);
-    add_plan_notes(plan);
-    plan.stages = stages_of(plan, scene_plan);
+    finish(scene_plan.area.centre_m, std::to_string(block->mesh_nodes) + " nodes", plan);
+    return plan;
+}
+
+TactilePlan make_tactile_plan(const scene::TactileOptions& options, DepthForce curve, double stiffness_scale,
+                              const std::string& tissue, const std::string& file) {
+    if (options.display)
+        throw files::bad_input(file, "tactile.display", "a display", "none: " + tissue + " knows no surface to show");
+    TactilePlan plan = plan_of_devices(options, file);
+    plan.renderer = make_renderer(std::move(curve), stiffness_scale, options.force_limit_N);
+    finish(Eigen::Vector2d::Zero(), tissue, plan);
     return plan;
 }
 
 void make_table_now(const std::filesystem::path& cache, const mechanics::Progress& progress, TactilePlan& plan) {
-    if (!plan.options.table) return;
+    if (!plan.options.table || plan.renderer.compliance == nullptr) return;
     auto table = std::make_shared<const Table>(make_table(plan.renderer, table_options(plan), cache, progress));
     if (!table->note.empty()) plan.notes.push_back(table->note);
     if (table->good) plan.table = std::move(table);
 }
 
 void make_table_meanwhile(const std::filesystem::path& cache, TactilePlan& plan) {
-    if (plan.options.table)
+    if (plan.options.table && plan.renderer.compliance != nullptr)
         plan.table_to_be = std::make_shared<const TableInProgress>(plan.renderer, table_options(plan), cache);
 }
 

@@ -67,7 +67,7 @@ files::Json figures_json(const TactilePlan& plan, const StepFigures& steps, cons
     json["pairing"] = pairing_text(plan.options);
     json["leads"] = plan.options.leads == scene::Leads::arm ? "arm" : "touch";
     json["schedule"] = plan.pins ? files::Json(name_of(plan.options.display->schedule)) : files::Json(nullptr);
-    json["fidelity"] = plan.table ? "table" : "live";
+    json["fidelity"] = table_of(plan) != nullptr ? "table" : "live";
     json["steps"] = steps.steps;
     json["late_steps"] = devices.late_steps;
     json["held_steps"] = steps.held_steps;

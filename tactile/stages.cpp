@@ -3,7 +3,6 @@
 #include <cmath>
 
 #include "files/text.h"
-#include "scene/tissue.h"
 #include "tactile/loop.h"
 
 namespace palpa::tactile {
@@ -26,12 +25,11 @@ std::string contact_text(const TactilePlan& plan) {
     return "";
 }
 
-StageText finger_stage(const TactilePlan& plan, const scene::LinearTissue& block) {
-    const std::string nodes = ", on " + std::to_string(block.mesh_nodes) + " nodes";
+StageText finger_stage(const TactilePlan& plan, const std::string& tissue) {
     const bool high = plan.input == InputKind::force;
     const char* direction = high ? "; force in, depth out" : "; depth in, force out";
-    StageText stage{"finger", "step", contact_text(plan) + nodes + direction,
-                    "that of the finite elements (docs/tactile.md)", 0.0};
+    StageText stage{"finger", "step", contact_text(plan) + ", on " + tissue + direction,
+                    "that of the tissue (docs/tactile.md)", 0.0};
     if (plan.options.table) {
         const scene::FingerTableOptions& table = *plan.options.table;
         stage.fidelity += "; from a table that begins at " + in_mm(table.spacing_m);
@@ -86,8 +84,8 @@ StageText guard_stage() {
 
 }  // namespace
 
-std::vector<StageText> stages_of(const TactilePlan& plan, const scene::Plan& scene_plan) {
-    std::vector<StageText> out{finger_stage(plan, *scene::block_of(scene_plan.tissue)), hold_stage(plan)};
+std::vector<StageText> stages_of(const TactilePlan& plan, const std::string& tissue) {
+    std::vector<StageText> out{finger_stage(plan, tissue), hold_stage(plan)};
     if (plan.pins) {
         out.push_back(shape_stage(plan));
         out.push_back(schedule_stage(plan));

@@ -41,12 +41,45 @@ std::string pin_columns(Eigen::Index pins) {
 
 }  // namespace
 
-StepLog::StepLog(const std::filesystem::path& folder, const TactilePlan& plan) : steps_(folder / "steps.tsv") {
+StepLog::StepLog(const std::filesystem::path& folder, const TactilePlan& plan)
+    : plan_(plan), steps_(folder / "steps.tsv") {
     visit_step({}, [&](const char* name, double) { text_.append(text_.empty() ? "" : "\t").append(name); });
     steps_.append(text_.append("\n"));
-    if (!plan.pins) return;
-    pins_.emplace(folder / "pins.tsv");
-    pins_->append(pin_columns(plan.pins->pin_m.cols()));
+    if (plan.pins) {
+        pins_.emplace(folder / "pins.tsv");
+        pins_->append(pin_columns(plan.pins->pin_m.cols()));
+    }
+    if (plan.pressure_m.cols() == 0) return;
+    pressures_.emplace(folder / "pressures.tsv");
+    work_ = make_work(plan.renderer);
+    pressure_Pa_.setZero(plan.pressure_m.cols());
+    text_ = "time_s";
+    for (Eigen::Index i = 1; i <= pressure_Pa_.size(); ++i) text_ += "\tpressure_Pa_" + std::to_string(i);
+    pressures_->append(text_.append("\n"));
+}
+
+void StepLog::write_pins(const LoopCommand& step) {
+    text_.clear();
+    files::append_number(step.time_s, text_);
+    visit_pins(step, [&](const char*, const auto& heights_m) {
+        for (std::size_t i = 0; i < static_cast<std::size_t>(step.pins); ++i) {
+            text_.push_back('\t');
+            files::append_number(1e3 * heights_m[i], text_);
+        }
+    });
+    pins_->append(text_.append("\n"));
+}
+
+void StepLog::write_pressures(const LoopCommand& step) {
+    press_with_force(plan_.renderer, Eigen::Vector2d(step.x_m, step.y_m), step.force_N, work_);
+    pressure_Pa(plan_.renderer, work_, plan_.pressure_m, pressure_Pa_);
+    text_.clear();
+    files::append_number(step.time_s, text_);
+    for (const double value : pressure_Pa_) {
+        text_.push_back('\t');
+        files::append_number(value, text_);
+    }
+    pressures_->append(text_.append("\n"));
 }
 
 void StepLog::write(const LoopCommand& step) {
@@ -56,23 +89,17 @@ void StepLog::write(const LoopCommand& step) {
         files::append_number(value, text_);
     });
     steps_.append(text_.append("\n"));
-    if (pins_ && written_ % kPinsEvery == 0) {
-        text_.clear();
-        files::append_number(step.time_s, text_);
-        visit_pins(step, [&](const char*, const auto& heights_m) {
-            for (std::size_t i = 0; i < static_cast<std::size_t>(step.pins); ++i) {
-                text_.push_back('\t');
-                files::append_number(1e3 * heights_m[i], text_);
-            }
-        });
-        pins_->append(text_.append("\n"));
-    }
+    if (pins_ && written_ % kPinsEvery == 0) write_pins(step);
+    if (pressures_ && written_ % kPinsEvery == 0) write_pressures(step);
     ++written_;
 }
 
 bool StepLog::sync() {
-    const bool steps = steps_.sync();
-    return (!pins_ || pins_->sync()) && steps;
+    bool good = steps_.sync();
+    for (auto* file : {&pins_, &pressures_}) {
+        if (*file) good = (*file)->sync() && good;
+    }
+    return good;
 }
 
 }  // namespace palpa::tactile

@@ -40,8 +40,8 @@ const std::map<std::string, std::set<std::string>> kMayInclude{
     {"fem/mesh_file", {"files", "mechanics"}},
     {"figures", {"files", "stiffnessmaps", "calibration", "study"}},
     {"accuracy",
-     {"files", "platform", "calibration", "stiffnessmaps", "mechanics", "avatar", "scene", "devices", "study",
-      "session", "fem", "figures"}},
+     {"files", "platform", "calibration", "stiffnessmaps", "mechanics", "avatar", "scene", "devices", "tactile",
+      "study", "session", "fem", "figures"}},
     {"desk", {"files", "study"}},
     // the rooms of the app
     {"app", {"files", "scene", "app/commands/command_line.h"}},

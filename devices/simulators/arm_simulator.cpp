@@ -6,8 +6,8 @@
 #include <optional>
 #include <poll.h>
 
+#include "devices/real_time.h"
 #include "devices/simulators/arm_plant.h"
-#include "devices/simulators/real_time.h"
 #include "devices/simulators/sockets.h"
 #include "devices/simulators/stream.h"
 
@@ -118,7 +118,7 @@ int main(int argc, char** argv) {
     std::printf("port %d\nsensor %d\n", port, sensor_port);
     std::fflush(stdout);
     end_on_signals();
-    ask_for_real_time();
+    set_real_time(true);
 
     struct Reply {
         std::array<std::uint8_t, kArmFeedback_bytes> bytes;

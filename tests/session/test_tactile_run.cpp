@@ -1,12 +1,15 @@
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <doctest/doctest.h>
 #include <limits>
+#include <thread>
 
 #include "files/table.h"
 #include "session/tactile_run.h"
 #include "session/tactile_run_sink.h"
 #include "tests/error_message.h"
+#include "tests/mechanics/allocation_count.h"
 #include "tests/tactile/tactile_scene.h"
 
 using namespace palpa;
@@ -228,4 +231,114 @@ TEST_CASE("tactile run: missing ports are named") {
     for (const std::string& line : missing) pins = pins || contains(line, "/dev/ttyUSB0");
     CHECK(pins);
     CHECK(missing_ports(*TactileScene(R"({"display": {}})").scene.tactile).empty());
+}
+
+TEST_CASE("tactile run: a step with its guard allocates nothing") {
+    const TactileScene slab;
+    const auto loop = make_tactile_loop(slab.tactile_plan());
+    tactile::Guarded guarded = tactile::guarded_of(*loop->plan);
+    ScriptedPort port;
+    tactile::LoopCommand command;
+    const auto press = a_press();
+    std::size_t at = 0;
+    long before = 0;
+    for (int k = 0; k < 2000; ++k) {
+        if (k == 10) before = allocation_count();
+        PenContact contact = contact_of(devices::press_at(press, 1e-3 * k, at));
+        contact.time_s = 1e-3 * k;
+        if (tactile_step(contact.time_s, &contact, port, *loop, command))
+            tactile::guard_command(contact.time_s, true, &port.next.arm, devices::Fault::none, command, guarded);
+    }
+    CHECK(allocation_count() == before);
+}
+
+TEST_CASE("tactile run: a pressure display is logged, and its pressures add up to the force") {
+    const TactileScene slab(R"({"finger": {"contact": "rigid"}, "display": {"kind": "pressure"}})");
+    const TemporaryFolder folder;
+    const TactileResult result = run_virtual(slab.tactile_plan(), {a_press(), folder.path(), 1});
+    CHECK(result.steps.steps == 2001);
+    CHECK_FALSE(std::filesystem::exists(folder / "pins.tsv"));
+    files::Table steps = files::read_tsv(folder / "steps.tsv");
+    files::Table pressures = files::read_tsv(folder / "pressures.tsv");
+    double most_N = 0.0, most_Pa = 0.0;
+    while (steps.next()) most_N = std::max(most_N, steps.finite_number(steps.column("force_N")));
+    while (pressures.next()) {
+        for (std::size_t i = 1; i <= 36; ++i) most_Pa = std::max(most_Pa, pressures.finite_number(i));
+    }
+    CHECK(most_N > 1.0);
+    CHECK(most_Pa > 1e3);
+    CHECK(most_Pa < 1e6);
+}
+
+TEST_CASE("tactile run: a table that becomes ready during a run is a row of the input, and replays") {
+    const TactileScene slab(R"({"display": {"device": "pins-6x6.json"}, "table": {"spacing_mm": 4, "error": 0.02}})");
+    auto plan = slab.tactile_plan();
+    tactile::make_table_now({}, {}, *plan);
+    REQUIRE(plan->table);
+    const auto press = a_press();
+    DeviceMemory<TactileLoop> memory;
+    memory.state = tactile::make_loop_state(*plan);
+    std::vector<DeviceRow> rows;
+    std::vector<double> force_N;
+    std::size_t at = 0;
+    for (int k = 0; k < 1000; ++k) {
+        PenContact contact = contact_of(devices::press_at(press, 1e-3 * k, at));
+        contact.time_s = 1e-3 * k;
+        rows.push_back(device_row(DeviceRowKind::hand_over, contact.time_s, contact));
+        tactile::LoopFeedback feedback;
+        feedback.by_table = k < 500 ? 0.0 : 1.0;
+        rows.push_back(device_row(DeviceRowKind::feedback, contact.time_s, feedback));
+    }
+    for (const bool again : {false, true}) {
+        std::size_t k = 0;
+        memory = {};
+        memory.state = tactile::make_loop_state(*plan);
+        replay_device<TactileLoop>(plan, rows, memory, [&](const tactile::LoopCommand& command, double) {
+            if (again)
+                CHECK(command.force_N == force_N[k++]);
+            else
+                force_N.push_back(command.force_N);
+        });
+        CHECK(memory.state.now.table == plan->table.get());
+    }
+    CHECK(force_N.size() == 1000);
+}
+
+TEST_CASE("tactile live: a pen presses by force; F12 holds until a person goes on; rows are recorded") {
+    const TactileScene slab(R"({"display": {}})");  // pins that are only drawn: nothing to open
+    const TemporaryFolder folder;
+    TactileLiveOptions options;
+    options.rows = folder / "t.tactile.tsv";
+    TactileLive live(slab.scene, slab.plan, options);
+    TactileMoment moment;
+    const auto press_for = [&](int ms, double force_N) {
+        for (int k = 0; k < ms; k += 5) {
+            live.hand_over({1e-3 * k, 0.02, 0.02, 0.0, force_N, 0.0, 1.0});
+            std::this_thread::sleep_for(std::chrono::milliseconds(5));
+            live.latest(moment);
+        }
+    };
+    press_for(200, 1.0);
+    CHECK(moment.force_N == doctest::Approx(1.0));
+    CHECK(moment.rows == 6);
+    CHECK(moment.reached == ReachedBy::estimate);
+    CHECK(std::string(moment.fault) == "");
+    press_for(100, 9.0);
+    CHECK(moment.held);
+    CHECK(moment.force_N == doctest::Approx(2.5));
+    live.stop();
+    press_for(100, 1.0);
+    CHECK(moment.force_N == 0.0);
+    CHECK(moment.stopped);
+    CHECK(std::string(moment.fault) == "stopped");
+    live.restart();
+    press_for(100, 1.0);
+    CHECK(moment.force_N == doctest::Approx(1.0));
+    CHECK_FALSE(moment.stopped);
+    const files::Json report = live.report();
+    CHECK(report["held_steps"].get<int>() > 0);
+    CHECK(report["faults"][0]["fault"] == "stopped");
+    CHECK(live.devices().empty());
+    const auto rows = read_device_rows(folder / "t.tactile.tsv", field_names<tactile::LoopFeedback>());
+    CHECK(rows.size() > 100);
 }

@@ -3,7 +3,7 @@
 #include <limits>
 
 #include "tactile/loop.h"
-#include "tests/scene/allocations.h"
+#include "tests/mechanics/allocation_count.h"
 #include "tests/tactile/tactile_scene.h"
 
 using namespace palpa;
@@ -120,14 +120,14 @@ TEST_CASE("tactile loop: a step allocates nothing, in any schedule") {
         LoopState state = make_loop_state(*plan);
         double force_N = 0.0;
         for (int k = 0; k < 5; ++k) force_N += loop_command(*plan, touched(1e-3 * k, 1e-3), state).force_N;
-        const std::int64_t before = allocations();
+        const long before = allocation_count();
         for (int k = 5; k < 2000; ++k) {
             const double time_s = 1e-3 * k;
             force_N +=
                 loop_command(*plan, touched(time_s, 4e-3 * (1.0 - std::cos(10.0 * time_s)), 0.02 + 1e-6 * k), state)
                     .force_N;
         }
-        CHECK(allocations() == before);
+        CHECK(allocation_count() == before);
         CHECK(force_N > 0.0);
     }
 }

@@ -1,5 +1,6 @@
 #include <doctest/doctest.h>
 
+#include "tactile/loop.h"
 #include "tests/error_message.h"
 #include "tests/tactile/tactile_scene.h"
 
@@ -84,4 +85,21 @@ TEST_CASE("tactile plan: the stages say at which force the stroke is used up") {
 TEST_CASE("tactile plan: a scene without the key is refused") {
     scene::Scene scene = scene::read_scene(kAssets / "scenes" / "linear.json", kAssets);
     CHECK(contains(message_of([&] { tactile::make_tactile_plan(scene, {}); }), "tactile: found no such key"));
+}
+
+TEST_CASE("tactile plan: a force curve answers depth with force, with the display off") {
+    scene::TactileOptions options;
+    options.arm = scene::ArmOptions{};
+    const tactile::DepthForce curve{{1e-3, 2e-3}, {0.5, 2.0}};
+    const auto plan = tactile::make_tactile_plan(options, curve, 1.0, "a force curve", "curve.json");
+    tactile::LoopState state = tactile::make_loop_state(plan);
+    tactile::LoopInput in;
+    in.touch = {0.0, 0.0, 0.0, 1.5e-3, 0.0, true};
+    CHECK(tactile::loop_command(plan, in, state).force_N == doctest::Approx(1.25));
+    in.touch.depth_m = 5e-3;  // beyond the curve
+    CHECK(tactile::loop_command(plan, in, state).held);
+    CHECK(contains(plan.stages.front().fidelity, "a force curve"));
+    options.display = scene::DisplayOptions{};
+    CHECK(contains(message_of([&] { tactile::make_tactile_plan(options, curve, 1.0, "a force curve", "curve.json"); }),
+                   "curve.json: tactile.display: found a display, expected none: a force curve knows no surface"));
 }
