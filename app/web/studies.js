@@ -98,10 +98,16 @@ const palpaStudies = (() => {
         }
     };
 
+    // Conditions that drive arm and pins need the desk's machine.
+    const needsDevices = (protocol) => (protocol?.conditions ?? []).some(({modality, scene}) => modality === 'shape-display' && scene);
+
     // What can be chosen: {name, title, from}, by name.
     const list = async () => {
         const out = new Map();
-        const add = (name, text, from) => out.set(name, {name, title: parse(text)?.name ?? name, from});
+        const add = (name, text, from) => {
+            const protocol = parse(text);
+            if (!needsDevices(protocol)) out.set(name, {name, title: protocol?.name ?? name, from});
+        };
         for (const file of FS.readdir(`${kAssets}/protocols`)) {
             if (file.endsWith('.json')) add(file.slice(0, -5), FS.readFile(`${kAssets}/protocols/${file}`, {encoding: 'utf8'}), palpaWords.inTheApp);
         }
