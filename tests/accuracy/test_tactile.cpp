@@ -1,15 +1,17 @@
-#include "accuracy/tactile.h"
-
 #include <cmath>
 #include <doctest/doctest.h>
 
+#include "accuracy/tactile.h"
+#include "tests/close_to.h"
+
 using namespace palpa::accuracy;
+using palpa::test::close_to;
 
 TEST_CASE("schedule: 20 ms ahead leaves at most half the mismatch at 20 mm/s, and nothing helps at 100 mm/s") {
     const double free_m = schedule_mismatch_m(0.02, 0.0, false);
     const double lead_m = schedule_mismatch_m(0.02, 20e-3, false);
     MESSAGE("free " << 1e3 * free_m << " mm, lead " << 1e3 * lead_m << " mm");
-    CHECK(free_m == doctest::Approx(0.116e-3).epsilon(0.2));
+    CHECK(free_m == close_to(0.116e-3).epsilon(0.2));
     CHECK(lead_m < 0.5 * free_m);
     // rounding to 0.1 mm alone leaves 0.029 mm
     CHECK(lead_m > 0.02e-3);
