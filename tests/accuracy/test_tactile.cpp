@@ -7,7 +7,8 @@
 using namespace palpa::accuracy;
 using palpa::test::close_to;
 
-TEST_CASE("schedule: 20 ms ahead leaves at most half the mismatch at 20 mm/s, and nothing helps at 100 mm/s") {
+TEST_CASE(
+    "schedule: 20 ms ahead leaves at most half the mismatch at 20 mm/s; at 100 mm/s the servos' speed is the limit") {
     const double free_m = schedule_mismatch_m(0.02, 0.0, false);
     const double lead_m = schedule_mismatch_m(0.02, 20e-3, false);
     MESSAGE("free " << 1e3 * free_m << " mm, lead " << 1e3 * lead_m << " mm");
@@ -15,7 +16,7 @@ TEST_CASE("schedule: 20 ms ahead leaves at most half the mismatch at 20 mm/s, an
     CHECK(lead_m < 0.5 * free_m);
     // rounding to 0.1 mm alone leaves 0.029 mm
     CHECK(lead_m > 0.02e-3);
-    CHECK(schedule_mismatch_m(0.1, 20e-3, false) > 0.5 * schedule_mismatch_m(0.1, 0.0, false));
+    CHECK(schedule_mismatch_m(0.1, 20e-3, false) > 5.0 * lead_m);
     CHECK(schedule_mismatch_m(0.05, 0.0, false) > free_m);
 }
 
