@@ -29,11 +29,30 @@ constexpr double kStroke_m = 2e-3;
 
 std::string text_mm(double metres) { return files::short_number(1e3 * metres) + " mm"; }
 
-// The slab of the paper, or a wide one, graded about its middle; what is touched is a square about it.
-scene::LinearTissue finger_slab(double width_m, int cells, double finest_m, double half_m, AccuracyRow& row) {
-    const Mesh mesh =
-        hex_box(Box{{width_m, width_m, 0.05}, {cells, cells, 8}, Grading{{0.5 * width_m, 0.5 * width_m}, finest_m}});
-    const Problem problem = block(mesh, Element::hex8_bbar, kFingerTissue);
+// Coordinates of a slab that is even around its middle, where the finger presses, and grows from there on.
+struct Cells {
+    int even = 12;     // in the middle
+    int outside = 14;  // on either side of it
+    int layers = 12;   // from the surface down
+    double finest_m = 1.5e-3;
+};
+VectorXd even_middle_m(double width_m, const Cells& cells) {
+    const double half_m = 0.5 * cells.even * cells.finest_m;
+    const double middle_m = 0.5 * width_m;
+    const VectorXd grown_m = graded_coordinates_m(middle_m - half_m, cells.outside, 0.0, cells.finest_m);
+    VectorXd x_m(cells.even + 1 + 2 * cells.outside);
+    x_m.segment(cells.outside, cells.even + 1) =
+        VectorXd::LinSpaced(cells.even + 1, middle_m - half_m, middle_m + half_m);
+    x_m.head(cells.outside) = (middle_m - half_m - grown_m.tail(cells.outside).array()).reverse();
+    x_m.tail(cells.outside) = middle_m + half_m + grown_m.tail(cells.outside).array();
+    return x_m;
+}
+
+// The slab of the paper, or a wide one; what is touched is a square about its middle.
+scene::LinearTissue finger_slab(double width_m, const Cells& cells, double half_m, AccuracyRow& row) {
+    const VectorXd x_m = even_middle_m(width_m, cells);
+    const VectorXd z_m = graded_coordinates_m(0.05, cells.layers, 0.05, std::min(cells.finest_m, 1e-3));
+    const Problem problem = block(hex_box(x_m, x_m, z_m), Element::hex8_bbar, kFingerTissue);
     const double middle_m = 0.5 * width_m;
     const SurfaceRequest request =
         request_rectangle(problem.mesh, boundary_faces(problem.mesh),
@@ -59,12 +78,12 @@ double hand_depth_m(int k) { return 2e-3 + 1.5e-3 * std::sin(7e-3 * k); }
 Eigen::Matrix2Xd pin_places_m() { return make_pin_shape({}, {}).pin_m; }
 
 // Depth and surface at the pins against the exact layer, on a slab 400 mm wide.
-AccuracyRow depth_row(int cells, double finest_m, const Effort& effort) {
+AccuracyRow depth_row(const Cells& cells, const Effort& effort) {
     AccuracyRow row{.group = "finger depth", .series = "parabola on hex8-bbar"};
-    row.choice = "finest " + text_mm(finest_m);
+    row.choice = "finest " + text_mm(cells.finest_m) + ", " + std::to_string(cells.layers) + " layers";
     row.reference = "exact bonded layer (Hankel integral): depth; worst also over the surface at 36 pins";
     row.reference_error_percent = 0.1;
-    const scene::LinearTissue slab = finger_slab(0.4, cells, finest_m, 16e-3, row);
+    const scene::LinearTissue slab = finger_slab(0.4, cells, 13e-3, row);
     const Renderer renderer = tactile::make_renderer(slab, {}, 1.0, 2.5, {pin_places_m(), {}});
     RendererWork work = tactile::make_work(renderer);
     const Vector2d middle_m(0.2, 0.2);
@@ -319,26 +338,22 @@ double schedule_mismatch_m(double speed_m_per_s, double lead_s, bool dither) {
 
 std::vector<Measurement> tactile_measurements(const Effort& effort) {
     std::vector<Measurement> list;
-    struct Wide {
-        int cells;
-        double finest_m;
-    };
-    std::vector<Wide> wides{{26, 2.5e-3}, {32, 1.8e-3}};
-    if (!effort.quick) wides.insert(wides.end(), {{36, 1.4e-3}, {42, 1.0e-3}});
-    for (const Wide& wide : wides)
-        list.push_back({"finger on a wide slab, finest " + text_mm(wide.finest_m),
-                        1.0 + 1e-8 / std::pow(wide.finest_m, 3.0),
-                        [=](auto& rows) { rows.push_back(depth_row(wide.cells, wide.finest_m, effort)); }});
+    std::vector<Cells> wides{{8, 12, 8, 2.5e-3}, {12, 13, 10, 1.5e-3}};
+    if (!effort.quick) wides.insert(wides.end(), {{14, 14, 12, 1.25e-3}, {18, 13, 12, 1.0e-3}});
+    for (const Cells& cells : wides)
+        list.push_back({"finger on a wide slab, finest " + text_mm(cells.finest_m),
+                        1.0 + 1e-8 / std::pow(cells.finest_m, 3.0),
+                        [=](auto& rows) { rows.push_back(depth_row(cells, effort)); }});
     for (const double spacings : {2.1, 4.1, 6.1, 8.1})
         list.push_back(
             {"pad against Hertz", 0.3, [=](auto& rows) { rows.push_back(hertz_pad_row(spacings, effort)); }});
-    const double finest_m = effort.quick ? 2.5e-3 : 1.5e-3;
+    const Cells slab_cells = effort.quick ? Cells{8, 7, 8, 2.5e-3} : Cells{12, 10, 8, 1.5e-3};
     list.push_back(
         {"finger on the slab, and its table", effort.quick ? 4.0 : 20.0, [=](auto& rows) {
              AccuracyRow made;
-             const scene::LinearTissue slab = finger_slab(0.1, effort.quick ? 22 : 31, finest_m, 0.05, made);
+             const scene::LinearTissue slab = finger_slab(0.1, slab_cells, 0.05, made);
              for (const FingerContact contact : {FingerContact::parabola, FingerContact::rigid, FingerContact::pad})
-                 rows.push_back(ripple_row(slab, contact, finest_m, effort, made));
+                 rows.push_back(ripple_row(slab, contact, slab_cells.finest_m, effort, made));
              rows.push_back(table_row(slab, 0.02, 2e-4, effort));
              rows.push_back(table_row(slab, 0.005, 1e-4, effort));
              if (!effort.quick) rows.push_back(table_row(slab, 0.005, 2e-5, effort));

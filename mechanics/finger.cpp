@@ -18,6 +18,7 @@ constexpr double kDepthTolerance = 1e-7;  // of the depth, where the search for 
 constexpr double kExact = 1e-6;           // of the depth: more than this is reported
 constexpr double kLeastShare = 1e-6;      // of the pressure on the surface: below it the finger is beside the surface
 constexpr int kMostSteps = 60;
+constexpr int kMostPadNodes = 8000;  // 0.5 GB for the pad's own compliance
 
 void check_finger(const Finger& finger, const FingerLimits& limits) {
     const PadLaw& pad = finger.pad;
@@ -187,6 +188,10 @@ bool is_near(const Compliance& c, const Finger& finger, const Vector2d& place_m,
 FingerWork make_finger_work(const Compliance& compliance, const Finger& finger, const FingerLimits& limits,
                             int most_points) {
     check_finger(finger, limits);
+    if (finger.contact == FingerContact::pad && compliance.n_touch > kMostPadNodes) {
+        throw LoadError(text("finger pad: ", compliance.n_touch, " surface nodes; wanted at most ", kMostPadNodes,
+                             " (a larger spacing)"));
+    }
     FingerWork w;
     w.grid = surface_grid(compliance);
     w.limits = limits;
@@ -241,71 +246,6 @@ FingerPress finger_with_force(const Compliance& compliance, const Finger& finger
     }
     out.capped = out.capped || force_N > work.limits.force_N;
     return work.last = out;
-}
-
-void finger_surface_m(const Compliance& c, FingerWork& w, const Eigen::Ref<const Eigen::Matrix2Xd>& points_m,
-                      Eigen::Ref<Eigen::VectorXd> out_m) {
-    out_m.setZero();
-    if (!(w.surface_scale > 0.0) || points_m.cols() == 0 || !points_m.allFinite()) return;
-    // the nodes that the points need, as a box of the grid
-    w.stencil.clear();
-    int i0 = c.n_touch, i1 = 0, j0 = c.n_touch, j1 = 0;
-    for (Index k = 0; k < points_m.cols(); ++k) {
-        const Stencil x = stencil_at(w.grid.x, points_m(0, k));
-        const Stencil y = stencil_at(w.grid.y, points_m(1, k));
-        i0 = std::min(i0, x.first);
-        i1 = std::max(i1, x.first + x.count);
-        j0 = std::min(j0, y.first);
-        j1 = std::max(j1, y.first + y.count);
-        w.stencil.push_back(x);
-        w.stencil.push_back(y);
-    }
-    const int n_x = static_cast<int>(w.grid.x.at_m.size());
-    for (int j = j0; j < j1; ++j) w.u_m.segment(i0 + n_x * j, i1 - i0).setZero();
-    for (const NodeRun& run : w.run) {
-        for (int k = 0; k < run.count; ++k) {
-            const double force_N = w.surface_scale * w.force_N(run.offset + k);
-            if (force_N == 0.0) continue;
-            const auto C = c.normal_m_per_N.col(run.first + k);
-            for (int j = j0; j < j1; ++j)
-                w.u_m.segment(i0 + n_x * j, i1 - i0) += force_N * C.segment(i0 + n_x * j, i1 - i0);
-        }
-    }
-    // points in a row share their stencil along y
-    double row_y_m = std::numeric_limits<double>::quiet_NaN();
-    for (Index k = 0; k < points_m.cols(); ++k) {
-        const Stencil& x = w.stencil[static_cast<std::size_t>(2 * k)];
-        const Stencil& y = w.stencil[static_cast<std::size_t>(2 * k + 1)];
-        if (points_m(1, k) != row_y_m) {
-            row_y_m = points_m(1, k);
-            w.row_m.segment(i0, i1 - i0).setZero();
-            for (int b = 0; b < y.count; ++b)
-                w.row_m.segment(i0, i1 - i0) += y.weight[b] * w.u_m.segment(i0 + n_x * (y.first + b), i1 - i0);
-        }
-        for (int a = 0; a < x.count; ++a) out_m(k) += x.weight[a] * w.row_m(x.first + a);
-    }
-}
-
-void finger_pressure_Pa(const Compliance& c, FingerWork& w, const Eigen::Ref<const Eigen::Matrix2Xd>& points_m,
-                        Eigen::Ref<Eigen::VectorXd> out_Pa) {
-    out_Pa.setZero();
-    if (!(w.surface_scale > 0.0) || !points_m.allFinite()) return;
-    w.u_m.setZero();  // for a moment: the pressure of each node
-    for (const NodeRun& run : w.run) {
-        w.u_m.segment(run.first, run.count) = w.surface_scale * w.force_N.segment(run.offset, run.count).array() /
-                                              c.area_m2.segment(run.first, run.count).array();
-    }
-    const auto n_x = w.grid.x.at_m.size();
-    for (Index k = 0; k < points_m.cols(); ++k) {
-        const int i = cell_of(w.grid.x, points_m(0, k));
-        const int j = cell_of(w.grid.y, points_m(1, k));
-        const double r = (points_m(0, k) - w.grid.x.at_m(i)) / (w.grid.x.at_m(i + 1) - w.grid.x.at_m(i));
-        const double s = (points_m(1, k) - w.grid.y.at_m(j)) / (w.grid.y.at_m(j + 1) - w.grid.y.at_m(j));
-        if (r < 0.0 || r > 1.0 || s < 0.0 || s > 1.0) continue;
-        const Index node = i + n_x * j;
-        out_Pa(k) = (1.0 - s) * ((1.0 - r) * w.u_m(node) + r * w.u_m(node + 1)) +
-                    s * ((1.0 - r) * w.u_m(node + n_x) + r * w.u_m(node + n_x + 1));
-    }
 }
 
 }  // namespace palpa::mechanics

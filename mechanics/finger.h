@@ -89,8 +89,9 @@ struct FingerWork {
     std::vector<Stencil> stencil;  // two per point, for as many points as a call had
 };
 
-// Throws LoadError for a finger that is wrong or a surface that is not a grid, with the numbers. `most_points`: how many
-// points finger_surface_m() takes without allocating. A pad needs as much memory as the compliance.
+// Throws LoadError for a finger that is wrong or a surface that is not a grid, with the numbers. `most_points`: how
+// many points finger_surface_m() takes without allocating. A pad needs as much memory as the compliance, and at most
+// 8,000 touch nodes.
 FingerWork make_finger_work(const Compliance& compliance, const Finger& finger, const FingerLimits& limits = {},
                             int most_points = 4096);
 
@@ -120,8 +121,8 @@ double pad_modulus_Pa(const PadLaw& pad, double force_N);
 PadLaw scaled(const PadLaw& pad, double scale);
 
 // Compliance of a half-space of plane modulus 1 Pa between the nodes of a grid, each of whose forces is spread evenly
-// over its tributary rectangle (Love 1929), made symmetric: n x n. Against Hertz the force of a sphere is 0.5 % off with
-// four spacings across the contact's radius, 0.1 % with eight.
+// over its tributary rectangle (Love 1929; a point from six of its widths on), made symmetric: n x n. Against Hertz the
+// force of a sphere is 0.5 % off with four spacings across the contact's radius, 0.1 % with eight.
 Eigen::MatrixXd half_space_kernel_per_m(const SurfaceGrid& grid);
 
 // Consistent nodal forces of one newton of parabolic pressure (loads.h) on a grid of rectangles: fills `run` and

@@ -12,6 +12,8 @@ namespace {
 
 using Eigen::Index;
 
+constexpr double kFar = 6.0;  // widths of a rectangle, from where on it is a point, to 0.1 %
+
 // Half the distance to the neighbours on both sides: the node's tributary stretch.
 struct Stretch {
     Eigen::VectorXd below;
@@ -43,9 +45,15 @@ Eigen::MatrixXd half_space_kernel_per_m(const SurfaceGrid& grid) {
         const Index jx = j % n_x;
         const Index jy = j / n_x;
         const double area_m2 = (along_x.below(jx) + along_x.above(jx)) * (along_y.below(jy) + along_y.above(jy));
+        const double far_m =
+            kFar * std::max(along_x.below(jx) + along_x.above(jx), along_y.below(jy) + along_y.above(jy));
         for (Index i = 0; i < K.rows(); ++i) {
             const double dx = grid.x.at_m(jx) - grid.x.at_m(i % n_x);
             const double dy = grid.y.at_m(jy) - grid.y.at_m(i / n_x);
+            if (std::max(std::abs(dx), std::abs(dy)) > far_m) {
+                K(i, j) = 1.0 / (std::numbers::pi * std::hypot(dx, dy));
+                continue;
+            }
             const double left = dx - along_x.below(jx);
             const double right = dx + along_x.above(jx);
             const double low = dy - along_y.below(jy);

@@ -5,8 +5,8 @@
 //
 //   height = rest - (u - depth)
 //
-// u: depression of the surface; rest: `skel`: half the stroke; `top`: the height that brings the highest pin to the top.
-// Heights count from the lowest position of the pins.
+// u: depression of the surface; rest: `skel`: half the stroke; `top`: the height that brings the highest pin to the
+// top. Heights count from the lowest position of the pins.
 //
 // A rubber sheet of thickness h on the pins lets through the share T of a wave of wave number k, x = k h:
 //

@@ -8,10 +8,12 @@
 #include "mechanics/pin_shape.h"
 #include "mechanics/sheet.h"
 #include "mechanics/statics.h"
+#include "tests/close_to.h"
 #include "tests/mechanics/allocation_count.h"
 
 using namespace palpa::mechanics;
 using Eigen::VectorXd;
+using palpa::test::close_to;
 
 namespace {
 
@@ -83,12 +85,12 @@ TEST_CASE("pin shape: the bowl of 17.5 kPa uses up the stroke at 0.85 N at the l
     options.zero = PinZero::top;
     const PinShape shape = make_pin_shape({}, options);
     const double depth_m_per_N = layer_mean_depression_m(kSlab, {8e-3, 1.0});
-    CHECK(1e-3 / depth_m_per_N == doctest::Approx(0.304).epsilon(0.005));
+    CHECK(1e-3 / depth_m_per_N == close_to(0.304).epsilon(0.005));
     const VectorXd u_m = bowl_m(shape.sample_m, 1.0);
     // from the centre to the corner pin 0.715 of the depth
     const double centre_m = layer_depression_m(kSlab, {8e-3, 1.0}, 0.0);
-    CHECK((centre_m - u_m.minCoeff()) / depth_m_per_N == doctest::Approx(0.715).epsilon(0.01));
-    CHECK(stroke_used_up_at_N(shape, depth_m_per_N, u_m) == doctest::Approx(0.85).epsilon(0.05));
+    CHECK((centre_m - u_m.minCoeff()) / depth_m_per_N == close_to(0.715).epsilon(0.01));
+    CHECK(stroke_used_up_at_N(shape, depth_m_per_N, u_m) == close_to(0.85).epsilon(0.05));
     options.zero = PinZero::skel;
     const PinShape middle = make_pin_shape({}, options);
     const double from_middle_N = stroke_used_up_at_N(middle, depth_m_per_N, u_m);
@@ -114,9 +116,9 @@ TEST_CASE("pin shape: height is rest minus what the surface sinks beyond the dep
     CHECK(report.scale == 1.0);
     CHECK(report.clipped == 0);
     // pin 0 stands at row 0, column 0: -x, -y; columns run along x
-    CHECK(shape.pin_m(0, 0) == doctest::Approx(-2e-3));
-    CHECK(shape.pin_m(1, 0) == doctest::Approx(-1e-3));
-    CHECK(shape.pin_m(0, 1) == doctest::Approx(0.0));
+    CHECK(shape.pin_m(0, 0) == close_to(-2e-3));
+    CHECK(shape.pin_m(1, 0) == close_to(-1e-3));
+    CHECK(shape.pin_m(0, 1) == 0.0);
 }
 
 TEST_CASE("pin shape: top brings the highest pin to the top, and the flat surface all of them") {
@@ -126,7 +128,7 @@ TEST_CASE("pin shape: top brings the highest pin to the top, and the flat surfac
     VectorXd height_m(36);
     PinReport report;
     pin_heights_m(shape, 1e-3, bowl_m(shape.sample_m, 0.3), height_m, report);
-    CHECK(height_m.maxCoeff() == doctest::Approx(2e-3));
+    CHECK(height_m.maxCoeff() == close_to(2e-3));
     pin_heights_m(shape, 0.0, VectorXd::Zero(36), height_m, report);
     CHECK((height_m.array() == rest_height_m(shape)).all());
     CHECK(rest_height_m(shape) == 2e-3);
@@ -155,7 +157,7 @@ TEST_CASE("pin shape: more than the stroke is clipped or scaled, never more") {
         // still the same shape
         const VectorXd above_m = (depth_m - u_m.array()).matrix();
         const double slope = (height_m(0) - height_m(14)) / (above_m(0) - above_m(14));
-        CHECK(slope == doctest::Approx(report.scale).epsilon(1e-9));
+        CHECK(slope == close_to(report.scale).epsilon(1e-9));
     }
 }
 
@@ -175,7 +177,7 @@ TEST_CASE("pin shape: few pins") {
             CHECK(height_m.allFinite());
             CHECK(height_m.minCoeff() >= 0.0);
             CHECK(height_m.maxCoeff() <= 2e-3);
-            if (pin_count(grid) == 1) CHECK(height_m(0) == doctest::Approx(1e-3 + 0.6e-3 - u_m(0)));
+            if (pin_count(grid) == 1) CHECK(height_m(0) == close_to(1e-3 + 0.6e-3 - u_m(0)));
         }
     }
 }
@@ -243,12 +245,12 @@ TEST_CASE("pin shape: slew is that of the servos") {
 
 TEST_CASE("sheet: share of a wave that arrives on top") {
     // derived and checked against the boundary value problem
-    CHECK(sheet_transfer(Sheet::free, 0.5) == doctest::Approx(0.91235).epsilon(1e-5));
-    CHECK(sheet_transfer(Sheet::free, 1.0) == doctest::Approx(0.80396).epsilon(1e-5));
-    CHECK(sheet_transfer(Sheet::free, 2.0) == doctest::Approx(0.60680).epsilon(1e-5));
-    CHECK(sheet_transfer(Sheet::free, std::numbers::pi) == doctest::Approx(0.33189).epsilon(2e-5));
-    CHECK(sheet_transfer(Sheet::backed, 0.5) == doctest::Approx(0.90980).epsilon(1e-5));
-    CHECK(sheet_transfer(Sheet::backed, 2.0) == doctest::Approx(0.40601).epsilon(1e-5));
+    CHECK(sheet_transfer(Sheet::free, 0.5) == close_to(0.91235).epsilon(1e-5));
+    CHECK(sheet_transfer(Sheet::free, 1.0) == close_to(0.80396).epsilon(1e-5));
+    CHECK(sheet_transfer(Sheet::free, 2.0) == close_to(0.60680).epsilon(1e-5));
+    CHECK(sheet_transfer(Sheet::free, std::numbers::pi) == close_to(0.33189).epsilon(2e-5));
+    CHECK(sheet_transfer(Sheet::backed, 0.5) == close_to(0.90980).epsilon(1e-5));
+    CHECK(sheet_transfer(Sheet::backed, 2.0) == close_to(0.40601).epsilon(2e-5));
     for (const Sheet sheet : {Sheet::off, Sheet::free, Sheet::backed}) CHECK(sheet_transfer(sheet, 0.0) == 1.0);
     CHECK(std::isfinite(sheet_transfer(Sheet::free, 1e4)));
 }
@@ -256,8 +258,8 @@ TEST_CASE("sheet: share of a wave that arrives on top") {
 TEST_CASE("sheet: the formula agrees with hexahedra to 1 % for k h from 0.5 to 3") {
     for (const double x : {0.5, 1.0, 2.0, 3.0}) {
         CAPTURE(x);
-        CHECK(amplitude_by_elements(x, 0.0) == doctest::Approx(sheet_transfer(Sheet::free, x)).epsilon(0.01));
-        CHECK(amplitude_by_elements(x, 8.0 / x) == doctest::Approx(sheet_transfer(Sheet::backed, x)).epsilon(0.01));
+        CHECK(amplitude_by_elements(x, 0.0) == close_to(sheet_transfer(Sheet::free, x)).epsilon(0.01));
+        CHECK(amplitude_by_elements(x, 8.0 / x) == close_to(sheet_transfer(Sheet::backed, x)).epsilon(0.01));
     }
 }
 
@@ -274,7 +276,7 @@ TEST_CASE("sheet: its kernel passes a wave on as the formula says") {
         for (int pin = 0; pin < 400; ++pin) sum += top(0, pin) * std::cos(k * (pin % 20 - 9.5) * 2e-3);
         // the underside is linear between pins, which alone takes away sinc^2
         const double linear = std::pow(std::sin(0.5 * k * 2e-3) / (0.5 * k * 2e-3), 2.0);
-        CHECK(sum == doctest::Approx(linear * sheet_transfer(sheet, k * 2e-3)).epsilon(0.02));
+        CHECK(sum == close_to(linear * sheet_transfer(sheet, k * 2e-3)).epsilon(0.02));
     }
 }
 

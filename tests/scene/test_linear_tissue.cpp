@@ -7,6 +7,7 @@
 #include "files/text.h"
 #include "scene/advance.h"
 #include "scene/linear_tissue.h"
+#include "tests/close_to.h"
 #include "tests/scene/allocations.h"
 #include "tests/scene/block_phantom.h"
 #include "tests/temporary_folder.h"
@@ -321,11 +322,11 @@ TEST_CASE("linear tissue: a graded block answers as an even one, finest where it
     CHECK(graded.tissue.compliance.n_touch == even.tissue.compliance.n_touch);
     CHECK(graded.tissue.content != even.tissue.content);
     const auto spacing_m = [&](double x_m, double y_m) { return spacing_at_m(graded.tissue, {x_m, y_m}); };
-    CHECK(spacing_m(0.0451, 0.0301) == doctest::Approx(2e-3).epsilon(0.05));
+    CHECK(spacing_m(0.0451, 0.0301) == close_to(2e-3).epsilon(0.05));
     CHECK(spacing_m(0.001, 0.001) > 3e-3);
-    CHECK(spacing_at_m(even.tissue, {0.001, 0.001}) == doctest::Approx(4e-3));
+    CHECK(spacing_at_m(even.tissue, {0.001, 0.001}) == close_to(4e-3));
     const double even_m = press(even.tissue, {0.045, 0.030}, 0.5, even.work).depth_m;
-    CHECK(press(graded.tissue, {0.045, 0.030}, 0.5, graded.work).depth_m == doctest::Approx(even_m).epsilon(0.1));
+    CHECK(press(graded.tissue, {0.045, 0.030}, 0.5, graded.work).depth_m == close_to(even_m).epsilon(0.1));
 
     // pictures get an even grid, deepest under the finger
     SurfaceShape shape;
@@ -333,8 +334,8 @@ TEST_CASE("linear tissue: a graded block answers as an even one, finest where it
     REQUIRE(shape.sink_m.size() == shape.n_x * shape.n_y);
     Eigen::Index deepest = 0;
     shape.sink_m.maxCoeff(&deepest);
-    CHECK(static_cast<double>(deepest % shape.n_x) * shape.spacing_m.x() == doctest::Approx(0.045).epsilon(0.06));
-    CHECK(static_cast<double>(deepest / shape.n_x) * shape.spacing_m.y() == doctest::Approx(0.030).epsilon(0.06));
+    CHECK(static_cast<double>(deepest % shape.n_x) * shape.spacing_m.x() == close_to(0.045).epsilon(0.06));
+    CHECK(static_cast<double>(deepest / shape.n_x) * shape.spacing_m.y() == close_to(0.030).epsilon(0.06));
 
     // the cache keeps them apart and brings the coordinates back
     const LinearTissue again = make_linear_tissue(graded.options, graded.folder / "cache", {});

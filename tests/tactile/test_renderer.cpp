@@ -4,6 +4,7 @@
 
 #include "mechanics/error.h"
 #include "tactile/renderer.h"
+#include "tests/close_to.h"
 #include "tests/mechanics/allocation_count.h"
 #include "tests/tactile/finger_block.h"
 
@@ -34,9 +35,8 @@ TEST_CASE("renderer: stiffness_scale multiplies the tissue's force at every dept
         RendererWork of_plain = make_work(plain);
         RendererWork of_stiff = make_work(stiff);
         const double plain_N = press_to_depth(plain, {0.03, 0.03}, 2e-3, of_plain).force_N;
-        CHECK(press_to_depth(stiff, {0.03, 0.03}, 2e-3, of_stiff).force_N == doctest::Approx(3.0 * plain_N));
-        CHECK(press_with_force(stiff, {0.03, 0.03}, 3.0 * plain_N, of_stiff).depth_m ==
-              doctest::Approx(2e-3).epsilon(1e-6));
+        CHECK(press_to_depth(stiff, {0.03, 0.03}, 2e-3, of_stiff).force_N == close_to(3.0 * plain_N));
+        CHECK(press_with_force(stiff, {0.03, 0.03}, 3.0 * plain_N, of_stiff).depth_m == close_to(2e-3).epsilon(1e-6));
     }
 }
 
@@ -53,8 +53,8 @@ TEST_CASE("renderer: above the force limit force, depth and shape hold") {
         const Press beyond = press_to_depth(renderer, {0.03, 0.03}, 2.0 * at_limit.depth_m, work);
         shape_m(renderer, work, beyond_m);
         CHECK(beyond.capped);
-        CHECK(beyond.force_N == doctest::Approx(1.2));
-        CHECK(beyond.depth_m == doctest::Approx(at_limit.depth_m));
+        CHECK(beyond.force_N == close_to(1.2));
+        CHECK(beyond.depth_m == close_to(at_limit.depth_m));
         CHECK((there_m - beyond_m).cwiseAbs().maxCoeff() < 1e-12);
     }
 }
@@ -85,7 +85,7 @@ TEST_CASE("renderer: the observed sinks are those of the surface under the pins"
     CHECK(sink_m.minCoeff() > 0.0);
     pressure_Pa(renderer, work, shape.pin_m, surface);
     // half the pressure of the parabola's middle is its mean
-    CHECK(surface.maxCoeff() == doctest::Approx(2.0 * work.last.force_N / (3.14159265 * 64e-6)).epsilon(0.1));
+    CHECK(surface.maxCoeff() == close_to(2.0 * work.last.force_N / (3.14159265 * 64e-6)).epsilon(0.1));
 }
 
 TEST_CASE("renderer: NaN anywhere holds the last answer") {
@@ -104,12 +104,12 @@ TEST_CASE("renderer: NaN anywhere holds the last answer") {
 TEST_CASE("renderer: a force curve answers depth with force and force with depth, without a surface") {
     const Renderer renderer = make_renderer({{1e-3, 2e-3, 3e-3}, {0.1, 0.4, 2.0}}, 2.0, 3.0);
     RendererWork work = make_work(renderer);
-    CHECK(press_to_depth(renderer, {0.0, 0.0}, 0.5e-3, work).force_N == doctest::Approx(0.1));
-    CHECK(press_to_depth(renderer, {0.0, 0.0}, 1.5e-3, work).force_N == doctest::Approx(0.5));
-    CHECK(press_with_force(renderer, {0.0, 0.0}, 0.5, work).depth_m == doctest::Approx(1.5e-3));
+    CHECK(press_to_depth(renderer, {0.0, 0.0}, 0.5e-3, work).force_N == close_to(0.1));
+    CHECK(press_to_depth(renderer, {0.0, 0.0}, 1.5e-3, work).force_N == close_to(0.5));
+    CHECK(press_with_force(renderer, {0.0, 0.0}, 0.5, work).depth_m == close_to(1.5e-3));
     const Press held = press_to_depth(renderer, {0.0, 0.0}, 2.9e-3, work);  // 3.68 N
     CHECK(held.capped);
-    CHECK(held.force_N == doctest::Approx(3.0));
+    CHECK(held.force_N == close_to(3.0));
     CHECK(press_to_depth(renderer, {0.0, 0.0}, 1.0, work).capped);
     CHECK(press_to_depth(renderer, {0.0, 0.0}, 0.0, work).force_N == 0.0);
     CHECK(press_to_depth(renderer, {0.0, 0.0}, kNan, work).held);
@@ -121,8 +121,8 @@ TEST_CASE("renderer: a force curve answers depth with force and force with depth
     RendererWork of_short = make_work(short_curve);
     const Press end = press_to_depth(short_curve, {0.0, 0.0}, 5e-3, of_short);
     CHECK(end.capped);
-    CHECK(end.force_N == doctest::Approx(0.1));
-    CHECK(end.depth_m == doctest::Approx(1e-3));
+    CHECK(end.force_N == close_to(0.1));
+    CHECK(end.depth_m == close_to(1e-3));
 
     CHECK_THROWS_AS(make_renderer({{1e-3, 1e-3}, {0.1, 0.2}}, 1.0, 1.0), mechanics::LoadError);
     CHECK_THROWS_AS(make_renderer({{1e-3}, {}}, 1.0, 1.0), mechanics::LoadError);

@@ -6,6 +6,7 @@
 
 #include "mechanics/error.h"
 #include "tactile/table.h"
+#include "tests/close_to.h"
 #include "tests/mechanics/allocation_count.h"
 #include "tests/tactile/finger_block.h"
 
@@ -69,7 +70,7 @@ TEST_CASE("table: force and shape are live ones to what was asked for, at places
             shape_m(renderer, fast, fast_m);
             CHECK((live_m - fast_m).cwiseAbs().maxCoeff() < 1.5 * options.shape_error_m);
             const Press back = press_with_force(renderer, at_m, answer.force_N, fast);
-            CHECK(back.depth_m == doctest::Approx(truth.depth_m).epsilon(1e-6));
+            CHECK(back.depth_m == close_to(truth.depth_m).epsilon(1e-6));
         }
     }
 }
@@ -89,8 +90,8 @@ TEST_CASE("table: finger over the edge is answered live, the limit holds alike, 
         const Press held = press_to_depth(renderer, {0.03, 0.03}, depth_m, fast);
         const Press truth = press_to_depth(renderer, {0.03, 0.03}, depth_m, live);
         CHECK(held.capped == truth.capped);
-        CHECK(held.force_N == doctest::Approx(truth.force_N).epsilon(0.006));
-        CHECK(held.depth_m == doctest::Approx(truth.depth_m).epsilon(0.006));
+        CHECK(held.force_N == close_to(truth.force_N).epsilon(0.006));
+        CHECK(held.depth_m == close_to(truth.depth_m).epsilon(0.006));
     }
     CHECK(press_to_depth(renderer, {0.03, 0.03}, -1e-3, fast).force_N == 0.0);
     CHECK(press_to_depth(renderer, {0.03, std::nan("")}, 1e-3, fast).held);
