@@ -10,7 +10,7 @@
 #include "tactile/arm_compensation.h"
 #include "tactile/arm_strokes.h"
 #include "tests/error_message.h"
-#include "tests/scene/allocations.h"
+#include "tests/mechanics/allocation_count.h"
 #include "tests/temporary_folder.h"
 
 using namespace palpa;
@@ -89,13 +89,13 @@ TEST_CASE("compensation: what is added is what the arm takes, but a twentieth of
 
 TEST_CASE("compensation: NaN gives no force, and nothing is allocated") {
     const ArmCompensation arm = known_arm();
-    const std::int64_t before = test::allocations();
+    const long before = allocation_count();
     CHECK(compensation_N(arm, std::numeric_limits<double>::quiet_NaN(), 0.0) == 0.0);
     CHECK(compensation_N(arm, 0.0, std::numeric_limits<double>::infinity()) == 0.0);
     double sum_N = 0.0;
     for (int i = 0; i < 1000; ++i) sum_N += compensation_N(arm, 1e-5 * i, 1e-5 * (i - 500));
     CHECK(std::isfinite(sum_N));
-    CHECK(test::allocations() == before);
+    CHECK(allocation_count() == before);
 }
 
 TEST_CASE("compensation: strokes that cannot tell are refused with what is missing") {
