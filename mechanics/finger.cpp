@@ -193,6 +193,7 @@ FingerWork make_finger_work(const Compliance& compliance, const Finger& finger, 
     w.force_N.setZero(compliance.n_touch);
     w.corner_m.setZero(2, 4);
     w.u_m.setZero(compliance.n_touch);
+    w.row_m.setZero(w.grid.x.at_m.size());
     w.stencil.reserve(2 * static_cast<std::size_t>(most_points));
     w.run.reserve(static_cast<std::size_t>(compliance.n_touch));
     if (finger.contact == FingerContact::parabola) return w;
@@ -270,14 +271,18 @@ void finger_surface_m(const Compliance& c, FingerWork& w, const Eigen::Ref<const
                 w.u_m.segment(i0 + n_x * j, i1 - i0) += force_N * C.segment(i0 + n_x * j, i1 - i0);
         }
     }
+    // points in a row share their stencil along y
+    double row_y_m = std::numeric_limits<double>::quiet_NaN();
     for (Index k = 0; k < points_m.cols(); ++k) {
         const Stencil& x = w.stencil[static_cast<std::size_t>(2 * k)];
         const Stencil& y = w.stencil[static_cast<std::size_t>(2 * k + 1)];
-        for (int b = 0; b < y.count; ++b) {
-            double row_m = 0.0;
-            for (int a = 0; a < x.count; ++a) row_m += x.weight[a] * w.u_m(x.first + a + n_x * (y.first + b));
-            out_m(k) += y.weight[b] * row_m;
+        if (points_m(1, k) != row_y_m) {
+            row_y_m = points_m(1, k);
+            w.row_m.segment(i0, i1 - i0).setZero();
+            for (int b = 0; b < y.count; ++b)
+                w.row_m.segment(i0, i1 - i0) += y.weight[b] * w.u_m.segment(i0 + n_x * (y.first + b), i1 - i0);
         }
+        for (int a = 0; a < x.count; ++a) out_m(k) += x.weight[a] * w.row_m(x.first + a);
     }
 }
 

@@ -85,6 +85,7 @@ struct FingerWork {
     Eigen::MatrixXd pad_per_m;  // of the pad, times its plane modulus; n_touch x n_touch, empty unless asked for
     // surface
     Eigen::VectorXd u_m;           // n_touch
+    Eigen::VectorXd row_m;         // n_x
     std::vector<Stencil> stencil;  // two per point, for as many points as a call had
 };
 
@@ -101,7 +102,8 @@ FingerPress finger_with_force(const Compliance& compliance, const Finger& finger
                               double force_N, FingerWork& work);
 
 // Computes the depression of the surface at any points (absolute, 2 x n) under the last press; beside the touch nodes
-// that of the nearest point of their rectangle. Between nodes by cubic interpolation.
+// that of the nearest point of their rectangle. Between nodes by
+// cubic splines; points that follow each other at the same y cost less.
 void finger_surface_m(const Compliance& compliance, FingerWork& work,
                       const Eigen::Ref<const Eigen::Matrix2Xd>& points_m, Eigen::Ref<Eigen::VectorXd> out_m);
 

@@ -1,5 +1,6 @@
 #include "mechanics/surface_grid.h"
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
@@ -10,14 +11,45 @@ namespace palpa::mechanics {
 
 using Eigen::Index;
 
+namespace {
+
+Index width_of_bend(Index n) { return std::min<Index>(2 * kSplineReach + 1, n); }
+
+// The first of the values that the second derivative at coordinate i is taken from.
+Index first_of_bend(Index i, Index n) { return std::clamp<Index>(i - kSplineReach, 0, n - width_of_bend(n)); }
+
+// Second derivatives of the spline at all coordinates per value at each: n x n. Continuity of the slope at coordinate i:
+//   h_(i-1)/6 M_(i-1) + (h_(i-1) + h_i)/3 M_i + h_i/6 M_(i+1) = (u_(i+1) - u_i)/h_i - (u_i - u_(i-1))/h_(i-1)
+Eigen::MatrixXd bends(const Eigen::VectorXd& at_m) {
+    const Index n = at_m.size();
+    if (n < 3) return Eigen::MatrixXd::Zero(n, n);
+    Eigen::MatrixXd A = Eigen::MatrixXd::Zero(n, n);
+    Eigen::MatrixXd B = Eigen::MatrixXd::Zero(n, n);
+    for (Index i = 1; i + 1 < n; ++i) {
+        const double before = at_m(i) - at_m(i - 1);
+        const double after = at_m(i + 1) - at_m(i);
+        A.row(i).segment<3>(i - 1) << before / 6.0, (before + after) / 3.0, after / 6.0;
+        B.row(i).segment<3>(i - 1) << 1.0 / before, -1.0 / before - 1.0 / after, 1.0 / after;
+    }
+    A(0, 0) = A(n - 1, n - 1) = 1.0;
+    A(0, 1) = A(n - 1, n - 2) = -1.0;
+    return A.partialPivLu().solve(B);
+}
+
+void add_bend(const GridAxis& axis, Index i, double factor, Stencil& out) {
+    const Index first = first_of_bend(i, axis.at_m.size());
+    for (Index k = 0; k < axis.bend_per_m2.rows(); ++k)
+        out.weight[first + k - out.first] += factor * axis.bend_per_m2(k, i);
+}
+
+}  // namespace
+
 GridAxis grid_axis(const Eigen::VectorXd& at_m) {
-    GridAxis axis{at_m, {}};
-    const Index count = std::min<Index>(4, at_m.size());
-    axis.inverse.setOnes(count, at_m.size() - count + 1);
-    for (Index first = 0; first < axis.inverse.cols(); ++first)
-        for (Index k = 0; k < count; ++k)
-            for (Index m = 0; m < count; ++m)
-                if (m != k) axis.inverse(k, first) /= at_m(first + k) - at_m(first + m);
+    const Index n = at_m.size();
+    GridAxis axis{at_m, Eigen::MatrixXd::Zero(width_of_bend(n), n)};
+    const Eigen::MatrixXd bend = bends(at_m);
+    for (Index i = 0; i < n; ++i)
+        axis.bend_per_m2.col(i) = bend.row(i).segment(first_of_bend(i, n), width_of_bend(n)).transpose();
     return axis;
 }
 
@@ -54,15 +86,17 @@ int cell_of(const GridAxis& axis, double place_m) {
 Stencil stencil_at(const GridAxis& axis, double place_m) {
     const Index n = axis.at_m.size();
     const double at_m = std::clamp(place_m, axis.at_m(0), axis.at_m(n - 1));
+    const int cell = cell_of(axis, at_m);
     Stencil out;
-    out.count = static_cast<int>(axis.inverse.rows());
-    out.first = std::clamp(cell_of(axis, at_m) - 1, 0, static_cast<int>(n) - out.count);
-    for (int k = 0; k < out.count; ++k) {
-        double weight = axis.inverse(k, out.first);
-        for (int m = 0; m < out.count; ++m)
-            if (m != k) weight *= at_m - axis.at_m(out.first + m);
-        out.weight[k] = weight;
-    }
+    out.first = static_cast<int>(first_of_bend(cell, n));
+    out.count = static_cast<int>(first_of_bend(cell + 1, n) + width_of_bend(n)) - out.first;
+    const double h = axis.at_m(cell + 1) - axis.at_m(cell);
+    const double b = (at_m - axis.at_m(cell)) / h;
+    const double a = 1.0 - b;
+    out.weight[cell - out.first] = a;
+    out.weight[cell + 1 - out.first] = b;
+    add_bend(axis, cell, (a * a * a - a) * h * h / 6.0, out);
+    add_bend(axis, cell + 1, (b * b * b - b) * h * h / 6.0, out);
     return out;
 }
 

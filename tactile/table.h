@@ -1,8 +1,8 @@
 #pragma once
 // A table of a renderer's answers over places and forces, for a step that costs next to nothing.
 //
-// Places stand on a square grid over all places at which the finger lies on the surface with its whole width; beside
-// them the renderer answers live. Between places by cubic convolution (Keys 1981, a = -1/2: continuous slope), between
+// Places stand on a grid over all places at which the finger's whole width, and all that is observed, lie on the
+// surface; beside them the renderer answers live. Between places by cubic convolution (Keys 1981, a = -1/2: continuous slope), between
 // forces linear. A linear answer needs one force, others a list F_k = F_limit (k/n)^2. Each entry holds depth and what
 // is observed of the surface.
 //

@@ -5,7 +5,7 @@
 namespace palpa::tactile {
 namespace {
 
-constexpr double kTableVersion = 1.0;
+constexpr double kTableVersion = 2.0;
 
 // 64-bit FNV-1a over the bytes of numbers.
 struct Digest {

@@ -20,17 +20,19 @@ constexpr int kBlock = 64;        // presses between two looks at `cancel`
 constexpr int kMostChecks = 900;  // presses that a level is compared at
 constexpr double kLeastSpacing_m = 2e-4;
 
-// Where a table can answer: the whole width of the finger is on the surface.
+// Where a table can answer: the whole width of the finger, and all that is observed, is on the surface.
 struct Area {
     Vector2d first_m;
     Vector2d size_m;
 };
 Area area_of(const Renderer& r) {
     const mechanics::SurfaceGrid grid = mechanics::surface_grid(*r.compliance);
-    const double R = 0.5 * r.finger.diameter_m;
-    const Vector2d first_m(grid.x.at_m(0) + R, grid.y.at_m(0) + R);
-    const Vector2d last_m(grid.x.at_m(grid.x.at_m.size() - 1) - R, grid.y.at_m(grid.y.at_m.size() - 1) - R);
-    return {first_m, last_m - first_m};
+    Vector2d margin_m = Vector2d::Constant(0.5 * r.finger.diameter_m);
+    if (r.observed.points_m.cols() > 0)
+        margin_m = margin_m.cwiseMax(r.observed.points_m.cwiseAbs().rowwise().maxCoeff());
+    const Vector2d first_m(grid.x.at_m(0), grid.y.at_m(0));
+    const Vector2d last_m(grid.x.at_m(grid.x.at_m.size() - 1), grid.y.at_m(grid.y.at_m.size() - 1));
+    return {first_m + margin_m, last_m - first_m - 2.0 * margin_m};
 }
 
 std::size_t entries(const Table& t) {

@@ -1,4 +1,4 @@
-// palpa bench accuracy mechanics
+// palpa bench accuracy mechanics|tactile
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
@@ -7,6 +7,7 @@
 
 #include "accuracy/accuracy.h"
 #include "accuracy/mechanics.h"
+#include "accuracy/tactile.h"
 #include "app/commands/command_line.h"
 #include "files/input_error.h"
 #include "files/regular_file.h"
@@ -30,15 +31,25 @@ void make_folder(const std::filesystem::path& folder) {
                                 ", expected a folder or a name for one");
 }
 
-void run_accuracy(const AccuracyOptions& options) {
+using Measurements = std::vector<accuracy::Measurement>;
+
+accuracy::Effort effort_of(const AccuracyOptions& options) {
+    return {options.quick, options.quick ? 0.05 : 0.8, options.quick ? 0.05 : 0.6};
+}
+
+Measurements mechanics_list(const accuracy::Effort& effort) {
+    Measurements list = accuracy::slab_measurements(effort);
+    for (const auto& more : {accuracy::contact_measurements(effort), accuracy::step_measurements(effort)})
+        list.insert(list.end(), more.begin(), more.end());
+    return list;
+}
+
+// Measures a list and writes NAME.csv; the mechanics library has a figure too.
+void run_accuracy(const AccuracyOptions& options, const Measurements& list, const std::string& name) {
     if (!options.folder.empty()) {
         files::check_output_folder(options.folder);
         make_folder(options.folder);
     }
-    const accuracy::Effort effort{options.quick, options.quick ? 0.05 : 0.8, options.quick ? 0.05 : 0.6};
-    std::vector<accuracy::Measurement> list = accuracy::slab_measurements(effort);
-    for (const auto& more : {accuracy::contact_measurements(effort), accuracy::step_measurements(effort)})
-        list.insert(list.end(), more.begin(), more.end());
     const accuracy::Machine machine = accuracy::this_machine();
     const std::vector<accuracy::AccuracyRow> rows = accuracy::run_measurements(list);
     if (options.json) {
@@ -49,7 +60,11 @@ void run_accuracy(const AccuracyOptions& options) {
                     accuracy::accuracy_table(rows).c_str());
     }
     if (options.folder.empty()) return;
-    files::write_text_atomically(std::filesystem::path(options.folder) / "mechanics.csv", accuracy::accuracy_csv(rows));
+    files::write_text_atomically(std::filesystem::path(options.folder) / (name + ".csv"), accuracy::accuracy_csv(rows));
+    if (name != "mechanics") {
+        std::fprintf(stderr, "%s: %s.csv\n", options.folder.c_str(), name.c_str());
+        return;
+    }
     const std::string trouble = accuracy::plot_mechanics(options.folder, machine);
     if (!trouble.empty())
         std::fprintf(stderr, "palpa: %s\n", trouble.c_str());
@@ -71,7 +86,14 @@ void add_bench_accuracy(CLI::App& bench) {
     mechanics->add_flag("--quick", options->quick,
                         "use small meshes only, which takes under 20 s (all meshes: 4 minutes)");
     mechanics->add_flag("--json", options->json, "print one JSON object on standard output");
-    mechanics->callback([options] { run_accuracy(*options); });
+    mechanics->callback([options] { run_accuracy(*options, mechanics_list(effort_of(*options)), "mechanics"); });
+    CLI::App* tactile = accuracy->add_subcommand(
+        "tactile", "Measure error and cost of the shape display's choices: contact, table, sheet, steps, schedule");
+    tactile->add_option("-o,--output", options->folder, "folder for tactile.csv (default: nothing is written)");
+    tactile->add_flag("--quick", options->quick, "use small meshes only (10 s; all meshes: a minute)");
+    tactile->add_flag("--json", options->json, "print one JSON object on standard output");
+    tactile->callback(
+        [options] { run_accuracy(*options, accuracy::tactile_measurements(effort_of(*options)), "tactile"); });
 }
 
 }  // namespace palpa::app

@@ -357,6 +357,7 @@ files::Json Live::close() {
     if (const auto* calibrating = std::get_if<Calibrating>(&it.app.doing)) stop_recording(*calibrating->form);
     remember_window(*it.window, it.app);
     if (study_of(it.app.doing) != nullptr) return close_study(*it.gui, it.app);
+    rest_tactile(it.app);
     files::Json result = result_of(it.app);
     result["start_to_first_frame_s"] = it.first_frame_s;
     result["overflow"] = it.gui->overflow();

@@ -147,9 +147,10 @@ void act(platform::Action action, platform::Window& window, App& app);
 // tactile_live.cpp
 // Notes what the session's scene asks of arm and pins, and drives nothing.
 void know_tactile(App& app);
-// Starts the scene's devices, unless they are stopped. Throws as TactileDriver does.
+// Begins to open the scene's devices, unless they are stopped.
 void drive_tactile(const std::filesystem::path& rows, App& app);
-void begin_tactile(App& app);  // both; the trial goes on without a device that cannot be opened
+bool tactile_ready(App& app);  // the devices run, or could not be opened (TactileShown::problem), or there are none
+void begin_tactile(App& app);  // the first two; the trial does not wait for its devices, and goes on without them
 void rest_tactile(App& app);
 void follow_tactile(double now_s, App& app);  // once per turn of the loop
 void stop_tactile(App& app);                  // F12: at once, and until release_tactile()
@@ -158,6 +159,14 @@ bool tactile_failed(double now_s, const App& app);  // the devices have stopped,
 
 // device_notes.cpp
 void note_devices(const platform::Window& window, App& app);  // into app.notices
+
+// study_devices.cpp: arm and pins of a study's trial.
+bool devices_stopped(
+    const App& app);  // stopped, or could not be opened: somebody has to read it before the trial begins
+void note_tactile(const App& app, StudyRun& run);  // what they lack, or why they were stopped
+// Begins to open them, once for each trial that is due. Returns true when they run, or there are none.
+bool devices_ready(App& app);
+void name_devices(const App& app, study::TrialLabel& label);  // in the trial's settings
 
 // study_trials.cpp: the trials of a study; app.doing is a StudyRun.
 void load_study(const RunOptions& options, App& app);  // throws InputError or std::runtime_error

@@ -17,58 +17,19 @@
 namespace palpa::app {
 namespace {
 
-// Starts arm and pins, if the scene has any, so that the settings of the trial can name them. Returns false if they
-// cannot be opened.
-bool begin_devices(session::SessionFiles& files, App& app) {
-    know_tactile(app);
-    if (!app.tactile.shown) return true;
-    const study::RunFiles log = study::next_run(files.log, files.participant, files.task, files.first_run);
-    try {
-        drive_tactile(log.file("_tactile.tsv"), app);
-    } catch (const std::exception& error) {
-        app.tactile.shown->problem = error.what();
-        return false;
-    }
-    files.label->study["devices"] = files::Json::array();
-    for (const session::TactileDevice& device : app.tactile.shown->devices) {
-        files.label->study["devices"].push_back(
-            {{"role", device.role}, {"name", device.name}, {"port", device.port}, {"simulated", device.simulated}});
-    }
-    return true;
-}
-
-// True if the devices were stopped or could not be opened, which somebody has to read before the trial begins again.
-bool devices_stopped(const App& app) {
-    const auto& shown = app.tactile.shown;
-    return shown && (shown->moment.stopped || !shown->problem.empty());
-}
-
-// What the due trial's arm and pins lack, or why they were stopped.
-void note_tactile(const App& app, StudyRun& run) {
-    if (!run.progress.next || !feels_pins(run) || app.tactile.driver) return run.devices_note.clear();
-    run.devices_note.clear();
-    if (devices_stopped(app)) {
-        const TactileShown& shown = *app.tactile.shown;
-        run.devices_note =
-            shown.problem.empty() ? words::filled(words::kDevicesStopped, {shown.moment.fault}) : shown.problem;
-        return;
-    }
-    if (app.options.simulate_devices) return;
-    for (const std::string& missing : missing_devices(due_scene(run).scene))
-        run.devices_note += (run.devices_note.empty() ? "" : "\n") + words::filled(words::kDevicesMissing, {missing});
-}
-
 void begin_study_trial(platform::Window& window, const Gui& gui, App& app) {
     StudyRun& run = *study_of(app.doing);
     try {
         const StudyScene& due = due_scene(run);
         const study::PlannedTrial& trial = due_trial(run);
         const bool known = trial.practice && !due_compares(run);
-        put_scene(scene_of(due, trial), due.plan, window, app);
+        if (!std::get<step::Trial>(run.step).opening) put_scene(scene_of(due, trial), due.plan, window, app);
+        if (!devices_ready(app)) return;
+        if (devices_stopped(app)) return wait_for_device(false, run);
         session::SessionFiles files = due_files(run);
         files.finger_offset_mm = finger_offset_mm(app);
+        name_devices(app, *files.label);
         app.notices.note.clear();
-        if (!begin_devices(files, app)) return wait_for_device(false, run);
         session::begin_trial(files, info_of(app, window),
                              known ? session::TrialMode::practice : session::TrialMode::test, app.session);
         app.parted_s = 0.0;
@@ -198,6 +159,7 @@ void follow_study(const std::optional<StudyWish>& wish, platform::Window& window
         if (may_begin(app)) {
             begin_study_trial(window, gui, app);
         } else {
+            rest_tactile(app);
             wait_for_device(false, run);
         }
     }

@@ -26,17 +26,22 @@ struct TactileDriverOptions {
 
 class TactileDriver {
   public:
-    // Starts the devices' loop. Throws InputError or std::runtime_error if a device cannot be opened.
+    // Begins to open the devices, which takes a second or more (boards are proved first), in a thread of its own.
     TactileDriver(const scene::Scene& scene, std::shared_ptr<const scene::Plan> plan,
                   const TactileDriverOptions& options);
     ~TactileDriver();  // everything rests, and the loop has ended
 
+    // True once the loop runs. Throws InputError or std::runtime_error if a device cannot be opened; no further call is
+    // meant then.
+    bool ready();
+
+    // The rest does nothing before that.
     void hand_over(const scene::State& state);  // the touch on the screen
     bool latest(session::TactileMoment& moment);
     void stop();     // at once; stays until release()
     void release();  // by a person's wish only
     std::vector<session::TactileDevice> devices() const;
-    files::Json report() const;
+    files::Json report() const;  // null before ready(); ends the loop
 
   private:
     struct Impl;

@@ -2,12 +2,15 @@
 // whatever screen is open.
 
 #include <exception>
+#include <string_view>
 
 #include "app/live/live_app.h"
 #include "session/device_rows.h"
 
 namespace palpa::app {
 namespace {
+
+constexpr const char* kStopKey = "F12";
 
 // What the screens show of a scene before anything is driven. A stop outlives the trial in which it came.
 TactileShown shown_of(const scene::Scene& scene, const std::optional<TactileShown>& before) {
@@ -48,18 +51,30 @@ void drive_tactile(const std::filesystem::path& rows, App& app) {
     if (!tactile.shown || app.trace || tactile.shown->moment.stopped || !drives_devices(session.scene)) return;
     const TactileDriverOptions options{app.options.simulate_devices, rows};
     tactile.driver = std::make_unique<TactileDriver>(session.scene, session.plan, options);
+    tactile.shown->opening = true;
+}
+
+bool tactile_ready(App& app) {
+    TactileControl& tactile = app.tactile;
+    if (!tactile.driver || tactile.shown->runs) return true;
+    try {
+        if (!tactile.driver->ready()) return false;
+    } catch (const std::exception& error) {
+        tactile.driver.reset();
+        tactile.shown->opening = false;
+        tactile.shown->problem = error.what();
+        return true;
+    }
     tactile.shown->devices = tactile.driver->devices();
+    tactile.shown->opening = false;
     tactile.shown->runs = true;
+    if (tactile.shown->moment.stopped) tactile.driver->stop();  // F12 came meanwhile
+    return true;
 }
 
 void begin_tactile(App& app) {
     know_tactile(app);
-    if (!app.tactile.shown) return;
-    try {
-        drive_tactile(rows_file(app), app);
-    } catch (const std::exception& error) {  // the trial goes on without its devices, and the screen says why
-        app.tactile.shown->problem = error.what();
-    }
+    if (app.tactile.shown) drive_tactile(rows_file(app), app);
 }
 
 void rest_tactile(App& app) {
@@ -69,7 +84,7 @@ void rest_tactile(App& app) {
     tactile.driver.reset();
     tactile.fault_since_s.reset();
     if (!tactile.shown) return;
-    tactile.shown->runs = false;
+    tactile.shown->runs = tactile.shown->opening = false;
     if (!tactile.shown->moment.stopped) tactile.shown->moment.fault = "";
 }
 
@@ -82,9 +97,11 @@ void follow_tactile(double now_s, App& app) {
         return;
     }
     if (app.session.trial.finished) return rest_tactile(app);
+    if (!tactile_ready(app) || !tactile.driver) return;
     tactile.driver->hand_over(app.session.state);
     const bool stopped = moment.stopped;
     if (tactile.driver->latest(moment)) moment.stopped = moment.stopped || stopped;
+    if (std::string_view(moment.fault) == "stopped") moment.fault = kStopKey;  // by whom
     if (*moment.fault == '\0') {
         tactile.fault_since_s.reset();
     } else if (!tactile.fault_since_s) {
@@ -97,7 +114,7 @@ void stop_tactile(App& app) {
     if (!tactile.shown) return;
     if (tactile.driver) tactile.driver->stop();
     tactile.shown->moment.stopped = true;
-    tactile.shown->moment.fault = "F12";
+    tactile.shown->moment.fault = kStopKey;
 }
 
 void release_tactile(App& app) {

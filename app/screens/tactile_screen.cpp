@@ -37,6 +37,7 @@ const char* range_words(double linearity) {
 void draw_state(const TactileShown& tactile) {
     const TactileMoment& moment = tactile.moment;
     if (!tactile.problem.empty()) return warning_paragraph(tactile.problem);
+    if (tactile.opening) return paragraph(words::kDevicesOpening);
     if (tactile.devices.empty()) return paragraph(moment.rows > 0 ? words::kPinsOnlyDrawn : words::kNoTactile);
     if (moment.stopped) return warning_paragraph(words::filled(words::kStoppedBy, {moment.fault}));
     if (*moment.fault != '\0') return warning_paragraph(words::filled(words::kRestsSince, {moment.fault}));

@@ -14,7 +14,8 @@ namespace palpa::app {
 struct TactileShown {
     session::TactileMoment moment;
     std::vector<session::TactileDevice> devices;  // none: pins are only drawn
-    bool runs = false;                            // the devices' loop is running
+    bool opening = false;                         // the devices are being opened
+    bool runs = false;                            // their loop is running
     bool arm_leads = false;                       // the arm's motion is the input, not that on the screen
     double force_limit_N = session::TactileMoment::kNone;
     std::string problem;  // why the loop does not run

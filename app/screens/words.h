@@ -251,6 +251,7 @@ inline constexpr const char* kMiddleRow = "Middle row";
 inline constexpr const char* kMiddleRowBoth = "Middle row: bars wanted, lines reached";
 inline constexpr const char* kPinsOnlyDrawn = "The scene names no device: pins are only drawn.";
 inline constexpr const char* kNoTactile = "This scene has no force arm and no shape display.";
+inline constexpr const char* kDevicesOpening = "The devices are getting ready.";
 inline constexpr const char* kTactileRuns = "Running";
 inline constexpr const char* kTactileRests = "The devices rest: no trial is running.";
 inline constexpr const char* kHolds = "Above the force limit: force and shape hold.";

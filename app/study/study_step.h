@@ -20,8 +20,9 @@ struct Again {};      // a known code: is it the same person?
 struct Consent {};    // the protocol's text, before everything else
 struct Questions {};  // of the protocol, before the trials
 struct Instructions {};
-struct Trial {           // on the tissue; in a forced choice, one of the two intervals
-    bool begun = false;  // false: the loop must begin it
+struct Trial {             // on the tissue; in a forced choice, one of the two intervals
+    bool begun = false;    // false: the loop must begin it
+    bool opening = false;  // its devices are being opened; set by the loop
 };
 struct Device {              // a trial is due, and its device is not connected, or is a pen without pressure
     bool here = false;       // the trial could begin now; set by the loop

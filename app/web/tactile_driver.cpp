@@ -12,6 +12,7 @@ std::vector<std::string> missing_devices(const scene::Scene&) { return {}; }
 TactileDriver::TactileDriver(const scene::Scene&, std::shared_ptr<const scene::Plan>, const TactileDriverOptions&) {}
 TactileDriver::~TactileDriver() = default;
 
+bool TactileDriver::ready() { return false; }
 void TactileDriver::hand_over(const scene::State&) {}
 bool TactileDriver::latest(session::TactileMoment&) { return false; }
 void TactileDriver::stop() {}

@@ -7,10 +7,10 @@
 
 using namespace palpa::mechanics;
 
-TEST_CASE("surface grid: cubics are interpolated exactly, ends and beyond included") {
+TEST_CASE("surface grid: parabolas are interpolated exactly, ends and beyond included") {
     const Eigen::VectorXd at_m = (Eigen::VectorXd(7) << 0.0, 0.3, 0.5, 1.1, 1.2, 2.0, 2.7).finished();
     const GridAxis axis = grid_axis(at_m);
-    const auto cubic = [](double x) { return 1.0 + x * (2.0 + x * (-0.7 + 0.3 * x)); };
+    const auto parabola = [](double x) { return 1.0 + x * (2.0 - 0.7 * x); };
     const unsigned seed = 1;
     CAPTURE(seed);
     std::mt19937 random(seed);
@@ -22,11 +22,11 @@ TEST_CASE("surface grid: cubics are interpolated exactly, ends and beyond includ
         double sum = 0.0;
         double weights = 0.0;
         for (int i = 0; i < s.count; ++i) {
-            sum += s.weight[i] * cubic(at_m(s.first + i));
+            sum += s.weight[i] * parabola(at_m(s.first + i));
             weights += s.weight[i];
         }
         CHECK(weights == doctest::Approx(1.0).epsilon(1e-12));
-        CHECK(sum == doctest::Approx(cubic(std::clamp(x, 0.0, 2.7))).epsilon(1e-11));
+        CHECK(sum == doctest::Approx(parabola(std::clamp(x, 0.0, 2.7))).epsilon(1e-9));
     }
     CHECK(cell_of(axis, -5.0) == 0);
     CHECK(cell_of(axis, 0.3) == 1);
@@ -41,5 +41,35 @@ TEST_CASE("surface grid: two and three coordinates") {
         for (int i = 0; i < s.count; ++i) sum += s.weight[i] * axis.at_m(s.first + i);
         CHECK(s.count == n);
         CHECK(sum == doctest::Approx(0.25));
+    }
+}
+
+TEST_CASE("surface grid: the slope has no jump at the coordinates") {
+    const Eigen::VectorXd at_m = (Eigen::VectorXd(6) << 0.0, 0.4, 0.5, 1.3, 1.9, 2.2).finished();
+    const Eigen::VectorXd value = (Eigen::VectorXd(6) << 1.0, -0.3, 2.0, 0.7, 0.9, -1.0).finished();
+    const GridAxis axis = grid_axis(at_m);
+    const auto at = [&](double x) {
+        const Stencil s = stencil_at(axis, x);
+        double sum = 0.0;
+        for (int i = 0; i < s.count; ++i) sum += s.weight[i] * value(s.first + i);
+        return sum;
+    };
+    constexpr double kStep = 1e-6;
+    for (Eigen::Index i = 1; i < 5; ++i) {
+        CHECK(at(at_m(i)) == doctest::Approx(value(i)).epsilon(1e-12));
+        const double before = (at(at_m(i)) - at(at_m(i) - kStep)) / kStep;
+        const double after = (at(at_m(i) + kStep) - at(at_m(i))) / kStep;
+        CHECK(after == doctest::Approx(before).epsilon(1e-3));
+    }
+}
+
+TEST_CASE("surface grid: what is left out far away is less than a thousandth") {
+    const GridAxis axis = grid_axis(Eigen::VectorXd::LinSpaced(40, 0.0, 39.0));
+    for (const double x : {17.3, 20.5, 1.2, 38.9}) {
+        const Stencil s = stencil_at(axis, x);
+        double sum = 0.0;
+        for (int i = 0; i < s.count; ++i) sum += s.weight[i] * std::sin(0.5 * (s.first + i));
+        CHECK(sum == doctest::Approx(std::sin(0.5 * x)).epsilon(2e-3));
+        CHECK(s.count <= 2 * kSplineReach + 2);
     }
 }

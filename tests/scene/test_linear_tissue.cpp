@@ -310,3 +310,37 @@ TEST_CASE("linear tissue: palpated live a sample allocates nothing and two runs 
     advance(scene, plan, lift, states[0]);
     CHECK(work_of(states[0]).drag_N.isZero(0.0));
 }
+
+TEST_CASE("linear tissue: a graded block answers as an even one, finest where it was asked for") {
+    Block even;
+    Block graded;
+    graded.options.grading = mechanics::Grading{{0.045, 0.030}, 2e-3};
+    graded.tissue = make_linear_tissue(graded.options, graded.folder / "cache", {});
+    graded.work = make_work(graded.tissue);
+    REQUIRE(graded.tissue.graded);
+    CHECK(graded.tissue.compliance.n_touch == even.tissue.compliance.n_touch);
+    CHECK(graded.tissue.content != even.tissue.content);
+    const auto spacing_m = [&](double x_m, double y_m) { return spacing_at_m(graded.tissue, {x_m, y_m}); };
+    CHECK(spacing_m(0.0451, 0.0301) == doctest::Approx(2e-3).epsilon(0.05));
+    CHECK(spacing_m(0.001, 0.001) > 3e-3);
+    CHECK(spacing_at_m(even.tissue, {0.001, 0.001}) == doctest::Approx(4e-3));
+    const double even_m = press(even.tissue, {0.045, 0.030}, 0.5, even.work).depth_m;
+    CHECK(press(graded.tissue, {0.045, 0.030}, 0.5, graded.work).depth_m == doctest::Approx(even_m).epsilon(0.1));
+
+    // pictures get an even grid, deepest under the finger
+    SurfaceShape shape;
+    sample_surface(graded.tissue, {}, {}, graded.work, shape);
+    REQUIRE(shape.sink_m.size() == shape.n_x * shape.n_y);
+    Eigen::Index deepest = 0;
+    shape.sink_m.maxCoeff(&deepest);
+    CHECK(static_cast<double>(deepest % shape.n_x) * shape.spacing_m.x() == doctest::Approx(0.045).epsilon(0.06));
+    CHECK(static_cast<double>(deepest / shape.n_x) * shape.spacing_m.y() == doctest::Approx(0.030).epsilon(0.06));
+
+    // the cache keeps them apart and brings the coordinates back
+    const LinearTissue again = make_linear_tissue(graded.options, graded.folder / "cache", {});
+    CHECK(again.from_cache);
+    REQUIRE(again.graded);
+    CHECK(again.graded->x.at_m == graded.tissue.graded->x.at_m);
+    graded.options.grading->centre_m[0] = 0.07;  // the block ends at 60 mm
+    CHECK_THROWS_AS(make_linear_tissue(graded.options, {}, {}), InputError);
+}

@@ -121,3 +121,24 @@ TEST_CASE("psychometric report: no lapse if none is allowed") {
     const Report report = make_report(two_conditions(2, 18), options);
     for (const PsychometricResult& curve : report.psychometrics.curves) CHECK(curve.fit.lapse == 0.0);
 }
+
+TEST_CASE("psychometric report: a ratio has its limit also where one condition is answered by chance") {
+    constexpr std::uint64_t kSeed = 16;
+    CAPTURE(kSeed);
+    Observations seen = two_conditions(8, kSeed);
+    for (StifferAnswers& answers : seen.stiffer) {
+        if (answers.condition != 0) continue;
+        const int rise =
+            answers.participant < 4 ? 1 : -2;  // together the answers fall with x; of some resamples they rise
+        answers.stiffer = answers.n / 2 + (answers.x > 0.0 ? rise : 0);
+    }
+    const Json json = report_json(make_report(seen, few_resamples()));
+    CHECK(json["psychometric"][0]["sd"].is_null());
+    REQUIRE(json["psychometric_pairs"].size() == 1);
+    const Json& pair = json["psychometric_pairs"][0];
+    CHECK(pair["a"] == "off");
+    CHECK(pair["jnd_ratio"].is_null());
+    REQUIRE(pair["ci"][0].is_number());
+    CHECK(pair["ci"][0].get<double>() > 1.0);
+    CHECK(pair["ci"][1].is_null());  // the flat curve's JND is above any other
+}

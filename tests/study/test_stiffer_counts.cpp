@@ -50,9 +50,13 @@ TEST_CASE("stiffer counts: a table gives levels of ln(comparison/reference)") {
     CHECK(seen.stiffer[0].stiffer == 9);
 }
 
-TEST_CASE("stiffer counts: what is wrong is named with line and column") {
+TEST_CASE("stiffer counts: stiffer > n is refused with line and column") {
     CHECK(
         contains(refusal_of_stiffer("pen\t1.75\t2\t11\t10\n"), "line 2, stiffer: found '11', expected at most n = 10"));
+    CHECK(contains(refusal_of_stiffer("pen\t1.75\t2\t10\t10\npen\t1.75\t3\t1\t0\n"), "line 3, n: found '0'"));
+}
+
+TEST_CASE("stiffer counts: what is wrong is named with line and column") {
     for (const std::string bad : {"nan", "n/a", "inf", "0", "-1", "soft"}) {
         CAPTURE(bad);
         CHECK(

@@ -595,3 +595,52 @@ TEST_CASE("study run: a withdrawal that the experimenter notes meanwhile ends th
     }
     CHECK(read_json(log / "sub-01/now.json")["step"] == "withdrawn");
 }
+
+namespace {
+
+// A protocol of two conditions on a shape display with this key `tactile` of the scene ("": none).
+Protocol pins_protocol(const TemporaryFolder& folder, const std::string& tactile) {
+    write_text_atomically(folder / "slab.json", R"({"size_mm": [40, 40, 20], "nodules": [],
+        "tissue": {"young_Pa": 17500, "poisson": 0.45}, "indenter": {"shape": "sphere", "radius_mm": 8, "contact": "rolling"},
+        "depths_mm": [1], "grid": {"origin_mm": [0, 0], "spacing_mm": [1, 1], "count": [2, 2]}})");
+    write_text_atomically(folder / "slab-scene.json",
+                          R"({"name": "slab", "tissue": {"linear": {"phantom": "slab.json", "spacing_mm": 4}})" +
+                              (tactile.empty() ? "" : R"(, "tactile": )" + tactile) + "}");
+    write_text_atomically(folder / "p.json", R"({"name": "n", "version": "1", "seed": 1, "order": "fixed",
+        "conditions": [{"id": "pins", "modality": "shape-display", "scene": "slab-scene.json"}],
+        "choice": {"reference_kPa": 17.5, "comparisons_kPa": [20, 35], "repeats": 2}, "practice": {"trials": 1}})");
+    return read_protocol(folder / "p.json");
+}
+
+}  // namespace
+
+TEST_CASE(
+    "study run: a shape-display condition whose scene has the key tactile is driven, and its surfaces are trials") {
+    const TemporaryFolder folder;
+    const Protocol protocol = pins_protocol(folder, R"({"display": {"device": "pins-6x6.json"}, "leads": "touch"})");
+    StudyRun run = open_study_run(protocol, folder / "log", "01");
+    begin_step(run);
+    REQUIRE(trial_waits(run));
+    CHECK_FALSE(typed_in(run, 0));
+    CHECK(feels_pins(run));
+    CHECK(due_trial(run).practice);  // whose force bar shows the limit
+    const auto scale = [&] { return due_scene(run).scene.stiffness_scale; };
+    const bool reference_first = due_trial(run).reference_first;
+    CHECK(scale() == doctest::Approx(reference_first ? 1.0 : 2.0));  // practice shows the pair that differs most
+    std::get<step::Trial>(run.step).begun = true;
+    trial_finished(run);
+    REQUIRE(trial_waits(run));
+    CHECK(scale() == doctest::Approx(reference_first ? 2.0 : 1.0));
+}
+
+TEST_CASE("study run: a shape-display condition without driven devices is presented by the experimenter, or refused") {
+    const TemporaryFolder folder;
+    StudyRun run = open_study_run(pins_protocol(folder, ""), folder / "log", "01");
+    begin_step(run);
+    CHECK(at<step::Present>(run));
+    CHECK(typed_in(run, 0));
+    const TemporaryFolder other;
+    const Protocol drawn = pins_protocol(other, R"({"display": {}})");
+    const std::string refused = message_of([&] { open_study_run(drawn, other / "log", "01"); });
+    CHECK(contains(refused, "conditions[0] 'pins': scene: found 'slab-scene.json', whose key tactile names no device"));
+}
