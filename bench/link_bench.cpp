@@ -11,9 +11,9 @@
 #include "accuracy/timing.h"
 #include "devices/arm_link.h"
 #include "devices/limits.h"
-#include "devices/real_time.h"
 #include "devices/simulators/process.h"
 #include "devices/simulators/sockets.h"
+#include "platform/real_time.h"
 #include "platform/udp_port.h"
 
 namespace {
@@ -47,7 +47,7 @@ class Echo {
 
   private:
     void run() {
-        set_real_time(true);
+        palpa::platform::set_real_time(true);
         std::array<std::uint8_t, 256> bytes{};
         while (!done_) {
             timeval most{0, 100000};

@@ -9,7 +9,7 @@
 #include "devices/force_sensor.h"
 #include "devices/pin_line.h"
 #include "devices/pins.h"
-#include "devices/real_time.h"
+#include "platform/real_time.h"
 
 namespace palpa::devices {
 namespace {
@@ -119,7 +119,7 @@ void PinDriver::Works::drive_frame() {
 }
 
 void PinDriver::Works::run() {
-    set_real_time(true);  // where it is granted; else a busy computer may let the boards' timeouts fire
+    platform::set_real_time(true);  // where it is granted; else a busy computer may let the boards' timeouts fire
     prove();
     for (double due_s = steady_s(); !ending.load();) {
         const PinState now = state.load();

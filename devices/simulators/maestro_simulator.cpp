@@ -5,10 +5,10 @@
 #include <CLI/CLI.hpp>
 #include <poll.h>
 
-#include "devices/real_time.h"
 #include "devices/simulators/maestro_board.h"
 #include "devices/simulators/stream.h"
 #include "devices/simulators/terminal.h"
+#include "platform/real_time.h"
 
 using namespace palpa;
 using namespace palpa::devices;
@@ -109,7 +109,7 @@ int main(int argc, char** argv) {
     std::printf("port %s\n", link.empty() ? terminal.path.c_str() : link.c_str());
     std::fflush(stdout);
     end_on_signals();
-    set_real_time(true);
+    platform::set_real_time(true);
 
     std::mt19937_64 random(options.seed);
     const double began_s = steady_s();
