@@ -16,7 +16,7 @@ using namespace palpa::test;
 
 namespace {
 
-constexpr int kF12 = 96, kT = 28, kZ = 52;  // keycodes
+constexpr int kF12 = 96, kT = 28, kZ = 52, kEnter = 36, kF = 41, k1 = 10;  // keycodes
 
 struct Script {
     std::ofstream out;
@@ -106,4 +106,68 @@ TEST_CASE("stopped: F12 on another screen stops arm and pins, and nothing moves 
     CHECK(result["tactile"]["max_force_N"].get<double>() < 0.01);
     CHECK_FALSE(result["tactile"]["faults"].empty());
     CHECK(result["max_force_N"].get<double>() > 0.5);  // the pen pressed
+}
+
+namespace {
+
+std::string pins_study(const TemporaryFolder& folder) {
+    write_text_atomically(folder / "p.json", R"({"name": "n", "version": "1", "seed": 1, "order": "fixed",
+        "conditions": [{"id": "pins", "modality": "shape-display", "scene": "tactile-pins.json"}],
+        "choice": {"reference_kPa": 17.5, "comparisons_kPa": [35], "repeats": 2}})");
+    return "study run " + (folder / "p.json").string() + " --log " + (folder / "log").string() +
+           " --participant 01 --json --screenshot " + (folder / "p.png").string();
+}
+
+}  // namespace
+
+TEST_CASE("ports: a trial whose devices' ports are not there does not begin, and its screen names them") {
+    const TemporaryFolder folder;
+    prepared_scene(folder);
+    Script script(folder / "script.tsv");
+    script.t_s = 1.0;
+    script.key(kEnter);
+    script.t_s += 1.0;
+    script.key(kEnter);  // Start is not offered
+    script.out.close();
+    REQUIRE(run_program(folder, pins_study(folder) + " --quit-after-s 9", folder / "log/sub-01/now.json",
+                        [&] { CHECK(play_script(folder) == 0); }) == 0);
+    CHECK(read_json(folder / "out.json")["overflow"] == "");
+    CHECK(read_json(folder / "out.json")["finished"] == 0);
+    CHECK(read_json(folder / "log/sub-01/now.json")["step"] == "device");
+    CHECK_FALSE(std::filesystem::exists(folder / "log/sub-01/beh/sub-01_task-interval_run-01_settings.json"));
+}
+
+TEST_CASE("driven: a study's surfaces are on arm and pins, and the settings name each device, real or simulated") {
+    const TemporaryFolder folder;
+    prepared_scene(folder);
+    Script script(folder / "script.tsv");
+    script.t_s = 1.0;
+    script.key(kEnter);  // begin
+    script.t_s += 4.0;   // the devices open
+    script.key(kF);      // the first surface
+    script.t_s += 4.0;
+    script.key(kF);  // the second one
+    script.key(k1);  // was softer
+    script.t_s += 4.0;
+    script.key(kF12);  // in the middle of the next pair
+    script.out.close();
+    const std::string arguments = pins_study(folder) + " --simulate --quit-after-s 30";
+    REQUIRE(run_program(folder, arguments, folder / "log/sub-01/now.json", [&] { CHECK(play_script(folder) == 0); }) ==
+            0);
+    const Json result = read_json(folder / "out.json");
+    CHECK(result["overflow"] == "");
+    CHECK(result["finished"] == 1);
+    CHECK(read_json(folder / "log/sub-01/now.json")["step"] == "device");  // which says that F12 stopped them
+    const std::string stem = (folder / "log/sub-01/beh/sub-01_task-interval_run-0").string();
+    for (const char* run : {"1", "2"}) {
+        const Json devices = read_json(stem + run + "_settings.json")["study"]["devices"];
+        CAPTURE(devices.dump());
+        REQUIRE(devices.size() == 3);
+        for (const Json& device : devices) CHECK(device["simulated"] == true);
+        CHECK(devices[0]["role"] == "arm");
+        CHECK(devices[2]["role"] == "pins");
+        CHECK(std::filesystem::file_size(stem + run + "_tactile.tsv") > 1000);
+    }
+    CHECK(read_text(stem + "3_events.tsv").find("device_gone") != std::string::npos);
+    CHECK(shell("timeout 60 " PALPA_PROGRAM " study analyse " + (folder / "log").string() + " --json >/dev/null") == 0);
 }

@@ -1,5 +1,6 @@
 // palpa study as a person calls it.
 
+#include <cmath>
 #include <cstdlib>
 #include <doctest/doctest.h>
 #include <filesystem>
@@ -309,6 +310,47 @@ TEST_CASE("command study simulate: the paper's protocol leaves hands out; forced
         "stdout");
     CHECK(again["trials"] == 0);
     CHECK(again["already_there"] == 480);
+}
+
+TEST_CASE(
+    "command study simulate: who feels arm and pins tells by the pins what is stiffer; the reference stays on them") {
+    const TemporaryFolder folder;
+    write_text_atomically(folder / "slab.json", R"({"size_mm": [40, 40, 20], "nodules": [],
+        "tissue": {"young_Pa": 17500, "poisson": 0.45}, "indenter": {"shape": "sphere", "radius_mm": 8, "contact": "rolling"},
+        "depths_mm": [1], "grid": {"origin_mm": [0, 0], "spacing_mm": [1, 1], "count": [2, 2]}})");
+    const auto scene = [&](const char* name, const char* schedule) {
+        write_text_atomically(
+            folder / name,
+            std::string(R"({"name": "slab", "tissue": {"linear": {"phantom": "slab.json", "spacing_mm": 4}},
+            "tactile": {"arm": {"device": "arm.json"}, "display": {"device": "pins-6x6.json", "schedule": ")") +
+                schedule + R"("}, "leads": "arm"}})");
+    };
+    scene("pins-scene.json", "lead");
+    scene("arm-scene.json", "locked");
+    write_text_atomically(folder / "p.json", R"({"name": "n", "version": "1", "seed": 3, "order": "fixed",
+        "conditions": [{"id": "pins", "modality": "shape-display", "scene": "pins-scene.json"},
+                       {"id": "arm", "modality": "shape-display", "scene": "arm-scene.json"}],
+        "choice": {"reference_kPa": 17.5, "comparisons_kPa": [9, 12.5, 15, 20, 25, 34], "repeats": 6, "reference_on": "pins"}})");
+    const std::string log = (folder / "log").string();
+    REQUIRE(study("simulate " + (folder / "p.json").string() + " --participants 6 --seed 2 -o " + log).status == 0);
+    const std::string rows = read_text(log + "/sub-sim0001/beh/sub-sim0001_task-softer_run-01_events.tsv");
+    CHECK(contains(rows, "reference_on"));
+    CHECK(contains(rows, "\tpins\t"));
+    const Json report = parse_json(study("analyse " + log + " --json").out, "stdout");
+    const auto all_of = [&](const char* condition) {
+        for (const Json& curve : report["psychometric"]) {
+            if (curve["condition"] == condition && curve["participant"].is_null()) return curve;
+        }
+        return Json();
+    };
+    const Json pins = all_of("pins"), arm = all_of("arm");
+    CHECK(pins["axis"] == "comparison/reference");
+    REQUIRE(pins["jnd_percent"].is_number());
+    CHECK(pins["jnd_percent"].get<double>() < 60.0);
+    CHECK(pins["jnd_percent_ci"][1].is_number());
+    CHECK(std::abs(pins["pse"].get<double>()) < 0.15);  // pins against pins
+    const bool flat = arm["sd"].is_null();
+    CHECK((flat || arm["sd"].get<double>() > 1.5 * pins["sd"].get<double>()));
 }
 
 TEST_CASE("command study levels: a table of rejections and coverage, theirs labelled") {
