@@ -59,6 +59,21 @@ bool is_whole(std::span<const std::uint8_t> bytes, std::size_t size, std::uint32
 
 }  // namespace
 
+ArmCommandPacket packet_of(const ArmCommand& command, std::uint32_t sequence, double now_s) noexcept {
+    ArmCommandPacket packet;
+    packet.sequence = sequence;
+    packet.host_time_s = now_s;
+    const double motor_N = command.force_N + command.feedforward_N;
+    if (!std::isfinite(motor_N) || !std::isfinite(command.depth_m)) return packet;
+    for (const ArmMode mode : {ArmMode::force, ArmMode::position}) {
+        if (command.mode != static_cast<double>(mode)) continue;
+        packet.mode = static_cast<std::uint16_t>(mode);
+        packet.force_N = motor_N;
+        packet.depth_m = command.depth_m;
+    }
+    return packet;
+}
+
 std::array<std::uint8_t, kArmCommand_bytes> encode(const ArmCommandPacket& packet) {
     PacketWriter<kArmCommand_bytes> out;
     out.put(kArmCommandMagic);
@@ -183,12 +198,7 @@ bool ArmLink::read(ArmFeedback& out) noexcept {
 }
 
 void ArmLink::send(const ArmCommand& command) noexcept {
-    ArmCommandPacket packet;
-    packet.sequence = ++sent_;
-    packet.mode = static_cast<std::uint16_t>(command.mode);
-    packet.host_time_s = steady_s();
-    packet.force_N = command.force_N + command.feedforward_N;
-    packet.depth_m = command.depth_m;
+    const ArmCommandPacket packet = packet_of(command, ++sent_, steady_s());
     const auto bytes = encode(packet);
     ++(port_->send(bytes.data(), bytes.size()) ? health_.sent : health_.unsent);
 }

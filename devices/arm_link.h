@@ -52,6 +52,9 @@ struct ArmFeedbackPacket {
     double motor_N = 0.0;
 };
 
+// What a command becomes on the wire; one that is not finite becomes rest.
+ArmCommandPacket packet_of(const ArmCommand& command, std::uint32_t sequence, double now_s) noexcept;
+
 std::array<std::uint8_t, kArmCommand_bytes> encode(const ArmCommandPacket& packet);
 std::array<std::uint8_t, kArmFeedback_bytes> encode(const ArmFeedbackPacket& packet);
 // Return false for another length, magic, version or CRC, for a mode or state that is not known, and for a number that

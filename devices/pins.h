@@ -107,9 +107,9 @@ struct PinHealth {
 };
 
 // Drives the pins from a thread of its own: it proves timeout and CRC of every board, falling silent once, then writes a
-// frame every 20 ms and asks one board for its errors in each. If send() is not called for 100 ms, the pins rest. A port
-// that was unplugged is opened again twice a second, and the boards are proved again. Boards that are not safe are not
-// driven.
+// frame every 20 ms and asks one board for its errors in each. If send() is not called for 100 ms, the pins rest. Boards
+// that are not safe are not driven. Twice a second a port that was unplugged is opened again, and boards that do not answer
+// or are not safe are proved again.
 class PinDriver {
   public:
     // Throws std::runtime_error with the system's reason if the port cannot be opened.

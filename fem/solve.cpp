@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
+#include <unordered_set>
 
 #include "fem/mesh_file.h"
 #include "files/text.h"
@@ -140,10 +141,30 @@ void blank_rigid_cells(const Problem& problem, FemResult& result) {
     }
 }
 
+// Returns whether the tool stands on a plane of symmetry across `axis`: a side of the mesh whose nodes cannot leave it.
+bool on_symmetry_plane(const FemCase& model, int axis) {
+    const auto x_m = model.problem.mesh.nodes_m.row(axis);
+    const double tool_m = model.indenter->centre_m[static_cast<std::size_t>(axis)];
+    const double near_m = 1e-6 * (x_m.maxCoeff() - x_m.minCoeff());
+    if (tool_m - x_m.minCoeff() > near_m && x_m.maxCoeff() - tool_m > near_m) return false;
+    const std::vector<int>& held = model.problem.supports.dof;
+    const std::unordered_set<int> is_held(held.begin(), held.end());
+    for (int i = 0; i < static_cast<int>(x_m.size()); ++i) {
+        if (std::abs(x_m(i) - tool_m) <= near_m && !is_held.contains(3 * i + axis)) return false;
+    }
+    return true;
+}
+
+// Returns the width of the whole contact, of which the mesh may hold a half or a quarter.
+double contact_width_m(const FemCase& model, double area_m2) {
+    for (const int axis : {0, 1}) area_m2 *= on_symmetry_plane(model, axis) ? 2.0 : 1.0;
+    return 2.0 * std::sqrt(area_m2 / std::numbers::pi);
+}
+
 void judge_linearity(const FemCase& model, const Loads& loads, FemResult& result) {
     const auto z = model.problem.mesh.nodes_m.row(2);
     double width_m = loads.centre ? loads.centre->width_m : 0.0;
-    if (result.contact) width_m = 2.0 * std::sqrt(result.contact->area_m2 / std::numbers::pi);
+    if (result.contact) width_m = contact_width_m(model, result.contact->area_m2);
     const double depth_m = result.contact ? result.contact->depth_m : std::abs(result.centre_m.value_or(0.0));
     result.max_strain = max_principal_strain(result.fields);
     result.linear_ratio = std::max(result.max_strain, linearity_ratio(depth_m, z.maxCoeff() - z.minCoeff(), width_m));

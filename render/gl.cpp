@@ -1,6 +1,5 @@
 #include "render/gl.h"
 
-#include <algorithm>
 #include <cstring>
 #include <stdexcept>
 
@@ -204,10 +203,12 @@ std::vector<unsigned char> read_pixels(int width_px, int height_px) {
     glReadPixels(0, 0, width_px, height_px, GL_RGBA, GL_UNSIGNED_BYTE, rgba.data());
     std::vector<unsigned char> rgb(3 * width * height);
     for (std::size_t y = 0; y < height; ++y) {
-        for (std::size_t x = 0; x < width; ++x) {
-            const std::size_t from = 4 * ((height - 1 - y) * width + x);
-            std::copy_n(rgba.begin() + static_cast<std::ptrdiff_t>(from), 3,
-                        rgb.begin() + static_cast<std::ptrdiff_t>(3 * (y * width + x)));
+        const unsigned char* from = rgba.data() + 4 * (height - 1 - y) * width;
+        unsigned char* to = rgb.data() + 3 * y * width;
+        for (std::size_t x = 0; x < width; ++x, from += 4, to += 3) {
+            to[0] = from[0];
+            to[1] = from[1];
+            to[2] = from[2];
         }
     }
     return rgb;

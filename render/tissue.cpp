@@ -266,6 +266,11 @@ glm::vec2 project_px(const TissueView& view, const glm::vec3& p_m) {
     return view.centre_px + glm::vec2(q.x, y);
 }
 
+glm::vec2 dragged_m(const TissueView& view, const glm::vec2& p_m) {
+    const glm::vec2 from_finger = (p_m - view.drag_at_m) / 0.025f;
+    return p_m + view.drag_m * std::exp(-0.5f * glm::dot(from_finger, from_finger));
+}
+
 glm::vec3 displaced_m(const TissuePicture& picture, const glm::vec2& p_m) {
     const float sunk_m =
         picture.relief.n_x >= 2 ? sink_m(picture.relief, picture.view, p_m) : sink_m(picture.dent, p_m);

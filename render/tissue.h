@@ -108,4 +108,7 @@ glm::vec2 project_px(const TissueView& view, const glm::vec3& p_m);
 // down by the sink, and towards the contact by the grip's pull.
 glm::vec3 displaced_m(const TissuePicture& picture, const glm::vec2& p_m);
 
+// Returns where a point of the texture is while a finger drags the texture along, by the formula of the shader.
+glm::vec2 dragged_m(const TissueView& view, const glm::vec2& p_m);
+
 }  // namespace palpa::render

@@ -14,10 +14,10 @@
 #include <cassert>
 #include <chrono>
 #include <cstdint>
-#include <pthread.h>
 #include <thread>
 #include <vector>
 
+#include "platform/real_time.h"
 #include "session/device_rows.h"
 #include "session/latest_value.h"
 
@@ -117,14 +117,6 @@ inline void write_recorded(RowRing& recorded, DeviceRowWriter& writer) {
     for (DeviceRow row; recorded.take(row);) writer.write(row);
 }
 
-// Asks the scheduler to run this thread before all ordinary ones (SCHED_FIFO). Returns whether it was granted, which takes
-// the right to (ulimit -r, CAP_SYS_NICE).
-inline bool ask_for_real_time() noexcept {
-    sched_param parameter{};
-    parameter.sched_priority = 40;
-    return pthread_setschedparam(pthread_self(), SCHED_FIFO, &parameter) == 0;
-}
-
 // Calls tick(now_s), with the time on the host's clock, at a rate until `stopping`. Periods that it is too late for are left
 // out and counted. rate_Hz: at least 1 (assert).
 template <class Tick>
@@ -165,7 +157,7 @@ class DeviceThread {
 
   private:
     void run(double rate_Hz, Port& port, DeviceLoop<D>& loop) noexcept {
-        loop.report.real_time = ask_for_real_time();
+        loop.report.real_time = platform::set_real_time(true);
         run_ticks(rate_Hz, stopping_, loop.report, [&](double now_s) { run_period<D>(now_s, port, loop); });
     }
 

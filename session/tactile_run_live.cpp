@@ -55,7 +55,7 @@ class TactileThread {
   private:
     void run() noexcept {
         ::prctl(PR_SET_TIMERSLACK, 1000UL);  // ns; sleeps of ordinary threads end up to 50 us late else
-        loop_->report.real_time = ask_for_real_time();
+        loop_->report.real_time = platform::set_real_time(true);
         run_ticks(1.0 / tactile::kStep_s, ending_, loop_->report, [this](double now_s) { tick(now_s); });
         finished_ = true;
     }

@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <thread>
 
-#include "devices/real_time.h"
+#include "platform/real_time.h"
 
 namespace palpa::tactile {
 namespace {
@@ -20,9 +20,9 @@ constexpr double kStrokeTick_s = 1e-3;
 class LinkRig : public ArmRig {
   public:
     explicit LinkRig(const devices::ArmDevice& device) : port_(devices::open_arm(device)), due_s_(devices::steady_s()) {
-        devices::set_real_time(true);
+        platform::set_real_time(true);
     }
-    ~LinkRig() override { devices::set_real_time(false); }
+    ~LinkRig() override { platform::set_real_time(false); }
 
     // What cannot be caught up on is left out.
     double next_tick() override {

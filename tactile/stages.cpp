@@ -37,7 +37,7 @@ StageText finger_stage(const TactilePlan& plan, const std::string& tissue) {
         stage.cost_us = 0.2;
     } else {
         stage.fidelity += "; solved at every step";
-        stage.cost_us = 20.0;
+        stage.cost_us = 30.0;
     }
     return stage;
 }

@@ -68,11 +68,10 @@ int call(int argc, char** argv, CLI::App& app) {
     } catch (const files::InputError& error) {
         return fail(error.what(), 2);
     } catch (const std::filesystem::filesystem_error& error) {
-        if (error.code() != std::errc::filename_too_long) return fail(error.what(), 1);
-        return fail((files::shown(error.path1().string()) +
-                     ": found a name that is too long, expected one that the system takes")
-                        .c_str(),
-                    2);
+        const std::string name = files::shown(error.path1().string());
+        if (error.code() == std::errc::filename_too_long)
+            return fail((name + ": found a name that is too long, expected one that the system takes").c_str(), 2);
+        return fail((name + ": " + error.code().message()).c_str(), 1);
     } catch (const std::exception& error) {
         return fail(error.what(), 1);
     }

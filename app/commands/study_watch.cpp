@@ -18,6 +18,7 @@
 #include "files/text.h"
 #include "study/read_logs.h"
 #include "study/study_folder.h"
+#include "study/withdrawal.h"
 
 namespace palpa::app {
 namespace {
@@ -109,6 +110,9 @@ files::Json state_of(const fs::path& directory, const study::Person& person, std
     const fs::path subject = directory / ("sub-" + person.code);
     files::Json json{{"participant", person.code}, {"group", person.group}};
     json["finished"] = study::finished_trials(directory, person.code).size();
+    const study::Withdrawal withdrawal = study::withdrawal_of(directory, person.code);
+    if (withdrawal != study::Withdrawal::none)
+        json["withdrawn"] = withdrawal == study::Withdrawal::keeps_data ? "data kept" : "data left out";
     std::error_code error;
     if (!fs::exists(subject / "now.json", error)) return json;
     json["now"] = read_now(subject / "now.json");
@@ -155,8 +159,10 @@ files::Json look(const WatchArguments& arguments) {
 void print(const files::Json& state) {
     const std::string code = state["participant"].get<std::string>();
     std::printf("%-10s %-10s ", code.c_str(), state["group"].get<std::string>().c_str());
+    const std::string withdrew =
+        state.contains("withdrawn") ? ", withdrew, " + state["withdrawn"].get<std::string>() : "";
     if (!state.contains("now")) {
-        std::printf("%s trials\n", state["finished"].dump().c_str());
+        std::printf("%s trials%s\n", state["finished"].dump().c_str(), withdrew.c_str());
         return;
     }
     const files::Json& now = state["now"];
@@ -167,7 +173,7 @@ void print(const files::Json& state) {
         std::printf(", trial %s%s, %s", now["trial"].dump().c_str(), now.value("practice", false) ? " (practice)" : "",
                     now["condition"].get<std::string>().c_str());
     }
-    std::printf("\n");
+    std::printf("%s\n", withdrew.c_str());
     if (now.contains("present_kPa")) {
         std::printf("    first %s kPa, second %s kPa; now interval %s\n", now["present_kPa"][0].dump().c_str(),
                     now["present_kPa"][1].dump().c_str(), now["interval"].dump().c_str());

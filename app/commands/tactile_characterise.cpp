@@ -41,9 +41,9 @@ struct CharacterisedTissue {
     double stiffness_N_per_m = 0.0;  // in the middle, as the scene has it
 };
 
-CharacterisedTissue tissue_of(const CharacteriseOptions& options) {
+CharacterisedTissue tissue_of(const CharacteriseOptions& options, const scene::Scene& scene) {
     CharacterisedTissue tissue;
-    tissue.scene = load_scene(options.scene);
+    tissue.scene = scene;
     scene::TactileOptions asked = tissue.scene.tactile.value_or(scene::TactileOptions{});
     if (asked.arm && asked.arm->impedance == scene::ArmImpedance::high)
         throw files::bad_input(options.scene, "tactile.arm.impedance", "high",
@@ -163,35 +163,41 @@ void check_characterise(const CharacteriseOptions& options) {
     std::filesystem::create_directories(options.folder);
 }
 
+// One stiffness: strokes, line, and its entry in the report.
+tactile::StiffnessRun characterise_one(double wanted_N_per_m, const CharacteriseOptions& options,
+                                       const CharacterisedTissue& tissue, const devices::ArmDevice& device,
+                                       const std::optional<tactile::ArmCompensation>& compensation, files::Json& json) {
+    tactile::StrokeOptions stroke;
+    stroke.law = law_of(wanted_N_per_m, tissue);
+    stroke.compensation = compensation;
+    stroke.limits = devices::limits_of(&device, nullptr, options.force_limit_N);
+    RigResult result = stroke_along(options.rig, device, path_of(options, wanted_N_per_m), stroke,
+                                    files::short_number(1e-3 * wanted_N_per_m) + " N/mm");
+    if (const std::string warning = devices::delay_warning(wanted_N_per_m, result.loop_delay_s); !warning.empty()) {
+        json["warnings"].push_back(warning);
+        std::fprintf(stderr, "palpa: warning: %s\n", warning.c_str());
+    }
+    tactile::StiffnessRun run = tactile::stiffness_of(wanted_N_per_m, std::move(result.strokes.rows));
+    json["runs"].push_back(run_json(run, result));
+    return run;
+}
+
 void characterise(const CharacteriseOptions& options) {
     check_characterise(options);
-    const CharacterisedTissue tissue = tissue_of(options);
-    const std::filesystem::path scene_device = [&] {
-        const scene::Scene asked = load_scene(options.scene);
-        return asked.tactile && asked.tactile->arm ? asked.tactile->arm->device : std::filesystem::path();
-    }();
-    const devices::ArmDevice device = rig_device(options.rig, scene_device);
+    const scene::Scene scene = load_scene(options.scene);
+    const bool has_arm = scene.tactile && scene.tactile->arm;
+    const devices::ArmDevice device =
+        rig_device(options.rig, has_arm ? scene.tactile->arm->device : std::filesystem::path());
+    const CharacterisedTissue tissue = tissue_of(options, scene);
     files::Json json{{"scene", options.scene}, {"simulated", options.rig.simulate}};
     if (options.rig.simulate) json["seed"] = options.rig.seed;
     const auto compensation = compensation_for(options, device, json);
-    std::vector<tactile::StiffnessRun> runs;
-    double error_sum = 0.0, worst_N = 0.0;
     json["runs"] = files::Json::array();
     json["warnings"] = files::Json::array();
+    std::vector<tactile::StiffnessRun> runs;
+    double error_sum = 0.0, worst_N = 0.0;
     for (const double stiffness : options.stiffness_N_per_mm) {
-        const double wanted = 1e3 * stiffness;
-        tactile::StrokeOptions stroke;
-        stroke.law = law_of(wanted, tissue);
-        stroke.compensation = compensation;
-        stroke.limits = devices::limits_of(&device, nullptr, options.force_limit_N);
-        RigResult result = stroke_along(options.rig, device, path_of(options, wanted), stroke,
-                                        files::short_number(stiffness) + " N/mm");
-        if (const std::string warning = devices::delay_warning(wanted, result.loop_delay_s); !warning.empty()) {
-            json["warnings"].push_back(warning);
-            std::fprintf(stderr, "palpa: warning: %s\n", warning.c_str());
-        }
-        runs.push_back(tactile::stiffness_of(wanted, std::move(result.strokes.rows)));
-        json["runs"].push_back(run_json(runs.back(), result));
+        runs.push_back(characterise_one(1e3 * stiffness, options, tissue, device, compensation, json));
         error_sum += std::abs(runs.back().error_share);
         worst_N = std::max(worst_N, runs.back().hysteresis_N);
     }

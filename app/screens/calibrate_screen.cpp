@@ -146,7 +146,9 @@ void draw_typed(calibration::Recording& recording, const Gui& gui, Guide& guide)
     // Enter takes it: while the pen is held down, the display gives a click of the mouse to nobody
     if (guide.again) ImGui::SetKeyboardFocusHere();
     guide.again = false;
+    push_touchable_frame(2.0f, gui);
     ImGui::InputDouble(words::kGramForce, &guide.shown_gf, 0.0, 0.0, "%.2f");
+    ImGui::PopStyleVar();
     const bool entered =
         ImGui::IsItemDeactivatedAfterEdit() && (ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Enter)) ||
                                                 ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_KeyPadEnter)));
@@ -165,6 +167,7 @@ void form_lines(Gui& gui, CalibrateForm& form) {
     }
     const float width_px = 0.6f * ImGui::GetContentRegionAvail().x;
     const auto field = [&] { ImGui::SetNextItemWidth(width_px); };
+    push_touchable_frame(2.0f, gui);
     if (form.kind == 1) {
         field();
         ImGui::InputText(words::kAddress, form.address, sizeof form.address);
@@ -179,6 +182,7 @@ void form_lines(Gui& gui, CalibrateForm& form) {
     }
     field();
     ImGui::InputText(words::kName, form.name, sizeof form.name);
+    ImGui::PopStyleVar();
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "app/screens/plot.h"
+#include "app/screens/widgets.h"
 #include "app/screens/words.h"
 #include "scene/mapping.h"
 
@@ -165,8 +166,7 @@ void replay_controls(const Gui& gui, const KeptTrial& trial, HistoryView& histor
         if (history.plays && history.shown_s >= path_s(trial)) history.shown_s = 0.0;
     }
     ImGui::SameLine();
-    ImGui::PushStyleVar(ImGuiStyleVar_FramePadding,
-                        ImVec2(gui.mm(), 0.5f * (kTarget_mm * gui.mm() - ImGui::GetFontSize())));
+    push_touchable_frame(1.0f, gui);
     ImGui::PushStyleVar(ImGuiStyleVar_GrabMinSize, 5.0f * gui.mm());
     ImGui::SetNextItemWidth(-1.0f);
     auto shown_s = static_cast<float>(history.shown_s);

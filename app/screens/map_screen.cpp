@@ -77,8 +77,7 @@ void depth_controls(const Gui& gui, MapBrowser& browser) {
     if (big_button("-", "", {button_px, kTarget_mm, matters && browser.depth > 0, false}, gui)) --browser.depth;
     ImGui::SameLine();
     ImGui::BeginDisabled(!matters);
-    ImGui::PushStyleVar(ImGuiStyleVar_FramePadding,
-                        ImVec2(gui.mm(), 0.5f * (kTarget_mm * gui.mm() - ImGui::GetFontSize())));
+    push_touchable_frame(1.0f, gui);
     ImGui::PushStyleVar(ImGuiStyleVar_GrabMinSize, 5.0f * gui.mm());
     ImGui::SetNextItemWidth(slider_px);
     const std::string text =

@@ -73,8 +73,7 @@ void draw_scale_screen(const Shown& shown, Gui& gui, double& card_px_per_mm, Wis
     }
     card_px_per_mm = std::clamp(card_px_per_mm, kLeast_px_per_mm, kMost_px_per_mm);
     ImGui::SetNextItemWidth(40.0f * gui.mm());
-    ImGui::PushStyleVar(ImGuiStyleVar_FramePadding,
-                        ImVec2(2.0f * gui.mm(), 0.5f * (kTarget_mm * gui.mm() - ImGui::GetFontSize())));
+    push_touchable_frame(2.0f, gui);
     double typed_px_per_mm = card_px_per_mm;
     ImGui::InputDouble(words::kPxPerMm, &typed_px_per_mm, 0.0, 0.0, "%.3f");
     ImGui::PopStyleVar();

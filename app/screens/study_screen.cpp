@@ -23,8 +23,7 @@ void beside(const std::string& text, const Gui& gui) {
 
 // A text field as high as the buttons, so that it can be touched.
 bool text_field(const char* label, char* text, std::size_t size, ImGuiInputTextFlags flags, Gui& gui) {
-    ImGui::PushStyleVar(ImGuiStyleVar_FramePadding,
-                        ImVec2(2.0f * gui.mm(), 0.5f * (kTarget_mm * gui.mm() - ImGui::GetFontSize())));
+    push_touchable_frame(2.0f, gui);
     const ImVec2 low = ImGui::GetCursorScreenPos();
     const float width_px = ImGui::CalcItemWidth();
     const bool done = ImGui::InputText(label, text, size, flags);

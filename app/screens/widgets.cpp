@@ -139,13 +139,18 @@ std::string fixed(double value, int digits) {
     return text;
 }
 
+void push_touchable_frame(float side_mm, const Gui& gui) {
+    ImGui::PushStyleVar(ImGuiStyleVar_FramePadding,
+                        ImVec2(side_mm * gui.mm(), 0.5f * (kTarget_mm * gui.mm() - ImGui::GetFontSize())));
+}
+
 ImVec2 on_screen(const render::TissueView& view, double x_m, double y_m) {
     const glm::vec2 px = render::project_px(view, glm::vec3(x_m, y_m, 0.0));
     return {px.x, px.y};
 }
 
 ImVec2 on_surface(const render::TissuePicture& picture, double x_m, double y_m) {
-    const glm::vec3 p_m = render::displaced_m(picture, {x_m, y_m});
+    const glm::vec3 p_m = render::displaced_m(picture, render::dragged_m(picture.view, {x_m, y_m}));
     const glm::vec2 px = render::project_px(picture.view, p_m);
     return {px.x, px.y};
 }

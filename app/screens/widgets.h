@@ -61,6 +61,9 @@ void value_line(const char* name, const std::string& value, float column_px);
 std::string clock_text(double seconds);       // such as 1:07
 std::string fixed(double value, int digits);  // with this many decimals; "-" if not finite
 
+// Makes the next fields and sliders as high as a control that is touched; to be ended by ImGui::PopStyleVar().
+void push_touchable_frame(float side_mm, const Gui& gui);
+
 // Returns where a place on the tissue is drawn: on the undisturbed surface, or on the surface as it is displaced now.
 ImVec2 on_screen(const render::TissueView& view, double x_m, double y_m);
 ImVec2 on_surface(const render::TissuePicture& picture, double x_m, double y_m);

@@ -120,12 +120,7 @@ void command(const ArmCommandPacket& wanted, ArmPlant& plant) {
 }
 
 void command(const ArmCommand& wanted, ArmPlant& plant) {
-    ArmCommandPacket packet;
-    packet.mode = static_cast<std::uint16_t>(wanted.mode);
-    packet.force_N = wanted.force_N + wanted.feedforward_N;
-    packet.depth_m = wanted.depth_m;
-    packet.host_time_s = plant.time_s;
-    command(packet, plant);
+    command(packet_of(wanted, plant.command.sequence + 1, plant.time_s), plant);
 }
 
 void advance(double dt_s, ArmPlant& plant) {

@@ -6,10 +6,10 @@
 #include <optional>
 #include <poll.h>
 
-#include "devices/real_time.h"
 #include "devices/simulators/arm_plant.h"
 #include "devices/simulators/sockets.h"
 #include "devices/simulators/stream.h"
+#include "platform/real_time.h"
 
 using namespace palpa;
 using namespace palpa::devices;
@@ -118,7 +118,7 @@ int main(int argc, char** argv) {
     std::printf("port %d\nsensor %d\n", port, sensor_port);
     std::fflush(stdout);
     end_on_signals();
-    set_real_time(true);
+    platform::set_real_time(true);
 
     struct Reply {
         std::array<std::uint8_t, kArmFeedback_bytes> bytes;

@@ -8,6 +8,7 @@
 #include "devices/simulators/maestro_board.h"
 #include "devices/simulators/stream.h"
 #include "devices/simulators/terminal.h"
+#include "platform/real_time.h"
 
 using namespace palpa;
 using namespace palpa::devices;
@@ -108,6 +109,7 @@ int main(int argc, char** argv) {
     std::printf("port %s\n", link.empty() ? terminal.path.c_str() : link.c_str());
     std::fflush(stdout);
     end_on_signals();
+    platform::set_real_time(true);
 
     std::mt19937_64 random(options.seed);
     const double began_s = steady_s();

@@ -129,6 +129,20 @@ TEST_CASE("arm link: NaN in any field is refused, also under a right CRC") {
     CHECK_FALSE(decode(encode(command), out));
 }
 
+TEST_CASE("arm link: a command that is no number goes out as rest, whoever sends it") {
+    const double bad = std::nan("");
+    for (ArmCommand command :
+         {ArmCommand{bad, 0.0, 0.0, 1.0}, ArmCommand{1.0, bad, 0.0, 1.0}, ArmCommand{1.0, 0.0, bad, 1.0},
+          ArmCommand{1.0, 0.0, 0.0, bad}, ArmCommand{1.0, 0.0, 0.0, 7.0}}) {
+        const ArmCommandPacket packet = packet_of(command, 5, 1.0);
+        CHECK(packet.mode == 0);
+        CHECK(packet.force_N == 0.0);
+        CHECK(packet.depth_m == 0.0);
+        CHECK(packet.sequence == 5);
+    }
+    CHECK(packet_of({1.0, -3.0, 0.0, 1.0}, 1, 1.0).force_N == -2.0);
+}
+
 TEST_CASE("arm link: one million random bytes, some behind a right head, are no packet") {
     std::mt19937_64 random(11);
     std::vector<std::uint8_t> bytes(1000);

@@ -1,4 +1,4 @@
-// The first minutes of somebody who has only a mouse: the guided start, a practice trial and a test. Run it under
+// The first minutes of somebody who has only a mouse, or only a pen: the guided start, a practice trial and a test. Run it under
 // tests/platform/xorg/with-xorg.
 
 #include <doctest/doctest.h>
@@ -28,34 +28,33 @@ constexpr float kMm = 96.0f / 25.4f;  // px per mm of the controls on a screen t
 // The middle of controls in a window of 1280 x 800 px.
 const Eigen::Vector2d kMark(120, 335), kSure4(162, 405), kFinish(176, 446), kMenu(175, 79), kTest(743, 100);
 
-class MouseScript {
+// What a person does with one tool, "mouse" or "pen".
+class PersonScript {
   public:
-    explicit MouseScript(const std::filesystem::path& file) : out_(file) {
+    PersonScript(const std::filesystem::path& file, std::string tool) : out_(file), tool_(std::move(tool)) {
         out_ << "t_s\tkind\tid\tphase\tx_px\ty_px\tpressure\n";
     }
     void wait(double seconds) { t_s_ += seconds; }
-    void row(const char* phase, const Eigen::Vector2d& at) {
-        out_ << t_s_ << "\tmouse\t0\t" << phase << '\t' << at.x() << '\t' << at.y() << "\t0\n";
+    void row(const char* phase, const Eigen::Vector2d& at, double pressure) {
+        out_ << t_s_ << '\t' << tool_ << "\t0\t" << phase << '\t' << at.x() << '\t' << at.y() << '\t'
+             << (tool_ == "pen" ? pressure : 0.0) << '\n';
     }
     void click(const Eigen::Vector2d& at) {
-        row("move", at);
+        row("move", at, 0.0);
         wait(0.3);
-        row("down", at);
+        row("down", at, 0.2);
         wait(0.15);
-        row("up", at);
+        row("up", at, 0.0);
         wait(0.6);
     }
-    // Holds the button, which presses harder and harder, while it moves from one place to the other.
+    // Presses while the tool moves from one place to the other: a mouse harder the longer its button is held.
     void press(const Eigen::Vector2d& from, const Eigen::Vector2d& to) {
-        row("move", from);
+        row("move", from, 0.0);
         wait(0.3);
-        row("down", from);
-        wait(1.0);
-        for (int i = 0; i <= 100; ++i) {
-            row("move", from + 0.01 * i * (to - from));
-            wait(0.015);
-        }
-        row("up", to);
+        row("down", from, 0.1);
+        for (int i = 1; i <= 50; ++i, wait(0.02)) row("move", from, 0.1 + 0.008 * i);
+        for (int i = 0; i <= 100; ++i, wait(0.015)) row("move", from + 0.01 * i * (to - from), 0.5);
+        row("up", to, 0.0);
         wait(0.4);
     }
     double close() {
@@ -65,12 +64,11 @@ class MouseScript {
 
   private:
     std::ofstream out_;
+    std::string tool_;
     double t_s_ = 0.5;
 };
 
-}  // namespace
-
-TEST_CASE("first: the guided start, a practice trial and a test by mouse alone") {
+void try_for_the_first_time(const std::string& tool) {
     const TemporaryFolder folder;
     const Scene scene = load_scene(PALPA_SOURCE_DIR "/assets/scenes/default.json");
     const Plan plan = make_plan(scene);
@@ -82,7 +80,7 @@ TEST_CASE("first: the guided start, a practice trial and a test by mouse alone")
     const Eigen::Vector2d nodule(plan.nodules[0].x_m, plan.nodules[0].y_m);
     const Eigen::Vector2d across(8e-3, 0.0);
 
-    MouseScript script(folder / "script.tsv");
+    PersonScript script(folder / "script.tsv", tool);
     script.press(px(plain_place_m(plan)), px(plain_place_m(plan)));
     script.press(px(nodule - across), px(nodule + across));
     script.press(px(nodule), px(nodule));
@@ -124,3 +122,9 @@ TEST_CASE("first: the guided start, a practice trial and a test by mouse alone")
     CHECK(turned);  // nobody is tested on what was just shown
     CHECK(read_json(folder / "config/palpa/settings.json")["guided_done"] == true);
 }
+
+}  // namespace
+
+TEST_CASE("first: the guided start, a practice trial and a test by mouse alone") { try_for_the_first_time("mouse"); }
+
+TEST_CASE("first: the guided start, a practice trial and a test by pen alone") { try_for_the_first_time("pen"); }

@@ -205,6 +205,22 @@ TEST_CASE("indenter: a rectangle that was too small grows until the contact is i
     CHECK(bar.contact->normal_N > 0.0);
 }
 
+TEST_CASE("indenter: a quarter of a symmetric block is judged as the whole block is") {
+    const auto pressed = [](double size_mm, int cells, double at_mm, const char* supports) {
+        const std::string box = R"({"box": {"size_mm": [)" + number_text(size_mm) + ", " + number_text(size_mm) +
+                                R"(, 50], "elements": [)" + std::to_string(cells) + ", " + std::to_string(cells) +
+                                ", 7]}}";
+        return solved(case_text(box, "hex8-bbar", supports,
+                                R"([{"indenter": {"shape": "sphere", "radius_mm": 40, "depth_mm": 2, "centre_mm": [)" +
+                                    number_text(at_mm) + ", " + number_text(at_mm) + "]}}]"));
+    };
+    const FemResult whole = pressed(100, 30, 50, R"([{"face": "zmin", "fix": "xyz"}])");
+    const FemResult quarter = pressed(
+        50, 15, 0, R"([{"face": "zmin", "fix": "xyz"}, {"face": "xmin", "fix": "x"}, {"face": "ymin", "fix": "y"}])");
+    CHECK(quarter.contact->normal_N == doctest::Approx(0.25 * whole.contact->normal_N).epsilon(1e-6));
+    CHECK(quarter.linear_ratio == doctest::Approx(whole.linear_ratio).epsilon(0.02));
+}
+
 TEST_CASE("indenter: supports beside it do not matter, supports under it are refused") {
     const auto with = [](double x_mm, const std::string& rest = "") {
         return case_text(kSlab, "hex8-bbar", R"([{"face": "zmin", "fix": "xyz"}, {"face": "xmin", "fix": "xyz"}])",

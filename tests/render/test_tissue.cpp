@@ -69,6 +69,21 @@ int brightest_near(const std::vector<unsigned char>& rgb, const glm::vec2& at_px
     return best;
 }
 
+// Mean difference between two patches of 13 x 13 px.
+double difference(const std::vector<unsigned char>& a, const glm::vec2& a_px, const std::vector<unsigned char>& b,
+                  const glm::vec2& b_px) {
+    const auto at = [](const glm::vec2& px, int dx, int dy) {
+        const int x = static_cast<int>(std::round(px.x)) + dx;
+        const int y = static_cast<int>(std::round(px.y)) + dy;
+        return 3 * static_cast<std::size_t>(y * kWidth_px + x);
+    };
+    double sum = 0.0;
+    for (int y = -6; y <= 6; ++y) {
+        for (int x = -6; x <= 6; ++x) sum += std::abs(a[at(a_px, x, y)] - b[at(b_px, x, y)]);
+    }
+    return sum / 169.0;
+}
+
 }  // namespace
 
 TEST_CASE("tissue: what is straight below the eye, or on the undisturbed surface, stays where it is") {
@@ -110,6 +125,23 @@ TEST_CASE("tissue: the drawn surface is displaced as displaced_m() says, seen fr
             if (glm::distance(px, flat_px) > 4.0f) ++moved;
         }
         CHECK(moved > 12);
+    }
+}
+
+TEST_CASE("tissue: what is drawn on the texture is dragged along with it by a finger") {
+    Drawing drawing;
+    TissuePicture picture = pressed(0.0f);
+    picture.dent = {};
+    picture.grip = {};
+    const auto before = drawing.of(picture);
+    picture.view.drag_at_m = {0.004f, -0.003f};
+    picture.view.drag_m = {3e-3f, 2e-3f};
+    const auto after = drawing.of(picture);
+    CHECK(dragged_m(picture.view, {0.5f, 0.5f}) == glm::vec2(0.5f, 0.5f));
+    for (const glm::vec2 p_m : {glm::vec2(0.004f, -0.003f), glm::vec2(-0.002f, 0.001f)}) {
+        const glm::vec2 was_px = project_px(picture.view, {p_m, 0.0f});
+        const glm::vec2 is_px = project_px(picture.view, {dragged_m(picture.view, p_m), 0.0f});
+        CHECK(difference(before, was_px, after, is_px) < 0.6 * difference(before, was_px, after, was_px));
     }
 }
 

@@ -27,7 +27,7 @@ test('the first visit loads less than 3 MB', () => withPage({}, async (browser, 
 test('settings outlive a reload', () => withPage({}, async (browser) => {
     const {page} = browser;
     const kept = () => page.evaluate(() => JSON.parse(localStorage.getItem('palpa-settings') ?? '{}'));
-    // Menu, Left: by touch, where it stands at this size
+    // Menu, Settings, Left: by touch, where they stand at this size
     const tap = async (x, y) => {
         await touch(browser, 'touchStart', [{x, y, force: 0.5, id: 1}]);
         await frames(page, 3);
@@ -35,7 +35,8 @@ test('settings outlive a reload', () => withPage({}, async (browser) => {
         await frames(page, 3);
     };
     await tap(90, 45);
-    await tap(992, 262);
+    await tap(840, 45);
+    await tap(626, 163);
     assert.equal((await kept()).left_handed, true);
     await page.reload();
     await started(page);

@@ -246,7 +246,9 @@ test('the desk is killed in the middle of an upload and started again: everythin
         await desk.end('SIGKILL');
         proxy.hold = false;
         assert.equal(uploads(where).length, 1);
-        await runTrial(browser, 800, 500); // the study goes on meanwhile
+        await at(page, 'feedback'); // that was practice; the study goes on meanwhile
+        await key(page, 'Enter');
+        await runTrial(browser, 800, 500);
         assert.equal((await stored(page)).filter((trial) => !trial.sent).length, 2);
         second = await startDesk(where);
         proxy.port = second.port;

@@ -110,7 +110,7 @@ test('the browser closes its storage: what is palpated afterwards can be exporte
     await until('said', () => tellsOf(page, 'is not stored'));
     const found = await exported(page);
     assert.ok(found.length > 0 && found.every((name) => name.includes('run-02')), found.join());
-    assert.ok(await tellsOf(page, 'the exported file is without them'));
+    assert.ok(await tellsOf(page, 'the exported file does not contain them'));
     await page.click('#close-trials');
     await page.keyboard.press('r');
     await until('the next trial', async () => (await report(page)).trials.length === 3);
@@ -135,11 +135,9 @@ test('keys belong to the dialog that is open, wherever in it somebody has clicke
     assert.ok(!(await rows(page, 1, 'events')).some((row) => row.trial_type === 'finish'));
     await page.click('#close-trials');
     await page.keyboard.down('Space');
-    await page.waitForTimeout(300);
+    await until('the press', async () => (await rows(page)).some((row) => row.phase === 'down'));
     await page.evaluate(() => palpaTrials.open());
     await page.keyboard.up('Space');
-    await frames(page, 3);
-    const phases = (await rows(page)).map((row) => row.phase);
-    assert.ok(phases.includes('down'));
-    assert.match(phases.filter((phase) => phase !== 'hover').at(-1), /up|cancel/);
+    const last = async () => (await rows(page)).map((row) => row.phase).filter((phase) => phase !== 'hover').at(-1);
+    await until('the end of the press', async () => /up|cancel/.test(await last()));
 }));

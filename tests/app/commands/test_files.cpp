@@ -326,7 +326,7 @@ TEST_CASE("files: words and numbers that an option does not take are told in wor
         CHECK(called.status == 2);
         CHECK(contains(called.err, word));
     };
-    refused("run --screen map", "--screen: found 'map', expected trial, devices, scale, calibrate, maps or history");
+    refused("run --screen map", "--screen: found 'map', expected trial, devices, scale, calibrate, maps, history or tactile");
     refused("maps plot in.map -o f.png --what all_of_it",
             "expected all, matrices, stiffness, slice, curves or nodules");
     refused("maps sample in.map --x-mm nan --y-mm 1 --force-N 1", "--x-mm: found 'nan', expected a finite number");

@@ -105,6 +105,10 @@ TEST_CASE("command study watch: who is where, what to present, the marks and the
     const Called words = study("watch " + folder.path().string() + " --participant 08");
     CHECK(contains(words.out, "first 1.75 kPa, second 2 kPa; now interval 1"));
     CHECK_FALSE(contains(words.out, "07"));
+    CHECK_FALSE(contains(words.out, "withdrew"));
+    CHECK(study("withdraw " + folder.path().string() + " --participant 07 --data leave-out").status == 0);
+    const Called withdrawn = study("watch " + folder.path().string() + " --participant 07");
+    CHECK(contains(withdrawn.out, "0 of 4  trial, trial 1, pen, withdrew, data left out\n"));
     refused("watch " + folder.path().string() + " --participant 09", "--participant: found '09'");
     refused("watch " + (folder / "sub-07").string(), "no study.json");
 }

@@ -8,11 +8,16 @@
 #include <set>
 
 #include "app/scene_choices.h"
+#include "app/screens/calibrate_form.h"
 #include "app/screens/frame.h"
+#include "app/screens/history_screen.h"
+#include "app/screens/map_screen.h"
 #include "app/screens/widgets.h"
+#include "app/study/study_run.h"
 #include "render/gl.h"
 #include "tests/app/screens/contrast.h"
 #include "tests/off_screen.h"
+#include "tests/temporary_folder.h"
 
 using namespace palpa;
 using namespace palpa::platform;
@@ -151,7 +156,7 @@ struct Pictures {
                        {gui, *tissue}, view, session.state);
         }
         const std::vector<Letter> text = letters();
-        CHECK(text.size() > 40);
+        CHECK(text.size() > 10);
         const std::vector<unsigned char> rgb = read_pixels(kWidth, kHeight);
         for (const Eye& eye : kEyes) check_letters(text, rgb, eye);
     }
@@ -192,4 +197,38 @@ TEST_CASE("contrast: all text of every screen has 4.5 : 1 to what it stands on")
     p.act(Action::finish, 0.0, 0.0);
     p.doing = review_of(*p.session.plan, p.session.trial, p.session.state.view);
     p.check("result");
+    p.view.history = std::make_shared<HistoryView>();
+    for (int i = 0; i < 3; ++i) p.view.history->trials.push_back(kept_trial(p.session, "2026-11-10T09:30:00Z"));
+    choose_trial(1, *p.view.history);
+    p.doing = BrowsingHistory{};
+    p.check("history");
+    p.view.maps = make_map_browser(p.session.scene, map_choices());
+    add_pin({0.035, 0.035}, *p.view.maps);
+    p.doing = BrowsingMaps{};
+    p.check("maps");
+    p.doing = Calibrating{make_calibrate_form()};
+    p.check("calibration");
+}
+
+TEST_CASE("contrast: all text of every step of a study has 4.5 : 1 to what it stands on") {
+    const TemporaryFolder folder;
+    Pictures p;
+    p.notices = {};
+    auto* run = &p.doing.emplace<StudyRun>();
+    run->protocol = study::read_protocol(PALPA_SOURCE_DIR "/assets/protocols/paper.json");
+    run->protocol.consent = "You may stop at any time and need not say why.";
+    run->scenes = load_study_scenes(run->protocol);
+    run->directory = folder.path();
+    run->code = "07";
+    run->progress = study::progress_of(run->directory, run->protocol, run->code);
+    run->progress.next = run->progress.plan.trials.front();
+    const StudyStep steps[] = {
+        step::Code{},   step::Again{},   step::Consent{},  step::Questions{},       step::Instructions{},
+        step::Device{}, step::Present{}, step::Question{}, step::Feedback{2, 3, 1}, step::Ratings{},
+        step::Pause{},  step::Leaving{}, step::Done{}};
+    for (const StudyStep& step : steps) {
+        run->step = step;
+        ++run->entered;
+        p.check(name_of(run->step));
+    }
 }

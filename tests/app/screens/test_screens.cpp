@@ -4,7 +4,6 @@
 #include <cmath>
 #include <doctest/doctest.h>
 #include <limits>
-#include <png.h>
 #include <stdlib.h>
 
 #include "app/scene_choices.h"
@@ -35,17 +34,6 @@ struct Pixels {
     std::vector<unsigned char> rgb;
 };
 
-Pixels read_png(const std::filesystem::path& path) {
-    png_image image{};
-    image.version = PNG_IMAGE_VERSION;
-    REQUIRE(png_image_begin_read_from_file(&image, path.c_str()));
-    image.format = PNG_FORMAT_RGB;
-    Pixels out{static_cast<int>(image.width), static_cast<int>(image.height), {}};
-    out.rgb.resize(PNG_IMAGE_SIZE(image));
-    REQUIRE(png_image_finish_read(&image, nullptr, out.rgb.data(), 0, nullptr));
-    return out;
-}
-
 // Counts up to `enough` colours.
 std::size_t colours_in(const Pixels& picture, const PanelArea& area, std::size_t enough) {
     std::vector<bool> seen(std::size_t{1} << 24);
@@ -62,18 +50,22 @@ std::size_t colours_in(const Pixels& picture, const PanelArea& area, std::size_t
     return colours;
 }
 
+Sample action_at(double t_host_s, Action action, const State& state, const Eigen::Vector2d& place_m) {
+    Sample sample;
+    sample.t_host_s = t_host_s;
+    sample.phase = Phase::ui;
+    sample.action = action;
+    const Eigen::Vector2d px = px_of_tissue(state.view, place_m);
+    sample.x_px = px.x();
+    sample.y_px = px.y();
+    return sample;
+}
+
 // The default trace, finished, with a hit and a false mark.
 Trace finished_trace(const Plan& plan, const State& state) {
     Trace trace = read_trace(default_trace());
     const auto act = [&](Action action, double x_m, double y_m) {
-        Sample sample;
-        sample.t_host_s = trace.samples.back().t_host_s + 0.1;
-        sample.phase = Phase::ui;
-        sample.action = action;
-        const Eigen::Vector2d px = px_of_tissue(state.view, {x_m, y_m});
-        sample.x_px = px.x();
-        sample.y_px = px.y();
-        trace.samples.push_back(sample);
+        trace.samples.push_back(action_at(trace.samples.back().t_host_s + 0.1, action, state, {x_m, y_m}));
     };
     act(Action::mark, plan.nodules[0].x_m, plan.nodules[0].y_m);
     act(Action::confidence_5, 0.0, 0.0);
@@ -90,6 +82,9 @@ struct Case {
     int text_percent = 100;
 };
 
+// The folder for pictures to be looked at, or null.
+const char* kept_pictures() { return ::getenv("PALPA_KEEP_PICTURES"); }
+
 // What is open, and what the app says.
 struct Screens {
     Notices notices{};
@@ -103,16 +98,20 @@ bool covers_all(const Screens& screens) {
     return screens.asked || screens.view.help || (menu_of(screens.doing) == nullptr && !palpates(screens.doing));
 }
 
-std::string draw(const Session& session, const Settings& settings, const Screens& screens, const Picture& picture,
-                 State& state) {
+// Draws a few frames, since panels find their size in the first. Returns the pixels of the last.
+Pixels draw(const Session& session, const Settings& settings, const Screens& screens, OffScreen& screen, State& state) {
     ViewState view = screens.view;
-    return draw_picture({session.scene, *session.plan, session.trial, settings, screens.notices, screens.doing,
-                         screens.asked, state.timeline.now_s, 1.0 / 60.0, screens.tactile},
-                        picture, view, state);
+    for (int i = 0; i < 3; ++i) {
+        screen.draw({session.scene, *session.plan, session.trial, settings, screens.notices, screens.doing,
+                     screens.asked, state.timeline.now_s, 1.0 / 60.0, screens.tactile},
+                    view, state);
+    }
+    return {screen.window().width_px(), screen.window().height_px(), screen.pixels()};
 }
 
-void check_case(const Session& session, Screens& screens, const Case& c, const std::string& name,
-                const TemporaryFolder& folder) {
+OffScreen screen_of(const Case& c) { return {c.width_px, c.height_px, c.px_per_mm, c.text_percent}; }
+
+void check_case(const Session& session, Screens& screens, const Case& c, const std::string& name, OffScreen& screen) {
     CAPTURE(name);
     CAPTURE(c.width_px);
     CAPTURE(c.height_px);
@@ -136,21 +135,18 @@ void check_case(const Session& session, Screens& screens, const Case& c, const s
     resize.width_px = static_cast<double>(t.width());
     resize.height_px = static_cast<double>(t.height());
     advance(session.scene, *session.plan, resize, state);
-    const auto file = folder / "p.png";
-    CHECK(draw(session, settings, screens, {c.width_px, c.height_px, file}, state) == "");
-    const Pixels picture = read_png(file);
+    const Pixels picture = draw(session, settings, screens, screen, state);
+    CHECK(screen.gui().overflow() == "");
     CHECK(picture.width == c.width_px);
     constexpr std::size_t kTextHas = 40;  // colours of smoothed letters
     const PanelArea all{0.0f, 0.0f, static_cast<float>(c.width_px), static_cast<float>(c.height_px)};
     if (layout.controls)
         CHECK(colours_in(picture, covers_all(screens) ? all : layout.controls_px, kTextHas) == kTextHas);
     CHECK(colours_in(picture, covers_all(screens) ? all : layout.tissue_px, kTextHas) == kTextHas);
-    if (const char* keep = ::getenv("PALPA_KEEP_PICTURES")) {
+    if (const char* keep = kept_pictures()) {
         const std::string size = std::to_string(c.width_px) + "x" + std::to_string(c.height_px);
-        std::filesystem::copy_file(file,
-                                   std::filesystem::path(keep) / (name + "-" + size + (c.left_handed ? "-left" : "") +
-                                                                  (c.text_percent > 100 ? "-large" : "") + ".png"),
-                                   std::filesystem::copy_options::overwrite_existing);
+        save_screen(screen.window(), std::filesystem::path(keep) / (name + "-" + size + (c.left_handed ? "-left" : "") +
+                                                                    (c.text_percent > 100 ? "-large" : "") + ".png"));
     }
 }
 
@@ -158,20 +154,33 @@ void check_case(const Session& session, Screens& screens, const Case& c, const s
 
 TEST_CASE("screens: every screen fits and is drawn at the sizes of desks and tablets") {
     const TemporaryFolder folder;
+    const Trace whole = read_trace(default_trace());
     Session session;
     session.scene = load_scene("");
     session.plan = std::make_shared<const Plan>(make_plan(session.scene));
-    const Trace whole = read_trace(default_trace());
-    begin_trial({}, whole.info, TrialMode::practice, session);
-    for (std::size_t i = 0; i < 400; ++i) take_sample(whole.samples[i], session);  // in the middle of a stroke
+    const auto begin_stroke = [&](Session& begun) {
+        begun.scene = session.scene;
+        begun.plan = session.plan;
+        begin_trial({}, whole.info, TrialMode::practice, begun);
+        for (std::size_t i = 0; i < 400; ++i) take_sample(whole.samples[i], begun);
+    };
+    begin_stroke(session);
+    Session marked;
+    begin_stroke(marked);
+    take_sample(action_at(whole.samples[400].t_host_s, Action::mark, marked.state, {0.040, 0.036}), marked);
+    Session stopped;
+    begin_stroke(stopped);
+    stopped.trial.paused_at_s = stopped.trial.now_s;
 
     Screens trial;
     trial.notices.scenes = scene_choices();
     trial.notices.profiles = profile_choices();
     trial.notices.screen_name = "DUMMY0, 1280 x 800";
-    trial.notices.problems = {"scene.json: tissue.map: found nothing, expected a map folder"};
-    trial.notices.offer_hold = true;
-    trial.notices.device_notes = {"This pen reports always the same pressure: it has no sensor."};
+    if (kept_pictures() == nullptr) {  // pictures to be looked at show the app without trouble
+        trial.notices.problems = {"scene.json: tissue.map: found nothing, expected a map folder"};
+        trial.notices.offer_hold = true;
+        trial.notices.device_notes = {"This pen reports always the same pressure: it has no sensor."};
+    }
     Screens asked{trial.notices};
     asked.asked.emplace().again = true;
     Screens menu{trial.notices, Palpating{true}};
@@ -182,12 +191,6 @@ TEST_CASE("screens: every screen fits and is drawn at the sizes of desks and tab
     Screens help{trial.notices};
     help.view.help = true;
     Screens guided{trial.notices, Palpating{false, true}};
-    Session stopped;
-    stopped.scene = session.scene;
-    stopped.plan = session.plan;
-    begin_trial({}, whole.info, TrialMode::practice, stopped);
-    for (std::size_t i = 0; i < 400; ++i) take_sample(whole.samples[i], stopped);
-    stopped.trial.paused_at_s = stopped.trial.now_s;
     Screens cost{trial.notices};
     cost.view.cost = true;
     Screens scale{trial.notices, MeasuringScreen{}};
@@ -250,24 +253,25 @@ TEST_CASE("screens: every screen fits and is drawn at the sizes of desks and tab
                           {1280, 800, kMissing, false, false, 140},
                           {200, 100, kMissing, false}};
     for (const Case& c : cases) {
-        check_case(session, trial, c, "trial", folder);
+        OffScreen screen = screen_of(c);
+        check_case(session, trial, c, "trial", screen);
         if (c.width_px < 600) continue;  // panels need some room
-        check_case(session, asked, c, "asked", folder);
-        check_case(session, menu, c, "menu", folder);
-        check_case(session, menu_settings, c, "menu-settings", folder);
-        check_case(session, menu_experimenter, c, "menu-experimenter", folder);
-        check_case(session, help, c, "help", folder);
-        check_case(session, guided, c, "guided", folder);
-        check_case(stopped, trial, c, "paused", folder);
-        check_case(session, history, c, "history", folder);
-        check_case(done, guided_result, c, "guided-result", folder);
-        check_case(session, cost, c, "cost", folder);
-        check_case(session, scale, c, "scale", folder);
-        check_case(session, devices, c, "devices", folder);
-        check_case(session, calibrate, c, "calibrate", folder);
-        check_case(session, calibrating, c, "calibrating", folder);
-        check_case(session, maps, c, "maps", folder);
-        check_case(done, reveal, c, "reveal", folder);
+        check_case(marked, asked, c, "asked", screen);
+        check_case(session, menu, c, "menu", screen);
+        check_case(session, menu_settings, c, "menu-settings", screen);
+        check_case(session, menu_experimenter, c, "menu-experimenter", screen);
+        check_case(session, help, c, "help", screen);
+        check_case(session, guided, c, "guided", screen);
+        check_case(stopped, trial, c, "paused", screen);
+        check_case(session, history, c, "history", screen);
+        check_case(done, guided_result, c, "guided-result", screen);
+        check_case(session, cost, c, "cost", screen);
+        check_case(session, scale, c, "scale", screen);
+        check_case(session, devices, c, "devices", screen);
+        check_case(session, calibrate, c, "calibrate", screen);
+        check_case(session, calibrating, c, "calibrating", screen);
+        check_case(session, maps, c, "maps", screen);
+        check_case(done, reveal, c, "reveal", screen);
     }
 }
 
@@ -315,7 +319,6 @@ TactileShown pressed_tactile() {
 }  // namespace
 
 TEST_CASE("screens: arm and pins fit at the sizes of desks and tablets: running, stopped, failed, only drawn") {
-    const TemporaryFolder folder;
     Session session;
     session.scene = load_scene("");
     session.plan = std::make_shared<const Plan>(make_plan(session.scene));
@@ -344,9 +347,10 @@ TEST_CASE("screens: arm and pins fit at the sizes of desks and tablets: running,
     for (const Case& c : {Case{1280, 800, kMissing, false}, Case{800, 1280, kMissing, false},
                           Case{2560, 1600, kTablet_px_per_mm, false}, Case{1024, 600, kMissing, true},
                           Case{1280, 800, kMissing, false, false, 140}}) {
+        OffScreen off_screen = screen_of(c);
         const auto draw_it = [&](Screens& screens, const TactileShown& tactile, const char* name) {
             screens.tactile = &tactile;
-            check_case(session, screens, c, name, folder);
+            check_case(session, screens, c, name, off_screen);
         };
         draw_it(screen, running, "tactile");
         draw_it(screen, stopped, "tactile-stopped");
@@ -403,6 +407,7 @@ TEST_CASE("screens: every step of a study fits, and none tells where the nodules
                           {2560, 1600, 11.8, false},
                           {1024, 600, kMissing, true}};
     for (const Case& c : cases) {
+        OffScreen screen = screen_of(c);
         for (const StudyStep& step : steps) {
             run->step = step;
             ++run->entered;
@@ -416,7 +421,7 @@ TEST_CASE("screens: every step of a study fits, and none tells where the nodules
                 screens.view.study.step = run->entered;
                 screens.view.study.typed.nodules = {4, kMissed, 0};
             }
-            check_case(session, screens, c, std::string("study-") + name_of(run->step), folder);
+            check_case(session, screens, c, std::string("study-") + name_of(run->step), screen);
         }
         // on a tablet there is more to do between people, and a step may have to wait
         run->on_tablet = true;
@@ -427,21 +432,20 @@ TEST_CASE("screens: every step of a study fits, and none tells where the nodules
         for (const StudyStep& step : {StudyStep(step::Code{}), StudyStep(step::Done{}), StudyStep(stopped)}) {
             run->step = step;
             ++run->entered;
-            check_case(session, screens, c, std::string("study-tablet-") + name_of(step), folder);
+            check_case(session, screens, c, std::string("study-tablet-") + name_of(step), screen);
         }
         run->keeping_since_s = 0.0;
-        check_case(session, screens, c, "study-tablet-keeping", folder);
+        check_case(session, screens, c, "study-tablet-keeping", screen);
         run->keeping_since_s.reset();
         run->on_tablet = false;
         run->step = step::Device{false, true};
-        check_case(session, screens, c, "study-device-gone", folder);
+        check_case(session, screens, c, "study-device-gone", screen);
         run->warnings.clear();
     }
 }
 
 TEST_CASE(
     "screens: the map browser shows every kind of matrix, cells that were not measured, placed and detected nodules") {
-    const TemporaryFolder folder;
     Session session;
     session.scene = load_scene("");
     session.plan = std::make_shared<const Plan>(make_plan(session.scene));
@@ -465,15 +469,16 @@ TEST_CASE(
     found.length_m = 30e-3;
     found.angle_deg = 25.0;
     map.nodules.push_back(found);
+    const Case c{1280, 800, kMissing, false};
+    OffScreen screen = screen_of(c);
     constexpr const char* kNames[] = {"maps-normal", "maps-sideways-x", "maps-sideways-y", "maps-stiffness"};
     for (int i = 0; i < 4; ++i) {
         screens.view.maps->quantity = static_cast<MapQuantity>(i);
-        check_case(session, screens, {1280, 800, kMissing, false}, kNames[i], folder);
+        check_case(session, screens, c, kNames[i], screen);
     }
 }
 
 TEST_CASE("screens: during a test the map browser shows nothing of any map") {
-    const TemporaryFolder folder;
     Session session;
     session.scene = load_scene("");
     session.plan = std::make_shared<const Plan>(make_plan(session.scene));
@@ -485,10 +490,9 @@ TEST_CASE("screens: during a test the map browser shows nothing of any map") {
     screens.doing = BrowsingMaps{};
     screens.view.maps = make_map_browser(session.scene, map_choices());
     const auto coloured = [&](const Session& of) {
-        const auto file = folder / "p.png";
         State state = of.state;
-        draw(of, {}, screens, {1280, 800, file}, state);
-        const Pixels picture = read_png(file);
+        OffScreen screen(1280, 800);
+        const Pixels picture = draw(of, {}, screens, screen, state);
         int count = 0;
         for (std::size_t at = 0; at < picture.rgb.size(); at += 3) {
             const int high = std::max({picture.rgb[at], picture.rgb[at + 1], picture.rgb[at + 2]});

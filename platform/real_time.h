@@ -4,14 +4,14 @@
 #include <pthread.h>
 #include <sched.h>
 
-namespace palpa::devices {
+namespace palpa::platform {
 
 // Before all ordinary threads (SCHED_FIFO), or ordinary again. Returns whether it was granted.
-inline bool set_real_time(bool wanted) {
+inline bool set_real_time(bool wanted) noexcept {
     constexpr int kPriority = 10;
     sched_param parameter{};
     parameter.sched_priority = wanted ? kPriority : 0;
     return ::pthread_setschedparam(::pthread_self(), wanted ? SCHED_FIFO : SCHED_OTHER, &parameter) == 0;
 }
 
-}  // namespace palpa::devices
+}  // namespace palpa::platform
