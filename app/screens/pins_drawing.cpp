@@ -23,6 +23,9 @@ double share_of(const PinField& field, int row, int column) {
     return std::isfinite(height_m) && field.stroke_m > 0.0 ? height_m / field.stroke_m : 0.0;
 }
 
+// From here on black text stands out more than white: a contrast of 4.5 at least at every height.
+constexpr double kDarkTextFrom = 0.425;
+
 void draw_pin(ImVec2 at, float radius_px, double height_m, double share, ImDrawList& draw) {
     draw.AddCircleFilled(at, radius_px, height_tint(share), 20);
     draw.AddCircle(at, radius_px, kPale, 20, 1.0f);
@@ -31,7 +34,7 @@ void draw_pin(ImVec2 at, float radius_px, double height_m, double share, ImDrawL
     const std::string text = fixed(1e4 * height_m, 0);
     const float width_px = ImGui::CalcTextSize(text.c_str()).x * text_px / ImGui::GetFontSize();
     draw.AddText(ImGui::GetFont(), text_px, ImVec2(at.x - 0.5f * width_px, at.y - 0.5f * text_px),
-                 share > 0.45 ? kDark : kInk, text.c_str());
+                 share > kDarkTextFrom ? IM_COL32(0, 0, 0, 255) : IM_COL32(255, 255, 255, 255), text.c_str());
 }
 
 // The upper left corner of the tissue, or the lower left one while the contact is near that.
