@@ -79,7 +79,7 @@ void draw_loop_lines(const TactileShown& tactile, float column_px) {
     }
     value_line(words::kLoopSteps,
                words::filled(words::kLoopTimes, {fixed(1e6 * moment.step_p50_s, 0), fixed(1e6 * moment.step_p99_s, 0),
-                                                 std::to_string(moment.late_steps), std::to_string(moment.steps)}),
+                                                 std::to_string(moment.late_steps)}),
                column_px);
     if (moment.stiffness_delay_N_s_per_m > kGreatestDamping) warning_paragraph(words::kMaySwing);
 }
@@ -108,7 +108,7 @@ void draw_buttons(const TactileShown* tactile, const Gui& gui, Wishes& wishes) {
 void draw_values(const Shown& shown, Gui& gui, Wishes& wishes) {
     draw_buttons(shown.tactile, gui, wishes);
     if (shown.tactile == nullptr) return paragraph(words::kNoTactile);
-    const float column_px = 38.0f * gui.mm();
+    const float column_px = ImGui::CalcTextSize(words::kSwing).x + 2.0f * gui.mm();  // the longest name
     draw_state(*shown.tactile);
     ImGui::Separator();
     ImGui::BeginChild("values");  // this part may scroll, since there may be any number of devices
