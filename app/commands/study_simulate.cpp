@@ -48,14 +48,17 @@ void simulate(const SimulateArguments& arguments) {
         std::fputs(files::json_text(json).c_str(), stdout);
         return;
     }
-    std::printf("%s: %d SIMULATED participants, %d trials now, %d already there, %lld samples in %.1f s\n",
-                arguments.output.c_str(), options.participants, result.trials, result.already_there,
-                static_cast<long long>(result.samples), result.wall_s);
+    std::printf("%s: %d SIMULATED participants, %d trials now, %d already there, in %.1f s\n", arguments.output.c_str(),
+                options.participants, result.trials, result.already_there, result.wall_s);
     if (result.left_out > 0) {
         std::printf("  %d trials left out: by hand on a real phantom, or on devices that are not simulated\n",
                     result.left_out);
     }
-    if (options.samples) std::printf("  %.1f MB of samples, %.1f MB/s\n", result.written_MB, MB_per_s);
+    // trials by hand or on arm and pins have no pen
+    if (options.samples && result.samples > 0) {
+        std::printf("  %lld samples of the pen, %.1f MB, %.1f MB/s\n", static_cast<long long>(result.samples),
+                    result.written_MB, MB_per_s);
+    }
 }
 
 }  // namespace
