@@ -54,9 +54,19 @@ struct CompensationFit {
 // 1,000 rows of steady motion, one direction only, less than 20 mm.
 CompensationFit fit_compensation(std::span<const StrokeRow> rows);
 
-// The force to add to the motor, against the press. Friction goes smoothly through rest. Allocates nothing; 0 for an
+// Which way friction acts. After the arm turns back it follows the motion over the distance in which a bearing sticks, so
+// that an arm that is held still stays quiet: with the sign of a measured velocity it would shake.
+// Source of the law: Dahl 1968, with exponent 1: d(direction)/d(depth) = (1 - sign(v) direction) / reach.
+struct FrictionDirection {
+    double share = 0.0;  // -1 up, 1 down
+    double depth_m = 0.0;
+    bool begun = false;
+};
+
+// The force to add to the motor, against the press. Called once for each reading of the arm. Allocates nothing; 0 for an
 // argument that is not finite.
-double compensation_N(const ArmCompensation& arm, double depth_m, double velocity_m_per_s) noexcept;
+double compensation_N(const ArmCompensation& arm, double depth_m, double velocity_m_per_s,
+                      FrictionDirection& direction) noexcept;
 
 // COMPENSATION.json. read throws InputError with file and key.
 void write_compensation(const CompensationFit& fit, const std::string& arm, const std::filesystem::path& path);

@@ -66,12 +66,13 @@ class VirtualRig : public ArmRig {
     std::optional<ArmFeedback> said_;
 };
 
-ArmCommand wanted(const StrokeOptions& options, const ArmFeedback& feedback) {
+ArmCommand wanted(const StrokeOptions& options, const ArmFeedback& feedback, FrictionDirection& direction) {
     ArmCommand command;
     command.mode = static_cast<double>(ArmMode::force);
     if (feedback.depth_m > 0.0 && options.law) command.force_N = options.law(feedback.depth_m);
     if (options.compensation)
-        command.feedforward_N = compensation_N(*options.compensation, feedback.depth_m, feedback.velocity_m_per_s);
+        command.feedforward_N =
+            compensation_N(*options.compensation, feedback.depth_m, feedback.velocity_m_per_s, direction);
     return command;
 }
 
@@ -124,6 +125,7 @@ Strokes run_strokes(const StrokeOptions& options, ArmRig& rig) {
     out.has_sensor = feedback.has_sensor == 1.0;
     double last_s = began_s, told_s = began_s, sent_N = 0.0;
     devices::TimeHistogram delays;
+    FrictionDirection direction;
     while (last_s - began_s < options.seconds) {
         const double now_s = rig.next_tick();
         constexpr double kLate_s = 1e-3;
@@ -132,7 +134,7 @@ Strokes run_strokes(const StrokeOptions& options, ArmRig& rig) {
         const bool fresh = rig.read(feedback);
         if (fresh) delays.add(feedback.age_s + feedback.round_trip_s);
         devices::begin_tick(options.limits, now_s, fresh, &feedback, out.guard);
-        ArmCommand command = wanted(options, feedback);
+        ArmCommand command = wanted(options, feedback, direction);
         devices::guard_arm(options.limits, command, out.guard);
         rig.send(command);
         if (fresh && out.rows.size() < out.rows.capacity())

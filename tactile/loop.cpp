@@ -67,7 +67,8 @@ void move_pins(const TactilePlan& plan, const LoopInput& in, const Press& now, L
     std::copy_n(state.estimate.height_m.begin(), count, out.reached_m.begin());
 }
 
-devices::ArmCommand arm_command(const TactilePlan& plan, const LoopInput& in, const LoopCommand& out) {
+devices::ArmCommand arm_command(const TactilePlan& plan, const LoopInput& in, const LoopCommand& out,
+                                FrictionDirection& direction) {
     devices::ArmCommand arm;
     if (in.feedback.stopped > 0.5) return arm;
     if (plan.options.arm->impedance == scene::ArmImpedance::high) {
@@ -79,7 +80,7 @@ devices::ArmCommand arm_command(const TactilePlan& plan, const LoopInput& in, co
     arm.force_N = out.force_N;
     if (plan.compensation)
         arm.feedforward_N =
-            compensation_N(*plan.compensation, in.feedback.arm.depth_m, in.feedback.arm.velocity_m_per_s);
+            compensation_N(*plan.compensation, in.feedback.arm.depth_m, in.feedback.arm.velocity_m_per_s, direction);
     return arm;
 }
 
@@ -116,7 +117,7 @@ LoopCommand loop_command(const TactilePlan& plan, const LoopInput& in, LoopState
     out.over_edge = now.over_edge;
     out.inexact = now.inexact;
     if (plan.pins) move_pins(plan, in, now, state, out);
-    if (plan.options.arm) out.arm = arm_command(plan, in, out);
+    if (plan.options.arm) out.arm = arm_command(plan, in, out, state.direction);
     return out;
 }
 

@@ -94,6 +94,7 @@ struct LoopState {
     Eigen::VectorXd carried_m;    // what rounding owes each pin (dither)
     double rounded_due_s = 0.0;
     bool rounded = false;
+    FrictionDirection direction;  // of the arm's compensation
 };
 
 LoopState make_loop_state(const TactilePlan& plan);

@@ -57,6 +57,13 @@ std::vector<StrokeRow> ideal_strokes(const ArmCompensation& arm, double noise_N)
     return rows;
 }
 
+// What is added after the arm has come a millimetre at this velocity.
+double compensation_at(const ArmCompensation& arm, double depth_m, double v) {
+    FrictionDirection direction;
+    compensation_N(arm, depth_m - (v > 0.0 ? 1e-3 : -1e-3), v, direction);
+    return compensation_N(arm, depth_m, v, direction);
+}
+
 }  // namespace
 
 TEST_CASE("compensation: parameters of a known arm are found from ideal strokes") {
@@ -74,26 +81,42 @@ TEST_CASE("compensation: parameters of a known arm are found from ideal strokes"
     CHECK(fit.residual_N < 0.03);
 }
 
-TEST_CASE("compensation: what is added is what the arm takes, but a twentieth of the friction; zero through rest") {
+TEST_CASE("compensation: what is added is what the arm takes, but a twentieth of the friction; none before it moves") {
     ArmCompensation arm = known_arm();
     for (const double v : {-0.05, -2e-3, 2e-3, 0.05}) {
         const double taken_N = hand_force_N(arm, 0.02, v);
         arm.share = 1.0;
-        CHECK(compensation_N(arm, 0.02, v) == doctest::Approx(-taken_N).epsilon(1e-4));
+        CHECK(compensation_at(arm, 0.02, v) == doctest::Approx(-taken_N).epsilon(1e-4));
     }
     arm.share = 0.95;
     arm.ripple.amplitude_N = arm.weight_N = 0.0;
-    CHECK(compensation_N(arm, 0.02, 0.05) == doctest::Approx(-0.95 * (1.8 + 0.1)).epsilon(1e-6));
-    CHECK(compensation_N(arm, 0.02, 0.0) == 0.0);
+    CHECK(compensation_at(arm, 0.02, 0.05) == doctest::Approx(-0.95 * (1.8 + 0.1)).epsilon(1e-6));
+    FrictionDirection direction;
+    CHECK(compensation_N(arm, 0.02, 0.0, direction) == 0.0);
 }
 
-TEST_CASE("compensation: NaN gives no force, and nothing is allocated") {
+TEST_CASE(
+    "compensation: after a turn friction follows over some hundredths of a millimetre, and a jump leaves it whole") {
+    ArmCompensation arm = known_arm();
+    FrictionDirection direction;
+    for (int i = 0; i <= 100; ++i) compensation_N(arm, 1e-6 * i, 1e-3, direction);
+    CHECK(direction.share > 0.95);
+    compensation_N(arm, 98e-6, -1e-3, direction);
+    CHECK(direction.share > 0.8);
+    for (int i = 98; i >= -50; --i) compensation_N(arm, 1e-6 * i, -1e-3, direction);
+    CHECK(direction.share < -0.9);
+    compensation_N(arm, 1.0, 0.0, direction);
+    CHECK(direction.share == 1.0);
+}
+
+TEST_CASE("compensation: NaN gives no force and is forgotten, and nothing is allocated") {
     const ArmCompensation arm = known_arm();
+    FrictionDirection direction;
     const long before = allocation_count();
-    CHECK(compensation_N(arm, std::numeric_limits<double>::quiet_NaN(), 0.0) == 0.0);
-    CHECK(compensation_N(arm, 0.0, std::numeric_limits<double>::infinity()) == 0.0);
+    CHECK(compensation_N(arm, std::numeric_limits<double>::quiet_NaN(), 0.0, direction) == 0.0);
+    CHECK(compensation_N(arm, 0.0, std::numeric_limits<double>::infinity(), direction) == 0.0);
     double sum_N = 0.0;
-    for (int i = 0; i < 1000; ++i) sum_N += compensation_N(arm, 1e-5 * i, 1e-5 * (i - 500));
+    for (int i = 0; i < 1000; ++i) sum_N += compensation_N(arm, 1e-5 * i, 1e-5 * (i - 500), direction);
     CHECK(std::isfinite(sum_N));
     CHECK(allocation_count() == before);
 }

@@ -17,6 +17,17 @@ devices::Limits wide_limits() {
     return limits;
 }
 
+ArmCompensation known_to(const ArmPlantParameters& arm) {
+    ArmCompensation out;
+    out.coulomb_N = arm.coulomb_N;
+    out.static_N = arm.static_N;
+    out.stribeck_m_per_s = arm.stribeck_m_per_s;
+    out.viscous_N_s_per_m = arm.viscous_N_s_per_m;
+    out.weight_N = 9.80665 * arm.weight_kg;
+    out.ripple = {arm.ripple_N, arm.ripple_wavelength_m, arm.ripple_phase_rad};
+    return out;
+}
+
 ArmCompensation identified(const ArmPlantParameters& arm, std::uint64_t seed) {
     const auto path = slow_strokes(-5e-3, 45e-3);
     StrokeOptions options;
@@ -79,6 +90,33 @@ TEST_CASE("characterise: line, offset and hysteresis of readings that are known"
     CHECK(run.hysteresis_N == doctest::Approx(0.25));
     CHECK(run.force_at_0_N == doctest::Approx(0.3));
     CHECK_THROWS_WITH_AS(stiffness_of(500.0, {}), doctest::Contains("did the hand press"), std::runtime_error);
+}
+
+TEST_CASE("strokes: an arm that is compensated and held still stays quiet, with soft and stiff hands") {
+    for (const double hand_N_per_m : {300.0, 1000.0, 3000.0}) {
+        for (const double stiffness : {500.0, 2000.0, 4000.0}) {  // 2 ms of delay: up to 8 N s/m
+            CAPTURE(hand_N_per_m);
+            CAPTURE(stiffness);
+            ArmPlantParameters arm = arm_parameters(0);
+            arm.hand_N_s_per_m *= std::sqrt(hand_N_per_m / arm.hand_N_per_m);
+            arm.hand_N_per_m = hand_N_per_m;
+            devices::PressRow above, held;
+            above.depth_m = -1e-3;
+            held.t_s = 1.0;
+            held.depth_m = hand_depth_m(3.0 / stiffness, stiffness, hand_N_per_m);  // 3 N
+            StrokeOptions options;
+            options.seconds = 3.0;
+            options.limits = wide_limits();
+            options.law = [stiffness](double depth_m) { return stiffness * depth_m; };
+            options.compensation = known_to(arm);
+            const auto rig = virtual_rig(make_arm_plant(arm, {above, held}, 1));
+            const Strokes strokes = run_strokes(options, *rig);
+            double fastest = 0.0;
+            for (const StrokeRow& row : strokes.rows)
+                if (row.time_s > 2.0) fastest = std::max(fastest, std::abs(row.velocity_m_per_s));
+            CHECK(fastest < 0.5e-3);
+        }
+    }
 }
 
 TEST_CASE("strokes: the force limit holds, whatever the law asks for, and NaN of the law stops the arm") {
