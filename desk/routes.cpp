@@ -232,6 +232,7 @@ httplib::Headers strict_headers() {
             {"Cross-Origin-Opener-Policy", "same-origin"},
             {"Cross-Origin-Embedder-Policy", "require-corp"},
             {"Cross-Origin-Resource-Policy", "same-origin"},
+            {"Accept-Ranges", "none"},
             {"X-Content-Type-Options", "nosniff"},
             {"Referrer-Policy", "no-referrer"},
             {"Permissions-Policy", "camera=(), microphone=(), geolocation=()"}};

@@ -168,8 +168,14 @@ void add_fit(CLI::App& calibrate) {
     command->add_option("--plot", arguments->figure, "draw a figure: FILE.png, .svg or .pdf");
     command
         ->add_option("--bootstrap", arguments->options.bootstrap_fits,
-                     "number of resampled fits for the 95 % intervals; 0: no intervals")
-        ->check(CLI::Range(0, 100000))
+                     "number of resampled fits for the 95 % intervals, 100 or more; 0: no intervals")
+        ->check(CLI::Validator(
+            [](const std::string& text) {
+                const int fits = std::atoi(text.c_str());
+                const bool good = fits == 0 || (fits >= 100 && fits <= 100000);
+                return good ? std::string() : "found " + text + ", expected 0 or 100 to 100000";
+            },
+            "0 or 100 to 100000"))
         ->capture_default_str();
     command->add_option("--seed", arguments->options.seed, "seed of the resampling")->capture_default_str();
     command->add_flag("--keep-lag", arguments->keep_lag, "do not remove the pen's lag behind the sensor");

@@ -34,6 +34,9 @@ void print_result(const files::Json& result) {
                 result["max_depth_mm"].get<double>(), result["max_lag_mm"].get<double>());
     const auto skipped = result["skipped_stations"].get<std::int64_t>() + result["skipped_slides"].get<std::int64_t>();
     if (skipped > 0) std::printf("  %lld steps along fast strokes skipped\n", static_cast<long long>(skipped));
+    const std::int64_t backwards = result["counters"]["backwards"].get<std::int64_t>();
+    if (backwards > 0)
+        std::printf("  ! %lld samples left out: their times run backwards\n", static_cast<long long>(backwards));
     if (!result.contains("lag_over_nodules_mm")) return;
     for (const auto& nodule : result["lag_over_nodules_mm"].items()) {
         std::printf("  over nodule %s: lag %.3g mm\n", nodule.key().c_str(), nodule.value().get<double>());
@@ -83,7 +86,10 @@ void run_headless(const RunOptions& options) {
         throw files::InputError("--record: found with --headless, expected a window (a replay has its trace)");
     const double began_s = files::steady_s();
     scene::Scene scene = load_scene(options.scene);
-    if (!options.screenshot.empty()) files::check_output(options.screenshot, inputs_of(scene, options.trace));
+    if (!options.screenshot.empty()) {
+        files::check_output(options.screenshot, inputs_of(scene, options.trace));
+        check_png_name(options.screenshot);
+    }
     if (!options.log.empty()) {
         files::check_output_folder(options.log);
         study::check_no_study(options.log);
@@ -122,7 +128,7 @@ void add_run(CLI::App& app) {
                         "participant's code in the names of the log files (default 01)");
     command->add_option(
         "--screenshot", options->screenshot,
-        "write a PNG of the last frame; headless: of the moment of greatest lag, or of greatest force without a lag");
+        "write FILE.png of the last frame; headless: of the moment of greatest lag, or of greatest force without a lag");
     command->add_option("--record", options->record, "write the input to a new trace TRACE.tsv");
     command->add_flag("--json", options->json, "print one JSON object on standard output");
     command->add_option("--quit-after-s", options->quit_after_s, "close the window after this many seconds")

@@ -14,6 +14,7 @@
 #include "app/screens/screenshot.h"
 #include "app/screens/words.h"
 #include "app/study/study_run.h"
+#include "files/input_error.h"
 #include "files/regular_file.h"
 #include "files/text.h"
 #include "render/gl.h"
@@ -366,9 +367,16 @@ files::Json Live::close() {
     return result;
 }
 
+void check_png_name(const std::string& name) {
+    if (std::filesystem::path(name).extension() != ".png")
+        throw files::bad_input("--screenshot", "", files::shown(name), "FILE.png");
+}
+
 std::optional<files::Json> run_live(const RunOptions& options) {
-    if (!options.screenshot.empty())
+    if (!options.screenshot.empty()) {
         files::check_output(options.screenshot, {options.scene, options.trace, options.protocol});
+        check_png_name(options.screenshot);
+    }
     if (!options.log.empty()) files::check_output_folder(options.log);
     if (!options.log.empty() && options.protocol.empty()) study::check_no_study(options.log);
     Live live(options);

@@ -74,4 +74,7 @@ class Live {
 // or std::runtime_error before the loop or after it.
 std::optional<files::Json> run_live(const RunOptions& options);
 
+// Throws InputError unless the name of a picture ends in .png.
+void check_png_name(const std::string& name);
+
 }  // namespace palpa::app
