@@ -16,7 +16,7 @@ namespace {
 
 constexpr double kUnsent_s = 0.1;
 constexpr double kOpenAgain_s = 0.5;
-constexpr int kErrorsInARow = 10;
+constexpr int kErrorsInARow = 20;
 
 void nap(double seconds) { std::this_thread::sleep_for(std::chrono::duration<double>(std::max(seconds, 0.0))); }
 
@@ -121,6 +121,7 @@ void PinDriver::Works::drive_frame() {
 void PinDriver::Works::run() {
     platform::set_real_time(true);  // where it is granted; else a busy computer may let the boards' timeouts fire
     prove();
+    const double period_s = write_period_s(device);
     for (double due_s = steady_s(); !ending.load();) {
         const PinState now = state.load();
         if (now == PinState::driving) {
@@ -128,7 +129,7 @@ void PinDriver::Works::run() {
         } else {
             reopen();
         }
-        due_s += device.frame_s;
+        due_s += period_s;
         const double late_s = steady_s() - due_s;
         if (late_s > 0.5 * device.frame_s) {
             health.late_frames += now == PinState::driving;

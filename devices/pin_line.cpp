@@ -58,6 +58,16 @@ bool refuses_wrong_crc(const MaestroAddress& to, PinLine& line) {
 
 }  // namespace
 
+double write_period_s(const PinDevice& device) noexcept {
+    constexpr double kBitsPerByte = 10.0;
+    constexpr std::size_t kQuestion_bytes = 5 + 2;  // for a board's errors, and the reply
+    constexpr double kShare = 0.8;
+    std::size_t bytes = kQuestion_bytes;
+    for (const PinBoard& board : device.boards) bytes += 6 + 2 * static_cast<std::size_t>(board.count);
+    const double line_s = kBitsPerByte * static_cast<double>(bytes) / device.baud;
+    return std::clamp(line_s / kShare, 0.25 * device.frame_s, device.frame_s);
+}
+
 bool write_line(std::span<const std::uint8_t> bytes, PinLine& line) noexcept {
     line.gone = line.gone || !line.port.write(bytes.data(), bytes.size());
     return !line.gone;

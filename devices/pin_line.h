@@ -19,6 +19,11 @@ struct PinLine {
     explicit PinLine(const PinDevice& device) : port(device.port, device.baud) {}
 };
 
+// Time from one set of targets to the next on the line. The boards take the latest targets once per frame, at moments that
+// nobody knows: the more often targets are written, the newer those that they take. A quarter of a frame, or as often as
+// 0.8 of the line's time allows, and once per frame at least.
+double write_period_s(const PinDevice& device) noexcept;
+
 bool write_line(std::span<const std::uint8_t> bytes, PinLine& line) noexcept;
 
 // Asks a board for its errors, which clears them. Returns false if no sensible reply came within wait_s.

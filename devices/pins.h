@@ -91,7 +91,7 @@ enum class PinState : std::uint8_t {
     no_answer,   // a board does not answer
     no_timeout,  // a board would hold its pins when Palpa is gone
     no_crc,      // a board would take garbled targets
-    faulty,      // a board has found errors in each of its last ten replies
+    faulty,      // a board has found errors in each of its last twenty replies
 };
 
 struct PinHealth {
@@ -107,9 +107,9 @@ struct PinHealth {
 };
 
 // Drives the pins from a thread of its own: it proves timeout and CRC of every board, falling silent once, then writes a
-// frame every 20 ms and asks one board for its errors in each. If send() is not called for 100 ms, the pins rest. Boards
-// that are not safe are not driven. Twice a second a port that was unplugged is opened again, and boards that do not answer
-// or are not safe are proved again.
+// frame of targets as often as the line allows (write_period_s() in pin_line.h) and asks one board for its errors in each.
+// If send() is not called for 100 ms, the pins rest. Boards that are not safe are not driven. Twice a second a port that was
+// unplugged is opened again, and boards that do not answer or are not safe are proved again.
 class PinDriver {
   public:
     // Throws std::runtime_error with the system's reason if the port cannot be opened.

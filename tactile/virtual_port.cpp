@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "devices/pin_line.h"
+
 namespace palpa::tactile {
 namespace {
 
@@ -23,7 +25,8 @@ VirtualPort::VirtualPort(const TactilePlan& plan, std::vector<devices::PressRow>
     settings.pin_speed_m_per_s = plan.pin_device->speed_m_per_s;
     boards = make_maestro_boards(*plan.pin_device, settings, 0.0, seed);
     if (plan.pin_device->detect_baud) take_bytes({&devices::kMaestroBaudByte, 1}, *boards);
-    frame_due_s = 0.5 * plan.pin_device->frame_s;  // boards keep a time of their own: half a frame apart on average
+    period_s = devices::write_period_s(*plan.pin_device);
+    frame_due_s = 0.5 * period_s;  // boards keep a time of their own: half a period apart on average
     height_m.resize(boards->pin.size());
     read_heights(*boards, height_m);
 }
@@ -39,7 +42,7 @@ void VirtualPort::send(double now_s, const LoopCommand& command) {
     guard_command(now_s, true, arm ? &newest : nullptr, found, sent, guarded);
     if (arm) devices::simulators::command(sent.arm, *arm);
     if (!boards || now_s < frame_due_s) return;
-    frame_due_s = now_s + boards->device.frame_s - 1e-6;
+    frame_due_s = now_s + period_s - 1e-6;
     devices::pin_frame(boards->device, {sent.pins_m.data(), static_cast<std::size_t>(sent.pins)}, frame);
     take_bytes(frame.view(), *boards);
     if (std::any_of(boards->out.begin(), boards->out.end(), [](std::uint8_t byte) { return byte != 0; }))

@@ -29,6 +29,7 @@ struct VirtualPort {
     devices::PinFrame frame{};
     devices::ArmFeedback newest;
     devices::Fault found = devices::Fault::none;
+    double period_s = 0.02;  // from one set of targets to the next
     double frame_due_s = 0.0;
 };
 

@@ -34,7 +34,7 @@ void print_result(const files::Json& result) {
                 result["max_depth_mm"].get<double>(), result["max_lag_mm"].get<double>());
     const auto skipped = result["skipped_stations"].get<std::int64_t>() + result["skipped_slides"].get<std::int64_t>();
     if (skipped > 0) std::printf("  %lld steps along fast strokes skipped\n", static_cast<long long>(skipped));
-    const std::int64_t backwards = result["counters"]["backwards"].get<std::int64_t>();
+    const std::int64_t backwards = result["counts"]["backwards"].get<std::int64_t>();
     if (backwards > 0)
         std::printf("  ! %lld samples left out: their times run backwards\n", static_cast<long long>(backwards));
     if (!result.contains("lag_over_nodules_mm")) return;
@@ -126,9 +126,9 @@ void add_run(CLI::App& app) {
                         "folder for the log (BIDS layout; existing files are never overwritten)");
     command->add_option("--participant", options->participant,
                         "participant's code in the names of the log files (default 01)");
-    command->add_option(
-        "--screenshot", options->screenshot,
-        "write FILE.png of the last frame; headless: of the moment of greatest lag, or of greatest force without a lag");
+    command->add_option("--screenshot", options->screenshot,
+                        "write FILE.png of the last frame; headless: of the moment of greatest lag, or of greatest "
+                        "force without a lag");
     command->add_option("--record", options->record, "write the input to a new trace TRACE.tsv");
     command->add_flag("--json", options->json, "print one JSON object on standard output");
     command->add_option("--quit-after-s", options->quit_after_s, "close the window after this many seconds")
