@@ -75,6 +75,11 @@ calibration::CalibrateOptions fit_options(const FitArguments& arguments) {
     options.level = parsed(arguments.level, {calibration::LevelField::pressure, calibration::LevelField::pressure_raw,
                                              calibration::LevelField::contact_area});
     options.remove_lag = !arguments.keep_lag;
+    constexpr int kFewestFits = 100;  // fewer give an interval that may not even hold the curve itself
+    if (options.bootstrap_fits > 0 && options.bootstrap_fits < kFewestFits) {
+        throw files::bad_input("--bootstrap", "", std::to_string(options.bootstrap_fits),
+                               "0 (no intervals) or 100 to 100000");
+    }
     if (!arguments.range.empty()) {
         if (!(arguments.range[0] < arguments.range[1])) {
             throw files::bad_input(
@@ -168,7 +173,7 @@ void add_fit(CLI::App& calibrate) {
     command->add_option("--plot", arguments->figure, "draw a figure: FILE.png, .svg or .pdf");
     command
         ->add_option("--bootstrap", arguments->options.bootstrap_fits,
-                     "number of resampled fits for the 95 % intervals; 0: no intervals")
+                     "number of resampled fits for the 95 % intervals, 100 or more; 0: no intervals")
         ->check(CLI::Range(0, 100000))
         ->capture_default_str();
     command->add_option("--seed", arguments->options.seed, "seed of the resampling")->capture_default_str();
