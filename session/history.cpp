@@ -158,7 +158,7 @@ KeptTrial kept_trial(const Session& session, const std::string& utc) {
     for (std::size_t i = 0; i < trial.marks.size(); ++i) {
         const Mark& m = trial.marks[i];
         const bool hit = result.score.marks[i].kind == study::MarkKind::hit;
-        out.marks.push_back({1e3 * m.p_m.x(), 1e3 * m.p_m.y(), m.confidence, m.onset_s, hit});
+        out.marks.push_back({1e3 * m.p_m.x(), 1e3 * m.p_m.y(), m.confidence, m.clock_s, hit});
     }
     out.path = kept_path(trial.path);
     return out;

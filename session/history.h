@@ -28,7 +28,7 @@ struct KeptMark {
 };
 
 struct KeptPoint {
-    double time_s = 0.0;  // since the trial began
+    double time_s = 0.0;  // of the person's clock: since the first touch, without pauses
     double x_mm = 0.0;
     double y_mm = 0.0;
     double depth_mm = 0.0;

@@ -33,7 +33,7 @@ void add_to_path(const scene::State& state, Trial& trial) {
         trial.path_step_m *= 2.0;
     }
     trial.path.push_back(
-        {p_m, static_cast<float>(state.contact.depth_m), begins, static_cast<float>(trial.now_s - trial.began_s)});
+        {p_m, static_cast<float>(state.contact.depth_m), begins, static_cast<float>(clock_s(trial, trial.now_s))});
 }
 
 // Adds to the way and the impulse while pressing. Motion inside the dead band does not count as way, so that jitter and
@@ -91,7 +91,8 @@ void act(const platform::Sample& sample, const scene::State& state, Trial& trial
     if (sample.action == platform::Action::finish) trial.finished = true;
     if (sample.action != platform::Action::mark || !std::isfinite(sample.x_px + sample.y_px)) return;
     const Eigen::Vector2d p_m = scene::tissue_of_px(state.view, {sample.x_px, sample.y_px});
-    if (scene::on_tissue(state.view, p_m)) trial.marks.push_back({p_m, 0, trial.now_s - trial.began_s});
+    if (scene::on_tissue(state.view, p_m))
+        trial.marks.push_back({p_m, 0, trial.now_s - trial.began_s, clock_s(trial, trial.now_s)});
 }
 
 Finding finding_of(const study::Coverage& coverage, bool found, double deepest_m) {

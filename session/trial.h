@@ -19,13 +19,14 @@ struct Mark {
     Eigen::Vector2d p_m = Eigen::Vector2d::Zero();
     int confidence = 0;    // 1 unsure ... 5 sure; 0 if the person did not say
     double onset_s = 0.0;  // since the trial began
+    double clock_s = 0.0;  // of the person's clock
 };
 
 struct PathPoint {
     Eigen::Vector2d p_m = Eigen::Vector2d::Zero();
     float depth_m = 0.0f;  // greatest depth up to the next point
     bool begins = false;   // the first point of a press
-    float t_s = 0.0f;      // since the trial began
+    float t_s = 0.0f;      // of the person's clock
 };
 
 struct Trial {

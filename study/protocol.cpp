@@ -114,7 +114,10 @@ Item read_item(files::JsonReader json, std::set<std::string>& known) {
         if (!list.is_array() || list.size() < 2) json.fail("choices", files::described(list), "two texts or more");
         for (const files::Json& entry : list) {
             if (!entry.is_string()) json.fail("choices", files::described(entry), "a text");
-            item.choices.push_back(entry.get<std::string>());
+            const auto text = entry.get<std::string>();
+            if (std::find(item.choices.begin(), item.choices.end(), text) != item.choices.end())
+                json.fail("choices", "'" + text + "' a second time", "each text once");
+            item.choices.push_back(text);
         }
     }
     json.finish();

@@ -346,7 +346,8 @@ Observations read_study(const fs::path& directory) {
         const auto excluded = out.excluded_trials;
         Subject reader(code, index, study, out);
         for (const fs::path& events : files) reader.add(events);
-        reader.settle();
+        // who left before the first questions were answered has no place in the plan
+        if (!files.empty() || study.people.count(code) > 0) reader.settle();
         if (withdrew) out.withdrawn_trials += out.excluded_trials - excluded;
         for (const auto& [who, trial] : study.left_out_trials) {
             if (who == code && reader.has_finished(trial)) finished.insert({who, trial});

@@ -75,6 +75,11 @@ calibration::CalibrateOptions fit_options(const FitArguments& arguments) {
     options.level = parsed(arguments.level, {calibration::LevelField::pressure, calibration::LevelField::pressure_raw,
                                              calibration::LevelField::contact_area});
     options.remove_lag = !arguments.keep_lag;
+    constexpr int kFewestFits = 100;  // fewer give an interval that may not even hold the curve itself
+    if (options.bootstrap_fits > 0 && options.bootstrap_fits < kFewestFits) {
+        throw files::bad_input("--bootstrap", "", std::to_string(options.bootstrap_fits),
+                               "0 (no intervals) or 100 to 100000");
+    }
     if (!arguments.range.empty()) {
         if (!(arguments.range[0] < arguments.range[1])) {
             throw files::bad_input(
@@ -169,13 +174,7 @@ void add_fit(CLI::App& calibrate) {
     command
         ->add_option("--bootstrap", arguments->options.bootstrap_fits,
                      "number of resampled fits for the 95 % intervals, 100 or more; 0: no intervals")
-        ->check(CLI::Validator(
-            [](const std::string& text) {
-                const int fits = std::atoi(text.c_str());
-                const bool good = fits == 0 || (fits >= 100 && fits <= 100000);
-                return good ? std::string() : "found " + text + ", expected 0 or 100 to 100000";
-            },
-            "0 or 100 to 100000"))
+        ->check(CLI::Range(0, 100000))
         ->capture_default_str();
     command->add_option("--seed", arguments->options.seed, "seed of the resampling")->capture_default_str();
     command->add_flag("--keep-lag", arguments->keep_lag, "do not remove the pen's lag behind the sensor");

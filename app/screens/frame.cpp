@@ -61,8 +61,9 @@ void draw_panels(const Shown& shown, const Layout& layout, Gui& gui, ViewState& 
         draw_on_tissue(shown, gui);
         return draw_ask(shown, gui, wishes);
     }
+    const bool listed_keys = view.help;
     take_keys(shown, gui, view, wishes);
-    if (view.help) {
+    if (listed_keys || view.help) {  // the key that closes the list does nothing else
         draw_on_tissue(shown, gui);
         return draw_help(shown, gui, view);
     }

@@ -377,7 +377,7 @@ inline constexpr const char* kStiffness = "Stiffness";
 inline constexpr const char* kMap = "Map";
 inline constexpr const char* kNoMap =
     "There is no map yet. Put folders NAME.map into the folder maps of your data folder.";
-inline constexpr const char* kMapsHidden = "Maps show where the nodules are. Finish the test first.";
+inline constexpr const char* kMapsHidden = "Maps and results show where the nodules are. Finish the test first.";
 inline constexpr const char* kMmDeep = "at {} mm";
 inline constexpr const char* kCellsOf = "{} x {} cells of {} x {} mm";
 inline constexpr const char* kDepthsFromTo = "{} depths, {} to {} mm";

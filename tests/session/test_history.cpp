@@ -79,6 +79,44 @@ TEST_CASE("history: what is kept of a trial is what is read back") {
     }
 }
 
+TEST_CASE("history: path and marks have the times of the person's clock, without waiting and pauses") {
+    Session session;
+    session.scene = load_scene("");
+    session.plan = std::make_shared<const Plan>(make_plan(session.scene));
+    begin_trial({}, {640, 400, kMissing, kMissing, "test"}, TrialMode::test, session);
+    const auto send = [&](double t_host_s, Phase phase, Action action, double x_m) {
+        Sample sample;
+        sample.t_host_s = t_host_s;
+        sample.tool = Tool::pen;
+        sample.phase = phase;
+        sample.action = action;
+        sample.pressure = phase == Phase::hover ? 0.0 : 0.5;
+        const Eigen::Vector2d px = px_of_tissue(session.state.view, {x_m, session.plan->area.centre_m.y()});
+        sample.x_px = px.x();
+        sample.y_px = px.y();
+        take_sample(sample, session);
+    };
+    const double x_m = session.plan->area.centre_m.x();
+    send(100.0, Phase::hover, Action::none, x_m);
+    send(130.0, Phase::down, Action::none, x_m);  // the clock starts
+    send(131.0, Phase::move, Action::none, x_m + 5e-3);
+    send(131.5, Phase::up, Action::none, x_m + 5e-3);
+    send(132.0, Phase::ui, Action::pause, x_m);
+    send(192.0, Phase::ui, Action::resume, x_m);
+    send(193.0, Phase::down, Action::none, x_m + 9e-3);
+    send(194.0, Phase::ui, Action::mark, x_m + 9e-3);
+    send(195.0, Phase::ui, Action::finish, x_m);
+    const KeptTrial trial = kept_trial(session, "2026-11-21T09:30:00Z");
+    CHECK(trial.clock_s == doctest::Approx(5.0));
+    REQUIRE(trial.path.size() == 3);
+    CHECK(trial.path[0].time_s == doctest::Approx(0.0));
+    CHECK(trial.path[1].time_s == doctest::Approx(1.0));
+    CHECK(trial.path[2].time_s == doctest::Approx(3.0));
+    REQUIRE(trial.marks.size() == 1);
+    CHECK(trial.marks[0].time_s == doctest::Approx(4.0));
+    CHECK(session.trial.marks[0].onset_s == doctest::Approx(94.0));  // in the log: since the trial began
+}
+
 TEST_CASE("history: trials of one second do not overwrite each other, and only trials are deleted") {
     const TemporaryFolder folder;
     KeptTrial trial = finished();

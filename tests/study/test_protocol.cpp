@@ -131,6 +131,9 @@ TEST_CASE("protocol: what is wrong is named with its key") {
     CHECK(contains(refusal_of_protocol(with(kPen, R"(, "ratings": [{"id": "a", "text": "t", "from": 5, "to": 1}])")),
                    "ratings[0].to: found 1"));
     CHECK(contains(
+        refusal_of_protocol(with(kPen, R"(, "ratings": [{"id": "a", "text": "t", "choices": ["yes", "no", "yes"]}])")),
+        "ratings[0].choices: found 'yes' a second time, expected each text once"));
+    CHECK(contains(
         refusal_of_protocol(with(R"({"id": "x", "modality": "pen", "scene": "s.json", "device": "S-pen\tof 2014"})")),
         "conditions[0].device: found 'S-pen?of 2014', expected a name without tabs"));
     CHECK(contains(refusal_of_protocol("{"), "line 1, column"));

@@ -331,3 +331,19 @@ TEST_CASE("read logs: the report counts finished tests of all tasks") {
     CHECK(report.forced_choices == 24);
     CHECK(contains(report_markdown(report), "2 participants, 24 finished tests, 0 practice trials"));
 }
+
+TEST_CASE("read logs: who left at the page of consent has no planned tests") {
+    const TemporaryFolder folder;
+    find_study(folder / "log");
+    const auto planned = [&] {
+        int sum = 0;
+        for (const Progress& row : read_study(folder / "log").progress) sum += row.planned;
+        return sum;
+    };
+    CHECK(planned() == 4);
+    fs::create_directories(folder / "log/sub-03");
+    write_text_atomically(folder / "log/sub-03/now.json", "{}");  // this person answered no question
+    CHECK(planned() == 4);
+    add_people(folder / "log", {Person{"03", "n/a", "n/a", "n/a", "n/a", "n/a", "n/a", "all"}});
+    CHECK(planned() == 6);
+}

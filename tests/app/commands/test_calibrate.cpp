@@ -177,3 +177,15 @@ TEST_CASE("bench pens: auto predicts left-out points of 94 real sessions within 
     CHECK(curves[0]["median_firm"].get<double>() == doctest::Approx(0.05).epsilon(0.03));
     CHECK(curves[5]["median_light"].get<double>() == doctest::Approx(0.027).epsilon(0.05));
 }
+
+TEST_CASE("calibrate fit: intervals need enough resampled fits, or none are asked for") {
+    const TemporaryFolder folder;
+    const std::string data = (folder / "d.csv").string();
+    write_text_atomically(data, touchpad());
+    const std::string fit = "fit " + data + " -o " + (folder / "p.json").string() + " --bootstrap ";
+    const Called few = calibrate(fit + "1");
+    CHECK(few.status == 2);
+    CHECK(few.err.find("--bootstrap: found 1, expected 0 (no intervals) or 100 to 100000") != std::string::npos);
+    CHECK(calibrate(fit + "0").status == 0);
+    CHECK(calibrate(fit + "100").status == 0);
+}

@@ -330,7 +330,6 @@ TEST_CASE("files: words and numbers that an option does not take are told in wor
             "--screen: found 'map', expected trial, devices, scale, calibrate, maps, history or tactile");
     refused("run --headless --replay trace.tsv in.map --screenshot p.jpg",
             "--screenshot: found 'p.jpg', expected FILE.png");
-    refused("calibrate fit points.csv -o p.json --bootstrap 2", "found 2, expected 0 or 100 to 100000");
     refused("maps plot in.map -o f.png --what all_of_it",
             "expected all, matrices, stiffness, slice, curves or nodules");
     refused("maps sample in.map --x-mm nan --y-mm 1 --force-N 1", "--x-mm: found 'nan', expected a finite number");

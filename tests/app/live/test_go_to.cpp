@@ -104,3 +104,14 @@ TEST_CASE("go to: a trial that was stopped stays stopped on every screen, until 
     begin_anew(desk.window, desk.gui, desk.app);
     CHECK_FALSE(trial_stopped(desk.app));
 }
+
+TEST_CASE("go to: during a test maps and history stay closed, and the note speaks of both") {
+    Desk desk("");
+    desk.app.session.trial.mode = TrialMode::test;
+    for (const Screen screen : {Screen::maps, Screen::history}) {
+        desk.app.notices.note.clear();
+        open_screen(screen, desk.window, desk.app);
+        CHECK(std::holds_alternative<Palpating>(desk.app.doing));
+        CHECK(desk.app.notices.note == "Maps and results show where the nodules are. Finish the test first.");
+    }
+}

@@ -7,6 +7,7 @@
 #include "app/screens/history_screen.h"
 #include "scene/advance.h"
 #include "tests/app/live/desk.h"
+#include "tests/app/screens/typing.h"
 #include "tests/temporary_folder.h"
 
 using namespace palpa;
@@ -216,6 +217,28 @@ TEST_CASE("live: the guided start that is skipped leaves its trial as it is") {
     CHECK(desk.app.session.trial.marks.size() == 1);
     CHECK(std::holds_alternative<Palpating>(desk.app.doing));
     CHECK_FALSE(is_guided(desk.app.doing));
+}
+
+TEST_CASE("live: the key that closes the list of keys does not leave the guided start") {
+    Desk desk("");
+    desk.keeper.busy = false;
+    begin_guided(desk.window, desk.gui, desk.app);
+    frames(desk, 3);
+    desk.app.view.help = true;
+    frames(desk, 2);
+    std::vector<Sample> samples;
+    const auto escape_leaves = [&] {
+        tap(desk.window, SDLK_ESCAPE);
+        bool leaves = false;
+        for (int i = 0; i < 4; ++i) {
+            desk.window.poll(0.0, samples);
+            leaves = leaves || desk.show_frame().guided == std::optional<bool>(false);
+        }
+        return leaves;
+    };
+    CHECK_FALSE(escape_leaves());
+    CHECK_FALSE(desk.app.view.help);
+    CHECK(escape_leaves());
 }
 
 TEST_CASE("live: a scene with a random turn is drawn in all eight, another one stays as it is") {
