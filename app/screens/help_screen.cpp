@@ -28,6 +28,8 @@ constexpr KeyLine kKeyLines[] = {{words::kKeyArrows, words::kKeyArrowsDo},
                                  {words::kKeyPicture, words::kKeyPictureDo},
                                  {words::kKeyMenu, words::kKeyMenuDo},
                                  {words::kKeyScreens, words::kKeyScreensDo},
+                                 {words::kKeyInset, words::kKeyInsetDo},
+                                 {words::kKeyHold, words::kKeyHoldDo},
                                  {words::kKeyCost, words::kKeyCostDo},
                                  {words::kKeyStop, words::kKeyStopDo},
                                  {words::kKeyWindow, words::kKeyWindowDo}};
