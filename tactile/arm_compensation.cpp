@@ -210,25 +210,26 @@ double compensation_N(const ArmCompensation& arm, double depth_m, double velocit
     return arm.weight_N - ripple_N - arm.share * friction_N;
 }
 
+files::Json parameters_json(const ArmCompensation& arm) {
+    return {{"coulomb_N", arm.coulomb_N},
+            {"static_N", arm.static_N},
+            {"stribeck_mm_per_s", 1e3 * arm.stribeck_m_per_s},
+            {"viscous_N_s_per_m", arm.viscous_N_s_per_m},
+            {"weight_N", arm.weight_N},
+            {"ripple",
+             {{"amplitude_N", arm.ripple.amplitude_N},
+              {"wavelength_mm", 1e3 * arm.ripple.wavelength_m},
+              {"phase_rad", arm.ripple.phase_rad}}}};
+}
+
 void write_compensation(const CompensationFit& fit, const std::string& arm, const std::filesystem::path& path) {
-    const ArmCompensation& c = fit.compensation;
-    const files::Json json{{"kind", "compensation"},
-                           {"arm", arm},
-                           {"coulomb_N", c.coulomb_N},
-                           {"static_N", c.static_N},
-                           {"stribeck_mm_per_s", 1e3 * c.stribeck_m_per_s},
-                           {"viscous_N_s_per_m", c.viscous_N_s_per_m},
-                           {"weight_N", c.weight_N},
-                           {"ripple",
-                            {{"amplitude_N", c.ripple.amplitude_N},
-                             {"wavelength_mm", 1e3 * c.ripple.wavelength_m},
-                             {"phase_rad", c.ripple.phase_rad}}},
-                           {"share", c.share},
-                           {"quality",
-                            {{"rows", fit.rows},
-                             {"residual_N", fit.residual_N},
-                             {"depth_mm", {1e3 * fit.lowest_m, 1e3 * fit.deepest_m}},
-                             {"speed_mm_per_s", {1e3 * fit.slowest_m_per_s, 1e3 * fit.fastest_m_per_s}}}}};
+    files::Json json{{"kind", "compensation"}, {"arm", arm}};
+    json.update(parameters_json(fit.compensation));
+    json["share"] = fit.compensation.share;
+    json["quality"] = {{"rows", fit.rows},
+                       {"residual_N", fit.residual_N},
+                       {"depth_mm", {1e3 * fit.lowest_m, 1e3 * fit.deepest_m}},
+                       {"speed_mm_per_s", {1e3 * fit.slowest_m_per_s, 1e3 * fit.fastest_m_per_s}}};
     files::write_text_atomically(path, files::json_text(json));
 }
 

@@ -12,6 +12,8 @@
 #include <span>
 #include <string>
 
+#include "files/json.h"
+
 namespace palpa::tactile {
 
 struct ArmRipple {
@@ -67,6 +69,9 @@ struct FrictionDirection {
 // argument that is not finite.
 double compensation_N(const ArmCompensation& arm, double depth_m, double velocity_m_per_s,
                       FrictionDirection& direction) noexcept;
+
+// The parameters as files and reports spell them.
+files::Json parameters_json(const ArmCompensation& arm);
 
 // COMPENSATION.json. read throws InputError with file and key.
 void write_compensation(const CompensationFit& fit, const std::string& arm, const std::filesystem::path& path);

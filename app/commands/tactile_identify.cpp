@@ -55,18 +55,10 @@ tactile::CompensationFit identify(const RigOptions& options, const devices::ArmD
 }
 
 files::Json identified_json(const tactile::CompensationFit& fit) {
-    const tactile::ArmCompensation& c = fit.compensation;
-    return {{"coulomb_N", c.coulomb_N},
-            {"static_N", c.static_N},
-            {"stribeck_mm_per_s", 1e3 * c.stribeck_m_per_s},
-            {"viscous_N_s_per_m", c.viscous_N_s_per_m},
-            {"weight_N", c.weight_N},
-            {"ripple",
-             {{"amplitude_N", c.ripple.amplitude_N},
-              {"wavelength_mm", 1e3 * c.ripple.wavelength_m},
-              {"phase_rad", c.ripple.phase_rad}}},
-            {"residual_N", fit.residual_N},
-            {"readings", fit.rows}};
+    files::Json json = tactile::parameters_json(fit.compensation);
+    json["residual_N"] = fit.residual_N;
+    json["readings"] = fit.rows;
+    return json;
 }
 
 void add_tactile_identify(CLI::App& tactile) {
