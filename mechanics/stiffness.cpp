@@ -2,8 +2,8 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
-#include <cassert>
 
+#include "mechanics/assembly.h"
 #include "mechanics/error.h"
 #include "mechanics/text.h"
 
@@ -11,91 +11,6 @@ namespace palpa::mechanics {
 namespace {
 
 using Eigen::Index;
-
-// For each node i the nodes >= i that share a cell with it, ascending: node[start[i]] to node[start[i + 1] - 1].
-struct Neighbours {
-    std::vector<int> start;
-    std::vector<int> node;
-};
-
-Neighbours neighbours_of(const Mesh& mesh) {
-    const auto n_nodes = static_cast<std::size_t>(mesh.nodes_m.cols());
-    std::vector<int> cell_start(n_nodes + 1, 0);
-    for (Index i = 0; i < mesh.cells.size(); ++i) ++cell_start[static_cast<std::size_t>(mesh.cells.data()[i]) + 1];
-    for (std::size_t i = 0; i < n_nodes; ++i) cell_start[i + 1] += cell_start[i];
-    std::vector<int> cell_of(static_cast<std::size_t>(mesh.cells.size()));
-    std::vector<int> fill(cell_start.begin(), cell_start.end() - 1);
-    for (int cell = 0; cell < mesh.cells.cols(); ++cell) {
-        for (Index k = 0; k < mesh.cells.rows(); ++k) {
-            cell_of[static_cast<std::size_t>(fill[static_cast<std::size_t>(mesh.cells(k, cell))]++)] = cell;
-        }
-    }
-    Neighbours out;
-    out.start.assign(1, 0);
-    std::vector<int> near;
-    for (std::size_t node = 0; node < n_nodes; ++node) {
-        near.assign(1, static_cast<int>(node));  // a node of no cell has a diagonal too, which stays 0
-        for (int i = cell_start[node]; i < cell_start[node + 1]; ++i) {
-            const int cell = cell_of[static_cast<std::size_t>(i)];
-            for (Index k = 0; k < mesh.cells.rows(); ++k) {
-                if (mesh.cells(k, cell) > static_cast<int>(node)) near.push_back(mesh.cells(k, cell));
-            }
-        }
-        std::sort(near.begin(), near.end());
-        near.erase(std::unique(near.begin(), near.end()), near.end());
-        out.node.insert(out.node.end(), near.begin(), near.end());
-        out.start.push_back(static_cast<int>(out.node.size()));
-    }
-    return out;
-}
-
-// Returns the matrix with all values 0. Column 3 j + c holds rows c..2 of the diagonal block, and then three rows for
-// each later neighbour.
-LowerMatrix pattern_of(const Neighbours& near) {
-    const auto n_nodes = static_cast<Index>(near.start.size()) - 1;
-    LowerMatrix K(3 * n_nodes, 3 * n_nodes);
-    K.resizeNonZeros(9 * static_cast<Index>(near.node.size()) - 3 * n_nodes);
-    int* outer = K.outerIndexPtr();
-    int* inner = K.innerIndexPtr();
-    int at = 0;
-    for (int j = 0; j < n_nodes; ++j) {
-        for (int c = 0; c < 3; ++c) {
-            outer[3 * j + c] = at;
-            for (int r = c; r < 3; ++r) inner[at++] = 3 * j + r;
-            for (int i = near.start[static_cast<std::size_t>(j)] + 1; i < near.start[static_cast<std::size_t>(j) + 1];
-                 ++i) {
-                for (int r = 0; r < 3; ++r) inner[at++] = 3 * near.node[static_cast<std::size_t>(i)] + r;
-            }
-        }
-    }
-    outer[3 * n_nodes] = at;
-    std::fill_n(K.valuePtr(), at, 0.0);
-    return K;
-}
-
-// Adds the stiffness Ke of a cell to the stored triangle of K.
-template <int Corners>
-void add_cell(const Neighbours& near, const Eigen::Matrix<int, Corners, 1>& nodes,
-              const Eigen::Matrix<double, 3 * Corners, 3 * Corners>& Ke, LowerMatrix& K) {
-    double* value = K.valuePtr();
-    for (int b = 0; b < Corners; ++b) {
-        const int j = nodes(b);
-        const auto first = near.node.begin() + near.start[static_cast<std::size_t>(j)];
-        const auto last = near.node.begin() + near.start[static_cast<std::size_t>(j) + 1];
-        for (int a = 0; a < Corners; ++a) {
-            if (nodes(a) < j) continue;
-            const auto place = static_cast<int>(std::lower_bound(first, last, nodes(a)) - first);
-            for (int c = 0; c < 3; ++c) {
-                double* column = value + K.outerIndexPtr()[3 * j + c];
-                if (place == 0) {
-                    for (int r = c; r < 3; ++r) column[r - c] += Ke(3 * a + r, 3 * b + c);
-                } else {
-                    for (int r = 0; r < 3; ++r) column[3 * place - c + r] += Ke(3 * a + r, 3 * b + c);
-                }
-            }
-        }
-    }
-}
 
 Hex hex_of(const Mesh& mesh, const Eigen::Matrix3Xd& values, Index cell) {
     Hex out;
