@@ -12,22 +12,41 @@ namespace {
 using namespace mechanics;
 using Eigen::Index;
 
-Material read_material(files::JsonReader json) {
-    if (json.has("law")) {
-        constexpr std::array kLaws{"linear", "neo-hookean", "stable-neo-hookean", "corotational"};
-        const auto law = json.choice("law", {"linear", "neo-hookean", "stable-neo-hookean", "corotational"});
-        if (law != 0) {
-            json.fail("law", files::shown(kLaws[law]),
-                      "linear (young_Pa and poisson): `fem solve` does not have the nonlinear laws yet");
+// at 0.5 - 1e-10 a block sinks as much as at 0.4999999 to six digits, at 0.5 - 1e-12 only to five; a few units of
+// round-off below 0.5 the matrix can no longer be factored (2026-11)
+constexpr double kMostPoisson = 0.5 - 1e-10;
+
+Law read_law(files::JsonReader& json) {
+    if (!json.has("law")) {
+        for (const char* key : {"mu_Pa", "kappa_Pa"}) {
+            if (json.has(key))
+                json.fail("law", "nothing beside " + std::string(key), "one of the laws for large strains");
         }
+        return Law::linear;
     }
+    return static_cast<Law>(json.choice("law", {kLawNames[0], kLawNames[1], kLawNames[2], kLawNames[3], kLawNames[4]}));
+}
+
+// Returns the moduli at rest of a law for large strains.
+Material read_large_material(files::JsonReader& json, Law law) {
+    json.only({"law", "mu_Pa", "kappa_Pa"});
+    LargeMaterial large{law, json.number("mu_Pa", {0.0, 1e15, true}), json.number("kappa_Pa", {0.0, 1e15, true})};
+    const Material material = at_rest(large);
+    if (!(material.poisson <= kMostPoisson)) {
+        json.fail("kappa_Pa", files::number_text(large.kappa_Pa),
+                  "at most " + files::short_number(large.mu_Pa / (3.0 * (0.5 - kMostPoisson))) +
+                      " with this mu_Pa (1e4 times mu_Pa stands for an incompressible tissue)");
+    }
+    return material;
+}
+
+Material read_material(files::JsonReader json, Law& law) {
+    law = read_law(json);
+    if (law != Law::linear) return read_large_material(json, law);
     json.only({"law", "young_Pa", "poisson"});
     Material material;
     material.young_Pa = json.number("young_Pa", {0.0, 1e15, true});
     material.poisson = json.number("poisson", files::kAnyNumber);
-    // at 0.5 - 1e-10 a block sinks as much as at 0.4999999 to six digits, at 0.5 - 1e-12 only to five; a few units of
-    // round-off below 0.5 the matrix can no longer be factored (2026-11)
-    constexpr double kMostPoisson = 0.5 - 1e-10;
     if (!(material.poisson > -1.0 && material.poisson <= kMostPoisson)) {
         json.fail("poisson", files::number_text(material.poisson),
                   "a number > -1 and < 0.5 by at least 1e-10 (0.4999 stands for an incompressible tissue)");
@@ -35,7 +54,7 @@ Material read_material(files::JsonReader json) {
     return material;
 }
 
-std::vector<Material> read_materials(files::JsonReader& json, std::vector<std::string>& names) {
+std::vector<Material> read_materials(files::JsonReader& json, BodyFile& out) {
     const files::Json& list = json.any("materials");
     if (!list.is_object() || list.empty()) {
         json.fail("materials", files::described(list),
@@ -43,8 +62,16 @@ std::vector<Material> read_materials(files::JsonReader& json, std::vector<std::s
     }
     std::vector<Material> materials;
     for (const auto& item : list.items()) {
-        names.push_back(item.key());
-        materials.push_back(read_material(files::JsonReader(item.value(), json.file(), "materials." + item.key())));
+        out.materials.push_back(item.key());
+        Law law = Law::linear;
+        files::JsonReader entry(item.value(), json.file(), "materials." + item.key());
+        materials.push_back(read_material(entry, law));
+        out.laws.push_back(law);
+        if ((law == Law::linear) != (out.laws.front() == Law::linear)) {
+            entry.fail(
+                "law", std::string(name_of(law)) + " beside " + std::string(name_of(out.laws.front())),
+                "linear materials alone, or laws for large strains alone (corotational is the one next to linear)");
+        }
     }
     return materials;
 }
@@ -131,7 +158,7 @@ void read_regions(files::JsonReader& json, const std::vector<std::string>& mater
 
 BodyFile read_body(files::JsonReader& json, const std::filesystem::path& folder) {
     BodyFile out;
-    const std::vector<Material> materials = read_materials(json, out.materials);
+    const std::vector<Material> materials = read_materials(json, out);
     out.mesh = read_case_mesh(json, folder, out.element);
     read_regions(json, out.materials, out.mesh);
     out.body = {out.mesh.mesh, materials_of_cells(out.mesh.mesh.region, materials)};

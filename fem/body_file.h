@@ -9,6 +9,7 @@
 #include "fem/mesh_file.h"
 #include "files/json.h"
 #include "mechanics/body.h"
+#include "mechanics/hyperelastic.h"
 
 namespace palpa::fem {
 
@@ -16,7 +17,9 @@ struct BodyFile {
     mechanics::Body body;  // mesh.region: position in `materials`
     mechanics::Element element = mechanics::Element::hex8_bbar;
     std::vector<std::string> materials;  // names, in the order of the file
-    CaseMesh mesh;                       // the same mesh, with the names of its parts
+    // One per material. Either all are linear or none is; body.materials holds the moduli at rest of both.
+    std::vector<mechanics::Law> laws;
+    CaseMesh mesh;  // the same mesh, with the names of its parts
 };
 
 // Reads "mesh", "element", "materials" and "regions". Throws InputError with file, key, what was found and what was

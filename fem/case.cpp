@@ -109,6 +109,10 @@ void read_loads(files::JsonReader& json, const CaseMesh& mesh, FemCase& out) {
             continue;
         }
         if (out.indenter) entry.fail("indenter", "a second indenter", "one");
+        if (is_large(out)) {
+            entry.fail("indenter", "an indenter on a material of law " + std::string(name_of(out.laws.front())),
+                       "parabolic_pressure or traction_Pa, or value_mm of a support (indenters need linear materials)");
+        }
         out.indenter = read_indenter(entry.object("indenter"), mesh);
     }
 }
@@ -125,6 +129,7 @@ FemCase parse_case(const files::Json& json, const std::string& file_name, const 
     const CaseMesh& mesh = body.mesh;
     out.problem = problem_of(std::move(body.body), body.element);
     out.materials = body.materials;
+    out.laws = body.laws;
     out.mesh_file = mesh.file;
     out.outer = mesh.outer;
     out.report = mesh.report;

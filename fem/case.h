@@ -36,11 +36,16 @@ struct FemCase {
     mechanics::MeshReport report;
     std::vector<std::string> warnings;  // of the mesh
     std::vector<std::string> materials;
+    std::vector<mechanics::Law> laws;  // one per material: all linear, or none
     std::vector<CaseSupport> supports;
     std::vector<mechanics::ParabolicPressure> pressures;
     std::vector<CaseTraction> tractions;
     std::optional<CaseIndenter> indenter;
 };
+
+inline bool is_large(const FemCase& model) {
+    return !model.laws.empty() && model.laws.front() != mechanics::Law::linear;
+}
 
 // Reads a case. Throws InputError with file, key, what was found and what was expected.
 FemCase read_case(const std::filesystem::path& path);

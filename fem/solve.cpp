@@ -171,6 +171,59 @@ void judge_linearity(const FemCase& model, const Loads& loads, FemResult& result
     result.linear = linear_range(result.linear_ratio);
 }
 
+// What the displacements and the loads give, whatever the law.
+void sum_up(const FemCase& model, const Loads& loads, FemResult& result) {
+    const Mesh& mesh = model.problem.mesh;
+    result.max_displacement_m = result.solution.u_m.colwise().norm().maxCoeff();
+    if (!result.solution.u_m.allFinite() || !std::isfinite(result.max_displacement_m) ||
+        !std::isfinite(result.solution.energy_J)) {
+        throw std::runtime_error(model.file + ": the displacement is not finite (loads of " +
+                                 files::short_number(loads.applied_N) + " N)");
+    }
+    sum_reactions(model, result);
+    result.applied_N = loads.applied_N;
+    result.partial = loads.partial;
+    if (loads.centre) result.centre_m = depression_at_m(mesh, *loads.centre, result.solution.u_m);
+    if (loads.applied_N > 0.0) {
+        result.skel_m = loads.force_N.cwiseProduct(result.solution.u_m).sum() / loads.applied_N;
+    }
+}
+
+LargeProblem large_problem(const FemCase& model) {
+    LargeProblem problem{model.problem.mesh, model.problem.element, {}, model.problem.supports};
+    problem.materials.reserve(model.problem.materials.size());
+    for (std::size_t cell = 0; cell < model.problem.materials.size(); ++cell) {
+        const auto region = static_cast<std::size_t>(problem.mesh.region(static_cast<Index>(cell)));
+        problem.materials.push_back(with_law(model.problem.materials[cell], model.laws[region]));
+    }
+    return problem;
+}
+
+FemResult solve_large_loads(const FemCase& model, const FemProgress& progress) {
+    FemResult result;
+    Loads loads{Matrix3Xd::Zero(3, model.problem.mesh.nodes_m.cols()), 0.0, false, std::nullopt};
+    add_pressures(model, loads);
+    add_tractions(model, loads);
+    progress("solve", 0, 0);
+    const LargeProblem problem = large_problem(model);
+    result.large = solve_large(problem, loads.force_N);
+    const LargeSolution& large = *result.large;
+    result.solution.u_m = large.u_m;
+    result.solution.reaction_N = large.reaction_N;
+    result.solution.energy_J = large.energy_J;
+    result.solution.solve_s = large.solve_s;
+    sum_up(model, loads, result);
+    result.fields = large_cell_fields(make_large_body(problem.mesh, problem.element, problem.materials), large.u_m);
+    result.von_mises_Pa = von_mises_of(result.fields);
+    result.max_strain = max_principal_strain(result.fields);
+    result.equations = large.equations;
+    result.residual = large.residual;
+    result.converged = large.status == LargeStatus::converged;
+    result.assemble_s = large.assemble_s;
+    result.factor_s = large.factor_s;
+    return result;
+}
+
 FemResult solve_loads(const FemCase& model, const Factored& factored, const FemProgress& progress) {
     const Mesh& mesh = model.problem.mesh;
     FemResult result;
@@ -188,23 +241,11 @@ FemResult solve_loads(const FemCase& model, const Factored& factored, const FemP
     }
     progress("solve", 0, 0);
     result.solution = solve(factored, loads.force_N);
-    result.max_displacement_m = result.solution.u_m.colwise().norm().maxCoeff();
-    if (!result.solution.u_m.allFinite() || !std::isfinite(result.max_displacement_m) ||
-        !std::isfinite(result.solution.energy_J)) {
-        throw std::runtime_error(model.file + ": the displacement is not finite (loads of " +
-                                 files::short_number(loads.applied_N) + " N)");
-    }
+    sum_up(model, loads, result);
     result.fields = cell_fields(mesh, model.problem.materials, result.solution.u_m);
     result.von_mises_Pa = von_mises_of(result.fields);
     blank_rigid_cells(model.problem, result);
     result.equations = factored.reduction.equations;
-    sum_reactions(model, result);
-    result.applied_N = loads.applied_N;
-    result.partial = loads.partial;
-    if (loads.centre) result.centre_m = depression_at_m(mesh, *loads.centre, result.solution.u_m);
-    if (loads.applied_N > 0.0) {
-        result.skel_m = loads.force_N.cwiseProduct(result.solution.u_m).sum() / loads.applied_N;
-    }
     result.residual = relative_residual(factored, loads.force_N, result.solution);
     result.converged =
         result.solution.backward_error < kMostBackwardError && (!result.contact || result.contact->settled);
@@ -217,6 +258,12 @@ FemResult solve_loads(const FemCase& model, const Factored& factored, const FemP
 }  // namespace
 
 FemResult solve_case(const FemCase& model, const FemProgress& progress) {
+    FemResult result;
+    if (is_large(model)) {
+        with_key(model.file, "loads", "loads that can be computed with",
+                 [&] { result = solve_large_loads(model, progress); });
+        return result;
+    }
     std::optional<Factored> factored;
     progress("factor", 0, 0);
     // all other faults of supports were refused when the case was read
@@ -224,7 +271,6 @@ FemResult solve_case(const FemCase& model, const FemProgress& progress) {
              "a rigid inclusion held completely, by fixing xyz where it meets the support, or a material at "
              "most 1e8 times as stiff as the softest, which the program lets deform",
              [&] { factored.emplace(factorise(model.problem, best_solver())); });
-    FemResult result;
     with_key(model.file, "loads", "loads that can be computed with",
              [&] { result = solve_loads(model, *factored, progress); });
     return result;

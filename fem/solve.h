@@ -3,6 +3,7 @@
 
 #include "fem/indenter.h"
 #include "files/vtu.h"
+#include "mechanics/large_strain.h"
 #include "mechanics/linear_range.h"
 
 namespace palpa::fem {
@@ -10,8 +11,10 @@ namespace palpa::fem {
 inline constexpr double kMostBackwardError = 1e-12;  // that a converged solution may have
 
 struct FemResult {
-    mechanics::Solution solution;
-    mechanics::CellFields fields;
+    mechanics::Solution solution;  // with laws for large strains: without work and backward error
+    // How equilibrium was found; absent for linear materials. Its displacements and reactions stand in `solution`.
+    std::optional<mechanics::LargeSolution> large;
+    mechanics::CellFields fields;  // large strains: Green-Lagrange strain, Cauchy stress
     Eigen::VectorXd von_mises_Pa;  // per cell; NaN in cells that move as rigid bodies
     int equations = 0;
     // Force of each support on the body, at the dofs that the support itself fixes. A displacement that two supports
@@ -31,10 +34,11 @@ struct FemResult {
 
     // Largest out-of-balance force over the largest nodal load or reaction; see also solution.backward_error.
     double residual = 0.0;
-    bool converged = false;  // backward error below kMostBackwardError, and the contact settled
+    // Backward error below kMostBackwardError, and the contact settled; large strains: the whole load was reached.
+    bool converged = false;
 
     double max_strain = 0.0;    // largest magnitude of a principal strain
-    double linear_ratio = 0.0;  // mechanics/linear_range.h
+    double linear_ratio = 0.0;  // mechanics/linear_range.h; 0 for large strains
     mechanics::LinearRange linear = mechanics::LinearRange::fine;
 
     double assemble_s = 0.0;

@@ -44,6 +44,18 @@ const char* element_name(mechanics::Element element) {
     return "";
 }
 
+// The law of the materials, or the laws, each once.
+std::string law_names(const fem::FemCase& model) {
+    std::string out;
+    for (std::size_t i = 0; i < model.laws.size(); ++i) {
+        if (std::find(model.laws.begin(), model.laws.begin() + static_cast<std::ptrdiff_t>(i), model.laws[i]) !=
+            model.laws.begin() + static_cast<std::ptrdiff_t>(i))
+            continue;
+        out += (out.empty() ? "" : ", ") + std::string(mechanics::name_of(model.laws[i]));
+    }
+    return out;
+}
+
 files::Json in_mm(const std::optional<double>& value_m) {
     return value_m ? files::Json(1e3 * *value_m) : files::Json(nullptr);
 }
@@ -68,7 +80,14 @@ std::vector<std::string> warnings_of(const fem::FemCase& model, const fem::FemRe
     if (result.contact) {
         for (std::string& warning : fem::contact_warnings(*result.contact)) out.push_back(std::move(warning));
     }
-    if (!(result.solution.backward_error < fem::kMostBackwardError))
+    if (result.large && !result.converged) {
+        out.push_back("stopped at " + files::short_number(100.0 * result.large->load_share) +
+                      " % of loads and prescribed displacements, to which all results belong: no equilibrium was found "
+                      "beyond it");
+    }
+    if (result.large && result.large->load_share > 0.0 && !result.large->stable)
+        out.push_back("the equilibrium is not stable: the body would buckle; a small load across shows where to");
+    if (!result.large && !(result.solution.backward_error < fem::kMostBackwardError))
         out.push_back("not converged: backward error " + files::short_number(result.solution.backward_error));
     if (!model.report.slivers.empty()) {
         out.push_back(std::to_string(model.report.slivers.size()) + " flat cells, the worst is cell " +
@@ -77,10 +96,21 @@ std::vector<std::string> warnings_of(const fem::FemCase& model, const fem::FemRe
     return out;
 }
 
+files::Json newton_json(const mechanics::LargeSolution& large) {
+    return {{"load_share", large.load_share},
+            {"stable", large.stable},
+            {"load_steps", large.load_steps},
+            {"iterations", large.iterations},
+            {"halvings", large.halvings},
+            {"repairs", large.repairs},
+            {"solver", mechanics::name_of(large.solver)}};
+}
+
 files::Json json_of(const fem::FemCase& model, const fem::FemResult& result) {
     files::Json json;
     json["case"] = model.file;
     json["element"] = element_name(model.problem.element);
+    json["law"] = law_names(model);
     json["nodes"] = model.problem.mesh.nodes_m.cols();
     json["elements"] = model.problem.mesh.cells.cols();
     json["dofs"] = result.equations;
@@ -116,6 +146,11 @@ files::Json json_of(const fem::FemCase& model, const fem::FemResult& result) {
     json["linear_range"] = {{"gauge", range_name(result.linear)}, {"ratio", result.linear_ratio}};
     json["residual"] = result.residual;
     json["backward_error"] = result.solution.backward_error;
+    if (result.large) {
+        json["linear_range"] = nullptr;
+        json["backward_error"] = nullptr;
+        json["newton"] = newton_json(*result.large);
+    }
     json["converged"] = result.converged;
     json["time_s"] = {{"assemble", result.assemble_s}, {"factor", result.factor_s}, {"solve", result.solution.solve_s}};
     if (result.contact) json["time_s"]["contact"] = result.contact->seconds;
@@ -141,9 +176,9 @@ void print_table(const fem::FemCase& model, const fem::FemResult& result) {
     const auto mm = [](const std::optional<double>& value_m) {
         return value_m ? six_digits(1e3 * *value_m) + " mm" : std::string("-");
     };
-    std::printf("%s: %s, %td nodes, %td elements, %d equations\n", files::printable(model.file).c_str(),
-                element_name(model.problem.element), model.problem.mesh.nodes_m.cols(), model.problem.mesh.cells.cols(),
-                result.equations);
+    std::printf("%s: %s, %s, %td nodes, %td elements, %d equations\n", files::printable(model.file).c_str(),
+                law_names(model).c_str(), element_name(model.problem.element), model.problem.mesh.nodes_m.cols(),
+                model.problem.mesh.cells.cols(), result.equations);
     row("applied", files::short_number(result.applied_N) + " N");
     row("centre displacement", mm(result.centre_m));
     row("d_skel (mean)", mm(result.skel_m));
@@ -161,11 +196,19 @@ void print_table(const fem::FemCase& model, const fem::FemResult& result) {
     row("energy", files::short_number(result.solution.energy_J) + " J");
     row("largest strain", files::short_number(100.0 * result.max_strain) + " %, von Mises " +
                               files::short_number(max_von_mises_Pa(result)) + " Pa");
-    row("linear range",
-        std::string(range_name(result.linear)) + ", " + files::short_number(100.0 * result.linear_ratio) + " %");
-    row("residual", files::short_number(result.residual) + ", backward error " +
-                        files::short_number(result.solution.backward_error) +
-                        (result.converged ? ", converged" : ", NOT converged"));
+    if (result.large) {
+        const mechanics::LargeSolution& large = *result.large;
+        row("Newton", std::to_string(large.iterations) + " iterations, " + std::to_string(large.load_steps) +
+                          " load steps, " + std::to_string(large.repairs) + " repairs, " +
+                          mechanics::name_of(large.solver) + (large.stable ? ", stable" : ", NOT stable"));
+        row("residual", files::short_number(result.residual) + (result.converged ? ", converged" : ", NOT converged"));
+    } else {
+        row("linear range",
+            std::string(range_name(result.linear)) + ", " + files::short_number(100.0 * result.linear_ratio) + " %");
+        row("residual", files::short_number(result.residual) + ", backward error " +
+                            files::short_number(result.solution.backward_error) +
+                            (result.converged ? ", converged" : ", NOT converged"));
+    }
     std::string times = "assemble " + files::short_number(result.assemble_s) + ", factor " +
                         files::short_number(result.factor_s) + ", solve " +
                         files::short_number(result.solution.solve_s);

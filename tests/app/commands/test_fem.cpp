@@ -62,6 +62,27 @@ TEST_CASE("fem solve: help, a table for people, JSON with every key that design 
           doctest::Approx(-json["contact"]["force_N"][2].get<double>()).epsilon(1e-9));
 }
 
+TEST_CASE("fem solve: every result names law and element; large strains report how equilibrium was found") {
+    const TemporaryFolder folder;
+    write_text_atomically(folder / "c.json", case_text(R"({"box": {"size_mm": [20, 20, 20], "elements": [2, 2, 2]}})",
+                                                       "hex8", kClamped, R"([{"traction_Pa": 2000, "face": "zmax"}])"));
+    const Json linear = parse_json(palpa_with("fem solve " + (folder / "c.json").string() + " --json").out, "stdout");
+    CHECK(linear["law"] == "linear");
+    CHECK(linear["element"] == "hex8");
+    CHECK_FALSE(linear.contains("newton"));
+    const std::string block = PALPA_SOURCE_DIR "/assets/cases/block-press.json";
+    const Called called = palpa_with("fem solve " + block + " --json");
+    CHECK_MESSAGE(called.status == 0, called.err);
+    const Json json = parse_json(called.out, "stdout");
+    CHECK(json["law"] == "neo-hookean-split");
+    CHECK(json["element"] == "hex8-bbar");
+    CHECK(json["reaction_N"][2]["force_N"][2].get<double>() == doctest::Approx(-27.17305).epsilon(2e-7));
+    CHECK(json["newton"]["load_share"] == 1.0);
+    CHECK(json["newton"]["stable"] == true);
+    CHECK(json["linear_range"].is_null());
+    CHECK(contains(palpa_with("fem solve " + block).out, "neo-hookean-split, hex8-bbar"));
+}
+
 TEST_CASE("fem solve: the VTU holds the field that the JSON sums up") {
     const TemporaryFolder folder;
     write_text_atomically(folder / "c.json", kIndented);
