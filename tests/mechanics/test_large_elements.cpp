@@ -33,7 +33,8 @@ Eigen::Matrix<double, 3, N> pushed(const Eigen::Matrix<double, 3, N>& x_m, doubl
 }
 
 template <int N>
-LargeCell<N> cell_of(const CellRest<N>& rest, const LargeMaterial& m, bool mean, const Eigen::Matrix<double, 3, N>& x) {
+LargeCell<N> tangent_of(const CellRest<N>& rest, const LargeMaterial& m, bool mean,
+                        const Eigen::Matrix<double, 3, N>& x) {
     LargeCell<N> out;
     large_cell<N>(rest, m, mean, x, Wanted::tangent, out);
     return out;
@@ -53,7 +54,7 @@ void check_slopes(const Eigen::Matrix<double, 3, N>& shape, bool mean) {
             const LargeMaterial material{law, 45e3, trial == 2 ? 2.25e8 : 430e3};  // the last has poisson 0.4999
             const Eigen::Matrix3d turn = Eigen::AngleAxisd(1.7, Eigen::Vector3d(1, 2, -1).normalized()).matrix();
             const Eigen::Matrix<double, 3, N> x = pushed<N>(turn * rest_m, 0.001, random);
-            const LargeCell<N> here = cell_of<N>(rest, material, mean, x);
+            const LargeCell<N> here = tangent_of<N>(rest, material, mean, x);
             REQUIRE(std::isfinite(here.energy_J));
             constexpr double h = 1e-7;
             const double f_size = here.gradient_N.cwiseAbs().maxCoeff();
@@ -63,8 +64,8 @@ void check_slopes(const Eigen::Matrix<double, 3, N>& shape, bool mean) {
                 Eigen::Matrix<double, 3, N> low = x;
                 high.data()[i] += h;
                 low.data()[i] -= h;
-                const LargeCell<N> up = cell_of<N>(rest, material, mean, high);
-                const LargeCell<N> down = cell_of<N>(rest, material, mean, low);
+                const LargeCell<N> up = tangent_of<N>(rest, material, mean, high);
+                const LargeCell<N> down = tangent_of<N>(rest, material, mean, low);
                 CHECK(std::abs((up.energy_J - down.energy_J) / (2.0 * h) - here.gradient_N.data()[i]) < 1e-6 * f_size);
                 const Eigen::Matrix<double, 3, N> slope = (up.gradient_N - down.gradient_N) / (2.0 * h);
                 CHECK((slope.reshaped() - here.tangent_N_per_m.col(i)).cwiseAbs().maxCoeff() < 1e-6 * K_size);
@@ -93,11 +94,11 @@ TEST_CASE("large cells: at rest the tangent is the linear stiffness, and a turne
         const auto same = [&](const auto& here, const auto& K) {
             CHECK((here.tangent_N_per_m - K).cwiseAbs().maxCoeff() < 1e-13 * K.cwiseAbs().maxCoeff());
         };
-        same(cell_of<8>(rest_of(x), m, true, x), hex8_bbar_stiffness_N_per_m(x, at_rest(m)));
-        same(cell_of<8>(rest_of(x), m, false, x), hex8_stiffness_N_per_m(x, at_rest(m)));
-        same(cell_of<4>(rest_of(kCorner), m, false, kCorner), tet4_stiffness_N_per_m(kCorner, at_rest(m)));
+        same(tangent_of<8>(rest_of(x), m, true, x), hex8_bbar_stiffness_N_per_m(x, at_rest(m)));
+        same(tangent_of<8>(rest_of(x), m, false, x), hex8_stiffness_N_per_m(x, at_rest(m)));
+        same(tangent_of<4>(rest_of(kCorner), m, false, kCorner), tet4_stiffness_N_per_m(kCorner, at_rest(m)));
         for (const bool mean : {true, false}) {
-            const LargeCell<8> turned = cell_of<8>(rest_of(x), m, mean, turn * x);
+            const LargeCell<8> turned = tangent_of<8>(rest_of(x), m, mean, turn * x);
             CHECK(turned.gradient_N.cwiseAbs().maxCoeff() < 1e-12 * 430e3 * 1e-4);
             CHECK(turned.energy_J < 1e-12 * 430e3 * 1e-6);
         }
@@ -110,8 +111,8 @@ TEST_CASE("large cells: with the mean volume a bent cell near poisson 0.5 stays 
     for (const Law law : kEvery) {
         CAPTURE(name_of(law));
         const LargeMaterial m{law, 45e3, 2.25e8};
-        CHECK(cell_of<8>(rest_of(kCube), m, false, bent).energy_J >
-              100.0 * cell_of<8>(rest_of(kCube), m, true, bent).energy_J);
+        CHECK(tangent_of<8>(rest_of(kCube), m, false, bent).energy_J >
+              100.0 * tangent_of<8>(rest_of(kCube), m, true, bent).energy_J);
     }
 }
 
@@ -132,7 +133,7 @@ TEST_CASE("large cells: inside out, the energy is infinite or finite as the law 
 TEST_CASE("large cells: the repaired tangent has no negative eigenvalue and keeps the others") {
     Hex pressed = kCube;
     pressed.row(2) *= 0.5;
-    LargeCell<8> cell = cell_of<8>(rest_of(kCube), {Law::neo_hookean, 45e3, 430e3}, true, pressed);
+    LargeCell<8> cell = tangent_of<8>(rest_of(kCube), {Law::neo_hookean, 45e3, 430e3}, true, pressed);
     const Eigen::VectorXd before = Eigen::SelfAdjointEigenSolver<HexMatrix>(cell.tangent_N_per_m).eigenvalues();
     make_positive<8>(cell.tangent_N_per_m);
     const Eigen::VectorXd after = Eigen::SelfAdjointEigenSolver<HexMatrix>(cell.tangent_N_per_m).eigenvalues();
@@ -150,7 +151,7 @@ TEST_CASE("large cells: strain and stress of a stretched brick") {
         const Eigen::Matrix3d stress = cauchy_stress_Pa(m, Eigen::Vector3d(1, 1, 1.2).asDiagonal().toDenseMatrix());
         CHECK(fields.stress_Pa(2) == doctest::Approx(stress(2, 2)));
         // the corners' forces on the top are the stress times the area
-        const LargeCell<8> cell = cell_of<8>(rest_of(kCube), m, mean, stretched);
+        const LargeCell<8> cell = tangent_of<8>(rest_of(kCube), m, mean, stretched);
         CHECK(cell.gradient_N.rightCols<4>().row(2).sum() == doctest::Approx(1e-4 * stress(2, 2)));
     }
 }

@@ -14,7 +14,7 @@ namespace {
 
 constexpr LargeMaterial kSilicone{Law::neo_hookean, 45e3, 430e3};
 
-LargeProblem block(const Box& box, Element element, const LargeMaterial& material) {
+LargeProblem block_of(const Box& box, Element element, const LargeMaterial& material) {
     LargeProblem problem;
     problem.mesh = hex_box(box);
     if (element == Element::tet4) problem.mesh = split_to_tets(problem.mesh);
@@ -29,7 +29,7 @@ std::vector<int> side_nodes(const Mesh& mesh, Side side) {
 
 Eigen::Matrix3Xd no_load(const LargeProblem& problem) { return Eigen::Matrix3Xd::Zero(3, problem.mesh.nodes_m.cols()); }
 
-double reaction_N(const LargeProblem& problem, const LargeSolution& solution, Side side) {
+double side_force_N(const LargeProblem& problem, const LargeSolution& solution, Side side) {
     double sum = 0.0;
     for (const int node : side_nodes(problem.mesh, side)) sum += solution.reaction_N(axis_of(side), node);
     return sum;
@@ -37,7 +37,7 @@ double reaction_N(const LargeProblem& problem, const LargeSolution& solution, Si
 
 // The bonded block: its top comes down by a share of its height.
 LargeProblem pressed_block(int n, Element element, const LargeMaterial& material, double share = 0.3) {
-    LargeProblem problem = block({{0.02, 0.02, 0.02}, {n, n, n}, std::nullopt}, element, material);
+    LargeProblem problem = block_of({{0.02, 0.02, 0.02}, {n, n, n}, std::nullopt}, element, material);
     fix(side_nodes(problem.mesh, Side::zmin), "xyz", 0.0, problem.supports);
     fix(side_nodes(problem.mesh, Side::zmax), "xy", 0.0, problem.supports);
     fix(side_nodes(problem.mesh, Side::zmax), "z", -0.02 * share, problem.supports);
@@ -49,7 +49,7 @@ double pressed_N(int n, Element element, const LargeMaterial& material) {
     const LargeSolution solution = solve_large(problem, no_load(problem));
     REQUIRE(solution.status == LargeStatus::converged);
     CHECK(solution.residual < 1e-9);
-    return reaction_N(problem, solution, Side::zmax);
+    return side_force_N(problem, solution, Side::zmax);
 }
 
 }  // namespace
@@ -73,7 +73,7 @@ TEST_CASE("small loads: every law and element gives the linear answer") {
         for (const Law law : {Law::neo_hookean, Law::neo_hookean_split, Law::stable_neo_hookean, Law::corotational}) {
             CAPTURE(name_of(law));
             CAPTURE(static_cast<int>(element));
-            LargeProblem problem = block({{0.02, 0.02, 0.01}, {3, 3, 2}, std::nullopt}, element, kSilicone);
+            LargeProblem problem = block_of({{0.02, 0.02, 0.01}, {3, 3, 2}, std::nullopt}, element, kSilicone);
             for (LargeMaterial& m : problem.materials) m.law = law;
             fix(side_nodes(problem.mesh, Side::zmin), "xyz", 0.0, problem.supports);
             const Faces top = faces_on(problem.mesh, boundary_faces(problem.mesh), Side::zmax);
@@ -90,7 +90,7 @@ TEST_CASE("small loads: every law and element gives the linear answer") {
 }
 
 TEST_CASE("a body that its supports turn by a right angle has no force") {
-    LargeProblem problem = block({{0.02, 0.02, 0.02}, {2, 2, 2}, std::nullopt}, Element::hex8_bbar, kSilicone);
+    LargeProblem problem = block_of({{0.02, 0.02, 0.02}, {2, 2, 2}, std::nullopt}, Element::hex8_bbar, kSilicone);
     const Mesh& mesh = problem.mesh;
     for (const int node : side_nodes(mesh, Side::zmin)) {
         const Eigen::Vector3d x = mesh.nodes_m.col(node);
@@ -107,18 +107,18 @@ TEST_CASE("a body that its supports turn by a right angle has no force") {
 // Euler: a column held at its foot leans from P = pi^2 E I / (4 L^2) on. A small force across decides the direction.
 TEST_CASE(
     "buckling strip: straight is reported as unstable, and a small load across finds the bent strip, which is stable") {
-    LargeProblem problem = block({{0.1, 0.02, 0.004}, {40, 2, 2}, std::nullopt}, Element::hex8_bbar, kSilicone);
+    LargeProblem problem = block_of({{0.1, 0.02, 0.004}, {40, 2, 2}, std::nullopt}, Element::hex8_bbar, kSilicone);
     fix(side_nodes(problem.mesh, Side::xmin), "xyz", 0.0, problem.supports);
     const Faces end = faces_on(problem.mesh, boundary_faces(problem.mesh), Side::xmax);
     const double E_Pa = at_rest(kSilicone).young_Pa;
     const double inertia_m4 = 0.02 * std::pow(0.004, 3) / 12.0;
     const double euler_N = std::pow(std::acos(-1.0), 2) * E_Pa * inertia_m4 / (4.0 * 0.1 * 0.1);
-    const auto pushed = [&](double share, double across_Pa) {
+    const auto loaded = [&](double share, double across_Pa) {
         return solve_large(problem, traction_load(problem.mesh, end, {-share * euler_N / 8e-5, 0.0, across_Pa}));
     };
-    CHECK(pushed(0.8, 0.0).stable);
-    const LargeSolution straight = pushed(1.3, 0.0);
-    const LargeSolution bent = pushed(1.3, 0.01);
+    CHECK(loaded(0.8, 0.0).stable);
+    const LargeSolution straight = loaded(1.3, 0.0);
+    const LargeSolution bent = loaded(1.3, 0.01);
     REQUIRE(straight.status == LargeStatus::converged);
     REQUIRE(bent.status == LargeStatus::converged);
     CHECK_FALSE(straight.stable);
