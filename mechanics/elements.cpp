@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include "mechanics/element_products.h"
+
 namespace palpa::mechanics {
 namespace {
 
@@ -36,18 +38,6 @@ const std::array<Hex, 8>& reference_gradients() {
         return made;
     }();
     return all;
-}
-
-// Computes the stiffness without the mean-dilatation term from M_ab = sum_g w g_a g_b^T (3 x 3 blocks).
-template <class Matrix>
-void stiffness_from_products(const Matrix& M, double mu, double lambda, Matrix& K) {
-    const int n = static_cast<int>(M.rows()) / 3;
-    for (int b = 0; b < n; ++b) {
-        for (int a = 0; a < n; ++a) {
-            const Matrix3d m = M.template block<3, 3>(3 * a, 3 * b);
-            K.template block<3, 3>(3 * a, 3 * b) = mu * (m.trace() * Matrix3d::Identity() + m.transpose()) + lambda * m;
-        }
-    }
 }
 
 // Sums over the eight Gauss points: the products of gradients, the mean gradient and the volume.

@@ -1,0 +1,89 @@
+#include <cmath>
+#include <doctest/doctest.h>
+
+#include "mechanics/beam.h"
+#include "mechanics/error.h"
+#include "tests/mechanics/paper_beams.h"
+
+using namespace palpa::mechanics;
+using namespace palpa::test;
+
+namespace {
+
+double tip_mm(PaperBeam kind, int along, bool with_shear) {
+    const Voxels voxels = paper_beam(kind, along);
+    return 1e4 * beam_tip(beam_pieces(voxels, kHardAndSoft, 0, 2, 0.0, 0.1), true, with_shear).m_per_N;  // 10 N
+}
+
+}  // namespace
+
+TEST_CASE("beam: Euler-Bernoulli tips of the five beams, closed forms") {
+    CHECK(tip_mm(PaperBeam::homogeneous, 100, false) == doctest::Approx(0.481927711).epsilon(1e-8));
+    CHECK(tip_mm(PaperBeam::hshsh, 100, false) == doctest::Approx(1.016289).epsilon(1e-6));
+    CHECK(tip_mm(PaperBeam::shshs, 100, false) == doctest::Approx(1.465639).epsilon(1e-6));
+    CHECK(tip_mm(PaperBeam::hsh, 90, false) == doctest::Approx(0.495868).epsilon(1e-6));
+    CHECK(tip_mm(PaperBeam::shs, 90, false) == doctest::Approx(1.791045).epsilon(1e-6));
+}
+
+TEST_CASE("beam: Timoshenko tips of the five beams, shear by energy") {
+    CHECK(tip_mm(PaperBeam::homogeneous, 100, true) == doctest::Approx(0.485629).epsilon(1e-6));
+    CHECK(tip_mm(PaperBeam::hshsh, 100, true) == doctest::Approx(1.025201).epsilon(1e-6));
+    CHECK(tip_mm(PaperBeam::shshs, 100, true) == doctest::Approx(1.477156).epsilon(1e-6));
+    CHECK(tip_mm(PaperBeam::hsh, 90, true) == doctest::Approx(0.506614).epsilon(1e-6));
+    CHECK(tip_mm(PaperBeam::shs, 90, true) == doctest::Approx(1.799366).epsilon(1e-6));
+    const auto sandwich = beam_pieces(paper_beam(PaperBeam::hsh, 90), kHardAndSoft, 0, 2, 0.0, 0.1);
+    // shear stiffness: the integral summed over 30,000 strips by another program
+    CHECK(sandwich[0].section.shear_N == doctest::Approx(93059.8375).epsilon(1e-7));
+    CHECK(sandwich[0].section.bending_N_m2 == doctest::Approx(6.722222).epsilon(1e-6));
+}
+
+TEST_CASE("beam: a bilayer of 6 mm hard and 4 mm soft has its neutral axis at 3.692042 mm") {
+    const std::vector<SectionRow> rows{{0.0, 0.006, 8.3e9 * 0.01, 3e9 * 0.01}, {0.006, 0.01, 2e9 * 0.01, 0.7e9 * 0.01}};
+    const Section section = section_of(rows);
+    CHECK(section.neutral_m == doctest::Approx(3.692042e-3).epsilon(1e-6));
+    CHECK(section.bending_N_m2 == doctest::Approx(3.323850).epsilon(1e-6));
+}
+
+TEST_CASE("beam: a homogeneous beam that is cut up bends alike, to 1e-12; so does one along another axis") {
+    const std::vector<Material> same{kHardAndSoft[0], kHardAndSoft[0]};
+    const Voxels whole = paper_beam(PaperBeam::homogeneous, 50), cut = paper_beam(PaperBeam::hshsh, 50);
+    const BeamTip one = beam_tip(beam_pieces(whole, same, 0, 2, 0.0, 0.1), true, true);
+    const auto pieces = beam_pieces(cut, same, 0, 2, 0.0, 0.1);
+    CHECK(pieces.size() == 5);
+    const BeamTip five = beam_tip(pieces, true, true);
+    CHECK(std::abs(five.m_per_N / one.m_per_N - 1.0) < 1e-12);
+    CHECK(std::abs(five.rad_per_N / one.rad_per_N - 1.0) < 1e-12);
+    CHECK(beam_tip(beam_pieces(cut, same, 0, 1, 0.0, 0.1), false, true).m_per_N ==
+          doctest::Approx(one.m_per_N).epsilon(1e-12));
+
+    Voxels upright = empty_voxels({5, 5, 50}, {0.002, {}});
+    EditHistory history;
+    apply({EditKind::add, {EverywhereRegion{}}, 0, {}}, upright, history);
+    for (const int force_axis : {0, 1}) {
+        CHECK(beam_tip(beam_pieces(upright, same, 2, force_axis, 0.0, 0.1), true, true).m_per_N ==
+              doctest::Approx(one.m_per_N).epsilon(1e-12));
+    }
+}
+
+TEST_CASE("beam: clamped at the other end, an uneven beam is another one") {
+    const std::vector<Material> soft_tip = kHardAndSoft;
+    Voxels voxels = paper_beam(PaperBeam::homogeneous, 50);
+    EditHistory history;
+    apply({EditKind::permute, {BoxRegion{{0.05, -1, -1}, {1, 1, 1}}}, 1, {}}, voxels, history);
+    const auto pieces = beam_pieces(voxels, soft_tip, 0, 2, 0.0, 0.1);
+    const double stiff_root = beam_tip(pieces, true, false).m_per_N, soft_root = beam_tip(pieces, false, false).m_per_N;
+    const double I = 1e-8 / 12.0, eighth = 1e-3 / 8.0;
+    CHECK(stiff_root == doctest::Approx((7 * eighth / 8.3e9 + eighth / 2e9) / (3.0 * I)).epsilon(1e-12));
+    CHECK(soft_root == doctest::Approx((7 * eighth / 2e9 + eighth / 8.3e9) / (3.0 * I)).epsilon(1e-12));
+}
+
+TEST_CASE("beam: gaps, equal axes and planes outside are refused") {
+    Voxels voxels = paper_beam(PaperBeam::homogeneous, 50);
+    CHECK_THROWS_AS(beam_pieces(voxels, kHardAndSoft, 0, 0, 0.0, 0.1), MeshError);
+    CHECK_THROWS_AS(beam_pieces(voxels, kHardAndSoft, 0, 2, 0.0, 0.11), MeshError);
+    CHECK_THROWS_AS(beam_pieces(voxels, kHardAndSoft, 0, 2, 0.05, 0.05), MeshError);
+    EditHistory history;
+    apply({EditKind::remove, {BoxRegion{{0.04, -1, -1}, {0.05, 1, 1}}}, 0, {}}, voxels, history);
+    CHECK_THROWS_WITH_AS(beam_pieces(voxels, kHardAndSoft, 0, 2, 0.0, 0.1), doctest::Contains("gap"), MeshError);
+    CHECK(beam_pieces(voxels, kHardAndSoft, 0, 2, 0.05, 0.1).size() == 1);
+}
