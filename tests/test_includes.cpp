@@ -23,6 +23,7 @@ const std::map<std::string, std::set<std::string>> kMayInclude{
     {"stiffnessmaps/generate", {"stiffnessmaps", "files", "mechanics"}},
     {"mechanics", {}},
     {"avatar", {}},
+    {"parts", {"files", "mechanics"}},
     {"scene",
      {"files", "platform/sample.h", "platform/timeline.h", "calibration", "stiffnessmaps", "mechanics", "avatar"}},
     {"render", {"platform"}},
@@ -55,7 +56,7 @@ const std::map<std::string, std::set<std::string>> kMayInclude{
       "study", "session"}},
     {"app/commands",
      {"app", "files", "platform", "calibration", "stiffnessmaps", "mechanics", "avatar", "scene", "render", "devices",
-      "study", "session", "tactile", "fem", "figures", "accuracy", "desk"}},
+      "study", "session", "tactile", "fem", "parts", "figures", "accuracy", "desk"}},
     {"app/web", {"app", "files", "platform", "calibration", "scene", "render", "study", "session"}},
 };
 

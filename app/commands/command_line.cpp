@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "app/commands/option_checks.h"
+#include "app/commands/part.h"
 #include "files/input_error.h"
 #include "mechanics/error.h"
 
@@ -104,6 +105,7 @@ int run_command_line(int argc, char** argv) {
     add_calibrate(app);
     add_fem(app);
     add_study(app);
+    add_part(app);
     add_serve(app);
     add_tactile(app);
     add_bench(app);

@@ -23,10 +23,28 @@ const std::string kTrace = kAssets + "traces/raster.tsv";
 }  // namespace
 
 TEST_CASE("command line: help and version exist for every command") {
-    for (const char* command :
-         {"", "run", "explain", "devices", "maps", "maps info", "maps sample", "maps import", "maps generate",
-          "bench trace", "bench pens", "bench speed", "bench accuracy", "calibrate", "calibrate record",
-          "calibrate fit", "calibrate check", "calibrate compare", "bench accuracy mechanics"}) {
+    for (const char* command : {"",
+                                "run",
+                                "explain",
+                                "devices",
+                                "maps",
+                                "maps info",
+                                "maps sample",
+                                "maps import",
+                                "maps generate",
+                                "part",
+                                "part info",
+                                "part stiffness",
+                                "bench trace",
+                                "bench pens",
+                                "bench speed",
+                                "bench accuracy",
+                                "calibrate",
+                                "calibrate record",
+                                "calibrate fit",
+                                "calibrate check",
+                                "calibrate compare",
+                                "bench accuracy mechanics"}) {
         CAPTURE(command);
         const Called help = palpa_with(std::string(command) + " --help");
         CHECK(help.status == 0);

@@ -1,0 +1,51 @@
+#pragma once
+// The stiffness of a part under one of its loads, by several methods.
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "parts/part_file.h"
+
+namespace palpa::parts {
+
+// euler_bernoulli, timoshenko  the part as a clamped beam along `axis` (mechanics/beam.h)
+// voxels                       finite cells and conjugate gradients with multigrid (mechanics/voxel_solve.h)
+// factorised                   the same cells by one factorisation: the check, at a gigabyte for 50,000 cells
+enum class Method { euler_bernoulli, timoshenko, voxels, factorised };
+const char* name_of(Method method);
+
+struct StiffnessOptions {
+    std::vector<Method> methods;
+    std::optional<double> cell_m;  // absent: the part's
+    double energy_error = 1e-3;    // of `voxels`
+};
+
+struct MethodResult {
+    Method method = Method::voxels;
+    std::string why_not;    // why the answer should not be trusted, or why there is none; "" if the method applies
+    bool answered = false;  // the numbers below are there
+    double displacement_m = 0.0;  // along the load, its mean over the loaded surface, under the load's force
+    double stiffness_N_per_m = 0.0;
+    std::optional<double> error;  // relative, against `against`
+    std::string against;
+    std::int64_t cells = 0;
+    int iterations = 0;
+    double energy_error = 0.0;
+    double max_strain = 0.0;  // of cells that are at least half full
+    bool converged = true;
+    double time_s = 0.0;
+    std::size_t memory_bytes = 0;
+};
+
+// Answers with every method in turn. Throws InputError if the load has no surface under it, if nothing is held, and for a
+// cell that is no whole number of voxels.
+std::vector<MethodResult> stiffness_of(const Part& part, const PartLoad& load, const StiffnessOptions& options);
+
+// A beam's chord beyond which its linear answer is not taken to apply: at 10 degrees it is some 3 % off.
+inline constexpr double kMostChord_deg = 10.0;
+// The least length over height of a beam; ours.
+inline constexpr double kLeastSlenderness = 5.0;
+
+}  // namespace palpa::parts

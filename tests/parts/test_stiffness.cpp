@@ -1,0 +1,108 @@
+#include <cmath>
+#include <doctest/doctest.h>
+
+#include "parts/stiffness.h"
+#include "tests/error_message.h"
+#include "tests/parts/small_part.h"
+
+using namespace palpa;
+using namespace palpa::files;
+using namespace palpa::parts;
+using namespace palpa::test;
+
+namespace {
+
+const std::vector<Method> kAll{Method::euler_bernoulli, Method::timoshenko, Method::voxels, Method::factorised};
+
+// A neck of 40 x 6 x 4 mm with bands of 4 mm, voxels of 0.1 mm.
+Json neck(double cell_mm) {
+    Json json = small_part();
+    json["voxel_mm"] = 0.1;
+    json["size_mm"] = {40, 6, 4};
+    json["cell_mm"] = cell_mm;
+    json["shape"] = {
+        {{"add", {{"all", true}}}, {"material", "hard"}},
+        {{"permute", {{"bands", {{"axis", "x"}, {"period_mm", 8}, {"width_mm", 4}}}}}, {"material", "soft"}}};
+    json["loads"].erase("patch");
+    return json;
+}
+
+double neck_mm(double cell_mm) {
+    const Part part = parsed(neck(cell_mm));
+    return 1e3 * stiffness_of(part, part.loads[0], {{Method::voxels}, {}, 1e-4}).front().displacement_m;
+}
+
+}  // namespace
+
+TEST_CASE("part stiffness: a slender beam, all methods agree and say against what they were compared") {
+    Json json = small_part();
+    json["size_mm"] = {20, 2, 2};
+    json["shape"][1]["permute"]["box"] = {{"min_mm", {10, 0, 0}}, {"max_mm", {20, 2, 2}}};
+    const Part part = parsed(json);
+    const auto results = stiffness_of(part, part.loads[0], {kAll, {}, 1e-10});
+    REQUIRE(results.size() == 4);
+    for (const MethodResult& result : results) {
+        CAPTURE(name_of(result.method));
+        CAPTURE(result.why_not);
+        CHECK(result.answered);
+        CHECK(result.why_not.empty());
+        CHECK(result.converged);
+        CHECK(result.stiffness_N_per_m * result.displacement_m == doctest::Approx(1.0));
+        CHECK(result.error.has_value() == (result.method != Method::factorised));
+        if (result.error) CHECK(std::abs(*result.error) < (result.method == Method::voxels ? 1e-6 : 0.03));
+        if (result.error) CHECK(result.against == "factorised");
+    }
+    CHECK(results[2].cells == 40 * 4 * 4);
+}
+
+TEST_CASE("part stiffness: a force over a patch bends less than at the tip, a skew force only by its part across") {
+    const Part part = parsed(small_part());
+    const auto tip = stiffness_of(part, part.loads[0], {kAll, {}, 1e-8});
+    const auto patch = stiffness_of(part, part.loads[1], {kAll, {}, 1e-8});
+    for (std::size_t i = 0; i < tip.size(); ++i) CHECK(patch[i].displacement_m < tip[i].displacement_m);
+    PartLoad skew = part.loads[0];
+    skew.direction = {0.6, 0.0, -0.8};
+    const auto beams = stiffness_of(part, skew, {{Method::timoshenko}, {}, 1e-8});
+    CHECK(beams[0].displacement_m == doctest::Approx(0.64 * tip[1].displacement_m));
+}
+
+TEST_CASE("part stiffness: each method says when it does not apply") {
+    Json json = small_part();
+    json["size_mm"] = {6, 2, 2};
+    json["shape"].erase(1);
+    json["loads"].erase("patch");
+    Part part = parsed(json);
+    CHECK(test::contains(stiffness_of(part, part.loads[0], {kAll, {}, 1e-3})[0].why_not, "length over height is 3"));
+    part.loads[0].force_N = 1e4;
+    const auto bent = stiffness_of(part, part.loads[0], {kAll, {}, 1e-3});
+    CHECK(test::contains(bent[1].why_not, "degrees"));
+    CHECK(test::contains(bent[2].why_not, "strains"));
+    part.axis.reset();
+    CHECK_FALSE(stiffness_of(part, part.loads[0], {kAll, {}, 1e-3})[0].answered);
+    part.axis = 2;
+    CHECK(test::contains(stiffness_of(part, part.loads[0], {kAll, {}, 1e-3})[0].why_not, "along the axis"));
+}
+
+TEST_CASE("part stiffness: cells of 0.7 to 1 mm that fit neither bands nor section, within 3 % of cells of 0.4 mm") {
+    const double fine_mm = neck_mm(0.4);
+    for (const double cell_mm : {0.7, 0.9, 1.0}) {
+        CAPTURE(cell_mm);
+        CHECK(neck_mm(cell_mm) == doctest::Approx(fine_mm).epsilon(0.03));
+    }
+}
+
+TEST_CASE("part stiffness: a force on air, nothing held and cells of half a voxel are refused") {
+    const Part part = parsed(small_part());
+    const auto message = [](const Part& changed, const StiffnessOptions& options) {
+        return message_of([&] { stiffness_of(changed, changed.loads.back(), options); });
+    };
+    Part air = part;
+    air.loads[1].at_m = {8e-3, 1e-3, 9e-3};
+    CHECK(test::contains(message(air, {{Method::voxels}, {}, 1e-3}), "loads.patch.at_mm"));
+    Part loose = part;
+    loose.supports[0].axes = 1;
+    CHECK(test::contains(message(loose, {{Method::voxels}, {}, 1e-3}), "moves along"));
+    loose.supports.clear();
+    CHECK(test::contains(message(loose, {{Method::voxels}, {}, 1e-3}), "supports"));
+    CHECK(test::contains(message(part, {{Method::voxels}, 2.5e-4, 1e-3}), "a whole number of voxels"));
+}
