@@ -56,3 +56,19 @@ TEST_CASE("distributions: binomial probabilities by hand, and no exception where
     for (int k = 0; k <= 1000; ++k) sum += binomial_probability(k, 1000, 0.3);
     CHECK(sum == doctest::Approx(1.0).epsilon(1e-12));
 }
+
+TEST_CASE("distributions: chi-squared and F where they have a closed form or belong to t") {
+    for (const double x : {0.1, 1.0, 3.841458820694124, 20.0}) {
+        CAPTURE(x);
+        CHECK(chi_squared_p(x, 1.0) == doctest::Approx(std::erfc(std::sqrt(0.5 * x))).epsilon(1e-12));
+        CHECK(chi_squared_p(x, 2.0) == doctest::Approx(std::exp(-0.5 * x)).epsilon(1e-12));
+        CHECK(f_distribution_p(x, 1.0, 7.5) == doctest::Approx(student_p(std::sqrt(x), 7.5)).epsilon(1e-12));
+        CHECK(f_distribution_p(x, 2.0, 5.0) == doctest::Approx(std::pow(1.0 + 0.4 * x, -2.5)).epsilon(1e-12));
+        CHECK(f_distribution_p(x, 3.0, std::numeric_limits<double>::infinity()) == chi_squared_p(3.0 * x, 3.0));
+    }
+    CHECK(chi_squared_p(0.0, 1.0) == 1.0);
+    CHECK(f_distribution_p(-1.0, 1.0, 2.0) == 1.0);
+    CHECK(std::isnan(chi_squared_p(std::nan(""), 1.0)));
+    CHECK(std::isnan(f_distribution_p(std::nan(""), 1.0, 2.0)));
+    CHECK(f_distribution_p(std::numeric_limits<double>::infinity(), 1.0, 2.0) == 0.0);
+}
