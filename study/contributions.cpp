@@ -99,6 +99,7 @@ Observations only_group(const Observations& seen, int group) {
     std::erase_if(out.trials, other);
     std::erase_if(out.choices, other);
     std::erase_if(out.stiffer, other);
+    std::erase_if(out.judged, other);
     std::erase_if(out.answers, other);
     std::set<std::string> codes;
     for (std::size_t i = 0; i < seen.participants.size(); ++i) {

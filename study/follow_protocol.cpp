@@ -38,6 +38,7 @@ void follow_protocol(const Protocol& protocol, Observations& seen) {
     move_conditions(moved, seen.trials);
     move_conditions(moved, seen.choices);
     move_conditions(moved, seen.stiffer);
+    move_conditions(moved, seen.judged);
     seen.primary = protocol.primary;
     const std::vector<int> moved_groups = reorder(ids_of(protocol.groups), seen.groups);
     for (int& group : seen.group_of) {

@@ -10,8 +10,6 @@
 #include <string>
 #include <vector>
 
-#include "study/statistics.h"
-
 namespace palpa::study {
 
 inline constexpr double kUnmarked = -std::numeric_limits<double>::infinity();  // below every rating

@@ -91,7 +91,7 @@ Cholesky eliminate_people(const Crossed& h) {
     return Cholesky(s);
 }
 
-Effects solve(const Crossed& h, const Cholesky& s, const Effects& right) {
+Effects solve_crossed(const Crossed& h, const Cholesky& s, const Effects& right) {
     Effects x{right.u, right.v};
     for (std::size_t i = 0; i < x.u.size(); ++i) {
         for (std::size_t k = 0; k < x.v.size(); ++k) x.v[k] -= h.c(i, k) * right.u[i] / h.d_p[i];
@@ -118,7 +118,7 @@ double log_likelihood_at(Laplace& laplace, const Parameters& p, Crossed& h) {
     double here = joint(data, p, laplace.at);
     for (int step = 0; step < kMostSteps; ++step) {
         system_at(data, p, laplace.at, h, gradient);
-        const Effects direction = solve(h, eliminate_people(h), gradient);
+        const Effects direction = solve_crossed(h, eliminate_people(h), gradient);
         double slope = 0.0;
         for (std::size_t i = 0; i < gradient.u.size(); ++i) slope += gradient.u[i] * direction.u[i];
         for (std::size_t i = 0; i < gradient.v.size(); ++i) slope += gradient.v[i] * direction.v[i];
@@ -270,7 +270,7 @@ std::vector<std::vector<double>> covariance_given(MixedSearch& search, const Mix
         across[c].v[index(cell.nodule)] += p.s_n * w;
     }
     for (std::size_t a = 0; a < n; ++a) {
-        const Effects x = solve(search.work, factor, across[a]);
+        const Effects x = solve_crossed(search.work, factor, across[a]);
         for (std::size_t b = 0; b < n; ++b) {
             information(b, a) -= std::inner_product(x.u.begin(), x.u.end(), across[b].u.begin(), 0.0) +
                                  std::inner_product(x.v.begin(), x.v.end(), across[b].v.begin(), 0.0);
@@ -318,7 +318,7 @@ MixedFit fit_mixed_logistic(const MixedData& data, const std::vector<int>& same)
     constexpr double kGreatestSpread = 20.0;  // of log odds: beyond, every nodule is found by all or by none
     const bool converged = climb_to_maximum(search, x, fit.log_likelihood, at);
     const double s_p = std::abs(x[x.size() - 2]), s_n = std::abs(x.back());
-    if (!converged || s_p > kGreatestSpread || s_n > kGreatestSpread) {
+    if (!converged || !std::isfinite(fit.log_likelihood) || s_p > kGreatestSpread || s_n > kGreatestSpread) {
         fit.status = "cannot be computed, because the model does not converge";
         if (!(s_p < kGreatestSpread && s_n < kGreatestSpread))
             fit.status += ": some people or nodules differ without bound";

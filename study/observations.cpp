@@ -9,6 +9,7 @@
 #include "files/table.h"
 #include "files/text.h"
 #include "study/count.h"
+#include "study/marks_table.h"
 #include "study/name_index.h"
 #include "study/names.h"
 #include "study/stiffer_counts.h"
@@ -179,9 +180,10 @@ int index_of(std::string_view name, std::vector<std::string>& names) {
     return static_cast<int>(at);
 }
 
-Observations read_counts(const std::filesystem::path& tsv) {
+Observations read_counts(const std::filesystem::path& tsv, const RatingScale& scale) {
     files::Table table = files::read_tsv(tsv);
     if (table.has_column("stiffer")) return read_stiffer_counts(table);
+    if (table.has_column("kind")) return read_marks_table(table, scale);
     Observations out;
     for (const std::string& column : table.columns()) {
         constexpr std::array<std::string_view, 9> kKnown{"condition", "tp",          "fn",      "fp",   "n",
@@ -190,7 +192,8 @@ Observations read_counts(const std::filesystem::path& tsv) {
             throw files::bad_input(
                 tsv.string(), "line 1", "the column " + files::shown(column),
                 "condition tp fn fp [n] [nodule] [participant] [group], or condition correct n [comparison] "
-                "[participant] [group], or condition reference_kPa comparison_kPa stiffer n [participant]");
+                "[participant] [group], or condition reference_kPa comparison_kPa stiffer n [participant], or "
+                "condition participant case kind lesion rating [group]");
         }
     }
     if (table.has_column("correct")) {

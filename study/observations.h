@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "study/exclusions.h"
+#include "study/judged_cases.h"
 #include "study/planned.h"
 #include "study/primary.h"
 #include "study/staircase_history.h"
@@ -78,6 +79,7 @@ struct Observations {
     std::vector<Observation> rows;
     std::vector<TrialFigures> trials;
     std::vector<Choices> choices;
+    std::vector<JudgedCase> judged;       // the same hits and false marks with their ratings, by case
     std::vector<StifferAnswers> stiffer;  // the same choices, for psychometric functions
     std::vector<Answer> answers;
     std::vector<StaircaseResult> staircases;
@@ -101,7 +103,8 @@ int index_of(std::string_view name, std::vector<std::string>& names);
 // rows that name a nodule. Throws InputError with file, line and column for an unknown column, a count that is negative
 // or not whole, n other than tp + fn, correct > n, a name that is none (study/names.h), and rows that would be counted
 // twice: with the same condition, participant and nodule or comparison, or rows of nodules (comparisons, participants)
-// beside a row for all of them. A table with a column stiffer is read by study/stiffer_counts.h.
-Observations read_counts(const std::filesystem::path& tsv);
+// beside a row for all of them. A table with a column stiffer is read by study/stiffer_counts.h,
+// one with a column kind by study/marks_table.h.
+Observations read_counts(const std::filesystem::path& tsv, const RatingScale& scale = {});
 
 }  // namespace palpa::study

@@ -9,7 +9,7 @@
 namespace palpa::study {
 namespace {
 
-constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+constexpr double kNoValue = std::numeric_limits<double>::quiet_NaN();
 
 double sq(double x) { return x * x; }
 
@@ -117,7 +117,7 @@ MeritOfCondition of_condition(const MeritTable& table, const Means& means, const
     for (std::size_t j = 0; j < table.participants; ++j)
         ms_r += sq(table.theta[i * table.participants + j] - means.condition[i]) / (people - 1.0);
     const double scaled = ms_r + std::max(people * covariances.cov2_of[i].mean(), 0.0);
-    MeritOfCondition out{means.condition[i], kUnknown, kUnknown, {kUnknown, kUnknown}};
+    MeritOfCondition out{means.condition[i], kNoValue, kNoValue, {kNoValue, kNoValue}};
     if (is_nothing(scaled)) return out;
     out.se = std::sqrt(scaled / people);
     out.df = is_nothing(ms_r) ? std::numeric_limits<double>::infinity() : sq(scaled) / (sq(ms_r) / (people - 1.0));
@@ -128,7 +128,7 @@ MeritOfCondition of_condition(const MeritTable& table, const Means& means, const
 void compare_pairs(const Means& means, double se, double level, MeritTest& out) {
     for (std::size_t a = 0; a < means.condition.size(); ++a) {
         for (std::size_t b = a + 1; b < means.condition.size(); ++b) {
-            MeritPair pair{a, b, means.condition[a] - means.condition[b], se, kUnknown, kUnknown, {kUnknown, kUnknown}};
+            MeritPair pair{a, b, means.condition[a] - means.condition[b], se, kNoValue, kNoValue, {kNoValue, kNoValue}};
             if (std::isfinite(se)) {
                 pair.t = pair.difference / se;
                 pair.p = p_of_t(pair.t, out.ddf);
@@ -156,14 +156,14 @@ std::string why_not(const MeritTable& table) {
 
 MeritTest test_merits(const MeritTable& table, double level) {
     MeritTest out;
-    out.f = out.ddf = out.p = kUnknown;
+    out.f = out.ddf = out.p = kNoValue;
     out.ndf = static_cast<double>(table.conditions) - 1.0;
     const Means means = means_of(table);
     out.status = why_not(table);
     if (!out.status.empty()) {
-        out.conditions.assign(table.conditions, {0.0, kUnknown, kUnknown, {kUnknown, kUnknown}});
+        out.conditions.assign(table.conditions, {0.0, kNoValue, kNoValue, {kNoValue, kNoValue}});
         for (std::size_t i = 0; i < table.conditions; ++i) out.conditions[i].mean = means.condition[i];
-        compare_pairs(means, kUnknown, level, out);
+        compare_pairs(means, kNoValue, level, out);
         return out;
     }
     const Covariances covariances = covariances_of(table);
@@ -178,7 +178,7 @@ MeritTest test_merits(const MeritTable& table, double level) {
     const MeritComponents& c = out.components;
     const double den = c.ms_tr + std::max(people * (c.cov2 - c.cov3), 0.0);
     const double products = out.ndf * (people - 1.0);
-    double se = kUnknown;
+    double se = kNoValue;
     if (is_nothing(den)) {
         out.status = "cannot be computed, because the figures vary neither over people nor over cases";
     } else {

@@ -92,6 +92,11 @@ void add_find(const RunLog& run, int participant, const RunSettings& settings, c
                                      [&](const LoggedMark& mark) { return mark.hit && mark.nodule == nodule.id; });
         out.rows.push_back({condition, participant, study.nodules.of(nodule.id), repeat, hit, !hit, 0});
     }
+    if (settings.there && !settings.typed) {
+        out.judged.push_back(judged_case(settings, marks));
+        out.judged.back().condition = condition;
+        out.judged.back().participant = participant;
+    }
     const bool named = !settings.nodules.empty();
     out.rows.push_back({condition, participant, -1, repeat, named ? 0 : run.tp, named ? 0 : run.fn, run.fp});
     out.trials.push_back({condition, participant, run.duration_s, run.path_m, run.mean_force_N, run.max_force_N});

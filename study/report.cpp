@@ -230,6 +230,8 @@ Report make_report(const Observations& given, const ReportOptions& options) {
     report.pairs = compare_conditions(seen, Quantity::sensitivity, options.bootstrap);
     report.ppv_pairs = compare_conditions(seen, Quantity::ppv, options.bootstrap);
     report.choice_pairs = compare_conditions(seen, Quantity::correct, options.bootstrap);
+    report.free_response = free_response_report(seen, options.bootstrap.level);
+    report.mixed = mixed_report(seen, options.bootstrap.level);
     if (seen.groups.size() >= 2) {
         report.group_comparisons = compare_groups(seen, options.bootstrap);
         for (int g = 0; g < static_cast<int>(seen.groups.size()); ++g) {

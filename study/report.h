@@ -9,6 +9,8 @@
 #include "files/json.h"
 #include "study/bootstrap.h"
 #include "study/comparisons.h"
+#include "study/free_response_report.h"
+#include "study/mixed_report.h"
 #include "study/observations.h"
 #include "study/psychometric_report.h"
 #include "study/statistics.h"
@@ -83,6 +85,8 @@ struct Report {
     std::vector<PairResult> choice_pairs;
     std::vector<GroupResult> group_comparisons;
     std::vector<ChoiceResult> choices;
+    FreeResponseReport free_response;
+    MixedReport mixed;
     Psychometrics psychometrics;
     std::vector<RatingResult> ratings;
     std::vector<StaircaseResult> staircases;

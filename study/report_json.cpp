@@ -122,6 +122,8 @@ files::Json report_json(const Report& report) {
         conditions.emplace_back(condition.name, condition_json(condition));
     json["conditions"] = std::move(conditions);
     add_comparisons(report, json);
+    add_free_response(report.free_response, json);
+    add_mixed(report.mixed, json);
     if (!report.choices.empty()) json["choices"] = files::Json::array();
     for (const ChoiceResult& choice : report.choices) json["choices"].push_back(choice_json(choice));
     add_psychometrics(report.psychometrics, json);

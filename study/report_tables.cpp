@@ -159,6 +159,8 @@ void add_groups(const Report& report, std::vector<ReportTable>& tables) {
 std::vector<ReportTable> report_tables(const Report& report) {
     std::vector<ReportTable> tables{sensitivity_table(report), nodule_table(report), ppv_table(report)};
     for (ReportTable& table : comparison_tables(report)) tables.push_back(std::move(table));
+    for (ReportTable& table : free_response_tables(report.free_response)) tables.push_back(std::move(table));
+    for (ReportTable& table : mixed_tables(report.mixed)) tables.push_back(std::move(table));
     for (const auto make : {trial_table, choice_table}) tables.push_back(make(report));
     for (ReportTable& table : psychometric_tables(report.psychometrics)) tables.push_back(std::move(table));
     tables.push_back(staircase_table(report));
@@ -183,6 +185,12 @@ const std::vector<std::string>& table_names() {
                                                 "pairs_ignoring_clustering",
                                                 "pairs_replication",
                                                 "ppv_pairs_replication",
+                                                "free_response",
+                                                "free_response_conditions",
+                                                "free_response_tests",
+                                                "froc",
+                                                "mixed_conditions",
+                                                "mixed_pairs",
                                                 "trials",
                                                 "choices",
                                                 "psychometric",
@@ -229,6 +237,8 @@ std::string report_markdown(const Report& report) {
         "of tables take the nodules of one person as independent and reject too often: *replication* is the test of "
         "Li et al. (significant = the difference is larger than the combined interval, each pair alone), *ignores "
         "clustering* is McNemar's exact test with Newcombe's interval (1998, method 10).\n";
+    out += free_response_methods(report.free_response);
+    out += mixed_methods(report.mixed);
     out += psychometric_methods(report.psychometrics);
     for (const std::string& note : report.notes) out += "\n- " + note;
     if (!report.notes.empty()) out += "\n";

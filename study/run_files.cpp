@@ -62,6 +62,10 @@ RunSettings read_run_settings(const std::filesystem::path& file) {
         if (study->has("participant_number")) out.number = study->integer("participant_number", 1, kMostPeople);
     }
     out.typed = json.has("answers");
+    if (root.contains("tissue") && root["tissue"].is_object()) {
+        const files::Json& tissue = root["tissue"];
+        if (tissue.contains("name") && tissue["name"].is_string()) out.tissue = tissue["name"].get<std::string>();
+    }
     std::set<std::string> ids;
     for (files::JsonReader& nodule : json.objects("nodules")) {
         out.nodules.push_back({nodule.text("id"), nodule.number("diameter_mm", files::kNotNegative, 0.0)});
@@ -80,16 +84,49 @@ std::optional<std::vector<LoggedMark>> read_marks_left(const std::filesystem::pa
     const std::size_t nodule = table.column("nodule"), hit = table.column("hit");
     const bool has_distance = table.has_column("distance_mm");
     const std::size_t distance = has_distance ? table.column("distance_mm") : 0;
+    const bool has_confidence = table.has_column("confidence");
+    const std::size_t confidence = has_confidence ? table.column("confidence") : 0;
     std::vector<LoggedMark> marks;
     std::set<std::string> found;
     while (table.next()) {
         LoggedMark mark{std::string(table.field(nodule)), has_distance ? table.number(distance) : std::nan(""),
                         whole_number(table, hit, 0, 1) == 1};
+        if (has_confidence && !std::isnan(table.number(confidence)))
+            mark.confidence = static_cast<double>(whole_number(table, confidence, 1, 5));
         if (mark.hit && !found.insert(mark.nodule).second)
             table.fail(nodule, "each nodule found by one mark (the others have hit 0)");
         marks.push_back(std::move(mark));
     }
     return marks;
+}
+
+JudgedCase judged_case(const RunSettings& settings, const std::vector<LoggedMark>& marks) {
+    constexpr double kRounding_mm = 1e-6;
+    JudgedCase out;
+    out.id = settings.tissue;
+    for (const RunSettings::Nodule& nodule : settings.nodules) {
+        out.lesions.push_back(nodule.id);
+        out.reading.ll.push_back(kUnmarked);
+    }
+    for (const LoggedMark& mark : marks) {
+        const auto found = [&](const LoggedMark& other) { return other.hit && other.nodule == mark.nodule; };
+        const auto it = std::find(out.lesions.begin(), out.lesions.end(), mark.nodule);
+        const auto l = static_cast<std::size_t>(it - out.lesions.begin());
+        bool on = it != out.lesions.end() && mark.hit;
+        if (it != out.lesions.end() && !mark.hit && std::any_of(marks.begin(), marks.end(), found)) {
+            Target target;
+            target.diameter_m = 1e-3 * settings.nodules[l].diameter_mm;
+            on = mark.distance_mm <= 1e3 * acceptance_radius_m(target) + kRounding_mm;
+        }
+        if (std::isnan(mark.confidence)) {
+            out.rated = false;
+        } else if (on) {
+            out.reading.ll[l] = std::max(out.reading.ll[l], mark.confidence);
+        } else {
+            out.reading.nl.push_back(mark.confidence);
+        }
+    }
+    return out;
 }
 
 void check_counts(const RunLog& run, const RunSettings& settings, const std::vector<LoggedMark>& marks) {

@@ -2,9 +2,12 @@
 // What stands beside the events of a run, its settings and its marks, and whether all three agree.
 
 #include <filesystem>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
+
+#include "study/judged_cases.h"
 
 namespace palpa::study {
 
@@ -20,6 +23,7 @@ struct RunSettings {
         std::string id;
         double diameter_mm = 0.0;
     };
+    std::string tissue;  // its name; empty for answers that were typed in
     std::vector<Nodule> nodules;
 };
 
@@ -30,7 +34,12 @@ struct LoggedMark {
     std::string nodule;        // n/a: none
     double distance_mm = 0.0;  // NaN: not known
     bool hit = false;
+    double confidence = std::numeric_limits<double>::quiet_NaN();  // 1 to 5; NaN: not given
 };
+
+// The marks of a finished run as free-response data: of several marks on one nodule the highest rating counts, and whatever
+// is within a found nodule's acceptance radius is on it.
+JudgedCase judged_case(const RunSettings& settings, const std::vector<LoggedMark>& marks);
 
 // Reads ..._marks.tsv; nothing if there is no such file. Throws InputError; a line that was cut off is noted.
 std::optional<std::vector<LoggedMark>> read_marks_left(const std::filesystem::path& file,

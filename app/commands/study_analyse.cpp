@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "app/commands/study.h"
+#include "figures/froc_figure.h"
 #include "figures/psychometric_figure.h"
 #include "figures/study_figures.h"
 #include "files/input_error.h"
@@ -23,6 +24,7 @@ struct AnalyseOptions {
     std::string input;
     std::string output;
     study::ReportOptions report;
+    std::vector<double> scale;  // of ratings: lowest and highest; empty: all numbers
     bool json = false;
 };
 
@@ -50,9 +52,9 @@ void refuse_folder_of_logs(const std::string& output) {
 
 // The tables and figures that a report may have.
 std::vector<std::string> result_names() {
-    std::vector<std::string> names{"figures.gp", "psychometric.gp"};
+    std::vector<std::string> names{"figures.gp", "froc.gp", "psychometric.gp", "nodules_long.tsv", "mixed_model.R"};
     for (const std::string& table : study::table_names()) names.push_back(table + ".tsv");
-    for (const char* figure : {"sensitivity", "nodules", "ppv", "psychometric"}) {
+    for (const char* figure : {"sensitivity", "nodules", "ppv", "froc", "psychometric"}) {
         for (const char* kind : {".svg", ".pdf", ".png"}) names.push_back(std::string(figure) + kind);
     }
     return names;
@@ -67,7 +69,7 @@ void remove_earlier_report(const fs::path& folder) {
     }
 }
 
-void write_report(const study::Report& report, const fs::path& folder) {
+void write_report(const study::Report& report, const study::Observations& seen, const fs::path& folder) {
     std::error_code error;
     fs::create_directories(folder, error);
     if (error) throw std::runtime_error(folder.string() + ": cannot be made: " + error.message());
@@ -75,17 +77,25 @@ void write_report(const study::Report& report, const fs::path& folder) {
     for (const study::ReportTable& table : study::report_tables(report)) {
         files::write_text_atomically(folder / (table.name + ".tsv"), study::tsv_text(table));
     }
+    const study::ReportTable nodules = study::nodules_long_table(seen);
+    if (!nodules.rows.empty()) files::write_text_atomically(folder / "nodules_long.tsv", study::tsv_text(nodules));
+    const std::string script = study::lme4_script(report.mixed);
+    if (!script.empty()) files::write_text_atomically(folder / "mixed_model.R", script);
     files::write_text_atomically(folder / "report.md", study::report_markdown(report));
     files::write_text_atomically(folder / "report.json", files::json_text(study::report_json(report)));
-    for (const std::string& trouble :
-         {figures::draw_figures(report, folder), figures::draw_psychometric_figure(report, folder)}) {
+    for (const std::string& trouble : {figures::draw_figures(report, folder), figures::draw_froc_figure(report, folder),
+                                       figures::draw_psychometric_figure(report, folder)}) {
         if (!trouble.empty()) std::fprintf(stderr, "palpa: %s\n", trouble.c_str());
     }
 }
 
-study::Observations read_observations(const std::string& input) {
+study::Observations read_observations(const AnalyseOptions& options) {
+    const std::string& input = options.input;
     if (!fs::exists(input)) throw files::bad_input(input, "", "nothing", "a folder of logs or a table COUNTS.tsv");
-    return fs::is_directory(input) ? study::read_study(input) : study::read_counts(input);
+    if (fs::is_directory(input)) return study::read_study(input);
+    study::RatingScale scale;
+    if (!options.scale.empty()) scale = {options.scale[0], options.scale[1]};
+    return study::read_counts(input, scale);
 }
 
 void analyse(const AnalyseOptions& options) {
@@ -93,14 +103,15 @@ void analyse(const AnalyseOptions& options) {
         files::check_output_folder(options.output);
         refuse_folder_of_logs(options.output);
     }
-    const study::Report report = study::make_report(read_observations(options.input), options.report);
+    const study::Observations seen = read_observations(options);
+    const study::Report report = study::make_report(seen, options.report);
     // the logs of a study have fixed names; a table of counts may have any name
     if (!options.output.empty() && !fs::is_directory(options.input)) {
         std::vector<std::string> names = result_names();
         names.insert(names.end(), {"report.md", "report.json"});
         files::check_output_folder(options.output, {options.input}, names);
     }
-    if (!options.output.empty()) write_report(report, options.output);
+    if (!options.output.empty()) write_report(report, seen, options.output);
     const std::string text =
         options.json ? files::json_text(study::report_json(report)) : study::report_markdown(report);
     std::fputs(text.c_str(), stdout);
@@ -115,9 +126,13 @@ void add_study_analyse(CLI::App& study) {
         ->add_option("INPUT", options->input,
                      "folder of a study's logs; or a table COUNTS.tsv with the columns condition tp fn fp (also n, "
                      "nodule, participant, group), or condition correct n (also comparison, participant, group), or "
-                     "condition reference_kPa comparison_kPa stiffer n (also participant)")
+                     "condition reference_kPa comparison_kPa stiffer n (also participant); or a table of rated marks "
+                     "with the columns "
+                     "condition participant case kind lesion rating (also group)")
         ->required();
     command->add_option("-o,--output", options->output, "folder for report.md, report.json, tables and figures");
+    command->add_option("--rating-scale", options->scale, "lowest and highest rating of a table of rated marks")
+        ->expected(2);
     command->add_option("--level", options->report.bootstrap.level, "confidence level of all intervals (default 0.95)")
         ->check(CLI::Range(0.5, 0.9999));
     command

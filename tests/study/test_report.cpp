@@ -178,7 +178,9 @@ TEST_CASE("report: groups stand in every table, below the rows of all people") {
         CAPTURE(table.name);
         CHECK(table.columns.back() == "group");
         CHECK(table.rows.front().back() == "all");
-        if (table.name != "groups") CHECK(table.rows.back().back() == "II");
+        // a mixed model need not converge in every group
+        const bool model = table.name.rfind("mixed", 0) == 0;
+        if (table.name != "groups" && !model) CHECK(table.rows.back().back() == "II");
     }
     const Json json = report_json(report);
     CHECK(json["groups"]["I"]["conditions"]["b"]["tp"] == 15);

@@ -171,6 +171,41 @@ TEST_CASE("command study analyse: counts become tables, JSON and figures") {
     }
 }
 
+TEST_CASE("command study analyse: a table of rated marks gives figures of merit, the mixed model and its data") {
+    const TemporaryFolder folder;
+    std::string rows = "condition\tparticipant\tcase\tkind\tlesion\trating\n";
+    for (int condition = 0; condition < 2; ++condition) {
+        for (int person = 0; person < 4; ++person) {
+            const std::string who = std::string(condition == 0 ? "a" : "b") + "\tp" + std::to_string(person) + "\t";
+            for (int k = 0; k < 4; ++k) {
+                const bool found = (person + 2 * k + condition) % 3 != 0;
+                rows += who + "with" + std::to_string(k) + "\tlesion\tL\t" +
+                        (found ? std::to_string(2 + k % 3) : "n/a") + "\n";
+                const bool false_mark = (person + k + condition) % 4 == 0;
+                rows += who + "none" + std::to_string(k) + (false_mark ? "\tnl\tn/a\t3\n" : "\tcase\tn/a\tn/a\n");
+            }
+        }
+    }
+    write_text_atomically(folder / "marks.tsv", rows);
+    const std::string marks = "analyse " + (folder / "marks.tsv").string();
+    const Called called = study(marks + " --rating-scale 1 5 --json -o " + (folder / "report").string());
+    CAPTURE(called.err);
+    REQUIRE(called.status == 0);
+    const Json json = parse_json(called.out, "stdout");
+    CHECK(json["free_response"]["figures"].size() == 8);
+    CHECK(json["free_response"]["tests"].size() == 4);
+    CHECK(json["free_response"]["tests"][0]["status"] == "computed");
+    CHECK(json["mixed_logistic"]["nodules"] == 4);
+    for (const char* name :
+         {"free_response.tsv", "free_response_tests.tsv", "froc.tsv", "froc.gp", "nodules_long.tsv"}) {
+        CAPTURE(name);
+        CHECK(fs::exists(folder / (std::string("report/") + name)));
+    }
+    CHECK(fs::exists(folder / "report/mixed_model.R") == (json["mixed_logistic"]["status"] == "computed"));
+    CHECK(contains(read_text(folder / "report/report.md"), "0.5 is not chance"));
+    refused(marks + " --rating-scale 1 2", "a rating from 1 to 2, the scale");
+}
+
 TEST_CASE("command study analyse: bad input ends with status 2 and says what was expected") {
     const TemporaryFolder folder;
     write_text_atomically(folder / "c.tsv", "condition\ttp\tfn\tfp\tn\npen\t61\t0\t0\t60\n");
