@@ -261,22 +261,6 @@ std::string mixed_methods(const MixedReport& found) {
     return found.notes.empty() ? out : out + "\n";
 }
 
-ReportTable nodules_long_table(const Observations& seen) {
-    ReportTable table{"nodules_long",
-                      "Each nodule that somebody judged",
-                      {"participant", "group", "condition", "nodule", "repeat", "found", "missed"},
-                      {}};
-    for (const Observation& row : seen.rows) {
-        if (!is_judged_nodule(row)) continue;
-        const std::size_t person = place(row.participant);
-        const int group = person < seen.group_of.size() ? seen.group_of[person] : -1;
-        table.rows.push_back({seen.participants[person], group < 0 ? kNone : seen.groups[place(group)],
-                              seen.conditions[place(row.condition)], seen.nodules[place(row.nodule)],
-                              whole(row.repeat + 1), whole(row.tp), whole(row.fn)});
-    }
-    return table;
-}
-
 std::string lme4_script(const MixedReport& found) {
     if (!found.there || !found.status.empty()) return "";
     std::string out =

@@ -52,11 +52,7 @@ void add_mixed(const MixedReport& found, files::Json& report);  // `mixed_logist
 std::vector<ReportTable> mixed_tables(const MixedReport& found);
 std::string mixed_methods(const MixedReport& found);  // a paragraph; empty without a model
 
-// One row for each nodule that somebody judged: participant group condition nodule repeat found missed. Counts are 0 or 1
-// in logs. No rows if people or nodules are not named.
-ReportTable nodules_long_table(const Observations& seen);
-
-// An R script for lme4 that reads nodules_long.tsv beside it and fits the same model; empty without a model.
+// An R script for lme4 that reads nodules_long.tsv (study/long_tables.h) beside it and fits the same model; empty without a model.
 std::string lme4_script(const MixedReport& found);
 
 }  // namespace palpa::study

@@ -12,6 +12,7 @@
 #include "files/input_error.h"
 #include "files/regular_file.h"
 #include "files/text.h"
+#include "study/long_tables.h"
 #include "study/read_logs.h"
 #include "study/report.h"
 
@@ -52,7 +53,9 @@ void refuse_folder_of_logs(const std::string& output) {
 
 // The tables and figures that a report may have.
 std::vector<std::string> result_names() {
-    std::vector<std::string> names{"figures.gp", "froc.gp", "psychometric.gp", "nodules_long.tsv", "mixed_model.R"};
+    std::vector<std::string> names{"figures.gp", "froc.gp", "psychometric.gp", "mixed_model.R"};
+    for (const std::string& table : study::long_table_names())
+        names.insert(names.end(), {table + ".tsv", table + ".json"});
     for (const std::string& table : study::table_names()) names.push_back(table + ".tsv");
     for (const char* figure : {"sensitivity", "nodules", "ppv", "froc", "psychometric"}) {
         for (const char* kind : {".svg", ".pdf", ".png"}) names.push_back(std::string(figure) + kind);
@@ -77,8 +80,10 @@ void write_report(const study::Report& report, const study::Observations& seen, 
     for (const study::ReportTable& table : study::report_tables(report)) {
         files::write_text_atomically(folder / (table.name + ".tsv"), study::tsv_text(table));
     }
-    const study::ReportTable nodules = study::nodules_long_table(seen);
-    if (!nodules.rows.empty()) files::write_text_atomically(folder / "nodules_long.tsv", study::tsv_text(nodules));
+    for (const study::LongTable& one : study::long_tables(seen)) {
+        files::write_text_atomically(folder / (one.table.name + ".tsv"), study::tsv_text(one.table));
+        files::write_text_atomically(folder / (one.table.name + ".json"), files::json_text(one.dictionary));
+    }
     const std::string script = study::lme4_script(report.mixed);
     if (!script.empty()) files::write_text_atomically(folder / "mixed_model.R", script);
     files::write_text_atomically(folder / "report.md", study::report_markdown(report));
@@ -95,6 +100,11 @@ study::Observations read_observations(const AnalyseOptions& options) {
     if (fs::is_directory(input)) return study::read_study(input);
     study::RatingScale scale;
     if (!options.scale.empty()) scale = {options.scale[0], options.scale[1]};
+    if (!(scale.low < scale.high)) {
+        throw files::bad_input("--rating-scale", "",
+                               files::short_number(scale.low) + " " + files::short_number(scale.high),
+                               "the lowest rating, then the highest");
+    }
     return study::read_counts(input, scale);
 }
 

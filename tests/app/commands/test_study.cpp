@@ -196,14 +196,15 @@ TEST_CASE("command study analyse: a table of rated marks gives figures of merit,
     CHECK(json["free_response"]["tests"].size() == 4);
     CHECK(json["free_response"]["tests"][0]["status"] == "computed");
     CHECK(json["mixed_logistic"]["nodules"] == 4);
-    for (const char* name :
-         {"free_response.tsv", "free_response_tests.tsv", "froc.tsv", "froc.gp", "nodules_long.tsv"}) {
+    for (const char* name : {"free_response.tsv", "free_response_tests.tsv", "froc.tsv", "froc.gp", "nodules_long.tsv",
+                             "nodules_long.json"}) {
         CAPTURE(name);
         CHECK(fs::exists(folder / (std::string("report/") + name)));
     }
     CHECK(fs::exists(folder / "report/mixed_model.R") == (json["mixed_logistic"]["status"] == "computed"));
     CHECK(contains(read_text(folder / "report/report.md"), "0.5 is not chance"));
     refused(marks + " --rating-scale 1 2", "a rating from 1 to 2, the scale");
+    refused(marks + " --rating-scale 5 1", "the lowest rating, then the highest");
 }
 
 TEST_CASE("command study analyse: bad input ends with status 2 and says what was expected") {
