@@ -41,9 +41,9 @@ struct RigReport {
     std::array<double, kMostChannels> sent{};          // values after the guard
     std::array<double, kMostChannels> measured{};      // NaN: nothing measures it
     double displacement_m = 0.0;                       // NaN before the first reading
-    double displacement_s = 0.0;                       // of its arrival, host's steady clock
+    double displacement_time_s = 0.0;                  // of its arrival, host's steady clock
     double displacement_device_s = 0.0;                // by the sensor's clock
-    std::int64_t displacements = 0;                    // readings so far
+    std::int64_t displacement_count = 0;               // readings so far
     SensorHealth sensor;
     std::array<LineHealth, kMostPorts> line{};
 };

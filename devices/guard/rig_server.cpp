@@ -189,9 +189,9 @@ class RigServer {
         if (sensor_) {
             const SensorNow now = sensor_->now();
             report_.displacement_m = now.m;
-            report_.displacement_s = now.host_s;
+            report_.displacement_time_s = now.host_s;
             report_.displacement_device_s = now.device_s;
-            report_.displacements = now.readings;
+            report_.displacement_count = now.readings;
             report_.sensor = now.health;
         }
         // without a reader the report is lost; the next one says the same

@@ -150,7 +150,7 @@ TEST_CASE("guard: the actuators of every protocol go where they are told, and th
         RigReport report;
         CHECK(send_until(guard, halfway(wires.rig), [&](const RigReport& now) {
             report = now;
-            return now.displacements > 20 && now.displacement_m > 0.001 && now.driven &&
+            return now.displacement_count > 20 && now.displacement_m > 0.001 && now.driven &&
                    arrived(wires, halfway(wires.rig));
         }));
         CHECK(report.displacement_m < 0.0061);
@@ -284,7 +284,13 @@ TEST_CASE("guard: SIGKILL of the program relaxes everything, also a pressure con
             try {
                 GuardProcess guard(wires.rig, PALPA_GUARD);
                 guard.wait_until_ready(10.0);
-                for (;;) guard.send(values), guard_nap(0.005);
+                RigReport report;
+                for (;;) {
+                    guard.send(values);
+                    guard_nap(0.005);
+                    guard.poll(report);
+                    if (report.fault == Fault::loop_silent) guard.release();  // a busy computer
+                }
             } catch (const std::exception&) {
             }
             ::_exit(1);
