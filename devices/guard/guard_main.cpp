@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "devices/guard/rig_server.h"
+#include "devices/guard/shape_server.h"
 #include "devices/guard_link.h"
 #include "files/json.h"
 
@@ -23,8 +24,9 @@ volatile int g_ended = 0;
 void serve(const std::string& start, int socket) {
     const files::Json json = files::parse_json(start, "wires");
     files::JsonReader reader(json, "wires");
-    reader.only({"kind", "rig"});
-    reader.choice("kind", {"rig"});
+    reader.only({"kind", "rig", "shape"});
+    if (reader.choice("kind", {"rig", "shape"}) == 1)
+        return devices::guard::serve_shape(devices::read_shape_rig(reader.object("shape")), socket, g_ended);
     devices::guard::serve_rig(devices::read_rig(reader.object("rig")), socket, g_ended);
 }
 

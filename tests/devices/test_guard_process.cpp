@@ -13,6 +13,7 @@
 
 #include "devices/force_sensor.h"
 #include "devices/guard_process.h"
+#include "devices/shape_guard.h"
 #include "devices/simulators/process.h"
 #include "files/text.h"
 #include "tests/devices/wires.h"
@@ -315,4 +316,86 @@ TEST_CASE("guard: if the guard is killed, the program hears of it, and devices w
     ::kill(guard.pid(), SIGKILL);
     CHECK(send_until(guard, halfway(wires.rig), [](const RigReport& now) { return now.fault == Fault::guard_gone; }));
     CHECK(soon([&] { return wires.relaxed(); }));
+}
+
+namespace {
+
+// The simulated arm and boards, and what the guard is told of them.
+struct ShapeWires {
+    ShapeWires()
+        : arm(PALPA_ARM_SIMULATOR, {"--truth", (folder / "arm.tsv").string()}),
+          boards(PALPA_MAESTRO_SIMULATOR, {pins_file(), "--heights", (folder / "heights.tsv").string()}) {}
+    static std::string pins_file() { return std::string(PALPA_SOURCE_DIR) + "/assets/devices/pins-6x6.json"; }
+    ShapeRig rig() const {
+        ShapeRig rig;
+        rig.arm = ArmDevice{};
+        rig.arm->port = std::stoi(arm.port());
+        rig.pins = read_pin_device(pins_file());
+        rig.pins->port = boards.port();
+        rig.force_limit_N = 2.5;
+        return rig;
+    }
+    double highest_mm() const {
+        const std::string text = files::read_text(folder / "heights.tsv");
+        const std::size_t end = text.rfind('\n'), begin = end == 0 ? 0 : text.rfind('\n', end - 1) + 1;
+        double highest = 0.0, number = 0.0;
+        const auto fields = files::fields_of(std::string_view(text).substr(begin, end - begin), '\t');
+        for (std::size_t i = 1; i < fields.size(); ++i) {
+            if (files::parse_number(fields[i], number)) highest = std::max(highest, number);
+        }
+        return highest;
+    }
+
+    TemporaryFolder folder;
+    SimulatorProcess arm;
+    SimulatorProcess boards;
+};
+
+// Sends once a millisecond what raises the pins and presses with the arm.
+bool press_until(ShapeGuard& guard, const std::function<bool(const ShapeReport&)>& done) {
+    const std::vector<double> heights_m(36, 1.5e-3);
+    return soon([&] {
+        for (int i = 0; i < 20; ++i) {
+            guard.send({1.0, 0.0, 0.0, static_cast<double>(ArmMode::force)}, heights_m);
+            guard_nap(0.001);
+            guard.poll();
+        }
+        if (guard.newest().fault == Fault::loop_silent) guard.release();
+        return done(guard.newest());
+    });
+}
+
+}  // namespace
+
+TEST_CASE("guard: arm and pins behind it go where they are told, and rest for good when the loop falls silent") {
+    ShapeWires wires;
+    ShapeGuard guard(wires.rig(), PALPA_GUARD);
+    CHECK(soon([&] { return guard.poll(), guard.newest().ready; }));
+    CHECK(
+        press_until(guard, [&](const ShapeReport& now) { return wires.highest_mm() > 1.4 && now.arm_readings > 100; }));
+    CHECK(guard.newest().fault == Fault::none);
+    CHECK(guard.link().sent > 100);
+    CHECK(guard.link().round_trip.total > 100);
+    CHECK(soon([&] { return guard.poll(), guard.newest().fault == Fault::loop_silent; }));
+    CHECK(soon([&] { return wires.highest_mm() < 0.05; }));
+    guard.stop();
+    guard.release();
+    CHECK(press_until(guard, [&](const ShapeReport&) { return wires.highest_mm() > 1.4; }));
+    guard.stop();
+    CHECK(press_until(
+        guard, [&](const ShapeReport& now) { return now.fault == Fault::stopped && wires.highest_mm() < 0.05; }));
+}
+
+TEST_CASE("guard: SIGKILL of the program that drives pins brings them to rest") {
+    ShapeWires wires;
+    const pid_t program = ::fork();
+    REQUIRE(program >= 0);
+    if (program == 0) {
+        ShapeGuard guard(wires.rig(), PALPA_GUARD);
+        for (;;) press_until(guard, [](const ShapeReport&) { return false; });
+    }
+    CHECK(soon([&] { return wires.highest_mm() > 1.4; }));
+    ::kill(program, SIGKILL);
+    ::waitpid(program, nullptr, 0);
+    CHECK(soon([&] { return wires.highest_mm() < 0.05; }));
 }
