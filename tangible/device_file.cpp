@@ -32,11 +32,15 @@ double body_size_m(const mechanics::Mesh& mesh) {
     return (mesh.nodes_m.rowwise().maxCoeff() - mesh.nodes_m.rowwise().minCoeff()).norm();
 }
 
-// The mean of a face, every part of its area counting alike.
+bool by_nodes(JsonReader& json) { return json.has("by") && json.choice("by", {"faces", "nodes"}) == 1; }
+
+// The mean of a face: every part of its area counts alike, or every node.
 PathPoint point_of_face(JsonReader& entry, const fem::CaseMesh& mesh) {
     std::string name;
+    const bool nodes = by_nodes(entry);
     const mechanics::Faces faces = fem::faces_named(entry, mesh, name);
-    const Eigen::VectorXd area_m2 = mechanics::tributary_area_m2(mesh.mesh, faces);
+    Eigen::VectorXd area_m2 = mechanics::tributary_area_m2(mesh.mesh, faces);
+    if (nodes) area_m2 = (area_m2.array() > 0.0).cast<double>();
     PathPoint point;
     for (const int node : mechanics::nodes_of(faces)) {
         point.node.push_back(node);
@@ -90,7 +94,7 @@ SoftActuator read_cable(JsonReader& json, const fem::CaseMesh& mesh) {
     cable.kind = ActuatorKind::cable;
     read_limits(json, cable, "N");
     for (JsonReader& entry : json.objects("path")) {
-        entry.only({"face", "physical", "at_mm", "guide_mm"});
+        entry.only({"face", "physical", "by", "at_mm", "guide_mm"});
         if (entry.has("guide_mm"))
             cable.path.push_back({place_m(entry, "guide_mm"), {}, {}});
         else
@@ -214,7 +218,7 @@ Bearing read_bearing(JsonReader& json, const fem::CaseMesh& mesh) {
     if (!(bearing.axis.norm() > 0.0)) json.fail("axis", "[0, 0, 0]", "a direction");
     bearing.axis.normalize();
     bearing.radius_m = 1e-3 * json.number("radius_mm", {0.0, 1e5, true});
-    bearing.by_nodes = json.has("by") && json.choice("by", {"faces", "nodes"}) == 1;
+    bearing.by_nodes = by_nodes(json);
     bearing.constraint = json.has("as") && json.choice("as", {"penalty", "constraint"}) == 1;
     if (json.has("points")) {
         const auto points = json.numbers("points", 2, {1.0, 4.0});
@@ -229,7 +233,7 @@ Bearing read_bearing(JsonReader& json, const fem::CaseMesh& mesh) {
 }
 
 Effector read_effector(JsonReader json, const fem::CaseMesh& mesh) {
-    json.only({"face", "centre_mm", "radius_mm", "tilt"});
+    json.only({"face", "centre_mm", "radius_mm", "by", "tilt"});
     Effector out;
     out.side = json.has("face") ? fem::read_side(json) : mechanics::Side::zmax;
     const int axis = mechanics::axis_of(out.side);
@@ -243,14 +247,22 @@ Effector read_effector(JsonReader json, const fem::CaseMesh& mesh) {
         mechanics::parabolic_load(mesh.mesh, mesh.outer, pressure, mechanics::LoadShare::consistent);
     if (load.partial || !(load.applied_N > 0.0))
         json.fail("centre_mm", "a disc that lies beside the body, in part at least", "a disc on the side");
+    const bool nodes = by_nodes(json);
     double sum = 0.0;
     for (Index node = 0; node < load.force_N.cols(); ++node) {
-        const double share = load.force_N.col(node).dot(out.direction);
+        double share = load.force_N.col(node).dot(out.direction);
+        if (nodes && share > 0.0) {
+            Vector3d away_m = mesh.mesh.nodes_m.col(node);
+            away_m(axis) = 0.0;
+            for (int k = 0, other = 0; k < 3; ++k) away_m(k) -= k == axis ? 0.0 : pressure.centre_m[position(other++)];
+            share = std::max(0.0, 1.0 - away_m.squaredNorm() / (out.radius_m * out.radius_m));
+        }
         if (share == 0.0) continue;
         out.node.push_back(static_cast<int>(node));
         out.weight.push_back(share);
         sum += share;
     }
+    if (!(sum > 0.0)) json.fail("radius_mm", "a disc without a node", "a larger disc, or by faces");
     for (std::size_t i = 0; i < out.node.size(); ++i) {
         out.weight[i] /= sum;
         out.centre_m += out.weight[i] * mesh.mesh.nodes_m.col(out.node[i]);
