@@ -108,6 +108,9 @@ int run_command_line(int argc, char** argv) {
     add_part(app);
     add_serve(app);
     add_tactile(app);
+#ifdef PALPA_TANGIBLE
+    add_tangible(app);
+#endif
     add_bench(app);
     refuse_what_is_no_value(app);
     return with_all_printed(call(argc, argv, app));

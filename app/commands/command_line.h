@@ -24,6 +24,7 @@ void add_tactile(CLI::App& app);
 void add_tactile_identify(CLI::App& tactile);
 void add_tactile_characterise(CLI::App& tactile);
 void add_tactile_pins(CLI::App& tactile);
+void add_tangible(CLI::App& app);  // only with the CMake option PALPA_TANGIBLE
 void add_bench(CLI::App& app);
 void add_bench_accuracy(CLI::App& bench);
 void add_bench_pens(CLI::App& bench);
