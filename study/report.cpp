@@ -209,6 +209,8 @@ Report make_report(const Observations& given, const ReportOptions& options) {
     report.excluded_trials = seen.excluded_trials;
     report.withdrawn_trials = seen.withdrawn_trials;
     report.progress = seen.progress;
+    const auto other = [&](const ConditionDisplay& one) { return one.display != seen.displays.front().display; };
+    if (std::any_of(seen.displays.begin(), seen.displays.end(), other)) report.displays = seen.displays;
     report.exclusions = seen.exclusions;
     report.replacements = seen.replacements;
     report.simulated = seen.simulated;

@@ -98,7 +98,8 @@ struct Report {
     std::int64_t interrupted_trials = 0;
     std::int64_t excluded_trials = 0;  // those of participants who withdrew their data among them
     std::int64_t withdrawn_trials = 0;
-    std::vector<Progress> progress;  // logs against the plan; empty if the plan is not known
+    std::vector<ConditionDisplay> displays;  // empty unless the conditions are on different displays
+    std::vector<Progress> progress;          // logs against the plan; empty if the plan is not known
     std::vector<Exclusion> exclusions;
     std::vector<Replacement> replacements;
     bool simulated = false;
@@ -124,6 +125,10 @@ std::vector<ReportTable> report_tables(const Report& report);
 const std::vector<std::string>& table_names();  // of all tables that a report may have
 std::string tsv_text(const ReportTable& table);
 std::string report_markdown(const Report& report);  // all tables, with methods and notes
+
+// report_displays.cpp: one line for each condition, where they are on different displays.
+void add_displays_json(const Report& report, files::Json& json);
+ReportTable display_table(const Report& report);
 
 // report_plan.cpp: logs against the plan, exclusions and dropouts.
 void add_plan_json(const Report& report, files::Json& json);

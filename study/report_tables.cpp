@@ -157,7 +157,8 @@ void add_groups(const Report& report, std::vector<ReportTable>& tables) {
 }  // namespace
 
 std::vector<ReportTable> report_tables(const Report& report) {
-    std::vector<ReportTable> tables{sensitivity_table(report), nodule_table(report), ppv_table(report)};
+    std::vector<ReportTable> tables{display_table(report), sensitivity_table(report), nodule_table(report),
+                                    ppv_table(report)};
     for (ReportTable& table : comparison_tables(report)) tables.push_back(std::move(table));
     for (ReportTable& table : free_response_tables(report.free_response)) tables.push_back(std::move(table));
     for (ReportTable& table : mixed_tables(report.mixed)) tables.push_back(std::move(table));
@@ -174,7 +175,8 @@ std::vector<ReportTable> report_tables(const Report& report) {
 }
 
 const std::vector<std::string>& table_names() {
-    static const std::vector<std::string> names{"sensitivity",
+    static const std::vector<std::string> names{"displays",
+                                                "sensitivity",
                                                 "nodules",
                                                 "ppv",
                                                 "primary",

@@ -47,7 +47,8 @@ const std::map<std::string, std::set<std::string>> kMayInclude{
     {"desk", {"files", "study"}},
     // the rooms of the app
     {"app", {"files", "scene", "app/commands/command_line.h"}},
-    {"app/study", {"app/assets.h", "app/scene_choices.h", "files", "platform", "scene", "session", "study"}},
+    {"app/study",
+     {"app/assets.h", "app/scene_choices.h", "files", "platform", "scene", "devices/press_file.h", "session", "study"}},
     {"app/screens",
      {"app/assets.h", "app/scene_choices.h", "app/study", "files", "platform", "calibration", "stiffnessmaps",
       "mechanics", "scene", "render", "study", "session", "figures"}},
@@ -152,7 +153,8 @@ TEST_CASE("includes: the table refuses what it must") {
 // Everything that depends on the kind of tissue is an overload behind scene/tissue.h.
 bool asks_for_tissue(const std::string& line) {
     static const std::regex asks(
-        "(get_if|std::get|holds_alternative)<[a-z:]*(Map|Linear)(Tissue|Options|Work)>|std::visit");
+        "(get_if|std::get|holds_alternative)<[a-z:]*(Map|Linear|ForceCurve|SoftBlock)(Tissue|Options|Work)>|std::"
+        "visit");
     return std::regex_search(line, asks);
 }
 

@@ -139,18 +139,18 @@ void add_run(CLI::App& app) {
         ->check(CLI::Range(100, 16384));
     command->add_flag("--practice", options->practice, "show the nodules during the trial");
     command->add_flag("--test", options->test, "hide the nodules until the trial is finished")->excludes("--practice");
-    const std::map<std::string, Screen> screens{{"trial", Screen::trial},    {"devices", Screen::devices},
-                                                {"scale", Screen::scale},    {"calibrate", Screen::calibrate},
-                                                {"maps", Screen::maps},      {"history", Screen::history},
-                                                {"tactile", Screen::tactile}};
+    const std::map<std::string, Screen> screens{{"trial", Screen::trial},     {"devices", Screen::devices},
+                                                {"scale", Screen::scale},     {"calibrate", Screen::calibrate},
+                                                {"maps", Screen::maps},       {"history", Screen::history},
+                                                {"tactile", Screen::tactile}, {"tangible", Screen::tangible}};
     command
         ->add_option_function<std::string>(
             "--screen", [options, screens](const std::string& name) { options->screen = screens.at(name); },
             "screen to open first")
-        ->check(one_of({"trial", "devices", "scale", "calibrate", "maps", "history", "tactile"}));
+        ->check(one_of({"trial", "devices", "scale", "calibrate", "maps", "history", "tactile", "tangible"}));
     command->add_flag("--guided", options->guided, "begin with the guided start");
     command->add_flag("--simulate", options->simulate_devices,
-                      "start simulators of the scene's arm and pins, and connect to them instead of real ones");
+                      "start simulators of the scene's devices, and connect to them instead of real ones");
     command->add_flag("--left-handed", options->left_handed, "put the controls on the right");
     command->callback([options] {
         if (options->headless) return run_headless(*options);

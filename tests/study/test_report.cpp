@@ -225,3 +225,25 @@ TEST_CASE("report: rows in any order give the same report") {
     std::reverse(seen.rows.begin(), seen.rows.end());
     CHECK(report_json(make_report(seen, {})) == expected);
 }
+
+TEST_CASE("report: conditions on different displays stand in one table, also those that nobody has done yet") {
+    Observations seen = paired_study();
+    seen.displays = {{"a", "pen", false}, {"b", "tangible", false}, {"cast", "hand", true}};
+    const Report report = make_report(seen, {});
+    const ReportTable table = report_tables(report).front();
+    REQUIRE(table.name == "displays");
+    REQUIRE(table.rows.size() == 3);
+    for (const auto& row : table.rows) CHECK(row.size() == table.columns.size());
+    CHECK(table.rows[0][1] == "pen");
+    CHECK(table.rows[0][4] == "0.3750");  // 15 of 40
+    CHECK(table.rows[1][4] == "0.6250");
+    CHECK(table.rows[2][2] == "typed in");
+    CHECK(table.rows[2][4] == "n/a");
+    const Json json = report_json(report);
+    REQUIRE(json["displays"].size() == 3);
+    CHECK(json["displays"][0]["sensitivity"].get<double>() == doctest::Approx(0.375));
+    CHECK(json["displays"][0]["sensitivity_ci"][0].get<double>() < 0.375);
+    CHECK(json["displays"][2]["sensitivity"].is_null());
+    for (ConditionDisplay& one : seen.displays) one.display = "pen";
+    CHECK(make_report(seen, {}).displays.empty());  // nothing to compare
+}
