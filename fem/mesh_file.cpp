@@ -6,6 +6,7 @@
 
 #include "files/input_error.h"
 #include "files/text.h"
+#include "mechanics/bellows.h"
 #include "mechanics/error.h"
 #include "mechanics/mesh_seams.h"
 
@@ -18,7 +19,7 @@ using Eigen::Index;
 constexpr double kMostNodes = 400'000;  // 161,000 nodes take 4.9 GB to factor
 
 Box read_box(files::JsonReader box) {
-    box.only({"size_mm", "elements", "grading"});
+    box.only({"size_mm", "elements", "grading", "origin_mm"});
     const auto size_mm = box.numbers("size_mm", 3, {0.0, 1e6, true});
     const auto elements = box.numbers("elements", 3, {1.0, 2000.0});
     Box out;
@@ -45,6 +46,32 @@ Box read_box(files::JsonReader box) {
         out.grading =
             Grading{{1e-3 * centre_mm[0], 1e-3 * centre_mm[1]}, 1e-3 * grading->number("finest_mm", files::kPositive)};
     }
+    return out;
+}
+
+// Reads the place of the box's corner, the origin if it is absent.
+Eigen::Vector3d read_origin_m(files::JsonReader box) {
+    if (!box.has("origin_mm")) return Eigen::Vector3d::Zero();
+    const auto mm = box.numbers("origin_mm", 3, {-1e6, 1e6});
+    return 1e-3 * Eigen::Vector3d(mm[0], mm[1], mm[2]);
+}
+
+Bellows read_bellows(files::JsonReader json) {
+    json.only({"radius_mm", "amplitude_mm", "waves", "height_mm", "wall_mm", "plate_mm", "sectors", "along", "through",
+               "plate_cells", "rings"});
+    Bellows out;
+    constexpr files::Bounds kSize_mm{0.0, 1e5, true};
+    out.radius_m = 1e-3 * json.number("radius_mm", kSize_mm);
+    out.amplitude_m = 1e-3 * json.number("amplitude_mm", {0.0, 1e5});
+    out.waves = json.number("waves", {0.0, 1e3});
+    out.height_m = 1e-3 * json.number("height_mm", kSize_mm);
+    out.wall_m = 1e-3 * json.number("wall_mm", kSize_mm);
+    out.plate_m = 1e-3 * json.number("plate_mm", kSize_mm);
+    out.sectors = json.integer("sectors", 8, 400);
+    out.along = json.integer("along", 1, 1000);
+    out.through = json.integer("through", 1, 20, out.through);
+    out.plate_cells = json.integer("plate_cells", 1, 20, out.plate_cells);
+    out.rings = json.integer("rings", 1, 100, out.rings);
     return out;
 }
 
@@ -186,6 +213,17 @@ std::array<int, 4> sorted_corners(const int* nodes, int corners) {
     return key;
 }
 
+Faces faces_at(const CaseMesh& mesh, const std::vector<Index>& found) {
+    Faces out;
+    out.corners.resize(mesh.outer.corners.rows(), static_cast<Index>(found.size()));
+    out.cell.resize(static_cast<Index>(found.size()));
+    for (Index i = 0; i < out.cell.size(); ++i) {
+        out.corners.col(i) = mesh.outer.corners.col(found[static_cast<std::size_t>(i)]);
+        out.cell(i) = mesh.outer.cell(found[static_cast<std::size_t>(i)]);
+    }
+    return out;
+}
+
 // Returns the outer faces that have the corners of a group's triangles or quads. Unlike those, outer faces are
 // oriented. Refuses a group with a face that is not on the outside.
 Faces faces_of_group(files::JsonReader& entry, const CaseMesh& mesh) {
@@ -208,17 +246,24 @@ Faces faces_of_group(files::JsonReader& entry, const CaseMesh& mesh) {
         }
         found.push_back(it->second);
     }
-    Faces out;
-    out.corners.resize(corners, static_cast<Index>(found.size()));
-    out.cell.resize(static_cast<Index>(found.size()));
-    for (Index i = 0; i < out.cell.size(); ++i) {
-        out.corners.col(i) = mesh.outer.corners.col(found[static_cast<std::size_t>(i)]);
-        out.cell(i) = mesh.outer.cell(found[static_cast<std::size_t>(i)]);
+    return faces_at(mesh, found);
+}
+
+// The outer faces all of whose corners lie around the cavity.
+Faces faces_inside(const CaseMesh& mesh) {
+    std::vector<Index> found;
+    for (Index face = 0; face < mesh.outer.corners.cols(); ++face) {
+        const auto corners = mesh.outer.corners.col(face);
+        if (std::all_of(corners.begin(), corners.end(), [&](int node) {
+                return std::binary_search(mesh.inside.begin(), mesh.inside.end(), node);
+            }))
+            found.push_back(face);
     }
-    return out;
+    return faces_at(mesh, found);
 }
 
 Faces faces_of_side(files::JsonReader& entry, const CaseMesh& mesh) {
+    if (!mesh.inside.empty() && entry.text("face") == "inside") return faces_inside(mesh);
     Faces faces = faces_on(mesh.mesh, mesh.outer, read_side(entry));
     if (faces.cell.size() == 0)
         entry.fail("face", "no face of the mesh in that side of its bounding box", "at least one");
@@ -242,19 +287,29 @@ CaseMesh read_case_mesh(files::JsonReader& json, const std::filesystem::path& fo
     constexpr std::array<Element, 3> kElements{Element::hex8_bbar, Element::hex8, Element::tet4};
     element = kElements[json.has("element") ? json.choice("element", {"hex8-bbar", "hex8", "tet4"}) : 0];
     files::JsonReader mesh_json = json.object("mesh");
-    mesh_json.only({"box", "file"});
-    if (mesh_json.has("box") == mesh_json.has("file")) {
-        json.fail("mesh", mesh_json.has("box") ? "box and file" : "neither box nor file", "one of box and file");
-    }
+    mesh_json.only({"box", "bellows", "file"});
+    const int kinds = int{mesh_json.has("box")} + int{mesh_json.has("bellows")} + int{mesh_json.has("file")};
+    if (kinds != 1) json.fail("mesh", std::to_string(kinds) + " meshes", "one of box, bellows and file");
     CaseMesh out;
     if (mesh_json.has("file")) {
         const std::filesystem::path path = folder / mesh_json.text("file");
         out.file = path.string();
         out.msh = files::read_msh(path);
         out.mesh = mesh_of(*out.msh, element, out.file);
+    } else if (mesh_json.has("bellows")) {
+        const Bellows shape = read_bellows(mesh_json.object("bellows"));
+        with_key(json.file(), "mesh.bellows", "a wall and a plate that can be meshed", [&] {
+            BellowsMesh made = bellows(shape);
+            out.mesh = element == Element::tet4 ? split_columns_to_tets(made.mesh) : std::move(made.mesh);
+            out.inside = std::move(made.inside);
+        });
+        if (static_cast<double>(out.mesh.nodes_m.cols()) > kMostNodes)
+            json.fail("mesh.bellows", std::to_string(out.mesh.nodes_m.cols()) + " nodes",
+                      "at most " + files::short_number(kMostNodes));
     } else {
         const Box box = read_box(mesh_json.object("box"));
         with_key(json.file(), "mesh.box", "a box that can be meshed", [&] { out.mesh = hex_box(box); });
+        out.mesh.nodes_m.colwise() += read_origin_m(mesh_json.object("box"));
         if (element == Element::tet4) out.mesh = split_to_tets(out.mesh);
     }
     check_cells(out, json);

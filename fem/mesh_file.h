@@ -20,9 +20,10 @@ struct CaseMesh {
     std::string file;               // of the mesh; "" for a box
     std::optional<files::Msh> msh;  // holds the physical groups; absent for a box
     std::vector<std::string> warnings;
+    std::vector<int> inside;  // nodes around the cavity of a bellows: its face "inside"
 };
 
-// Reads "mesh" and "element". The coordinates of a .msh file are in mm; its nodes that no cell uses are left out.
+// Reads "mesh" (a box, bellows, or a file) and "element". The coordinates of a .msh file are in mm; its nodes that no cell uses are left out.
 // Throws InputError for a mesh that cannot be computed with, for a node that lies in a face of a cell without being a
 // corner of the cell, and for more nodes than a desktop can factor. Two nodes at one place only give a warning.
 CaseMesh read_case_mesh(files::JsonReader& json, const std::filesystem::path& folder, mechanics::Element& element);

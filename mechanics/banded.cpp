@@ -8,15 +8,6 @@
 #include "mechanics/error.h"
 #include "mechanics/index.h"
 
-#ifdef PALPA_HAS_MUMPS
-extern "C" {
-void openblas_set_num_threads(int);
-void dpbtrf_(const char* uplo, const int* n, const int* kd, double* ab, const int* ldab, int* info, std::size_t);
-void dpbtrs_(const char* uplo, const int* n, const int* kd, const int* columns, const double* ab, const int* ldab,
-             double* b, const int* ldb, int* info, std::size_t);
-}
-#endif
-
 namespace palpa::mechanics {
 namespace {
 
@@ -136,7 +127,7 @@ void analyse(const LowerMatrix& A, BandedFactor& factor) {
     const int rows = factor.order.band + 1;
     if (static_cast<double>(rows) * static_cast<double>(A.cols()) > 2e9)
         throw OutOfMemory("banded solver: the band is too wide; use mumps or eigen", 0);
-    factor.values.setZero(rows, A.cols());
+    factor.matrix = band_matrix(A.cols(), factor.order.band);
     factor.permuted.resize(A.rows(), 1);
     factor.place.clear();
     for (int j = 0; j < static_cast<int>(A.cols()); ++j) {
@@ -151,39 +142,32 @@ void analyse(const LowerMatrix& A, BandedFactor& factor) {
 
 #ifdef PALPA_HAS_MUMPS
 bool banded_built_in() { return true; }
+#else
+bool banded_built_in() { return false; }
+#endif
 
 int try_factor(const LowerMatrix& A, BandedFactor& factor) {
     assert(static_cast<std::size_t>(A.nonZeros()) == factor.place.size());
-    openblas_set_num_threads(1);  // a second one gains nothing and spins
-    factor.values.setZero();
-    for (std::size_t k = 0; k < factor.place.size(); ++k) factor.values.data()[factor.place[k]] = A.valuePtr()[k];
-    const int n = static_cast<int>(A.cols());
-    const int rows = factor.order.band + 1;
-    int info = 0;
-    dpbtrf_("L", &n, &factor.order.band, factor.values.data(), &rows, &info, 1);
+    double* values = factor.matrix.values.data();
+    factor.matrix.values.setZero();
+    for (std::size_t k = 0; k < factor.place.size(); ++k) values[factor.place[k]] = A.valuePtr()[k];
+    const int info = factor_in_place(factor.matrix);
     factor.factored = info == 0;
     return info;
 }
 
 void solve_in_place(const BandedFactor& factor, Eigen::Ref<Eigen::MatrixXd> block) {
     assert(factor.factored);
-    const auto n = static_cast<int>(factor.values.cols());
-    const auto columns = static_cast<int>(block.cols());
+    const Eigen::Index n = factor.matrix.size();
+    const Eigen::Index columns = block.cols();
     if (factor.permuted.cols() < columns) factor.permuted.resize(n, columns);
-    for (int k = 0; k < columns; ++k) {
-        for (int i = 0; i < n; ++i) factor.permuted(factor.order.position[at(i)], k) = block(i, k);
+    for (Eigen::Index k = 0; k < columns; ++k) {
+        for (Eigen::Index i = 0; i < n; ++i) factor.permuted(factor.order.position[at(i)], k) = block(i, k);
     }
-    const int rows = factor.order.band + 1;
-    int info = 0;
-    dpbtrs_("L", &n, &factor.order.band, &columns, factor.values.data(), &rows, factor.permuted.data(), &n, &info, 1);
-    for (int k = 0; k < columns; ++k) {
-        for (int i = 0; i < n; ++i) block(i, k) = factor.permuted(factor.order.position[at(i)], k);
+    solve_in_place(factor.matrix, factor.permuted.leftCols(columns));
+    for (Eigen::Index k = 0; k < columns; ++k) {
+        for (Eigen::Index i = 0; i < n; ++i) block(i, k) = factor.permuted(factor.order.position[at(i)], k);
     }
 }
-#else
-bool banded_built_in() { return false; }
-int try_factor(const LowerMatrix&, BandedFactor&) { return -1; }
-void solve_in_place(const BandedFactor&, Eigen::Ref<Eigen::MatrixXd>) {}
-#endif
 
 }  // namespace palpa::mechanics

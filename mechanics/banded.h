@@ -6,6 +6,7 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "mechanics/band_matrix.h"
 #include "mechanics/stiffness.h"
 
 namespace palpa::mechanics {
@@ -31,8 +32,8 @@ inline double banded_work(const BandOrder& order) {
 
 struct BandedFactor {
     BandOrder order;
-    std::vector<int> place;            // of each value of A in `values`
-    Eigen::MatrixXd values;            // (band + 1) x n, LAPACK's lower band storage: A, and after factor() its factor
+    std::vector<int> place;            // of each value of A in `matrix`
+    BandMatrix matrix;                 // A, and after try_factor() its factor
     mutable Eigen::MatrixXd permuted;  // scratch: one thread at a time may solve
     bool factored = false;
 };

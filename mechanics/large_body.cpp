@@ -29,6 +29,19 @@ const std::vector<CellRest<N>>& rests(const LargeBody& body) {
 
 bool has_mean_volume(const LargeBody& body) { return body.element == Element::hex8_bbar; }
 
+}  // namespace
+
+template <int N>
+void cell_of(const LargeBody& body, Eigen::Index cell, const Eigen::Matrix3Xd& u_m, Wanted wanted, LargeCell<N>& out) {
+    const auto at = static_cast<std::size_t>(cell);
+    large_cell<N>(rests<N>(body)[at], body.materials[at], has_mean_volume(body), corners_now_m<N>(body, cell, u_m),
+                  wanted, out);
+}
+template void cell_of<8>(const LargeBody&, Eigen::Index, const Eigen::Matrix3Xd&, Wanted, LargeCell<8>&);
+template void cell_of<4>(const LargeBody&, Eigen::Index, const Eigen::Matrix3Xd&, Wanted, LargeCell<4>&);
+
+namespace {
+
 // Sums the energy, and what else is wanted. gradient_N and K_N_per_m may be null if they are not.
 template <int N>
 double sum_cells(const LargeBody& body, const Eigen::Matrix3Xd& u_m, Wanted wanted, Tangent kind,
@@ -36,9 +49,7 @@ double sum_cells(const LargeBody& body, const Eigen::Matrix3Xd& u_m, Wanted want
     LargeCell<N> cell;
     double energy = 0.0;
     for (Eigen::Index i = 0; i < body.mesh.cells.cols(); ++i) {
-        const auto at = static_cast<std::size_t>(i);
-        large_cell<N>(rests<N>(body)[at], body.materials[at], has_mean_volume(body), corners_now_m<N>(body, i, u_m),
-                      wanted, cell);
+        cell_of(body, i, u_m, wanted, cell);
         energy += cell.energy_J;
         if (!std::isfinite(energy)) return std::numeric_limits<double>::infinity();
         if (wanted == Wanted::energy) continue;

@@ -31,6 +31,10 @@ double energy_tangent_N_per_m(const LargeBody& body, const Eigen::Matrix3Xd& u_m
                               Eigen::Matrix3Xd& gradient_N, LowerMatrix& K_N_per_m);
 inline LowerMatrix tangent_pattern(const LargeBody& body) { return pattern_of(body.near); }
 
+// One cell of the body as it is at u_m; see large_cell(). N: 8 or 4 corners, as the element has.
+template <int N>
+void cell_of(const LargeBody& body, Eigen::Index cell, const Eigen::Matrix3Xd& u_m, Wanted wanted, LargeCell<N>& out);
+
 // Mean strain (Green-Lagrange) and stress (Cauchy) of each cell, 6 x n_cells.
 CellFields large_cell_fields(const LargeBody& body, const Eigen::Matrix3Xd& u_m);
 

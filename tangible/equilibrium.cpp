@@ -1,0 +1,253 @@
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+
+#include "tangible/linearised.h"
+
+namespace palpa::tangible {
+namespace {
+
+constexpr int kMostNewton = 40;
+constexpr int kMostHalvings = 8;     // of a step of the load
+constexpr double kBalanced = 1e-10;   // greatest last correction, over the body's size
+
+constexpr double kSmallMove = 2e-3;   // that needs no search, over the body's size
+constexpr double kLeastShare = 0.01;  // of a step
+
+// What each channel is led by: its force p, or its coordinate v.
+struct Goal {
+    SmallColumn value;
+    std::array<bool, kMostChannels> by_position{};
+};
+
+Goal goal_of(const DeviceModel& model, const DeviceState& state, const DeviceLoad& load) {
+    Goal goal;
+    goal.value.resize(channels_of(model));
+    goal.value(0) = load.finger_by_position ? load.finger + state.rest_depth_m : load.finger;
+    goal.by_position[0] = load.finger_by_position;
+    for (int j = 0; j < model.n_actuators(); ++j) {
+        const auto at = static_cast<std::size_t>(j);
+        goal.by_position[at + 1] = load.by_position[at];
+        goal.value(1 + j) = load.by_position[at] ? model.rest[at] - load.length[at] : load.actuation[at];
+    }
+    return goal;
+}
+
+// Where the state stands in the terms of a goal.
+SmallColumn present(const DeviceModel& model, const DeviceState& state, const Goal& goal) {
+    SmallColumn out = coordinates(model, state);
+    for (int k = 0; k < out.size(); ++k) {
+        if (goal.by_position[static_cast<std::size_t>(k)]) continue;
+        out(k) = k == 0 ? state.finger_N : state.actuation[static_cast<std::size_t>(k - 1)];
+    }
+    return out;
+}
+
+// The channels' forces with which those that are led by position come where they shall.
+SmallColumn forces_for(const Goal& goal, const SmallColumn& value, const SmallColumn& v, const Response& response) {
+    SmallColumn p = value;
+    std::array<Eigen::Index, kMostChannels> led{};
+    Eigen::Index count = 0;
+    for (Eigen::Index k = 0; k < value.size(); ++k) {
+        if (!goal.by_position[static_cast<std::size_t>(k)]) continue;
+        p(k) = 0.0;
+        led[static_cast<std::size_t>(count++)] = k;
+    }
+    if (count == 0) return p;
+    const SmallColumn there = v + response.moved + response.compliance * p;
+    Small left(count, count);
+    SmallColumn right(count);
+    for (Eigen::Index a = 0; a < count; ++a) {
+        const Eigen::Index row = led[static_cast<std::size_t>(a)];
+        right(a) = value(row) - there(row);
+        for (Eigen::Index b = 0; b < count; ++b) left(a, b) = response.compliance(row, led[static_cast<std::size_t>(b)]);
+    }
+    const SmallColumn found = Eigen::PartialPivLU<Small>(left).solve(right);
+    for (Eigen::Index a = 0; a < count; ++a) p(led[static_cast<std::size_t>(a)]) = found(a);
+    return p;
+}
+
+// What Newton's method lowers: the energy under the channels' forces p, with a penalty for what is not yet where
+// positions and ties of motion want it (an augmented Lagrangian function; Nocedal & Wright, section 17.3).
+double merit_J(const DeviceModel& model, const DeviceState& state, const Goal& goal, const SmallColumn& value,
+               const SmallColumn& p) {
+    double sum = device_energy_J(model, state);
+    if (!std::isfinite(sum)) return sum;
+    const SmallColumn v = coordinates(model, state);
+    sum -= p.dot(v);
+    for (Eigen::Index k = 0; k < v.size(); ++k) {
+        const double gap_m = goal.by_position[static_cast<std::size_t>(k)] ? v(k) - value(k) : 0.0;
+        sum += 0.5 * model.hold_N_per_m * gap_m * gap_m;
+    }
+    for (const auto& pair : model.equal_motion) {
+        const double gap_m = v(1 + pair[0]) - v(1 + pair[1]);
+        sum += 0.5 * model.hold_N_per_m * gap_m * gap_m;
+    }
+    return sum;
+}
+
+// Moves by the whole step, or by as much of it as lowers the merit. Small steps are taken as they are.
+void search(const DeviceModel& model, DeviceState& state, const Response& response, const Goal& goal,
+            const SmallColumn& value, const SmallColumn& p, double most_m) {
+    const double whole = std::min(1.0, kMostMove * model.size_m / std::max(most_m, 1e-300));
+    if (most_m < kSmallMove * model.size_m) {
+        move(model, state, response, p, whole);
+        return;
+    }
+    const SmallColumn forces = p + response.tied + response.tying * p;
+    const double before_J = merit_J(model, state, goal, value, forces);
+    double share = whole;
+    move(model, state, response, p, share);
+    while (share > kLeastShare * whole &&
+           !(merit_J(model, state, goal, value, forces) <= before_J + 1e-12 * std::abs(before_J))) {
+        move(model, state, response, p, -0.5 * share);
+        share *= 0.5;
+    }
+}
+
+// Newton's method at one value of the goal.
+DeviceStatus newton(const DeviceModel& model, DeviceState& state, const Goal& goal, const SmallColumn& value,
+                    ForwardAnswer& answer) {
+    for (int i = 0; i < kMostNewton; ++i) {
+        if (!factor_tangent(model, state)) return DeviceStatus::no_equilibrium;
+        const Response response = respond(model, state);
+        const SmallColumn p = forces_for(goal, value, coordinates(model, state), response);
+        const double most_m = solve_displacement(model, state, response, p);
+        ++answer.iterations;
+        if (!std::isfinite(most_m) || !p.allFinite()) return DeviceStatus::no_equilibrium;
+        search(model, state, response, goal, value, p, most_m);
+        answer.residual_m = std::max(most_m, move_all_shifts(model, state));
+        if (answer.residual_m <= kBalanced * model.size_m)
+            return state.repaired ? DeviceStatus::unstable : DeviceStatus::good;
+    }
+    return DeviceStatus::slow;
+}
+
+struct Snapshot {
+    Actuation actuation, tie_part;
+    double finger_N;
+};
+
+Snapshot keep(DeviceState& state) {
+    state.good_u_m = state.u_m;
+    state.good_shift_m = state.shift_m;
+    return {state.actuation, state.tie_part, state.finger_N};
+}
+
+void go_back(DeviceState& state, const Snapshot& kept) {
+    state.u_m = state.good_u_m;
+    state.shift_m = state.good_shift_m;
+    state.actuation = kept.actuation;
+    state.tie_part = kept.tie_part;
+    state.finger_N = kept.finger_N;
+    state.factored = false;
+}
+
+bool finite(const DeviceLoad& load) {
+    const auto all = [](const auto& values) {
+        return std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); });
+    };
+    return all(load.actuation) && all(load.length) && std::isfinite(load.finger);
+}
+
+void describe(const DeviceModel& model, const DeviceState& state, ForwardAnswer& answer) {
+    answer.depth_m = depth_m(model, state);
+    answer.tilt = tilts(model, state);
+    answer.force_N = state.finger_N;
+    for (std::size_t j = 0; j < answer.actuation.size(); ++j) answer.actuation[j] = state.actuation[j] + state.tie_part[j];
+    answer.length = lengths(model, state.u_m);
+}
+
+}  // namespace
+
+ForwardAnswer equilibrium(const DeviceModel& model, DeviceState& state, const DeviceLoad& load) noexcept {
+    ForwardAnswer answer;
+    if (!finite(load)) {
+        describe(model, state, answer);
+        return answer;
+    }
+    const Goal goal = goal_of(model, state, load);
+    const SmallColumn from = present(model, state, goal);
+    double reached = 0.0;
+    double step = 1.0;
+    Snapshot kept = keep(state);
+    for (int halvings = 0; reached < 1.0;) {
+        const double share = std::min(1.0, reached + step);
+        answer.status = newton(model, state, goal, from + share * (goal.value - from), answer);
+        if (answer.status == DeviceStatus::good || answer.status == DeviceStatus::unstable) {
+            reached = share;
+            if (reached < 1.0) kept = keep(state);
+            continue;
+        }
+        go_back(state, kept);
+        if (++halvings > kMostHalvings) break;
+        step *= 0.5;
+    }
+    describe(model, state, answer);
+    return answer;
+}
+
+ForwardAnswer press_to_depth(const DeviceModel& model, DeviceState& state, const Actuation& actuation,
+                             double depth) noexcept {
+    DeviceLoad load;
+    load.actuation = actuation;
+    load.finger = depth;
+    load.finger_by_position = true;
+    return equilibrium(model, state, load);
+}
+
+ForwardAnswer prepare_press(const DeviceModel& model, DeviceState& state, double force_at_floor_N) noexcept {
+    Actuation at_lower{};
+    for (int j = 0; j < model.n_actuators(); ++j) at_lower[static_cast<std::size_t>(j)] = model.actuators[static_cast<std::size_t>(j)].lower;
+    const auto rest_at = [&](double tension) {
+        DeviceLoad load;
+        load.actuation = at_lower;
+        for (int j = 0; model.device.pretension && j < model.n_actuators(); ++j) {
+            const auto at = static_cast<std::size_t>(j);
+            if (model.driver[at] == model.driver[static_cast<std::size_t>(*model.device.pretension)])
+                load.actuation[at] = tension;
+        }
+        const ForwardAnswer rest = equilibrium(model, state, load);
+        state.rest_depth_m += depth_m(model, state);
+        state.pretension = load.actuation;
+        state.has_linear = false;
+        return rest;
+    };
+    const double floor_m = model.device.depth_floor_m;
+    if (!std::isfinite(force_at_floor_N)) return {};
+    if (!model.device.pretension) return rest_at(0.0);
+    const SoftActuator& tight = model.actuators[static_cast<std::size_t>(*model.device.pretension)];
+    // how much too stiff the device is, as a force at the floor
+    const auto excess_N = [&](double tension) {
+        rest_at(tension);
+        return press_to_depth(model, state, state.pretension, floor_m).force_N - force_at_floor_N;
+    };
+    double low = tight.lower, high = tight.upper;
+    double below = excess_N(low);
+    double above = below < 0.0 ? excess_N(high) : 0.0;
+    DeviceStatus status = below >= 0.0 || above <= 0.0 ? DeviceStatus::slow : DeviceStatus::good;
+    if (below >= 0.0) high = low;
+    if (below < 0.0 && above <= 0.0) low = high;
+    // false position with halved ends (Illinois; Dowell & Jarratt, BIT 11, 1971)
+    for (int i = 0, side = 0; i < 40 && high - low > 1e-9 * (tight.upper - tight.lower); ++i) {
+        const double middle = (low * above - high * below) / (above - below);
+        const double there = excess_N(middle);
+        if (there == 0.0 || std::abs(there) < 1e-9 * std::abs(force_at_floor_N)) {
+            low = high = middle;
+        } else if (there < 0.0) {
+            low = middle, below = there;
+            if (side < 0) above *= 0.5;
+            side = -1;
+        } else {
+            high = middle, above = there;
+            if (side > 0) below *= 0.5;
+            side = 1;
+        }
+    }
+    ForwardAnswer answer = rest_at(0.5 * (low + high));
+    answer.depth_m = depth_m(model, state);
+    if (answer.status == DeviceStatus::good) answer.status = status;
+    return answer;
+}
+
+}  // namespace palpa::tangible
