@@ -4,11 +4,11 @@
 
 #include <array>
 #include <filesystem>
-#include <map>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "devices/rig.h"
 #include "fem/body_file.h"
 
 namespace palpa::tangible {
@@ -90,11 +90,11 @@ struct SoftDevice {
     std::vector<SoftTie> ties;
     Effector effector;
     SensorOptions sensor;
-    double depth_floor_m = 0.5e-3;          // below it the actuation is that of the pretension
-    std::optional<int> pretension;          // the actuator (with those tied to it) that sets the stiffness at the floor
-    double tikhonov = 1e-8;                 // of the inverse problem: see inverse.h
-    double rate_term_m = 0.0;               // cost of a change by the whole range of an actuator, as an error of depth
-    std::map<std::string, std::string> ports;  // name of a port -> its usual path
+    double depth_floor_m = 0.5e-3;  // below it the actuation is that of the pretension
+    std::optional<int> pretension;  // the actuator (with those tied to it) that sets the stiffness at the floor
+    double tikhonov = 1e-8;         // of the inverse problem: see inverse.h
+    double rate_term_m = 0.0;       // cost of a change by the whole range of an actuator, as an error of depth
+    std::optional<devices::ActuatorRig> wires;  // one channel for each actuator, in their order
     double density_kg_per_m3 = 1070.0;
     std::optional<Eigen::Vector3d> gravity_m_per_s2;  // absent: no weight
     std::vector<std::string> warnings;
