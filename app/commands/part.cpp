@@ -9,6 +9,7 @@
 #include <stdexcept>
 
 #include "app/commands/option_checks.h"
+#include "app/commands/part_design.h"
 #include "files/input_error.h"
 #include "files/printable.h"
 #include "files/text.h"
@@ -175,6 +176,9 @@ void add_part(CLI::App& app) {
         ->capture_default_str();
     info->callback([options] { print_info(*options); });
     stiffness->callback([options] { print_stiffness(*options); });
+    add_part_edit(*part);
+    add_part_compare(*part);
+    add_part_export(*part);
 }
 
 }  // namespace palpa::app
