@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <memory>
 
+#include "app/commands/part_design.h"
 #include "files/json.h"
 #include "files/printable.h"
 #include "files/text.h"
@@ -69,6 +70,9 @@ void add_part(CLI::App& app) {
     info->callback([options] { print_info(*options); });
     add_part_evaluate(*part);
     add_part_button(*part);
+    add_part_edit(*part);
+    add_part_compare(*part);
+    add_part_export(*part);
 }
 
 }  // namespace palpa::app
