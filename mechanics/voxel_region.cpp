@@ -163,6 +163,14 @@ void spans_of_shape(const BandsRegion& bands, const Line& line, std::vector<Span
     }
 }
 
+void spans_of_shape(const SolidRegion& region, const Line& line, std::vector<Span>& out) {
+    // the same side of a boundary as in boxes
+    const double shift_m = 1e-9 * line.frame.pitch_m;
+    static thread_local std::vector<Stretch> stretches;
+    stretches_of(*region.solid, region.solid->along_x, line.y_m + shift_m, line.z_m + shift_m, stretches);
+    for (const Stretch& stretch : stretches) add(line, {stretch.low_m, stretch.high_m}, out);
+}
+
 void spans_of_shape(const BooleanRegion& boolean, const Line& line, std::vector<Span>& out) {
     std::vector<Span> result, part;
     for (std::size_t i = 0; i < boolean.parts.size(); ++i) {
@@ -209,6 +217,7 @@ Extent extent_of_shape(const BoxRegion& box) { return {box.min_m, box.max_m}; }
 Extent extent_of_shape(const BallRegion& ball) { return around({ball.centre_m}, ball.radius_m); }
 Extent extent_of_shape(const CylinderRegion& c) { return around({c.from_m, c.to_m}, c.radius_m); }
 Extent extent_of_shape(const PathRegion& path) { return around(path.points_m, path.radius_m); }
+Extent extent_of_shape(const SolidRegion& region) { return {region.solid->low_m, region.solid->high_m}; }
 Extent extent_of_shape(const BooleanRegion& boolean) {
     if (boolean.parts.empty()) return around({}, 0.0);
     Extent out = extent_of(boolean.parts.front());

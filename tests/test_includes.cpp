@@ -24,6 +24,7 @@ const std::map<std::string, std::set<std::string>> kMayInclude{
     {"mechanics", {}},
     {"avatar", {}},
     {"parts", {"files", "mechanics"}},
+    {"parts/export", {"parts", "files", "mechanics"}},
     {"scene",
      {"files", "platform/sample.h", "platform/timeline.h", "calibration", "stiffnessmaps", "mechanics", "avatar"}},
     {"render", {"platform"}},
@@ -57,7 +58,7 @@ const std::map<std::string, std::set<std::string>> kMayInclude{
       "study", "session"}},
     {"app/commands",
      {"app", "files", "platform", "calibration", "stiffnessmaps", "mechanics", "avatar", "scene", "render", "devices",
-      "study", "session", "tactile", "fem", "parts", "figures", "accuracy", "desk"}},
+      "study", "session", "tactile", "fem", "parts", "parts/export", "figures", "accuracy", "desk"}},
     {"app/web", {"app", "files", "platform", "calibration", "scene", "render", "study", "session"}},
 };
 
