@@ -7,6 +7,7 @@
 #include "files/input_error.h"
 #include "files/text.h"
 #include "mechanics/error.h"
+#include "parts/button_file.h"
 #include "parts/region_file.h"
 #include "parts/shape_file.h"
 
@@ -162,7 +163,7 @@ std::vector<Material> elastic_of(const Part& part) {
 
 Part parse_part(const files::Json& value, const std::string& file_name) {
     files::JsonReader json(value, file_name);
-    json.only({"name", "voxel_mm", "size_mm", "cell_mm", "materials", "shape", "supports", "loads", "axis"});
+    json.only({"name", "voxel_mm", "size_mm", "cell_mm", "materials", "shape", "supports", "loads", "axis", "button"});
     Part part;
     part.file = file_name;
     part.name = json.text("name", file_name);
@@ -172,6 +173,7 @@ Part parse_part(const files::Json& value, const std::string& file_name) {
     for (files::JsonReader& support : json.objects("supports")) part.supports.push_back(read_support(support));
     read_loads(json, part);
     if (json.has("axis")) part.axis = static_cast<int>(json.choice("axis", {"x", "y", "z"}));
+    if (auto button = json.optional_object("button")) part.button = read_button(*button, part);
     return part;
 }
 

@@ -21,6 +21,8 @@
 
 namespace palpa::scene {
 
+struct PartTissue;
+struct PartWork;
 struct Plan;
 
 // The prepared block; constant while it runs. Positions are in the phantom's frame, whose origin is the block's corner.
@@ -130,6 +132,12 @@ inline bool knows_surface(const LinearOptions&) { return true; }
 LinearTissue prepare(const LinearOptions& options, const Scene& scene, const mechanics::Progress& progress);
 bool serves(const LinearTissue& tissue, const Scene& scene);
 inline const LinearTissue* block_of(const LinearTissue& tissue) { return &tissue; }
+inline void leave_out_nodules(LinearOptions& options) { options.nodules = false; }
+// It has no parts, no methods to choose from and no buttons.
+inline const PartTissue* parts_of(const LinearTissue&) { return nullptr; }
+inline const PartWork* part_work_of(const LinearWork&) { return nullptr; }
+inline const char* next_method(const LinearTissue&, LinearWork&) { return nullptr; }
+inline std::optional<std::int64_t> switch_events(const LinearTissue&, const LinearWork&) { return std::nullopt; }
 void describe(const LinearTissue& tissue, const Scene& scene, Plan& plan);
 std::vector<Stage> stages(const LinearTissue& tissue, const Scene& scene);
 files::Json identity(const LinearTissue& tissue);

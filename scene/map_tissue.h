@@ -1,6 +1,9 @@
 #pragma once
 // A recorded or generated map as a tissue, which answers from tables. scene/tissue.h describes the functions.
 
+#include <cstdint>
+#include <optional>
+
 #include "files/json.h"
 #include "mechanics/operators.h"
 #include "scene/contact.h"
@@ -13,6 +16,8 @@
 namespace palpa::scene {
 
 struct LinearTissue;
+struct PartTissue;
+struct PartWork;
 struct Plan;
 
 // A map prepared for look-up.
@@ -37,6 +42,12 @@ inline bool knows_surface(const MapOptions&) { return false; }
 MapTissue prepare(const MapOptions& options, const Scene& scene, const mechanics::Progress& progress);
 bool serves(const MapTissue& tissue, const Scene& scene);
 inline const LinearTissue* block_of(const MapTissue&) { return nullptr; }
+inline void leave_out_nodules(MapOptions& options) { options.nodules = false; }
+// It has no parts, no methods to choose from and no buttons.
+inline const PartTissue* parts_of(const MapTissue&) { return nullptr; }
+inline const PartWork* part_work_of(const MapWork&) { return nullptr; }
+inline const char* next_method(const MapTissue&, MapWork&) { return nullptr; }
+inline std::optional<std::int64_t> switch_events(const MapTissue&, const MapWork&) { return std::nullopt; }
 void describe(const MapTissue& tissue, const Scene& scene, Plan& plan);
 std::vector<Stage> stages(const MapTissue& tissue, const Scene& scene);
 files::Json identity(const MapTissue& tissue);

@@ -36,8 +36,10 @@ std::filesystem::path map_folder(const TissueOptions& options) {
     return std::visit([](const auto& of_kind) { return map_folder(of_kind); }, options);
 }
 
+PartOptions* part_options(TissueOptions& options) { return std::get_if<PartOptions>(&options); }
+
 void leave_out_nodules(TissueOptions& options) {
-    std::visit([](auto& of_kind) { of_kind.nodules = false; }, options);
+    std::visit([](auto& of_kind) { leave_out_nodules(of_kind); }, options);
 }
 
 Tissue prepare(const TissueOptions& options, const Scene& scene, const mechanics::Progress& progress) {
@@ -50,6 +52,23 @@ bool serves(const Tissue& tissue, const Scene& scene) {
 
 const LinearTissue* block_of(const Tissue& tissue) {
     return std::visit([](const auto& of_kind) { return block_of(of_kind); }, tissue);
+}
+
+const PartTissue* parts_of(const Tissue& tissue) {
+    return std::visit([](const auto& of_kind) { return parts_of(of_kind); }, tissue);
+}
+
+const PartWork* part_work_of(const TissueWork& work) {
+    return std::visit([](const auto& of_kind) { return part_work_of(of_kind); }, work);
+}
+
+const char* next_method(const Tissue& tissue, TissueWork& work) {
+    return with_work(tissue, work, [](const auto& of_kind, auto& its_work) { return next_method(of_kind, its_work); });
+}
+
+std::optional<std::int64_t> switch_events(const Tissue& tissue, const TissueWork& work) {
+    return with_work(tissue, work,
+                     [](const auto& of_kind, const auto& its_work) { return switch_events(of_kind, its_work); });
 }
 
 void describe(const Tissue& tissue, const Scene& scene, Plan& plan) {

@@ -7,11 +7,12 @@
 
 #include "scene/linear_tissue.h"
 #include "scene/map_tissue.h"
+#include "scene/part_tissue.h"
 
 namespace palpa::scene {
 
-using Tissue = std::variant<MapTissue, LinearTissue>;  // prepared; part of a plan
-using TissueWork = std::variant<MapWork, LinearWork>;  // what a touch changes; part of a state
+using Tissue = std::variant<MapTissue, LinearTissue, PartTissue>;  // prepared; part of a plan
+using TissueWork = std::variant<MapWork, LinearWork, PartWork>;    // what a touch changes; part of a state
 
 // Of a tissue that is asked for:
 bool takes_seconds(const TissueOptions& options);  // true if preparing it takes so long that progress must be shown
@@ -24,7 +25,8 @@ inline bool knows_surface(const TissueOptions& options) {
     return std::visit([](const auto& of_kind) { return knows_surface(of_kind); }, options);
 }
 
-void leave_out_nodules(TissueOptions& options);  // sets `nodules` to false
+PartOptions* part_options(TissueOptions& options);  // nullptr for a tissue that is no part
+void leave_out_nodules(TissueOptions& options);     // sets `nodules` to false
 
 // Reads or computes the tissue, which may take seconds to minutes: `progress` reports and may cancel. Throws
 // InputError, mechanics' errors for a block that cannot be solved, and mechanics::Cancelled.
@@ -35,6 +37,16 @@ bool serves(const Tissue& tissue, const Scene& scene);
 
 // Returns the block whose surface a finger can press, or nullptr for a tissue that knows none.
 const LinearTissue* block_of(const Tissue& tissue);
+
+// Return the parts, and what presses them, for pictures; nullptr for a tissue that is none.
+const PartTissue* parts_of(const Tissue& tissue);
+const PartWork* part_work_of(const TissueWork& work);
+
+// Takes the tissue's next method, unless something presses. Returns its name; nullptr if the tissue stays as it is.
+const char* next_method(const Tissue& tissue, TissueWork& work);
+
+// Returns how often buttons went on since the start; nothing for a tissue without buttons.
+std::optional<std::int64_t> switch_events(const Tissue& tissue, const TissueWork& work);
 
 // Fills what the plan says about its tissue, from tissue_name on, and adds to its notes.
 void describe(const Tissue& tissue, const Scene& scene, Plan& plan);
