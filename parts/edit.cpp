@@ -52,7 +52,8 @@ std::int64_t edit(const files::Json& operation, EditedPart& edited) {
     const std::size_t before = edited.json["shape"].size();
     try {
         const std::int64_t changed = append_operation(operation, edited);
-        check_shape(edited.part);
+        // a change of material leaves all voxels where they are
+        if (!operation.contains("permute")) check_shape(edited.part);
         return changed;
     } catch (...) {
         if (edited.json["shape"].size() > before) undo_edit(edited);
