@@ -241,6 +241,10 @@ std::string report_markdown(const Report& report) {
         "clustering* is McNemar's exact test with Newcombe's interval (1998, method 10).\n";
     out += free_response_methods(report.free_response);
     out += mixed_methods(report.mixed);
+    for (const Report& group : report.groups) {
+        if (!group.mixed.status.empty())
+            out += "\nThe mixed logistic model of group " + group.group + " " + group.mixed.status + ".\n";
+    }
     out += psychometric_methods(report.psychometrics);
     for (const std::string& note : report.notes) out += "\n- " + note;
     if (!report.notes.empty()) out += "\n";

@@ -207,6 +207,29 @@ TEST_CASE("command study analyse: a table of rated marks gives figures of merit,
     refused(marks + " --rating-scale 5 1", "the lowest rating, then the highest");
 }
 
+TEST_CASE("command study analyse: confidence outside 1 to 5 in the marks of a log is refused with file and line") {
+    const TemporaryFolder folder;
+    const std::string log = (folder / "log").string();
+    REQUIRE(
+        study("simulate " PALPA_SOURCE_DIR "/assets/protocols/effects.json --participants 4 --samples none -o " + log)
+            .status == 0);
+    std::string edited;
+    for (const auto& entry : fs::recursive_directory_iterator(log)) {
+        if (!entry.path().string().ends_with("_marks.tsv")) continue;
+        std::string text = read_text(entry.path());
+        const std::size_t row = text.find('\n') + 1;
+        if (row >= text.size()) continue;
+        std::size_t begin = row;  // of the sixth column, confidence
+        for (int column = 0; column < 5; ++column) begin = text.find('\t', begin) + 1;
+        text.replace(begin, text.find('\t', begin) - begin, "7");
+        write_text_atomically(entry.path(), text);
+        edited = entry.path().filename().string();
+        break;
+    }
+    REQUIRE_FALSE(edited.empty());
+    refused("analyse " + log, edited + ": line 2, confidence: found '7', expected");
+}
+
 TEST_CASE("command study analyse: bad input ends with status 2 and says what was expected") {
     const TemporaryFolder folder;
     write_text_atomically(folder / "c.tsv", "condition\ttp\tfn\tfp\tn\npen\t61\t0\t0\t60\n");
