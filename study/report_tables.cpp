@@ -154,8 +154,6 @@ void add_groups(const Report& report, std::vector<ReportTable>& tables) {
     }
 }
 
-std::string number_of(std::int64_t n, const char* what) { return whole(n) + " " + what + (n == 1 ? "" : "s"); }
-
 }  // namespace
 
 std::vector<ReportTable> report_tables(const Report& report) {
