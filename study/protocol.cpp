@@ -218,6 +218,14 @@ void read_practice(files::JsonReader json, Protocol& protocol) {
     json.finish();
 }
 
+// Without words nobody can agree, so a text of nothing is a slip and not a study without consent.
+std::string read_consent(files::JsonReader& json) {
+    std::string text = json.text("consent");
+    if (text.find_first_not_of(" \t\r\n") == std::string::npos)
+        json.fail("consent", files::shown(text), "the text that a participant agrees to, or no such key");
+    return text;
+}
+
 }  // namespace
 
 Protocol read_protocol(const std::filesystem::path& file) {
@@ -287,7 +295,7 @@ Protocol read_protocol(const std::filesystem::path& file) {
     if (auto practice = json.optional_object("practice")) read_practice(*practice, protocol);
     protocol.break_every_trials = json.integer("break_every_trials", 0, 10000, 0);
     protocol.count_told = json.boolean("nodule_count_told", false);
-    protocol.consent = json.text("consent", "");
+    if (json.has("consent")) protocol.consent = read_consent(json);
     protocol.instructions = json.text("instructions", "");
     protocol.demographics = read_items(json, "demographics");
     protocol.ratings = read_items(json, "ratings");

@@ -91,7 +91,8 @@ struct Report {
     std::vector<RatingResult> ratings;
     std::vector<StaircaseResult> staircases;
     std::vector<std::string> notes;
-    int participants = 0;
+    int participants = 0;             // with a test in the tables
+    int people_without = 0;           // with logs but no test in the tables: replaced, left out, or broken off before
     std::int64_t trials = 0;          // finished tests in which nodules were to be found; 0 for a table of counts
     std::int64_t forced_choices = 0;  // finished tests in which two surfaces were compared; 0 for a table of counts
     std::int64_t practice_trials = 0;

@@ -219,12 +219,16 @@ std::string report_markdown(const Report& report) {
     if (report.simulated) out += "\nNo person took part: hands and eyes were simulated by `palpa study simulate`.\n";
     const std::int64_t tests = report.trials + report.forced_choices;
     if (tests + report.practice_trials + report.interrupted_trials > 0) {
-        out += "\n" + whole(report.participants) + " participants, " + whole(tests) + " finished tests" +
+        out += "\n" + number_of(report.participants, "participant") + ", " + number_of(tests, "finished test") +
                (report.trials > 0 && report.forced_choices > 0
                     ? " (" + whole(report.trials) + " of nodules, " + whole(report.forced_choices) + " forced choices)"
                     : "") +
-               ", " + whole(report.practice_trials) + " practice trials (not in the tables), " +
-               whole(report.interrupted_trials) + " interrupted trials (not in the tables).\n";
+               ", " + number_of(report.practice_trials, "practice trial") + " (not in the tables), " +
+               number_of(report.interrupted_trials, "interrupted trial") + " (not in the tables).\n";
+        if (report.people_without > 0) {
+            out += "\n" + number_of(report.people_without, "more participant") +
+                   (report.people_without == 1 ? " has" : " have") + " logs, but no test in the tables.\n";
+        }
     }
     out += plan_summary(report);
     out +=
