@@ -12,6 +12,7 @@
 
 namespace palpa::scene {
 
+struct ForceCurve;
 struct LinearTissue;
 struct Plan;
 
@@ -32,11 +33,14 @@ bool takes_seconds(const MapOptions& options);
 std::vector<std::filesystem::path> input_files(const MapOptions& options);
 files::Json file_hashes(const MapOptions& options);
 std::filesystem::path map_folder(const MapOptions& options);
+inline bool is_curve(const MapOptions&) { return false; }
+inline void leave_out_nodules(MapOptions& options) { options.nodules = false; }
 inline bool knows_surface(const MapOptions&) { return false; }
 
 MapTissue prepare(const MapOptions& options, const Scene& scene, const mechanics::Progress& progress);
 bool serves(const MapTissue& tissue, const Scene& scene);
 inline const LinearTissue* block_of(const MapTissue&) { return nullptr; }
+inline const ForceCurve* curve_of(const MapTissue&) { return nullptr; }
 void describe(const MapTissue& tissue, const Scene& scene, Plan& plan);
 std::vector<Stage> stages(const MapTissue& tissue, const Scene& scene);
 files::Json identity(const MapTissue& tissue);
@@ -46,5 +50,6 @@ void answer(const MapTissue& tissue, StageId stage, const Press& press, MapWork&
 double rise_N(const MapTissue& tissue, const Station& station, MapWork& work);
 void sample_surface(const MapTissue& tissue, const SurfaceEffect& effect, const Contact& contact, const MapWork& work,
                     SurfaceShape& shape);
+Push push_to(const MapTissue& tissue, const Eigen::Vector2d& p_m, double depth_m, MapWork& work);
 
 }  // namespace palpa::scene

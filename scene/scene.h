@@ -12,8 +12,11 @@
 #include "avatar/display_ratio.h"
 #include "mechanics/mesh.h"
 #include "scene/cues.h"
+#include "scene/force_curve.h"
 #include "scene/mapping.h"
+#include "scene/soft_block.h"
 #include "scene/tactile_options.h"
+#include "scene/tangible_options.h"
 #include "stiffnessmaps/field.h"
 
 namespace palpa::scene {
@@ -32,7 +35,7 @@ struct LinearOptions {
     // Finer around a place and towards the surface, so that `spacing_m` is only the mean; absent: even.
     std::optional<mechanics::Grading> grading{};
 };
-using TissueOptions = std::variant<MapOptions, LinearOptions>;
+using TissueOptions = std::variant<MapOptions, LinearOptions, ForceCurveOptions, SoftBlockOptions>;
 
 // How the avatar's laws take the tangential force from a map.
 struct TangentialOptions {
@@ -75,6 +78,7 @@ struct Scene {
     std::optional<SurfaceEffect> surface;
     DrawnCues cues;  // of the surface
     std::optional<TactileOptions> tactile;
+    std::optional<TangibleOptions> tangible;
     std::int64_t seed = 1;
 };
 

@@ -109,16 +109,7 @@ mechanics::Grading read_grading(files::JsonReader json, double spacing_m) {
     return {{1e-3 * centre_mm[0], 1e-3 * centre_mm[1]}, 1e-3 * finest_mm};
 }
 
-void read_tissue(files::JsonReader json, const fs::path& file, const fs::path& assets, Scene& scene) {
-    json.only({"map", "linear", "stiffness_scale"});
-    const bool linear = json.has("linear");
-    if (linear == json.has("map")) json.fail("", linear ? "two tissues" : "no tissue", "either map or linear");
-    scene.stiffness_scale = json.number("stiffness_scale", {0.0, 1e3, true}, scene.stiffness_scale);
-    if (!linear) {
-        scene.tissue = MapOptions{find_file(json.text("map"), file, assets / "maps")};
-        return json.finish();
-    }
-    files::JsonReader block = json.object("linear");
+LinearOptions read_linear(files::JsonReader block, const fs::path& file, const fs::path& assets) {
     block.only({"phantom", "spacing_mm", "friction", "grading"});
     LinearOptions options;
     options.phantom = find_file(block.text("phantom"), file, assets / "phantoms");
@@ -126,7 +117,18 @@ void read_tissue(files::JsonReader json, const fs::path& file, const fs::path& a
     if (block.has("friction")) options.friction = block.number("friction", {0.0, 10.0, true});
     if (auto grading = block.optional_object("grading")) options.grading = read_grading(*grading, options.spacing_m);
     block.finish();
-    scene.tissue = options;
+    return options;
+}
+
+void read_tissue(files::JsonReader json, const fs::path& file, const fs::path& assets, Scene& scene) {
+    json.only({"map", "linear", "force_curve", "block", "stiffness_scale"});
+    const int kinds = json.has("map") + json.has("linear") + json.has("force_curve") + json.has("block");
+    if (kinds != 1) json.fail("", kinds > 1 ? "two tissues" : "no tissue", "one of map, linear, force_curve and block");
+    scene.stiffness_scale = json.number("stiffness_scale", {0.0, 1e3, true}, scene.stiffness_scale);
+    if (json.has("map")) scene.tissue = MapOptions{find_file(json.text("map"), file, assets / "maps")};
+    if (auto linear = json.optional_object("linear")) scene.tissue = read_linear(*linear, file, assets);
+    if (auto curve = json.optional_object("force_curve")) scene.tissue = read_force_curve(*curve);
+    if (auto block = json.optional_object("block")) scene.tissue = read_soft_block(*block);
     json.finish();
 }
 
@@ -189,7 +191,8 @@ void read_avatar(files::JsonReader json, Scene& scene) {
 Scene read_scene(const fs::path& file, const fs::path& assets) {
     const files::Json root = files::read_json(file);
     files::JsonReader json(root, file.string());
-    json.only({"name", "tissue", "profile", "mapping", "force_scale", "avatar", "surface", "cues", "tactile", "seed"});
+    json.only({"name", "tissue", "profile", "mapping", "force_scale", "avatar", "surface", "cues", "tactile",
+               "tangible", "seed"});
     Scene scene;
     scene.file = file;
     scene.name = json.text("name");
@@ -205,10 +208,13 @@ Scene read_scene(const fs::path& file, const fs::path& assets) {
         scene.cues = read_cues(*cues);
     }
     if (auto tactile = json.optional_object("tactile")) {
-        if (!knows_surface(scene.tissue))
+        if (!knows_surface(scene.tissue) && !is_curve(scene.tissue))
             json.fail("tactile", "a map as the tissue", "linear: a map knows no surface under a finger");
         scene.tactile = read_tactile(*tactile, file, assets);
+        if (!knows_surface(scene.tissue) && scene.tactile->display)
+            json.fail("tactile.display", "a display on a tissue without a surface", "linear, or an arm alone");
     }
+    if (auto tangible = json.optional_object("tangible")) scene.tangible = read_tangible(*tangible, file, assets);
     scene.seed = json.integer("seed", 0, 2000000000, 1);
     json.finish();
     return scene;

@@ -48,6 +48,8 @@ enum class StageForm : std::size_t {
     depth_linear,
     depth_linear_coarse,
     depth_linear_too_coarse,
+    depth_force_curve,
+    depth_soft_block,
     friction_linear,
     tangential_as_recorded,
     tangential_energy,
@@ -92,6 +94,9 @@ inline constexpr std::array<StageFigures, kStageFormCount> kStageFigures{{
     {StageForm::depth_linear_too_coarse, StageId::depth, false, 15.0,
      "not known, the force can be several times too large: even at {} mm the contact's radius spans {} spacings here, "
      "fewer where it is shallower; four are wanted (a smaller spacing_mm)"},
+    {StageForm::depth_force_curve, StageId::depth, false, 0.1, "exact"},
+    {StageForm::depth_soft_block, StageId::depth, false, 0.1,
+     "that of the mesh; a device's loop takes one Newton step of the contact per tick instead"},
     {StageForm::friction_linear, StageId::friction, false, 77.0,  // p99 132
      "tangential force 0.2 % of mu F (median, worst 4 %) against 1.5 mm on the shipped block at 2 mm, raster trace, mu "
      "0.3"},

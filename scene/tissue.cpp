@@ -37,7 +37,7 @@ std::filesystem::path map_folder(const TissueOptions& options) {
 }
 
 void leave_out_nodules(TissueOptions& options) {
-    std::visit([](auto& of_kind) { of_kind.nodules = false; }, options);
+    std::visit([](auto& of_kind) { leave_out_nodules(of_kind); }, options);
 }
 
 Tissue prepare(const TissueOptions& options, const Scene& scene, const mechanics::Progress& progress) {
@@ -50,6 +50,10 @@ bool serves(const Tissue& tissue, const Scene& scene) {
 
 const LinearTissue* block_of(const Tissue& tissue) {
     return std::visit([](const auto& of_kind) { return block_of(of_kind); }, tissue);
+}
+
+const ForceCurve* curve_of(const Tissue& tissue) {
+    return std::visit([](const auto& of_kind) { return curve_of(of_kind); }, tissue);
 }
 
 void describe(const Tissue& tissue, const Scene& scene, Plan& plan) {
@@ -76,6 +80,12 @@ void answer(const Tissue& tissue, StageId stage, const Press& press, TissueWork&
 double rise_N(const Tissue& tissue, const Station& station, TissueWork& work) {
     return with_work(tissue, work,
                      [&](const auto& of_kind, auto& its_work) { return rise_N(of_kind, station, its_work); });
+}
+
+Push push_to(const Tissue& tissue, const Eigen::Vector2d& p_m, double depth_m, TissueWork& work) {
+    return with_work(tissue, work, [&](const auto& of_kind, auto& its_work) {
+        return depth_m > 0.0 ? push_to(of_kind, p_m, depth_m, its_work) : Push{};
+    });
 }
 
 void sample_surface(const Tissue& tissue, const SurfaceEffect& effect, const Contact& contact, const TissueWork& work,

@@ -5,13 +5,16 @@
 #include <variant>
 #include <vector>
 
+#include "scene/force_curve.h"
 #include "scene/linear_tissue.h"
 #include "scene/map_tissue.h"
+#include "scene/soft_block.h"
 
 namespace palpa::scene {
 
-using Tissue = std::variant<MapTissue, LinearTissue>;  // prepared; part of a plan
-using TissueWork = std::variant<MapWork, LinearWork>;  // what a touch changes; part of a state
+using Tissue = std::variant<MapTissue, LinearTissue, ForceCurveTissue, SoftBlockTissue>;  // prepared; part of a plan
+using TissueWork =
+    std::variant<MapWork, LinearWork, ForceCurveWork, SoftBlockWork>;  // what a touch changes; of a state
 
 // Of a tissue that is asked for:
 bool takes_seconds(const TissueOptions& options);  // true if preparing it takes so long that progress must be shown
@@ -22,6 +25,11 @@ std::filesystem::path map_folder(const TissueOptions& options);  // empty for a 
 // Whether a finger's contact with its surface can be computed. Here, so that the reader of scene files needs no tissue.
 inline bool knows_surface(const TissueOptions& options) {
     return std::visit([](const auto& of_kind) { return knows_surface(of_kind); }, options);
+}
+
+// Whether a finger's force depends on its depth alone, so that curve_of() the tissue is one.
+inline bool is_curve(const TissueOptions& options) {
+    return std::visit([](const auto& of_kind) { return is_curve(of_kind); }, options);
 }
 
 void leave_out_nodules(TissueOptions& options);  // sets `nodules` to false
@@ -35,6 +43,9 @@ bool serves(const Tissue& tissue, const Scene& scene);
 
 // Returns the block whose surface a finger can press, or nullptr for a tissue that knows none.
 const LinearTissue* block_of(const Tissue& tissue);
+
+// Returns force over depth where that is all the tissue is, or nullptr.
+const ForceCurve* curve_of(const Tissue& tissue);
 
 // Fills what the plan says about its tissue, from tissue_name on, and adds to its notes.
 void describe(const Tissue& tissue, const Scene& scene, Plan& plan);
@@ -55,6 +66,10 @@ void answer(const Tissue& tissue, StageId stage, const Press& press, TissueWork&
 // Returns the rise of the resisting tangential force up to a station (N), for the avatar's laws. The contact of the
 // touch stays as it is.
 double rise_N(const Tissue& tissue, const Station& station, TissueWork& work);
+
+// The force on a finger that is held at a depth at a place, for devices. Depths at and above the surface give 0. Allocates
+// nothing and does not throw. A work that pushes is not used for touches.
+Push push_to(const Tissue& tissue, const Eigen::Vector2d& p_m, double depth_m, TissueWork& work);
 
 // Computes the surface under the last contact.
 void sample_surface(const Tissue& tissue, const SurfaceEffect& effect, const Contact& contact, const TissueWork& work,

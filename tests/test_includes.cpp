@@ -152,7 +152,7 @@ TEST_CASE("includes: the table refuses what it must") {
 // Everything that depends on the kind of tissue is an overload behind scene/tissue.h.
 bool asks_for_tissue(const std::string& line) {
     static const std::regex asks(
-        "(get_if|std::get|holds_alternative)<[a-z:]*(Map|Linear)(Tissue|Options|Work)>|std::visit");
+        "(get_if|std::get|holds_alternative)<[a-z:]*(Map|Linear|ForceCurve|SoftBlock)(Tissue|Options|Work)>|std::visit");
     return std::regex_search(line, asks);
 }
 
