@@ -345,6 +345,16 @@ void read_wires(JsonReader& json, SoftDevice& out) {
     out.wires = std::move(rig);
 }
 
+void read_fit(JsonReader& json, SoftDevice& out) {
+    auto fit = json.optional_object("fit");
+    if (!fit) return;
+    fit->only({"modulus_factor", "friction_share", "zero_mm"});
+    out.fit.modulus_factor = fit->number("modulus_factor", {0.1, 10.0}, out.fit.modulus_factor);
+    out.fit.friction_share = fit->number("friction_share", {0.0, 0.5}, out.fit.friction_share);
+    out.fit.zero_m = 1e-3 * fit->number("zero_mm", {-100.0, 100.0}, 0.0);
+    fit->finish();
+}
+
 void read_weight(JsonReader& json, SoftDevice& out) {
     out.density_kg_per_m3 = json.number("density_kg_per_m3", {0.0, 1e5, true}, 1070.0);
     if (!json.has("gravity_m_per_s2")) return;
@@ -359,7 +369,7 @@ SoftDevice parse_soft_device(const files::Json& json, const std::string& file_na
     JsonReader reader(json, file_name);
     reader.only({"name", "mesh", "element", "materials", "regions", "supports", "bearings", "cables", "cavities",
                  "ties", "pretension", "effector", "sensor", "depth_floor_mm", "inverse", "wires", "density_kg_per_m3",
-                 "gravity_m_per_s2"});
+                 "gravity_m_per_s2", "fit"});
     SoftDevice out;
     out.file = file_name;
     out.name = reader.text("name");
@@ -377,6 +387,7 @@ SoftDevice parse_soft_device(const files::Json& json, const std::string& file_na
     read_sensor(reader, out);
     read_wires(reader, out);
     read_weight(reader, out);
+    read_fit(reader, out);
     reader.finish();
     return out;
 }

@@ -78,6 +78,13 @@ struct SensorOptions {
     double noise_m = 0.0;  // standard deviation
 };
 
+// What recorded presses said about a device (`palpa tangible fit`).
+struct DeviceFit {
+    double modulus_factor = 1.0;  // multiplies the moduli of all materials
+    double friction_share = 0.0;  // of a cable's tension, that its guides take
+    double zero_m = 0.0;          // of the displacement sensor
+};
+
 struct SoftDevice {
     std::string file;
     std::string name;
@@ -97,6 +104,7 @@ struct SoftDevice {
     std::optional<devices::ActuatorRig> wires;  // one channel for each actuator, in their order
     double density_kg_per_m3 = 1070.0;
     std::optional<Eigen::Vector3d> gravity_m_per_s2;  // absent: no weight
+    DeviceFit fit;
     std::vector<std::string> warnings;
 };
 
