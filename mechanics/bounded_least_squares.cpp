@@ -64,6 +64,7 @@ SmallVector minimum_over_free(const Scaled& s, const ActiveSet& set) {
     for (Eigen::Index j = 0; j < set.z.size(); ++j) {
         if (set.side[static_cast<std::size_t>(j)] == Side::free) column[static_cast<std::size_t>(count++)] = j;
     }
+    if (count == 0) return set.z;
     Rows A(s.A.rows(), count);
     for (Eigen::Index k = 0; k < count; ++k) A.col(k) = s.A.col(column[static_cast<std::size_t>(k)]);
     const Right left = s.b - s.A * set.z;
@@ -160,6 +161,7 @@ bool run(const Scaled& s, ActiveSet& set) {
 }
 
 int rank_of(const SmallRows& W) {
+    if (W.size() == 0) return 0;
     SmallRows unit = W;
     for (Eigen::Index j = 0; j < W.cols(); ++j) {
         const double length = W.col(j).norm();

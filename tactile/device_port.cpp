@@ -27,15 +27,18 @@ void guard_command(double now_s, bool fresh, const devices::ArmFeedback* arm, de
 }
 
 DevicePort::DevicePort(const TactilePlan& plan)
-    : guard_(std::make_unique<devices::ShapeGuard>(
-          devices::ShapeRig{plan.arm, plan.pin_device, plan.options.force_limit_N})),
-      pins_count_(plan.pin_device ? plan.pin_device->pins.size() : 0),
+    : pins_count_(plan.pin_device ? plan.pin_device->pins.size() : 0),
       arm_(plan.arm.has_value()),
-      guarded_(guarded_of(plan)) {}
+      guarded_(guarded_of(plan)) {
+    if (arm_ || pins_count_ > 0)
+        guard_ = std::make_unique<devices::ShapeGuard>(
+            devices::ShapeRig{plan.arm, plan.pin_device, plan.options.force_limit_N});
+}
 
 DevicePort::~DevicePort() = default;
 
 void DevicePort::wait_until_ready(double most_s) {
+    if (!guard_) return;
     const devices::ShapeReport& now = guard_->newest();
     for (const double until_s = files::steady_s() + most_s; files::steady_s() < until_s;) {
         guard_->poll();
@@ -54,15 +57,22 @@ void DevicePort::wait_until_ready(double most_s) {
 
 void DevicePort::stop() noexcept {
     stopped_ = true;
-    guard_->stop();
+    if (guard_) guard_->stop();
 }
 
 void DevicePort::release() noexcept {
     stopped_ = false;
-    guard_->release();
+    if (guard_) guard_->release();
 }
 
 bool DevicePort::read(LoopFeedback& feedback) noexcept {
+    feedback.stopped = stopped_ ? 1.0 : 0.0;
+    if (!guard_) {  // pins that are only drawn
+        const bool stopped = guarded_.guard.fault != devices::Fault::none;
+        if (stopped_ && !stopped) devices::stop(guarded_.guard);
+        if (!stopped_ && stopped) devices::release(guarded_.guard);
+        return true;
+    }
     guard_->poll();
     const devices::ShapeReport& now = guard_->newest();
     feedback.arm = now.arm;
@@ -71,11 +81,11 @@ bool DevicePort::read(LoopFeedback& feedback) noexcept {
     guarded_.guard.count = now.count;
     guarded_.guard.limited = now.limited;
     guarded_.guard.slewed = now.slewed;
-    feedback.stopped = stopped_ ? 1.0 : 0.0;
     return true;
 }
 
 void DevicePort::send(double /*now_s*/, const LoopCommand& command) noexcept {
+    if (!guard_) return;
     const std::size_t pins = std::min(pins_count_, static_cast<std::size_t>(command.pins));
     guard_->send(command.arm, {command.pins_m.data(), pins});
 }

@@ -49,10 +49,10 @@ class DevicePort {
     devices::Fault fault() const noexcept { return guarded_.guard.fault; }  // by the loop's thread
     const Guarded& guarded() const noexcept { return guarded_; }            // once the loop has ended
     const devices::LinkHealth* link() const { return arm_ ? &guard_->link() : nullptr; }
-    devices::PinHealth pins() const { return guard_->newest().pins; }
+    devices::PinHealth pins() const { return guard_ ? guard_->newest().pins : devices::PinHealth{}; }
 
   private:
-    std::unique_ptr<devices::ShapeGuard> guard_;
+    std::unique_ptr<devices::ShapeGuard> guard_;  // null where there is nothing to open
     std::size_t pins_count_ = 0;
     bool arm_ = false;
     Guarded guarded_;  // the guard's own, as it reports it
