@@ -15,10 +15,10 @@ using namespace palpa::test;
 
 namespace {
 
-// The strip renders 0.1 N/mm; the plant is its own model, in the program.
+// The strip renders 0.25 N/mm; the plant is its own model, in the program.
 std::string soft_scene(const TemporaryFolder& folder, const std::string& plant = R"(, "plant": "exact")") {
     write_text_atomically(folder / "soft.json",
-                          R"({"name": "soft", "tissue": {"force_curve": {"stiffness_N_per_mm": 0.2, "greatest_depth_mm": 12}},
+                          R"({"name": "soft", "tissue": {"force_curve": {"stiffness_N_per_mm": 0.25, "greatest_depth_mm": 10}},
         "profile": "s-pen.json", "mapping": {"kind": "direct"},
         "tangible": {"device": "strip.json", "at_mm": "touch", "force_scale": 0.25)" +
                               plant + "}}");

@@ -5,7 +5,6 @@
 
 #include "app/scene_choices.h"
 #include "app/study/felt_search.h"
-#include "scene/advance.h"
 #include "scene/tissue.h"
 
 using namespace palpa;
@@ -23,7 +22,7 @@ StudyScene default_tissue() {
 
 // The contact of a touch with this force.
 scene::State pressed(const StudyScene& scene, const Eigen::Vector2d& place_m, double force_N) {
-    scene::State state = scene::make_state(scene.scene, *scene.plan);
+    scene::State state;
     scene::Press press;
     press.p_m = place_m;
     press.force_N = force_N;
