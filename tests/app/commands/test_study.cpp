@@ -36,8 +36,7 @@ void refused(const std::string& arguments, const std::string& word) {
 }  // namespace
 
 TEST_CASE("command study: help exists for every command") {
-    for (const char* command :
-         {"", "analyse", "exclude", "import", "levels", "observers", "order", "replace", "run", "simulate", "watch"}) {
+    for (const char* command : {"", "analyse", "exclude", "import", "levels", "observers", "order", "preregister", "replace", "run", "simulate", "watch"}) {
         CAPTURE(command);
         const Called help = study(std::string(command) + " --help");
         CHECK(help.status == 0);
@@ -152,8 +151,8 @@ TEST_CASE("command study analyse: counts become tables, JSON and figures") {
     const Json json = parse_json(called.out, "stdout");
     CHECK(json["conditions"]["S-pen"]["se"].get<double>() == doctest::Approx(55.0 / 60.0));
     CHECK(json == read_json(folder / "report/report.json"));
-    for (const char* name :
-         {"sensitivity.tsv", "nodules.tsv", "ppv.tsv", "pairs.tsv", "ppv_pairs.tsv", "report.md", "figures.gp"}) {
+    for (const char* name : {"sensitivity.tsv", "nodules.tsv", "ppv.tsv", "pairs.tsv", "ppv_pairs.tsv", "report.md",
+                             "figures.gp", "sensitivity.json", "pairs.json", "stard.md"}) {
         CAPTURE(name);
         CHECK(std::filesystem::exists(folder / (std::string("report/") + name)));
     }
@@ -238,6 +237,20 @@ TEST_CASE("command study analyse: bad input ends with status 2 and says what was
     refused("analyse " + (folder / "c.tsv").string(), "c.tsv: line 2, tp: found '61', expected at most n = 60");
     refused("analyse " + kCounts + " -o " + (folder / "c.tsv").string(), "c.tsv: found no folder");
     refused("analyse " + kCounts + " --level 2", "--level");
+}
+
+TEST_CASE("command study preregister: a sheet with the hashes, and what is not stated on standard error") {
+    const TemporaryFolder folder;
+    const std::string effects = PALPA_SOURCE_DIR "/assets/protocols/effects.json";
+    const Called called = study("preregister " + effects + " --participants 3");
+    CHECK(called.status == 0);
+    CHECK(contains(called.out, "scene_sha256 "));
+    CHECK(contains(called.out, "map_sha256 "));
+    CHECK(contains(called.out, "\n| 3 | all |"));
+    CHECK(contains(called.err, "not stated: analysis.stopping_rule"));
+    CHECK(study("preregister " + effects + " -o " + (folder / "sheet.md").string()).status == 0);
+    CHECK(contains(read_text(folder / "sheet.md"), "# Preregistration"));
+    refused("preregister " + effects + " -o " + folder.path().string(), "found a folder");
 }
 
 TEST_CASE("command study order: who gets what, with seeds and balance") {
