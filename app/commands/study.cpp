@@ -11,10 +11,11 @@ namespace palpa::app {
 void add_study(CLI::App& app) {
     CLI::App* study =
         app.add_subcommand("study",
-                           "Studies with people: order, preregister, run, simulate, import, exclude, replace, "
+                           "Studies with people: order, power, preregister, run, simulate, import, exclude, replace, "
                            "withdraw, analyse, levels, watch, observers");
     study->require_subcommand(1);
     add_study_order(*study);
+    add_study_power(*study);
     add_study_preregister(*study);
     add_study_run(*study);
     add_study_simulate(*study);
