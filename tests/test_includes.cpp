@@ -61,10 +61,9 @@ const std::map<std::string, std::set<std::string>> kMayInclude{
     {"app/live",
      {"app/assets.h", "app/scene_choices.h", "app/screens", "app/study", "files", "platform", "scene", "render",
       "study", "session"}},
-    {"app/commands",
-     {"app", "files", "platform", "calibration", "stiffnessmaps", "mechanics", "avatar", "scene", "render", "devices",
-      "study", "session", "tactile", "fem", "parts", "parts/export", "figures", "accuracy", "desk"}},
-      "study", "session", "tactile", "tangible", "fem", "parts", "figures", "accuracy", "desk"}},
+    {"app/commands", {"app",   "files",  "platform",     "calibration", "stiffnessmaps", "mechanics", "avatar",
+                      "scene", "render", "devices",      "study",       "session",       "tactile",   "tangible",
+                      "fem",   "parts",  "parts/export", "figures",     "accuracy",      "desk"}},
     {"app/web", {"app", "files", "platform", "calibration", "scene", "render", "study", "session"}},
 };
 
