@@ -71,7 +71,7 @@ Bellows read_bellows(files::JsonReader json) {
     out.along = json.integer("along", 1, 1000);
     out.through = json.integer("through", 1, 20, out.through);
     out.plate_cells = json.integer("plate_cells", 1, 20, out.plate_cells);
-    out.rings = json.integer("rings", 1, 100, out.rings);
+    out.rings = json.integer("rings", 0, 100, out.rings);
     return out;
 }
 

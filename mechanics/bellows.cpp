@@ -33,8 +33,8 @@ void check(const Bellows& b) {
     const double sharpest_m = b.amplitude_m > 0.0 ? 1.0 / (b.amplitude_m * wave * wave) : 1e300;
     std::string wrong;
     if (b.sectors < 8 || b.sectors % 4 != 0) wrong = text("sectors: ", b.sectors, "; wanted a multiple of 4 from 8");
-    if (b.along < 1 || b.through < 1 || b.plate_cells < 1 || b.rings < 1)
-        wrong = "along, through, plate_cells, rings: each at least 1";
+    if (b.along < 1 || b.through < 1 || b.plate_cells < 1 || b.rings < 0)
+        wrong = "along, through, plate_cells: each at least 1; rings: at least 0";
     if (!(b.wall_m < 2.0 * sharpest_m)) wrong = text("wall: its waves are bent more sharply than ", b.wall_m / 2.0, " m");
     if (!(b.radius_m - std::abs(b.amplitude_m) > b.wall_m)) wrong = "radius: the wall reaches the axis";
     for (const double size : {b.radius_m, b.height_m, b.wall_m, b.plate_m}) {
@@ -156,17 +156,23 @@ Plane plane_of(const Bellows& b) {
     }
     out.quads = ring_quads(b, circles);
     const double inner_m = wall_point(b, 1.0, -1.0)(0);
-    const Middle middle = middle_of(b, 0.55 * inner_m);
-    const int first = static_cast<int>(out.nodes.size());
+    const Middle middle = middle_of(b, b.rings == 0 ? inner_m : 0.55 * inner_m);
     // turned so that the square's first edge node, its corner below right, stands at sector 0
     const double turn = std::numbers::pi / 4.0;
-    for (const Vector2d& p : middle.nodes) {
+    // without rings the edge of the middle is the wall's inner circle itself
+    std::vector<int> node_of(middle.nodes.size(), -1);
+    for (std::size_t s = 0; b.rings == 0 && s < middle.edge.size(); ++s)
+        node_of[at(middle.edge[s])] = ring_node(b, 0, static_cast<int>(s));
+    for (std::size_t i = 0; i < middle.nodes.size(); ++i) {
+        if (node_of[i] >= 0) continue;
+        const Vector2d& p = middle.nodes[i];
+        node_of[i] = static_cast<int>(out.nodes.size());
         out.nodes.emplace_back(std::cos(turn) * p.x() - std::sin(turn) * p.y(),
                                std::sin(turn) * p.x() + std::cos(turn) * p.y());
     }
-    for (const auto& q : middle.quads) out.quads.push_back({first + q[0], first + q[1], first + q[2], first + q[3]});
+    for (const auto& q : middle.quads) out.quads.push_back({node_of[at(q[0])], node_of[at(q[1])], node_of[at(q[2])], node_of[at(q[3])]});
     std::vector<int> inner;
-    for (const int node : middle.edge) inner.push_back(first + node);
+    for (const int node : middle.edge) inner.push_back(node_of[at(node)]);
     for (int ring = 1; ring <= b.rings; ++ring) {
         std::vector<int> outer;
         for (int s = 0; s < b.sectors; ++s) {

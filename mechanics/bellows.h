@@ -18,7 +18,7 @@ struct Bellows {
     int along = 22;       // cells along the wall
     int through = 1;      // cells through the wall
     int plate_cells = 2;  // through the plate
-    int rings = 1;        // of the plate, between its square middle and the wall
+    int rings = 0;        // of the plate, between its square middle and the wall
 };
 
 struct BellowsMesh {

@@ -21,7 +21,6 @@
 
 namespace palpa::scene {
 
-struct LinearTissue;
 struct Plan;
 struct Scene;
 struct SurfaceEffect;
@@ -65,13 +64,9 @@ std::vector<std::filesystem::path> input_files(const ForceCurveOptions& options)
 files::Json file_hashes(const ForceCurveOptions& options);
 std::filesystem::path map_folder(const ForceCurveOptions& options);
 inline bool knows_surface(const ForceCurveOptions&) { return false; }
-inline bool is_curve(const ForceCurveOptions&) { return true; }
-inline void leave_out_nodules(ForceCurveOptions&) {}  // it has none
 
 ForceCurveTissue prepare(const ForceCurveOptions& options, const Scene& scene, const mechanics::Progress& progress);
 bool serves(const ForceCurveTissue& tissue, const Scene& scene);
-inline const LinearTissue* block_of(const ForceCurveTissue&) { return nullptr; }
-inline const ForceCurve* curve_of(const ForceCurveTissue& tissue) { return &tissue.options.curve; }
 void describe(const ForceCurveTissue& tissue, const Scene& scene, Plan& plan);
 std::vector<Stage> stages(const ForceCurveTissue& tissue, const Scene& scene);
 files::Json identity(const ForceCurveTissue& tissue);

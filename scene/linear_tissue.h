@@ -21,7 +21,6 @@
 
 namespace palpa::scene {
 
-struct ForceCurve;
 struct Plan;
 
 // The prepared block; constant while it runs. Positions are in the phantom's frame, whose origin is the block's corner.
@@ -126,14 +125,10 @@ bool takes_seconds(const LinearOptions& options);
 std::vector<std::filesystem::path> input_files(const LinearOptions& options);
 files::Json file_hashes(const LinearOptions& options);
 std::filesystem::path map_folder(const LinearOptions& options);
-inline bool is_curve(const LinearOptions&) { return false; }
-inline void leave_out_nodules(LinearOptions& options) { options.nodules = false; }
 inline bool knows_surface(const LinearOptions&) { return true; }
 
 LinearTissue prepare(const LinearOptions& options, const Scene& scene, const mechanics::Progress& progress);
 bool serves(const LinearTissue& tissue, const Scene& scene);
-inline const LinearTissue* block_of(const LinearTissue& tissue) { return &tissue; }
-inline const ForceCurve* curve_of(const LinearTissue&) { return nullptr; }
 void describe(const LinearTissue& tissue, const Scene& scene, Plan& plan);
 std::vector<Stage> stages(const LinearTissue& tissue, const Scene& scene);
 files::Json identity(const LinearTissue& tissue);

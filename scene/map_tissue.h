@@ -1,6 +1,9 @@
 #pragma once
 // A recorded or generated map as a tissue, which answers from tables. scene/tissue.h describes the functions.
 
+#include <cstdint>
+#include <optional>
+
 #include "files/json.h"
 #include "mechanics/operators.h"
 #include "scene/contact.h"
@@ -12,8 +15,6 @@
 
 namespace palpa::scene {
 
-struct ForceCurve;
-struct LinearTissue;
 struct Plan;
 
 // A map prepared for look-up.
@@ -33,14 +34,10 @@ bool takes_seconds(const MapOptions& options);
 std::vector<std::filesystem::path> input_files(const MapOptions& options);
 files::Json file_hashes(const MapOptions& options);
 std::filesystem::path map_folder(const MapOptions& options);
-inline bool is_curve(const MapOptions&) { return false; }
-inline void leave_out_nodules(MapOptions& options) { options.nodules = false; }
 inline bool knows_surface(const MapOptions&) { return false; }
 
 MapTissue prepare(const MapOptions& options, const Scene& scene, const mechanics::Progress& progress);
 bool serves(const MapTissue& tissue, const Scene& scene);
-inline const LinearTissue* block_of(const MapTissue&) { return nullptr; }
-inline const ForceCurve* curve_of(const MapTissue&) { return nullptr; }
 void describe(const MapTissue& tissue, const Scene& scene, Plan& plan);
 std::vector<Stage> stages(const MapTissue& tissue, const Scene& scene);
 files::Json identity(const MapTissue& tissue);

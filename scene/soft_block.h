@@ -33,13 +33,9 @@ std::vector<std::filesystem::path> input_files(const SoftBlockOptions& options);
 files::Json file_hashes(const SoftBlockOptions& options);
 std::filesystem::path map_folder(const SoftBlockOptions& options);
 inline bool knows_surface(const SoftBlockOptions&) { return false; }
-inline bool is_curve(const SoftBlockOptions&) { return true; }
-inline void leave_out_nodules(SoftBlockOptions&) {}  // it has none
 
 SoftBlockTissue prepare(const SoftBlockOptions& options, const Scene& scene, const mechanics::Progress& progress);
 bool serves(const SoftBlockTissue& tissue, const Scene& scene);
-inline const LinearTissue* block_of(const SoftBlockTissue&) { return nullptr; }
-inline const ForceCurve* curve_of(const SoftBlockTissue& tissue) { return &tissue.curve; }
 void describe(const SoftBlockTissue& tissue, const Scene& scene, Plan& plan);
 std::vector<Stage> stages(const SoftBlockTissue& tissue, const Scene& scene);
 files::Json identity(const SoftBlockTissue& tissue);

@@ -17,9 +17,9 @@ constexpr std::size_t kLongestRun = 6;
 constexpr std::size_t kLongestMessage = 400;
 constexpr int kMostFiles = 100000;
 
-constexpr std::array<std::string_view, 9> kTrialEndings{"_events.tsv",    "_events.json",      "_marks.tsv",
-                                                        "_marks.json",    "_samples.tsv",      "_samples.json",
-                                                        "_settings.json", "_performance.json", "_tactile.tsv"};
+constexpr std::array<std::string_view, 10> kTrialEndings{
+    "_events.tsv",   "_events.json",   "_marks.tsv",        "_marks.json",  "_samples.tsv",
+    "_samples.json", "_settings.json", "_performance.json", "_tactile.tsv", "_tangible.tsv"};
 constexpr std::array<std::string_view, 8> kDatasetNames{"dataset_description.json",
                                                         ".bidsignore",
                                                         "protocol.json",

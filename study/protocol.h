@@ -27,7 +27,10 @@ struct Condition {
     std::string device;   // free text, for the log
     std::string instructions;
     std::vector<std::string> nodules;  // by hand only: names of the phantom's nodules, for answers typed in
-    std::optional<TaskKind> task;      // absent: the protocol's; task_of() knows
+    // By hand only: the condition whose scene's phantom this one is cast from, so that its nodules are known, and what a
+    // simulated participant would feel.
+    std::optional<std::size_t> cast_of{};
+    std::optional<TaskKind> task;  // absent: the protocol's; task_of() knows
 };
 
 struct Group {

@@ -8,6 +8,7 @@
 #include "files/input_error.h"
 #include "files/json.h"
 #include "files/text.h"
+#include "study/broken_choices.h"
 #include "study/check_logs.h"
 #include "study/follow_protocol.h"
 #include "study/name_index.h"
@@ -28,12 +29,6 @@ fs::path beside(const fs::path& events, std::string_view suffix) {
     constexpr std::string_view kEvents = "_events.tsv";
     std::string name = events.string();
     return name.substr(0, name.size() - kEvents.size()) + std::string(suffix);
-}
-
-std::string began_utc(const fs::path& file) {
-    if (!fs::exists(file)) return "";  // written last, so an interrupted trial has none
-    const files::Json json = files::read_json(file);
-    return json.contains("began_utc") && json["began_utc"].is_string() ? json["began_utc"].get<std::string>() : "";
 }
 
 // What is known of the whole study while its participants are read.
@@ -123,8 +118,12 @@ class Subject {
             ++out_.interrupted_trials;
     }
 
-    // To be called once all runs are added: compares them with the plan.
-    void settle() {
+    // To be called once all runs are added: finds the choices that were broken off, and compares all with the plan.
+    void settle(const fs::path& subject) {
+        std::set<int> answered;
+        for (const auto& [trial, place] : finished_) answered.insert(trial);
+        const auto broken = broken_choices(subject, answered, out_.notes);
+        out_.interrupted_trials += static_cast<std::int64_t>(broken.size());
         if (!study_.protocol) return;
         const auto likely = study_.numbers.number(code_);
         int number = number_.value_or(likely);
@@ -148,6 +147,7 @@ class Subject {
             throw files::bad_input(text(last_place_), "trial", std::to_string(last_trial_),
                                    "1 to " + std::to_string(plan.trials.size()) + ", as the protocol plans them");
         }
+        for (const BrokenChoice& one : broken) log_broken(one, plan);
         std::vector<std::string> of_other_orders;
         auto& notes = same_orders ? out_.notes : of_other_orders;
         const auto rows = compare_with_plan(*study_.protocol, plan, code_, logged_, notes);
@@ -186,6 +186,18 @@ class Subject {
         logged_.push_back({trial, index, practice, finished, finished && study_.excludes(code_, trial)});
         logged_.back().seed = seed;
         return logged_.back();
+    }
+
+    // An interval is of the surface's condition, which need not be that of the choice: the plan tells it.
+    void log_broken(const BrokenChoice& one, const PlannedParticipant& plan) {
+        const auto n = plan.trials.size();
+        if (static_cast<std::size_t>(one.trial) > n) {
+            throw files::bad_input(one.events.string(), "trial", std::to_string(one.trial),
+                                   "1 to " + std::to_string(n) + ", as the protocol plans them");
+        }
+        if (one.trial == 0) return;
+        const std::size_t condition = plan.trials[static_cast<std::size_t>(one.trial) - 1].condition;
+        logged_.push_back({one.trial, static_cast<int>(condition), one.practice, false, false});
     }
 
     void finish_once(const Place& place, int trial) {
@@ -352,7 +364,8 @@ Observations read_study(const fs::path& directory) {
         Subject reader(code, index, study, out);
         for (const fs::path& events : files) reader.add(events);
         // who left before the first questions were answered has no place in the plan
-        if (!files.empty() || study.people.count(code) > 0) reader.settle();
+        const fs::path subject = directory / ("sub-" + code);
+        if (!files.empty() || study.people.count(code) > 0) reader.settle(subject);
         if (withdrew) out.withdrawn_trials += out.excluded_trials - excluded;
         for (const auto& [who, trial] : study.left_out_trials) {
             if (who == code && reader.has_finished(trial)) finished.insert({who, trial});

@@ -11,14 +11,6 @@ constexpr int kMostNewton = 40;
 constexpr int kMostHalvings = 8;     // of a step of the load
 constexpr double kBalanced = 1e-10;   // greatest last correction, over the body's size
 
-constexpr double kSmallMove = 2e-3;   // that needs no search, over the body's size
-constexpr double kLeastShare = 0.01;  // of a step
-
-// What each channel is led by: its force p, or its coordinate v.
-struct Goal {
-    SmallColumn value;
-    std::array<bool, kMostChannels> by_position{};
-};
 
 Goal goal_of(const DeviceModel& model, const DeviceState& state, const DeviceLoad& load) {
     Goal goal;
@@ -67,44 +59,6 @@ SmallColumn forces_for(const Goal& goal, const SmallColumn& value, const SmallCo
     return p;
 }
 
-// What Newton's method lowers: the energy under the channels' forces p, with a penalty for what is not yet where
-// positions and ties of motion want it (an augmented Lagrangian function; Nocedal & Wright, section 17.3).
-double merit_J(const DeviceModel& model, const DeviceState& state, const Goal& goal, const SmallColumn& value,
-               const SmallColumn& p) {
-    double sum = device_energy_J(model, state);
-    if (!std::isfinite(sum)) return sum;
-    const SmallColumn v = coordinates(model, state);
-    sum -= p.dot(v);
-    for (Eigen::Index k = 0; k < v.size(); ++k) {
-        const double gap_m = goal.by_position[static_cast<std::size_t>(k)] ? v(k) - value(k) : 0.0;
-        sum += 0.5 * model.hold_N_per_m * gap_m * gap_m;
-    }
-    for (const auto& pair : model.equal_motion) {
-        const double gap_m = v(1 + pair[0]) - v(1 + pair[1]);
-        sum += 0.5 * model.hold_N_per_m * gap_m * gap_m;
-    }
-    return sum;
-}
-
-// Moves by the whole step, or by as much of it as lowers the merit. Small steps are taken as they are.
-void search(const DeviceModel& model, DeviceState& state, const Response& response, const Goal& goal,
-            const SmallColumn& value, const SmallColumn& p, double most_m) {
-    const double whole = std::min(1.0, kMostMove * model.size_m / std::max(most_m, 1e-300));
-    if (most_m < kSmallMove * model.size_m) {
-        move(model, state, response, p, whole);
-        return;
-    }
-    const SmallColumn forces = p + response.tied + response.tying * p;
-    const double before_J = merit_J(model, state, goal, value, forces);
-    double share = whole;
-    move(model, state, response, p, share);
-    while (share > kLeastShare * whole &&
-           !(merit_J(model, state, goal, value, forces) <= before_J + 1e-12 * std::abs(before_J))) {
-        move(model, state, response, p, -0.5 * share);
-        share *= 0.5;
-    }
-}
-
 // Newton's method at one value of the goal.
 DeviceStatus newton(const DeviceModel& model, DeviceState& state, const Goal& goal, const SmallColumn& value,
                     ForwardAnswer& answer) {
@@ -115,7 +69,7 @@ DeviceStatus newton(const DeviceModel& model, DeviceState& state, const Goal& go
         const double most_m = solve_displacement(model, state, response, p);
         ++answer.iterations;
         if (!std::isfinite(most_m) || !p.allFinite()) return DeviceStatus::no_equilibrium;
-        search(model, state, response, goal, value, p, most_m);
+        search(model, state, response, {value, goal.by_position}, p, most_m);
         answer.residual_m = std::max(most_m, move_all_shifts(model, state));
         if (answer.residual_m <= kBalanced * model.size_m)
             return state.repaired ? DeviceStatus::unstable : DeviceStatus::good;

@@ -145,7 +145,7 @@ double step_once(const Tick& tick, DeviceState& state, InverseAnswer& answer) {
     const SmallColumn p = solve_for_forces(tick, state, response, answer);
     const double most_m = solve_displacement(tick.model, state, response, p);
     if (!std::isfinite(most_m) || !p.allFinite()) return std::nan("");
-    move(tick.model, state, response, p, std::min(1.0, kMostMove * tick.model.size_m / std::max(most_m, 1e-300)));
+    search(tick.model, state, response, {p, {}}, p, most_m);
     ++answer.iterations;
     return most_m;
 }

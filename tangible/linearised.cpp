@@ -1,6 +1,7 @@
 #include "tangible/linearised.h"
 
 #include <Eigen/LU>
+#include <algorithm>
 #include <cmath>
 
 #include "tangible/actuators.h"
@@ -109,6 +110,25 @@ void eliminate(const DeviceModel& model, const Small& G, const SmallColumn& y_r,
     out.forcing = Small(Small::Identity(m, m)) + Small(h.asDiagonal() * out.compliance) + out.tying;
 }
 
+constexpr double kSmallMove = 2e-3;   // that needs no search, over the body's size
+constexpr double kLeastShare = 0.01;  // of a step
+
+double merit_J(const DeviceModel& model, const DeviceState& state, const Goal& goal, const SmallColumn& forces) {
+    double sum = device_energy_J(model, state);
+    if (!std::isfinite(sum)) return sum;
+    const SmallColumn v = coordinates(model, state);
+    sum -= forces.dot(v);
+    for (Index k = 0; k < v.size(); ++k) {
+        const double gap_m = goal.by_position[static_cast<std::size_t>(k)] ? v(k) - goal.value(k) : 0.0;
+        sum += 0.5 * model.hold_N_per_m * gap_m * gap_m;
+    }
+    for (const auto& pair : model.equal_motion) {
+        const double gap_m = v(1 + pair[0]) - v(1 + pair[1]);
+        sum += 0.5 * model.hold_N_per_m * gap_m * gap_m;
+    }
+    return sum;
+}
+
 }  // namespace
 
 double device_energy_J(const DeviceModel& model, const DeviceState& state) noexcept {
@@ -192,6 +212,24 @@ void move(const DeviceModel& model, DeviceState& state, const Response& response
           double share) noexcept {
     Eigen::Map<VectorXd>(state.u_m.data(), model.equations()) += share * state.answers.col(channels_of(model));
     set_forces(model, state, response, p);
+}
+
+void search(const DeviceModel& model, DeviceState& state, const Response& response, const Goal& goal,
+            const SmallColumn& p, double most_m) noexcept {
+    const double whole = std::min(1.0, kMostMove * model.size_m / std::max(most_m, 1e-300));
+    if (most_m < kSmallMove * model.size_m) {
+        move(model, state, response, p, whole);
+        return;
+    }
+    const SmallColumn forces = p + response.tied + response.tying * p;
+    const double before_J = merit_J(model, state, goal, forces);
+    double share = whole;
+    move(model, state, response, p, share);
+    while (share > kLeastShare * whole &&
+           !(merit_J(model, state, goal, forces) <= before_J + 1e-12 * std::abs(before_J))) {
+        move(model, state, response, p, -0.5 * share);
+        share *= 0.5;
+    }
 }
 
 void set_forces(const DeviceModel& model, DeviceState& state, const Response& response, const SmallColumn& p) noexcept {

@@ -43,7 +43,17 @@ double solve_displacement(const DeviceModel& model, DeviceState& state, const Re
 void move(const DeviceModel& model, DeviceState& state, const Response& response, const SmallColumn& p,
           double share) noexcept;
 
-// The second half of it: the forces alone.
+// What each channel is led by: its force p, or its coordinate v.
+struct Goal {
+    SmallColumn value;
+    std::array<bool, kMostChannels> by_position{};
+};
+// The same by as much of the step as lowers the energy, with a penalty for what is not yet where positions and ties of
+// motion want it (an augmented Lagrangian function; Nocedal & Wright, section 17.3). Small steps are taken as they are.
+// most_m: the greatest entry of the step.
+void search(const DeviceModel& model, DeviceState& state, const Response& response, const Goal& goal,
+            const SmallColumn& p, double most_m) noexcept;
+// The forces of move() alone.
 void set_forces(const DeviceModel& model, DeviceState& state, const Response& response, const SmallColumn& p) noexcept;
 
 // Makes the linear model of the state about its present shape: one factorisation. False if nothing can be factored.

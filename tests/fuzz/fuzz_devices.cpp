@@ -21,7 +21,7 @@ void take_rig(std::string_view text) {
             if (!(counts >= range.lowest && counts <= range.highest))
                 fuzz::finding("counts that the wire does not have");
         }
-        if (port.protocol == Protocol::maestro) pins_of(rig, channel.port);
+        if (port.protocol == devices::Protocol::maestro) pins_of(rig, channel.port);
     }
     const files::Json written = rig_json(rig);
     read_rig(files::JsonReader(written, "rig.json"));

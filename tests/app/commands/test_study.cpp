@@ -104,6 +104,16 @@ TEST_CASE("command study watch: who is where, what to present, the marks and the
     CHECK(people[1]["now"]["present_kPa"][1] == 2);
     const Called words = study("watch " + folder.path().string() + " --participant 08");
     CHECK(contains(words.out, "first 1.75 kPa, second 2 kPa; now interval 1"));
+    // a surface of a forced choice has a run of its own; the trial before it is over
+    text("sub-08/beh/sub-08_task-palpation_run-01_events.tsv",
+         "onset\ttrial_type\n0\tstart\n1\tmark\n2\tmark\n3\tfinish\n");
+    text("sub-08/beh/sub-08_task-interval_run-01_events.tsv", "onset\ttrial_type\n0\tstart\n");
+    text("sub-08/beh/sub-08_task-interval_run-01_samples.tsv", header + "1\tpen\t30\t40\t0.5\t2\t3\n");
+    text("sub-08/now.json", R"({"participant": "08", "step": "trial", "finished": 3, "of": 4, "trial": 4,
+                               "condition": "c", "practice": false, "present_kPa": [1.75, 2], "interval": 1})");
+    const Called felt = study("watch " + folder.path().string() + " --participant 08");
+    CHECK(contains(felt.out, "0 marks"));
+    CHECK(contains(felt.out, "pen at (30, 40) mm"));
     CHECK_FALSE(contains(words.out, "07"));
     CHECK_FALSE(contains(words.out, "withdrew"));
     CHECK(study("withdraw " + folder.path().string() + " --participant 07 --data leave-out").status == 0);
@@ -205,6 +215,29 @@ TEST_CASE("command study analyse: a table of rated marks gives figures of merit,
     CHECK(contains(read_text(folder / "report/report.md"), "0.5 is not chance"));
     refused(marks + " --rating-scale 1 2", "a rating from 1 to 2, the scale");
     refused(marks + " --rating-scale 5 1", "the lowest rating, then the highest");
+}
+
+TEST_CASE("command study analyse: confidence outside 1 to 5 in the marks of a log is refused with file and line") {
+    const TemporaryFolder folder;
+    const std::string log = (folder / "log").string();
+    REQUIRE(
+        study("simulate " PALPA_SOURCE_DIR "/assets/protocols/effects.json --participants 4 --samples none -o " + log)
+            .status == 0);
+    std::string edited;
+    for (const auto& entry : fs::recursive_directory_iterator(log)) {
+        if (!entry.path().string().ends_with("_marks.tsv")) continue;
+        std::string text = read_text(entry.path());
+        const std::size_t row = text.find('\n') + 1;
+        if (row >= text.size()) continue;
+        std::size_t begin = row;  // of the sixth column, confidence
+        for (int column = 0; column < 5; ++column) begin = text.find('\t', begin) + 1;
+        text.replace(begin, text.find('\t', begin) - begin, "7");
+        write_text_atomically(entry.path(), text);
+        edited = entry.path().filename().string();
+        break;
+    }
+    REQUIRE_FALSE(edited.empty());
+    refused("analyse " + log, edited + ": line 2, confidence: found '7', expected");
 }
 
 TEST_CASE("command study analyse: bad input ends with status 2 and says what was expected") {
