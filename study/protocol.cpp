@@ -226,6 +226,38 @@ std::string read_consent(files::JsonReader& json) {
     return text;
 }
 
+void read_analysis(files::JsonReader json, Protocol& protocol) {
+    json.only({"primary", "participants", "stopping_rule"});
+    if (auto primary = json.optional_object("primary")) protocol.primary = read_primary(*primary, protocol);
+    protocol.planned_participants = json.integer("participants", 1, 100000, 0);
+    protocol.stopping_rule = json.text("stopping_rule", "");
+    json.finish();
+}
+
+std::vector<std::string> read_texts(files::JsonReader& json, std::string_view key) {
+    std::vector<std::string> texts;
+    if (!json.has(key)) return texts;
+    const files::Json& list = json.any(key);
+    if (!list.is_array() || list.empty()) json.fail(key, files::described(list), "an array of texts");
+    for (const files::Json& one : list) {
+        if (!one.is_string() || one.get<std::string>().empty()) json.fail(key, files::described(one), "a text");
+        texts.push_back(one.get<std::string>());
+    }
+    return texts;
+}
+
+DatasetAbout read_about(files::JsonReader json) {
+    json.only({"authors", "license", "funding", "ethics_approvals", "registration"});
+    DatasetAbout about;
+    about.authors = read_texts(json, "authors");
+    about.funding = read_texts(json, "funding");
+    about.ethics_approvals = read_texts(json, "ethics_approvals");
+    about.license = json.text("license", "");
+    about.registration = json.text("registration", "");
+    json.finish();
+    return about;
+}
+
 }  // namespace
 
 Protocol read_protocol(const std::filesystem::path& file) {
@@ -257,7 +289,8 @@ Protocol read_protocol(const std::filesystem::path& file) {
                "instructions",
                "demographics",
                "ratings",
-               "analysis"});
+               "analysis",
+               "dataset"});
     protocol.name = json.text("name");
     protocol.version = json.text("version");
     protocol.seed = static_cast<std::uint32_t>(json.integer("seed", 0, 2000000000));
@@ -299,7 +332,8 @@ Protocol read_protocol(const std::filesystem::path& file) {
     protocol.instructions = json.text("instructions", "");
     protocol.demographics = read_items(json, "demographics");
     protocol.ratings = read_items(json, "ratings");
-    if (auto analysis = json.optional_object("analysis")) protocol.primary = read_primary(*analysis, protocol);
+    if (auto analysis = json.optional_object("analysis")) read_analysis(*analysis, protocol);
+    if (auto about = json.optional_object("dataset")) protocol.about = read_about(*about);
     refuse_ignored_keys(json, protocol);
     json.finish();
     return protocol;

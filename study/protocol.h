@@ -67,6 +67,13 @@ struct Item {
     std::string low, high;             // what its ends mean, such as "not at all" and "very"; may be empty
 };
 
+// Who made a study, for the description of its dataset and for its preregistration. All of it may be missing.
+struct DatasetAbout {
+    std::vector<std::string> authors, funding, ethics_approvals;
+    std::string license;       // such as CC0
+    std::string registration;  // where the study is registered, such as a DOI
+};
+
 struct Protocol {
     std::filesystem::path file;
     std::string text;    // content of the file, which is copied beside the logs
@@ -96,6 +103,9 @@ struct Protocol {
     std::vector<Item> demographics;
     std::vector<Item> ratings;
     std::optional<PrimaryComparison> primary;  // of the analysis
+    int planned_participants = 0;              // of the analysis; 0: not stated
+    std::string stopping_rule;                 // of the analysis: when the study ends; empty: not stated
+    DatasetAbout about;
 };
 
 // Throws InputError that names file, key, what was found and what was expected.

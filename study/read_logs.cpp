@@ -11,9 +11,9 @@
 #include "study/broken_choices.h"
 #include "study/check_logs.h"
 #include "study/follow_protocol.h"
+#include "study/found_trial.h"
 #include "study/name_index.h"
 #include "study/ratings.h"
-#include "study/run_files.h"
 #include "study/stiffer_counts.h"
 #include "study/study_folder.h"
 #include "study/subject_folders.h"
@@ -33,8 +33,7 @@ fs::path beside(const fs::path& events, std::string_view suffix) {
 
 // What is known of the whole study while its participants are read.
 struct Study {
-    explicit Study(Observations& out)
-        : conditions(out.conditions), nodules(out.nodules), comparisons(out.comparisons) {}
+    explicit Study(Observations& out) : found(out), comparisons(out.comparisons) {}
 
     fs::path directory;
     std::optional<StudyIdentity> identity;
@@ -47,7 +46,8 @@ struct Study {
     std::string sha256, sha256_in;                      // of the first trial that names a protocol
     std::unordered_map<std::size_t, std::string> seen;  // file of events by the hash of its text
     NodulesOfConditions nodules_seen;
-    NameIndex conditions, nodules, comparisons;  // of the observations
+    FoundTrials found;
+    NameIndex comparisons;  // of the observations
 
     bool excludes(const std::string& code, int trial) const {
         return left_out.count(code) > 0 || left_out_trials.count({code, trial}) > 0;
@@ -76,25 +76,6 @@ void read_protocol_of(Study& study, std::vector<std::string>& notes) {
     }
     for (std::size_t i = 0; i < study.protocol->conditions.size(); ++i)
         study.planned_condition[study.protocol->conditions[i].id] = static_cast<int>(i);
-}
-
-void add_find(const RunLog& run, int participant, const RunSettings& settings, const std::vector<LoggedMark>& marks,
-              std::map<std::pair<int, int>, int>& repeats, Study& study, Observations& out) {
-    const int condition = study.conditions.of(run.condition);
-    const int repeat = repeats[{participant, condition}]++;
-    for (const RunSettings::Nodule& nodule : settings.nodules) {
-        const bool hit = std::any_of(marks.begin(), marks.end(),
-                                     [&](const LoggedMark& mark) { return mark.hit && mark.nodule == nodule.id; });
-        out.rows.push_back({condition, participant, study.nodules.of(nodule.id), repeat, hit, !hit, 0});
-    }
-    if (settings.there && !settings.typed) {
-        out.judged.push_back(judged_case(settings, marks));
-        out.judged.back().condition = condition;
-        out.judged.back().participant = participant;
-    }
-    const bool named = !settings.nodules.empty();
-    out.rows.push_back({condition, participant, -1, repeat, named ? 0 : run.tp, named ? 0 : run.fn, run.fp});
-    out.trials.push_back({condition, participant, run.duration_s, run.path_m, run.mean_force_N, run.max_force_N});
 }
 
 // Reads all runs of one participant, in the order of their numbers.
@@ -218,7 +199,7 @@ class Subject {
             } else if (logged.excluded) {
                 ++out_.excluded_trials;
             } else {
-                const int condition = study_.conditions.of(choice.condition);
+                const int condition = study_.found.conditions.of(choice.condition);
                 out_.choices.push_back(
                     {condition, index_, study_.comparisons.of(choice.comparison + " kPa"), choice.correct ? 1 : 0, 1});
                 out_.stiffer.push_back(stiffer_choice(
@@ -258,7 +239,7 @@ class Subject {
         } else if (excluded) {
             ++out_.excluded_trials;
         } else {
-            add_find(run, index_, settings, marks.value_or(std::vector<LoggedMark>{}), repeats_, study_, out_);
+            study_.found.add(run, index_, settings, marks.value_or(std::vector<LoggedMark>{}));
         }
     }
 
@@ -320,7 +301,6 @@ class Subject {
     std::unordered_map<int, Place> finished_;
     int last_trial_ = 0;
     Place last_place_;
-    std::map<std::pair<int, int>, int> repeats_;
     std::string last_began_;
 };
 

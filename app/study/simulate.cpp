@@ -15,24 +15,17 @@
 #include "app/assets.h"
 #include "app/study/felt_search.h"
 #include "app/study/felt_stimuli.h"
-#include "app/study/simulated_search.h"
+#include "app/study/simulated_trial.h"
 #include "files/clock.h"
 #include "files/folder_lock.h"
 #include "files/text.h"
 #include "session/session.h"
-#include "study/simulated_person.h"
 #include "study/staircase_history.h"
 #include "study/study_folder.h"
 #include "study/typed_trial.h"
 
 namespace palpa::app {
 namespace {
-
-enum Purpose : std::uint64_t { kTraits = 11, kTrials = 12, kAnswers = 13, kHabit = 14, kDevices = 15 };
-
-constexpr double kScreenWidth_px = 1280.0;
-constexpr double kScreenHeight_px = 800.0;
-constexpr double kSoftnessWeber = 0.2;  // of a simulated answer to "which is softer"; our choice, not measured
 
 // What searching hands feel, by condition; each is tabulated when it is needed first.
 class FeltConditions {
@@ -97,34 +90,20 @@ session::SessionFiles files_of(const Shared& shared, const study::PlannedPartici
     return files;
 }
 
-// Lets a person search the tissue of a trial that has begun. A person has the same traits in all trials, and different
-// noise in each.
+// Lets a person search the tissue of a trial that has begun.
 void search_tissue(Shared& shared, const study::PlannedParticipant& who, const study::PlannedTrial& trial,
                    session::Session& session) {
     session.state.time_every = 0;
-    const study::Protocol& protocol = shared.protocol;
-    SearchTask task;
-    task.traits_seed = study::derived_seed(shared.options.seed, kTraits, static_cast<std::uint64_t>(who.number));
-    const std::uint64_t trials =
-        study::derived_seed(shared.options.seed, kTrials, static_cast<std::uint64_t>(who.number));
-    task.noise_seed = study::derived_seed(trials, kTrials, static_cast<std::uint64_t>(trial.trial));
-    task.limit_s = trial.practice ? protocol.practice_limit_s : protocol.time_limit_s;
-    task.rate_Hz = shared.options.rate_Hz;
-    const bool finger = protocol.conditions[trial.condition].modality == study::Modality::finger;
-    task.tool = finger ? platform::Tool::finger : platform::Tool::pen;
-    task.felt = shared.felt(trial.condition);
-    search(task, session);
-}
-
-platform::TraceInfo screen_info() {
-    return {kScreenWidth_px, kScreenHeight_px, platform::kMissing, platform::kMissing, "simulated participant"};
+    SimulatedHand hand{.seed = shared.options.seed, .rate_Hz = shared.options.rate_Hz};
+    hand.felt = shared.felt(trial.condition);
+    palpate_trial(shared.protocol, shared.protocol.conditions[trial.condition], who.number, trial, hand, session);
 }
 
 void run_trial(Shared& shared, const study::PlannedParticipant& who, const study::PlannedTrial& trial,
                session::Session& session) {
     const double began_s = files::steady_s();
     session.scene = scene_of(*shared.scenes[trial.condition], trial);
-    session::begin_trial(files_of(shared, who, trial), screen_info(),
+    session::begin_trial(files_of(shared, who, trial), simulated_screen(),
                          trial.practice ? session::TrialMode::practice : session::TrialMode::test, session);
     search_tissue(shared, who, trial, session);
     const std::int64_t samples = session.state.counters.samples;
@@ -149,7 +128,7 @@ void run_trial(Shared& shared, const study::PlannedParticipant& who, const study
 void run_typed(Shared& shared, const study::PlannedParticipant& who, const study::PlannedTrial& trial,
                std::size_t phantom, session::Session& session) {
     session.scene = scene_of(*shared.scenes[phantom], trial);
-    session::begin_trial({}, screen_info(), session::TrialMode::test, session);
+    session::begin_trial({}, simulated_screen(), session::TrialMode::test, session);
     search_tissue(shared, who, trial, session);
     const session::SessionFiles files = files_of(shared, who, trial);
     std::vector<std::string> names;

@@ -36,8 +36,8 @@ void refused(const std::string& arguments, const std::string& word) {
 }  // namespace
 
 TEST_CASE("command study: help exists for every command") {
-    for (const char* command :
-         {"", "analyse", "exclude", "import", "levels", "observers", "order", "replace", "run", "simulate", "watch"}) {
+    for (const char* command : {"", "analyse", "exclude", "import", "levels", "observers", "order", "power",
+                                "preregister", "replace", "run", "simulate", "watch"}) {
         CAPTURE(command);
         const Called help = study(std::string(command) + " --help");
         CHECK(help.status == 0);
@@ -162,8 +162,8 @@ TEST_CASE("command study analyse: counts become tables, JSON and figures") {
     const Json json = parse_json(called.out, "stdout");
     CHECK(json["conditions"]["S-pen"]["se"].get<double>() == doctest::Approx(55.0 / 60.0));
     CHECK(json == read_json(folder / "report/report.json"));
-    for (const char* name :
-         {"sensitivity.tsv", "nodules.tsv", "ppv.tsv", "pairs.tsv", "ppv_pairs.tsv", "report.md", "figures.gp"}) {
+    for (const char* name : {"sensitivity.tsv", "nodules.tsv", "ppv.tsv", "pairs.tsv", "ppv_pairs.tsv", "report.md",
+                             "figures.gp", "sensitivity.json", "pairs.json", "stard.md"}) {
         CAPTURE(name);
         CHECK(std::filesystem::exists(folder / (std::string("report/") + name)));
     }
@@ -248,6 +248,62 @@ TEST_CASE("command study analyse: bad input ends with status 2 and says what was
     refused("analyse " + (folder / "c.tsv").string(), "c.tsv: line 2, tp: found '61', expected at most n = 60");
     refused("analyse " + kCounts + " -o " + (folder / "c.tsv").string(), "c.tsv: found no folder");
     refused("analyse " + kCounts + " --level 2", "--level");
+}
+
+TEST_CASE(
+    "command study power: a table with Monte Carlo errors, parts by the scheduler's variables, and one that merges") {
+    const TemporaryFolder folder;
+    const std::string effects = PALPA_SOURCE_DIR "/assets/protocols/effects.json";
+    const std::string call = "power " + effects + " --participants 3,2 --runs 2 --resamples 100 ";
+    const Called alone = study(call + "--json");
+    CAPTURE(alone.err);
+    REQUIRE(alone.status == 0);
+    const Json json = parse_json(alone.out, "stdout");
+    CHECK(json["simulated"] == true);
+    CHECK(json["reference"] == "display ratio");
+    CHECK(json["participants"] == Json({2, 3}));
+    CHECK(json["results"][0].contains("type_I_error"));
+    bool primary = false;
+    for (const Json& one : json["results"]) {
+        if (one["method"] != "primary" || one["effect"] != 1.0) continue;
+        primary = true;
+        CHECK(one["power"]["studies"] == 2);
+        CHECK(one["power"]["monte_carlo_ci"].size() == 2);
+        CHECK(one["true_value"].is_number());
+    }
+    CHECK(primary);
+    const std::string output = "-o " + (folder / "power").string();
+    for (const char* task : {"4", "5"}) {
+        const std::string slurm =
+            "SLURM_ARRAY_TASK_MIN=4 SLURM_ARRAY_TASK_COUNT=2 SLURM_ARRAY_TASK_ID=" + std::string(task) + " ";
+        const Called part = shell(slurm + "timeout 120 " PALPA_PROGRAM " study " + call + output);
+        CHECK(part.status == 0);
+        CHECK(contains(part.out, "1 studies now"));
+    }
+    const Called merged = study(call + output + " --merge --json");
+    CHECK(merged.status == 0);
+    CHECK(parse_json(merged.out, "stdout")["results"] == json["results"]);
+    CHECK(contains(read_text(folder / "power/power.md"), "(SIMULATED)"));
+    CHECK(read_json(folder / "power/power.json").contains("rejected_se"));
+    refused(call + "--reference nobody", "--reference: found 'nobody', expected the id of a condition");
+    refused(call + "--merge", "--output: found nothing");
+    refused(call + "--part 3/2 " + output, "i/n with 1 <= i <= n");
+    refused(call + "--seed 5 " + output, "two power runs never share a folder");
+    refused("power " PALPA_SOURCE_DIR "/assets/protocols/threshold.json --participants 3", "found a staircase");
+}
+
+TEST_CASE("command study preregister: a sheet with the hashes, and what is not stated on standard error") {
+    const TemporaryFolder folder;
+    const std::string effects = PALPA_SOURCE_DIR "/assets/protocols/effects.json";
+    const Called called = study("preregister " + effects + " --participants 3");
+    CHECK(called.status == 0);
+    CHECK(contains(called.out, "scene_sha256 "));
+    CHECK(contains(called.out, "map_sha256 "));
+    CHECK(contains(called.out, "\n| 3 | all |"));
+    CHECK(contains(called.err, "not stated: analysis.stopping_rule"));
+    CHECK(study("preregister " + effects + " -o " + (folder / "sheet.md").string()).status == 0);
+    CHECK(contains(read_text(folder / "sheet.md"), "# Preregistration"));
+    refused("preregister " + effects + " -o " + folder.path().string(), "found a folder");
 }
 
 TEST_CASE("command study order: who gets what, with seeds and balance") {

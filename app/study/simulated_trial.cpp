@@ -1,22 +1,23 @@
-#include "app/study/simulated_search.h"
+#include "app/study/simulated_trial.h"
 
 #include "scene/mapping.h"
-#include "study/simulated_person.h"
 
 namespace palpa::app {
 namespace {
 
+constexpr double kScreenWidth_px = 1280.0;
+constexpr double kScreenHeight_px = 800.0;
 constexpr double kNoLimit_s = 60.0;  // how long a simulated person searches without a limit in the protocol
 
 // Makes the samples of a hand that presses with a given force at a place on the screen: the inverse of calibration and
 // mapping.
 class Hand {
   public:
-    Hand(platform::Tool tool, const session::Session& session)
+    Hand(const study::Condition& condition, const session::Session& session)
         : profile_(session.plan->profile),
           view_(session.state.view),
           force_scale_(session.scene.force_scale),
-          tool_(tool) {}
+          tool_(condition.modality == study::Modality::finger ? platform::Tool::finger : platform::Tool::pen) {}
 
     platform::Sample sample(double t_s, const study::ScreenPlace& at, double force_N, platform::Phase phase) const {
         platform::Sample out;
@@ -62,15 +63,15 @@ study::Sight sight_of(const FeltSearch* felt, const session::Session& session) {
     return {scene::seen_lag_m(session.state.avatar), session.state.contact.depth_m, session.scene.surface.has_value()};
 }
 
-void palpate(study::SimulatedPerson& person, const Hand& hand, const SearchTask& task, session::Session& session) {
-    const double dt_s = 1.0 / task.rate_Hz;
+void palpate(study::SimulatedPerson& person, const Hand& hand, const SimulatedHand& of, session::Session& session) {
+    const double dt_s = 1.0 / of.rate_Hz;
     for (std::int64_t i = 0; !session.trial.finished; ++i) {
         const double t_s = static_cast<double>(i) * dt_s;
         const study::Move made = study::move(dt_s, person);
         session::take_sample(
             hand.sample(t_s, made.at, made.force_N, made.began ? platform::Phase::down : platform::Phase::move),
             session);
-        study::see(sight_of(task.felt, session), dt_s, person);
+        study::see(sight_of(of.felt, session), dt_s, person);
         if (made.deed == study::Deed::none) continue;
         if (made.deed == study::Deed::mark) {
             session::take_sample(hand.act(t_s, made.mark, platform::Action::mark), session);
@@ -86,16 +87,27 @@ void palpate(study::SimulatedPerson& person, const Hand& hand, const SearchTask&
 
 }  // namespace
 
-void search(const SearchTask& task, session::Session& session) {
-    study::Random of_person(task.traits_seed);
+platform::TraceInfo simulated_screen() {
+    return {kScreenWidth_px, kScreenHeight_px, platform::kMissing, platform::kMissing, "simulated participant"};
+}
+
+void palpate_trial(const study::Protocol& protocol, const study::Condition& shown, int person,
+                   const study::PlannedTrial& trial, const SimulatedHand& hand, session::Session& session) {
+    const auto number = static_cast<std::uint64_t>(person);
+    study::Random of_person(study::derived_seed(hand.seed, kTraits, number));
     study::PersonTraits traits = study::draw_person(session.plan->zone_N[1], greatest_force_N(session), of_person);
-    if (task.felt != nullptr) traits.dent_noise = task.felt->sd();
-    const bool on_side = session.scene.mapping.rotate_deg % 180 != 0;
+    if (hand.felt != nullptr) traits.dent_noise = hand.felt->sd();
+    traits.lag_noise_m *= hand.noise;
+    traits.dent_noise *= hand.noise;
+    const double asked_s = trial.practice ? protocol.practice_limit_s : protocol.time_limit_s;
+    const bool on_side = trial.rotate_deg % 180 != 0;
     const Eigen::Vector2d& size_m = session.plan->area.size_m;
-    study::SimulatedPerson person =
+    const std::uint64_t trials = study::derived_seed(hand.seed, kTrials, number);
+    study::SimulatedPerson searcher =
         study::make_person(traits, on_side ? size_m.y() : size_m.x(), on_side ? size_m.x() : size_m.y(),
-                           task.limit_s > 0.0 ? task.limit_s : kNoLimit_s, task.noise_seed);
-    palpate(person, Hand(task.tool, session), task, session);
+                           asked_s > 0.0 ? asked_s : kNoLimit_s,
+                           study::derived_seed(trials, kTrials, static_cast<std::uint64_t>(trial.trial)));
+    palpate(searcher, Hand(shown, session), hand, session);
 }
 
 study::TypedAnswers typed_answers(const scene::Plan& plan, const session::Trial& trial) {
