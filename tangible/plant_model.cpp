@@ -68,13 +68,21 @@ void follow(const Plant& plant, const Actuation& wanted, const Lengths& wanted_l
     }
 }
 
+// Whether an actuator moves as one before it does: its length is given by that one's.
+bool follows_another(const DeviceModel& model, std::size_t actuator) {
+    for (const std::array<int, 2>& pair : model.equal_motion) {
+        if (static_cast<std::size_t>(std::max(pair[0], pair[1])) == actuator) return true;
+    }
+    return false;
+}
+
 // The load on the body: drives, less what the guides take.
 DeviceLoad load_of(const Plant& plant, const PlantState& state, bool friction) {
     DeviceLoad load;
     const DeviceModel& model = *plant.model;
     for (std::size_t j = 0; j < model.actuators.size(); ++j) {
         const bool cable = model.actuators[j].kind == ActuatorKind::cable;
-        load.by_position[j] = plant.command == CommandKind::position && cable;
+        load.by_position[j] = plant.command == CommandKind::position && cable && !follows_another(model, j);
         load.actuation[j] = state.force[j];
         load.length[j] = state.length[j];
         if (cable && friction)

@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
+#include <limits>
 #include <memory>
 #include <optional>
 
@@ -151,21 +152,27 @@ files::Json contributions_json(const TangibleCharacteriseArguments& arguments,
     return json;
 }
 
-files::Json reach_json(const tangible::Reach& reach, const PressedTissues& tissues,
-                       const std::vector<PressFigures>& presses) {
+// What the device can be made at the depth, with each tissue's own pretension, and whether that holds what was wanted.
+struct ReachOfAll {
+    tangible::Reach range{0.0, std::numeric_limits<double>::infinity(), 0.0};
     bool reachable = true;
-    for (std::size_t i = 0; i < tissues.size(); ++i) {
-        const tangible::PressTick* deepest = nullptr;
-        for (const tangible::PressTick& tick : presses[i].ticks) {
-            if (deepest == nullptr || tick.depth_m > deepest->depth_m) deepest = &tick;
-        }
-        if (deepest == nullptr || !(deepest->depth_m > 0.0)) continue;
-        const double stiffness = deepest->wanted_N / deepest->depth_m;
-        reachable = reachable && stiffness >= reach.lowest_N_per_m && stiffness <= reach.highest_N_per_m;
-    }
-    return {{"depth_mm", 1e3 * reach.depth_m},
-            {"stiffness_N_per_mm", {1e-3 * reach.lowest_N_per_m, 1e-3 * reach.highest_N_per_m}},
-            {"reachable", reachable}};
+};
+
+void add_reach(const Characterised& pressed, double depth_m, ReachOfAll& all) {
+    const tangible::Reach reach = reach_at(pressed.plan, depth_m);
+    scene::TissueWork work = scene::make_work(*pressed.plan.world.tissue);
+    const double wanted =
+        tangible::world_force(pressed.plan.world, pressed.plan.place_m, depth_m, work).force_N / depth_m;
+    all.reachable = all.reachable && wanted >= reach.lowest_N_per_m && wanted <= reach.highest_N_per_m;
+    all.range.depth_m = depth_m;
+    all.range.lowest_N_per_m = std::min(all.range.lowest_N_per_m, reach.lowest_N_per_m);
+    all.range.highest_N_per_m = std::max(all.range.highest_N_per_m, reach.highest_N_per_m);
+}
+
+files::Json reach_json(const ReachOfAll& all) {
+    return {{"depth_mm", 1e3 * all.range.depth_m},
+            {"stiffness_N_per_mm", {1e-3 * all.range.lowest_N_per_m, 1e-3 * all.range.highest_N_per_m}},
+            {"reachable", all.reachable}};
 }
 
 void write_press_table(const TangiblePlan& plan, const PressFigures& figures, const fs::path& file) {
@@ -226,18 +233,18 @@ void characterise(const TangibleCharacteriseArguments& arguments) {
     json["presses"] = files::Json::array();
     std::vector<PressFigures> presses;
     files::Json notes = files::Json::array();
-    std::optional<tangible::Reach> reach;
+    ReachOfAll reach;
     for (const auto& tissue : tissues) {
         Characterised pressed = press_on(arguments, model, *tissue, plant);
         json["presses"].push_back(press_json(*tissue, pressed.figures));
-        if (!reach) reach = reach_at(pressed.plan, 1e-3 * arguments.depth_mm);
+        add_reach(pressed, 1e-3 * arguments.depth_mm, reach);
         for (const std::string& note : pressed.plan.notes) notes.push_back(tissue->label + ": " + note);
         if (!arguments.folder.empty())
             write_press_table(pressed.plan, pressed.figures, fs::path(arguments.folder) / (tissue->file + ".tsv"));
         presses.push_back(std::move(pressed.figures));
     }
     json["contributions_percent"] = contributions_json(arguments, model, *tissues[tissues.size() / 2], plant);
-    json["reach"] = reach_json(*reach, tissues, presses);
+    json["reach"] = reach_json(reach);
     json["notes"] = notes;
     if (!arguments.folder.empty()) {
         files::write_text_atomically(fs::path(arguments.folder) / "characterise.json", files::json_text(json));

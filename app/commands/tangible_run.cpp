@@ -49,9 +49,11 @@ tangible::LoopOptions loop_options_of(const TangibleRunArguments& arguments) {
 }
 
 std::string plant_of(const TangibleRunArguments& arguments, const scene::Scene& scene) {
-    const std::string plant = arguments.plant.empty() ? scene.tangible->plant : arguments.plant;
-    if (!plant.empty() && !arguments.ports.empty())
-        throw files::InputError("--port: found beside a plant (" + plant + "), expected one of the two");
+    if (!arguments.ports.empty() && !arguments.plant.empty())
+        throw files::InputError("--port: found beside --plant " + arguments.plant + ", expected one of the two");
+    // ports on the command line count more than the scene's plant
+    const std::string of_scene = arguments.ports.empty() ? scene.tangible->plant : "";
+    const std::string plant = arguments.plant.empty() ? of_scene : arguments.plant;
     if (plant.empty() && arguments.headless)
         throw files::InputError(
             "--headless: found without a plant, expected --plant exact or a file: real devices need real time");
@@ -99,6 +101,20 @@ void print_run(const files::Json& result) {
     for (const auto& note : result["notes"]) std::printf("  note: %s\n", note.get<std::string>().c_str());
 }
 
+// The parts of the device, each with the port that it was really opened at.
+files::Json devices_json(const tangible::TangiblePlan& plan, bool real, const std::vector<std::string>& ports) {
+    files::Json devices = files::Json::array();
+    for (const session::TactileDevice& device : session::devices_of(plan, !real)) {
+        std::string port = device.port;
+        for (const std::string& given : ports) {
+            if (given.rfind(device.role + "=", 0) == 0) port = given.substr(device.role.size() + 1);
+        }
+        devices.push_back(
+            {{"role", device.role}, {"name", device.name}, {"port", port}, {"simulated", device.simulated}});
+    }
+    return devices;
+}
+
 void run_tangible(const TangibleRunArguments& arguments) {
     const scene::Scene scene = load_scene(arguments.scene);
     if (!scene.tangible)
@@ -112,11 +128,7 @@ void run_tangible(const TangibleRunArguments& arguments) {
     files::Json json{{"scene", scene.name}, {"seed", arguments.seed}};
     json["plant"] = plant_name.empty() ? files::Json(nullptr) : files::Json(plant_name);
     json.update(tangible::figures_json(*plan, result.ticks, result.clock));
-    files::Json devices = files::Json::array();
-    for (const session::TactileDevice& device : session::devices_of(*plan, !plant_name.empty()))
-        devices.push_back(
-            {{"role", device.role}, {"name", device.name}, {"port", device.port}, {"simulated", device.simulated}});
-    json["devices"] = devices;
+    json["devices"] = devices_json(*plan, plant_name.empty(), arguments.ports);
     if (!arguments.log.empty())
         files::write_text_atomically(fs::path(arguments.log) / "performance.json", files::json_text(json));
     if (arguments.json)
