@@ -26,7 +26,8 @@ const std::map<std::string, std::set<std::string>> kMayInclude{
     {"parts", {"files", "mechanics"}},
     {"parts/export", {"parts", "files", "mechanics"}},
     {"scene",
-     {"files", "platform/sample.h", "platform/timeline.h", "calibration", "stiffnessmaps", "mechanics", "avatar"}},
+     {"files", "platform/sample.h", "platform/timeline.h", "calibration", "stiffnessmaps", "mechanics", "avatar",
+      "parts"}},
     {"render", {"platform"}},
     {"devices", {"files", "platform"}},
     {"tactile", {"files", "mechanics", "scene", "devices", "platform/real_time.h"}},
@@ -43,18 +44,18 @@ const std::map<std::string, std::set<std::string>> kMayInclude{
     {"fem/mesh_file", {"files", "mechanics"}},
     {"figures", {"files", "stiffnessmaps", "calibration", "study"}},
     {"accuracy",
-     {"files", "platform", "calibration", "stiffnessmaps", "mechanics", "avatar", "scene", "devices", "tactile",
-      "study", "session", "fem", "figures"}},
+     {"files", "platform", "calibration", "stiffnessmaps", "mechanics", "avatar", "parts", "scene", "devices",
+      "tactile", "study", "session", "fem", "figures"}},
     {"desk", {"files", "study"}},
     // the rooms of the app
     {"app", {"files", "scene", "app/commands/command_line.h"}},
     {"app/study", {"app/assets.h", "app/scene_choices.h", "files", "platform", "scene", "session", "study"}},
     {"app/screens",
      {"app/assets.h", "app/scene_choices.h", "app/study", "files", "platform", "calibration", "stiffnessmaps",
-      "mechanics", "scene", "render", "study", "session", "figures"}},
+      "mechanics", "parts", "scene", "render", "study", "session", "figures"}},
     {"app/live",
-     {"app/assets.h", "app/scene_choices.h", "app/screens", "app/study", "files", "platform", "scene", "render",
-      "study", "session"}},
+     {"app/assets.h", "app/scene_choices.h", "app/screens", "app/study", "files", "parts", "platform", "scene",
+      "render", "study", "session"}},
     {"app/commands",
      {"app", "files", "platform", "calibration", "stiffnessmaps", "mechanics", "avatar", "scene", "render", "devices",
       "study", "session", "tactile", "fem", "parts", "parts/export", "figures", "accuracy", "desk"}},
@@ -153,7 +154,7 @@ TEST_CASE("includes: the table refuses what it must") {
 // Everything that depends on the kind of tissue is an overload behind scene/tissue.h.
 bool asks_for_tissue(const std::string& line) {
     static const std::regex asks(
-        "(get_if|std::get|holds_alternative)<[a-z:]*(Map|Linear)(Tissue|Options|Work)>|std::visit");
+        "(get_if|std::get|holds_alternative)<[a-z:]*(Map|Linear|Part)(Tissue|Options|Work)>|std::visit");
     return std::regex_search(line, asks);
 }
 

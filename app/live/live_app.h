@@ -19,6 +19,7 @@
 #include "platform/hold_press.h"
 #include "platform/pressure.h"
 #include "platform/trace.h"
+#include "session/plan_in_progress.h"
 #include "session/session.h"
 
 namespace palpa::app {
@@ -38,6 +39,17 @@ struct TactileControl {
     std::optional<TactileShown> shown;      // nothing: the scene has neither arm nor pins
     std::optional<double> fault_since_s;    // window's clock; a fault lasts since then
     files::Json report;                     // of the last trial's loop
+};
+
+// Designs of parts that are being changed.
+struct PartControl {
+    std::unique_ptr<session::PlanInProgress> cells;  // the plan with finite cells, while they are computed
+    scene::Scene wanted;                             // its scene
+    struct Done {
+        std::size_t design;
+        std::filesystem::path before;  // the design's file before the edit
+    };
+    std::vector<Done> done;
 };
 
 // Everything that the app has open while its window is open.
@@ -67,6 +79,7 @@ struct App {
     Course course;
     session::TrialKeeper* keeper = nullptr;  // may be null
     TactileControl tactile;
+    PartControl parts;
     double parted_s = 0.0;  // when the keeper was last given the trial so far
     bool quit = false;
 };
@@ -143,6 +156,12 @@ bool work_at_stake(const App& app);
 // why, else "".
 std::string close_trial(App& app);
 void act(platform::Action action, platform::Window& window, App& app);
+
+// part_live.cpp
+// Carries out an edit of a part, or takes the last one back. What cannot be done becomes a problem on the screen.
+void change_part(const PartWish& wish, platform::Window& window, const Gui& gui, App& app);
+void forget_parts(App& app);                                            // before another scene
+void follow_parts(platform::Window& window, const Gui& gui, App& app);  // once per turn of the loop
 
 // tactile_live.cpp
 // Notes what the session's scene asks of arm and pins, and drives nothing.
