@@ -4,6 +4,7 @@
 
 #include "files/input_error.h"
 #include "files/text.h"
+#include "parts/button_file.h"
 #include "parts/info.h"
 
 namespace palpa::parts {
@@ -44,6 +45,7 @@ ComparedDesign design_of(const Part& part, const PartLoad& load, const Stiffness
                                "a method that has one, such as voxels");
     }
     out.mass_kg = info_of(part).mass_kg;
+    if (part.button) out.switch_force_N = button_curve(part).peak_N;
     return out;
 }
 

@@ -23,7 +23,7 @@ inline constexpr std::array<WeberFraction, 2> kWeberFractions{
 struct ComparedDesign {
     MethodResult stiffness;
     double mass_kg = 0.0;
-    std::optional<double> switch_force_N;  // of its button
+    std::optional<double> switch_force_N;  // the peak that its button's force passes
 };
 
 struct PartComparison {

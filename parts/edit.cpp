@@ -18,7 +18,9 @@ void rename_files(const std::filesystem::path& from, const std::filesystem::path
             files::Json& stl = value["stl"];
             stl["file"] = renamed(stl["file"].get<std::string>(), from, to);
         }
-        if (value.contains("runs")) value["runs"] = renamed(value["runs"].get<std::string>(), from, to);
+        for (const char* key : {"runs", "curve"}) {
+            if (value.contains(key)) value[key] = renamed(value[key].get<std::string>(), from, to);
+        }
     }
     if (!value.is_structured()) return;
     for (files::Json& inner : value) rename_files(from, to, inner);
@@ -82,7 +84,7 @@ void save_part(const EditedPart& edited, const std::filesystem::path& path) {
     files::Json json = edited.json;
     const std::filesystem::path from = std::filesystem::path(edited.part.file).parent_path();
     if (std::filesystem::absolute(from) != std::filesystem::absolute(path.parent_path())) {
-        for (const char* key : {"shape", "supports"}) {
+        for (const char* key : {"shape", "supports", "button"}) {
             if (json.contains(key)) rename_files(from, path.parent_path(), json[key]);
         }
     }

@@ -25,8 +25,8 @@ std::int64_t edit(const files::Json& operation, EditedPart& edited);
 bool undo_edit(EditedPart& edited);
 bool redo_edit(EditedPart& edited);
 
-// Writes the part as JSON, whole or not at all, without the comments of the file it came from. The names of STL and run
-// files stay those of the same files from a folder of another name. Throws InputError as check_shape() does, and
+// Writes the part as JSON, whole or not at all, without the comments of the file it came from. The names of STL,
+// run and curve files stay those of the same files from a folder of another name. Throws InputError as check_shape() does, and
 // std::runtime_error if the file cannot be written.
 void save_part(const EditedPart& edited, const std::filesystem::path& path);
 

@@ -118,7 +118,8 @@ class Builder {
     int vertex(const Place& corner, int face) {
         const std::uint8_t fan = fans_around(corner)[static_cast<std::size_t>(face)];
         const std::size_t place = block_.at(corner[0], corner[1], corner[2]);
-        const auto [found, is_new] = vertices_.try_emplace(8 * place + fan, static_cast<int>(result_.corner.size()));
+        const auto [found, is_new] =
+            vertices_.try_emplace(8 * std::uint64_t{place} + fan, static_cast<int>(result_.corner.size()));
         if (is_new) {
             result_.corner.push_back(place);
             if (fan > 0) result_.split.push_back(place);
@@ -161,7 +162,7 @@ class Builder {
     const Block& block_;
     std::uint8_t own_;
     Result result_;
-    std::unordered_map<std::size_t, int> vertices_;
+    std::unordered_map<std::uint64_t, int> vertices_;
     std::vector<std::optional<Fans>> fans_ = std::vector<std::optional<Fans>>(std::size_t{1} << 14);
 };
 

@@ -26,7 +26,8 @@ const std::map<std::string, std::set<std::string>> kMayInclude{
     {"parts", {"files", "mechanics"}},
     {"parts/export", {"parts", "files", "mechanics"}},
     {"scene",
-     {"files", "platform/sample.h", "platform/timeline.h", "calibration", "stiffnessmaps", "mechanics", "avatar"}},
+     {"files", "platform/sample.h", "platform/timeline.h", "calibration", "stiffnessmaps", "mechanics", "avatar",
+      "parts"}},
     {"render", {"platform"}},
     {"devices", {"files", "platform"}},
     {"tactile", {"files", "mechanics", "scene", "devices", "platform/real_time.h"}},
@@ -50,6 +51,7 @@ const std::map<std::string, std::set<std::string>> kMayInclude{
     {"accuracy",
      {"files", "platform", "calibration", "stiffnessmaps", "mechanics", "avatar", "scene", "devices", "tactile",
       "tangible", "study", "session", "fem", "figures"}},
+     {"files", "platform", "calibration", "stiffnessmaps", "mechanics", "avatar", "parts", "scene", "devices",
     {"desk", {"files", "study"}},
     // the rooms of the app
     {"app", {"files", "scene", "app/commands/command_line.h"}},
@@ -57,7 +59,7 @@ const std::map<std::string, std::set<std::string>> kMayInclude{
      {"app/assets.h", "app/scene_choices.h", "files", "platform", "scene", "devices/press_file.h", "session", "study"}},
     {"app/screens",
      {"app/assets.h", "app/scene_choices.h", "app/study", "files", "platform", "calibration", "stiffnessmaps",
-      "mechanics", "scene", "render", "study", "session", "figures"}},
+      "mechanics", "parts", "scene", "render", "study", "session", "figures"}},
     {"app/live",
      {"app/assets.h", "app/scene_choices.h", "app/screens", "app/study", "files", "platform", "scene", "render",
       "study", "session"}},
@@ -161,6 +163,7 @@ bool asks_for_tissue(const std::string& line) {
     static const std::regex asks(
         "(get_if|std::get|holds_alternative)<[a-z:]*(Map|Linear|ForceCurve|SoftBlock)(Tissue|Options|Work)>|std::"
         "visit");
+        "(get_if|std::get|holds_alternative)<[a-z:]*(Map|Linear|Part)(Tissue|Options|Work)>|std::visit");
     return std::regex_search(line, asks);
 }
 

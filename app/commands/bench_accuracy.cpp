@@ -1,4 +1,4 @@
-// palpa bench accuracy mechanics|tactile|tangible
+// palpa bench accuracy mechanics|parts|tactile|tangible
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
@@ -7,6 +7,7 @@
 
 #include "accuracy/accuracy.h"
 #include "accuracy/mechanics.h"
+#include "accuracy/parts.h"
 #include "accuracy/tactile.h"
 #ifdef PALPA_TANGIBLE
 #include "accuracy/tangible.h"
@@ -93,6 +94,12 @@ void add_bench_accuracy(CLI::App& bench) {
                         "use small meshes only, which takes under 20 s (all meshes: 4 minutes)");
     mechanics->add_flag("--json", options->json, "print one JSON object on standard output");
     mechanics->callback([options] { run_accuracy(*options, mechanics_list(effort_of(*options)), "mechanics"); });
+    CLI::App* parts = accuracy->add_subcommand(
+        "parts", "Measure error and cost of multi-material parts: beams, finite cells, buttons, multigrid");
+    parts->add_option("-o,--output", options->folder, "folder for parts.csv (default: nothing is written)");
+    parts->add_flag("--quick", options->quick, "use small meshes only (10 s; all meshes: two minutes)");
+    parts->add_flag("--json", options->json, "print one JSON object on standard output");
+    parts->callback([options] { run_accuracy(*options, accuracy::part_measurements(effort_of(*options)), "parts"); });
     CLI::App* tactile = accuracy->add_subcommand(
         "tactile", "Measure error and cost of the shape display's choices: contact, table, sheet, steps, schedule");
     tactile->add_option("-o,--output", options->folder, "folder for tactile.csv (default: nothing is written)");

@@ -26,7 +26,7 @@ struct SpeedOptions {
 void run_speed(const SpeedOptions& options) {
     std::vector<std::string> scenes = options.scenes;
     if (scenes.empty()) {
-        for (const char* name : {"default", "delay", "off", "linear"}) {
+        for (const char* name : {"default", "delay", "off", "linear", "toothbrush", "button"}) {
             scenes.push_back((assets_folder() / "scenes" / (std::string(name) + ".json")).string());
         }
     }
@@ -52,7 +52,7 @@ void run_speed(const SpeedOptions& options) {
 void add_bench_speed(CLI::App& bench) {
     auto options = std::make_shared<SpeedOptions>();
     CLI::App* speed = bench.add_subcommand("speed", "What a sample costs, pressure to avatar, at 1,000 Hz");
-    speed->add_option("SCENES", options->scenes, "scene JSON or map folder (default: four that ship)");
+    speed->add_option("SCENES", options->scenes, "scene JSON or map folder (default: six that ship)");
     speed->add_option("--seconds", options->seconds, "of input, in each repetition (default 10)")
         ->check(CLI::Range(0.1, 1e4));
     speed->add_option("--repetitions", options->repetitions, "default 5")->check(CLI::Range(1, 1000));

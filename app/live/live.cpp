@@ -265,6 +265,7 @@ struct Live::Impl {
         lift_fingers(gui->hand_mm(), samples, app);
         take_all(window->now_s(), samples, app);  // 2. simulate and log
         follow_devices(window->now_s(), app);
+        follow_parts(*window, *gui, app);
         watch_files(*window, app);
         session::flush_if_due(app.session);  // also while nothing moves and nothing is drawn
         keep_part(window->now_s(), app);

@@ -22,6 +22,7 @@
 #include "platform/hold_press.h"
 #include "platform/pressure.h"
 #include "platform/trace.h"
+#include "session/plan_in_progress.h"
 #include "session/session.h"
 
 namespace palpa::app {
@@ -39,6 +40,17 @@ struct TactileControl : DeviceControl<TactileDriver, TactileShown> {
     std::shared_ptr<PinsPreview> preview;  // for pins that are only drawn; null: there are none
 };
 using TangibleControl = DeviceControl<TangibleDriver, TangibleShown>;  // the soft device of the scene
+
+// Designs of parts that are being changed.
+struct PartControl {
+    std::unique_ptr<session::PlanInProgress> cells;  // the plan with finite cells, while they are computed
+    scene::Scene wanted;                             // its scene
+    struct Done {
+        std::size_t design;
+        std::filesystem::path before;  // the design's file before the edit
+    };
+    std::vector<Done> done;
+};
 
 // Everything that the app has open while its window is open.
 struct App {
@@ -68,6 +80,7 @@ struct App {
     session::TrialKeeper* keeper = nullptr;  // may be null
     TactileControl tactile;
     TangibleControl tangible;
+    PartControl parts;
     double parted_s = 0.0;  // when the keeper was last given the trial so far
     bool quit = false;
 };
@@ -144,6 +157,12 @@ bool work_at_stake(const App& app);
 // why, else "".
 std::string close_trial(App& app);
 void act(platform::Action action, platform::Window& window, App& app);
+
+// part_live.cpp
+// Carries out an edit of a part, or takes the last one back. What cannot be done becomes a problem on the screen.
+void change_part(const PartWish& wish, platform::Window& window, const Gui& gui, App& app);
+void forget_parts(App& app);                                            // before another scene
+void follow_parts(platform::Window& window, const Gui& gui, App& app);  // once per turn of the loop
 
 // driven_devices.cpp: the devices of the scene, arm and pins or a soft device.
 // Calls visit(control) for each kind of device.

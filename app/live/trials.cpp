@@ -176,6 +176,7 @@ void change_scene(platform::Window& window, Gui& gui, const std::string& file, c
         plan = prepare(window, gui, scene);
     });
     if (!good || !plan) return;
+    forget_parts(app);
     put_scene(std::move(scene), std::move(plan), window, app);
     begin_anew(window, gui, app);
 }

@@ -75,6 +75,7 @@ void carry_out(const Wishes& asked_for, platform::Window& window, Gui& gui, App&
     if (study_of(app.doing) != nullptr) follow_study(wishes.study, window, gui, app);
     if (wishes.action && palpates(app.doing) && !app.trace) act(*wishes.action, window, app);
     if (bool* menu = menu_of(app.doing); menu != nullptr && wishes.menu) *menu = *wishes.menu;
+    if (wishes.part && palpates(app.doing)) change_part(*wishes.part, window, gui, app);
     if (wishes.screen) open_screen(*wishes.screen, window, app);
     if (wishes.again || wishes.next || wishes.scene || wishes.profile || wishes.mode) app.guided = false;
     if (wishes.scene) app.settings.scene = *wishes.scene;

@@ -7,6 +7,7 @@
 #include "app/screens/content_hash.h"
 #include "app/screens/history_screen.h"
 #include "app/screens/map_screen.h"
+#include "app/screens/part_screen.h"
 #include "app/screens/tactile_screen.h"
 #include "app/screens/tangible_screen.h"
 #include "app/screens/tissue_drawing.h"
@@ -74,6 +75,13 @@ void draw_panels(const Shown& shown, const Layout& layout, Gui& gui, ViewState& 
     if (const auto* reviewing = std::get_if<Reviewing>(&shown.doing)) {
         draw_reveal_on_tissue(shown, gui, reviewing->debrief);
         draw_reveal_panel(shown, layout, *reviewing, gui, wishes);
+    } else if (shows_parts(shown)) {
+        draw_parts(shown, gui, view.part);
+        if (study_of(shown.doing) != nullptr) {
+            draw_trial_panel(shown, layout, gui, view, wishes);
+        } else {
+            draw_part_panel(shown, layout, gui, view, wishes);
+        }
     } else {
         draw_on_tissue(shown, gui);
         draw_trial_panel(shown, layout, gui, view, wishes);

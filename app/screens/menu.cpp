@@ -2,13 +2,18 @@
 
 #include <algorithm>
 
+#include "app/assets.h"
 #include "app/screens/map_screen.h"
+#include "app/screens/part_screen.h"
 #include "app/screens/screens.h"
 #include "app/screens/widgets.h"
 #include "app/screens/words.h"
 
 namespace palpa::app {
 namespace {
+
+// The scene that the screen of parts begins with.
+std::string parts_scene() { return (assets_folder() / "scenes" / "toothbrush.json").string(); }
 
 // As high as its pages need; the rest of the tissue stays in view.
 PanelArea menu_area(const Layout& layout, float mm) {
@@ -123,6 +128,9 @@ void experimenter_page(const Shown& shown, const Gui& gui, ViewState& view, Wish
     if (!shown.notices.keeps_trials &&
         big_button(words::kTangible, words::kKeyTangible, {0.0f, kTarget_mm, soft, false, words::kHintTangible}, gui))
         wishes.screen = Screen::tangible;
+    if (big_button(words::kParts, words::kKeyParts, {0.0f, kTarget_mm, true, shows_parts(shown), words::kHintParts},
+                   gui))
+        wishes.scene = parts_scene();
     if (big_button(words::kPerformance, words::kKeyCost, {0.0f, kTarget_mm, true, view.cost, words::kHintPerformance},
                    gui))
         view.cost = !view.cost;
@@ -273,7 +281,9 @@ void take_keys(const Shown& shown, const Gui& gui, ViewState& view, Wishes& wish
         if (help || gui.pressed(platform::key::escape)) view.help = false;
         return;
     }
-    if (palpates(shown.doing)) trial_keys(shown, gui, wishes);
+    const bool parts = shows_parts(shown) && study_of(shown.doing) == nullptr;
+    if (palpates(shown.doing) && parts) part_keys(shown, gui, view.part, wishes);
+    if (palpates(shown.doing) && !parts) trial_keys(shown, gui, wishes);
     // in a study the other keys would change what the protocol fixes, or reveal what it hides
     if (study_of(shown.doing) != nullptr) return;
     if (help) view.help = true;
@@ -284,6 +294,7 @@ void take_keys(const Shown& shown, const Gui& gui, ViewState& view, Wishes& wish
     if (gui.pressed('g') && !shown.notices.keeps_trials) wishes.screen = Screen::tangible;
     if (gui.pressed('y')) wishes.studies = true;
     menu_keys(shown, gui, wishes);
+    if (gui.pressed('e')) wishes.scene = parts_scene();
     if (gui.pressed('x') && shown.scene.cues.side_view) wishes.side_view = !shown.settings.side_view;
     if (gui.pressed('c')) view.cost = !view.cost;
     if (gui.pressed('d')) wishes.screen = Screen::devices;

@@ -11,6 +11,7 @@
 #include "app/scene_choices.h"
 #include "app/screens/doing.h"
 #include "app/screens/gui.h"
+#include "app/screens/part_view.h"
 #include "app/screens/settings.h"
 #include "render/tissue.h"
 #include "scene/scene.h"
@@ -43,6 +44,7 @@ struct Wishes {
     std::optional<bool> side_view;
     std::optional<double> px_per_mm;  // of this screen, measured; NaN: forget it
     std::optional<StudyWish> study;
+    std::optional<PartWish> part;
     std::optional<bool> guided;  // true: begin the guided start; false: leave it
     std::optional<bool> keep_results;
     std::optional<int> text_percent;
@@ -128,6 +130,7 @@ struct ViewState {
     std::shared_ptr<MapBrowser> maps;      // while its screen is open, else null
     std::shared_ptr<HistoryView> history;  // likewise
     StudyForm study;
+    PartView part;  // of the scene's parts
     FrameTimes times;
     OnScreen on_screen;
 };

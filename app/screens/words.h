@@ -210,8 +210,9 @@ inline constexpr const char* kKeyPicture = "S";
 inline constexpr const char* kKeyPictureDo = "after a trial: save a picture";
 inline constexpr const char* kKeyMenu = "F10 or Tab";
 inline constexpr const char* kKeyMenuDo = "menu; arrows and Enter choose in it";
-inline constexpr const char* kKeyScreens = "V, B, D, Z, T, G";
-inline constexpr const char* kKeyScreensDo = "history, maps, device check, screen scale, arm and pins, soft device";
+inline constexpr const char* kKeyScreens = "V, B, D, Z, T, G, E";
+inline constexpr const char* kKeyScreensDo =
+    "history, maps, device check, screen scale, arm and pins, soft device, parts";
 inline constexpr const char* kKeyInset = "X";
 inline constexpr const char* kKeyInsetDo = "show or hide the side view";
 inline constexpr const char* kKeyHold = "H";
@@ -241,6 +242,35 @@ inline constexpr const char* kTrialAxis = "trial";
 inline constexpr const char* kPlay = "Play";
 inline constexpr const char* kHistoryLine = "{}  {}  {}";
 inline constexpr const char* kHistoryFound = "Found {} of {}, false positives: {}";
+
+// parts
+inline constexpr const char* kParts = "Parts";
+inline constexpr const char* kKeyParts = "E";
+inline constexpr const char* kHintParts = "Parts of several materials: press them, change them, compare two designs";
+inline constexpr const char* kToolPress = "Press";
+inline constexpr const char* kToolSculpt = "Cut";
+inline constexpr const char* kToolPermute = "Exchange";
+inline constexpr const char* kHintToolPress = "The pen presses (or pulls) the part";
+inline constexpr const char* kHintToolSculpt = "The pen cuts a channel through the part";
+inline constexpr const char* kHintToolPermute = "The pen gives the material under it another one";
+inline constexpr const char* kToolRadius = "{} mm";
+inline constexpr const char* kHintMaterial = "The material that Exchange gives";
+inline constexpr const char* kHintUndoEdit = "Takes the last change back";
+inline constexpr const char* kMagnify = "5 times";
+inline constexpr const char* kHintMagnify = "Draws displacements five times as large as they are";
+inline constexpr const char* kNextMethod = "Next method";
+inline constexpr const char* kKeyMethod = "J";
+inline constexpr const char* kHintMethod = "How displacements are computed; changes between presses only";
+inline constexpr const char* kForceOverTime = "Force over time";
+inline constexpr const char* kForceOverTravel = "Force over travel";
+inline constexpr const char* kSeconds = "s";
+inline constexpr const char* kMillimetres = "mm";
+inline constexpr const char* kNewtons = "N";
+inline constexpr const char* kButtonOn = "on";
+inline constexpr const char* kButtonOff = "off";
+inline constexpr const char* kPressesAir = "The pen presses no part";
+inline constexpr const char* kCellsPending = "Finite cells: {} % computed; beams answer meanwhile.";
+inline constexpr const char* kSimulatedParts = "Simulated: linear elastic, small displacements.";
 
 // force arm and shape display
 inline constexpr const char* kTactile = "Arm and pins";

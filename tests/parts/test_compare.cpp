@@ -1,5 +1,6 @@
 #include <doctest/doctest.h>
 
+#include "parts/button_file.h"
 #include "parts/compare.h"
 #include "parts/info.h"
 #include "tests/close_to.h"
@@ -37,6 +38,19 @@ TEST_CASE("compare: the same shape of another modulus and density has their rati
     const PartComparison turned = compare_parts(b, a, "tip", kVoxels);
     CHECK(turned.stiffness_ratio == close_to(1.0 / 1.18).epsilon(1e-6));
     CHECK(turned.difference == close_to(c.difference).epsilon(1e-9));
+}
+
+TEST_CASE("compare: buttons that switch at other forces") {
+    Json json = read_json(PALPA_SOURCE_DIR "/assets/parts/button.json");
+    const Part a = parsed(json);
+    json["button"]["support"]["latch"]["threshold_N"] = 2;
+    const Part b = parsed(json);
+    const PartComparison c = compare_parts(a, b, "cap", kVoxels);
+    REQUIRE(c.switch_force_ratio);
+    CHECK(*c.a.switch_force_N == close_to(button_curve(a).peak_N));
+    CHECK(*c.switch_force_ratio == close_to(button_curve(b).peak_N / button_curve(a).peak_N));
+    CHECK(*c.switch_force_ratio > 1.2);
+    CHECK_FALSE(compare_parts(parsed(small_part()), parsed(small_part()), "tip", kVoxels).switch_force_ratio);
 }
 
 TEST_CASE(

@@ -119,3 +119,25 @@ TEST_CASE("part file: all parts that come with the program can be read") {
     }
     CHECK(n >= 7);
 }
+
+TEST_CASE("bad input: nothing left, two bodies, a volume outside, E <= 0, nu >= 0.5, too many voxels") {
+    const auto refused = [](const char* at, const char* with) {
+        Json json = small_part();
+        json[Json::json_pointer(at)] = Json::parse(with);
+        return message_of([&] { parsed(json); });
+    };
+    CHECK(test::contains(refused("/shape/1", R"({"remove": {"all": true}})"), "shape: found nothing left"));
+    CHECK(test::contains(refused("/shape/1", R"({"remove": {"box": {"min_mm": [4, 0, 0], "max_mm": [5, 2, 2]}}})"),
+                         "shape: found 2 bodies"));
+    // corners and edges that touch join nothing
+    CHECK(test::contains(
+        refused("/shape", R"([{"add": {"box": {"min_mm": [0, 0, 0], "max_mm": [1, 1, 1]}}, "material": "hard"},
+        {"add": {"box": {"min_mm": [1, 1, 0], "max_mm": [2, 2, 1]}}, "material": "hard"}])"),
+        "found 2 bodies"));
+    CHECK(test::contains(refused("/shape/1", R"({"sculpt": {"points_mm": [[5, 1, 9]], "radius_mm": 2}})"),
+                         "shape[1].sculpt: found a volume outside"));
+    CHECK(test::contains(refused("/materials/hard/young_Pa", "-1"), "materials.hard.young_Pa: found -1"));
+    CHECK(test::contains(refused("/materials/hard/poisson", "0.5"), "materials.hard.poisson: found 0.5"));
+    CHECK(test::contains(refused("/voxel_mm", "1e-4"), "100000 voxels along an axis"));
+    CHECK(test::contains(refused("/size_mm", "[10, 5000, 5000]"), "100000000 lines of voxels"));
+}

@@ -1,0 +1,143 @@
+// Designs of parts that are changed on the screen: every edit appends an operation to a copy of the part's file, and the
+// tissue is made anew. Beams answer at once; finite cells are computed meanwhile.
+
+#include "app/assets.h"
+#include "app/live/live_app.h"
+#include "app/scene_choices.h"
+#include "app/screens/words.h"
+#include "files/input_error.h"
+#include "parts/edit.h"
+#include "scene/tissue.h"
+
+namespace palpa::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+// The file that holds a design's edits. A second folder of the same name would be another design.
+fs::path edited_file(const fs::path& design) {
+    const std::string stem = design.stem().string();
+    const std::string end = "-edited";
+    const bool is = stem.size() > end.size() && stem.compare(stem.size() - end.size(), end.size(), end) == 0;
+    const fs::path folder = user_folder().empty() ? fs::temp_directory_path() : user_folder() / "parts";
+    fs::create_directories(folder);
+    return is ? design : folder / (stem + end + ".json");
+}
+
+// Points in mm, with the third coordinate from in front of the part to behind it.
+files::Json cylinder_json(const std::array<double, 2>& p_m, double radius_m, const std::array<int, 2>& view,
+                          const files::Json& size_mm) {
+    const auto third = static_cast<std::size_t>(3 - view[0] - view[1]);
+    files::Json from{0.0, 0.0, 0.0};
+    for (std::size_t k = 0; k < 2; ++k) from[static_cast<std::size_t>(view[k])] = 1e3 * p_m[k];
+    files::Json to = from;
+    from[third] = -1.0;
+    to[third] = size_mm[third].get<double>() + 1.0;
+    return {{"cylinder", {{"from_mm", from}, {"to_mm", to}, {"radius_mm", 1e3 * radius_m}}}};
+}
+
+files::Json operation_of(const PartWish& wish, const std::array<int, 2>& view, const files::Json& part) {
+    files::Json regions = files::Json::array();
+    for (const auto& p : wish.path_m) regions.push_back(cylinder_json(p, wish.radius_m, view, part["size_mm"]));
+    const files::Json region = regions.size() == 1 ? regions[0] : files::Json{{"any", regions}};
+    if (wish.tool == PartTool::permute) return {{"permute", region}, {"material", wish.material}};
+    return {{"remove", region}};
+}
+
+// Names beside the part's own file stay what they were in a copy elsewhere.
+void keep_names(const fs::path& from, files::Json& part) {
+    const auto keep = [&](files::Json& name) {
+        if (name.is_string() && fs::path(name.get<std::string>()).is_relative())
+            name = fs::absolute(from.parent_path() / name.get<std::string>()).lexically_normal().string();
+    };
+    if (part.contains("button") && part["button"].contains("support") && part["button"]["support"].contains("curve"))
+        keep(part["button"]["support"]["curve"]);
+}
+
+// Prepares the scene with its designs as they are now: by beams at once where it asks for cells, which follow.
+void show_designs(const scene::Scene& wanted, platform::Window& window, const Gui& gui, App& app) {
+    scene::Scene now = wanted;
+    scene::PartOptions& options = *scene::part_options(now.tissue);
+    const bool cells = options.method == parts::Method::voxels;
+    std::shared_ptr<const scene::Plan> plan;
+    if (cells) options.method = parts::Method::timoshenko;
+    try {
+        plan = std::make_shared<const scene::Plan>(scene::make_plan(now));
+    } catch (const files::InputError&) {
+        if (!cells) throw;
+        now = wanted;  // no beam: the cells alone can answer
+        plan = std::make_shared<const scene::Plan>(scene::make_plan(now));
+        app.parts.cells.reset();
+        put_scene(std::move(now), std::move(plan), window, app);
+        return begin_anew(window, gui, app);
+    }
+    put_scene(std::move(now), std::move(plan), window, app);
+    begin_anew(window, gui, app);
+    app.parts.cells.reset();
+    if (!cells) return;
+    app.parts.wanted = wanted;
+    app.parts.cells = std::make_unique<session::PlanInProgress>(wanted);
+}
+
+// The scene as the person means it: with cells also while they are being computed.
+scene::Scene wanted_scene(const App& app) { return app.parts.cells ? app.parts.wanted : app.session.scene; }
+
+void edit_part(const PartWish& wish, platform::Window& window, const Gui& gui, App& app) {
+    scene::Scene scene = wanted_scene(app);
+    scene::PartOptions& options = *scene::part_options(scene.tissue);
+    fs::path& design = options.designs.at(wish.design);
+    const fs::path file = edited_file(design);
+    parts::EditedPart edited = parts::open_part(design);
+    parts::edit(operation_of(wish, options.view, edited.json), edited);
+    keep_names(design, edited.json);
+    parts::save_part(edited, file);
+    app.parts.done.push_back({wish.design, std::exchange(design, file)});
+    ++app.view.part.edits[wish.design];
+    show_designs(scene, window, gui, app);
+}
+
+void undo_part(platform::Window& window, const Gui& gui, App& app) {
+    if (app.parts.done.empty()) return;
+    const PartControl::Done last = app.parts.done.back();
+    scene::Scene scene = wanted_scene(app);
+    fs::path& design = scene::part_options(scene.tissue)->designs.at(last.design);
+    if (design == last.before) {
+        parts::EditedPart edited = parts::open_part(design);
+        if (parts::undo_edit(edited)) parts::save_part(edited, design);
+    }
+    design = last.before;
+    app.parts.done.pop_back();
+    --app.view.part.edits[last.design];
+    show_designs(scene, window, gui, app);
+}
+
+}  // namespace
+
+void change_part(const PartWish& wish, platform::Window& window, const Gui& gui, App& app) {
+    if (scene::part_options(app.session.scene.tissue) == nullptr || study_of(app.doing) != nullptr || app.trace) return;
+    attempt(app, [&] {
+        if (wish.kind == PartWish::Kind::edit) edit_part(wish, window, gui, app);
+        if (wish.kind == PartWish::Kind::undo) undo_part(window, gui, app);
+    });
+}
+
+void forget_parts(App& app) {
+    app.parts = {};
+    app.view.part = {};
+}
+
+void follow_parts(platform::Window& window, const Gui& gui, App& app) {
+    if (!app.parts.cells) return;
+    app.view.part.pending = app.parts.cells->share();
+    if (!app.parts.cells->wait(0.0) || app.session.state.touch.down) return;  // the method changes between presses only
+    const bool good = attempt(app, [&] {
+        auto plan = std::make_shared<const scene::Plan>(app.parts.cells->take());
+        put_scene(app.parts.wanted, std::move(plan), window, app);
+        begin_anew(window, gui, app);
+    });
+    if (!good) app.notices.note.clear();
+    app.parts.cells.reset();
+    app.view.part.pending.reset();
+}
+
+}  // namespace palpa::app

@@ -1,0 +1,20 @@
+#pragma once
+// The screen of parts: one or two designs, pressed or pulled with the pen and changed by it.
+
+#include "app/screens/part_view.h"
+#include "app/screens/screens.h"
+
+namespace palpa::app {
+
+// True if the scene's tissue is one of parts.
+bool shows_parts(const ToShow& what);
+
+// Draws the designs as they are displaced now, the pen and its proxy, over the tissue's part of the window.
+void draw_parts(const Shown& shown, const Gui& gui, PartView& view);
+
+// Draws the panel with numbers and tools, and the curves; takes strokes of the tools.
+void draw_part_panel(const Shown& shown, const Layout& layout, Gui& gui, ViewState& view, Wishes& wishes);
+
+void part_keys(const Shown& shown, const Gui& gui, PartView& view, Wishes& wishes);
+
+}  // namespace palpa::app
