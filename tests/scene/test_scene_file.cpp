@@ -148,3 +148,30 @@ TEST_CASE("scene file: wrong keys and values are refused by key") {
                    "surface.material: found 'wood', expected one of skin silicone"));
     CHECK(contains(said(with(R"(, "seed": 0.5)")), "seed: found 0.5, expected a whole number"));
 }
+
+TEST_CASE("scene file: parts, every key, and wrong ones by name") {
+    const auto part = [](const std::string& keys) {
+        return R"({"name": "n", "tissue": {"part": {"designs": ["button.json"])" + keys + "}}}";
+    };
+    Scene scene = read(part(
+        R"(, "load": "cap", "method": "timoshenko", "cell_mm": 2, "gesture": "pull", "view": ["y", "x"], "both": true)"));
+    const PartOptions* options = part_options(scene.tissue);
+    REQUIRE(options != nullptr);
+    CHECK(options->designs.front() == kAssets / "parts" / "button.json");
+    CHECK(options->load == "cap");
+    CHECK(options->method == palpa::parts::Method::timoshenko);
+    CHECK(*options->cell_m == doctest::Approx(2e-3));
+    CHECK(options->gesture == PartGesture::pull);
+    CHECK(options->view == std::array{1, 0});
+    CHECK(options->both);
+    CHECK(map_folder(scene.tissue).empty());
+    CHECK(contains(said(part(R"(, "view": ["x", "x"])")), "tissue.part.view"));
+    CHECK(contains(said(part(R"(, "view": "xz")")), "tissue.part.view"));
+    CHECK(contains(said(part(R"(, "method": "elastica")")), "tissue.part.method"));
+    CHECK(contains(said(part(R"(, "gesture": "shake")")), "tissue.part.gesture"));
+    CHECK(contains(said(R"({"name": "n", "tissue": {"part": {"designs": []}}})"), "one or two part files"));
+    CHECK(contains(said(R"({"name": "n", "tissue": {"part": {"designs": ["a.json", "b.json", "c.json"]}}})"),
+                   "one or two"));
+    CHECK(contains(said(R"({"name": "n", "tissue": {"map": "silicone.map", "part": {"designs": ["a.json"]}}})"),
+                   "one of map, linear, part"));
+}
