@@ -23,7 +23,8 @@ struct Finding {
     double estimate = std::numeric_limits<double>::quiet_NaN();  // of what `ci` is an interval of
     Interval ci{std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::quiet_NaN()};
 
-    bool has_interval() const { return ci.low == ci.low; }};
+    bool has_interval() const { return ci.low == ci.low; }
+};
 
 // The primary comparison (method "primary"), all pairs of sensitivity, PPV and right choices, shares of each condition,
 // comparisons of groups, Obuchowski and Rockette's tests, and likelihood-ratio tests of the mixed model. Psychometric functions
@@ -52,7 +53,7 @@ struct PowerResult {
     double effect = 0.0;
     double noise = 1.0;
     int participants = 0;
-    Finding what;           // without numbers
+    Finding what;             // without numbers
     PowerShare rejections{};  // of the studies; a test that cannot be computed does not reject. n = 0: no test
     PowerShare coverage{};    // of the studies with an interval. n = 0: none, or the true value is not known
     double mean_estimate = 0.0;
