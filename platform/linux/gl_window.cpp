@@ -23,13 +23,16 @@ std::string no_gl_message(const std::string& what) {
            "--headless draws nothing unless asked for a screenshot";
 }
 
+extern "C" void pass_on_as_term(int) { ::raise(SIGTERM); }
+
 // A terminal that is closed (SIGHUP) asks to quit as SIGTERM does, which SDL takes: an open trial is then logged as
 // interrupted. Under nohup the signal stays ignored.
 void end_with_the_terminal() {
-    struct sigaction term {
-    }, hangup{};
-    if (::sigaction(SIGTERM, nullptr, &term) != 0 || ::sigaction(SIGHUP, nullptr, &hangup) != 0) return;
-    if (hangup.sa_handler == SIG_DFL) ::sigaction(SIGHUP, &term, nullptr);
+    struct sigaction hangup {};
+    if (::sigaction(SIGHUP, nullptr, &hangup) != 0 || hangup.sa_handler != SIG_DFL) return;
+    hangup.sa_handler = pass_on_as_term;  // SDL's own handler takes SIGINT and SIGTERM alone
+    hangup.sa_flags = SA_RESTART;
+    ::sigaction(SIGHUP, &hangup, nullptr);
 }
 
 void init_video(bool visible) {
