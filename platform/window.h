@@ -17,9 +17,19 @@ struct WindowOptions {
     std::string title = "Palpa";
     int width_px = 1280;
     int height_px = 800;
-    bool visible = true;        // false: an off-screen context that needs no display
-    double mouse_hold_s = 2.0;  // how long the mouse button or the Space key is held for full pressure
+    bool within_screen = false;  // true: a size that the screen has no room for is fitted to it
+    bool visible = true;         // false: an off-screen context that needs no display
+    double mouse_hold_s = 2.0;   // how long the mouse button or the Space key is held for full pressure
 };
+
+// Returns a size of a window that a screen has room for: as it is if it fits, turned upright or lengthwise if it fits so,
+// else cut. A room of 0 is not known and takes any size.
+struct SizePx {
+    int width = 0;
+    int height = 0;
+    bool operator==(const SizePx&) const = default;
+};
+SizePx fitted(const SizePx& size, const SizePx& room);
 
 // What a pointing device reports, for messages to the person ("this pen has no pressure sensor").
 struct PointerDevice {

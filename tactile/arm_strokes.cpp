@@ -77,7 +77,7 @@ ArmCommand wanted(const StrokeOptions& options, const ArmFeedback& feedback, Fri
 }
 
 // The arm rests until the sensor has its zero.
-double await_sensor(ArmRig& rig, ArmFeedback& feedback) {
+double await_sensor(const std::string& arm, ArmRig& rig, ArmFeedback& feedback) {
     constexpr int kMost = 2000;
     double now_s = 0.0;
     bool answers = false;
@@ -86,7 +86,7 @@ double await_sensor(ArmRig& rig, ArmFeedback& feedback) {
         answers = rig.read(feedback) || answers;
         rig.send(ArmCommand{});
     }
-    if (!answers) throw std::runtime_error("arm: nothing answers within 2 s");
+    if (!answers) throw std::runtime_error(arm + ": nothing answers within 2 s");
     return now_s;
 }
 
@@ -121,7 +121,7 @@ Strokes run_strokes(const StrokeOptions& options, ArmRig& rig) {
     Strokes out;
     out.rows.reserve(static_cast<std::size_t>(options.seconds / kStrokeTick_s) + 16);
     ArmFeedback feedback;
-    const double began_s = await_sensor(rig, feedback);
+    const double began_s = await_sensor(options.arm, rig, feedback);
     out.has_sensor = feedback.has_sensor == 1.0;
     double last_s = began_s, told_s = began_s, sent_N = 0.0;
     devices::TimeHistogram delays;

@@ -5,6 +5,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "devices/arm_link.h"
@@ -33,6 +34,7 @@ std::unique_ptr<ArmRig> open_rig(const devices::ArmDevice& device);
 std::unique_ptr<ArmRig> virtual_rig(devices::simulators::ArmPlant plant);
 
 struct StrokeOptions {
+    std::string arm = "arm";  // its name and address, for messages
     double seconds = 0.0;
     // The force to render, N against the press, at a depth of the arm (m); it is asked from the surface down only.
     std::function<double(double depth_m)> law;

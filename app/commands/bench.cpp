@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
+#include <filesystem>
 #include <memory>
 
 #include "app/commands/command_line.h"
@@ -26,9 +27,18 @@ void write_raster(const TraceOptions& options) {
     session::RasterOptions raster = options.raster;
     raster.speed_m_per_s = 1e-3 * options.speed_mm_per_s;
     const platform::Trace trace = session::raster_trace(scene, session::make_plan_here(scene), raster);
-    platform::TraceWriter writer(options.output, trace.info);
-    for (const platform::Sample& sample : trace.samples) writer.write(sample);
-    if (!writer.sync()) throw std::runtime_error(options.output + ": cannot be written to its end");
+    bool whole = false;
+    {
+        platform::TraceWriter writer(options.output, trace.info);  // refuses files that are there already
+        for (const platform::Sample& sample : trace.samples) writer.write(sample);
+        whole = writer.sync();
+    }
+    if (!whole) {  // half a trace would be measured as a whole one
+        std::error_code none;
+        std::filesystem::remove(options.output, none);
+        std::filesystem::remove(std::filesystem::path(options.output).replace_extension(".json"), none);
+        throw std::runtime_error(options.output + ": cannot be written to its end (is the disk full?)");
+    }
     std::printf("%s: %zu samples of a simulated pen\n", options.output.c_str(), trace.samples.size());
 }
 

@@ -92,6 +92,8 @@ files::Json record_calibration(const calibration::RecordArguments& arguments) {
     interrupted = 0;
     const auto before = std::signal(SIGINT, [](int) { interrupted = 1; });
     const auto before_term = std::signal(SIGTERM, [](int) { interrupted = 1; });
+    const auto before_hangup = std::signal(SIGHUP, [](int) { interrupted = 1; });
+    if (before_hangup == SIG_IGN) std::signal(SIGHUP, SIG_IGN);  // nohup
     std::string typed;
     double told_s = 0.0;
     std::vector<platform::Sample> samples;
@@ -112,6 +114,7 @@ files::Json record_calibration(const calibration::RecordArguments& arguments) {
     files::Json result = calibration::close_recording(*recording);
     std::signal(SIGINT, before);
     std::signal(SIGTERM, before_term);
+    std::signal(SIGHUP, before_hangup);
     return result;
 }
 

@@ -34,6 +34,10 @@ void print_result(const files::Json& result) {
                 result["max_depth_mm"].get<double>(), result["max_lag_mm"].get<double>());
     const auto skipped = result["skipped_stations"].get<std::int64_t>() + result["skipped_slides"].get<std::int64_t>();
     if (skipped > 0) std::printf("  %lld steps along fast strokes skipped\n", static_cast<long long>(skipped));
+    const std::int64_t inexact = result["counts"]["inexact"].get<std::int64_t>();
+    if (inexact > 0)
+        std::printf("  ! %lld samples whose contact did not settle, or whose force was not met\n",
+                    static_cast<long long>(inexact));
     const std::int64_t backwards = result["counts"]["backwards"].get<std::int64_t>();
     if (backwards > 0)
         std::printf("  ! %lld samples left out: their times run backwards\n", static_cast<long long>(backwards));

@@ -19,7 +19,7 @@ void run(const RunOptions& options) {
         std::fputs(files::json_text(json).c_str(), stdout);
         return;
     }
-    if (json["of"] == 0) return;
+    if (json["of"] == 0 || json["participant"] == "") return;  // closed between two participants
     std::printf("%s: %s of %s trials done\n", json["participant"].get<std::string>().c_str(),
                 json["finished"].dump().c_str(), json["of"].dump().c_str());
     if (json["finished"] < json["of"]) std::printf("  the same command continues with the next one\n");

@@ -157,6 +157,15 @@ files::Json look(const WatchArguments& arguments) {
     return json;
 }
 
+// The log has numbers to the last bit; the experimenter reads four digits.
+std::string short_text(const std::string& field) {
+    double value = 0.0;
+    if (!files::parse_number(field, value)) return field;
+    char text[32];
+    std::snprintf(text, sizeof text, "%.4g", value);
+    return text;
+}
+
 void print(const files::Json& state) {
     const std::string code = state["participant"].get<std::string>();
     std::printf("%-10s %-10s ", code.c_str(), state["group"].get<std::string>().c_str());
@@ -187,7 +196,7 @@ void print(const files::Json& state) {
     if (state.contains("events")) std::printf("    %s marks", state["events"]["marks"].dump().c_str());
     if (state.contains("sample")) {
         const files::Json& s = state["sample"];
-        const auto text = [&](const char* name) { return s.value(name, "n/a"); };
+        const auto text = [&](const char* name) { return short_text(s.value(name, "n/a")); };
         std::printf(", %s at (%s, %s) mm, pressure %s, %s N, %s mm deep", text("tool").c_str(), text("x_mm").c_str(),
                     text("y_mm").c_str(), text("pressure").c_str(), text("force_N").c_str(), text("depth_mm").c_str());
     } else if (state.contains("events")) {

@@ -107,6 +107,7 @@ RigResult stroke_along(const RigOptions& options, const devices::ArmDevice& devi
         if (!device.sensor)
             throw std::runtime_error(device.name +
                                      ": has no force sensor; without one nobody knows what the hand does");
+        stroke.arm = device.name + " at " + device.host + ":" + std::to_string(device.port);
         rig = tactile::open_rig(device);
     }
     RigResult result;

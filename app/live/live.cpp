@@ -214,6 +214,8 @@ struct Live::Impl {
         platform::WindowOptions window_options;
         window_options.width_px = app.settings.width_px;
         window_options.height_px = app.settings.height_px;
+        // what a person asked for, and what was recorded, stays as it is
+        window_options.within_screen = !app.trace && options.width_px == 0 && options.height_px == 0;
         window.emplace(window_options);
         if (app.settings.full_screen && !app.trace) window->set_full_screen(true);
         know_screen(*window, app);
@@ -366,6 +368,7 @@ files::Json Live::close() {
     result["overflow"] = it.gui->overflow();
     close_trial(it.app);
     if (const auto* stopped = std::get_if<TrialStopped>(&it.app.course)) throw std::runtime_error(stopped->why);
+    if (!it.app.lost.empty()) throw std::runtime_error(it.app.lost);
     return result;
 }
 

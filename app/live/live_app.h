@@ -77,6 +77,7 @@ struct App {
     platform::HoldPress hold;
     std::vector<double> waiting_s;  // host times of the samples that no frame has shown yet
     Course course;
+    std::string lost;  // why a trial, this or an earlier one, could not be written; for the exit status
     session::TrialKeeper* keeper = nullptr;  // may be null
     TactileControl tactile;
     TangibleControl tangible;

@@ -118,6 +118,7 @@ std::string close_trial(App& app) {
     if (good) return {};
     const std::string why = words::filled(words::kCannotBeWritten, {where});
     app.course = TrialStopped{why};
+    if (app.lost.empty()) app.lost = why;
     return why;
 }
 

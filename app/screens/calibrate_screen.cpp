@@ -187,6 +187,13 @@ void form_lines(Gui& gui, CalibrateForm& form) {
 
 }  // namespace
 
+const char* number_to_type(const CalibrateForm& form) {
+    const bool counts = form.counts_per_N >= 1e-9 && form.counts_per_N <= 1e12;  // as on the command line
+    if (form.kind == 1 && !counts) return words::kGiveCountsPerN;
+    const bool newtons = std::isfinite(form.N_per_count) && form.N_per_count != 0.0;
+    return form.kind == 2 && !newtons ? words::kGiveNPerCount : "";
+}
+
 void refresh_fit(const calibration::Recording& recording, Guide& guide) {
     const std::vector<calibration::CapturedPoint>& points = recording.session.points;
     if (points.size() == guide.fitted) return;
@@ -269,9 +276,10 @@ void draw_calibrate_screen(const Shown&, Gui& gui, CalibrateForm& form, Wishes& 
     ImGui::TextWrapped("%s", words::kHowToCalibrate);
     form_lines(gui, form);
     if (big_button(words::kStart, "", {0.0f, kMark_mm, true, false}, gui)) {
-        form.problem.clear();
         form.guide = {};
-        attempt(form, [&] { form.recording = calibration::open_recording(arguments_of(form)); });
+        form.problem = number_to_type(form);
+        if (form.problem.empty())
+            attempt(form, [&] { form.recording = calibration::open_recording(arguments_of(form)); });
     }
     if (!form.problem.empty()) warning_paragraph(form.problem);
     if (!form.guide.note.empty()) ImGui::TextWrapped("%s", form.guide.note.c_str());

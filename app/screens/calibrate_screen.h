@@ -38,11 +38,14 @@ struct CalibrateForm {
     char address[128] = "192.168.1.1";
     char port[128] = "/dev/ttyUSB0";
     double counts_per_N = 1e6;
-    double N_per_count = 1e-5;
+    double N_per_count = 0.0;  // differs from cell to cell, so there is no default
     char name[64] = "my-pen";  // of the profile
     std::unique_ptr<calibration::Recording> recording;
     Guide guide;
     std::string problem;
 };
+
+// What has to be typed before a recording with this sensor can begin; empty if nothing.
+const char* number_to_type(const CalibrateForm& form);
 
 }  // namespace palpa::app

@@ -158,6 +158,7 @@ void draw_device_screen(const Shown& shown, const CheckingDevices& checking, Gui
     for (const platform::Tool tool :
          {platform::Tool::pen, platform::Tool::finger, platform::Tool::mouse, platform::Tool::keyboard})
         seen_lines(tool, *checking.check, gui);
+    if (ImGui::GetScrollMaxX() > 1.0f) gui.note_overflow("devices");  // what is cut off at the right cannot be read
     ImGui::EndChild();
     end_panel("devices", gui);
 }

@@ -12,6 +12,10 @@ bool arm_leads(const Shown& shown);
 // What the person presses with: on the screen, or on the arm where that leads.
 double felt_force_N(const Shown& shown);
 
+// What the line below the bar says of a contact: what the person does wrong, if anything. The limits of the tissue model
+// concern the experimenter alone.
+const char* contact_note(const scene::Contact& contact, bool experimenter);
+
 // Draws the bar, with the limit of the force where there is one.
 void draw_force_bar(const Shown& shown, float height_px, const Gui& gui);
 

@@ -177,7 +177,7 @@ std::string frame_text(const Shown& shown) {
         {fixed(ms(t.latency, 0.5), 1), fixed(ms(t.latency, 0.99), 1), fixed(ms(t.ready, 0.5), 1),
          fixed(ms(t.cpu, 0.5), 2), fixed(ms(t.cpu, 0.99), 2), fixed(ms(t.gl, 0.5), 1), fixed(t.frames_per_s, 0),
          std::to_string(counters.samples), std::to_string(counters.dropped_steps),
-         std::to_string(counters.skipped_stations + counters.skipped_slides)});
+         std::to_string(counters.skipped_stations + counters.skipped_slides), std::to_string(counters.inexact)});
 }
 
 void trial_keys(const Shown& shown, const Gui& gui, Wishes& wishes) {

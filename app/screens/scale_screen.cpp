@@ -15,6 +15,25 @@ constexpr float kCardHeight_mm = 53.98f;
 constexpr double kLeast_px_per_mm = 1.0;
 constexpr double kMost_px_per_mm = 60.0;
 
+// Draws a ruler of 80 mm, for those without a card. `low`: its left end, below.
+void draw_ruler(const ImVec2& low, float px_per_mm, ImDrawList& draw) {
+    constexpr float kLeastTick_px = 3.0f;
+    const int numbered_mm = ruler_step_mm(px_per_mm, ImGui::CalcTextSize("80").x);
+    for (int mm = 0; mm <= 80; ++mm) {
+        if (mm % 5 != 0 && px_per_mm < kLeastTick_px) continue;
+        const float x = low.x + static_cast<float>(mm) * px_per_mm;
+        const float length_px = (mm % 10 == 0 ? 5.0f : mm % 5 == 0 ? 3.5f : 2.0f) * px_per_mm;
+        draw.AddLine(ImVec2(x, low.y - length_px), ImVec2(x, low.y), kPale);
+        if (mm % numbered_mm != 0 || mm == 0) continue;
+        const std::string number = std::to_string(mm);
+        const float width_px = ImGui::CalcTextSize(number.c_str()).x;
+        const float right_px = low.x + (kCardWidth_mm - 1.0f) * px_per_mm;  // of the card, with its edge free
+        draw.AddText(
+            ImVec2(std::min(x - 0.5f * width_px, right_px - width_px), low.y - 6.0f * px_per_mm - ImGui::GetFontSize()),
+            kPale, number.c_str());
+    }
+}
+
 void draw_card(const PanelArea& area, float px_per_mm) {
     const float width_px = kCardWidth_mm * px_per_mm;
     const float height_px = kCardHeight_mm * px_per_mm;
@@ -23,16 +42,14 @@ void draw_card(const PanelArea& area, float px_per_mm) {
     ImDrawList& draw = *ImGui::GetWindowDrawList();
     draw.AddRectFilled(low, high, IM_COL32(62, 69, 75, 255), 3.18f * px_per_mm);
     draw.AddRect(low, high, kLag, 3.18f * px_per_mm, 0, 2.0f);
-    for (int mm = 0; mm <= 80; ++mm) {  // a ruler, for those without a card
-        const float x = low.x + static_cast<float>(mm) * px_per_mm;
-        const float length_px = (mm % 10 == 0 ? 5.0f : mm % 5 == 0 ? 3.5f : 2.0f) * px_per_mm;
-        draw.AddLine(ImVec2(x, high.y - length_px), ImVec2(x, high.y), kPale);
-        if (mm % 10 == 0 && mm > 0)
-            draw.AddText(ImVec2(x, high.y - 6.0f * px_per_mm - ImGui::GetFontSize()), kPale,
-                         std::to_string(mm).c_str());
-    }
+    draw_ruler(ImVec2(low.x, high.y), px_per_mm, draw);
     const char* text = words::kCardSize;
-    draw.AddText(ImVec2(low.x + 4.0f * px_per_mm, low.y + 4.0f * px_per_mm), kInk, text);
+    const ImVec2 text_px = ImGui::CalcTextSize(text);
+    const float indent_px = 4.0f * px_per_mm;
+    const bool inside = text_px.x < width_px - 2.0f * indent_px && 2.0f * text_px.y < height_px - 12.0f * px_per_mm;
+    draw.AddText(inside ? ImVec2(low.x + indent_px, low.y + indent_px)
+                        : ImVec2(0.5f * (low.x + high.x - text_px.x), low.y - 1.5f * text_px.y),
+                 kInk, text);
 }
 
 // Lets the person drag the frame's left or right edge, or anything between, to the size of the card.
@@ -61,6 +78,14 @@ void step_buttons(const Gui& gui, double& px_per_mm) {
 }
 
 }  // namespace
+
+int ruler_step_mm(float px_per_mm, float number_px) {
+    constexpr float kAir = 1.4f;  // so that two numbers do not read as one
+    for (const int step_mm : {10, 20, 40}) {
+        if (static_cast<float>(step_mm) * px_per_mm >= kAir * number_px) return step_mm;
+    }
+    return 80;
+}
 
 void draw_scale_screen(const Shown& shown, Gui& gui, double& card_px_per_mm, Wishes& wishes) {
     const ImVec2 screen = ImGui::GetIO().DisplaySize;

@@ -195,6 +195,9 @@ void draw_reveal_panel(const Shown& shown, const Layout& layout, const Reviewing
 void draw_device_screen(const Shown& shown, const CheckingDevices& checking, Gui& gui, Wishes& wishes);
 void add_dot(const platform::Sample& sample, std::vector<Dot>& dots);
 void draw_study_screen(const StudyRun& run, double now_s, Gui& gui, StudyForm& form, Wishes& wishes);
+// How many millimetres apart the numbers of a ruler stand that do not touch one another: 10, 20, 40 or 80. `number_px`: the
+// width of the widest.
+int ruler_step_mm(float px_per_mm, float number_px);
 void draw_scale_screen(const Shown& shown, Gui& gui, double& card_px_per_mm, Wishes& wishes);
 
 // True if the form holds answers that are not logged yet.

@@ -42,21 +42,10 @@ void draw_numbers(const Shown& shown, const Gui& gui) {
     ImGui::EndGroup();
 }
 
-// What the person does wrong, if anything; the limits of the tissue model concern the experimenter alone.
 // Draws one line that takes up its space even if it is empty, so that nothing moves when it fills.
 void draw_contact_note(const Shown& shown) {
-    const scene::Contact& contact = shown.state.contact;
-    const char* note = "";
-    if (shown.tactile != nullptr && shown.tactile->moment.held)
-        note = words::kPressLightly;
-    else if (contact.saturated)
-        note = words::kBeyondKnownDepth;
-    else if (!contact.measured)
-        note = words::kNotMeasuredHere;
-    else if (shown.experimenter && mechanics::linear_range(contact.linearity) == mechanics::LinearRange::red)
-        note = words::kBeyondLinear;
-    else if (shown.experimenter && mechanics::linear_range(contact.linearity) == mechanics::LinearRange::amber)
-        note = words::kLeavingLinear;
+    const bool held = shown.tactile != nullptr && shown.tactile->moment.held;
+    const char* note = held ? words::kPressLightly : contact_note(shown.state.contact, shown.experimenter);
     ImGui::TextColored(ImVec4(1.0f, 0.84f, 0.35f, 1.0f), "%s", note);
 }
 
@@ -270,6 +259,21 @@ void draw_pen(const Shown& shown, const Gui& gui, ImDrawList& draw) {
 }
 
 }  // namespace
+
+const char* contact_note(const scene::Contact& contact, bool experimenter) {
+    if (contact.saturated) return words::kBeyondKnownDepth;
+    if (!contact.measured) return words::kNotMeasuredHere;
+    if (!experimenter) return "";
+    if (contact.inexact) return words::kNotSettled;
+    switch (mechanics::linear_range(contact.linearity)) {
+        case mechanics::LinearRange::red:
+            return words::kBeyondLinear;
+        case mechanics::LinearRange::amber:
+            return words::kLeavingLinear;
+        default:
+            return "";
+    }
+}
 
 void draw_on_tissue(const Shown& shown, const Gui& gui) {
     ImDrawList& draw = *ImGui::GetBackgroundDrawList();

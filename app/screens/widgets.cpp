@@ -138,7 +138,9 @@ void value_line(const char* name, const std::string& value, float column_px) {
     ImGui::TextDisabled("%s", name);
     ImGui::SameLine();
     ImGui::SetCursorPosX(left_px + column_px);
+    ImGui::PushTextWrapPos(0.0f);
     ImGui::TextUnformatted(value.c_str());
+    ImGui::PopTextWrapPos();
 }
 
 std::string clock_text(double seconds) {

@@ -56,8 +56,8 @@ float share_of_line_px(int count);
 void paragraph(const std::string& text);  // wrapped, pale
 // Pale; text that does not fit is cut, so that nothing below it moves.
 void one_line(std::string text);
-void warning_paragraph(const std::string& text);  // wrapped, with a mark in front
-void value_line(const char* name, const std::string& value, float column_px);
+void warning_paragraph(const std::string& text);                               // wrapped, with a mark in front
+void value_line(const char* name, const std::string& value, float column_px);  // the value is wrapped
 
 std::string clock_text(double seconds);       // such as 1:07
 std::string fixed(double value, int digits);  // with this many decimals; "-" if not finite

@@ -66,7 +66,7 @@ inline constexpr const char* kMicroseconds99 = "us (p99)";
 inline constexpr const char* kCalls = "calls";
 inline constexpr const char* kFrameTimes =
     "Input to frame {} ms (p99 {}), without drawing {} ms. Frame {} ms without drawing (p99 {}), drawing {} ms. "
-    "{} frames/s, {} samples, {} steps dropped, {} along fast strokes skipped.";
+    "{} frames/s, {} samples, {} steps dropped, {} along fast strokes skipped, {} contacts not settled.";
 
 // trial
 inline constexpr const char* kForce = "Force";
@@ -77,6 +77,7 @@ inline constexpr const char* kPhantom = "Phantom";
 inline constexpr const char* kBeyondKnownDepth = "beyond the measured depth";
 inline constexpr const char* kNotMeasuredHere = "not measured here";
 inline constexpr const char* kBeyondLinear = "beyond the linear range";
+inline constexpr const char* kNotSettled = "the contact did not settle";
 inline constexpr const char* kLeavingLinear = "leaving the linear range";
 inline constexpr const char* kFirstSurface = "First surface";
 inline constexpr const char* kSecondSurface = "Second surface";
@@ -428,6 +429,10 @@ inline constexpr const char* kNetFt = "ATI Net F/T";
 inline constexpr const char* kLoadCell = "Load cell, serial port";
 inline constexpr const char* kCountsPerN = "counts per N";
 inline constexpr const char* kNPerCount = "N per count";
+inline constexpr const char* kGiveNPerCount =
+    "Type how many newtons one count of the load cell is: put a known weight on it, and divide its newtons by the "
+    "difference of the counts.";
+inline constexpr const char* kGiveCountsPerN = "Type the counts per newton that the sensor's web page shows.";
 inline constexpr const char* kSensorStopped = "The sensor sends nothing; no points are recorded until it is back.";
 inline constexpr const char* kGramForce = "gf";
 inline constexpr const char* kAddress = "Address";
@@ -490,7 +495,7 @@ inline constexpr const char* kReportsConstant = "This {} always reports the same
 inline constexpr const char* kReplayOf = "Replay of {}";
 inline constexpr const char* kNoSensorHere = "No pen or finger with a pressure sensor is connected.";
 inline constexpr const char* kCannotBeWritten =
-    "{}: cannot be written any more, so the trial has stopped (is the disk full?)";
+    "{}: cannot be written any more, so the trial has stopped (is the disk full, or the folder gone?)";
 inline constexpr const char* kPreparing = "Preparing the tissue (only once; later starts are quick)";
 inline constexpr const char* kSaved = "Saved {}";
 inline constexpr const char* kDoneWith = "This trial is done with the {}.";

@@ -35,7 +35,7 @@ std::unique_ptr<devices::ForceSensor> open_sensor(const RecordArguments& argumen
     }
     if (sensor.rfind("serial:", 0) == 0) {
         if (arguments.N_per_count == 0.0)
-            throw files::bad_input("--N-per-count", "", "nothing",
+            throw files::bad_input("--N-per-count", "", "0 or nothing",
                                    "newtons for one count of the load cell (may be negative)");
         return devices::open_load_cell({sensor.substr(7), arguments.baud, arguments.N_per_count});
     }

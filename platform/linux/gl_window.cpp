@@ -1,7 +1,9 @@
 #include "platform/linux/gl_window.h"
 
 #include <SDL.h>
+#include <algorithm>
 #include <cstdlib>
+#include <signal.h>
 #include <stdexcept>
 
 namespace palpa::platform {
@@ -21,6 +23,18 @@ std::string no_gl_message(const std::string& what) {
            "--headless draws nothing unless asked for a screenshot";
 }
 
+extern "C" void pass_on_as_term(int) { ::raise(SIGTERM); }
+
+// A terminal that is closed (SIGHUP) asks to quit as SIGTERM does, which SDL takes: an open trial is then logged as
+// interrupted. Under nohup the signal stays ignored.
+void end_with_the_terminal() {
+    struct sigaction hangup {};
+    if (::sigaction(SIGHUP, nullptr, &hangup) != 0 || hangup.sa_handler != SIG_DFL) return;
+    hangup.sa_handler = pass_on_as_term;  // SDL's own handler takes SIGINT and SIGTERM alone
+    hangup.sa_flags = SA_RESTART;
+    ::sigaction(SIGHUP, &hangup, nullptr);
+}
+
 void init_video(bool visible) {
     if (visible) {
         // closing the window only asks to quit; signals and the end of the session do quit
@@ -28,7 +42,7 @@ void init_video(bool visible) {
         if (SDL_InitSubSystem(SDL_INIT_VIDEO) != 0) throw std::runtime_error(no_display_message());
         // without a display, SDL falls back to drivers that show nothing
         const std::string driver = SDL_GetCurrentVideoDriver();
-        if (driver != "offscreen" && driver != "dummy") return;
+        if (driver != "offscreen" && driver != "dummy") return end_with_the_terminal();
         SDL_QuitSubSystem(SDL_INIT_VIDEO);
         throw std::runtime_error(no_display_message());
     }
@@ -51,6 +65,15 @@ void ask_for_es3() {
 
 }  // namespace
 
+SizePx fitted(const SizePx& size, const SizePx& room) {
+    if (room.width <= 0 || room.height <= 0) return size;
+    const auto fits = [&](const SizePx& one) { return one.width <= room.width && one.height <= room.height; };
+    const SizePx turned{size.height, size.width};
+    if (fits(size)) return size;
+    if (fits(turned)) return turned;
+    return {std::min(size.width, room.width), std::min(size.height, room.height)};
+}
+
 GlWindow::GlWindow(const WindowOptions& options) {
     init_video(options.visible);
     try {
@@ -66,8 +89,12 @@ GlWindow::~GlWindow() { destroy(); }
 void GlWindow::create(const WindowOptions& options) {
     ask_for_es3();
     const Uint32 shown = options.visible ? SDL_WINDOW_SHOWN | SDL_WINDOW_RESIZABLE : SDL_WINDOW_HIDDEN;
-    window_ = SDL_CreateWindow(options.title.c_str(), SDL_WINDOWPOS_CENTERED, SDL_WINDOWPOS_CENTERED, options.width_px,
-                               options.height_px, SDL_WINDOW_OPENGL | SDL_WINDOW_ALLOW_HIGHDPI | shown);
+    SizePx size{options.width_px, options.height_px};
+    SDL_Rect room{};
+    if (options.visible && options.within_screen && SDL_GetDisplayUsableBounds(0, &room) == 0)
+        size = fitted(size, {room.w, room.h});
+    window_ = SDL_CreateWindow(options.title.c_str(), SDL_WINDOWPOS_CENTERED, SDL_WINDOWPOS_CENTERED, size.width,
+                               size.height, SDL_WINDOW_OPENGL | SDL_WINDOW_ALLOW_HIGHDPI | shown);
     if (window_ == nullptr) throw std::runtime_error(no_gl_message("no window with OpenGL ES 3"));
     context_ = SDL_GL_CreateContext(window_);
     if (context_ == nullptr) throw std::runtime_error(no_gl_message("no OpenGL ES 3 context"));

@@ -76,7 +76,7 @@ TEST_CASE("disk full: the trial stops in words, what was logged before is there,
     CHECK(shell("umount " + small) == 0);
     CHECK(status == 1);
     CHECK(contains(read_text(folder / "err.txt"),
-                   "cannot be written any more, so the trial has stopped (is the disk full?)"));
+                   "cannot be written any more, so the trial has stopped (is the disk full, or the folder gone?)"));
     CHECK(std::count(samples.begin(), samples.end(), '\n') > 100);
 }
 
@@ -102,6 +102,37 @@ TEST_CASE("unplugged: a pen that goes in the middle of a press ends it, and anot
     const bool ended = contains(end, "\tpen\tup") || contains(end, "\tpen\tcancel") || contains(end, "\tpen\thover");
     CHECK(ended);
     CHECK(contains(trace, "\tfinger\tmove"));
+}
+
+TEST_CASE("gone: a log's folder that is removed is told, and the exit status says so after the next trial too") {
+    const TemporaryFolder folder;
+    copy_assets(folder);
+    const std::filesystem::path log = folder / "log";
+    const auto key = [](double t_s, int code) {
+        const std::string at = std::to_string(code) + "\tdown\t0\t0\t0\n";
+        return std::to_string(t_s) + "\tkey\t" + at + std::to_string(t_s + 0.05) + "\tkey\t" + std::to_string(code) +
+               "\tup\t0\t0\t0\n";
+    };
+    const int status = run_with_copy(folder, "--quit-after-s 10 --practice --log " + log.string(), [&] {
+        std::filesystem::remove_all(log);
+        play(folder, tap(0.0, "760", "400") + key(0.5, 58) + key(1.5, 41) + key(3.0, 57));  // mark, finish, next
+    });
+    CHECK(status == 1);
+    CHECK(contains(read_text(folder / "err.txt"), "cannot be written any more"));
+}
+
+TEST_CASE("hangup: a terminal that closes ends the app as SIGTERM does, with its trial logged as interrupted") {
+    const TemporaryFolder folder;
+    copy_assets(folder);
+    const std::string log = (folder / "log").string();
+    run_with_copy(folder, "--quit-after-s 30 --log " + log, [&] {
+        play(folder, tap(0.0, "760", "400") + "0.5\tkey\t58\tdown\t0\t0\t0\n0.6\tkey\t58\tup\t0\t0\t0\n");
+        shell("pkill -HUP -f '" PALPA_PROGRAM " run .*--log " + log + "'");
+    });
+    const std::string stem = log + "/sub-01/beh/sub-01_task-palpation_run-01";
+    CHECK(contains(read_text(stem + "_events.tsv"), "\tmark\t"));
+    CHECK(contains(read_text(stem + "_events.tsv"), "\tinterrupted\t"));
+    CHECK(std::filesystem::exists(stem + "_performance.json"));
 }
 
 TEST_CASE("tiny: a window of 200 x 100 px has no room for controls, and the keys still mark and finish") {

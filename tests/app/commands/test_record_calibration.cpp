@@ -219,3 +219,16 @@ TEST_CASE("record: a sensor that is overloaded gives no points, and a warning") 
     CHECK(contains(record.err, "says that its forces are invalid"));
     CHECK(contains(record.err, "no reading in 5 s that the sensor calls valid"));
 }
+
+TEST_CASE("record: a sensor that sends nothing is told, and no fit of no points is proposed") {
+    const TemporaryFolder folder;
+    const Called silent = shell(kPen + "--seconds 3 | " + kRecord + "-o " + (folder / "s").string() +
+                                " --sensor netft:127.0.0.1:1 --levels - --seconds 2");
+    CHECK(silent.status == 0);
+    CHECK(contains(silent.out, "netft:127.0.0.1:1 sent nothing"));
+    CHECK_FALSE(contains(silent.out, "calibrate fit"));
+    const Called zero = shell(kRecord + "-o " + (folder / "t").string() +
+                              " --sensor serial:/dev/null --N-per-count 0 --levels /dev/null");
+    CHECK(zero.status == 2);
+    CHECK(contains(zero.err, "--N-per-count: found 0 or nothing"));
+}

@@ -76,7 +76,7 @@ TEST_CASE("command study watch: who is where, what to present, the marks and the
     text(samples.string(), header + asked);
     const Called untouched = study("watch " + folder.path().string() + " --participant 09");
     CHECK(contains(untouched.out, "0 marks, the tissue was not touched in the last seconds\n"));
-    text(samples.string(), header + "1\tpen\t30\t40\t0.5\t2\t3\n" + asked + asked);
+    text(samples.string(), header + "1\tpen\t30.000012345\t40\t0.5\t2\t3\n" + asked + asked);
     const Called touched = study("watch " + folder.path().string() + " --participant 09");
     CHECK(contains(touched.out, "pen at (30, 40) mm, pressure 0.5, 2 N, 3 mm deep\n"));
     for (const auto& [now, said] :

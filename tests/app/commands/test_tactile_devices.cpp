@@ -142,6 +142,17 @@ TEST_CASE("characterise and identify: what cannot be is refused with 2") {
     refused("characterise " + high.file("s.json") + " --simulate --virtual-time", "low");
 }
 
+TEST_CASE("identify: an arm that does not answer is named with its address") {
+    const SlabScene slab;
+    files::Json arm = files::read_json(PALPA_SOURCE_DIR "/assets/devices/arm.json");
+    arm["host"] = arm["sensor"]["host"] = "127.0.0.1";
+    arm["port"] = 1;
+    files::write_text_atomically(slab.folder / "mute.json", files::json_text(arm));
+    const Called called = slab.tactile("identify --device " + slab.file("mute.json") + " -o " + slab.file("c.json"));
+    CHECK(called.status == 1);
+    CHECK(contains(called.err, " at 127.0.0.1:1: nothing answers within 2 s"));
+}
+
 TEST_CASE("identify: finds an arm's parameters and writes them") {
     const SlabScene slab;
     const Called called =

@@ -1,8 +1,11 @@
 // The numbers of a scale are typed while the pen is held down. Off screen.
 
+#include <cmath>
 #include <doctest/doctest.h>
+#include <string>
 
 #include "app/screens/calibrate_screen.h"
+#include "app/screens/words.h"
 #include "devices/force_sensor.h"
 #include "tests/app/live/desk.h"
 #include "tests/app/screens/typing.h"
@@ -60,6 +63,23 @@ TEST_CASE("calibrate screen: Enter takes the number that the scale shows, and th
     frames(desk, 8);
     CHECK(form.guide.shown_gf == 7.0);
     CHECK(form.recording->session.points.size() == 2);
+}
+
+TEST_CASE("calibrate screen: a load cell's newtons per count are asked for, and never assumed") {
+    CalibrateForm form;
+    CHECK(std::string(number_to_type(form)).empty());  // a scale needs none
+    form.kind = 2;
+    CHECK(std::string(number_to_type(form)) == words::kGiveNPerCount);
+    form.N_per_count = std::nan("");
+    CHECK(std::string(number_to_type(form)) == words::kGiveNPerCount);
+    form.N_per_count = -2e-5;
+    CHECK(std::string(number_to_type(form)).empty());
+    form.kind = 1;
+    CHECK(std::string(number_to_type(form)).empty());  // the sensor's own default
+    for (const double wrong : {0.0, -1e6, std::nan(""), HUGE_VAL}) {
+        form.counts_per_N = wrong;
+        CHECK(std::string(number_to_type(form)) == words::kGiveCountsPerN);
+    }
 }
 
 TEST_CASE("calibrate screen: a mouse has no pressure, and is told so instead of being recorded") {

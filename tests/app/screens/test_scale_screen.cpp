@@ -36,6 +36,20 @@ TEST_CASE("scale screen: what is typed counts while it is a scale that a screen 
     CHECK(std::holds_alternative<MeasuringScreen>(desk.app.doing));  // no letter was a shortcut
 }
 
+TEST_CASE("scale screen: numbers of the ruler do not touch, on coarse screens with large letters either") {
+    for (const float px_per_mm : {1.0f, 3.78f, 5.0f, 11.8f, 60.0f}) {
+        for (const float number_px : {8.0f, 20.0f, 60.0f}) {
+            CAPTURE(px_per_mm);
+            CAPTURE(number_px);
+            const int step_mm = ruler_step_mm(px_per_mm, number_px);
+            CHECK((static_cast<float>(step_mm) * px_per_mm > 1.2f * number_px || step_mm == 80));
+            CHECK(80 % step_mm == 0);
+        }
+    }
+    CHECK(ruler_step_mm(11.8f, 20.0f) == 10);
+    CHECK(ruler_step_mm(3.78f, 60.0f) == 40);
+}
+
 TEST_CASE("scale screen: the frame is as large as it is dragged") {
     Desk desk("");
     open_screen(Screen::scale, desk.window, desk.app);
