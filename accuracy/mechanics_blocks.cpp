@@ -18,18 +18,6 @@ double heap_MB() {
 #endif
 }
 
-const char* name_of(Element element) {
-    switch (element) {
-        case Element::hex8_bbar:
-            return "hex8-bbar";
-        case Element::hex8:
-            return "hex8";
-        case Element::tet4:
-            return "tet4";
-    }
-    return "";
-}
-
 Problem block(const Mesh& hexes, Element element, const Material& material) {
     Problem problem;
     problem.mesh = element == Element::tet4 ? split_to_tets(hexes) : hexes;

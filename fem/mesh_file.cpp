@@ -105,7 +105,7 @@ Mesh mesh_of(files::Msh& msh, Element element, const std::string& file) {
         throw files::bad_input(file, "",
                                std::to_string(msh.count(files::MshKind::hex)) + " hexahedra and " +
                                    std::to_string(msh.count(files::MshKind::tet)) + " tetrahedra",
-                               tets ? "tetrahedra only (element tet4)" : "hexahedra only (element hex8-bbar or hex8)");
+                               tets ? "tetrahedra only (element tet4)" : "hexahedra only (element hex8-bbar, hex8 or hex8i)");
     }
     drop_loose_nodes(wanted, msh);
     if (static_cast<double>(msh.n_nodes()) > kMostNodes) {
@@ -284,8 +284,11 @@ void with_key(const std::string& file, const std::string& key, const std::string
 }
 
 CaseMesh read_case_mesh(files::JsonReader& json, const std::filesystem::path& folder, Element& element) {
-    constexpr std::array<Element, 3> kElements{Element::hex8_bbar, Element::hex8, Element::tet4};
-    element = kElements[json.has("element") ? json.choice("element", {"hex8-bbar", "hex8", "tet4"}) : 0];
+    if (json.has("element"))
+        element = static_cast<Element>(
+            json.choice("element", {kElementNames[0], kElementNames[1], kElementNames[2], kElementNames[3]}));
+    else
+        element = Element::hex8_bbar;
     files::JsonReader mesh_json = json.object("mesh");
     mesh_json.only({"box", "bellows", "file"});
     const int kinds = int{mesh_json.has("box")} + int{mesh_json.has("bellows")} + int{mesh_json.has("file")};

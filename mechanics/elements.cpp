@@ -1,5 +1,6 @@
 #include "mechanics/elements.h"
 
+#include <Eigen/Cholesky>
 #include <Eigen/LU>
 #include <array>
 #include <cmath>
@@ -73,6 +74,46 @@ HexPoint hex_point(const Hex& corners_m, int g) {
     const Hex& reference = reference_gradients()[static_cast<std::size_t>(g)];
     const Matrix3d J = reference * corners_m.transpose();  // dx_j/dr_i
     return {J.inverse() * reference, J.determinant()};     // Gauss weights are 1
+}
+
+HexPoint hex_middle(const Hex& corners_m) {
+    Hex reference;
+    for (int a = 0; a < 8; ++a) {
+        const auto& c = kCorner[static_cast<std::size_t>(a)];
+        reference.col(a) << 0.125 * c[0], 0.125 * c[1], 0.125 * c[2];
+    }
+    const Matrix3d J = reference * corners_m.transpose();
+    return {J.inverse() * reference, 8.0 * J.determinant()};
+}
+
+HexMatrix hex8i_stiffness_N_per_m(const Hex& corners_m, const Material& material) {
+    using Wide = Eigen::Matrix<double, 33, 33>;  // corners, then modes
+    const double middle_m3 = 0.125 * hex_middle(corners_m).volume_m3;
+    Matrix3d to_space = Matrix3d::Zero();  // J0^-1
+    for (int a = 0; a < 8; ++a) {
+        const auto& c = kCorner[static_cast<std::size_t>(a)];
+        to_space += 0.125 * Vector3d(c[0], c[1], c[2]) * corners_m.col(a).transpose();
+    }
+    to_space = to_space.inverse().eval();
+    Wide products = Wide::Zero();
+    for (int g = 0; g < 8; ++g) {
+        const HexPoint point = hex_point(corners_m, g);
+        Eigen::Matrix<double, 3, 11> gradient;
+        gradient.leftCols<8>() = point.gradient_per_m;
+        for (int mode = 0; mode < 3; ++mode) {
+            const double at = kCorner[static_cast<std::size_t>(g)][static_cast<std::size_t>(mode)] / std::sqrt(3.0);
+            gradient.col(8 + mode) = -2.0 * at * middle_m3 / point.volume_m3 * to_space.col(mode);
+        }
+        const Eigen::Map<const Eigen::Matrix<double, 33, 1>> column(gradient.data());
+        products.noalias() += (point.volume_m3 * column) * column.transpose();
+    }
+    Wide K;
+    stiffness_from_products(products, mu_Pa(material), lambda_Pa(material), K);
+    const Eigen::Matrix<double, 9, 9> modes = K.bottomRightCorner<9, 9>();
+    const Eigen::Matrix<double, 9, 24> coupling = K.bottomLeftCorner<9, 24>();
+    HexMatrix out = K.topLeftCorner<24, 24>();
+    out.noalias() -= coupling.transpose() * modes.ldlt().solve(coupling);
+    return out;
 }
 
 HexMatrix hex8_stiffness_N_per_m(const Hex& corners_m, const Material& material) {

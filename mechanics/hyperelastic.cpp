@@ -1,7 +1,9 @@
 #include "mechanics/hyperelastic.h"
 
+#include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <Eigen/SVD>
+#include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <limits>
@@ -17,8 +19,9 @@ double lambda_of(const LargeMaterial& m) { return m.kappa_Pa - 2.0 * m.mu_Pa / 3
 
 EnergyDensity undefined() { return {std::numeric_limits<double>::infinity()}; }
 
-EnergyDensity log_form(double mu, double lambda, double I, double J) {
-    const double ln = std::log(J);
+EnergyDensity log_form(double mu, double lambda, double I, const VolumeChange& volume) {
+    const double J = volume.J;
+    const double ln = volume.log;
     EnergyDensity e;
     e.W_Pa = 0.5 * mu * (I - 3.0) - mu * ln + 0.5 * lambda * ln * ln;
     e.I = 0.5 * mu;
@@ -27,8 +30,9 @@ EnergyDensity log_form(double mu, double lambda, double I, double J) {
     return e;
 }
 
-EnergyDensity split_form(double mu, double kappa, double I, double J) {
-    const double c = std::pow(J, -2.0 / 3.0);
+EnergyDensity split_form(double mu, double kappa, double I, const VolumeChange& volume) {
+    const double J = volume.J;
+    const double c = 1.0 / volume.two_thirds;
     EnergyDensity e;
     e.W_Pa = 0.5 * mu * (c * I - 3.0) + 0.5 * kappa * (J - 1.0) * (J - 1.0);
     e.I = 0.5 * mu * c;
@@ -50,6 +54,22 @@ EnergyDensity stable_form(double mu, double lambda, double I, double J) {
     e.II = 0.5 * m / ((I + 1.0) * (I + 1.0));
     e.JJ = l;
     return e;
+}
+
+EnergyDensity density_at(const LargeMaterial& m, double I, const VolumeChange& volume) {
+    switch (m.law) {
+        case Law::neo_hookean:
+            return volume.J > 0.0 ? log_form(m.mu_Pa, lambda_of(m), I, volume) : undefined();
+        case Law::neo_hookean_split:
+            return volume.J > 0.0 ? split_form(m.mu_Pa, m.kappa_Pa, I, volume) : undefined();
+        case Law::stable_neo_hookean:
+            return stable_form(m.mu_Pa, lambda_of(m), I, volume.J);
+        case Law::linear:
+        case Law::corotational:
+            break;
+    }
+    assert(false && "not a law W(I, J)");
+    return undefined();
 }
 
 }  // namespace
@@ -77,27 +97,19 @@ Material at_rest(const LargeMaterial& m) {
 
 LargeMaterial with_law(const Material& material, Law law) { return {law, mu_Pa(material), kappa_Pa(material)}; }
 
-EnergyDensity energy_density(const LargeMaterial& m, double I, double J) {
-    switch (m.law) {
-        case Law::neo_hookean:
-            return J > 0.0 ? log_form(m.mu_Pa, lambda_of(m), I, J) : undefined();
-        case Law::neo_hookean_split:
-            return J > 0.0 ? split_form(m.mu_Pa, m.kappa_Pa, I, J) : undefined();
-        case Law::stable_neo_hookean:
-            return stable_form(m.mu_Pa, lambda_of(m), I, J);
-        case Law::linear:
-        case Law::corotational:
-            break;
-    }
-    assert(false && "not a law W(I, J)");
-    return undefined();
+VolumeChange volume_change(double J) {
+    const double root = std::cbrt(J);
+    return {J, root * root, J > 0.0 ? std::log(J) : std::numeric_limits<double>::quiet_NaN()};
 }
 
-EnergyDensity split_energy_density(const LargeMaterial& material, double A, double J) {
+EnergyDensity energy_density(const LargeMaterial& m, double I, double J) { return density_at(m, I, volume_change(J)); }
+
+EnergyDensity split_energy_density(const LargeMaterial& material, double A, const VolumeChange& volume) {
+    const double J = volume.J;
     if (!(J > 0.0)) return undefined();
-    const double c = std::pow(J, 2.0 / 3.0);  // I = c A
-    const double slope = 2.0 / 3.0 * c / J;   // dc/dJ
-    const EnergyDensity w = energy_density(material, c * A, J);
+    const double c = volume.two_thirds;      // I = c A
+    const double slope = 2.0 / 3.0 * c / J;  // dc/dJ
+    const EnergyDensity w = density_at(material, c * A, volume);
     EnergyDensity e;
     e.W_Pa = w.W_Pa;
     e.I = c * w.I;
@@ -119,6 +131,45 @@ Stretches stretches_of(const Eigen::Matrix3d& F) {
         out.V.col(2) *= -1.0;
         out.s(2) *= -1.0;
     }
+    return out;
+}
+
+namespace {
+
+// R and S of an F that is far from singular; false where the iteration does not settle.
+bool polar_by_newton(const Eigen::Matrix3d& F, Eigen::Matrix3d& R) {
+    constexpr double kNearSingular = 1e-3;  // det F over its size cubed
+    R = F;
+    if (!(F.determinant() > kNearSingular * std::pow(F.squaredNorm(), 1.5))) return false;
+    for (int i = 0; i < 12; ++i) {
+        Eigen::Matrix3d cofactor;
+        cofactor << R.col(1).cross(R.col(2)), R.col(2).cross(R.col(0)), R.col(0).cross(R.col(1));
+        const double det = R.col(0).dot(cofactor.col(0));
+        const Eigen::Matrix3d change = 0.5 * (cofactor / det - R);
+        R += change;
+        if (change.squaredNorm() < 1e-18) return true;  // the next change would be its square
+    }
+    return false;
+}
+
+}  // namespace
+
+Polar polar_of(const Eigen::Matrix3d& F) {
+    constexpr double kLeastSum = 1e-4;  // of two stretches
+    Polar out;
+    if (polar_by_newton(F, out.R)) {
+        const Eigen::Matrix3d S = out.R.transpose() * F;
+        out.S = 0.5 * (S + S.transpose());
+        out.inverse = (out.S.trace() * Eigen::Matrix3d::Identity() - out.S).inverse();
+        return out;
+    }
+    const Stretches stretches = stretches_of(F);
+    out.R = stretches.rotation();
+    out.S = stretches.V * stretches.s.asDiagonal() * stretches.V.transpose();
+    Eigen::Vector3d slope;
+    for (int i = 0; i < 3; ++i)
+        slope(i) = 1.0 / std::max(stretches.s((i + 1) % 3) + stretches.s((i + 2) % 3), kLeastSum);
+    out.inverse = stretches.V * slope.asDiagonal() * stretches.V.transpose();
     return out;
 }
 

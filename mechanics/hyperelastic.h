@@ -62,9 +62,20 @@ struct EnergyDensity {
 // W(I, J). Not for linear and corotational.
 EnergyDensity energy_density(const LargeMaterial& material, double I, double J);
 
+// What the laws take of J, for many points of one J.
+struct VolumeChange {
+    double J = 1.0;
+    double two_thirds = 1.0;  // J^(2/3)
+    double log = 0.0;
+};
+VolumeChange volume_change(double J);  // not a number but for J where J <= 0
+
 // The same as a function of A = J^(-2/3) I, which measures the change of shape alone, and of J: the fields I, II and IJ
 // hold the derivatives by A. Infinite at J <= 0 for every law.
-EnergyDensity split_energy_density(const LargeMaterial& material, double A, double J);
+EnergyDensity split_energy_density(const LargeMaterial& material, double A, const VolumeChange& volume);
+inline EnergyDensity split_energy_density(const LargeMaterial& material, double A, double J) {
+    return split_energy_density(material, A, volume_change(J));
+}
 
 // F = U diag(s) V^T with rotations U and V; the entry of s of smallest magnitude, the last, is negative where det F < 0.
 // R = U V^T.
@@ -74,6 +85,16 @@ struct Stretches {
     Eigen::Matrix3d rotation() const { return U * V.transpose(); }
 };
 Stretches stretches_of(const Eigen::Matrix3d& F);
+
+// The rotation nearest to F, and what its derivative needs. With S = R^T F (symmetric):
+//   dR = R [w]_x,   w = inverse axl(R^T dF),   inverse = (tr S 1 - S)^-1,   axl(A) = (A_32 - A_23, A_13 - A_31, A_21 - A_12)
+// R jumps where two stretches are opposite; there `inverse` is kept finite, for a line search to deal with.
+// Newton's iteration for the polar factor (Higham, SIAM J. Sci. Stat. Comput. 7, 1986) where F is far from singular, else
+// from the stretches.
+struct Polar {
+    Eigen::Matrix3d R, S, inverse;
+};
+Polar polar_of(const Eigen::Matrix3d& F);
 
 // Cauchy stress, Pa, at a deformation gradient with det F > 0.
 Eigen::Matrix3d cauchy_stress_Pa(const LargeMaterial& material, const Eigen::Matrix3d& F);

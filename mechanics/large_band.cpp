@@ -27,10 +27,10 @@ double sum_into_band(const LargeBody& body, const Eigen::Matrix3Xd& u_m, Wanted 
         for (int b = 0; b < N; ++b) {
             const int column = body.mesh.cells(b, i);
             if (column >= free_nodes) continue;
-            for (int a = 0; a < N; ++a) {
+            for (int a = b; a < N; ++a) {
                 const int row = body.mesh.cells(a, i);
-                if (row < column || row >= free_nodes) continue;
-                add_block(row, column, cell.tangent_N_per_m.template block<3, 3>(3 * a, 3 * b), *K);
+                if (row < free_nodes)
+                    add_block(row, column, cell.tangent_N_per_m.template block<3, 3>(3 * a, 3 * b), *K);
             }
         }
     }

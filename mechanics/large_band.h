@@ -9,8 +9,7 @@ namespace palpa::mechanics {
 
 // Adds gradient (3 x n_nodes) and tangent to what stands there already, and returns the energy. Where it is infinite
 // (hyperelastic.h), the sums are incomplete. Allocates nothing.
-double add_energy_gradient_N(const LargeBody& body, const Eigen::Matrix3Xd& u_m,
-                             Eigen::Matrix3Xd& gradient_N) noexcept;
+double add_energy_gradient_N(const LargeBody& body, const Eigen::Matrix3Xd& u_m, Eigen::Matrix3Xd& gradient_N) noexcept;
 double add_energy_tangent_N_per_m(const LargeBody& body, const Eigen::Matrix3Xd& u_m, Tangent kind,
                                   Eigen::Matrix3Xd& gradient_N, BandMatrix& K_N_per_m) noexcept;
 

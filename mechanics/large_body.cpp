@@ -34,6 +34,10 @@ bool has_mean_volume(const LargeBody& body) { return body.element == Element::he
 template <int N>
 void cell_of(const LargeBody& body, Eigen::Index cell, const Eigen::Matrix3Xd& u_m, Wanted wanted, LargeCell<N>& out) {
     const auto at = static_cast<std::size_t>(cell);
+    if constexpr (N == 8) {
+        if (body.element == Element::hex8i)
+            return incompatible_cell(body.walls[at], corners_now_m<N>(body, cell, u_m), wanted, out);
+    }
     large_cell<N>(rests<N>(body)[at], body.materials[at], has_mean_volume(body), corners_now_m<N>(body, cell, u_m),
                   wanted, out);
 }
@@ -89,12 +93,24 @@ LargeBody make_large_body(const Mesh& mesh, Element element, std::vector<LargeMa
                             {});
     }
     check_large_materials(materials);
-    LargeBody body{mesh, element, std::move(materials), {}, {}, neighbours_of(mesh)};
+    std::vector<int> not_turned;
+    for (std::size_t i = 0; element == Element::hex8i && i < materials.size(); ++i) {
+        if (materials[i].law != Law::corotational) not_turned.push_back(static_cast<int>(i));
+    }
+    if (!not_turned.empty())
+        throw MaterialError(
+            text("element hex8i with law ", name_of(materials[static_cast<std::size_t>(not_turned[0])].law),
+                 "; wanted corotational"),
+            not_turned);
+    LargeBody body{mesh, element, std::move(materials), {}, {}, {}, neighbours_of(mesh)};
     for (Eigen::Index cell = 0; cell < mesh.cells.cols(); ++cell) {
         if (element == Element::tet4)
             body.tets.push_back(rest_of(corners_at_rest_m<4>(mesh, cell)));
         else
             body.hexes.push_back(rest_of(corners_at_rest_m<8>(mesh, cell)));
+        if (element == Element::hex8i)
+            body.walls.push_back(incompatible_rest_of(corners_at_rest_m<8>(mesh, cell),
+                                                      at_rest(body.materials[static_cast<std::size_t>(cell)])));
     }
     return body;
 }

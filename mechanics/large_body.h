@@ -5,6 +5,7 @@
 
 #include "mechanics/assembly.h"
 #include "mechanics/large_elements.h"
+#include "mechanics/large_hex8i.h"
 
 namespace palpa::mechanics {
 
@@ -14,10 +15,12 @@ struct LargeBody {
     std::vector<LargeMaterial> materials;  // one per cell
     std::vector<CellRest<8>> hexes;        // one per cell, or none
     std::vector<CellRest<4>> tets;         // one per cell, or none
+    std::vector<IncompatibleRest> walls;   // one per cell of element hex8i, or none
     Neighbours near;
 };
 
-// Throws MeshError and MaterialError as stiffness_N_per_m() and check_large_materials() do.
+// Throws MeshError and MaterialError as stiffness_N_per_m() and check_large_materials() do, and for hex8i with a law that
+// is not corotational.
 LargeBody make_large_body(const Mesh& mesh, Element element, std::vector<LargeMaterial> materials);
 
 // The elastic energy at displacements u_m (3 x n_nodes), J; infinite where a law is not defined. The sums run in the

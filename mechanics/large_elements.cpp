@@ -1,41 +1,17 @@
 #include "mechanics/large_elements.h"
 
 #include <Eigen/Eigenvalues>
-#include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <cassert>
 #include <cmath>
 #include <limits>
 
+#include "mechanics/large_cell_sums.h"
+
 namespace palpa::mechanics {
 namespace {
 
-using Eigen::Matrix3d;
-using Eigen::Vector3d;
-
-template <int N>
-using Corners = Eigen::Matrix<double, 3, N>;
-template <int N>
-using CellMatrix = Eigen::Matrix<double, 3 * N, 3 * N>;
-template <int N>
-using CellVector = Eigen::Matrix<double, 3 * N, 1>;
-
-template <int N>
-CellVector<N> flat(const Corners<N>& values) {
-    return Eigen::Map<const CellVector<N>>(values.data());
-}
-
-Matrix3d cofactor(const Matrix3d& F) {
-    Matrix3d out;
-    out << F.col(1).cross(F.col(2)), F.col(2).cross(F.col(0)), F.col(0).cross(F.col(1));
-    return out;
-}
-
-Matrix3d cross_matrix(const Vector3d& v) {
-    Matrix3d out;
-    out << 0.0, -v.z(), v.y(), v.z(), 0.0, -v.x(), -v.y(), v.x(), 0.0;
-    return out;
-}
+using namespace cell_sums;
 
 // One Gauss point of a law W(I, J). Gradient and tangent of the energy are sums over the points of
 //   gradient_a = k k_a + c c_a
@@ -47,8 +23,9 @@ struct PointTerms {
 
 template <int N>
 struct PointState {
-    Matrix3d F;
+    Matrix3d F, cofactor;
     double I = 0.0, J = 0.0;
+    double B = 0.0;  // J^(-2/3), with the mean volume only
     EnergyDensity w;
     double slope_k = 0.0, slope_c = 0.0;  // dA/dx_a = slope_k k_a + slope_c c_a, with the mean volume only
     PointTerms terms;
@@ -65,7 +42,7 @@ PointTerms full_terms(const EnergyDensity& w, double weight) {
 // The terms of A = J^(-2/3) I and of the mean volume; pressure_Pa is the mean of dW/dJbar.
 template <int N>
 PointTerms mean_terms(const PointState<N>& p, double weight, double pressure_Pa) {
-    const double B = std::pow(p.J, -2.0 / 3.0);
+    const double B = p.B;
     const double first = weight * p.w.I;
     const double second = weight * p.w.II;
     PointTerms t;
@@ -79,27 +56,19 @@ PointTerms mean_terms(const PointState<N>& p, double weight, double pressure_Pa)
     return t;
 }
 
-template <int N>
-double volume_of(const CellRest<N>& rest) {
-    double sum = 0.0;
-    for (const double v : rest.volume_m3) sum += v;
-    return sum;
-}
-
+// Adds the gradient of all points, and writes their tangent.
 template <int N>
 void add_terms(const CellRest<N>& rest, const PointStates<N>& points, Wanted wanted, LargeCell<N>& out) {
     constexpr int kColumns = 2 * static_cast<int>(CellRest<N>::kPoints);
     Eigen::Matrix<double, 3 * N, kColumns> basis;
     Eigen::Matrix<double, 3 * N, kColumns> weighted;
     Eigen::Matrix<double, N, N> shape = Eigen::Matrix<double, N, N>::Zero();
-    CellMatrix<N>& K = out.tangent_N_per_m;
-    if (wanted == Wanted::tangent) K.setZero();
+    Eigen::Matrix<double, 3, N*(N - 1) / 2> d2J = Eigen::Matrix<double, 3, N*(N - 1) / 2>::Zero();
     for (std::size_t g = 0; g < points.size(); ++g) {
         const PointTerms& t = points[g].terms;
-        const Matrix3d& F = points[g].F;
         const Corners<N>& G = rest.gradient_per_m[g];
-        const Corners<N> k = F * G;
-        const Corners<N> c = cofactor(F) * G;
+        const Corners<N> k = points[g].F * G;
+        const Corners<N> c = points[g].cofactor * G;
         out.gradient_N += t.k * k + t.c * c;
         if (wanted != Wanted::tangent) continue;
         const auto column = static_cast<Eigen::Index>(2 * g);
@@ -107,20 +76,20 @@ void add_terms(const CellRest<N>& rest, const PointStates<N>& points, Wanted wan
         basis.col(column + 1) = flat<N>(c);
         weighted.col(column) = t.kk * flat<N>(k) + t.kc * flat<N>(c);
         weighted.col(column + 1) = t.kc * flat<N>(k) + t.cc * flat<N>(c);
-        shape.noalias() += t.shape * (G.transpose() * G);
-        for (int b = 0; b < N; ++b) {
-            for (int a = 0; a < b; ++a) {
-                const Matrix3d d2J = cross_matrix(t.volume * (F * G.col(b).cross(G.col(a))));
-                K.template block<3, 3>(3 * a, 3 * b) += d2J;
-                K.template block<3, 3>(3 * b, 3 * a) -= d2J;
-            }
+        shape.noalias() += t.shape * G.transpose().lazyProduct(G);
+        // F (g_b x g_a) = F [g_b]_x g_a, pair by pair
+        for (int b = 0, pair = 0; b < N; ++b) {
+            const Matrix3d turned = t.volume * points[g].F * cross_matrix(G.col(b));
+            for (int a = b + 1; a < N; ++a, ++pair) d2J.col(pair) += turned * G.col(a);
         }
     }
     if (wanted != Wanted::tangent) return;
-    K.noalias() += basis * weighted.transpose();
-    for (int b = 0; b < N; ++b) {
-        for (int a = 0; a < N; ++a) K.template block<3, 3>(3 * a, 3 * b).diagonal().array() += shape(a, b);
+    CellMatrix<N>& K = out.tangent_N_per_m;
+    write_lower_product<N, kColumns>(basis, weighted, K);
+    for (int b = 0, pair = 0; b < N; ++b) {
+        for (int a = b + 1; a < N; ++a, ++pair) K.template block<3, 3>(3 * a, 3 * b) += cross_matrix(d2J.col(pair));
     }
+    add_shape_and_mirror<N>(shape, K);
 }
 
 // The part of the tangent that couples all points by the mean volume: m v^T + v m^T + q v v^T, with v = dJbar/dx.
@@ -132,7 +101,7 @@ void add_mean_volume(const CellRest<N>& rest, const PointStates<N>& points, Cell
     for (std::size_t g = 0; g < points.size(); ++g) {
         const PointState<N>& p = points[g];
         const Corners<N> k = p.F * rest.gradient_per_m[g];
-        const Corners<N> c = cofactor(p.F) * rest.gradient_per_m[g];
+        const Corners<N> c = p.cofactor * rest.gradient_per_m[g];
         const double weight = rest.volume_m3[g];
         m += weight * p.w.IJ * (p.slope_k * flat<N>(k) + p.slope_c * flat<N>(c));
         v += weight * flat<N>(c);
@@ -148,17 +117,18 @@ template <int N>
 double energies(const CellRest<N>& rest, const LargeMaterial& material, bool mean_volume, PointStates<N>& points) {
     double mean_J = 0.0;
     for (std::size_t g = 0; g < points.size(); ++g) mean_J += rest.volume_m3[g] * points[g].J;
-    mean_J /= volume_of(rest);
+    const VolumeChange mean = volume_change(mean_J / volume_of(rest));
     double energy_J = 0.0;
     for (std::size_t g = 0; g < points.size(); ++g) {
         PointState<N>& p = points[g];
         if (!mean_volume) {
             p.w = energy_density(material, p.I, p.J);
         } else if (p.J > 0.0) {
-            const double B = std::pow(p.J, -2.0 / 3.0);
-            p.w = split_energy_density(material, B * p.I, mean_J);
-            p.slope_k = 2.0 * B;
-            p.slope_c = -2.0 / 3.0 * B * p.I / p.J;
+            const double root = std::cbrt(p.J);
+            p.B = 1.0 / (root * root);
+            p.w = split_energy_density(material, p.B * p.I, mean);
+            p.slope_k = 2.0 * p.B;
+            p.slope_c = -2.0 / 3.0 * p.B * p.I / p.J;
         } else {
             return std::numeric_limits<double>::infinity();
         }
@@ -174,7 +144,8 @@ void isotropic_cell(const CellRest<N>& rest, const LargeMaterial& material, bool
     for (std::size_t g = 0; g < points.size(); ++g) {
         points[g].F = x_m * rest.gradient_per_m[g].transpose();
         points[g].I = points[g].F.squaredNorm();
-        points[g].J = points[g].F.determinant();
+        points[g].cofactor = cofactor(points[g].F);
+        points[g].J = points[g].F.col(0).dot(points[g].cofactor.col(0));
     }
     out.energy_J = energies<N>(rest, material, mean_volume, points);
     if (wanted == Wanted::energy || !std::isfinite(out.energy_J)) return;
@@ -188,87 +159,6 @@ void isotropic_cell(const CellRest<N>& rest, const LargeMaterial& material, bool
     out.gradient_N.setZero();
     add_terms<N>(rest, points, wanted, out);
     if (mean_volume && wanted == Wanted::tangent) add_mean_volume<N>(rest, points, out.tangent_N_per_m);
-}
-
-// dR/dF = sum_i 2 / (s_j + s_k) q_i q_i^T with three orthonormal q_i = U T_i V^T, T_i skew. Source: Smith, de Goes &
-// Kim, "Analytic Eigensystems for Isotropic Distortion Energies", ACM Trans. Graph. 38(1), 2019, section 4.
-struct TwistModes {
-    std::array<Matrix3d, 3> q;
-    std::array<double, 3> slope;
-};
-
-TwistModes twist_modes(const Stretches& stretches) {
-    TwistModes out;
-    for (int i = 0; i < 3; ++i) {
-        const auto at = static_cast<std::size_t>(i);
-        const Matrix3d T = std::sqrt(0.5) * cross_matrix(Vector3d::Unit(i));
-        out.q[at] = stretches.U * T * stretches.V.transpose();
-        // R jumps where two stretches are opposite; there the slope is kept finite, for the line search to deal with
-        const double sum = stretches.s((i + 1) % 3) + stretches.s((i + 2) % 3);
-        out.slope[at] = 2.0 / std::max(sum, 1e-4);
-    }
-    return out;
-}
-
-template <int N>
-void corotational_cell(const CellRest<N>& rest, const LargeMaterial& material, bool mean_volume, const Corners<N>& x_m,
-                       Wanted wanted, LargeCell<N>& out) {
-    constexpr std::size_t kPoints = CellRest<N>::kPoints;
-    const double mu = material.mu_Pa;
-    const double kappa = mean_volume ? material.kappa_Pa : 0.0;  // of the mean
-    const double lambda = mean_volume ? -2.0 * mu / 3.0 : material.kappa_Pa - 2.0 * mu / 3.0;
-    const double V = volume_of(rest);
-    std::array<Matrix3d, kPoints> F;
-    std::array<Stretches, kPoints> stretches;
-    double mean_stretch = 0.0;
-    out.energy_J = 0.0;
-    for (std::size_t g = 0; g < kPoints; ++g) {
-        F[g] = x_m * rest.gradient_per_m[g].transpose();
-        if (!F[g].allFinite()) {
-            out.energy_J = std::numeric_limits<double>::infinity();
-            return;
-        }
-        stretches[g] = stretches_of(F[g]);
-        const Vector3d strain = stretches[g].s.array() - 1.0;
-        const double weight = rest.volume_m3[g];
-        out.energy_J += weight * (mu * strain.squaredNorm() + 0.5 * lambda * strain.sum() * strain.sum());
-        mean_stretch += weight * strain.sum() / V;
-    }
-    out.energy_J += 0.5 * V * kappa * mean_stretch * mean_stretch;
-    if (wanted == Wanted::energy) return;
-
-    constexpr int kColumns = 4 * static_cast<int>(CellRest<N>::kPoints);
-    Eigen::Matrix<double, 3 * N, kColumns> basis;
-    Eigen::Matrix<double, kColumns, 1> weights;
-    Eigen::Matrix<double, N, N> shape = Eigen::Matrix<double, N, N>::Zero();
-    CellVector<N> mean = CellVector<N>::Zero();  // V dtbar/dx
-    out.gradient_N.setZero();
-    for (std::size_t g = 0; g < kPoints; ++g) {
-        const Corners<N>& G = rest.gradient_per_m[g];
-        const double weight = rest.volume_m3[g];
-        const Matrix3d R = stretches[g].rotation();
-        const double pressure = lambda * (stretches[g].s.sum() - 3.0) + kappa * mean_stretch;
-        out.gradient_N += weight * (2.0 * mu * (F[g] - R) + pressure * R) * G;
-        if (wanted != Wanted::tangent) continue;
-        const auto column = static_cast<Eigen::Index>(4 * g);
-        const TwistModes modes = twist_modes(stretches[g]);
-        for (int i = 0; i < 3; ++i) {
-            const auto at = static_cast<std::size_t>(i);
-            basis.col(column + i) = flat<N>(modes.q[at] * G);
-            weights(column + i) = weight * (pressure - 2.0 * mu) * modes.slope[at];
-        }
-        basis.col(column + 3) = flat<N>(R * G);
-        weights(column + 3) = weight * lambda;
-        mean += weight * basis.col(column + 3);
-        shape.noalias() += 2.0 * mu * weight * (G.transpose() * G);
-    }
-    if (wanted != Wanted::tangent) return;
-    CellMatrix<N>& K = out.tangent_N_per_m;
-    K.noalias() = basis * weights.asDiagonal() * basis.transpose();
-    K.noalias() += (kappa / V * mean) * mean.transpose();
-    for (int b = 0; b < N; ++b) {
-        for (int a = 0; a < N; ++a) K.template block<3, 3>(3 * a, 3 * b).diagonal().array() += shape(a, b);
-    }
 }
 
 Voigt voigt_of(const Matrix3d& tensor, double shear) {

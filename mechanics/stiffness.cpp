@@ -24,6 +24,19 @@ Tet tet_of(const Mesh& mesh, const Eigen::Matrix3Xd& values, Index cell) {
     return out;
 }
 
+HexMatrix hex_stiffness_N_per_m(Element element, const Hex& corners_m, const Material& material) {
+    switch (element) {
+        case Element::hex8:
+            return hex8_stiffness_N_per_m(corners_m, material);
+        case Element::hex8i:
+            return hex8i_stiffness_N_per_m(corners_m, material);
+        case Element::hex8_bbar:
+        case Element::tet4:
+            break;
+    }
+    return hex8_bbar_stiffness_N_per_m(corners_m, material);
+}
+
 }  // namespace
 
 LowerMatrix stiffness_N_per_m(const Mesh& mesh, Element element, std::span<const Material> materials,
@@ -46,9 +59,7 @@ LowerMatrix stiffness_N_per_m(const Mesh& mesh, Element element, std::span<const
                         tet4_stiffness_N_per_m(tet_of(mesh, mesh.nodes_m, cell), materials[i]), K);
         } else {
             const Hex corners = hex_of(mesh, mesh.nodes_m, cell);
-            const HexMatrix Ke = element == Element::hex8 ? hex8_stiffness_N_per_m(corners, materials[i])
-                                                          : hex8_bbar_stiffness_N_per_m(corners, materials[i]);
-            add_cell<8>(near, mesh.cells.col(cell), Ke, K);
+            add_cell<8>(near, mesh.cells.col(cell), hex_stiffness_N_per_m(element, corners, materials[i]), K);
         }
     }
     return K;

@@ -32,18 +32,6 @@ const char* range_name(LinearRange range) {
     return "";
 }
 
-const char* element_name(mechanics::Element element) {
-    switch (element) {
-        case mechanics::Element::hex8_bbar:
-            return "hex8-bbar";
-        case mechanics::Element::hex8:
-            return "hex8";
-        case mechanics::Element::tet4:
-            return "tet4";
-    }
-    return "";
-}
-
 // The law of the materials, or the laws, each once.
 std::string law_names(const fem::FemCase& model) {
     std::string out;
@@ -109,7 +97,7 @@ files::Json newton_json(const mechanics::LargeSolution& large) {
 files::Json json_of(const fem::FemCase& model, const fem::FemResult& result) {
     files::Json json;
     json["case"] = model.file;
-    json["element"] = element_name(model.problem.element);
+    json["element"] = mechanics::name_of(model.problem.element);
     json["law"] = law_names(model);
     json["nodes"] = model.problem.mesh.nodes_m.cols();
     json["elements"] = model.problem.mesh.cells.cols();
@@ -177,7 +165,7 @@ void print_table(const fem::FemCase& model, const fem::FemResult& result) {
         return value_m ? six_digits(1e3 * *value_m) + " mm" : std::string("-");
     };
     std::printf("%s: %s, %s, %td nodes, %td elements, %d equations\n", files::printable(model.file).c_str(),
-                law_names(model).c_str(), element_name(model.problem.element), model.problem.mesh.nodes_m.cols(),
+                law_names(model).c_str(), mechanics::name_of(model.problem.element), model.problem.mesh.nodes_m.cols(),
                 model.problem.mesh.cells.cols(), result.equations);
     row("applied", files::short_number(result.applied_N) + " N");
     row("centre displacement", mm(result.centre_m));
