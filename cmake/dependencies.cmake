@@ -22,6 +22,12 @@ pkg_check_modules(FONTCONFIG REQUIRED IMPORTED_TARGET fontconfig)
 find_package(OpenSSL 3 REQUIRED)
 pkg_check_modules(HTTPLIB REQUIRED IMPORTED_TARGET cpp-httplib)
 pkg_check_modules(QRENCODE REQUIRED IMPORTED_TARGET libqrencode)
+# parts for printers; its pkg-config file names libzip for linking too, whose headers lib3mf-dev does without
+find_library(LIB3MF_LIBRARY 3MF REQUIRED)
+find_path(LIB3MF_INCLUDE Model/COM/NMR_DLLInterfaces.h PATH_SUFFIXES lib3mf REQUIRED)
+add_library(palpa_lib3mf INTERFACE)
+target_include_directories(palpa_lib3mf SYSTEM INTERFACE ${LIB3MF_INCLUDE})
+target_link_libraries(palpa_lib3mf INTERFACE ${LIB3MF_LIBRARY})
 # recordings: MATLAB, HDF5 and TIFF files
 pkg_check_modules(MATIO REQUIRED IMPORTED_TARGET matio)
 pkg_check_modules(HDF5 REQUIRED IMPORTED_TARGET hdf5)

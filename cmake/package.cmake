@@ -1,6 +1,8 @@
 # What `cmake --install` puts where, and the .deb that CPack makes of it (scripts/package).
 
 install(TARGETS palpa)
+# what holds the ports of devices
+install(TARGETS palpa_guard DESTINATION ${CMAKE_INSTALL_LIBEXECDIR}/palpa)
 # what --simulate starts
 install(TARGETS arm_simulator maestro_simulator DESTINATION ${CMAKE_INSTALL_LIBEXECDIR}/palpa)
 install(DIRECTORY assets DESTINATION ${CMAKE_INSTALL_DATADIR}/palpa PATTERN desktop EXCLUDE)

@@ -199,6 +199,7 @@ int Connection::read_head() {
         received_.append(buffer.data(), static_cast<std::size_t>(n));
     }
     if (end > kLongestHead_bytes) return 431;
+    no_body_ = received_.starts_with("HEAD ");
     const CheckedHead head = check_head(std::string_view(received_).substr(0, end + 4));
     received_.erase(0, end + 4);
     head_ = head.text;
@@ -207,8 +208,11 @@ int Connection::read_head() {
 }
 
 void Connection::refuse(int status) {
+    const std::string body = std::string("{\"error\":\"") + why_refused(status) + "\"}\n";
     const std::string answer =
-        "HTTP/1.1 " + std::to_string(status) + " Refused\r\nContent-Length: 0\r\nConnection: close\r\n\r\n";
+        "HTTP/1.1 " + std::to_string(status) +
+        " Refused\r\nContent-Type: application/json\r\nContent-Length: " + std::to_string(body.size()) +
+        "\r\nConnection: close\r\n\r\n" + (no_body_ ? "" : body);
     write(answer.data(), answer.size());
 }
 

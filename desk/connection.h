@@ -38,7 +38,7 @@ class Connection : public httplib::Stream {
     // Waits for the head of the next request. Returns 0 if it is there and fine, the HTTP status to refuse it with, or -1
     // if the client went away or sent nothing for too long.
     int read_head();
-    void refuse(int status);
+    void refuse(int status);  // says why in the body, unless the request was HEAD
     // Skips the rest of a body that was not read, so that the next request can follow. Returns false if the rest is more
     // than kSkipped_bytes or does not arrive: the connection must then be closed.
     bool skip_body();
@@ -76,6 +76,7 @@ class Connection : public httplib::Stream {
     std::string received_;  // bytes of the next requests, not looked at yet
     std::string head_;      // checked, for the HTTP library
     std::size_t head_read_ = 0;
+    bool no_body_ = false;  // the request was HEAD, so its answer has none
     std::uint64_t body_left_ = 0;
 };
 

@@ -86,4 +86,19 @@ CheckedHead check_head(std::string_view head) {
     return out;
 }
 
+const char* why_refused(int status) {
+    switch (status) {
+        case 411:
+            return "the length of the body is missing: Content-Length, and no chunks";
+        case 414:
+            return "the path is longer than 1024 bytes";
+        case 415:
+            return "the body must be neither compressed nor multipart";
+        case 431:
+            return "the head of the request is too long";
+        default:
+            return "the request cannot be read";
+    }
+}
+
 }  // namespace palpa::desk

@@ -23,4 +23,7 @@ struct CheckedHead {
 // and chunked bodies (411), encoded and multipart bodies (415). Lines that ask for ranges and compression are left out.
 CheckedHead check_head(std::string_view head);
 
+// What the body of a refusal says, for each status that check_head() gives.
+const char* why_refused(int status);
+
 }  // namespace palpa::desk

@@ -7,6 +7,7 @@
 #include <memory>
 #include <openssl/x509v3.h>
 
+#include "desk/request_head.h"
 #include "desk/static_files.h"
 #include "files/clock.h"
 #include "files/input_error.h"
@@ -324,6 +325,12 @@ void set_routes(Desk& desk, DeskServer& server) {
         // does not wait for the rest of a large body
         const bool closes = res.status >= 400 && announced_bytes(req) > kSkipped_bytes;
         if (closes && !res.has_header("Connection")) res.set_header("Connection", "close");
+    });
+    server.set_error_handler([](const Request& req, Response& res) {
+        if (!res.body.empty()) return;
+        // what the library refuses by itself: methods, versions and requests that it does not know
+        refuse(res.status, res.status == 404 ? "no such thing" : why_refused(res.status), res);
+        if (req.method == "HEAD") res.body.clear();
     });
     server.set_exception_handler([&desk](const Request& req, Response& res, std::exception_ptr trouble) {
         std::string what = "unknown";

@@ -1,11 +1,12 @@
 // Device files of force arms.
 
-#include "devices/arm.h"
-#include "files/json.h"
+#include "devices/device_json.h"
 #include "files/text.h"
 
 namespace palpa::devices {
 namespace {
+
+constexpr double kMm = 1e-3;
 
 NetFtOptions read_sensor(files::JsonReader reader) {
     reader.only({"host", "port", "counts_per_N", "axis", "sign", "rate_Hz"});
@@ -23,9 +24,9 @@ NetFtOptions read_sensor(files::JsonReader reader) {
 
 }  // namespace
 
-ArmDevice read_arm_device(const std::filesystem::path& path) {
-    constexpr double kMm = 1e-3;
-    const files::Json json = files::read_json(path);
+ArmDevice read_arm_device(const std::filesystem::path& path) { return parse_arm_device(files::read_json(path), path); }
+
+ArmDevice parse_arm_device(const files::Json& json, const std::filesystem::path& path) {
     files::JsonReader reader(json, path.string());
     reader.only({"kind", "name", "host", "port", "impedance", "range_mm", "force_N", "feedforward_N",
                  "force_slew_N_per_s", "depth_slew_mm_per_s", "speed_mm_per_s", "silence_ms", "sensor",
@@ -56,6 +57,31 @@ ArmDevice read_arm_device(const std::filesystem::path& path) {
         arm.compensation = path.parent_path() / file;
     reader.finish();
     return arm;
+}
+
+files::Json arm_device_json(const ArmDevice& arm) {
+    files::Json json{{"kind", "arm"},
+                     {"name", arm.name},
+                     {"host", arm.host},
+                     {"port", arm.port},
+                     {"impedance", arm.impedance == ArmImpedance::low ? "low" : "high"},
+                     {"range_mm", {arm.lowest_m / kMm, arm.deepest_m / kMm}},
+                     {"force_N", arm.force_N},
+                     {"feedforward_N", arm.feedforward_N},
+                     {"force_slew_N_per_s", arm.force_slew_N_per_s},
+                     {"depth_slew_mm_per_s", arm.depth_slew_m_per_s / kMm},
+                     {"speed_mm_per_s", arm.speed_m_per_s / kMm},
+                     {"silence_ms", 1e3 * arm.silence_s}};
+    if (arm.sensor) {
+        constexpr const char* kAxes[]{"x", "y", "z"};
+        json["sensor"] = {{"host", arm.sensor->host},
+                          {"port", arm.sensor->port},
+                          {"counts_per_N", arm.sensor->counts_per_N},
+                          {"axis", kAxes[arm.sensor->axis]},
+                          {"sign", arm.sensor->sign > 0.0 ? 1 : -1},
+                          {"rate_Hz", arm.sensor->rate_Hz}};
+    }
+    return json;
 }
 
 std::string delay_warning(double stiffness_N_per_m, double loop_delay_s) {

@@ -197,6 +197,8 @@ bool ArmLink::read(ArmFeedback& out) noexcept {
     return came;
 }
 
+int ArmLink::fd() const { return port_->fd(); }
+
 void ArmLink::send(const ArmCommand& command) noexcept {
     const ArmCommandPacket packet = packet_of(command, ++sent_, steady_s());
     const auto bytes = encode(packet);

@@ -93,6 +93,7 @@ class ArmLink {
     bool read(ArmFeedback& out) noexcept;
     void send(const ArmCommand& command) noexcept;
     const LinkHealth& health() const { return health_; }
+    int fd() const;  // readable when feedback has arrived
 
   private:
     bool take(std::span<const std::uint8_t> bytes, double arrival_s, ArmFeedback& out) noexcept;
@@ -116,6 +117,7 @@ class ArmPort {
     bool read(ArmFeedback& out) noexcept;
     void send(const ArmCommand& command) noexcept { link_.send(command); }
     const LinkHealth& health() const { return link_.health(); }
+    int fd() const { return link_.fd(); }
 
   private:
     void take_sensor(double now_s, ArmFeedback& out) noexcept;

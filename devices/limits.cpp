@@ -72,6 +72,12 @@ std::string_view text(Fault fault) {
             return "a board of the pins has no serial timeout";
         case Fault::crc_missing:
             return "a board of the pins does not check CRCs";
+        case Fault::loop_silent:
+            return "nothing comes from the loop";
+        case Fault::parent_gone:
+            return "the program has ended";
+        case Fault::guard_gone:
+            return "the guard has ended";
     }
     return "";
 }

@@ -25,8 +25,11 @@ enum class Fault : std::uint8_t {
     board_error,      // a board of the pins reports errors again and again
     timeout_missing,  // a board would hold its pins when Palpa is gone
     crc_missing,      // a board would take garbled targets
+    loop_silent,      // nothing came from the loop for 100 ms
+    parent_gone,      // the program that runs the loop has ended
+    guard_gone,       // the guard's process has ended
 };
-inline constexpr std::size_t kFaults = 9;
+inline constexpr std::size_t kFaults = 12;
 std::string_view text(Fault fault);
 
 // Whether the fault stays until release(). Silence and too_fast pass by themselves.

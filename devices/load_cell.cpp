@@ -1,14 +1,9 @@
 #include "devices/load_cell.h"
 
-#include <algorithm>
-#include <array>
 #include <charconv>
-#include <chrono>
 #include <cmath>
-#include <exception>
-#include <thread>
 
-#include "platform/serial_port.h"
+#include "devices/counts_stream.h"
 
 namespace palpa::devices {
 namespace {
@@ -25,68 +20,28 @@ bool parse(const std::string& line, LoadCellLine& out) {
 class LoadCell : public ForceSensor {
   public:
     explicit LoadCell(const LoadCellOptions& options)
-        : options_(options), port_(std::make_unique<platform::SerialPort>(options.path, options.baud)) {}
+        : options_(options), stream_(CountsPlace{options.path, options.baud, "", 0}) {}
 
     void read(double wait_s, std::vector<ForceReading>& out) override {
-        std::array<std::uint8_t, 4096> bytes;
-        const int n = port_ ? port_->read(wait_s, bytes.data(), bytes.size()) : reopen(wait_s);
-        if (n < 0) {
-            port_.reset();
-            parser_ = {};
-            tried_s_ = steady_s();
-        }
-        for (int i = 0; i < n; ++i) {
-            LoadCellLine line;
-            if (feed(bytes[static_cast<std::size_t>(i)], parser_, health_, line)) take(line, out);
-        }
-        constexpr double kSilence_s = 0.5;
-        if (health_.alive && steady_s() - last_s_ > kSilence_s) {
-            health_.alive = false;
-            ++health_.stalls;
+        readings_.clear();
+        stream_.read(wait_s, readings_);
+        for (const CountsReading& from : readings_) {
+            ForceReading reading;
+            reading.t_host_s = from.t_host_s;
+            reading.t_device_s = from.t_device_s;
+            reading.raw = from.counts;
+            reading.force_N = options_.N_per_count * from.counts;
+            out.push_back(reading);
         }
     }
 
-    const SensorHealth& health() const override { return health_; }
+    const SensorHealth& health() const override { return stream_.health(); }
     std::string name() const override { return "load cell at " + options_.path; }
 
   private:
-    // After the port was unplugged, tries to open it twice a second.
-    int reopen(double wait_s) {
-        constexpr double kAgain_s = 0.5;
-        const double due_s = tried_s_ + kAgain_s - steady_s();
-        std::this_thread::sleep_for(std::chrono::duration<double>(std::min(wait_s, std::max(due_s, 0.0))));
-        if (due_s > wait_s) return 0;
-        tried_s_ = steady_s();
-        try {
-            port_ = std::make_unique<platform::SerialPort>(options_.path, options_.baud);
-            clock_ = {};
-            ++health_.reconnects;
-        } catch (const std::exception&) {
-            // still gone
-        }
-        return 0;
-    }
-
-    void take(const LoadCellLine& line, std::vector<ForceReading>& out) {
-        last_s_ = steady_s();
-        health_.alive = true;
-        if (!take_time(line.t_us, clock_, health_)) return;
-        ForceReading reading;
-        reading.t_host_s = last_s_;
-        reading.t_device_s = 1e-6 * static_cast<double>(clock_.total_us);
-        reading.raw = line.raw;
-        reading.force_N = options_.N_per_count * line.raw;
-        out.push_back(reading);
-        ++health_.received;
-    }
-
     LoadCellOptions options_;
-    std::unique_ptr<platform::SerialPort> port_;
-    LineParser parser_;
-    LoadCellClock clock_;
-    SensorHealth health_;
-    double last_s_ = 0.0;
-    double tried_s_ = 0.0;
+    CountsStream stream_;
+    std::vector<CountsReading> readings_;
 };
 
 }  // namespace

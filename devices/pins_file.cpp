@@ -4,7 +4,7 @@
 #include <cmath>
 #include <set>
 
-#include "devices/pins.h"
+#include "devices/device_json.h"
 #include "files/json.h"
 #include "files/text.h"
 
@@ -144,8 +144,9 @@ void check_line(const JsonReader& json, const PinDevice& device) {
 
 }  // namespace
 
-PinDevice read_pin_device(const std::filesystem::path& path) {
-    const files::Json json = files::read_json(path);
+PinDevice read_pin_device(const std::filesystem::path& path) { return parse_pin_device(files::read_json(path), path); }
+
+PinDevice parse_pin_device(const files::Json& json, const std::filesystem::path& path) {
     JsonReader reader(json, path.string());
     reader.only({"kind", "name", "line", "grid", "pulse_us", "frame_ms", "boards", "servo", "pins"});
     reader.choice("kind", {"pins"});
@@ -176,7 +177,7 @@ PinDevice read_pin_device(const std::filesystem::path& path) {
     return device;
 }
 
-void write_pin_device(const PinDevice& device, const std::filesystem::path& path) {
+files::Json pin_device_json(const PinDevice& device) {
     const MaestroAddress& first = device.boards.front().address;
     files::Json json{{"kind", "pins"}, {"name", device.name}};
     json["line"] = {{"port", device.port},
@@ -206,7 +207,11 @@ void write_pin_device(const PinDevice& device, const std::filesystem::path& path
                                 {"us_per_mm", pin.us_per_mm},
                                 {"direction", pin.direction > 0.0 ? 1 : -1}});
     }
-    files::write_text_atomically(path, files::json_text(json));
+    return json;
+}
+
+void write_pin_device(const PinDevice& device, const std::filesystem::path& path) {
+    files::write_text_atomically(path, files::json_text(pin_device_json(device)));
 }
 
 }  // namespace palpa::devices

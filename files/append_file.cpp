@@ -64,13 +64,14 @@ bool AppendFile::sync() {
     return !failed_;
 }
 
-void append_synced(const std::filesystem::path& path, std::string_view text) {
+void append_synced(const std::filesystem::path& path, std::string_view text, std::string_view end_of_cut_line) {
     const int fd = ::open(path.c_str(), O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC, 0644);
     if (fd < 0) fail_writing(path);
     char last = '\n';
     const off_t size = ::lseek(fd, 0, SEEK_END);
     std::string whole(text);
-    if (size > 0 && ::pread(fd, &last, 1, size - 1) == 1 && last != '\n') whole.insert(whole.begin(), '\n');
+    if (size > 0 && ::pread(fd, &last, 1, size - 1) == 1 && last != '\n')
+        whole = std::string(end_of_cut_line) + "\n" + whole;
     const bool good = write_all(fd, whole) && ::fsync(fd) == 0;
     const int error = errno;
     ::close(fd);

@@ -4,6 +4,7 @@
 #include <charconv>
 #include <cstring>
 #include <limits>
+#include <type_traits>
 
 #include "files/input_error.h"
 #include "files/pieces.h"
@@ -86,12 +87,12 @@ std::size_t count_of(const std::vector<std::size_t>& shape, const std::string& f
     return count;
 }
 
-template <class Value>
-void take_values(const char* from, std::size_t n, float* to) {
+template <class Value, class Out>
+void take_values(const char* from, std::size_t n, Out* to) {
     for (std::size_t i = 0; i < n; ++i) {
         Value value;
         std::memcpy(&value, from + i * sizeof(Value), sizeof(Value));
-        to[i] = static_cast<float>(value);
+        to[i] = static_cast<Out>(value);
     }
 }
 
@@ -103,12 +104,18 @@ struct Layout {
     std::size_t value_bytes() const { return is_double ? 8 : 4; }
 };
 
+// Throws unless the array holds numbers that become `Out`.
+template <class Out>
 Layout layout_of(std::string_view text, std::size_t data_bytes, const std::string& file) {
     Layout layout;
     const auto type = after_key(text, "descr", file).substr(0, 5);
-    layout.is_double = type == "'<f8'";
-    if (!layout.is_double && type != "'<f4'") {
-        throw bad_input(file, "descr", shown(type), "'<f4' or '<f8' (little-endian float32 or float64)");
+    if constexpr (std::is_same_v<Out, std::int32_t>) {
+        if (type != "'<i4'") throw bad_input(file, "descr", shown(type), "'<i4' (little-endian int32)");
+    } else {
+        layout.is_double = type == "'<f8'";
+        if (!layout.is_double && type != "'<f4'") {
+            throw bad_input(file, "descr", shown(type), "'<f4' or '<f8' (little-endian float32 or float64)");
+        }
     }
     if (after_key(text, "fortran_order", file).substr(0, 5) != "False") {
         throw bad_input(file, "fortran_order", "True", "False (C order)");
@@ -126,9 +133,25 @@ Layout layout_of(std::string_view text, std::size_t data_bytes, const std::strin
 void take_values(const Layout& layout, const char* from, std::size_t n, float* to) {
     layout.is_double ? take_values<double>(from, n, to) : take_values<float>(from, n, to);
 }
+void take_values(const Layout&, const char* from, std::size_t n, std::int32_t* to) {
+    take_values<std::int32_t>(from, n, to);
+}
 
-// Does the same as parse_npy(), but reads the file in parts.
-NpyArray read_in_parts(const InputFile& in, const std::string& file) {
+// Array: NpyArray or NpyIntegers.
+template <class Array>
+Array parse_array(std::string_view bytes, const std::string& file) {
+    using Out = typename decltype(Array::values)::value_type;
+    const Header header = find_header(bytes, bytes.size(), file);
+    const std::string_view data = bytes.substr(header.data_offset());
+    const Layout layout = layout_of<Out>(bytes.substr(header.from, header.length), data.size(), file);
+    Array array{layout.shape, std::vector<Out>(layout.count)};
+    take_values(layout, data.data(), layout.count, array.values.data());
+    return array;
+}
+
+// Does the same as parse_array(), but reads the file in parts.
+template <class Array>
+Array read_in_parts(const InputFile& in, const std::string& file) {
     const auto read = [&](std::size_t offset, char* to, std::size_t n) {
         if (in.read_at(offset, to, n) != n) throw InputError(file + ": cannot be read to its end");
     };
@@ -137,8 +160,9 @@ NpyArray read_in_parts(const InputFile& in, const std::string& file) {
     const Header header = find_header(start, in.bytes(), file);
     std::string text(header.length, '\0');
     read(header.from, text.data(), text.size());
-    const Layout layout = layout_of(text, in.bytes() - header.data_offset(), file);
-    NpyArray array{layout.shape, std::vector<float>(layout.count)};
+    using Out = typename decltype(Array::values)::value_type;
+    const Layout layout = layout_of<Out>(text, in.bytes() - header.data_offset(), file);
+    Array array{layout.shape, std::vector<Out>(layout.count)};
     constexpr std::size_t kPart = 1 << 16;  // in numbers
     std::vector<char> part(std::min(kPart, layout.count) * layout.value_bytes());
     for (std::size_t at = 0; at < layout.count; at += kPart) {
@@ -157,19 +181,22 @@ std::string shape_text(const std::vector<std::size_t>& shape) {
     return out + (shape.size() == 1 ? ",)" : ")");
 }
 
-NpyArray parse_npy(std::string_view bytes, const std::string& file) {
-    const Header header = find_header(bytes, bytes.size(), file);
-    const std::string_view data = bytes.substr(header.data_offset());
-    const Layout layout = layout_of(bytes.substr(header.from, header.length), data.size(), file);
-    NpyArray array{layout.shape, std::vector<float>(layout.count)};
-    take_values(layout, data.data(), layout.count, array.values.data());
-    return array;
+NpyArray parse_npy(std::string_view bytes, const std::string& file) { return parse_array<NpyArray>(bytes, file); }
+NpyIntegers parse_npy_integers(std::string_view bytes, const std::string& file) {
+    return parse_array<NpyIntegers>(bytes, file);
 }
 
-NpyArray read_npy(const std::filesystem::path& path) { return read_in_parts(InputFile(path), path.string()); }
+NpyArray read_npy(const std::filesystem::path& path) { return read_in_parts<NpyArray>(InputFile(path), path.string()); }
+NpyIntegers read_npy_integers(const std::filesystem::path& path) {
+    return read_in_parts<NpyIntegers>(InputFile(path), path.string());
+}
 
-std::string npy_header(const std::vector<std::size_t>& shape) {
-    std::string header = "{'descr': '<f4', 'fortran_order': False, 'shape': " + shape_text(shape) + ", }";
+namespace {
+
+// type: '<f4' or '<i4'
+std::string header_of(const char* type, const std::vector<std::size_t>& shape) {
+    std::string header =
+        "{'descr': '" + std::string(type) + "', 'fortran_order': False, 'shape': " + shape_text(shape) + ", }";
     constexpr std::size_t kPreamble = 10;
     constexpr std::size_t kAlignment = 64;
     while ((kPreamble + header.size() + 1) % kAlignment != 0) header.push_back(' ');
@@ -180,19 +207,25 @@ std::string npy_header(const std::vector<std::size_t>& shape) {
     return out + header;
 }
 
-namespace {
-
-std::string_view bytes_of(const std::vector<float>& values) {
-    return {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(float)};
+template <class Value>
+std::string_view bytes_of(const std::vector<Value>& values) {
+    return {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(Value)};
 }
 
 }  // namespace
+
+std::string npy_header(const std::vector<std::size_t>& shape) { return header_of("<f4", shape); }
 
 std::string npy_bytes(const NpyArray& array) { return npy_header(array.shape).append(bytes_of(array.values)); }
 
 void write_npy(const std::filesystem::path& path, const std::vector<std::size_t>& shape,
                const std::vector<float>& values) {
     write_pieces_atomically(path, {npy_header(shape), bytes_of(values)});
+}
+
+void write_npy_integers(const std::filesystem::path& path, const std::vector<std::size_t>& shape,
+                        const std::vector<std::int32_t>& values) {
+    write_pieces_atomically(path, {header_of("<i4", shape), bytes_of(values)});
 }
 
 }  // namespace palpa::files

@@ -1,7 +1,8 @@
 #pragma once
-// NumPy's array file, format versions 1 and 2: little-endian float32 or float64, C order.
+// NumPy's array file, format versions 1 and 2: little-endian float32, float64 or int32, C order.
 // Source: numpy.lib.format documentation, "NPY format".
 
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -26,6 +27,16 @@ std::string npy_bytes(const NpyArray& array);  // header and values
 // written.
 void write_npy(const std::filesystem::path& path, const std::vector<std::size_t>& shape,
                const std::vector<float>& values);
+
+// The same for whole numbers, '<i4' in the file.
+struct NpyIntegers {
+    std::vector<std::size_t> shape;
+    std::vector<std::int32_t> values;
+};
+NpyIntegers read_npy_integers(const std::filesystem::path& path);
+NpyIntegers parse_npy_integers(std::string_view bytes, const std::string& file_name);
+void write_npy_integers(const std::filesystem::path& path, const std::vector<std::size_t>& shape,
+                        const std::vector<std::int32_t>& values);
 
 std::string shape_text(const std::vector<std::size_t>& shape);  // "(6, 59, 159)"
 

@@ -147,4 +147,24 @@ BeamTip beam_tip(std::span<const BeamPiece> pieces, bool clamped_low, bool with_
     return out;
 }
 
+double beam_deflection_m_per_N(std::span<const BeamPiece> pieces, bool clamped_low, const BeamPlaces& places,
+                               bool with_shear) {
+    if (pieces.empty()) return 0.0;
+    const auto from_clamp = [&](double p_m) {
+        return clamped_low ? p_m - pieces.front().from_m : pieces.back().to_m - p_m;
+    };
+    const double a = from_clamp(places.load_m), x = from_clamp(places.at_m), end = std::min(a, x);
+    double sum = 0.0;
+    for (const BeamPiece& piece : pieces) {
+        const double s0 = std::max(0.0, from_clamp(clamped_low ? piece.from_m : piece.to_m));
+        const double s1 = std::min(end, from_clamp(clamped_low ? piece.to_m : piece.from_m));
+        if (!(s1 > s0)) continue;
+        const double middle = 0.5 * (s0 + s1);
+        const auto product = [&](double s) { return (a - s) * (x - s); };
+        sum += (s1 - s0) * (product(s0) + 4.0 * product(middle) + product(s1)) / (6.0 * piece.section.bending_N_m2);
+        if (with_shear) sum += (s1 - s0) / piece.section.shear_N;
+    }
+    return sum;
+}
+
 }  // namespace palpa::mechanics

@@ -59,4 +59,17 @@ struct BeamTip {
 };
 BeamTip beam_tip(std::span<const BeamPiece> pieces, bool clamped_low, bool with_shear);
 
+// Returns the deflection per newton at a place along the axis, for a force at another place, both between the clamp and the
+// free end or beyond it (m/N):
+//   w(x) = int_0^min(x, a) (a - s)(x - s) / D ds  ( + min(x, a) / kGA )
+// x, a: distances of the two places from the clamp; negative ones count as 0. The integrand is quadratic, for which
+// Simpson's rule is exact. Both places at the tip: as beam_tip(). Source: unit load theorem, e.g. Timoshenko, Gere, Mechanics
+// of Materials, section 9.3.
+struct BeamPlaces {
+    double load_m = 0.0;
+    double at_m = 0.0;
+};
+double beam_deflection_m_per_N(std::span<const BeamPiece> pieces, bool clamped_low, const BeamPlaces& places,
+                               bool with_shear);
+
 }  // namespace palpa::mechanics

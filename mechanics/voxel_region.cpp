@@ -147,20 +147,38 @@ void spans_of_shape(const PathRegion& path, const Line& line, std::vector<Span>&
     }
 }
 
+// Says whether a place lies in a slab, to 1e-9 of a voxel.
+bool in_band(const BandsRegion& bands, double place_m, double pitch_m) {
+    const double at_m = place_m - bands.offset_m + 1e-9 * pitch_m;
+    return at_m - bands.period_m * std::floor(at_m / bands.period_m) < bands.width_m;
+}
+
 void spans_of_shape(const BandsRegion& bands, const Line& line, std::vector<Span>& out) {
     const double pitch_m = line.frame.pitch_m;
     if (bands.axis != 0) {
-        const double at_m = (bands.axis == 1 ? line.y_m : line.z_m) - bands.offset_m + 1e-9 * pitch_m;
-        const double phase_m = at_m - bands.period_m * std::floor(at_m / bands.period_m);
-        if (phase_m < bands.width_m) add(line, {}, out);
+        if (in_band(bands, bands.axis == 1 ? line.y_m : line.z_m, pitch_m)) add(line, {}, out);
         return;
     }
     const double low_m = line.frame.origin_m[0], high_m = low_m + pitch_m * line.length;
+    if (bands.period_m < 2.0 * pitch_m) {  // voxel by voxel, however many slabs there are
+        for (int x = 0; x < line.length; ++x) {
+            if (in_band(bands, low_m + (x + 0.5) * pitch_m, pitch_m)) out.push_back({x, x + 1});
+        }
+        return;
+    }
     const double first = std::floor((low_m - bands.offset_m) / bands.period_m);
     for (double n = first; bands.offset_m + n * bands.period_m < high_m; n += 1.0) {
         const double at_m = bands.offset_m + n * bands.period_m;
         add(line, {at_m, at_m + bands.width_m}, out);
     }
+}
+
+void spans_of_shape(const SolidRegion& region, const Line& line, std::vector<Span>& out) {
+    // the same side of a boundary as in boxes
+    const double shift_m = 1e-9 * line.frame.pitch_m;
+    static thread_local std::vector<Stretch> stretches;
+    stretches_of(*region.solid, region.solid->along_x, line.y_m + shift_m, line.z_m + shift_m, stretches);
+    for (const Stretch& stretch : stretches) add(line, {stretch.low_m, stretch.high_m}, out);
 }
 
 void spans_of_shape(const BooleanRegion& boolean, const Line& line, std::vector<Span>& out) {
@@ -209,6 +227,7 @@ Extent extent_of_shape(const BoxRegion& box) { return {box.min_m, box.max_m}; }
 Extent extent_of_shape(const BallRegion& ball) { return around({ball.centre_m}, ball.radius_m); }
 Extent extent_of_shape(const CylinderRegion& c) { return around({c.from_m, c.to_m}, c.radius_m); }
 Extent extent_of_shape(const PathRegion& path) { return around(path.points_m, path.radius_m); }
+Extent extent_of_shape(const SolidRegion& region) { return {region.solid->low_m, region.solid->high_m}; }
 Extent extent_of_shape(const BooleanRegion& boolean) {
     if (boolean.parts.empty()) return around({}, 0.0);
     Extent out = extent_of(boolean.parts.front());

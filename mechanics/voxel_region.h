@@ -2,8 +2,11 @@
 // Volumes of interest, cut into spans of voxels along x.
 
 #include <array>
+#include <memory>
 #include <variant>
 #include <vector>
+
+#include "mechanics/triangle_solid.h"
 
 namespace palpa::mechanics {
 
@@ -45,6 +48,10 @@ struct BandsRegion {
     double period_m = 1e-3;
     double width_m = 0.5e-3;
 };
+// What triangles bound.
+struct SolidRegion {
+    std::shared_ptr<const TriangleSolid> solid;
+};
 struct Region;
 // all: where all parts are. any: where one is. without: the first part less all others.
 enum class Boolean { all, any, without };
@@ -53,7 +60,9 @@ struct BooleanRegion {
     std::vector<Region> parts;
 };
 struct Region {
-    std::variant<EverywhereRegion, BoxRegion, BallRegion, CylinderRegion, PathRegion, BandsRegion, BooleanRegion> shape;
+    std::variant<EverywhereRegion, BoxRegion, BallRegion, CylinderRegion, PathRegion, BandsRegion, SolidRegion,
+                 BooleanRegion>
+        shape;
 };
 
 // Voxels x0 <= x < x1.

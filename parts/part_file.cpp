@@ -7,26 +7,14 @@
 #include "files/input_error.h"
 #include "files/text.h"
 #include "mechanics/error.h"
+#include "parts/button_file.h"
 #include "parts/region_file.h"
+#include "parts/shape_file.h"
 
 namespace palpa::parts {
 namespace {
 
 using namespace mechanics;
-
-std::string names_of(const Part& part) {
-    std::string out;
-    for (const PartMaterial& material : part.materials) out += (out.empty() ? "" : ", ") + material.name;
-    return out;
-}
-
-int read_material_name(files::JsonReader& json, const char* key, const Part& part) {
-    const std::string name = json.text(key);
-    for (std::size_t m = 0; m < part.materials.size(); ++m) {
-        if (part.materials[m].name == name) return static_cast<int>(m);
-    }
-    json.fail(key, files::shown(name), "one of the materials: " + names_of(part));
-}
 
 PartMaterial read_material(files::JsonReader json, const std::string& name) {
     json.only({"young_Pa", "shore_A", "poisson", "density_kg_per_m3", "colour", "source"});
@@ -90,54 +78,11 @@ void make_voxels(files::JsonReader& json, Part& part) {
     part.voxels_per_cell = voxels_along(json, "cell_mm", cell_mm, voxel_mm);
 }
 
-// Says whether a region has a voxel's centre in it.
-bool reaches(const Region& region, const Voxels& voxels) {
-    std::vector<Span> spans;
-    const LineRange range = lines_of(region, voxels.frame, voxels.size[1], voxels.size[2]);
-    for (int z = range.z0; z < range.z1; ++z) {
-        for (int y = range.y0; y < range.y1; ++y) {
-            spans_of(region, voxels.frame, voxels.size[0], y, z, spans);
-            if (!spans.empty()) return true;
-        }
-    }
-    return false;
-}
-
-VoxelEdit read_operation(files::JsonReader& json, const Part& part) {
-    json.only({"add", "remove", "permute", "sculpt", "material", "from"});
-    constexpr std::array kOperations{"add", "remove", "permute", "sculpt"};
-    int kinds = 0;
-    std::string key;
-    for (const char* operation : kOperations) {
-        if (!json.has(operation)) continue;
-        key = operation;
-        ++kinds;
-    }
-    if (kinds != 1) json.fail("", std::to_string(kinds) + " operations", "one of add, remove, permute, sculpt");
-    VoxelEdit edit;
-    edit.kind = key == "add" ? EditKind::add : key == "permute" ? EditKind::permute : EditKind::remove;
-    if (key == "sculpt") {
-        edit.region = {read_path(json.object(key))};
-    } else {
-        files::JsonReader region = json.object(key);
-        region.only({"all", "box", "sphere", "cylinder", "path", "bands", "both", "any", "without"});
-        edit.region = read_region(region);
-    }
-    if (edit.kind != EditKind::remove) edit.material = read_material_name(json, "material", part);
-    if (edit.kind == EditKind::permute && json.has("from")) edit.from = read_material_name(json, "from", part);
-    json.finish();
-    if (!reaches(edit.region, part.voxels))
-        json.fail(key, "no voxel whose centre is inside", "a region in size_mm, larger than a voxel");
-    return edit;
-}
-
 void make_shape(files::JsonReader& json, Part& part) {
     auto operations = json.objects("shape");
     if (operations.empty()) json.fail("shape", "no operation", "at least one");
-    for (files::JsonReader& operation : operations) apply(read_operation(operation, part), part.voxels, part.history);
-    const int bodies = count_bodies(part.voxels);
-    if (bodies == 0) json.fail("shape", "nothing left", "at least one voxel");
-    if (bodies > 1) json.fail("shape", std::to_string(bodies) + " bodies that share no face of a voxel", "one body");
+    for (files::JsonReader& operation : operations) apply_operation(operation, part);
+    check_shape(part);
 }
 
 Side read_side(files::JsonReader& json) {
@@ -145,7 +90,7 @@ Side read_side(files::JsonReader& json) {
 }
 
 PartSupport read_support(files::JsonReader& json) {
-    json.only({"face", "fix", "all", "box", "sphere", "cylinder", "path", "bands", "both", "any", "without"});
+    json.only({"face", "fix", "all", "box", "sphere", "cylinder", "path", "bands", "stl", "both", "any", "without"});
     PartSupport out;
     if (json.has("face")) {
         out.face = read_side(json);
@@ -218,7 +163,7 @@ std::vector<Material> elastic_of(const Part& part) {
 
 Part parse_part(const files::Json& value, const std::string& file_name) {
     files::JsonReader json(value, file_name);
-    json.only({"name", "voxel_mm", "size_mm", "cell_mm", "materials", "shape", "supports", "loads", "axis"});
+    json.only({"name", "voxel_mm", "size_mm", "cell_mm", "materials", "shape", "supports", "loads", "axis", "button"});
     Part part;
     part.file = file_name;
     part.name = json.text("name", file_name);
@@ -228,6 +173,7 @@ Part parse_part(const files::Json& value, const std::string& file_name) {
     for (files::JsonReader& support : json.objects("supports")) part.supports.push_back(read_support(support));
     read_loads(json, part);
     if (json.has("axis")) part.axis = static_cast<int>(json.choice("axis", {"x", "y", "z"}));
+    if (auto button = json.optional_object("button")) part.button = read_button(*button, part);
     return part;
 }
 

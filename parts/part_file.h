@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "files/json.h"
+#include "mechanics/button.h"
 #include "mechanics/material.h"
 #include "mechanics/mesh.h"
 #include "mechanics/voxels.h"
@@ -47,6 +48,7 @@ struct Part {
     std::vector<PartMaterial> materials;
     std::vector<PartSupport> supports;
     std::vector<PartLoad> loads;
+    std::optional<mechanics::Button> button;
     std::optional<int> axis;  // of the beam that the part is taken for; 0 x, 1 y, 2 z
     std::vector<std::string> warnings;
 };

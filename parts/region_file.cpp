@@ -1,7 +1,10 @@
 #include "parts/region_file.h"
 
 #include <array>
+#include <filesystem>
 #include <string>
+
+#include "parts/stl_file.h"
 
 namespace palpa::parts {
 namespace {
@@ -45,13 +48,23 @@ BandsRegion read_bands(files::JsonReader json) {
     return out;
 }
 
+SolidRegion read_stl_region(files::JsonReader json) {
+    json.only({"file", "unit", "offset_mm"});
+    const std::filesystem::path file = json.text("file");
+    if (!json.has("unit")) json.fail("unit", "an STL file without it", "what its numbers are: um, mm, cm, m or inch");
+    constexpr std::array kUnits_m{1e-6, 1e-3, 1e-2, 1.0, 0.0254};
+    const double unit_m = kUnits_m[json.choice("unit", {"um", "mm", "cm", "m", "inch"})];
+    const Point offset_m = json.has("offset_mm") ? read_point_m(json, "offset_mm") : Point{};
+    return {std::make_shared<TriangleSolid>(read_stl(beside(json, file), unit_m, offset_m))};
+}
+
 Region read_nested(files::JsonReader& json, int depth);
 
 BooleanRegion read_boolean(files::JsonReader& json, const char* key, Boolean kind, int depth) {
     BooleanRegion out{kind, {}};
     if (depth >= kDeepest) json.fail(key, "regions nested more than 16 deep", "fewer");
     for (files::JsonReader& part : json.objects(key)) {
-        part.only({"all", "box", "sphere", "cylinder", "path", "bands", "both", "any", "without"});
+        part.only({"all", "box", "sphere", "cylinder", "path", "bands", "stl", "both", "any", "without"});
         out.parts.push_back(read_nested(part, depth + 1));
     }
     if (out.parts.size() < 2) json.fail(key, std::to_string(out.parts.size()) + " regions", "at least 2");
@@ -59,12 +72,12 @@ BooleanRegion read_boolean(files::JsonReader& json, const char* key, Boolean kin
 }
 
 Region read_nested(files::JsonReader& json, int depth) {
-    constexpr std::array kKinds{"all", "box", "sphere", "cylinder", "path", "bands", "both", "any", "without"};
+    constexpr std::array kKinds{"all", "box", "sphere", "cylinder", "path", "bands", "stl", "both", "any", "without"};
     int kinds = 0;
     for (const char* kind : kKinds) kinds += json.has(kind) ? 1 : 0;
     if (kinds != 1) {
         json.fail("", std::to_string(kinds) + " regions",
-                  "one of all, box, sphere, cylinder, path, bands, both, any, without");
+                  "one of all, box, sphere, cylinder, path, bands, stl, both, any, without");
     }
     if (json.has("all")) {
         if (!json.boolean("all", true)) json.fail("all", "false", "true");
@@ -75,6 +88,7 @@ Region read_nested(files::JsonReader& json, int depth) {
     if (json.has("cylinder")) return {read_cylinder(json.object("cylinder"))};
     if (json.has("path")) return {read_path(json.object("path"))};
     if (json.has("bands")) return {read_bands(json.object("bands"))};
+    if (json.has("stl")) return {read_stl_region(json.object("stl"))};
     if (json.has("both")) return {read_boolean(json, "both", Boolean::all, depth)};
     if (json.has("any")) return {read_boolean(json, "any", Boolean::any, depth)};
     return {read_boolean(json, "without", Boolean::without, depth)};
@@ -88,8 +102,8 @@ PathRegion read_path(files::JsonReader json) {
     json.only({"points_mm", "radius_mm", "ends"});
     PathRegion out;
     const files::Json& points = json.any("points_mm");
-    const bool good = points.is_array() && points.size() >= 2;
-    if (!good) json.fail("points_mm", files::described(points), "at least two points [x, y, z]");
+    if (!points.is_array() || points.empty())
+        json.fail("points_mm", files::described(points), "at least one point [x, y, z]");
     for (std::size_t i = 0; i < points.size(); ++i) {
         files::Json entry = files::Json::object();
         entry["points_mm"] = points[i];
@@ -98,7 +112,13 @@ PathRegion read_path(files::JsonReader json) {
     }
     out.radius_m = 1e-3 * json.number("radius_mm", files::kPositive);
     out.flat_ends = json.has("ends") && json.choice("ends", {"round", "flat"}) == 1;
+    if (out.flat_ends && out.points_m.size() < 2)
+        json.fail("points_mm", "one point", "two, for a cylinder with flat ends");
     return out;
+}
+
+std::filesystem::path beside(const files::JsonReader& json, const std::filesystem::path& file) {
+    return std::filesystem::path(json.file()).parent_path() / file;
 }
 
 Region read_region(files::JsonReader& json) { return read_nested(json, 0); }

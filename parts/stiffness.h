@@ -10,10 +10,12 @@
 
 namespace palpa::parts {
 
+// paper                        the torsion spring by which the paper replaces a beam (parts/beam_model.h); never applies
 // euler_bernoulli, timoshenko  the part as a clamped beam along `axis` (mechanics/beam.h)
+// elastica                     the same beam without shear, bent by any angle (mechanics/elastica.h)
 // voxels                       finite cells and conjugate gradients with multigrid (mechanics/voxel_solve.h)
 // factorised                   the same cells by one factorisation: the check, at a gigabyte for 50,000 cells
-enum class Method { euler_bernoulli, timoshenko, voxels, factorised };
+enum class Method { paper, euler_bernoulli, timoshenko, elastica, voxels, factorised };
 const char* name_of(Method method);
 
 struct StiffnessOptions {
@@ -45,6 +47,9 @@ std::vector<MethodResult> stiffness_of(const Part& part, const PartLoad& load, c
 
 // A beam's chord beyond which its linear answer is not taken to apply: at 10 degrees it is some 3 % off.
 inline constexpr double kMostChord_deg = 10.0;
+// A cell's rotation beyond which the linear answer of cells is not taken to apply: the slope at the tip of a uniform beam
+// whose chord turns by 10 degrees.
+inline constexpr double kMostTurn_deg = 15.0;
 // The least length over height of a beam; ours.
 inline constexpr double kLeastSlenderness = 5.0;
 

@@ -7,9 +7,9 @@ namespace {
 
 constexpr std::array<std::string_view, kToolCount> kTools{"pen", "finger", "mouse", "keyboard"};
 constexpr std::array<std::string_view, 6> kPhases{"hover", "down", "move", "up", "cancel", "ui"};
-constexpr std::array<std::string_view, 14> kActions{
-    "n/a",          "resize",       "mark",         "undo",   "finish", "confidence_1", "confidence_2",
-    "confidence_3", "confidence_4", "confidence_5", "hidden", "shown",  "pause",        "resume"};
+constexpr std::array<std::string_view, 15> kActions{
+    "n/a",          "resize",       "mark",   "undo",  "finish", "confidence_1", "confidence_2", "confidence_3",
+    "confidence_4", "confidence_5", "hidden", "shown", "pause",  "resume",       "method"};
 
 template <class Enum, std::size_t N>
 bool parse(std::string_view name, const std::array<std::string_view, N>& names, Enum& out) {

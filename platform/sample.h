@@ -36,7 +36,8 @@ enum class Action : std::uint8_t {
     hidden,
     shown,
     pause,
-    resume
+    resume,
+    method  // the next method of the tissue
 };
 
 struct Sample {

@@ -17,8 +17,8 @@ class SerialPort {
 
     // Returns the number of bytes read, 0 if none came within `wait_s`, -1 once the device is gone (unplugged).
     int read(double wait_s, std::uint8_t* bytes, std::size_t room);
-    // Writes all bytes, or returns false.
-    bool write(const std::uint8_t* bytes, std::size_t count);
+    // Writes all bytes, or returns false, also if the device takes none of them for `wait_s`.
+    bool write(const std::uint8_t* bytes, std::size_t count, double wait_s = 1.0);
 
   private:
     int fd_ = -1;

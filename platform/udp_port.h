@@ -23,6 +23,8 @@ class UdpPort {
     // Takes one datagram that has arrived, and when the system got it (steady clock). Returns 0 if there is none.
     int receive_at_once(std::uint8_t* bytes, std::size_t room, double& arrival_s) noexcept;
 
+    int fd() const { return fd_; }  // to wait for it together with others
+
   private:
     int fd_ = -1;
 };

@@ -279,6 +279,7 @@ void advance(const Scene& scene, const Plan& plan, const platform::Sample& sampl
     state.answered = false;
     if (sample.phase == platform::Phase::ui) {
         if (sample.action == platform::Action::resize) resize(scene, plan, area_of(sample, state), state);
+        if (sample.action == platform::Action::method) state.method = next_method(plan.tissue, state.tissue);
         return;
     }
     if (!std::isfinite(sample.x_px) || !std::isfinite(sample.y_px)) {

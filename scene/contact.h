@@ -40,4 +40,14 @@ struct Contact {
     std::int64_t skipped_slides = 0;  // friction steps left out on the way to this touch
 };
 
+// The tissue's answer to a finger that is held at a depth, for devices that take a depth and give a force. Forces are those
+// of the prepared tissue; whoever asks multiplies them by the scene's stiffness_scale.
+struct Push {
+    double force_N = 0.0;
+    double slope_N_per_m = 0.0;  // of the force over depth
+    double depth_m = 0.0;        // that was answered: of the god-object, which stays on the surface
+    bool saturated = false;      // the tissue is not known as deep as that; force and depth stay
+    bool inexact = false;        // a simulated contact did not settle; the answer is the nearest
+};
+
 }  // namespace palpa::scene

@@ -21,6 +21,7 @@ constexpr double kDeepestShare = 0.45;      // of the thickness; no pose goes de
 constexpr double kMostCompliance_GB = 1.0;  // with friction: ten times the frictionless compliance
 constexpr int kMostSlides = 16;  // half spacings per sample: over two contact radii, after which friction is steady
 constexpr double kFrictionTolerance = 1e-5;  // of the largest force: 2e-6 from the converged one (docs/performance.md)
+constexpr double kSlopeShare = 0.02;         // of a depth, over which push_to() takes the slope of the force
 constexpr int kMostInContact = 256;          // nodes that memory is reserved for: a contact 16 spacings wide
 
 mechanics::Material material_of(const stiffnessmaps::Elastic& elastic) { return {elastic.young_Pa, elastic.poisson}; }
@@ -318,6 +319,17 @@ void sample_surface(const LinearTissue& tissue, const SurfaceEffect&, const Cont
     shape.n_y = static_cast<Eigen::Index>(tissue.n_y);
     shape.spacing_m = {tissue.spacing_m[0], tissue.spacing_m[1]};
     surface_sink_m(tissue, work, shape.sink_m);
+}
+
+Push push_to(const LinearTissue& tissue, const Eigen::Vector2d& p_m, double depth_m, LinearWork& work) {
+    press_to(tissue, p_m, depth_m, work.work, work.contact);
+    const mechanics::ToolForce& tool = work.contact.tool[0];
+    Push out{tool.normal_N, 0.0, tool.depth_m, work.contact.flags.capped, work.contact.flags.not_settled};
+    const double before_m = tool.depth_m * (1.0 - kSlopeShare);
+    press_to(tissue, p_m, before_m, work.station, work.probe);
+    if (tool.depth_m > before_m)
+        out.slope_N_per_m = (tool.normal_N - work.probe.tool[0].normal_N) / (tool.depth_m - before_m);
+    return out;
 }
 
 }  // namespace palpa::scene

@@ -129,7 +129,6 @@ inline bool knows_surface(const LinearOptions&) { return true; }
 
 LinearTissue prepare(const LinearOptions& options, const Scene& scene, const mechanics::Progress& progress);
 bool serves(const LinearTissue& tissue, const Scene& scene);
-inline const LinearTissue* block_of(const LinearTissue& tissue) { return &tissue; }
 void describe(const LinearTissue& tissue, const Scene& scene, Plan& plan);
 std::vector<Stage> stages(const LinearTissue& tissue, const Scene& scene);
 files::Json identity(const LinearTissue& tissue);
@@ -138,5 +137,6 @@ void answer(const LinearTissue& tissue, StageId stage, const Press& press, Linea
 double rise_N(const LinearTissue& tissue, const Station& station, LinearWork& work);
 void sample_surface(const LinearTissue& tissue, const SurfaceEffect& effect, const Contact& contact,
                     const LinearWork& work, SurfaceShape& shape);
+Push push_to(const LinearTissue& tissue, const Eigen::Vector2d& p_m, double depth_m, LinearWork& work);
 
 }  // namespace palpa::scene

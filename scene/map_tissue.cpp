@@ -17,6 +17,7 @@
 namespace palpa::scene {
 namespace {
 
+constexpr double kSlopeOver_m = 0.05e-3;  // before the depth
 constexpr double kUnknownThickness_m = std::numeric_limits<double>::infinity();
 
 // Returns the noise of the scaled forces. A figure that the map's file states is not scaled.
@@ -229,6 +230,20 @@ void sample_surface(const MapTissue& tissue, const SurfaceEffect& effect, const 
     const double radius_m = effect.indenter_radius_m.value_or(tissue.map.indenter_radius_m);
     shape.curve = avatar::surface_curve(contact.depth_m, radius_m, effect.thickness_m);
     shape.centre_m = contact.p_m;
+}
+
+Push push_to(const MapTissue& tissue, const Eigen::Vector2d& p_m, double depth_m, MapWork& work) {
+    work.place = stiffnessmaps::place_at(tissue.field, p_m);
+    const double greatest_m = stiffnessmaps::greatest_depth_m(tissue.field, work.place);
+    Push out;
+    out.saturated = depth_m > greatest_m;
+    out.depth_m = std::min(depth_m, greatest_m);
+    out.force_N = stiffnessmaps::normal_force_N(tissue.field, work.place, out.depth_m);
+    const double before_m = std::max(0.0, out.depth_m - kSlopeOver_m);
+    if (out.depth_m > before_m)
+        out.slope_N_per_m = (out.force_N - stiffnessmaps::normal_force_N(tissue.field, work.place, before_m)) /
+                            (out.depth_m - before_m);
+    return out;
 }
 
 }  // namespace palpa::scene

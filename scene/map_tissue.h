@@ -1,6 +1,9 @@
 #pragma once
 // A recorded or generated map as a tissue, which answers from tables. scene/tissue.h describes the functions.
 
+#include <cstdint>
+#include <optional>
+
 #include "files/json.h"
 #include "mechanics/operators.h"
 #include "scene/contact.h"
@@ -12,7 +15,6 @@
 
 namespace palpa::scene {
 
-struct LinearTissue;
 struct Plan;
 
 // A map prepared for look-up.
@@ -36,7 +38,6 @@ inline bool knows_surface(const MapOptions&) { return false; }
 
 MapTissue prepare(const MapOptions& options, const Scene& scene, const mechanics::Progress& progress);
 bool serves(const MapTissue& tissue, const Scene& scene);
-inline const LinearTissue* block_of(const MapTissue&) { return nullptr; }
 void describe(const MapTissue& tissue, const Scene& scene, Plan& plan);
 std::vector<Stage> stages(const MapTissue& tissue, const Scene& scene);
 files::Json identity(const MapTissue& tissue);
@@ -46,5 +47,6 @@ void answer(const MapTissue& tissue, StageId stage, const Press& press, MapWork&
 double rise_N(const MapTissue& tissue, const Station& station, MapWork& work);
 void sample_surface(const MapTissue& tissue, const SurfaceEffect& effect, const Contact& contact, const MapWork& work,
                     SurfaceShape& shape);
+Push push_to(const MapTissue& tissue, const Eigen::Vector2d& p_m, double depth_m, MapWork& work);
 
 }  // namespace palpa::scene

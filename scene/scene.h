@@ -2,18 +2,24 @@
 // What is to be simulated, as one JSON file asks for it; a scene is constant while it runs. Every effect is optional:
 // an absent effect is not simulated.
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
 #include <variant>
+#include <vector>
 
 #include "avatar/delay.h"
 #include "avatar/display_ratio.h"
 #include "mechanics/mesh.h"
+#include "parts/stiffness.h"
 #include "scene/cues.h"
+#include "scene/force_curve.h"
 #include "scene/mapping.h"
+#include "scene/soft_block.h"
 #include "scene/tactile_options.h"
+#include "scene/tangible_options.h"
 #include "stiffnessmaps/field.h"
 
 namespace palpa::scene {
@@ -32,7 +38,19 @@ struct LinearOptions {
     // Finer around a place and towards the surface, so that `spacing_m` is only the mean; absent: even.
     std::optional<mechanics::Grading> grading{};
 };
-using TissueOptions = std::variant<MapOptions, LinearOptions>;
+// One or two designs of a part. Press: the pen's newtons act where it presses, along the direction of the load. Pull: the
+// drag moves the part, and its resistance enters the avatar's laws.
+enum class PartGesture { press, pull };
+struct PartOptions {
+    std::vector<std::filesystem::path> designs;  // part files, one or two
+    std::string load;                            // by its name in both; empty: the only one
+    parts::Method method = parts::Method::voxels;
+    std::optional<double> cell_m;  // of voxels; absent: the part's
+    PartGesture gesture = PartGesture::press;
+    std::array<int, 2> view{0, 2};  // axes of the picture, to the right and upwards
+    bool both = false;              // both designs bear what the pen does to one
+};
+using TissueOptions = std::variant<MapOptions, LinearOptions, PartOptions, ForceCurveOptions, SoftBlockOptions>;
 
 // How the avatar's laws take the tangential force from a map.
 struct TangentialOptions {
@@ -75,6 +93,7 @@ struct Scene {
     std::optional<SurfaceEffect> surface;
     DrawnCues cues;  // of the surface
     std::optional<TactileOptions> tactile;
+    std::optional<TangibleOptions> tangible;
     std::int64_t seed = 1;
 };
 

@@ -109,16 +109,47 @@ mechanics::Grading read_grading(files::JsonReader json, double spacing_m) {
     return {{1e-3 * centre_mm[0], 1e-3 * centre_mm[1]}, 1e-3 * finest_mm};
 }
 
-void read_tissue(files::JsonReader json, const fs::path& file, const fs::path& assets, Scene& scene) {
-    json.only({"map", "linear", "stiffness_scale"});
-    const bool linear = json.has("linear");
-    if (linear == json.has("map")) json.fail("", linear ? "two tissues" : "no tissue", "either map or linear");
-    scene.stiffness_scale = json.number("stiffness_scale", {0.0, 1e3, true}, scene.stiffness_scale);
-    if (!linear) {
-        scene.tissue = MapOptions{find_file(json.text("map"), file, assets / "maps")};
-        return json.finish();
+std::array<int, 2> read_view(files::JsonReader& json) {
+    if (!json.has("view")) return {0, 2};
+    const files::Json& view = json.any("view");
+    const std::string axes = "xyz";
+    std::array<int, 2> out{};
+    for (std::size_t k = 0; k < 2; ++k) {
+        const bool letter = view.is_array() && view.size() == 2 && view[k].is_string() &&
+                            view[k].get<std::string>().size() == 1 &&
+                            axes.find(view[k].get<std::string>()) != std::string::npos;
+        if (!letter) json.fail("view", files::described(view), "two of \"x\", \"y\", \"z\": to the right and upwards");
+        out[k] = static_cast<int>(axes.find(view[k].get<std::string>()));
     }
-    files::JsonReader block = json.object("linear");
+    if (out[0] == out[1]) json.fail("view", "one axis twice", "two different axes");
+    return out;
+}
+
+PartOptions read_part_tissue(files::JsonReader json, const fs::path& file, const fs::path& assets) {
+    json.only({"designs", "load", "method", "cell_mm", "gesture", "view", "both"});
+    PartOptions out;
+    const files::Json& designs = json.any("designs");
+    const bool list = designs.is_array() && !designs.empty() && designs.size() <= 2;
+    if (!list) json.fail("designs", files::described(designs), "one or two part files");
+    for (const files::Json& name : designs) {
+        if (!name.is_string()) json.fail("designs", files::described(name), "names of part files");
+        out.designs.push_back(find_file(name.get<std::string>(), file, assets / "parts"));
+    }
+    out.load = json.text("load", "");
+    if (json.has("method")) {
+        constexpr std::array kMethods{parts::Method::paper, parts::Method::euler_bernoulli, parts::Method::timoshenko,
+                                      parts::Method::voxels};
+        out.method = kMethods[json.choice("method", {"paper", "euler-bernoulli", "timoshenko", "voxels"})];
+    }
+    if (json.has("cell_mm")) out.cell_m = 1e-3 * json.number("cell_mm", {1e-4, 1e3});
+    if (json.has("gesture")) out.gesture = static_cast<PartGesture>(json.choice("gesture", {"press", "pull"}));
+    out.view = read_view(json);
+    out.both = json.boolean("both", false);
+    json.finish();
+    return out;
+}
+
+LinearOptions read_linear(files::JsonReader block, const fs::path& file, const fs::path& assets) {
     block.only({"phantom", "spacing_mm", "friction", "grading"});
     LinearOptions options;
     options.phantom = find_file(block.text("phantom"), file, assets / "phantoms");
@@ -126,7 +157,23 @@ void read_tissue(files::JsonReader json, const fs::path& file, const fs::path& a
     if (block.has("friction")) options.friction = block.number("friction", {0.0, 10.0, true});
     if (auto grading = block.optional_object("grading")) options.grading = read_grading(*grading, options.spacing_m);
     block.finish();
-    scene.tissue = options;
+    return options;
+}
+
+void read_tissue(files::JsonReader json, const fs::path& file, const fs::path& assets, Scene& scene) {
+    json.only({"map", "linear", "part", "force_curve", "block", "stiffness_scale"});
+    const int kinds =
+        json.has("map") + json.has("linear") + json.has("part") + json.has("force_curve") + json.has("block");
+    if (kinds != 1) {
+        json.fail("", kinds == 0 ? "no tissue" : std::to_string(kinds) + " tissues",
+                  "one of map, linear, part, force_curve and block");
+    }
+    scene.stiffness_scale = json.number("stiffness_scale", {0.0, 1e3, true}, scene.stiffness_scale);
+    if (json.has("map")) scene.tissue = MapOptions{find_file(json.text("map"), file, assets / "maps")};
+    if (auto linear = json.optional_object("linear")) scene.tissue = read_linear(*linear, file, assets);
+    if (auto part = json.optional_object("part")) scene.tissue = read_part_tissue(*part, file, assets);
+    if (auto curve = json.optional_object("force_curve")) scene.tissue = read_force_curve(*curve);
+    if (auto block = json.optional_object("block")) scene.tissue = read_soft_block(*block);
     json.finish();
 }
 
@@ -189,7 +236,8 @@ void read_avatar(files::JsonReader json, Scene& scene) {
 Scene read_scene(const fs::path& file, const fs::path& assets) {
     const files::Json root = files::read_json(file);
     files::JsonReader json(root, file.string());
-    json.only({"name", "tissue", "profile", "mapping", "force_scale", "avatar", "surface", "cues", "tactile", "seed"});
+    json.only({"name", "tissue", "profile", "mapping", "force_scale", "avatar", "surface", "cues", "tactile",
+               "tangible", "seed"});
     Scene scene;
     scene.file = file;
     scene.name = json.text("name");
@@ -205,10 +253,14 @@ Scene read_scene(const fs::path& file, const fs::path& assets) {
         scene.cues = read_cues(*cues);
     }
     if (auto tactile = json.optional_object("tactile")) {
-        if (!knows_surface(scene.tissue))
-            json.fail("tactile", "a map as the tissue", "linear: a map knows no surface under a finger");
+        if (!knows_surface(scene.tissue) && !is_curve(scene.tissue))
+            json.fail("tactile", "a tissue that knows no surface",
+                      "linear, force_curve or block: maps and parts know no surface under a finger");
         scene.tactile = read_tactile(*tactile, file, assets);
+        if (!knows_surface(scene.tissue) && scene.tactile->display)
+            json.fail("tactile.display", "a display on a tissue without a surface", "linear, or an arm alone");
     }
+    if (auto tangible = json.optional_object("tangible")) scene.tangible = read_tangible(*tangible, file, assets);
     scene.seed = json.integer("seed", 0, 2000000000, 1);
     json.finish();
     return scene;

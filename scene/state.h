@@ -65,10 +65,11 @@ struct State {
     std::optional<std::int64_t> pointer;  // the pointer that touches; the others are logged but do not press
     platform::Tool pointer_tool = platform::Tool::mouse;
     Palms palms;
-    bool without_level = false;  // the last sample of the touch lacks the level that the profile reads
-    bool answered = false;       // the stages ran for the last sample: it was that pointer's, or nothing touched
-    avatar::Touch touch;         // the last calibrated sample; its t_s is not used, see timeline
-    TissueWork tissue;           // of the plan's tissue
+    bool without_level = false;    // the last sample of the touch lacks the level that the profile reads
+    bool answered = false;         // the stages ran for the last sample: it was that pointer's, or nothing touched
+    avatar::Touch touch;           // the last calibrated sample; its t_s is not used, see timeline
+    TissueWork tissue;             // of the plan's tissue
+    const char* method = nullptr;  // that the last action `method` changed to; null if it changed nothing
     Contact contact;
     Avatar avatar;
     Eigen::Vector2d heading = Eigen::Vector2d::Zero();  // direction of motion, length 1; 0 before the first motion

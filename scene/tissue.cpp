@@ -36,8 +36,14 @@ std::filesystem::path map_folder(const TissueOptions& options) {
     return std::visit([](const auto& of_kind) { return map_folder(of_kind); }, options);
 }
 
+PartOptions* part_options(TissueOptions& options) { return std::get_if<PartOptions>(&options); }
+
 void leave_out_nodules(TissueOptions& options) {
-    std::visit([](auto& of_kind) { of_kind.nodules = false; }, options);
+    std::visit(
+        [](auto& of_kind) {
+            if constexpr (requires { of_kind.nodules; }) of_kind.nodules = false;
+        },
+        options);
 }
 
 Tissue prepare(const TissueOptions& options, const Scene& scene, const mechanics::Progress& progress) {
@@ -48,8 +54,26 @@ bool serves(const Tissue& tissue, const Scene& scene) {
     return std::visit([&](const auto& of_kind) { return serves(of_kind, scene); }, tissue);
 }
 
-const LinearTissue* block_of(const Tissue& tissue) {
-    return std::visit([](const auto& of_kind) { return block_of(of_kind); }, tissue);
+const LinearTissue* block_of(const Tissue& tissue) { return std::get_if<LinearTissue>(&tissue); }
+
+const ForceCurve* curve_of(const Tissue& tissue) {
+    if (const auto* curve = std::get_if<ForceCurveTissue>(&tissue)) return &curve->options.curve;
+    if (const auto* block = std::get_if<SoftBlockTissue>(&tissue)) return &block->curve;
+    return nullptr;
+}
+
+const PartTissue* parts_of(const Tissue& tissue) { return std::get_if<PartTissue>(&tissue); }
+
+const PartWork* part_work_of(const TissueWork& work) { return std::get_if<PartWork>(&work); }
+
+const char* next_method(const Tissue& tissue, TissueWork& work) {
+    const PartTissue* parts = parts_of(tissue);
+    return parts ? next_method(*parts, std::get<PartWork>(work)) : nullptr;
+}
+
+std::optional<std::int64_t> switch_events(const Tissue& tissue, const TissueWork& work) {
+    const PartTissue* parts = parts_of(tissue);
+    return parts ? switch_events(*parts, std::get<PartWork>(work)) : std::nullopt;
 }
 
 void describe(const Tissue& tissue, const Scene& scene, Plan& plan) {
@@ -76,6 +100,12 @@ void answer(const Tissue& tissue, StageId stage, const Press& press, TissueWork&
 double rise_N(const Tissue& tissue, const Station& station, TissueWork& work) {
     return with_work(tissue, work,
                      [&](const auto& of_kind, auto& its_work) { return rise_N(of_kind, station, its_work); });
+}
+
+Push push_to(const Tissue& tissue, const Eigen::Vector2d& p_m, double depth_m, TissueWork& work) {
+    return with_work(tissue, work, [&](const auto& of_kind, auto& its_work) {
+        return depth_m > 0.0 ? push_to(of_kind, p_m, depth_m, its_work) : Push{};
+    });
 }
 
 void sample_surface(const Tissue& tissue, const SurfaceEffect& effect, const Contact& contact, const TissueWork& work,

@@ -1,17 +1,22 @@
 #pragma once
 // What every tissue answers. A new tissue is an alternative of TissueOptions (scene/scene.h), Tissue and TissueWork,
-// and an overload of each function below for its own types; no other code asks which tissue it is.
+// and an overload for its own types of each function that every tissue answers; scene/tissue.cpp alone asks which it is.
 
 #include <variant>
 #include <vector>
 
+#include "scene/force_curve.h"
 #include "scene/linear_tissue.h"
 #include "scene/map_tissue.h"
+#include "scene/part_tissue.h"
+#include "scene/soft_block.h"
 
 namespace palpa::scene {
 
-using Tissue = std::variant<MapTissue, LinearTissue>;  // prepared; part of a plan
-using TissueWork = std::variant<MapWork, LinearWork>;  // what a touch changes; part of a state
+// Prepared; part of a plan.
+using Tissue = std::variant<MapTissue, LinearTissue, PartTissue, ForceCurveTissue, SoftBlockTissue>;
+// What a touch changes; part of a state.
+using TissueWork = std::variant<MapWork, LinearWork, PartWork, ForceCurveWork, SoftBlockWork>;
 
 // Of a tissue that is asked for:
 bool takes_seconds(const TissueOptions& options);  // true if preparing it takes so long that progress must be shown
@@ -24,7 +29,13 @@ inline bool knows_surface(const TissueOptions& options) {
     return std::visit([](const auto& of_kind) { return knows_surface(of_kind); }, options);
 }
 
-void leave_out_nodules(TissueOptions& options);  // sets `nodules` to false
+// Whether a finger's force depends on its depth alone, so that curve_of() the tissue is one.
+inline bool is_curve(const TissueOptions& options) {
+    return std::holds_alternative<ForceCurveOptions>(options) || std::holds_alternative<SoftBlockOptions>(options);
+}
+
+PartOptions* part_options(TissueOptions& options);  // nullptr for a tissue that is no part
+void leave_out_nodules(TissueOptions& options);     // sets `nodules` to false
 
 // Reads or computes the tissue, which may take seconds to minutes: `progress` reports and may cancel. Throws
 // InputError, mechanics' errors for a block that cannot be solved, and mechanics::Cancelled.
@@ -35,6 +46,19 @@ bool serves(const Tissue& tissue, const Scene& scene);
 
 // Returns the block whose surface a finger can press, or nullptr for a tissue that knows none.
 const LinearTissue* block_of(const Tissue& tissue);
+
+// Returns force over depth where that is all the tissue is, or nullptr.
+const ForceCurve* curve_of(const Tissue& tissue);
+
+// Return the parts, and what presses them, for pictures; nullptr for a tissue that is none.
+const PartTissue* parts_of(const Tissue& tissue);
+const PartWork* part_work_of(const TissueWork& work);
+
+// Takes the tissue's next method, unless something presses. Returns its name; nullptr if the tissue stays as it is.
+const char* next_method(const Tissue& tissue, TissueWork& work);
+
+// Returns how often buttons went on since the start; nothing for a tissue without buttons.
+std::optional<std::int64_t> switch_events(const Tissue& tissue, const TissueWork& work);
 
 // Fills what the plan says about its tissue, from tissue_name on, and adds to its notes.
 void describe(const Tissue& tissue, const Scene& scene, Plan& plan);
@@ -55,6 +79,10 @@ void answer(const Tissue& tissue, StageId stage, const Press& press, TissueWork&
 // Returns the rise of the resisting tangential force up to a station (N), for the avatar's laws. The contact of the
 // touch stays as it is.
 double rise_N(const Tissue& tissue, const Station& station, TissueWork& work);
+
+// The force on a finger that is held at a depth at a place, for devices. Depths at and above the surface give 0. Allocates
+// nothing and does not throw. A work that pushes is not used for touches.
+Push push_to(const Tissue& tissue, const Eigen::Vector2d& p_m, double depth_m, TissueWork& work);
 
 // Computes the surface under the last contact.
 void sample_surface(const Tissue& tissue, const SurfaceEffect& effect, const Contact& contact, const TissueWork& work,

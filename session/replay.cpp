@@ -117,6 +117,7 @@ files::Json run_json(const scene::Scene& scene, const scene::Plan& plan, const s
                       {"late", state.timeline.late},
                       {"duplicate_times", state.timeline.duplicates},
                       {"clock_jumps", state.timeline.clock_jumps}};
+    if (const auto switched = scene::switch_events(plan.tissue, state.tissue)) json["switch_events"] = *switched;
     json["notes"] = scene::notes_of(scene, plan);
     return json;
 }

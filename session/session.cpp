@@ -38,6 +38,8 @@ const char* event_name(platform::Action action) {
             return "pause";
         case platform::Action::resume:
             return "resume";
+        case platform::Action::method:
+            return "method";
         default:
             return "confidence";
     }
@@ -98,7 +100,9 @@ void sync_all_but_events(Session& session) {
 
 void write_event(const platform::Sample& sample, std::size_t marks_before, Session& session) {
     if (!session.trial_log || sample.phase != platform::Phase::ui || sample.action == platform::Action::resize) return;
+    if (sample.action == platform::Action::method && session.state.method == nullptr) return;  // it changed nothing
     study::EventRow row = event_row(session, sample.action);
+    if (sample.action == platform::Action::method) row.condition = session.state.method;
     if (sample.action == platform::Action::mark && session.trial.marks.size() > marks_before) {
         row.x_mm = 1e3 * session.trial.marks.back().p_m.x();
         row.y_mm = 1e3 * session.trial.marks.back().p_m.y();
@@ -230,6 +234,7 @@ void take_sample(const platform::Sample& sample, Session& session) {
     if (session.trial.finished) return;
     if (session.record) session.record->write(sample);
     const scene::View before = session.state.view;
+    const std::optional<std::int64_t> switched = scene::switch_events(session.plan->tissue, session.state.tissue);
     scene::advance(session.scene, *session.plan, sample, session.state);
     keep_last_place(before, session.state.view, session.trial);
     const std::size_t marks_before = session.trial.marks.size();
@@ -240,6 +245,8 @@ void take_sample(const platform::Sample& sample, Session& session) {
         session.log->write(row);
     }
     write_event(sample, marks_before, session);
+    if (switched && scene::switch_events(session.plan->tissue, session.state.tissue) > switched)
+        note_event("switch_on", session.trial.now_s, session);
     flush_if_due(session);
     if (!session.trial.finished) return;
     session.finished.push_back(trial_json(*session.plan, session.trial));

@@ -17,17 +17,21 @@ constexpr std::size_t kLongestRun = 6;
 constexpr std::size_t kLongestMessage = 400;
 constexpr int kMostFiles = 100000;
 
-constexpr std::array<std::string_view, 9> kTrialEndings{"_events.tsv",    "_events.json",      "_marks.tsv",
-                                                        "_marks.json",    "_samples.tsv",      "_samples.json",
-                                                        "_settings.json", "_performance.json", "_tactile.tsv"};
-constexpr std::array<std::string_view, 8> kDatasetNames{"dataset_description.json",
-                                                        ".bidsignore",
-                                                        "protocol.json",
-                                                        "task-palpation_events.json",
-                                                        "task-palpation_marks.json",
-                                                        "task-palpation_samples.json",
-                                                        "task-softer_events.json",
-                                                        "task-ratings_beh.json"};
+constexpr std::array<std::string_view, 10> kTrialEndings{
+    "_events.tsv",   "_events.json",   "_marks.tsv",        "_marks.json",  "_samples.tsv",
+    "_samples.json", "_settings.json", "_performance.json", "_tactile.tsv", "_tangible.tsv"};
+constexpr std::array<std::string_view, 12> kDatasetNames{"dataset_description.json",
+                                                         ".bidsignore",
+                                                         "protocol.json",
+                                                         "README",
+                                                         "participants.json",
+                                                         "exclusions.json",
+                                                         "replacements.json",
+                                                         "task-palpation_events.json",
+                                                         "task-palpation_marks.json",
+                                                         "task-palpation_samples.json",
+                                                         "task-softer_events.json",
+                                                         "task-ratings_beh.json"};
 
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 bool is_plain(char c) { return is_digit(c) || (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z'); }

@@ -18,7 +18,8 @@ namespace palpa::study {
 enum class LogFileKind {
     trial,    // sub-XX/beh/sub-XX_task-YY_run-NN_{events,marks,samples}.{tsv,json}, _settings.json, _performance.json;
               // sub-XX/beh/sub-XX_task-ratings_beh.tsv
-    dataset,  // dataset_description.json, .bidsignore, protocol.json, task-*.json: one for the whole study
+    dataset,  // dataset_description.json, README, .bidsignore, protocol.json, task-*.json, participants.json,
+              // exclusions.json, replacements.json: one for the whole study
     people,   // participants.tsv
     identity  // study.json
 };

@@ -40,6 +40,9 @@ void follow_protocol(const Protocol& protocol, Observations& seen) {
     move_conditions(moved, seen.stiffer);
     move_conditions(moved, seen.judged);
     seen.primary = protocol.primary;
+    for (const Condition& condition : protocol.conditions) {
+        seen.displays.push_back({condition.id, name_of(condition.modality), condition.scene.empty()});
+    }
     const std::vector<int> moved_groups = reorder(ids_of(protocol.groups), seen.groups);
     for (int& group : seen.group_of) {
         if (group >= 0) group = moved_groups[static_cast<std::size_t>(group)];

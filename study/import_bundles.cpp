@@ -13,6 +13,7 @@
 #include "files/sha256.h"
 #include "files/text.h"
 #include "study/bundle.h"
+#include "study/dataset.h"
 #include "study/names.h"
 #include "study/study_folder.h"
 #include "study/trial_log.h"
@@ -105,6 +106,7 @@ class Plan {
     }
 
     bool is_study() const { return identity_.has_value(); }
+    StudyKind kind() const { return identity_ ? identity_->kind : StudyKind{}; }
 
     // The longest version of a file that grows, if it is longer than the folder's.
     struct Answers {
@@ -267,6 +269,15 @@ class NewFiles {
 
 bool is_events(const BundleFile& file) { return file.name.find("_events.tsv") != std::string::npos; }
 
+// A protocol that cannot be read is refused by the analysis, with its key; the tablets' logs are kept all the same.
+void describe_study(const fs::path& directory, const Plan& plan) {
+    if (!plan.is_study() || !fs::exists(directory / "protocol.json")) return;
+    try {
+        describe_dataset(directory, read_protocol(directory / "protocol.json"), plan.kind());
+    } catch (const files::InputError&) {
+    }
+}
+
 }  // namespace
 
 BundleReport import_bundles(const std::vector<fs::path>& bundles, const fs::path& directory) {
@@ -321,6 +332,7 @@ BundleReport import_bundles(const std::vector<fs::path>& bundles, const fs::path
         plan.report.written.push_back(name);
     }
     written.keep();
+    describe_study(directory, plan);
     prepare_log_folder(directory);
     for (const auto& [name, most] : plan.answers) {
         if (!most.there) continue;

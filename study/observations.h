@@ -68,6 +68,13 @@ struct Answer {
     int participant = -1;  // -1: not given
 };
 
+// How a condition of the protocol presents its tissue.
+struct ConditionDisplay {
+    std::string condition;
+    std::string display;    // modality, as the protocol names it
+    bool typed_in = false;  // the program does not see the answers: the experimenter types them in
+};
+
 struct Observations {
     std::vector<std::string> conditions;  // in the order of the protocol, else of their first row
     std::vector<std::string> participants;
@@ -88,11 +95,12 @@ struct Observations {
     bool simulated = false;          // at least one trial is simulated
     std::int64_t practice_trials = 0;
     std::int64_t interrupted_trials = 0;
-    std::int64_t excluded_trials = 0;       // finished tests that are left out
-    std::int64_t withdrawn_trials = 0;      // those among them of participants who withdrew their data
-    std::vector<Progress> progress;         // logs against the plan; empty if the plan is not known
-    std::vector<Exclusion> exclusions;      // as the experimenter decided
-    std::vector<Replacement> replacements;  // whose trials are all excluded
+    std::int64_t excluded_trials = 0;        // finished tests that are left out
+    std::int64_t withdrawn_trials = 0;       // those among them of participants who withdrew their data
+    std::vector<ConditionDisplay> displays;  // in the order of the protocol; empty for tables of counts
+    std::vector<Progress> progress;          // logs against the plan; empty if the plan is not known
+    std::vector<Exclusion> exclusions;       // as the experimenter decided
+    std::vector<Replacement> replacements;   // whose trials are all excluded
 };
 
 // Returns the index of `name`, which is added if it is new.

@@ -54,7 +54,9 @@ void check_both_have(const files::JsonReader& json, const Protocol& protocol, co
     }
 }
 
-PrimaryComparison read_comparison(files::JsonReader json, const Protocol& protocol) {
+}  // namespace
+
+PrimaryComparison read_primary(files::JsonReader json, const Protocol& protocol) {
     json.only({"quantity", "conditions", "groups", "condition", "test"});
     const std::vector<std::string> conditions = ids_in(protocol.conditions);
     PrimaryComparison primary;
@@ -72,16 +74,6 @@ PrimaryComparison read_comparison(files::JsonReader json, const Protocol& protoc
         check_quantity(json, protocol, primary.condition, primary.quantity);
         check_both_have(json, protocol, primary);
     }
-    json.finish();
-    return primary;
-}
-
-}  // namespace
-
-std::optional<PrimaryComparison> read_primary(files::JsonReader json, const Protocol& protocol) {
-    json.only({"primary"});
-    std::optional<PrimaryComparison> primary;
-    if (auto one = json.optional_object("primary")) primary = read_comparison(*one, protocol);
     json.finish();
     return primary;
 }

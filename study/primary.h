@@ -25,11 +25,11 @@ struct PrimaryComparison {
 
 struct Protocol;
 
-// Reads the key `analysis` of a protocol: {"primary": {"quantity": "sensitivity", "conditions": ["a", "b"], "test":
-// "t"}}, or with "groups": ["I", "II"] and "condition": "a" instead of "conditions". `protocol` knows its conditions,
+// Reads the key `analysis.primary` of a protocol: {"quantity": "sensitivity", "conditions": ["a", "b"], "test":
+// "t"}, or with "groups": ["I", "II"] and "condition": "a" instead of "conditions". `protocol` knows its conditions,
 // their tasks and its groups: "correct" compares conditions with the task choice, "sensitivity" and "ppv" those in which
 // nodules are found. Throws InputError for names that the protocol does not have.
-std::optional<PrimaryComparison> read_primary(files::JsonReader json, const Protocol& protocol);
+PrimaryComparison read_primary(files::JsonReader json, const Protocol& protocol);
 
 const char* name_of(Quantity quantity);
 const char* name_of(PrimaryTest test);

@@ -42,7 +42,7 @@ std::vector<std::string> read_names(files::JsonReader& json, std::string_view ke
 }
 
 Condition read_condition(files::JsonReader json, TaskKind task, std::set<std::string>& known) {
-    json.only({"id", "title", "modality", "task", "scene", "profile", "device", "instructions", "nodules"});
+    json.only({"id", "title", "modality", "task", "scene", "profile", "device", "instructions", "nodules", "cast_of"});
     Condition condition;
     condition.id = new_id(json, known);
     condition.title = json.text("title", condition.id);
@@ -57,6 +57,7 @@ Condition read_condition(files::JsonReader json, TaskKind task, std::set<std::st
         json.fail("device", files::shown(condition.device), kNameRule);
     condition.instructions = json.text("instructions", "");
     if (json.has("nodules")) condition.nodules = read_names(json, "nodules");
+    if (json.has("cast_of")) json.text("cast_of");  // read_cast() knows the other conditions
     const bool by_hand = condition.modality == Modality::hand;
     if (by_hand && !condition.scene.empty())
         json.fail("scene", files::shown(condition.scene), "none: a real phantom has no scene");
@@ -131,6 +132,21 @@ std::vector<Item> read_items(files::JsonReader& json, std::string_view key) {
     return items;
 }
 
+// Of a condition by hand: `conditions` are read already.
+void read_cast(files::JsonReader& json, std::size_t index, std::vector<Condition>& conditions) {
+    if (!json.has("cast_of")) return;
+    Condition& cast = conditions[index];
+    if (cast.modality != Modality::hand) json.fail("cast_of", "a value", "none: only a phantom felt by hand is a cast");
+    if (compares(*cast.task))
+        json.fail("cast_of", "a value", "none: two surfaces are compared, and nothing is to be found");
+    if (!cast.nodules.empty()) json.fail("nodules", "names", "none beside cast_of, whose scene knows them");
+    const std::string id = json.text("cast_of");
+    const auto it = std::find_if(conditions.begin(), conditions.end(), [&](const auto& one) { return one.id == id; });
+    if (it == conditions.end() || it->scene.empty())
+        json.fail("cast_of", files::shown(id), "the id of a condition of this protocol that has a scene");
+    cast.cast_of = static_cast<std::size_t>(it - conditions.begin());
+}
+
 // `conditions` are read already.
 ChoiceTask read_choice(files::JsonReader json, const std::vector<Condition>& conditions) {
     json.only({"reference_kPa", "comparisons_kPa", "repeats", "alternate_conditions", "reference_on"});
@@ -202,6 +218,46 @@ void read_practice(files::JsonReader json, Protocol& protocol) {
     json.finish();
 }
 
+// Without words nobody can agree, so a text of nothing is a slip and not a study without consent.
+std::string read_consent(files::JsonReader& json) {
+    std::string text = json.text("consent");
+    if (text.find_first_not_of(" \t\r\n") == std::string::npos)
+        json.fail("consent", files::shown(text), "the text that a participant agrees to, or no such key");
+    return text;
+}
+
+void read_analysis(files::JsonReader json, Protocol& protocol) {
+    json.only({"primary", "participants", "stopping_rule"});
+    if (auto primary = json.optional_object("primary")) protocol.primary = read_primary(*primary, protocol);
+    protocol.planned_participants = json.integer("participants", 1, 100000, 0);
+    protocol.stopping_rule = json.text("stopping_rule", "");
+    json.finish();
+}
+
+std::vector<std::string> read_texts(files::JsonReader& json, std::string_view key) {
+    std::vector<std::string> texts;
+    if (!json.has(key)) return texts;
+    const files::Json& list = json.any(key);
+    if (!list.is_array() || list.empty()) json.fail(key, files::described(list), "an array of texts");
+    for (const files::Json& one : list) {
+        if (!one.is_string() || one.get<std::string>().empty()) json.fail(key, files::described(one), "a text");
+        texts.push_back(one.get<std::string>());
+    }
+    return texts;
+}
+
+DatasetAbout read_about(files::JsonReader json) {
+    json.only({"authors", "license", "funding", "ethics_approvals", "registration"});
+    DatasetAbout about;
+    about.authors = read_texts(json, "authors");
+    about.funding = read_texts(json, "funding");
+    about.ethics_approvals = read_texts(json, "ethics_approvals");
+    about.license = json.text("license", "");
+    about.registration = json.text("registration", "");
+    json.finish();
+    return about;
+}
+
 }  // namespace
 
 Protocol read_protocol(const std::filesystem::path& file) {
@@ -233,7 +289,8 @@ Protocol read_protocol(const std::filesystem::path& file) {
                "instructions",
                "demographics",
                "ratings",
-               "analysis"});
+               "analysis",
+               "dataset"});
     protocol.name = json.text("name");
     protocol.version = json.text("version");
     protocol.seed = static_cast<std::uint32_t>(json.integer("seed", 0, 2000000000));
@@ -243,9 +300,10 @@ Protocol read_protocol(const std::filesystem::path& file) {
     }
     if (json.has("choice")) protocol.task = TaskKind::choice;
     std::set<std::string> conditions, groups;
-    for (files::JsonReader& entry : json.objects("conditions")) {
+    std::vector<files::JsonReader> entries = json.objects("conditions");
+    for (files::JsonReader& entry : entries)
         protocol.conditions.push_back(read_condition(entry, protocol.task, conditions));
-    }
+    for (std::size_t i = 0; i < entries.size(); ++i) read_cast(entries[i], i, protocol.conditions);
     if (protocol.conditions.empty()) json.fail("conditions", "nothing", "one condition at least");
     if (auto choice = json.optional_object("choice")) protocol.choice = read_choice(*choice, protocol.conditions);
     for (files::JsonReader& entry : json.objects("groups"))
@@ -270,11 +328,12 @@ Protocol read_protocol(const std::filesystem::path& file) {
     if (auto practice = json.optional_object("practice")) read_practice(*practice, protocol);
     protocol.break_every_trials = json.integer("break_every_trials", 0, 10000, 0);
     protocol.count_told = json.boolean("nodule_count_told", false);
-    protocol.consent = json.text("consent", "");
+    if (json.has("consent")) protocol.consent = read_consent(json);
     protocol.instructions = json.text("instructions", "");
     protocol.demographics = read_items(json, "demographics");
     protocol.ratings = read_items(json, "ratings");
-    if (auto analysis = json.optional_object("analysis")) protocol.primary = read_primary(*analysis, protocol);
+    if (auto analysis = json.optional_object("analysis")) read_analysis(*analysis, protocol);
+    if (auto about = json.optional_object("dataset")) protocol.about = read_about(*about);
     refuse_ignored_keys(json, protocol);
     json.finish();
     return protocol;

@@ -27,7 +27,10 @@ struct Condition {
     std::string device;   // free text, for the log
     std::string instructions;
     std::vector<std::string> nodules;  // by hand only: names of the phantom's nodules, for answers typed in
-    std::optional<TaskKind> task;      // absent: the protocol's; task_of() knows
+    // By hand only: the condition whose scene's phantom this one is cast from, so that its nodules are known, and what a
+    // simulated participant would feel.
+    std::optional<std::size_t> cast_of{};
+    std::optional<TaskKind> task;  // absent: the protocol's; task_of() knows
 };
 
 struct Group {
@@ -64,6 +67,13 @@ struct Item {
     std::string low, high;             // what its ends mean, such as "not at all" and "very"; may be empty
 };
 
+// Who made a study, for the description of its dataset and for its preregistration. All of it may be missing.
+struct DatasetAbout {
+    std::vector<std::string> authors, funding, ethics_approvals;
+    std::string license;       // such as CC0
+    std::string registration;  // where the study is registered, such as a DOI
+};
+
 struct Protocol {
     std::filesystem::path file;
     std::string text;    // content of the file, which is copied beside the logs
@@ -93,6 +103,9 @@ struct Protocol {
     std::vector<Item> demographics;
     std::vector<Item> ratings;
     std::optional<PrimaryComparison> primary;  // of the analysis
+    int planned_participants = 0;              // of the analysis; 0: not stated
+    std::string stopping_rule;                 // of the analysis: when the study ends; empty: not stated
+    DatasetAbout about;
 };
 
 // Throws InputError that names file, key, what was found and what was expected.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "files/input_error.h"
 #include "files/text.h"
 
 namespace palpa::study {

@@ -7,7 +7,6 @@
 #include "files/input_error.h"
 #include "files/json.h"
 #include "files/text.h"
-#include "study/run_log.h"
 
 namespace palpa::study {
 namespace {
@@ -15,6 +14,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kHeader = "condition\titem\tvalue";
+constexpr const char* kCutOff = "\t\t\tcut off";  // four fields at least: a half answer never becomes a whole one
 
 std::string one_field(std::string text) {
     std::replace_if(
@@ -41,31 +41,42 @@ void add_ratings(const fs::path& directory, const std::string& code, const std::
     if (!fs::exists(file) || fs::file_size(file) == 0) lines = std::string(kHeader) + "\n";
     for (const Rating& r : ratings)
         lines += one_field(r.condition) + "\t" + one_field(r.item) + "\t" + one_field(r.value) + "\n";
-    files::append_synced(file, lines);
+    files::append_synced(file, lines, kCutOff);
+}
+
+std::vector<RatingLine> rating_lines(const fs::path& directory, const std::string& code) {
+    std::vector<RatingLine> out;
+    const fs::path file = ratings_file(directory, code);
+    if (!fs::exists(file)) return out;
+    const std::string text = files::read_text(file);
+    int number = 0;
+    for (std::string_view row : files::fields_of(text, '\n')) {
+        ++number;
+        const bool cut_off = row.data() + row.size() == text.data() + text.size();
+        constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+        if (number == 1 && row.substr(0, kByteOrderMark.size()) == kByteOrderMark)
+            row.remove_prefix(kByteOrderMark.size());
+        if (!row.empty() && row.back() == '\r') row.remove_suffix(1);  // saved by a spreadsheet
+        if (row.empty() || (number == 1 && row == kHeader)) continue;
+        RatingLine line{number, std::string(row), {}, cut_off};
+        for (const std::string_view field : files::fields_of(row, '\t')) line.fields.emplace_back(field);
+        out.push_back(std::move(line));
+    }
+    return out;
 }
 
 std::vector<Rating> read_ratings(const fs::path& directory, const std::string& code, std::vector<std::string>& notes) {
     std::vector<Rating> out;
-    const fs::path file = ratings_file(directory, code);
-    if (!fs::exists(file)) return out;
-    const std::string text = files::read_text(file);
-    const std::string_view whole = whole_lines(text, file.string(), notes);
-    if (whole.empty()) return out;
-    int line = 0;
-    for (std::string_view row : files::fields_of(whole.substr(0, whole.size() - 1), '\n')) {
-        ++line;
-        constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
-        if (line == 1 && row.substr(0, kByteOrderMark.size()) == kByteOrderMark)
-            row.remove_prefix(kByteOrderMark.size());
-        if (!row.empty() && row.back() == '\r') row.remove_suffix(1);  // saved by a spreadsheet
-        if (row.empty() || (line == 1 && row == kHeader)) continue;
-        const auto fields = files::fields_of(row, '\t');
-        if (fields.size() != 3) {  // a line that was cut off, and to which a later one was appended
-            notes.push_back(file.string() + ": line " + std::to_string(line) + " is left out: " + files::shown(row) +
-                            " is not an answer with 3 fields");
-            continue;
+    const std::string file = ratings_file(directory, code).string();
+    for (const RatingLine& line : rating_lines(directory, code)) {
+        const std::string place = file + ": line " + std::to_string(line.number) + " is left out: ";
+        if (line.cut_off) {
+            notes.push_back(place + "it was cut off after " + std::to_string(line.text.size()) + " bytes");
+        } else if (line.fields.size() != 3) {  // a line that was cut off, and to which a later one was appended
+            notes.push_back(place + files::shown(line.text) + " is not an answer with 3 fields");
+        } else {
+            out.push_back({line.fields[0], line.fields[1], line.fields[2]});
         }
-        out.push_back({std::string(fields[0]), std::string(fields[1]), std::string(fields[2])});
     }
     return out;
 }

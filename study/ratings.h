@@ -27,8 +27,17 @@ void add_ratings(const std::filesystem::path& directory, const std::string& code
 // Returns an answer as it stands in the table.
 std::string answer_text(const std::string& answer);
 
+// A line of the table as it stands, without its header.
+struct RatingLine {
+    int number = 0;
+    std::string text;
+    std::vector<std::string> fields;
+    bool cut_off = false;  // the last line, without its end
+};
+std::vector<RatingLine> rating_lines(const std::filesystem::path& directory, const std::string& code);
+
 // Reads the answers of one participant; returns nothing if there is no file of them. A line that was cut off is left
-// out and noted. Line ends may be those of a spreadsheet (CR LF).
+// out and noted, also if later answers follow it. Line ends may be those of a spreadsheet (CR LF).
 std::vector<Rating> read_ratings(const std::filesystem::path& directory, const std::string& code,
                                  std::vector<std::string>& notes);
 

@@ -8,11 +8,12 @@
 #include "files/input_error.h"
 #include "files/json.h"
 #include "files/text.h"
+#include "study/broken_choices.h"
 #include "study/check_logs.h"
 #include "study/follow_protocol.h"
+#include "study/found_trial.h"
 #include "study/name_index.h"
 #include "study/ratings.h"
-#include "study/run_files.h"
 #include "study/stiffer_counts.h"
 #include "study/study_folder.h"
 #include "study/subject_folders.h"
@@ -30,16 +31,9 @@ fs::path beside(const fs::path& events, std::string_view suffix) {
     return name.substr(0, name.size() - kEvents.size()) + std::string(suffix);
 }
 
-std::string began_utc(const fs::path& file) {
-    if (!fs::exists(file)) return "";  // written last, so an interrupted trial has none
-    const files::Json json = files::read_json(file);
-    return json.contains("began_utc") && json["began_utc"].is_string() ? json["began_utc"].get<std::string>() : "";
-}
-
 // What is known of the whole study while its participants are read.
 struct Study {
-    explicit Study(Observations& out)
-        : conditions(out.conditions), nodules(out.nodules), comparisons(out.comparisons) {}
+    explicit Study(Observations& out) : found(out), comparisons(out.comparisons) {}
 
     fs::path directory;
     std::optional<StudyIdentity> identity;
@@ -52,7 +46,8 @@ struct Study {
     std::string sha256, sha256_in;                      // of the first trial that names a protocol
     std::unordered_map<std::size_t, std::string> seen;  // file of events by the hash of its text
     NodulesOfConditions nodules_seen;
-    NameIndex conditions, nodules, comparisons;  // of the observations
+    FoundTrials found;
+    NameIndex comparisons;  // of the observations
 
     bool excludes(const std::string& code, int trial) const {
         return left_out.count(code) > 0 || left_out_trials.count({code, trial}) > 0;
@@ -83,25 +78,6 @@ void read_protocol_of(Study& study, std::vector<std::string>& notes) {
         study.planned_condition[study.protocol->conditions[i].id] = static_cast<int>(i);
 }
 
-void add_find(const RunLog& run, int participant, const RunSettings& settings, const std::vector<LoggedMark>& marks,
-              std::map<std::pair<int, int>, int>& repeats, Study& study, Observations& out) {
-    const int condition = study.conditions.of(run.condition);
-    const int repeat = repeats[{participant, condition}]++;
-    for (const RunSettings::Nodule& nodule : settings.nodules) {
-        const bool hit = std::any_of(marks.begin(), marks.end(),
-                                     [&](const LoggedMark& mark) { return mark.hit && mark.nodule == nodule.id; });
-        out.rows.push_back({condition, participant, study.nodules.of(nodule.id), repeat, hit, !hit, 0});
-    }
-    if (settings.there && !settings.typed) {
-        out.judged.push_back(judged_case(settings, marks));
-        out.judged.back().condition = condition;
-        out.judged.back().participant = participant;
-    }
-    const bool named = !settings.nodules.empty();
-    out.rows.push_back({condition, participant, -1, repeat, named ? 0 : run.tp, named ? 0 : run.fn, run.fp});
-    out.trials.push_back({condition, participant, run.duration_s, run.path_m, run.mean_force_N, run.max_force_N});
-}
-
 // Reads all runs of one participant, in the order of their numbers.
 class Subject {
   public:
@@ -123,8 +99,12 @@ class Subject {
             ++out_.interrupted_trials;
     }
 
-    // To be called once all runs are added: compares them with the plan.
-    void settle() {
+    // To be called once all runs are added: finds the choices that were broken off, and compares all with the plan.
+    void settle(const fs::path& subject) {
+        std::set<int> answered;
+        for (const auto& [trial, place] : finished_) answered.insert(trial);
+        const auto broken = broken_choices(subject, answered, out_.notes);
+        out_.interrupted_trials += static_cast<std::int64_t>(broken.size());
         if (!study_.protocol) return;
         const auto likely = study_.numbers.number(code_);
         int number = number_.value_or(likely);
@@ -148,6 +128,7 @@ class Subject {
             throw files::bad_input(text(last_place_), "trial", std::to_string(last_trial_),
                                    "1 to " + std::to_string(plan.trials.size()) + ", as the protocol plans them");
         }
+        for (const BrokenChoice& one : broken) log_broken(one, plan);
         std::vector<std::string> of_other_orders;
         auto& notes = same_orders ? out_.notes : of_other_orders;
         const auto rows = compare_with_plan(*study_.protocol, plan, code_, logged_, notes);
@@ -188,6 +169,18 @@ class Subject {
         return logged_.back();
     }
 
+    // An interval is of the surface's condition, which need not be that of the choice: the plan tells it.
+    void log_broken(const BrokenChoice& one, const PlannedParticipant& plan) {
+        const auto n = plan.trials.size();
+        if (static_cast<std::size_t>(one.trial) > n) {
+            throw files::bad_input(one.events.string(), "trial", std::to_string(one.trial),
+                                   "1 to " + std::to_string(n) + ", as the protocol plans them");
+        }
+        if (one.trial == 0) return;
+        const std::size_t condition = plan.trials[static_cast<std::size_t>(one.trial) - 1].condition;
+        logged_.push_back({one.trial, static_cast<int>(condition), one.practice, false, false});
+    }
+
     void finish_once(const Place& place, int trial) {
         const auto [it, fresh] = finished_.emplace(trial, place);
         if (fresh) return;
@@ -206,7 +199,7 @@ class Subject {
             } else if (logged.excluded) {
                 ++out_.excluded_trials;
             } else {
-                const int condition = study_.conditions.of(choice.condition);
+                const int condition = study_.found.conditions.of(choice.condition);
                 out_.choices.push_back(
                     {condition, index_, study_.comparisons.of(choice.comparison + " kPa"), choice.correct ? 1 : 0, 1});
                 out_.stiffer.push_back(stiffer_choice(
@@ -246,7 +239,7 @@ class Subject {
         } else if (excluded) {
             ++out_.excluded_trials;
         } else {
-            add_find(run, index_, settings, marks.value_or(std::vector<LoggedMark>{}), repeats_, study_, out_);
+            study_.found.add(run, index_, settings, marks.value_or(std::vector<LoggedMark>{}));
         }
     }
 
@@ -308,7 +301,6 @@ class Subject {
     std::unordered_map<int, Place> finished_;
     int last_trial_ = 0;
     Place last_place_;
-    std::map<std::pair<int, int>, int> repeats_;
     std::string last_began_;
 };
 
@@ -352,7 +344,8 @@ Observations read_study(const fs::path& directory) {
         Subject reader(code, index, study, out);
         for (const fs::path& events : files) reader.add(events);
         // who left before the first questions were answered has no place in the plan
-        if (!files.empty() || study.people.count(code) > 0) reader.settle();
+        const fs::path subject = directory / ("sub-" + code);
+        if (!files.empty() || study.people.count(code) > 0) reader.settle(subject);
         if (withdrew) out.withdrawn_trials += out.excluded_trials - excluded;
         for (const auto& [who, trial] : study.left_out_trials) {
             if (who == code && reader.has_finished(trial)) finished.insert({who, trial});

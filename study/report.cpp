@@ -52,6 +52,15 @@ std::optional<Spread> spread_over(const Observations& seen, int condition, doubl
     return spread_of(std::move(values));
 }
 
+int people_with_tests(const Observations& seen) {
+    std::set<int> people;
+    for (const Observation& row : seen.rows) people.insert(row.participant);
+    for (const Choices& row : seen.choices) people.insert(row.participant);
+    for (const StifferAnswers& row : seen.stiffer) people.insert(row.participant);
+    people.erase(-1);
+    return static_cast<int>(people.size());
+}
+
 ConditionResult condition_result(const Observations& seen, int condition, const ReportOptions& options) {
     ConditionResult out;
     out.name = seen.conditions[at(condition)];
@@ -201,7 +210,8 @@ Report make_report(const Observations& given, const ReportOptions& options) {
     Report report;
     report.options = options;
     report.notes = seen.notes;
-    report.participants = static_cast<int>(seen.participants.size());
+    report.participants = people_with_tests(seen);
+    report.people_without = static_cast<int>(seen.participants.size()) - report.participants;
     report.trials = static_cast<std::int64_t>(seen.trials.size());
     report.forced_choices = seen.from_logs ? static_cast<std::int64_t>(seen.stiffer.size()) : 0;
     report.practice_trials = seen.practice_trials;
@@ -209,6 +219,8 @@ Report make_report(const Observations& given, const ReportOptions& options) {
     report.excluded_trials = seen.excluded_trials;
     report.withdrawn_trials = seen.withdrawn_trials;
     report.progress = seen.progress;
+    const auto other = [&](const ConditionDisplay& one) { return one.display != seen.displays.front().display; };
+    if (std::any_of(seen.displays.begin(), seen.displays.end(), other)) report.displays = seen.displays;
     report.exclusions = seen.exclusions;
     report.replacements = seen.replacements;
     report.simulated = seen.simulated;
@@ -241,8 +253,9 @@ Report make_report(const Observations& given, const ReportOptions& options) {
             part.notes.clear();
             report.groups.push_back(make_report(part, options));
             report.groups.back().group = seen.groups[at(g)];
-            report.groups.back().participants =
-                static_cast<int>(std::count(seen.group_of.begin(), seen.group_of.end(), g));
+            report.groups.back().people_without =
+                static_cast<int>(std::count(seen.group_of.begin(), seen.group_of.end(), g)) -
+                report.groups.back().participants;
         }
     }
     const auto pairs = std::max({report.pairs.size(), report.ppv_pairs.size(), report.choice_pairs.size()});

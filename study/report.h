@@ -91,14 +91,16 @@ struct Report {
     std::vector<RatingResult> ratings;
     std::vector<StaircaseResult> staircases;
     std::vector<std::string> notes;
-    int participants = 0;
+    int participants = 0;             // with a test in the tables
+    int people_without = 0;           // with logs but no test in the tables: replaced, left out, or broken off before
     std::int64_t trials = 0;          // finished tests in which nodules were to be found; 0 for a table of counts
     std::int64_t forced_choices = 0;  // finished tests in which two surfaces were compared; 0 for a table of counts
     std::int64_t practice_trials = 0;
     std::int64_t interrupted_trials = 0;
     std::int64_t excluded_trials = 0;  // those of participants who withdrew their data among them
     std::int64_t withdrawn_trials = 0;
-    std::vector<Progress> progress;  // logs against the plan; empty if the plan is not known
+    std::vector<ConditionDisplay> displays;  // empty unless the conditions are on different displays
+    std::vector<Progress> progress;          // logs against the plan; empty if the plan is not known
     std::vector<Exclusion> exclusions;
     std::vector<Replacement> replacements;
     bool simulated = false;
@@ -124,6 +126,10 @@ std::vector<ReportTable> report_tables(const Report& report);
 const std::vector<std::string>& table_names();  // of all tables that a report may have
 std::string tsv_text(const ReportTable& table);
 std::string report_markdown(const Report& report);  // all tables, with methods and notes
+
+// report_displays.cpp: one line for each condition, where they are on different displays.
+void add_displays_json(const Report& report, files::Json& json);
+ReportTable display_table(const Report& report);
 
 // report_plan.cpp: logs against the plan, exclusions and dropouts.
 void add_plan_json(const Report& report, files::Json& json);

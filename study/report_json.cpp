@@ -116,6 +116,7 @@ files::Json report_json(const Report& report) {
     json["forced_choices"] = report.forced_choices;
     json["practice_trials"] = report.practice_trials;
     json["interrupted_trials"] = report.interrupted_trials;
+    add_displays_json(report, json);
     add_plan_json(report, json);
     files::Json::object_t conditions;
     for (const ConditionResult& condition : report.conditions)

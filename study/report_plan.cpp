@@ -4,6 +4,7 @@
 #include <map>
 
 #include "study/report.h"
+#include "study/table_text.h"
 
 namespace palpa::study {
 namespace {
@@ -99,18 +100,17 @@ std::string plan_summary(const Report& report) {
     }
     std::string out;
     if (!report.progress.empty()) {
-        out += "\nOf " + std::to_string(sum.planned) + " planned tests " + std::to_string(sum.finished) +
-               " are finished and " + std::to_string(missing) + " are missing (table of the plan).\n";
+        const auto are = [](int n) { return whole(n) + (n == 1 ? " is " : " are "); };
+        out += "\nOf " + number_of(sum.planned, "planned test") + " " + are(sum.finished) + "finished and " +
+               are(missing) + "missing (table of the plan).\n";
     }
+    const auto left_out = [](std::int64_t n) {
+        return "\n" + number_of(n, "finished test") + (n == 1 ? " is" : " are") + " left out ";
+    };
     const auto decided = report.excluded_trials - report.withdrawn_trials;
-    if (decided > 0) {
-        out += "\n" + std::to_string(decided) +
-               " finished tests are left out by the experimenter's decision (table of exclusions).\n";
-    }
-    if (report.withdrawn_trials > 0) {
-        out += "\n" + std::to_string(report.withdrawn_trials) +
-               " finished tests are left out because their participants withdrew the data (notes below).\n";
-    }
+    if (decided > 0) out += left_out(decided) + "by the experimenter's decision (table of exclusions).\n";
+    if (report.withdrawn_trials > 0)
+        out += left_out(report.withdrawn_trials) + "because their participants withdrew the data (notes below).\n";
     return out;
 }
 

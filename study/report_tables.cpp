@@ -157,7 +157,8 @@ void add_groups(const Report& report, std::vector<ReportTable>& tables) {
 }  // namespace
 
 std::vector<ReportTable> report_tables(const Report& report) {
-    std::vector<ReportTable> tables{sensitivity_table(report), nodule_table(report), ppv_table(report)};
+    std::vector<ReportTable> tables{display_table(report), sensitivity_table(report), nodule_table(report),
+                                    ppv_table(report)};
     for (ReportTable& table : comparison_tables(report)) tables.push_back(std::move(table));
     for (ReportTable& table : free_response_tables(report.free_response)) tables.push_back(std::move(table));
     for (ReportTable& table : mixed_tables(report.mixed)) tables.push_back(std::move(table));
@@ -174,7 +175,8 @@ std::vector<ReportTable> report_tables(const Report& report) {
 }
 
 const std::vector<std::string>& table_names() {
-    static const std::vector<std::string> names{"sensitivity",
+    static const std::vector<std::string> names{"displays",
+                                                "sensitivity",
                                                 "nodules",
                                                 "ppv",
                                                 "primary",
@@ -217,12 +219,16 @@ std::string report_markdown(const Report& report) {
     if (report.simulated) out += "\nNo person took part: hands and eyes were simulated by `palpa study simulate`.\n";
     const std::int64_t tests = report.trials + report.forced_choices;
     if (tests + report.practice_trials + report.interrupted_trials > 0) {
-        out += "\n" + whole(report.participants) + " participants, " + whole(tests) + " finished tests" +
+        out += "\n" + number_of(report.participants, "participant") + ", " + number_of(tests, "finished test") +
                (report.trials > 0 && report.forced_choices > 0
                     ? " (" + whole(report.trials) + " of nodules, " + whole(report.forced_choices) + " forced choices)"
                     : "") +
-               ", " + whole(report.practice_trials) + " practice trials (not in the tables), " +
-               whole(report.interrupted_trials) + " interrupted trials (not in the tables).\n";
+               ", " + number_of(report.practice_trials, "practice trial") + " (not in the tables), " +
+               number_of(report.interrupted_trials, "interrupted trial") + " (not in the tables).\n";
+        if (report.people_without > 0) {
+            out += "\n" + number_of(report.people_without, "more participant") +
+                   (report.people_without == 1 ? " has" : " have") + " logs, but no test in the tables.\n";
+        }
     }
     out += plan_summary(report);
     out +=
@@ -239,6 +245,10 @@ std::string report_markdown(const Report& report) {
         "clustering* is McNemar's exact test with Newcombe's interval (1998, method 10).\n";
     out += free_response_methods(report.free_response);
     out += mixed_methods(report.mixed);
+    for (const Report& group : report.groups) {
+        if (!group.mixed.status.empty())
+            out += "\nThe mixed logistic model of group " + group.group + " " + group.mixed.status + ".\n";
+    }
     out += psychometric_methods(report.psychometrics);
     for (const std::string& note : report.notes) out += "\n- " + note;
     if (!report.notes.empty()) out += "\n";

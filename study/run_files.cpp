@@ -59,6 +59,7 @@ RunSettings read_run_settings(const std::filesystem::path& file) {
     if (auto study = json.optional_object("study")) {
         out.sha256 = study->text("sha256", "");
         out.simulated = study->boolean("simulated", false);
+        if (study->has("interval")) out.interval = study->integer("interval", 1, 2);
         if (study->has("participant_number")) out.number = study->integer("participant_number", 1, kMostPeople);
     }
     out.typed = json.has("answers");
@@ -74,6 +75,12 @@ RunSettings read_run_settings(const std::filesystem::path& file) {
         if (!ids.insert(id).second) nodule.fail("id", files::shown(id) + " a second time", "each nodule once");
     }
     return out;
+}
+
+std::string began_utc(const std::filesystem::path& file) {
+    if (!std::filesystem::exists(file)) return "";  // written last, so an interrupted trial has none
+    const files::Json json = files::read_json(file);
+    return json.contains("began_utc") && json["began_utc"].is_string() ? json["began_utc"].get<std::string>() : "";
 }
 
 std::optional<std::vector<LoggedMark>> read_marks_left(const std::filesystem::path& file,

@@ -23,12 +23,17 @@ struct RunSettings {
         std::string id;
         double diameter_mm = 0.0;
     };
-    std::string tissue;  // its name; empty for answers that were typed in
+    std::optional<int> interval;  // 1 or 2, of a forced choice
+    std::string tissue;           // its name; empty for answers that were typed in
     std::vector<Nodule> nodules;
 };
 
 // Reads ..._settings.json; if there is no such file, the result says so. Throws InputError.
 RunSettings read_run_settings(const std::filesystem::path& file);
+
+// Returns when a trial began, UTC in ISO 8601, as its ..._performance.json says; empty if there is no such file. Throws
+// InputError.
+std::string began_utc(const std::filesystem::path& performance_json);
 
 struct LoggedMark {
     std::string nodule;        // n/a: none

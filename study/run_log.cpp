@@ -120,6 +120,25 @@ class EventOrder {
     std::int64_t standing_ = 0;
 };
 
+// Lists the events of intervals, or of all other runs, in the order of their numbers.
+std::vector<fs::path> files_of_events(const fs::path& subject, bool of_intervals) {
+    std::vector<fs::path> files;
+    std::error_code error;
+    for (const auto& entry : fs::directory_iterator(subject / "beh", error)) {
+        const std::string name = entry.path().filename().string();
+        constexpr std::string_view kEnd = "_events.tsv";
+        if ((name.find("_task-interval_") != std::string::npos) != of_intervals) continue;
+        if (name.size() > kEnd.size() && name.compare(name.size() - kEnd.size(), kEnd.size(), kEnd) == 0)
+            files.push_back(entry.path());
+    }
+    // by length first, so that run-100 comes after run-99
+    std::sort(files.begin(), files.end(), [](const fs::path& a, const fs::path& b) {
+        const std::string x = a.filename().string(), y = b.filename().string();
+        return x.size() != y.size() ? x.size() < y.size() : x < y;
+    });
+    return files;
+}
+
 }  // namespace
 
 std::string_view whole_lines(std::string_view text, const std::string& file, std::vector<std::string>& notes) {
@@ -176,22 +195,8 @@ RunLog read_run(const fs::path& events, std::vector<std::string>& notes) {
     return run;
 }
 
-std::vector<fs::path> events_files(const fs::path& subject) {
-    std::vector<fs::path> files;
-    std::error_code error;
-    for (const auto& entry : fs::directory_iterator(subject / "beh", error)) {
-        const std::string name = entry.path().filename().string();
-        constexpr std::string_view kEnd = "_events.tsv";
-        if (name.find("_task-interval_") != std::string::npos) continue;
-        if (name.size() > kEnd.size() && name.compare(name.size() - kEnd.size(), kEnd.size(), kEnd) == 0)
-            files.push_back(entry.path());
-    }
-    // by length first, so that run-100 comes after run-99
-    std::sort(files.begin(), files.end(), [](const fs::path& a, const fs::path& b) {
-        const std::string x = a.filename().string(), y = b.filename().string();
-        return x.size() != y.size() ? x.size() < y.size() : x < y;
-    });
-    return files;
-}
+std::vector<fs::path> events_files(const fs::path& subject) { return files_of_events(subject, false); }
+
+std::vector<fs::path> interval_files(const fs::path& subject) { return files_of_events(subject, true); }
 
 }  // namespace palpa::study

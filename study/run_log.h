@@ -56,4 +56,7 @@ RunLog read_run(const std::filesystem::path& events, std::vector<std::string>& n
 // answers are in task-softer.
 std::vector<std::filesystem::path> events_files(const std::filesystem::path& subject);
 
+// Lists the intervals of forced choices, in the order of their runs.
+std::vector<std::filesystem::path> interval_files(const std::filesystem::path& subject);
+
 }  // namespace palpa::study

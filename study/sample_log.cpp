@@ -47,10 +47,10 @@ void write_if_absent(const std::filesystem::path& path, const std::string& text)
 }  // namespace
 
 void prepare_dataset(const std::filesystem::path& directory) {
-    write_if_absent(
-        directory / ".bidsignore",
-        "*_samples.tsv\n*_samples.json\n*_marks.tsv\n*_marks.json\n*_tactile.tsv\n*_settings.json\n*_performance."
-        "json\nstudy.json\nprotocol.json\nexclusions.tsv\nreplacements.tsv\nsub-*/now.json\n");
+    write_if_absent(directory / ".bidsignore",
+                    "*_samples.tsv\n*_samples.json\n*_marks.tsv\n*_marks.json\n*_tactile.tsv\n*_tangible.tsv\n*_"
+                    "settings.json\n*_performance."
+                    "json\nstudy.json\nprotocol.json\nexclusions.*\nreplacements.*\nsub-*/now.json\n");
     write_if_absent(directory / "dataset_description.json",
                     files::json_text({{"Name", "Palpa"}, {"BIDSVersion", "1.8.0"}}));
 }

@@ -219,11 +219,13 @@ void see(const Sight& sight, double dt_s, SimulatedPerson& person) {
     const PersonTraits& traits = person.traits;
     look(sight.lag_m, dt_s, traits.look_s, person.lag_seen_m, person.lag_noise, person.random);
     look(missing_depth(sight, dt_s, person), dt_s, traits.look_s, person.dent_seen, person.dent_noise, person.random);
-    const double weight_of_dent = sight.dent_shown ? traits.dent_weight : 0.0;
+    const double weight_of_lag = sight.lag_shown ? 1.0 : 0.0;
+    const double weight_of_dent = !sight.lag_shown ? 1.0 : sight.dent_shown ? traits.dent_weight : 0.0;
     const double by_lag = person.lag_seen_m / traits.lag_noise_m + person.lag_noise;
     const double by_dent = person.dent_seen / traits.dent_noise + person.dent_noise;
     // its noise has a standard deviation of 1
-    const double evidence = (by_lag + weight_of_dent * by_dent) / std::hypot(1.0, weight_of_dent);
+    const double evidence =
+        (weight_of_lag * by_lag + weight_of_dent * by_dent) / std::hypot(weight_of_lag, weight_of_dent);
     if (person.check == SimulatedPerson::Check::none) {
         if (evidence > traits.criterion && !is_settled(person.at, person)) begin_check(person);
         return;

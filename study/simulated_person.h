@@ -45,6 +45,7 @@ struct Sight {
     double lag_m = 0.0;    // avatar behind the pen
     double depth_m = 0.0;  // of the dent; only if dent_shown
     bool dent_shown = false;
+    bool lag_shown = true;  // false: the surface is felt and not seen
 };
 
 enum class Deed { none, mark, finish };

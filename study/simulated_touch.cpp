@@ -64,6 +64,12 @@ FeltStiffness feel_by_hand(std::span<const FeltMoment> press) {
     return felt;
 }
 
+FeltStiffness feel_soft_surface(std::span<const FeltMoment> press) {
+    FeltStiffness felt;
+    felt.by(Sense::hand) = felt.by(Sense::fingertip) = ln_force_over_depth(press);
+    return felt;
+}
+
 FeltStiffness feel_by_eye(std::span<const FeltMoment> press) {
     FeltStiffness felt;
     felt.by(Sense::eye) = ln_force_over_depth(press);
@@ -81,6 +87,17 @@ double perceived_ln(const FeltStiffness& felt, const TouchNoise& noise, Random& 
         weights += weight;
     }
     return weights > 0.0 ? sum / weights : guess;
+}
+
+double joined_ln(const FeltStiffness& felt, const TouchNoise& noise) {
+    double sum = 0.0, weights = 0.0;
+    for (std::size_t k = 0; k < kSenses; ++k) {
+        if (!std::isfinite(felt.ln_N_per_m[k])) continue;
+        const double weight = 1.0 / (noise.sd[k] * noise.sd[k]);
+        sum += weight * felt.ln_N_per_m[k];
+        weights += weight;
+    }
+    return weights > 0.0 ? sum / weights : std::numeric_limits<double>::quiet_NaN();
 }
 
 double perceived_sd(const FeltStiffness& felt, const TouchNoise& noise) {

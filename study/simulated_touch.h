@@ -44,6 +44,9 @@ struct FeltStiffness {
 // the right stiffness if both are alike. A sense is told nothing if the press has no depth, or less than 0.05 mm of
 // shape. Moments that are not finite are left out.
 FeltStiffness feel_by_hand(std::span<const FeltMoment> press);
+// A surface that itself gives way under the fingertip, of a soft device or a cast: both senses are told the slope of force
+// over depth, the fingertip by how its contact grows (Srinivasan & LaMotte, J. Neurophysiol. 73 (1995) 88).
+FeltStiffness feel_soft_surface(std::span<const FeltMoment> press);
 // The same depth and force, but seen: for a screen.
 FeltStiffness feel_by_eye(std::span<const FeltMoment> press);
 
@@ -58,6 +61,9 @@ struct TouchNoise {
 // The joined estimate of ln(stiffness in N/m). Always draws one number for each sense. Without any sense: noise alone,
 // of the hand.
 double perceived_ln(const FeltStiffness& felt, const TouchNoise& noise, Random& random);
+
+// The same estimate without noise; NaN without any sense.
+double joined_ln(const FeltStiffness& felt, const TouchNoise& noise);
 
 // Standard deviation of that estimate.
 double perceived_sd(const FeltStiffness& felt, const TouchNoise& noise);

@@ -8,6 +8,7 @@
 #include "files/input_error.h"
 #include "files/json.h"
 #include "files/text.h"
+#include "study/dataset.h"
 #include "study/exclusions.h"
 #include "study/rows.h"
 #include "study/run_log.h"
@@ -79,6 +80,7 @@ void open_study(const fs::path& directory, const Protocol& protocol, const Study
         throw files::bad_input(directory.string(), "", "logs (sub-...) but no study.json",
                                "an empty folder, or one of this protocol");
     }
+    describe_dataset(directory, protocol, kind);
     prepare_log_folder(directory);
     files::write_text_atomically(directory / "protocol.json", protocol.text);
     files::Json json{{"protocol", protocol.name},       {"version", protocol.version},  {"sha256", protocol.sha256},

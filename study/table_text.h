@@ -24,6 +24,7 @@ inline std::string fixed(double value, int digits) {
 inline std::string share_text(double value) { return fixed(value, 4); }
 inline std::string p_text(double p) { return p < 1e-4 ? "<0.0001" : fixed(p, 4); }  // n/a for NaN
 inline std::string whole(std::int64_t value) { return std::to_string(value); }
+inline std::string number_of(std::int64_t n, const char* what) { return whole(n) + " " + what + (n == 1 ? "" : "s"); }
 
 inline void add_interval(const std::optional<Interval>& ci, std::vector<std::string>& row) {
     row.push_back(ci ? share_text(ci->low) : kNone);

@@ -1,6 +1,8 @@
 #include "study/withdrawal.h"
 
 #include <cassert>
+#include <optional>
+#include <string_view>
 
 #include "files/input_error.h"
 #include "files/text.h"
@@ -13,20 +15,39 @@ constexpr const char* kWithdrawalItem = "withdrawal";
 constexpr const char* kKeepsData = "data may be used";
 constexpr const char* kTakesData = "data must not be used";
 
+// True if a line may be what a power cut left of a withdrawal.
+bool may_be_withdrawal(const RatingLine& line) {
+    if (line.fields.size() < 2 || line.fields[0] != "n/a") return false;
+    if (line.fields[1] == kWithdrawalItem) return true;
+    const bool broken = line.fields.size() != 3 && !line.fields[1].empty();  // maybe in the middle of the item's name
+    return broken && std::string_view(kWithdrawalItem).starts_with(line.fields[1]);
+}
+
+// The withdrawal that a line of three fields tells; nothing if it tells none of the two.
+std::optional<Withdrawal> told_by(const RatingLine& line) {
+    if (line.fields.size() != 3) return std::nullopt;
+    if (line.fields[2] == kTakesData) return Withdrawal::takes_data;
+    if (line.fields[2] == kKeepsData) return Withdrawal::keeps_data;
+    return std::nullopt;
+}
+
 }  // namespace
 
 Withdrawal withdrawal_of(const std::filesystem::path& directory, const std::string& code) {
-    std::vector<std::string> notes;
     Withdrawal last = Withdrawal::none;
-    for (const Rating& answer : read_ratings(directory, code, notes)) {
-        if (answer.condition != "n/a" || answer.item != kWithdrawalItem) continue;
-        if (answer.value != kTakesData && answer.value != kKeepsData) {
-            throw files::bad_input(ratings_file(directory, code).string(), kWithdrawalItem, files::shown(answer.value),
-                                   files::shown(kKeepsData) + " or " + files::shown(kTakesData));
-        }
-        last = answer.value == kTakesData ? Withdrawal::takes_data : Withdrawal::keeps_data;
+    std::optional<RatingLine> unclear;  // while none that is clear follows it
+    for (const RatingLine& line : rating_lines(directory, code)) {
+        if (!may_be_withdrawal(line)) continue;
+        const auto told = told_by(line);
+        if (told) last = *told;
+        unclear = told ? std::nullopt : std::optional(line);
     }
-    return last;
+    if (!unclear) return last;
+    throw files::bad_input(ratings_file(directory, code).string() + ": line " + std::to_string(unclear->number),
+                           kWithdrawalItem,
+                           files::shown(unclear->fields.size() == 3 ? unclear->fields[2] : unclear->text),
+                           files::shown(kKeepsData) + " or " + files::shown(kTakesData) +
+                               "; ask what was meant, and note it by palpa study withdraw");
 }
 
 bool takes_data(const std::filesystem::path& directory, const std::string& code, std::vector<std::string>& notes) {

@@ -16,7 +16,8 @@ enum class Withdrawal {
     takes_data   // stopped; the analysis leaves out all data of this participant
 };
 
-// Throws InputError for a withdrawal that does not say whether the data may be used.
+// Throws InputError for a withdrawal that does not say whether the data may be used, as a power cut may leave it, unless
+// a later one does.
 Withdrawal withdrawal_of(const std::filesystem::path& directory, const std::string& code);
 
 // Notes a withdrawal for the reader of a report. True for a participant who withdrew the data too.

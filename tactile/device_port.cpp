@@ -1,5 +1,6 @@
 #include "tactile/device_port.h"
 
+#include <algorithm>
 #include <chrono>
 #include <stdexcept>
 #include <thread>
@@ -7,11 +8,6 @@
 #include "files/clock.h"
 
 namespace palpa::tactile {
-namespace {
-
-constexpr double kPinsEvery_s = 0.02;  // from one look at the boards' health to the next
-
-}  // namespace
 
 Guarded guarded_of(const TactilePlan& plan) {
     Guarded guarded;
@@ -30,66 +26,68 @@ void guard_command(double now_s, bool fresh, const devices::ArmFeedback* arm, de
     }
 }
 
-DevicePort::DevicePort(const TactilePlan& plan) : guarded_(guarded_of(plan)) {
-    if (plan.arm) arm_ = devices::open_arm(*plan.arm);
-    sensor_ = plan.arm && plan.arm->sensor;
-    if (plan.pin_device) pins_ = std::make_unique<devices::PinDriver>(*plan.pin_device);
+DevicePort::DevicePort(const TactilePlan& plan)
+    : pins_count_(plan.pin_device ? plan.pin_device->pins.size() : 0),
+      arm_(plan.arm.has_value()),
+      guarded_(guarded_of(plan)) {
+    if (arm_ || pins_count_ > 0)
+        guard_ = std::make_unique<devices::ShapeGuard>(
+            devices::ShapeRig{plan.arm, plan.pin_device, plan.options.force_limit_N});
 }
 
-DevicePort::~DevicePort() {
-    if (arm_) arm_->send({});
-}
-
-bool DevicePort::ask_arm() {
-    if (!arm_) return true;
-    arm_->send({});  // rest; the arm answers every command
-    arm_heard_ = arm_->read(newest_) || arm_heard_;
-    return arm_heard_ && (!sensor_ || newest_.has_sensor > 0.5);
-}
+DevicePort::~DevicePort() = default;
 
 void DevicePort::wait_until_ready(double most_s) {
-    const double until_s = files::steady_s() + most_s;
-    bool arm_ready = ask_arm();
-    while (!arm_ready || (pins_ && pins().state != devices::PinState::driving)) {
-        const devices::Fault found = pins_ ? devices::fault_of(pins().state) : devices::Fault::none;
+    if (!guard_) return;
+    const devices::ShapeReport& now = guard_->newest();
+    for (const double until_s = files::steady_s() + most_s; files::steady_s() < until_s;) {
+        guard_->poll();
+        if (now.ready) return;
+        if (now.fault == devices::Fault::guard_gone) throw std::runtime_error("the guard of arm and pins has ended");
+        const devices::Fault found = pins_count_ > 0 ? devices::fault_of(now.pins.state) : devices::Fault::none;
         if (devices::latches(found))
             throw std::runtime_error("the pins are not driven: " + std::string(devices::text(found)) +
                                      " (`palpa tactile pins test` says which)");
-        if (files::steady_s() > until_s) {
-            if (arm_ready) throw std::runtime_error("the boards of the pins do not answer");
-            throw std::runtime_error(arm_heard_ ? "the force sensor of the arm does not answer"
-                                                : "the arm does not answer");
-        }
-        arm_ready = ask_arm();
         std::this_thread::sleep_for(std::chrono::milliseconds(1));
     }
+    if (pins_count_ > 0 && now.pins.state != devices::PinState::driving && (!arm_ || now.arm_heard))
+        throw std::runtime_error("the boards of the pins do not answer");
+    throw std::runtime_error(now.arm_heard ? "the force sensor of the arm does not answer" : "the arm does not answer");
 }
 
-void DevicePort::watch_pins(double now_s) noexcept {
-    if (!pins_ || now_s < pins_due_s_) return;
-    pins_due_s_ = now_s + kPinsEvery_s;
-    found_ = devices::fault_of(pins_->health().state);
+void DevicePort::stop() noexcept {
+    stopped_ = true;
+    if (guard_) guard_->stop();
+}
+
+void DevicePort::release() noexcept {
+    stopped_ = false;
+    if (guard_) guard_->release();
 }
 
 bool DevicePort::read(LoopFeedback& feedback) noexcept {
-    if (arm_) fresh_ = arm_->read(newest_) || fresh_;
-    feedback.arm = newest_;
-    if (release_.exchange(false)) {
-        stop_ = false;
-        devices::release(guarded_.guard);
+    feedback.stopped = stopped_ ? 1.0 : 0.0;
+    if (!guard_) {  // pins that are only drawn
+        const bool stopped = guarded_.guard.fault != devices::Fault::none;
+        if (stopped_ && !stopped) devices::stop(guarded_.guard);
+        if (!stopped_ && stopped) devices::release(guarded_.guard);
+        return true;
     }
-    if (stop_) devices::stop(guarded_.guard);
-    feedback.stopped = stop_ ? 1.0 : 0.0;
+    guard_->poll();
+    const devices::ShapeReport& now = guard_->newest();
+    feedback.arm = now.arm;
+    if (now.arm_heard) feedback.arm.age_s = std::max(files::steady_s() - now.arm.time_s, 0.0);
+    guarded_.guard.fault = now.fault;
+    guarded_.guard.count = now.count;
+    guarded_.guard.limited = now.limited;
+    guarded_.guard.slewed = now.slewed;
     return true;
 }
 
-void DevicePort::send(double now_s, const LoopCommand& command) noexcept {
-    watch_pins(now_s);
-    LoopCommand guarded = command;
-    guard_command(now_s, fresh_, arm_ ? &newest_ : nullptr, found_, guarded, guarded_);
-    fresh_ = false;
-    if (arm_) arm_->send(guarded.arm);
-    if (pins_) pins_->send({guarded.pins_m.data(), static_cast<std::size_t>(guarded.pins)});
+void DevicePort::send(double /*now_s*/, const LoopCommand& command) noexcept {
+    if (!guard_) return;
+    const std::size_t pins = std::min(pins_count_, static_cast<std::size_t>(command.pins));
+    guard_->send(command.arm, {command.pins_m.data(), pins});
 }
 
 }  // namespace palpa::tactile

@@ -1,5 +1,6 @@
 #pragma once
-// The devices of a plan as the loop sees them. What goes to a wire has passed the guard (devices/limits.h).
+// The devices of a plan as the loop sees them. A process of its own holds their ports, and guards what goes there
+// (devices/shape_guard.h).
 //
 // Three threads may meet here: the loop calls read() and send(); any thread may call stop() and release().
 
@@ -7,9 +8,7 @@
 #include <memory>
 #include <string>
 
-#include "devices/arm_link.h"
-#include "devices/limits.h"
-#include "devices/pins.h"
+#include "devices/shape_guard.h"
 #include "tactile/loop.h"
 
 namespace palpa::tactile {
@@ -30,9 +29,9 @@ void guard_command(double now_s, bool fresh, const devices::ArmFeedback* arm, de
 // Real devices, or simulators that speak their protocols.
 class DevicePort {
   public:
-    // Opens what the plan has. Throws std::runtime_error with the system's reason.
+    // Starts the guard, which opens what the plan has. Throws std::runtime_error with the guard's or the system's reason.
     explicit DevicePort(const TactilePlan& plan);
-    ~DevicePort();  // the arm rests; the pins do by themselves
+    ~DevicePort();  // arm and pins rest
     DevicePort(const DevicePort&) = delete;
     DevicePort& operator=(const DevicePort&) = delete;
 
@@ -44,29 +43,20 @@ class DevicePort {
     bool read(LoopFeedback& feedback) noexcept;
     void send(double now_s, const LoopCommand& command) noexcept;
 
-    void stop() noexcept { stop_ = true; }        // F12: latched
-    void release() noexcept { release_ = true; }  // a person's wish to go on
+    void stop() noexcept;     // F12: latched
+    void release() noexcept;  // a person's wish to go on
 
     devices::Fault fault() const noexcept { return guarded_.guard.fault; }  // by the loop's thread
     const Guarded& guarded() const noexcept { return guarded_; }            // once the loop has ended
-    const devices::LinkHealth* link() const { return arm_ ? &arm_->health() : nullptr; }
-    devices::PinHealth pins() const { return pins_ ? pins_->health() : devices::PinHealth{}; }
+    const devices::LinkHealth* link() const { return arm_ ? &guard_->link() : nullptr; }
+    devices::PinHealth pins() const { return guard_ ? guard_->newest().pins : devices::PinHealth{}; }
 
   private:
-    bool ask_arm();  // whether it and its sensor are ready
-    void watch_pins(double now_s) noexcept;
-
-    std::unique_ptr<devices::ArmPort> arm_;
-    std::unique_ptr<devices::PinDriver> pins_;
-    Guarded guarded_;
-    bool sensor_ = false;  // the arm has one
-    bool arm_heard_ = false;
-    devices::ArmFeedback newest_;
-    bool fresh_ = false;
-    double pins_due_s_ = 0.0;
-    devices::Fault found_ = devices::Fault::none;
-    std::atomic<bool> stop_{false};
-    std::atomic<bool> release_{false};
+    std::unique_ptr<devices::ShapeGuard> guard_;  // null where there is nothing to open
+    std::size_t pins_count_ = 0;
+    bool arm_ = false;
+    Guarded guarded_;  // the guard's own, as it reports it
+    std::atomic<bool> stopped_{false};
 };
 
 }  // namespace palpa::tactile

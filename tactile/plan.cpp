@@ -114,6 +114,19 @@ TactilePlan plan_of_devices(const scene::TactileOptions& options, const std::str
     return plan;
 }
 
+// Enough points that lines between them follow the law to about 1e-6 of the greatest force.
+DepthForce points_of(const scene::ForceCurve& curve) {
+    if (!curve.depth_m.empty())
+        return {{curve.depth_m.begin() + 1, curve.depth_m.end()}, {curve.force_N.begin() + 1, curve.force_N.end()}};
+    constexpr int kPoints = 1000;
+    DepthForce points;
+    for (int k = 1; k <= kPoints; ++k) {
+        points.depth_m.push_back(curve.greatest_depth_m * k / kPoints);
+        points.force_N.push_back(scene::force_at_N(curve, points.depth_m.back()));
+    }
+    return points;
+}
+
 void finish(const Eigen::Vector2d& middle_m, const std::string& tissue, TactilePlan& plan) {
     try_middle(middle_m, plan);
     add_plan_notes(plan);
@@ -126,6 +139,9 @@ TactilePlan make_tactile_plan(const scene::Scene& scene, const scene::Plan& scen
     const std::string file = scene.file.string();
     if (!scene.tactile)
         throw files::bad_input(file, "tactile", "no such key", "one that says which arm or display there is");
+    if (const scene::ForceCurve* curve = scene::curve_of(scene_plan.tissue))
+        return make_tactile_plan(*scene.tactile, points_of(*curve), scene.stiffness_scale, scene_plan.tissue_name,
+                                 file);
     const scene::LinearTissue* block = scene::block_of(scene_plan.tissue);
     if (block == nullptr)
         throw files::bad_input(file, "tactile", "a tissue without a surface", "linear: a map knows no surface");

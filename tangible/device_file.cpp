@@ -24,8 +24,8 @@ Vector3d place_m(JsonReader& json, std::string_view key) {
 
 std::string millimetres(const Vector3d& m) {
     const Vector3d mm = 1e3 * m;
-    return "[" + files::short_number(mm.x()) + ", " + files::short_number(mm.y()) + ", " +
-           files::short_number(mm.z()) + "]";
+    return "[" + files::short_number(mm.x()) + ", " + files::short_number(mm.y()) + ", " + files::short_number(mm.z()) +
+           "]";
 }
 
 double body_size_m(const mechanics::Mesh& mesh) {
@@ -64,8 +64,9 @@ PathPoint point_of_surface(JsonReader& entry, const fem::CaseMesh& mesh) {
         face = i;
     }
     if (face < 0 || nearest.away_m > 0.01 * body_size_m(mesh.mesh))
-        entry.fail("at_mm", millimetres(wanted_m) + ", " + files::short_number(1e3 * nearest.away_m) +
-                                " mm away from the body's surface",
+        entry.fail("at_mm",
+                   millimetres(wanted_m) + ", " + files::short_number(1e3 * nearest.away_m) +
+                       " mm away from the body's surface",
                    "a place on the surface (guide_mm is for places in space)");
     PathPoint point;
     for (Index k = 0; k < nearest.weight.size(); ++k) {
@@ -139,9 +140,10 @@ void check_closed(JsonReader& json, const SoftDevice& device, SoftActuator& cavi
     for (const auto& edge : edges) {
         middle += (mesh.nodes_m.col(edge[0]) + mesh.nodes_m.col(edge[1])) / (2.0 * static_cast<double>(edges.size()));
         if (axes[position(edge[0])] == 7 && axes[position(edge[1])] == 7) continue;
-        json.fail("face", "an open cavity: its edge at " + millimetres(mesh.nodes_m.col(edge[0])) +
-                              " mm belongs to one face only",
-                  "faces that close the cavity, or whose rim supports hold along xyz");
+        json.fail(
+            "face",
+            "an open cavity: its edge at " + millimetres(mesh.nodes_m.col(edge[0])) + " mm belongs to one face only",
+            "faces that close the cavity, or whose rim supports hold along xyz");
     }
     if (!edges.empty()) cavity.path.push_back({middle, {}, {}});
 }
@@ -183,8 +185,9 @@ SoftTie read_tie(JsonReader& json, const SoftDevice& device) {
         if (std::count(tie.actuators.begin(), tie.actuators.end(), tie.actuators.back()) > 1)
             json.fail("actuators", files::shown(other.name) + " twice", "each actuator once");
         if (other.kind != first.kind)
-            json.fail("actuators", std::string("the ") + name_of(first.kind) + " " + first.name + " tied to the " +
-                                       name_of(other.kind) + " " + other.name,
+            json.fail("actuators",
+                      std::string("the ") + name_of(first.kind) + " " + first.name + " tied to the " +
+                          name_of(other.kind) + " " + other.name,
                       "actuators of one kind: N cannot equal Pa");
         lower = std::max(lower, other.lower);
         upper = std::min(upper, other.upper);
@@ -195,9 +198,10 @@ SoftTie read_tie(JsonReader& json, const SoftDevice& device) {
     if (tie.motion && device.actuators[position(tie.actuators[0])].kind == ActuatorKind::cavity)
         json.fail("motion", "cavities that share their motion", "cables");
     if (tie.force && lower > upper)
-        json.fail("actuators", "limits without a common value (" + files::short_number(lower) + " > " +
-                                   files::short_number(upper) + ")",
-                  "limits that overlap");
+        json.fail(
+            "actuators",
+            "limits without a common value (" + files::short_number(lower) + " > " + files::short_number(upper) + ")",
+            "limits that overlap");
     return tie;
 }
 
@@ -237,7 +241,8 @@ Effector read_effector(JsonReader json, const fem::CaseMesh& mesh) {
     out.radius_m = 1e-3 * json.number("radius_mm", {0.0, 1e5, true});
     out.tilt = json.boolean("tilt", false);
     out.direction = (mechanics::is_max(out.side) ? -1.0 : 1.0) * Vector3d::Unit(axis);
-    mechanics::ParabolicPressure pressure{out.side, {1e-3 * centre_mm[0], 1e-3 * centre_mm[1]}, 2.0 * out.radius_m, 1.0};
+    mechanics::ParabolicPressure pressure{
+        out.side, {1e-3 * centre_mm[0], 1e-3 * centre_mm[1]}, 2.0 * out.radius_m, 1.0};
     const mechanics::PressureLoad load =
         mechanics::parabolic_load(mesh.mesh, mesh.outer, pressure, mechanics::LoadShare::consistent);
     if (load.partial || !(load.applied_N > 0.0))
@@ -275,7 +280,8 @@ void read_actuators(JsonReader& json, SoftDevice& out) {
     for (std::size_t j = 0; j < count; ++j) {
         for (std::size_t k = 0; k < j; ++k) {
             if (out.actuators[j].name == out.actuators[k].name)
-                json.fail("cables", "two actuators called " + files::shown(out.actuators[j].name), "names of their own");
+                json.fail("cables", "two actuators called " + files::shown(out.actuators[j].name),
+                          "names of their own");
         }
     }
     for (JsonReader& entry : json.objects("ties")) {
@@ -304,19 +310,49 @@ void read_inverse(JsonReader& json, SoftDevice& out) {
     out.rate_term_m = 1e-3 * inverse->number("rate_term_mm", {0.0, 1e3}, 0.0);
 }
 
-void read_sensor_and_ports(JsonReader& json, SoftDevice& out) {
-    if (auto sensor = json.optional_object("sensor")) {
-        sensor->only({"rate_Hz", "noise_mm"});
-        out.sensor.rate_Hz = sensor->number("rate_Hz", {0.0, 1e5, true}, 100.0);
-        out.sensor.noise_m = 1e-3 * sensor->number("noise_mm", {0.0, 100.0}, 0.0);
+void read_sensor(JsonReader& json, SoftDevice& out) {
+    auto sensor = json.optional_object("sensor");
+    if (!sensor) return;
+    sensor->only({"rate_Hz", "noise_mm"});
+    out.sensor.rate_Hz = sensor->number("rate_Hz", {0.0, 1e5, true}, 100.0);
+    out.sensor.noise_m = 1e-3 * sensor->number("noise_mm", {0.0, 100.0}, 0.0);
+}
+
+// One channel for each actuator, whose order it gets.
+void read_wires(JsonReader& json, SoftDevice& out) {
+    auto wires = json.optional_object("wires");
+    if (!wires) return;
+    devices::ActuatorRig rig = devices::read_rig(*wires);
+    std::vector<devices::RigChannel> channels;
+    for (const SoftActuator& actuator : out.actuators) {
+        const auto same = [&](const devices::RigChannel& channel) { return channel.name == actuator.name; };
+        const auto channel = std::find_if(rig.channels.begin(), rig.channels.end(), same);
+        if (channel == rig.channels.end())
+            json.fail("wires.actuators", "none of the name '" + actuator.name + "'", "one for each cable and cavity");
+        const bool pressure = channel->drive == devices::Drive::pressure;
+        if (pressure != (actuator.kind == ActuatorKind::cavity))
+            json.fail("wires.actuators",
+                      "the " + std::string(name_of(actuator.kind)) + " '" + actuator.name + "' driven by " +
+                          (pressure ? "pressure" : "force or length"),
+                      actuator.kind == ActuatorKind::cavity ? "pressure" : "force or length");
+        channels.push_back(*channel);
     }
-    if (!json.has("ports")) return;
-    const files::Json& ports = json.any("ports");
-    if (!ports.is_object()) json.fail("ports", files::described(ports), "an object of paths: {\"motors\": \"/dev/...\"}");
-    for (const auto& [name, path] : ports.items()) {
-        if (!path.is_string()) json.fail("ports." + name, files::described(path), "the path of a port");
-        out.ports[name] = path.get<std::string>();
-    }
+    if (channels.size() != rig.channels.size())
+        json.fail("wires.actuators", std::to_string(rig.channels.size()) + " actuators",
+                  std::to_string(channels.size()) + ": the device's cables and cavities");
+    rig.channels = std::move(channels);
+    if (rig.name.empty()) rig.name = out.name;
+    out.wires = std::move(rig);
+}
+
+void read_fit(JsonReader& json, SoftDevice& out) {
+    auto fit = json.optional_object("fit");
+    if (!fit) return;
+    fit->only({"modulus_factor", "friction_share", "zero_mm"});
+    out.fit.modulus_factor = fit->number("modulus_factor", {0.1, 10.0}, out.fit.modulus_factor);
+    out.fit.friction_share = fit->number("friction_share", {0.0, 0.5}, out.fit.friction_share);
+    out.fit.zero_m = 1e-3 * fit->number("zero_mm", {-100.0, 100.0}, 0.0);
+    fit->finish();
 }
 
 void read_weight(JsonReader& json, SoftDevice& out) {
@@ -331,9 +367,9 @@ void read_weight(JsonReader& json, SoftDevice& out) {
 SoftDevice parse_soft_device(const files::Json& json, const std::string& file_name,
                              const std::filesystem::path& folder) {
     JsonReader reader(json, file_name);
-    reader.only({"name", "mesh", "element", "materials", "regions", "supports", "bearings", "cables", "cavities", "ties",
-                 "pretension", "effector", "sensor", "depth_floor_mm", "inverse", "ports", "density_kg_per_m3",
-                 "gravity_m_per_s2"});
+    reader.only({"name", "mesh", "element", "materials", "regions", "supports", "bearings", "cables", "cavities",
+                 "ties", "pretension", "effector", "sensor", "depth_floor_mm", "inverse", "wires", "density_kg_per_m3",
+                 "gravity_m_per_s2", "fit"});
     SoftDevice out;
     out.file = file_name;
     out.name = reader.text("name");
@@ -348,8 +384,10 @@ SoftDevice parse_soft_device(const files::Json& json, const std::string& file_na
     read_actuators(reader, out);
     out.effector = read_effector(reader.object("effector"), out.body.mesh);
     read_inverse(reader, out);
-    read_sensor_and_ports(reader, out);
+    read_sensor(reader, out);
+    read_wires(reader, out);
     read_weight(reader, out);
+    read_fit(reader, out);
     reader.finish();
     return out;
 }

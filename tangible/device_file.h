@@ -4,11 +4,11 @@
 
 #include <array>
 #include <filesystem>
-#include <map>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "devices/rig.h"
 #include "fem/body_file.h"
 
 namespace palpa::tangible {
@@ -78,6 +78,13 @@ struct SensorOptions {
     double noise_m = 0.0;  // standard deviation
 };
 
+// What recorded presses said about a device (`palpa tangible fit`).
+struct DeviceFit {
+    double modulus_factor = 1.0;  // multiplies the moduli of all materials
+    double friction_share = 0.0;  // of a cable's tension, that its guides take
+    double zero_m = 0.0;          // of the displacement sensor
+};
+
 struct SoftDevice {
     std::string file;
     std::string name;
@@ -90,13 +97,14 @@ struct SoftDevice {
     std::vector<SoftTie> ties;
     Effector effector;
     SensorOptions sensor;
-    double depth_floor_m = 0.5e-3;          // below it the actuation is that of the pretension
-    std::optional<int> pretension;          // the actuator (with those tied to it) that sets the stiffness at the floor
-    double tikhonov = 1e-8;                 // of the inverse problem: see inverse.h
-    double rate_term_m = 0.0;               // cost of a change by the whole range of an actuator, as an error of depth
-    std::map<std::string, std::string> ports;  // name of a port -> its usual path
+    double depth_floor_m = 0.5e-3;  // below it the actuation is that of the pretension
+    std::optional<int> pretension;  // the actuator (with those tied to it) that sets the stiffness at the floor
+    double tikhonov = 1e-8;         // of the inverse problem: see inverse.h
+    double rate_term_m = 0.0;       // cost of a change by the whole range of an actuator, as an error of depth
+    std::optional<devices::ActuatorRig> wires;  // one channel for each actuator, in their order
     double density_kg_per_m3 = 1070.0;
     std::optional<Eigen::Vector3d> gravity_m_per_s2;  // absent: no weight
+    DeviceFit fit;
     std::vector<std::string> warnings;
 };
 

@@ -78,7 +78,8 @@ Eigen::MatrixXd observed_of(const DeviceModel& model) {
     const Effector& effector = model.device.effector;
     Eigen::MatrixXd out = Eigen::MatrixXd::Zero(model.equations(), effector.tilt ? 3 : 1);
     std::array<Eigen::Vector3d, 2> across;
-    for (int k = 0; k < 2; ++k) across[position(k)] = Eigen::Vector3d::Unit((mechanics::axis_of(effector.side) + 1 + k) % 3);
+    for (int k = 0; k < 2; ++k)
+        across[position(k)] = Eigen::Vector3d::Unit((mechanics::axis_of(effector.side) + 1 + k) % 3);
     if (across[1].dot(Eigen::Vector3d::UnitX()) > 0.0) std::swap(across[0], across[1]);  // in the order x, y, z
     for (std::size_t i = 0; i < effector.node.size(); ++i) {
         const int node = model.place_of[position(effector.node[i])];
@@ -112,8 +113,8 @@ Eigen::VectorXd weight_of(const DeviceModel& model) {
     if (!model.device.gravity_m_per_s2) return out;
     const Mesh& mesh = model.body.mesh;
     for (Index cell = 0; cell < mesh.cells.cols(); ++cell) {
-        const double share_N = model.device.density_kg_per_m3 * cell_volume_m3(model, cell) /
-                               static_cast<double>(mesh.cells.rows());
+        const double share_N =
+            model.device.density_kg_per_m3 * cell_volume_m3(model, cell) / static_cast<double>(mesh.cells.rows());
         for (Index k = 0; k < mesh.cells.rows(); ++k) {
             if (mesh.cells(k, cell) < model.free_nodes)
                 out.segment<3>(3 * mesh.cells(k, cell)) += share_N * *model.device.gravity_m_per_s2;
@@ -129,6 +130,15 @@ double mean_stiffness(const DeviceModel& model) {
     const Eigen::Matrix3Xd still = gradient_N;
     mechanics::add_energy_tangent_N_per_m(model.body, still, mechanics::Tangent::exact, gradient_N, K);
     return K.values.row(0).mean();
+}
+
+std::vector<mechanics::LargeMaterial> scaled_materials(const SoftDevice& device) {
+    std::vector<mechanics::LargeMaterial> materials = device.materials;
+    for (mechanics::LargeMaterial& material : materials) {
+        material.mu_Pa *= device.fit.modulus_factor;
+        material.kappa_Pa *= device.fit.modulus_factor;
+    }
+    return materials;
 }
 
 }  // namespace
@@ -164,13 +174,15 @@ DeviceModel make_device_model(const SoftDevice& device) {
     model.free_nodes = order.free_nodes;
     model.band = std::min(order.band, std::max(0, model.equations() - 1));
     if (static_cast<double>(model.equations()) * model.band > kMostBandValues || model.free_nodes == 0)
-        throw files::bad_input(device.file, "mesh",
-                               std::to_string(model.equations()) + " equations of half-bandwidth " +
-                                   std::to_string(model.band),
-                               "a mesh that is small enough for a loop: at most 4e7 values");
+        throw files::bad_input(
+            device.file, "mesh",
+            std::to_string(model.equations()) + " equations of half-bandwidth " + std::to_string(model.band),
+            "a mesh that is small enough for a loop: at most 4e7 values");
     model.place_of.resize(order.node_at.size());
-    for (std::size_t i = 0; i < order.node_at.size(); ++i) model.place_of[position(order.node_at[i])] = static_cast<int>(i);
-    model.body = mechanics::make_large_body(mechanics::renumbered(mesh, order), device.body.element, device.materials);
+    for (std::size_t i = 0; i < order.node_at.size(); ++i)
+        model.place_of[position(order.node_at[i])] = static_cast<int>(i);
+    model.body =
+        mechanics::make_large_body(mechanics::renumbered(mesh, order), device.body.element, scaled_materials(device));
     for (const int dof : device.supports.dof) {
         const int place = model.place_of[position(dof / 3)];
         if (place < model.free_nodes) model.held.push_back(3 * place + dof % 3);
@@ -215,8 +227,10 @@ DeviceState rest_state(const DeviceModel& model) {
     load.actuation = state.actuation;
     const ForwardAnswer answer = equilibrium(model, state, load);
     if (answer.status != DeviceStatus::good && answer.status != DeviceStatus::unstable)
-        throw std::runtime_error(model.device.file + ": the device has no equilibrium at the lower limits of its "
-                                 "actuators (" + name_of(answer.status) + ", last change " +
+        throw std::runtime_error(model.device.file +
+                                 ": the device has no equilibrium at the lower limits of its "
+                                 "actuators (" +
+                                 name_of(answer.status) + ", last change " +
                                  files::short_number(1e3 * answer.residual_m) + " mm)");
     state.rest_depth_m = depth_m(model, state);
     return state;

@@ -1,4 +1,4 @@
-// palpa bench accuracy mechanics|tactile
+// palpa bench accuracy mechanics|tactile|tangible
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
@@ -8,6 +8,10 @@
 #include "accuracy/accuracy.h"
 #include "accuracy/mechanics.h"
 #include "accuracy/tactile.h"
+#ifdef PALPA_TANGIBLE
+#include "accuracy/tangible.h"
+#endif
+#include "app/assets.h"
 #include "app/commands/command_line.h"
 #include "files/input_error.h"
 #include "files/regular_file.h"
@@ -44,7 +48,7 @@ Measurements mechanics_list(const accuracy::Effort& effort) {
     return list;
 }
 
-// Measures a list and writes NAME.csv; the mechanics library has a figure too.
+// Measures a list and writes NAME.csv; mechanics and soft devices have a figure too.
 void run_accuracy(const AccuracyOptions& options, const Measurements& list, const std::string& name) {
     if (!options.folder.empty()) {
         files::check_output_folder(options.folder);
@@ -61,15 +65,17 @@ void run_accuracy(const AccuracyOptions& options, const Measurements& list, cons
     }
     if (options.folder.empty()) return;
     files::write_text_atomically(std::filesystem::path(options.folder) / (name + ".csv"), accuracy::accuracy_csv(rows));
-    if (name != "mechanics") {
-        std::fprintf(stderr, "%s: %s.csv\n", options.folder.c_str(), name.c_str());
-        return;
-    }
-    const std::string trouble = accuracy::plot_mechanics(options.folder, machine);
-    if (!trouble.empty())
+    std::string trouble = "no figure";
+    if (name == "mechanics") trouble = accuracy::plot_mechanics(options.folder, machine);
+#ifdef PALPA_TANGIBLE
+    if (name == "tangible") trouble = accuracy::plot_tangible(options.folder, machine);
+#endif
+    if (name == "tactile")
+        std::fprintf(stderr, "%s: tactile.csv\n", options.folder.c_str());
+    else if (!trouble.empty())
         std::fprintf(stderr, "palpa: %s\n", trouble.c_str());
     else
-        std::fprintf(stderr, "%s: mechanics.csv, .gp, .png, .svg, .pdf\n", options.folder.c_str());
+        std::fprintf(stderr, "%s: %s.csv, .gp, .png, .svg, .pdf\n", options.folder.c_str(), name.c_str());
 }
 
 }  // namespace
@@ -94,6 +100,19 @@ void add_bench_accuracy(CLI::App& bench) {
     tactile->add_flag("--json", options->json, "print one JSON object on standard output");
     tactile->callback(
         [options] { run_accuracy(*options, accuracy::tactile_measurements(effort_of(*options)), "tactile"); });
+#ifdef PALPA_TANGIBLE
+    CLI::App* tangible = accuracy->add_subcommand(
+        "tangible",
+        "Measure the rendered force and the cost of a soft device's choices: mesh, law, fidelity, command, sensor");
+    tangible->add_option("-o,--output", options->folder,
+                         "folder for tangible.csv and its figure (default: nothing is written)");
+    tangible->add_flag("--quick", options->quick, "use faster presses and fewer meshes");
+    tangible->add_flag("--json", options->json, "print one JSON object on standard output");
+    tangible->callback([options] {
+        run_accuracy(*options, accuracy::tangible_measurements(effort_of(*options), assets_folder() / "devices"),
+                     "tangible");
+    });
+#endif
 }
 
 }  // namespace palpa::app

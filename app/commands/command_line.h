@@ -25,6 +25,9 @@ void add_tactile_identify(CLI::App& tactile);
 void add_tactile_characterise(CLI::App& tactile);
 void add_tactile_pins(CLI::App& tactile);
 void add_tangible(CLI::App& app);  // only with the CMake option PALPA_TANGIBLE
+void add_tangible_run(CLI::App& tangible);
+void add_tangible_characterise(CLI::App& tangible);
+void add_tangible_fit(CLI::App& tangible);
 void add_bench(CLI::App& app);
 void add_bench_accuracy(CLI::App& bench);
 void add_bench_pens(CLI::App& bench);

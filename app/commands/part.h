@@ -9,4 +9,8 @@ namespace palpa::app {
 // Adds `palpa part`, as the functions of command_line.h add theirs.
 void add_part(CLI::App& app);
 
+// Add commands of `palpa part` to it.
+void add_part_evaluate(CLI::App& part);
+void add_part_button(CLI::App& part);
+
 }  // namespace palpa::app

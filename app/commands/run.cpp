@@ -77,13 +77,23 @@ std::optional<session::TrialMode> asked_mode(const RunOptions& options) {
     return std::nullopt;
 }
 
+// What asks for a window, or for a picture that is not drawn.
+void check_no_window(const CLI::App& command, const RunOptions& options) {
+    for (const char* name : {"--record", "--guided", "--screen", "--simulate", "--quit-after-s"}) {
+        if (command.count(name) > 0)
+            throw files::InputError(std::string(name) + ": found with --headless, expected a window");
+    }
+    for (const char* name : {"--width-px", "--height-px", "--left-handed"}) {
+        if (command.count(name) > 0 && options.screenshot.empty())
+            throw files::InputError(std::string(name) + ": found with --headless, expected a --screenshot with it");
+    }
+}
+
 void run_headless(const RunOptions& options) {
     if (options.trace.empty()) {
         throw files::InputError(
             "--headless: found no --replay TRACE.tsv, expected one (without a window there is no pen)");
     }
-    if (!options.record.empty())
-        throw files::InputError("--record: found with --headless, expected a window (a replay has its trace)");
     const double began_s = files::steady_s();
     scene::Scene scene = load_scene(options.scene);
     if (!options.screenshot.empty()) {
@@ -122,10 +132,12 @@ void add_run(CLI::App& app) {
     command->add_option("--replay", options->trace, "trace to replay instead of live input");
     command->add_flag("--headless", options->headless,
                       "open no window: replay the trace as fast as possible, then exit");
-    command->add_option("--log", options->log,
-                        "folder for the log (BIDS layout; existing files are never overwritten)");
-    command->add_option("--participant", options->participant,
-                        "participant's code in the names of the log files (default 01)");
+    CLI::Option* log = command->add_option("--log", options->log,
+                                           "folder for the log (BIDS layout; existing files are never overwritten)");
+    command
+        ->add_option("--participant", options->participant,
+                     "participant's code in the names of the log files (default 01)")
+        ->needs(log);
     command->add_option("--screenshot", options->screenshot,
                         "write FILE.png of the last frame; headless: of the moment of greatest lag, or of greatest "
                         "force without a lag");
@@ -139,21 +151,24 @@ void add_run(CLI::App& app) {
         ->check(CLI::Range(100, 16384));
     command->add_flag("--practice", options->practice, "show the nodules during the trial");
     command->add_flag("--test", options->test, "hide the nodules until the trial is finished")->excludes("--practice");
-    const std::map<std::string, Screen> screens{{"trial", Screen::trial},    {"devices", Screen::devices},
-                                                {"scale", Screen::scale},    {"calibrate", Screen::calibrate},
-                                                {"maps", Screen::maps},      {"history", Screen::history},
-                                                {"tactile", Screen::tactile}};
+    const std::map<std::string, Screen> screens{{"trial", Screen::trial},     {"devices", Screen::devices},
+                                                {"scale", Screen::scale},     {"calibrate", Screen::calibrate},
+                                                {"maps", Screen::maps},       {"history", Screen::history},
+                                                {"tactile", Screen::tactile}, {"tangible", Screen::tangible}};
     command
         ->add_option_function<std::string>(
             "--screen", [options, screens](const std::string& name) { options->screen = screens.at(name); },
             "screen to open first")
-        ->check(one_of({"trial", "devices", "scale", "calibrate", "maps", "history", "tactile"}));
+        ->check(one_of({"trial", "devices", "scale", "calibrate", "maps", "history", "tactile", "tangible"}));
     command->add_flag("--guided", options->guided, "begin with the guided start");
     command->add_flag("--simulate", options->simulate_devices,
-                      "start simulators of the scene's arm and pins, and connect to them instead of real ones");
+                      "start simulators of the scene's devices, and connect to them instead of real ones");
     command->add_flag("--left-handed", options->left_handed, "put the controls on the right");
-    command->callback([options] {
-        if (options->headless) return run_headless(*options);
+    command->callback([options, command] {
+        if (options->headless) {
+            check_no_window(*command, *options);
+            return run_headless(*options);
+        }
         if (const auto result = run_live(*options)) print(*result, options->json);
     });
 }

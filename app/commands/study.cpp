@@ -9,11 +9,14 @@
 namespace palpa::app {
 
 void add_study(CLI::App& app) {
-    CLI::App* study = app.add_subcommand("study",
-                                         "Studies with people: order, run, simulate, import, exclude, replace, "
-                                         "withdraw, analyse, levels, watch, observers");
+    CLI::App* study =
+        app.add_subcommand("study",
+                           "Studies with people: order, power, preregister, run, simulate, import, exclude, replace, "
+                           "withdraw, analyse, levels, watch, observers");
     study->require_subcommand(1);
     add_study_order(*study);
+    add_study_power(*study);
+    add_study_preregister(*study);
     add_study_run(*study);
     add_study_simulate(*study);
     add_study_import(*study);

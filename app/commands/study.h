@@ -13,6 +13,8 @@ void add_study_import(CLI::App& study);
 void add_study_levels(CLI::App& study);
 void add_study_observers(CLI::App& study);
 void add_study_order(CLI::App& study);
+void add_study_power(CLI::App& study);
+void add_study_preregister(CLI::App& study);
 void add_study_run(CLI::App& study);
 void add_study_simulate(CLI::App& study);
 void add_study_watch(CLI::App& study);

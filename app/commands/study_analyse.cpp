@@ -13,8 +13,11 @@
 #include "files/regular_file.h"
 #include "files/text.h"
 #include "study/long_tables.h"
+#include "study/protocol.h"
 #include "study/read_logs.h"
 #include "study/report.h"
+#include "study/stard.h"
+#include "study/table_dictionary.h"
 
 namespace palpa::app {
 namespace {
@@ -53,10 +56,10 @@ void refuse_folder_of_logs(const std::string& output) {
 
 // The tables and figures that a report may have.
 std::vector<std::string> result_names() {
-    std::vector<std::string> names{"figures.gp", "froc.gp", "psychometric.gp", "mixed_model.R"};
+    std::vector<std::string> names{"figures.gp", "froc.gp", "psychometric.gp", "mixed_model.R", "stard.md"};
     for (const std::string& table : study::long_table_names())
         names.insert(names.end(), {table + ".tsv", table + ".json"});
-    for (const std::string& table : study::table_names()) names.push_back(table + ".tsv");
+    for (const std::string& table : study::table_names()) names.insert(names.end(), {table + ".tsv", table + ".json"});
     for (const char* figure : {"sensitivity", "nodules", "ppv", "froc", "psychometric"}) {
         for (const char* kind : {".svg", ".pdf", ".png"}) names.push_back(std::string(figure) + kind);
     }
@@ -72,13 +75,21 @@ void remove_earlier_report(const fs::path& folder) {
     }
 }
 
-void write_report(const study::Report& report, const study::Observations& seen, const fs::path& folder) {
+// The protocol beside logs; nothing for a table, and for single runs.
+std::optional<study::Protocol> protocol_of(const fs::path& input) {
+    if (!fs::is_directory(input) || !fs::exists(input / "protocol.json")) return std::nullopt;
+    return study::read_protocol(input / "protocol.json");
+}
+
+void write_report(const study::Report& report, const study::Observations& seen,
+                  const std::optional<study::Protocol>& protocol, const fs::path& folder) {
     std::error_code error;
     fs::create_directories(folder, error);
     if (error) throw std::runtime_error(folder.string() + ": cannot be made: " + error.message());
     remove_earlier_report(folder);
     for (const study::ReportTable& table : study::report_tables(report)) {
         files::write_text_atomically(folder / (table.name + ".tsv"), study::tsv_text(table));
+        files::write_text_atomically(folder / (table.name + ".json"), files::json_text(study::dictionary_of(table)));
     }
     for (const study::LongTable& one : study::long_tables(seen)) {
         files::write_text_atomically(folder / (one.table.name + ".tsv"), study::tsv_text(one.table));
@@ -86,6 +97,7 @@ void write_report(const study::Report& report, const study::Observations& seen, 
     }
     const std::string script = study::lme4_script(report.mixed);
     if (!script.empty()) files::write_text_atomically(folder / "mixed_model.R", script);
+    files::write_text_atomically(folder / "stard.md", study::stard_checklist(report, protocol ? &*protocol : nullptr));
     files::write_text_atomically(folder / "report.md", study::report_markdown(report));
     files::write_text_atomically(folder / "report.json", files::json_text(study::report_json(report)));
     for (const std::string& trouble : {figures::draw_figures(report, folder), figures::draw_froc_figure(report, folder),
@@ -121,7 +133,7 @@ void analyse(const AnalyseOptions& options) {
         names.insert(names.end(), {"report.md", "report.json"});
         files::check_output_folder(options.output, {options.input}, names);
     }
-    if (!options.output.empty()) write_report(report, seen, options.output);
+    if (!options.output.empty()) write_report(report, seen, protocol_of(options.input), options.output);
     const std::string text =
         options.json ? files::json_text(study::report_json(report)) : study::report_markdown(report);
     std::fputs(text.c_str(), stdout);

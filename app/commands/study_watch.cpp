@@ -119,7 +119,8 @@ files::Json state_of(const fs::path& directory, const study::Person& person, std
     // the program held the folder's lock when it wrote this; a step that it does not hold it in any more is over
     if (json["now"].value("locked", false)) json["running"] = files::is_folder_locked(subject);
     if (json["now"].value("step", "") != "trial") return json;
-    const auto files = study::events_files(subject);
+    const bool choice = json["now"].contains("interval");  // its surfaces are runs of their own
+    const auto files = choice ? study::interval_files(subject) : study::events_files(subject);
     if (files.empty()) return json;
     json["events"] = last_events(files.back(), notes);
     std::string samples = files.back().string();

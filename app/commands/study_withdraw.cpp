@@ -22,6 +22,15 @@ struct WithdrawOptions {
     std::string data;
 };
 
+// A withdrawal that was cut off says nothing yet: it is what this command completes.
+bool has_taken_data(const WithdrawOptions& options) {
+    try {
+        return study::withdrawal_of(options.directory, options.participant) == study::Withdrawal::takes_data;
+    } catch (const files::InputError&) {
+        return false;
+    }
+}
+
 void withdraw_participant(const WithdrawOptions& options) {
     if (!study::read_identity(options.directory)) {
         throw files::bad_input(options.directory, "", "no study.json",
@@ -35,7 +44,7 @@ void withdraw_participant(const WithdrawOptions& options) {
         throw files::bad_input("--participant", "", files::shown(options.participant),
                                "a code that is in " + options.directory);
     }
-    if (study::withdrawal_of(options.directory, options.participant) == study::Withdrawal::takes_data) {
+    if (has_taken_data(options)) {
         throw files::bad_input("--participant", "", files::shown(options.participant) + ", who has withdrawn the data",
                                "a participant whose data are in use");
     }

@@ -79,6 +79,8 @@ void open_screen(Screen screen, platform::Window& window, App& app) {
             return open_history(window, app);
         case Screen::tactile:
             return go_to(WatchingTactile{}, window, app);
+        case Screen::tangible:
+            return go_to(WatchingTangible{}, window, app);
     }
 }
 

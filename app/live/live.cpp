@@ -121,7 +121,8 @@ void note_shown(const platform::Window& window, App& app) {
 ToShow to_show(const App& app, double now_s, double dt_s) {
     const session::Session& s = app.session;
     const TactileShown* tactile = app.tactile.shown ? &*app.tactile.shown : nullptr;
-    return {s.scene, *s.plan, s.trial, app.settings, app.notices, app.doing, app.asked, now_s, dt_s, tactile};
+    const TangibleShown* tangible = app.tangible.shown ? &*app.tangible.shown : nullptr;
+    return {s.scene, *s.plan, s.trial, app.settings, app.notices, app.doing, app.asked, now_s, dt_s, tactile, tangible};
 }
 
 // Notes when a step of a study is shown first, which is when it begins.
@@ -164,8 +165,8 @@ bool in_motion(const App& app) {
     const bool keeps = waits_for_keeper(app) || (study != nullptr && study->keeping_since_s);
     const bool presses = palpates(app.doing) && app.session.state.pointer;
     const bool replays = app.view.history && app.view.history->plays;
-    const bool devices = app.tactile.driver != nullptr;
-    return devices || replays || app.trace || presses || !app.hold.held.empty() || records || keeps || app.save_waits;
+    return devices_driven(app) || replays || app.trace || presses || !app.hold.held.empty() || records || keeps ||
+           app.save_waits;
 }
 
 // Stops the trial with a message if a log can no longer be written; earlier rows are on the disk.
@@ -251,7 +252,7 @@ struct Live::Impl {
     void take_samples(double wait_s) {
         samples.clear();
         window->poll(wait_s, samples);  // 1. read
-        if (gui->take_stop()) stop_tactile(app);
+        if (gui->take_stop()) stop_devices(app);
         if (window->stirred() || !samples.empty()) stirred_s = window->now_s();
         if (window->uncovered()) app.view.on_screen.content = 0;
         if (app.trace) {
@@ -263,7 +264,7 @@ struct Live::Impl {
         place_keyboard(*window, app);
         lift_fingers(gui->hand_mm(), samples, app);
         take_all(window->now_s(), samples, app);  // 2. simulate and log
-        follow_tactile(window->now_s(), app);
+        follow_devices(window->now_s(), app);
         watch_files(*window, app);
         session::flush_if_due(app.session);  // also while nothing moves and nothing is drawn
         keep_part(window->now_s(), app);
@@ -358,7 +359,7 @@ files::Json Live::close() {
     if (const auto* calibrating = std::get_if<Calibrating>(&it.app.doing)) stop_recording(*calibrating->form);
     remember_window(*it.window, it.app);
     if (study_of(it.app.doing) != nullptr) return close_study(*it.gui, it.app);
-    rest_tactile(it.app);
+    rest_devices(it.app);
     files::Json result = result_of(it.app);
     result["start_to_first_frame_s"] = it.first_frame_s;
     result["overflow"] = it.gui->overflow();

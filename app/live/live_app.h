@@ -9,13 +9,16 @@
 #include <variant>
 #include <vector>
 
+#include "app/live/device_control.h"
 #include "app/live/live.h"
 #include "app/live/tactile_driver.h"
+#include "app/live/tangible_driver.h"
 #include "app/screens/doing.h"
 #include "app/screens/frame.h"
 #include "app/screens/pins_preview.h"
 #include "app/screens/screens.h"
 #include "app/screens/tactile_screen.h"
+#include "app/screens/tangible_screen.h"
 #include "platform/hold_press.h"
 #include "platform/pressure.h"
 #include "platform/trace.h"
@@ -32,13 +35,10 @@ struct TrialStopped {      // the trial's files can no longer be written
 using Course = std::variant<GoesOn, WaitsForKeeper, TrialStopped>;
 
 // Arm and pins of the scene.
-struct TactileControl {
-    std::unique_ptr<TactileDriver> driver;  // while a trial drives devices
-    std::shared_ptr<PinsPreview> preview;   // for pins that are only drawn; null: there are none
-    std::optional<TactileShown> shown;      // nothing: the scene has neither arm nor pins
-    std::optional<double> fault_since_s;    // window's clock; a fault lasts since then
-    files::Json report;                     // of the last trial's loop
+struct TactileControl : DeviceControl<TactileDriver, TactileShown> {
+    std::shared_ptr<PinsPreview> preview;  // for pins that are only drawn; null: there are none
 };
+using TangibleControl = DeviceControl<TangibleDriver, TangibleShown>;  // the soft device of the scene
 
 // Everything that the app has open while its window is open.
 struct App {
@@ -67,6 +67,7 @@ struct App {
     Course course;
     session::TrialKeeper* keeper = nullptr;  // may be null
     TactileControl tactile;
+    TangibleControl tangible;
     double parted_s = 0.0;  // when the keeper was last given the trial so far
     bool quit = false;
 };
@@ -144,28 +145,43 @@ bool work_at_stake(const App& app);
 std::string close_trial(App& app);
 void act(platform::Action action, platform::Window& window, App& app);
 
-// tactile_live.cpp
-// Notes what the session's scene asks of arm and pins, and drives nothing.
+// driven_devices.cpp: the devices of the scene, arm and pins or a soft device.
+// Calls visit(control) for each kind of device.
+template <class AnyApp, class Visit>
+void for_each_device(AnyApp& app, const Visit& visit) {
+    visit(app.tactile);
+    visit(app.tangible);
+}
+// Notes what the session's scene asks of devices, and drives nothing.
+void know_devices(App& app);
+bool devices_ready(App& app);  // the devices run, or could not be opened (DriveState::problem), or there are none
+void begin_devices(App& app);  // the trial does not wait for its devices, and goes on without them
+void rest_devices(App& app);
+void follow_devices(double now_s, App& app);  // once per turn of the loop
+void stop_devices(App& app);                  // F12: at once, and until release_devices()
+void release_devices(App& app);
+bool devices_failed(double now_s, const App& app);  // one has stopped, or a fault does not pass
+bool devices_driven(const App& app);                // a trial drives one, or opens it
+
+// tactile_live.cpp and tangible_live.cpp: what is of each kind alone, for driven_devices.cpp and study_devices.cpp.
 void know_tactile(App& app);
-// Begins to open the scene's devices, unless they are stopped.
+void know_tangible(App& app);
+// Begins to open the scene's devices, unless they are stopped. `rows`: file for the rows of their loop; may be empty.
 void drive_tactile(const std::filesystem::path& rows, App& app);
-bool tactile_ready(App& app);  // the devices run, or could not be opened (TactileShown::problem), or there are none
-void begin_tactile(App& app);  // the first two; the trial does not wait for its devices, and goes on without them
-void rest_tactile(App& app);
-void follow_tactile(double now_s, App& app);  // once per turn of the loop
-void stop_tactile(App& app);                  // F12: at once, and until release_tactile()
-void release_tactile(App& app);
-bool tactile_failed(double now_s, const App& app);  // the devices have stopped, or a fault of theirs does not pass
+void drive_tangible(const std::filesystem::path& rows, App& app);
+void follow_tactile(double now_s, App& app);
+void follow_tangible(double now_s, App& app);
 
 // device_notes.cpp
 void note_devices(const platform::Window& window, App& app);  // into app.notices
 
-// study_devices.cpp: arm and pins of a study's trial.
+// study_devices.cpp: the devices of a study's trial.
 bool devices_stopped(
-    const App& app);  // stopped, or could not be opened: somebody has to read it before the trial begins
-void note_tactile(const App& app, StudyRun& run);  // what they lack, or why they were stopped
+    const App& app);             // stopped, or could not be opened: somebody has to read it before the trial begins
+void forget_problems(App& app);  // why they could not be opened
+void note_missing(const App& app, StudyRun& run);  // what they lack, or why they were stopped
 // Begins to open them, once for each trial that is due. Returns true when they run, or there are none.
-bool devices_ready(App& app);
+bool study_devices_ready(App& app);
 void name_devices(const App& app, study::TrialLabel& label);  // in the trial's settings
 
 // study_trials.cpp: the trials of a study; app.doing is a StudyRun.

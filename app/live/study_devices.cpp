@@ -1,51 +1,77 @@
-// Arm and pins of a study's trial: it begins once they run, and its settings name them.
+// The devices of a study's trial, arm and pins or a soft device: it begins once they run, and its settings name them.
 
 #include "app/live/live_app.h"
 #include "app/screens/words.h"
 #include "app/study/study_run.h"
 
 namespace palpa::app {
+namespace {
+
+void add_line(const std::string& line, std::string& text) { text += (text.empty() ? "" : "\n") + line; }
+
+// Why these devices do not run though they are there; "" if they could.
+std::string why_stopped(const DriveState& shown, const char* fault) {
+    return shown.problem.empty() ? words::filled(words::kDevicesStopped, {fault}) : shown.problem;
+}
+
+}  // namespace
 
 bool devices_stopped(const App& app) {
-    const auto& shown = app.tactile.shown;
-    return shown && (shown->moment.stopped || !shown->problem.empty());
+    bool any = false;
+    for_each_device(app, [&](const auto& control) {
+        any = any || (control.shown && (control.shown->moment.stopped || !control.shown->problem.empty()));
+    });
+    return any;
 }
 
-void note_tactile(const App& app, StudyRun& run) {
+void forget_problems(App& app) {
+    for_each_device(app, [](auto& control) {
+        if (control.shown) control.shown->problem.clear();
+    });
+}
+
+void note_missing(const App& app, StudyRun& run) {
     run.devices_note.clear();
-    if (!run.progress.next || !feels_pins(run)) return;
+    if (!run.progress.next || !feels_device(run)) return;
     if (devices_stopped(app)) {
-        const TactileShown& shown = *app.tactile.shown;
-        run.devices_note =
-            shown.problem.empty() ? words::filled(words::kDevicesStopped, {shown.moment.fault}) : shown.problem;
+        for_each_device(app, [&](const auto& control) {
+            if (control.shown && (control.shown->moment.stopped || !control.shown->problem.empty()))
+                add_line(why_stopped(*control.shown, control.shown->moment.fault), run.devices_note);
+        });
         return;
     }
-    if (app.options.simulate_devices || app.tactile.driver) return;
-    for (const std::string& missing : missing_devices(due_scene(run).scene))
-        run.devices_note += (run.devices_note.empty() ? "" : "\n") + words::filled(words::kDevicesMissing, {missing});
+    if (app.options.simulate_devices || devices_driven(app)) return;
+    const scene::Scene& scene = due_scene(run).scene;
+    for (const auto& missing : {missing_devices(scene), missing_soft_device(scene)}) {
+        for (const std::string& one : missing) add_line(words::filled(words::kDevicesMissing, {one}), run.devices_note);
+    }
 }
 
-bool devices_ready(App& app) {
+bool study_devices_ready(App& app) {
     StudyRun& run = *study_of(app.doing);
     bool& opening = std::get<step::Trial>(run.step).opening;
     if (!opening) {
-        know_tactile(app);
-        if (!app.tactile.shown) return true;
+        know_devices(app);
+        if (!app.tactile.shown && !app.tangible.shown) return true;
         const session::SessionFiles files = due_files(run);
-        drive_tactile(study::next_run(files.log, files.participant, files.task, files.first_run).file("_tactile.tsv"),
-                      app);
+        const study::RunFiles next = study::next_run(files.log, files.participant, files.task, files.first_run);
+        drive_tactile(next.file("_tactile.tsv"), app);
+        drive_tangible(next.file("_tangible.tsv"), app);
         opening = true;
     }
-    return tactile_ready(app);
+    return devices_ready(app);
 }
 
 void name_devices(const App& app, study::TrialLabel& label) {
-    if (!app.tactile.shown) return;
+    if (!app.tactile.shown && !app.tangible.shown) return;
     label.study["devices"] = files::Json::array();
-    for (const session::TactileDevice& device : app.tactile.shown->devices) {
-        label.study["devices"].push_back(
-            {{"role", device.role}, {"name", device.name}, {"port", device.port}, {"simulated", device.simulated}});
-    }
+    for_each_device(app, [&](const auto& control) {
+        if (!control.shown) return;
+        for (const session::TactileDevice& device : control.shown->devices) {
+            label.study["devices"].push_back(
+                {{"role", device.role}, {"name", device.name}, {"port", device.port}, {"simulated", device.simulated}});
+        }
+    });
 }
 
 }  // namespace palpa::app

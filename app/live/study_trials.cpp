@@ -24,7 +24,7 @@ void begin_study_trial(platform::Window& window, const Gui& gui, App& app) {
         const study::PlannedTrial& trial = due_trial(run);
         const bool known = trial.practice && !due_compares(run);
         if (!std::get<step::Trial>(run.step).opening) put_scene(scene_of(due, trial), due.plan, window, app);
-        if (!devices_ready(app)) return;
+        if (!study_devices_ready(app)) return;
         if (devices_stopped(app)) return wait_for_device(false, run);
         session::SessionFiles files = due_files(run);
         files.finger_offset_mm = finger_offset_mm(app);
@@ -36,7 +36,7 @@ void begin_study_trial(platform::Window& window, const Gui& gui, App& app) {
         session::take_sample(resize_sample(window, gui, app.settings, now_of(app, window)), app.session);
         std::get<step::Trial>(run.step).begun = true;
     } catch (const std::exception& error) {
-        rest_tactile(app);
+        rest_devices(app);
         stop_study(error.what(), run);
     }
 }
@@ -148,37 +148,39 @@ void follow_study(const std::optional<StudyWish>& wish, platform::Window& window
     const bool waited = at<step::Device>(run);
     if (wish) carry_out(*wish, run);
     if (waited && trial_waits(run)) {  // somebody has read why the devices were stopped, and went on
-        release_tactile(app);
-        if (app.tactile.shown) app.tactile.shown->problem.clear();
+        release_devices(app);
+        forget_problems(app);
     }
     follow_keeper(now_of(app, window), app);
     if (trial_waits(run) && !run.keeping_since_s) {
         note_devices(window, app);
         note_pen(app, run);
-        note_tactile(app, run);
+        note_missing(app, run);
         if (may_begin(app)) {
             begin_study_trial(window, gui, app);
         } else {
-            rest_tactile(app);
+            rest_devices(app);
             wait_for_device(false, run);
         }
     }
     if (at<step::Instructions>(run) || at<step::Device>(run)) note_pen(app, run);
     if (auto* device = std::get_if<step::Device>(&run.step)) {
-        note_tactile(app, run);
+        note_missing(app, run);
         const bool stopped = devices_stopped(app);  // but they could run
         device->connected = is_device_here(app) && (stopped || run.devices_note.empty());
         device->here = stopped || may_begin(app);
     }
     if (!trial_goes_on(run)) return;
-    if (!is_device_here(app) || tactile_failed(window.now_s(), app)) return interrupt_study_trial(window, app);
+    if (!is_device_here(app) || devices_failed(window.now_s(), app)) return interrupt_study_trial(window, app);
     if (now_of(app, window) >= trial_ends_s(app)) act(platform::Action::finish, window, app);
 }
 
 bool allowed(const platform::Sample& sample, App& app) {
     const study::Modality modality = due_condition(*study_of(app.doing)).modality;
     if (sample.phase == platform::Phase::ui) return true;
-    if (app.tactile.shown && app.tactile.shown->arm_leads) return false;  // what is felt is not on the screen
+    // what is felt is not on the screen
+    if (app.tactile.shown && app.tactile.shown->arm_leads) return false;
+    if (app.tangible.shown && app.tangible.shown->device_leads) return false;
     if (tool_allowed(modality, sample.tool)) return true;
     if (sample.phase == platform::Phase::down) app.notices.note = words::filled(words::kDoneWith, {name_of(modality)});
     return false;

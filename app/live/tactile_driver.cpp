@@ -1,21 +1,12 @@
 #include "app/live/tactile_driver.h"
 
-#include <chrono>
-#include <exception>
-#include <future>
-#include <thread>
-
+#include "app/live/device_opener.h"
 #include "session/tactile_run.h"
 
 namespace palpa::app {
 
-struct TactileDriver::Impl {
-    std::unique_ptr<session::TactileLive> live;  // null until the devices are open
-    std::promise<std::unique_ptr<session::TactileLive>> opened;
-    std::future<std::unique_ptr<session::TactileLive>> opening = opened.get_future();
-    std::promise<void> closing;
-    // Opens the devices, and stays: the system ends simulators together with the thread that started them.
-    std::thread opener;
+struct TactileDriver::Impl : DeviceOpener<session::TactileLive> {
+    using DeviceOpener::DeviceOpener;
 };
 
 bool drives_devices(const scene::Scene& scene) {
@@ -30,51 +21,20 @@ std::vector<std::string> missing_devices(const scene::Scene& scene) {
 }
 
 TactileDriver::TactileDriver(const scene::Scene& scene, std::shared_ptr<const scene::Plan> plan,
-                             const TactileDriverOptions& options) {
+                             const DriverOptions& options) {
     session::TactileLiveOptions live;
     live.simulate = options.simulate;
     live.rows = options.rows;
-    impl_ = std::make_unique<Impl>();
-    impl_->opener = std::thread([scene, plan, live, &opened = impl_->opened, closed = impl_->closing.get_future()] {
-        try {
-            opened.set_value(std::make_unique<session::TactileLive>(scene, plan, live));
-        } catch (...) {
-            opened.set_exception(std::current_exception());
-        }
-        closed.wait();
-    });
+    impl_ = std::make_unique<Impl>(
+        [scene, plan, live] { return std::make_unique<session::TactileLive>(scene, plan, live); });
 }
 
-TactileDriver::~TactileDriver() {
-    try {
-        if (impl_->opening.valid()) impl_->live = impl_->opening.get();
-    } catch (const std::exception&) {
-        // nothing was opened, and nobody waits for it any more
-    }
-    impl_->live.reset();
-    impl_->closing.set_value();
-    impl_->opener.join();
-}
+TactileDriver::~TactileDriver() = default;
 
-bool TactileDriver::ready() {
-    if (!impl_->live && impl_->opening.wait_for(std::chrono::seconds(0)) == std::future_status::ready)
-        impl_->live = impl_->opening.get();
-    return impl_->live != nullptr;
-}
-
+bool TactileDriver::ready() { return impl_->ready(); }
 void TactileDriver::hand_over(const scene::State& state) {
-    if (!impl_->live) return;
-    session::PenContact pen;
-    pen.time_s = state.contact.time_s;
-    pen.x_m = state.touch.p_m.x();
-    pen.y_m = state.touch.p_m.y();
-    pen.depth_m = state.contact.depth_m;
-    pen.normal_N = state.touch.down ? state.touch.force_N : 0.0;
-    pen.tangential_N = state.contact.tangential_N;
-    pen.down = state.touch.down ? 1.0 : 0.0;
-    impl_->live->hand_over(pen);
+    if (impl_->live) impl_->live->hand_over(pen_contact(state));
 }
-
 bool TactileDriver::latest(session::TactileMoment& moment) { return impl_->live && impl_->live->latest(moment); }
 void TactileDriver::stop() {
     if (impl_->live) impl_->live->stop();

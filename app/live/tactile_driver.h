@@ -1,11 +1,11 @@
 #pragma once
 // The devices of a scene, arm and pins, while a trial drives them. In a browser there are none (app/web).
 
-#include <filesystem>
 #include <memory>
 #include <string>
 #include <vector>
 
+#include "app/live/driver_options.h"
 #include "files/json.h"
 #include "scene/plan.h"
 #include "scene/state.h"
@@ -19,16 +19,10 @@ bool drives_devices(const scene::Scene& scene);
 // What the scene's devices lack before they can run, such as a port that is not there, one sentence each; none: nothing.
 std::vector<std::string> missing_devices(const scene::Scene& scene);
 
-struct TactileDriverOptions {
-    bool simulate = false;       // starts the simulators, and connects to them instead
-    std::filesystem::path rows;  // file of the loop's input rows; empty: not recorded
-};
-
 class TactileDriver {
   public:
     // Begins to open the devices, which takes a second or more (boards are proved first), in a thread of its own.
-    TactileDriver(const scene::Scene& scene, std::shared_ptr<const scene::Plan> plan,
-                  const TactileDriverOptions& options);
+    TactileDriver(const scene::Scene& scene, std::shared_ptr<const scene::Plan> plan, const DriverOptions& options);
     ~TactileDriver();  // everything rests, and the loop has ended
 
     // True once the loop runs. Throws InputError or std::runtime_error if a device cannot be opened; no further call is

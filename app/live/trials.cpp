@@ -74,6 +74,7 @@ files::Json result_of(const App& app) {
                                             {"p99", ms(app.view.times.ready, 0.99)}};
     result["problems"] = app.notices.problems;
     if (!app.tactile.report.is_null()) result["tactile"] = app.tactile.report;
+    if (!app.tangible.report.is_null()) result["tangible"] = app.tangible.report;
     if (app.check) result["device_check"] = check_json(*app.check);
     result["trials"] = session::trials_json(s);
     return result;
@@ -105,11 +106,11 @@ void begin(platform::Window& window, const Gui& gui, App& app) {
     files.finger_offset_mm = finger_offset_mm(app);
     session::begin_trial(files, info_of(app, window), mode, app.session);
     if (!app.trace) session::take_sample(resize_sample(window, gui, app.settings, now_of(app, window)), app.session);
-    begin_tactile(app);
+    begin_devices(app);
 }
 
 std::string close_trial(App& app) {
-    rest_tactile(app);
+    rest_devices(app);
     const std::string where = !app.options.log.empty() ? app.options.log : app.options.record;
     const std::optional<study::RunFiles> files = app.session.files;
     const bool good = session::close_files(result_of(app), app.session);
@@ -165,7 +166,7 @@ std::shared_ptr<const scene::Plan> prepare(platform::Window& window, Gui& gui, c
 
 void change_scene(platform::Window& window, Gui& gui, const std::string& file, const std::string& profile, App& app) {
     end_presses(window, app);  // samples that arrive while the tissue is prepared reach none
-    rest_tactile(app);
+    rest_devices(app);
     scene::Scene scene;
     std::shared_ptr<const scene::Plan> plan;
     const bool good = attempt(app, [&] {

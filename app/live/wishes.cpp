@@ -70,8 +70,8 @@ void carry_out(const Wishes& asked_for, platform::Window& window, Gui& gui, App&
     }
     if (wishes.quit) app.quit = true;
     if (wishes.understood) app.notices.problems.clear();
-    if (asked_for.stop_devices) stop_tactile(app);
-    if (wishes.release_devices) release_tactile(app);
+    if (asked_for.stop_devices) stop_devices(app);
+    if (wishes.release_devices) release_devices(app);
     if (study_of(app.doing) != nullptr) follow_study(wishes.study, window, gui, app);
     if (wishes.action && palpates(app.doing) && !app.trace) act(*wishes.action, window, app);
     if (bool* menu = menu_of(app.doing); menu != nullptr && wishes.menu) *menu = *wishes.menu;

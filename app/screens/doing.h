@@ -49,10 +49,12 @@ struct BrowsingHistory {};  // the results that were kept
 
 struct WatchingTactile {};  // the force arm and the shape display
 
+struct WatchingTangible {};  // the soft device
+
 // A study has steps of its own (app/study/study_step.h), its trials among them. While it runs, the app does nothing
 // else: there is no menu, and nothing is revealed before the end.
 using Doing = std::variant<Palpating, Reviewing, CheckingDevices, MeasuringScreen, Calibrating, BrowsingMaps,
-                           BrowsingHistory, WatchingTactile, StudyRun>;
+                           BrowsingHistory, WatchingTactile, WatchingTangible, StudyRun>;
 
 inline StudyRun* study_of(Doing& doing) { return std::get_if<StudyRun>(&doing); }
 inline const StudyRun* study_of(const Doing& doing) { return std::get_if<StudyRun>(&doing); }

@@ -8,6 +8,7 @@
 #include "app/screens/history_screen.h"
 #include "app/screens/map_screen.h"
 #include "app/screens/tactile_screen.h"
+#include "app/screens/tangible_screen.h"
 #include "app/screens/tissue_drawing.h"
 #include "scene/advance.h"
 
@@ -48,6 +49,8 @@ bool draw_covering(const Shown& shown, Gui& gui, ViewState& view, Wishes& wishes
         draw_history_screen(shown, gui, *view.history, wishes);
     } else if (std::holds_alternative<WatchingTactile>(shown.doing)) {
         draw_tactile_screen(shown, gui, wishes);
+    } else if (std::holds_alternative<WatchingTangible>(shown.doing)) {
+        draw_tangible_screen(shown, gui, wishes);
     } else if (const StudyRun* study = study_of(shown.doing); study != nullptr && !trial_goes_on(*study)) {
         draw_study_screen(*study, shown.now_s, gui, view.study, wishes);
     } else {

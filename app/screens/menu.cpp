@@ -119,6 +119,10 @@ void experimenter_page(const Shown& shown, const Gui& gui, ViewState& view, Wish
     if (!shown.notices.keeps_trials &&
         big_button(words::kTactile, words::kKeyTactile, {0.0f, kTarget_mm, devices, false, words::kHintTactile}, gui))
         wishes.screen = Screen::tactile;
+    const bool soft = shown.tangible != nullptr;
+    if (!shown.notices.keeps_trials &&
+        big_button(words::kTangible, words::kKeyTangible, {0.0f, kTarget_mm, soft, false, words::kHintTangible}, gui))
+        wishes.screen = Screen::tangible;
     if (big_button(words::kPerformance, words::kKeyCost, {0.0f, kTarget_mm, true, view.cost, words::kHintPerformance},
                    gui))
         view.cost = !view.cost;
@@ -277,6 +281,7 @@ void take_keys(const Shown& shown, const Gui& gui, ViewState& view, Wishes& wish
         wishes.trials = true;  // in the browser
         if (!shown.notices.keeps_trials) wishes.screen = Screen::tactile;
     }
+    if (gui.pressed('g') && !shown.notices.keeps_trials) wishes.screen = Screen::tangible;
     if (gui.pressed('y')) wishes.studies = true;
     menu_keys(shown, gui, wishes);
     if (gui.pressed('x') && shown.scene.cues.side_view) wishes.side_view = !shown.settings.side_view;

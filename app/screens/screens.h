@@ -27,7 +27,8 @@ enum class Screen : std::uint8_t {
     calibrate,
     maps,
     history,
-    tactile
+    tactile,
+    tangible
 };  // screens that a person can ask for
 
 struct Wishes {
@@ -54,7 +55,7 @@ struct Wishes {
     bool trials = false;           // show the trials that the keeper holds
     bool studies = false;          // let the person choose a study
     bool understood = false;       // dismiss the problems that are shown
-    bool stop_devices = false;     // arm and pins, at once
+    bool stop_devices = false;     // arm, pins and soft device, at once
     bool release_devices = false;  // after a stop or a fault that stays
     bool quit = false;
     bool sure = false;  // confirms that the marks of the present trial may be thrown away,
@@ -111,9 +112,10 @@ struct StudyForm {
     double clock_began_s = 0.0;  // of `typed`; 0: the clock is stopped
 };
 
-struct MapBrowser;    // map_screen.h
-struct TactileShown;  // tactile_screen.h
-struct HistoryView;   // history_screen.h
+struct MapBrowser;     // map_screen.h
+struct TactileShown;   // tactile_screen.h
+struct TangibleShown;  // tangible_screen.h
+struct HistoryView;    // history_screen.h
 
 enum class MenuPage : std::uint8_t { trial, settings, experimenter };
 
@@ -138,10 +140,11 @@ struct ToShow {
     const Settings& settings;
     const Notices& notices;
     const Doing& doing;
-    const std::optional<Wishes>& asked;     // would throw away marks or answers: done once the person has confirmed
-    double now_s = 0.0;                     // on the clock of the samples
-    double dt_s = 1.0 / 60.0;               // since the last frame
-    const TactileShown* tactile = nullptr;  // null: the scene has neither arm nor pins
+    const std::optional<Wishes>& asked;       // would throw away marks or answers: done once the person has confirmed
+    double now_s = 0.0;                       // on the clock of the samples
+    double dt_s = 1.0 / 60.0;                 // since the last frame
+    const TactileShown* tactile = nullptr;    // null: the scene has neither arm nor pins
+    const TangibleShown* tangible = nullptr;  // null: the scene has no soft device
 };
 
 // The same while a frame is built, with what is derived from it.

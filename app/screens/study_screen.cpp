@@ -364,7 +364,7 @@ void draw_step(const StudyRun& run, double now_s, Gui& gui, StudyForm& form, Wis
     if (at<step::Pause>(run)) return draw_pause(run, now_s, gui, wishes);
     if (at<step::Done>(run)) return draw_done(run, gui, wishes);
     if (const auto* stopped = std::get_if<step::Stopped>(&run.step)) draw_stopped(*stopped, run, gui, wishes);
-    if (trial_waits(run) && feels_pins(run)) paragraph(words::kDevicesOpening);
+    if (trial_waits(run) && feels_device(run)) paragraph(words::kDevicesOpening);
     // else the trial is on the tissue
 }
 

@@ -17,10 +17,6 @@ using session::TactileMoment;
 
 constexpr double kGreatestDamping = 8.0;  // N s/m: above it a stiff tissue and a slow loop begin to swing
 
-std::string in_unit(double value, double scale, int digits, const char* unit) {
-    return std::isfinite(value) ? fixed(scale * value, digits) + " " + unit : "-";
-}
-
 const char* range_words(double linearity) {
     switch (mechanics::linear_range(linearity)) {
         case mechanics::LinearRange::red:
@@ -84,25 +80,13 @@ void draw_loop_lines(const TactileShown& tactile, float column_px) {
     if (moment.stiffness_delay_N_s_per_m > kGreatestDamping) warning_paragraph(words::kMaySwing);
 }
 
-void draw_devices(const std::vector<session::TactileDevice>& devices) {
-    for (const session::TactileDevice& device : devices) {
-        const char* kind = device.simulated ? words::kSimulatedDevice : words::kRealDevice;
-        paragraph(words::filled(words::kDeviceLine, {device.role, device.name, kind, device.port}));
-    }
-}
-
 void draw_buttons(const TactileShown* tactile, const Gui& gui, Wishes& wishes) {
     const float width_px = std::min(52.0f * gui.mm(), share_of_line_px(2));
     if (big_button(words::kBack, words::kEscape, {width_px, kTarget_mm, true, false}, gui))
         wishes.screen = Screen::trial;
     if (tactile == nullptr || tactile->devices.empty()) return;
     ImGui::SameLine();
-    if (tactile->moment.stopped) {
-        if (big_button(words::kReleaseDevices, "", {width_px, kTarget_mm, true, true}, gui))
-            wishes.release_devices = true;
-    } else if (big_button(words::kStopDevices, "F12", {width_px, kTarget_mm, tactile->runs, false}, gui)) {
-        wishes.stop_devices = true;
-    }
+    draw_stop_or_release(*tactile, tactile->moment.stopped, width_px, kTarget_mm, gui, wishes);
 }
 
 void draw_values(const Shown& shown, Gui& gui, Wishes& wishes) {
@@ -151,38 +135,13 @@ void draw_fields(const PanelArea& area, const TactileMoment& moment, float mm) {
 }  // namespace
 
 void draw_tactile_screen(const Shown& shown, Gui& gui, Wishes& wishes) {
-    const WindowSize window = gui.size_px();
-    const float mm = gui.mm();
-    const bool wide = window.width >= window.height;
-    const float share = 0.45f;
-    const PanelArea panel = wide ? PanelArea{0.0f, 0.0f, share * window.width, window.height}
-                                 : PanelArea{0.0f, 0.0f, window.width, share * window.height};
-    const float gap_px = 4.0f * mm;
-    const PanelArea rest = wide ? PanelArea{panel.x1 + gap_px, gap_px, window.width - gap_px, window.height - gap_px}
-                                : PanelArea{gap_px, panel.y1 + gap_px, window.width - gap_px, window.height - gap_px};
-    gui.claim({0.0f, 0.0f, window.width, window.height});
-    ImGui::GetBackgroundDrawList()->AddRectFilled(ImVec2(0.0f, 0.0f), ImVec2(window.width, window.height), kDark);
-    if (shown.tactile != nullptr && shown.tactile->moment.rows > 0) draw_fields(rest, shown.tactile->moment, mm);
-    begin_panel("tactile", panel, gui);
+    const HalfScreen halves = halves_of(gui);
+    cover_window(gui);
+    if (shown.tactile != nullptr && shown.tactile->moment.rows > 0)
+        draw_fields(halves.rest, shown.tactile->moment, gui.mm());
+    begin_panel("tactile", halves.panel, gui);
     draw_values(shown, gui, wishes);
     end_panel("tactile", gui);
-}
-
-void draw_stopped_banner(const Shown& shown, const Gui& gui) {
-    if (shown.tactile == nullptr || !shown.tactile->moment.stopped) return;
-    const std::string text =
-        words::filled(study_of(shown.doing) != nullptr ? words::kStoppedInStudy : words::kStoppedBanner,
-                      {shown.tactile->moment.fault});
-    const WindowSize window = gui.size_px();
-    const float gap_px = 2.0f * gui.mm();
-    const float wrap_px = std::max(20.0f, window.width - 6.0f * gap_px);
-    const ImVec2 size = ImGui::CalcTextSize(text.c_str(), nullptr, false, wrap_px);
-    const float left = 0.5f * (window.width - size.x);
-    const float top = window.height - size.y - 2.0f * gap_px;
-    ImDrawList& draw = *ImGui::GetForegroundDrawList();
-    draw.AddRectFilled(ImVec2(left - gap_px, top - gap_px), ImVec2(left + size.x + gap_px, top + size.y + gap_px), kLag,
-                       gui.mm());
-    draw.AddText(ImGui::GetFont(), ImGui::GetFontSize(), ImVec2(left, top), kDark, text.c_str(), nullptr, wrap_px);
 }
 
 }  // namespace palpa::app

@@ -31,18 +31,34 @@ float share_of_line_px(int count) {
                       static_cast<float>(count));
 }
 
+namespace {
+
+// Returns how many colours it pushed.
+int push_colours(const ButtonLook& look) {
+    if (look.stops) {  // white on this red: a contrast of 5.7 at least
+        ImGui::PushStyleColor(ImGuiCol_Button, ImVec4(0.72f, 0.11f, 0.11f, 1.0f));
+        ImGui::PushStyleColor(ImGuiCol_ButtonHovered, ImVec4(0.78f, 0.13f, 0.13f, 1.0f));
+        ImGui::PushStyleColor(ImGuiCol_ButtonActive, ImVec4(0.60f, 0.08f, 0.08f, 1.0f));
+        ImGui::PushStyleColor(ImGuiCol_Text, ImVec4(1.0f, 1.0f, 1.0f, 1.0f));
+        return 4;
+    }
+    if (!look.chosen) return 0;
+    ImGui::PushStyleColor(ImGuiCol_Button, ImVec4(0.78f, 0.88f, 0.95f, 1.0f));
+    ImGui::PushStyleColor(ImGuiCol_ButtonHovered, ImVec4(0.85f, 0.92f, 0.97f, 1.0f));
+    ImGui::PushStyleColor(ImGuiCol_ButtonActive, ImVec4(0.90f, 0.95f, 1.0f, 1.0f));
+    ImGui::PushStyleColor(ImGuiCol_Text, ImVec4(0.07f, 0.08f, 0.09f, 1.0f));
+    return 4;
+}
+
+}  // namespace
+
 bool big_button(const char* label, const char* key, const ButtonLook& look, const Gui& gui) {
     const ImVec2 size(look.width_px > 0.0f ? look.width_px : ImGui::GetContentRegionAvail().x,
                       look.height_mm * gui.mm());
     ImGui::BeginDisabled(!look.enabled);
-    if (look.chosen) {
-        ImGui::PushStyleColor(ImGuiCol_Button, ImVec4(0.78f, 0.88f, 0.95f, 1.0f));
-        ImGui::PushStyleColor(ImGuiCol_ButtonHovered, ImVec4(0.85f, 0.92f, 0.97f, 1.0f));
-        ImGui::PushStyleColor(ImGuiCol_ButtonActive, ImVec4(0.90f, 0.95f, 1.0f, 1.0f));
-        ImGui::PushStyleColor(ImGuiCol_Text, ImVec4(0.07f, 0.08f, 0.09f, 1.0f));
-    }
+    const int colours = push_colours(look);
     const bool pressed = ImGui::Button(label, size);
-    if (look.chosen) ImGui::PopStyleColor(4);
+    ImGui::PopStyleColor(colours);
     ImGui::EndDisabled();
     hint_for_last(look.hint);
     const ImVec2 low = ImGui::GetItemRectMin();
@@ -51,7 +67,7 @@ bool big_button(const char* label, const char* key, const ButtonLook& look, cons
     const ImVec2 label_size = ImGui::CalcTextSize(label, nullptr, true);
     const float key_px = ImGui::CalcTextSize(key).x * 0.62f;
     if (*key != '\0' && label_size.x + 2.0f * key_px + 3.0f * gui.mm() < size.x) {
-        const ImU32 colour = look.chosen ? IM_COL32(60, 66, 70, 255) : kPale;
+        const ImU32 colour = look.chosen ? IM_COL32(60, 66, 70, 255) : look.stops ? IM_COL32_WHITE : kPale;
         ImGui::GetWindowDrawList()->AddText(ImGui::GetFont(), small_px,
                                             ImVec2(high.x - key_px - 1.2f * gui.mm(), low.y + 0.8f * gui.mm()), colour,
                                             key);

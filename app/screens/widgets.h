@@ -37,6 +37,7 @@ struct ButtonLook {
     bool enabled = true;
     bool chosen = false;    // filled brightly: the present choice
     const char* hint = "";  // shown after the pointer has rested on the button
+    bool stops = false;     // red: stops everything
 };
 // Draws a button. Returns true if it is pressed. `key` is shown small beside the label, for people who use the
 // keyboard; it may be empty.

@@ -210,8 +210,8 @@ inline constexpr const char* kKeyPicture = "S";
 inline constexpr const char* kKeyPictureDo = "after a trial: save a picture";
 inline constexpr const char* kKeyMenu = "F10 or Tab";
 inline constexpr const char* kKeyMenuDo = "menu; arrows and Enter choose in it";
-inline constexpr const char* kKeyScreens = "V, B, D, Z, T";
-inline constexpr const char* kKeyScreensDo = "history, maps, device check, screen scale, arm and pins";
+inline constexpr const char* kKeyScreens = "V, B, D, Z, T, G";
+inline constexpr const char* kKeyScreensDo = "history, maps, device check, screen scale, arm and pins, soft device";
 inline constexpr const char* kKeyInset = "X";
 inline constexpr const char* kKeyInsetDo = "show or hide the side view";
 inline constexpr const char* kKeyHold = "H";
@@ -223,7 +223,7 @@ inline constexpr const char* kKeyDevices = "D";
 inline constexpr const char* kKeyScale = "Z";
 inline constexpr const char* kKeyCostDo = "performance, for the experimenter";
 inline constexpr const char* kKeyStop = "F12";
-inline constexpr const char* kKeyStopDo = "stop arm and pins at once, on every screen";
+inline constexpr const char* kKeyStopDo = "stop arm, pins and soft device at once, on every screen";
 inline constexpr const char* kKeyWindow = "F11, Ctrl Q, Esc";
 inline constexpr const char* kKeyWindowDo = "full screen, quit, back";
 
@@ -291,6 +291,53 @@ inline constexpr const char* kFeelSecondOn = "Press the second surface with your
 inline constexpr const char* kPressLightly = "Press more lightly: stay below the limit.";
 inline constexpr const char* kDevicesMissing = "Missing: {}";
 inline constexpr const char* kDevicesStopped = "The devices were stopped: {}. Start releases them and begins again.";
+
+// soft device
+inline constexpr const char* kTangible = "Soft device";
+inline constexpr const char* kKeyTangible = "G";
+inline constexpr const char* kHintTangible =
+    "The soft device: its shape, its actuators, wanted and rendered force, the inverse problem";
+inline constexpr const char* kNoTangible = "This scene has no soft device.";
+inline constexpr const char* kNoSoftDevices =
+    "This program drives no soft devices: browsers cannot, and a build without "
+    "PALPA_TANGIBLE leaves them out.";
+inline constexpr const char* kSoftOpening = "The soft device is getting ready.";
+inline constexpr const char* kSoftRuns = "Running";
+inline constexpr const char* kSoftHeld = "The last valid command is held.";
+inline constexpr const char* kSoftRests = "The device is relaxed: no trial is running.";
+inline constexpr const char* kSoftStoppedBy = "Stopped: {}. The device is relaxed until you choose Release.";
+inline constexpr const char* kSoftRestsSince = "The device is relaxed: {}.";
+inline constexpr const char* kSoftStoppedBanner =
+    "Stopped: {}. The soft device is relaxed. G shows why and releases it.";
+inline constexpr const char* kSoftStoppedInStudy = "Stopped: {}. The soft device is relaxed.";
+inline constexpr const char* kSoftDeformed = "{}: outline wanted force, filled rendered force";
+inline constexpr const char* kWantedForce = "Wanted";
+inline constexpr const char* kRenderedForce = "Rendered ({})";
+inline constexpr const char* kForceError = "Force error";
+inline constexpr const char* kForceErrorIs = "{} % (rms of the greatest)";
+inline constexpr const char* kVirtualDepth = "Virtual depth";
+inline constexpr const char* kProxyDepth = "{} (proxy {})";
+inline constexpr const char* kActuator = "Actuator";
+inline constexpr const char* kActuation = "Actuation";
+inline constexpr const char* kLimits = "Limits";
+inline constexpr const char* kCommand = "Command";
+inline constexpr const char* kCompliance = "W";
+inline constexpr const char* kAtLimit = "limit";
+inline constexpr const char* kGapFree = "Gap, no actuation";
+inline constexpr const char* kGapByFinger = "by the finger";
+inline constexpr const char* kGapByActuators = "by the actuators";
+inline constexpr const char* kGapLeft = "left (residual)";
+inline constexpr const char* kSolve = "Solve";
+inline constexpr const char* kSolvedIn = "{}: rank {}, {} iterations";
+inline constexpr const char* kNotConverged = "not converged";
+inline constexpr const char* kLimitedBy = "The device cannot render this: {} is at its limit.";
+inline constexpr const char* kTicks = "Ticks";
+inline constexpr const char* kTicksMissed = "{}, {} late, {} saturated, held {} s";
+inline constexpr const char* kPeriod = "Period";
+inline constexpr const char* kPeriodTimes = "{} ms (p99 {}), step {} ms (p99 {})";
+inline constexpr const char* kWantedAndRendered = "Force over depth: hollow wanted, filled rendered";
+inline constexpr const char* kVirtualTissue = "Virtual tissue";
+inline constexpr const char* kProxyAndFinger = "ring proxy, dot finger";
 
 // device check
 inline constexpr const char* kReportedCapabilities = "Reported capabilities";

@@ -6,6 +6,7 @@
 #include <numbers>
 #include <vector>
 
+#include "app/study/soft_press.h"
 #include "scene/plan.h"
 #include "session/tactile_run.h"
 #include "session/tactile_run_identify.h"
@@ -36,19 +37,29 @@ std::vector<study::FeltMoment> seen_press(const StudyScene& scene, double stiffn
     return press;
 }
 
+// The same press as rows, from above the surface until pins rest.
+std::vector<devices::PressRow> rows_of(const Eigen::Vector2d& place_m, const PressHabit& habit) {
+    constexpr double kStep_s = 0.005;
+    constexpr double kAfter_s = 0.3;
+    constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+    std::vector<devices::PressRow> rows;
+    for (double t_s = 0.0; t_s <= habit.duration_s + kAfter_s; t_s += kStep_s)
+        rows.push_back({t_s, place_m.x(), place_m.y(), kNan, force_at_N(habit, t_s)});
+    return rows;
+}
+
+scene::Scene stiffer_scene(const StudyScene& scene, double stiffness_ratio) {
+    scene::Scene stiffer = scene.scene;
+    stiffer.stiffness_scale *= stiffness_ratio;
+    return stiffer;
+}
+
 // The same press on arm and pins, with simulated devices.
 std::vector<study::FeltMoment> felt_press(const StudyScene& scene, double stiffness_ratio, const PressHabit& habit,
                                           const std::optional<tactile::ArmCompensation>& compensation,
                                           std::uint64_t seed) {
-    constexpr double kStep_s = 0.005;
-    constexpr double kAfter_s = 0.3;  // until the pins rest
-    constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-    scene::Scene stiffer = scene.scene;
-    stiffer.stiffness_scale *= stiffness_ratio;
-    const Eigen::Vector2d place_m = scene.plan->area.centre_m;
-    std::vector<devices::PressRow> rows;
-    for (double t_s = 0.0; t_s <= habit.duration_s + kAfter_s; t_s += kStep_s)
-        rows.push_back({t_s, place_m.x(), place_m.y(), kNan, force_at_N(habit, t_s)});
+    const scene::Scene stiffer = stiffer_scene(scene, stiffness_ratio);
+    const std::vector<devices::PressRow> rows = rows_of(scene.plan->area.centre_m, habit);
     const session::TactileRecord record =
         session::run_press(stiffer, *scene.plan, rows, {seed, std::nullopt, compensation});
     std::vector<study::FeltMoment> press;
@@ -75,10 +86,12 @@ PressHabit draw_habit(study::Random& random) {
     return habit;
 }
 
+bool feels_device(const scene::Scene& scene) { return scene.tactile || scene.tangible; }
+
 bool feels_displays(const study::Protocol& protocol, const StudyScenes& scenes, std::size_t condition) {
     const std::size_t on = study::reference_condition_of(protocol, condition).value_or(condition);
     if (!scenes[condition] || !scenes[on]) return false;
-    return on != condition || scenes[condition]->scene.tactile;
+    return on != condition || feels_device(scenes[condition]->scene);
 }
 
 FeltStimuli::FeltStimuli(const StudyScenes& scenes, const PressHabit& habit, std::uint64_t seed)
@@ -88,6 +101,13 @@ const study::FeltStiffness& FeltStimuli::of(std::size_t condition, double stiffn
     const auto [it, fresh] = felt_.try_emplace({condition, stiffness_ratio});
     if (!fresh) return it->second;
     const StudyScene& scene = *scenes_[condition];
+    if (scene.scene.tangible) {
+        const scene::Scene stiffer = stiffer_scene(scene, stiffness_ratio);
+        PressHabit on_device = habit_;
+        on_device.force_N *= scene.scene.tangible->force_scale;
+        const auto rows = rows_of(scene.plan->area.centre_m, on_device);
+        return it->second = study::feel_soft_surface(press_soft_device(stiffer, *scene.plan, rows, seed_));
+    }
     if (!scene.scene.tactile) return it->second = study::feel_by_eye(seen_press(scene, stiffness_ratio, habit_));
     if (!identified_) compensation_ = session::identify_simulated_arm(scene.scene, *scene.plan, seed_);
     identified_ = true;

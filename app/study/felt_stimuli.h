@@ -1,7 +1,7 @@
 #pragma once
-// What simulated participants feel of the surfaces of a forced choice, where it depends on how they are displayed: on an
-// arm and pins, or as a dent on a screen. The displays are run, with simulated devices in virtual time, and so their
-// faults are felt too: pins at the end of their stroke, servos that are late, friction of the arm.
+// What simulated participants feel of a surface, where it depends on how it is displayed: on an arm and pins, on a soft
+// device, or as a dent on a screen. The displays are run, with simulated devices in virtual time, and so their faults are
+// felt too: pins at the end of their stroke, servos that are late, friction of the arm, a soft device at its limits.
 
 #include <cstdint>
 #include <map>
@@ -20,6 +20,9 @@ struct PressHabit {
     double duration_s = 2.5;
 };
 PressHabit draw_habit(study::Random& random);
+
+// True if what this scene shows is felt on a device, and not only seen.
+bool feels_device(const scene::Scene& scene);
 
 // True if the answers to pairs of this condition follow from what the displays show: both its surfaces have a scene,
 // and either of them is on driven devices, or they are on different displays (choice.reference_on).

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <exception>
 #include <map>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <stdexcept>
@@ -12,25 +13,45 @@
 #include <unistd.h>
 
 #include "app/assets.h"
+#include "app/study/felt_search.h"
 #include "app/study/felt_stimuli.h"
+#include "app/study/simulated_trial.h"
 #include "files/clock.h"
 #include "files/folder_lock.h"
 #include "files/text.h"
-#include "scene/mapping.h"
 #include "session/session.h"
-#include "study/simulated_person.h"
 #include "study/staircase_history.h"
 #include "study/study_folder.h"
+#include "study/typed_trial.h"
 
 namespace palpa::app {
 namespace {
 
-enum Purpose : std::uint64_t { kTraits = 11, kTrials = 12, kAnswers = 13, kHabit = 14, kDevices = 15 };
+// What searching hands feel, by condition; each is tabulated when it is needed first.
+class FeltConditions {
+  public:
+    // Null for what is seen on a screen.
+    const FeltSearch* of(const study::Protocol& protocol, const StudyScenes& scenes, std::uint64_t seed,
+                         std::size_t condition) {
+        const auto cast_of = protocol.conditions[condition].cast_of;
+        const auto& scene = scenes[cast_of.value_or(condition)];
+        if (!scene || (!cast_of && !feels_device(scene->scene))) return nullptr;
+        const std::lock_guard lock(mutex_);
+        std::unique_ptr<FeltSearch>& felt = felt_[condition];
+        if (felt) return felt.get();
+        if (cast_of) {
+            felt = std::make_unique<FeltSearch>(*scene, [](double ratio) { return felt_by_hand(ratio); });
+        } else {
+            FeltStimuli stimuli(scenes, {}, seed);
+            felt = std::make_unique<FeltSearch>(*scene, [&](double ratio) { return stimuli.of(condition, ratio); });
+        }
+        return felt.get();
+    }
 
-constexpr double kScreenWidth_px = 1280.0;
-constexpr double kScreenHeight_px = 800.0;
-constexpr double kNoLimit_s = 60.0;     // how long a simulated person searches without a limit in the protocol
-constexpr double kSoftnessWeber = 0.2;  // of a simulated answer to "which is softer"; our choice, not measured
+  private:
+    std::mutex mutex_;
+    std::map<std::size_t, std::unique_ptr<FeltSearch>> felt_;
+};
 
 struct Shared {
     const study::Protocol& protocol;
@@ -43,60 +64,17 @@ struct Shared {
     std::mutex mutex;
     SimulateResult result;
     std::exception_ptr error;
+    FeltConditions felt_conditions;
+
+    const FeltSearch* felt(std::size_t condition) {
+        return felt_conditions.of(protocol, scenes, study::derived_seed(options.seed, kDevices, condition), condition);
+    }
 };
 
 std::string code_of(int number) {
     char code[24];
     std::snprintf(code, sizeof code, "sim%04d", number);
     return code;
-}
-
-// Makes the samples of a hand that presses with a given force at a place on the screen: the inverse of calibration and
-// mapping.
-class Hand {
-  public:
-    Hand(const study::Condition& condition, const session::Session& session)
-        : profile_(session.plan->profile),
-          view_(session.state.view),
-          force_scale_(session.scene.force_scale),
-          tool_(condition.modality == study::Modality::finger ? platform::Tool::finger : platform::Tool::pen) {}
-
-    platform::Sample sample(double t_s, const study::ScreenPlace& at, double force_N, platform::Phase phase) const {
-        platform::Sample out;
-        out.t_host_s = out.t_device_s = t_s;
-        out.pointer_id = 1;
-        out.tool = tool_;
-        out.phase = phase;
-        place(at, view_.input_px_per_m, out);
-        set_level(profile_, calibration::level_at_force(profile_, force_N / force_scale_), out);
-        return out;
-    }
-    platform::Sample act(double t_s, const study::ScreenPlace& at, platform::Action action) const {
-        platform::Sample out;
-        out.t_host_s = out.t_device_s = t_s;
-        out.tool = tool_;
-        out.phase = platform::Phase::ui;
-        place(at, view_.input_px_per_m, out);
-        out.action = action;
-        return out;
-    }
-
-  private:
-    // the person's y axis points up, the screen's down
-    void place(const study::ScreenPlace& at, const Eigen::Vector2d& px_per_m, platform::Sample& out) const {
-        out.x_px = view_.centre_px.x() + at.x_m * px_per_m.x();
-        out.y_px = view_.centre_px.y() - at.y_m * px_per_m.y();
-    }
-
-    const calibration::Profile& profile_;
-    scene::View view_;
-    double force_scale_;
-    platform::Tool tool_;
-};
-
-double greatest_force_N(const session::Session& session) {
-    std::int64_t clamped = 0;
-    return session.scene.force_scale * force_N(session.plan->profile, session.plan->profile.level_highest, clamped);
 }
 
 session::SessionFiles files_of(const Shared& shared, const study::PlannedParticipant& who,
@@ -112,57 +90,22 @@ session::SessionFiles files_of(const Shared& shared, const study::PlannedPartici
     return files;
 }
 
-// Returns what a person sees of the present state.
-study::Sight sight_of(const session::Session& session) {
-    return {scene::seen_lag_m(session.state.avatar), session.state.contact.depth_m, session.scene.surface.has_value()};
-}
-
-void palpate(study::SimulatedPerson& person, const Hand& hand, double rate_Hz, session::Session& session) {
-    const double dt_s = 1.0 / rate_Hz;
-    for (std::int64_t i = 0; !session.trial.finished; ++i) {
-        const double t_s = static_cast<double>(i) * dt_s;
-        const study::Move made = study::move(dt_s, person);
-        session::take_sample(
-            hand.sample(t_s, made.at, made.force_N, made.began ? platform::Phase::down : platform::Phase::move),
-            session);
-        study::see(sight_of(session), dt_s, person);
-        if (made.deed == study::Deed::none) continue;
-        if (made.deed == study::Deed::mark) {
-            session::take_sample(hand.act(t_s, made.mark, platform::Action::mark), session);
-            const int first = static_cast<int>(platform::Action::confidence_1) - 1;
-            session::take_sample(hand.act(t_s, made.mark, static_cast<platform::Action>(first + made.confidence)),
-                                 session);
-        } else {
-            session::take_sample(hand.sample(t_s, made.at, 0.0, platform::Phase::up), session);
-            session::take_sample(hand.act(t_s, made.at, platform::Action::finish), session);
-        }
-    }
+// Lets a person search the tissue of a trial that has begun.
+void search_tissue(Shared& shared, const study::PlannedParticipant& who, const study::PlannedTrial& trial,
+                   session::Session& session) {
+    session.state.time_every = 0;
+    SimulatedHand hand{.seed = shared.options.seed, .rate_Hz = shared.options.rate_Hz};
+    hand.felt = shared.felt(trial.condition);
+    palpate_trial(shared.protocol, shared.protocol.conditions[trial.condition], who.number, trial, hand, session);
 }
 
 void run_trial(Shared& shared, const study::PlannedParticipant& who, const study::PlannedTrial& trial,
                session::Session& session) {
     const double began_s = files::steady_s();
-    const study::Protocol& protocol = shared.protocol;
     session.scene = scene_of(*shared.scenes[trial.condition], trial);
-    const platform::TraceInfo info{kScreenWidth_px, kScreenHeight_px, platform::kMissing, platform::kMissing,
-                                   "simulated participant"};
-    session::begin_trial(files_of(shared, who, trial), info,
+    session::begin_trial(files_of(shared, who, trial), simulated_screen(),
                          trial.practice ? session::TrialMode::practice : session::TrialMode::test, session);
-    session.state.time_every = 0;
-    // a person has the same traits in all trials, and different noise in each
-    study::Random of_person(study::derived_seed(shared.options.seed, kTraits, static_cast<std::uint64_t>(who.number)));
-    const study::PersonTraits traits =
-        study::draw_person(session.plan->zone_N[1], greatest_force_N(session), of_person);
-    const double asked_s = trial.practice ? protocol.practice_limit_s : protocol.time_limit_s;
-    const bool on_side = trial.rotate_deg % 180 != 0;
-    const Eigen::Vector2d& size_m = session.plan->area.size_m;
-    const std::uint64_t trials =
-        study::derived_seed(shared.options.seed, kTrials, static_cast<std::uint64_t>(who.number));
-    study::SimulatedPerson person =
-        study::make_person(traits, on_side ? size_m.y() : size_m.x(), on_side ? size_m.x() : size_m.y(),
-                           asked_s > 0.0 ? asked_s : kNoLimit_s,
-                           study::derived_seed(trials, kTrials, static_cast<std::uint64_t>(trial.trial)));
-    palpate(person, Hand(protocol.conditions[trial.condition], session), shared.options.rate_Hz, session);
+    search_tissue(shared, who, trial, session);
     const std::int64_t samples = session.state.counters.samples;
     double written_MB = 0.0;
     if (session.files && shared.options.samples) {
@@ -179,6 +122,23 @@ void run_trial(Shared& shared, const study::PlannedParticipant& who, const study
     ++shared.result.trials;
     shared.result.samples += samples;
     shared.result.written_MB += written_MB;
+}
+
+// On a cast of the phantom, by hand: nothing is logged but what the experimenter would type in.
+void run_typed(Shared& shared, const study::PlannedParticipant& who, const study::PlannedTrial& trial,
+               std::size_t phantom, session::Session& session) {
+    session.scene = scene_of(*shared.scenes[phantom], trial);
+    session::begin_trial({}, simulated_screen(), session::TrialMode::test, session);
+    search_tissue(shared, who, trial, session);
+    const session::SessionFiles files = files_of(shared, who, trial);
+    std::vector<std::string> names;
+    for (const stiffnessmaps::Nodule& nodule : session.plan->nodules) names.push_back(nodule.id);
+    study::write_typed_trial(study::next_run(files.log, files.participant, files.task, files.first_run), *files.label,
+                             trial.practice, static_cast<std::int64_t>(trial.seed), names,
+                             typed_answers(*session.plan, session.trial));
+    session.finished.clear();
+    const std::lock_guard lock(shared.mutex);
+    ++shared.result.trials;
 }
 
 // The answers of one participant to pairs of surfaces, which need no trials: each answer is drawn from what two surfaces
@@ -271,8 +231,10 @@ void run_participant(Shared& shared, int number, std::vector<std::optional<sessi
     for (const study::PlannedTrial& trial : who.trials) {
         if (shared.stop) return;
         const bool pair = study::compares(study::task_of(shared.protocol, trial.condition));
+        const auto cast_of = shared.protocol.conditions[trial.condition].cast_of;
+        const std::size_t tissue = cast_of.value_or(trial.condition);
         const bool simulated =
-            (pair || shared.scenes[trial.condition].has_value()) && (!trial.practice || shared.options.practice);
+            (pair || shared.scenes[tissue].has_value()) && (!trial.practice || shared.options.practice);
         if (!simulated && !trial.practice) {
             const std::lock_guard lock(shared.mutex);
             ++shared.result.left_out;
@@ -285,9 +247,12 @@ void run_participant(Shared& shared, int number, std::vector<std::optional<sessi
         std::optional<session::Session>& session = sessions[trial.condition];
         if (!session) {
             session.emplace();
-            session->plan = shared.scenes[trial.condition]->plan;
+            session->plan = shared.scenes[tissue]->plan;
         }
-        run_trial(shared, who, trial, *session);
+        if (cast_of)
+            run_typed(shared, who, trial, tissue, *session);
+        else
+            run_trial(shared, who, trial, *session);
     }
 }
 
@@ -332,7 +297,7 @@ SimulateResult simulate_study(const study::Protocol& protocol, const SimulateOpt
     const double began_s = files::steady_s();
     const auto wall_s = [&] { return files::steady_s() - began_s; };
     const StudyScenes scenes = load_study_scenes(protocol);
-    Shared shared{protocol, options, scenes, {}, {}, {}, {}, {}, {}, {}};
+    Shared shared{protocol, options, scenes, {}, {}, {}, {}, {}, {}, {}, {}};
     shared.next_participant = 1;
     shared.identities = identities_of(scenes);
     std::error_code error;  // open_study says why a folder cannot be made

@@ -21,13 +21,16 @@ const study::Condition& due_condition(const StudyRun& run) { return run.protocol
 
 bool typed_in(const StudyRun& run, std::size_t condition) {
     const study::Modality modality = run.protocol.conditions[condition].modality;
-    if (modality == study::Modality::hand || modality == study::Modality::tangible) return true;
+    if (modality == study::Modality::hand) return true;
     const auto& scene = run.scenes[condition];
+    if (modality == study::Modality::tangible) return !(scene && scene->scene.tangible);
     return modality == study::Modality::shape_display && !(scene && scene->scene.tactile);
 }
 
-bool feels_pins(const StudyRun& run) {
-    return shows_tissue(run) && run.scenes[due_condition_index(run)]->scene.tactile.has_value();
+bool feels_device(const StudyRun& run) {
+    if (!shows_tissue(run)) return false;
+    const scene::Scene& scene = run.scenes[due_condition_index(run)]->scene;
+    return scene.tactile || scene.tangible;
 }
 
 bool shows_tissue(const StudyRun& run) {
@@ -105,7 +108,8 @@ double due_limit_s(const StudyRun& run) {
 }
 
 std::vector<std::string> due_nodules(const StudyRun& run) {
-    const auto& scene = run.scenes[due_trial(run).condition];
+    const std::size_t condition = due_trial(run).condition;
+    const auto& scene = run.scenes[run.protocol.conditions[condition].cast_of.value_or(condition)];
     if (!scene) return due_condition(run).nodules;
     std::vector<std::string> names;
     for (const stiffnessmaps::Nodule& nodule : scene->plan->nodules) names.push_back(nodule.id);

@@ -104,7 +104,7 @@ std::size_t due_condition_index(const StudyRun& run);
 const study::Condition& due_condition(const StudyRun& run);
 // The program does not drive the device of this condition: answers are typed in, and the experimenter presents surfaces.
 bool typed_in(const StudyRun& run, std::size_t condition);
-bool feels_pins(const StudyRun& run);              // the due trial is on a force arm or a shape display
+bool feels_device(const StudyRun& run);            // the due trial is on a force arm, a shape display or a soft device
 bool shows_tissue(const StudyRun& run);            // the due trial has a scene on this screen
 bool due_compares(const StudyRun& run);            // a trial is due, and two surfaces are compared in it
 double due_comparison_kPa(const StudyRun& run);    // needs due_compares()

@@ -98,8 +98,8 @@ const palpaStudies = (() => {
         }
     };
 
-    // Conditions that drive arm and pins need the desk's machine.
-    const needsDevices = (protocol) => (protocol?.conditions ?? []).some(({modality, scene}) => modality === 'shape-display' && scene);
+    // Conditions that drive a device need the desk's machine.
+    const needsDevices = (protocol) => (protocol?.conditions ?? []).some(({modality, scene}) => (modality === 'shape-display' || modality === 'tangible') && scene);
 
     // What can be chosen: {name, title, from}, by name.
     const list = async () => {

@@ -9,7 +9,7 @@ struct TactileDriver::Impl {};
 bool drives_devices(const scene::Scene&) { return false; }
 std::vector<std::string> missing_devices(const scene::Scene&) { return {}; }
 
-TactileDriver::TactileDriver(const scene::Scene&, std::shared_ptr<const scene::Plan>, const TactileDriverOptions&) {}
+TactileDriver::TactileDriver(const scene::Scene&, std::shared_ptr<const scene::Plan>, const DriverOptions&) {}
 TactileDriver::~TactileDriver() = default;
 
 bool TactileDriver::ready() { return false; }

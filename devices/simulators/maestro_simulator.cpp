@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <poll.h>
 
+#include "devices/simulators/line_faults.h"
 #include "devices/simulators/maestro_board.h"
 #include "devices/simulators/stream.h"
 #include "devices/simulators/terminal.h"
@@ -15,25 +16,6 @@ using namespace palpa::devices;
 using namespace palpa::devices::simulators;
 
 namespace {
-
-struct LineFaults {  // shares of the bytes
-    double lose = 0.0;
-    double twice = 0.0;
-    double garble = 0.0;
-};
-
-std::vector<std::uint8_t> through(const LineFaults& faults, std::span<const std::uint8_t> bytes,
-                                  std::mt19937_64& random) {
-    std::uniform_real_distribution<double> chance;
-    std::vector<std::uint8_t> out;
-    for (std::uint8_t byte : bytes) {
-        if (chance(random) < faults.lose) continue;
-        if (chance(random) < faults.garble) byte = static_cast<std::uint8_t>(random());
-        out.push_back(byte);
-        if (chance(random) < faults.twice) out.push_back(byte);
-    }
-    return out;
-}
 
 void write_head(const PinDevice& device, std::FILE* file) {
     std::fprintf(file, "t_host_s");
@@ -77,9 +59,7 @@ int main(int argc, char** argv) {
     app.add_option("--timeout-ms", timeout_ms, "the boards' own setting, 0: off (default: as in the device file)");
     app.add_flag("--no-crc", no_crc, "boards that check no CRC");
     app.add_option("--stuck", stuck, "pins that never move");
-    app.add_option("--lose", faults.lose, "share of the bytes")->check(share);
-    app.add_option("--double", faults.twice)->check(share);
-    app.add_option("--garble", faults.garble)->check(share);
+    add_line_options(app, faults);
     app.add_option("--silent-from-s", options.silent_from_s, "unplugged then");
     app.add_option("--silent-s", options.silent_s, "for so long");
     CLI11_PARSE(app, argc, argv);

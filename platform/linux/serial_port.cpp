@@ -54,12 +54,12 @@ int SerialPort::read(double wait_s, std::uint8_t* bytes, std::size_t room) {
     return -1;
 }
 
-bool SerialPort::write(const std::uint8_t* bytes, std::size_t count) {
+bool SerialPort::write(const std::uint8_t* bytes, std::size_t count, double wait_s) {
     while (count > 0) {
         const ssize_t n = ::write(fd_, bytes, count);
         if (n < 0 && (errno == EAGAIN || errno == EINTR)) {
             pollfd waiting{fd_, POLLOUT, 0};
-            if (::poll(&waiting, 1, 1000) <= 0) return false;
+            if (::poll(&waiting, 1, static_cast<int>(std::ceil(1e3 * wait_s))) <= 0) return false;
             continue;
         }
         if (n <= 0) return false;

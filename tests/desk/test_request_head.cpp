@@ -72,3 +72,11 @@ TEST_CASE("serve head: any bytes are refused or become lines without surprises")
         CHECK(checked.text.find('\0') == std::string::npos);
     }
 }
+
+TEST_CASE("serve head: every refusal says why") {
+    for (const int status : {400, 411, 414, 415, 431}) {
+        CAPTURE(status);
+        CHECK(std::string(why_refused(status)).size() > 10);
+        CHECK((status == 400 || std::string(why_refused(status)) != why_refused(400)));
+    }
+}

@@ -395,6 +395,44 @@ TEST_CASE("serve: paths lead nowhere else") {
     CHECK(desk.end() == 0);
 }
 
+TEST_CASE("serve: whatever is refused has a body that says why") {
+    const TemporaryFolder folder;
+    DeskProcess desk({"--port", "0", "--collect", (folder / "logs").string()});
+    const std::string host = " HTTP/1.1\r\nHost: 127.0.0.1\r\nConnection: close\r\n";
+    const std::string long_path(2000, 'a');
+    for (const std::string& request :
+         {"GET /api" + host, "GET /api/nothing" + host, "GET /files/maps/none" + host, "GET /nothing" + host,
+          "PUT /api/logs/a" + host, "POST /api/pair" + host + "Transfer-Encoding: chunked\r\n", "BREW /" + host,
+          "PATCH /x" + host + "Content-Length: 0\r\n", "DELETE /api/logs/a" + host, "GET /" + long_path + host,
+          "PUT /api/logs/a" + host + "Content-Length: 1\r\nContent-Encoding: gzip\r\n",
+          "GET /" + host + "A: " + std::string(20000, 'a') + "\r\n", std::string("GET / HTTP/9.9\r\n"),
+          std::string("GET /\r\n")}) {
+        CAPTURE(request.substr(0, 100));
+        RawClient client(desk.port);
+        client.send(request + "\r\n");
+        const std::string answer = client.receive();
+        const auto body = answer.find("\r\n\r\n");
+        REQUIRE(body != std::string::npos);
+        const files::Json json = files::Json::parse(answer.substr(body + 4), nullptr, false);
+        REQUIRE(json.is_object());
+        CHECK(json["error"].get<std::string>().size() > 5);
+    }
+    for (const std::string& request : {"HEAD /nothing" + host, "HEAD /" + long_path + host}) {
+        RawClient client(desk.port);
+        client.send(request + "\r\n");
+        CHECK(client.receive().ends_with("\r\n\r\n"));
+    }
+}
+
+TEST_CASE("serve: a port that is taken leaves no folder") {
+    const TemporaryFolder folder;
+    DeskProcess desk({"--port", "0"});
+    const std::string command = PALPA_PROGRAM " serve --port " + std::to_string(desk.port) + " --collect " +
+                                (folder / "new").string() + " 2>/dev/null";
+    CHECK(std::system(command.c_str()) != 0);
+    CHECK_FALSE(std::filesystem::exists(folder / "new"));
+}
+
 TEST_CASE("serve: clients that are slow or silent hold nobody up") {
     const Place place;
     DeskProcess desk(place.with_tls({"--patience-s", "4"}));

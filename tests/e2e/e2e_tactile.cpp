@@ -1,52 +1,19 @@
 // Arm and pins beside the app on a real X server, with their simulators: a pen presses, the devices follow, F12 stops them
 // on whatever screen is open, and they stay stopped. Run it under tests/platform/xorg/with-xorg.
 
-#include <algorithm>
 #include <doctest/doctest.h>
-#include <fstream>
 #include <string>
 
 #include "files/json.h"
 #include "files/text.h"
 #include "tests/e2e/run_app.h"
+#include "tests/e2e/script.h"
 
 using namespace palpa;
 using namespace palpa::files;
 using namespace palpa::test;
 
 namespace {
-
-constexpr int kF12 = 96, kT = 28, kZ = 52, kEnter = 36, kF = 41, k1 = 10;  // keycodes
-
-struct Script {
-    std::ofstream out;
-    double t_s = 0.0;
-    explicit Script(const std::filesystem::path& file) : out(file) {
-        out << "t_s\tkind\tid\tphase\tx_px\ty_px\tpressure\n";
-    }
-    void row(const char* kind, int id, const char* phase, double x, double y, double pressure) {
-        out << t_s << '\t' << kind << '\t' << id << '\t' << phase << '\t' << x << '\t' << y << '\t' << pressure << '\n';
-    }
-    void key(int code) {
-        row("key", code, "down", 0.0, 0.0, 0.0);
-        t_s += 0.1;
-        row("key", code, "up", 0.0, 0.0, 0.0);
-        t_s += 0.5;
-    }
-    // A press in the middle of the tissue, rising within a second.
-    void press(double seconds) {
-        const double x = 0.5 * (64.0 * 96.0 / 25.4 + 1280.0), y = 400.0;
-        row("pen", 0, "hover", x, y, 0.0);
-        t_s += 0.1;
-        row("pen", 0, "down", x, y, 0.05);
-        for (double after_s = 0.0; after_s < seconds; after_s += 0.01) {
-            t_s += 0.01;
-            row("pen", 0, "move", x + 0.01 * after_s, y, std::min(0.6, 0.05 + 0.6 * after_s));
-        }
-        row("pen", 0, "up", x, y, 0.0);
-        t_s += 0.2;
-    }
-};
 
 // The slab's compliance is computed before, so that the window is there soon.
 std::string prepared_scene(const TemporaryFolder& folder) {
@@ -90,10 +57,7 @@ TEST_CASE("stopped: F12 on another screen stops arm and pins, and nothing moves 
     script.key(kZ);  // another screen
     script.key(kF12);
     script.key(kZ);
-    script.row("key", 9, "down", 0.0, 0.0, 0.0);  // Escape: back to the trial
-    script.t_s += 0.1;
-    script.row("key", 9, "up", 0.0, 0.0, 0.0);
-    script.t_s += 0.5;
+    script.key(kEscape);  // back to the trial
     script.press(2.0);
     script.out.close();
     const std::string scene = prepared_scene(folder);

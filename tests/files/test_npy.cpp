@@ -114,3 +114,18 @@ TEST_CASE("hard case 31: random damage to an npy file ends in a reading or a ref
     }
     CHECK(refused > 10000);
 }
+
+TEST_CASE("npy: whole numbers keep all 32 bits, and floats are refused where they are wanted") {
+    const TemporaryFolder folder;
+    const std::vector<std::int32_t> values{0, -1, 16'777'217, 2'147'483'647, -2'147'483'647, 5};
+    write_npy_integers(folder / "i.npy", {2, 3}, values);
+    const NpyIntegers back = read_npy_integers(folder / "i.npy");
+    CHECK(back.shape == std::vector<std::size_t>{2, 3});
+    CHECK(back.values == values);
+    CHECK(parse_npy_integers(read_text(folder / "i.npy"), "i.npy").values == values);
+    CHECK(contains(message_of([&] { parse_npy_integers(npy_bytes(example()), "a.npy"); }), "'<i4'"));
+    CHECK(contains(message_of([&] { read_npy(folder / "i.npy"); }), "'<f4' or '<f8'"));
+    const std::string whole = read_text(folder / "i.npy");
+    CHECK(contains(message_of([&] { parse_npy_integers(whole.substr(0, whole.size() - 1), "i.npy"); }),
+                   "24 for the shape (2, 3)"));
+}

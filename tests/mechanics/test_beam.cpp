@@ -87,3 +87,19 @@ TEST_CASE("beam: gaps, equal axes and planes outside are refused") {
     CHECK_THROWS_WITH_AS(beam_pieces(voxels, kHardAndSoft, 0, 2, 0.0, 0.1), doctest::Contains("gap"), MeshError);
     CHECK(beam_pieces(voxels, kHardAndSoft, 0, 2, 0.05, 0.1).size() == 1);
 }
+
+TEST_CASE("beam: deflections are those of the tip at the tip, symmetric in load and place, straight beyond the load") {
+    const auto pieces = beam_pieces(paper_beam(PaperBeam::hshsh, 50), kHardAndSoft, 0, 2, 0.0, 0.1);
+    for (const bool low : {true, false}) {
+        const double tip_m = low ? 0.1 : 0.0, clamp_m = 0.1 - tip_m;
+        const auto w = [&](double load_m, double at_m) {
+            return beam_deflection_m_per_N(pieces, low, {load_m, at_m}, true);
+        };
+        CHECK(w(tip_m, tip_m) == doctest::Approx(beam_tip(pieces, low, true).m_per_N).epsilon(1e-12).scale(0.0));
+        CHECK(w(0.03, 0.07) == doctest::Approx(w(0.07, 0.03)).epsilon(1e-12).scale(0.0));
+        CHECK(w(tip_m, clamp_m) == 0.0);
+        const double a = low ? 0.04 : 0.06, step = low ? 0.02 : -0.02;
+        CHECK(w(a, a + 2 * step) - w(a, a + step) ==
+              doctest::Approx(w(a, a + step) - w(a, a)).epsilon(1e-9).scale(0.0));
+    }
+}

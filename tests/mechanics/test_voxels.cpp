@@ -163,3 +163,20 @@ TEST_CASE("voxels: lines that overlap and sizes out of range are refused") {
     CHECK_THROWS_AS(empty_voxels({1, 30000, 30000}, {1.0, {}}), MeshError);
     CHECK_THROWS_AS(empty_voxels({1, 1, 1}, {0.0, {}}), MeshError);
 }
+
+TEST_CASE("hard case: bands finer than a voxel are looked up voxel by voxel, the same along every axis") {
+    for (const double period : {1.9, 0.7, 1e-4}) {
+        CAPTURE(period);
+        std::array<std::vector<int>, 3> in;
+        for (int axis = 0; axis < 3; ++axis) {
+            Voxels voxels = empty_voxels({30, 30, 30}, {1.0, {}});
+            EditHistory history;
+            apply({EditKind::add, {BandsRegion{axis, 0.3, period, 0.4 * period}}, 0, {}}, voxels, history);
+            for (int i = 0; i < 30; ++i)
+                in[static_cast<std::size_t>(axis)].push_back(
+                    material_at(voxels, axis == 0 ? i : 7, axis == 1 ? i : 7, axis == 2 ? i : 7));
+        }
+        CHECK(in[0] == in[1]);
+        CHECK(in[1] == in[2]);
+    }
+}

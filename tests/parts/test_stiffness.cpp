@@ -2,6 +2,7 @@
 #include <doctest/doctest.h>
 
 #include "parts/stiffness.h"
+#include "tests/close_to.h"
 #include "tests/error_message.h"
 #include "tests/parts/small_part.h"
 
@@ -13,6 +14,7 @@ using namespace palpa::test;
 namespace {
 
 const std::vector<Method> kAll{Method::euler_bernoulli, Method::timoshenko, Method::voxels, Method::factorised};
+const std::vector<Method> kBeams{Method::paper, Method::euler_bernoulli, Method::elastica};
 
 // A neck of 40 x 6 x 4 mm with bands of 4 mm, voxels of 0.1 mm.
 Json neck(double cell_mm) {
@@ -81,6 +83,25 @@ TEST_CASE("part stiffness: each method says when it does not apply") {
     CHECK_FALSE(stiffness_of(part, part.loads[0], {kAll, {}, 1e-3})[0].answered);
     part.axis = 2;
     CHECK(test::contains(stiffness_of(part, part.loads[0], {kAll, {}, 1e-3})[0].why_not, "along the axis"));
+}
+
+TEST_CASE("part stiffness: the paper's spring never applies and says why, the elastica does beyond 10 degrees") {
+    Json json = small_part();
+    json["size_mm"] = {20, 2, 2};
+    json["loads"].erase("patch");
+    const Part part = parsed(json);
+    PartLoad light = part.loads[0];
+    light.force_N = 0.01;
+    const auto small = stiffness_of(part, light, {kBeams, {}, 1e-3});
+    CHECK(test::contains(small[0].why_not, "3 pieces here"));
+    CHECK(small[0].answered);
+    CHECK(small[2].displacement_m == close_to(small[1].displacement_m).epsilon(1e-4));
+    PartLoad bends = part.loads[0];
+    bends.force_N = 5000.0;
+    const auto large = stiffness_of(part, bends, {kBeams, {}, 1e-3});
+    CHECK_FALSE(large[1].why_not.empty());
+    CHECK(large[2].why_not.empty());
+    CHECK(large[2].displacement_m < large[1].displacement_m);
 }
 
 TEST_CASE("part stiffness: cells of 0.7 to 1 mm that fit neither bands nor section, within 3 % of cells of 0.4 mm") {

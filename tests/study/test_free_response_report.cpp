@@ -55,7 +55,8 @@ TEST_CASE("free-response report: figures and tests of a stored set as JSON") {
     CHECK(json["notes"].empty());
 }
 
-TEST_CASE("free-response report: who did not judge everything is left out of the tests and named") {
+TEST_CASE(
+    "free-response report: incomplete crossing leaves people out of the tests and names what they did not judge") {
     Observations seen = observed(froc_set(froc_json("froc_small.json")));
     seen.judged.erase(seen.judged.begin());
     const Json json = report_of(seen);
@@ -69,7 +70,7 @@ TEST_CASE("free-response report: who did not judge everything is left out of the
     CHECK(none["p"].is_null());
 }
 
-TEST_CASE("free-response report: without normal cases only wafroc1 is tested, without ratings nothing") {
+TEST_CASE("free-response report: no lesion-free case leaves wafroc1 alone, and marks without ratings leave nothing") {
     Observations seen = observed(froc_set(froc_json("froc_small.json")));
     std::erase_if(seen.judged, [](const JudgedCase& one) { return one.lesions.empty(); });
     const Json json = report_of(seen);
@@ -82,6 +83,20 @@ TEST_CASE("free-response report: without normal cases only wafroc1 is tested, wi
     CHECK(none["figures"].empty());
     CHECK(contains(none["notes"][0].get<std::string>(), "1 of 24 judged cases have marks without one"));
     CHECK(report_of(Observations()).is_null());
+}
+
+TEST_CASE("free-response report: with one lesion type, in one case, the jackknife cannot be computed and says so") {
+    Observations seen = observed(froc_set(froc_json("froc_small.json")));
+    std::string with;
+    std::erase_if(seen.judged, [&](const JudgedCase& one) {
+        if (with.empty() && !one.lesions.empty()) with = one.id;
+        return !one.lesions.empty() && one.id != with;
+    });
+    const Json json = report_of(seen);
+    CHECK(json["cases_with_lesions"] == 1);
+    CHECK(json["figures"][0]["wafroc"].is_number());
+    CHECK(contains(json["tests"][0]["status"].get<std::string>(), "the jackknife needs two cases of each kind"));
+    CHECK(json["tests"][0]["p"].is_null());
 }
 
 TEST_CASE("free-response report: twenty people, 200 cases, two conditions") {

@@ -158,3 +158,31 @@ TEST_CASE("protocol: names that tables take for a missing value, or that break t
     CHECK(
         refusal_of_protocol(with(R"({"id": "none", "modality": "pen", "scene": "s.json", "device": "n/a"})")).empty());
 }
+
+TEST_CASE("protocol: four-displays.json has one phantom on a screen, a soft device, pins and arm, and as a cast") {
+    const Protocol four = read_protocol(kProtocols + "four-displays.json");
+    REQUIRE(four.conditions.size() == 4);
+    CHECK(four.task == TaskKind::find);
+    CHECK(four.conditions[0].modality == Modality::pen);
+    CHECK(four.conditions[1].modality == Modality::tangible);
+    CHECK(four.conditions[2].modality == Modality::shape_display);
+    CHECK(four.conditions[3].modality == Modality::hand);
+    CHECK(four.conditions[3].cast_of == 0);
+    for (std::size_t i = 0; i < 3; ++i) CHECK_FALSE(four.conditions[i].scene.empty());
+}
+
+TEST_CASE("protocol: a cast is of a condition that has a scene, is felt by hand, and has no names of its own") {
+    const auto refused = [](const std::string& conditions, const std::string& rest = "") {
+        return refusal_of_protocol(with(conditions, rest));
+    };
+    const std::string cast = R"({"id": "cast", "modality": "hand", "cast_of": )";
+    CHECK(contains(refused(kPen + ", " + cast + R"("nobody"})"),
+                   "cast_of: found 'nobody', expected the id of a condition of this protocol that has a scene"));
+    CHECK(contains(refused(cast + R"("cast"})"), "cast_of: found 'cast', expected the id of a condition"));
+    CHECK(contains(refused(kPen + ", " + cast + R"("pen", "nodules": ["A"]})"), "nodules: found names, expected none"));
+    CHECK(contains(refused(R"({"id": "a", "modality": "pen", "scene": "default.json", "cast_of": "a"})"),
+                   "cast_of: found a value, expected none: only a phantom felt by hand is a cast"));
+    CHECK(contains(
+        refused(kPen + ", " + cast + R"("pen"})", R"(, "choice": {"reference_kPa": 10, "comparisons_kPa": [20]})"),
+        "cast_of: found a value, expected none: two surfaces are compared"));
+}

@@ -53,6 +53,14 @@ TEST_CASE("protocol: keys that would be ignored are refused") {
     CHECK(contains(refusal(kFind, R"(, "demographics": [{"id": "consent", "text": "t"}])"), "found 'consent'"));
 }
 
+TEST_CASE("protocol: a consent without words is refused, since nobody would be asked") {
+    CHECK(refusal(kFind, R"(, "consent": "You press on surfaces.")").empty());
+    for (const char* empty : {"", " ", "\\n\\t "}) {
+        CAPTURE(empty);
+        CHECK(contains(refusal(kFind, std::string(R"(, "consent": ")") + empty + "\""), "consent: found '"));
+    }
+}
+
 TEST_CASE("protocol: tasks and their settings belong together") {
     CHECK(refusal(kFind + "," + with_task("choice") + "," + R"({"id": "s", "modality": "hand", "task": "staircase"})",
                   kChoice + kSteps)

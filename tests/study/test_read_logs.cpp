@@ -332,6 +332,17 @@ TEST_CASE("read logs: the report counts finished tests of all tasks") {
     CHECK(contains(report_markdown(report), "2 participants, 24 finished tests, 0 practice trials"));
 }
 
+TEST_CASE("read logs: a replaced participant is not counted among those whose tests are in the tables") {
+    const TemporaryFolder folder;
+    find_study(folder / "log");
+    add_replacement(folder / "log", {"01", "03", "felt unwell"});
+    const Report report = make_report(read_study(folder / "log"), {});
+    CHECK(report.participants == 1);
+    const std::string text = report_markdown(report);
+    CHECK(contains(text, "1 participant, 2 finished tests"));
+    CHECK(contains(text, "1 more participant has logs, but no test in the tables"));
+}
+
 TEST_CASE("read logs: who left at the page of consent has no planned tests") {
     const TemporaryFolder folder;
     find_study(folder / "log");

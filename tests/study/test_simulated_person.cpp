@@ -83,6 +83,33 @@ TEST_CASE("simulated person: strips and spirals cover the surface; the force is 
     }
 }
 
+TEST_CASE("simulated person: who feels and does not see finds what gives way less, and by touch alone") {
+    constexpr double kStep_s = 1.0 / 60.0;
+    PersonTraits traits;
+    traits.dent_noise = 0.18;
+    int found = 0, of_nothing = 0;
+    for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+        CAPTURE(seed);
+        for (const double stiffer : {1.0, 8.0}) {
+            SimulatedPerson person = make_person(traits, 0.12, 0.12, 60.0, seed);
+            for (bool over = false;;) {
+                const Move made = move(kStep_s, person);
+                over = std::hypot(made.at.x_m - 0.02, made.at.y_m - 0.03) < 6e-3;
+                Sight felt;
+                felt.lag_shown = false;
+                felt.lag_m = 1.0;  // not shown, so it must not count
+                felt.dent_shown = true;
+                felt.depth_m = 2e-3 * std::pow(made.force_N, 0.6) / (over ? stiffer : 1.0);
+                see(felt, kStep_s, person);
+                if (made.deed == Deed::mark) ++(stiffer > 1.0 ? found : of_nothing);
+                if (made.deed == Deed::finish) break;
+            }
+        }
+    }
+    CHECK(found >= 15);
+    CHECK(of_nothing <= 4);
+}
+
 TEST_CASE("simulated person: the same seed is the same person, another one is not") {
     const PersonTraits traits;
     const Outcome a = palpate(traits, 1e-3, {0.01, 0.0}, 3);

@@ -114,3 +114,18 @@ TEST_CASE("simulated touch: moments that are no numbers are left out") {
     CHECK(felt.by(Sense::hand) == clean.by(Sense::hand));
     CHECK(felt.by(Sense::fingertip) == clean.by(Sense::fingertip));
 }
+
+TEST_CASE("simulated touch: a soft surface tells hand and fingertip the same, and the joined estimate is that") {
+    const FeltStiffness felt = feel_soft_surface(press_on(300.0, 0.0));
+    CHECK(felt.by(Sense::hand) == doctest::Approx(std::log(300.0)));
+    CHECK(felt.by(Sense::fingertip) == felt.by(Sense::hand));
+    CHECK_FALSE(std::isfinite(felt.by(Sense::eye)));
+    CHECK(joined_ln(felt, {}) == doctest::Approx(std::log(300.0)));
+    FeltStiffness two;
+    two.by(Sense::hand) = 1.0;
+    two.by(Sense::fingertip) = 2.0;
+    TouchNoise noise;
+    noise.sd = {1.0, 0.5, 1.0};
+    CHECK(joined_ln(two, noise) == doctest::Approx((1.0 + 4.0 * 2.0) / 5.0));
+    CHECK_FALSE(std::isfinite(joined_ln({}, noise)));
+}

@@ -322,5 +322,5 @@ TEST_CASE("read logs: practice and interrupted trials alone make a report that s
     const Observations seen = read_study(folder.path());
     CHECK(seen.practice_trials == 1);
     CHECK(contains(report_markdown(make_report(seen, {})),
-                   "1 participants, 0 finished tests, 1 practice trials (not in the tables), 0 interrupted trials"));
+                   "0 participants, 0 finished tests, 1 practice trial (not in the tables), 0 interrupted trials"));
 }

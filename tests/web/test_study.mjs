@@ -174,7 +174,7 @@ const certificate = ({folder}) => {
 test('the real desk by https: a wrong code pairs nothing, the right one does; the study comes from the desk after it', options, () => withDesk(async (browser, desk, where) => {
     const {page} = browser;
     await open(browser, desk.url, '?protocol=short&participant=1');
-    assert.match(await page.textContent('#message-text'), /protocol: found 'short', expected one of effects paper softer tactile three-displays threshold, or of a desk/);
+    assert.match(await page.textContent('#message-text'), /protocol: found 'short', expected one of effects four-displays paper softer tactile three-displays threshold, or of a desk/);
     await page.click('#leave');
     await page.waitForURL((url) => url.search === '');
     await started(page);

@@ -165,6 +165,11 @@ TEST_CASE("command line: wrong usage and bad input end with status 2 and say wha
         CHECK(contains(called.err + called.out, word));
     };
     refused("run --headless", "--replay TRACE.tsv");
+    for (const char* ignored : {"--guided", "--screen maps", "--simulate", "--quit-after-s 3", "--record t.tsv"})
+        refused("run --headless --replay " + kTrace + " " + ignored, "found with --headless, expected a window");
+    for (const char* ignored : {"--width-px 300", "--height-px 300", "--left-handed"})
+        refused("run --headless --replay " + kTrace + " " + ignored, "expected a --screenshot");
+    refused("run --headless --replay " + kTrace + " --participant 07", "--participant requires --log");
     refused("run --nonsense", "--nonsense");
     refused("maps", "subcommand is required");
     refused("maps sample " + kAssets + "maps/silicone.map --x-mm 1 --y-mm 1", "[--force-N,--depth-mm] is required");

@@ -339,6 +339,8 @@ TEST_CASE("files: words and numbers that an option does not take are told in wor
     refused("maps plot in.map -o f.png --force-N inf", "--force-N");
     refused("study order protocol.json --participants -2", "--participants");
     write_text_atomically(folder / "mapp.json", R"({"name": "s", "tissue": {"mapp": "in.map"}})");
-    refused("explain mapp.json",
-            "tissue.mapp: found an unknown key, expected one of map linear stiffness_scale (is map meant?)");
+    refused(
+        "explain mapp.json",
+        "tissue.mapp: found an unknown key, expected one of map linear part force_curve block stiffness_scale (is map "
+        "meant?)");
 }

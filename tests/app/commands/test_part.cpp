@@ -1,5 +1,6 @@
 // `palpa part` as a person calls it.
 
+#include <cmath>
 #include <doctest/doctest.h>
 
 #include "files/json.h"
@@ -60,6 +61,43 @@ TEST_CASE("part info: a table for people, and every key in JSON") {
     }
     CHECK(json["plain_bytes"] == 1900 * 140 * 120);
     CHECK(20 * json["memory_bytes"].get<double>() < json["plain_bytes"].get<double>());
+}
+
+TEST_CASE(
+    "part button: the truss snaps at the closed form's force, a bare cover not at all, a button goes on and off") {
+    const auto button = [](const std::string& name) {
+        const Called called = palpa_with("part button " + kParts + name + ".json --json");
+        REQUIRE_MESSAGE(called.status == 0, called.err);
+        return parse_json(called.out, "stdout");
+    };
+    const Json truss = button("truss");
+    CHECK(std::abs(truss["peak_N"].get<double>() / 0.114218831724 - 1.0) < 1e-10);
+    CHECK(std::abs(truss["peak_mm"].get<double>() / 0.8739718643 - 1.0) < 1e-9);
+    const Json bare = button("bare-cover");
+    CHECK(bare["peak_N"].is_null());
+    CHECK(bare["snaps"] == false);
+    const Json latch = button("button");
+    for (const char* key : {"peak_N", "peak_mm", "trough_N", "snap_ratio", "on_mm", "off_mm", "loss_J"}) {
+        CAPTURE(key);
+        CHECK(latch[key].get<double>() > 0.0);
+    }
+    CHECK(latch["off_mm"] < latch["on_mm"]);
+    CHECK(latch["curve"]["press_N"].size() == latch["curve"]["travel_mm"].size());
+    CHECK(palpa_with("part button " + kParts + "beams/homogeneous.json").status == 2);
+}
+
+TEST_CASE("part evaluate: every method has every key, null where it has no such figure") {
+    const Json json = parse_json(
+        palpa_with("part evaluate " + kParts + "beams/homogeneous.json --tolerance 1e-8 --json").out, "stdout");
+    CHECK(json["methods"].size() == 5);
+    for (const auto& method : json["methods"].items()) {
+        CAPTURE(method.key());
+        for (const char* key : {"displacement_mm", "stiffness_N_per_m", "applies", "error_percent", "error_against",
+                                "cells", "iterations", "energy_error_percent", "converged", "time_s", "memory_MB"})
+            CHECK(method.value().contains(key));
+    }
+    CHECK(json["methods"]["paper"]["applies"] == false);
+    CHECK(json["methods"]["paper"]["stiffness_N_per_m"].get<double>() == doctest::Approx(13833.33).epsilon(1e-5));
 }
 
 TEST_CASE("part: wrong usage and wrong parts end with status 2 and a message") {

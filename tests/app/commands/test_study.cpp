@@ -36,8 +36,8 @@ void refused(const std::string& arguments, const std::string& word) {
 }  // namespace
 
 TEST_CASE("command study: help exists for every command") {
-    for (const char* command :
-         {"", "analyse", "exclude", "import", "levels", "observers", "order", "replace", "run", "simulate", "watch"}) {
+    for (const char* command : {"", "analyse", "exclude", "import", "levels", "observers", "order", "power",
+                                "preregister", "replace", "run", "simulate", "watch"}) {
         CAPTURE(command);
         const Called help = study(std::string(command) + " --help");
         CHECK(help.status == 0);
@@ -104,6 +104,16 @@ TEST_CASE("command study watch: who is where, what to present, the marks and the
     CHECK(people[1]["now"]["present_kPa"][1] == 2);
     const Called words = study("watch " + folder.path().string() + " --participant 08");
     CHECK(contains(words.out, "first 1.75 kPa, second 2 kPa; now interval 1"));
+    // a surface of a forced choice has a run of its own; the trial before it is over
+    text("sub-08/beh/sub-08_task-palpation_run-01_events.tsv",
+         "onset\ttrial_type\n0\tstart\n1\tmark\n2\tmark\n3\tfinish\n");
+    text("sub-08/beh/sub-08_task-interval_run-01_events.tsv", "onset\ttrial_type\n0\tstart\n");
+    text("sub-08/beh/sub-08_task-interval_run-01_samples.tsv", header + "1\tpen\t30\t40\t0.5\t2\t3\n");
+    text("sub-08/now.json", R"({"participant": "08", "step": "trial", "finished": 3, "of": 4, "trial": 4,
+                               "condition": "c", "practice": false, "present_kPa": [1.75, 2], "interval": 1})");
+    const Called felt = study("watch " + folder.path().string() + " --participant 08");
+    CHECK(contains(felt.out, "0 marks"));
+    CHECK(contains(felt.out, "pen at (30, 40) mm"));
     CHECK_FALSE(contains(words.out, "07"));
     CHECK_FALSE(contains(words.out, "withdrew"));
     CHECK(study("withdraw " + folder.path().string() + " --participant 07 --data leave-out").status == 0);
@@ -152,8 +162,8 @@ TEST_CASE("command study analyse: counts become tables, JSON and figures") {
     const Json json = parse_json(called.out, "stdout");
     CHECK(json["conditions"]["S-pen"]["se"].get<double>() == doctest::Approx(55.0 / 60.0));
     CHECK(json == read_json(folder / "report/report.json"));
-    for (const char* name :
-         {"sensitivity.tsv", "nodules.tsv", "ppv.tsv", "pairs.tsv", "ppv_pairs.tsv", "report.md", "figures.gp"}) {
+    for (const char* name : {"sensitivity.tsv", "nodules.tsv", "ppv.tsv", "pairs.tsv", "ppv_pairs.tsv", "report.md",
+                             "figures.gp", "sensitivity.json", "pairs.json", "stard.md"}) {
         CAPTURE(name);
         CHECK(std::filesystem::exists(folder / (std::string("report/") + name)));
     }
@@ -207,6 +217,29 @@ TEST_CASE("command study analyse: a table of rated marks gives figures of merit,
     refused(marks + " --rating-scale 5 1", "the lowest rating, then the highest");
 }
 
+TEST_CASE("command study analyse: confidence outside 1 to 5 in the marks of a log is refused with file and line") {
+    const TemporaryFolder folder;
+    const std::string log = (folder / "log").string();
+    REQUIRE(
+        study("simulate " PALPA_SOURCE_DIR "/assets/protocols/effects.json --participants 4 --samples none -o " + log)
+            .status == 0);
+    std::string edited;
+    for (const auto& entry : fs::recursive_directory_iterator(log)) {
+        if (!entry.path().string().ends_with("_marks.tsv")) continue;
+        std::string text = read_text(entry.path());
+        const std::size_t row = text.find('\n') + 1;
+        if (row >= text.size()) continue;
+        std::size_t begin = row;  // of the sixth column, confidence
+        for (int column = 0; column < 5; ++column) begin = text.find('\t', begin) + 1;
+        text.replace(begin, text.find('\t', begin) - begin, "7");
+        write_text_atomically(entry.path(), text);
+        edited = entry.path().filename().string();
+        break;
+    }
+    REQUIRE_FALSE(edited.empty());
+    refused("analyse " + log, edited + ": line 2, confidence: found '7', expected");
+}
+
 TEST_CASE("command study analyse: bad input ends with status 2 and says what was expected") {
     const TemporaryFolder folder;
     write_text_atomically(folder / "c.tsv", "condition\ttp\tfn\tfp\tn\npen\t61\t0\t0\t60\n");
@@ -215,6 +248,62 @@ TEST_CASE("command study analyse: bad input ends with status 2 and says what was
     refused("analyse " + (folder / "c.tsv").string(), "c.tsv: line 2, tp: found '61', expected at most n = 60");
     refused("analyse " + kCounts + " -o " + (folder / "c.tsv").string(), "c.tsv: found no folder");
     refused("analyse " + kCounts + " --level 2", "--level");
+}
+
+TEST_CASE(
+    "command study power: a table with Monte Carlo errors, parts by the scheduler's variables, and one that merges") {
+    const TemporaryFolder folder;
+    const std::string effects = PALPA_SOURCE_DIR "/assets/protocols/effects.json";
+    const std::string call = "power " + effects + " --participants 3,2 --runs 2 --resamples 100 ";
+    const Called alone = study(call + "--json");
+    CAPTURE(alone.err);
+    REQUIRE(alone.status == 0);
+    const Json json = parse_json(alone.out, "stdout");
+    CHECK(json["simulated"] == true);
+    CHECK(json["reference"] == "display ratio");
+    CHECK(json["participants"] == Json({2, 3}));
+    CHECK(json["results"][0].contains("type_I_error"));
+    bool primary = false;
+    for (const Json& one : json["results"]) {
+        if (one["method"] != "primary" || one["effect"] != 1.0) continue;
+        primary = true;
+        CHECK(one["power"]["studies"] == 2);
+        CHECK(one["power"]["monte_carlo_ci"].size() == 2);
+        CHECK(one["true_value"].is_number());
+    }
+    CHECK(primary);
+    const std::string output = "-o " + (folder / "power").string();
+    for (const char* task : {"4", "5"}) {
+        const std::string slurm =
+            "SLURM_ARRAY_TASK_MIN=4 SLURM_ARRAY_TASK_COUNT=2 SLURM_ARRAY_TASK_ID=" + std::string(task) + " ";
+        const Called part = shell(slurm + "timeout 120 " PALPA_PROGRAM " study " + call + output);
+        CHECK(part.status == 0);
+        CHECK(contains(part.out, "1 studies now"));
+    }
+    const Called merged = study(call + output + " --merge --json");
+    CHECK(merged.status == 0);
+    CHECK(parse_json(merged.out, "stdout")["results"] == json["results"]);
+    CHECK(contains(read_text(folder / "power/power.md"), "(SIMULATED)"));
+    CHECK(read_json(folder / "power/power.json").contains("rejected_se"));
+    refused(call + "--reference nobody", "--reference: found 'nobody', expected the id of a condition");
+    refused(call + "--merge", "--output: found nothing");
+    refused(call + "--part 3/2 " + output, "i/n with 1 <= i <= n");
+    refused(call + "--seed 5 " + output, "two power runs never share a folder");
+    refused("power " PALPA_SOURCE_DIR "/assets/protocols/threshold.json --participants 3", "found a staircase");
+}
+
+TEST_CASE("command study preregister: a sheet with the hashes, and what is not stated on standard error") {
+    const TemporaryFolder folder;
+    const std::string effects = PALPA_SOURCE_DIR "/assets/protocols/effects.json";
+    const Called called = study("preregister " + effects + " --participants 3");
+    CHECK(called.status == 0);
+    CHECK(contains(called.out, "scene_sha256 "));
+    CHECK(contains(called.out, "map_sha256 "));
+    CHECK(contains(called.out, "\n| 3 | all |"));
+    CHECK(contains(called.err, "not stated: analysis.stopping_rule"));
+    CHECK(study("preregister " + effects + " -o " + (folder / "sheet.md").string()).status == 0);
+    CHECK(contains(read_text(folder / "sheet.md"), "# Preregistration"));
+    refused("preregister " + effects + " -o " + folder.path().string(), "found a folder");
 }
 
 TEST_CASE("command study order: who gets what, with seeds and balance") {

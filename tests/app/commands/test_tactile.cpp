@@ -135,7 +135,7 @@ TEST_CASE("tactile run: every pairing that cannot show the tissue is refused wit
     check_refused("{}", "found neither an arm nor a display");
     check_refused(R"({"finger": {"contact": "pad"}, "display": {"kind": "pressure", "device": "pins-6x6.json"}})",
                   "pressures are drawn and logged only");
-    check_refused(kArmAndPins, "a map knows no surface", R"({"map": "silicone.map"})");
+    check_refused(kArmAndPins, "maps and parts know no surface", R"({"map": "silicone.map"})");
     check_refused(R"({"arm": {"impedance": "high", "device": "arm.json"}})",
                   "tactile.arm.impedance: found high, expected that of the device");
 }

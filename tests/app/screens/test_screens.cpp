@@ -13,6 +13,7 @@
 #include "app/screens/history_screen.h"
 #include "app/screens/map_screen.h"
 #include "app/screens/tactile_screen.h"
+#include "app/screens/tangible_screen.h"
 #include "app/study/study_run.h"
 #include "scene/advance.h"
 #include "tests/temporary_folder.h"
@@ -92,6 +93,7 @@ struct Screens {
     std::optional<Wishes> asked{};
     ViewState view{};
     const TactileShown* tactile = nullptr;
+    const TangibleShown* tangible = nullptr;
 };
 
 bool covers_all(const Screens& screens) {
@@ -103,7 +105,7 @@ Pixels draw(const Session& session, const Settings& settings, const Screens& scr
     ViewState view = screens.view;
     for (int i = 0; i < 3; ++i) {
         screen.draw({session.scene, *session.plan, session.trial, settings, screens.notices, screens.doing,
-                     screens.asked, state.timeline.now_s, 1.0 / 60.0, screens.tactile},
+                     screens.asked, state.timeline.now_s, 1.0 / 60.0, screens.tactile, screens.tangible},
                     view, state);
     }
     return {screen.window().width_px(), screen.window().height_px(), screen.pixels()};
@@ -359,6 +361,133 @@ TEST_CASE("screens: arm and pins fit at the sizes of desks and tablets: running,
         draw_it(screen, many, "tactile-many");
         draw_it(trial, running, "trial-pins");
         draw_it(trial, stopped, "trial-pins-stopped");
+    }
+}
+
+namespace {
+
+// The surface of a strip of 50 x 4 x 2 cells, sagged by a press in its middle.
+void strip_surface(TangibleShown& soft) {
+    constexpr int kX = 50, kY = 4, kZ = 2;
+    const auto node = [](int i, int j, int k) { return (i * (kY + 1) + j) * (kZ + 1) + k; };
+    auto& body = soft.body;
+    for (int i = 0; i <= kX; ++i) {
+        for (int j = 0; j <= kY; ++j) {
+            for (int k = 0; k <= kZ; ++k) {
+                const double x = -50e-3 + 2e-3 * i, y = -10e-3 + 5e-3 * j, z = -2e-3 + 2e-3 * k;
+                const double sag = 5e-3 * std::exp(-x * x / (18e-3 * 18e-3));
+                body.rest_m.push_back({static_cast<float>(x), static_cast<float>(y), static_cast<float>(z)});
+                soft.shape->node_m[body.rest_m.size() - 1] = {static_cast<float>(x), static_cast<float>(y),
+                                                              static_cast<float>(z - sag)};
+            }
+        }
+    }
+    for (int i = 0; i < kX; ++i) {
+        for (int j = 0; j < kY; ++j) {
+            for (const int k : {0, kZ})
+                body.faces.push_back({node(i, j, k), node(i + 1, j, k), node(i + 1, j + 1, k), node(i, j + 1, k)});
+        }
+        for (int k = 0; k < kZ; ++k) {
+            for (const int j : {0, kY})
+                body.faces.push_back({node(i, j, k), node(i + 1, j, k), node(i + 1, j, k + 1), node(i, j, k + 1)});
+        }
+    }
+    soft.has_shape = true;
+}
+
+// The strip in the middle of a press, shown by a simulated plant.
+TangibleShown pressed_strip() {
+    TangibleShown soft;
+    strip_surface(soft);
+    auto& body = soft.body;
+    body.device = "Silicone strip";
+    body.actuators = {{"left cable", false, 0.25, 5.5, {{-0.09f, 0.0f, -0.04f}}, 7},
+                      {"right cable", false, 0.25, 5.5, {{0.09f, 0.0f, -0.04f}}, 757}};
+    body.bearings = {{{-0.03f, -0.012f, -0.01f}, {-0.03f, 0.012f, -0.01f}, 8e-3},
+                     {{0.03f, -0.012f, -0.01f}, {0.03f, 0.012f, -0.01f}, 8e-3}};
+    body.effector_m = {0.0f, 0.0f, 2e-3f};
+    body.effector_radius_m = 6e-3;
+    body.rate_Hz = 100.0;
+    body.rendered = "plant";
+    body.algorithm = "step";
+    TangibleMoment& m = soft.moment;
+    m.time_s = 12.0;
+    m.depth_m = m.world_depth_m = m.proxy_m = 5.0e-3;
+    m.wanted_N = 0.50;
+    m.rendered_N = 0.493;
+    m.pressed = true;
+    m.free_m = -9.812e-3;
+    m.by_finger_m = 16.134e-3;
+    m.by_actuators_m = -6.322e-3;
+    m.compliance[0] = m.compliance[1] = -1.62e-3;
+    m.residual_m = 1.2e-6;
+    m.rank = 1;
+    m.iterations = 3;
+    m.actuation[0] = m.actuation[1] = 1.94;
+    m.command[0] = m.command[1] = 40.72e-3;
+    m.period_p50_s = 10e-3;
+    m.period_p99_s = 10.3e-3;
+    m.step_p50_s = 3.1e-3;
+    m.step_p99_s = 4.6e-3;
+    m.ticks = 12034;
+    m.missed_ticks = 2;
+    m.saturated_ticks = 118;
+    m.force_rms_percent = 0.61;
+    for (int i = 0; i <= 60; ++i) {
+        const double depth_m = 5e-3 * i / 60.0;
+        soft.press.push_back({i, depth_m, 100.0 * depth_m, 98.6 * depth_m});
+    }
+    soft.devices = {{"motors", "Dynamixel, two", "/dev/serial/by-id/usb-FTDI_USB__-__Serial_Converter-if00", true},
+                    {"sensor", "displacement", "/dev/pts/7", false}};
+    soft.runs = true;
+    return soft;
+}
+
+}  // namespace
+
+TEST_CASE("screens: a soft device fits at the sizes of desks and tablets: running, limited, stopped, failed, many") {
+    Session session;
+    session.scene = load_scene("");
+    session.plan = std::make_shared<const Plan>(make_plan(session.scene));
+    const Trace whole = read_trace(default_trace());
+    begin_trial({}, whole.info, TrialMode::practice, session);
+    for (std::size_t i = 0; i < 400; ++i) take_sample(whole.samples[i], session);
+    const TangibleShown running = pressed_strip();
+    TangibleShown limited = running;
+    limited.moment.limited_by = 1;
+    limited.moment.active = 3;
+    limited.moment.actuation[0] = limited.moment.actuation[1] = 5.5;
+    limited.moment.residual_m = 0.84e-3;
+    limited.moment.converged = false;
+    TangibleShown stopped = running;
+    stopped.moment.stopped = true;
+    stopped.moment.fault = "F12";
+    TangibleShown failed;
+    failed.problem =
+        "assets/devices/strip.json: wires.ports[0].path: found nothing at /dev/ttyUSB0, expected a serial port";
+    TangibleShown many = running;  // as many actuators as there may be, and a moment that tells nothing yet
+    many.body.actuators.resize(kMostTangibleActuators, {"chamber in front", true, 0.0, 5e3, {}, -1});
+    many.moment.wanted_N = many.moment.rendered_N = many.moment.depth_m = many.moment.world_depth_m = kMissing;
+    many.moment.compliance.fill(kMissing);
+    many.shape = std::make_shared<TangibleShape>(*running.shape);
+    many.shape->node_m[10] = {NAN, NAN, NAN};
+    Screens screen{{}, WatchingTangible{}};
+    Screens trial;
+    constexpr double kTablet_px_per_mm = 11.8;
+    for (const Case& c : {Case{1280, 800, kMissing, false}, Case{800, 1280, kMissing, false},
+                          Case{2560, 1600, kTablet_px_per_mm, false}, Case{1024, 600, kMissing, true},
+                          Case{1280, 800, kMissing, false, false, 140}}) {
+        OffScreen off_screen = screen_of(c);
+        const auto draw_it = [&](Screens& screens, const TangibleShown& soft, const char* name) {
+            screens.tangible = &soft;
+            check_case(session, screens, c, name, off_screen);
+        };
+        draw_it(screen, running, "tangible");
+        draw_it(screen, limited, "tangible-limited");
+        draw_it(screen, stopped, "tangible-stopped");
+        draw_it(screen, failed, "tangible-failed");
+        draw_it(screen, many, "tangible-many");
+        draw_it(trial, stopped, "trial-tangible-stopped");
     }
 }
 

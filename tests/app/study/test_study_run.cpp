@@ -622,7 +622,7 @@ TEST_CASE(
     begin_step(run);
     REQUIRE(trial_waits(run));
     CHECK_FALSE(typed_in(run, 0));
-    CHECK(feels_pins(run));
+    CHECK(feels_device(run));
     CHECK(due_trial(run).practice);  // whose force bar shows the limit
     const auto scale = [&] { return due_scene(run).scene.stiffness_scale; };
     const bool reference_first = due_trial(run).reference_first;
@@ -643,4 +643,32 @@ TEST_CASE("study run: a shape-display condition without driven devices is presen
     const Protocol drawn = pins_protocol(other, R"({"display": {}})");
     const std::string refused = message_of([&] { open_study_run(drawn, other / "log", "01"); });
     CHECK(contains(refused, "conditions[0] 'pins': scene: found 'slab-scene.json', whose key tactile names no device"));
+}
+
+TEST_CASE("study run: a tangible condition whose scene has a soft device is driven, and typed in without one") {
+    const TemporaryFolder folder;
+    write_text_atomically(folder / "soft.json",
+                          R"({"name": "soft", "tissue": {"map": ")" PALPA_SOURCE_DIR R"(/assets/maps/silicone.map"}})");
+    write_text_atomically(folder / "p.json", R"({"name": "n", "version": "1", "seed": 1, "order": "fixed",
+        "conditions": [{"id": "device", "modality": "tangible", "scene": "soft.json"}]})");
+    StudyRun run = open_study_run(read_protocol(folder / "p.json"), folder / "log", "01");
+    CHECK(typed_in(run, 0));
+    run.scenes[0]->scene.tangible.emplace();
+    CHECK_FALSE(typed_in(run, 0));
+    begin_step(run);
+    REQUIRE(trial_waits(run));
+    CHECK(feels_device(run));
+    CHECK(shows_tissue(run));
+}
+
+TEST_CASE("study run: the answers about a cast name the nodules of the phantom that it is cast from") {
+    const TemporaryFolder folder;
+    write_text_atomically(folder / "p.json", R"({"name": "n", "version": "1", "seed": 1, "order": "fixed",
+        "conditions": [{"id": "cast", "modality": "hand", "cast_of": "pen"},
+                       {"id": "pen", "modality": "pen", "scene": ")" +
+                                                 kScene + R"("}]})");
+    StudyRun run = open_study_run(read_protocol(folder / "p.json"), folder / "log", "01");
+    begin_step(run);
+    REQUIRE(at<step::Typed>(run));
+    CHECK(due_nodules(run) == std::vector<std::string>{"A", "B", "C"});
 }

@@ -1,0 +1,82 @@
+// palpa tangible fit: what recorded presses say about a device.
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <memory>
+
+#include "app/commands/command_line.h"
+#include "app/commands/tangible_loop.h"
+#include "files/input_error.h"
+#include "files/regular_file.h"
+#include "files/text.h"
+#include "tangible/fit.h"
+
+namespace palpa::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct TangibleFitArguments {
+    std::string device;
+    std::string presses;
+    std::string output;
+    bool json = false;
+};
+
+// The device file with what was fitted; a mesh file is named as seen from the new place.
+files::Json fitted_device(const TangibleFitArguments& arguments, const tangible::DeviceFit& fit) {
+    files::Json json = files::read_json(device_file(arguments.device));
+    if (json["mesh"].is_object() && json["mesh"].contains("file")) {
+        const fs::path mesh =
+            fs::absolute(device_file(arguments.device).parent_path()) / json["mesh"]["file"].get<std::string>();
+        json["mesh"]["file"] = fs::proximate(mesh, fs::absolute(fs::path(arguments.output)).parent_path()).string();
+    }
+    json["fit"] = {
+        {"modulus_factor", fit.modulus_factor}, {"friction_share", fit.friction_share}, {"zero_mm", 1e3 * fit.zero_m}};
+    return json;
+}
+
+void fit_tangible(const TangibleFitArguments& arguments) {
+    files::check_output(arguments.output, {device_file(arguments.device), arguments.presses});
+    const tangible::SoftDevice device = tangible::read_soft_device(device_file(arguments.device));
+    const auto ticks = tangible::read_presses(arguments.presses, tangible::make_device_model(device));
+    const tangible::FitResult result = tangible::fit_presses(device, ticks);
+    files::write_text_atomically(arguments.output, files::json_text(fitted_device(arguments, result.fit)));
+    const files::Json json{{"modulus_factor", result.fit.modulus_factor},
+                           {"friction_share", result.fit.friction_share},
+                           {"zero_mm", 1e3 * result.fit.zero_m},
+                           {"rms_before_N", result.rms_before_N},
+                           {"rms_after_N", result.rms_after_N},
+                           {"ticks", result.ticks},
+                           {"rounds", result.rounds},
+                           {"settled", result.settled}};
+    if (arguments.json) {
+        std::fputs(files::json_text(json).c_str(), stdout);
+        return;
+    }
+    std::printf("%s: modulus %.4g of the file's, friction %.3g %% of a cable's tension, zero at %.3g mm\n",
+                arguments.output.c_str(), result.fit.modulus_factor, 100.0 * result.fit.friction_share,
+                1e3 * result.fit.zero_m);
+    std::printf("  recorded minus modelled force: %.3g N before, %.3g N after (rms of %d rows)%s\n",
+                result.rms_before_N, result.rms_after_N, result.ticks,
+                result.settled ? "" : "; the fit did not settle");
+}
+
+}  // namespace
+
+void add_tangible_fit(CLI::App& tangible) {
+    auto arguments = std::make_shared<TangibleFitArguments>();
+    CLI::App* command = tangible.add_subcommand(
+        "fit", "Find a device's modulus, friction and zero from recorded presses, and write a device file with them");
+    command->add_option("DEVICE", arguments->device, "device file")->required();
+    command
+        ->add_option(
+            "PRESSES", arguments->presses,
+            "table with time_s, depth_mm, force_N and each actuator's NAME_N or NAME_Pa, as characterise -o writes")
+        ->required();
+    command->add_option("-o,--output", arguments->output, "new device file NEW.json")->required();
+    command->add_flag("--json", arguments->json, "print one JSON object on standard output");
+    command->callback([arguments] { fit_tangible(*arguments); });
+}
+
+}  // namespace palpa::app

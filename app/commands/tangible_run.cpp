@@ -1,0 +1,188 @@
+// palpa tangible run: a soft device pushes back as a scene's tissue would.
+
+#include "session/tangible_run.h"
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <memory>
+#include <optional>
+#include <stdexcept>
+
+#include "app/assets.h"
+#include "app/commands/command_line.h"
+#include "app/commands/option_checks.h"
+#include "app/commands/tangible_loop.h"
+#include "app/scene_choices.h"
+#include "files/input_error.h"
+#include "files/regular_file.h"
+#include "files/table.h"
+#include "files/text.h"
+#include "scene/find_file.h"
+#include "session/plan_in_progress.h"
+
+namespace palpa::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct TangibleRunArguments {
+    std::string scene;
+    std::string plant;
+    std::vector<std::string> ports;
+    std::string press;
+    std::string log;
+    std::string fidelity = "step";
+    std::string command = "force";
+    double rate_Hz = 100.0;
+    double seconds = 0.0;
+    std::uint64_t seed = 1;
+    bool headless = false;
+    bool json = false;
+};
+
+tangible::LoopOptions loop_options_of(const TangibleRunArguments& arguments) {
+    tangible::LoopOptions options;
+    options.rate_Hz = arguments.rate_Hz;
+    options.inverse.fidelity = fidelity_named(arguments.fidelity);
+    options.command = command_named(arguments.command);
+    return options;
+}
+
+std::string plant_of(const TangibleRunArguments& arguments, const scene::Scene& scene) {
+    if (!arguments.ports.empty() && !arguments.plant.empty())
+        throw files::InputError("--port: found beside --plant " + arguments.plant + ", expected one of the two");
+    // ports on the command line count more than the scene's plant
+    const std::string of_scene = arguments.ports.empty() ? scene.tangible->plant : "";
+    const std::string plant = arguments.plant.empty() ? of_scene : arguments.plant;
+    if (plant.empty() && arguments.headless)
+        throw files::InputError(
+            "--headless: found without a plant, expected --plant exact or a file: real devices need real time");
+    if (plant.empty() && !arguments.press.empty())
+        throw files::InputError(
+            "--press: found without a plant, expected --plant exact or a file: on a real device a finger presses");
+    return plant;
+}
+
+// The finger on a plant: a press, recorded rows are replayed elsewhere, or the built-in motion to three quarters of the depth
+// that the tissue is known for.
+session::Finger finger_of(const TangibleRunArguments& arguments, const tangible::TangiblePlan& plan) {
+    session::Finger finger;
+    finger.seconds = arguments.seconds;
+    if (!arguments.press.empty()) finger.press = devices::read_press(arguments.press);
+    finger.motion.depth_m = std::min(finger.motion.depth_m, 0.75 * plan.greatest_m);
+    return finger;
+}
+
+session::TangibleResult run_as_asked(const TangibleRunArguments& arguments, const std::string& plant_name,
+                                     const std::shared_ptr<const tangible::TangiblePlan>& plan) {
+    session::TangibleRunOptions run;
+    run.finger = finger_of(arguments, *plan);
+    run.log = arguments.log;
+    run.seed = arguments.seed;
+    std::optional<tangible::Plant> plant;
+    if (!plant_name.empty()) plant = make_plant(plan->model, tangible::read_plant(plant_name), plan->loop);
+    if (!arguments.log.empty()) fs::create_directories(arguments.log);
+    if (arguments.headless) return session::run_tangible_virtual(plan, *plant, run);
+    return session::run_tangible_live(plan, plant, arguments.ports, run);
+}
+
+void print_run(const files::Json& result) {
+    std::printf("%s on %s: %s ticks, %s missed\n", result["scene"].get<std::string>().c_str(),
+                result["device"].get<std::string>().c_str(), result["ticks"].dump().c_str(),
+                result["missed_ticks"].dump().c_str());
+    if (!result["force_rms_percent"].is_null())
+        std::printf("  rendered force off the wanted one by %.3g %% (rms, of the greatest wanted force)\n",
+                    result["force_rms_percent"].get<double>());
+    std::printf("  saturated in %.3g %% of the ticks, last command held for %.3g ms\n",
+                100.0 * result["saturated_share"].get<double>(), result["held_ms"].get<double>());
+    for (const auto& fault : result["faults"])
+        std::printf("  fault: %s, %s times\n", fault["fault"].get<std::string>().c_str(),
+                    fault["times"].dump().c_str());
+    for (const auto& note : result["notes"]) std::printf("  note: %s\n", note.get<std::string>().c_str());
+}
+
+// The parts of the device, each with the port that it was really opened at.
+files::Json devices_json(const tangible::TangiblePlan& plan, bool real, const std::vector<std::string>& ports) {
+    files::Json devices = files::Json::array();
+    for (const session::TactileDevice& device : session::devices_of(plan, !real)) {
+        std::string port = device.port;
+        for (const std::string& given : ports) {
+            if (given.rfind(device.role + "=", 0) == 0) port = given.substr(device.role.size() + 1);
+        }
+        devices.push_back(
+            {{"role", device.role}, {"name", device.name}, {"port", port}, {"simulated", device.simulated}});
+    }
+    return devices;
+}
+
+void run_tangible(const TangibleRunArguments& arguments) {
+    const scene::Scene scene = load_scene(arguments.scene);
+    if (!scene.tangible)
+        throw files::bad_input(scene.file.string(), "tangible", "no such key", "one that names a device");
+    if (!arguments.log.empty()) files::check_output_folder(arguments.log);
+    const std::string plant_name = plant_of(arguments, scene);
+    const scene::Plan scene_plan = session::make_plan_here(scene);
+    const auto plan = std::make_shared<const tangible::TangiblePlan>(
+        tangible::make_tangible_plan(scene, scene_plan, loop_options_of(arguments)));
+    const session::TangibleResult result = run_as_asked(arguments, plant_name, plan);
+    files::Json json{{"scene", scene.name}, {"seed", arguments.seed}};
+    json["plant"] = plant_name.empty() ? files::Json(nullptr) : files::Json(plant_name);
+    json.update(tangible::figures_json(*plan, result.ticks, result.clock));
+    json["devices"] = devices_json(*plan, plant_name.empty(), arguments.ports);
+    if (!arguments.log.empty())
+        files::write_text_atomically(fs::path(arguments.log) / "performance.json", files::json_text(json));
+    if (arguments.json)
+        std::fputs(files::json_text(json).c_str(), stdout);
+    else
+        print_run(json);
+    if (!result.logged) throw std::runtime_error(arguments.log + ": the log could not be written to its end");
+}
+
+}  // namespace
+
+fs::path device_file(const std::string& name) {
+    return scene::find_file(name, fs::current_path() / "device", assets_folder() / "devices");
+}
+
+tangible::Fidelity fidelity_named(const std::string& name) {
+    for (std::size_t i = 0; i < tangible::kFidelityNames.size(); ++i) {
+        if (name == tangible::kFidelityNames[i]) return static_cast<tangible::Fidelity>(i);
+    }
+    return tangible::Fidelity::step;
+}
+
+tangible::CommandKind command_named(const std::string& name) {
+    return name == "position" ? tangible::CommandKind::position : tangible::CommandKind::force;
+}
+
+void add_loop_options(CLI::App& command, std::string& fidelity, std::string& kind, double& rate_Hz) {
+    command.add_option("--fidelity", fidelity, "of the inverse problem (default step, one Newton step per tick)")
+        ->check(one_of({"step", "converged", "stale", "linear"}));
+    command.add_option("--command", kind, "what the drives are told: forces (default), or the cables' lengths")
+        ->check(one_of({"force", "position"}));
+    command.add_option("--rate-Hz", rate_Hz, "ticks of the loop (default 100)")->check(CLI::Range(10.0, 2000.0));
+}
+
+void add_tangible_run(CLI::App& tangible) {
+    auto arguments = std::make_shared<TangibleRunArguments>();
+    CLI::App* command = tangible.add_subcommand("run", "Let a scene's soft device push back as its tissue would");
+    command->add_option("SCENE", arguments->scene, "scene JSON with the key tangible")->required();
+    command->add_option("--plant", arguments->plant,
+                        "a model in the place of the device: exact, or a plant file (default: the scene's)");
+    command->add_option("--port", arguments->ports, "NAME=PATH of a port, instead of the device file's");
+    command->add_option("--press", arguments->press,
+                        "PRESS.tsv (t_s, x_mm, y_mm, depth_mm or force_N) of the finger on a plant (default: there and "
+                        "back, 6 mm at 5 mm/s)");
+    command
+        ->add_option("--seconds", arguments->seconds, "how long (default: the press once; a real device until stopped)")
+        ->check(CLI::Range(0.01, 1e6));
+    command->add_flag("--headless", arguments->headless,
+                      "on a plant: virtual time, as fast as it goes, the same log every time");
+    command->add_option("--log", arguments->log, "folder for the log (existing files are never overwritten)");
+    command->add_option("--seed", arguments->seed, "of the plant's noise (default 1)");
+    add_loop_options(*command, arguments->fidelity, arguments->command, arguments->rate_Hz);
+    command->add_flag("--json", arguments->json, "print one JSON object on standard output");
+    command->callback([arguments] { run_tangible(*arguments); });
+}
+
+}  // namespace palpa::app

@@ -1,0 +1,36 @@
+#pragma once
+// A part taken for a beam: from its clamp to its load, and the spring by which the paper replaces it.
+
+#include <string>
+#include <vector>
+
+#include "mechanics/beam.h"
+#include "parts/part_file.h"
+
+namespace palpa::parts {
+
+struct PartBeam {
+    std::vector<mechanics::BeamPiece> pieces;
+    bool clamped_low = true;
+    double length_m = 0.0;
+    double height_m = 0.0;  // the largest
+    // cosine between the load and the direction in which the beam bends; displacements along the load have its square
+    double across = 1.0;
+    std::string why_not;  // why the part is no beam; "" if it is one
+};
+
+// Beams bend in the direction of the load's largest component. The clamp is one support that holds x, y and z: a side
+// square to the axis, or a box, whose side towards the load counts. load_place_m: along the axis, instead of the load's.
+PartBeam beam_of(const Part& part, const PartLoad& load, const std::optional<double>& load_place_m = {});
+
+// Stiffness of the torsion spring by which the paper replaces a beam of pieces, force over displacement at the tip, as
+// the paper uses it (N/m):
+//   k_i = 2 D_i / l_i^2,   gamma_i = F L / k_i,   theta = sum_i ( l_i sum_{j<=i} gamma_j ) / L,   k = F / theta
+// It is wrong: k_i is a force per angle of a single clamped piece, and is used as a moment per angle of every piece; every
+// piece gets the moment of the clamp. One piece gives 2/3 of the stiffness 3 D / L^3, and cutting a uniform beam into n
+// equal pieces multiplies that by 2 n^2 / (n + 1).
+// Source: Yang, Lian, Chen, "Haptic evaluation of multi-material parts", equations (2) to (7); for layers, where they are one
+//         piece with the D of bonded layers, it equals equation (12).
+double paper_spring_N_per_m(const PartBeam& beam);
+
+}  // namespace palpa::parts

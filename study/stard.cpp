@@ -1,0 +1,187 @@
+#include "study/stard.h"
+
+#include "files/text.h"
+#include "study/table_text.h"
+
+namespace palpa::study {
+namespace {
+
+const std::string kToFillIn = "TO BE FILLED IN";
+
+class StardForm {
+  public:
+    void section(const std::string& title) {
+        text_ += "\n## " + title + "\n\n| item | what is asked | this study |\n| --- | --- | --- |\n";
+    }
+    void item(const std::string& number, const std::string& asked, const std::string& answer = kToFillIn) {
+        text_ += "| " + number + " | " + asked + " | " + (answer.empty() ? kToFillIn : answer) + " |\n";
+    }
+    std::string text() const { return text_; }
+
+  private:
+    std::string text_;
+};
+
+std::string known_or_open(bool there, const std::string& text) { return there ? text : kToFillIn; }
+
+std::string stard_list(const std::vector<std::string>& items) {
+    std::string out;
+    for (const std::string& item : items) out += (out.empty() ? "" : "; ") + item;
+    return out;
+}
+
+std::string index_tests(const Protocol* protocol) {
+    if (!protocol) return "";
+    std::string out;
+    for (const Condition& one : protocol->conditions) {
+        out += (out.empty() ? "" : "; ") + one.id + ": " + name_of(one.modality) +
+               (one.scene.empty() ? "" : ", scene " + one.scene) + (one.device.empty() ? "" : ", " + one.device);
+    }
+    return "palpation under " + out + ". Settings of every trial are in the logs";
+}
+
+std::string stard_flow(const Report& report) {
+    std::string out = whole(report.participants) + " participants, " + whole(report.trials + report.forced_choices) +
+                      " finished tests; " + whole(report.interrupted_trials) + " interrupted, " +
+                      whole(report.excluded_trials) + " left out (" + whole(report.withdrawn_trials) +
+                      " of them withdrawn), " + whole(static_cast<std::int64_t>(report.replacements.size())) +
+                      " participants replaced";
+    return out +
+           (report.progress.empty() ? "" : "; by condition in plan.tsv, by participant in plan_participants.tsv") +
+           ". Who was asked and refused: " + kToFillIn;
+}
+
+std::string stard_cross(const Report& report) {
+    std::string out;
+    for (const ConditionResult& one : report.conditions) {
+        out += (out.empty() ? "" : "; ") + one.name + ": " + whole(one.tp) + " nodules found, " + whole(one.fn) +
+               " missed, " + whole(one.fp) + " false marks";
+    }
+    const FreeResponseReport& rated = report.free_response;
+    if (!rated.figures.empty())
+        out += ". Cases: " + whole(rated.cases_with) + " with lesions, " + whole(rated.cases_without) + " without";
+    return out;
+}
+
+std::string stard_precision(const Report& report) {
+    std::string out;
+    for (const ConditionResult& one : report.conditions) {
+        if (!one.se) continue;
+        const Interval ci = one.se->bootstrap.value_or(one.se->wilson);
+        out += (out.empty() ? "" : "; ") + one.name + ": sensitivity " + share_text(one.se->x.p()) + " (" +
+               share_text(ci.low) + " to " + share_text(ci.high) + ")";
+    }
+    return out.empty() ? ""
+                       : out + ". Intervals at " + files::short_number(100.0 * report.options.bootstrap.level) +
+                             " %; comparisons in pairs.tsv";
+}
+
+std::string stard_sample(const Report& report, const Protocol* protocol) {
+    std::string out = whole(report.participants) + " took part";
+    if (protocol && protocol->planned_participants > 0)
+        out += ", " + whole(protocol->planned_participants) + " were planned";
+    if (protocol && !protocol->stopping_rule.empty()) out += "; " + protocol->stopping_rule;
+    return out + ". How the number was chosen (`palpa study power`): " + kToFillIn;
+}
+
+void stard_methods(const Report& report, const Protocol* protocol, StardForm& form) {
+    form.section("Methods");
+    form.item("5", "data collection planned before or after tests and reference were done",
+              known_or_open(protocol, "before: the protocol and its orders were fixed (SHA-256 in study.json)"));
+    form.item("6", "who could take part");
+    form.item("7", "how participants were found");
+    form.item("8", "where and when (places, dates)",
+              "dates are in ..._performance.json of each trial; places: " + kToFillIn);
+    form.item("9", "consecutive, random or convenience series");
+    form.item("10a", "index test, so that it can be repeated", index_tests(protocol));
+    form.item(
+        "10b", "reference standard, so that it can be repeated",
+        known_or_open(protocol,
+                      "the map of the nodules of each trial's tissue, known by construction (..._settings.json)"));
+    form.item("11", "why this reference standard",
+              known_or_open(protocol, "the places of the nodules are known exactly; on a real phantom: " + kToFillIn));
+    form.item("12a", "cut-offs of the index test, and whether fixed before",
+              known_or_open(protocol,
+                            "a mark within the nodule's diameter or 8 mm of its axis, whichever is larger, is a hit; "
+                            "every mark counts, whatever its confidence; fixed by the program before the study"));
+    form.item("12b", "cut-offs of the reference standard", known_or_open(protocol, "none: a nodule is there or not"));
+    form.item("13a", "what those who did the index test knew of the reference",
+              !protocol ? kToFillIn
+                        : std::string("nothing during tests; the number of nodules was ") +
+                              (protocol->count_told ? "told" : "not told"));
+    form.item("13b", "what those who judged the reference knew of the index test",
+              known_or_open(protocol, "nobody judged it: hits are counted by the program"));
+    form.item("14", "how accuracy was estimated and compared", "report.md, first paragraphs");
+    form.item("15", "how indeterminate results were handled",
+              known_or_open(protocol, "there are none: a mark is a hit, is on a nodule already found, or is false"));
+    form.item(
+        "16", "how missing data were handled",
+        "nothing was filled in; comparisons are of participants with both conditions, others are counted as left out");
+    form.item("17", "analyses of variability, planned or exploratory",
+              report.groups.empty()
+                  ? "spreads of people and nodules in the mixed model; else none"
+                  : "groups compared in groups.tsv; spreads of people and nodules in the mixed model");
+    form.item("18", "sample size and how it was chosen", stard_sample(report, protocol));
+}
+
+void stard_results(const Report& report, StardForm& form) {
+    form.section("Results");
+    form.item("19", "flow of participants, with a diagram", stard_flow(report));
+    form.item("20", "who they were", "participants.tsv and ratings.tsv; summary: " + kToFillIn);
+    form.item("21a", "how severe the target condition was",
+              "nodules.tsv names the nodules; sizes and depths: " + kToFillIn);
+    form.item("21b", "what else was there in those without it");
+    form.item("22", "time and events between test and reference", "none: the reference is part of the tissue");
+    form.item("23", "cross table of test and reference", stard_cross(report));
+    form.item("24", "estimates with their precision", stard_precision(report));
+    form.item("25", "harm from test or reference");
+}
+
+void stard_simulation(const Protocol* protocol, StardForm& form) {
+    form.section("Simulation-based research (Cheng et al. 2016)");
+    form.item("S1", "orientation of participants to the simulator",
+              !protocol ? kToFillIn
+                        : whole(protocol->practice_trials) +
+                              " practice trials before each condition; instructions in "
+                              "protocol.json; what was said besides: " +
+                              kToFillIn);
+    form.item("S2", "simulator: make, model, functions",
+              "Palpa; devices in ..._settings.json of each trial; screen and pen: " + kToFillIn);
+    form.item("S3", "surroundings of the simulation");
+    form.item("S4", "event: scenario, duration, what was given to participants",
+              known_or_open(protocol && protocol->time_limit_s > 0.0,
+                            "tests of at most " + files::short_number(protocol ? protocol->time_limit_s : 0.0) + " s"));
+    form.item("S5", "feedback and instruction", known_or_open(protocol, "after practice only"));
+    form.item("S6", "pilot");
+    form.item("S7", "limits of the simulation against real palpation");
+}
+
+}  // namespace
+
+std::string stard_checklist(const Report& report, const Protocol* protocol) {
+    StardForm form;
+    form.section("Title, abstract, introduction");
+    form.item("1", "named as a study of accuracy, with its measure");
+    form.item("2", "structured abstract");
+    form.item("3", "background, intended use and role of the test");
+    form.item("4", "aims and hypotheses",
+              report.primary ? "primary comparison: " + std::string(name_of(report.primary->stated.quantity)) + ", " +
+                                   report.primary->stated.sides[0] + " against " + report.primary->stated.sides[1]
+                             : kToFillIn);
+    stard_methods(report, protocol, form);
+    stard_results(report, form);
+    form.section("Discussion and other information");
+    form.item(
+        "26", "limits: bias, uncertainty, how far results carry over",
+        report.simulated ? "NO PERSON TOOK PART: simulated hands and eyes, fitted to no person's data" : kToFillIn);
+    form.item("27", "what follows for practice");
+    form.item("28", "registration", protocol ? protocol->about.registration : "");
+    form.item("29", "where the protocol is", known_or_open(protocol, "protocol.json in the folder of the logs"));
+    form.item("30", "funding and its role", protocol ? stard_list(protocol->about.funding) : "");
+    stard_simulation(protocol, form);
+    return std::string("# Checklist: STARD 2015") + (report.simulated ? " (SIMULATED participants)" : "") +
+           "\n\nFilled in from protocol and logs as far as they know; the rest is marked " + kToFillIn +
+           ". Items in our words; the statement is Bossuyt et al., BMJ 351 (2015) h5527.\n" + form.text();
+}
+
+}  // namespace palpa::study

@@ -1,0 +1,60 @@
+#include "tangible/plan.h"
+
+#include <stdexcept>
+
+#include "files/input_error.h"
+#include "files/text.h"
+
+namespace palpa::tangible {
+namespace {
+
+Actuation lower_bounds(const DeviceModel& model) {
+    Actuation out{};
+    for (std::size_t j = 0; j < model.actuators.size(); ++j) out[j] = model.actuators[j].lower;
+    return out;
+}
+
+// The device at the pretension of its world: where the finger's force at the depth floor is the tissue's.
+void take_start(TangiblePlan& plan) {
+    const DeviceModel& model = *plan.model;
+    plan.start = rest_state(model);
+    plan.relaxed_length = lengths(model, plan.start.u_m);
+    scene::TissueWork work = scene::make_work(*plan.world.tissue);
+    const WorldForce floor = world_force(plan.world, plan.place_m, model.device.depth_floor_m, work);
+    const ForwardAnswer prepared = prepare_press(model, plan.start, floor.force_N);
+    if (prepared.status == DeviceStatus::slow)
+        plan.notes.push_back(
+            "the pretension that this tissue wants at the depth floor is beyond the device's limits; the limit is "
+            "taken");
+    else if (prepared.status != DeviceStatus::good && prepared.status != DeviceStatus::unstable)
+        throw std::runtime_error("the device " + model.device.name + " has no equilibrium at its pretension (" +
+                                 name_of(prepared.status) + ")");
+}
+
+}  // namespace
+
+TangiblePlan make_tangible_plan(std::shared_ptr<const DeviceModel> model, const World& world,
+                                const Eigen::Vector2d& place_m, const LoopOptions& options) {
+    TangiblePlan plan;
+    plan.model = std::move(model);
+    plan.world = world;
+    plan.loop = options;
+    plan.loop.inverse.dt_s = 1.0 / options.rate_Hz;
+    plan.place_m = place_m;
+    plan.relaxed = lower_bounds(*plan.model);
+    take_start(plan);
+    return plan;
+}
+
+TangiblePlan make_tangible_plan(const scene::Scene& scene, const scene::Plan& scene_plan, const LoopOptions& options) {
+    if (!scene.tangible)
+        throw files::bad_input(scene.file.string(), "tangible", "no such key", "one that names a device");
+    auto model = std::make_shared<const DeviceModel>(make_device_model(read_soft_device(scene.tangible->device)));
+    const Eigen::Vector2d place_m = scene.tangible->at_m.value_or(scene_plan.area.centre_m);
+    TangiblePlan plan = make_tangible_plan(std::move(model), make_world(scene, scene_plan), place_m, options);
+    plan.place_follows = !scene.tangible->at_m.has_value();
+    plan.greatest_m = scene_plan.greatest_depth_m / plan.world.depth_scale;
+    return plan;
+}
+
+}  // namespace palpa::tangible

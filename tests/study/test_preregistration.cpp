@@ -1,0 +1,54 @@
+#include <doctest/doctest.h>
+
+#include "files/text.h"
+#include "study/preregistration.h"
+#include "tests/error_message.h"
+#include "tests/temporary_folder.h"
+
+using namespace palpa::study;
+using namespace palpa::test;
+
+namespace {
+
+Protocol protocol_with(const std::string& more) {
+    const TemporaryFolder folder;
+    palpa::files::write_text_atomically(
+        folder / "p.json",
+        R"({"name": "n", "version": "2", "seed": 5, "order": "fixed", "repeats": 3, "conditions": [
+            {"id": "a", "modality": "hand"}, {"id": "b", "modality": "hand"}])" +
+            more + "}");
+    return read_protocol(folder / "p.json");
+}
+
+const std::string kAll =
+    R"(, "analysis": {"primary": {"quantity": "sensitivity", "conditions": ["a", "b"]}, "participants": 7,
+        "stopping_rule": "seven finished"},
+       "dataset": {"authors": ["A", "B"], "funding": ["F"], "ethics_approvals": ["E 1"], "license": "CC0", "registration": "doi"})";
+
+}  // namespace
+
+TEST_CASE("preregistration: design, orders, primary test, stopping rule and hash stand in the sheet") {
+    const Protocol protocol = protocol_with(kAll);
+    const std::string sheet = preregistration_sheet(protocol, {0, "palpa 1", {{{"map_sha256", "abc"}}, {}}});
+    for (const std::string& part :
+         {std::string("| SHA-256 of the protocol | " + protocol.sha256), std::string("| authors | A; B |"),
+          std::string("sensitivity, conditions a - b"), std::string("two-sided t test"), std::string("map_sha256 abc"),
+          std::string("| planned participants | 7 |"), std::string("| stopping rule | seven finished |"),
+          std::string("| 7 | all | 1 | a x 3, b x 3 |"), std::string("8 mm of its axis")}) {
+        CAPTURE(part);
+        CHECK(contains(sheet, part));
+    }
+    CHECK_FALSE(contains(sheet, "NOT STATED"));
+    CHECK_FALSE(contains(sheet, "| 8 | all"));
+    CHECK(missing_statements(protocol).empty());
+}
+
+TEST_CASE("preregistration: what the protocol does not state is named first, with its key") {
+    const Protocol protocol = protocol_with("");
+    const std::string sheet = preregistration_sheet(protocol, {2, "palpa 1", {}});
+    CHECK(missing_statements(protocol).size() == 6);
+    CHECK(contains(sheet, "- analysis.stopping_rule: when the study ends"));
+    CHECK(contains(sheet, "| stopping rule | NOT STATED |"));
+    CHECK(contains(sheet, "| 2 | all"));
+    CHECK_FALSE(contains(sheet, "| 3 | all"));
+}

@@ -1,0 +1,32 @@
+#include <doctest/doctest.h>
+
+#include "study/observations.h"
+#include "study/stard.h"
+#include "tests/error_message.h"
+
+using namespace palpa::study;
+using namespace palpa::test;
+
+TEST_CASE("STARD checklist: all 30 items and those of simulations stand there, filled in as far as counts know") {
+    const Report report = make_report(read_counts(PALPA_SOURCE_DIR "/assets/counts/paper.tsv"), {});
+    const std::string form = stard_checklist(report, nullptr);
+    for (const char* item : {"1",   "2",   "3",  "4",  "5",  "6",  "7",  "8",  "9",  "10a", "10b", "11", "12a", "12b",
+                             "13a", "13b", "14", "15", "16", "17", "18", "19", "20", "21a", "21b", "22", "23",  "24",
+                             "25",  "26",  "27", "28", "29", "30", "S1", "S2", "S3", "S4",  "S5",  "S6", "S7"}) {
+        CAPTURE(item);
+        CHECK(contains(form, "\n| " + std::string(item) + " | "));
+    }
+    CHECK(contains(form, "Touchpad: 31 nodules found, 29 missed"));
+    CHECK(contains(form, "Touchpad: sensitivity 0.5167"));
+    CHECK(contains(form, "| 13a | what those who did the index test knew of the reference | TO BE FILLED IN |"));
+}
+
+TEST_CASE("STARD checklist: the protocol answers what it states, and simulated people are called so") {
+    const Protocol protocol = read_protocol(PALPA_SOURCE_DIR "/assets/protocols/effects.json");
+    Report report;
+    report.simulated = true;
+    const std::string form = stard_checklist(report, &protocol);
+    CHECK(contains(form, "the number of nodules was not told"));
+    CHECK(contains(form, "NO PERSON TOOK PART"));
+    CHECK(contains(form, "tests of at most 60 s"));
+}

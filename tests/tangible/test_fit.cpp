@@ -1,0 +1,60 @@
+#include <doctest/doctest.h>
+
+#include "files/text.h"
+#include "tangible/fit.h"
+#include "tangible/tick_log.h"
+#include "tests/error_message.h"
+#include "tests/tangible/small_strip.h"
+#include "tests/temporary_folder.h"
+
+using namespace palpa;
+using namespace palpa::tangible;
+using namespace palpa::test;
+
+namespace {
+
+// A press on a plant, written as a table and read again.
+std::vector<RecordedTick> recorded(const PlantOptions& plant) {
+    const PressFigures figures = press_small(0.15, plant);
+    const auto model = small_strip();
+    std::string text = tick_columns(*model);
+    for (const PressTick& tick : figures.ticks)
+        append_tick(*model, tick.command, tick.depth_m, tick.wanted_N, tick.rendered_N, text);
+    const TemporaryFolder folder;
+    files::write_text_atomically(folder / "press.tsv", text);
+    return read_presses(folder / "press.tsv", *model);
+}
+
+std::string presses_refused(const std::string& text) {
+    const TemporaryFolder folder;
+    files::write_text_atomically(folder / "press.tsv", text);
+    return message_of([&] { read_presses(folder / "press.tsv", *small_strip()); });
+}
+
+}  // namespace
+
+TEST_CASE("fit: a plant's modulus is found again from one press") {
+    const FitResult result = fit_presses(small_strip()->device, recorded(small_plant(1.2)));
+    CHECK(result.settled);
+    CHECK(result.fit.modulus_factor == doctest::Approx(1.2).epsilon(0.01));
+    CHECK(result.fit.friction_share < 0.01);
+    CHECK(result.rms_after_N < 0.1 * result.rms_before_N);
+}
+
+TEST_CASE("fit: friction is told from the difference of pressing and releasing") {
+    PlantOptions plant = small_plant(0.9);
+    plant.friction_share = 0.08;
+    const FitResult result = fit_presses(small_strip()->device, recorded(plant));
+    CHECK(result.fit.modulus_factor == doctest::Approx(0.9).epsilon(0.02));
+    CHECK(result.fit.friction_share == doctest::Approx(0.08).epsilon(0.02));
+    CHECK(result.rms_after_N < 0.3 * result.rms_before_N);
+}
+
+TEST_CASE("fit: bad tables and presses that tell nothing") {
+    CHECK(contains(presses_refused("time_s\tdepth_mm\n"), "force_N"));
+    CHECK(contains(presses_refused("time_s\tdepth_mm\tforce_N\tleft_N\tright_N\n"), "no rows"));
+    CHECK(contains(presses_refused("time_s\tdepth_mm\tforce_N\tleft_N\tright_N\n0\t1\tn/a\t1\t1\n"), "force_N"));
+    CHECK(contains(presses_refused("time_s\tdepth_mm\tforce_N\tleft_N\tright_N\n0\t1\t1\t1\t1\n0\t1\t1\t1\t1\n"),
+                   "a time after"));
+    CHECK_THROWS_AS(fit_presses(small_strip()->device, std::vector<RecordedTick>(5)), std::runtime_error);
+}

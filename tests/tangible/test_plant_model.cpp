@@ -1,0 +1,114 @@
+#include <cmath>
+#include <doctest/doctest.h>
+
+#include "files/text.h"
+#include "tests/error_message.h"
+#include "tests/tangible/small_strip.h"
+#include "tests/temporary_folder.h"
+
+using namespace palpa;
+using namespace palpa::tangible;
+using namespace palpa::test;
+
+namespace {
+
+std::string plant_refused(const std::string& text) {
+    const TemporaryFolder folder;
+    files::write_text_atomically(folder / "plant.json", text);
+    return message_of([&] { read_plant((folder / "plant.json").string()); });
+}
+
+}  // namespace
+
+TEST_CASE("plant: a modulus 10 % off costs little by force and much by position") {
+    const double by_force = press_small(0.1, small_plant(1.1)).force_rms_percent;
+    LoopOptions loop;
+    loop.command = CommandKind::position;
+    const double by_position = press_small(0.1, small_plant(1.1), loop).force_rms_percent;
+    CHECK(by_force > 0.1);
+    CHECK(by_force < 3.0);
+    CHECK(by_position > 2.0 * by_force);
+    CHECK(by_position < 20.0);
+}
+
+TEST_CASE("plant: drives that lag, and readings that come late, give hysteresis of their own sense") {
+    PlantOptions lag = small_plant();
+    lag.lag_s = 0.1;
+    const PressFigures lagging = press_small(0.2, lag);
+    CHECK(lagging.force_rms_percent > press_small(0.2, small_plant()).force_rms_percent + 0.1);
+    PlantOptions late = small_plant();
+    late.sensor.delay_s = 0.05;
+    CHECK(press_small(0.2, late).force_rms_percent > 0.5);
+}
+
+TEST_CASE("plant: the sensor reads at its own times, late by its delay, with noise of its seed") {
+    const auto model = small_strip();
+    PlantOptions options = small_plant();
+    options.sensor = {50.0, 0.0, 0.005};
+    const KnownTissue known(0.1);
+    const TangiblePlan plan = make_tangible_plan(model, known.world, {0.0, 0.0}, {});
+    const Plant plant = make_plant(model, options, plan.loop);
+    PlantState state = make_plant_state(plant, plan, 1);
+    double read_s = 0.0;
+    for (int k = 0; k <= 10; ++k) {
+        place_finger(0.01 * k, 1e-3 * k, state);
+        const TangibleFeedback reading = read_plant_sensor(plant, 0.01 * k, state);
+        read_s = reading.sensor_s;
+        if (k >= 2) CHECK(reading.sensor_m == doctest::Approx(0.1 * (reading.sensor_s - 0.005)).scale(0.0));
+    }
+    CHECK(read_s == doctest::Approx(0.085));  // 80 ms was read, 5 ms later it came
+    options.sensor.noise_m = 1e-5;
+    const Plant noisy = make_plant(model, options, plan.loop);
+    const auto first = [&](std::uint64_t seed) {
+        PlantState s = make_plant_state(noisy, plan, seed);
+        place_finger(0.0, 1e-3, s);
+        return read_plant_sensor(noisy, 0.0, s).sensor_m;
+    };
+    CHECK(first(3) == first(3));
+    CHECK(first(3) != first(4));
+    CHECK(std::abs(first(3) - 1e-3) < 6e-5);
+}
+
+TEST_CASE("plant: a hand comes to rest where its force is the wanted one, with mass and without") {
+    const KnownTissue known(0.1);
+    const auto model = small_strip();
+    const TangiblePlan plan = make_tangible_plan(model, known.world, {0.0, 0.0}, {});
+    for (const double mass_kg : {0.0, 0.2}) {
+        PlantOptions options = small_plant();
+        options.hand = {mass_kg, 10.0};
+        const Plant plant = make_plant(model, options, plan.loop);
+        PlantState body = make_plant_state(plant, plan, 1);
+        TangibleState loop = make_tangible_state(plan);
+        place_finger(0.0, 0.0, body);
+        PlantAnswer answer;
+        for (int k = 0; k < 300; ++k) {
+            TangibleInput in;
+            in.time_s = 0.01 * k;
+            in.feedback = read_plant_sensor(plant, in.time_s, body);
+            const TangibleCommand command = tangible_tick(plan, in, loop);
+            const double hand_N = std::min(0.3, 0.003 * k);
+            answer = mass_kg > 0.0 ? push_plant(plant, command, in.time_s, hand_N, body)
+                                   : yield_to_hand(plant, command, in.time_s, hand_N, body);
+        }
+        CHECK(body.depth_m == doctest::Approx(3e-3).scale(0.0).epsilon(0.05));
+    }
+}
+
+TEST_CASE("plant: friction in the guides gives hysteresis, and a loop that knows it takes most of it away") {
+    PlantOptions rubbing = small_plant();
+    rubbing.friction_share = 0.1;
+    const PressFigures known = press_small(0.2, rubbing, {}, 0.1);
+    const PressFigures unknown = press_small(0.2, rubbing);
+    CHECK(std::abs(unknown.hysteresis_N) > 2.0 * std::abs(known.hysteresis_N));
+    CHECK(known.force_rms_percent < 0.5 * unknown.force_rms_percent);
+}
+
+TEST_CASE("plant: bad input names the key, what was found and what was expected") {
+    CHECK(contains(plant_refused("{}"), "name"));
+    CHECK(contains(plant_refused(R"({"name": "p", "modulus_factor": 0})"), "modulus_factor"));
+    CHECK(contains(plant_refused(R"({"name": "p", "device": 3})"), "device"));
+    CHECK(contains(plant_refused(R"({"name": "p", "sensor": {"rate": 3}})"), "rate"));
+    CHECK(contains(plant_refused(R"({"name": "p", "hand": {}})"), "mass_kg"));
+    CHECK(contains(plant_refused(R"({"name": "p", "lag": 3})"), "lag"));
+    CHECK(read_plant("exact").modulus_factor == 1.0);
+}
