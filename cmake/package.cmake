@@ -5,6 +5,9 @@ install(TARGETS palpa)
 install(TARGETS palpa_guard DESTINATION ${CMAKE_INSTALL_LIBEXECDIR}/palpa)
 # what --simulate starts
 install(TARGETS arm_simulator maestro_simulator DESTINATION ${CMAKE_INSTALL_LIBEXECDIR}/palpa)
+if(PALPA_TANGIBLE)
+    install(TARGETS tangible_plant DESTINATION ${CMAKE_INSTALL_LIBEXECDIR}/palpa)
+endif()
 install(DIRECTORY assets DESTINATION ${CMAKE_INSTALL_DATADIR}/palpa PATTERN desktop EXCLUDE)
 # what `palpa serve` hands to tablets; scripts/package builds it
 install(DIRECTORY build/web/site/ DESTINATION ${CMAKE_INSTALL_DATADIR}/palpa/web OPTIONAL)

@@ -16,8 +16,8 @@ namespace palpa::mechanics {
 enum class Element { hex8_bbar, hex8, tet4, hex8i };
 
 // The names of the elements in files, in the order of the enum.
-inline constexpr std::array<std::string_view, 4> kElementNames{"hex8-bbar", "hex8", "tet4", "hex8i"};
-inline std::string_view name_of(Element element) { return kElementNames[static_cast<std::size_t>(element)]; }
+inline constexpr std::array<const char*, 4> kElementNames{"hex8-bbar", "hex8", "tet4", "hex8i"};
+inline const char* name_of(Element element) { return kElementNames[static_cast<std::size_t>(element)]; }
 
 using Hex = Eigen::Matrix<double, 3, 8>;  // positions or displacements of the corners, in VTK order
 using Tet = Eigen::Matrix<double, 3, 4>;

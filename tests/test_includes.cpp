@@ -30,7 +30,7 @@ const std::map<std::string, std::set<std::string>> kMayInclude{
     {"render", {"platform"}},
     {"devices", {"files", "platform"}},
     {"tactile", {"files", "mechanics", "scene", "devices", "platform/real_time.h"}},
-    {"tangible", {"files", "mechanics", "scene", "devices", "fem/body_file"}},
+    {"tangible", {"files", "mechanics", "scene", "devices", "fem/body_file", "platform/real_time.h"}},
     {"study", {"files"}},
     {"session",
      {"files", "platform/real_time.h", "platform/sample.h", "platform/timeline.h", "platform/trace.h", "calibration",

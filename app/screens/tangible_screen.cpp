@@ -17,6 +17,15 @@ using session::TangibleMoment;
 
 constexpr float kStop_mm = 18.0f;
 
+// As value_line(), but a value that does not fit goes on below.
+void soft_line(const char* name, const std::string& value, float column_px) {
+    const float left_px = ImGui::GetCursorPosX();
+    ImGui::TextDisabled("%s", name);
+    ImGui::SameLine();
+    ImGui::SetCursorPosX(left_px + column_px);
+    ImGui::TextWrapped("%s", value.c_str());
+}
+
 // The state in one sentence, with a mark in front that is not only a colour.
 void draw_soft_state(const TangibleShown& soft) {
     const TangibleMoment& moment = soft.moment;
@@ -40,16 +49,16 @@ std::string rendered_title(const session::TangibleBody& body) {
 
 void draw_force_values(const TangibleShown& soft, float column_px) {
     const TangibleMoment& moment = soft.moment;
-    value_line(words::kDepth, in_unit(moment.depth_m, 1e3, 2, "mm"), column_px);
-    value_line(words::kVirtualDepth,
-               words::filled(words::kProxyDepth,
-                             {in_unit(moment.world_depth_m, 1e3, 2, "mm"), in_unit(moment.proxy_m, 1e3, 2, "mm")}),
-               column_px);
-    value_line(words::kWantedForce, in_unit(moment.wanted_N, 1.0, 3, "N"), column_px);
-    value_line(rendered_title(soft.body).c_str(), in_unit(moment.rendered_N, 1.0, 3, "N"), column_px);
+    soft_line(words::kDepth, in_unit(moment.depth_m, 1e3, 2, "mm"), column_px);
+    soft_line(words::kVirtualDepth,
+              words::filled(words::kProxyDepth,
+                            {in_unit(moment.world_depth_m, 1e3, 2, "mm"), in_unit(moment.proxy_m, 1e3, 2, "mm")}),
+              column_px);
+    soft_line(words::kWantedForce, in_unit(moment.wanted_N, 1.0, 3, "N"), column_px);
+    soft_line(rendered_title(soft.body).c_str(), in_unit(moment.rendered_N, 1.0, 3, "N"), column_px);
     if (std::isfinite(moment.force_rms_percent))
-        value_line(words::kForceError, words::filled(words::kForceErrorIs, {fixed(moment.force_rms_percent, 2)}),
-                   column_px);
+        soft_line(words::kForceError, words::filled(words::kForceErrorIs, {fixed(moment.force_rms_percent, 2)}),
+                  column_px);
 }
 
 std::string actuation_text(const TangibleActuator& actuator, double value) {
@@ -61,7 +70,7 @@ std::string limits_text(const TangibleActuator& actuator) {
     return fixed(scale * actuator.lower, 2) + " ... " + fixed(scale * actuator.upper, 2);
 }
 
-// Where the actuation stands between its limits.
+// Where the actuation stands between its limits, which are written on the bar.
 void draw_actuation_bar(const TangibleActuator& actuator, double value, bool at_limit, const Gui& gui) {
     const ImVec2 at = ImGui::GetCursorScreenPos();
     const ImVec2 size(ImGui::GetContentRegionAvail().x, ImGui::GetTextLineHeight());
@@ -70,17 +79,21 @@ void draw_actuation_bar(const TangibleActuator& actuator, double value, bool at_
     const float x = at.x + size.x * static_cast<float>(std::clamp(share, 0.0, 1.0));
     ImDrawList& draw = *ImGui::GetWindowDrawList();
     draw.AddRectFilled(at, ImVec2(at.x + size.x, at.y + size.y), kForceTints[0]);
-    draw.AddRectFilled(at, ImVec2(x, at.y + size.y), kForceTints[2]);
+    draw.AddRectFilled(at, ImVec2(x, at.y + size.y), kForceTints[1]);
     draw.AddLine(ImVec2(x, at.y), ImVec2(x, at.y + size.y), at_limit ? kLag : kInk, 0.6f * gui.mm());
+    const float small_px = 0.8f * ImGui::GetFontSize();
+    draw.AddText(ImGui::GetFont(), small_px, ImVec2(at.x + gui.mm(), at.y + 0.1f * small_px), kInk,
+                 limits_text(actuator).c_str());
     ImGui::Dummy(size);
 }
 
 void draw_actuators(const TangibleShown& soft, const Gui& gui) {
     if (soft.body.actuators.empty()) return;
-    if (!ImGui::BeginTable("actuators", 5, ImGuiTableFlags_SizingFixedFit)) return;
-    for (int column = 0; column < 5; ++column)
-        ImGui::TableSetupColumn("", column == 3 ? ImGuiTableColumnFlags_WidthStretch : ImGuiTableColumnFlags_None);
-    for (const char* title : {words::kActuator, words::kActuation, words::kLimits, "", words::kCommand}) {
+    constexpr int kColumns = 4, kBar = 2;
+    if (!ImGui::BeginTable("actuators", kColumns, ImGuiTableFlags_SizingFixedFit)) return;
+    for (int column = 0; column < kColumns; ++column)
+        ImGui::TableSetupColumn("", column == kBar ? ImGuiTableColumnFlags_WidthStretch : ImGuiTableColumnFlags_None);
+    for (const char* title : {words::kActuator, words::kActuation, words::kLimits, words::kCommand}) {
         ImGui::TableNextColumn();
         ImGui::TextDisabled("%s", title);
     }
@@ -93,13 +106,11 @@ void draw_actuators(const TangibleShown& soft, const Gui& gui) {
         ImGui::TableNextColumn();
         ImGui::TextUnformatted(actuation_text(actuator, soft.moment.actuation[k]).c_str());
         ImGui::TableNextColumn();
-        ImGui::TextDisabled("%s", limits_text(actuator).c_str());
-        ImGui::TableNextColumn();
         draw_actuation_bar(actuator, soft.moment.actuation[k], at_limit, gui);
         ImGui::TableNextColumn();
         const std::string command = actuator.cavity ? in_unit(soft.moment.command[k], 1e6, 2, "ml")
                                                     : in_unit(soft.moment.command[k], 1e3, 2, "mm");
-        ImGui::Text("%s%s%s", command.c_str(), at_limit ? "  " : "", at_limit ? words::kAtLimit : "");
+        ImGui::Text("%s%s", command.c_str(), at_limit ? " !" : "");
     }
     ImGui::EndTable();
 }
@@ -108,9 +119,9 @@ void draw_actuators(const TangibleShown& soft, const Gui& gui) {
 void draw_problem(const TangibleShown& soft, float column_px) {
     const TangibleMoment& moment = soft.moment;
     if (!soft.runs) return;
-    value_line(words::kGapFree, in_unit(moment.free_m, 1e3, 3, "mm"), column_px);
-    value_line(words::kGapByFinger, in_unit(moment.by_finger_m, 1e3, 3, "mm"), column_px);
-    value_line(words::kGapByActuators, in_unit(moment.by_actuators_m, 1e3, 3, "mm"), column_px);
+    soft_line(words::kGapFree, in_unit(moment.free_m, 1e3, 3, "mm"), column_px);
+    soft_line(words::kGapByFinger, in_unit(moment.by_finger_m, 1e3, 3, "mm"), column_px);
+    soft_line(words::kGapByActuators, in_unit(moment.by_actuators_m, 1e3, 3, "mm"), column_px);
     std::string row;
     const std::size_t count = std::min(soft.body.actuators.size(), session::kMostTangibleActuators);
     for (std::size_t k = 0; k < count; ++k) {
@@ -118,21 +129,21 @@ void draw_problem(const TangibleShown& soft, float column_px) {
         row += (row.empty() ? "" : ", ") + fixed((cavity ? 1e6 : 1e3) * moment.compliance[k], 3) +
                (cavity ? " mm/kPa" : " mm/N");
     }
-    value_line(words::kCompliance, row.empty() ? "-" : row, column_px);
-    value_line(words::kGapLeft, in_unit(moment.residual_m, 1e3, 4, "mm"), column_px);
+    soft_line(words::kCompliance, row.empty() ? "-" : row, column_px);
+    soft_line(words::kGapLeft, in_unit(moment.residual_m, 1e3, 4, "mm"), column_px);
     const std::string solved = words::filled(
         words::kSolvedIn, {soft.body.algorithm, std::to_string(moment.rank), std::to_string(moment.iterations)});
-    value_line(words::kSolve, solved + (moment.converged ? "" : std::string(", ") + words::kNotConverged), column_px);
+    soft_line(words::kSolve, solved + (moment.converged ? "" : std::string(", ") + words::kNotConverged), column_px);
 }
 
 void draw_loop(const TangibleShown& soft, float column_px) {
     const TangibleMoment& moment = soft.moment;
     if (!soft.runs) return;
-    value_line(words::kTicks,
-               words::filled(words::kTicksMissed, {std::to_string(moment.ticks), std::to_string(moment.missed_ticks),
-                                                   std::to_string(moment.saturated_ticks), fixed(moment.held_s, 1)}),
-               column_px);
-    value_line(
+    soft_line(words::kTicks,
+              words::filled(words::kTicksMissed, {std::to_string(moment.ticks), std::to_string(moment.missed_ticks),
+                                                  std::to_string(moment.saturated_ticks), fixed(moment.held_s, 1)}),
+              column_px);
+    soft_line(
         words::kPeriod,
         words::filled(words::kPeriodTimes, {fixed(1e3 * moment.period_p50_s, 1), fixed(1e3 * moment.period_p99_s, 1),
                                             fixed(1e3 * moment.step_p50_s, 2), fixed(1e3 * moment.step_p99_s, 2)}),
@@ -182,7 +193,7 @@ void draw_press(const PanelArea& area, const TangibleShown& soft, float mm) {
     }
     plot.most_x = round_up(depth_mm);
     plot.most_y = round_up(force_N);
-    draw_plot_axes(plot, {words::kWantedAndRendered, words::kDepthAxis, words::kForceAxis}, mm, draw);
+    draw_plot_axes(plot, {words::kForceOverDepth, words::kDepthAxis, words::kForceAxis}, mm, draw);
     for (const ForceAtDepth& at : soft.press) {
         if (!std::isfinite(at.depth_m)) continue;
         if (std::isfinite(at.rendered_N))

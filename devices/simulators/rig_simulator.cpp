@@ -6,6 +6,8 @@
 
 #include "devices/simulators/rig_wires.h"
 #include "devices/simulators/stream.h"
+#include "devices/simulators/truth_file.h"
+#include "files/text.h"
 #include "platform/real_time.h"
 
 using namespace palpa;
@@ -14,15 +16,14 @@ using namespace palpa::devices::simulators;
 
 namespace {
 
-void write_truth(const ActuatorRig& rig, const RigWires& wires, double now_s, std::FILE* file) {
+std::string truth_row(const ActuatorRig& rig, const RigWires& wires, double now_s) {
     bool relaxed = true;
-    std::fprintf(file, "%.6f", now_s);
+    std::string row = files::number_text(now_s);
     for (std::size_t i = 0; i < rig.channels.size(); ++i) {
         relaxed = relaxed && wires.relaxed(i);
-        std::fprintf(file, "\t%.9g", wires.value(i));
+        row += '\t' + files::number_text(wires.value(i));
     }
-    std::fprintf(file, "\t%d\n", relaxed ? 1 : 0);
-    std::fflush(file);
+    return row + (relaxed ? "\t1\n" : "\t0\n");
 }
 
 }  // namespace
@@ -39,13 +40,11 @@ int main(int argc, char** argv) {
     app.add_option("--period-s", period_s, "from one press to the next")->check(CLI::Range(0.1, 1e3));
     add_wires_options(app, options);
     CLI11_PARSE(app, argc, argv);
-    std::FILE* truth = nullptr;
     try {
         const files::Json json = files::read_json(file);
         const ActuatorRig rig = read_rig(files::JsonReader(json, file));
         RigWires wires(rig, options);
-        if (!truth_path.empty() && (truth = std::fopen(truth_path.c_str(), "w")) == nullptr)
-            throw std::runtime_error(truth_path + ": cannot be written");
+        TruthFile truth(truth_path);
         std::printf("port %s\n", wires.ports().c_str());
         std::fflush(stdout);
         end_on_signals();
@@ -55,8 +54,8 @@ int main(int argc, char** argv) {
             wires.run();
             const double turn = 2.0 * std::numbers::pi * wires.elapsed_s() / period_s;
             wires.show_displacement(1e-3 * depth_mm * (0.5 - 0.5 * std::cos(turn)));
-            if (truth == nullptr || wires.elapsed_s() < truth_s) continue;
-            write_truth(rig, wires, steady_s(), truth);
+            if (!truth.wanted() || wires.elapsed_s() < truth_s) continue;
+            truth.add(truth_row(rig, wires, steady_s()));
             truth_s = wires.elapsed_s() + kTruth_s;
         }
         std::printf("out_of_range %lld\n", static_cast<long long>(wires.out_of_range()));
@@ -64,6 +63,5 @@ int main(int argc, char** argv) {
         std::fprintf(stderr, "rig_simulator: %s\n", error.what());
         return 2;
     }
-    if (truth != nullptr) std::fclose(truth);
     return 0;
 }

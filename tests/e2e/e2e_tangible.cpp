@@ -39,11 +39,11 @@ std::string soft_study(const TemporaryFolder& folder) {
 TEST_CASE("tangible: a pen's press on the plant is rendered, and the report says how well") {
     const TemporaryFolder folder;
     Script script(folder / "script.tsv");
-    script.t_s = 2.0;
+    script.t_s = 15.0;  // the pretension is found first
     script.press(3.0);
     script.key(kG);  // the screen of the soft device
     script.out.close();
-    const std::string arguments = soft_scene(folder) + " --quit-after-s 12 --log " + (folder / "log").string() +
+    const std::string arguments = soft_scene(folder) + " --quit-after-s 32 --log " + (folder / "log").string() +
                                   " --screenshot " + (folder / "p.png").string();
     REQUIRE(run_app(folder, arguments, [&] { CHECK(play_script(folder) == 0); }) == 0);
     const Json result = read_json(folder / "out.json");

@@ -1,0 +1,146 @@
+// palpa tangible run on the plant program: real protocols on pseudo-terminals, both programs as people start them.
+
+#include <cmath>
+#include <csignal>
+#include <doctest/doctest.h>
+#include <fcntl.h>
+#include <functional>
+#include <sys/wait.h>
+#include <thread>
+#include <unistd.h>
+
+#include "devices/force_sensor.h"
+#include "devices/simulators/process.h"
+#include "files/json.h"
+#include "files/text.h"
+#include "tests/temporary_folder.h"
+
+using namespace palpa;
+using namespace palpa::test;
+using devices::simulators::SimulatorProcess;
+
+namespace {
+
+void nap(double seconds) { std::this_thread::sleep_for(std::chrono::duration<double>(seconds)); }
+
+bool within_a_minute(const std::function<bool()>& done) {
+    for (const double until_s = devices::steady_s() + 60.0; devices::steady_s() < until_s; nap(0.01)) {
+        if (done()) return true;
+    }
+    return false;
+}
+
+struct PlantRow {
+    double host_s = 0.0, depth_mm = 0.0, force_N = 0.0, left_N = 0.0;
+    bool relaxed = false;
+};
+
+// The plant program with the strip, and a scene on it.
+struct Bench {
+    explicit Bench(std::vector<std::string> more = {}) {
+        files::write_text_atomically(folder / "scene.json",
+                                     R"({"name": "spring", "tissue": {"force_curve": {"stiffness_N_per_mm": 0.1,
+            "greatest_depth_mm": 8}}, "mapping": {"kind": "direct"}, "tangible": {"device": "strip.json"}})");
+        std::vector<std::string> arguments{PALPA_SOURCE_DIR "/assets/devices/strip.json",
+                                           "--nodes",
+                                           "6",
+                                           "--pause-s",
+                                           "0.2",
+                                           "--links",
+                                           folder.path().string(),
+                                           "--truth",
+                                           (folder / "truth.tsv").string()};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        plant = std::make_unique<SimulatorProcess>(PALPA_PLANT, arguments);
+    }
+
+    // `palpa tangible run` for so many seconds; its JSON goes to out.json.
+    pid_t start(int seconds) const {
+        const std::string scene = (folder / "scene.json").string(), out = (folder / "out.json").string();
+        const std::string motors = "motors=" + (folder / "motors").string();
+        const std::string sensor = "sensor=" + (folder / "sensor").string(), length = std::to_string(seconds);
+        const pid_t program = ::fork();
+        if (program != 0) return program;
+        const int file = ::open(out.c_str(), O_CREAT | O_WRONLY | O_TRUNC, 0600);
+        ::dup2(file, STDOUT_FILENO);
+        ::execl(PALPA_PROGRAM, "palpa", "tangible", "run", scene.c_str(), "--port", motors.c_str(), "--port",
+                sensor.c_str(), "--seconds", length.c_str(), "--json", nullptr);
+        ::_exit(127);
+    }
+
+    std::vector<PlantRow> truth() const {
+        std::string text = files::read_text(folder / "truth.tsv");
+        text.resize(text.rfind('\n') == std::string::npos ? 0 : text.rfind('\n'));
+        std::vector<PlantRow> rows;
+        bool head = true;
+        for (const std::string_view line : files::fields_of(text, '\n')) {
+            std::array<double, 6> number{};
+            const auto fields = files::fields_of(line, '\t');
+            if (!std::exchange(head, false) && fields.size() == 6) {
+                for (std::size_t i = 0; i < 6; ++i) files::parse_number(fields[i], number[i]);
+                rows.push_back({number[0], number[1], number[2], number[3], number[5] == 1.0});
+            }
+        }
+        return rows;
+    }
+    bool pressed() const {  // the device is driven, and pushes back
+        const auto rows = truth();
+        return !rows.empty() && !rows.back().relaxed && rows.back().force_N > 0.1;
+    }
+    bool relaxed() const {
+        const auto rows = truth();
+        return !rows.empty() && rows.back().relaxed;
+    }
+    std::string out_of_range() {
+        ::kill(plant->pid(), SIGTERM);
+        return plant->line();
+    }
+
+    TemporaryFolder folder;
+    std::unique_ptr<SimulatorProcess> plant;
+};
+
+}  // namespace
+
+TEST_CASE("plant: the strip renders a spring over its wires, and is relaxed afterwards") {
+    Bench bench;
+    const pid_t program = bench.start(9);
+    int status = -1;
+    ::waitpid(program, &status, 0);
+    CHECK(status == 0);
+    const files::Json report = files::read_json(bench.folder / "out.json");
+    MESSAGE("report ", report.dump());
+    CHECK(report["ticks"].get<int>() > 300);
+    CHECK(within_a_minute([&] { return bench.relaxed(); }));
+    double worst_N = 0.0, greatest_N = 0.0;
+    for (const PlantRow& row : bench.truth()) {
+        if (row.relaxed) continue;
+        greatest_N = std::max(greatest_N, row.force_N);
+        worst_N = std::max(worst_N, std::abs(row.force_N - 0.1 * row.depth_mm));
+    }
+    MESSAGE("greatest force ", greatest_N, " N, worst error ", worst_N, " N");
+    CHECK(greatest_N > 0.4);
+    CHECK(greatest_N < 0.8);
+    CHECK(bench.out_of_range() == "out_of_range 0");
+}
+
+TEST_CASE("plant: unplugged, garbage, SIGKILL: relaxed each time, and never a command out of range") {
+    for (const int way : {0, 1, 2}) {
+        CAPTURE(way);
+        Bench bench(way == 0   ? std::vector<std::string>{"--silent-from-s", "12", "--silent-s", "2"}
+                    : way == 1 ? std::vector<std::string>{"--garbage-from-s", "12", "--garbage-s", "2"}
+                               : std::vector<std::string>{});
+        const pid_t program = bench.start(way == 2 ? 60 : 20);
+        CHECK(within_a_minute([&] { return bench.pressed(); }));
+        if (way == 2) ::kill(program, SIGKILL);
+        CHECK(within_a_minute([&] { return bench.relaxed(); }));
+        int status = -1;
+        ::waitpid(program, &status, 0);
+        CHECK(WIFSIGNALED(status) == (way == 2));
+        if (way != 2) {
+            const files::Json report = files::read_json(bench.folder / "out.json");
+            CHECK_FALSE(report["faults"].empty());
+        }
+        CHECK(bench.out_of_range() == "out_of_range 0");
+    }
+}
