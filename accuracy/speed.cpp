@@ -59,7 +59,9 @@ struct LaplacianUnit::Solver {
     Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor;
 };
 
-LaplacianUnit::LaplacianUnit() : solver_(std::make_unique<Solver>()) { solver_->factor.analyzePattern(solver_->matrix); }
+LaplacianUnit::LaplacianUnit() : solver_(std::make_unique<Solver>()) {
+    solver_->factor.analyzePattern(solver_->matrix);
+}
 LaplacianUnit::~LaplacianUnit() = default;
 
 void LaplacianUnit::time() {
@@ -91,10 +93,8 @@ SpeedRow sample_speed(const scene::Scene& scene, const scene::Plan& plan, double
 }
 
 files::Json machine_json(const Machine& machine) {
-    return {{"processor", machine.processor},
-            {"threads", machine.threads},
-            {"load", machine.load},
-            {"date", machine.date}};
+    return {
+        {"processor", machine.processor}, {"threads", machine.threads}, {"load", machine.load}, {"date", machine.date}};
 }
 
 files::Json speed_json(const SpeedRow& unit, const std::vector<SpeedRow>& rows, const Machine& machine) {

@@ -16,19 +16,19 @@ using tangible::DeviceModel;
 using tangible::DeviceState;
 using tangible::Fidelity;
 
-constexpr int kTicks = 240;
-constexpr double kRate_Hz = 100.0;
-constexpr double kDepth_m = 6e-3;
-constexpr double kStiffness_N_per_m = 100.0;
+constexpr int kPressTicks = 240;
+constexpr double kPressRate_Hz = 100.0;
+constexpr double kPressDepth_m = 6e-3;
+constexpr double kPressed_N_per_m = 100.0;
 
 // Depth at a tick: there and back with minimum jerk.
-double depth_at_m(int tick) {
-    const double there = 2.0 * tick / kTicks;
+double press_depth_m(int tick) {
+    const double there = 2.0 * tick / kPressTicks;
     const double t = there <= 1.0 ? there : 2.0 - there;
-    return kDepth_m * t * t * t * (10.0 - 15.0 * t + 6.0 * t * t);
+    return kPressDepth_m * t * t * t * (10.0 - 15.0 * t + 6.0 * t * t);
 }
 
-struct PreparedDevice {
+struct PressedDevice {
     std::string name;
     DeviceModel model;
     DeviceState state;
@@ -38,43 +38,44 @@ struct PreparedDevice {
 
 // One press: the actuation of every tick, with a call around each that may time it.
 template <class Around>
-std::vector<tangible::Actuation> press(const PreparedDevice& device, Fidelity fidelity, Around&& around) {
+std::vector<tangible::Actuation> press(const PressedDevice& device, Fidelity fidelity, Around&& around) {
     DeviceState state = device.state;
     std::vector<tangible::Actuation> out;
-    for (int tick = 0; tick <= kTicks; ++tick) {
-        const double depth_m = depth_at_m(tick);
+    for (int tick = 0; tick <= kPressTicks; ++tick) {
+        const double depth_m = press_depth_m(tick);
         tangible::InverseAnswer answer;
         around(tick, [&] {
-            answer = inverse_step(device.model, state, {depth_m, kStiffness_N_per_m * depth_m, {}},
-                                  {fidelity, 1.0 / kRate_Hz, true, true});
+            answer = inverse_step(device.model, state, {depth_m, kPressed_N_per_m * depth_m, {}},
+                                  {fidelity, 1.0 / kPressRate_Hz, true, true});
         });
         out.push_back(answer.actuation);
     }
     return out;
 }
 
-std::vector<double> plant_force_N(const PreparedDevice& device, const std::vector<tangible::Actuation>& actuation) {
+std::vector<double> plant_force_N(const PressedDevice& device, const std::vector<tangible::Actuation>& actuation) {
     DeviceState plant = device.state;
     std::vector<double> out;
-    for (int tick = 0; tick <= kTicks; ++tick)
-        out.push_back(press_to_depth(device.model, plant, actuation[static_cast<std::size_t>(tick)], depth_at_m(tick))
-                          .force_N);
+    for (int tick = 0; tick <= kPressTicks; ++tick)
+        out.push_back(
+            press_to_depth(device.model, plant, actuation[static_cast<std::size_t>(tick)], press_depth_m(tick))
+                .force_N);
     return out;
 }
 
-PreparedDevice prepare(const std::filesystem::path& file) {
+PressedDevice prepare_device(const std::filesystem::path& file) {
     const double before_MB = heap_MB();
-    PreparedDevice device;
+    PressedDevice device;
     device.model = tangible::make_device_model(tangible::read_soft_device(file));
     device.name = device.model.device.name;
     device.state = tangible::rest_state(device.model);
-    prepare_press(device.model, device.state, kStiffness_N_per_m * device.model.device.depth_floor_m);
+    prepare_press(device.model, device.state, kPressed_N_per_m * device.model.device.depth_floor_m);
     device.kept_MB = heap_MB() - before_MB;
     device.converged_N = plant_force_N(device, press(device, Fidelity::converged, [](int, auto&& call) { call(); }));
     return device;
 }
 
-double error_percent(const PreparedDevice& device, const std::vector<double>& force_N) {
+double error_percent(const PressedDevice& device, const std::vector<double>& force_N) {
     double sum = 0.0;
     double most = 0.0;
     for (std::size_t i = 0; i < force_N.size(); ++i) {
@@ -93,13 +94,14 @@ TangibleSpeedRow row_of(const std::string& what, const Timing& timing) {
 }
 
 // Times a fidelity over one press, the unit after every eighth tick.
-TangibleSpeedRow press_row(const PreparedDevice& device, Fidelity fidelity, LaplacianUnit& unit) {
+TangibleSpeedRow press_row(const PressedDevice& device, Fidelity fidelity, LaplacianUnit& unit) {
     Timing timing;
     const auto actuation = press(device, fidelity, [&](int tick, auto&& call) {
         if (tick % 8 == 0) unit.time();
         time_call(timing, call);
     });
-    TangibleSpeedRow row = row_of(device.name + ", " + std::string(tangible::kFidelityNames[static_cast<std::size_t>(fidelity)]), timing);
+    TangibleSpeedRow row =
+        row_of(device.name + ", " + std::string(tangible::kFidelityNames[static_cast<std::size_t>(fidelity)]), timing);
     row.force_error_percent = error_percent(device, plant_force_N(device, actuation));
     row.allocated_MB = device.kept_MB;
     return row;
@@ -142,7 +144,7 @@ TangibleSpeed tangible_speed(const std::filesystem::path& devices) {
     LaplacianUnit unit;
     TangibleSpeed out;
     const auto measure = [&](const char* file, std::initializer_list<Asked> list) {
-        const PreparedDevice device = prepare(devices / file);
+        const PressedDevice device = prepare_device(devices / file);
         for (const Asked& asked : list) {
             out.rows.push_back(press_row(device, asked.fidelity, unit));
             out.rows.back().peer_units = asked.peer_units;
@@ -178,11 +180,14 @@ std::string tangible_speed_table(const TangibleSpeed& speed) {
                       files::short_number(speed.unit_ms) + " ms\n";
     out += "what                                 median ms   p99 ms   units   bound   SOFA   force error\n";
     for (const TangibleSpeedRow& row : speed.rows) {
-        const auto cell = [](double value) { return std::isfinite(value) ? files::short_number(value) : std::string("-"); };
+        const auto cell = [](double value) {
+            return std::isfinite(value) ? files::short_number(value) : std::string("-");
+        };
         std::array<char, 200> line{};
         std::snprintf(line.data(), line.size(), "%-36s %9s %8s %7s %7s %6s %10s %%\n", row.what.c_str(),
                       cell(row.median_ms).c_str(), cell(row.p99_ms).c_str(), cell(row.units).c_str(),
-                      cell(row.bound_units).c_str(), cell(row.peer_units).c_str(), cell(row.force_error_percent).c_str());
+                      cell(row.bound_units).c_str(), cell(row.peer_units).c_str(),
+                      cell(row.force_error_percent).c_str());
         out += line.data();
     }
     return out;

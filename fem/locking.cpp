@@ -29,7 +29,8 @@ constexpr std::array<Locking, 6> kMeasured{{{0.47, 1.21, 1.07},
 }  // namespace
 
 std::string locking_warning(const Problem& problem) {
-    if (problem.element == Element::hex8_bbar || problem.materials.empty()) return "";
+    const bool locks = problem.element == Element::hex8 || problem.element == Element::tet4;
+    if (!locks || problem.materials.empty()) return "";
     double poisson = -1.0;
     for (const Material& m : problem.materials) poisson = std::max(poisson, m.poisson);
     if (!(poisson >= kMeasured.front().poisson)) return "";

@@ -102,10 +102,11 @@ Mesh mesh_of(files::Msh& msh, Element element, const std::string& file) {
     const std::size_t others = msh.count(tets ? files::MshKind::hex : files::MshKind::tet);
     const auto n = static_cast<Index>(msh.count(wanted));
     if (n == 0 || others > 0) {
-        throw files::bad_input(file, "",
-                               std::to_string(msh.count(files::MshKind::hex)) + " hexahedra and " +
-                                   std::to_string(msh.count(files::MshKind::tet)) + " tetrahedra",
-                               tets ? "tetrahedra only (element tet4)" : "hexahedra only (element hex8-bbar, hex8 or hex8i)");
+        throw files::bad_input(
+            file, "",
+            std::to_string(msh.count(files::MshKind::hex)) + " hexahedra and " +
+                std::to_string(msh.count(files::MshKind::tet)) + " tetrahedra",
+            tets ? "tetrahedra only (element tet4)" : "hexahedra only (element hex8-bbar, hex8 or hex8i)");
     }
     drop_loose_nodes(wanted, msh);
     if (static_cast<double>(msh.n_nodes()) > kMostNodes) {
@@ -254,9 +255,8 @@ Faces faces_inside(const CaseMesh& mesh) {
     std::vector<Index> found;
     for (Index face = 0; face < mesh.outer.corners.cols(); ++face) {
         const auto corners = mesh.outer.corners.col(face);
-        if (std::all_of(corners.begin(), corners.end(), [&](int node) {
-                return std::binary_search(mesh.inside.begin(), mesh.inside.end(), node);
-            }))
+        if (std::all_of(corners.begin(), corners.end(),
+                        [&](int node) { return std::binary_search(mesh.inside.begin(), mesh.inside.end(), node); }))
             found.push_back(face);
     }
     return faces_at(mesh, found);

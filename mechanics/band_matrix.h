@@ -14,9 +14,7 @@ struct BandMatrix {
     double& at(Eigen::Index row, Eigen::Index column) { return values(row - column, column); }
 };
 
-inline BandMatrix band_matrix(Eigen::Index size, int band) {
-    return {band, Eigen::MatrixXd::Zero(band + 1, size)};
-}
+inline BandMatrix band_matrix(Eigen::Index size, int band) { return {band, Eigen::MatrixXd::Zero(band + 1, size)}; }
 
 // Adds a 3 x 3 block of rows 3 a .. 3 a + 2 and columns 3 b .. 3 b + 2; for a = b its lower triangle is taken. A block
 // above the diagonal (a < b) is added below it, transposed.

@@ -35,7 +35,8 @@ void check(const Bellows& b) {
     if (b.sectors < 8 || b.sectors % 4 != 0) wrong = text("sectors: ", b.sectors, "; wanted a multiple of 4 from 8");
     if (b.along < 1 || b.through < 1 || b.plate_cells < 1 || b.rings < 0)
         wrong = "along, through, plate_cells: each at least 1; rings: at least 0";
-    if (!(b.wall_m < 2.0 * sharpest_m)) wrong = text("wall: its waves are bent more sharply than ", b.wall_m / 2.0, " m");
+    if (!(b.wall_m < 2.0 * sharpest_m))
+        wrong = text("wall: its waves are bent more sharply than ", b.wall_m / 2.0, " m");
     if (!(b.radius_m - std::abs(b.amplitude_m) > b.wall_m)) wrong = "radius: the wall reaches the axis";
     for (const double size : {b.radius_m, b.height_m, b.wall_m, b.plate_m}) {
         if (!(std::isfinite(size) && size > 0.0)) wrong = text("a size of ", size, " m; wanted sizes > 0");
@@ -50,8 +51,8 @@ Quads ring_quads(const Bellows& b, int circles) {
     Quads out;
     for (int c = 0; c + 1 < circles; ++c) {
         for (int s = 0; s < b.sectors; ++s) {
-            out.push_back({ring_node(b, c, s), ring_node(b, c + 1, s), ring_node(b, c + 1, s + 1),
-                           ring_node(b, c, s + 1)});
+            out.push_back(
+                {ring_node(b, c, s), ring_node(b, c + 1, s), ring_node(b, c + 1, s + 1), ring_node(b, c, s + 1)});
         }
     }
     return out;
@@ -95,7 +96,8 @@ Middle middle_of(const Bellows& b, double radius_m) {
     for (int k = 0; k < m; ++k) out.edge.push_back(node(0, m - k));
     for (int k = 0; k < m; ++k) out.edge.push_back(node(k, 0));
     for (int j = 0; j < m; ++j) {
-        for (int i = 0; i < m; ++i) out.quads.push_back({node(i, j), node(i + 1, j), node(i + 1, j + 1), node(i, j + 1)});
+        for (int i = 0; i < m; ++i)
+            out.quads.push_back({node(i, j), node(i + 1, j), node(i + 1, j + 1), node(i, j + 1)});
     }
     return out;
 }
@@ -170,7 +172,8 @@ Plane plane_of(const Bellows& b) {
         out.nodes.emplace_back(std::cos(turn) * p.x() - std::sin(turn) * p.y(),
                                std::sin(turn) * p.x() + std::cos(turn) * p.y());
     }
-    for (const auto& q : middle.quads) out.quads.push_back({node_of[at(q[0])], node_of[at(q[1])], node_of[at(q[2])], node_of[at(q[3])]});
+    for (const auto& q : middle.quads)
+        out.quads.push_back({node_of[at(q[0])], node_of[at(q[1])], node_of[at(q[2])], node_of[at(q[3])]});
     std::vector<int> inner;
     for (const int node : middle.edge) inner.push_back(node_of[at(node)]);
     for (int ring = 1; ring <= b.rings; ++ring) {
@@ -235,9 +238,12 @@ BellowsMesh bellows(const Bellows& shape) {
 
 Mesh split_columns_to_tets(const Mesh& hexes) {
     // a prism (0 1 2 below, 3 4 5 above) turned so that its lowest node is corner 0
-    constexpr std::array<std::array<int, 6>, 6> kTurns{
-        {{0, 1, 2, 3, 4, 5}, {1, 2, 0, 4, 5, 3}, {2, 0, 1, 5, 3, 4}, {3, 5, 4, 0, 2, 1}, {4, 3, 5, 1, 0, 2},
-         {5, 4, 3, 2, 1, 0}}};
+    constexpr std::array<std::array<int, 6>, 6> kTurns{{{0, 1, 2, 3, 4, 5},
+                                                        {1, 2, 0, 4, 5, 3},
+                                                        {2, 0, 1, 5, 3, 4},
+                                                        {3, 5, 4, 0, 2, 1},
+                                                        {4, 3, 5, 1, 0, 2},
+                                                        {5, 4, 3, 2, 1, 0}}};
     constexpr std::array<std::array<std::size_t, 6>, 2> kPrisms{{{0, 1, 2, 4, 5, 6}, {0, 2, 3, 4, 6, 7}}};
     Mesh out;
     out.nodes_m = hexes.nodes_m;

@@ -21,13 +21,13 @@ using SmallVector = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, kM
 using SmallResiduals = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, kMostResiduals, 1>;
 
 struct BoundedProblem {
-    SmallRows W;           // m x n
-    SmallResiduals d;      // m
-    SmallVector lower;     // n; may be -infinity
-    SmallVector upper;     // n; may be infinity
+    SmallRows W;            // m x n
+    SmallResiduals d;       // m
+    SmallVector lower;      // n; may be -infinity
+    SmallVector upper;      // n; may be infinity
     double tikhonov = 0.0;  // t, relative to the columns: sqrt(t) is the share of the target that it gives away
-    SmallVector rate;      // r_j, or empty
-    SmallVector before;    // n where there is a rate term or a start; or empty
+    SmallVector rate;       // r_j, or empty
+    SmallVector before;     // n where there is a rate term or a start; or empty
 };
 
 enum class BoundedStatus {
@@ -44,9 +44,9 @@ struct BoundedSolution {
     unsigned active = 0;      // bit j: x_j is at a bound
     int rank = 0;             // of W (columns of length 1, pivots above 1e-10)
     int iterations = 0;
-    double kkt = 0.0;         // greatest |x - P(x - gradient)| of the scaled problem, over |d|
-    int infeasible = -1;      // the unknown whose bounds are crossed
-    int limiting = -1;        // the unknown whose bound costs most; -1: none
+    double kkt = 0.0;     // greatest |x - P(x - gradient)| of the scaled problem, over |d|
+    int infeasible = -1;  // the unknown whose bounds are crossed
+    int limiting = -1;    // the unknown whose bound costs most; -1: none
 };
 
 // Throws and allocates nothing. An unknown whose column is 0 goes to `before` if there is a rate term, else to the bound

@@ -21,11 +21,9 @@ double coordinate(const SoftActuator& actuator, const Places& x) noexcept;
 void add_gradient(const SoftActuator& actuator, const Places& x, int free_nodes, double factor,
                   Eigen::Ref<Eigen::VectorXd> out) noexcept;
 // Adds factor * d2q/dx2.
-void add_hessian(const SoftActuator& actuator, const Places& x, double factor,
-                 mechanics::BandMatrix& K) noexcept;
+void add_hessian(const SoftActuator& actuator, const Places& x, double factor, mechanics::BandMatrix& K) noexcept;
 // Adds factor * dq/dx dq/dx^T of a cable.
-void add_squared_gradient(const SoftActuator& cable, const Places& x, double factor,
-                          mechanics::BandMatrix& K) noexcept;
+void add_squared_gradient(const SoftActuator& cable, const Places& x, double factor, mechanics::BandMatrix& K) noexcept;
 
 // Lists of nodes that add_hessian() couples, and with `squared` also add_squared_gradient().
 std::vector<std::vector<int>> coupled_nodes(const SoftActuator& actuator, bool squared);

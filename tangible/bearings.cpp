@@ -117,7 +117,7 @@ double bearing_energy_J(const Bearing& bearing, std::span<const BearingPoint> po
 }
 
 void add_bearing(const Bearing& bearing, std::span<const BearingPoint> points, std::span<const double> shift_m,
-                   const Places& x, Matrix3Xd& gradient_N, mechanics::BandMatrix* K) noexcept {
+                 const Places& x, Matrix3Xd& gradient_N, mechanics::BandMatrix* K) noexcept {
     const auto free_nodes = K != nullptr ? static_cast<int>(K->size() / 3) : 0;
     const Matrix3d plane = Matrix3d::Identity() - bearing.axis * bearing.axis.transpose();
     for (std::size_t i = 0; i < points.size(); ++i) {
@@ -129,9 +129,8 @@ void add_bearing(const Bearing& bearing, std::span<const BearingPoint> points, s
             gradient_N.col(point.node[k]) -= point.area_m2 * push.pressure_Pa * point.weight[k] * there.away;
         if (K == nullptr) continue;
         const Matrix3d across = there.away * there.away.transpose();
-        const Matrix3d block =
-            point.area_m2 * (push.slope_Pa_per_m * across -
-                             push.pressure_Pa / std::max(there.distance_m, 1e-9) * (plane - across));
+        const Matrix3d block = point.area_m2 * (push.slope_Pa_per_m * across -
+                                                push.pressure_Pa / std::max(there.distance_m, 1e-9) * (plane - across));
         for (std::size_t a = 0; a < 4; ++a) {
             for (std::size_t b = 0; b < 4; ++b) {
                 const double w = point.weight[a] * point.weight[b];

@@ -27,7 +27,7 @@ double bearing_energy_J(const Bearing& bearing, std::span<const BearingPoint> po
                         const Places& x) noexcept;
 // Adds gradient (3 x n_nodes) and, unless null, tangent of one bearing. shift_m: one per point.
 void add_bearing(const Bearing& bearing, std::span<const BearingPoint> points, std::span<const double> shift_m,
-                   const Places& x, Eigen::Matrix3Xd& gradient_N, mechanics::BandMatrix* K) noexcept;
+                 const Places& x, Eigen::Matrix3Xd& gradient_N, mechanics::BandMatrix* K) noexcept;
 
 // Moves the shifts of a constraint; returns the greatest change.
 double move_shifts(const Bearing& bearing, std::span<const BearingPoint> points, const Places& x,

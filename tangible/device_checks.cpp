@@ -21,8 +21,8 @@ double share_of(const Eigen::Matrix3Xd& u, const Eigen::Matrix3Xd& motion, int f
 }
 
 std::string name_of_motion(const DeviceModel& model, const Eigen::Matrix3Xd& u) {
-    static constexpr std::array<const char*, 6> kNames{"slides along x",  "slides along y",  "slides along z",
-                                                       "turns about x", "turns about y", "turns about z"};
+    static constexpr std::array<const char*, 6> kNames{"slides along x", "slides along y", "slides along z",
+                                                       "turns about x",  "turns about y",  "turns about z"};
     const Eigen::Matrix3Xd& x_m = model.body.mesh.nodes_m;
     const Eigen::Matrix3Xd from_middle = x_m.colwise() - x_m.rowwise().mean();
     std::size_t best = 0;

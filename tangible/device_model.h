@@ -30,22 +30,22 @@ struct BearingPoint {
 
 // What does not change while a device runs. Nodes have the order of the model: those with equations first.
 struct DeviceModel {
-    SoftDevice device;            // as its file has it; its nodes are numbered as in the file's mesh
-    mechanics::LargeBody body;    // nodes in the order of the model
-    std::vector<int> place_of;    // node of the file -> node of the model
-    int free_nodes = 0;           // 3 equations each
-    int band = 0;                 // half-bandwidth of the equations
-    std::vector<int> held;        // equations that a support holds at 0, of nodes that are not held completely
-    std::vector<SoftActuator> actuators;              // of the device, with nodes of the model
+    SoftDevice device;                    // as its file has it; its nodes are numbered as in the file's mesh
+    mechanics::LargeBody body;            // nodes in the order of the model
+    std::vector<int> place_of;            // node of the file -> node of the model
+    int free_nodes = 0;                   // 3 equations each
+    int band = 0;                         // half-bandwidth of the equations
+    std::vector<int> held;                // equations that a support holds at 0, of nodes that are not held completely
+    std::vector<SoftActuator> actuators;  // of the device, with nodes of the model
     std::vector<std::vector<BearingPoint>> bearings;  // points of each of the device's bearings
     std::vector<std::array<int, 2>> equal_motion;     // pairs of actuators
     std::array<int, kMostActuators> driver{};  // first actuator of the force tie that an actuator is in; itself if none
-    Eigen::MatrixXd observed;     // equations x (1 or 3): gradients of depth, and of the two tilts
-    Eigen::VectorXd weight_N;     // one per equation: gravity
-    bool has_constraints = false;  // a bearing is one
-    Lengths rest{};               // q at rest
-    double size_m = 0.0;          // diagonal of the body
-    double hold_N_per_m = 0.0;    // mean diagonal of the stiffness at rest
+    Eigen::MatrixXd observed;                  // equations x (1 or 3): gradients of depth, and of the two tilts
+    Eigen::VectorXd weight_N;                  // one per equation: gravity
+    bool has_constraints = false;              // a bearing is one
+    Lengths rest{};                            // q at rest
+    double size_m = 0.0;                       // diagonal of the body
+    double hold_N_per_m = 0.0;                 // mean diagonal of the stiffness at rest
     int equations() const { return 3 * free_nodes; }
     int n_actuators() const { return static_cast<int>(actuators.size()); }
     int n_observed() const { return static_cast<int>(observed.cols()); }
@@ -66,21 +66,21 @@ const char* name_of(DeviceStatus status);
 
 // What a step changes, with its scratch memory. A copy is a state of its own.
 struct DeviceState {
-    Eigen::Matrix3Xd u_m;                  // 3 x n_nodes, order of the model
-    Actuation actuation{};                 // as commanded
-    Actuation tie_part{};                  // what conditions of equal motion add to it
-    Actuation pretension{};                // the actuation at zero depth
+    Eigen::Matrix3Xd u_m;    // 3 x n_nodes, order of the model
+    Actuation actuation{};   // as commanded
+    Actuation tie_part{};    // what conditions of equal motion add to it
+    Actuation pretension{};  // the actuation at zero depth
     double finger_N = 0.0;
-    double rest_depth_m = 0.0;             // of the effector, from the shape at rest: where depth is counted from
+    double rest_depth_m = 0.0;                  // of the effector, from the shape at rest: where depth is counted from
     std::vector<double> shift_m, good_shift_m;  // one per bearing point: of bearings that are constraints
     // scratch
     Eigen::Matrix3Xd good_u_m, gradient_N;
-    mechanics::BandMatrix K;               // factor of the tangent
-    Eigen::MatrixXd loads;                 // equations x channels: what a unit of each channel does to the nodes
-    Eigen::MatrixXd answers;               // K^-1 of loads, of the tilts, and of what is out of balance
-    Response linear;                       // about the shape that prepare_press() left, with
-    Eigen::VectorXd linear_u_m;            // displacements without forces, and
-    Eigen::MatrixXd linear_moves_m;        // per force of each channel
+    mechanics::BandMatrix K;         // factor of the tangent
+    Eigen::MatrixXd loads;           // equations x channels: what a unit of each channel does to the nodes
+    Eigen::MatrixXd answers;         // K^-1 of loads, of the tilts, and of what is out of balance
+    Response linear;                 // about the shape that prepare_press() left, with
+    Eigen::VectorXd linear_u_m;      // displacements without forces, and
+    Eigen::MatrixXd linear_moves_m;  // per force of each channel
     bool has_linear = false;
     bool factored = false;
     bool repaired = false;
@@ -94,22 +94,22 @@ DeviceState rest_state(const DeviceModel& model);
 
 // The finger and each actuator are led by force or by position.
 struct DeviceLoad {
-    Actuation actuation{};                 // where led by force: N, Pa
-    Lengths length{};                      // where led by position: m, m^3
+    Actuation actuation{};  // where led by force: N, Pa
+    Lengths length{};       // where led by position: m, m^3
     std::array<bool, kMostActuators> by_position{};
-    double finger = 0.0;                   // N, or depth (m) from state.rest_depth_m
+    double finger = 0.0;  // N, or depth (m) from state.rest_depth_m
     bool finger_by_position = false;
 };
 
 struct ForwardAnswer {
     DeviceStatus status = DeviceStatus::bad_input;
-    double depth_m = 0.0;                  // of the effector from state.rest_depth_m
-    std::array<double, 2> tilt{};          // rise of the effector's patch per length along the two other axes
-    double force_N = 0.0;                  // of the finger on the device
-    Actuation actuation{};                 // forces, also of those led by position; with the part of ties
-    Lengths length{};                      // q: m, and minus m^3
+    double depth_m = 0.0;          // of the effector from state.rest_depth_m
+    std::array<double, 2> tilt{};  // rise of the effector's patch per length along the two other axes
+    double force_N = 0.0;          // of the finger on the device
+    Actuation actuation{};         // forces, also of those led by position; with the part of ties
+    Lengths length{};              // q: m, and minus m^3
     int iterations = 0;
-    double residual_m = 0.0;               // last correction
+    double residual_m = 0.0;  // last correction
 };
 
 // The equilibrium under a load, by Newton's method from the state, with the load in steps where that fails. Nothing

@@ -9,8 +9,7 @@ namespace {
 
 constexpr int kMostNewton = 40;
 constexpr int kMostHalvings = 8;     // of a step of the load
-constexpr double kBalanced = 1e-10;   // greatest last correction, over the body's size
-
+constexpr double kBalanced = 1e-10;  // greatest last correction, over the body's size
 
 Goal goal_of(const DeviceModel& model, const DeviceState& state, const DeviceLoad& load) {
     Goal goal;
@@ -52,7 +51,8 @@ SmallColumn forces_for(const Goal& goal, const SmallColumn& value, const SmallCo
     for (Eigen::Index a = 0; a < count; ++a) {
         const Eigen::Index row = led[static_cast<std::size_t>(a)];
         right(a) = value(row) - there(row);
-        for (Eigen::Index b = 0; b < count; ++b) left(a, b) = response.compliance(row, led[static_cast<std::size_t>(b)]);
+        for (Eigen::Index b = 0; b < count; ++b)
+            left(a, b) = response.compliance(row, led[static_cast<std::size_t>(b)]);
     }
     const SmallColumn found = Eigen::PartialPivLU<Small>(left).solve(right);
     for (Eigen::Index a = 0; a < count; ++a) p(led[static_cast<std::size_t>(a)]) = found(a);
@@ -108,7 +108,8 @@ void describe(const DeviceModel& model, const DeviceState& state, ForwardAnswer&
     answer.depth_m = depth_m(model, state);
     answer.tilt = tilts(model, state);
     answer.force_N = state.finger_N;
-    for (std::size_t j = 0; j < answer.actuation.size(); ++j) answer.actuation[j] = state.actuation[j] + state.tie_part[j];
+    for (std::size_t j = 0; j < answer.actuation.size(); ++j)
+        answer.actuation[j] = state.actuation[j] + state.tie_part[j];
     answer.length = lengths(model, state.u_m);
 }
 
@@ -152,7 +153,8 @@ ForwardAnswer press_to_depth(const DeviceModel& model, DeviceState& state, const
 
 ForwardAnswer prepare_press(const DeviceModel& model, DeviceState& state, double force_at_floor_N) noexcept {
     Actuation at_lower{};
-    for (int j = 0; j < model.n_actuators(); ++j) at_lower[static_cast<std::size_t>(j)] = model.actuators[static_cast<std::size_t>(j)].lower;
+    for (int j = 0; j < model.n_actuators(); ++j)
+        at_lower[static_cast<std::size_t>(j)] = model.actuators[static_cast<std::size_t>(j)].lower;
     const auto rest_at = [&](double tension) {
         DeviceLoad load;
         load.actuation = at_lower;

@@ -14,10 +14,10 @@ using mechanics::BoundedProblem;
 using mechanics::BoundedSolution;
 using mechanics::BoundedStatus;
 
-constexpr int kMostConverged = 30;    // Newton steps of a converged tick
-constexpr int kMostStale = 3;         // corrections of a stale tick before its factor is made anew
-constexpr double kSettled = 1e-9;     // greatest last correction, over the body's size
-constexpr double kStaleEnough = 2e-5; // the same for a stale tick: 2 um of 100 mm
+constexpr int kMostConverged = 30;     // Newton steps of a converged tick
+constexpr int kMostStale = 3;          // corrections of a stale tick before its factor is made anew
+constexpr double kSettled = 1e-9;      // greatest last correction, over the body's size
+constexpr double kStaleEnough = 5e-4;  // the same for a stale tick: 0.05 of 100 mm, as far as a finger moves in one
 
 // What a tick begins with, and the unknowns that ties of force leave.
 struct Tick {
@@ -37,9 +37,7 @@ Tick begin(const DeviceModel& model, const DeviceState& state, const Wanted& wan
     return tick;
 }
 
-bool at_floor(const Tick& tick) {
-    return tick.wanted.depth_m < tick.model.device.depth_floor_m;
-}
+bool at_floor(const Tick& tick) { return tick.wanted.depth_m < tick.model.device.depth_floor_m; }
 
 // Bounds of one unknown: the limits of all that are tied to it, and how far it may go in this tick.
 void bound(const Tick& tick, const DeviceState& state, int unknown, double& lower, double& upper) {
@@ -79,7 +77,8 @@ BoundedProblem problem_of(const Tick& tick, const DeviceState& state, const Resp
     const double lever_m = model.device.effector.radius_m;
     for (Index t = 1; t < rows; ++t) {
         const auto at = static_cast<std::size_t>(t - 1);
-        problem.d(t) = lever_m * (response.tilt[at] + response.tilted[at] + response.tilting(t - 1, 0) * F - tick.wanted.tilt[at]);
+        problem.d(t) =
+            lever_m * (response.tilt[at] + response.tilted[at] + response.tilting(t - 1, 0) * F - tick.wanted.tilt[at]);
     }
     for (int j = 0; j < model.n_actuators(); ++j) {
         const auto at = static_cast<std::size_t>(j);
@@ -134,8 +133,7 @@ SmallColumn solve_for_forces(const Tick& tick, const DeviceState& state, const R
     }
     answer.rank = solved.rank;
     const bool missed = solved.residual.norm() > 1e-5 * tick.model.size_m && !at_floor(tick);
-    answer.limited_by =
-        missed && solved.limiting >= 0 ? tick.driver[static_cast<std::size_t>(solved.limiting)] : -1;
+    answer.limited_by = missed && solved.limiting >= 0 ? tick.driver[static_cast<std::size_t>(solved.limiting)] : -1;
     return p;
 }
 

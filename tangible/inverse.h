@@ -30,22 +30,22 @@ struct Wanted {
 
 struct InverseOptions {
     Fidelity fidelity = Fidelity::step;
-    double dt_s = 0.01;     // since the last step; for the slew limits alone
-    bool slew = true;       // limit changes by rate_per_s
+    double dt_s = 0.01;  // since the last step; for the slew limits alone
+    bool slew = true;    // limit changes by rate_per_s
     bool rate_term = true;
 };
 
 struct InverseAnswer {
     DeviceStatus status = DeviceStatus::bad_input;
-    Actuation actuation{};              // N, Pa: within the limits in every case
-    Lengths command{};                  // lengths of cables, volumes of cavities: the command by position
-    double residual_m = 0.0;            // of the depth, as predicted: negative where the effector stays too high
+    Actuation actuation{};    // N, Pa: within the limits in every case
+    Lengths command{};        // lengths of cables, volumes of cavities: the command by position
+    double residual_m = 0.0;  // of the depth, as predicted: negative where the effector stays too high
     std::array<double, 2> tilt_residual{};
-    int rank = 0;                       // of W, with ties
-    unsigned active = 0;                // bit j: actuator j is at a bound, or at a slew limit
-    int limited_by = -1;                // the actuator that keeps the target out of reach
-    int iterations = 0;                 // Newton steps
-    bool converged = false;             // the last step changed nothing (1e-9 of the body's size)
+    int rank = 0;            // of W, with ties
+    unsigned active = 0;     // bit j: actuator j is at a bound, or at a slew limit
+    int limited_by = -1;     // the actuator that keeps the target out of reach
+    int iterations = 0;      // Newton steps
+    bool converged = false;  // the last step changed nothing (1e-9 of the body's size)
     int factorisations = 0;
     // the terms of the problem, for screens: rows depth, tilt, tilt; columns actuators
     Eigen::Matrix<double, 3, kMostActuators> W = Eigen::Matrix<double, 3, kMostActuators>::Zero();

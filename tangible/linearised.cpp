@@ -45,8 +45,9 @@ void add_bearings(const DeviceModel& model, DeviceState& state, mechanics::BandM
     std::size_t first = 0;
     for (std::size_t i = 0; i < model.bearings.size(); ++i) {
         const auto& points = model.bearings[i];
-        add_bearing(model.device.bearings[i], points, std::span<const double>(state.shift_m).subspan(first, points.size()),
-                    places(model, state), state.gradient_N, K);
+        add_bearing(model.device.bearings[i], points,
+                    std::span<const double>(state.shift_m).subspan(first, points.size()), places(model, state),
+                    state.gradient_N, K);
         first += points.size();
     }
 }
@@ -72,8 +73,7 @@ void write_imbalance(const DeviceModel& model, DeviceState& state) {
 bool sum_tangent(const DeviceModel& model, DeviceState& state, Tangent kind) {
     state.gradient_N.setZero();
     state.K.values.setZero();
-    const double energy =
-        mechanics::add_energy_tangent_N_per_m(model.body, state.u_m, kind, state.gradient_N, state.K);
+    const double energy = mechanics::add_energy_tangent_N_per_m(model.body, state.u_m, kind, state.gradient_N, state.K);
     if (!std::isfinite(energy)) return false;
     add_bearings(model, state, &state.K);
     for (int j = 0; j < model.n_actuators(); ++j) {
@@ -245,8 +245,8 @@ bool make_linear(const DeviceModel& model, DeviceState& state) noexcept {
     if (!factor_tangent(model, state)) return false;
     state.linear = respond(model, state);
     const auto X = state.answers.leftCols(channels_of(model));
-    state.linear_u_m = Eigen::Map<const VectorXd>(state.u_m.data(), model.equations()) +
-                       state.answers.col(channels_of(model));
+    state.linear_u_m =
+        Eigen::Map<const VectorXd>(state.u_m.data(), model.equations()) + state.answers.col(channels_of(model));
     state.linear_u_m.noalias() += X * state.linear.forced;
     state.linear_moves_m.noalias() = X * state.linear.forcing;
     state.has_linear = true;
@@ -280,7 +280,8 @@ SmallColumn coordinates(const DeviceModel& model, const DeviceState& state) noex
 std::array<double, 2> tilts(const DeviceModel& model, const DeviceState& state) noexcept {
     std::array<double, 2> out{};
     const Eigen::Map<const VectorXd> u(state.u_m.data(), model.equations());
-    for (Index t = 1; t < model.observed.cols(); ++t) out[static_cast<std::size_t>(t - 1)] = model.observed.col(t).dot(u);
+    for (Index t = 1; t < model.observed.cols(); ++t)
+        out[static_cast<std::size_t>(t - 1)] = model.observed.col(t).dot(u);
     return out;
 }
 

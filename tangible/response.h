@@ -16,15 +16,15 @@ using SmallColumn = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, kM
 
 // What answers to the channels' forces p: a column per channel, and one for p = 0.
 struct Response {
-    double depth_m = 0.0;                // before: from DeviceState::rest_depth_m
-    std::array<double, 2> tilt{};        // before
-    SmallColumn moved;                   // change of the channels' coordinates for p = 0
-    Small compliance;                    // the same per p
-    SmallColumn forced;                  // forces that the nodes get, for p = 0
-    Small forcing;                       // the same per p
-    SmallColumn tied;                    // the part of it by conditions of equal motion, for p = 0
-    Small tying;                         // the same per p
-    std::array<double, 2> tilted{};      // change of the tilts for p = 0
+    double depth_m = 0.0;            // before: from DeviceState::rest_depth_m
+    std::array<double, 2> tilt{};    // before
+    SmallColumn moved;               // change of the channels' coordinates for p = 0
+    Small compliance;                // the same per p
+    SmallColumn forced;              // forces that the nodes get, for p = 0
+    Small forcing;                   // the same per p
+    SmallColumn tied;                // the part of it by conditions of equal motion, for p = 0
+    Small tying;                     // the same per p
+    std::array<double, 2> tilted{};  // change of the tilts for p = 0
     Eigen::Matrix<double, 2, Eigen::Dynamic, Eigen::ColMajor, 2, kMostChannels> tilting;  // the same per p
 };
 

@@ -25,6 +25,8 @@ void add_tactile_identify(CLI::App& tactile);
 void add_tactile_characterise(CLI::App& tactile);
 void add_tactile_pins(CLI::App& tactile);
 void add_tangible(CLI::App& app);  // only with the CMake option PALPA_TANGIBLE
+void add_tangible_info(CLI::App& tangible);
+void add_tangible_solve(CLI::App& tangible);
 void add_tangible_run(CLI::App& tangible);
 void add_tangible_characterise(CLI::App& tangible);
 void add_tangible_fit(CLI::App& tangible);

@@ -18,6 +18,8 @@ void add_tangible(CLI::App& app) {
     CLI::App* tangible = app.add_subcommand("tangible", "Soft tangible devices, controlled by inverse finite elements");
     tangible->require_subcommand(1);
     tangible->footer(kPatents);
+    add_tangible_info(*tangible);
+    add_tangible_solve(*tangible);
     add_tangible_run(*tangible);
     add_tangible_characterise(*tangible);
     add_tangible_fit(*tangible);

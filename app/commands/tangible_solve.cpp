@@ -59,9 +59,11 @@ SolvedPress solve_press(const tangible::DeviceModel& model, const TangibleSolveO
         for (int j = 0; j < model.n_actuators(); ++j) {
             const auto at = static_cast<std::size_t>(j);
             const tangible::SoftActuator& actuator = model.actuators[at];
-            change = std::max(change, std::abs(state.actuation[at] - before[at]) / (actuator.upper - actuator.lower + 1e-300));
+            change = std::max(change,
+                              std::abs(state.actuation[at] - before[at]) / (actuator.upper - actuator.lower + 1e-300));
         }
-        if (tick > kTicks && change < 1e-9 && (out.answer.converged || inverse.fidelity == tangible::Fidelity::linear)) break;
+        if (tick > kTicks && change < 1e-9 && (out.answer.converged || inverse.fidelity == tangible::Fidelity::linear))
+            break;
     }
     return out;
 }
@@ -113,7 +115,8 @@ void print_solve(const tangible::DeviceModel& model, const TangibleSolveOptions&
         const auto& row = json["actuation"][j];
         std::printf("  %-8s %-10s a = %s %s, W = %s mm/%s, command %s %s\n", name_of(actuator.kind),
                     files::printable(actuator.name).c_str(), files::short_number(answer.actuation[j]).c_str(),
-                    unit_of(actuator.kind), files::short_number(1e3 * answer.W(0, static_cast<Eigen::Index>(j))).c_str(),
+                    unit_of(actuator.kind),
+                    files::short_number(1e3 * answer.W(0, static_cast<Eigen::Index>(j))).c_str(),
                     unit_of(actuator.kind), files::short_number(row["command"].get<double>()).c_str(),
                     row["command_unit"].get<std::string>().c_str());
     }
@@ -123,8 +126,9 @@ void print_solve(const tangible::DeviceModel& model, const TangibleSolveOptions&
         std::printf("at its limit: %s\n", files::printable(name.get<std::string>()).c_str());
     std::printf("%s, %s%s; %d Newton steps, the last tick took %s us\n", name_of(answer.status),
                 reachable(answer) ? "reachable" : "NOT reachable",
-                json["limited_by"].is_null() ? ""
-                                             : (": limited by " + files::printable(json["limited_by"].get<std::string>())).c_str(),
+                json["limited_by"].is_null()
+                    ? ""
+                    : (": limited by " + files::printable(json["limited_by"].get<std::string>())).c_str(),
                 solved.iterations, files::short_number(solved.time_us).c_str());
 }
 
