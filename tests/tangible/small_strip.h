@@ -12,7 +12,7 @@ namespace palpa::test {
 inline files::Json strip_json() { return files::read_json(kAssets / "devices" / "strip.json"); }
 
 // The device keeps the name of the assets' file, so that plants are made from that file: `changes` stand in the plant too.
-inline files::Json fewer_cells() { return files::Json::parse(R"({"mesh": {"box": {"elements": [20, 2, 1]}}})"); }
+inline files::Json fewer_cells() { return files::Json::parse(R"({"mesh": {"box": {"elements": [50, 2, 2]}}})"); }
 
 inline std::shared_ptr<const tangible::DeviceModel> small_strip(double modulus_factor = 1.0,
                                                                 double friction_share = 0.0) {
