@@ -11,6 +11,7 @@
 #include <sys/socket.h>
 #include <sys/wait.h>
 #include <unistd.h>
+#include <utility>
 
 #include "devices/line_io.h"
 
@@ -104,7 +105,7 @@ GuardProcess::GuardProcess(const ActuatorRig& rig, const std::string& program)
 
 bool GuardProcess::poll(RigReport& out) noexcept {
     RigReport report;
-    bool fresh = false;
+    bool fresh = std::exchange(again_, false);
     int n = link_.receive(&report, sizeof report);
     for (; n > 0; n = link_.receive(&report, sizeof report)) {
         if (n != static_cast<int>(sizeof report)) continue;
@@ -148,7 +149,10 @@ void GuardProcess::wait_until_ready(double most_s) {
     for (const double until_s = steady_s() + most_s; steady_s() < until_s; pause(0.002)) {
         poll(report);
         if (report.fault == Fault::guard_gone) throw std::runtime_error("the guard of the device has ended");
-        if (report.ready) return;
+        if (report.ready) {
+            again_ = true;
+            return;
+        }
         for (std::size_t i = 0; i < kMostPorts; ++i) {
             if (report.line[i].state != PinState::proving) told[i] = report.line[i];
         }

@@ -63,6 +63,7 @@ class GuardProcess {
     ActuatorRig rig_;
     GuardLink link_;
     RigReport newest_;
+    bool again_ = false;  // wait_until_ready() has taken it, the loop has not
 };
 
 // What keeps a line from being driven, for messages: "port 'motors' at /dev/ttyUSB0: nothing answers".

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <csignal>
 #include <cstdio>
 #include <poll.h>
 #include <stdexcept>
@@ -11,6 +12,8 @@
 
 namespace palpa::devices::simulators {
 namespace {
+
+volatile std::sig_atomic_t unplug_asked = 0, garbage_asked = 0;
 
 constexpr double kListens_s = 2.0;   // after "start"
 constexpr double kInRange = 1e-3;    // of a range: counts are whole, and so is what comes back
@@ -67,9 +70,9 @@ void add_wires_options(CLI::App& app, WiresOptions& options) {
     app.add_flag("!--no-watchdogs", options.watchdogs, "devices that hold their force when the line falls silent");
     app.add_flag("--sensor-udp", options.sensor_by_udp, "the sensor speaks by UDP");
     app.add_option("--sensor-Hz", options.sensor_rate_Hz)->check(CLI::Range(1.0, 1000.0))->capture_default_str();
-    app.add_option("--silent-from-s", options.silent_from_s, "all is unplugged then");
+    app.add_option("--silent-from-s", options.silent_from_s, "all is unplugged then, or at SIGUSR1");
     app.add_option("--silent-s", options.silent_s, "for so long");
-    app.add_option("--garbage-from-s", options.garbage_from_s, "replies are random bytes then");
+    app.add_option("--garbage-from-s", options.garbage_from_s, "replies are random bytes then, or at SIGUSR2");
     app.add_option("--garbage-s", options.garbage_s, "for so long");
     app.add_option("--seed", options.seed)->capture_default_str();
 }
@@ -79,6 +82,8 @@ RigWires::RigWires(const ActuatorRig& rig, const WiresOptions& options)
     for (std::size_t i = 0; i < line_.size(); ++i) set_up_line(rig, i, options.watchdogs, options.seed, line_[i]);
     if (options.sensor_by_udp) udp_ = open_socket(udp_port_);
     plug(true);
+    std::signal(SIGUSR1, [](int) { unplug_asked = 1; });
+    std::signal(SIGUSR2, [](int) { garbage_asked = 1; });
 }
 
 RigWires::~RigWires() {
@@ -185,6 +190,10 @@ void RigWires::run() {
     constexpr double kTick_s = 1e-3;
     const double due_s = steady_s() - began_s_ - time_s_;
     for (double left_s = due_s; left_s >= kTick_s; left_s -= kTick_s) advance_all(kTick_s);
+    if (unplug_asked != 0) options_.silent_from_s = time_s_;
+    if (garbage_asked != 0) options_.garbage_from_s = time_s_;
+    unplug_asked = 0;
+    garbage_asked = 0;
     plug(!within(options_.silent_from_s, options_.silent_s, time_s_));
     for (std::size_t i = 0; plugged_ && i < line_.size(); ++i) talk(i);
 }

@@ -23,9 +23,9 @@ struct WiresOptions {
     bool watchdogs = true;  // false: devices that hold their force when the line falls silent
     bool sensor_by_udp = false;
     double sensor_rate_Hz = 100.0;
-    double silent_from_s = 0.0;  // all terminals are unplugged then
+    double silent_from_s = -1e9;  // all terminals are unplugged then, and at SIGUSR1
     double silent_s = 0.0;
-    double garbage_from_s = 0.0;  // replies are random bytes then
+    double garbage_from_s = -1e9;  // replies are random bytes then, and at SIGUSR2
     double garbage_s = 0.0;
     std::uint64_t seed = 1;
 };

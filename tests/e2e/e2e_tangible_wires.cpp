@@ -23,11 +23,16 @@ namespace {
 
 void nap(double seconds) { std::this_thread::sleep_for(std::chrono::duration<double>(seconds)); }
 
-bool within_a_minute(const std::function<bool()>& done) {
-    for (const double until_s = devices::steady_s() + 60.0; devices::steady_s() < until_s; nap(0.01)) {
+bool within(double seconds, const std::function<bool()>& done) {
+    for (const double until_s = devices::steady_s() + seconds; devices::steady_s() < until_s; nap(0.01)) {
         if (done()) return true;
     }
     return false;
+}
+
+void end(pid_t program) {
+    ::kill(program, SIGKILL);
+    ::waitpid(program, nullptr, 0);
 }
 
 struct PlantRow {
@@ -111,7 +116,7 @@ TEST_CASE("plant: the strip renders a spring over its wires, and is relaxed afte
     const files::Json report = files::read_json(bench.folder / "out.json");
     MESSAGE("report ", report.dump());
     CHECK(report["ticks"].get<int>() > 300);
-    CHECK(within_a_minute([&] { return bench.relaxed(); }));
+    CHECK(within(60.0, [&] { return bench.relaxed(); }));
     double worst_N = 0.0, greatest_N = 0.0;
     for (const PlantRow& row : bench.truth()) {
         if (row.relaxed) continue;
@@ -125,22 +130,21 @@ TEST_CASE("plant: the strip renders a spring over its wires, and is relaxed afte
 }
 
 TEST_CASE("plant: unplugged, garbage, SIGKILL: relaxed each time, and never a command out of range") {
-    for (const int way : {0, 1, 2}) {
+    Bench bench({"--silent-s", "1", "--garbage-s", "1"});
+    for (const int way : {SIGUSR1, SIGUSR2, SIGKILL}) {
         CAPTURE(way);
-        Bench bench(way == 0   ? std::vector<std::string>{"--silent-from-s", "12", "--silent-s", "2"}
-                    : way == 1 ? std::vector<std::string>{"--garbage-from-s", "12", "--garbage-s", "2"}
-                               : std::vector<std::string>{});
-        const pid_t program = bench.start(way == 2 ? 60 : 20);
-        CHECK(within_a_minute([&] { return bench.pressed(); }));
-        if (way == 2) ::kill(program, SIGKILL);
-        CHECK(within_a_minute([&] { return bench.relaxed(); }));
-        int status = -1;
-        ::waitpid(program, &status, 0);
-        CHECK(WIFSIGNALED(status) == (way == 2));
-        if (way != 2) {
-            const files::Json report = files::read_json(bench.folder / "out.json");
-            CHECK_FALSE(report["faults"].empty());
+        pid_t program = -1;
+        for (int i = 0; i < 5 && !bench.pressed(); ++i) {  // a busy computer may stop it before
+            if (program > 0) end(program);
+            program = bench.start(60);
+            within(20.0, [&] { return bench.pressed(); });
         }
-        CHECK(bench.out_of_range() == "out_of_range 0");
+        CHECK(bench.pressed());
+        ::kill(way == SIGKILL ? program : bench.plant->pid(), way);
+        CHECK(within(20.0, [&] { return bench.relaxed(); }));
+        nap(1.5);  // plugged in again, and no more garbage: nobody has released it
+        CHECK(bench.relaxed());
+        end(program);
     }
+    CHECK(bench.out_of_range() == "out_of_range 0");
 }
