@@ -2,11 +2,14 @@
 
 #include <cmath>
 #include <doctest/doctest.h>
+#include <filesystem>
+#include <string>
 
 #include "files/json.h"
 #include "files/text.h"
 #include "tests/app/palpa_with.h"
 #include "tests/error_message.h"
+#include "tests/temporary_folder.h"
 
 using namespace palpa;
 using namespace palpa::files;
@@ -98,6 +101,30 @@ TEST_CASE("part evaluate: every method has every key, null where it has no such 
     }
     CHECK(json["methods"]["paper"]["applies"] == false);
     CHECK(json["methods"]["paper"]["stiffness_N_per_m"].get<double>() == doctest::Approx(13833.33).epsilon(1e-5));
+}
+
+TEST_CASE("part scenes: three presses of a button switch it on three times, and two replays log the same") {
+    const std::string run = std::string("run ") + PALPA_SOURCE_DIR + "/assets/scenes/button.json --replay " +
+                            PALPA_SOURCE_DIR + "/assets/traces/three-presses.tsv --headless --json";
+    const TemporaryFolder folder;
+    std::string logs[2];
+    for (int i = 0; i < 2; ++i) {
+        const std::filesystem::path log = folder / std::to_string(i);
+        const Called called = palpa_with(run + " --log " + log.string());
+        REQUIRE_MESSAGE(called.status == 0, called.err);
+        const Json json = parse_json(called.out, "stdout");
+        CHECK(json["switch_events"] == 3);
+        CHECK(json["max_depth_mm"].get<double>() > 1.0);
+        const std::filesystem::path beh = log / "sub-01" / "beh";
+        logs[i] = read_text(beh / "sub-01_task-palpation_run-01_samples.tsv");
+        const std::string events = read_text(beh / "sub-01_task-palpation_run-01_events.tsv");
+        std::size_t switched = 0;
+        for (std::size_t at = events.find("switch_on"); at != std::string::npos; at = events.find("switch_on", at + 1))
+            ++switched;
+        CHECK(switched == 3);
+    }
+    CHECK(logs[0] == logs[1]);
+    CHECK(logs[0].size() > 1000);
 }
 
 TEST_CASE("part: wrong usage and wrong parts end with status 2 and a message") {

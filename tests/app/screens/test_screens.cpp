@@ -650,3 +650,51 @@ TEST_CASE("screens: a map that cannot be read leaves the one that is shown, and 
     CHECK(browser->pins_m.size() == kPins);
     CHECK(browser->pins_m.back().x() == doctest::Approx(0.05));
 }
+
+TEST_CASE("screens: parts fit at the sizes of desks and tablets: pressed, changed by the pen, a button") {
+    Session session;
+    session.scene = load_scene(PALPA_SOURCE_DIR "/assets/scenes/toothbrush-pull.json");
+    std::get<PartOptions>(session.scene.tissue).gesture = PartGesture::press;
+    std::get<PartOptions>(session.scene.tissue).both = true;
+    session.plan = std::make_shared<const Plan>(make_plan(session.scene));
+    Session button;
+    button.scene = load_scene(PALPA_SOURCE_DIR "/assets/scenes/button.json");
+    button.plan = std::make_shared<const Plan>(make_plan(button.scene));
+    const Trace presses = read_trace(PALPA_SOURCE_DIR "/assets/traces/three-presses.tsv");
+    begin_trial({}, presses.info, TrialMode::practice, button);
+    for (std::size_t i = 0; i < 95; ++i) take_sample(presses.samples[i], button);
+    begin_trial({}, presses.info, TrialMode::practice, session);
+    Sample pen;
+    pen.tool = Tool::pen;
+    for (int i = 0; i < 30; ++i) {
+        pen.phase = i == 0 ? Phase::down : Phase::move;
+        pen.t_host_s = 0.01 * i;
+        pen.pressure = 0.02 * i;
+        const Eigen::Vector2d px = px_of_tissue(session.state.view, {0.182, 0.034});
+        pen.x_px = px.x();
+        pen.y_px = px.y();
+        take_sample(pen, session);
+    }
+    Screens pressed;
+    pressed.view.part.magnified = true;
+    for (int i = 0; i < 60; ++i) {
+        const auto x = static_cast<float>(i) / 60.0f;
+        pressed.view.part.press[0].push_back({x, 2.0f * x, 1e-3f * x});
+        pressed.view.part.press[1].push_back({x, 2.0f * x, 2e-3f * x});
+        pressed.view.part.last[0].push_back({0.8f * x, 1.5f * x, 1e-3f * x});
+    }
+    pressed.view.part.was_down = true;
+    Screens changed = pressed;
+    changed.view.part.tool = PartTool::permute;
+    changed.view.part.stroke_m = {{0.14, 0.03}, {0.142, 0.031}};
+    changed.view.part.pending = 0.4;
+    changed.view.part.edits = {2, 0};
+    for (const Case& c :
+         {Case{1280, 800, kMissing, false}, Case{800, 1280, kMissing, false}, Case{2560, 1600, 11.8, true},
+          Case{1024, 600, kMissing, true}, Case{1280, 800, kMissing, false, false, 140}}) {
+        OffScreen screen = screen_of(c);
+        check_case(session, pressed, c, "parts", screen);
+        check_case(session, changed, c, "parts-changed", screen);
+        check_case(button, pressed, c, "parts-button", screen);
+    }
+}
