@@ -49,9 +49,8 @@ const std::map<std::string, std::set<std::string>> kMayInclude{
     {"fem/mesh_file", {"files", "mechanics"}},
     {"figures", {"files", "stiffnessmaps", "calibration", "study"}},
     {"accuracy",
-     {"files", "platform", "calibration", "stiffnessmaps", "mechanics", "avatar", "scene", "devices", "tactile",
-      "tangible", "study", "session", "fem", "figures"}},
      {"files", "platform", "calibration", "stiffnessmaps", "mechanics", "avatar", "parts", "scene", "devices",
+      "tactile", "tangible", "study", "session", "fem", "figures"}},
     {"desk", {"files", "study"}},
     // the rooms of the app
     {"app", {"files", "scene", "app/commands/command_line.h"}},
@@ -164,7 +163,7 @@ bool asks_for_tissue(const std::string& line) {
         "(get_if|std::get|holds_alternative)<[a-z:]*(Map|Linear|ForceCurve|SoftBlock)(Tissue|Options|Work)>|std::"
         "visit");
         "(get_if|std::get|holds_alternative)<[a-z:]*(Map|Linear|Part)(Tissue|Options|Work)>|std::visit");
-    return std::regex_search(line, asks);
+        return std::regex_search(line, asks);
 }
 
 TEST_CASE("tissues: only scene/tissue asks which tissue it is") {
