@@ -85,7 +85,7 @@ double error_percent(const PressedDevice& device, const std::vector<double>& for
     return 100.0 * std::sqrt(sum / static_cast<double>(force_N.size())) / most;
 }
 
-TangibleSpeedRow row_of(const std::string& what, const Timing& timing) {
+TangibleSpeedRow timed_row(const std::string& what, const Timing& timing) {
     TangibleSpeedRow row;
     row.what = what;
     row.median_ms = 1e-3 * quantile_us(timing, 0.5);
@@ -100,8 +100,8 @@ TangibleSpeedRow press_row(const PressedDevice& device, Fidelity fidelity, Lapla
         if (tick % 8 == 0) unit.time();
         time_call(timing, call);
     });
-    TangibleSpeedRow row =
-        row_of(device.name + ", " + std::string(tangible::kFidelityNames[static_cast<std::size_t>(fidelity)]), timing);
+    TangibleSpeedRow row = timed_row(
+        device.name + ", " + std::string(tangible::kFidelityNames[static_cast<std::size_t>(fidelity)]), timing);
     row.force_error_percent = error_percent(device, plant_force_N(device, actuation));
     row.allocated_MB = device.kept_MB;
     return row;
@@ -127,7 +127,7 @@ TangibleSpeedRow qp_row(LaplacianUnit& unit) {
         if (i % 200 == 0) unit.time();
         time_call(timing, [&] { sum += mechanics::solve_bounded(problem).x(0); });
     }
-    TangibleSpeedRow row = row_of("bounded least squares, 4 actuators", timing);
+    TangibleSpeedRow row = timed_row("bounded least squares, 4 actuators", timing);
     row.peer_units = 0.06 / 16.9;
     row.bound_units = 0.010 / 16.9;
     if (!std::isfinite(sum)) row.median_ms = kUnknown;

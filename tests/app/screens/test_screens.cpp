@@ -684,7 +684,8 @@ TEST_CASE("screens: parts fit at the sizes of desks and tablets: pressed, change
         pressed.view.part.last[0].push_back({0.8f * x, 1.5f * x, 1e-3f * x});
     }
     pressed.view.part.was_down = true;
-    Screens changed = pressed;
+    Screens changed;
+    changed.view = pressed.view;
     changed.view.part.tool = PartTool::permute;
     changed.view.part.stroke_m = {{0.14, 0.03}, {0.142, 0.031}};
     changed.view.part.pending = 0.4;
