@@ -40,7 +40,7 @@ struct SmallLoop {
 }  // namespace
 
 TEST_CASE("tangible loop: a press on the exact plant renders the wanted force") {
-    for (const double stiffness : {0.05, 0.2}) {
+    for (const double stiffness : {0.1, 0.2}) {
         const PressFigures figures = press_small(stiffness, small_plant());
         CHECK(figures.force_rms_percent < 0.5);
         CHECK(figures.rendered_N_per_m == doctest::Approx(1e3 * stiffness).epsilon(0.01));
