@@ -33,7 +33,7 @@ struct FitResult {
 // Fits by the Gauss-Newton method on converged equilibria of the device file's model, at most `kMostFitted` ticks. The
 // friction is seen from the difference of pressing and releasing; without cables it stays 0. Throws std::runtime_error
 // where the presses do not tell (fewer than 20 ticks in contact, or no equilibrium at most of them).
-inline constexpr int kMostFitted = 120;
+inline constexpr int kMostFitted = 60;
 FitResult fit_presses(const SoftDevice& device, const std::vector<RecordedTick>& ticks);
 
 }  // namespace palpa::tangible

@@ -50,8 +50,9 @@ struct KnownTissue {
 };
 
 inline tangible::PressFigures press_small(double stiffness_N_per_mm, const tangible::PlantOptions& plant,
-                                          const tangible::LoopOptions& loop = {}, double friction_share = 0.0) {
-    const KnownTissue known(stiffness_N_per_mm);
+                                          const tangible::LoopOptions& loop = {}, double friction_share = 0.0,
+                                          double growth_mm = 1e9) {
+    const KnownTissue known(stiffness_N_per_mm, growth_mm);
     const auto model = small_strip(1.0, friction_share);
     const tangible::TangiblePlan plan = tangible::make_tangible_plan(model, known.world, {0.0, 0.0}, loop);
     return tangible::run_press(plan, tangible::make_plant(model, plant, loop), {4e-3, 8e-3}, 1);

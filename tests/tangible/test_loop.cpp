@@ -40,7 +40,7 @@ struct SmallLoop {
 }  // namespace
 
 TEST_CASE("tangible loop: a press on the exact plant renders the wanted force") {
-    for (const double stiffness : {0.05, 0.2}) {
+    for (const double stiffness : {0.1, 0.2}) {
         const PressFigures figures = press_small(stiffness, small_plant());
         CHECK(figures.force_rms_percent < 0.5);
         CHECK(figures.rendered_N_per_m == doctest::Approx(1e3 * stiffness).epsilon(0.01));
@@ -115,8 +115,8 @@ TEST_CASE("tangible loop: for a slow sensor the finger is extrapolated") {
     slow.sensor.rate_Hz = 25.0;
     LoopOptions without;
     without.predict = false;
-    const double behind = press_small(0.1, slow, without).force_rms_percent;
-    const double ahead = press_small(0.1, slow).force_rms_percent;
-    CHECK(behind > 1.0);
+    const double behind = press_small(0.02, slow, without, 0.0, 3.0).force_rms_percent;
+    const double ahead = press_small(0.02, slow, {}, 0.0, 3.0).force_rms_percent;
+    CHECK(behind > 0.5);  // a straight line hardly shows it: its tension hardly changes
     CHECK(ahead < 0.5 * behind);
 }
