@@ -117,6 +117,7 @@ PressFigures run_press(const TangiblePlan& plan, const Plant& plant, const Press
 }
 
 Reach reach_at(const TangiblePlan& plan, double depth_m) {
+    constexpr int kSteps = 8;  // on the way from the pretension to a corner of the bounds; the last equilibrium counts
     const DeviceModel& model = *plan.model;
     Reach reach{depth_m, std::numeric_limits<double>::infinity(), 0.0};
     std::vector<int> drivers;
@@ -124,18 +125,21 @@ Reach reach_at(const TangiblePlan& plan, double depth_m) {
         if (!has_lower_neighbour(model, j)) drivers.push_back(j);
     }
     for (unsigned corner = 0; corner < (1u << drivers.size()); ++corner) {
-        Actuation actuation{};
-        for (std::size_t j = 0; j < model.actuators.size(); ++j) {
-            const auto at = std::find(drivers.begin(), drivers.end(), model.driver[j]) - drivers.begin();
-            const bool up = (corner >> static_cast<unsigned>(at) & 1u) != 0;
-            actuation[j] = up ? model.actuators[j].upper : model.actuators[j].lower;
-        }
         DeviceState state = plan.start;
-        const ForwardAnswer answer = press_to_depth(model, state, actuation, depth_m);
-        if (answer.status != DeviceStatus::good && answer.status != DeviceStatus::unstable) continue;
-        const double stiffness = std::max(0.0, answer.force_N) / depth_m;
-        reach.lowest_N_per_m = std::min(reach.lowest_N_per_m, stiffness);
-        reach.highest_N_per_m = std::max(reach.highest_N_per_m, stiffness);
+        for (int step = 0; step <= kSteps; ++step) {
+            Actuation actuation{};
+            for (std::size_t j = 0; j < model.actuators.size(); ++j) {
+                const auto at = std::find(drivers.begin(), drivers.end(), model.driver[j]) - drivers.begin();
+                const bool up = (corner >> static_cast<unsigned>(at) & 1u) != 0;
+                const double end = up ? model.actuators[j].upper : model.actuators[j].lower;
+                actuation[j] = plan.start.actuation[j] + step * (end - plan.start.actuation[j]) / kSteps;
+            }
+            const ForwardAnswer answer = press_to_depth(model, state, actuation, depth_m);
+            if (answer.status != DeviceStatus::good && answer.status != DeviceStatus::unstable) break;
+            const double stiffness = std::max(0.0, answer.force_N) / depth_m;
+            reach.lowest_N_per_m = std::min(reach.lowest_N_per_m, stiffness);
+            reach.highest_N_per_m = std::max(reach.highest_N_per_m, stiffness);
+        }
     }
     if (!(reach.lowest_N_per_m <= reach.highest_N_per_m)) reach.lowest_N_per_m = reach.highest_N_per_m;
     return reach;

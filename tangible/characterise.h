@@ -42,7 +42,8 @@ PressFigures run_press(const TangiblePlan& plan, const Plant& plant, const Press
 
 PressFigures figures_of(std::vector<PressTick> ticks);
 
-// The stiffnesses (force over depth) that the device can have at a depth: with all actuators at some of their bounds.
+// The stiffnesses (force over depth) that the device can have at a depth: on the ways from the pretension to the corners of the actuators'
+// bounds, as far as there is equilibrium.
 struct Reach {
     double depth_m = 0.0;
     double lowest_N_per_m = 0.0;
