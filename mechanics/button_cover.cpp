@@ -270,7 +270,7 @@ CoverState press_cover(const CoverNet& net, double travel_m) {
     for (; out.iterations < 100; ++out.iterations) {
         const NetTangent tangent = tangent_of(net, out.u_m, travel_m);
         if (!factor_shifted(tangent, cholesky)) break;
-        const double resolved_N = 1e-15 * net.springs.front().k_N_per_m * net.cover.radius_m;
+        const double resolved_N = 4e-15 * net.springs.front().k_N_per_m * net.cover.radius_m;
         const double residual_N = tangent.gradient_N.cwiseAbs().maxCoeff();
         if (residual_N <= std::max(1e-10 * tangent.largest_N, resolved_N)) {
             Eigen::MatrixXd y = tangent.coupling_N_per_m;

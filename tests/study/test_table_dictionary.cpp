@@ -41,6 +41,7 @@ Observations study_with_everything() {
         seen.staircases.back().condition = "a";
         seen.staircases.back().participant = seen.participants.back();
     }
+    seen.displays = {{seen.conditions[0], "pen", false}, {seen.conditions[1], "tangible", true}};
     PrimaryComparison primary;
     primary.sides = {"a", "b"};
     seen.primary = primary;

@@ -327,7 +327,7 @@ TEST_CASE("files: words and numbers that an option does not take are told in wor
         CHECK(contains(called.err, word));
     };
     refused("run --screen map",
-            "--screen: found 'map', expected trial, devices, scale, calibrate, maps, history or tactile");
+            "--screen: found 'map', expected trial, devices, scale, calibrate, maps, history, tactile or tangible");
     refused("run --headless --replay trace.tsv in.map --screenshot p.jpg",
             "--screenshot: found 'p.jpg', expected FILE.png");
     refused("maps plot in.map -o f.png --what all_of_it",

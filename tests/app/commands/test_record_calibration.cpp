@@ -136,8 +136,13 @@ TEST_CASE("record: two recordings at once do not share a folder") {
 TEST_CASE("record: the command that it names for the fit has what was said about the levels") {
     const TemporaryFolder folder;
     write_text_atomically(folder / "levels", "0\n");
+    // continues a session that has a point, since there is nothing to fit without
     const auto next = [&](const std::string& session, const std::string& levels) {
-        return shell(kRecord + "-o " + (folder / session).string() + " --sensor typed --levels " +
+        std::string name = session;
+        std::erase(name, '"');
+        std::filesystem::create_directories(folder / name);
+        write_text_atomically(folder / (name + "/points.csv"), "time_s,level,force_N,repeat,phase\n1,0.5,1,0,press\n");
+        return shell(kRecord + "-o " + (folder / session).string() + " --resume --sensor typed --levels " +
                      (folder / "levels").string() + levels)
             .out;
     };
