@@ -208,7 +208,9 @@ std::vector<std::array<int, 6>> neighbours_of(const Block& block, const Lattice&
     for (const auto& [corner, i] : lattice.number) {
         for (std::size_t e = 0; e < 6; ++e) {
             const std::size_t other = e % 2 == 0 ? corner - stride[e / 2] : corner + stride[e / 2];
-            out[i][e] = (lattice.edges[i] >> e & 1U) != 0 ? static_cast<int>(lattice.number.at(other)) : -1;
+            out[i][e] = (static_cast<unsigned>(lattice.edges[i]) >> e & 1U) != 0
+                            ? static_cast<int>(lattice.number.at(other))
+                            : -1;
         }
     }
     return out;

@@ -189,7 +189,7 @@ void draw_reveal_panel(const Shown& shown, const Layout& layout, const Reviewing
     if (layout.column) {
         buttons(gui, reviewing.menu, wishes);
         ImGui::BeginChild("rest", ImVec2(0.0f, 0.0f), false, ImGuiWindowFlags_NavFlattened);  // messages scroll
-        ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2(ImGui::GetStyle().ItemSpacing.x, 0.8f * gui.mm()));
+        ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2(ImGui::GetStyle().ItemSpacing.x, 0.5f * gui.mm()));
         result_lines(shown, reviewing, gui);
         legend(reviewing.debrief, gui);
         const bool fits = ImGui::GetCursorPosY() <= ImGui::GetWindowHeight() + 1.0f;

@@ -133,7 +133,7 @@ std::vector<ExportedFile> export_slices(const Part& part, const SlicePitch& pitc
                 draw_line(grid, y, part.voxels.lines[line_of(part.voxels, y, z)], images, pixels);
         }
         for (std::size_t m = 0; m < materials; ++m) {
-            std::array<char, 16> number{};
+            std::array<char, 24> number{};
             std::snprintf(number.data(), number.size(), "-%05d.png", layer);
             const std::string file = names[m] + number.data();
             files::write_text_whole(made.path() / file, slice_png(grid, images[m], {1.0 / pitch.x_m, 1.0 / pitch.y_m}));

@@ -17,11 +17,12 @@ namespace {
 
 // The strip renders 0.25 N/mm; the plant is its own model, in the program.
 std::string soft_scene(const TemporaryFolder& folder, const std::string& plant = R"(, "plant": "exact")") {
-    write_text_atomically(folder / "soft.json",
-                          R"({"name": "soft", "tissue": {"force_curve": {"stiffness_N_per_mm": 0.25, "greatest_depth_mm": 10}},
+    write_text_atomically(
+        folder / "soft.json",
+        R"({"name": "soft", "tissue": {"force_curve": {"stiffness_N_per_mm": 0.25, "greatest_depth_mm": 10}},
         "profile": "s-pen.json", "mapping": {"kind": "direct"},
         "tangible": {"device": "strip.json", "at_mm": "touch", "force_scale": 0.25)" +
-                              plant + "}}");
+            plant + "}}");
     return (folder / "soft.json").string();
 }
 
@@ -87,12 +88,12 @@ TEST_CASE("driven: a study's surfaces are on the soft device, and the settings n
     script.key(kF);  // the first surface
     script.t_s += 3.0;
     script.press(1.0);
-    script.key(kF);  // the second one
-    script.key(k1);  // was softer
-    script.t_s += 3.0;
-    script.key(kF12);  // in the middle of the next pair
+    script.key(kF);     // the second one
+    script.key(k1);     // was softer
+    script.t_s += 8.0;  // it opens anew
+    script.key(kF12);   // in the middle of the next pair
     script.out.close();
-    const std::string arguments = soft_study(folder) + " --quit-after-s 30";
+    const std::string arguments = soft_study(folder) + " --quit-after-s 40";
     REQUIRE(run_program(folder, arguments, folder / "log/sub-01/now.json", [&] { CHECK(play_script(folder) == 0); }) ==
             0);
     const Json result = read_json(folder / "out.json");

@@ -106,12 +106,16 @@ TEST_CASE("command study watch: who is where, what to present, the marks and the
     CHECK(contains(words.out, "first 1.75 kPa, second 2 kPa; now interval 1"));
     // a surface of a forced choice has a run of its own; the trial before it is over
     text("sub-08/beh/sub-08_task-palpation_run-01_events.tsv",
-         "onset\ttrial_type\n0\tstart\n1\tmark\n2\tmark\n3\tfinish\n");
-    text("sub-08/beh/sub-08_task-interval_run-01_events.tsv", "onset\ttrial_type\n0\tstart\n");
+         "onset\ttrial_type\tblock\ttrial\tcondition\n0\tstart\ttest\t3\tc\n1\tmark\ttest\t3\tc\n"
+         "2\tmark\ttest\t3\tc\n");
+    text("sub-08/beh/sub-08_task-interval_run-01_events.tsv",
+         "onset\ttrial_type\tblock\ttrial\tcondition\n0\tstart\ttest\t4\tc\n");
     text("sub-08/beh/sub-08_task-interval_run-01_samples.tsv", header + "1\tpen\t30\t40\t0.5\t2\t3\n");
     text("sub-08/now.json", R"({"participant": "08", "step": "trial", "finished": 3, "of": 4, "trial": 4,
                                "condition": "c", "practice": false, "present_kPa": [1.75, 2], "interval": 1})");
     const Called felt = study("watch " + folder.path().string() + " --participant 08");
+    CAPTURE(felt.out);
+    CAPTURE(felt.err);
     CHECK(contains(felt.out, "0 marks"));
     CHECK(contains(felt.out, "pen at (30, 40) mm"));
     CHECK_FALSE(contains(words.out, "07"));
