@@ -13,7 +13,6 @@ namespace palpa::accuracy {
 inline constexpr mechanics::Material kBenchTissue{2500.0, 0.45};                           // Pa, Poisson's ratio
 inline constexpr mechanics::Indenter kBenchBall{mechanics::IndenterShape::sphere, 0.008};  // radius 8 mm
 
-
 // Returns a block of one material with its bottom clamped; tetrahedra come from splitting the hexahedra.
 mechanics::Problem block(const mechanics::Mesh& hexes, mechanics::Element element, const mechanics::Material& material);
 // Returns the quarter x >= 0, y >= 0 of such a block that is symmetric about both planes.

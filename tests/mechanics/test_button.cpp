@@ -135,7 +135,7 @@ TEST_CASE("button: a flat net without gravity bears nothing and asks no solver; 
     CHECK(sags.converged);
     CHECK(sags.u_m.row(2).maxCoeff() > 0.0);
     CHECK(sags.force_N < 0.0);  // the cap must be held up
-    heavy.young_Pa = 2e9;  // energies that round-off nearly hides
+    heavy.young_Pa = 2e9;       // energies that round-off nearly hides
     CHECK(press_cover(make_net(heavy), 0.0).converged);
 }
 

@@ -13,12 +13,12 @@ using namespace palpa::test;
 
 namespace {
 
-// A press on a plant, written as a table and read again; every fourth tick, since each takes an equilibrium.
-std::vector<RecordedTick> recorded(const PlantOptions& plant) {
+// A press on a plant, written as a table and read again; every so many ticks, since each takes an equilibrium.
+std::vector<RecordedTick> recorded(const PlantOptions& plant, std::size_t every = 1) {
     const PressFigures figures = press_small(0.15, plant);
     const auto model = small_strip();
     std::string text = tick_columns(*model);
-    for (std::size_t i = 0; i < figures.ticks.size(); i += 4) {
+    for (std::size_t i = 0; i < figures.ticks.size(); i += every) {
         const PressTick& tick = figures.ticks[i];
         append_tick(*model, tick.command, tick.depth_m, tick.wanted_N, tick.rendered_N, text);
     }
@@ -36,7 +36,7 @@ std::string presses_refused(const std::string& text) {
 }  // namespace
 
 TEST_CASE("fit: a plant's modulus is found again from one press") {
-    const FitResult result = fit_presses(small_strip()->device, recorded(small_plant(1.2)));
+    const FitResult result = fit_presses(small_strip()->device, recorded(small_plant(1.2), 4));
     CHECK(result.settled);
     CHECK(result.fit.modulus_factor == doctest::Approx(1.2).epsilon(0.01));
     CHECK(result.fit.friction_share < 0.01);
