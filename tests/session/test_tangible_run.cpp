@@ -88,7 +88,7 @@ TEST_CASE("tangible run: live on a plant in this process, without an allocation 
     SmallRun run;
     run.options.finger.seconds = 0.5;
     const TangibleResult result = run_tangible_live(run.plan, run.plant, {}, run.options);
-    CHECK(result.ticks.ticks > 10);
+    CHECK(result.ticks.ticks > 3);
     CHECK(result.loop.refused_commands == 0);
     CHECK(result.loop.not_numbers == 0);
     if (!allocation_count_works()) return;
