@@ -1,5 +1,6 @@
 #include "mechanics/large_elements.h"
 
+#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <cassert>
@@ -55,6 +56,8 @@ PointTerms mean_terms(const PointState<N>& p, double weight, double pressure_Pa)
     t.cc = second * p.slope_c * p.slope_c + 10.0 / 9.0 * first * B * p.I / (p.J * p.J);
     return t;
 }
+
+constexpr double kZeroShare = 1e-10;  // of the mean diagonal: an eigenvalue of this size is none
 
 // Adds the gradient of all points, and writes their tangent.
 template <int N>
@@ -197,6 +200,10 @@ void large_cell(const CellRest<N>& rest, const LargeMaterial& material, bool mea
 
 template <int N>
 void make_positive(CellMatrix<N>& tangent_N_per_m) {
+    // most cells need nothing, and Cholesky's method finds that out in a tenth of the time
+    CellMatrix<N> raised = tangent_N_per_m;
+    raised.diagonal().array() += kZeroShare * raised.trace() / static_cast<double>(raised.rows());
+    if (Eigen::LLT<CellMatrix<N>>(raised).info() == Eigen::Success) return;
     const Eigen::SelfAdjointEigenSolver<CellMatrix<N>> eigen(tangent_N_per_m);
     if (eigen.eigenvalues()(0) >= 0.0) return;
     tangent_N_per_m =

@@ -7,7 +7,7 @@ namespace palpa::scene {
 
 TangibleOptions read_tangible(files::JsonReader json, const std::filesystem::path& scene_file,
                               const std::filesystem::path& assets) {
-    json.only({"device", "at_mm", "force_scale", "depth_scale", "plant"});
+    json.only({"device", "at_mm", "force_scale", "depth_scale", "plant", "fidelity", "command"});
     TangibleOptions options;
     options.device = find_file(json.text("device"), scene_file, assets / "devices");
     if (json.has("at_mm")) {
@@ -23,6 +23,14 @@ TangibleOptions read_tangible(files::JsonReader json, const std::filesystem::pat
     if (json.has("plant")) {
         options.plant = json.text("plant");
         if (options.plant != "exact") options.plant = find_file(options.plant, scene_file, assets / "plants").string();
+    }
+    if (json.has("fidelity")) {
+        json.choice("fidelity", {"step", "converged", "stale", "linear"});
+        options.fidelity = json.text("fidelity");
+    }
+    if (json.has("command")) {
+        json.choice("command", {"force", "position"});
+        options.command = json.text("command");
     }
     json.finish();
     return options;

@@ -19,6 +19,9 @@ struct TangibleOptions {
     // Who stands in for hardware: nobody (empty), the device's own model ("exact"), or the file of a model that differs
     // from it (assets/plants).
     std::string plant;
+    std::string fidelity =
+        "step";  // of the inverse problem: "step", "converged", "stale" or "linear" (tangible/inverse.h)
+    std::string command = "force";  // what the drives are told: "force" or "position"
 };
 
 // Reads the key `tangible` of a scene file. `assets`: where devices (devices/) and plants (plants/) are looked for if they

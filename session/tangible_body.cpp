@@ -104,7 +104,7 @@ void fill_shape(const TangiblePlan& plan, const std::vector<int>& nodes, const t
         out.node_m[i] = point_of(rest_m.col(nodes[i]) + state.u_m.col(nodes[i]));
 }
 
-void fill_moment(const TickRecord& record, const TangibleSink& sink, TangibleMoment& out) {
+void fill_moment(const TickRecord& record, const TangibleSink& sink, double rate_Hz, TangibleMoment& out) {
     const tangible::TangibleCommand& tick = record.command;
     out.time_s = tick.time_s;
     out.depth_m = tick.depth_m;
@@ -114,8 +114,7 @@ void fill_moment(const TickRecord& record, const TangibleSink& sink, TangibleMom
     out.proxy_m = tick.proxy_m;
     out.next_stiffness = tick.slope_N_per_m;
     out.pressed = tick.pressed;
-    out.free_m = tick.gap_m;  // with the finger's new force and the last actuation
-    out.by_finger_m = 0.0;
+    out.gap_m = tick.gap_m;
     out.by_actuators_m = tick.residual_m - tick.gap_m;
     out.compliance = tick.compliance;
     out.residual_m = tick.residual_m;
@@ -137,7 +136,7 @@ void fill_moment(const TickRecord& record, const TangibleSink& sink, TangibleMom
     out.ticks = ticks.ticks;
     out.missed_ticks = record.missed;
     out.saturated_ticks = ticks.saturated_ticks;
-    out.held_s += tick.held ? 1.0 / 100.0 : 0.0;
+    out.held_s = static_cast<double>(ticks.held_ticks) / rate_Hz;
     out.force_rms_percent = tangible::force_rms_percent(ticks);
 }
 

@@ -13,7 +13,7 @@ TangibleBody body_of(const tangible::TangiblePlan& plan, const std::string& rend
 // Allocates nothing.
 void fill_shape(const tangible::TangiblePlan& plan, const std::vector<int>& nodes, const tangible::DeviceState& state,
                 TangibleShape& out) noexcept;
-void fill_moment(const TickRecord& record, const TangibleSink& sink, TangibleMoment& out);
+void fill_moment(const TickRecord& record, const TangibleSink& sink, double rate_Hz, TangibleMoment& out);
 
 // The wires of the device file, with the ports given instead of its own. Throws InputError.
 devices::ActuatorRig tangible_rig(const tangible::DeviceModel& model, const std::vector<std::string>& ports);

@@ -64,10 +64,9 @@ struct TangibleMoment {
     bool pressed = false;
 
     // The inverse problem of this tick, term by term, along the direction of the finger (m):
-    // gap = free_m + by_finger_m + by_actuators_m, of which residual_m is left.
-    double free_m = 0.0;          // gap of the effector without actuation and without finger
-    double by_finger_m = 0.0;     // share of the wanted force
-    double by_actuators_m = 0.0;  // W times the actuation
+    // residual_m = gap_m + by_actuators_m.
+    double gap_m = 0.0;           // of the effector, with the finger's new depth and force and the last actuation
+    double by_actuators_m = 0.0;  // W times the change of actuation
     Actuators compliance{};       // row of W: m/N, or m/Pa
     double residual_m = 0.0;      // what the actuators cannot close
     std::int32_t rank = 0;

@@ -227,7 +227,7 @@ bool TangibleLive::latest(TangibleMoment& out) {
     }
     works.sink->take_rows(works.thread->loop().recorded);
     if (!any) return false;
-    fill_moment(record, *works.sink, works.moment);
+    fill_moment(record, *works.sink, works.plan->loop.rate_Hz, works.moment);
     out = works.moment;
     return true;
 }

@@ -213,6 +213,7 @@ DeviceState blank_state(const DeviceModel& model) {
     const int m = channels_of(model);
     state.K = mechanics::band_matrix(model.equations(), model.band);
     state.loads.setZero(model.equations(), m);
+    state.factor_loads.setZero(model.equations(), m);
     state.answers.setZero(model.equations(), m + 1);
     state.linear_u_m.setZero(model.equations());
     state.linear_moves_m.setZero(model.equations(), m);

@@ -77,7 +77,8 @@ struct DeviceState {
     Eigen::Matrix3Xd good_u_m, gradient_N;
     mechanics::BandMatrix K;         // factor of the tangent
     Eigen::MatrixXd loads;           // equations x channels: what a unit of each channel does to the nodes
-    Eigen::MatrixXd answers;         // K^-1 of loads, of the tilts, and of what is out of balance
+    Eigen::MatrixXd factor_loads;    // the same at the shape that the factor was made at
+    Eigen::MatrixXd answers;         // K^-1 of factor_loads, and of what is out of balance
     Response linear;                 // about the shape that prepare_press() left, with
     Eigen::VectorXd linear_u_m;      // displacements without forces, and
     Eigen::MatrixXd linear_moves_m;  // per force of each channel

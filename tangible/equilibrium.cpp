@@ -1,6 +1,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "tangible/linearised.h"
 
@@ -8,6 +9,8 @@ namespace palpa::tangible {
 namespace {
 
 constexpr int kMostNewton = 40;
+constexpr double kFastFall = 0.1;    // of corrections with one factor
+constexpr double kNear = 2e-3;       // corrections from which on one factor may serve, over the body's size
 constexpr int kMostHalvings = 8;     // of a step of the load
 constexpr double kBalanced = 1e-10;  // greatest last correction, over the body's size
 
@@ -59,11 +62,14 @@ SmallColumn forces_for(const Goal& goal, const SmallColumn& value, const SmallCo
     return p;
 }
 
-// Newton's method at one value of the goal.
+// Newton's method at one value of the goal. The factor of a step serves those after it as long as each is much smaller than
+// the one before.
 DeviceStatus newton(const DeviceModel& model, DeviceState& state, const Goal& goal, const SmallColumn& value,
                     ForwardAnswer& answer) {
+    bool factor = true;
+    double last_m = std::numeric_limits<double>::infinity();
     for (int i = 0; i < kMostNewton; ++i) {
-        if (!factor_tangent(model, state)) return DeviceStatus::no_equilibrium;
+        if (!(factor ? factor_tangent(model, state) : sum_forces(model, state))) return DeviceStatus::no_equilibrium;
         const Response response = respond(model, state);
         const SmallColumn p = forces_for(goal, value, coordinates(model, state), response);
         const double most_m = solve_displacement(model, state, response, p);
@@ -73,6 +79,8 @@ DeviceStatus newton(const DeviceModel& model, DeviceState& state, const Goal& go
         answer.residual_m = std::max(most_m, move_all_shifts(model, state));
         if (answer.residual_m <= kBalanced * model.size_m)
             return state.repaired ? DeviceStatus::unstable : DeviceStatus::good;
+        factor = state.repaired || answer.residual_m > kFastFall * last_m || answer.residual_m > kNear * model.size_m;
+        last_m = answer.residual_m;
     }
     return DeviceStatus::slow;
 }

@@ -1,6 +1,7 @@
 #include "tangible/inverse.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 #include "mechanics/bounded_least_squares.h"
@@ -207,6 +208,12 @@ void go_back(DeviceState& state, const Tick& tick) {
 }
 
 }  // namespace
+
+Fidelity fidelity_named(std::string_view name) {
+    const auto at = std::find(kFidelityNames.begin(), kFidelityNames.end(), name);
+    assert(at != kFidelityNames.end());
+    return static_cast<Fidelity>(at - kFidelityNames.begin());
+}
 
 InverseAnswer inverse_step(const DeviceModel& model, DeviceState& state, const Wanted& wanted,
                            const InverseOptions& options) noexcept {

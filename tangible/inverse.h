@@ -21,6 +21,7 @@ namespace palpa::tangible {
 // linear     the linear model of the device about the state of prepare_press()
 enum class Fidelity { step, converged, stale, linear };
 inline constexpr std::array<std::string_view, 4> kFidelityNames{"step", "converged", "stale", "linear"};
+Fidelity fidelity_named(std::string_view name);  // one of kFidelityNames
 
 struct Wanted {
     double depth_m = 0.0;          // of the effector, from its rest

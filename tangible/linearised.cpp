@@ -62,10 +62,25 @@ void write_loads(const DeviceModel& model, DeviceState& state) {
     for (const int equation : model.held) state.loads.row(equation).setZero();
 }
 
-// What is out of balance without the channels, to the last column of `answers`.
+// The forces of the channels, ties included, as they are.
+SmallColumn channel_forces(const DeviceModel& model, const DeviceState& state) {
+    SmallColumn p(channels_of(model));
+    p(0) = state.finger_N;
+    for (int j = 0; j < model.n_actuators(); ++j)
+        p(1 + j) = state.actuation[static_cast<std::size_t>(j)] + state.tie_part[static_cast<std::size_t>(j)];
+    return p;
+}
+
+// What is out of balance without the channels, to the last column of `answers`. With a factor of earlier the channels are
+// taken to work along its B, and what that leaves out is added here, so that repeated steps end at the true equilibrium.
 void write_imbalance(const DeviceModel& model, DeviceState& state) {
     auto r = state.answers.col(channels_of(model));
     r = model.weight_N - Eigen::Map<const VectorXd>(state.gradient_N.data(), model.equations());
+    if (state.age > 0) {
+        const SmallColumn p = channel_forces(model, state);
+        r.noalias() += state.loads * p;
+        r.noalias() -= state.factor_loads * p;
+    }
     for (const int equation : model.held) r(equation) = 0.0;
 }
 
@@ -174,6 +189,7 @@ bool factor_tangent(const DeviceModel& model, DeviceState& state) noexcept {
     state.factored = true;
     write_loads(model, state);
     const int m = channels_of(model);
+    state.factor_loads = state.loads;
     state.answers.leftCols(m) = state.loads;
     mechanics::solve_in_place(state.K, state.answers.leftCols(m));
     return true;

@@ -31,7 +31,24 @@ void take_start(TangiblePlan& plan) {
                                  name_of(prepared.status) + ")");
 }
 
+const scene::TangibleOptions& options_of(const scene::Scene& scene) {
+    if (!scene.tangible)
+        throw files::bad_input(scene.file.string(), "tangible", "no such key", "one that names a device");
+    return *scene.tangible;
+}
+
 }  // namespace
+
+CommandKind command_named(std::string_view name) {
+    return name == "position" ? CommandKind::position : CommandKind::force;
+}
+
+LoopOptions loop_options(const scene::TangibleOptions& scene) {
+    LoopOptions options;
+    options.inverse.fidelity = fidelity_named(scene.fidelity);
+    options.command = command_named(scene.command);
+    return options;
+}
 
 TangiblePlan make_tangible_plan(std::shared_ptr<const DeviceModel> model, const World& world,
                                 const Eigen::Vector2d& place_m, const LoopOptions& options) {
@@ -47,14 +64,17 @@ TangiblePlan make_tangible_plan(std::shared_ptr<const DeviceModel> model, const 
 }
 
 TangiblePlan make_tangible_plan(const scene::Scene& scene, const scene::Plan& scene_plan, const LoopOptions& options) {
-    if (!scene.tangible)
-        throw files::bad_input(scene.file.string(), "tangible", "no such key", "one that names a device");
-    auto model = std::make_shared<const DeviceModel>(make_device_model(read_soft_device(scene.tangible->device)));
-    const Eigen::Vector2d place_m = scene.tangible->at_m.value_or(scene_plan.area.centre_m);
+    const scene::TangibleOptions& asked = options_of(scene);
+    auto model = std::make_shared<const DeviceModel>(make_device_model(read_soft_device(asked.device)));
+    const Eigen::Vector2d place_m = asked.at_m.value_or(scene_plan.area.centre_m);
     TangiblePlan plan = make_tangible_plan(std::move(model), make_world(scene, scene_plan), place_m, options);
-    plan.place_follows = !scene.tangible->at_m.has_value();
+    plan.place_follows = !asked.at_m.has_value();
     plan.greatest_m = scene_plan.greatest_depth_m / plan.world.depth_scale;
     return plan;
+}
+
+TangiblePlan make_tangible_plan(const scene::Scene& scene, const scene::Plan& scene_plan) {
+    return make_tangible_plan(scene, scene_plan, loop_options(options_of(scene)));
 }
 
 }  // namespace palpa::tangible

@@ -25,6 +25,11 @@ struct LoopOptions {
     bool compensate_friction = true;  // that of the device's fit
 };
 
+CommandKind command_named(std::string_view name);  // "force" or "position"
+
+// What the scene asks of the loop.
+LoopOptions loop_options(const scene::TangibleOptions& scene);
+
 struct TangiblePlan {
     std::shared_ptr<const DeviceModel> model;
     World world;
@@ -41,8 +46,8 @@ struct TangiblePlan {
 
 // Makes the plan of a scene that has the key `tangible`, on its plan, which must outlive it. Reads the device. Throws
 // InputError, and std::runtime_error for a device that has no equilibrium at its pretension.
-TangiblePlan make_tangible_plan(const scene::Scene& scene, const scene::Plan& scene_plan,
-                                const LoopOptions& options = {});
+TangiblePlan make_tangible_plan(const scene::Scene& scene, const scene::Plan& scene_plan, const LoopOptions& options);
+TangiblePlan make_tangible_plan(const scene::Scene& scene, const scene::Plan& scene_plan);  // with the scene's options
 
 // The same for a model that is there already. place_m: on the tissue.
 TangiblePlan make_tangible_plan(std::shared_ptr<const DeviceModel> model, const World& world,

@@ -102,8 +102,8 @@ Characterised press_on(const TangibleCharacteriseArguments& arguments,
                        const PlantOptions& plant) {
     tangible::LoopOptions loop;
     loop.rate_Hz = arguments.rate_Hz;
-    loop.inverse.fidelity = fidelity_named(arguments.fidelity);
-    loop.command = command_named(arguments.command);
+    loop.inverse.fidelity = tangible::fidelity_named(arguments.fidelity);
+    loop.command = tangible::command_named(arguments.command);
     Characterised out{make_tangible_plan(model, tissue.world, tissue.place_m, loop), {}};
     out.figures = run_press(out.plan, make_plant(model, plant, loop),
                             {1e-3 * arguments.depth_mm, 1e-3 * arguments.speed_mm_per_s}, arguments.seed);

@@ -4,8 +4,6 @@
 #include <filesystem>
 #include <string>
 
-#include "tangible/plan.h"
-
 namespace CLI {
 class App;
 }
@@ -15,8 +13,6 @@ namespace palpa::app {
 // The device file that a person names: a path, or the name of one among the assets.
 std::filesystem::path device_file(const std::string& name);
 
-tangible::Fidelity fidelity_named(const std::string& name);
-tangible::CommandKind command_named(const std::string& name);
 // --fidelity, --command, --rate-Hz.
 void add_loop_options(CLI::App& command, std::string& fidelity, std::string& kind, double& rate_Hz);
 

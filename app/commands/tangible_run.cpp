@@ -31,8 +31,8 @@ struct TangibleRunArguments {
     std::vector<std::string> ports;
     std::string press;
     std::string log;
-    std::string fidelity = "step";
-    std::string command = "force";
+    std::string fidelity;  // empty: the scene's
+    std::string command;
     double rate_Hz = 100.0;
     double seconds = 0.0;
     std::uint64_t seed = 1;
@@ -40,11 +40,11 @@ struct TangibleRunArguments {
     bool json = false;
 };
 
-tangible::LoopOptions loop_options_of(const TangibleRunArguments& arguments) {
-    tangible::LoopOptions options;
+tangible::LoopOptions loop_options_of(const TangibleRunArguments& arguments, const scene::TangibleOptions& scene) {
+    tangible::LoopOptions options = tangible::loop_options(scene);
     options.rate_Hz = arguments.rate_Hz;
-    options.inverse.fidelity = fidelity_named(arguments.fidelity);
-    options.command = command_named(arguments.command);
+    if (!arguments.fidelity.empty()) options.inverse.fidelity = tangible::fidelity_named(arguments.fidelity);
+    if (!arguments.command.empty()) options.command = tangible::command_named(arguments.command);
     return options;
 }
 
@@ -123,7 +123,7 @@ void run_tangible(const TangibleRunArguments& arguments) {
     const std::string plant_name = plant_of(arguments, scene);
     const scene::Plan scene_plan = session::make_plan_here(scene);
     const auto plan = std::make_shared<const tangible::TangiblePlan>(
-        tangible::make_tangible_plan(scene, scene_plan, loop_options_of(arguments)));
+        tangible::make_tangible_plan(scene, scene_plan, loop_options_of(arguments, *scene.tangible)));
     const session::TangibleResult result = run_as_asked(arguments, plant_name, plan);
     files::Json json{{"scene", scene.name}, {"seed", arguments.seed}};
     json["plant"] = plant_name.empty() ? files::Json(nullptr) : files::Json(plant_name);
@@ -144,21 +144,14 @@ fs::path device_file(const std::string& name) {
     return scene::find_file(name, fs::current_path() / "device", assets_folder() / "devices");
 }
 
-tangible::Fidelity fidelity_named(const std::string& name) {
-    for (std::size_t i = 0; i < tangible::kFidelityNames.size(); ++i) {
-        if (name == tangible::kFidelityNames[i]) return static_cast<tangible::Fidelity>(i);
-    }
-    return tangible::Fidelity::step;
-}
-
-tangible::CommandKind command_named(const std::string& name) {
-    return name == "position" ? tangible::CommandKind::position : tangible::CommandKind::force;
-}
-
 void add_loop_options(CLI::App& command, std::string& fidelity, std::string& kind, double& rate_Hz) {
-    command.add_option("--fidelity", fidelity, "of the inverse problem (default step, one Newton step per tick)")
+    command
+        .add_option("--fidelity", fidelity,
+                    "of the inverse problem (default: the scene's, or step: one Newton step per tick)")
         ->check(one_of({"step", "converged", "stale", "linear"}));
-    command.add_option("--command", kind, "what the drives are told: forces (default), or the cables' lengths")
+    command
+        .add_option("--command", kind,
+                    "what the drives are told: forces, or the cables' lengths (default: the scene's, or force)")
         ->check(one_of({"force", "position"}));
     command.add_option("--rate-Hz", rate_Hz, "ticks of the loop (default 100)")->check(CLI::Range(10.0, 2000.0));
 }

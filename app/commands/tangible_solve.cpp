@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "app/commands/command_line.h"
+#include "app/commands/option_checks.h"
 #include "files/clock.h"
 #include "files/input_error.h"
 #include "files/printable.h"
@@ -28,19 +29,12 @@ struct SolvedPress {
     double time_us = 0.0;
 };
 
-tangible::Fidelity fidelity_of(const std::string& name) {
-    for (std::size_t k = 0; k < tangible::kFidelityNames.size(); ++k) {
-        if (tangible::kFidelityNames[k] == name) return static_cast<tangible::Fidelity>(k);
-    }
-    throw files::bad_input("", "--fidelity", files::shown(name), "step, converged, stale or linear");
-}
-
 // Presses in 60 ticks from the pretension to the wanted depth and force, as a loop would come there, and then holds
 // them until nothing changes.
 SolvedPress solve_press(const tangible::DeviceModel& model, const TangibleSolveOptions& options) {
     const double depth_m = 1e-3 * options.depth_mm;
     tangible::InverseOptions inverse;
-    inverse.fidelity = fidelity_of(options.fidelity);
+    inverse.fidelity = tangible::fidelity_named(options.fidelity);
     inverse.slew = false;
     tangible::DeviceState state = tangible::rest_state(model);
     const double floor_m = model.device.depth_floor_m;
@@ -154,7 +148,8 @@ void add_tangible_solve(CLI::App& tangible) {
     solve->add_option("--force-N", options->force_N, "what the finger shall feel there")
         ->required()
         ->check(CLI::Range(0.0, 1000.0));
-    solve->add_option("--fidelity", options->fidelity, "step, converged (default), stale or linear");
+    solve->add_option("--fidelity", options->fidelity, "step, converged (default), stale or linear")
+        ->check(one_of({"step", "converged", "stale", "linear"}));
     solve->add_flag("--json", options->json, "one JSON object on standard output");
     solve->callback([options] { run_solve(*options); });
 }

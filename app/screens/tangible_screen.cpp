@@ -119,8 +119,7 @@ void draw_actuators(const TangibleShown& soft, const Gui& gui) {
 void draw_problem(const TangibleShown& soft, float column_px) {
     const TangibleMoment& moment = soft.moment;
     if (!soft.runs) return;
-    soft_line(words::kGapFree, in_unit(moment.free_m, 1e3, 3, "mm"), column_px);
-    soft_line(words::kGapByFinger, in_unit(moment.by_finger_m, 1e3, 3, "mm"), column_px);
+    soft_line(words::kGap, in_unit(moment.gap_m, 1e3, 3, "mm"), column_px);
     soft_line(words::kGapByActuators, in_unit(moment.by_actuators_m, 1e3, 3, "mm"), column_px);
     std::string row;
     const std::size_t count = std::min(soft.body.actuators.size(), session::kMostTangibleActuators);
@@ -157,7 +156,7 @@ void draw_soft_values(const Shown& shown, Gui& gui, Wishes& wishes) {
     const TangibleShown& soft = *shown.tangible;
     draw_stop_or_release(soft, soft.moment.stopped, 0.0f, kStop_mm, gui, wishes);
     const float longest_px =
-        std::max(ImGui::CalcTextSize(words::kGapFree).x, ImGui::CalcTextSize(rendered_title(soft.body).c_str()).x);
+        std::max(ImGui::CalcTextSize(words::kGap).x, ImGui::CalcTextSize(rendered_title(soft.body).c_str()).x);
     const float column_px = longest_px + 2.0f * gui.mm();
     draw_soft_state(soft);
     ImGui::Separator();

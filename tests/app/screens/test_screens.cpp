@@ -416,9 +416,8 @@ TangibleShown pressed_strip() {
     m.wanted_N = 0.50;
     m.rendered_N = 0.493;
     m.pressed = true;
-    m.free_m = -9.812e-3;
-    m.by_finger_m = 16.134e-3;
-    m.by_actuators_m = -6.322e-3;
+    m.gap_m = 0.0412e-3;
+    m.by_actuators_m = -0.0400e-3;
     m.compliance[0] = m.compliance[1] = -1.62e-3;
     m.residual_m = 1.2e-6;
     m.rank = 1;
