@@ -133,7 +133,7 @@ PenContact place_of(const devices::PressRow& row) {
     return contact;
 }
 
-// Calls each(record, port) after every tick of a finger on a plant, in virtual time.
+// Calls each(record) after every tick of a finger on a plant, in virtual time, until it returns false.
 template <class Each>
 void run_virtual_ticks(PlantPort& port, DeviceLoop<TangibleLoop>& loop, const Each& each) {
     const double period_s = 1.0 / loop.plan->loop.rate_Hz;
@@ -150,7 +150,7 @@ void run_virtual_ticks(PlantPort& port, DeviceLoop<TangibleLoop>& loop, const Ea
         port.send(time_s, record.command);
         record.rendered_N = port.rendered_N();
         record.sensor_m = feedback.sensor_m;
-        each(record);
+        if (!each(record)) return;
     }
 }
 
@@ -166,6 +166,7 @@ TangibleResult run_tangible_virtual(std::shared_ptr<const TangiblePlan> plan, co
     run_virtual_ticks(port, *loop, [&](const TickRecord& record) {
         sink.take(record);
         sink.take_rows(loop->recorded);
+        return true;
     });
     sink.take_rows(loop->recorded);
     sink.finish(loop->report);
@@ -201,6 +202,7 @@ TangibleRecord press_tangible(const scene::Scene& scene, const scene::Plan& scen
         out.depth_m.push_back(port.state.depth_m);
         for (DeviceRow row; loop->recorded.take(row);) {
         }
+        return !record.command.relaxed;  // the device gave way: whoever pressed it lifts the finger
     });
     return out;
 }

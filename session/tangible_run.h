@@ -71,7 +71,8 @@ struct TangibleRecord {
     std::vector<double> depth_m;  // of the finger in the device
 };
 // A press in virtual time against the scene's plant (the device's own model if it names none). A press by force is a hand
-// without mass that goes to where its force is in equilibrium with the device. Throws as make_tangible_plan().
+// without mass that goes to where its force is in equilibrium with the device. The press ends early where the device gives
+// way. Throws as make_tangible_plan().
 TangibleRecord press_tangible(const scene::Scene& scene, const scene::Plan& plan,
                               std::span<const devices::PressRow> press, std::uint64_t seed);
 

@@ -53,18 +53,31 @@ std::string softest_motion(const DeviceModel& model, DeviceState& state) {
     return name_of_motion(model, u);
 }
 
-// Warns where the device may move without resistance at rest, at its lower limits.
+// Warns where the device may move without resistance: at the lower limits, and without supports up to half the way to
+// the upper ones.
 void warn_of_free_motion(const DeviceModel& model, std::vector<std::string>& out) {
     DeviceState state = blank_state(model);
     DeviceLoad load;
-    load.actuation = state.actuation;
-    const ForwardAnswer answer = equilibrium(model, state, load);
-    const bool found = answer.status == DeviceStatus::good || answer.status == DeviceStatus::unstable;
-    if (found && factor_tangent(model, state) && !state.repaired) return;
-    if (!state.factored) factor_tangent(model, state);
-    const std::string motion = state.factored ? softest_motion(model, state) : "gives way";
-    out.push_back(std::string(found ? "at its lower limits the device " : "no equilibrium at the lower limits: it ") +
-                  motion + " without resistance (supports, or a tie of motion between cables, hold it)");
+    const bool supported = !model.device.supports.dof.empty();
+    for (const double share : {0.0, 0.25, 0.5}) {
+        if (supported && share > 0.0) return;  // nothing slides
+        for (std::size_t j = 0; j < model.actuators.size(); ++j) {
+            const SoftActuator& actuator = model.actuators[j];
+            const bool pulls = actuator.kind == ActuatorKind::cable;
+            load.actuation[j] = actuator.lower + (pulls ? share : 0.0) * (actuator.upper - actuator.lower);
+        }
+        const ForwardAnswer answer = equilibrium(model, state, load);
+        const bool found = answer.status == DeviceStatus::good || answer.status == DeviceStatus::unstable;
+        if (found && factor_tangent(model, state) && !state.repaired) continue;
+        if (!found && share > 0.0) continue;  // pulled down as far as it goes
+        if (!state.factored) factor_tangent(model, state);
+        const std::string motion = state.factored ? softest_motion(model, state) : "gives way";
+        out.push_back((found ? "with " + files::short_number(load.actuation[0]) + " " +
+                                   unit_of(model.actuators[0].kind) + " the device "
+                             : std::string("no equilibrium at the lower limits: the device ")) +
+                      motion + " without resistance (supports, or a tie of motion between cables, hold it)");
+        return;
+    }
 }
 
 // One cell through: nearly all nodes lie on the surface.

@@ -1,4 +1,4 @@
-#include <Eigen/LU>
+#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -9,10 +9,11 @@ namespace palpa::tangible {
 namespace {
 
 constexpr int kMostNewton = 40;
-constexpr double kFastFall = 0.1;    // of corrections with one factor
-constexpr double kNear = 2e-3;       // corrections from which on one factor may serve, over the body's size
-constexpr int kMostHalvings = 8;     // of a step of the load
-constexpr double kBalanced = 1e-10;  // greatest last correction, over the body's size
+constexpr double kFastFall = 0.1;   // of corrections with one factor
+constexpr double kNear = 2e-3;      // corrections from which on one factor may serve, over the body's size
+constexpr int kPatience = 10;       // Newton steps without a smaller correction before a load is given up
+constexpr int kMostHalvings = 8;    // of a step of the load
+constexpr double kBalanced = 1e-9;  // greatest last correction, over the body's size
 
 Goal goal_of(const DeviceModel& model, const DeviceState& state, const DeviceLoad& load) {
     Goal goal;
@@ -57,7 +58,12 @@ SmallColumn forces_for(const Goal& goal, const SmallColumn& value, const SmallCo
         for (Eigen::Index b = 0; b < count; ++b)
             left(a, b) = response.compliance(row, led[static_cast<std::size_t>(b)]);
     }
-    const SmallColumn found = Eigen::PartialPivLU<Small>(left).solve(right);
+    // scaled, since newtons and pascals differ; singular where a tie of motion says what two positions say as well
+    const SmallColumn scale = left.diagonal().cwiseAbs().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+    Eigen::ColPivHouseholderQR<Small> qr(count, count);
+    qr.setThreshold(1e-9);
+    qr.compute(scale.asDiagonal() * left * scale.asDiagonal());
+    const SmallColumn found = scale.cwiseProduct(SmallColumn(qr.solve(SmallColumn(scale.cwiseProduct(right)))));
     for (Eigen::Index a = 0; a < count; ++a) p(led[static_cast<std::size_t>(a)]) = found(a);
     return p;
 }
@@ -67,6 +73,8 @@ SmallColumn forces_for(const Goal& goal, const SmallColumn& value, const SmallCo
 DeviceStatus newton(const DeviceModel& model, DeviceState& state, const Goal& goal, const SmallColumn& value,
                     ForwardAnswer& answer) {
     bool factor = true;
+    int vain = 0;
+    double least_m = std::numeric_limits<double>::infinity();
     double last_m = std::numeric_limits<double>::infinity();
     for (int i = 0; i < kMostNewton; ++i) {
         if (!(factor ? factor_tangent(model, state) : sum_forces(model, state))) return DeviceStatus::no_equilibrium;
@@ -81,6 +89,9 @@ DeviceStatus newton(const DeviceModel& model, DeviceState& state, const Goal& go
             return state.repaired ? DeviceStatus::unstable : DeviceStatus::good;
         factor = state.repaired || answer.residual_m > kFastFall * last_m || answer.residual_m > kNear * model.size_m;
         last_m = answer.residual_m;
+        vain = last_m < least_m ? 0 : vain + 1;
+        least_m = std::min(least_m, last_m);
+        if (vain > kPatience) return DeviceStatus::slow;
     }
     return DeviceStatus::slow;
 }

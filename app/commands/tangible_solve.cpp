@@ -44,6 +44,8 @@ SolvedPress solve_press(const tangible::DeviceModel& model, const TangibleSolveO
     constexpr int kMostTicks = 400;
     for (int tick = 1; tick <= kMostTicks; ++tick) {
         const double share = std::min(1.0, static_cast<double>(tick) / kTicks);
+        // what opposes itself would only creep to its place
+        inverse.rate_term = tick <= kTicks || model.device.pretension.has_value();
         const tangible::Actuation before = state.actuation;
         const std::int64_t began_ns = files::steady_ns();
         out.answer = inverse_step(model, state, {share * depth_m, share * options.force_N, {}}, inverse);

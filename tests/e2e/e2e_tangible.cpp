@@ -17,7 +17,7 @@ namespace {
 
 #ifdef __SANITIZE_ADDRESS__  // a step of the strip takes two periods of the loop there
 constexpr const char* kFidelity = R"(, "fidelity": "linear")";
-constexpr double kOpens_s = 4.0;
+constexpr double kOpens_s = 8.0;
 #else
 constexpr const char* kFidelity = "";
 constexpr double kOpens_s = 3.0;  // the device, at its pretension
