@@ -84,6 +84,11 @@ Machine this_machine();
 
 files::Json accuracy_json(const std::vector<AccuracyRow>& rows, const Machine& machine);
 
+// Writes NAME.gp beside NAME.csv in `folder`, which begins by setting `machine`, and runs gnuplot on it: NAME.png, .svg, .pdf.
+// Returns in words what went wrong; empty on success. Throws std::runtime_error if the script cannot be written.
+std::string plot_list(const std::filesystem::path& folder, const std::string& name, const std::string& script,
+                      const Machine& machine);
+
 // Writes mechanics.gp beside mechanics.csv in `folder` and runs gnuplot on it: mechanics.png, .svg, .pdf. Returns in
 // words what went wrong; empty on success. Throws std::runtime_error if mechanics.gp cannot be written.
 std::string plot_mechanics(const std::filesystem::path& folder, const Machine& machine);

@@ -217,6 +217,53 @@ void multigrid_rows(double contrast, int across, std::vector<AccuracyRow>& rows)
     }
 }
 
+constexpr const char* kPartsScript =
+    R"gp(# gnuplot parts.gp draws parts.csv as parts.png; gnuplot -e "kind='svg'" parts.gp: or svg, pdf
+if (!exists("kind")) kind = "png"
+set datafile separator ","
+set datafile missing NaN
+f = "parts.csv"
+floored(e) = abs(e) < 1e-3 ? 1e-3 : abs(e)
+beam(method) = strstrt(strcol("group"), "beam ") == 1 && strcol("series") eq method ? floored(column("error_percent")) : NaN
+err(group) = strcol("group") eq group ? floored(column("error_percent")) : NaN
+blocks(line) = strstrt(strcol("group"), "multigrid") == 1 && strcol("series") eq line ? floored(column("error_percent")) : NaN
+if (kind eq "png") set terminal pngcairo size 1500,560 font "DejaVu Sans,12"
+if (kind eq "svg") set terminal svg size 1500,560 font "DejaVu Sans,13" background rgb "white"
+if (kind eq "pdf") set terminal pdfcairo size 15in,5.6in font "DejaVu Sans,12"
+set output "parts." . kind
+set logscale xy
+set grid xtics ytics lc rgb "#BBBBBB" dt 3
+set tics nomirror
+set border 3
+set format x "10^{%L}"
+set format y "10^{%L}"
+set multiplot layout 1,3 margins 0.055,0.985,0.12,0.78 spacing 0.075,0.1 \
+    title "What accuracy costs in time: parts (down and left is better)\n{/*0.8 " . machine . "}"
+
+set title "Five beams of two materials\n{/*0.8 against quadratic elements, extrapolated}"
+set xlabel "one answer (us, median)"
+set ylabel "|error| of the displacement (%)"
+set key bottom left Left reverse
+plot f using "per_step_us":(beam("paper")) with points pt 2 ps 1.3 lc rgb "#000000" title "paper", \
+     f using "per_step_us":(beam("euler-bernoulli")) with points pt 9 ps 1.4 lc rgb "#D55E00" title "Euler-Bernoulli", \
+     f using "per_step_us":(beam("timoshenko")) with points pt 5 ps 1.2 lc rgb "#0072B2" title "Timoshenko", \
+     f using "per_step_us":(beam("elastica")) with points pt 11 ps 1.4 lc rgb "#E69F00" title "elastica", \
+     f using "per_step_us":(beam("voxels")) with points pt 7 ps 1.3 lc rgb "#009E73" title "voxels, 8 to 24 cells across"
+
+set title "A neck whose cells fit neither bands nor section\n{/*0.8 against cells of 0.4 mm}"
+set xlabel "one answer (s)"
+set key top right noreverse Right
+plot f using "offline_s":(err("neck of 0.1 mm voxels")):(strcol("choice")[10:12]) with labels point pt 7 ps 1.3 lc rgb "#009E73" \
+         offset 0,0.8 font ",9" title "finite cells of so many mm"
+
+set title "Multigrid on a block, and a button's cover\n{/*0.8 block: the energy's error as estimated; cover: net against membrane}"
+set ylabel "|error| (%)"
+plot f using "offline_s":(blocks("moduli within 10 times")) with points pt 5 ps 1.3 lc rgb "#0072B2" title "block, moduli within 10 times", \
+     f using "offline_s":(blocks("moduli within 1000 times")) with points pt 9 ps 1.4 lc rgb "#D55E00" title "within 1,000 times", \
+     f using "offline_s":(err("button cover")) with linespoints pt 11 ps 1.4 lc rgb "#CC79A7" title "cover, 6 to 24 spacings"
+unset multiplot
+)gp";
+
 }  // namespace
 
 std::vector<Measurement> part_measurements(const Effort& effort) {
@@ -240,6 +287,10 @@ std::vector<Measurement> part_measurements(const Effort& effort) {
                             multigrid_rows(contrast, effort.quick ? 10 : 25, rows);
                     }});
     return list;
+}
+
+std::string plot_parts(const std::filesystem::path& folder, const Machine& machine) {
+    return plot_list(folder, "parts", kPartsScript, machine);
 }
 
 }  // namespace palpa::accuracy

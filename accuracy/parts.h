@@ -7,4 +7,7 @@ namespace palpa::accuracy {
 
 std::vector<Measurement> part_measurements(const Effort& effort);
 
+// parts.gp beside parts.csv, as plot_list().
+std::string plot_parts(const std::filesystem::path& folder, const Machine& machine);
+
 }  // namespace palpa::accuracy

@@ -103,12 +103,16 @@ unset multiplot
 
 }  // namespace
 
-std::string plot_mechanics(const std::filesystem::path& folder, const Machine& machine) {
+std::string plot_list(const std::filesystem::path& folder, const std::string& name, const std::string& script,
+                      const Machine& machine) {
     const std::string label = machine.processor + ", " + std::to_string(machine.threads) + " threads, load " +
                               files::short_number(machine.load) + ", " + machine.date;
-    files::write_text_atomically(folder / "mechanics.gp",
-                                 "machine = " + figures::single_quoted(label) + "\n" + kScript);
-    return figures::draw_script(folder / "mechanics.gp", "mechanics.csv is kept");
+    files::write_text_atomically(folder / (name + ".gp"), "machine = " + figures::single_quoted(label) + "\n" + script);
+    return figures::draw_script(folder / (name + ".gp"), name + ".csv is kept");
+}
+
+std::string plot_mechanics(const std::filesystem::path& folder, const Machine& machine) {
+    return plot_list(folder, "mechanics", kScript, machine);
 }
 
 }  // namespace palpa::accuracy

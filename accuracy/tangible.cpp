@@ -4,7 +4,6 @@
 #include <memory>
 
 #include "accuracy/timing.h"
-#include "figures/gnuplot.h"
 #include "files/text.h"
 #include "tangible/characterise.h"
 
@@ -248,11 +247,7 @@ std::vector<Measurement> tangible_measurements(const Effort& effort, const std::
 }
 
 std::string plot_tangible(const std::filesystem::path& folder, const Machine& machine) {
-    const std::string label = machine.processor + ", " + std::to_string(machine.threads) + " threads, load " +
-                              files::short_number(machine.load) + ", " + machine.date;
-    files::write_text_atomically(folder / "tangible.gp",
-                                 "machine = " + figures::single_quoted(label) + "\n" + kTangibleScript);
-    return figures::draw_script(folder / "tangible.gp", "tangible.csv is kept");
+    return plot_list(folder, "tangible", kTangibleScript, machine);
 }
 
 }  // namespace palpa::accuracy

@@ -58,7 +58,16 @@ Eigen::VectorXd forces_N(const DeviceModel& model, const std::vector<RecordedTic
     return out;
 }
 
-Senses senses_of(const DeviceModel& model, const std::vector<RecordedTick>& ticks, const std::vector<Lengths>& length) {
+Senses recorded_senses(const std::vector<RecordedTick>& ticks) {
+    Senses out;
+    for (const RecordedTick& tick : ticks) out.push_back(tick.sense);
+    return out;
+}
+
+Senses modelled_senses(const DeviceModel& model, const std::vector<RecordedTick>& ticks, const Parameters& p,
+                       const Senses& before) {
+    std::vector<Lengths> length(ticks.size());
+    forces_N(model, ticks, before, p, &length);
     Senses out(ticks.size());
     for (std::size_t i = 1; i + 1 < ticks.size(); ++i) {
         const double dt_s = ticks[i + 1].time_s - ticks[i - 1].time_s;
@@ -124,8 +133,15 @@ std::vector<RecordedTick> read_presses(const std::filesystem::path& tsv, const D
     const std::size_t time = table.column("time_s");
     const std::size_t depth = table.column("depth_mm");
     const std::size_t force = table.column("force_N");
-    std::vector<std::size_t> actuator;
+    std::vector<std::size_t> actuator, length;
     for (const SoftActuator& a : model.actuators) actuator.push_back(table.column(a.name + "_" + unit_of(a.kind)));
+    const bool has_lengths = std::all_of(model.actuators.begin(), model.actuators.end(), [&](const SoftActuator& a) {
+        return a.kind != ActuatorKind::cable || table.has_column(a.name + "_mm");
+    });
+    for (const SoftActuator& a : model.actuators) {
+        if (has_lengths && a.kind == ActuatorKind::cable) length.push_back(table.column(a.name + "_mm"));
+    }
+    std::vector<double> before_m(length.size());
     std::vector<RecordedTick> out;
     while (table.next()) {
         RecordedTick tick;
@@ -134,6 +150,15 @@ std::vector<RecordedTick> read_presses(const std::filesystem::path& tsv, const D
         tick.depth_m = 1e-3 * table.finite_number(depth);
         tick.force_N = table.finite_number(force);
         for (std::size_t j = 0; j < actuator.size(); ++j) tick.actuation[j] = table.finite_number(actuator[j]);
+        tick.has_sense = !length.empty();
+        std::size_t cable = 0;
+        for (std::size_t j = 0; tick.has_sense && j < actuator.size(); ++j) {
+            if (model.actuators[j].kind != ActuatorKind::cable) continue;
+            const double now_m = 1e-3 * table.finite_number(length[cable]);
+            if (!out.empty())
+                tick.sense[j] = friction_sense((before_m[cable] - now_m) / (tick.time_s - out.back().time_s));
+            before_m[cable++] = now_m;
+        }
         out.push_back(tick);
     }
     if (out.empty()) throw files::InputError(tsv.string() + ": found no rows, expected a press");
@@ -145,12 +170,11 @@ FitResult fit_presses(const SoftDevice& device, const std::vector<RecordedTick>&
     FitResult out;
     out.ticks = static_cast<int>(ticks.size()) - 1;
     Parameters p = Parameters::Zero();
-    Senses sense(ticks.size());
+    const bool has_sense = std::all_of(ticks.begin(), ticks.end(), [](const RecordedTick& t) { return t.has_sense; });
+    Senses sense = recorded_senses(ticks);
     for (out.rounds = 1; out.rounds <= kMostRounds; ++out.rounds) {
         const DeviceModel model = model_with(device, p);
-        std::vector<Lengths> length(ticks.size());
-        forces_N(model, ticks, sense, p, &length);
-        sense = senses_of(model, ticks, length);
+        if (!has_sense) sense = modelled_senses(model, ticks, p, sense);
         const Eigen::VectorXd at_N = forces_N(model, ticks, sense, p, nullptr);
         const Misfit misfit = misfit_of(at_N, ticks);
         if (misfit.known < kFewestTicks)

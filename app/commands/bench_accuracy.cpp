@@ -49,7 +49,7 @@ Measurements mechanics_list(const accuracy::Effort& effort) {
     return list;
 }
 
-// Measures a list and writes NAME.csv; mechanics and soft devices have a figure too.
+// Measures a list and writes NAME.csv; all but the shape display have a figure too.
 void run_accuracy(const AccuracyOptions& options, const Measurements& list, const std::string& name) {
     if (!options.folder.empty()) {
         files::check_output_folder(options.folder);
@@ -68,6 +68,7 @@ void run_accuracy(const AccuracyOptions& options, const Measurements& list, cons
     files::write_text_atomically(std::filesystem::path(options.folder) / (name + ".csv"), accuracy::accuracy_csv(rows));
     std::string trouble = "no figure";
     if (name == "mechanics") trouble = accuracy::plot_mechanics(options.folder, machine);
+    if (name == "parts") trouble = accuracy::plot_parts(options.folder, machine);
 #ifdef PALPA_TANGIBLE
     if (name == "tangible") trouble = accuracy::plot_tangible(options.folder, machine);
 #endif
@@ -96,7 +97,8 @@ void add_bench_accuracy(CLI::App& bench) {
     mechanics->callback([options] { run_accuracy(*options, mechanics_list(effort_of(*options)), "mechanics"); });
     CLI::App* parts = accuracy->add_subcommand(
         "parts", "Measure error and cost of multi-material parts: beams, finite cells, buttons, multigrid");
-    parts->add_option("-o,--output", options->folder, "folder for parts.csv (default: nothing is written)");
+    parts->add_option("-o,--output", options->folder,
+                      "folder for parts.csv and its figure (default: nothing is written)");
     parts->add_flag("--quick", options->quick, "use small meshes only (10 s; all meshes: two minutes)");
     parts->add_flag("--json", options->json, "print one JSON object on standard output");
     parts->callback([options] { run_accuracy(*options, accuracy::part_measurements(effort_of(*options)), "parts"); });

@@ -165,7 +165,7 @@ void add_tactile_run(CLI::App& tactile) {
     command->add_flag("--headless", options->headless, "open no window (as now: this command has none)");
     command->add_flag("--simulate", options->simulate, "start the simulators and drive them instead of devices");
     command->add_flag("--virtual-time", options->virtual_time,
-                      "one process without waiting: the simulators' models in the loop's own time");
+                      "the simulators in this process, without waiting (instead of --simulate)");
     command->add_option("--schedule", options->schedule, "instead of the scene's")
         ->check(one_of({"free", "lead", "locked"}));
     command->add_option("--log", options->log, "folder for the log (existing files are never overwritten)");

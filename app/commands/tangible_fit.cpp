@@ -68,7 +68,7 @@ void add_tangible_fit(CLI::App& tangible) {
     auto arguments = std::make_shared<TangibleFitArguments>();
     CLI::App* command = tangible.add_subcommand(
         "fit", "Find a device's modulus, friction and zero from recorded presses, and write a device file with them");
-    command->add_option("DEVICE", arguments->device, "device file")->required();
+    command->add_option("DEVICE", arguments->device, "device file, or the name of one among the assets")->required();
     command
         ->add_option(
             "PRESSES", arguments->presses,

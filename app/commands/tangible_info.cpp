@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "app/commands/command_line.h"
+#include "app/commands/tangible_loop.h"
 #include "files/printable.h"
 #include "files/text.h"
 #include "tangible/device_checks.h"
@@ -56,7 +57,7 @@ void print_info(const files::Json& json, const tangible::SoftDevice& device) {
 }
 
 void run_info(const TangibleInfoOptions& options) {
-    const tangible::SoftDevice device = tangible::read_soft_device(options.device);
+    const tangible::SoftDevice device = tangible::read_soft_device(device_file(options.device));
     const tangible::DeviceModel model = tangible::make_device_model(device);
     std::string laws;
     for (const mechanics::Law law : device.body.laws)
@@ -82,7 +83,7 @@ void run_info(const TangibleInfoOptions& options) {
 void add_tangible_info(CLI::App& tangible) {
     auto options = std::make_shared<TangibleInfoOptions>();
     CLI::App* info = tangible.add_subcommand("info", "What a device file describes, and what to beware of");
-    info->add_option("DEVICE", options->device, "device JSON")->required();
+    info->add_option("DEVICE", options->device, "device file, or the name of one among the assets")->required();
     info->add_flag("--json", options->json, "one JSON object on standard output");
     info->callback([options] { run_info(*options); });
 }

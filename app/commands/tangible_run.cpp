@@ -141,7 +141,9 @@ void run_tangible(const TangibleRunArguments& arguments) {
 }  // namespace
 
 fs::path device_file(const std::string& name) {
-    return scene::find_file(name, fs::current_path() / "device", assets_folder() / "devices");
+    const bool bare = !name.empty() && !fs::path(name).has_parent_path() && !fs::path(name).has_extension();
+    return scene::find_file(bare && !fs::exists(name) ? name + ".json" : name, fs::current_path() / "device",
+                            assets_folder() / "devices");
 }
 
 void add_loop_options(CLI::App& command, std::string& fidelity, std::string& kind, double& rate_Hz) {

@@ -6,6 +6,7 @@
 
 #include "app/commands/command_line.h"
 #include "app/commands/option_checks.h"
+#include "app/commands/tangible_loop.h"
 #include "files/clock.h"
 #include "files/input_error.h"
 #include "files/printable.h"
@@ -129,7 +130,8 @@ void print_solve(const tangible::DeviceModel& model, const TangibleSolveOptions&
 }
 
 void run_solve(const TangibleSolveOptions& options) {
-    const tangible::DeviceModel model = tangible::make_device_model(tangible::read_soft_device(options.device));
+    const tangible::DeviceModel model =
+        tangible::make_device_model(tangible::read_soft_device(device_file(options.device)));
     const SolvedPress solved = solve_press(model, options);
     const files::Json json = solve_json(model, solved);
     if (options.json)
@@ -143,7 +145,7 @@ void run_solve(const TangibleSolveOptions& options) {
 void add_tangible_solve(CLI::App& tangible) {
     auto options = std::make_shared<TangibleSolveOptions>();
     CLI::App* solve = tangible.add_subcommand("solve", "Tensions and pressures for one depth and force of the finger");
-    solve->add_option("DEVICE", options->device, "device JSON")->required();
+    solve->add_option("DEVICE", options->device, "device file, or the name of one among the assets")->required();
     solve->add_option("--depth-mm", options->depth_mm, "how deep the finger holds the device")
         ->required()
         ->check(CLI::Range(0.0, 1000.0));

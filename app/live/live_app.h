@@ -50,6 +50,11 @@ struct PartControl {
         std::filesystem::path before;  // the design's file before the edit
     };
     std::vector<Done> done;
+    struct Undone {
+        std::size_t design;
+        files::Json operation;
+    };
+    std::vector<Undone> undone;  // the last one is done again first
 };
 
 // Everything that the app has open while its window is open.
@@ -209,6 +214,8 @@ void load_study(const RunOptions& options, App& app);  // throws InputError or s
 // Carries out what was asked for in a step and its consequences, and ends a trial whose time is over.
 void follow_study(const std::optional<StudyWish>& wish, platform::Window& window, const Gui& gui, App& app);
 void finish_study_trial(platform::Window& window, App& app);
+// Whether what leads is the motion on a device, not that on the screen.
+bool felt_elsewhere(const App& app);
 // Returns when the time limit ends the present trial; infinity: never.
 double trial_ends_s(const App& app);
 bool allowed(const platform::Sample& sample, App& app);  // the due condition allows the sample's device

@@ -82,18 +82,27 @@ void show_designs(const scene::Scene& wanted, platform::Window& window, const Gu
 // The scene as the person means it: with cells also while they are being computed.
 scene::Scene wanted_scene(const App& app) { return app.parts.cells ? app.parts.wanted : app.session.scene; }
 
-void edit_part(const PartWish& wish, platform::Window& window, const Gui& gui, App& app) {
+// operation_for(part's JSON) is appended to the design.
+template <class OperationFor>
+void append_edit(std::size_t index, const OperationFor& operation_for, platform::Window& window, const Gui& gui,
+                 App& app) {
     scene::Scene scene = wanted_scene(app);
-    scene::PartOptions& options = *scene::part_options(scene.tissue);
-    fs::path& design = options.designs.at(wish.design);
+    fs::path& design = scene::part_options(scene.tissue)->designs.at(index);
     const fs::path file = edited_file(design);
     parts::EditedPart edited = parts::open_part(design);
-    parts::edit(operation_of(wish, options.view, edited.json), edited);
+    parts::edit(operation_for(edited.json), edited);
     keep_names(design, edited.json);
     parts::save_part(edited, file);
-    app.parts.done.push_back({wish.design, std::exchange(design, file)});
-    ++app.view.part.edits[wish.design];
+    app.parts.done.push_back({index, std::exchange(design, file)});
+    ++app.view.part.edits[index];
     show_designs(scene, window, gui, app);
+}
+
+void edit_part(const PartWish& wish, platform::Window& window, const Gui& gui, App& app) {
+    const std::array<int, 2> view = scene::part_options(app.session.scene.tissue)->view;
+    append_edit(
+        wish.design, [&](const files::Json& part) { return operation_of(wish, view, part); }, window, gui, app);
+    app.parts.undone.clear();
 }
 
 void undo_part(platform::Window& window, const Gui& gui, App& app) {
@@ -101,14 +110,21 @@ void undo_part(platform::Window& window, const Gui& gui, App& app) {
     const PartControl::Done last = app.parts.done.back();
     scene::Scene scene = wanted_scene(app);
     fs::path& design = scene::part_options(scene.tissue)->designs.at(last.design);
-    if (design == last.before) {
-        parts::EditedPart edited = parts::open_part(design);
-        if (parts::undo_edit(edited)) parts::save_part(edited, design);
-    }
+    parts::EditedPart edited = parts::open_part(design);
+    app.parts.undone.push_back({last.design, edited.json["shape"].back()});
+    if (design == last.before && parts::undo_edit(edited)) parts::save_part(edited, design);
     design = last.before;
     app.parts.done.pop_back();
     --app.view.part.edits[last.design];
     show_designs(scene, window, gui, app);
+}
+
+void redo_part(platform::Window& window, const Gui& gui, App& app) {
+    if (app.parts.undone.empty()) return;
+    const PartControl::Undone again = app.parts.undone.back();
+    append_edit(
+        again.design, [&](const files::Json&) { return again.operation; }, window, gui, app);
+    app.parts.undone.pop_back();
 }
 
 }  // namespace
@@ -118,6 +134,8 @@ void change_part(const PartWish& wish, platform::Window& window, const Gui& gui,
     attempt(app, [&] {
         if (wish.kind == PartWish::Kind::edit) edit_part(wish, window, gui, app);
         if (wish.kind == PartWish::Kind::undo) undo_part(window, gui, app);
+        if (wish.kind == PartWish::Kind::redo) redo_part(window, gui, app);
+        app.view.part.undone = app.parts.undone.size();
     });
 }
 

@@ -135,6 +135,11 @@ void finish_study_trial(platform::Window& window, App& app) {
     follow_keeper(now_of(app, window), app);
 }
 
+bool felt_elsewhere(const App& app) {
+    return (app.tactile.shown && app.tactile.shown->arm_leads) ||
+           (app.tangible.shown && app.tangible.shown->device_leads);
+}
+
 double trial_ends_s(const App& app) {
     constexpr double kNever_s = std::numeric_limits<double>::infinity();
     const StudyRun* run = study_of(app.doing);
@@ -171,6 +176,7 @@ void follow_study(const std::optional<StudyWish>& wish, platform::Window& window
         device->here = stopped || may_begin(app);
     }
     if (!trial_goes_on(run)) return;
+    if (app.session.trial.touched_s && app.notices.note == words::kTouchFirst) app.notices.note.clear();
     if (!is_device_here(app) || devices_failed(window.now_s(), app)) return interrupt_study_trial(window, app);
     if (now_of(app, window) >= trial_ends_s(app)) act(platform::Action::finish, window, app);
 }
@@ -178,9 +184,7 @@ void follow_study(const std::optional<StudyWish>& wish, platform::Window& window
 bool allowed(const platform::Sample& sample, App& app) {
     const study::Modality modality = due_condition(*study_of(app.doing)).modality;
     if (sample.phase == platform::Phase::ui) return true;
-    // what is felt is not on the screen
-    if (app.tactile.shown && app.tactile.shown->arm_leads) return false;
-    if (app.tangible.shown && app.tangible.shown->device_leads) return false;
+    if (felt_elsewhere(app)) return false;
     if (tool_allowed(modality, sample.tool)) return true;
     if (sample.phase == platform::Phase::down) app.notices.note = words::filled(words::kDoneWith, {name_of(modality)});
     return false;

@@ -234,10 +234,17 @@ bool work_at_stake(const App& app) {
     return !trial_stopped(app) && !trial.finished && !trial.marks.empty();
 }
 
+// Whether the touches of this trial are those on the screen, and there was none.
+bool not_touched(const App& app) { return !felt_elsewhere(app) && !app.session.trial.touched_s; }
+
 void act(platform::Action action, platform::Window& window, App& app) {
     const StudyRun* study = study_of(app.doing);
     const bool pair = study != nullptr && due_compares(*study);
     if (pair && action != platform::Action::finish) return;  // in a comparison there is nothing to mark
+    if (pair && not_touched(app) && now_of(app, window) < trial_ends_s(app)) {
+        app.notices.note = words::kTouchFirst;
+        return;
+    }
     const bool clock = action == platform::Action::pause || action == platform::Action::resume;
     if (clock && study != nullptr) return;                // its limits are the protocol's
     if (!clock && app.session.trial.paused_at_s) return;  // nothing is done while the clock is stopped

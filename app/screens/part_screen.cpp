@@ -197,14 +197,22 @@ void take_stroke(const Shown& shown, const Layout& layout, Gui& gui, PartView& v
     view.stroke_m.clear();
 }
 
+PartWish wish_of(PartWish::Kind kind) {
+    PartWish wish;
+    wish.kind = kind;
+    return wish;
+}
+
 void draw_part_buttons(const Shown& shown, const PartTissue& tissue, const Gui& gui, PartView& view, Wishes& wishes) {
     draw_tools(tissue, gui, view);
-    const float width_px = share_of_line_px(2);
+    const float width_px = share_of_line_px(3);
     const bool undoes = view.edits[0] + view.edits[1] > 0;
-    if (big_button(words::kUndo, words::kKeyUndo, {width_px, kTarget_mm, undoes, false, words::kHintUndoEdit}, gui)) {
-        wishes.part = PartWish{};
-        wishes.part->kind = PartWish::Kind::undo;
-    }
+    if (big_button(words::kUndo, words::kKeyUndo, {width_px, kTarget_mm, undoes, false, words::kHintUndoEdit}, gui))
+        wishes.part = wish_of(PartWish::Kind::undo);
+    ImGui::SameLine();
+    if (big_button(words::kRedo, words::kKeyRedo, {width_px, kTarget_mm, view.undone > 0, false, words::kHintRedoEdit},
+                   gui))
+        wishes.part = wish_of(PartWish::Kind::redo);
     ImGui::SameLine();
     if (big_button(words::kMagnify, "", {width_px, kTarget_mm, true, view.magnified, words::kHintMagnify}, gui))
         view.magnified = !view.magnified;
@@ -269,10 +277,8 @@ void draw_part_panel(const Shown& shown, const Layout& layout, Gui& gui, ViewSta
 void part_keys(const Shown& shown, const Gui& gui, PartView& view, Wishes& wishes) {
     if (gui.pressed('h')) wishes.press_by_hold = true;
     if (gui.pressed('j') && !shown.state.touch.down) wishes.action = platform::Action::method;
-    if (gui.pressed('u') || gui.pressed('z', true)) {
-        wishes.part = PartWish{};
-        wishes.part->kind = PartWish::Kind::undo;
-    }
+    if (gui.pressed('u') || gui.pressed('z', true)) wishes.part = wish_of(PartWish::Kind::undo);
+    if (gui.pressed('y', true)) wishes.part = wish_of(PartWish::Kind::redo);
     for (int i = 0; i < 3; ++i) {
         if (gui.pressed('1' + i)) view.tool = static_cast<PartTool>(i);
     }

@@ -15,7 +15,7 @@ enum class PartTool { press, sculpt, permute };
 
 // What a person asked for on the screen of parts.
 struct PartWish {
-    enum class Kind { edit, undo, method } kind = Kind::method;
+    enum class Kind { edit, undo, redo, method } kind = Kind::method;
     std::size_t design = 0;
     // Of an edit: a cylinder through the whole part along these places, in the part's own frame (view's axes).
     PartTool tool = PartTool::sculpt;
@@ -52,6 +52,7 @@ struct PartView {
     std::array<std::vector<PartPatch>, 2> patches;
     std::optional<double> pending;   // share of the finite cells' computation that is done; nothing: none runs
     std::array<int, 2> edits{0, 0};  // that can be undone
+    std::size_t undone = 0;          // edits that can be done again
 };
 
 inline constexpr std::array<double, 3> kToolRadii_mm{0.5, 1.0, 2.0};

@@ -257,6 +257,9 @@ inline constexpr const char* kHintToolPermute = "The pen gives the material unde
 inline constexpr const char* kToolRadius = "{} mm";
 inline constexpr const char* kHintMaterial = "The material that Exchange gives";
 inline constexpr const char* kHintUndoEdit = "Takes the last change back";
+inline constexpr const char* kRedo = "Redo";
+inline constexpr const char* kKeyRedo = "Ctrl+Y";
+inline constexpr const char* kHintRedoEdit = "Makes the change again that was taken back last";
 inline constexpr const char* kMagnify = "5 times";
 inline constexpr const char* kHintMagnify = "Draws displacements five times as large as they are";
 inline constexpr const char* kNextMethod = "Next method";
@@ -498,6 +501,7 @@ inline constexpr const char* kCannotBeWritten =
 inline constexpr const char* kPreparing = "Preparing the tissue (only once; later starts are quick)";
 inline constexpr const char* kSaved = "Saved {}";
 inline constexpr const char* kDoneWith = "This trial is done with the {}.";
+inline constexpr const char* kTouchFirst = "Press this surface first, then say that you are done.";
 
 // the question before marks are thrown away
 inline constexpr const char* kLoseMarks = "End this trial?";

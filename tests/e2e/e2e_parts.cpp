@@ -17,7 +17,7 @@ using namespace palpa::test;
 namespace {
 
 // Codes of keys on the X server.
-enum Key { kTwo = 11, kThree = 12, kOne = 10, kU = 30, kJ = 44 };
+enum Key { kTwo = 11, kThree = 12, kOne = 10, kY = 29, kU = 30, kControl = 37, kJ = 44 };
 
 class PenScript {
   public:
@@ -42,10 +42,13 @@ class PenScript {
         wait(1.5);
     }
     void key(int code) {
-        for (const char* phase : {"down", "up"}) {
-            out_ << t_s_ << "\tkey\t" << code << '\t' << phase << "\t0\t0\t0\n";
-            t_s_ += 0.1;
-        }
+        for (const char* phase : {"down", "up"}) key_row(code, phase);
+        wait(1.5);
+    }
+    void key_with_control(int code) {
+        key_row(kControl, "down");
+        for (const char* phase : {"down", "up"}) key_row(code, phase);
+        key_row(kControl, "up");
         wait(1.5);
     }
     double close() {
@@ -54,6 +57,11 @@ class PenScript {
     }
 
   private:
+    void key_row(int code, const char* phase) {
+        out_ << t_s_ << "\tkey\t" << code << '\t' << phase << "\t0\t0\t0\n";
+        t_s_ += 0.1;
+    }
+
     std::ofstream out_;
     double t_s_ = 0.5;
 };
@@ -95,7 +103,7 @@ TEST_CASE("parts: a button pressed three times by the pen goes on three times") 
     CHECK(json["max_depth_mm"].get<double>() > 1.0);
 }
 
-TEST_CASE("changed: the pen cuts a part and gives it another material, an undo takes the last change back") {
+TEST_CASE("changed: the pen cuts a part and gives it another material; changes are undone and done again") {
     const TemporaryFolder folder;
     PenScript script(folder / "script.tsv");
     script.key(kTwo);
@@ -104,6 +112,8 @@ TEST_CASE("changed: the pen cuts a part and gives it another material, an undo t
     script.stroke(800, 820, 400, 0.4);
     script.stroke(860, 880, 400, 0.4);
     script.key(kU);
+    script.key_with_control(kY);  // again
+    script.key(kU);               // were it not there again, this would take back the one before
     script.key(kJ);
     script.key(kOne);
     script.stroke(1095, 1105, 400, 0.6);

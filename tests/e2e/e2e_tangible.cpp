@@ -95,6 +95,7 @@ TEST_CASE("driven: a study's surfaces are on the soft device, and the settings n
     script.t_s = 1.0;
     script.key(kEnter);  // begin
     script.t_s += kOpens_s;
+    script.key(kF);  // not yet: nothing was touched
     script.press(1.0);
     script.key(kF);  // the first surface
     script.t_s += kOpens_s;

@@ -2,6 +2,7 @@
 // The app, run as a person runs it, in a folder of the test's own (settings, home) under tests/platform/xorg/with-xorg.
 
 #include <chrono>
+#include <cstdio>
 #include <filesystem>
 #include <functional>
 #include <stdlib.h>
@@ -37,10 +38,11 @@ inline int run_program(const TemporaryFolder& folder, const std::string& argumen
         status = shell("XDG_CONFIG_HOME=" + home + "/config HOME=" + home + " timeout 900 " PALPA_PROGRAM " " +
                        arguments + " >" + home + "/out.json 2>" + home + "/err.txt");
     });
-    for (int i = 0; i < 200 && !std::filesystem::exists(sign); ++i) sleep_s(0.05);
+    for (int i = 0; i < 600 && !std::filesystem::exists(sign); ++i) sleep_s(0.05);
     sleep_s(1.5);
     meanwhile();
     app.join();
+    if (status != 0) std::fputs(files::read_text(folder / "err.txt").c_str(), stderr);
     const char* keep = ::getenv("PALPA_KEEP_PICTURE");
     if (keep != nullptr && std::filesystem::exists(folder / "p.png"))
         files::write_text_atomically(keep, files::read_text(folder / "p.png"));
