@@ -8,7 +8,7 @@ namespace {
 
 std::string renamed(const std::string& file, const std::filesystem::path& from, const std::filesystem::path& to) {
     if (std::filesystem::path(file).is_absolute()) return file;
-    return std::filesystem::proximate(std::filesystem::absolute(from / file), std::filesystem::absolute(to)).string();
+    return std::filesystem::proximate(from / file, to).string();
 }
 
 // Renames the files of regions, however deep they lie.
@@ -82,10 +82,11 @@ bool redo_edit(EditedPart& edited) {
 void save_part(const EditedPart& edited, const std::filesystem::path& path) {
     check_shape(edited.part);
     files::Json json = edited.json;
-    const std::filesystem::path from = std::filesystem::path(edited.part.file).parent_path();
-    if (std::filesystem::absolute(from) != std::filesystem::absolute(path.parent_path())) {
+    const std::filesystem::path from = std::filesystem::absolute(edited.part.file).parent_path();
+    const std::filesystem::path to = std::filesystem::absolute(path).parent_path();
+    if (from != to) {
         for (const char* key : {"shape", "supports", "button"}) {
-            if (json.contains(key)) rename_files(from, path.parent_path(), json[key]);
+            if (json.contains(key)) rename_files(from, to, json[key]);
         }
     }
     files::write_text_atomically(path, files::json_text(json));

@@ -50,7 +50,8 @@ study::EventRow event_row(const Session& session, platform::Action action) {
     study::EventRow row;
     row.onset_s = session.trial.now_s - session.trial.began_s;
     row.trial_type = event_name(action);
-    row.block = name_of(session.trial.mode);
+    // a surface of a practised pair hides its maps as a test does
+    row.block = !session.label ? name_of(session.trial.mode) : session.label->practice ? "practice" : "test";
     row.condition = session.label ? std::string_view(session.label->condition) : condition_of(scene);
     row.device_id = session.label ? std::string_view(session.label->device) : std::string_view(session.device);
     if (session.label) {

@@ -61,6 +61,7 @@ struct TrialLabel {
     int trial = 1;
     int order_id = 0;
     files::Json study;  // for the settings: protocol, version, hash, participant, whether simulated
+    bool practice = false;
 };
 
 // One choice between two stimuli: one row of ..._task-softer_..._events.tsv.

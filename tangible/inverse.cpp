@@ -19,6 +19,7 @@ constexpr int kMostConverged = 30;     // Newton steps of a converged tick
 constexpr int kMostStale = 3;          // corrections of a stale tick before its factor is made anew
 constexpr double kSettled = 1e-9;      // greatest last correction, over the body's size
 constexpr double kStaleEnough = 5e-4;  // the same for a stale tick: 0.05 of 100 mm, as far as a finger moves in one
+constexpr double kStaleMiss = 1e-5;    // what a stale tick may leave of the gap, over the body's size
 
 // What a tick begins with, and the unknowns that ties of force leave.
 struct Tick {
@@ -156,7 +157,8 @@ double newton_step(const Tick& tick, DeviceState& state, InverseAnswer& answer) 
     return std::max(most_m, move_all_shifts(tick.model, state));
 }
 
-// Corrections with the factor that is there, as long as they fall fast enough; else a Newton step.
+// Corrections with the factor that is there, as long as they fall fast enough and bring the effector where it shall be; else a
+// Newton step. W changes its sign at small depths, so that an old one may lead away while each correction is small.
 double stale_step(const Tick& tick, DeviceState& state, InverseAnswer& answer) {
     double last_m = 0.0;
     for (int i = 0; state.factored && i < kMostStale; ++i) {
@@ -165,6 +167,8 @@ double stale_step(const Tick& tick, DeviceState& state, InverseAnswer& answer) {
         if (!(most_m < 1e300)) return most_m;
         if (i > 0 && most_m > 0.5 * last_m) break;
         last_m = most_m;
+        const bool missed = answer.active == 0 && std::abs(answer.residual_m) > kStaleMiss * tick.model.size_m;
+        if (missed) break;
         if (most_m <= kStaleEnough * tick.model.size_m) return std::max(most_m, move_all_shifts(tick.model, state));
     }
     return newton_step(tick, state, answer);

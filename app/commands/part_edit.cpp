@@ -7,6 +7,7 @@
 #include "app/commands/part_design.h"
 #include "files/input_error.h"
 #include "files/printable.h"
+#include "files/regular_file.h"
 #include "files/text.h"
 #include "parts/edit.h"
 #include "parts/info.h"
@@ -22,6 +23,7 @@ struct EditOptions {
 };
 
 void edit_part(const EditOptions& options) {
+    files::check_output(options.output, {options.file});
     parts::EditedPart edited = parts::open_part(options.file);
     const std::size_t there = edited.json["shape"].size();
     for (int i = 0; i < options.undo; ++i) {

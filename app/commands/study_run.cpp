@@ -22,7 +22,10 @@ void run(const RunOptions& options) {
     if (json["of"] == 0 || json["participant"] == "") return;  // closed between two participants
     std::printf("%s: %s of %s trials done\n", json["participant"].get<std::string>().c_str(),
                 json["finished"].dump().c_str(), json["of"].dump().c_str());
-    if (json["finished"] < json["of"]) std::printf("  the same command continues with the next one\n");
+    if (json["finished"] < json["of"])
+        std::printf("  the same command continues with the next one\n");
+    else if (json["step"] != "done")
+        std::printf("  the same command asks what is left\n");
 }
 
 }  // namespace

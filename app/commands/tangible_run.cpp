@@ -117,8 +117,7 @@ files::Json devices_json(const tangible::TangiblePlan& plan, bool real, const st
 
 void run_tangible(const TangibleRunArguments& arguments) {
     const scene::Scene scene = load_scene(arguments.scene);
-    if (!scene.tangible)
-        throw files::bad_input(scene.file.string(), "tangible", "no such key", "one that names a device");
+    if (!scene.tangible) throw files::bad_input(arguments.scene, "tangible", "no such key", "one that names a device");
     if (!arguments.log.empty()) files::check_output_folder(arguments.log);
     const std::string plant_name = plant_of(arguments, scene);
     const scene::Plan scene_plan = session::make_plan_here(scene);

@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <memory>
+#include <stdexcept>
 
 #include "app/commands/command_line.h"
 #include "app/commands/option_checks.h"
@@ -132,12 +133,17 @@ void print_solve(const tangible::DeviceModel& model, const TangibleSolveOptions&
 void run_solve(const TangibleSolveOptions& options) {
     const tangible::DeviceModel model =
         tangible::make_device_model(tangible::read_soft_device(device_file(options.device)));
+    if (const double most_mm = 1e3 * model.size_m; options.depth_mm > most_mm)
+        throw files::bad_input("", "--depth-mm", files::short_number(options.depth_mm),
+                               "at most the device's size, " + files::short_number(most_mm));
     const SolvedPress solved = solve_press(model, options);
     const files::Json json = solve_json(model, solved);
     if (options.json)
         std::fputs(files::json_text(json).c_str(), stdout);
     else
         print_solve(model, options, json, solved);
+    if (solved.answer.status == tangible::DeviceStatus::no_equilibrium)
+        throw std::runtime_error(model.device.name + ": no equilibrium was found at this depth and force");
 }
 
 }  // namespace

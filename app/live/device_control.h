@@ -22,7 +22,10 @@ struct DeviceControl {
     std::unique_ptr<Driver> driver;       // while a trial drives devices
     std::optional<What> shown;            // nothing: the scene asks for none of them
     std::optional<double> fault_since_s;  // window's clock; a fault lasts since then
-    files::Json report;                   // of the last trial's loop
+    // What a person asked for last, stop or release, until the loop's moments say so too: those from before say the opposite.
+    std::optional<bool> asked_to_stop;
+    std::optional<double> asked_s;  // when that was first waited for
+    files::Json report;             // of the last trial's loop
 };
 
 // Shows this from now on. A stop outlives the trial in which it came.
@@ -52,7 +55,10 @@ bool is_ready(Control& control, const Opened& opened) {
     opened(*control.shown);
     control.shown->opening = false;
     control.shown->runs = true;
-    if (control.shown->moment.stopped) control.driver->stop();  // F12 came meanwhile
+    if (control.shown->moment.stopped) {  // F12 came meanwhile
+        control.driver->stop();
+        control.asked_to_stop = true;
+    }
     return true;
 }
 
@@ -70,11 +76,21 @@ void rest(Control& control) {
 // Gives the loop the touch, and takes over its latest moment. Returns true if there is a new one.
 template <class Control>
 bool follow(double now_s, const scene::State& state, Control& control) {
+    constexpr double kAnswers_s = 0.5;  // a loop that is still stopped so long after its release was stopped anew
     auto& moment = control.shown->moment;
     control.driver->hand_over(state);
-    const bool stopped = moment.stopped;
     const bool fresh = control.driver->latest(moment);
-    if (fresh) moment.stopped = moment.stopped || stopped;
+    if (fresh && control.asked_to_stop) {
+        if (!control.asked_s) control.asked_s = now_s;
+        const bool late = !*control.asked_to_stop && now_s - *control.asked_s > kAnswers_s;
+        if (late || moment.stopped == *control.asked_to_stop) {
+            control.asked_to_stop.reset();
+            control.asked_s.reset();
+        } else {
+            moment.stopped = *control.asked_to_stop;
+            moment.fault = moment.stopped ? kStopKey : "";
+        }
+    }
     if (std::string_view(moment.fault) == "stopped") moment.fault = kStopKey;  // by whom
     if (*moment.fault == '\0') {
         control.fault_since_s.reset();
@@ -88,6 +104,8 @@ template <class Control>
 void stop(Control& control) {
     if (!control.shown) return;
     if (control.driver) control.driver->stop();
+    control.asked_to_stop = true;
+    control.asked_s.reset();
     control.shown->moment.stopped = true;
     control.shown->moment.fault = kStopKey;
 }
@@ -99,6 +117,8 @@ bool release(Control& control) {
     control.shown->moment.stopped = false;
     control.shown->moment.fault = "";
     control.fault_since_s.reset();
+    control.asked_to_stop = false;
+    control.asked_s.reset();
     if (control.driver) control.driver->release();
     return !control.driver;
 }

@@ -192,9 +192,10 @@ bool allowed(const platform::Sample& sample, App& app) {
 
 files::Json study_json(const App& app) {
     const StudyRun& run = *study_of(app.doing);
+    const bool told = at<step::Told>(run) || at<step::Feedback>(run);  // the trial itself is on the disk
     return files::Json{{"participant", run.code},
                        {"step", name_of(run.step)},
-                       {"finished", run.progress.finished.size()},
+                       {"finished", run.progress.finished.size() + (told ? 1 : 0)},
                        {"of", run.progress.plan.trials.size()}};
 }
 

@@ -143,15 +143,14 @@ void draw_plots(const calibration::Recording& recording, const Guide& guide, con
 void draw_typed(calibration::Recording& recording, const Gui& gui, Guide& guide) {
     paragraph(words::kHoldStill);
     ImGui::SetNextItemWidth(share_of_line_px(2));
-    // Enter takes it: while the pen is held down, the display gives a click of the mouse to nobody
+    // Enter takes it, the same number again too: while the pen is held down, the display gives a click of the mouse to nobody
     if (guide.again) ImGui::SetKeyboardFocusHere();
     guide.again = false;
     push_touchable_frame(2.0f, gui);
     ImGui::InputDouble(words::kGramForce, &guide.shown_gf, 0.0, 0.0, "%.2f");
     ImGui::PopStyleVar();
-    const bool entered =
-        ImGui::IsItemDeactivatedAfterEdit() && (ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Enter)) ||
-                                                ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_KeyPadEnter)));
+    const bool entered = ImGui::IsItemDeactivated() && (ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Enter)) ||
+                                                        ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_KeyPadEnter)));
     if (!big_button(words::kRecord, words::kEnter, {}, gui) && !entered) return;
     guide.again = entered;  // the next number is typed at once
     const bool good = std::isfinite(guide.shown_gf) && guide.shown_gf >= 0.0 && guide.shown_gf < 1e5;

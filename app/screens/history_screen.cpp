@@ -83,9 +83,8 @@ void left_column(const Shown& shown, const PanelArea& area, Gui& gui, HistoryVie
     end_panel("history", gui);
 }
 
-double found_percent(const KeptTrial& trial) {
-    return trial.nodules.empty() ? 100.0 : 100.0 * trial.found / static_cast<double>(trial.nodules.size());
-}
+// Of tissue that has nodules.
+double found_percent(const KeptTrial& trial) { return 100.0 * trial.found / static_cast<double>(trial.nodules.size()); }
 
 void draw_learning_curve(const PanelArea& whole, const Gui& gui, HistoryView& history) {
     const float mm = gui.mm();
@@ -96,12 +95,14 @@ void draw_learning_curve(const PanelArea& whole, const Gui& gui, HistoryView& hi
     std::vector<ImVec2> tests;
     for (std::size_t k = 0; k < history.trials.size(); ++k) {
         const KeptTrial& trial = history.trials[k];
+        if (trial.nodules.empty()) continue;
         const ImVec2 at = plot.at(static_cast<double>(k + 1), found_percent(trial));
         if (trial.mode == session::TrialMode::test) tests.push_back(at);
     }
     if (tests.size() > 1) draw.AddPolyline(tests.data(), static_cast<int>(tests.size()), kPale, 0, 0.4f * mm);
     for (std::size_t k = 0; k < history.trials.size(); ++k) {
         const KeptTrial& trial = history.trials[k];
+        if (trial.nodules.empty()) continue;  // nothing could be found there
         const ImVec2 at = plot.at(static_cast<double>(k + 1), found_percent(trial));
         const bool test = trial.mode == session::TrialMode::test;
         draw.AddCircleFilled(at, 1.2f * mm, test ? kInk : kDark);

@@ -99,8 +99,8 @@ void draw_design_numbers(const Shown& shown, const PartTissue& tissue, const Par
     for (std::size_t i = 0; i < tissue.designs.size(); ++i) {
         const PartDesign& design = tissue.designs[i];
         ImGui::PushStyleColor(ImGuiCol_Text, i == 0 ? kInk : kLag);
-        ImGui::Text("%s  %s N  %s mm", i == 0 ? "a" : "b", fixed(work.force_N[i], 2).c_str(),
-                    fixed(1e3 * work.depth_m[i], 2).c_str());
+        ImGui::Text("%s  %s N", i == 0 ? "a" : "b", fixed(work.force_N[i], 2).c_str());
+        ImGui::Text("   %s mm", fixed(1e3 * work.depth_m[i], 2).c_str());
         ImGui::PopStyleColor();
         if (design.button) paragraph(work.button[i].on ? words::kButtonOn : words::kButtonOff);
     }
@@ -123,7 +123,7 @@ void draw_methods(const PartTissue& tissue, const PartWork& work) {
             if (cells && m + 1 < tissue.methods.size())
                 line += " (" + fixed(100.0 * (stiffness(m) / stiffness(tissue.methods.size() - 1) - 1.0), 0) + " %)";
         }
-        one_line(line + " N/mm");
+        ImGui::TextWrapped("%s N/mm", line.c_str());
     }
 }
 

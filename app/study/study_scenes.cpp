@@ -109,7 +109,7 @@ study::TrialLabel label_of(const study::Protocol& protocol, const study::Planned
                       {"modality", name_of(condition.modality)},
                       {"trial_seed", trial.seed}};
     study.update(identity);
-    return {condition.id, condition.device, trial.trial, who.order_id, study};
+    return {condition.id, condition.device, trial.trial, who.order_id, study, trial.practice};
 }
 
 scene::Scene scene_of(const StudyScene& scene, const study::PlannedTrial& trial) {

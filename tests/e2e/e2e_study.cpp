@@ -315,7 +315,7 @@ TEST_CASE("consent: a person agrees by a key of its own, practises a pair, and g
     for (int pair = 0; pair < 3; ++pair) {
         for (int interval = 0; interval < 2; ++interval) {
             script.wait(1.0);
-            if (pair == 0) script.stroke(0.4, true);
+            script.stroke(0.4, true);
             script.key(kF);
         }
         script.wait(1.0);

@@ -118,3 +118,40 @@ TEST_CASE(
     CHECK_FALSE(control.driver);
     CHECK_FALSE(control.shown->opening);
 }
+
+TEST_CASE("device control: a moment from before the release is no new stop, and one from after it is") {
+    Led led;
+    LedControl control;
+    const scene::State state;
+    open(led, control);
+    CHECK(ready(control));
+    stop(control);
+    follow(1.0, state, control);
+    CHECK(control.shown->moment.stopped);
+    release(control);
+    led.fault = "stopped";  // of a tick that the loop had taken before
+    follow(1.1, state, control);
+    CHECK_FALSE(control.shown->moment.stopped);
+    CHECK(std::string(control.shown->moment.fault).empty());
+    led.fault = "";
+    follow(1.11, state, control);
+    CHECK_FALSE(control.shown->moment.stopped);
+    led.fault = "stopped";  // by the guard
+    follow(1.12, state, control);
+    CHECK(control.shown->moment.stopped);
+}
+
+TEST_CASE("device control: a device that stays stopped after its release is shown so") {
+    Led led;
+    LedControl control;
+    const scene::State state;
+    open(led, control);
+    CHECK(ready(control));
+    stop(control);
+    release(control);
+    led.fault = "stopped";
+    follow(1.0, state, control);
+    CHECK_FALSE(control.shown->moment.stopped);
+    follow(1.6, state, control);
+    CHECK(control.shown->moment.stopped);
+}
