@@ -36,7 +36,8 @@ std::vector<Triangle> parse_binary(std::string_view bytes, const std::string& fi
     for (std::size_t t = 0; t < n; ++t) {
         for (std::size_t i = 0; i < 9; ++i) {
             // the normal's 12 bytes are passed over
-            const double value = std::bit_cast<float>(uint32_at(bytes, kStlHeader + kStlTriangle * t + 12 + 4 * i));
+            const auto value =
+                static_cast<double>(std::bit_cast<float>(uint32_at(bytes, kStlHeader + kStlTriangle * t + 12 + 4 * i)));
             if (!std::isfinite(value)) {
                 throw files::bad_input(file, "triangle " + std::to_string(t + 1), "a number that is not finite",
                                        "coordinates");
