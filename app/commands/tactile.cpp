@@ -138,8 +138,7 @@ void run_tactile(const TactileOptions& options) {
     const scene::Scene scene = load_scene(options.scene);
     if (!options.log.empty()) files::check_output_folder(options.log);
     if (!scene.tactile)
-        throw files::bad_input(options.scene, "tactile", "no such key",
-                               "one that says which arm or display there is");
+        throw files::bad_input(options.scene, "tactile", "no such key", "one that says which arm or display there is");
     const scene::Plan scene_plan = session::make_plan_here(scene);
     const auto plan = prepare_tactile(options, scene, scene_plan);
     files::Json devices = files::Json::array();

@@ -16,12 +16,12 @@ struct ReadyDevice {
     DeviceState state;
 };
 
-ReadyDevice ready(const char* file, double stiffness_N_per_m) {
+ReadyDevice ready(const char* file, double stiffness_N_per_m, [[maybe_unused]] bool whole = false) {
     ReadyDevice out;
     const std::filesystem::path path = test::kAssets / "devices" / file;
     files::Json json = files::read_json(path);
 #ifdef __SANITIZE_ADDRESS__  // which takes seven times as long: fewer cells
-    if (json["mesh"].contains("box")) json["mesh"]["box"]["elements"] = {50, 2, 2};
+    if (!whole && json["mesh"].contains("box")) json["mesh"]["box"]["elements"] = {50, 2, 2};
     if (json["mesh"].contains("bellows")) json["mesh"]["bellows"].update({{"sectors", 8}, {"along", 11}});
 #endif
     out.model = make_device_model(parse_soft_device(json, path.string(), path.parent_path()));
@@ -63,7 +63,7 @@ double press_error_percent(ReadyDevice& device, double stiffness_N_per_m, Fideli
 TEST_CASE("inverse: a press on the strip renders a factor of 10 in stiffness, with small changes at small depths") {
     for (const double stiffness_N_per_m : {30.0, 300.0}) {
         CAPTURE(stiffness_N_per_m);
-        ReadyDevice strip = ready("strip.json", stiffness_N_per_m);
+        ReadyDevice strip = ready("strip.json", stiffness_N_per_m, true);
         double most_change_N = 0.0;
         CHECK(press_error_percent(strip, stiffness_N_per_m, Fidelity::step, &most_change_N) < 0.5);
         CHECK(most_change_N < 0.1);

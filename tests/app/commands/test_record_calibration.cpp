@@ -1,12 +1,14 @@
 // palpa calibrate record with simulated pens and sensors, end to end.
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <doctest/doctest.h>
 #include <filesystem>
 #include <map>
 #include <signal.h>
 #include <string>
+#include <thread>
 
 #include "devices/simulators/process.h"
 #include "files/folder_lock.h"
@@ -85,6 +87,8 @@ TEST_CASE("record: killed in the middle, all that was captured is there, and it 
     write_text_atomically(session + "/points.csv", before);
 
     // the cell is unplugged and comes back meanwhile; each run needs one lift (4 s at most) for its zero
+    for (int i = 0; i < 100 && !std::filesystem::exists(sensor.port()); ++i)
+        std::this_thread::sleep_for(std::chrono::milliseconds(100));
     const Called resumed = shell(kPen + "--seconds 12 | " + kRecord + "-o " + session + serial + "--resume --json");
     CAPTURE(resumed.err);
     REQUIRE(resumed.status == 0);
