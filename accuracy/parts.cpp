@@ -250,13 +250,13 @@ plot f using "per_step_us":(beam("paper")) with points pt 2 ps 1.3 lc rgb "#0000
      f using "per_step_us":(beam("elastica")) with points pt 11 ps 1.4 lc rgb "#E69F00" title "elastica", \
      f using "per_step_us":(beam("voxels")) with points pt 7 ps 1.3 lc rgb "#009E73" title "voxels, 8 to 24 cells across"
 
-set title "A neck whose cells fit neither bands nor section\n{/*0.8 against cells of 0.4 mm}"
+set title "A neck whose cells fit neither bands nor section\n{/*0.8 labels: size of the cells, mm; against 0.4 mm}"
 set xlabel "one answer (s)"
 set key top right noreverse Right
-plot f using "offline_s":(err("neck of 0.1 mm voxels")):(strcol("choice")[10:12]) with labels point pt 7 ps 1.3 lc rgb "#009E73" \
-         offset 0,0.8 font ",9" title "finite cells of so many mm"
+plot f using "offline_s":(err("neck of 0.1 mm voxels")):(word(strcol("choice"), 3)) with labels point pt 7 ps 1.3 lc rgb "#009E73" \
+         offset 0,0.8 font ",9" notitle
 
-set title "Multigrid on a block, and a button's cover\n{/*0.8 block: the energy's error as estimated; cover: net against membrane}"
+set title "Multigrid on a block, and a button's cover\n{/*0.8 block: estimated error of the energy}"
 set ylabel "|error| (%)"
 plot f using "offline_s":(blocks("moduli within 10 times")) with points pt 5 ps 1.3 lc rgb "#0072B2" title "block, moduli within 10 times", \
      f using "offline_s":(blocks("moduli within 1000 times")) with points pt 9 ps 1.4 lc rgb "#D55E00" title "within 1,000 times", \
