@@ -82,6 +82,20 @@ TEST_CASE("inverse: the stale factor renders within 1 % of converged") {
     CHECK(press_error_percent(accordion, 100.0, Fidelity::stale) < 1.0);
 }
 
+TEST_CASE("inverse: the stale factor follows W through its change of sign, from the pretension to 3 mm") {
+    ReadyDevice device = ready("strip.json", 100.0);
+    InverseOptions options;
+    options.fidelity = Fidelity::stale;
+    options.slew = false;
+    InverseAnswer answer;
+    for (int tick = 1; tick <= 60; ++tick)
+        answer = inverse_step(device.model, device.state, {5e-5 * tick, 5e-3 * tick, {}}, options);
+    CHECK(answer.status == DeviceStatus::good);
+    CHECK(std::abs(answer.residual_m) < 1e-6);
+    CHECK(press_to_depth(device.model, device.state, answer.actuation, 3e-3).force_N ==
+          doctest::Approx(0.3).epsilon(0.01));
+}
+
 TEST_CASE("inverse: step, repeated at held input, reaches converged to 1e-8") {
     for (const char* file : {"strip.json", "accordion.json"}) {
         CAPTURE(file);
