@@ -279,7 +279,7 @@ void add_tangible_characterise(CLI::App& tangible) {
     command->add_option("--delay-ms", arguments->delay_ms, "of the sensor")->check(CLI::Range(0.0, 500.0));
     command->add_option("--lag-ms", arguments->lag_ms, "of the drives, first order")->check(CLI::Range(0.0, 1e4));
     command->add_option("--seed", arguments->seed, "of the sensor's noise (default 1)");
-    add_loop_options(*command, arguments->fidelity, arguments->command, arguments->rate_Hz);
+    add_loop_options(*command, false, arguments->fidelity, arguments->command, arguments->rate_Hz);
     command->add_option("-o,--output", arguments->folder,
                         "folder for tables (which palpa tangible fit reads) and a figure");
     command->add_flag("--json", arguments->json, "print one JSON object on standard output");

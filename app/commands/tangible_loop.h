@@ -13,7 +13,7 @@ namespace palpa::app {
 // The device file that a person names: a path, or the name of one among the assets.
 std::filesystem::path device_file(const std::string& name);
 
-// --fidelity, --command, --rate-Hz.
-void add_loop_options(CLI::App& command, std::string& fidelity, std::string& kind, double& rate_Hz);
+// --fidelity, --command, --rate-Hz; without the first two, those of the scene if `of_scene`, else step and force.
+void add_loop_options(CLI::App& command, bool of_scene, std::string& fidelity, std::string& kind, double& rate_Hz);
 
 }  // namespace palpa::app

@@ -145,14 +145,12 @@ fs::path device_file(const std::string& name) {
                             assets_folder() / "devices");
 }
 
-void add_loop_options(CLI::App& command, std::string& fidelity, std::string& kind, double& rate_Hz) {
-    command
-        .add_option("--fidelity", fidelity,
-                    "of the inverse problem (default: the scene's, or step: one Newton step per tick)")
+void add_loop_options(CLI::App& command, bool of_scene, std::string& fidelity, std::string& kind, double& rate_Hz) {
+    const std::string scenes = of_scene ? "default: the scene's, or " : "default: ";
+    command.add_option("--fidelity", fidelity, "of the inverse problem (" + scenes + "step, one Newton step per tick)")
         ->check(one_of({"step", "converged", "stale", "linear"}));
     command
-        .add_option("--command", kind,
-                    "what the drives are told: forces, or the cables' lengths (default: the scene's, or force)")
+        .add_option("--command", kind, "what the drives are told: forces, or the cables' lengths (" + scenes + "force)")
         ->check(one_of({"force", "position"}));
     command.add_option("--rate-Hz", rate_Hz, "ticks of the loop (default 100)")->check(CLI::Range(10.0, 2000.0));
 }
@@ -174,7 +172,7 @@ void add_tangible_run(CLI::App& tangible) {
                       "on a plant: virtual time, as fast as it goes, the same log every time");
     command->add_option("--log", arguments->log, "folder for the log (existing files are never overwritten)");
     command->add_option("--seed", arguments->seed, "of the plant's noise (default 1)");
-    add_loop_options(*command, arguments->fidelity, arguments->command, arguments->rate_Hz);
+    add_loop_options(*command, true, arguments->fidelity, arguments->command, arguments->rate_Hz);
     command->add_flag("--json", arguments->json, "print one JSON object on standard output");
     command->callback([arguments] { run_tangible(*arguments); });
 }

@@ -48,6 +48,22 @@ TEST_CASE("part edit: permute and its inverse give the hash again, the mass chan
     CHECK(test::contains(palpa_with("part edit " + c + " --undo 1 -o " + d).out, "3 operations"));
 }
 
+TEST_CASE("part edit: files are named without a folder, and the input is never replaced") {
+    const TemporaryFolder folder;
+    const std::filesystem::path here = std::filesystem::current_path();
+    std::filesystem::copy_file(kBeam, folder / "a.json");
+    const std::string before = read_text(folder / "a.json");
+    std::filesystem::current_path(folder.path());
+    const Called bare = palpa_with("part edit a.json --undo 1 -o b.json");
+    const Called onto = palpa_with("part edit a.json --undo 1 -o a.json");
+    std::filesystem::current_path(here);
+    CAPTURE(bare.err);
+    CHECK(bare.status == 0);
+    CHECK(std::filesystem::exists(folder / "b.json"));
+    CHECK(onto.status == 2);
+    CHECK(read_text(folder / "a.json") == before);
+}
+
 TEST_CASE("part edit: what is refused writes nothing") {
     const TemporaryFolder folder;
     const std::string output = " -o " + quoted(folder / "b.json");

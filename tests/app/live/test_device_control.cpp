@@ -62,6 +62,21 @@ void open(Led& led, LedControl& control) {
     control.shown->opening = true;
 }
 
+// A device that runs, and was stopped by a person.
+struct Stopped {
+    Stopped() {
+        open(led, control);
+        CHECK(is_ready(control, [](LedShown&) {}));
+        stop(control);
+    }
+    bool stopped_at(double now_s) {
+        follow(now_s, scene::State{}, control);
+        return control.shown->moment.stopped;
+    }
+    Led led;
+    LedControl control;
+};
+
 bool ready(LedControl& control) {
     return is_ready(control, [](LedShown&) {});
 }
@@ -120,38 +135,22 @@ TEST_CASE(
 }
 
 TEST_CASE("device control: a moment from before the release is no new stop, and one from after it is") {
-    Led led;
-    LedControl control;
-    const scene::State state;
-    open(led, control);
-    CHECK(ready(control));
-    stop(control);
-    follow(1.0, state, control);
-    CHECK(control.shown->moment.stopped);
-    release(control);
-    led.fault = "stopped";  // of a tick that the loop had taken before
-    follow(1.1, state, control);
-    CHECK_FALSE(control.shown->moment.stopped);
-    CHECK(std::string(control.shown->moment.fault).empty());
-    led.fault = "";
-    follow(1.11, state, control);
-    CHECK_FALSE(control.shown->moment.stopped);
-    led.fault = "stopped";  // by the guard
-    follow(1.12, state, control);
-    CHECK(control.shown->moment.stopped);
+    Stopped device;
+    CHECK(device.stopped_at(1.0));
+    release(device.control);
+    device.led.fault = "stopped";  // of a tick that the loop had taken before
+    CHECK_FALSE(device.stopped_at(1.1));
+    CHECK(std::string(device.control.shown->moment.fault).empty());
+    device.led.fault = "";
+    CHECK_FALSE(device.stopped_at(1.11));
+    device.led.fault = "stopped";  // by the guard
+    CHECK(device.stopped_at(1.12));
 }
 
 TEST_CASE("device control: a device that stays stopped after its release is shown so") {
-    Led led;
-    LedControl control;
-    const scene::State state;
-    open(led, control);
-    CHECK(ready(control));
-    stop(control);
-    release(control);
-    led.fault = "stopped";
-    follow(1.0, state, control);
-    CHECK_FALSE(control.shown->moment.stopped);
-    follow(1.6, state, control);
-    CHECK(control.shown->moment.stopped);
+    Stopped device;
+    release(device.control);
+    device.led.fault = "stopped";
+    CHECK_FALSE(device.stopped_at(1.0));
+    CHECK(device.stopped_at(1.6));
 }
