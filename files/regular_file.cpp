@@ -135,4 +135,10 @@ void check_output_folder(const fs::path& folder, const std::vector<fs::path>& in
     for (const std::string& name : names) check_output(folder / name, inputs);
 }
 
+void check_new(const fs::path& path) {
+    std::error_code error;
+    if (fs::exists(fs::symlink_status(path, error)))
+        throw bad_input(path.string(), "", "something of that name", "a new name (nothing is overwritten)");
+}
+
 }  // namespace palpa::files

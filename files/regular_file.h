@@ -50,4 +50,8 @@ void check_output(const std::filesystem::path& path, const std::vector<std::file
 void check_output_folder(const std::filesystem::path& folder, const std::vector<std::filesystem::path>& inputs = {},
                          const std::vector<std::string>& names = {});
 
+// Checks, before any work, that there is nothing of this name: for logs, maps and recordings, which are never overwritten.
+// Throws InputError.
+void check_new(const std::filesystem::path& path);
+
 }  // namespace palpa::files

@@ -13,7 +13,7 @@ constexpr int kMostRows = kMostResiduals + 2 * kMostUnknowns;
 using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, kMostRows, kMostUnknowns>;
 using Right = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, kMostRows, 1>;
 
-enum class Side { free, lower, upper };
+enum class BoundSide { free, lower, upper };
 
 // The problem with scaled unknowns z_j = scale_j x_j: minimise |A z - b|.
 struct Scaled {
@@ -24,7 +24,7 @@ struct Scaled {
 
 struct ActiveSet {
     SmallVector z;
-    std::array<Side, kMostUnknowns> side{};
+    std::array<BoundSide, kMostUnknowns> side{};
     std::array<bool, kMostUnknowns> refused{};  // freed in vain since the last move
     int iterations = 0;
 };
@@ -62,7 +62,7 @@ SmallVector minimum_over_free(const Scaled& s, const ActiveSet& set) {
     std::array<Eigen::Index, kMostUnknowns> column{};
     Eigen::Index count = 0;
     for (Eigen::Index j = 0; j < set.z.size(); ++j) {
-        if (set.side[static_cast<std::size_t>(j)] == Side::free) column[static_cast<std::size_t>(count++)] = j;
+        if (set.side[static_cast<std::size_t>(j)] == BoundSide::free) column[static_cast<std::size_t>(count++)] = j;
     }
     if (count == 0) return set.z;
     Rows A(s.A.rows(), count);
@@ -84,8 +84,8 @@ Eigen::Index to_free(const Scaled& s, const ActiveSet& set, double tolerance) {
     double most = tolerance;
     for (Eigen::Index j = 0; j < set.z.size(); ++j) {
         const auto at = static_cast<std::size_t>(j);
-        if (set.side[at] == Side::free || set.refused[at] || s.lower(j) == s.upper(j)) continue;
-        const double gain = set.side[at] == Side::lower ? -slope(j) : slope(j);
+        if (set.side[at] == BoundSide::free || set.refused[at] || s.lower(j) == s.upper(j)) continue;
+        const double gain = set.side[at] == BoundSide::lower ? -slope(j) : slope(j);
         if (gain <= most) continue;
         most = gain;
         best = j;
@@ -95,18 +95,19 @@ Eigen::Index to_free(const Scaled& s, const ActiveSet& set, double tolerance) {
 
 // Goes to the minimum over the free unknowns, stopping at bounds on the way, until none is in the way. False if the
 // newly freed one would go outwards: round-off made it look worth freeing.
-bool settle(const Scaled& s, ActiveSet& set, Eigen::Index freed, Side was, int most_iterations) {
+bool settle(const Scaled& s, ActiveSet& set, Eigen::Index freed, BoundSide was, int most_iterations) {
     bool first = true;
     while (set.iterations < most_iterations) {
         ++set.iterations;
         const SmallVector goal = minimum_over_free(s, set);
-        if (first && freed >= 0 && (was == Side::lower ? goal(freed) <= set.z(freed) : goal(freed) >= set.z(freed)))
+        if (first && freed >= 0 &&
+            (was == BoundSide::lower ? goal(freed) <= set.z(freed) : goal(freed) >= set.z(freed)))
             return false;
         first = false;
         double share = 1.0;
         Eigen::Index blocked = -1;
         for (Eigen::Index j = 0; j < set.z.size(); ++j) {
-            if (set.side[static_cast<std::size_t>(j)] != Side::free) continue;
+            if (set.side[static_cast<std::size_t>(j)] != BoundSide::free) continue;
             const double bound = goal(j) < s.lower(j) ? s.lower(j) : s.upper(j);
             if (goal(j) >= s.lower(j) && goal(j) <= s.upper(j)) continue;
             const double part = (bound - set.z(j)) / (goal(j) - set.z(j));
@@ -122,7 +123,7 @@ bool settle(const Scaled& s, ActiveSet& set, Eigen::Index freed, Side was, int m
         set.z += share * (goal - set.z);
         set.z = set.z.cwiseMax(s.lower).cwiseMin(s.upper);
         set.z(blocked) = low ? s.lower(blocked) : s.upper(blocked);
-        set.side[static_cast<std::size_t>(blocked)] = low ? Side::lower : Side::upper;
+        set.side[static_cast<std::size_t>(blocked)] = low ? BoundSide::lower : BoundSide::upper;
     }
     return true;
 }
@@ -132,8 +133,8 @@ ActiveSet beginning(const Scaled& s, const SmallVector& from) {
     ActiveSet set;
     set.z = from.cwiseMax(s.lower).cwiseMin(s.upper);
     for (Eigen::Index j = 0; j < set.z.size(); ++j) {
-        Side& side = set.side[static_cast<std::size_t>(j)];
-        side = set.z(j) == s.lower(j) ? Side::lower : set.z(j) == s.upper(j) ? Side::upper : Side::free;
+        BoundSide& side = set.side[static_cast<std::size_t>(j)];
+        side = set.z(j) == s.lower(j) ? BoundSide::lower : set.z(j) == s.upper(j) ? BoundSide::upper : BoundSide::free;
     }
     return set;
 }
@@ -143,13 +144,13 @@ bool run(const Scaled& s, ActiveSet& set) {
     const int most = 50 * static_cast<int>(set.z.size()) + 50;
     // slopes below this are round-off
     const double tolerance = 1e-14 * (s.b.norm() + largest(set.z));
-    settle(s, set, -1, Side::free, most);
+    settle(s, set, -1, BoundSide::free, most);
     while (set.iterations < most) {
         const Eigen::Index j = to_free(s, set, tolerance);
         if (j < 0) return true;
-        Side& side = set.side[static_cast<std::size_t>(j)];
-        const Side was = side;
-        side = Side::free;
+        BoundSide& side = set.side[static_cast<std::size_t>(j)];
+        const BoundSide was = side;
+        side = BoundSide::free;
         if (settle(s, set, j, was, most)) {
             set.refused.fill(false);
         } else {
@@ -180,7 +181,7 @@ void describe(const Scaled& s, const ActiveSet& set, BoundedSolution& out) {
     out.kkt = largest(set.z - moved) / (size > 0.0 ? size : 1.0);
     double most = 1e-9 * size;
     for (Eigen::Index j = 0; j < set.z.size(); ++j) {
-        if (set.side[static_cast<std::size_t>(j)] == Side::free) continue;
+        if (set.side[static_cast<std::size_t>(j)] == BoundSide::free) continue;
         out.active |= 1U << j;
         if (std::abs(slope(j)) <= most) continue;
         most = std::abs(slope(j));

@@ -15,14 +15,14 @@ using Eigen::Index;
 constexpr double kFar = 6.0;  // widths of a rectangle, from where on it is a point, to 0.1 %
 
 // Half the distance to the neighbours on both sides: the node's tributary stretch.
-struct Stretch {
+struct PadStretch {
     Eigen::VectorXd below;
     Eigen::VectorXd above;
 };
 
-Stretch tributary(const Eigen::VectorXd& at_m) {
+PadStretch tributary(const Eigen::VectorXd& at_m) {
     const Index n = at_m.size();
-    Stretch out{Eigen::VectorXd::Zero(n), Eigen::VectorXd::Zero(n)};
+    PadStretch out{Eigen::VectorXd::Zero(n), Eigen::VectorXd::Zero(n)};
     for (Index i = 0; i + 1 < n; ++i) out.above(i) = out.below(i + 1) = 0.5 * (at_m(i + 1) - at_m(i));
     return out;
 }
@@ -38,8 +38,8 @@ double corner_term(double x, double y) {
 Eigen::MatrixXd half_space_kernel_per_m(const SurfaceGrid& grid) {
     const Index n_x = grid.x.at_m.size();
     const Index n_y = grid.y.at_m.size();
-    const Stretch along_x = tributary(grid.x.at_m);
-    const Stretch along_y = tributary(grid.y.at_m);
+    const PadStretch along_x = tributary(grid.x.at_m);
+    const PadStretch along_y = tributary(grid.y.at_m);
     Eigen::MatrixXd K(n_x * n_y, n_x * n_y);
     for (Index j = 0; j < K.cols(); ++j) {
         const Index jx = j % n_x;

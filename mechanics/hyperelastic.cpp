@@ -140,14 +140,15 @@ namespace {
 bool polar_by_newton(const Eigen::Matrix3d& F, Eigen::Matrix3d& R) {
     constexpr double kNearSingular = 1e-3;  // det F over its size cubed
     R = F;
-    if (!(F.determinant() > kNearSingular * std::pow(F.squaredNorm(), 1.5))) return false;
+    const double size = F.norm();
+    if (!(F.determinant() > kNearSingular * size * size * size)) return false;
     for (int i = 0; i < 12; ++i) {
         Eigen::Matrix3d cofactor;
         cofactor << R.col(1).cross(R.col(2)), R.col(2).cross(R.col(0)), R.col(0).cross(R.col(1));
         const double det = R.col(0).dot(cofactor.col(0));
         const Eigen::Matrix3d change = 0.5 * (cofactor / det - R);
         R += change;
-        if (change.squaredNorm() < 1e-18) return true;  // the next change would be its square
+        if (change.squaredNorm() < 1e-16) return true;  // the next change would be its square
     }
     return false;
 }

@@ -14,13 +14,13 @@ namespace {
 constexpr double kWorstViolation = 1e-6;  // of the depth: accepted from a slide that does not settle
 
 // The four sample lines around a point, or the outermost four at the ends, with Lagrange's weights on them.
-struct Stencil {
+struct RollingStencil {
     int first = 0;
     double weight[4] = {0.0, 0.0, 0.0, 0.0};
     bool inside = false;
 };
-Stencil stencil_at(const std::vector<double>& lines_m, double x_m) {
-    Stencil out;
+RollingStencil stencil_at(const std::vector<double>& lines_m, double x_m) {
+    RollingStencil out;
     constexpr double kRounding = 1e-12;
     if (x_m < lines_m.front() - kRounding || x_m > lines_m.back() + kRounding) return out;
     const auto above = std::upper_bound(lines_m.begin(), lines_m.end(), x_m) - lines_m.begin();
@@ -40,7 +40,7 @@ Stencil stencil_at(const std::vector<double>& lines_m, double x_m) {
 
 // The stencils of the patch's nodes in one table, and the window of sample lines that they use.
 struct Window {
-    std::vector<Stencil> sx, sy;
+    std::vector<RollingStencil> sx, sy;
     int low_x = 1 << 20, high_x = -1, low_y = 1 << 20, high_y = -1;
 };
 Window window_of(const PairTable& table, const RollingWork& work) {
@@ -86,8 +86,8 @@ void add_part(const PairTable& table, const std::vector<double>& values, const W
     // first D P^T, column by column, then P times that; P has 16 entries per row
     work.half.setZero(n_x * n_y, n);
     const auto for_entries = [&](int p, auto&& f) {
-        const Stencil& x = window.sx[at(p)];
-        const Stencil& y = window.sy[at(p)];
+        const RollingStencil& x = window.sx[at(p)];
+        const RollingStencil& y = window.sy[at(p)];
         if (!x.inside || !y.inside) return;
         for (int l = 0; l < 4; ++l) {
             for (int k = 0; k < 4; ++k) f((y.first + l - low_y) * n_x + x.first + k - low_x, x.weight[k] * y.weight[l]);

@@ -15,14 +15,14 @@ namespace palpa::parts {
 namespace {
 
 using namespace mechanics;
-using Place = std::array<int, 3>;
+using VoxelPlace = std::array<int, 3>;
 
 constexpr int kMostMaterials = 254;
 constexpr int kBorder = 2;  // an edge's other end asks for the voxels around it
 
 // The box around all that is filled, a byte per voxel, with empty ones around it.
 struct Block {
-    Place low{}, n{};                  // first voxel of the part, voxels with the border
+    VoxelPlace low{}, n{};             // first voxel of the part, voxels with the border
     std::vector<std::uint8_t> filled;  // material + 1
 
     std::size_t at(int x, int y, int z) const {
@@ -83,7 +83,7 @@ class Builder {
 
   private:
     // The octants around a corner that are of this material.
-    unsigned filled_around(const Place& corner) const {
+    unsigned filled_around(const VoxelPlace& corner) const {
         unsigned out = 0;
         for (int o = 0; o < 8; ++o) {
             const std::size_t voxel =
@@ -94,12 +94,12 @@ class Builder {
     }
 
     // Edges whose four faces are joined across, as fans_of() wants them.
-    unsigned joined_edges(const Place& corner, unsigned filled) const {
+    unsigned joined_edges(const VoxelPlace& corner, unsigned filled) const {
         unsigned out = 0;
         for (int edge = 0; edge < 6; ++edge) {
             const auto [p, q] = diagonal_of(filled, edge);
             if (p < 0 || !joined_around(filled, p, q)) continue;
-            Place other = corner;
+            VoxelPlace other = corner;
             other[static_cast<std::size_t>(edge / 2)] += edge % 2 == 0 ? -1 : 1;
             const int turned = 1 << (edge / 2);
             if (joined_around(filled_around(other), p ^ turned, q ^ turned)) out |= 1U << edge;
@@ -107,7 +107,7 @@ class Builder {
         return out;
     }
 
-    const Fans& fans_around(const Place& corner) {
+    const Fans& fans_around(const VoxelPlace& corner) {
         const unsigned filled = filled_around(corner);
         const unsigned joined = joined_edges(corner, filled);
         std::optional<Fans>& known = fans_[filled | joined << 8];
@@ -115,7 +115,7 @@ class Builder {
         return *known;
     }
 
-    int vertex(const Place& corner, int face) {
+    int vertex(const VoxelPlace& corner, int face) {
         const std::uint8_t fan = fans_around(corner)[static_cast<std::size_t>(face)];
         const std::size_t place = block_.at(corner[0], corner[1], corner[2]);
         const auto [found, is_new] =
@@ -127,22 +127,22 @@ class Builder {
         return found->second;
     }
 
-    void add_faces(const Place& voxel) {
+    void add_faces(const VoxelPlace& voxel) {
         for (int a = 0; a < 3; ++a) {
             for (const int side : {0, 1}) {
-                Place next = voxel;
+                VoxelPlace next = voxel;
                 next[static_cast<std::size_t>(a)] += 2 * side - 1;
                 if (block_.filled[block_.at(next[0], next[1], next[2])] != own_) add_quad(voxel, a, side);
             }
         }
     }
 
-    void add_quad(const Place& voxel, int a, int side) {
+    void add_quad(const VoxelPlace& voxel, int a, int side) {
         constexpr int kRound[4][2] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
         const int b = (a + 1) % 3, c = (a + 2) % 3;
         std::array<int, 4> q{};
         for (std::size_t i = 0; i < 4; ++i) {
-            Place high{};  // 1 where the corner is on the voxel's high side
+            VoxelPlace high{};  // 1 where the corner is on the voxel's high side
             high[static_cast<std::size_t>(a)] = side;
             high[static_cast<std::size_t>(b)] = kRound[i][0];
             high[static_cast<std::size_t>(c)] = kRound[i][1];

@@ -8,6 +8,7 @@
 
 #include "files/input_error.h"
 #include "files/json.h"
+#include "files/regular_file.h"
 #include "files/table.h"
 #include "files/text.h"
 #include "platform/keyboard.h"
@@ -64,10 +65,8 @@ std::filesystem::path sidecar_of(const std::filesystem::path& tsv) {
 
 const std::filesystem::path& checked_name(const std::filesystem::path& tsv) {
     if (tsv.extension() != ".tsv") throw files::bad_input(tsv.string(), "", "another ending", "a new trace NAME.tsv");
-    for (const std::filesystem::path& file : {tsv, sidecar_of(tsv)}) {
-        if (std::filesystem::exists(file))
-            throw files::bad_input(file.string(), "", "something of that name", "a new name (nothing is overwritten)");
-    }
+    files::check_new(tsv);
+    files::check_new(sidecar_of(tsv));
     return tsv;
 }
 

@@ -2,11 +2,10 @@
 
 #include <atomic>
 #include <chrono>
-#include <cstdio>
 #include <future>
 #include <unistd.h>
 
-#include "files/clock.h"
+#include "files/progress_line.h"
 
 namespace palpa::session {
 
@@ -50,14 +49,8 @@ scene::Plan PlanInProgress::take() { return work_->result.get(); }
 scene::Plan make_plan_here(const scene::Scene& scene) {
     if (!takes_seconds(scene.tissue) || !isatty(STDERR_FILENO)) return scene::make_plan(scene);
     PlanInProgress work(scene);
-    const double began_s = files::steady_s();
-    while (!work.wait(0.25)) {
-        const double share = work.share();
-        const double passed_s = files::steady_s() - began_s;
-        const double left_s = share > 0.0 ? passed_s / share - passed_s : 0.0;
-        std::fprintf(stderr, "\rpreparing the tissue: %3.0f %%, %.0f s left ", 100.0 * share, left_s);
-    }
-    std::fprintf(stderr, "\r%50s\r", "");
+    files::ProgressLine line;
+    while (!work.wait(0.25)) line.show("preparing the tissue", work.share());
     return work.take();
 }
 

@@ -34,12 +34,10 @@ double rounded(double value, double step) { return std::round(value / step) * st
 
 class Pen {
   public:
-    Pen(const scene::Scene& scene, const scene::Plan& plan, const RasterOptions& options)
-        : plan_(plan), options_(options), random_(options.seed), force_scale_(scene.force_scale) {
+    Pen(const scene::Scene& scene, const scene::Plan& plan, const RasterOptions& options,
+        const std::function<void(const platform::Sample&)>& take)
+        : plan_(plan), options_(options), take_(take), random_(options.seed), force_scale_(scene.force_scale) {
         view_ = scene::make_view(scene.mapping, plan.area, {options.screen_width_px, options.screen_height_px});
-        trace_.info.screen_width_px = options.screen_width_px;
-        trace_.info.screen_height_px = options.screen_height_px;
-        trace_.info.device = "simulated pen, raster";
     }
 
     void draw(const Line& line) {
@@ -58,7 +56,6 @@ class Pen {
     }
 
     double t_s() const { return t_s_; }
-    platform::Trace take() { return std::move(trace_); }
 
   private:
     void add(platform::Phase phase, const Eigen::Vector2d& p_m, double force_N) {
@@ -79,14 +76,14 @@ class Pen {
                                   ? std::round(level)
                                   : std::round(share * kLevels);
         sample.pressure = rounded(share, 1.0 / kLevels);
-        trace_.samples.push_back(sample);
+        take_(sample);
         t_s_ += 1.0 / options_.rate_Hz;
     }
 
     const scene::Plan& plan_;
     RasterOptions options_;
+    const std::function<void(const platform::Sample&)>& take_;
     scene::View view_;
-    platform::Trace trace_;
     double t_s_ = 0.0;
     std::mt19937 random_;
     std::normal_distribution<double> normal_;
@@ -95,11 +92,25 @@ class Pen {
 
 }  // namespace
 
-platform::Trace raster_trace(const scene::Scene& scene, const scene::Plan& plan, const RasterOptions& options) {
-    Pen pen(scene, plan, options);
+platform::TraceInfo raster_info(const RasterOptions& options) {
+    platform::TraceInfo info;
+    info.screen_width_px = options.screen_width_px;
+    info.screen_height_px = options.screen_height_px;
+    info.device = "simulated pen, raster";
+    return info;
+}
+
+void draw_raster(const scene::Scene& scene, const scene::Plan& plan, const RasterOptions& options,
+                 const std::function<void(const platform::Sample&)>& take) {
+    Pen pen(scene, plan, options, take);
     const std::vector<Line> lines = lines_over(plan);
     for (std::size_t i = 0; pen.t_s() < options.seconds; ++i) pen.draw(lines[i % lines.size()]);
-    return pen.take();
+}
+
+platform::Trace raster_trace(const scene::Scene& scene, const scene::Plan& plan, const RasterOptions& options) {
+    platform::Trace trace{raster_info(options), {}};
+    draw_raster(scene, plan, options, [&](const platform::Sample& sample) { trace.samples.push_back(sample); });
+    return trace;
 }
 
 }  // namespace palpa::session

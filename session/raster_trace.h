@@ -2,6 +2,7 @@
 // The trace of a simulated pen that sweeps the tissue line by line, for benchmarks and for machines without a pen.
 
 #include <cstdint>
+#include <functional>
 
 #include "platform/trace.h"
 #include "scene/plan.h"
@@ -18,8 +19,14 @@ struct RasterOptions {
     std::uint32_t seed = 1;  // of the jitter, 0.02 mm rms along x and along y
 };
 
-// Returns a trace of lines through each nodule of the plan along x and along y, and of some beside them; every second
-// line is drawn backwards.
+platform::TraceInfo raster_info(const RasterOptions& options);
+
+// Lines through each nodule of the plan along x and along y, and some beside them; every second line is drawn backwards.
+// Each sample is handed to `take` as it is made, so that a trace of hours needs no memory.
+void draw_raster(const scene::Scene& scene, const scene::Plan& plan, const RasterOptions& options,
+                 const std::function<void(const platform::Sample&)>& take);
+
+// The same as a trace in memory.
 platform::Trace raster_trace(const scene::Scene& scene, const scene::Plan& plan, const RasterOptions& options);
 
 }  // namespace palpa::session

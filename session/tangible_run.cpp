@@ -5,6 +5,7 @@
 #include <system_error>
 
 #include "files/input_error.h"
+#include "files/progress_line.h"
 #include "session/tangible_run_sink.h"
 
 namespace palpa::session {
@@ -163,9 +164,12 @@ TangibleResult run_tangible_virtual(std::shared_ptr<const TangiblePlan> plan, co
     const std::filesystem::path rows =
         options.log.empty() ? options.log : device_rows_of(options.log / "press.tsv", "tangible");
     TangibleSink sink(*plan, options.log, rows);
+    files::ProgressLine line;
+    const double seconds = seconds_of(port.finger);
     run_virtual_ticks(port, *loop, [&](const TickRecord& record) {
         sink.take(record);
         sink.take_rows(loop->recorded);
+        line.show("pressing", record.command.time_s / seconds);
         return true;
     });
     sink.take_rows(loop->recorded);

@@ -7,6 +7,7 @@
 #include "files/input_error.h"
 #include "files/mat.h"
 #include "files/npy.h"
+#include "files/regular_file.h"
 #include "files/text.h"
 
 namespace palpa::stiffnessmaps {
@@ -68,8 +69,7 @@ std::string csv_of(const Map& map) {
 
 void write_folder(const Map& map, fs::path folder) {
     if (!folder.has_filename()) folder = folder.parent_path();
-    if (fs::exists(folder))
-        throw files::bad_input(folder.string(), "", "something of that name", "a new name (nothing is overwritten)");
+    files::check_new(folder);
     fs::path aside = folder;
     aside += ".part-" + std::to_string(::getpid());
     try {

@@ -277,9 +277,7 @@ void write_map(const Map& map, const fs::path& folder) {
         throw files::bad_input(files::shown(folder.string()), "", "no folder to put it into",
                                "a new map folder in a folder that exists");
     }
-    if (fs::exists(folder)) {
-        throw files::bad_input(folder.string(), "", "something of that name", "a new name (nothing is overwritten)");
-    }
+    files::check_new(folder);
     fs::path aside = folder;
     if (!aside.has_filename()) aside = aside.parent_path();
     const fs::path target = aside;

@@ -1,10 +1,12 @@
 #include "tangible/characterise.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
 #include "files/clock.h"
+#include "tangible/linearised.h"
 
 namespace palpa::tangible {
 namespace {
@@ -40,8 +42,20 @@ double hysteresis_N(const std::vector<PressTick>& ticks) {
     return n > 0 ? sum_N / n : 0.0;
 }
 
-bool has_lower_neighbour(const DeviceModel& model, int driver) {
-    return model.driver[static_cast<std::size_t>(driver)] != driver;
+// For each unknown whether the finger at this depth feels more force when it grows: dF/da at a held depth, summed over what is
+// tied to it.
+std::array<bool, kMostActuators> which_stiffen(const TangiblePlan& plan, double depth_m) {
+    const DeviceModel& model = *plan.model;
+    DeviceState state = plan.start;
+    press_to_depth(model, state, plan.start.actuation, depth_m);
+    std::array<bool, kMostActuators> out{};
+    if (!factor_tangent(model, state)) return out;
+    const Response response = respond(model, state);
+    std::array<double, kMostActuators> sum{};
+    for (std::size_t j = 0; j < model.actuators.size(); ++j)
+        sum[static_cast<std::size_t>(model.driver[j])] -= response.compliance(0, static_cast<Eigen::Index>(1 + j));
+    std::transform(sum.begin(), sum.end(), out.begin(), [](double slope) { return slope > 0.0; });
+    return out;
 }
 
 }  // namespace
@@ -84,7 +98,8 @@ PressFigures figures_of(std::vector<PressTick> ticks) {
     return out;
 }
 
-PressFigures run_press(const TangiblePlan& plan, const Plant& plant, const PressMotion& motion, std::uint64_t seed) {
+PressFigures run_press(const TangiblePlan& plan, const Plant& plant, const PressMotion& motion, std::uint64_t seed,
+                       const std::function<void(double share)>& progress) {
     TangibleState loop = make_tangible_state(plan);
     PlantState body = make_plant_state(plant, plan, seed);
     scene::TissueWork truth = scene::make_work(*plan.world.tissue);
@@ -110,6 +125,7 @@ PressFigures run_press(const TangiblePlan& plan, const Plant& plant, const Press
             row.command.fault == TickFault::none)
             row.command.fault = TickFault::no_equilibrium;
         rows.push_back(row);
+        if (progress) progress(static_cast<double>(k + 1) / (ticks + 1));
     }
     PressFigures out = figures_of(std::move(rows));
     out.tick_us = std::move(tick_us);
@@ -117,20 +133,16 @@ PressFigures run_press(const TangiblePlan& plan, const Plant& plant, const Press
 }
 
 Reach reach_at(const TangiblePlan& plan, double depth_m) {
-    constexpr int kSteps = 8;  // on the way from the pretension to a corner of the bounds; the last equilibrium counts
+    constexpr int kSteps = 8;  // on the way from the pretension to an end; the last equilibrium counts
     const DeviceModel& model = *plan.model;
     Reach reach{depth_m, std::numeric_limits<double>::infinity(), 0.0};
-    std::vector<int> drivers;
-    for (int j = 0; j < model.n_actuators(); ++j) {
-        if (!has_lower_neighbour(model, j)) drivers.push_back(j);
-    }
-    for (unsigned corner = 0; corner < (1u << drivers.size()); ++corner) {
+    const std::array<bool, kMostActuators> stiffens = which_stiffen(plan, depth_m);
+    for (const bool stiff : {true, false}) {
         DeviceState state = plan.start;
         for (int step = 0; step <= kSteps; ++step) {
             Actuation actuation{};
             for (std::size_t j = 0; j < model.actuators.size(); ++j) {
-                const auto at = std::find(drivers.begin(), drivers.end(), model.driver[j]) - drivers.begin();
-                const bool up = (corner >> static_cast<unsigned>(at) & 1u) != 0;
+                const bool up = stiffens[static_cast<std::size_t>(model.driver[j])] == stiff;
                 const double end = up ? model.actuators[j].upper : model.actuators[j].lower;
                 actuation[j] = plan.start.actuation[j] + step * (end - plan.start.actuation[j]) / kSteps;
             }

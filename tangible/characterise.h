@@ -1,6 +1,7 @@
 #pragma once
 // How true a soft device is: presses of known laws on a plant, and what came of them.
 
+#include <functional>
 #include <vector>
 
 #include "tangible/plant_model.h"
@@ -37,13 +38,14 @@ struct PressFigures {
     std::vector<double> tick_us;  // times of the loop's ticks
 };
 
-// One press in virtual time. The world is that of the plan.
-PressFigures run_press(const TangiblePlan& plan, const Plant& plant, const PressMotion& motion, std::uint64_t seed);
+// One press in virtual time. The world is that of the plan. `progress` is told the share done, after every tick.
+PressFigures run_press(const TangiblePlan& plan, const Plant& plant, const PressMotion& motion, std::uint64_t seed,
+                       const std::function<void(double share)>& progress = {});
 
 PressFigures figures_of(std::vector<PressTick> ticks);
 
-// The stiffnesses (force over depth) that the device can have at a depth: on the ways from the pretension to the corners of the actuators'
-// bounds, as far as there is equilibrium.
+// The stiffnesses (force over depth) that the device can have at a depth: on the two ways from the pretension to the ends of the
+// actuators' bounds where each makes the device stiffer, and softer, as far as there is equilibrium.
 struct Reach {
     double depth_m = 0.0;
     double lowest_N_per_m = 0.0;

@@ -1,12 +1,14 @@
 // palpa bench trace: the trace of a simulated pen, for measurements.
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
 
 #include "app/commands/command_line.h"
 #include "app/scene_choices.h"
+#include "files/progress_line.h"
 #include "files/regular_file.h"
 #include "session/plan_in_progress.h"
 #include "session/raster_trace.h"
@@ -26,11 +28,17 @@ void write_raster(const TraceOptions& options) {
     files::check_output(options.output, inputs_of(scene));
     session::RasterOptions raster = options.raster;
     raster.speed_m_per_s = 1e-3 * options.speed_mm_per_s;
-    const platform::Trace trace = session::raster_trace(scene, session::make_plan_here(scene), raster);
+    const scene::Plan plan = session::make_plan_here(scene);
+    std::size_t samples = 0;
     bool whole = false;
     {
-        platform::TraceWriter writer(options.output, trace.info);  // refuses files that are there already
-        for (const platform::Sample& sample : trace.samples) writer.write(sample);
+        files::ProgressLine line;
+        platform::TraceWriter writer(options.output,
+                                     session::raster_info(raster));  // refuses files that are there already
+        session::draw_raster(scene, plan, raster, [&](const platform::Sample& sample) {
+            writer.write(sample);
+            if (++samples % 1000 == 0) line.show("drawing", std::min(1.0, sample.t_host_s / raster.seconds));
+        });
         whole = writer.sync();
     }
     if (!whole) {  // half a trace would be measured as a whole one
@@ -39,7 +47,7 @@ void write_raster(const TraceOptions& options) {
         std::filesystem::remove(std::filesystem::path(options.output).replace_extension(".json"), none);
         throw std::runtime_error(options.output + ": cannot be written to its end (is the disk full?)");
     }
-    std::printf("%s: %zu samples of a simulated pen\n", options.output.c_str(), trace.samples.size());
+    std::printf("%s: %zu samples of a simulated pen\n", options.output.c_str(), samples);
 }
 
 }  // namespace

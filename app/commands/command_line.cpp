@@ -1,6 +1,7 @@
 #include "app/commands/command_line.h"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <cstdlib>
@@ -28,9 +29,15 @@ namespace {
 std::vector<std::string> with_default_command(int argc, char** argv, CLI::App& app) {
     std::vector<std::string> arguments(argv + 1, argv + argc);
     const std::string first = arguments.empty() ? "" : arguments.front();
-    bool known = first == "-h" || first == "--help" || first == "--version";
-    for (const CLI::App* command : app.get_subcommands({})) known = known || command->get_name() == first;
+    std::vector<std::string> commands;
+    for (const CLI::App* command : app.get_subcommands({})) commands.push_back(command->get_name());
+    const bool known = first == "-h" || first == "--help" || first == "--version" ||
+                       std::find(commands.begin(), commands.end(), first) != commands.end();
+    if (!known && !first.empty() && first.find_first_of("-./") == std::string::npos && !std::filesystem::exists(first))
+        throw files::InputError("found " + files::shown(first) +
+                                ", expected a scene, a map or a command: " + listed(commands));
     if (!known) arguments.insert(arguments.begin(), "run");
+    check_subcommands(app, arguments);
     return {arguments.rbegin(), arguments.rend()};  // CLI11 reads the vector from its end
 }
 

@@ -2,16 +2,16 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <memory>
-#include <unistd.h>
 
 #include "app/commands/command_line.h"
 #include "fem/locking.h"
 #include "fem/solve.h"
-#include "files/clock.h"
 #include "files/input_error.h"
 #include "files/printable.h"
+#include "files/progress_line.h"
 #include "files/regular_file.h"
 #include "files/text.h"
 
@@ -204,20 +204,11 @@ void print_table(const fem::FemCase& model, const fem::FemResult& result) {
     row("time", times + " s");
 }
 
-// Shows how much is done and the time left, on a terminal only.
-fem::FemProgress progress_line() {
-    if (isatty(STDERR_FILENO) == 0) return [](const char*, int, int) {};
-    return [began_s = std::optional<double>()](const char* what, int done, int total) mutable {
-        if (total == 0) {
-            std::fprintf(stderr, "\r\033[K%s ...", what);
-        } else {
-            if (!began_s) began_s = files::steady_s();
-            const double passed_s = files::steady_s() - *began_s;
-            const double left_s = done > 0 ? passed_s * (total - done) / done : 0.0;
-            std::fprintf(stderr, "\r\033[K%s %d of %d, %.0f s left", what, done, total, left_s);
-        }
-        std::fflush(stderr);
-    };
+fem::FemResult solve_with_progress(const fem::FemCase& model) {
+    files::ProgressLine line;
+    return fem::solve_case(model, [&](const char* what, int done, int total) {
+        line.show(what, total > 0 ? static_cast<double>(done) / total : std::nan(""));
+    });
 }
 
 struct SolveOptions {
@@ -230,8 +221,7 @@ void solve_file(const SolveOptions& options) {
     const fem::FemCase model = fem::read_case(options.file);
     if (!options.output.empty())
         files::check_output(options.output, {options.file, model.mesh_file});  // checked before the long computation
-    const fem::FemResult result = fem::solve_case(model, progress_line());
-    if (isatty(STDERR_FILENO) != 0) std::fprintf(stderr, "\r\033[K");
+    const fem::FemResult result = solve_with_progress(model);
     if (!options.output.empty()) files::write_vtu(options.output, fem::vtu_of(model, result));
     if (options.json) {
         std::printf("%s", files::json_text(json_of(model, result)).c_str());

@@ -4,13 +4,13 @@
 #include <cmath>
 #include <cstdio>
 #include <memory>
-#include <unistd.h>
 
 #include "app/commands/command_line.h"
 #include "app/commands/map_info.h"
 #include "app/commands/option_checks.h"
-#include "files/clock.h"
 #include "files/input_error.h"
+#include "files/progress_line.h"
+#include "files/regular_file.h"
 #include "files/text.h"
 #include "stiffnessmaps/import/import.h"
 #include "stiffnessmaps/map_file.h"
@@ -148,19 +148,6 @@ stiffnessmaps::ImportOptions options_of(const ImportArguments& a) {
     return options;
 }
 
-// Shows what is being done and how much of it is finished, once a second has passed; on a terminal only.
-std::function<void(const char*, double)> progress_on_terminal() {
-    if (::isatty(STDERR_FILENO) == 0) return {};
-    const double began_s = files::steady_s();
-    return [began_s](const char* what, double done) {
-        const double spent_s = files::steady_s() - began_s;
-        if (spent_s < 1.0) return;
-        std::fprintf(stderr, "\r\033[K%s", what);
-        if (done > 0.0) std::fprintf(stderr, " %.0f %%, %.0f s left", 100.0 * done, spent_s * (1.0 - done) / done);
-        std::fflush(stderr);
-    };
-}
-
 std::string value_text(const stiffnessmaps::SourceChoice& choice) {
     if (const auto* text = std::get_if<std::string>(&choice.value)) return *text;
     if (const auto* number = std::get_if<double>(&choice.value)) return files::short_number(*number);
@@ -227,17 +214,16 @@ void print_report(const std::string& name, const stiffnessmaps::Map& map, const 
 
 void import_map(const ImportArguments& a) {
     stiffnessmaps::ImportOptions options = options_of(a);
-    options.progress = progress_on_terminal();
     options.depths_m = depths_m(a.depths, "--depths-mm", false);
     if (a.output.empty() && !a.explain)
         throw files::bad_input("maps import", "", "no output",
                                "-o NAME.map (or --explain, to see what would be chosen)");
-    if (std::filesystem::exists(a.output)) {  // checked before a long import, not after it
-        throw files::bad_input(a.output, "", "something of that name", "a new name (nothing is overwritten)");
-    }
+    if (!a.output.empty()) files::check_new(a.output);
     stiffnessmaps::ImportReport report;
+    std::optional<files::ProgressLine> line(std::in_place);
+    options.progress = [&line](const char* what, double done) { line->show(what, done > 0.0 ? done : std::nan("")); };
     const stiffnessmaps::Map map = stiffnessmaps::import_recording({a.files.begin(), a.files.end()}, options, report);
-    if (options.progress) std::fprintf(stderr, "\r\033[K");
+    line.reset();
     if (!a.output.empty()) stiffnessmaps::write_map(map, a.output);
     for (const std::string& note : report.notes) std::fprintf(stderr, "palpa: %s\n", note.c_str());
     if (a.json) {

@@ -13,26 +13,28 @@
 namespace palpa::app {
 namespace {
 
-std::string listed(const std::vector<std::string>& words) {
-    std::string out;
-    for (std::size_t i = 0; i < words.size(); ++i) {
-        out += (i == 0 ? "" : i + 1 < words.size() ? ", " : " or ") + words[i];
-    }
-    return out;
+std::string refuse_no_number(std::string& text) {
+    char* end = nullptr;
+    const bool finite = std::isfinite(std::strtod(text.c_str(), &end));
+    if (finite && end != text.c_str() && *end == '\0') return {};
+    return "found " + files::shown(text) + ", expected a " + (finite ? "number" : "finite number");
 }
 
-std::string refuse_infinite(std::string& text) {
-    // CLI11 itself reports a text that is no number
-    if (std::isfinite(std::strtod(text.c_str(), nullptr))) return {};
-    return "found " + files::shown(text) + ", expected a finite number";
+std::string refuse_no_whole_number(std::string& text) {
+    char* end = nullptr;
+    errno = 0;
+    std::strtoll(text.c_str(), &end, 0);
+    if (errno != ERANGE && end != text.c_str() && *end == '\0') return {};
+    return "found " + files::shown(text) + ", expected a whole number";
 }
 
 // CLI11 reads -1, and every number that is too large, as the largest unsigned number.
 std::string refuse_wrapped(std::string& text) {
+    char* end = nullptr;
     errno = 0;
     const bool negative = text.find('-') != std::string::npos;
-    std::strtoull(text.c_str(), nullptr, 0);
-    if (!negative && errno != ERANGE) return {};
+    std::strtoull(text.c_str(), &end, 0);
+    if (!negative && errno != ERANGE && end != text.c_str() && *end == '\0') return {};
     return "found " + files::shown(text) + ", expected a whole number from 0 to " +
            std::to_string(std::numeric_limits<std::uint64_t>::max());
 }
@@ -40,6 +42,14 @@ std::string refuse_wrapped(std::string& text) {
 std::string refuse_empty(std::string& text) { return text.empty() ? "found nothing, expected a value" : std::string(); }
 
 }  // namespace
+
+std::string listed(const std::vector<std::string>& words) {
+    std::string out;
+    for (std::size_t i = 0; i < words.size(); ++i) {
+        out += (i == 0 ? "" : i + 1 < words.size() ? ", " : " or ") + words[i];
+    }
+    return out;
+}
 
 CLI::Validator one_of(const std::vector<std::string>& words) {
     const auto check = [words](std::string& text) {
@@ -52,11 +62,31 @@ CLI::Validator one_of(const std::vector<std::string>& words) {
 void refuse_what_is_no_value(CLI::App& command) {
     for (CLI::Option* option : command.get_options()) {
         const std::string type = option->get_type_name();
-        if (type.rfind("FLOAT", 0) == 0) option->check(CLI::Validator(refuse_infinite, ""));
-        if (type.rfind("UINT", 0) == 0) option->check(CLI::Validator(refuse_wrapped, ""));
-        if (!type.empty()) option->check(CLI::Validator(refuse_empty, ""));  // flags have no value
+        // transform() asks before the option's own checks: CLI11's check of a range says of a word that it is "not in range"
+        if (type.rfind("FLOAT", 0) == 0) option->transform(CLI::Validator(refuse_no_number, ""));
+        if (type.rfind("INT", 0) == 0) option->transform(CLI::Validator(refuse_no_whole_number, ""));
+        if (type.rfind("UINT", 0) == 0) option->transform(CLI::Validator(refuse_wrapped, ""));
+        if (!type.empty()) option->transform(CLI::Validator(refuse_empty, ""));  // flags have no value
     }
     for (CLI::App* below : command.get_subcommands({})) refuse_what_is_no_value(*below);
+}
+
+void check_subcommands(const CLI::App& app, const std::vector<std::string>& arguments) {
+    const CLI::App* at = &app;
+    std::string path;
+    for (const std::string& word : arguments) {
+        if (at->get_require_subcommand_min() == 0 || word.rfind('-', 0) == 0) return;
+        std::vector<std::string> names;
+        const CLI::App* found = nullptr;
+        for (const CLI::App* below : at->get_subcommands({})) {
+            names.push_back(below->get_name());
+            if (below->get_name() == word) found = below;
+        }
+        if (found == nullptr)
+            throw files::InputError(path + ": found " + files::shown(word) + ", expected " + listed(names));
+        at = found;
+        path += (path.empty() ? "" : " ") + word;
+    }
 }
 
 }  // namespace palpa::app

@@ -11,13 +11,20 @@ class Validator;
 
 namespace palpa::app {
 
+// "a, b or c".
+std::string listed(const std::vector<std::string>& words);
+
 // Accepts one of these words; the help and the message list them as "a, b or c".
 CLI::Validator one_of(const std::vector<std::string>& words);
 
-// Makes every option of the command and its subcommands refuse values that mean nothing. Numbers refuse "nan" and "inf"
-// (CLI11's check of a range lets "nan" pass, since it is neither below nor above). Unsigned numbers refuse -1, which CLI11
+// Makes every option of the command and its subcommands refuse values that mean nothing. Numbers refuse words, "nan" and
+// "inf" (CLI11's check of a range lets "nan" pass, since it is neither below nor above). Unsigned numbers refuse -1, which CLI11
 // would wrap around. All options refuse an empty text: most often it is an unset variable of a script, and must count
 // neither as 0 nor as an option left out.
 void refuse_what_is_no_value(CLI::App& command);
+
+// Throws files::InputError if a word stands where a subcommand is required and names none: CLI11 itself says only that a
+// subcommand is required. `arguments`: in the order in which they were typed.
+void check_subcommands(const CLI::App& app, const std::vector<std::string>& arguments);
 
 }  // namespace palpa::app

@@ -136,7 +136,10 @@ void print_tactile(const files::Json& result) {
 void run_tactile(const TactileOptions& options) {
     check_tactile_run(options);
     const scene::Scene scene = load_scene(options.scene);
-    if (!options.log.empty()) files::check_output_folder(options.log);
+    if (!options.log.empty()) {
+        files::check_output_folder(options.log);
+        files::check_new(fs::path(options.log) / "steps.tsv");
+    }
     if (!scene.tactile)
         throw files::bad_input(options.scene, "tactile", "no such key", "one that says which arm or display there is");
     const scene::Plan scene_plan = session::make_plan_here(scene);

@@ -13,6 +13,7 @@
 #include "app/scene_choices.h"
 #include "figures/force_depth_figure.h"
 #include "files/input_error.h"
+#include "files/progress_line.h"
 #include "files/regular_file.h"
 #include "files/text.h"
 #include "session/plan_in_progress.h"
@@ -105,8 +106,10 @@ Characterised press_on(const TangibleCharacteriseArguments& arguments,
     loop.inverse.fidelity = tangible::fidelity_named(arguments.fidelity);
     loop.command = tangible::command_named(arguments.command);
     Characterised out{make_tangible_plan(model, tissue.world, tissue.place_m, loop), {}};
+    files::ProgressLine line;
     out.figures = run_press(out.plan, make_plant(model, plant, loop),
-                            {1e-3 * arguments.depth_mm, 1e-3 * arguments.speed_mm_per_s}, arguments.seed);
+                            {1e-3 * arguments.depth_mm, 1e-3 * arguments.speed_mm_per_s}, arguments.seed,
+                            [&](double share) { line.show("pressing on " + tissue.label, share); });
     return out;
 }
 

@@ -118,7 +118,10 @@ files::Json devices_json(const tangible::TangiblePlan& plan, bool real, const st
 void run_tangible(const TangibleRunArguments& arguments) {
     const scene::Scene scene = load_scene(arguments.scene);
     if (!scene.tangible) throw files::bad_input(arguments.scene, "tangible", "no such key", "one that names a device");
-    if (!arguments.log.empty()) files::check_output_folder(arguments.log);
+    if (!arguments.log.empty()) {
+        files::check_output_folder(arguments.log);
+        files::check_new(fs::path(arguments.log) / "ticks.tsv");
+    }
     const std::string plant_name = plant_of(arguments, scene);
     const scene::Plan scene_plan = session::make_plan_here(scene);
     const auto plan = std::make_shared<const tangible::TangiblePlan>(

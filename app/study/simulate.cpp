@@ -2,7 +2,6 @@
 
 #include <atomic>
 #include <chrono>
-#include <cstdio>
 #include <exception>
 #include <map>
 #include <memory>
@@ -10,7 +9,6 @@
 #include <optional>
 #include <stdexcept>
 #include <thread>
-#include <unistd.h>
 
 #include "app/assets.h"
 #include "app/study/felt_search.h"
@@ -18,6 +16,7 @@
 #include "app/study/simulated_trial.h"
 #include "files/clock.h"
 #include "files/folder_lock.h"
+#include "files/progress_line.h"
 #include "files/text.h"
 #include "session/session.h"
 #include "study/staircase_history.h"
@@ -283,19 +282,10 @@ void add_everybody(const study::Protocol& protocol, const SimulateOptions& optio
     study::add_people(options.output, people);
 }
 
-void tell(const Shared& shared, double wall_s, bool last) {
-    if (isatty(STDERR_FILENO) == 0) return;
-    const int done = shared.done;
-    const double left_s = done > 0 ? wall_s * (shared.options.participants - done) / done : 0.0;
-    std::fprintf(stderr, "\r%d of %d participants, %.0f s left ", done, shared.options.participants, left_s);
-    if (last) std::fputc('\n', stderr);
-}
-
 }  // namespace
 
 SimulateResult simulate_study(const study::Protocol& protocol, const SimulateOptions& options) {
     const double began_s = files::steady_s();
-    const auto wall_s = [&] { return files::steady_s() - began_s; };
     const StudyScenes scenes = load_study_scenes(protocol);
     Shared shared{protocol, options, scenes, {}, {}, {}, {}, {}, {}, {}, {}};
     shared.next_participant = 1;
@@ -309,16 +299,18 @@ SimulateResult simulate_study(const study::Protocol& protocol, const SimulateOpt
     std::vector<std::thread> workers;
     for (int i = 0; i < options.jobs; ++i) workers.emplace_back([&] { work(shared); });
     std::thread teller([&] {
-        for (int i = 0; !shared.stop && shared.done < options.participants; ++i) {
+        files::ProgressLine line;
+        while (!shared.stop && shared.done < options.participants) {
             std::this_thread::sleep_for(std::chrono::milliseconds(50));
-            if (i % 20 == 19) tell(shared, wall_s(), false);
+            const int done = shared.done;
+            line.show(std::to_string(done) + " of " + std::to_string(options.participants) + " participants",
+                      static_cast<double>(done) / options.participants);
         }
-        tell(shared, wall_s(), true);
     });
     for (std::thread& worker : workers) worker.join();
     teller.join();
     if (shared.error) std::rethrow_exception(shared.error);
-    shared.result.wall_s = wall_s();
+    shared.result.wall_s = files::steady_s() - began_s;
     return shared.result;
 }
 

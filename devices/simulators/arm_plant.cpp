@@ -128,7 +128,7 @@ void advance(double dt_s, ArmPlant& plant) {
 }
 
 double sensor_N(ArmPlant& plant) {
-    return plant.hand_N + std::normal_distribution<double>(0.0, plant.arm.sensor_noise_N)(plant.random);
+    return plant.hand_N + plant.arm.sensor_noise_N * std::normal_distribution<double>()(plant.random);
 }
 
 ArmFeedbackPacket feedback_packet(ArmPlant& plant) {

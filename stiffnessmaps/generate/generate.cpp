@@ -8,6 +8,7 @@
 #include "files/input_error.h"
 #include "files/json.h"
 #include "files/quantile.h"
+#include "files/regular_file.h"
 #include "files/text.h"
 #include "mechanics/error.h"
 #include "stiffnessmaps/analytic.h"
@@ -217,11 +218,6 @@ void check(const GenerateOptions& options, const MapTask& task, const MapTask& r
     std::printf("%s: %s\n", options.output.c_str(), found.c_str());
 }
 
-void refuse_existing(const fs::path& output) {
-    if (fs::exists(output))
-        throw files::bad_input(output.string(), "", "something of that name", "a new name (nothing is overwritten)");
-}
-
 int number_from_environment(const char* name) {
     const char* text = std::getenv(name);
     double value = 0.0;
@@ -289,7 +285,7 @@ void generate_map(const GenerateOptions& options) {
     }
     if (options.window) return compute_window(task, *options.window);
     if (!options.check || !fs::exists(options.output)) {
-        refuse_existing(options.output);
+        files::check_new(options.output);
         fs::create_directories(task.folder);
         if (options.part) return compute_part(task, *options.part);
         if (!options.merge) compute_with_jobs(options, task);

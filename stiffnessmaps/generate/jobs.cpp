@@ -1,9 +1,6 @@
 #include "stiffnessmaps/generate/jobs.h"
 
-#include <cstdio>
-#include <unistd.h>
-
-#include "files/clock.h"
+#include "files/progress_line.h"
 #include "files/text.h"
 #include "stiffnessmaps/generate/worker_processes.h"
 
@@ -11,32 +8,6 @@ namespace palpa::stiffnessmaps {
 namespace {
 
 namespace fs = std::filesystem;
-
-// Shows what share is done and the time left, on one line of a terminal; shows nothing elsewhere.
-class Progress {
-  public:
-    Progress(const char* what, double total) : what_(what), total_(total), shown_(::isatty(STDERR_FILENO) == 1) {}
-    ~Progress() {
-        if (shown_) std::fprintf(stderr, "\r\033[K");
-    }
-    void show(double done) {
-        if (!shown_) return;
-        if (first_ < 0.0) first_ = done;
-        const double spent_s = files::steady_s() - began_s_;
-        const int bars = static_cast<int>(30.0 * done / total_);
-        std::fprintf(stderr, "\r\033[K%s [%.*s%*s] %.0f %%", what_, bars, "##############################", 30 - bars,
-                     "", 100.0 * done / total_);
-        if (done > first_) std::fprintf(stderr, ", %.0f s left", spent_s * (total_ - done) / (done - first_));
-        std::fflush(stderr);
-    }
-
-  private:
-    const char* what_;
-    double total_;
-    bool shown_;
-    double first_ = -1.0;
-    double began_s_ = files::steady_s();
-};
 
 Arguments call_of(const GenerateOptions& options) {
     Arguments out{"maps",
@@ -93,10 +64,12 @@ void compute_with_jobs(const GenerateOptions& options, const MapTask& task) {
     drop_wrong(task, windows, window_of);
     drop_wrong(task, lines, line_name);
     if (lines.empty()) return;
-    Progress progress("generating", kWindowWeight * static_cast<double>(n_windows) + static_cast<double>(n_lines));
+    files::ProgressLine progress;
+    const double total = kWindowWeight * static_cast<double>(n_windows) + static_cast<double>(n_lines);
     const auto show = [&] {
-        progress.show(kWindowWeight * static_cast<double>(files_there(task, n_windows, window_of)) +
-                      static_cast<double>(files_there(task, n_lines, line_name)));
+        const double done = kWindowWeight * static_cast<double>(files_there(task, n_windows, window_of)) +
+                            static_cast<double>(files_there(task, n_lines, line_name));
+        progress.show("generating", done / total);
     };
     run_jobs(window_calls(options, windows, MeshSet::own), options.jobs, show);
     std::vector<Arguments> calls;
@@ -129,9 +102,11 @@ void compute_windows(const GenerateOptions& options, const MapTask& task, MeshSe
     const auto n_windows = static_cast<std::size_t>(window_count(task));
     const auto windows = missing(task, n_windows, window_of);
     drop_wrong(task, windows, window_of);
-    Progress progress(what, static_cast<double>(n_windows));
-    run_jobs(window_calls(options, windows, meshes), options.jobs,
-             [&] { progress.show(static_cast<double>(files_there(task, n_windows, window_of))); });
+    files::ProgressLine progress;
+    run_jobs(window_calls(options, windows, meshes), options.jobs, [&] {
+        const auto done = static_cast<double>(files_there(task, n_windows, window_of));
+        progress.show(what, done / static_cast<double>(n_windows));
+    });
 }
 
 }  // namespace palpa::stiffnessmaps

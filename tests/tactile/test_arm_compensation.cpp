@@ -42,7 +42,7 @@ double hand_force_N(const ArmCompensation& arm, double depth_m, double v) {
 // Strokes from 0 to 45 mm and back at steady speeds, without dynamics.
 std::vector<StrokeRow> ideal_strokes(const ArmCompensation& arm, double noise_N) {
     std::mt19937_64 random(9);
-    std::normal_distribution<double> noise(0.0, noise_N);
+    std::normal_distribution<double> noise;
     std::vector<StrokeRow> rows;
     double t_s = 0.0;
     for (const double speed : {24e-3, 12e-3, 6e-3, 3e-3, 1.5e-3}) {
@@ -50,7 +50,7 @@ std::vector<StrokeRow> ideal_strokes(const ArmCompensation& arm, double noise_N)
             const double seconds = std::min(45e-3 / speed, 10.0);
             for (double done_s = 0.0; done_s < seconds; done_s += 1e-3, t_s += 1e-3) {
                 const double depth_m = v > 0.0 ? v * done_s : -v * seconds + v * done_s;
-                rows.push_back({t_s, depth_m, v, hand_force_N(arm, depth_m, v) + noise(random), 0.0});
+                rows.push_back({t_s, depth_m, v, hand_force_N(arm, depth_m, v) + noise_N * noise(random), 0.0});
             }
         }
     }

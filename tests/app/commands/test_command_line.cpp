@@ -58,6 +58,15 @@ TEST_CASE("command line: help and version exist for every command") {
     CHECK(contains(palpa_with("--version").out, "palpa 0."));
 }
 
+TEST_CASE("command line: a command that is mistyped is named, with those that are there") {
+    const Called top = palpa_with("tangibel info strip");
+    CHECK(top.status == 2);
+    CHECK(contains(top.err, "palpa: found 'tangibel', expected a scene, a map or a command: run, explain, "));
+    const Called below = palpa_with("maps inof x.map");
+    CHECK(below.status == 2);
+    CHECK(contains(below.err, "palpa: maps: found 'inof', expected info, "));
+}
+
 TEST_CASE("command line: headless replay reports its keys as one JSON object") {
     const Called run = palpa_with("run --replay " + kTrace + " --headless --json");
     CHECK(run.status == 0);

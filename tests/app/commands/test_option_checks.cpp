@@ -63,6 +63,33 @@ TEST_CASE("option checks: no option takes what is no number") {
     CHECK(refusal({"-2", "1e3", "--several"}).empty());
 }
 
+TEST_CASE("option checks: a word for a number is no number, not one out of range") {
+    for (const char* value : {"abc", "5mm", "1.5.2"}) {
+        CAPTURE(value);
+        CHECK(contains(refusal({value, "--length-mm"}), "--length-mm: found"));
+    }
+    CHECK(contains(refusal({"abc", "--length-mm"}), "--length-mm: found 'abc', expected a number"));
+    CHECK(contains(refusal({"abc", "--count"}), "--count: found 'abc', expected a whole number"));
+    CHECK(contains(refusal({"1.5", "--count"}), "--count: found '1.5', expected a whole number"));
+    CHECK(contains(refusal({"x", "--seed"}), "--seed: found 'x', expected a whole number from 0"));
+    CHECK(contains(refusal({"11", "--length-mm"}), "not in range"));
+}
+
+TEST_CASE("option checks: a command that is not there is named, with those that are") {
+    CLI::App app("", "palpa");
+    app.require_subcommand(1);
+    CLI::App* maps = app.add_subcommand("maps");
+    maps->require_subcommand(1);
+    for (const char* name : {"info", "plot", "export"}) maps->add_subcommand(name);
+    const auto said = [&](const std::vector<std::string>& arguments) {
+        return message_of([&] { check_subcommands(app, arguments); });
+    };
+    CHECK(said({"maps", "inof", "x.map"}) == "maps: found 'inof', expected info, plot or export");
+    CHECK(said({"maps", "info", "inof"}).empty());
+    CHECK(said({"maps", "--help"}).empty());
+    CHECK(said({"maps"}).empty());  // nothing is there to name: CLI11 says that a subcommand is required
+}
+
 TEST_CASE("option checks: words are listed as a person lists them") {
     CHECK(contains(refusal({"ball", "--kind"}), "--kind: found 'ball', expected sphere, cylinder or cone"));
     CHECK(refusal({"cone", "--kind"}).empty());

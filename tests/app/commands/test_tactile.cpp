@@ -108,8 +108,8 @@ TEST_CASE("tactile run: live with simulators it writes the bytes of virtual time
     for (const files::Json& device : live["devices"]) CHECK(device["simulated"] == true);
     // nothing is overwritten
     const Called again = slab.run("--virtual-time --log " + slab.path("live"));
-    CHECK(again.status == 1);
-    CHECK(contains(again.err, "steps.tsv"));
+    CHECK(again.status == 2);
+    CHECK(contains(again.err, "steps.tsv: found something of that name"));
 }
 
 TEST_CASE("tactile run: where the arm leads, its recorded rows give the same log again") {

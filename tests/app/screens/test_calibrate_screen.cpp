@@ -63,6 +63,12 @@ TEST_CASE("calibrate screen: Enter takes the number that the scale shows, and th
     frames(desk, 8);
     CHECK(form.guide.shown_gf == 7.0);
     CHECK(form.recording->session.points.size() == 2);
+    hold(0.06, *form.recording);  // another level, and the scale shows the same number
+    type(desk.window, '7');
+    tap(desk.window, SDLK_RETURN);
+    frames(desk, 8);
+    REQUIRE(form.recording->session.points.size() == 3);
+    CHECK(form.recording->session.points[2].force_N == doctest::Approx(7.0 * calibration::kN_per_gf));
 }
 
 TEST_CASE("calibrate screen: a load cell's newtons per count are asked for, and never assumed") {

@@ -3,10 +3,12 @@
 #include <cmath>
 #include <doctest/doctest.h>
 #include <filesystem>
+#include <map>
 
 #include "app/study/study_run.h"
 #include "files/folder_lock.h"
 #include "files/input_error.h"
+#include "files/table.h"
 #include "files/text.h"
 #include "scene/advance.h"
 #include "study/ratings.h"
@@ -484,6 +486,19 @@ Protocol thresholds(const TemporaryFolder& folder) {
     return read_protocol(folder / "p.json");
 }
 
+// How many surfaces of pairs the log calls practice, and how many test.
+std::map<std::string, int> blocks_of_pairs(const std::filesystem::path& folder) {
+    std::map<std::string, int> count;
+    for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+        const std::string name = entry.path().filename().string();
+        if (!contains(name, "_task-interval_") || !contains(name, "_events.tsv")) continue;
+        Table table = read_tsv(entry.path());
+        const std::size_t block = table.column("block");
+        if (table.next()) ++count[std::string(table.field(block))];
+    }
+    return count;
+}
+
 // Carries out one step. A pair is answered rightly where the levels differ by half or more.
 void one_step(StudyRun& run) {
     if (at<step::Instructions>(run) || at<step::Told>(run)) return begin_step(run);
@@ -512,10 +527,12 @@ TEST_CASE("study run: consent comes first; finding, a staircase and choices foll
     carry_out(GiveConsent{true}, run);
     CHECK(contains(read_text(log / "sub-07/beh/sub-07_task-ratings_beh.tsv"), "n/a\tconsent\tgiven\n"));
     std::string steps, levels;
+    int practised = 0, tested = 0;  // surfaces of pairs that were felt
     for (int i = 0; !at<step::Done>(run) && i < 80; ++i) {
         if (at<step::Question>(run) && due_condition(run).id == "steps" && !due_trial(run).practice)
             levels += std::to_string(run.comparison);
         if (at<step::Trial>(run) && due_compares(run)) {
+            ++(due_trial(run).practice ? practised : tested);
             CHECK(&due_scene(run) == &run.stimuli[1][(run.interval == 0) == due_trial(run).reference_first
                                                          ? 0
                                                          : 1 + static_cast<std::size_t>(run.comparison)]);
@@ -531,6 +548,8 @@ TEST_CASE("study run: consent comes first; finding, a staircase and choices foll
     CHECK(at<step::Done>(run));
     CHECK(contains(steps, "instructions trial instructions trial instructions trial trial question told "));
     CHECK(levels == "3213");  // 20 and 17 kPa were felt, 14 kPa was not
+    CHECK(practised > 0);
+    CHECK(blocks_of_pairs(log / "sub-07/beh") == std::map<std::string, int>{{"practice", practised}, {"test", tested}});
     const Observations seen = read_study(log);
     CHECK(seen.trials.size() == 1);
     CHECK(seen.practice_trials == 3);

@@ -1,0 +1,120 @@
+// palpa tangible: the commands as a person calls them, on a strip of few cells.
+
+#include <cmath>
+#include <doctest/doctest.h>
+#include <filesystem>
+
+#include "files/json.h"
+#include "files/text.h"
+#include "tests/app/palpa_with.h"
+#include "tests/assets.h"
+#include "tests/error_message.h"
+#include "tests/temporary_folder.h"
+
+using namespace palpa;
+using namespace palpa::test;
+
+namespace {
+
+struct StripFolder {
+    TemporaryFolder folder;
+
+    StripFolder() {
+        files::Json strip = files::read_json(kAssets / "devices" / "strip.json");
+        strip["mesh"]["box"]["elements"] = {50, 2, 2};
+        files::write_text_atomically(folder / "strip.json", strip.dump());
+        files::write_text_atomically(folder / "scene.json", R"({"name": "soft", "mapping": {"kind": "direct"},
+            "tissue": {"force_curve": {"stiffness_N_per_mm": 0.1, "growth_mm": 1000, "greatest_depth_mm": 8}},
+            "tangible": {"device": "strip.json", "plant": "exact", "fidelity": "linear"}})");
+    }
+    std::string path(const std::string& name) const { return (folder / name).string(); }
+    std::string press(const std::string& more) const {
+        return "tangible characterise " + path("strip.json") +
+               " --stiffness-N-per-mm 0.1 --depth-mm 3 --speed-mm-per-s 20 --fidelity linear --json " + more;
+    }
+};
+
+files::Json result_of(const Called& called) {
+    CAPTURE(called.err);
+    REQUIRE(called.status == 0);
+    return files::parse_json(called.out, "standard output");
+}
+
+}  // namespace
+
+TEST_CASE("tangible info: the counts of the two devices of the paper, and what to beware of") {
+    const files::Json strip = result_of(palpa_with("tangible info strip --json"));
+    CHECK(strip["nodes"] == 765);
+    CHECK(strip["elements"] == 400);
+    REQUIRE(strip["actuators"].size() == 2);
+    for (const char* key : {"name", "kind", "unit", "lower", "upper", "tie"})
+        CHECK(strip["actuators"][0].contains(key));
+    CHECK(strip["weight_N"].get<double>() == doctest::Approx(0.08).epsilon(0.1));
+    const files::Json accordion = result_of(palpa_with("tangible info accordion.json --json"));
+    CHECK(accordion["nodes"].get<double>() == doctest::Approx(858).epsilon(0.03));
+    CHECK(accordion["elements"].get<double>() == doctest::Approx(2743).epsilon(0.03));
+    CHECK(accordion["actuators"].size() == 4);
+    CHECK_FALSE(accordion["warnings"].empty());  // one linear tetrahedron through a thin wall
+}
+
+TEST_CASE("tangible solve: every term of a press that can be rendered, and what limits one that cannot") {
+    const StripFolder strip;
+    const std::string solve = "tangible solve " + strip.path("strip.json") + " --depth-mm 3 --json --force-N ";
+    const files::Json soft = result_of(palpa_with(solve + "0.3"));
+    CHECK(soft["reachable"] == true);
+    CHECK(soft["converged"] == true);
+    CHECK(std::abs(soft["residual_mm"].get<double>()) < 1e-6);
+    for (const char* key : {"actuation", "rank", "active", "limited_by", "iterations", "time_us"})
+        CHECK(soft.contains(key));
+    for (const char* key : {"name", "value", "unit", "command"}) CHECK(soft["actuation"][0].contains(key));
+    const files::Json hard = result_of(palpa_with(solve + "5"));
+    CHECK(hard["reachable"] == false);
+    CHECK(hard["limited_by"].is_string());
+}
+
+TEST_CASE("tangible run: on a plant in virtual time the log repeats byte for byte, and none is overwritten") {
+    const StripFolder strip;
+    const std::string run = "tangible run " + strip.path("scene.json") + " --headless --seconds 1 --json --log ";
+    const files::Json json = result_of(palpa_with(run + strip.path("a")));
+    for (const char* key :
+         {"ticks", "missed_ticks", "period_us", "force_rms_percent", "saturated_share", "held_ms", "faults", "devices"})
+        CHECK(json.contains(key));
+    CHECK(json["ticks"] == 101);
+    result_of(palpa_with(run + strip.path("b")));
+    CHECK(files::read_text(strip.folder / "a/ticks.tsv") == files::read_text(strip.folder / "b/ticks.tsv"));
+    const Called again = palpa_with(run + strip.path("a"));
+    CHECK(again.status == 2);
+    CHECK(contains(again.err, "a/ticks.tsv: found something of that name, expected a new name"));
+}
+
+TEST_CASE("tangible characterise and fit: a plant that is a tenth stiffer is found from its press") {
+    const StripFolder strip;
+    const files::Json json = result_of(palpa_with(strip.press("--modulus-factor 1.1 -o " + strip.path("out"))));
+    for (const char* key :
+         {"wanted_N_per_mm", "rendered_N_per_mm", "force_rms_percent", "hysteresis_N", "saturated_share"})
+        CHECK(json["presses"][0].contains(key));
+    for (const char* key : {"model", "mesh", "sensor", "delay", "actuator"})
+        CHECK(json["contributions_percent"].contains(key));
+    for (const char* key : {"depth_mm", "stiffness_N_per_mm", "reachable"}) CHECK(json["reach"].contains(key));
+    CHECK(json["contributions_percent"]["model"].get<double>() > 0.5);
+    CHECK(json["contributions_percent"]["mesh"] == 0.0);
+    const std::string table = strip.path("out/press-0.1-N-per-mm.tsv");
+    REQUIRE(std::filesystem::exists(table));
+    const std::string fit = "tangible fit " + strip.path("strip.json") + " " + table + " --json -o ";
+    CHECK(palpa_with(fit + strip.path("strip.json")).status == 2);  // an input is never replaced
+    CHECK(result_of(palpa_with(fit + strip.path("new.json")))["modulus_factor"].get<double>() ==
+          doctest::Approx(1.1).epsilon(0.02));
+    CHECK(files::read_json(strip.folder / "new.json")["fit"].contains("friction_share"));
+}
+
+TEST_CASE("tangible: a device with a wrong key, and one that is not there, are named") {
+    const StripFolder strip;
+    files::Json json = files::read_json(strip.folder / "strip.json");
+    json["cables"][0]["lower_n"] = 1;
+    files::write_text_atomically(strip.folder / "wrong.json", json.dump());
+    const Called wrong = palpa_with("tangible info " + strip.path("wrong.json"));
+    CHECK(wrong.status == 2);
+    CHECK(contains(wrong.err, "wrong.json"));
+    CHECK(contains(wrong.err, "lower_n"));
+    CHECK(palpa_with("tangible info " + strip.path("none.json")).status == 2);
+}
