@@ -80,7 +80,7 @@ void check_subcommands(const CLI::App& app, const std::vector<std::string>& argu
         const CLI::App* found = nullptr;
         for (const CLI::App* below : at->get_subcommands({})) {
             names.push_back(below->get_name());
-            if (below->get_name() == word) found = below;
+            if (below->check_name(word)) found = below;  // aliases too
         }
         if (found == nullptr)
             throw files::InputError(path + ": found " + files::shown(word) + ", expected " + listed(names));

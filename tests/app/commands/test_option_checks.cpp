@@ -86,6 +86,8 @@ TEST_CASE("option checks: a command that is not there is named, with those that 
     };
     CHECK(said({"maps", "inof", "x.map"}) == "maps: found 'inof', expected info, plot or export");
     CHECK(said({"maps", "info", "inof"}).empty());
+    maps->get_subcommand("plot")->alias("draw");
+    CHECK(said({"maps", "draw"}).empty());
     CHECK(said({"maps", "--help"}).empty());
     CHECK(said({"maps"}).empty());  // nothing is there to name: CLI11 says that a subcommand is required
 }

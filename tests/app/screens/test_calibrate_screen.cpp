@@ -1,8 +1,10 @@
 // The numbers of a scale are typed while the pen is held down. Off screen.
 
+#include <chrono>
 #include <cmath>
 #include <doctest/doctest.h>
 #include <string>
+#include <thread>
 
 #include "app/screens/calibrate_screen.h"
 #include "app/screens/words.h"
@@ -18,13 +20,13 @@ using namespace palpa::test;
 
 namespace {
 
-// A pen that has been held still at this pressure for two seconds.
-void hold(double pressure, calibration::Recording& recording) {
+// A pen that has been held still at this pressure for so long.
+void hold(double pressure, calibration::Recording& recording, double seconds = 2.0) {
     std::vector<Sample> samples;
     const double now_s = devices::steady_s();
     for (int i = 0; i <= 200; ++i) {
         Sample sample;
-        sample.t_host_s = now_s - 0.01 * (200 - i);
+        sample.t_host_s = now_s - seconds * (200 - i) / 200.0;
         sample.tool = Tool::pen;
         sample.phase = i == 0 ? Phase::down : Phase::move;
         sample.pressure = pressure;
@@ -63,7 +65,10 @@ TEST_CASE("calibrate screen: Enter takes the number that the scale shows, and th
     frames(desk, 8);
     CHECK(form.guide.shown_gf == 7.0);
     CHECK(form.recording->session.points.size() == 2);
-    hold(0.06, *form.recording);  // another level, and the scale shows the same number
+    std::this_thread::sleep_for(std::chrono::milliseconds(1200));
+    hold(0.06, *form.recording, 1.0);  // another level, and the scale shows the same number
+    form.guide.again = true;
+    frames(desk, 5);
     type(desk.window, '7');
     tap(desk.window, SDLK_RETURN);
     frames(desk, 8);
