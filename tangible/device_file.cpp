@@ -348,10 +348,11 @@ void read_wires(JsonReader& json, SoftDevice& out) {
 void read_fit(JsonReader& json, SoftDevice& out) {
     auto fit = json.optional_object("fit");
     if (!fit) return;
-    fit->only({"modulus_factor", "friction_share", "zero_mm"});
+    fit->only({"modulus_factor", "friction_share", "zero_mm", "lag_ms"});
     out.fit.modulus_factor = fit->number("modulus_factor", {0.1, 10.0}, out.fit.modulus_factor);
     out.fit.friction_share = fit->number("friction_share", {0.0, 0.5}, out.fit.friction_share);
     out.fit.zero_m = 1e-3 * fit->number("zero_mm", {-100.0, 100.0}, 0.0);
+    out.fit.lag_s = 1e-3 * fit->number("lag_ms", {0.0, 1000.0}, 0.0);
     fit->finish();
 }
 

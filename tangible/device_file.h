@@ -83,6 +83,7 @@ struct DeviceFit {
     double modulus_factor = 1.0;  // multiplies the moduli of all materials
     double friction_share = 0.0;  // of a cable's tension, that its guides take
     double zero_m = 0.0;          // of the displacement sensor
+    double lag_s = 0.0;           // of the drives, first order: the loop undoes it
 };
 
 struct SoftDevice {

@@ -13,9 +13,14 @@ namespace palpa::tangible {
 namespace {
 
 constexpr double kLeastContact_N = 1e-3;
+constexpr double kMostForce_N = 1e3;
 constexpr int kFewestTicks = 20;
 constexpr int kMostRounds = 12;
-using Parameters = Eigen::Vector3d;  // ln of the modulus factor, friction share, zero in mm
+// ln of the modulus factor, friction share, zero in mm, and the share of a step that a lagging drive still lacks after the time
+// between two rows: the forces are straight lines over it near 0, unlike over the lag itself
+using Parameters = Eigen::Vector4d;
+constexpr double kMostLeft = 0.98;
+constexpr double kLeastLeft = 0.02;  // less than this is taken for no lag
 
 bool is_good(DeviceStatus status) { return status == DeviceStatus::good || status == DeviceStatus::unstable; }
 
@@ -36,6 +41,26 @@ DeviceState rest_under(const DeviceModel& model, const Actuation& actuation) {
         throw std::runtime_error("the device has no equilibrium at the first row of the presses");
     state.rest_depth_m += rest.depth_m;
     return state;
+}
+
+// What the drives give, which are told the recorded actuations.
+std::vector<RecordedTick> behind(std::vector<RecordedTick> ticks, double left, double between_s) {
+    if (!(left > 0.0)) return ticks;
+    for (std::size_t i = 1; i < ticks.size(); ++i) {
+        const double lacks = std::pow(left, (ticks[i].time_s - ticks[i - 1].time_s) / between_s);
+        for (std::size_t j = 0; j < kMostActuators; ++j)
+            ticks[i].actuation[j] += lacks * (ticks[i - 1].actuation[j] - ticks[i].actuation[j]);
+    }
+    return ticks;
+}
+
+// Half of the rows are further apart in time than this.
+double between_rows_s(const std::vector<RecordedTick>& ticks) {
+    std::vector<double> apart_s;
+    for (std::size_t i = 1; i < ticks.size(); ++i) apart_s.push_back(ticks[i].time_s - ticks[i - 1].time_s);
+    const auto middle = apart_s.begin() + static_cast<std::ptrdiff_t>(apart_s.size() / 2);
+    std::nth_element(apart_s.begin(), middle, apart_s.end());
+    return *middle;
 }
 
 // Friction's sense of each cable at each tick.
@@ -78,7 +103,7 @@ Senses modelled_senses(const DeviceModel& model, const std::vector<RecordedTick>
 }
 
 // Ticks in contact, thinned out evenly.
-std::vector<RecordedTick> used_ticks(const std::vector<RecordedTick>& ticks) {
+std::vector<RecordedTick> used_ticks(const std::vector<RecordedTick>& ticks, std::size_t most) {
     std::vector<RecordedTick> in_contact;
     for (const RecordedTick& tick : ticks) {
         if (tick.force_N > kLeastContact_N) in_contact.push_back(tick);
@@ -86,10 +111,21 @@ std::vector<RecordedTick> used_ticks(const std::vector<RecordedTick>& ticks) {
     if (static_cast<int>(in_contact.size()) < kFewestTicks)
         throw std::runtime_error("the presses hold " + std::to_string(in_contact.size()) +
                                  " rows in contact, expected at least " + std::to_string(kFewestTicks));
-    const std::size_t every = (in_contact.size() + kMostFitted - 1) / kMostFitted;
+    const std::size_t every = (in_contact.size() + most - 1) / most;
     std::vector<RecordedTick> out{ticks.front()};
     for (std::size_t i = 0; i < in_contact.size(); i += every) out.push_back(in_contact[i]);
     return out;
+}
+
+// What was recorded, and how it is used.
+struct Presses {
+    const std::vector<RecordedTick>& all;
+    std::size_t most;
+    double between_s;
+};
+
+std::vector<RecordedTick> used_ticks(const Presses& presses, double left) {
+    return used_ticks(behind(presses.all, left, presses.between_s), presses.most);
 }
 
 struct Misfit {
@@ -110,14 +146,15 @@ Misfit misfit_of(const Eigen::VectorXd& model_N, const std::vector<RecordedTick>
     return out;
 }
 
-Eigen::MatrixXd slopes(const SoftDevice& device, const std::vector<RecordedTick>& ticks, const Senses& sense,
-                       const Parameters& p, const Eigen::VectorXd& at_N) {
-    const Parameters step(1e-3, 1e-3, 1e-2);
-    Eigen::MatrixXd out = Eigen::MatrixXd::Zero(at_N.size(), 3);
-    for (int k = 0; k < 3; ++k) {
+Eigen::MatrixXd slopes(const SoftDevice& device, const Presses& presses, const Senses& sense, const Parameters& p,
+                       const Eigen::VectorXd& at_N) {
+    const Parameters step(1e-3, 1e-3, 1e-2, 1e-2);
+    Eigen::MatrixXd out = Eigen::MatrixXd::Zero(at_N.size(), p.size());
+    for (Eigen::Index k = 0; k < p.size(); ++k) {
         Parameters there = p;
         there(k) += step(k);
-        const Eigen::VectorXd there_N = forces_N(model_with(device, there), ticks, sense, there, nullptr);
+        const Eigen::VectorXd there_N =
+            forces_N(model_with(device, there), used_ticks(presses, there(3)), sense, there, nullptr);
         for (Eigen::Index i = 1; i < at_N.size(); ++i) {
             const double slope = (there_N(i) - at_N(i)) / step(k);
             if (std::isfinite(slope)) out(i, k) = slope;
@@ -148,7 +185,11 @@ std::vector<RecordedTick> read_presses(const std::filesystem::path& tsv, const D
         tick.time_s = table.finite_number(time);
         if (!out.empty() && tick.time_s <= out.back().time_s) table.fail(time, "a time after that of the row above");
         tick.depth_m = 1e-3 * table.finite_number(depth);
+        if (tick.depth_m > model.size_m)
+            table.fail(depth, "at most the device's size, " + files::short_number(1e3 * model.size_m) + " mm");
         tick.force_N = table.finite_number(force);
+        if (std::abs(tick.force_N) > kMostForce_N)
+            table.fail(force, "a force of a finger, at most " + files::short_number(kMostForce_N) + " N");
         for (std::size_t j = 0; j < actuator.size(); ++j) tick.actuation[j] = table.finite_number(actuator[j]);
         tick.has_sense = !length.empty();
         std::size_t cable = 0;
@@ -165,15 +206,19 @@ std::vector<RecordedTick> read_presses(const std::filesystem::path& tsv, const D
     return out;
 }
 
-FitResult fit_presses(const SoftDevice& device, const std::vector<RecordedTick>& all) {
-    const std::vector<RecordedTick> ticks = used_ticks(all);
+FitResult fit_presses(const SoftDevice& device, const std::vector<RecordedTick>& all,
+                      const std::function<void(double share)>& progress, std::size_t most) {
+    std::vector<RecordedTick> ticks = used_ticks(all, most);
+    const Presses presses{all, most, between_rows_s(all)};
     FitResult out;
     out.ticks = static_cast<int>(ticks.size()) - 1;
     Parameters p = Parameters::Zero();
     const bool has_sense = std::all_of(ticks.begin(), ticks.end(), [](const RecordedTick& t) { return t.has_sense; });
     Senses sense = recorded_senses(ticks);
     for (out.rounds = 1; out.rounds <= kMostRounds; ++out.rounds) {
+        if (progress) progress(static_cast<double>(out.rounds - 1) / kMostRounds);
         const DeviceModel model = model_with(device, p);
+        ticks = used_ticks(presses, p(3));
         if (!has_sense) sense = modelled_senses(model, ticks, p, sense);
         const Eigen::VectorXd at_N = forces_N(model, ticks, sense, p, nullptr);
         const Misfit misfit = misfit_of(at_N, ticks);
@@ -183,17 +228,18 @@ FitResult fit_presses(const SoftDevice& device, const std::vector<RecordedTick>&
         if (out.rounds == 1) out.rms_before_N = misfit.rms_N;
         out.rms_after_N = misfit.rms_N;
         // a little of each parameter's own size keeps apart what the presses cannot tell apart
-        const Eigen::MatrixXd J = slopes(device, ticks, sense, p, at_N);
-        Eigen::Matrix3d A = J.transpose() * J;
+        const Eigen::MatrixXd J = slopes(device, presses, sense, p, at_N);
+        Eigen::Matrix4d A = J.transpose() * J;
         A.diagonal() *= 1.0 + 1e-6;
         A.diagonal().array() += 1e-12;
         Parameters step = -A.ldlt().solve(J.transpose() * misfit.off_N);
         if (!step.allFinite()) break;
-        const Parameters most(0.3, 0.1, 0.5);
-        step = step.cwiseMax(-most).cwiseMin(most);
-        p += step;
+        const Parameters longest(0.3, 0.1, 0.5, 0.6);
+        const Parameters before = p;
+        p += step.cwiseMax(-longest).cwiseMin(longest);
         p(1) = std::clamp(p(1), 0.0, 0.5);
-        if ((step.cwiseAbs().array() < Eigen::Array3d(1e-4, 1e-4, 1e-3)).all()) {
+        p(3) = std::clamp(p(3), 0.0, kMostLeft);
+        if (((p - before).cwiseAbs().array() < Eigen::Array4d(1e-4, 1e-4, 1e-3, 1e-3)).all()) {
             out.settled = true;
             break;
         }
@@ -201,6 +247,7 @@ FitResult fit_presses(const SoftDevice& device, const std::vector<RecordedTick>&
     out.fit.modulus_factor = std::exp(p(0));
     out.fit.friction_share = p(1);
     out.fit.zero_m = 1e-3 * p(2);
+    if (p(3) > kLeastLeft) out.fit.lag_s = -presses.between_s / std::log(p(3));
     return out;
 }
 

@@ -1,8 +1,9 @@
 #pragma once
 // What recorded presses say about a device: by what factor its modulus differs from the file's, how much of a cable's tension
-// its guides take, and where its sensor's zero is.
+// its guides take, where its sensor's zero is, and how far its drives lag.
 
 #include <filesystem>
+#include <functional>
 #include <vector>
 
 #include "tangible/plant_model.h"
@@ -33,10 +34,13 @@ struct FitResult {
     bool settled = false;
 };
 
-// Fits by the Gauss-Newton method on converged equilibria of the device file's model, at most `kMostFitted` ticks. The
-// friction is seen from the difference of pressing and releasing; without cables it stays 0. Throws std::runtime_error
+// Fits by the Gauss-Newton method on converged equilibria of the device file's model, at most `most` ticks. The
+// friction and the lag are seen from the difference of pressing and releasing, the one by its sense and the other by its speed;
+// without cables the friction stays 0. A lag far below the time between two rows cannot be seen. Throws std::runtime_error
 // where the presses do not tell (fewer than 20 ticks in contact, or no equilibrium at most of them).
-inline constexpr int kMostFitted = 60;
-FitResult fit_presses(const SoftDevice& device, const std::vector<RecordedTick>& ticks);
+// `progress` is told the share done, on the way to the most rounds.
+inline constexpr std::size_t kMostFitted = 60;
+FitResult fit_presses(const SoftDevice& device, const std::vector<RecordedTick>& ticks,
+                      const std::function<void(double share)>& progress = {}, std::size_t most = kMostFitted);
 
 }  // namespace palpa::tangible

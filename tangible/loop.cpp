@@ -86,6 +86,27 @@ void fail(const TangiblePlan& plan, TickFault fault, TangibleState& state, Tangi
     out.wanted_N = 0.0;
 }
 
+// Tells the drives so much more, or less, that after a period they give what is wanted: the exact inverse of a first-order lag,
+// as far as the actuators' bounds and rates allow. A command that is held or relaxed is told as it is.
+void undo_lag(const TangiblePlan& plan, TangibleState& state, TangibleCommand& out) {
+    const double lag_s = plan.model->device.fit.lag_s;
+    if (!plan.loop.compensate_lag || !(lag_s > 0.0)) return;
+    const double left = std::exp(-1.0 / (plan.loop.rate_Hz * lag_s));
+    const bool leads = out.fault == TickFault::none;
+    for (std::size_t j = 0; j < static_cast<std::size_t>(out.actuators); ++j) {
+        const SoftActuator& actuator = plan.model->actuators[j];
+        double& told = out.actuation[j];
+        const double most = leads && actuator.rate_per_s > 0.0 ? actuator.rate_per_s / plan.loop.rate_Hz : HUGE_VAL;
+        if (leads) told = std::clamp((told - left * state.drive[j]) / (1.0 - left), actuator.lower, actuator.upper);
+        told = std::clamp(told, state.told[j] - most, state.told[j] + most);
+        state.told[j] = told;
+        state.drive[j] = told + left * (state.drive[j] - told);
+        double& told_m = out.length[j];
+        if (leads) told_m = (told_m - left * state.drive_length[j]) / (1.0 - left);
+        state.drive_length[j] = told_m + left * (state.drive_length[j] - told_m);
+    }
+}
+
 // Ends the rest after a fault once the finger is off the device.
 bool may_go_on(const TangiblePlan& plan, double depth_m, TangibleState& state) {
     if (!state.relaxed) return true;
@@ -106,6 +127,32 @@ void undo_friction(const TangiblePlan& plan, const Lengths& before, TangibleComm
         const double wound = friction_sense((before[j] - out.length[j]) / dt_s);
         out.actuation[j] = std::clamp(out.actuation[j] / (1.0 - share * wound), actuator.lower, actuator.upper);
     }
+}
+
+// What the body is to get. Into `out`, but for the time and the kind of command.
+void want(const TangiblePlan& plan, const TangibleInput& in, TangibleState& state, TangibleCommand& out) {
+    if (const TickFault fault = fault_of(plan, in); fault != TickFault::none) return fail(plan, fault, state, out);
+    take_reading(in.feedback, state.track);
+    out.depth_m = finger_depth_m(plan, in.time_s, state.track) - plan.model->device.fit.zero_m;
+    const Eigen::Vector2d place_m = plan.place_follows && in.has_place ? in.place_m : plan.place_m;
+    const WorldForce world = world_force(plan.world, place_m, out.depth_m, state.world);
+    out.world_depth_m = world.depth_m;
+    out.proxy_m = world.proxy_m;
+    out.wanted_N = world.force_N;
+    out.slope_N_per_m = world.slope_N_per_m;
+    out.pressed = out.depth_m > 0.0;
+    out.saturated = world.saturated;
+    if (!may_go_on(plan, out.depth_m, state)) return fail(plan, TickFault::no_equilibrium, state, out);
+    const InverseAnswer answer =
+        inverse_step(*plan.model, state.device, {std::max(0.0, out.depth_m), out.wanted_N, {}}, plan.loop.inverse);
+    copy_terms(answer, out);
+    if (const TickFault fault = fault_of(answer.status); fault != TickFault::none) return fail(plan, fault, state, out);
+    state.failing_since_s = -1.0;
+    out.actuation = answer.actuation;
+    out.length = answer.command;
+    undo_friction(plan, state.length, out);
+    state.actuation = out.actuation;
+    state.length = out.length;
 }
 
 }  // namespace
@@ -139,46 +186,18 @@ TangibleState make_tangible_state(const TangiblePlan& plan) {
     state.world = scene::make_work(*plan.world.tissue);
     state.actuation = plan.start.pretension;
     state.length = lengths(*plan.model, plan.start.u_m);
+    state.told = state.drive = state.actuation;
+    state.drive_length = state.length;
     return state;
 }
 
 TangibleCommand tangible_tick(const TangiblePlan& plan, const TangibleInput& in, TangibleState& state) noexcept {
     TangibleCommand out;
-    out.time_s = in.time_s;
+    out.time_s = std::isfinite(in.time_s) ? in.time_s : 0.0;
     out.actuators = plan.model->n_actuators();
     out.by_position = plan.loop.command == CommandKind::position;
-    if (const TickFault fault = fault_of(plan, in); fault != TickFault::none) {
-        if (!std::isfinite(out.time_s)) out.time_s = 0.0;
-        fail(plan, fault, state, out);
-        return out;
-    }
-    take_reading(in.feedback, state.track);
-    out.depth_m = finger_depth_m(plan, in.time_s, state.track) - plan.model->device.fit.zero_m;
-    const Eigen::Vector2d place_m = plan.place_follows && in.has_place ? in.place_m : plan.place_m;
-    const WorldForce world = world_force(plan.world, place_m, out.depth_m, state.world);
-    out.world_depth_m = world.depth_m;
-    out.proxy_m = world.proxy_m;
-    out.wanted_N = world.force_N;
-    out.slope_N_per_m = world.slope_N_per_m;
-    out.pressed = out.depth_m > 0.0;
-    out.saturated = world.saturated;
-    if (!may_go_on(plan, out.depth_m, state)) {
-        fail(plan, TickFault::no_equilibrium, state, out);
-        return out;
-    }
-    const InverseAnswer answer =
-        inverse_step(*plan.model, state.device, {std::max(0.0, out.depth_m), out.wanted_N, {}}, plan.loop.inverse);
-    copy_terms(answer, out);
-    if (const TickFault fault = fault_of(answer.status); fault != TickFault::none) {
-        fail(plan, fault, state, out);
-        return out;
-    }
-    state.failing_since_s = -1.0;
-    out.actuation = answer.actuation;
-    out.length = answer.command;
-    undo_friction(plan, state.length, out);
-    state.actuation = out.actuation;
-    state.length = out.length;
+    want(plan, in, state, out);
+    undo_lag(plan, state, out);
     return out;
 }
 

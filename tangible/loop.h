@@ -94,6 +94,9 @@ struct TangibleState {
     SensorTrack track;
     Actuation actuation{};  // last valid
     Lengths length{};
+    Actuation told{};   // the drives, last
+    Actuation drive{};  // what they give, behind that by the lag of the device's fit
+    Lengths drive_length{};
     double failing_since_s = -1.0;
     bool relaxed = false;  // until the finger is lifted
 };

@@ -23,6 +23,7 @@ struct LoopOptions {
     double hold_s = 0.1;              // how long the last valid command is repeated before the device relaxes
     double silence_s = 0.1;           // the sensor may be silent, or three of its periods if these are longer
     bool compensate_friction = true;  // that of the device's fit
+    bool compensate_lag = true;       // of the drives, that of the device's fit
 };
 
 CommandKind command_named(std::string_view name);  // "force" or "position"

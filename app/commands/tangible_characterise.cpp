@@ -129,17 +129,20 @@ files::Json press_json(const PressedTissue& tissue, const PressFigures& figures)
 files::Json contributions_json(const TangibleCharacteriseArguments& arguments,
                                const std::shared_ptr<const tangible::DeviceModel>& model, const PressedTissue& tissue,
                                const PlantOptions& plant) {
+    const tangible::DeviceFit& fit = model->device.fit;
     const auto alone = [&](bool differs, const auto& take) {
         if (!differs) return 0.0;
         PlantOptions one = tangible::read_plant("exact");
-        one.modulus_factor = model->device.fit.modulus_factor;
+        one.modulus_factor = fit.modulus_factor;
+        one.friction_share = fit.friction_share;
+        one.lag_s = fit.lag_s;
         take(one);
         return press_on(arguments, model, tissue, one).figures.force_rms_percent;
     };
     const bool noisy = plant.sensor.noise_m > 0.0 ||
                        (plant.sensor.rate_Hz > 0.0 && plant.sensor.rate_Hz < arguments.rate_Hz * (1.0 - 1e-9));
     files::Json json;
-    json["model"] = alone(plant.modulus_factor != model->device.fit.modulus_factor,
+    json["model"] = alone(plant.modulus_factor != fit.modulus_factor,
                           [&](PlantOptions& one) { one.modulus_factor = plant.modulus_factor; });
     json["mesh"] = alone(!plant.device.empty(), [&](PlantOptions& one) { one.device = plant.device; });
     json["sensor"] = alone(noisy, [&](PlantOptions& one) {
@@ -148,10 +151,11 @@ files::Json contributions_json(const TangibleCharacteriseArguments& arguments,
     });
     json["delay"] =
         alone(plant.sensor.delay_s > 0.0, [&](PlantOptions& one) { one.sensor.delay_s = plant.sensor.delay_s; });
-    json["actuator"] = alone(plant.lag_s > 0.0 || plant.friction_share > 0.0, [&](PlantOptions& one) {
-        one.lag_s = plant.lag_s;
-        one.friction_share = plant.friction_share;
-    });
+    json["actuator"] =
+        alone(plant.lag_s != fit.lag_s || plant.friction_share != fit.friction_share, [&](PlantOptions& one) {
+            one.lag_s = plant.lag_s;
+            one.friction_share = plant.friction_share;
+        });
     return json;
 }
 

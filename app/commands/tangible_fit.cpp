@@ -7,6 +7,7 @@
 #include "app/commands/command_line.h"
 #include "app/commands/tangible_loop.h"
 #include "files/input_error.h"
+#include "files/progress_line.h"
 #include "files/regular_file.h"
 #include "files/text.h"
 #include "tangible/fit.h"
@@ -23,6 +24,13 @@ struct TangibleFitArguments {
     bool json = false;
 };
 
+files::Json fit_json(const tangible::DeviceFit& fit) {
+    return {{"modulus_factor", fit.modulus_factor},
+            {"friction_share", fit.friction_share},
+            {"zero_mm", 1e3 * fit.zero_m},
+            {"lag_ms", 1e3 * fit.lag_s}};
+}
+
 // The device file with what was fitted; a mesh file is named as seen from the new place.
 files::Json fitted_device(const TangibleFitArguments& arguments, const tangible::DeviceFit& fit) {
     files::Json json = files::read_json(device_file(arguments.device));
@@ -31,32 +39,41 @@ files::Json fitted_device(const TangibleFitArguments& arguments, const tangible:
             fs::absolute(device_file(arguments.device).parent_path()) / json["mesh"]["file"].get<std::string>();
         json["mesh"]["file"] = fs::proximate(mesh, fs::absolute(fs::path(arguments.output)).parent_path()).string();
     }
-    json["fit"] = {
-        {"modulus_factor", fit.modulus_factor}, {"friction_share", fit.friction_share}, {"zero_mm", 1e3 * fit.zero_m}};
+    json["fit"] = fit_json(fit);
     return json;
+}
+
+tangible::FitResult fitted(const std::string& presses, const tangible::SoftDevice& device,
+                           const std::vector<tangible::RecordedTick>& ticks) {
+    files::ProgressLine line;
+    try {
+        return tangible::fit_presses(device, ticks, [&](double share) { line.show("fitting " + device.name, share); });
+    } catch (const std::runtime_error& error) {
+        throw files::InputError(presses + ": " + error.what());
+    }
 }
 
 void fit_tangible(const TangibleFitArguments& arguments) {
     files::check_output(arguments.output, {device_file(arguments.device), arguments.presses});
     const tangible::SoftDevice device = tangible::read_soft_device(device_file(arguments.device));
     const auto ticks = tangible::read_presses(arguments.presses, tangible::make_device_model(device));
-    const tangible::FitResult result = tangible::fit_presses(device, ticks);
+    const tangible::FitResult result = fitted(arguments.presses, device, ticks);
     files::write_text_atomically(arguments.output, files::json_text(fitted_device(arguments, result.fit)));
-    const files::Json json{{"modulus_factor", result.fit.modulus_factor},
-                           {"friction_share", result.fit.friction_share},
-                           {"zero_mm", 1e3 * result.fit.zero_m},
-                           {"rms_before_N", result.rms_before_N},
-                           {"rms_after_N", result.rms_after_N},
-                           {"ticks", result.ticks},
-                           {"rounds", result.rounds},
-                           {"settled", result.settled}};
+    files::Json json = fit_json(result.fit);
+    json.update({{"rms_before_N", result.rms_before_N},
+                 {"rms_after_N", result.rms_after_N},
+                 {"ticks", result.ticks},
+                 {"rounds", result.rounds},
+                 {"settled", result.settled}});
     if (arguments.json) {
         std::fputs(files::json_text(json).c_str(), stdout);
         return;
     }
-    std::printf("%s: modulus %.4g of the file's, friction %.3g %% of a cable's tension, zero at %.3g mm\n",
-                arguments.output.c_str(), result.fit.modulus_factor, 100.0 * result.fit.friction_share,
-                1e3 * result.fit.zero_m);
+    std::printf(
+        "%s: modulus %.4g of the file's, friction %.3g %% of a cable's tension, zero at %.3g mm, drives lag by %.3g "
+        "ms\n",
+        arguments.output.c_str(), result.fit.modulus_factor, 100.0 * result.fit.friction_share, 1e3 * result.fit.zero_m,
+        1e3 * result.fit.lag_s);
     std::printf("  recorded minus modelled force: %.3g N before, %.3g N after (rms of %d rows)%s\n",
                 result.rms_before_N, result.rms_after_N, result.ticks,
                 result.settled ? "" : "; the fit did not settle");
@@ -67,7 +84,8 @@ void fit_tangible(const TangibleFitArguments& arguments) {
 void add_tangible_fit(CLI::App& tangible) {
     auto arguments = std::make_shared<TangibleFitArguments>();
     CLI::App* command = tangible.add_subcommand(
-        "fit", "Find a device's modulus, friction and zero from recorded presses, and write a device file with them");
+        "fit",
+        "Find a device's modulus, friction, zero and lag from recorded presses, and write a device file with them");
     command->add_option("DEVICE", arguments->device, "device file, or the name of one among the assets")->required();
     command
         ->add_option(

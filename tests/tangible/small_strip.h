@@ -15,13 +15,14 @@ inline files::Json strip_json() { return files::read_json(kAssets / "devices" / 
 inline files::Json fewer_cells() { return files::Json::parse(R"({"mesh": {"box": {"elements": [50, 2, 2]}}})"); }
 
 inline std::shared_ptr<const tangible::DeviceModel> small_strip(double modulus_factor = 1.0,
-                                                                double friction_share = 0.0) {
+                                                                double friction_share = 0.0, double lag_s = 0.0) {
     files::Json json = strip_json();
     json.merge_patch(fewer_cells());
     tangible::SoftDevice device =
         tangible::parse_soft_device(json, (kAssets / "devices" / "strip.json").string(), kAssets / "devices");
     device.fit.modulus_factor = modulus_factor;
     device.fit.friction_share = friction_share;
+    device.fit.lag_s = lag_s;
     return std::make_shared<const tangible::DeviceModel>(tangible::make_device_model(device));
 }
 
@@ -51,9 +52,9 @@ struct KnownTissue {
 
 inline tangible::PressFigures press_small(double stiffness_N_per_mm, const tangible::PlantOptions& plant,
                                           const tangible::LoopOptions& loop = {}, double friction_share = 0.0,
-                                          double growth_mm = 1e9) {
+                                          double growth_mm = 1e9, double lag_s = 0.0) {
     const KnownTissue known(stiffness_N_per_mm, growth_mm);
-    const auto model = small_strip(1.0, friction_share);
+    const auto model = small_strip(1.0, friction_share, lag_s);
     const tangible::TangiblePlan plan = tangible::make_tangible_plan(model, known.world, {0.0, 0.0}, loop);
     return tangible::run_press(plan, tangible::make_plant(model, plant, loop), {4e-3, 8e-3}, 1);
 }

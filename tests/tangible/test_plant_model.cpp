@@ -45,6 +45,17 @@ TEST_CASE("plant: drives that lag, and readings that come late, cost force") {
     CHECK(error_of(late) > exact + 0.5);
 }
 
+TEST_CASE("plant: a loop that knows the lag of the drives undoes it") {
+    LoopOptions loop;
+    loop.command = CommandKind::position;
+    PlantOptions lag = small_plant();
+    lag.lag_s = 0.05;
+    const double unknown = press_small(0.1, lag, loop).force_rms_percent;
+    const double known = press_small(0.1, lag, loop, 0.0, 1e9, lag.lag_s).force_rms_percent;
+    MESSAGE("force off by ", unknown, " %, and by ", known, " % where the lag is known");
+    CHECK(known < 0.3 * unknown);
+}
+
 TEST_CASE("plant: the sensor reads at its own times, late by its delay, with noise of its seed") {
     const auto model = small_strip();
     PlantOptions options = small_plant();

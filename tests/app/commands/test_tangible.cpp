@@ -105,6 +105,13 @@ TEST_CASE("tangible characterise and fit: a plant that is a tenth stiffer is fou
     CHECK(result_of(palpa_with(fit + strip.path("new.json")))["modulus_factor"].get<double>() ==
           doctest::Approx(1.1).epsilon(0.02));
     CHECK(files::read_json(strip.folder / "new.json")["fit"].contains("friction_share"));
+    files::write_text_atomically(strip.folder / "m.tsv",
+                                 "time_s\tdepth_mm\tforce_N\tleft_N\tright_N\n0\t4000\t0.1\t1\t1\n");
+    const Called metres = palpa_with("tangible fit " + strip.path("strip.json") + " " + strip.path("m.tsv") + " -o " +
+                                     strip.path("x.json"));
+    CHECK(metres.status == 2);
+    CHECK(contains(metres.err, "line 2"));
+    CHECK(contains(metres.err, "the device's size"));
 }
 
 TEST_CASE("tangible: a device with a wrong key, and one that is not there, are named") {
