@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "mechanics/error.h"
 #include "mechanics/index.h"
@@ -32,19 +33,13 @@ double error_estimate(const std::vector<double>& terms) {
     return -1.0;
 }
 
-struct Iteration {
-    Matrix3Xd r, z, p, Kp;
-    MultigridWork work;
-    double rz = 0.0;
-};
-
 // One step. Returns alpha (r, z), by which the squared error falls; not finite or negative if the step must not be taken.
-double step(const Multigrid& multigrid, Iteration& it, Matrix3Xd& u) {
+double step(const Multigrid& multigrid, VoxelIteration& it) {
     multiply(multigrid.levels.front(), it.p, it.Kp);
     const double alpha = it.rz / dot(it.p, it.Kp);
     const double term = alpha * it.rz;
     if (!(std::isfinite(term) && alpha > 0.0)) return -1.0;
-    u += alpha * it.p;
+    it.solution.u_m += alpha * it.p;
     it.r -= alpha * it.Kp;
     v_cycle(multigrid, it.r, it.work, it.z);
     const double rz = dot(it.r, it.z);
@@ -55,36 +50,50 @@ double step(const Multigrid& multigrid, Iteration& it, Matrix3Xd& u) {
 
 }  // namespace
 
-VoxelSolution solve(const Multigrid& multigrid, const Matrix3Xd& load_N, const VoxelStop& stop,
-                    const Matrix3Xd& start) {
+VoxelIteration begin_solve(const Multigrid& multigrid, const Matrix3Xd& load_N, const VoxelStop& stop,
+                           const Matrix3Xd& start) {
     const GridLevel& level = multigrid.levels.front();
-    const Matrix3Xd f = free_load(level, load_N);
-    VoxelSolution out;
-    out.u_m.setZero(3, f.cols());
-    Iteration it;
-    it.r = f;
+    VoxelIteration it;
+    it.stop = stop;
+    it.f = free_load(level, load_N);
+    it.solution.u_m.setZero(3, it.f.cols());
+    it.r = it.f;
     if (start.size() > 0) {
-        out.u_m = start.cwiseProduct(level.free);
-        multiply(level, out.u_m, it.Kp);
+        it.solution.u_m = start.cwiseProduct(level.free);
+        multiply(level, it.solution.u_m, it.Kp);
         it.r -= it.Kp;
     }
     v_cycle(multigrid, it.r, it.work, it.z);
     it.p = it.z;
     it.rz = dot(it.r, it.z);
-    std::vector<double> terms;
-    out.converged = it.rz == 0.0;
-    while (!out.converged && out.iterations < stop.most_iterations) {
-        const double term = step(multigrid, it, out.u_m);
-        if (term < 0.0) break;
-        ++out.iterations;
-        terms.push_back(term);
-        const double energy = dot(f, out.u_m) + dot(it.r, out.u_m);
-        const double estimate = error_estimate(terms);
-        out.energy_error = estimate >= 0.0 && energy > 0.0 ? estimate / energy : 1.0;
-        out.converged = out.energy_error <= stop.energy_error || it.rz == 0.0;
+    it.solution.converged = it.rz == 0.0;
+    return it;
+}
+
+bool advance(const Multigrid& multigrid, VoxelIteration& it) {
+    VoxelSolution& out = it.solution;
+    const double term =
+        it.ended || out.converged || out.iterations >= it.stop.most_iterations ? -1.0 : step(multigrid, it);
+    if (term < 0.0) {
+        it.ended = true;
+        out.work_J = dot(it.f, out.u_m) + dot(it.r, out.u_m);  // K u = f - r
+        return false;
     }
-    out.work_J = dot(f, out.u_m) + dot(it.r, out.u_m);  // K u = f - r
-    return out;
+    ++out.iterations;
+    it.terms.push_back(term);
+    const double energy = dot(it.f, out.u_m) + dot(it.r, out.u_m);
+    const double estimate = error_estimate(it.terms);
+    out.energy_error = estimate >= 0.0 && energy > 0.0 ? estimate / energy : 1.0;
+    out.converged = out.energy_error <= it.stop.energy_error || it.rz == 0.0;
+    return true;
+}
+
+VoxelSolution solve(const Multigrid& multigrid, const Matrix3Xd& load_N, const VoxelStop& stop,
+                    const Matrix3Xd& start) {
+    VoxelIteration it = begin_solve(multigrid, load_N, stop, start);
+    while (advance(multigrid, it)) {
+    }
+    return std::move(it.solution);
 }
 
 DirectSolution solve_directly(const GridLevel& level, const Matrix3Xd& load_N) {

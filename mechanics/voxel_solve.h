@@ -35,6 +35,20 @@ struct VoxelSolution {
 VoxelSolution solve(const Multigrid& multigrid, const Eigen::Matrix3Xd& load_N, const VoxelStop& stop,
                     const Eigen::Matrix3Xd& start = {});
 
+// The same an iteration at a time, for a loop that must not stand still.
+struct VoxelIteration {
+    VoxelStop stop;
+    Eigen::Matrix3Xd f, r, z, p, Kp;
+    MultigridWork work;
+    double rz = 0.0;
+    std::vector<double> terms;  // of the estimate
+    VoxelSolution solution;     // whole once it has ended
+    bool ended = false;
+};
+VoxelIteration begin_solve(const Multigrid& multigrid, const Eigen::Matrix3Xd& load_N, const VoxelStop& stop,
+                           const Eigen::Matrix3Xd& start = {});
+bool advance(const Multigrid& multigrid, VoxelIteration& it);  // one iteration; false once it has ended
+
 // The same by one factorisation of the finest level (47,563 cells take 1.06 GB). backward_error: as in solver.h. Throws
 // SolverError, OutOfMemory and LoadError.
 struct DirectSolution {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "files/input_error.h"
 #include "mechanics/error.h"
@@ -189,36 +190,6 @@ void draw_cells(const GridLevel& level, const Eigen::Matrix3Xd& u_m, const std::
     }
 }
 
-void solve_station(const Multigrid& multigrid, const Eigen::Matrix3Xd& load_N, double energy_error,
-                   Eigen::Matrix3Xd& u_m, Response& out) {
-    VoxelSolution solution = solve(multigrid, load_N, {energy_error, 500}, u_m);
-    u_m = std::move(solution.u_m);
-    out.compliance_m_per_N.push_back(solution.work_J);
-    out.energy_error = std::max(out.energy_error, solution.energy_error);
-    out.iterations += solution.iterations;
-    out.converged = out.converged && solution.converged;
-}
-
-Response cell_response(const Part& part, const PartLoad& load, const ResponseRequest& request,
-                       const ResponseProgress& progress) {
-    const CellModel model = cell_model(part, voxels_per_cell(part, request.cell_m));
-    const std::size_t cells = model.cells.place.size();
-    const std::vector<Station> stations =
-        stations_of(part, load, beam_of(part, load), cells > kManyCells ? kFewStations : kCellStations);
-    Response out;
-    start_response(part, stations, request, out);
-    out.cells = static_cast<std::int64_t>(cells);
-    const Multigrid multigrid = make_multigrid(model.level);
-    Eigen::Matrix3Xd u_m;
-    for (std::size_t i = 0; i < stations.size(); ++i) {
-        if (progress && !progress(static_cast<double>(i) / static_cast<double>(stations.size())))
-            throw Cancelled("the response of " + part.name + " was cancelled");
-        solve_station(multigrid, unit_load_N(part, model, stations[i].load), request.energy_error, u_m, out);
-        draw_cells(model.level, u_m, request.view, i, out);
-    }
-    return out;
-}
-
 // What leaving out every second station changes at it, over the compliance there.
 double interpolation_error(const Response& response) {
     double largest = 0.0;
@@ -233,23 +204,96 @@ double interpolation_error(const Response& response) {
     return 0.25 * largest;
 }
 
+// Does it; what goes wrong names the part's file.
+template <class Do>
+void by_name(const Part& part, const PartLoad& load, const Do& act) {
+    try {
+        act();
+    } catch (const MeshError& error) {
+        throw files::InputError(part.file + ": " + error.what());
+    } catch (const LoadError& error) {
+        throw files::InputError(part.file + ": loads." + load.name + ": " + error.what());
+    }
+}
+
 }  // namespace
+
+struct CellResponse::Work {
+    Part part;
+    PartLoad load;
+    ResponseRequest request;
+    CellModel model;
+    std::vector<PartLoad> loads;  // of the stations
+    std::optional<Multigrid> multigrid;
+    std::optional<VoxelIteration> solve;  // at the next station
+    Eigen::Matrix3Xd u_m;                 // at the one before
+    Response out;
+};
+
+CellResponse::CellResponse(const Part& part, const PartLoad& load, const ResponseRequest& request)
+    : work_(std::make_unique<Work>(Work{part, load, request, {}, {}, {}, {}, {}, {}})) {
+    Work& work = *work_;
+    by_name(part, load, [&] {
+        work.model = cell_model(part, voxels_per_cell(part, request.cell_m));
+        const std::size_t cells = work.model.cells.place.size();
+        const std::vector<Station> stations =
+            stations_of(part, load, beam_of(part, load), cells > kManyCells ? kFewStations : kCellStations);
+        for (const Station& station : stations) work.loads.push_back(station.load);
+        start_response(part, stations, request, work.out);
+        work.out.cells = static_cast<std::int64_t>(cells);
+        work.multigrid = make_multigrid(work.model.level);
+    });
+}
+
+CellResponse::~CellResponse() = default;
+
+bool CellResponse::advance() {
+    Work& work = *work_;
+    Response& out = work.out;
+    const std::size_t station = out.compliance_m_per_N.size();
+    if (station == work.loads.size()) return false;
+    by_name(work.part, work.load, [&] {
+        if (!work.solve)
+            work.solve = begin_solve(*work.multigrid, unit_load_N(work.part, work.model, work.loads[station]),
+                                     {work.request.energy_error, 500}, work.u_m);
+        if (mechanics::advance(*work.multigrid, *work.solve)) return;
+        VoxelSolution solution = std::move(work.solve->solution);
+        work.solve.reset();
+        work.u_m = std::move(solution.u_m);
+        out.compliance_m_per_N.push_back(solution.work_J);
+        out.energy_error = std::max(out.energy_error, solution.energy_error);
+        out.iterations += solution.iterations;
+        out.converged = out.converged && solution.converged;
+        draw_cells(work.model.level, work.u_m, work.request.view, station, out);
+    });
+    return out.compliance_m_per_N.size() < work.loads.size();
+}
+
+double CellResponse::share() const {
+    return static_cast<double>(work_->out.compliance_m_per_N.size()) / static_cast<double>(work_->loads.size());
+}
+
+Response CellResponse::take() {
+    work_->out.interpolation_error = interpolation_error(work_->out);
+    return std::move(work_->out);
+}
 
 Response response_of(const Part& part, const PartLoad& load, const ResponseRequest& request,
                      const ResponseProgress& progress) {
     if (request.method == Method::elastica || request.method == Method::factorised)
         throw files::bad_input(part.file, "method", name_of(request.method),
                                "one of paper, euler-bernoulli, timoshenko, voxels");
-    try {
-        Response out = request.method == Method::voxels ? cell_response(part, load, request, progress)
-                                                        : beam_response(part, load, request);
-        out.interpolation_error = interpolation_error(out);
-        return out;
-    } catch (const MeshError& error) {
-        throw files::InputError(part.file + ": " + error.what());
-    } catch (const LoadError& error) {
-        throw files::InputError(part.file + ": loads." + load.name + ": " + error.what());
+    if (request.method == Method::voxels) {
+        CellResponse work(part, load, request);
+        do {
+            if (progress && !progress(work.share())) throw Cancelled("the response of " + part.name + " was cancelled");
+        } while (work.advance());
+        return work.take();
     }
+    Response out;
+    by_name(part, load, [&] { out = beam_response(part, load, request); });
+    out.interpolation_error = interpolation_error(out);
+    return out;
 }
 
 StationPlace place_of(const Response& response, double station_m) {

@@ -4,6 +4,7 @@
 #include <array>
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -46,6 +47,24 @@ using ResponseProgress = std::function<bool(double)>;
 // Throws InputError as stiffness_of() does, also for a method that has no answer, and mechanics::Cancelled.
 Response response_of(const Part& part, const PartLoad& load, const ResponseRequest& request,
                      const ResponseProgress& progress = {});
+
+// The same for cells a piece at a time, for a loop that must not stand still.
+class CellResponse {
+  public:
+    CellResponse(const Part& part, const PartLoad& load,
+                 const ResponseRequest& request);  // the model and its multigrid
+    ~CellResponse();
+    CellResponse(const CellResponse&) = delete;
+    CellResponse& operator=(const CellResponse&) = delete;
+
+    bool advance();        // one iteration; false once the response is whole
+    double share() const;  // of the stations that are done
+    Response take();       // once, when it is whole
+
+  private:
+    struct Work;
+    std::unique_ptr<Work> work_;
+};
 
 // Where a place along the axis lies between two stations; before the first and after the last it is there.
 struct StationPlace {

@@ -73,11 +73,15 @@ parts::ResponseProgress part_progress(const mechanics::Progress& progress, doubl
     };
 }
 
+parts::ResponseRequest request_for(const PartOptions& options, Method method) {
+    return {method, options.cell_m, kEnergyError, options.view};
+}
+
 // Beams at once; voxels from the cache, or computed.
 void add_responses(const PartOptions& options, const mechanics::Progress& progress, double from, double share,
                    PartDesign& design, PartTissue& tissue) {
     for (const Method method : tissue.methods) {
-        parts::ResponseRequest request{method, options.cell_m, kEnergyError, options.view};
+        const parts::ResponseRequest request = request_for(options, method);
         if (method != Method::voxels) {
             design.responses.push_back(parts::response_of(design.part, design.load, request));
             continue;
@@ -157,6 +161,41 @@ Stage depth_stage(const PartTissue& tissue) {
 }
 
 }  // namespace
+
+struct PartCells::Work {
+    PartOptions options;
+    std::size_t next = 0;  // design
+    std::optional<PartDesign> design;
+    std::unique_ptr<parts::CellResponse> response;
+};
+
+PartCells::PartCells(const PartOptions& options) : work_(std::make_unique<Work>(Work{options, 0, {}, {}})) {}
+PartCells::~PartCells() = default;
+
+bool PartCells::advance() {
+    Work& work = *work_;
+    if (work.options.method != Method::voxels || work.next == work.options.designs.size()) return false;
+    const parts::ResponseRequest request = request_for(work.options, Method::voxels);
+    const fs::path cache = files::cache_folder();
+    if (!work.response) {
+        work.design = read_design(work.options.designs[work.next], work.options);
+        if (work.design->part.button || parts::read_response(cache, fingerprint_of(*work.design, request))) {
+            ++work.next;
+            return true;
+        }
+        work.response = std::make_unique<parts::CellResponse>(work.design->part, work.design->load, request);
+    } else if (!work.response->advance()) {
+        parts::write_response(cache, fingerprint_of(*work.design, request), work.response->take());
+        work.response.reset();
+        ++work.next;
+    }
+    return true;
+}
+
+double PartCells::share() const {
+    const double done = static_cast<double>(work_->next) + (work_->response ? work_->response->share() : 0.0);
+    return done / static_cast<double>(work_->options.designs.size());
+}
 
 bool takes_seconds(const PartOptions& options) { return options.method == Method::voxels; }
 

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -80,6 +81,24 @@ inline std::filesystem::path map_folder(const PartOptions&) { return {}; }
 inline bool knows_surface(const PartOptions&) { return false; }
 
 PartTissue prepare(const PartOptions& options, const Scene& scene, const mechanics::Progress& progress);
+
+// The finite cells of a scene's parts a piece at a time, for a program with one thread. They are left in the cache
+// (files/cache.h), where prepare() finds them; without a cache it computes them again.
+class PartCells {
+  public:
+    explicit PartCells(const PartOptions& options);  // throws as prepare() does
+    ~PartCells();
+    PartCells(const PartCells&) = delete;
+    PartCells& operator=(const PartCells&) = delete;
+
+    bool advance();  // one iteration; false once nothing is left. Throws as prepare() does
+    double share() const;
+
+  private:
+    struct Work;
+    std::unique_ptr<Work> work_;
+};
+
 inline bool serves(const PartTissue&, const Scene&) { return true; }
 void describe(const PartTissue& tissue, const Scene& scene, Plan& plan);
 std::vector<Stage> stages(const PartTissue& tissue, const Scene& scene);

@@ -1,17 +1,29 @@
 // The app in a browser has one thread. A linear tissue would block it for minutes, so such scenes are refused; the finite
-// cells of parts take seconds, during which the page stands still.
+// cells of parts take seconds, and are iterated between the frames.
 
 #include "session/plan_in_progress.h"
 
+#include <algorithm>
+#include <chrono>
 #include <exception>
 #include <optional>
 
 #include "files/input_error.h"
+#include "mechanics/error.h"
+#include "scene/part_tissue.h"
+#include "scene/tissue.h"
 
 namespace palpa::session {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+constexpr std::chrono::milliseconds kOfAFrame{8};  // so much of 16 stays for the picture
+
+}  // namespace
 
 struct PlanInProgress::Work {
     scene::Scene scene;
+    std::optional<scene::PartCells> cells;  // while they are computed
     std::optional<scene::Plan> plan;
     std::exception_ptr failed;
 };
@@ -23,25 +35,37 @@ PlanInProgress::PlanInProgress(const scene::Scene& scene) : work_(std::make_uniq
             "\" is a linear tissue, which is computed on the desk: found a browser, expected a scene with a map");
     }
     work_->scene = scene;
+    if (const scene::PartOptions* parts = scene::part_options(work_->scene.tissue)) work_->cells.emplace(*parts);
 }
 PlanInProgress::~PlanInProgress() = default;
 
-double PlanInProgress::share() const { return work_->plan ? 1.0 : 0.0; }
+double PlanInProgress::share() const { return work_->cells ? work_->cells->share() : 1.0; }
 
-bool PlanInProgress::wait(double) {
-    if (work_->plan || work_->failed) return true;
+bool PlanInProgress::wait(double seconds) {
+    Work& work = *work_;
+    if (work.plan || work.failed) return true;
     try {
-        work_->plan = scene::make_plan(work_->scene);
+        const auto until =
+            Clock::now() + std::max<Clock::duration>(kOfAFrame, std::chrono::duration_cast<Clock::duration>(
+                                                                    std::chrono::duration<double>(seconds)));
+        while (work.cells) {
+            if (!work.cells->advance()) work.cells.reset();
+            if (work.cells && Clock::now() >= until) return false;
+        }
+        work.plan = scene::make_plan(work.scene);
     } catch (...) {
-        work_->failed = std::current_exception();
+        work.failed = std::current_exception();
     }
     return true;
 }
 
-void PlanInProgress::cancel() {}
+void PlanInProgress::cancel() {
+    work_->failed = std::make_exception_ptr(mechanics::Cancelled("the tissue was cancelled"));
+}
 
 scene::Plan PlanInProgress::take() {
-    wait(0.0);
+    while (!wait(1.0)) {
+    }
     if (work_->failed) std::rethrow_exception(work_->failed);
     return std::move(*work_->plan);
 }

@@ -163,6 +163,33 @@ TEST_CASE("part tissue: a finger that is led by depth is pushed by the stiffness
     CHECK(push.slope_N_per_m == close_to(1.0 / depth_m).epsilon(1e-9));
 }
 
+TEST_CASE("part tissue: cells that are iterated a piece at a time answer as those that are computed at once") {
+    Designs designs;
+    ::setenv("XDG_CACHE_HOME", designs.folder.path().c_str(), 1);
+    PartOptions& options = designs.options({"a.json", "b.json"});
+    options.method = parts::Method::voxels;
+    const parts::Part part = parts::read_part(options.designs[1]);
+    const parts::Response whole =
+        parts::response_of(part, part.loads[0], {parts::Method::voxels, {}, 1e-3, options.view});
+    PartCells cells(options);
+    double before = cells.share();
+    int pieces = 0;
+    for (; cells.advance(); ++pieces) {
+        CHECK(cells.share() >= before);
+        before = cells.share();
+    }
+    CHECK(before == 1.0);
+    CHECK(pieces > 30);
+    const PartTissue tissue = designs.made();
+    const parts::Response& pieced = tissue.designs[1].responses.back();
+    CHECK(pieced.compliance_m_per_N == whole.compliance_m_per_N);
+    CHECK(pieced.field == whole.field);
+    PartCells again(options);  // all of it is in the cache
+    CHECK(again.advance());
+    CHECK(again.advance());
+    CHECK_FALSE(again.advance());
+}
+
 TEST_CASE("part tissue: a touch allocates nothing") {
     const Designs designs;
     const PartTissue tissue = designs.made();
