@@ -118,8 +118,9 @@ bool capture(const RecordOptions& options, double now_s, RecordSession& session)
         !force_in(session.forces, from_s, now_s, force_N, force_moved_N))
         return false;
     if (!(level > options.range.lowest) || level_moved > options.level_tolerance * width(options)) return false;
-    if (force_moved_N > std::max(options.force_tolerance * force_N, options.least_tolerance_N) || !(force_N > 0.0))
-        return false;
+    if (force_moved_N > std::max(options.force_tolerance * std::abs(force_N), options.least_tolerance_N)) return false;
+    if (force_N < -options.least_tolerance_N) ++session.below_zero;
+    if (!(force_N > 0.0)) return false;
     const double apart = 0.5 * width(options) / options.bands;
     // at full level the force may still rise: this shows the saturation, and is captured too
     const bool same_place = std::abs(level - session.last_level) < apart &&

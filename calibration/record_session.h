@@ -46,6 +46,7 @@ struct RecordSession {
     double last_force_N = 0.0;
     // Keeps times rising in a resumed session if the computer was restarted in between.
     double clock_shift_s = 0.0;
+    int below_zero = 0;  // times at which both held still in a press, but the force was below zero: its sign is wrong
     std::vector<CapturedPoint> points;
 };
 

@@ -12,6 +12,7 @@ namespace palpa::devices {
 namespace {
 
 constexpr double kPress_mm = 1e-3;
+constexpr double kLongest_s = 86'400.0;
 constexpr const char* kPressColumns = "columns t_s, x_mm, y_mm and one of depth_mm, force_N";
 
 void check_columns(const files::Table& table) {
@@ -34,6 +35,8 @@ std::vector<PressRow> rows_of(files::Table& table) {
     while (table.next()) {
         PressRow row;
         row.t_s = table.finite_number(t);
+        if (std::abs(row.t_s) > kLongest_s)
+            table.fail(t, "a time within " + files::short_number(kLongest_s) + " s, a day");
         if (!rows.empty() && row.t_s <= rows.back().t_s)
             table.fail(t, "a time after that of the row above, " + files::number_text(rows.back().t_s));
         row.x_m = kPress_mm * table.finite_number(x);

@@ -105,11 +105,11 @@ std::string draw_script(const std::filesystem::path& script, const std::string& 
         return std::string(kMissing) + ", so there are no figures; " + kept + ": run `gnuplot " + name +
                "` where it is";
     }
+    std::string cut_off;
     const std::string there = "cd " + shell_quoted(std::filesystem::absolute(script).parent_path().string());
     for (const std::string kind : {"png", "svg", "pdf"}) {
         if (!run(there + " && gnuplot -e \"kind='" + kind + "'\" " + shell_quoted(name)))
-            return "gnuplot could not draw " + script.string() + "; " + kept;
-        std::string cut_off;
+            throw std::runtime_error("gnuplot could not draw " + script.string() + "; " + kept);
         for (const std::string& figure : figures_of(script)) {
             const std::filesystem::path file = script.parent_path() / (figure + kind);
             if (is_whole(file, "." + kind)) continue;
@@ -117,8 +117,9 @@ std::string draw_script(const std::filesystem::path& script, const std::string& 
             std::filesystem::remove(file, none);
             cut_off += (cut_off.empty() ? "" : ", ") + file.string();
         }
-        if (!cut_off.empty()) return cut_off + ": gnuplot could not draw it to its end (is the disk full?); " + kept;
     }
+    if (!cut_off.empty())
+        throw std::runtime_error(cut_off + ": gnuplot could not draw this to its end (is the disk full?); " + kept);
     return "";
 }
 

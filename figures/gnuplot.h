@@ -17,8 +17,8 @@ void draw_figure(const std::string& script, const std::filesystem::path& file, i
 void check_figure(const std::filesystem::path& file);
 
 // Runs a script that is kept beside its data, in its own folder: once for each `kind` of "png", "svg" and "pdf".
-// Returns what went wrong, with the words `kept` for what there is all the same ("the tables are kept"); empty on
-// success.
+// Returns what to say where gnuplot is missing, with the words `kept` for what there is all the same ("the tables are
+// kept"), and "" on success. Throws std::runtime_error, once all that can be drawn is drawn, if something could not.
 std::string draw_script(const std::filesystem::path& script, const std::string& kept);
 
 }  // namespace palpa::figures

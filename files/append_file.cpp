@@ -74,6 +74,8 @@ void append_synced(const std::filesystem::path& path, std::string_view text, std
         whole = std::string(end_of_cut_line) + "\n" + whole;
     const bool good = write_all(fd, whole) && ::fsync(fd) == 0;
     const int error = errno;
+    // on a full disk the file stays as it was, so that a part of a line never counts
+    if (!good && (size == 0 ? ::unlink(path.c_str()) : ::ftruncate(fd, size)) == 0) ::fsync(fd);
     ::close(fd);
     errno = error;
     if (!good || !sync_folder_of(path)) fail_writing(path);

@@ -39,7 +39,7 @@ class AppendFile {
 
 // Appends whole lines to a file that may exist already; if the file's last line was cut off, the text begins on a new
 // line, and `end_of_cut_line` comes before that. The text is on the disk when the function returns. Throws
-// std::runtime_error with the system's reason.
+// std::runtime_error with the system's reason; the file is then as it was.
 void append_synced(const std::filesystem::path& path, std::string_view text, std::string_view end_of_cut_line = "");
 
 }  // namespace palpa::files

@@ -1,5 +1,7 @@
 #include "files/printable.h"
 
+#include "files/json.h"
+
 namespace palpa::files {
 
 std::string printable(std::string_view message) {
@@ -14,6 +16,15 @@ std::string printable(std::string_view message) {
         out.push_back(control || second ? '?' : c);
     }
     return message.size() > kLongest ? out + "..." : out;
+}
+
+bool is_utf8(std::string_view text) {
+    try {
+        Json(text).dump();
+    } catch (const Json::type_error&) {
+        return false;
+    }
+    return true;
 }
 
 }  // namespace palpa::files

@@ -86,6 +86,19 @@ void read_gravity(files::JsonReader& json, const Point& direction, ButtonCover& 
     cover.gravity_m_per_s2 = {kStandard_m_per_s2 * std::sqrt(1.0 - along * along), 0.0, kStandard_m_per_s2 * along};
 }
 
+constexpr double kMostTravel = 2.0;
+
+// The travel over which the button does what it does. The curve is a table of equal steps, which must resolve that.
+double own_travel_m(const Button& button) {
+    double out = 0.0;
+    if (button.cover) out = button.cover->radius_m;
+    if (const auto* truss = std::get_if<TrussSupport>(&button.support)) out = std::max(out, 2.0 * truss->rise_m);
+    if (const auto* latch = std::get_if<LatchSupport>(&button.support))
+        out = std::max(out, latch->threshold_N / latch->stiffness_N_per_m);
+    if (const auto* curve = std::get_if<MeasuredSupport>(&button.support)) out = std::max(out, curve->travel_m.back());
+    return out;
+}
+
 }  // namespace
 
 Button read_button(files::JsonReader json, const Part& part) {
@@ -97,6 +110,10 @@ Button read_button(files::JsonReader json, const Part& part) {
     if (auto support = json.optional_object("support")) read_support(*support, part, out);
     if (!out.cover && std::holds_alternative<std::monostate>(out.support))
         json.fail("", "neither cover nor support", "at least one of both");
+    if (const double most_m = kMostTravel * own_travel_m(out); out.travel_m > most_m)
+        json.fail("travel_mm", files::short_number(1e3 * out.travel_m),
+                  "at most " + files::short_number(1e3 * most_m) +
+                      ": twice the cover's radius, or what the support takes to snap");
     if (json.has("gravity")) {
         if (!out.cover) json.fail("gravity", "no cover that it acts on", "the key cover beside it");
         read_gravity(json, direction, *out.cover);

@@ -45,7 +45,10 @@ ComparedDesign design_of(const Part& part, const PartLoad& load, const Stiffness
                                "a method that has one, such as voxels");
     }
     out.mass_kg = info_of(part).mass_kg;
-    if (part.button) out.switch_force_N = button_curve(part).peak_N;
+    if (part.button) {
+        const mechanics::ButtonCurve curve = button_curve(part);
+        if (curve.snaps) out.switch_force_N = curve.peak_N;
+    }
     return out;
 }
 

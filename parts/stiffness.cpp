@@ -1,5 +1,6 @@
 #include "parts/stiffness.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "files/clock.h"
@@ -17,6 +18,7 @@ namespace {
 
 using namespace mechanics;
 
+constexpr int kFewestCells = 2;
 constexpr double kDegrees = 180.0 / 3.14159265358979323846;
 
 void judge_strain(const CellStrain& unit, double force_N, MethodResult& result) {
@@ -52,6 +54,9 @@ void solve_cells(const PartLoad& load, const CellModel& model, const Eigen::Matr
     out.stiffness_N_per_m = 1.0 / compliance;
     out.cells = static_cast<std::int64_t>(model.cells.place.size());
     judge_strain(greatest_strain(model, u_m), load.force_N, out);
+    const int across = *std::min_element(model.cells.n.begin(), model.cells.n.end());
+    if (across < kFewestCells)
+        out.why_not = "one cell across the part does not bend as the part does; smaller cells are needed";
 }
 
 // The displacement at the tip by the beam's method, m.

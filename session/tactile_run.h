@@ -44,8 +44,9 @@ void choose_input(std::span<const devices::PressRow> press, tactile::TactilePlan
 // What a run is given beside the plan.
 struct TactileRunOptions {
     std::vector<devices::PressRow> press;
-    std::filesystem::path log;  // folder that exists; empty for no log
-    std::uint64_t seed = 1;     // of simulators in this process
+    std::filesystem::path log;     // folder that exists; empty for no log
+    std::uint64_t seed = 1;        // of simulators in this process
+    std::function<bool()> ends{};  // asked while a live run goes on: true once a person wants its end
 };
 
 struct TactileResult {

@@ -174,7 +174,7 @@ TactileResult run_live_press(std::shared_ptr<const tactile::TactilePlan> plan, c
     thread.start();
     WantedHeights wanted;
     WantedHeights* const keeps = heights.empty() ? nullptr : &wanted;
-    while (!thread.finished()) {
+    while (!thread.finished() && !(options.ends && options.ends())) {
         take_all(thread, sink, keeps);
         std::this_thread::sleep_for(std::chrono::milliseconds(5));
     }

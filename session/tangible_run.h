@@ -4,12 +4,14 @@
 
 #include <atomic>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "devices/limits.h"
 #include "devices/press_file.h"
 #include "session/device_loop.h"
 #include "session/tactile_moment.h"
@@ -38,15 +40,17 @@ struct Finger {
 
 struct TangibleRunOptions {
     Finger finger;
-    std::filesystem::path log;  // folder that exists; empty for no log
-    std::uint64_t seed = 1;     // of the plant's noise
+    std::filesystem::path log;     // folder that exists; empty for no log
+    std::uint64_t seed = 1;        // of the plant's noise
+    std::function<bool()> ends{};  // asked while a live run goes on: true once a person wants its end
 };
 
 struct TangibleResult {
     tangible::TickFigures ticks;
     tangible::ClockFigures clock;
     DeviceReport loop;
-    bool logged = true;  // false: a log could not be written to its end
+    devices::Fault guard = devices::Fault::none;  // why the guard of a real device has relaxed it
+    bool logged = true;                           // false: a log could not be written to its end
 };
 
 // In virtual time, on a plant: the same options give the same log, byte for byte.

@@ -91,6 +91,7 @@ class TangibleThread {
         if (thread_.joinable()) thread_.join();
     }
     bool finished() const { return finished_; }
+    devices::Fault guard_fault() const { return rig_ ? rig_->fault() : devices::Fault::none; }  // once it has ended
     bool take(TickRecord& out) { return ring_->pop(out); }
     bool take(TangibleShape& out) { return shapes_->take(out); }
     DeviceLoop<TangibleLoop>& loop() { return *loop_; }
@@ -178,13 +179,14 @@ TangibleResult run_tangible_live(std::shared_ptr<const TangiblePlan> plan, const
         while (thread.take(record)) sink.take(record);
         sink.take_rows(thread.loop().recorded);
     };
-    while (!thread.finished()) {
+    while (!thread.finished() && !(options.ends && options.ends())) {
         take_all();
         std::this_thread::sleep_for(std::chrono::milliseconds(5));
     }
     thread.end();
     take_all();
     sink.lost_ticks = thread.lost_ticks();
+    sink.result.guard = thread.guard_fault();
     sink.finish(thread.loop().report);
     return std::move(sink.result);
 }

@@ -26,18 +26,28 @@ void second_differences(const Map& map, std::size_t along, std::size_t n, std::s
     }
 }
 
-// Returns the q quantile of |F(i-1) - 2 F(i) + F(i+1)| along x and y; 0 if there are fewer than 8 differences.
+constexpr std::size_t kFewestDifferences = 8;
+
+// |F(i-1) - 2 F(i) + F(i+1)| along x and y.
+std::vector<double> second_differences(const Map& map) {
+    std::vector<double> out;
+    second_differences(map, 1, map.n_x, 1, out);
+    second_differences(map, map.n_x, map.n_y, map.n_x, out);
+    return out;
+}
+
+// Returns their q quantile; 0 if there are too few.
 double second_difference_N(const Map& map, double q) {
-    std::vector<double> differences;
-    second_differences(map, 1, map.n_x, 1, differences);
-    second_differences(map, map.n_x, map.n_y, map.n_x, differences);
-    if (differences.size() < 8) return 0.0;
+    std::vector<double> differences = second_differences(map);
+    if (differences.size() < kFewestDifferences) return 0.0;
     return files::reordered_quantile(differences, q, files::QuantileType::lower);
 }
 
 }  // namespace
 
 double normal_noise_N(const Map& map) { return map.noise_N ? *map.noise_N : estimated_noise_N(map); }
+
+bool knows_noise(const Map& map) { return map.noise_N || second_differences(map).size() >= kFewestDifferences; }
 
 double estimated_noise_N(const Map& map) {
     constexpr double kMedianOfNormal = 0.6745;

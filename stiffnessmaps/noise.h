@@ -7,6 +7,8 @@ namespace palpa::stiffnessmaps {
 
 // Returns the standard deviation of white noise in the normal force, N: the map's own noise_N, or else the estimate.
 double normal_noise_N(const Map& map);
+// Returns whether that is known: an estimate needs 8 second differences of neighbours. Otherwise it counts as 0.
+bool knows_noise(const Map& map);
 
 // Estimates it from second differences along x and y (median absolute value / (0.6745 sqrt(6)), robust against the
 // edges of nodules). Returns 0 if the map is too small.

@@ -5,6 +5,7 @@
 
 #include "files/append_file.h"
 #include "files/input_error.h"
+#include "files/printable.h"
 #include "files/table.h"
 #include "files/text.h"
 #include "study/count.h"
@@ -39,7 +40,7 @@ std::string reason_in(const files::Table& table) {
 
 // Calls `row` for each line of a table that has three columns.
 void read_rows(const fs::path& file, const char* header, const std::function<void(const files::Table&)>& row) {
-    if (!fs::exists(file)) return;
+    if (!fs::exists(file) || fs::file_size(file) == 0) return;
     files::Table table = files::read_tsv(file);
     std::string columns;
     for (const std::string& column : table.columns()) columns += (columns.empty() ? "" : "\t") + column;
@@ -65,6 +66,7 @@ std::string reason_text(std::string reason) {
     }
     reason.erase(0, std::min(reason.find_first_not_of(' '), reason.size()));
     reason.erase(reason.find_last_not_of(' ') + 1);
+    if (!files::is_utf8(reason)) throw files::bad_input("--reason", "", files::shown(reason), "text in UTF-8");
     if (reads_as_missing(reason)) throw files::bad_input("--reason", "", files::shown(reason), "why, in words");
     return reason;
 }

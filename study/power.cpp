@@ -187,6 +187,7 @@ std::vector<PowerResult> summarise_power(const std::vector<PowerRow>& rows, std:
     for (const PowerRow& row : rows) {
         PowerResult& result = results[places[power_key(row, row.participants)]];
         const Finding& f = row.finding;
+        if (!f.label.empty()) result.what.label = f.label;  // what holds in one study is said of all
         if (f.p < alpha) ++result.rejections.hits;
         if (is_test(f)) result.rejections.n = studies;  // those in which it cannot be computed do not reject
         if (!f.has_interval() || std::isnan(result.truth)) continue;

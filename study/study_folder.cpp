@@ -63,6 +63,10 @@ void check_same(const fs::path& file, const StudyIdentity& found, const Protocol
         throw files::bad_input(file.string(), "simulated", told(found.kind),
                                told(kind) + ": they never share a folder");
     }
+    if (found.kind.rate_Hz != kind.rate_Hz) {
+        throw files::bad_input(file.string(), "simulation_rate_Hz", files::short_number(found.kind.rate_Hz),
+                               files::short_number(kind.rate_Hz) + ": one rate of the simulated pen in a folder");
+    }
 }
 
 }  // namespace
@@ -86,6 +90,7 @@ void open_study(const fs::path& directory, const Protocol& protocol, const Study
     files::Json json{{"protocol", protocol.name},       {"version", protocol.version},  {"sha256", protocol.sha256},
                      {"simulated", kind.simulated},     {"simulation_seed", kind.seed}, {"program", kind.program},
                      {"orders_version", kOrdersVersion}};
+    if (kind.simulated) json["simulation_rate_Hz"] = kind.rate_Hz;
     files::write_text_atomically(file, files::json_text(json));  // last: it makes the folder a study
 }
 
@@ -104,13 +109,16 @@ std::optional<StudyIdentity> read_identity(const fs::path& directory) {
 StudyIdentity identity_in(std::string_view study_json, const std::string& file_name) {
     const files::Json root = files::parse_json(study_json, file_name);
     files::JsonReader json(root, file_name);
-    json.only({"protocol", "version", "sha256", "simulated", "simulation_seed", "program", "orders_version"});
+    json.only({"protocol", "version", "sha256", "simulated", "simulation_seed", "simulation_rate_Hz", "program",
+               "orders_version"});
     StudyIdentity out;
     out.name = json.text("protocol");
     out.version = json.text("version");
     out.sha256 = json.text("sha256");
     out.kind.simulated = json.boolean("simulated", false);
     out.kind.seed = static_cast<std::uint64_t>(json.number("simulation_seed", {0.0, 9e15}, 0.0));
+    constexpr double kEarlierRate_Hz = 60.0;  // of files without the key
+    out.kind.rate_Hz = json.number("simulation_rate_Hz", {0.0, 1e6}, out.kind.simulated ? kEarlierRate_Hz : 0.0);
     out.kind.program = json.text("program", "");
     out.orders_version = json.integer("orders_version", 1, 1000, 1);
     json.finish();
@@ -200,7 +208,8 @@ std::string instructions_for(const Protocol& protocol, const PlannedTrial& trial
     if (!condition.instructions.empty()) text += (text.empty() ? "" : "\n\n") + condition.instructions;
     const bool pairs = compares(task_of(protocol, trial.condition));
     if (trial.practice && pairs) text += "\n\nThis is practice: after each answer you are told whether it was right.";
-    if (trial.practice && !pairs) text += "\n\nThis is practice: you see where the harder places are.";
+    const bool by_hand = condition.modality == Modality::hand;
+    if (trial.practice && !pairs && !by_hand) text += "\n\nThis is practice: you see where the harder places are.";
     const double limit_s = trial.practice ? protocol.practice_limit_s : protocol.time_limit_s;
     if (limit_s > 0.0 && (!pairs || !condition.scene.empty()))
         text += "\n\nYou have " + files::short_number(limit_s) + " seconds.";

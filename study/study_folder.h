@@ -21,6 +21,7 @@ struct StudyKind {
     bool simulated = false;
     std::uint64_t seed = 0;  // of the simulation
     std::string program;     // name and version
+    double rate_Hz = 0.0;    // of the simulated pen
 };
 
 // Creates the folder, or continues in a folder of the same protocol and kind. Throws InputError if the folder holds

@@ -33,7 +33,10 @@ std::vector<std::string> with_default_command(int argc, char** argv, CLI::App& a
     for (const CLI::App* command : app.get_subcommands({})) commands.push_back(command->get_name());
     const bool known = first == "-h" || first == "--help" || first == "--version" ||
                        std::find(commands.begin(), commands.end(), first) != commands.end();
-    if (!known && !first.empty() && first.find_first_of("-./") == std::string::npos && !std::filesystem::exists(first))
+    const std::string ending = std::filesystem::path(first).extension().string();
+    const bool names_file = first.rfind('-', 0) == 0 || first.find('/') != std::string::npos || ending == ".json" ||
+                            ending == ".map" || std::filesystem::exists(first);
+    if (!known && !first.empty() && !names_file)
         throw files::InputError("found " + files::shown(first) +
                                 ", expected a scene, a map or a command: " + listed(commands));
     if (!known) arguments.insert(arguments.begin(), "run");

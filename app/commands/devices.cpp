@@ -35,7 +35,8 @@ void tell_time_left(double left_s, platform::Window& window) {
 }
 
 // The caller owns `check`, which is large.
-void watch_devices(double seconds, platform::Window& window, DeviceCheck& check) {
+// Returns for how long.
+double watch_devices(double seconds, platform::Window& window, DeviceCheck& check) {
     std::vector<platform::Sample> samples;
     window.set_keyboard(0.0, 0.0, window.width_px(), window.height_px(), 200.0);
     const double began_s = window.now_s();
@@ -53,6 +54,7 @@ void watch_devices(double seconds, platform::Window& window, DeviceCheck& check)
         show(window);
     }
     if (isatty(STDERR_FILENO) != 0) std::fputc('\n', stderr);
+    return std::min(seconds, window.now_s() - began_s);
 }
 
 files::Json device_json(const platform::PointerDevice& device) {
@@ -117,7 +119,7 @@ void list_devices(const DevicesOptions& options) {
     platform::Window window(window_options);
     show(window);
     auto check = std::make_unique<DeviceCheck>();
-    if (options.seconds > 0.0) watch_devices(options.seconds, window, *check);
+    const double seconds = options.seconds > 0.0 ? watch_devices(options.seconds, window, *check) : 0.0;
 
     files::Json json{{"devices", files::Json::array()}, {"note", window.input_note()}};
     for (const platform::PointerDevice& device : window.devices()) {
@@ -126,9 +128,9 @@ void list_devices(const DevicesOptions& options) {
     }
     if (!options.json && !window.input_note().empty()) std::printf("note: %s\n", window.input_note().c_str());
     if (options.seconds > 0.0) {
-        json["seconds"] = options.seconds;
+        json["seconds"] = seconds;
         json["seen"] = check_json(*check);
-        if (!options.json) std::printf("\nin %g s came:\n", options.seconds);
+        if (!options.json) std::printf("\nin %.3g s came:\n", seconds);
         for (const platform::Tool tool :
              {platform::Tool::pen, platform::Tool::finger, platform::Tool::mouse, platform::Tool::keyboard}) {
             if (of_tool(tool, *check).samples == 0) continue;

@@ -125,9 +125,10 @@ void add_explain(CLI::App& app) {
     CLI::App* command =
         app.add_subcommand("explain", "Show the plan of a scene: the stages with their fidelity, error and cost");
     command->add_option("SCENE", options->scene, "scene JSON or map folder (default: the default scene)");
-    command->add_flag("--measure", options->measure,
-                      "replay a trace and print each stage's calls, median time and p99");
-    command->add_option("--trace", options->trace, "trace to measure with (default: the shipped trace)");
+    CLI::Option* measure = command->add_flag("--measure", options->measure,
+                                             "replay a trace and print each stage's calls, median time and p99");
+    command->add_option("--trace", options->trace, "trace to measure with (default: the shipped trace)")
+        ->needs(measure);
     command->add_flag("--json", options->json, "print one JSON object on standard output");
     command->callback([options] { explain(*options); });
 }

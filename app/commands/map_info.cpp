@@ -15,7 +15,7 @@ files::Json map_info(const stiffnessmaps::Map& map, const stiffnessmaps::Field& 
     json["not_rising_with_depth"] = field.isotonic_changed;
     const avatar::DisplayRatio law = avatar::display_ratio_clear();
     const double noise_N = stiffnessmaps::normal_noise_N(map);
-    json["noise_N"] = noise_N;
+    json["noise_N"] = stiffnessmaps::knows_noise(map) ? files::Json(noise_N) : files::Json();
     json["smoothing_mm"] = 1e3 * default_smoothing_m(map, noise_N, law.path.reference_m, law.gate_N);
     if (map.tangential == stiffnessmaps::TangentialKind::recorded) {
         const stiffnessmaps::TangentialAgreement agreement = stiffnessmaps::tangential_agreement(map, field);

@@ -205,11 +205,10 @@ void print_report(const std::string& name, const stiffnessmaps::Map& map, const 
                 report.rejected_rows, report.rows, report.rejected_points, report.outliers);
     if (report.form == stiffnessmaps::RecordingForm::probing)
         std::printf("; %.3g N at contact subtracted (median)", report.median_offset_N);
-    std::printf(
-        "\n  map against recording: %.2g N median, %.2g N worst, of %.3g N (%.2g %%, %.2g %%); noise %.2g "
-        "N\n",
-        residual.median_N, residual.worst_N, residual.greatest_N, 100.0 * residual.median_share(),
-        100.0 * residual.worst_share(), map.noise_N.value_or(0.0));
+    std::printf("\n  map against recording: %.2g N median, %.2g N worst, of %.3g N (%.2g %%, %.2g %%); noise %s\n",
+                residual.median_N, residual.worst_N, residual.greatest_N, 100.0 * residual.median_share(),
+                100.0 * residual.worst_share(),
+                map.noise_N ? (files::short_number(*map.noise_N) + " N").c_str() : "not known (too few neighbours)");
 }
 
 void import_map(const ImportArguments& a) {

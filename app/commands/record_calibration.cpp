@@ -1,20 +1,18 @@
 #include "app/commands/record_calibration.h"
 
 #include <cmath>
-#include <csignal>
 #include <cstdio>
 #include <poll.h>
 #include <unistd.h>
 #include <utility>
 
+#include "app/commands/interrupt.h"
 #include "calibration/record/acquisition.h"
 #include "files/input_error.h"
 #include "files/text.h"
 
 namespace palpa::app {
 namespace {
-
-volatile std::sig_atomic_t interrupted = 0;
 
 // Reads a number from standard input: what the scale shows while the pen is held still. Returns false at the end of input.
 bool take_typed(std::string& typed, calibration::Recording& recording) {
@@ -89,15 +87,11 @@ files::Json record_calibration(const calibration::RecordArguments& arguments) {
     const std::unique_ptr<LevelSource> source =
         arguments.levels.empty() ? open_level_window() : open_level_stream(arguments.levels);
     const std::unique_ptr<calibration::Recording> recording = calibration::open_recording(arguments);
-    interrupted = 0;
-    const auto before = std::signal(SIGINT, [](int) { interrupted = 1; });
-    const auto before_term = std::signal(SIGTERM, [](int) { interrupted = 1; });
-    const auto before_hangup = std::signal(SIGHUP, [](int) { interrupted = 1; });
-    if (before_hangup == SIG_IGN) std::signal(SIGHUP, SIG_IGN);  // nohup
+    const Interrupt interrupt;
     std::string typed;
     double told_s = 0.0;
     std::vector<platform::Sample> samples;
-    for (bool going = true; going && interrupted == 0;) {
+    for (bool going = true; going && !interrupt.came();) {
         samples.clear();
         const bool more = source->poll(0.005, samples);
         const bool was_silent = recording->silent;
@@ -111,11 +105,7 @@ files::Json record_calibration(const calibration::RecordArguments& arguments) {
             told_s = devices::steady_s();
         }
     }
-    files::Json result = calibration::close_recording(*recording);
-    std::signal(SIGINT, before);
-    std::signal(SIGTERM, before_term);
-    std::signal(SIGHUP, before_hangup);
-    return result;
+    return calibration::close_recording(*recording);
 }
 
 }  // namespace palpa::app

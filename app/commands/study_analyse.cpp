@@ -9,6 +9,7 @@
 #include "figures/froc_figure.h"
 #include "figures/psychometric_figure.h"
 #include "figures/study_figures.h"
+#include "files/folder_lock.h"
 #include "files/input_error.h"
 #include "files/regular_file.h"
 #include "files/text.h"
@@ -86,6 +87,7 @@ void write_report(const study::Report& report, const study::Observations& seen,
     std::error_code error;
     fs::create_directories(folder, error);
     if (error) throw std::runtime_error(folder.string() + ": cannot be made: " + error.message());
+    const files::FolderLock lock(folder, "another palpa study analyse");  // two would remove each other's figures
     remove_earlier_report(folder);
     for (const study::ReportTable& table : study::report_tables(report)) {
         files::write_text_atomically(folder / (table.name + ".tsv"), study::tsv_text(table));
@@ -100,16 +102,27 @@ void write_report(const study::Report& report, const study::Observations& seen,
     files::write_text_atomically(folder / "stard.md", study::stard_checklist(report, protocol ? &*protocol : nullptr));
     files::write_text_atomically(folder / "report.md", study::report_markdown(report));
     files::write_text_atomically(folder / "report.json", files::json_text(study::report_json(report)));
-    for (const std::string& trouble : {figures::draw_figures(report, folder), figures::draw_froc_figure(report, folder),
-                                       figures::draw_psychometric_figure(report, folder)}) {
-        if (!trouble.empty()) std::fprintf(stderr, "palpa: %s\n", trouble.c_str());
+    std::string failed;
+    for (const auto draw : {&figures::draw_figures, &figures::draw_froc_figure, &figures::draw_psychometric_figure}) {
+        try {
+            const std::string trouble = draw(report, folder);
+            if (!trouble.empty()) std::fprintf(stderr, "palpa: %s\n", trouble.c_str());
+        } catch (const std::runtime_error& failure) {
+            failed += (failed.empty() ? "" : "\n") + std::string(failure.what());
+        }
     }
+    if (!failed.empty()) throw std::runtime_error(failed);
 }
 
 study::Observations read_observations(const AnalyseOptions& options) {
     const std::string& input = options.input;
     if (!fs::exists(input)) throw files::bad_input(input, "", "nothing", "a folder of logs or a table COUNTS.tsv");
-    if (fs::is_directory(input)) return study::read_study(input);
+    if (fs::is_directory(input)) {
+        if (!options.scale.empty())
+            throw files::bad_input("--rating-scale", "", "the folder " + input,
+                                   "a table: logs hold their protocol's scale");
+        return study::read_study(input);
+    }
     study::RatingScale scale;
     if (!options.scale.empty()) scale = {options.scale[0], options.scale[1]};
     if (!(scale.low < scale.high)) {

@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "app/commands/study.h"
+#include "files/progress_line.h"
 #include "files/regular_file.h"
 #include "files/text.h"
 #include "study/levels.h"
@@ -23,10 +24,15 @@ struct LevelsOptions {
 void measure(const LevelsOptions& asked) {
     if (!asked.output.empty()) files::check_output(asked.output);
     std::vector<study::LevelResult> results;
+    const std::size_t cases = asked.people.size() * asked.repeats.size() * asked.slope_sd.size();
+    files::ProgressLine line;
     for (const int people : asked.people) {
         for (const int repeats : asked.repeats) {
-            for (const double slope_sd : asked.slope_sd)
+            for (const double slope_sd : asked.slope_sd) {
+                line.show(std::to_string(results.size()) + " of " + std::to_string(cases) + " cases",
+                          static_cast<double>(results.size()) / static_cast<double>(cases));
                 results.push_back(study::measure_levels({people, repeats, slope_sd}, asked.options));
+            }
         }
     }
     const std::string text = study::levels_markdown(results, asked.options);

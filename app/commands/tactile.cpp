@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "app/commands/command_line.h"
+#include "app/commands/interrupt.h"
 #include "app/commands/option_checks.h"
 #include "app/scene_choices.h"
 #include "files/cache.h"
@@ -112,6 +113,8 @@ session::TactileResult run_as_asked(const TactileOptions& options, const std::sh
         return session::replay_rows(plan, session::read_device_rows(options.replay, fields), run);
     }
     if (options.virtual_time) return session::run_virtual(plan, run);
+    const Interrupt interrupt;
+    run.ends = [&] { return interrupt.came(); };
     return session::run_live_press(plan, run, simulators ? simulators->heights : fs::path());
 }
 
@@ -149,13 +152,13 @@ void run_tactile(const TactileOptions& options) {
     files::Json json{{"scene", scene.name}, {"seed", options.seed}};
     json.update(tactile::figures_json(*plan, result.steps, result.mismatch, result.devices));
     json["devices"] = devices;
+    if (!result.logged) throw std::runtime_error(options.log + ": the log could not be written to its end");
     if (!options.log.empty())
         files::write_text_atomically(fs::path(options.log) / "performance.json", files::json_text(json));
     if (options.json)
         std::fputs(files::json_text(json).c_str(), stdout);
     else
         print_tactile(json);
-    if (!result.logged) throw std::runtime_error(options.log + ": the log could not be written to its end");
 }
 
 void add_tactile_run(CLI::App& tactile) {

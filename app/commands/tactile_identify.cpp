@@ -31,7 +31,7 @@ void print_fit(const tactile::CompensationFit& fit) {
 }
 
 void identify_arm(const IdentifyOptions& options) {
-    files::check_output(options.output);
+    files::check_output(options.output, {options.rig.device});
     const devices::ArmDevice device = rig_device(options.rig, {});
     RigResult result;
     const tactile::CompensationFit fit = identify(options.rig, device, result);

@@ -10,6 +10,7 @@
 
 #include "app/assets.h"
 #include "app/commands/command_line.h"
+#include "app/commands/interrupt.h"
 #include "app/commands/option_checks.h"
 #include "app/commands/tangible_loop.h"
 #include "app/scene_choices.h"
@@ -83,6 +84,8 @@ session::TangibleResult run_as_asked(const TangibleRunArguments& arguments, cons
     if (!plant_name.empty()) plant = make_plant(plan->model, tangible::read_plant(plant_name), plan->loop);
     if (!arguments.log.empty()) fs::create_directories(arguments.log);
     if (arguments.headless) return session::run_tangible_virtual(plan, *plant, run);
+    const Interrupt interrupt;
+    run.ends = [&] { return interrupt.came(); };
     return session::run_tangible_live(plan, plant, arguments.ports, run);
 }
 
@@ -93,8 +96,9 @@ void print_run(const files::Json& result) {
     if (!result["force_rms_percent"].is_null())
         std::printf("  rendered force off the wanted one by %.3g %% (rms, of the greatest wanted force)\n",
                     result["force_rms_percent"].get<double>());
-    std::printf("  saturated in %.3g %% of the ticks, last command held for %.3g ms\n",
-                100.0 * result["saturated_share"].get<double>(), result["held_ms"].get<double>());
+    std::printf("  saturated in %.3g %% of the ticks, last command held for %.3g ms, relaxed for %.3g ms\n",
+                100.0 * result["saturated_share"].get<double>(), result["held_ms"].get<double>(),
+                result["relaxed_ms"].get<double>());
     for (const auto& fault : result["faults"])
         std::printf("  fault: %s, %s times\n", fault["fault"].get<std::string>().c_str(),
                     fault["times"].dump().c_str());
@@ -131,13 +135,15 @@ void run_tangible(const TangibleRunArguments& arguments) {
     json["plant"] = plant_name.empty() ? files::Json(nullptr) : files::Json(plant_name);
     json.update(tangible::figures_json(*plan, result.ticks, result.clock));
     json["devices"] = devices_json(*plan, plant_name.empty(), arguments.ports);
+    if (result.guard != devices::Fault::none)
+        json["faults"].push_back({{"fault", "the guard: " + std::string(text(result.guard))}, {"times", 1}});
+    if (!result.logged) throw std::runtime_error(arguments.log + ": the log could not be written to its end");
     if (!arguments.log.empty())
         files::write_text_atomically(fs::path(arguments.log) / "performance.json", files::json_text(json));
     if (arguments.json)
         std::fputs(files::json_text(json).c_str(), stdout);
     else
         print_run(json);
-    if (!result.logged) throw std::runtime_error(arguments.log + ": the log could not be written to its end");
 }
 
 }  // namespace

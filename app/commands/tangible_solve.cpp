@@ -11,6 +11,7 @@
 #include "files/clock.h"
 #include "files/input_error.h"
 #include "files/printable.h"
+#include "files/progress_line.h"
 #include "files/text.h"
 #include "tangible/inverse.h"
 
@@ -44,7 +45,11 @@ SolvedPress solve_press(const tangible::DeviceModel& model, const TangibleSolveO
     SolvedPress out;
     constexpr int kTicks = 60;
     constexpr int kMostTicks = 400;
-    for (int tick = 1; tick <= kMostTicks; ++tick) {
+    constexpr int kPatience = 3;  // ticks without an equilibrium, each of which takes a second
+    int vain = 0;
+    files::ProgressLine line;
+    for (int tick = 1; tick <= kMostTicks && vain < kPatience; ++tick) {
+        line.show("pressing on " + model.device.name, static_cast<double>(tick) / kMostTicks);
         const double share = std::min(1.0, static_cast<double>(tick) / kTicks);
         // what opposes itself would only creep to its place
         inverse.rate_term = tick <= kTicks || model.device.pretension.has_value();
@@ -53,6 +58,9 @@ SolvedPress solve_press(const tangible::DeviceModel& model, const TangibleSolveO
         out.answer = inverse_step(model, state, {share * depth_m, share * options.force_N, {}}, inverse);
         out.time_us = 1e-3 * static_cast<double>(files::steady_ns() - began_ns);
         out.iterations += out.answer.iterations;
+        const bool found =
+            out.answer.status == tangible::DeviceStatus::good || out.answer.status == tangible::DeviceStatus::unstable;
+        vain = found ? 0 : vain + 1;
         double change = 0.0;
         for (int j = 0; j < model.n_actuators(); ++j) {
             const auto at = static_cast<std::size_t>(j);
@@ -134,7 +142,7 @@ void run_solve(const TangibleSolveOptions& options) {
     const tangible::DeviceModel model =
         tangible::make_device_model(tangible::read_soft_device(device_file(options.device)));
     if (const double most_mm = 1e3 * model.size_m; options.depth_mm > most_mm)
-        throw files::bad_input("", "--depth-mm", files::short_number(options.depth_mm),
+        throw files::bad_input("--depth-mm", "", files::short_number(options.depth_mm),
                                "at most the device's size, " + files::short_number(most_mm));
     const SolvedPress solved = solve_press(model, options);
     const files::Json json = solve_json(model, solved);
@@ -142,7 +150,8 @@ void run_solve(const TangibleSolveOptions& options) {
         std::fputs(files::json_text(json).c_str(), stdout);
     else
         print_solve(model, options, json, solved);
-    if (solved.answer.status == tangible::DeviceStatus::no_equilibrium)
+    if (solved.answer.status == tangible::DeviceStatus::no_equilibrium ||
+        solved.answer.status == tangible::DeviceStatus::slow)
         throw std::runtime_error(model.device.name + ": no equilibrium was found at this depth and force");
 }
 

@@ -122,6 +122,7 @@ ToShow to_show(const App& app, double now_s, double dt_s) {
     const session::Session& s = app.session;
     const TactileShown* tactile = app.tactile.shown ? &*app.tactile.shown : nullptr;
     const TangibleShown* tangible = app.tangible.shown ? &*app.tangible.shown : nullptr;
+    if (const auto* stopped = std::get_if<TrialStopped>(&app.course)) now_s = std::min(now_s, stopped->at_s);
     return {s.scene, *s.plan, s.trial, app.settings, app.notices, app.doing, app.asked, now_s, dt_s, tactile, tangible};
 }
 

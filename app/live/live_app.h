@@ -3,6 +3,7 @@
 
 #include <exception>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -32,6 +33,7 @@ struct GoesOn {};
 struct WaitsForKeeper {};  // the keeper is still storing the last trial; no trial begins before
 struct TrialStopped {      // the trial's files can no longer be written
     std::string why;
+    double at_s = 0.0;  // when the clock stopped
 };
 using Course = std::variant<GoesOn, WaitsForKeeper, TrialStopped>;
 
@@ -54,7 +56,8 @@ struct PartControl {
         std::size_t design;
         files::Json operation;
     };
-    std::vector<Undone> undone;  // the last one is done again first
+    std::vector<Undone> undone;                                     // the last one is done again first
+    std::map<std::filesystem::path, std::filesystem::path> copies;  // of designs, by what they were made of
 };
 
 // Everything that the app has open while its window is open.

@@ -14,14 +14,19 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The file that holds a design's edits. A second folder of the same name would be another design.
-fs::path edited_file(const fs::path& design) {
-    const std::string stem = design.stem().string();
-    const std::string end = "-edited";
-    const bool is = stem.size() > end.size() && stem.compare(stem.size() - end.size(), end.size(), end) == 0;
+// The file that holds a design's edits since the scene was opened: a new one, since that of another day may be somebody's
+// work. A copy that is opened by itself is gone on with.
+fs::path edited_file(const fs::path& design, std::map<fs::path, fs::path>& copies) {
     const fs::path folder = user_folder().empty() ? fs::temp_directory_path() : user_folder() / "parts";
+    const std::string stem = design.stem().string();
+    if (design.parent_path() == folder && stem.find("-edited") != std::string::npos) return design;
+    auto [copy, fresh] = copies.try_emplace(design);
+    if (!fresh) return copy->second;
     fs::create_directories(folder);
-    return is ? design : folder / (stem + end + ".json");
+    copy->second = folder / (stem + "-edited.json");
+    for (int i = 2; fs::exists(copy->second); ++i)
+        copy->second = folder / (stem + "-edited-" + std::to_string(i) + ".json");
+    return copy->second;
 }
 
 // Points in mm, with the third coordinate from in front of the part to behind it.
@@ -88,7 +93,7 @@ void append_edit(std::size_t index, const OperationFor& operation_for, platform:
                  App& app) {
     scene::Scene scene = wanted_scene(app);
     fs::path& design = scene::part_options(scene.tissue)->designs.at(index);
-    const fs::path file = edited_file(design);
+    const fs::path file = edited_file(design, app.parts.copies);
     parts::EditedPart edited = parts::open_part(design);
     parts::edit(operation_for(edited.json), edited);
     keep_names(design, edited.json);

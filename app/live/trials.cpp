@@ -117,7 +117,7 @@ std::string close_trial(App& app) {
     if (app.keeper != nullptr && files) app.keeper->keep(*files, true);
     if (good) return {};
     const std::string why = words::filled(words::kCannotBeWritten, {where});
-    app.course = TrialStopped{why};
+    app.course = TrialStopped{why, app.session.trial.now_s};
     if (app.lost.empty()) app.lost = why;
     return why;
 }
@@ -137,7 +137,8 @@ void begin_anew(platform::Window& window, const Gui& gui, App& app) {
         app.course = WaitsForKeeper{};
         return;
     }
-    if (!attempt(app, [&] { begin(window, gui, app); })) app.course = TrialStopped{app.notices.problems.back()};
+    if (!attempt(app, [&] { begin(window, gui, app); }))
+        app.course = TrialStopped{app.notices.problems.back(), app.session.trial.now_s};
 }
 
 void begin_when_kept(platform::Window& window, const Gui& gui, App& app) {
@@ -249,7 +250,7 @@ void act(platform::Action action, platform::Window& window, App& app) {
     if (clock && study != nullptr) return;                // its limits are the protocol's
     if (!clock && app.session.trial.paused_at_s) return;  // nothing is done while the clock is stopped
     if (action == platform::Action::pause) end_presses(window, app);
-    if (waits_for_keeper(app)) return;  // there is no trial to act on yet
+    if (waits_for_keeper(app) || trial_stopped(app)) return;  // there is no trial to act on
     platform::Sample sample;
     sample.t_host_s = now_of(app, window);
     sample.phase = platform::Phase::ui;

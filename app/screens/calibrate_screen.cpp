@@ -217,7 +217,7 @@ GuideWishes draw_guide(calibration::Recording& recording, Gui& gui, Guide& guide
     ImGui::SetWindowFontScale(1.5f);
     std::string advice = calibration::advice(recording);
     if (!advice.empty()) advice[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(advice[0])));
-    ImGui::TextWrapped("%s", advice.c_str());
+    wrapped_text(advice);
     ImGui::SetWindowFontScale(1.0f);
     const float column_px = 26.0f * gui.mm();
     const calibration::RecordSession& session = recording.session;
@@ -240,7 +240,7 @@ GuideWishes draw_guide(calibration::Recording& recording, Gui& gui, Guide& guide
              std::to_string(health.duplicate), std::to_string(health.reordered), std::to_string(health.stalls)}));
         if (recording.silent) warning_paragraph(words::kSensorStopped);
     }
-    if (recording.knowledge.done) ImGui::TextWrapped("%s", words::kCurveKnown);
+    if (recording.knowledge.done) wrapped_text(words::kCurveKnown);
     // it is judged after each press, and not known in the middle of the first
     const bool judged = recording.known_repeats >= 0 || recording.resumed == session.points.size();
     if (judged && !recording.knowledge.done && !recording.knowledge.missing.empty())
@@ -272,7 +272,7 @@ void draw_calibrate_screen(const Shown&, Gui& gui, CalibrateForm& form, Wishes& 
     if (big_button(words::kBack, words::kEscape, {40.0f * gui.mm(), kTarget_mm, true, false}, gui)) {
         wishes.screen = Screen::trial;
     }
-    ImGui::TextWrapped("%s", words::kHowToCalibrate);
+    wrapped_text(words::kHowToCalibrate);
     form_lines(gui, form);
     if (big_button(words::kStart, "", {0.0f, kMark_mm, true, false}, gui)) {
         form.guide = {};
@@ -281,7 +281,7 @@ void draw_calibrate_screen(const Shown&, Gui& gui, CalibrateForm& form, Wishes& 
             attempt(form, [&] { form.recording = calibration::open_recording(arguments_of(form)); });
     }
     if (!form.problem.empty()) warning_paragraph(form.problem);
-    if (!form.guide.note.empty()) ImGui::TextWrapped("%s", form.guide.note.c_str());
+    if (!form.guide.note.empty()) wrapped_text(form.guide.note);
     ImGui::EndChild();
     end_panel("calibrate", gui);
 }

@@ -19,7 +19,7 @@ struct Guide {
     std::optional<calibration::Calibration> fit;  // through the points so far, without intervals
     std::size_t fitted = 0;                       // number of points that it was fitted to
     double shown_gf = 0.0;                        // reading of the scale, as typed
-    bool again = false;                           // the field for the reading has the keys in the next frame
+    bool again = true;                            // the field for the reading has the keys in the next frame
     std::string note;
 };
 

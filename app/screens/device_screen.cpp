@@ -24,7 +24,7 @@ void said_lines(const std::vector<platform::PointerDevice>& devices) {
         if (device.levels > 0) text += words::filled(words::kLevels, {std::to_string(device.levels)});
         if (device.has_tilt) text += std::string(", ") + words::kTilt;
         if (device.has_contact_size) text += std::string(", ") + words::kContactSize;
-        ImGui::TextWrapped("%s", text.c_str());
+        wrapped_text(text);
     }
     if (devices.empty()) paragraph(words::kNoDevice);
 }
@@ -111,7 +111,7 @@ void draw_verdict(const Verdict& verdict, const Gui& gui) {
     }
     ImGui::Dummy(ImVec2(1.2f * side_px, side_px));
     ImGui::SameLine();
-    ImGui::TextWrapped("%s", verdict.text.c_str());
+    wrapped_text(verdict.text);
 }
 
 void draw_test_area(const PanelArea& area, const Gui& gui, const std::vector<Dot>& dots) {

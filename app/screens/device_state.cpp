@@ -15,6 +15,9 @@ namespace {
 // What a stop means for the devices of this scene; empty if nothing is stopped.
 std::string stopped_words(const Shown& shown) {
     const bool study = study_of(shown.doing) != nullptr;
+    // the screens of the devices say it themselves
+    if (std::holds_alternative<WatchingTactile>(shown.doing) || std::holds_alternative<WatchingTangible>(shown.doing))
+        return {};
     if (shown.tactile != nullptr && shown.tactile->moment.stopped)
         return words::filled(study ? words::kStoppedInStudy : words::kStoppedBanner, {shown.tactile->moment.fault});
     if (shown.tangible == nullptr || !shown.tangible->moment.stopped) return {};

@@ -126,7 +126,7 @@ void draw_guided(const Shown& shown, const Layout& layout, Gui& gui, Wishes& wis
     begin_panel("guided", guided_area(layout, text, gui.mm(), target_y_px), gui);
     guided_title(result ? kGuidedSteps : static_cast<int>(step) + 1);
     ImGui::SetWindowFontScale(kGuidedText);
-    ImGui::TextWrapped("%s", text.c_str());
+    wrapped_text(text);
     ImGui::SetWindowFontScale(1.0f);
     if (result) {
         if (big_button(words::kStartPractice, "", {60.0f * gui.mm(), kTarget_mm, true, true}, gui))

@@ -30,7 +30,8 @@ std::vector<std::string> facts_of(const stiffnessmaps::Map& map, const stiffness
     out.push_back(missing > 0.0 ? words::filled(words::kShareMissing, {files::short_number(missing)})
                                 : words::kNoMissingData);
     out.push_back(words::filled(
-        words::kNoise, {files::short_number(1e3 * normal_noise_N(map)), std::to_string(field.isotonic_changed)}));
+        words::kNoise, {knows_noise(map) ? files::short_number(1e3 * normal_noise_N(map)) + " mN" : words::kNotKnown,
+                        std::to_string(field.isotonic_changed)}));
     out.push_back(words::filled(words::kTangential, {name_of(map.tangential)}));
     out.push_back(words::filled(words::kIndenter, {name_of(map.indenter), in_mm(map.indenter_radius_m)}));
     for (const stiffnessmaps::Nodule& nodule : map.nodules) {
@@ -249,7 +250,7 @@ void draw_map_screen(const Shown& shown, Gui& gui, MapBrowser& browser, Wishes& 
     if (!may_show_maps(shown.trial)) {
         begin_panel("map hidden", {0.0f, 0.0f, window.width, window.height}, gui);
         back_button(gui, wishes);
-        ImGui::TextWrapped("%s", words::kMapsHidden);
+        wrapped_text(words::kMapsHidden);
         end_panel("map hidden", gui);
         return;
     }
@@ -269,7 +270,7 @@ void draw_map_screen(const Shown& shown, Gui& gui, MapBrowser& browser, Wishes& 
     end_panel("map curves", gui);
     begin_panel("map facts", areas.facts, gui);
     ImGui::BeginChild("facts", ImVec2(0.0f, 0.0f), false, ImGuiWindowFlags_NavFlattened);
-    if (browser.map.n_cells() > 0) ImGui::TextWrapped("%s", browser.map.name.c_str());
+    if (browser.map.n_cells() > 0) wrapped_text(browser.map.name);
     for (const std::string& fact : browser.facts) paragraph(fact);
     ImGui::EndChild();
     end_panel("map facts", gui);

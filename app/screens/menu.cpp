@@ -129,8 +129,9 @@ void experimenter_page(const Shown& shown, const Gui& gui, ViewState& view, Wish
         big_button(words::kTangible, words::kKeyTangible, {0.0f, kTarget_mm, soft, false, words::kHintTangible}, gui))
         wishes.screen = Screen::tangible;
     if (big_button(words::kParts, words::kKeyParts, {0.0f, kTarget_mm, true, shows_parts(shown), words::kHintParts},
-                   gui))
-        wishes.scene = parts_scene();
+                   gui)) {
+        if (!shows_parts(shown)) wishes.scene = parts_scene();
+    }
     if (big_button(words::kPerformance, words::kKeyCost, {0.0f, kTarget_mm, true, view.cost, words::kHintPerformance},
                    gui))
         view.cost = !view.cost;
@@ -259,7 +260,7 @@ void draw_cost(const Shown& shown, const Layout& layout, Gui& gui) {
         stage_rows(shown, shown.plan.frame_stages);
         ImGui::EndTable();
     }
-    ImGui::TextWrapped("%s", text.c_str());
+    wrapped_text(text);
     end_panel("cost", gui);
 }
 
@@ -294,7 +295,7 @@ void take_keys(const Shown& shown, const Gui& gui, ViewState& view, Wishes& wish
     if (gui.pressed('g') && !shown.notices.keeps_trials) wishes.screen = Screen::tangible;
     if (gui.pressed('y')) wishes.studies = true;
     menu_keys(shown, gui, wishes);
-    if (gui.pressed('e')) wishes.scene = parts_scene();
+    if (gui.pressed('e') && !parts) wishes.scene = parts_scene();  // there it would throw the edits away
     if (gui.pressed('x') && shown.scene.cues.side_view) wishes.side_view = !shown.settings.side_view;
     if (gui.pressed('c')) view.cost = !view.cost;
     if (gui.pressed('d')) wishes.screen = Screen::devices;

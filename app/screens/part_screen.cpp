@@ -105,7 +105,9 @@ void draw_design_numbers(const Shown& shown, const PartTissue& tissue, const Par
         if (design.button) paragraph(work.button[i].on ? words::kButtonOn : words::kButtonOff);
     }
     const bool air = shown.state.touch.down && !work.touching;
-    ImGui::TextColored(ImVec4(1.0f, 0.84f, 0.35f, 1.0f), "%s", air ? words::kPressesAir : "");
+    ImGui::PushStyleColor(ImGuiCol_Text, ImVec4(1.0f, 0.84f, 0.35f, 1.0f));
+    wrapped_text(air ? words::kPressesAir : "");
+    ImGui::PopStyleColor();
 }
 
 // Stiffness by every method at the named load, its difference to the finite cells, and where it stands.
@@ -123,7 +125,7 @@ void draw_methods(const PartTissue& tissue, const PartWork& work) {
             if (cells && m + 1 < tissue.methods.size())
                 line += " (" + fixed(100.0 * (stiffness(m) / stiffness(tissue.methods.size() - 1) - 1.0), 0) + " %)";
         }
-        ImGui::TextWrapped("%s N/mm", line.c_str());
+        wrapped_text(line + " N/mm");
     }
 }
 
@@ -183,7 +185,9 @@ void take_stroke(const Shown& shown, const Layout& layout, Gui& gui, PartView& v
     gui.claim(area);
     const ImGuiIO& io = ImGui::GetIO();
     const bool inside = area.holds(io.MousePos.x, io.MousePos.y);
-    const bool begins = ImGui::IsMouseClicked(0) && inside && !ImGui::IsAnyItemHovered();
+    // A pen that comes straight from a button finds that one still hovered in the frame of its touch: then it begins in the next.
+    const bool on_item = ImGui::IsAnyItemHovered() || ImGui::IsAnyItemActive();
+    const bool begins = io.MouseDown[0] && area.holds(io.MouseClickedPos[0].x, io.MouseClickedPos[0].y) && !on_item;
     if (io.MouseDown[0] && (begins || !view.stroke_m.empty()) && inside && view.stroke_m.size() < kMostStroke) {
         const Eigen::Vector2d p_m = scene::tissue_of_px(
             shown.state.view, {static_cast<double>(io.MousePos.x), static_cast<double>(io.MousePos.y)});
@@ -260,7 +264,8 @@ void draw_part_panel(const Shown& shown, const Layout& layout, Gui& gui, ViewSta
     const float left_px = ImGui::GetCursorPosX();
     draw_force_bar(shown, 30.0f * gui.mm(), gui);
     ImGui::SameLine();
-    ImGui::SetCursorPosX(left_px + 24.0f * gui.mm());
+    const float bar_px = 10.0f * gui.mm() + ImGui::CalcTextSize(words::kMedium).x;  // with the names of its zones
+    ImGui::SetCursorPosX(left_px + std::max(24.0f * gui.mm(), bar_px + 2.0f * gui.mm()));
     ImGui::BeginGroup();
     draw_design_numbers(shown, tissue, work);
     ImGui::EndGroup();

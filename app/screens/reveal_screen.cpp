@@ -104,7 +104,7 @@ void gap_before_results(const Gui& gui) {
 void result_lines(const Shown& shown, const Reviewing& reviewing, const Gui& gui) {
     const session::Debrief& debrief = reviewing.debrief;
     if (!reviewing.advice.empty()) {
-        ImGui::TextWrapped("%s", reviewing.advice.c_str());
+        wrapped_text(reviewing.advice);
         gap_before_results(gui);
     }
     const study::Score& s = debrief.score;
@@ -125,7 +125,7 @@ void result_lines(const Shown& shown, const Reviewing& reviewing, const Gui& gui
         const int sure = by < 0 ? 0 : shown.trial.marks[static_cast<std::size_t>(by)].confidence;
         if (sure > 0) text += words::filled(words::kConfidenceOf, {std::to_string(sure)});
         if (debrief.depth_m[i] > 0.0) text += words::filled(words::kDownTo, {fixed(1e3 * debrief.depth_m[i], 1)});
-        ImGui::TextWrapped("%s", text.c_str());
+        wrapped_text(text);
     }
 }
 

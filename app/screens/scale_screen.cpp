@@ -90,7 +90,7 @@ int ruler_step_mm(float px_per_mm, float number_px) {
 void draw_scale_screen(const Shown& shown, Gui& gui, double& card_px_per_mm, Wishes& wishes) {
     const ImVec2 screen = ImGui::GetIO().DisplaySize;
     begin_panel("scale", {0.0f, 0.0f, screen.x, screen.y}, gui);
-    ImGui::TextWrapped("%s", words::kHoldCard);
+    wrapped_text(words::kHoldCard);
     step_buttons(gui, card_px_per_mm);
     if (!ImGui::GetIO().WantTextInput) {
         if (gui.pressed('+') || gui.pressed('=') || gui.pressed(platform::key::pad_plus)) card_px_per_mm *= 1.002;

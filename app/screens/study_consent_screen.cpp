@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "app/screens/study_widgets.h"
+#include "app/screens/widgets.h"
 
 namespace palpa::app {
 namespace {
@@ -21,7 +22,7 @@ void draw_consent(const StudyRun& run, Gui& gui, Wishes& wishes) {
     const float below_px = (2.0f * kTarget_mm + 8.0f) * gui.mm();
     ImGui::BeginChild("text", ImVec2(0.0f, ImGui::GetContentRegionAvail().y - below_px), false,
                       ImGuiWindowFlags_NavFlattened);
-    ImGui::TextWrapped("%s", run.protocol.consent.c_str());
+    wrapped_text(run.protocol.consent);
     ImGui::EndChild();
     if (wide_button(words::kAgree, '1', gui)) wishes.study = GiveConsent{true};
     if (wide_button(words::kDoNotAgree, '2', gui)) wishes.study = GiveConsent{false};
@@ -54,7 +55,7 @@ void draw_told(const step::Told& step, Gui& gui, Wishes& wishes) {
 
 void draw_feedback(const step::Feedback& step, Gui& gui, Wishes& wishes) {
     title(words::filled(words::kFoundOf, {std::to_string(step.found), std::to_string(step.nodules)}));
-    ImGui::TextWrapped("%s", words::filled(words::kFeedbackFalse, {std::to_string(step.false_positives)}).c_str());
+    wrapped_text(words::filled(words::kFeedbackFalse, {std::to_string(step.false_positives)}));
     paragraph(words::kOnlyInPractice);
     gap(gui);
     if (forward(words::kContinue, gui)) wishes.study = BeginStep{};

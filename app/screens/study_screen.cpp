@@ -122,7 +122,7 @@ void draw_anchors(const study::Item& item, float width_px) {
 }
 
 void draw_item(const study::Item& item, Gui& gui, std::string& answer) {
-    ImGui::TextWrapped("%s", item.text.c_str());
+    wrapped_text(item.text);
     if (!item.choices.empty()) return draw_choices(item.choices, 0.0f, gui, answer);
     constexpr int kMostButtons = 11;
     if (item.from && *item.to - *item.from < kMostButtons) {
@@ -137,7 +137,9 @@ void draw_item(const study::Item& item, Gui& gui, std::string& answer) {
         draw_choices(steps, button_px, gui, answer);
         return draw_anchors(item, one_line ? width_px : ImGui::GetContentRegionAvail().x);
     }
-    ImGui::SetNextItemWidth(40.0f * gui.mm());
+    constexpr float kNumber_mm = 40.0f, kWords_mm = 120.0f;
+    ImGui::SetNextItemWidth(
+        std::min((item.from ? kNumber_mm : kWords_mm) * gui.mm(), ImGui::GetContentRegionAvail().x));
     char text[120];
     std::snprintf(text, sizeof text, "%s", answer.c_str());
     const ImGuiInputTextFlags flags = item.from ? ImGuiInputTextFlags_CharsDecimal : ImGuiInputTextFlags_None;
@@ -179,10 +181,10 @@ void draw_instructions(const StudyRun& run, Gui& gui, Wishes& wishes) {
     const float below_px = (kMark_mm + kTarget_mm + 6.0f) * gui.mm() + pen_px;
     ImGui::BeginChild("text", ImVec2(0.0f, ImGui::GetContentRegionAvail().y - below_px), false,
                       ImGuiWindowFlags_NavFlattened);
-    ImGui::TextWrapped("%s", study::instructions_for(run.protocol, trial).c_str());
+    wrapped_text(study::instructions_for(run.protocol, trial));
     if (run.protocol.count_told && !due_compares(run)) {
         gap(gui);
-        ImGui::TextWrapped("%s", words::filled(words::kThereAre, {std::to_string(due_nodules(run).size())}).c_str());
+        wrapped_text(words::filled(words::kThereAre, {std::to_string(due_nodules(run).size())}));
     }
     ImGui::EndChild();
     if (run.pen != PenVerdict::not_needed) {
@@ -218,7 +220,7 @@ void draw_device(const step::Device& step, const StudyRun& run, Gui& gui, Wishes
 
 void draw_present(const StudyRun& run, Gui& gui, Wishes& wishes) {
     title(words::filled(words::kPairOf, {progress_text(run)}));
-    ImGui::TextWrapped("%s", run.interval == 0 ? words::kFeelFirst : words::kFeelSecond);
+    wrapped_text(run.interval == 0 ? words::kFeelFirst : words::kFeelSecond);
     gap(gui);
     if (forward(words::kDone, gui)) wishes.study = IntervalPresented{};
 }

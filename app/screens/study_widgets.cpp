@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "app/screens/widgets.h"
+
 namespace palpa::app {
 namespace {
 
@@ -19,7 +21,7 @@ bool forward(const char* label, const Gui& gui, bool enabled) {
 
 void title(const std::string& text) {
     ImGui::SetWindowFontScale(1.4f);
-    ImGui::TextWrapped("%s", text.c_str());
+    wrapped_text(text);
     ImGui::SetWindowFontScale(1.0f);
 }
 

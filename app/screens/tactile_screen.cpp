@@ -38,7 +38,7 @@ void draw_state(const TactileShown& tactile) {
     if (moment.stopped) return warning_paragraph(words::filled(words::kStoppedBy, {moment.fault}));
     if (*moment.fault != '\0') return warning_paragraph(words::filled(words::kRestsSince, {moment.fault}));
     if (!tactile.runs) return paragraph(words::kTactileRests);
-    ImGui::TextWrapped("%s", moment.held ? words::kHolds : words::kTactileRuns);
+    wrapped_text(moment.held ? words::kHolds : words::kTactileRuns);
 }
 
 void draw_force_lines(const TactileShown& tactile, float column_px) {

@@ -23,7 +23,7 @@ void soft_line(const char* name, const std::string& value, float column_px) {
     ImGui::TextDisabled("%s", name);
     ImGui::SameLine();
     ImGui::SetCursorPosX(left_px + column_px);
-    ImGui::TextWrapped("%s", value.c_str());
+    wrapped_text(value);
 }
 
 // The state in one sentence, with a mark in front that is not only a colour.

@@ -58,7 +58,7 @@ void draw_study_header(const Shown& shown, const StudyRun& run) {
     ImGui::Text("%s  %s", clock_text(left_s).c_str(), what);
     ImGui::SetWindowFontScale(1.0f);
     if (due_compares(run)) {
-        ImGui::TextWrapped("%s", run.interval == 0 ? words::kFirstSurface : words::kSecondSurface);
+        wrapped_text(run.interval == 0 ? words::kFirstSurface : words::kSecondSurface);
         paragraph(words::filled(words::kPairOf, {progress_text(run)}));
     } else {
         paragraph(words::filled(words::kTrialOf, {progress_text(run)}));
@@ -320,8 +320,8 @@ void draw_progress(const std::string& what, double share) {
     ImGui::SetNextWindowPos(ImVec2(0.5f * screen.x, 0.5f * screen.y), ImGuiCond_Always, ImVec2(0.5f, 0.5f));
     ImGui::SetNextWindowSize(ImVec2(std::min(0.8f * screen.x, 30.0f * ImGui::GetFontSize()), 0.0f));
     ImGui::Begin("progress", nullptr, ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoSavedSettings);
-    paragraph(what);
-    ImGui::ProgressBar(static_cast<float>(share), ImVec2(-1.0f, 0.0f));
+    paragraph(words::filled(what, {fixed(100.0 * share, 0)}));
+    ImGui::ProgressBar(static_cast<float>(share), ImVec2(-1.0f, 0.0f), "");
     ImGui::End();
 }
 

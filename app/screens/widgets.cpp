@@ -109,10 +109,38 @@ void hint_for_last(const char* text) {
     ImGui::EndTooltip();
 }
 
-void paragraph(const std::string& text) {
-    ImGui::PushTextWrapPos(0.0f);
-    ImGui::TextDisabled("%s", text.c_str());
+// Dear ImGui breaks lines behind points and commas too, and so within a number.
+std::string broken_at_spaces(const std::string& text, float width_px) {
+    const ImFont& font = *ImGui::GetFont();
+    const auto width_of = [&](const char* from, const char* to) {
+        return font.CalcTextSizeA(ImGui::GetFontSize(), FLT_MAX, 0.0f, from, to).x;
+    };
+    std::string out = text;
+    std::size_t line = 0, space = std::string::npos;
+    for (std::size_t i = 0; i <= text.size(); ++i) {
+        const bool ends = i == text.size() || text[i] == '\n';
+        if (!ends && text[i] != ' ') continue;
+        if (space != std::string::npos && width_of(&text[line], text.data() + i) > width_px) {
+            out[space] = '\n';
+            line = space + 1;
+        }
+        space = ends ? std::string::npos : i;
+        if (ends) line = i + 1;
+    }
+    return out;
+}
+
+void wrapped_text(const std::string& text) {
+    const std::string lines = broken_at_spaces(text, ImGui::GetContentRegionAvail().x);
+    ImGui::PushTextWrapPos(0.0f);  // a word that is longer than a line
+    ImGui::TextUnformatted(lines.data(), lines.data() + lines.size());
     ImGui::PopTextWrapPos();
+}
+
+void paragraph(const std::string& text) {
+    ImGui::PushStyleColor(ImGuiCol_Text, ImGui::GetStyle().Colors[ImGuiCol_TextDisabled]);
+    wrapped_text(text);
+    ImGui::PopStyleColor();
 }
 
 void one_line(std::string text) {

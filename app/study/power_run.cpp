@@ -69,6 +69,8 @@ void refuse_other_run(const fs::path& file, const files::Json& found, const file
 void open_power_folder(const files::Json& settings, PowerPlan& plan) {
     const fs::path& folder = plan.options.output;
     const fs::path file = folder / "power_run.json";
+    if (plan.options.merge && !fs::exists(file))
+        throw files::bad_input(file.string(), "", "nothing", "the parts of a power run, before --merge");
     std::error_code error;
     fs::create_directories(folder / "runs", error);
     if (error) throw std::runtime_error(folder.string() + ": cannot be made: " + error.message());

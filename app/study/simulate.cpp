@@ -59,6 +59,7 @@ struct Shared {
     std::vector<files::Json> identities;  // by condition: hashes of map and profile
     std::atomic<int> next_participant{1};
     std::atomic<int> done{0};
+    std::atomic<int> trials_begun{0};
     std::atomic<bool> stop{false};
     std::mutex mutex;
     SimulateResult result;
@@ -229,6 +230,7 @@ void run_participant(Shared& shared, int number, std::vector<std::optional<sessi
     PairAnswers pairs(shared, who);
     for (const study::PlannedTrial& trial : who.trials) {
         if (shared.stop) return;
+        ++shared.trials_begun;
         const bool pair = study::compares(study::task_of(shared.protocol, trial.condition));
         const auto cast_of = shared.protocol.conditions[trial.condition].cast_of;
         const std::size_t tissue = cast_of.value_or(trial.condition);
@@ -287,24 +289,25 @@ void add_everybody(const study::Protocol& protocol, const SimulateOptions& optio
 SimulateResult simulate_study(const study::Protocol& protocol, const SimulateOptions& options) {
     const double began_s = files::steady_s();
     const StudyScenes scenes = load_study_scenes(protocol);
-    Shared shared{protocol, options, scenes, {}, {}, {}, {}, {}, {}, {}, {}};
+    Shared shared{protocol, options, scenes, {}, {}, {}, {}, {}, {}, {}, {}, {}};
     shared.next_participant = 1;
     shared.identities = identities_of(scenes);
     std::error_code error;  // open_study says why a folder cannot be made
     std::optional<files::FolderLock> lock;
     std::filesystem::create_directories(options.output, error);
     if (!error) lock.emplace(options.output, study::kOtherWriter);
-    study::open_study(options.output, protocol, {true, options.seed, "palpa " PALPA_VERSION});
+    study::open_study(options.output, protocol, {true, options.seed, "palpa " PALPA_VERSION, options.rate_Hz});
     add_everybody(protocol, options);
     std::vector<std::thread> workers;
     for (int i = 0; i < options.jobs; ++i) workers.emplace_back([&] { work(shared); });
+    const auto trials = static_cast<double>(study::plan_participant(protocol, 1).trials.size()) * options.participants;
     std::thread teller([&] {
         files::ProgressLine line;
         while (!shared.stop && shared.done < options.participants) {
             std::this_thread::sleep_for(std::chrono::milliseconds(50));
-            const int done = shared.done;
-            line.show(std::to_string(done) + " of " + std::to_string(options.participants) + " participants",
-                      static_cast<double>(done) / options.participants);
+            const int begun = shared.trials_begun;
+            line.show(std::to_string(shared.done) + " of " + std::to_string(options.participants) + " participants",
+                      static_cast<double>(begun) / trials);
         }
     });
     for (std::thread& worker : workers) worker.join();

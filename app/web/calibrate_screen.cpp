@@ -16,7 +16,7 @@ void draw_calibrate_screen(const Shown& shown, Gui& gui, CalibrateForm&, Wishes&
     if (big_button(words::kBack, words::kEscape, {40.0f * gui.mm(), kTarget_mm, true, false}, gui)) {
         wishes.screen = Screen::trial;
     }
-    ImGui::TextWrapped("%s", words::kCalibratedOnDesk);
+    wrapped_text(words::kCalibratedOnDesk);
     paragraph(words::kHowOnDesk);
     paragraph(words::filled(words::kCurrentProfile, {shown.plan.profile.id}));
     end_panel("calibrate", gui);

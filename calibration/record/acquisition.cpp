@@ -156,6 +156,7 @@ files::Json result_of(const Recording& recording) {
                      {"missing", knowledge.missing},
                      {"relative_half_interval", knowledge.band_error},
                      {"samples", recording.samples},
+                     {"below_zero", recording.session.below_zero},
                      {"file", points_file(recording.arguments).string()}};
     if (recording.sensor) {
         json["sensor"] = {{"name", recording.sensor->name()},
@@ -164,6 +165,33 @@ files::Json result_of(const Recording& recording) {
         json["sensor"]["zero_N"] = recording.session.zero_N;
     }
     return json;
+}
+
+// What makes numbers into newtons and levels.
+files::Json units_of(const RecordArguments& arguments) {
+    files::Json json{{"sensor", arguments.sensor.substr(0, arguments.sensor.find(':'))},
+                     {"level", name_of(arguments.level.level)}};
+    if (json["sensor"] == "netft") json.update({{"counts_per_N", arguments.counts_per_N}, {"axis", arguments.axis}});
+    if (json["sensor"] == "serial") json["N_per_count"] = arguments.N_per_count;
+    if (json["sensor"] == "typed") json["newton"] = arguments.newton;
+    if (arguments.level.level == LevelField::contact_area)
+        json["full_contact_area_px2"] = arguments.level.full_contact_area_px2;
+    return json;
+}
+
+// One file holds points of one kind. Sessions of earlier versions did not say theirs.
+void keep_units(const RecordArguments& arguments) {
+    const auto file = std::filesystem::path(arguments.folder) / "session.json";
+    const files::Json wanted = units_of(arguments);
+    if (!arguments.resume || !std::filesystem::exists(file))
+        return files::write_text_atomically(file, files::json_text(wanted));
+    const files::Json found = files::read_json(file);
+    for (const auto& [key, value] : wanted.items()) {
+        const files::Json there = found.is_object() ? found.value(key, files::Json()) : files::Json();
+        if (there != value)
+            throw files::bad_input(file.string(), key, there.dump() + " in the session that is to be resumed",
+                                   "the same, not " + value.dump());
+    }
 }
 
 // Opens the session of the folder. An earlier one stays as it is unless it is resumed.
@@ -227,6 +255,7 @@ std::unique_ptr<Recording> open_recording(const RecordArguments& arguments) {
     if (std::filesystem::is_directory(arguments.folder))
         recording->lock.emplace(arguments.folder, "another recording into it");
     open_session(arguments, recording->session);
+    keep_units(arguments);
     recording->resumed = recording->zero_at = recording->session.points.size();
     recording->knowledge = knowledge_of(arguments.options, recording->session.points);
     recording->raw.emplace(arguments.folder);
@@ -268,6 +297,7 @@ std::string advice(const Recording& recording) {
     if (recording.silent) return "the sensor is silent";
     if (recording.invalid) return "the sensor is overloaded";
     if (recording.sensor && std::isnan(recording.session.zero_N)) return "do not touch (zero)";
+    if (recording.session.below_zero > 0 && recording.session.points.empty()) return "the force falls: wrong sign";
     const int band = target_band(options, recording.session, recording.knowledge.band_error);
     if (band < 0) return "lift the pen";
     return "press to " + files::short_number(100.0 * band / options.bands) + " - " +

@@ -286,6 +286,8 @@ void generate_map(const GenerateOptions& options) {
     if (options.window) return compute_window(task, *options.window);
     if (!options.check || !fs::exists(options.output)) {
         files::check_new(options.output);
+        if (options.merge && !fs::exists(task.folder))
+            throw files::bad_input(task.folder.string(), "", "nothing", "the pieces of the parts, before --merge");
         fs::create_directories(task.folder);
         if (options.part) return compute_part(task, *options.part);
         if (!options.merge) compute_with_jobs(options, task);

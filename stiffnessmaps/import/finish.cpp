@@ -225,8 +225,12 @@ void finish_map(Map& map, const RecordedPoints& recorded, bool measured_tangenti
     if (options.fill) map.filled_normal_N = filled_forces(map);
     add_choice(map.source, "filled", options.fill ? "neighbours" : "none",
                "gaps stay gaps in normal_N.npy; filled_normal_N.npy beside it has none", "--no-fill");
-    map.noise_N = estimated_noise_N(map);
-    add_choice(map.source, "noise_N", *map.noise_N, "second differences along x and y", "");
+    if (knows_noise(map)) {
+        map.noise_N = estimated_noise_N(map);
+        add_choice(map.source, "noise_N", *map.noise_N, "second differences along x and y", "");
+    } else {
+        add_choice(map.source, "noise_N", "not known", "too few neighbours for second differences along x and y", "");
+    }
     add_choice(map.source, "over_depth", "isotonic at look-up", "the raw forces are kept in the map", "");
     add_choice(map.source, "indenter_radius_mm", choice_mm(options.indenter_radius_m), "recordings do not say",
                "--indenter-radius-mm");

@@ -73,6 +73,15 @@ TEST_CASE("record: nothing is captured without a sensor, without touch, or on th
     CHECK_FALSE(capture(options, 3.4, session));
 }
 
+TEST_CASE("record: a force of the wrong sign is counted, and makes no point") {
+    RecordOptions options;
+    RecordSession session;
+    std::mt19937_64 random(1);
+    press(options, {0.2, 0.5, 0.9}, 10.0, -1.0, random, session);
+    CHECK(session.points.empty());
+    CHECK(session.below_zero > 0);
+}
+
 TEST_CASE("record: the zero is 0.4 s of rest, not a hand that already leans on the sensor") {
     RecordOptions options;
     RecordSession session;

@@ -36,6 +36,7 @@ TEST_CASE("PRESS: a time that goes back or stands still is refused with its line
     CHECK(contains(said_about(head + "0.5\t0\t0\t1\n"), "t_s"));
     CHECK(contains(said_about(head + "1\t0\t0\t1\n"), "after that of the row above"));
     CHECK(said_about(head + "1.0001\t0\t0\t1\n").empty());
+    CHECK(contains(said_about(head + "1e17\t0\t0\t1\n"), "line 4"));  // more steps than a counter holds
 }
 
 TEST_CASE("PRESS: missing and unknown columns, missing values, no rows") {

@@ -67,7 +67,7 @@ struct Bench {
     }
 
     // `palpa tangible run` for so many seconds; its JSON goes to out.json.
-    pid_t start(int seconds) const {
+    pid_t start(int seconds, bool logs = false) const {
         const std::string scene = (folder / "scene.json").string(), out = (folder / "out.json").string();
         const std::string motors = "motors=" + (folder / "motors").string();
         const std::string sensor = "sensor=" + (folder / "sensor").string(), length = std::to_string(seconds);
@@ -75,8 +75,9 @@ struct Bench {
         if (program != 0) return program;
         const int file = ::open(out.c_str(), O_CREAT | O_WRONLY | O_TRUNC, 0600);
         ::dup2(file, STDOUT_FILENO);
+        const std::string log = (folder / "log").string();
         ::execl(PALPA_PROGRAM, "palpa", "tangible", "run", scene.c_str(), "--port", motors.c_str(), "--port",
-                sensor.c_str(), "--seconds", length.c_str(), "--json", nullptr);
+                sensor.c_str(), "--seconds", length.c_str(), "--json", logs ? "--log" : nullptr, log.c_str(), nullptr);
         ::_exit(127);
     }
 
@@ -139,6 +140,20 @@ TEST_CASE("plant: the strip renders a spring over its wires, and is relaxed afte
         CHECK(greatest_N < 0.8);
         return;
     }
+}
+
+TEST_CASE("plant: Ctrl-C ends a run with its report and a whole log") {
+    Bench bench;
+    const pid_t program = bench.start(60, true);
+    CHECK(within(30.0, [&] { return bench.pressed() || bench.relaxed(); }));
+    ::kill(program, SIGINT);
+    int status = -1;
+    ::waitpid(program, &status, 0);
+    CHECK(status == 0);
+    const files::Json report = files::read_json(bench.folder / "out.json");
+    const std::string ticks = files::read_text(bench.folder / "log/ticks.tsv");
+    CHECK(std::count(ticks.begin(), ticks.end(), '\n') == report["ticks"].get<int>() + 1);
+    CHECK(files::read_json(bench.folder / "log/performance.json") == report);
 }
 
 TEST_CASE("plant: unplugged, garbage, SIGKILL: relaxed each time, and never a command out of range") {

@@ -10,6 +10,21 @@ using namespace palpa;
 using namespace palpa::files;
 using namespace palpa::test;
 
+namespace {
+
+template <class Do>
+void with_files_of_at_most(rlim_t bytes, const Do& act) {
+    rlimit before{};
+    getrlimit(RLIMIT_FSIZE, &before);
+    std::signal(SIGXFSZ, SIG_IGN);
+    const rlimit small{bytes, before.rlim_max};
+    setrlimit(RLIMIT_FSIZE, &small);
+    act();
+    setrlimit(RLIMIT_FSIZE, &before);
+}
+
+}  // namespace
+
 TEST_CASE("append file: rows arrive in order, an existing file is never touched") {
     const TemporaryFolder folder;
     {
@@ -27,14 +42,21 @@ TEST_CASE("append file: rows arrive in order, an existing file is never touched"
 TEST_CASE("append file: a disk that takes no more is said, and stays said") {
     const TemporaryFolder folder;
     AppendFile file(folder / "log");
-    rlimit before{};
-    getrlimit(RLIMIT_FSIZE, &before);
-    std::signal(SIGXFSZ, SIG_IGN);
-    const rlimit small{4096, before.rlim_max};
-    setrlimit(RLIMIT_FSIZE, &small);
-    file.append(std::string(10000, 'x'));
-    CHECK_FALSE(file.sync());
-    setrlimit(RLIMIT_FSIZE, &before);
+    with_files_of_at_most(4096, [&] {
+        file.append(std::string(10000, 'x'));
+        CHECK_FALSE(file.sync());
+    });
     CHECK(file.failed());
     CHECK_FALSE(file.flush());
+}
+
+TEST_CASE("append file: a line that the disk does not take leaves the file as it was") {
+    const TemporaryFolder folder;
+    append_synced(folder / "table", "head\n");
+    with_files_of_at_most(8, [&] {
+        CHECK_THROWS_AS(append_synced(folder / "table", "one line\n"), std::runtime_error);
+        CHECK_THROWS_AS(append_synced(folder / "new", "a long line\n"), std::runtime_error);
+    });
+    CHECK(read_text(folder / "table") == "head\n");
+    CHECK_FALSE(std::filesystem::exists(folder / "new"));
 }

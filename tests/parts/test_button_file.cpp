@@ -73,6 +73,9 @@ TEST_CASE("button file: off after on, a cap not smaller than the cover and other
     json["button"]["off_mm"] = 1.5;
     CHECK(contains(refused_button(json), "button.off_mm"));
     CHECK(contains(refused_button(json), "off before on"));
+    json["button"].erase("off_mm");
+    json["button"]["travel_mm"] = 1000;  // a table of 1,025 travels would not see the snap
+    CHECK(contains(refused_button(json), "button.travel_mm"));
     json = button_part();
     json["button"]["cover"]["cap_radius_mm"] = 6;
     CHECK(contains(refused_button(json), "button.cover.cap_radius_mm"));

@@ -79,6 +79,9 @@ TEST_CASE("part stiffness: each method says when it does not apply") {
     const auto bent = stiffness_of(part, part.loads[0], {kAll, {}, 1e-3});
     CHECK(test::contains(bent[1].why_not, "degrees"));
     CHECK(test::contains(bent[2].why_not, "strains"));
+    part.loads[0].force_N = 1.0;
+    const auto coarse = stiffness_of(part, part.loads[0], {{Method::voxels}, 2e-3, 1e-3});
+    CHECK(test::contains(coarse[0].why_not, "one cell across"));
     part.axis.reset();
     CHECK_FALSE(stiffness_of(part, part.loads[0], {kAll, {}, 1e-3})[0].answered);
     part.axis = 2;

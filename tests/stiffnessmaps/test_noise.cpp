@@ -47,6 +47,8 @@ TEST_CASE("noise: none in a smooth map, none to estimate in a tiny one") {
     CHECK(normal_noise_N(map_of(30, 30, kPaperDepths_m, [](double x, double y, double d) { return 300 * d + x + y; })) <
           1e-6);
     CHECK(normal_noise_N(map_of(2, 2, kPaperDepths_m, [](double, double, double d) { return d; })) == 0.0);
+    CHECK_FALSE(knows_noise(map_of(2, 2, kPaperDepths_m, [](double, double, double d) { return d; })));
+    CHECK(knows_noise(map_of(4, 4, kPaperDepths_m, [](double, double, double d) { return d; })));
     CHECK(smoothing_sigma_m(Map{}, 0.0, 3e-4, 2e-3) == 0.0);
 }
 

@@ -52,6 +52,13 @@ TEST_CASE("exclusions: a trial or a participant is left out and reported, and no
     const Protocol protocol = study_by_hand(log);
     for (const char* code : {"01", "02", "03"}) take_part(log, protocol, code, 2);
     CHECK(read_study(log).trials.size() == 6);
+    write_text_atomically(log / "exclusions.tsv", "");  // of a disk that was full
+    CHECK(contains(message_of([&] {
+                       add_exclusion(log, {"01", 2,
+                                           "m\xfc"
+                                           "de"});
+                   }),
+                   "UTF-8"));
     add_exclusion(log, {"01", 2, "fire \"alarm\"\t"});
     add_exclusion(log, {"02", std::nullopt, "did not understand the task"});
     const Observations seen = read_study(log);

@@ -51,6 +51,12 @@ TEST_CASE("power: rejections and coverage are counted by effect and number of pa
     CHECK(many.coverage.hits == 0);
 }
 
+TEST_CASE("power: a label of one study stands by the row, whichever study comes first") {
+    PowerRow labelled = row(0.0, 5, 0.2, 0.1, 0.0, 0.2);
+    labelled.finding.label = "ignores clustering";
+    CHECK(summarise_power({row(0.0, 5, 0.2, 0.1, 0.0, 0.2), labelled}, 2, 0.05)[0].what.label == "ignores clustering");
+}
+
 TEST_CASE("power: log odds have no true value where there is an effect") {
     PowerRow one = row(1.0, 5, 0.01, 0.5, 0.1, 0.9);
     one.finding.quantity = "log odds";

@@ -93,6 +93,11 @@ TEST_CASE("study folder: made once, gone on with, refused to another version or 
                        open_study(folder / "log", protocol, {true, 3, "palpa"});
                    }),
                    "found people, expected simulated participants of seed 3"));
+    open_study(folder / "simulated", protocol, {true, 3, "palpa", 60.0});
+    CHECK(contains(message_of([&] {
+                       open_study(folder / "simulated", protocol, {true, 3, "palpa", 2000.0});
+                   }),
+                   "simulation_rate_Hz: found 60, expected 2000"));
     fs::create_directories(folder / "other/sub-01");
     CHECK(
         contains(message_of([&] { open_study(folder / "other", protocol, {}); }), "logs (sub-...) but no study.json"));

@@ -62,6 +62,8 @@ TEST_CASE("command line: a command that is mistyped is named, with those that ar
     const Called top = palpa_with("tangibel info strip");
     CHECK(top.status == 2);
     CHECK(contains(top.err, "palpa: found 'tangibel', expected a scene, a map or a command: run, explain, "));
+    CHECK(contains(palpa_with("fem-solve x").err, "palpa: found 'fem-solve', expected a scene"));
+    CHECK(contains(palpa_with("part.info x").err, "palpa: found 'part.info', expected a scene"));
     const Called below = palpa_with("maps inof x.map");
     CHECK(below.status == 2);
     CHECK(contains(below.err, "palpa: maps: found 'inof', expected info, "));

@@ -89,6 +89,10 @@ TEST_CASE("record: killed in the middle, all that was captured is there, and it 
     // the cell is unplugged and comes back meanwhile; each run needs one lift (4 s at most) for its zero
     for (int i = 0; i < 100 && !std::filesystem::exists(sensor.port()); ++i)
         std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    const Called other = shell(kRecord + "-o " + session + " --sensor serial:" + sensor.port() +
+                               " --N-per-count 1e-3 --levels /dev/null --resume");
+    CHECK(other.status == 2);
+    CHECK(contains(other.err, "session.json: N_per_count"));
     const Called resumed = shell(kPen + "--seconds 12 | " + kRecord + "-o " + session + serial + "--resume --json");
     CAPTURE(resumed.err);
     REQUIRE(resumed.status == 0);
