@@ -36,7 +36,8 @@ inline constexpr std::int64_t kMostCells = 4'000'000;
 //
 // m: materials in the cell; G_a: mean of grad N_a over all that is filled. The integrands are polynomials, and the runs
 // are boxes, so that all integrals are exact: a full cell of one material has the matrix of hex8_bbar to round-off. To a
-// cell that is not full, kSoftFill of the full cell is added.
+// cell that is not full, kSoftFill of the full cell is added. In a cell of several materials the layers across the axis along
+// which it varies most stretch and shear each by its own material, by three displacements of its own that are condensed out.
 // Source: Parvizian, Duester, Rank, "Finite cell method", Computational Mechanics 41 (2007), 121-133, sections 2 and 3;
 //         the mean dilatation over the filled part is ours, as are the exact integrals instead of sample points.
 // materials: by position, as the runs name them. Throws MaterialError as check_materials() does and for a run whose

@@ -8,6 +8,7 @@
 
 #include "files/input_error.h"
 #include "files/table.h"
+#include "files/text.h"
 
 namespace palpa::tangible {
 namespace {
@@ -234,7 +235,7 @@ FitResult fit_presses(const SoftDevice& device, const std::vector<RecordedTick>&
         A.diagonal().array() += 1e-12;
         Parameters step = -A.ldlt().solve(J.transpose() * misfit.off_N);
         if (!step.allFinite()) break;
-        const Parameters longest(0.3, 0.1, 0.5, 0.6);
+        const Parameters longest(0.3, 0.1, 0.5, 0.3);
         const Parameters before = p;
         p += step.cwiseMax(-longest).cwiseMin(longest);
         p(1) = std::clamp(p(1), 0.0, 0.5);

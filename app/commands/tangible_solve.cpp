@@ -30,6 +30,7 @@ struct SolvedPress {
     tangible::InverseAnswer answer;
     int iterations = 0;
     double time_us = 0.0;
+    bool given_up = false;  // no equilibrium in several ticks, one after the other
 };
 
 // Presses in 60 ticks from the pretension to the wanted depth and force, as a loop would come there, and then holds
@@ -45,10 +46,10 @@ SolvedPress solve_press(const tangible::DeviceModel& model, const TangibleSolveO
     SolvedPress out;
     constexpr int kTicks = 60;
     constexpr int kMostTicks = 400;
-    constexpr int kPatience = 3;  // ticks without an equilibrium, each of which takes a second
+    constexpr int kPatience = 20;  // ticks without an equilibrium
     int vain = 0;
     files::ProgressLine line;
-    for (int tick = 1; tick <= kMostTicks && vain < kPatience; ++tick) {
+    for (int tick = 1; tick <= kMostTicks && !out.given_up; ++tick) {
         line.show("pressing on " + model.device.name, static_cast<double>(tick) / kMostTicks);
         const double share = std::min(1.0, static_cast<double>(tick) / kTicks);
         // what opposes itself would only creep to its place
@@ -61,6 +62,7 @@ SolvedPress solve_press(const tangible::DeviceModel& model, const TangibleSolveO
         const bool found =
             out.answer.status == tangible::DeviceStatus::good || out.answer.status == tangible::DeviceStatus::unstable;
         vain = found ? 0 : vain + 1;
+        out.given_up = vain >= kPatience;
         double change = 0.0;
         for (int j = 0; j < model.n_actuators(); ++j) {
             const auto at = static_cast<std::size_t>(j);
@@ -150,8 +152,7 @@ void run_solve(const TangibleSolveOptions& options) {
         std::fputs(files::json_text(json).c_str(), stdout);
     else
         print_solve(model, options, json, solved);
-    if (solved.answer.status == tangible::DeviceStatus::no_equilibrium ||
-        solved.answer.status == tangible::DeviceStatus::slow)
+    if (solved.answer.status == tangible::DeviceStatus::no_equilibrium || solved.given_up)
         throw std::runtime_error(model.device.name + ": no equilibrium was found at this depth and force");
 }
 

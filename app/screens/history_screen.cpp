@@ -24,11 +24,6 @@ std::string when_of(const KeptTrial& trial) {
     return trial.utc.size() < 16 ? trial.utc : trial.utc.substr(0, 10) + " " + trial.utc.substr(11, 5);
 }
 
-std::string found_text(const KeptTrial& trial) {
-    return words::filled(words::kHistoryFound, {std::to_string(trial.found), std::to_string(trial.nodules.size()),
-                                                std::to_string(trial.false_positives)});
-}
-
 const char* mode_word(const KeptTrial& trial) {
     return trial.mode == session::TrialMode::test ? words::kTest : words::kPractice;
 }
@@ -181,6 +176,12 @@ void replay_controls(const Gui& gui, const KeptTrial& trial, HistoryView& histor
 }
 
 }  // namespace
+
+std::string found_text(const KeptTrial& trial) {
+    if (trial.nodules.empty()) return words::filled(words::kHistoryNone, {std::to_string(trial.false_positives)});
+    return words::filled(words::kHistoryFound, {std::to_string(trial.found), std::to_string(trial.nodules.size()),
+                                                std::to_string(trial.false_positives)});
+}
 
 std::shared_ptr<HistoryView> make_history_view(const std::filesystem::path& folder) {
     auto history = std::make_shared<HistoryView>();

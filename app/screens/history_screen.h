@@ -27,6 +27,9 @@ std::shared_ptr<HistoryView> make_history_view(const std::filesystem::path& fold
 // Chooses a trial and replays its path.
 void choose_trial(std::size_t index, HistoryView& history);
 
+// What was found, in words; in a tissue without nodules there is nothing to find.
+std::string found_text(const session::KeptTrial& trial);
+
 // Moves the replay on by the time between frames; the whole path takes at most some seconds.
 void play_on(double dt_s, HistoryView& history);
 

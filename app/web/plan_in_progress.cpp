@@ -4,12 +4,12 @@
 #include "session/plan_in_progress.h"
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <exception>
 #include <optional>
 
 #include "files/input_error.h"
-#include "mechanics/error.h"
 #include "scene/part_tissue.h"
 #include "scene/tissue.h"
 
@@ -24,6 +24,7 @@ constexpr std::chrono::milliseconds kOfAFrame{8};  // so much of 16 stays for th
 struct PlanInProgress::Work {
     scene::Scene scene;
     std::optional<scene::PartCells> cells;  // while they are computed
+    std::atomic<bool> cancel{false};
     std::optional<scene::Plan> plan;
     std::exception_ptr failed;
 };
@@ -52,7 +53,9 @@ bool PlanInProgress::wait(double seconds) {
             if (!work.cells->advance()) work.cells.reset();
             if (work.cells && Clock::now() >= until) return false;
         }
-        work.plan = scene::make_plan(work.scene);
+        mechanics::Progress progress;
+        progress.cancel = &work.cancel;
+        work.plan = scene::make_plan(work.scene, progress);
     } catch (...) {
         work.failed = std::current_exception();
     }
@@ -60,7 +63,8 @@ bool PlanInProgress::wait(double seconds) {
 }
 
 void PlanInProgress::cancel() {
-    work_->failed = std::make_exception_ptr(mechanics::Cancelled("the tissue was cancelled"));
+    work_->cancel = true;
+    work_->cells.reset();
 }
 
 scene::Plan PlanInProgress::take() {

@@ -55,7 +55,7 @@ TEST_CASE(
     }
     CHECK((K * moved.reshaped()).norm() < 1e-12 * K.norm());
     CHECK((K * turned.reshaped()).norm() < 1e-12 * K.norm());
-    // a uniform strain has the energy of the materials' volumes, and of the soft fill
+    // a uniform strain has at most the energy of the materials' volumes, and of the soft fill; of one material just that
     const VoxelCounts counts = count(voxels, 2);
     Voigt strain;
     strain << 1e-3, -2e-4, 3e-4, 0.0, 0.0, 0.0;
@@ -63,7 +63,45 @@ TEST_CASE(
     for (std::size_t m = 0; m < 2; ++m)
         energy_J +=
             static_cast<double>(counts.of_material[m]) / 64.0 * 0.5 * strain.dot(stress_Pa(kHardAndSoft[m], strain));
-    CHECK(0.5 * stretched.reshaped().dot(K * stretched.reshaped()) == doctest::Approx(energy_J).epsilon(1e-5));
+    const double mixed_J = 0.5 * stretched.reshaped().dot(K * stretched.reshaped());
+    CHECK(mixed_J < energy_J);
+    CHECK(mixed_J > 0.5 * energy_J);
+    const std::array<Material, 2> alike{kHardAndSoft[0], kHardAndSoft[0]};
+    const HexMatrix one = cells_of(voxels, 4, alike).stiffness_N_per_m[0];
+    const auto filled = static_cast<double>(counts.of_material[0] + counts.of_material[1]);
+    const double one_J = filled / 64.0 * 0.5 * strain.dot(stress_Pa(alike[0], strain));
+    CHECK(0.5 * stretched.reshaped().dot(one * stretched.reshaped()) == doctest::Approx(one_J).epsilon(1e-5));
+}
+
+TEST_CASE(
+    "voxel cells: layers within a cell stretch and shear one behind the other, and side by side along themselves") {
+    const std::array<Material, 2> materials{Material{8e9, 0.0}, Material{2e9, 0.0}};
+    for (int axis = 0; axis < 3; ++axis) {
+        CAPTURE(axis);
+        Voxels voxels = empty_voxels({4, 4, 4}, {0.25, {}});
+        for (int z = 0; z < 4; ++z) {  // one layer in four is soft
+            for (int y = 0; y < 4; ++y) {
+                const int material = (axis == 1 && y == 1) || (axis == 2 && z == 1) ? 1 : 0;
+                if (axis == 0)
+                    set_line(y, z, {{0, 1, 0}, {1, 2, 1}, {2, 4, 0}}, voxels);
+                else
+                    set_line(y, z, {{0, 4, material}}, voxels);
+            }
+        }
+        const VoxelCells cells = cells_of(voxels, 4, materials);
+        const HexMatrix& K = cells.stiffness_N_per_m[0];
+        const Hex corners = cube(1.0);
+        const auto energy_J = [&](int moved, int over) {  // of the displacement u_moved = x_over
+            Hex u = Hex::Zero();
+            u.row(moved) = corners.row(over);
+            return u.reshaped().dot(K * u.reshaped());
+        };
+        const int along = (axis + 1) % 3;
+        const double series_Pa = 1.0 / (0.75 / 8e9 + 0.25 / 2e9), parallel_Pa = 0.75 * 8e9 + 0.25 * 2e9;
+        CHECK(energy_J(axis, axis) == doctest::Approx(series_Pa).epsilon(1e-9));
+        CHECK(energy_J(along, axis) == doctest::Approx(0.5 * series_Pa).epsilon(1e-9));
+        CHECK(energy_J(along, along) == doctest::Approx(parallel_Pa).epsilon(1e-9));
+    }
 }
 
 TEST_CASE("voxel cells: equal patterns share a matrix, empty cells are left out") {

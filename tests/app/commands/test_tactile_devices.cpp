@@ -138,7 +138,8 @@ TEST_CASE("characterise and identify: what cannot be is refused with 2") {
     refused(scene + " --virtual-time", "--simulate");
     refused(scene + " --simulate --virtual-time --stiffness-N-per-mm 0", "0.01");
     refused("identify --simulate --virtual-time -o " + slab.file("none/c.json"), "none");
-    const std::string arm = slab.file("arm.json");  // an input is never replaced
+    const std::string arm = slab.file("my-arm.json");  // an input is never replaced
+    std::filesystem::copy_file(PALPA_SOURCE_DIR "/assets/devices/arm.json", arm);
     refused("identify --device " + arm + " --simulate --virtual-time -o " + arm, "another file");
     const SlabScene high(R"({"arm": {"impedance": "high", "device": "arm.json"}})");
     refused("characterise " + high.file("s.json") + " --simulate --virtual-time", "low");
