@@ -121,11 +121,12 @@ std::vector<BeamPiece> beam_pieces(const Voxels& voxels, std::span<const Materia
     for (std::size_t s = first; s < end; ++s) {
         const double low_m = std::max(from_m, origin_m + static_cast<double>(s) * h);
         const double high_m = std::min(to_m, origin_m + static_cast<double>(s + 1) * h);
-        if (s > first && std::ranges::equal(counts.slice(s), counts.slice(s - 1))) {
+        const std::span<const int> slice = counts.slice(s), before = s > first ? counts.slice(s - 1) : slice;
+        if (s > first && std::equal(slice.begin(), slice.end(), before.begin(), before.end())) {
             out.back().to_m = high_m;
             continue;
         }
-        const auto rows = rows_of(counts.slice(s), materials, voxels.frame.origin_m[at(force_axis)], h);
+        const auto rows = rows_of(slice, materials, voxels.frame.origin_m[at(force_axis)], h);
         if (rows.empty())
             throw MeshError(text("the part has a gap at ", 0.5 * (low_m + high_m), " m along its axis"), {});
         out.push_back({low_m, high_m, section_of(rows), rows.back().high_m - rows.front().low_m});

@@ -94,9 +94,9 @@ int voxels_per_cell(const Part& part, const std::optional<double>& cell_m) {
     if (!cell_m) return part.voxels_per_cell;
     const double n = *cell_m / part.voxels.frame.pitch_m;
     if (!(std::round(n) >= 1.0 && n < 1e4 && std::abs(n - std::round(n)) < 1e-6 * n)) {
-        throw files::bad_input(
-            part.file, "cell size", files::short_number(n) + " voxels",
-            "a whole number of voxels of " + files::short_number(1e3 * part.voxels.frame.pitch_m) + " mm");
+        throw files::bad_input(part.file, "cell size", files::short_number(n) + " voxels",
+                               "a whole number of voxels of " + files::short_number(1e3 * part.voxels.frame.pitch_m) +
+                                   " mm, fewer than 10,000");
     }
     return static_cast<int>(std::lround(n));
 }

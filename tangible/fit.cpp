@@ -122,6 +122,7 @@ std::vector<RecordedTick> used_ticks(const std::vector<RecordedTick>& ticks, std
 struct Presses {
     const std::vector<RecordedTick>& all;
     std::size_t most;
+    bool lag;
     double between_s;
 };
 
@@ -151,7 +152,7 @@ Eigen::MatrixXd slopes(const SoftDevice& device, const Presses& presses, const S
                        const Eigen::VectorXd& at_N) {
     const Parameters step(1e-3, 1e-3, 1e-2, 1e-2);
     Eigen::MatrixXd out = Eigen::MatrixXd::Zero(at_N.size(), p.size());
-    for (Eigen::Index k = 0; k < p.size(); ++k) {
+    for (Eigen::Index k = 0; k < (presses.lag ? 4 : 3); ++k) {
         Parameters there = p;
         there(k) += step(k);
         const Eigen::VectorXd there_N =
@@ -207,17 +208,17 @@ std::vector<RecordedTick> read_presses(const std::filesystem::path& tsv, const D
     return out;
 }
 
-FitResult fit_presses(const SoftDevice& device, const std::vector<RecordedTick>& all,
-                      const std::function<void(double share)>& progress, std::size_t most) {
-    std::vector<RecordedTick> ticks = used_ticks(all, most);
-    const Presses presses{all, most, between_rows_s(all)};
+FitResult fit_presses(const SoftDevice& device, const std::vector<RecordedTick>& all, const FitOptions& options) {
+    std::vector<RecordedTick> ticks = used_ticks(all, options.most);
+    const Presses presses{all, options.most, options.lag, between_rows_s(all)};
+    double left_error = 0.0;
     FitResult out;
     out.ticks = static_cast<int>(ticks.size()) - 1;
     Parameters p = Parameters::Zero();
     const bool has_sense = std::all_of(ticks.begin(), ticks.end(), [](const RecordedTick& t) { return t.has_sense; });
     Senses sense = recorded_senses(ticks);
     for (out.rounds = 1; out.rounds <= kMostRounds; ++out.rounds) {
-        if (progress) progress(static_cast<double>(out.rounds - 1) / kMostRounds);
+        if (options.progress) options.progress(static_cast<double>(out.rounds - 1) / kMostRounds);
         const DeviceModel model = model_with(device, p);
         ticks = used_ticks(presses, p(3));
         if (!has_sense) sense = modelled_senses(model, ticks, p, sense);
@@ -233,7 +234,9 @@ FitResult fit_presses(const SoftDevice& device, const std::vector<RecordedTick>&
         Eigen::Matrix4d A = J.transpose() * J;
         A.diagonal() *= 1.0 + 1e-6;
         A.diagonal().array() += 1e-12;
-        Parameters step = -A.ldlt().solve(J.transpose() * misfit.off_N);
+        const Eigen::LDLT<Eigen::Matrix4d> solver(A);
+        const Parameters step = -solver.solve(J.transpose() * misfit.off_N);
+        left_error = misfit.rms_N * std::sqrt(std::max(0.0, solver.solve(Eigen::Vector4d::Unit(3))(3)));
         if (!step.allFinite()) break;
         const Parameters longest(0.3, 0.1, 0.5, 0.3);
         const Parameters before = p;
@@ -248,7 +251,11 @@ FitResult fit_presses(const SoftDevice& device, const std::vector<RecordedTick>&
     out.fit.modulus_factor = std::exp(p(0));
     out.fit.friction_share = p(1);
     out.fit.zero_m = 1e-3 * p(2);
-    if (p(3) > kLeastLeft) out.fit.lag_s = -presses.between_s / std::log(p(3));
+    if (options.lag && p(3) > std::max(kLeastLeft, 3.0 * left_error)) {
+        const double ln = std::log(p(3));
+        out.fit.lag_s = -presses.between_s / ln;
+        out.lag_error_s = presses.between_s * left_error / (p(3) * ln * ln);
+    }
     return out;
 }
 

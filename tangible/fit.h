@@ -29,18 +29,23 @@ struct FitResult {
     DeviceFit fit;
     double rms_before_N = 0.0;  // recorded minus modelled force
     double rms_after_N = 0.0;
-    int ticks = 0;   // that were used
-    int rounds = 0;  // of the Gauss-Newton method
+    double lag_error_s = 0.0;  // standard error of the lag, if it was fitted
+    int ticks = 0;             // that were used
+    int rounds = 0;            // of the Gauss-Newton method
     bool settled = false;
 };
 
 // Fits by the Gauss-Newton method on converged equilibria of the device file's model, at most `most` ticks. The
 // friction and the lag are seen from the difference of pressing and releasing, the one by its sense and the other by its speed;
-// without cables the friction stays 0. A lag far below the time between two rows cannot be seen. Throws std::runtime_error
+// without cables the friction stays 0. The lag is fitted only if that is asked for: a sensor that is late looks like it, and
+// where the actuators hardly move it cannot be seen. One of less than three standard errors, or far below the time between
+// two rows, is taken for none. Throws std::runtime_error
 // where the presses do not tell (fewer than 20 ticks in contact, or no equilibrium at most of them).
-// `progress` is told the share done, on the way to the most rounds.
-inline constexpr std::size_t kMostFitted = 60;
-FitResult fit_presses(const SoftDevice& device, const std::vector<RecordedTick>& ticks,
-                      const std::function<void(double share)>& progress = {}, std::size_t most = kMostFitted);
+struct FitOptions {
+    bool lag = false;
+    std::size_t most = 60;
+    std::function<void(double share)> progress{};  // told the share done, on the way to the most rounds
+};
+FitResult fit_presses(const SoftDevice& device, const std::vector<RecordedTick>& ticks, const FitOptions& options = {});
 
 }  // namespace palpa::tangible

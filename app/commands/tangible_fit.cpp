@@ -21,6 +21,7 @@ struct TangibleFitArguments {
     std::string device;
     std::string presses;
     std::string output;
+    bool lag = false;
     bool json = false;
 };
 
@@ -43,13 +44,16 @@ files::Json fitted_device(const TangibleFitArguments& arguments, const tangible:
     return json;
 }
 
-tangible::FitResult fitted(const std::string& presses, const tangible::SoftDevice& device,
+tangible::FitResult fitted(const TangibleFitArguments& arguments, const tangible::SoftDevice& device,
                            const std::vector<tangible::RecordedTick>& ticks) {
     files::ProgressLine line;
+    tangible::FitOptions options;
+    options.lag = arguments.lag;
+    options.progress = [&](double share) { line.show("fitting " + device.name, share); };
     try {
-        return tangible::fit_presses(device, ticks, [&](double share) { line.show("fitting " + device.name, share); });
+        return tangible::fit_presses(device, ticks, options);
     } catch (const std::runtime_error& error) {
-        throw files::InputError(presses + ": " + error.what());
+        throw files::InputError(arguments.presses + ": " + error.what());
     }
 }
 
@@ -57,9 +61,10 @@ void fit_tangible(const TangibleFitArguments& arguments) {
     files::check_output(arguments.output, {device_file(arguments.device), arguments.presses});
     const tangible::SoftDevice device = tangible::read_soft_device(device_file(arguments.device));
     const auto ticks = tangible::read_presses(arguments.presses, tangible::make_device_model(device));
-    const tangible::FitResult result = fitted(arguments.presses, device, ticks);
+    const tangible::FitResult result = fitted(arguments, device, ticks);
     files::write_text_atomically(arguments.output, files::json_text(fitted_device(arguments, result.fit)));
     files::Json json = fit_json(result.fit);
+    json["lag_error_ms"] = 1e3 * result.lag_error_s;
     json.update({{"rms_before_N", result.rms_before_N},
                  {"rms_after_N", result.rms_after_N},
                  {"ticks", result.ticks},
@@ -70,10 +75,10 @@ void fit_tangible(const TangibleFitArguments& arguments) {
         return;
     }
     std::printf(
-        "%s: modulus %.4g of the file's, friction %.3g %% of a cable's tension, zero at %.3g mm, drives lag by %.3g "
-        "ms\n",
+        "%s: modulus %.4g of the file's, friction %.3g %% of a cable's tension, zero at %.3g mm, drives lag by %.3g ms "
+        "(standard error %.2g)\n",
         arguments.output.c_str(), result.fit.modulus_factor, 100.0 * result.fit.friction_share, 1e3 * result.fit.zero_m,
-        1e3 * result.fit.lag_s);
+        1e3 * result.fit.lag_s, 1e3 * result.lag_error_s);
     std::printf("  recorded minus modelled force: %.3g N before, %.3g N after (rms of %d rows)%s\n",
                 result.rms_before_N, result.rms_after_N, result.ticks,
                 result.settled ? "" : "; the fit did not settle");
@@ -93,6 +98,9 @@ void add_tangible_fit(CLI::App& tangible) {
             "table with time_s, depth_mm, force_N and each actuator's NAME_N or NAME_Pa, as characterise -o writes")
         ->required();
     command->add_option("-o,--output", arguments->output, "new device file NEW.json")->required();
+    command->add_flag(
+        "--lag", arguments->lag,
+        "also how far the drives lag: from a press of a tissue that stiffens, with a sensor that is not late");
     command->add_flag("--json", arguments->json, "print one JSON object on standard output");
     command->callback([arguments] { fit_tangible(*arguments); });
 }

@@ -71,7 +71,7 @@ PanelArea guided_area(const Layout& layout, const std::string& text, float mm, s
     const PanelArea& t = layout.tissue_px;
     const ImGuiStyle& style = ImGui::GetStyle();
     const float wrap_px = t.width() - 2.0f * style.WindowPadding.x;
-    const float text_px = kGuidedText * ImGui::CalcTextSize(text.c_str(), nullptr, false, wrap_px / kGuidedText).y;
+    const float text_px = kGuidedText * ImGui::CalcTextSize(broken_at_spaces(text, wrap_px / kGuidedText).c_str()).y;
     const float height_px = std::min(0.6f * t.height(), ImGui::GetFontSize() + text_px + kTarget_mm * mm +
                                                             3.0f * style.ItemSpacing.y + 2.0f * style.WindowPadding.y);
     const bool below = target_y_px && *target_y_px < 0.5f * (t.y0 + t.y1);

@@ -176,10 +176,21 @@ PartWish edit_of(const PartTissue& tissue, const PartView& view) {
     return out;
 }
 
+// Goes on with a stroke in steps of at most `apart_m`: frames may be slow, and the part is cut without gaps all the same.
+void draw_stroke_to(const Eigen::Vector2d& p_m, double apart_m, std::vector<std::array<double, 2>>& stroke_m) {
+    constexpr std::size_t kMostStroke = 2000;
+    const Eigen::Vector2d from_m = stroke_m.empty() ? p_m : Eigen::Vector2d(stroke_m.back()[0], stroke_m.back()[1]);
+    if (stroke_m.empty()) stroke_m.push_back({p_m.x(), p_m.y()});
+    const auto steps = static_cast<int>(std::floor((p_m - from_m).norm() / apart_m));
+    for (int i = 1; i <= steps && stroke_m.size() < kMostStroke; ++i) {
+        const Eigen::Vector2d at_m = from_m + (p_m - from_m) * i / steps;
+        stroke_m.push_back({at_m.x(), at_m.y()});
+    }
+}
+
 // While a tool is chosen that changes the part, the pen draws a stroke instead of pressing; the edit follows its end.
 void take_stroke(const Shown& shown, const Layout& layout, Gui& gui, PartView& view, Wishes& wishes) {
     if (view.tool == PartTool::press) return;
-    constexpr std::size_t kMostStroke = 200;
     const PanelArea& t = layout.tissue_px;
     const PanelArea area{t.x0, t.y0, t.x1, t.y1 - std::min(kPlots_mm * gui.mm(), 0.4f * t.height())};
     gui.claim(area);
@@ -188,13 +199,10 @@ void take_stroke(const Shown& shown, const Layout& layout, Gui& gui, PartView& v
     // A pen that comes straight from a button finds that one still hovered in the frame of its touch: then it begins in the next.
     const bool on_item = ImGui::IsAnyItemHovered() || ImGui::IsAnyItemActive();
     const bool begins = io.MouseDown[0] && area.holds(io.MouseClickedPos[0].x, io.MouseClickedPos[0].y) && !on_item;
-    if (io.MouseDown[0] && (begins || !view.stroke_m.empty()) && inside && view.stroke_m.size() < kMostStroke) {
+    if ((begins || !view.stroke_m.empty()) && inside) {  // also where the pen was lifted
         const Eigen::Vector2d p_m = scene::tissue_of_px(
             shown.state.view, {static_cast<double>(io.MousePos.x), static_cast<double>(io.MousePos.y)});
-        const double apart_m = 0.5e-3 * kToolRadii_mm[static_cast<std::size_t>(view.radius)];
-        const bool far = view.stroke_m.empty() ||
-                         std::hypot(p_m.x() - view.stroke_m.back()[0], p_m.y() - view.stroke_m.back()[1]) > apart_m;
-        if (far) view.stroke_m.push_back({p_m.x(), p_m.y()});
+        draw_stroke_to(p_m, 0.5e-3 * kToolRadii_mm[static_cast<std::size_t>(view.radius)], view.stroke_m);
     }
     if (io.MouseDown[0] || view.stroke_m.empty()) return;
     wishes.part = edit_of(*scene::parts_of(shown.plan.tissue), view);

@@ -499,7 +499,7 @@ inline constexpr const char* kReportsConstant = "This {} always reports the same
 inline constexpr const char* kReplayOf = "Replay of {}";
 inline constexpr const char* kNoSensorHere = "No pen or finger with a pressure sensor is connected.";
 inline constexpr const char* kCannotBeWritten =
-    "{}: cannot be written any more, so the trial has stopped (is the disk full, or the folder gone?)";
+    "{}: cannot be written any more, so the trial ends here (is the disk full, or the folder gone?)";
 inline constexpr const char* kPreparing = "Preparing the tissue: {} %";
 inline constexpr const char* kSaved = "Saved {}";
 inline constexpr const char* kDoneWith = "This trial is done with the {}.";

@@ -76,7 +76,7 @@ TEST_CASE("disk full: the trial stops in words, what was logged before is there,
     CHECK(shell("umount " + small) == 0);
     CHECK(status == 1);
     CHECK(contains(read_text(folder / "err.txt"),
-                   "cannot be written any more, so the trial has stopped (is the disk full, or the folder gone?)"));
+                   "cannot be written any more, so the trial ends here (is the disk full, or the folder gone?)"));
     CHECK(std::count(samples.begin(), samples.end(), '\n') > 100);
 }
 

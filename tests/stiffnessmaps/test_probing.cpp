@@ -66,7 +66,7 @@ TEST_CASE("probing: grid from the commanded positions, force at contact subtract
     REQUIRE(map.filled_normal_N.size() == map.normal_N.size());
     CHECK(map.filled_normal_N[4] == doctest::Approx(0.5f));
     CHECK(map.filled_normal_N[3 * 6 + 4] == doctest::Approx(2.0f));
-    CHECK(map.noise_N.has_value());
+    CHECK_FALSE(map.noise_N.has_value());  // too few neighbours to tell
     REQUIRE(choice_of(map, "grid") != nullptr);
     CHECK(std::get<std::string>(choice_of(map, "grid")->value) == "on-grid");
     CHECK(choice_of(map, "contact")->option == "--contact");
