@@ -1,6 +1,5 @@
 #include "parts/stl_file.h"
 
-#include <bit>
 #include <cctype>
 #include <cmath>
 #include <cstring>
@@ -36,8 +35,10 @@ std::vector<Triangle> parse_binary(std::string_view bytes, const std::string& fi
     for (std::size_t t = 0; t < n; ++t) {
         for (std::size_t i = 0; i < 9; ++i) {
             // the normal's 12 bytes are passed over
-            const auto value =
-                static_cast<double>(std::bit_cast<float>(uint32_at(bytes, kStlHeader + kStlTriangle * t + 12 + 4 * i)));
+            const std::uint32_t bits = uint32_at(bytes, kStlHeader + kStlTriangle * t + 12 + 4 * i);
+            float single = 0.0F;
+            std::memcpy(&single, &bits, sizeof single);  // the browser's library has no std::bit_cast
+            const auto value = static_cast<double>(single);
             if (!std::isfinite(value)) {
                 throw files::bad_input(file, "triangle " + std::to_string(t + 1), "a number that is not finite",
                                        "coordinates");

@@ -1,0 +1,45 @@
+// Parts in the browser, which has one thread: beams answer at once, and finite cells follow between the frames.
+
+import assert from 'node:assert/strict';
+import test from 'node:test';
+import {frames, pen, withPage} from './browser.mjs';
+
+const cached = (page) => page.evaluate(() => {
+    const folder = '/home/web_user/.cache/palpa';
+    return FS.analyzePath(folder).exists ? FS.readdir(folder).filter((name) => name.endsWith('.cache')).length : 0;
+});
+
+// The longest time between two frames of the page, ms, until `done`.
+const longestFrame = (page, done) => page.evaluate(async (ending) => {
+    const over = new Function(`return ${ending}`)();
+    let longest = 0;
+    let before = performance.now();
+    const began = before;
+    while (!over() && performance.now() - began < 60000) {
+        const now = await new Promise(requestAnimationFrame);
+        longest = Math.max(longest, now - before);
+        before = now;
+    }
+    return longest;
+}, done);
+
+test('parts: an edit is answered at once, and its cells are computed while the page goes on', () => withPage({}, async (browser) => {
+    const {page} = browser;
+    await page.keyboard.press('e');
+    await page.waitForFunction(() => FS.analyzePath('/home/web_user/.cache/palpa').exists, null, {timeout: 60000});
+    await frames(page, 5);
+    const before = await cached(page);
+    assert.ok(before >= 1, `${before} responses are kept`);
+    // Cut, then a stroke through the upper brush's head
+    await pen(browser, 'mouseMoved', 184, 382, 0);
+    await pen(browser, 'mousePressed', 184, 382, 0.4);
+    await pen(browser, 'mouseReleased', 184, 382, 0);
+    await frames(page, 5);
+    await pen(browser, 'mouseMoved', 1195, 352, 0);
+    await pen(browser, 'mousePressed', 1195, 352, 0.4);
+    await pen(browser, 'mouseMoved', 1205, 352, 0.4);
+    await pen(browser, 'mouseReleased', 1205, 352, 0);
+    const longest = await longestFrame(page, `() => FS.readdir('/home/web_user/.cache/palpa').filter((name) => name.endsWith('.cache')).length > ${before}`);
+    console.log(`longest frame while cells were computed: ${longest.toFixed(0)} ms`);
+    assert.ok(await cached(page) > before, 'the cells of the edited brush were computed');
+}));
