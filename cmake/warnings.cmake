@@ -41,6 +41,9 @@ endif()
 if(PALPA_SANITIZE AND NOT PALPA_FUZZ)
     set(PALPA_LITTLE -O0)
 endif()
+if(EMSCRIPTEN)  # what is loaded over a network is small instead
+    set(PALPA_LITTLE -Oz)
+endif()
 
 # DESK: sources that browsers do without.
 function(palpa_library name)

@@ -19,7 +19,7 @@ palpa_headers(Eigen3::Eigen /usr/include/eigen3)
 add_library(PkgConfig::GLES INTERFACE IMPORTED GLOBAL)  # comes with the compiler
 
 add_compile_options(-fwasm-exceptions -msimd128)
-add_link_options(-fwasm-exceptions)
+add_link_options(-fwasm-exceptions -Oz)  # the optimiser of WebAssembly goes for size
 
 set(PALPA_IMGUI_SOURCE ${PROJECT_SOURCE_DIR}/build/web-tools/imgui CACHE PATH "Sources of Dear ImGui 1.86")
 if(NOT EXISTS ${PALPA_IMGUI_SOURCE}/imgui.cpp)
