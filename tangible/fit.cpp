@@ -215,6 +215,8 @@ FitResult fit_presses(const SoftDevice& device, const std::vector<RecordedTick>&
     FitResult out;
     out.ticks = static_cast<int>(ticks.size()) - 1;
     Parameters p = Parameters::Zero();
+    const double known_lag_s = device.fit.lag_s;  // stays as it is where none is fitted
+    if (!options.lag && known_lag_s > 0.0) p(3) = std::exp(-presses.between_s / known_lag_s);
     const bool has_sense = std::all_of(ticks.begin(), ticks.end(), [](const RecordedTick& t) { return t.has_sense; });
     Senses sense = recorded_senses(ticks);
     for (out.rounds = 1; out.rounds <= kMostRounds; ++out.rounds) {
@@ -242,7 +244,7 @@ FitResult fit_presses(const SoftDevice& device, const std::vector<RecordedTick>&
         const Parameters before = p;
         p += step.cwiseMax(-longest).cwiseMin(longest);
         p(1) = std::clamp(p(1), 0.0, 0.5);
-        p(3) = std::clamp(p(3), 0.0, kMostLeft);
+        p(3) = options.lag ? std::clamp(p(3), 0.0, kMostLeft) : before(3);
         if (((p - before).cwiseAbs().array() < Eigen::Array4d(1e-4, 1e-4, 1e-3, 1e-3)).all()) {
             out.settled = true;
             break;
@@ -251,6 +253,7 @@ FitResult fit_presses(const SoftDevice& device, const std::vector<RecordedTick>&
     out.fit.modulus_factor = std::exp(p(0));
     out.fit.friction_share = p(1);
     out.fit.zero_m = 1e-3 * p(2);
+    if (!options.lag) out.fit.lag_s = known_lag_s;
     if (options.lag && p(3) > std::max(kLeastLeft, 3.0 * left_error)) {
         const double ln = std::log(p(3));
         out.fit.lag_s = -presses.between_s / ln;

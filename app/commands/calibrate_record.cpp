@@ -79,7 +79,7 @@ void record(RecordArguments& arguments) {
     if (result.contains("sensor")) std::printf("  sensor      %s\n", result["sensor"]["health"].dump().c_str());
     if (result.contains("sensor") && result["sensor"]["health"].value("received", 0) == 0)
         std::printf("  ! %s sent nothing\n", record.sensor.c_str());
-    if (result["below_zero"].get<int>() > 0)
+    if (result["points"] == 0 && result["below_zero"].get<int>() > 0)
         std::printf("  ! the force was below zero in a press: reverse the sign of %s\n",
                     record.sensor.rfind("serial:", 0) == 0 ? "--N-per-count" : "--axis");
     if (result["points"] == 0) return;  // nothing to fit yet

@@ -74,11 +74,12 @@ void fit_tangible(const TangibleFitArguments& arguments) {
         std::fputs(files::json_text(json).c_str(), stdout);
         return;
     }
-    std::printf(
-        "%s: modulus %.4g of the file's, friction %.3g %% of a cable's tension, zero at %.3g mm, drives lag by %.3g ms "
-        "(standard error %.2g)\n",
-        arguments.output.c_str(), result.fit.modulus_factor, 100.0 * result.fit.friction_share, 1e3 * result.fit.zero_m,
-        1e3 * result.fit.lag_s, 1e3 * result.lag_error_s);
+    std::printf("%s: modulus %.4g of the file's, friction %.3g %% of a cable's tension, zero at %.3g mm\n",
+                arguments.output.c_str(), result.fit.modulus_factor, 100.0 * result.fit.friction_share,
+                1e3 * result.fit.zero_m);
+    if (arguments.lag)
+        std::printf("  drives lag by %.3g ms (standard error %.2g)\n", 1e3 * result.fit.lag_s,
+                    1e3 * result.lag_error_s);
     std::printf("  recorded minus modelled force: %.3g N before, %.3g N after (rms of %d rows)%s\n",
                 result.rms_before_N, result.rms_after_N, result.ticks,
                 result.settled ? "" : "; the fit did not settle");
@@ -89,8 +90,7 @@ void fit_tangible(const TangibleFitArguments& arguments) {
 void add_tangible_fit(CLI::App& tangible) {
     auto arguments = std::make_shared<TangibleFitArguments>();
     CLI::App* command = tangible.add_subcommand(
-        "fit",
-        "Find a device's modulus, friction, zero and lag from recorded presses, and write a device file with them");
+        "fit", "Find a device's modulus, friction and zero from recorded presses, and write a device file with them");
     command->add_option("DEVICE", arguments->device, "device file, or the name of one among the assets")->required();
     command
         ->add_option(
