@@ -37,10 +37,9 @@ struct FitResult {
 
 // Fits by the Gauss-Newton method on converged equilibria of the device file's model, at most `most` ticks. The
 // friction and the lag are seen from the difference of pressing and releasing, the one by its sense and the other by its speed;
-// without cables the friction stays 0. The lag is fitted only if that is asked for, else the device's
-// own stays: a sensor that is late looks like it, and
-// where the actuators hardly move it cannot be seen. One of less than three standard errors, or far below the time between
-// two rows, is taken for none. Throws std::runtime_error
+// without cables the friction stays 0. The lag is fitted only if that is asked for, and else the device's own stays: a sensor
+// that is late looks like a lag, and where the actuators hardly move none can be seen. One of less than three standard
+// errors, or far below the time between two rows, is taken for none. Throws std::runtime_error
 // where the presses do not tell (fewer than 20 ticks in contact, or no equilibrium at most of them).
 struct FitOptions {
     bool lag = false;

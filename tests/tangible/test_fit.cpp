@@ -61,6 +61,11 @@ TEST_CASE("fit: the lag of the drives is told from the speed of the press") {
     CHECK(result.fit.lag_s == doctest::Approx(0.05).epsilon(0.1));
     CHECK(result.fit.modulus_factor == doctest::Approx(1.1).epsilon(0.02));
     CHECK(result.fit.friction_share < 0.02);
+    SoftDevice known = small_strip()->device;  // the same presses, and a lag that the device's file holds
+    known.fit.lag_s = 0.05;
+    const FitResult kept = fit_presses(known, recorded(plant), {false, 24, {}});
+    CHECK(kept.fit.lag_s == 0.05);
+    CHECK(kept.fit.modulus_factor == doctest::Approx(1.1).epsilon(0.005));
 }
 
 TEST_CASE("fit: bad tables and presses that tell nothing") {
