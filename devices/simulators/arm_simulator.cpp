@@ -115,9 +115,9 @@ int main(int argc, char** argv) {
         return 1;
     }
     if (sim.truth != nullptr) std::fprintf(sim.truth, "t_host_s\tdepth_mm\thand_N\tmotor_N\n");
+    end_on_signals();  // before the line of its port: who has read that may end it
     std::printf("port %d\nsensor %d\n", port, sensor_port);
     std::fflush(stdout);
-    end_on_signals();
     platform::set_real_time(true);
 
     struct Reply {

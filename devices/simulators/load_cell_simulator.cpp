@@ -33,9 +33,9 @@ int main(int argc, char** argv) {
         std::perror("load_cell_simulator");
         return 1;
     }
+    end_on_signals();  // before the line of its port: who has read that may end it
     std::printf("port %s\n", link.empty() ? terminal.path.c_str() : link.c_str());
     std::fflush(stdout);
-    end_on_signals();
 
     Line<LoadCellLine> line(options);
     const auto send = [&](const LoadCellLine& reading) {

@@ -86,9 +86,9 @@ int main(int argc, char** argv) {
         return 1;
     }
     if (truth != nullptr) write_head(boards.device, truth);
+    end_on_signals();  // before the line of its port: who has read that may end it
     std::printf("port %s\n", link.empty() ? terminal.path.c_str() : link.c_str());
     std::fflush(stdout);
-    end_on_signals();
     platform::set_real_time(true);
 
     std::mt19937_64 random(options.seed);

@@ -51,9 +51,9 @@ int main(int argc, char** argv) {
         std::perror("netft_simulator");
         return 1;
     }
+    end_on_signals();  // before the line of its port: who has read that may end it
     std::printf("port %d\n", port);
     std::fflush(stdout);
-    end_on_signals();
 
     Line<RdtRecord> line(options);
     std::optional<sockaddr_in> owner;

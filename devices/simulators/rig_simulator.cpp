@@ -45,9 +45,9 @@ int main(int argc, char** argv) {
         const ActuatorRig rig = read_rig(files::JsonReader(json, file));
         RigWires wires(rig, options);
         TruthFile truth(truth_path);
+        end_on_signals();  // before the line of its port: who has read that may end it
         std::printf("port %s\n", wires.ports().c_str());
         std::fflush(stdout);
-        end_on_signals();
         platform::set_real_time(true);
         constexpr double kTruth_s = 2e-3;
         for (double truth_s = 0.0; ended == 0;) {

@@ -41,8 +41,7 @@ struct TruthRow {
     bool relaxed = false;
 };
 
-std::vector<TruthRow> truth_rows(const std::filesystem::path& file) {
-    std::string text = files::read_text(file);
+std::vector<TruthRow> truth_rows(std::string text) {
     text.resize(text.rfind('\n') == std::string::npos ? 0 : text.rfind('\n'));
     std::vector<TruthRow> rows;
     if (text.empty()) return rows;
@@ -62,6 +61,17 @@ std::vector<TruthRow> truth_rows(const std::filesystem::path& file) {
     return rows;
 }
 
+// The rows at the file's end: it grows by 500 rows a second, and the loops below look at it every few milliseconds.
+std::vector<TruthRow> last_truth_rows(const std::filesystem::path& file) {
+    std::ifstream in(file, std::ios::binary | std::ios::ate);
+    constexpr std::streamoff kEnd_bytes = 2048;
+    const std::streamoff size = in.tellg();
+    in.seekg(std::max<std::streamoff>(size - kEnd_bytes, 0));
+    std::string text(std::istreambuf_iterator<char>(in), {});
+    if (size > kEnd_bytes) text.erase(0, text.find('\n') + 1);
+    return truth_rows(text);
+}
+
 // The simulated wires of a rig, and the rig with their ports.
 struct Wires {
     explicit Wires(const std::string& kind, std::vector<std::string> more = {}) {
@@ -74,12 +84,12 @@ struct Wires {
     }
     std::filesystem::path truth() const { return folder / "truth.tsv"; }
     bool relaxed() const {
-        const auto rows = truth_rows(truth());
+        const auto rows = last_truth_rows(truth());
         return !rows.empty() && rows.back().relaxed;
     }
     // When everything was first relaxed after `from_s`; that moment, or infinity.
     double relaxed_after(double from_s) const {
-        for (const TruthRow& row : truth_rows(truth())) {
+        for (const TruthRow& row : truth_rows(files::read_text(truth()))) {
             if (row.host_s >= from_s && row.relaxed) return row.host_s - from_s;
         }
         return std::numeric_limits<double>::infinity();
@@ -122,7 +132,7 @@ bool send_until(GuardProcess& guard, std::span<const double> values,
 
 // The actuators do what they are told, to a hundredth of their ranges.
 bool arrived(const Wires& wires, std::span<const double> values) {
-    const auto rows = truth_rows(wires.truth());
+    const auto rows = last_truth_rows(wires.truth());
     if (rows.empty()) return false;
     for (std::size_t i = 0; i < values.size(); ++i) {
         const RigChannel& channel = wires.rig.channels[i];
