@@ -34,6 +34,7 @@ set title "Sensitivity by condition, with Wilson intervals at " . level . ", whi
 set output "sensitivity." . kind
 set style fill solid 0.45 border lc rgb "#000000"
 set boxwidth 0.6
+set xrange [-0.5:rows - 0.5]
 plot "sensitivity.tsv" every ::0::(rows - 1) using 0:(percent("share")):xtic(1) with boxes lc rgb "#0072B2", \
      "" every ::0::(rows - 1) using 0:(percent("share")):(percent("wilson_low")):(percent("wilson_high")) with yerrorbars lc rgb "#000000" lw 2 pt 7 ps 0.5
 

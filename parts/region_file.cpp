@@ -105,10 +105,11 @@ PathRegion read_path(files::JsonReader json) {
     if (!points.is_array() || points.empty())
         json.fail("points_mm", files::described(points), "at least one point [x, y, z]");
     for (std::size_t i = 0; i < points.size(); ++i) {
+        const std::string index = std::to_string(i);
         files::Json entry = files::Json::object();
-        entry["points_mm"] = points[i];
-        files::JsonReader reader(entry, json.file(), "point " + std::to_string(i));
-        out.points_m.push_back(read_point_m(reader, "points_mm"));
+        entry[index] = points[i];
+        files::JsonReader reader(entry, json.file(), "points_mm");
+        out.points_m.push_back(read_point_m(reader, index));
     }
     out.radius_m = 1e-3 * json.number("radius_mm", files::kPositive);
     out.flat_ends = json.has("ends") && json.choice("ends", {"round", "flat"}) == 1;

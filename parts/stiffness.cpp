@@ -89,12 +89,12 @@ void bend_beam(const Part& part, const PartLoad& load, MethodResult& out) {
     }
 }
 
-// Compares with the factorisation, or with `voxels`, whichever was asked for.
+// Compares with the factorisation, or with `voxels`, whichever was asked for and can be trusted.
 void compare_methods(std::vector<MethodResult>& results) {
     const MethodResult* best = nullptr;
     for (const MethodResult& result : results) {
-        if (result.answered && result.converged && result.method >= Method::voxels &&
-            (best == nullptr || result.method > best->method))
+        const bool good = result.answered && result.converged && result.why_not.empty();
+        if (good && result.method >= Method::voxels && (best == nullptr || result.method > best->method))
             best = &result;
     }
     for (MethodResult& result : results) {

@@ -24,8 +24,10 @@ class TrialKeeper {
     virtual std::string problem() = 0;     // why something could not be stored, for people; each problem once, then ""
     virtual std::string note() const = 0;  // what is kept, for people
     virtual void keep_settings(const std::filesystem::path& file) = 0;  // copies the file of the app's settings
-    virtual void open() = 0;                                            // shows the person all that is kept
-    virtual void open_studies() = 0;                                    // lets the person choose a study
+    virtual void keep_design(const std::filesystem::path& file) = 0;    // copies a part file that a person has changed
+    virtual void offer(const std::filesystem::path& file) = 0;  // gives the person a copy of a file, to take away
+    virtual void open() = 0;                                    // shows the person all that is kept
+    virtual void open_studies() = 0;                            // lets the person choose a study
 };
 
 }  // namespace palpa::session

@@ -45,6 +45,7 @@ using TangibleControl = DeviceControl<TangibleDriver, TangibleShown>;  // the so
 
 // Designs of parts that are being changed.
 struct PartControl {
+    bool looked = false;                             // for files of earlier edits
     std::unique_ptr<session::PlanInProgress> cells;  // the plan with finite cells, while they are computed
     scene::Scene wanted;                             // its scene
     struct Done {

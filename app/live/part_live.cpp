@@ -14,19 +14,54 @@ namespace {
 
 namespace fs = std::filesystem;
 
+fs::path edits_folder() { return user_folder().empty() ? fs::temp_directory_path() : user_folder() / "parts"; }
+
+bool is_edited(const fs::path& design) {
+    return design.parent_path() == edits_folder() && design.stem().string().find("-edited") != std::string::npos;
+}
+
+// The files of a design's edits: the last one that is there, empty if none is, and the next.
+struct EditedFiles {
+    fs::path last;
+    fs::path next;
+};
+
+EditedFiles edited_files(const fs::path& design) {
+    const std::string stem = design.stem().string() + "-edited";
+    EditedFiles out{{}, edits_folder() / (stem + ".json")};
+    for (int i = 2; fs::exists(out.next); ++i)
+        out.last = std::exchange(out.next, edits_folder() / (stem + "-" + std::to_string(i) + ".json"));
+    return out;
+}
+
 // The file that holds a design's edits since the scene was opened: a new one, since that of another day may be somebody's
 // work. A copy that is opened by itself is gone on with.
 fs::path edited_file(const fs::path& design, std::map<fs::path, fs::path>& copies) {
-    const fs::path folder = user_folder().empty() ? fs::temp_directory_path() : user_folder() / "parts";
-    const std::string stem = design.stem().string();
-    if (design.parent_path() == folder && stem.find("-edited") != std::string::npos) return design;
+    if (is_edited(design)) return design;
     auto [copy, fresh] = copies.try_emplace(design);
     if (!fresh) return copy->second;
-    fs::create_directories(folder);
-    copy->second = folder / (stem + "-edited.json");
-    for (int i = 2; fs::exists(copy->second); ++i)
-        copy->second = folder / (stem + "-edited-" + std::to_string(i) + ".json");
-    return copy->second;
+    fs::create_directories(edits_folder());
+    return copy->second = edited_files(design).next;
+}
+
+void keep_design(const fs::path& file, App& app) {
+    if (app.keeper != nullptr) app.keeper->keep_design(file);
+}
+
+// The scene as the person means it: with cells also while they are being computed.
+scene::Scene wanted_scene(const App& app) { return app.parts.cells ? app.parts.wanted : app.session.scene; }
+
+// What the screen says of the files of the designs that are shown.
+void show_files(App& app) {
+    scene::Scene scene = wanted_scene(app);
+    PartView& view = app.view.part;
+    view.in_browser = app.keeper != nullptr;
+    view.earlier = false;
+    const auto& designs = scene::part_options(scene.tissue)->designs;
+    for (std::size_t i = 0; i < designs.size(); ++i) {
+        view.kept.at(i) = is_edited(designs[i]) ? designs[i] : fs::path();
+        view.earlier |= app.parts.copies.empty() && !is_edited(designs[i]) && !edited_files(designs[i]).last.empty();
+    }
 }
 
 // Points in mm, with the third coordinate from in front of the part to behind it.
@@ -84,9 +119,6 @@ void show_designs(const scene::Scene& wanted, platform::Window& window, const Gu
     app.parts.cells = std::make_unique<session::PlanInProgress>(wanted);
 }
 
-// The scene as the person means it: with cells also while they are being computed.
-scene::Scene wanted_scene(const App& app) { return app.parts.cells ? app.parts.wanted : app.session.scene; }
-
 // operation_for(part's JSON) is appended to the design.
 template <class OperationFor>
 void append_edit(std::size_t index, const OperationFor& operation_for, platform::Window& window, const Gui& gui,
@@ -98,6 +130,7 @@ void append_edit(std::size_t index, const OperationFor& operation_for, platform:
     parts::edit(operation_for(edited.json), edited);
     keep_names(design, edited.json);
     parts::save_part(edited, file);
+    keep_design(file, app);
     app.parts.done.push_back({index, std::exchange(design, file)});
     ++app.view.part.edits[index];
     show_designs(scene, window, gui, app);
@@ -117,7 +150,10 @@ void undo_part(platform::Window& window, const Gui& gui, App& app) {
     fs::path& design = scene::part_options(scene.tissue)->designs.at(last.design);
     parts::EditedPart edited = parts::open_part(design);
     app.parts.undone.push_back({last.design, edited.json["shape"].back()});
-    if (design == last.before && parts::undo_edit(edited)) parts::save_part(edited, design);
+    if (design == last.before && parts::undo_edit(edited)) {
+        parts::save_part(edited, design);
+        keep_design(design, app);
+    }
     design = last.before;
     app.parts.done.pop_back();
     --app.view.part.edits[last.design];
@@ -132,6 +168,14 @@ void redo_part(platform::Window& window, const Gui& gui, App& app) {
     app.parts.undone.pop_back();
 }
 
+void open_earlier(platform::Window& window, const Gui& gui, App& app) {
+    scene::Scene scene = wanted_scene(app);
+    for (fs::path& design : scene::part_options(scene.tissue)->designs) {
+        if (const fs::path last = edited_files(design).last; !is_edited(design) && !last.empty()) design = last;
+    }
+    show_designs(scene, window, gui, app);
+}
+
 }  // namespace
 
 void change_part(const PartWish& wish, platform::Window& window, const Gui& gui, App& app) {
@@ -140,7 +184,10 @@ void change_part(const PartWish& wish, platform::Window& window, const Gui& gui,
         if (wish.kind == PartWish::Kind::edit) edit_part(wish, window, gui, app);
         if (wish.kind == PartWish::Kind::undo) undo_part(window, gui, app);
         if (wish.kind == PartWish::Kind::redo) redo_part(window, gui, app);
+        if (wish.kind == PartWish::Kind::earlier) open_earlier(window, gui, app);
+        if (wish.kind == PartWish::Kind::offer) app.keeper->offer(app.view.part.kept.at(wish.design));
         app.view.part.undone = app.parts.undone.size();
+        show_files(app);
     });
 }
 
@@ -150,6 +197,8 @@ void forget_parts(App& app) {
 }
 
 void follow_parts(platform::Window& window, const Gui& gui, App& app) {
+    if (!std::exchange(app.parts.looked, true) && scene::part_options(app.session.scene.tissue) != nullptr)
+        show_files(app);
     if (!app.parts.cells) return;
     app.view.part.pending = app.parts.cells->share();
     if (!app.parts.cells->wait(0.0) || app.session.state.touch.down) return;  // the method changes between presses only

@@ -228,6 +228,9 @@ void draw_part_buttons(const Shown& shown, const PartTissue& tissue, const Gui& 
     ImGui::SameLine();
     if (big_button(words::kMagnify, "", {width_px, kTarget_mm, true, view.magnified, words::kHintMagnify}, gui))
         view.magnified = !view.magnified;
+    if (view.earlier &&
+        big_button(words::kEarlierEdits, "", {0.0f, kTarget_mm, true, false, words::kHintEarlierEdits}, gui))
+        wishes.part = wish_of(PartWish::Kind::earlier);
     const bool changes = tissue.methods.size() > 1 && !shown.state.touch.down;
     if (!tissue.methods.empty() &&
         big_button(words::kNextMethod, words::kKeyMethod, {0.0f, kTarget_mm, changes, false, words::kHintMethod}, gui))
@@ -244,11 +247,28 @@ void draw_part_header(const Shown& shown, const Gui& gui, ViewState& view, Wishe
     one_line(shown.scene.name);
 }
 
+// Where the changed designs are; in a browser a person takes them away as files.
+void draw_kept(const Gui& gui, const PartView& view, Wishes& wishes) {
+    for (std::size_t i = 0; i < view.kept.size(); ++i) {
+        if (view.kept[i].empty()) continue;
+        const std::string name = view.kept[i].filename().string();
+        if (!view.in_browser) {
+            paragraph(words::filled(words::kDesignKept, {name, view.kept[i].parent_path().string()}));
+        } else if (big_button(words::filled(words::kSaveDesign, {name}).c_str(), "",
+                              {0.0f, kTarget_mm, true, false, words::kHintSaveDesign}, gui)) {
+            wishes.part = wish_of(PartWish::Kind::offer);
+            wishes.part->design = i;
+        }
+    }
+    if (view.in_browser && !(view.kept[0].empty() && view.kept[1].empty())) paragraph(words::kDesignKeptHere);
+}
+
 void draw_part_notes(const Shown& shown, const Gui& gui, const PartView& view, Wishes& wishes) {
     for (const std::string& problem : shown.notices.problems) warning_paragraph(problem);
     if (!shown.notices.problems.empty() && big_button(words::kDismiss, "", {}, gui)) wishes.understood = true;
     if (view.pending) paragraph(words::filled(words::kCellsPending, {fixed(100.0 * *view.pending, 0)}));
     if (!shown.notices.note.empty()) paragraph(shown.notices.note);
+    draw_kept(gui, view, wishes);
     paragraph(words::kSimulatedParts);
 }
 

@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstddef>
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
@@ -15,7 +16,7 @@ enum class PartTool { press, sculpt, permute };
 
 // What a person asked for on the screen of parts.
 struct PartWish {
-    enum class Kind { edit, undo, redo, method } kind = Kind::method;
+    enum class Kind { edit, undo, redo, earlier, offer, method } kind = Kind::method;
     std::size_t design = 0;
     // Of an edit: a cylinder through the whole part along these places, in the part's own frame (view's axes).
     PartTool tool = PartTool::sculpt;
@@ -53,6 +54,9 @@ struct PartView {
     std::optional<double> pending;   // share of the finite cells' computation that is done; nothing: none runs
     std::array<int, 2> edits{0, 0};  // that can be undone
     std::size_t undone = 0;          // edits that can be done again
+    bool earlier = false;            // designs of another day can be opened
+    bool in_browser = false;         // changed designs are kept there, and offered as files
+    std::array<std::filesystem::path, 2> kept;  // files of the changed designs; empty: not changed
 };
 
 inline constexpr std::array<double, 3> kToolRadii_mm{0.5, 1.0, 2.0};

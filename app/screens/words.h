@@ -261,6 +261,13 @@ inline constexpr const char* kHintUndoEdit = "Takes the last change back";
 inline constexpr const char* kRedo = "Redo";
 inline constexpr const char* kKeyRedo = "Ctrl+Y";
 inline constexpr const char* kHintRedoEdit = "Makes the change again that was taken back last";
+inline constexpr const char* kEarlierEdits = "Earlier changes";
+inline constexpr const char* kHintEarlierEdits = "Opens the designs as they were changed last";
+inline constexpr const char* kDesignKept = "Your changes are kept in {}, in the folder {}.";
+inline constexpr const char* kDesignKeptHere = "Your changes are kept in this browser.";
+inline constexpr const char* kSaveDesign = "Save {}";
+inline constexpr const char* kHintSaveDesign =
+    "Saves the changed design to a file, to evaluate or export it on the desk";
 inline constexpr const char* kMagnify = "5 times";
 inline constexpr const char* kHintMagnify = "Draws displacements five times as large as they are";
 inline constexpr const char* kNextMethod = "Next method";
@@ -671,6 +678,8 @@ inline constexpr const char* pageAllSafe = "All trials are at the desk or export
 inline constexpr const char* pageStoredHere = "Trials are stored on this tablet.";
 inline constexpr const char* pageSettingsNotStored = "Settings are not stored: the storage of this browser is full.";
 inline constexpr const char* pageUnsaved = "{} trial(s) NOT stored: Menu, Trials, Export.";
+inline constexpr const char* pageDesignNotStored =
+    "The changed part is not stored: {}. Save it to a file before you leave this page.";
 inline constexpr const char* pageCanvas = "Tissue to press on, and its controls";
 
 }  // namespace palpa::app::words

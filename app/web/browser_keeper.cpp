@@ -33,6 +33,8 @@ EM_JS(char*, palpa_trials_text, (int which), {
     return copy;
 });
 EM_JS(void, palpa_trials_keep_settings, (const char* text), { palpaTrials.keepSettings(UTF8ToString(text)); });
+EM_JS(void, palpa_trials_keep_design, (const char* path), { palpaTrials.keepDesign(UTF8ToString(path)); });
+EM_JS(void, palpa_trials_offer, (const char* path), { palpaTrials.offer(UTF8ToString(path)); });
 EM_JS(void, palpa_trials_open, (), { palpaTrials.open(); });
 EM_JS(void, palpa_studies_open, (), { palpaPage.openStudies(); });
 EM_JS(void, palpa_studies_restore, (), { palpaStudies.restore(); });
@@ -136,6 +138,8 @@ void BrowserKeeper::keep_settings(const std::filesystem::path& file) {
     }
 }
 
+void BrowserKeeper::keep_design(const fs::path& file) { palpa_trials_keep_design(file.c_str()); }
+void BrowserKeeper::offer(const fs::path& file) { palpa_trials_offer(file.c_str()); }
 void BrowserKeeper::open() { palpa_trials_open(); }
 void BrowserKeeper::open_studies() { palpa_studies_open(); }
 

@@ -17,6 +17,8 @@ class BrowserKeeper : public session::TrialKeeper {
     std::string problem() override;
     std::string note() const override;
     void keep_settings(const std::filesystem::path& file) override;
+    void keep_design(const std::filesystem::path& file) override;
+    void offer(const std::filesystem::path& file) override;
     void open() override;
     void open_studies() override;
 
@@ -30,8 +32,8 @@ std::string participant_here();
 std::string protocol_here();  // ?protocol=NAME, without folder and ending; empty: no study
 int next_run_here();
 
-// Puts the files of studies that earlier pages left, and the desk's files of the requested study, where the app looks
-// for them. A trial that was in progress when its page ended is kept as interrupted.
+// Puts the files of studies and the changed parts that earlier pages left, and the desk's files of the requested study,
+// where the app looks for them. A trial that was in progress when its page ended is kept as interrupted.
 void restore_studies();
 
 // Puts the settings of the last run where the app looks for them.

@@ -1,10 +1,11 @@
 // Trials are kept in the browser's storage (IndexedDB) until the desk has said that it has the same bytes.
 // A trial: {name, text, sha256, finished, exported, sent}; text is gone once it was sent (docs/tablet.md).
-// Beside them: `study`, files that a study goes on from; `parts` of the trial that is going on; `files` of the desk.
+// Beside them: `study`, files that a study goes on from; `parts` of the trial that is going on; `files` of the desk;
+// `designs`, part files that a person has changed.
 'use strict';
 
 const palpaTrials = (() => {
-    const kStores = {trials: 'name', study: 'path', parts: ['name', 'path', 'offset'], files: 'path'}; // and their keys
+    const kStores = {trials: 'name', study: 'path', parts: ['name', 'path', 'offset'], files: 'path', designs: 'path'}; // and their keys
     const kAgain_ms = 15000;
     const kWait_ms = 3000;   // for another tab, and for a desk at the start
     const kPair_ms = 10000;
@@ -15,6 +16,7 @@ const palpaTrials = (() => {
     const unsaved = new Map(); // what the storage would not take, by name: {trial, files}; tried again, also once exported
     const restoring = new Set(); // parts of an earlier page that are not a trial yet
     let studyFiles = [];         // of earlier pages
+    let designs = [];            // of earlier pages
     let parts = [];
     let partsTold = false;
     let database = null;
@@ -90,7 +92,7 @@ const palpaTrials = (() => {
     });
 
     const open = () => new Promise((resolve, reject) => {
-        const asked = indexedDB.open('palpa', 2);
+        const asked = indexedDB.open('palpa', 3);
         asked.onupgradeneeded = () => {
             for (const [store, keyPath] of Object.entries(kStores)) {
                 if (!asked.result.objectStoreNames.contains(store)) asked.result.createObjectStore(store, {keyPath});
@@ -134,6 +136,7 @@ const palpaTrials = (() => {
             database.onclose = () => { database = null; tell(palpaWords.storageClosed); };
             for (const trial of await request('readonly', (store) => store.getAll())) note(trial);
             studyFiles = await request('readonly', (store) => store.getAll(), ['study']);
+            designs = await request('readonly', (store) => store.getAll(), ['designs']);
             parts = await request('readonly', (store) => store.getAll(), ['parts']);
             for (const part of parts) restoring.add(part.name);
             findMissing();
@@ -193,6 +196,8 @@ const palpaTrials = (() => {
         changed();
     };
 
+    const contentOf = (path) => FS.readFile(path, {encoding: 'utf8'});
+
     // `how`: finished, going on, or broken off (left by an earlier page). `paths`: of files that the study goes on from.
     const put = async (name, text, sha256, how, paths) => {
         ++writing;
@@ -203,7 +208,7 @@ const palpaTrials = (() => {
         restoring.delete(name);
         remember('palpa-runs', String(Math.max(Number(recall('palpa-runs')) || 0, runOf(name))));
         const trial = {name, text, sha256, finished, exported: false, sent: false};
-        const files = paths.map((path) => ({path, text: FS.readFile(path, {encoding: 'utf8'})}));
+        const files = paths.map((path) => ({path, text: contentOf(path)}));
         try {
             await save(trial, files, isNew);
         } catch (error) {
@@ -232,7 +237,7 @@ const palpaTrials = (() => {
             FS.mkdirTree(path.slice(0, path.lastIndexOf('/')));
             FS.writeFile(path, text);
         };
-        for (const {path, text} of studyFiles) write(path, text);
+        for (const {path, text} of [...studyFiles, ...designs]) write(path, text);
         const texts = new Map();
         const bytes = new TextEncoder();
         const sizes = new Map();
@@ -243,7 +248,7 @@ const palpaTrials = (() => {
         }
         for (const [path, text] of texts) write(path, text);
         const broken = [...new Set(parts.map(({name, path}) => `${path.slice(0, path.lastIndexOf('/'))}/${name}`))];
-        studyFiles = parts = [];
+        studyFiles = designs = parts = [];
         return broken.join('\n');
     };
 
@@ -324,6 +329,13 @@ const palpaTrials = (() => {
         setTimeout(() => URL.revokeObjectURL(link.href), 60000);
     };
 
+    const keepDesign = (path) => {
+        request('readwrite', (store) => { store.put({path, text: contentOf(path)}); }, ['designs']).catch((error) => {
+            tell(palpaFilled(palpaWords.designNotStored, error.message));
+        });
+    };
+    const offer = (path) => download(path.slice(path.lastIndexOf('/') + 1), contentOf(path));
+
     // All that the desk does not have, in one file; also what the storage would not take. Studies never share one.
     const exportAll = async () => {
         const kept = trials.size === 0 ? [] : (await request('readonly', (store) => store.getAll()).catch((error) => {
@@ -394,6 +406,7 @@ const palpaTrials = (() => {
         participant, nextRun,
         settings: () => recall('palpa-settings'),
         keepSettings: (text) => { if (!remember('palpa-settings', text)) tell(palpaWords.settingsNotStored); },
+        keepDesign, offer,
         open: () => openDialog(),
         onChange: (callback) => { changed = callback; },
     };

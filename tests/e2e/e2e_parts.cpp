@@ -41,6 +41,15 @@ class PenScript {
         row("up", x1, y_px, 0.0);
         wait(1.5);
     }
+    // Faster than frames may come: the pen is down at one place, then at another.
+    void fast_stroke(double x0, double x1, double y_px) {
+        row("hover", x0, y_px, 0.0);
+        row("down", x0, y_px, 0.4);
+        row("move", x1, y_px, 0.4);
+        wait(0.5);
+        row("up", x1, y_px, 0.0);
+        wait(1.5);
+    }
     void key(int code) {
         for (const char* phase : {"down", "up"}) key_row(code, phase);
         wait(1.5);
@@ -107,9 +116,9 @@ TEST_CASE("changed: the pen cuts a part and gives it another material; changes a
     const TemporaryFolder folder;
     PenScript script(folder / "script.tsv");
     script.key(kTwo);
-    script.stroke(700, 720, 400, 0.4);
+    script.fast_stroke(700, 800, 400);
     script.key(kThree);
-    script.stroke(800, 820, 400, 0.4);
+    script.stroke(840, 850, 400, 0.4);
     script.stroke(860, 880, 400, 0.4);
     script.key(kU);
     script.key_with_control(kY);  // again
@@ -129,7 +138,13 @@ TEST_CASE("changed: the pen cuts a part and gives it another material; changes a
     CHECK(out["max_depth_mm"].get<double>() > 0.0);
     const Json part = parse_json(read_text(folder / ".local/share/palpa/parts/bar-edited.json"), "bar-edited.json");
     REQUIRE(part["shape"].size() == 3);  // the bar, a cut, an exchange; the second exchange was undone
-    CHECK(part["shape"][1].contains("remove"));
+    REQUIRE(part["shape"][1].contains("remove"));
+    const Json& channel = part["shape"][1]["remove"]["any"];  // without gaps
+    REQUIRE(channel.size() > 10);
+    for (std::size_t i = 1; i < channel.size(); ++i) {
+        const auto x_mm = [&](std::size_t k) { return channel[k]["cylinder"]["from_mm"][0].get<double>(); };
+        CHECK(std::abs(x_mm(i) - x_mm(i - 1)) < 1.0);  // the radius
+    }
     CHECK(part["shape"][2].contains("permute"));
     // what was there before stays as it was
     CHECK(parse_json(read_text(folder / "bar.json"), "bar.json")["shape"].size() == 1);

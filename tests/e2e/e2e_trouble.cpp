@@ -69,6 +69,7 @@ TEST_CASE("disk full: the trial stops in words, what was logged before is there,
         rows += std::to_string(0.02 + 0.001 * i) + "\tpen\t0\tmove\t" + std::to_string(760 + 0.05 * i) + "\t400\t" +
                 std::to_string(0.5 + 0.1 * ((i / 50) % 2)) + "\n";
     }
+    rows += "3\tkey\t41\tdown\t0\t0\t0\n3.05\tkey\t41\tup\t0\t0\t0\n";  // F: finish
     const int status =
         run_with_copy(folder, "--quit-after-s 7 --screenshot " + (folder / "p.png").string() + " --log " + small,
                       [&] { play(folder, rows); });
@@ -78,6 +79,7 @@ TEST_CASE("disk full: the trial stops in words, what was logged before is there,
     CHECK(contains(read_text(folder / "err.txt"),
                    "cannot be written any more, so the trial ends here (is the disk full, or the folder gone?)"));
     CHECK(std::count(samples.begin(), samples.end(), '\n') > 100);
+    CHECK_FALSE(std::filesystem::exists(folder / ".local/share/palpa/history"));  // no score of half a trial
 }
 
 TEST_CASE("unplugged: a pen that goes in the middle of a press ends it, and another one is taken") {

@@ -69,7 +69,7 @@ TEST_CASE("region file: what is no region is refused with its key") {
           Case{R"({"path": {"points_mm": [[0, 0, 0]], "radius_mm": 1, "ends": "flat"}})", "two, for a cylinder"},
           Case{R"({"stl": {"file": "a.stl"}})", "add.stl.unit"},
           Case{R"({"stl": {"file": "a.stl", "unit": "miles"}})", "add.stl.unit"},
-          Case{R"({"path": {"points_mm": [[0, 0, 0], [1, 2]], "radius_mm": 1}})", "point 1"},
+          Case{R"({"path": {"points_mm": [[0, 0, 0], [1, 2]], "radius_mm": 1}})", "points_mm.1"},
           Case{R"({"bands": {"axis": "x", "period_mm": 2, "width_mm": 3}})", "add.bands.width_mm"},
           Case{R"({"any": [{"all": true}]})", "at least 2"}}) {
         CAPTURE(c.text);

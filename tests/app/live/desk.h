@@ -1,6 +1,7 @@
 #pragma once
 // The app with a window off screen and a keeper that is busy, for tests.
 
+#include <filesystem>
 #include <memory>
 #include <string>
 #include <vector>
@@ -15,6 +16,8 @@ namespace palpa::test {
 class BusyKeeper : public session::TrialKeeper {
   public:
     bool busy = true;
+    std::vector<std::filesystem::path> designs;  // that were kept
+    std::vector<std::filesystem::path> offered;
     void keep(const study::RunFiles&, bool) override {}
     void keep_part(const study::RunFiles&) override {}
     void keep_answers(const std::filesystem::path&, const std::string&) override {}
@@ -23,6 +26,8 @@ class BusyKeeper : public session::TrialKeeper {
     std::string problem() override { return {}; }
     std::string note() const override { return {}; }
     void keep_settings(const std::filesystem::path&) override {}
+    void keep_design(const std::filesystem::path& file) override { designs.push_back(file); }
+    void offer(const std::filesystem::path& file) override { offered.push_back(file); }
     void open() override {}
     void open_studies() override {}
 };

@@ -160,6 +160,22 @@ TEST_CASE("live: while the clock is stopped nothing is marked or finished, and t
     CHECK(trial.finished);
 }
 
+TEST_CASE("live: a trial that was stopped because its log cannot be written is neither marked, finished nor kept") {
+    const TemporaryFolder folder;
+    Desk desk("");
+    desk.app.history_folder = folder / "history";
+    desk.sample(Phase::down);
+    desk.sample(Phase::move);
+    desk.app.course = TrialStopped{"the disk is full", desk.app.session.trial.now_s};
+    act(Action::mark, desk.window, desk.app);
+    act(Action::finish, desk.window, desk.app);
+    CHECK(desk.app.session.trial.marks.empty());
+    CHECK_FALSE(desk.app.session.trial.finished);
+    CHECK_FALSE(std::filesystem::exists(desk.app.history_folder));
+    CHECK_FALSE(work_at_stake(desk.app));
+    desk.show_frame();
+}
+
 TEST_CASE("live: results are kept unless the person does not want it, none of the guided start, and are deleted") {
     const TemporaryFolder folder;
     Desk desk("");

@@ -1,0 +1,94 @@
+// Designs that are changed on the screen of parts: which files hold the changes, and how one goes on with them.
+
+#include <doctest/doctest.h>
+#include <fstream>
+#include <stdlib.h>
+
+#include "files/text.h"
+#include "scene/tissue.h"
+#include "tests/app/live/desk.h"
+#include "tests/temporary_folder.h"
+
+using namespace palpa;
+using namespace palpa::app;
+using namespace palpa::test;
+
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Home {
+    TemporaryFolder folder;
+    Home() {
+        ::setenv("XDG_DATA_HOME", folder.path().c_str(), 1);
+        std::ofstream(folder / "bar.json") << R"({"name": "bar", "voxel_mm": 0.5, "size_mm": [60, 6, 20],
+          "materials": {"hard": {"young_Pa": 8.3e9, "poisson": 0.28, "density_kg_per_m3": 1200, "colour": "#4477aa"}},
+          "shape": [{"add": {"box": {"min_mm": [0, 0, 5], "max_mm": [60, 6, 15]}}, "material": "hard"}],
+          "supports": [{"face": "xmin", "fix": "xyz"}],
+          "loads": {"tip": {"at_mm": [57, 3, 15], "patch_mm": 4, "direction": "-z", "force_N": 2}}, "axis": "x"})";
+        std::ofstream(folder / "scene.json")
+            << R"({"name": "bar", "tissue": {"part": {"designs": ["bar.json"], "method": "timoshenko"}}})";
+    }
+    ~Home() { ::unsetenv("XDG_DATA_HOME"); }
+    std::string scene() const { return (folder / "scene.json").string(); }
+    fs::path edited(const std::string& more = "") const {
+        return folder / "palpa/parts" / ("bar-edited" + more + ".json");
+    }
+};
+
+void wish(PartWish::Kind kind, Desk& desk) {
+    PartWish out;
+    out.kind = kind;
+    if (kind == PartWish::Kind::edit) {
+        out.path_m = {{0.03, 0.01}};
+        out.radius_m = 1e-3;
+    }
+    change_part(out, desk.window, desk.gui, desk.app);
+}
+
+fs::path design_of(Desk& desk) { return scene::part_options(desk.app.session.scene.tissue)->designs.at(0); }
+
+std::size_t operations_of(const fs::path& file) {
+    return files::parse_json(files::read_text(file), file.string())["shape"].size();
+}
+
+}  // namespace
+
+TEST_CASE("part edits: a second session writes a file of its own, and the first one's changes can be gone on with") {
+    const Home home;
+    {
+        Desk desk(home.scene());
+        follow_parts(desk.window, desk.gui, desk.app);
+        CHECK_FALSE(desk.app.view.part.earlier);
+        wish(PartWish::Kind::edit, desk);
+        wish(PartWish::Kind::edit, desk);
+        CHECK(desk.app.notices.problems.empty());
+        CHECK(design_of(desk) == home.edited());
+        CHECK(operations_of(home.edited()) == 3);
+        CHECK(desk.keeper.designs == std::vector<fs::path>{home.edited(), home.edited()});
+        wish(PartWish::Kind::undo, desk);
+        CHECK(operations_of(home.edited()) == 2);
+        CHECK(desk.keeper.designs.size() == 3);
+        CHECK_FALSE(desk.app.view.part.earlier);  // it is the present one
+        wish(PartWish::Kind::offer, desk);
+        CHECK(desk.keeper.offered == std::vector<fs::path>{home.edited()});
+    }
+    {
+        Desk desk(home.scene());
+        wish(PartWish::Kind::edit, desk);
+        CHECK(design_of(desk) == home.edited("-2"));
+        CHECK(operations_of(home.edited()) == 2);
+    }
+    Desk desk(home.scene());
+    follow_parts(desk.window, desk.gui, desk.app);
+    CHECK(desk.app.view.part.earlier);
+    wish(PartWish::Kind::earlier, desk);
+    CHECK(desk.app.notices.problems.empty());
+    CHECK(design_of(desk) == home.edited("-2"));
+    CHECK(desk.app.view.part.kept[0] == home.edited("-2"));
+    CHECK_FALSE(desk.app.view.part.earlier);
+    wish(PartWish::Kind::edit, desk);
+    CHECK(operations_of(home.edited("-2")) == 3);
+    CHECK_FALSE(fs::exists(home.edited("-3")));
+    CHECK(operations_of(home.folder / "bar.json") == 1);
+}
