@@ -41,8 +41,10 @@ endif()
 if(PALPA_SANITIZE AND NOT PALPA_FUZZ)
     set(PALPA_LITTLE -O0)
 endif()
-if(EMSCRIPTEN)  # what is loaded over a network is small instead
+# What is loaded over a network is small instead: PALPA_LITTLE, and PALPA_SMALL, of files that compute a little more.
+if(EMSCRIPTEN)
     set(PALPA_LITTLE -Oz)
+    set(PALPA_SMALL -Oz)
 endif()
 
 # DESK: sources that browsers do without.

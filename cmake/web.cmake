@@ -34,7 +34,7 @@ add_library(palpa_imgui STATIC
 target_include_directories(palpa_imgui SYSTEM PUBLIC ${PALPA_IMGUI_SOURCE})
 target_include_directories(palpa_imgui SYSTEM PRIVATE ${PALPA_IMGUI_SOURCE}/backends)
 target_compile_definitions(palpa_imgui PRIVATE IMGUI_IMPL_OPENGL_ES3)
-target_compile_options(palpa_imgui PRIVATE -w)
+target_compile_options(palpa_imgui PRIVATE -w -Oz)
 add_library(PkgConfig::IMGUI ALIAS palpa_imgui)
 
 # The sequential solver of Eigen; MUMPS is Fortran.

@@ -56,14 +56,15 @@ TEST_CASE("fit: friction is told from the difference of pressing and releasing")
 TEST_CASE("fit: the lag of the drives is told from the speed of the press") {
     PlantOptions plant = small_plant(1.1);
     plant.lag_s = 0.05;
-    const FitResult result = fit_presses(small_strip()->device, recorded(plant), {true, 24, {}});
+    const std::vector<RecordedTick> ticks = recorded(plant);
+    const FitResult result = fit_presses(small_strip()->device, ticks, {true, 24, {}});
     CHECK(result.settled);
     CHECK(result.fit.lag_s == doctest::Approx(0.05).epsilon(0.1));
     CHECK(result.fit.modulus_factor == doctest::Approx(1.1).epsilon(0.02));
     CHECK(result.fit.friction_share < 0.02);
     SoftDevice known = small_strip()->device;  // the same presses, and a lag that the device's file holds
     known.fit.lag_s = 0.05;
-    const FitResult kept = fit_presses(known, recorded(plant), {false, 24, {}});
+    const FitResult kept = fit_presses(known, ticks, {false, 24, {}});
     CHECK(kept.fit.lag_s == 0.05);
     CHECK(kept.fit.modulus_factor == doctest::Approx(1.1).epsilon(0.005));
 }

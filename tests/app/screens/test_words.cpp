@@ -56,6 +56,16 @@ bool is_other(const std::string& line) {
     return std::regex_search(line, other);
 }
 
+// Whether the text has this name, and not only as the beginning of a longer one.
+bool stands(const std::string& text, const std::string& name) {
+    for (std::size_t at = text.find(name); at != std::string::npos; at = text.find(name, at + 1)) {
+        const std::size_t end = at + name.size();
+        if (end == text.size() || (std::isalnum(static_cast<unsigned char>(text[end])) == 0 && text[end] != '_'))
+            return true;
+    }
+    return false;
+}
+
 }  // namespace
 
 TEST_CASE("words: no screen has words of its own") {
@@ -95,9 +105,10 @@ TEST_CASE("words: every word is shown somewhere") {
         std::string name = (*it)[2].str();
         const bool page = (*it)[1] == "page";
         if (page) name[0] = static_cast<char>(std::tolower(name[0]));
-        const std::string use = page ? "(palpaWords\\.|data-word=\"|data-label=\")" + name : "words::k" + name;
-        CAPTURE(use);
-        CHECK(std::regex_search(all, std::regex(use + "\\b")));
+        CAPTURE(name);
+        CHECK((page ? stands(all, "palpaWords." + name) || stands(all, "data-word=\"" + name) ||
+                          stands(all, "data-label=\"" + name)
+                    : stands(all, "words::k" + name)));
     }
     CHECK(found > 150);
 }
