@@ -123,7 +123,8 @@ void draw_methods(const PartTissue& tissue, const PartWork& work) {
             line += "  " + fixed(stiffness(m), 2);
             const bool cells = tissue.methods.back() == parts::Method::voxels;
             if (cells && m + 1 < tissue.methods.size())
-                line += " (" + fixed(100.0 * (stiffness(m) / stiffness(tissue.methods.size() - 1) - 1.0), 0) + " %)";
+                line += " (" + fixed(100.0 * (stiffness(m) / stiffness(tissue.methods.size() - 1) - 1.0), 0) +
+                        "\u00a0%)";  // one word
         }
         wrapped_text(line + " N/mm");
     }
@@ -215,6 +216,18 @@ PartWish wish_of(PartWish::Kind kind) {
     return wish;
 }
 
+// In a browser a person takes the changed designs away as files.
+void draw_saves(const Gui& gui, const PartView& view, Wishes& wishes) {
+    for (std::size_t i = 0; view.in_browser && i < view.kept.size(); ++i) {
+        const std::string label = words::filled(words::kSaveDesign, {i == 0 ? "a" : "b"});
+        if (view.kept[i].empty() ||
+            !big_button(label.c_str(), "", {0.0f, kTarget_mm, true, false, words::kHintSaveDesign}, gui))
+            continue;
+        wishes.part = wish_of(PartWish::Kind::offer);
+        wishes.part->design = i;
+    }
+}
+
 void draw_part_buttons(const Shown& shown, const PartTissue& tissue, const Gui& gui, PartView& view, Wishes& wishes) {
     draw_tools(tissue, gui, view);
     const float width_px = share_of_line_px(3);
@@ -231,6 +244,7 @@ void draw_part_buttons(const Shown& shown, const PartTissue& tissue, const Gui& 
     if (view.earlier &&
         big_button(words::kEarlierEdits, "", {0.0f, kTarget_mm, true, false, words::kHintEarlierEdits}, gui))
         wishes.part = wish_of(PartWish::Kind::earlier);
+    draw_saves(gui, view, wishes);
     const bool changes = tissue.methods.size() > 1 && !shown.state.touch.down;
     if (!tissue.methods.empty() &&
         big_button(words::kNextMethod, words::kKeyMethod, {0.0f, kTarget_mm, changes, false, words::kHintMethod}, gui))
@@ -247,20 +261,14 @@ void draw_part_header(const Shown& shown, const Gui& gui, ViewState& view, Wishe
     one_line(shown.scene.name);
 }
 
-// Where the changed designs are; in a browser a person takes them away as files.
-void draw_kept(const Gui& gui, const PartView& view, Wishes& wishes) {
-    for (std::size_t i = 0; i < view.kept.size(); ++i) {
-        if (view.kept[i].empty()) continue;
-        const std::string name = view.kept[i].filename().string();
-        if (!view.in_browser) {
-            paragraph(words::filled(words::kDesignKept, {name, view.kept[i].parent_path().string()}));
-        } else if (big_button(words::filled(words::kSaveDesign, {name}).c_str(), "",
-                              {0.0f, kTarget_mm, true, false, words::kHintSaveDesign}, gui)) {
-            wishes.part = wish_of(PartWish::Kind::offer);
-            wishes.part->design = i;
-        }
+// Where the changed designs are.
+void draw_kept(const PartView& view) {
+    if (view.kept[0].empty() && view.kept[1].empty()) return;
+    if (view.in_browser) return paragraph(words::kDesignKeptHere);
+    for (const auto& file : view.kept) {
+        if (file.empty()) continue;
+        paragraph(words::filled(words::kDesignKept, {file.filename().string(), file.parent_path().string()}));
     }
-    if (view.in_browser && !(view.kept[0].empty() && view.kept[1].empty())) paragraph(words::kDesignKeptHere);
 }
 
 void draw_part_notes(const Shown& shown, const Gui& gui, const PartView& view, Wishes& wishes) {
@@ -268,7 +276,7 @@ void draw_part_notes(const Shown& shown, const Gui& gui, const PartView& view, W
     if (!shown.notices.problems.empty() && big_button(words::kDismiss, "", {}, gui)) wishes.understood = true;
     if (view.pending) paragraph(words::filled(words::kCellsPending, {fixed(100.0 * *view.pending, 0)}));
     if (!shown.notices.note.empty()) paragraph(shown.notices.note);
-    draw_kept(gui, view, wishes);
+    draw_kept(view);
     paragraph(words::kSimulatedParts);
 }
 

@@ -265,7 +265,7 @@ inline constexpr const char* kEarlierEdits = "Earlier changes";
 inline constexpr const char* kHintEarlierEdits = "Opens the designs as they were changed last";
 inline constexpr const char* kDesignKept = "Your changes are kept in {}, in the folder {}.";
 inline constexpr const char* kDesignKeptHere = "Your changes are kept in this browser.";
-inline constexpr const char* kSaveDesign = "Save {}";
+inline constexpr const char* kSaveDesign = "Save {} to a file";
 inline constexpr const char* kHintSaveDesign =
     "Saves the changed design to a file, to evaluate or export it on the desk";
 inline constexpr const char* kMagnify = "5 times";
