@@ -114,19 +114,19 @@ void draw_design_numbers(const Shown& shown, const PartTissue& tissue, const Par
 void draw_methods(const PartTissue& tissue, const PartWork& work) {
     if (tissue.methods.empty()) return;
     for (std::size_t m = 0; m < tissue.methods.size(); ++m) {
-        std::string line = std::string(m == work.method ? "> " : "  ") + parts::name_of(tissue.methods[m]) + ":";
+        std::string line = std::string(m == work.method ? "> " : "  ") + parts::name_of(tissue.methods[m]);
         for (const PartDesign& design : tissue.designs) {
             const auto stiffness = [&](std::size_t k) {
                 const parts::Response& response = design.responses[k];
                 return 1e-3 / response.compliance_m_per_N[response.named];
             };
-            line += "  " + fixed(stiffness(m), 2);
+            line += (&design == tissue.designs.data() ? ": " : "; ") + fixed(stiffness(m), 2);
             const bool cells = tissue.methods.back() == parts::Method::voxels;
-            if (cells && m + 1 < tissue.methods.size())
-                line += " (" + fixed(100.0 * (stiffness(m) / stiffness(tissue.methods.size() - 1) - 1.0), 0) +
-                        "\u00a0%)";  // one word
+            if (cells && m + 1 < tissue.methods.size())  // figure and percentage stay together
+                line += "\u00a0(" + fixed(100.0 * (stiffness(m) / stiffness(tissue.methods.size() - 1) - 1.0), 0) +
+                        "\u00a0%)";
         }
-        wrapped_text(line + " N/mm");
+        wrapped_text(line + "\u00a0N/mm");
     }
 }
 
