@@ -42,7 +42,7 @@ ComparedDesign design_of(const Part& part, const PartLoad& load, const Stiffness
     out.stiffness = stiffness_of(part, load, options).at(0);
     if (!out.stiffness.answered) {
         throw files::bad_input(part.file, name_of(out.stiffness.method), "no answer: " + out.stiffness.why_not,
-                               "a method that has one, such as voxels");
+                               "a load and a method that have one");
     }
     out.mass_kg = info_of(part).mass_kg;
     if (part.button) {

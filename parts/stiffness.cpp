@@ -50,6 +50,10 @@ void solve_cells(const PartLoad& load, const CellModel& model, const Eigen::Matr
         out.memory_bytes = memory_bytes(multigrid);
     }
     out.answered = compliance > 0.0;
+    if (!out.answered) {
+        out.why_not = "the load is where the part is held: nothing moves";
+        return;
+    }
     out.displacement_m = compliance * load.force_N;
     out.stiffness_N_per_m = 1.0 / compliance;
     out.cells = static_cast<std::int64_t>(model.cells.place.size());

@@ -5,6 +5,7 @@
 #include <cctype>
 #include <cstdio>
 #include <memory>
+#include <stdexcept>
 #include <string_view>
 
 #include "app/commands/command_line.h"
@@ -49,6 +50,17 @@ std::string level_options(const RecordArguments& arguments) {
     return out;
 }
 
+void print_recorded(const RecordArguments& arguments, const files::Json& result) {
+    std::printf("%s: %s points of %s presses; %s\n", result["file"].get_ref<const std::string&>().c_str(),
+                result["points"].dump().c_str(), result["repeats"].dump().c_str(),
+                result["done"].get<bool>() ? "the curve is known everywhere"
+                                           : result["missing"].get_ref<const std::string&>().c_str());
+    if (result.contains("sensor")) std::printf("  sensor      %s\n", result["sensor"]["health"].dump().c_str());
+    if (result["points"] == 0) return;  // nothing to fit yet
+    std::printf("  next        palpa calibrate fit %s -o PROFILE.json%s\n",
+                word(result["file"].get_ref<const std::string&>()).c_str(), level_options(arguments).c_str());
+}
+
 void record(RecordArguments& arguments) {
     calibration::RecordArguments& record = arguments.record;
     files::check_output_folder(record.folder);
@@ -68,23 +80,16 @@ void record(RecordArguments& arguments) {
         record.options.range = {arguments.range[0], arguments.range[1]};
     }
     const files::Json result = record_calibration(record);
+    if (result["points"] == 0 && result["below_zero"].get<int>() > 0)
+        std::fprintf(stderr, "palpa: warning: the force was below zero in a press: reverse the sign of %s\n",
+                     record.sensor.rfind("serial:", 0) == 0 ? "--N-per-count" : "--axis");
+    const bool silent = result.contains("sensor") && result["sensor"]["health"].value("received", 0) == 0;
     if (arguments.json) {
         std::fputs(files::json_text(result).c_str(), stdout);
-        return;
+    } else {
+        print_recorded(arguments, result);
     }
-    std::printf("%s: %s points of %s presses; %s\n", result["file"].get_ref<const std::string&>().c_str(),
-                result["points"].dump().c_str(), result["repeats"].dump().c_str(),
-                result["done"].get<bool>() ? "the curve is known everywhere"
-                                           : result["missing"].get_ref<const std::string&>().c_str());
-    if (result.contains("sensor")) std::printf("  sensor      %s\n", result["sensor"]["health"].dump().c_str());
-    if (result.contains("sensor") && result["sensor"]["health"].value("received", 0) == 0)
-        std::printf("  ! %s sent nothing\n", record.sensor.c_str());
-    if (result["points"] == 0 && result["below_zero"].get<int>() > 0)
-        std::printf("  ! the force was below zero in a press: reverse the sign of %s\n",
-                    record.sensor.rfind("serial:", 0) == 0 ? "--N-per-count" : "--axis");
-    if (result["points"] == 0) return;  // nothing to fit yet
-    std::printf("  next        palpa calibrate fit %s -o PROFILE.json%s\n",
-                word(result["file"].get_ref<const std::string&>()).c_str(), level_options(arguments).c_str());
+    if (silent) throw std::runtime_error(record.sensor + ": it sent nothing");
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include "app/commands/part_design.h"
 #include "files/input_error.h"
 #include "files/printable.h"
+#include "files/regular_file.h"
 #include "files/text.h"
 #include "mechanics/error.h"
 #include "parts/export/export.h"
@@ -84,6 +85,11 @@ files::Json file_json(const parts::ExportedFile& file, ExportKind kind) {
 
 void export_part(const ExportOptions& options) {
     const ExportKind kind = kind_of(options);
+    if (kind == ExportKind::stl || kind == ExportKind::slices) {
+        files::check_output_folder(options.output, {options.file});
+    } else {
+        files::check_output(options.output, {options.file});
+    }
     const parts::Part part = parts::read_part(options.file);
     const std::vector<parts::ExportedFile> written = write_files(part, options, kind);
     if (options.json) {

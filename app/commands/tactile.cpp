@@ -68,7 +68,7 @@ void take_ports(const TactileOptions& options, tactile::TactilePlan& plan) {
 void check_tactile_run(const TactileOptions& options) {
     if (options.replay.empty())
         throw files::InputError(
-            "palpa tactile run: found no --replay PRESS.tsv, expected a press or recorded rows (the "
+            "found no --replay PRESS.tsv, expected a press or recorded rows (the "
             "app's screen of arm and pins, key T, is for presses by hand)");
     if (options.virtual_time && (!options.arm.empty() || !options.pins.empty()))
         throw files::InputError(

@@ -222,7 +222,7 @@ void draw_presses(const TangibleCharacteriseArguments& arguments, const PressedT
 void characterise(const TangibleCharacteriseArguments& arguments) {
     if (arguments.stiffness_N_per_mm.empty() && arguments.scene.empty())
         throw files::InputError(
-            "palpa tangible characterise: found neither --stiffness-N-per-mm nor --scene, expected at "
+            "found neither --stiffness-N-per-mm nor --scene, expected at "
             "least one of them");
     if (!arguments.folder.empty()) {
         files::check_output_folder(arguments.folder);

@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <memory>
+#include <stdexcept>
 
 #include "app/commands/command_line.h"
 #include "app/commands/tangible_loop.h"
@@ -62,6 +63,10 @@ void fit_tangible(const TangibleFitArguments& arguments) {
     const tangible::SoftDevice device = tangible::read_soft_device(device_file(arguments.device));
     const auto ticks = tangible::read_presses(arguments.presses, tangible::make_device_model(device));
     const tangible::FitResult result = fitted(arguments, device, ticks);
+    if (!result.settled) {
+        throw std::runtime_error(arguments.presses + ": the fit did not settle, and nothing was written" +
+                                 (arguments.lag ? "" : " (do the drives lag? --lag)"));
+    }
     files::write_text_atomically(arguments.output, files::json_text(fitted_device(arguments, result.fit)));
     files::Json json = fit_json(result.fit);
     json["lag_error_ms"] = 1e3 * result.lag_error_s;
@@ -80,9 +85,8 @@ void fit_tangible(const TangibleFitArguments& arguments) {
     if (arguments.lag)
         std::printf("  drives lag by %.3g ms (standard error %.2g)\n", 1e3 * result.fit.lag_s,
                     1e3 * result.lag_error_s);
-    std::printf("  recorded minus modelled force: %.3g N before, %.3g N after (rms of %d rows)%s\n",
-                result.rms_before_N, result.rms_after_N, result.ticks,
-                result.settled ? "" : "; the fit did not settle");
+    std::printf("  recorded minus modelled force: %.3g N before, %.3g N after (rms of %d rows)\n", result.rms_before_N,
+                result.rms_after_N, result.ticks);
 }
 
 }  // namespace

@@ -119,28 +119,35 @@ void show_designs(const scene::Scene& wanted, platform::Window& window, const Gu
     app.parts.cells = std::make_unique<session::PlanInProgress>(wanted);
 }
 
-// operation_for(part's JSON) is appended to the design.
+// operation_for(part's JSON) is appended to the design. Returns false, and says so, if it would change nothing.
 template <class OperationFor>
-void append_edit(std::size_t index, const OperationFor& operation_for, platform::Window& window, const Gui& gui,
+bool append_edit(std::size_t index, const OperationFor& operation_for, platform::Window& window, const Gui& gui,
                  App& app) {
     scene::Scene scene = wanted_scene(app);
     fs::path& design = scene::part_options(scene.tissue)->designs.at(index);
-    const fs::path file = edited_file(design, app.parts.copies);
     parts::EditedPart edited = parts::open_part(design);
-    parts::edit(operation_for(edited.json), edited);
+    const files::Json operation = operation_for(edited.json);
+    try {
+        parts::edit(operation, edited);
+    } catch (const files::InputError&) {
+        app.notices.note = words::kNothingChanged;
+        return false;
+    }
+    const fs::path file = edited_file(design, app.parts.copies);
     keep_names(design, edited.json);
     parts::save_part(edited, file);
     keep_design(file, app);
     app.parts.done.push_back({index, std::exchange(design, file)});
     ++app.view.part.edits[index];
     show_designs(scene, window, gui, app);
+    return true;
 }
 
 void edit_part(const PartWish& wish, platform::Window& window, const Gui& gui, App& app) {
     const std::array<int, 2> view = scene::part_options(app.session.scene.tissue)->view;
-    append_edit(
+    const bool changed = append_edit(
         wish.design, [&](const files::Json& part) { return operation_of(wish, view, part); }, window, gui, app);
-    app.parts.undone.clear();
+    if (changed) app.parts.undone.clear();
 }
 
 void undo_part(platform::Window& window, const Gui& gui, App& app) {
@@ -163,15 +170,25 @@ void undo_part(platform::Window& window, const Gui& gui, App& app) {
 void redo_part(platform::Window& window, const Gui& gui, App& app) {
     if (app.parts.undone.empty()) return;
     const PartControl::Undone again = app.parts.undone.back();
-    append_edit(
+    const bool changed = append_edit(
         again.design, [&](const files::Json&) { return again.operation; }, window, gui, app);
-    app.parts.undone.pop_back();
+    if (changed) app.parts.undone.pop_back();
 }
+
+std::size_t operations_of(const fs::path& design) { return parts::open_part(design).json["shape"].size(); }
 
 void open_earlier(platform::Window& window, const Gui& gui, App& app) {
     scene::Scene scene = wanted_scene(app);
-    for (fs::path& design : scene::part_options(scene.tissue)->designs) {
-        if (const fs::path last = edited_files(design).last; !is_edited(design) && !last.empty()) design = last;
+    auto& designs = scene::part_options(scene.tissue)->designs;
+    for (std::size_t i = 0; i < designs.size(); ++i) {
+        const fs::path last = edited_files(designs[i]).last;
+        if (is_edited(designs[i]) || last.empty()) continue;
+        // what the copy has more than its design can be undone
+        for (std::size_t k = operations_of(designs[i]); k < operations_of(last); ++k) {
+            app.parts.done.push_back({i, last});
+            ++app.view.part.edits[i];
+        }
+        designs[i] = last;
     }
     show_designs(scene, window, gui, app);
 }

@@ -157,6 +157,10 @@ std::shared_ptr<const scene::Plan> prepare(platform::Window& window, Gui& gui, c
         window.poll(0.0, ignored);
         if (window.close_requested()) return nullptr;
         gui.begin_frame(kFrame_s, true);
+        if (gui.pressed('q', true)) {  // the first scene: the app ends; another one: the present scene stays
+            gui.end_frame();
+            return nullptr;
+        }
         draw_progress(words::kPreparing, work.share());
         gui.end_frame();
         render::clear_screen(window.width_px(), window.height_px());

@@ -261,6 +261,7 @@ inline constexpr const char* kHintUndoEdit = "Takes the last change back";
 inline constexpr const char* kRedo = "Redo";
 inline constexpr const char* kKeyRedo = "Ctrl+Y";
 inline constexpr const char* kHintRedoEdit = "Makes the change again that was taken back last";
+inline constexpr const char* kNothingChanged = "Nothing was changed: the part is not there, or it would fall in two.";
 inline constexpr const char* kEarlierEdits = "Earlier changes";
 inline constexpr const char* kHintEarlierEdits = "Opens the designs as they were changed last";
 inline constexpr const char* kDesignKept = "Your changes are kept in {}, in the folder {}.";

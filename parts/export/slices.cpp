@@ -7,6 +7,7 @@
 #include "files/input_error.h"
 #include "files/text.h"
 #include "mechanics/voxel_load.h"
+#include "mechanics/voxels.h"
 #include "parts/export/export.h"
 #include "parts/export/new_folder.h"
 
@@ -123,6 +124,7 @@ std::vector<ExportedFile> export_slices(const Part& part, const SlicePitch& pitc
     std::vector<ExportedFile> out;
     std::vector<Image> images(materials);
     std::vector<std::int64_t> pixels(materials);
+    std::vector<bool> shown(materials);
     int drawn = -1;
     for (int layer = 0; layer < grid.n[2]; ++layer) {
         if (const int z = voxel_layer(grid, layer); z != drawn) {
@@ -133,6 +135,7 @@ std::vector<ExportedFile> export_slices(const Part& part, const SlicePitch& pitc
                 draw_line(grid, y, part.voxels.lines[line_of(part.voxels, y, z)], images, pixels);
         }
         for (std::size_t m = 0; m < materials; ++m) {
+            shown[m] = shown[m] || pixels[m] > 0;
             std::array<char, 24> number{};
             std::snprintf(number.data(), number.size(), "-%05d.png", layer);
             const std::string file = names[m] + number.data();
@@ -140,6 +143,12 @@ std::vector<ExportedFile> export_slices(const Part& part, const SlicePitch& pitc
             out.push_back({(folder / file).string(), part.materials[m].name, 0, pixels[m],
                            static_cast<double>(pixels[m]) * pitch.x_m * pitch.y_m * pitch.z_m});
         }
+    }
+    const mechanics::VoxelCounts voxels = mechanics::count(part.voxels, static_cast<int>(materials));
+    for (std::size_t m = 0; m < materials; ++m) {
+        if (shown[m] || voxels.of_material[m] == 0) continue;
+        throw files::bad_input("--pitch-um", "", "pixels that all miss " + files::shown(part.materials[m].name),
+                               "a pitch below the sizes of the part");
     }
     files::write_text_whole(made.path() / "slices.json", files::json_text(slices_json(part, grid, pitch)));
     made.keep();

@@ -83,6 +83,11 @@ TEST_CASE("part stiffness: each method says when it does not apply") {
     const auto coarse = stiffness_of(part, part.loads[0], {{Method::timoshenko, Method::voxels}, 2e-3, 1e-3});
     CHECK(test::contains(coarse[1].why_not, "one cell across"));
     CHECK_FALSE(coarse[0].error);  // what does not apply is no reference
+    PartLoad held = part.loads[0];
+    held.face = mechanics::Side::xmin;  // where the part is clamped
+    const auto still = stiffness_of(part, held, {{Method::voxels}, {}, 1e-3});
+    CHECK_FALSE(still[0].answered);
+    CHECK(test::contains(still[0].why_not, "nothing moves"));
     part.axis.reset();
     CHECK_FALSE(stiffness_of(part, part.loads[0], {kAll, {}, 1e-3})[0].answered);
     part.axis = 2;

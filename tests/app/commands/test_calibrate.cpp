@@ -20,7 +20,7 @@ namespace {
 const std::string kPens = PALPA_RECORDINGS "/pens/pressure_response.csv";
 
 Called calibrate(const std::string& arguments, const std::string& command_before = "calibrate ") {
-    return shell("timeout 100 " PALPA_PROGRAM " " + command_before + arguments);
+    return shell("timeout 300 " PALPA_PROGRAM " " + command_before + arguments);
 }
 
 // 57 points of the paper's touchpad, exact.

@@ -4,6 +4,7 @@
 #include <fstream>
 #include <stdlib.h>
 
+#include "app/screens/words.h"
 #include "files/text.h"
 #include "scene/tissue.h"
 #include "tests/app/live/desk.h"
@@ -89,6 +90,17 @@ TEST_CASE("part edits: a second session writes a file of its own, and the first 
     CHECK_FALSE(desk.app.view.part.earlier);
     wish(PartWish::Kind::edit, desk);
     CHECK(operations_of(home.edited("-2")) == 3);
+    CHECK(desk.app.view.part.edits[0] == 2);  // this one, and the one of the other session
+    wish(PartWish::Kind::undo, desk);
+    wish(PartWish::Kind::undo, desk);
+    CHECK(operations_of(home.edited("-2")) == 1);
+    PartWish missed;
+    missed.kind = PartWish::Kind::edit;
+    missed.path_m = {{0.03, 0.5}};
+    missed.radius_m = 1e-3;
+    change_part(missed, desk.window, desk.gui, desk.app);
+    CHECK(desk.app.notices.note == words::kNothingChanged);
+    CHECK(desk.app.notices.problems.empty());
     CHECK_FALSE(fs::exists(home.edited("-3")));
     CHECK(operations_of(home.folder / "bar.json") == 1);
 }
