@@ -132,10 +132,9 @@ TEST_CASE("part export: 3MF, STL, slices and runs, each with its JSON, and the s
 
 TEST_CASE("part export: wrong usage ends with status 2") {
     const TemporaryFolder folder;
-    for (const char* arguments :
-         {"-o a", "-o a.3mf --as stl", "-o a --as obj", "-o a --as stl --pitch-um 1,1,1",
-          "-o a --as slices --pitch-um 1,1", "-o a --as slices --smooth", "-o a.npy --smooth", "-o a/a.3mf",
-          "-o a/a.npy", "-o a/b --as stl", "-o a --as slices --pitch-um 1e5,1e5,1e5"}) {
+    for (const char* arguments : {"-o a", "-o a.3mf --as stl", "-o a --as obj", "-o a --as stl --pitch-um 1,1,1",
+                                  "-o a --as slices --pitch-um 1,1", "-o a --as slices --smooth", "-o a.npy --smooth",
+                                  "-o a/a.3mf", "-o a/a.npy", "-o a --as slices --pitch-um 1e5,1e5,1e5"}) {
         CAPTURE(arguments);
         const Called called =
             palpa_with("part export " + kBeam + " " + arguments, "cd " + folder.path().string() + " &&");
