@@ -17,7 +17,7 @@ using namespace palpa::test;
 
 namespace {
 
-int run(const std::string& command) { return shell("timeout 300 " + command); }
+int run(const std::string& command) { return shell("timeout 60 " + command); }
 
 const Json& device(const char* tool, const Json& json) {
     for (const Json& entry : json["devices"]) {

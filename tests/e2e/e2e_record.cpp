@@ -52,7 +52,7 @@ TEST_CASE("record: a pen on a real X server and a force sensor give points of on
                             {"--rate-Hz", "1000", "--steps", "16", "--greatest-N", "2.4", "--period-s", "5"});
     int status = -1;
     std::thread session([&] {
-        const std::string command = "timeout 300 " PALPA_PROGRAM " calibrate record -o " + path("s") +
+        const std::string command = "timeout 60 " PALPA_PROGRAM " calibrate record -o " + path("s") +
                                     " --sensor netft:127.0.0.1:" + sensor.port() +
                                     " --steady-s 0.12 --seconds 18 --json >" + path("out.json");
         status = shell(command);
@@ -70,7 +70,7 @@ TEST_CASE("record: a pen on a real X server and a force sensor give points of on
     CHECK(result["samples"].get<int>() > 2000);
     CHECK(result["sensor"]["health"]["lost"] == 0);
 
-    const std::string fit = "timeout 300 " PALPA_PROGRAM " calibrate fit " + path("s/points.csv") + " -o " +
+    const std::string fit = "timeout 60 " PALPA_PROGRAM " calibrate fit " + path("s/points.csv") + " -o " +
                             path("p.json") + " --json >" + path("fit.json");
     CHECK(shell(fit) == 0);
     const Json fitted = read_json(folder / "fit.json");

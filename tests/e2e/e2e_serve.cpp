@@ -59,7 +59,7 @@ struct Place {
 int run(const std::string& arguments, const TemporaryFolder& folder, std::string* message = nullptr) {
     const std::string err = (folder / "err.txt").string();
     const int status = std::system(
-        ("timeout 300 " PALPA_PROGRAM " " + arguments + " >" + (folder / "out.txt").string() + " 2>" + err).c_str());
+        ("timeout 100 " PALPA_PROGRAM " " + arguments + " >" + (folder / "out.txt").string() + " 2>" + err).c_str());
     if (message != nullptr) *message = read_text(err);
     return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
 }

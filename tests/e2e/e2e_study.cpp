@@ -105,7 +105,7 @@ std::string step_now(const TemporaryFolder& folder) {
 std::string text_of(const std::filesystem::path& file) { return std::filesystem::exists(file) ? read_text(file) : ""; }
 
 // One script after the other plays on devices of its own: each device takes one client.
-int play(const std::filesystem::path& script) { return shell("timeout 300 " PALPA_XORG_PEN " " + script.string()); }
+int play(const std::filesystem::path& script) { return shell("timeout 100 " PALPA_XORG_PEN " " + script.string()); }
 
 }  // namespace
 

@@ -18,7 +18,7 @@ namespace {
 // The slab's compliance is computed before, so that the window is there soon.
 std::string prepared_scene(const TemporaryFolder& folder) {
     const std::string scene = PALPA_SOURCE_DIR "/assets/scenes/tactile.json";
-    REQUIRE(shell("HOME=" + folder.path().string() + " timeout 300 " PALPA_PROGRAM " explain " + scene +
+    REQUIRE(shell("HOME=" + folder.path().string() + " timeout 100 " PALPA_PROGRAM " explain " + scene +
                   " >/dev/null") == 0);
     return scene;
 }
@@ -133,6 +133,5 @@ TEST_CASE("driven: a study's surfaces are on arm and pins, and the settings name
         CHECK(std::filesystem::file_size(stem + run + "_tactile.tsv") > 1000);
     }
     CHECK(read_text(stem + "3_events.tsv").find("device_gone") != std::string::npos);
-    CHECK(shell("timeout 300 " PALPA_PROGRAM " study analyse " + (folder / "log").string() + " --json >/dev/null") ==
-          0);
+    CHECK(shell("timeout 60 " PALPA_PROGRAM " study analyse " + (folder / "log").string() + " --json >/dev/null") == 0);
 }

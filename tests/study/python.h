@@ -13,7 +13,7 @@ namespace palpa::test {
 // The first Python that has them, or "". A Python of the person's own may hide the system's, which scripts/setup equips.
 inline std::string python_with(const std::string& modules) {
     for (const std::string python : {"python3", "/usr/bin/python3"}) {
-        const std::string command = "timeout 300 " + python + " -c 'import " + modules + "' >/dev/null 2>&1";
+        const std::string command = "timeout 60 " + python + " -c 'import " + modules + "' >/dev/null 2>&1";
         if (std::system(command.c_str()) == 0) return python;
     }
     return "";

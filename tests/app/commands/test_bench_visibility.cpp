@@ -20,7 +20,7 @@ const std::string kScenes = PALPA_SOURCE_DIR "/assets/scenes/";
 
 // It draws some 80 frames, a few seconds of computing, which a busy machine stretches.
 Json visibility(const std::string& arguments) {
-    const Called called = shell("timeout 600 " PALPA_PROGRAM " bench visibility " + arguments + " --json");
+    const Called called = shell("timeout 250 " PALPA_PROGRAM " bench visibility " + arguments + " --json");
     CHECK(called.err.empty());
     REQUIRE(called.status == 0);
     return parse_json(called.out, "stdout");

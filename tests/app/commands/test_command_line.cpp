@@ -210,7 +210,7 @@ TEST_CASE("command line: a trace that does not fit on the disk is not left half 
     const TemporaryFolder folder;
     const std::string trace = (folder / "t.tsv").string();
     const Called full =
-        shell("trap '' XFSZ; ulimit -f 8; timeout 300 " PALPA_PROGRAM " bench trace --seconds 5 -o " + trace);
+        shell("trap '' XFSZ; ulimit -f 8; timeout 60 " PALPA_PROGRAM " bench trace --seconds 5 -o " + trace);
     CHECK(full.status == 1);
     CHECK(contains(full.err, "cannot be written to its end"));
     CHECK_FALSE(std::filesystem::exists(trace));

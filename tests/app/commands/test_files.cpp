@@ -30,7 +30,7 @@ const std::string kMap = kShipped + "maps/silicone.map";
 
 // In the folder; `after` is what the shell does with the output.
 Called palpa_in(const TemporaryFolder& folder, const std::string& arguments, const std::string& after = ">/dev/null") {
-    return shell("cd " + folder.path().string() + " && timeout 300 " PALPA_PROGRAM " " + arguments + " " + after);
+    return shell("cd " + folder.path().string() + " && timeout 60 " PALPA_PROGRAM " " + arguments + " " + after);
 }
 
 void make_fifo(const fs::path& path) {

@@ -28,7 +28,7 @@ namespace {
 const std::string kSilicone = PALPA_SOURCE_DIR "/assets/maps/silicone.map";
 
 Called maps(const std::string& arguments, const std::string& before = "") {
-    return shell(before + " timeout 300 " PALPA_PROGRAM " maps " + arguments);
+    return shell(before + " timeout 120 " PALPA_PROGRAM " maps " + arguments);
 }
 
 void refused(const std::string& arguments, const std::string& word, int status = 2, const std::string& before = "") {

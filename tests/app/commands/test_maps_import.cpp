@@ -25,7 +25,7 @@ using namespace palpa::test;
 namespace {
 
 Called import(const TemporaryFolder& folder, const std::string& arguments) {
-    return shell("cd " + folder.path().string() + " && timeout 300 " PALPA_PROGRAM " maps import " + arguments);
+    return shell("cd " + folder.path().string() + " && timeout 60 " PALPA_PROGRAM " maps import " + arguments);
 }
 
 // 4 x 3 places, 0.5 N/mm, with columns that nobody could guess.

@@ -26,7 +26,7 @@ using palpa::devices::simulators::SimulatorProcess;
 
 namespace {
 
-const std::string kRecord = "timeout 300 " PALPA_PROGRAM " calibrate record ";
+const std::string kRecord = "timeout 100 " PALPA_PROGRAM " calibrate record ";
 const std::string kHand = " --steps 20 --greatest-N 2.6 --period-s 4 ";
 const std::string kPen = PALPA_PEN_SIMULATOR + kHand;
 
@@ -50,7 +50,7 @@ TEST_CASE("record: pen and Net F/T give points until the curve is known; they fi
     CHECK(std::abs(json["sensor"]["zero_N"].get<double>()) < 0.01);
     CHECK(contains(record.err, "1 of 3 repeats"));
 
-    const Called fit = shell("timeout 300 " PALPA_PROGRAM " calibrate fit " + session + "/points.csv -o " +
+    const Called fit = shell("timeout 60 " PALPA_PROGRAM " calibrate fit " + session + "/points.csv -o " +
                              (folder / "p.json").string() + " --json");
     REQUIRE(fit.status == 0);
     const Json fitted = parse_json(fit.out, "stdout");
@@ -77,7 +77,7 @@ TEST_CASE("record: killed in the middle, all that was captured is there, and it 
     shell(kPen + "--seconds 8 | timeout -s KILL 7 " PALPA_PROGRAM " calibrate record -o " + session + serial);
     std::string before = read_text(session + "/points.csv");
     const auto had = std::count(before.begin(), before.end(), '\n') - 1;
-    CHECK(had > 0);
+    CHECK(had > 5);
     CHECK(before.back() == '\n');
     CHECK(std::count(before.begin(), before.end(), ',') == 4 * (had + 1));
 

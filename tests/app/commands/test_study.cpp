@@ -23,7 +23,7 @@ namespace fs = std::filesystem;
 
 const std::string kCounts = PALPA_SOURCE_DIR "/assets/counts/paper.tsv";
 
-Called study(const std::string& arguments) { return shell("timeout 300 " PALPA_PROGRAM " study " + arguments); }
+Called study(const std::string& arguments) { return shell("timeout 120 " PALPA_PROGRAM " study " + arguments); }
 
 void refused(const std::string& arguments, const std::string& word) {
     const Called called = study(arguments);
@@ -280,7 +280,7 @@ TEST_CASE(
     for (const char* task : {"4", "5"}) {
         const std::string slurm =
             "SLURM_ARRAY_TASK_MIN=4 SLURM_ARRAY_TASK_COUNT=2 SLURM_ARRAY_TASK_ID=" + std::string(task) + " ";
-        const Called part = shell(slurm + "timeout 300 " PALPA_PROGRAM " study " + call + output);
+        const Called part = shell(slurm + "timeout 120 " PALPA_PROGRAM " study " + call + output);
         CHECK(part.status == 0);
         CHECK(contains(part.out, "1 studies now"));
     }
@@ -578,7 +578,7 @@ TEST_CASE("command study simulate: a disk that is full or cannot be written stop
         // no file may grow beyond 64 KB, as on a disk that is nearly full: samples do not fit, so no trial is finished
         const TemporaryFolder said;
         const std::string log = (folder / "log").string();
-        const std::string command = "trap '' XFSZ; ulimit -f 128; timeout 300 " PALPA_PROGRAM
+        const std::string command = "trap '' XFSZ; ulimit -f 128; timeout 60 " PALPA_PROGRAM
                                     " study simulate " PALPA_SOURCE_DIR
                                     "/assets/protocols/effects.json --participants 3 -j 1 -o " +
                                     log + " 2>" + (said / "err").string();
@@ -625,7 +625,7 @@ TEST_CASE("command study: one program at a time writes into a whole folder; sing
         CHECK(study("exclude " + log + " --participant sim0001 --reason x").status == 0);
     }
     CHECK(study(simulate).status == 0);
-    const Called run = shell("timeout 300 " PALPA_PROGRAM " run --headless --replay " PALPA_SOURCE_DIR
+    const Called run = shell("timeout 60 " PALPA_PROGRAM " run --headless --replay " PALPA_SOURCE_DIR
                              "/assets/traces/raster.tsv --log " +
                              log);
     CHECK(run.status == 2);

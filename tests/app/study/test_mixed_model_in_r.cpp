@@ -49,7 +49,7 @@ TEST_CASE("mixed model in R: lme4 finds the report's numbers by the script that 
         const TemporaryFolder folder;
         write_counts(answers, folder / "counts.tsv");
         const std::string report = (folder / "report").string();
-        const Called called = shell("timeout 300 " PALPA_PROGRAM " study analyse " + (folder / "counts.tsv").string() +
+        const Called called = shell("timeout 120 " PALPA_PROGRAM " study analyse " + (folder / "counts.tsv").string() +
                                     " --json -o " + report);
         REQUIRE(called.status == 0);
         write_text_atomically(report + "/check.R",

@@ -28,7 +28,7 @@ std::string snippet(const std::string& language) {
 }
 
 bool simulate(const TemporaryFolder& folder) {
-    const std::string command = "timeout 300 " PALPA_PROGRAM " study simulate " PALPA_SOURCE_DIR
+    const std::string command = "timeout 120 " PALPA_PROGRAM " study simulate " PALPA_SOURCE_DIR
                                 "/assets/protocols/effects.json --participants 12 --samples none -o " +
                                 (folder / "log").string() + " >/dev/null";
     return std::system(command.c_str()) == 0;

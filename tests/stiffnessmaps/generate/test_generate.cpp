@@ -53,7 +53,7 @@ class Bench : public TemporaryFolder {
         return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_text(*this / "err")};
     }
     Called generate(const std::string& map, const std::string& options) const {
-        return shell("timeout 300" + call(map, options));
+        return shell("timeout 120" + call(map, options));
     }
     // All bytes of a map but its name, which is the phantom's.
     std::string bytes(const std::string& map) const {
@@ -168,9 +168,9 @@ TEST_CASE(
     CHECK(bench.generate("one.map", "--check").status == 0);
     CHECK(contains(read_map(bench / "one.map").source.how, "tangential force "));
     CHECK(contains(read_text(bench / "one.map" / "convergence.json"), "max_tangential_difference"));
-    CHECK(bench.shell("timeout 300 " PALPA_PROGRAM " maps info " + (bench / "one.map").string()).status == 0);
+    CHECK(bench.shell("timeout 60 " PALPA_PROGRAM " maps info " + (bench / "one.map").string()).status == 0);
     write_text_atomically(bench / "s.json", R"({"name": "s", "tissue": {"map": "one.map"}})");
-    CHECK(bench.shell("timeout 300 " PALPA_PROGRAM " explain " + (bench / "s.json").string()).status == 0);
+    CHECK(bench.shell("timeout 60 " PALPA_PROGRAM " explain " + (bench / "s.json").string()).status == 0);
     CHECK(contains(read_text(bench / "out"), "friction of the simulated slide along +x"));
 }
 
@@ -208,7 +208,7 @@ TEST_CASE("generate: bad input ends with status 2 and says what was expected") {
             "grid.count: found 2e+08 forces");
     const auto out_of_reach = [&](const std::string& from, const std::string& to, const char* words) {
         write_text_atomically(bench / "p.json", replaced(kPhantom, from, to));
-        const Called called = bench.shell("timeout 300 " PALPA_PROGRAM " maps generate " + (bench / "p.json").string() +
+        const Called called = bench.shell("timeout 60 " PALPA_PROGRAM " maps generate " + (bench / "p.json").string() +
                                           " -o " + (bench / "n.map").string());
         CAPTURE(called.err);
         CHECK(called.status == 2);
