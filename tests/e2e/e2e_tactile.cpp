@@ -104,25 +104,28 @@ TEST_CASE("ports: a trial whose devices' ports are not there does not begin, and
 TEST_CASE("driven: a study's surfaces are on arm and pins, and the settings name each device, real or simulated") {
     const TemporaryFolder folder;
     prepared_scene(folder);
+    const std::string stem = (folder / "log/sub-01/beh/sub-01_task-interval_run-0").string();
     Script script(folder / "script.tsv");
     script.t_s = 1.0;
-    script.key(kEnter);  // begin
-    script.t_s += 4.0;   // the devices open
-    script.key(kF);      // the first surface
-    script.t_s += 4.0;
+    script.key(kEnter);                  // begin
+    script.wait(stem + "1_events.tsv");  // the devices are open
+    script.t_s += 1.0;
+    script.key(kF);  // the first surface
+    script.wait(stem + "2_events.tsv");
+    script.t_s += 1.0;
     script.key(kF);  // the second one
+    script.wait(stem + "2_performance.json");
+    script.t_s += 0.5;
     script.key(k1);  // was softer
-    script.t_s += 4.0;
+    script.wait(stem + "3_events.tsv");
+    script.t_s += 1.0;
     script.key(kF12);  // in the middle of the next pair
     script.out.close();
-    const std::string arguments = pins_study(folder) + " --simulate --quit-after-s 30";
-    REQUIRE(run_program(folder, arguments, folder / "log/sub-01/now.json", [&] { CHECK(play_script(folder) == 0); }) ==
-            0);
+    REQUIRE(run_study_to("device", folder, pins_study(folder) + " --simulate") == 0);  // the step says that F12 stopped
     const Json result = read_json(folder / "out.json");
     CHECK(result["overflow"] == "");
     CHECK(result["finished"] == 1);
-    CHECK(read_json(folder / "log/sub-01/now.json")["step"] == "device");  // which says that F12 stopped them
-    const std::string stem = (folder / "log/sub-01/beh/sub-01_task-interval_run-0").string();
+    CHECK(read_json(folder / "log/sub-01/now.json")["step"] == "device");
     for (const char* run : {"1", "2"}) {
         const Json devices = read_json(stem + run + "_settings.json")["study"]["devices"];
         CAPTURE(devices.dump());

@@ -17,10 +17,8 @@ namespace {
 
 #ifdef __SANITIZE_ADDRESS__  // a step of the strip takes two periods of the loop there
 constexpr const char* kFidelity = R"(, "fidelity": "linear")";
-constexpr double kOpens_s = 8.0;
 #else
 constexpr const char* kFidelity = "";
-constexpr double kOpens_s = 3.0;  // the device, at its pretension
 #endif
 
 // The strip renders 0.25 N/mm; the plant is its own model, in the program.
@@ -91,28 +89,31 @@ TEST_CASE("stopped: F12 on another screen relaxes the soft device, and nothing m
 
 TEST_CASE("driven: a study's surfaces are on the soft device, and the settings name it as simulated") {
     const TemporaryFolder folder;
+    const std::string stem = (folder / "log/sub-01/beh/sub-01_task-interval_run-0").string();
     Script script(folder / "script.tsv");
     script.t_s = 1.0;
-    script.key(kEnter);  // begin
-    script.t_s += kOpens_s;
+    script.key(kEnter);                  // begin
+    script.wait(stem + "1_events.tsv");  // the device is at its pretension
+    script.t_s += 0.5;
     script.key(kF);  // not yet: nothing was touched
     script.press(1.0);
     script.key(kF);  // the first surface
-    script.t_s += kOpens_s;
+    script.wait(stem + "2_events.tsv");
+    script.t_s += 0.5;
     script.press(1.0);
     script.key(kF);  // the second one
+    script.wait(stem + "2_performance.json");
+    script.t_s += 0.5;
     script.key(k1);  // was softer
-    script.t_s += 5.0 + kOpens_s;
+    script.wait(stem + "3_events.tsv");
+    script.t_s += 1.0;
     script.key(kF12);  // in the middle of the next pair
     script.out.close();
-    const std::string arguments = soft_study(folder) + " --quit-after-s " + std::to_string(31.0 + 3.0 * kOpens_s);
-    REQUIRE(run_program(folder, arguments, folder / "log/sub-01/now.json", [&] { CHECK(play_script(folder) == 0); }) ==
-            0);
+    REQUIRE(run_study_to("device", folder, soft_study(folder)) == 0);  // the step says that F12 stopped it
     const Json result = read_json(folder / "out.json");
     CHECK(result["overflow"] == "");
     CHECK(result["finished"] == 1);
-    CHECK(read_json(folder / "log/sub-01/now.json")["step"] == "device");  // which says that F12 stopped it
-    const std::string stem = (folder / "log/sub-01/beh/sub-01_task-interval_run-0").string();
+    CHECK(read_json(folder / "log/sub-01/now.json")["step"] == "device");
     for (const char* run : {"1", "2"}) {
         const Json devices = read_json(stem + run + "_settings.json")["study"]["devices"];
         CAPTURE(devices.dump());

@@ -129,8 +129,7 @@ TEST_CASE("hangup: a terminal that closes ends the app as SIGTERM does, with its
     const std::string log = (folder / "log").string();
     run_with_copy(folder, "--quit-after-s 30 --log " + log, [&] {
         play(folder, tap(0.0, "760", "400") + "0.5\tkey\t58\tdown\t0\t0\t0\n0.6\tkey\t58\tup\t0\t0\t0\n");
-        // the program alone, not the shell that waits for it
-        shell("for p in $(pgrep -x palpa); do grep -q '" + log + "' /proc/$p/cmdline && kill -HUP $p; done");
+        end_program(folder, "HUP");
     });
     const std::string stem = log + "/sub-01/beh/sub-01_task-palpation_run-01";
     CHECK(contains(read_text(stem + "_events.tsv"), "\tmark\t"));

@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <cstdio>
+#include <doctest/doctest.h>
 #include <filesystem>
 #include <functional>
 #include <stdlib.h>
@@ -26,6 +27,12 @@ inline void sleep_s(double seconds) { std::this_thread::sleep_for(std::chrono::d
 // Plays FOLDER/script.tsv on the X server.
 inline int play_script(const TemporaryFolder& folder) {
     return shell("timeout 900 " PALPA_XORG_PEN " " + (folder / "script.tsv").string());
+}
+
+// Sends `signal` ("TERM") to the program that was given a path in `folder`, not to the shell that waits for it.
+inline void end_program(const TemporaryFolder& folder, const std::string& signal) {
+    shell("for p in $(pgrep -x palpa); do grep -q '" + folder.path().string() + "' /proc/$p/cmdline && kill -" +
+          signal + " $p; done");
 }
 
 // Runs `palpa ARGUMENTS >FOLDER/out.json` and does `meanwhile` once `sign` is there, and with it the window.
@@ -54,6 +61,17 @@ inline int run_app(const TemporaryFolder& folder, const std::string& arguments,
                    const std::function<void()>& meanwhile) {
     const std::string trace = (folder / "t.tsv").string();
     return run_program(folder, "run --json --record " + trace + " " + arguments, trace, meanwhile);
+}
+
+// Runs `palpa study run ARGUMENTS`, plays the script, and ends the program once the study is at the step `last`.
+inline int run_study_to(const std::string& last, const TemporaryFolder& folder, const std::string& arguments) {
+    const std::filesystem::path now = folder / "log/sub-01/now.json";
+    return run_program(folder, arguments + " --quit-after-s 240", now, [&] {
+        CHECK(play_script(folder) == 0);
+        const std::string step = "\"step\": \"" + last + "\"";
+        for (int i = 0; i < 1000 && files::read_text(now).find(step) == std::string::npos; ++i) sleep_s(0.05);
+        end_program(folder, "TERM");
+    });
 }
 
 }  // namespace palpa::test

@@ -19,6 +19,8 @@ struct Script {
     void row(const char* kind, int id, const char* phase, double x, double y, double pressure) {
         out << t_s << '\t' << kind << '\t' << id << '\t' << phase << '\t' << x << '\t' << y << '\t' << pressure << '\n';
     }
+    // Holds up all that follows until `file` is there.
+    void wait(const std::filesystem::path& file) { out << t_s << "\twait\t" << file.string() << '\n'; }
     void key(int code) {
         row("key", code, "down", 0.0, 0.0, 0.0);
         t_s += 0.1;

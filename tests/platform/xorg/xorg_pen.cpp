@@ -8,6 +8,7 @@
 //
 //   t_s  kind  id  phase  x_px  y_px  pressure
 //
+// A row `t_s wait FILE` holds up all rows after it until FILE is there, for 100 s at most: a person waits for the screen.
 // kind: pen | touch | mouse | key. id: of the touch, of the key its keycode on this server (65 space, 100 left,
 // 102 right, 98 up, 104 down, 99 and 105 page up and down, 50 shift, 36 enter, 9 escape, 23 tab, 97 home, 103 end;
 // others: 10..19 digits 1..0, 24..33 Q..P, 38..46 A..L, 52..58 Z..M; down and up only), else 0. phase: hover | down | move | up, for the mouse also
@@ -23,6 +24,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
+#include <filesystem>
 #include <fstream>
 #include <iostream>
 #include <memory>
@@ -52,7 +54,10 @@ struct Row {
     double x_px = 0.0;
     double y_px = 0.0;
     double pressure = 0.0;
+    std::string file;  // of wait
 };
+
+constexpr double kLongestWait_s = 100.0;
 
 struct Devices {
     std::unique_ptr<InputDevice> pen, touch, mouse, keyboard;
@@ -69,8 +74,12 @@ std::vector<Row> read_script(std::istream& in) {
         if (line.empty()) continue;
         std::istringstream fields(line);
         Row row;
-        fields >> row.t_s >> row.kind >> row.id >> row.phase >> row.x_px >> row.y_px >> row.pressure;
-        if (!fields) throw std::runtime_error("script, line " + std::to_string(number) + ": want 7 columns");
+        fields >> row.t_s >> row.kind;
+        if (row.kind == "wait")
+            fields >> row.file;
+        else
+            fields >> row.id >> row.phase >> row.x_px >> row.y_px >> row.pressure;
+        if (!fields) throw std::runtime_error("script, line " + std::to_string(number) + ": want 7 columns, 3 of wait");
         rows.push_back(row);
     }
     return rows;
@@ -155,6 +164,13 @@ void play(const Row& row, Devices& devices) {
     throw std::runtime_error("script: kind is " + row.kind + ", want pen, touch, mouse or key");
 }
 
+void wait_for(const std::string& file) {
+    for (double waited_s = 0.0; !std::filesystem::exists(file); waited_s += 0.02) {
+        if (waited_s > kLongestWait_s) throw std::runtime_error(file + ": is not there, waited 100 s");
+        std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    }
+}
+
 // start_s: when t_s = 0 is, on the steady clock; 0: now.
 void run(std::istream& in, double start_s) {
     using Clock = std::chrono::steady_clock;
@@ -164,10 +180,16 @@ void run(std::istream& in, double start_s) {
     const std::vector<Row> rows = read_script(in);
     Devices devices;
     double late_s = 0.0;
-    const auto start = start_s > 0.0 ? Clock::time_point(seconds(start_s)) : Clock::now();
+    auto start = start_s > 0.0 ? Clock::time_point(seconds(start_s)) : Clock::now();
     for (const Row& row : rows) {
         const auto due = start + seconds(row.t_s);
         std::this_thread::sleep_until(due);
+        if (row.kind == "wait") {
+            const auto waits = Clock::now();
+            wait_for(row.file);
+            start += Clock::now() - waits;
+            continue;
+        }
         late_s = std::max(late_s, std::chrono::duration<double>(Clock::now() - due).count());
         play(row, devices);
     }
